@@ -89,9 +89,7 @@ struct Identified {
 /// A cut of a program by the independent plant.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct IndependentCut {
-    /// The controller.
-    pub controller: &'static str,
-    /// Errors at the tool, uncorrected and with the controller.
+    /// Controller, and errors at the tool, uncorrected and with it.
     #[serde(flatten)]
     pub row: SweepRow,
     /// RMS and largest error where the encoders are, um: uncorrected, and with the controller.
@@ -342,12 +340,14 @@ where
         let row = SweepRow {
             program: program.name.clone(),
             machine: identified.machine.name.clone(),
+            model: None,
+            controller: entry.name.to_owned(),
             rigid: false,
             uncorrected: base.tool.clone(),
             corrected: tool,
         };
         let (faults, encoders_um) = (row.faults(), [base.encoders_um, encoders_um]);
-        Ok(IndependentCut { controller: entry.name, row, encoders_um, without_model, faults })
+        Ok(IndependentCut { row, encoders_um, without_model, faults })
     };
     controllers.iter().map(with).collect()
 }

@@ -2,6 +2,16 @@
 //!
 //! The model is made on the base machine, and cuts on the variant. So are the settings of peers: everybody knows the same, and is wrong in
 //! the same. A variant that changes nothing of a base is left out.
+//!
+//! | File | What |
+//! |---|---|
+//! | `mismatch/table.rs` | what the cuts came to, by machine and controller |
+//! | `mismatch/recovery.rs` | how long a controller takes to be back when the machine has changed in mid-cut |
+//! | `mismatch/sudden.rs` | machines that change in mid-cut |
+
+pub mod table;
+mod recovery;
+pub mod sudden;
 
 use feedwright_sim::{Axis, Machine};
 
@@ -108,6 +118,11 @@ pub struct Variants {
     pub seed: u64,
 }
 
+/// Name of the variant that changes nothing.
+fn same_name(base: &str) -> String {
+    format!("{base}-same")
+}
+
 /// The variants of a machine: the machine itself first.
 pub fn variants(base: &Machine, Variants { gross, drawn, seed }: Variants) -> Vec<Machine> {
     let named = |name: &str, change: &mut dyn FnMut(&mut Axis, usize)| {
@@ -118,7 +133,7 @@ pub fn variants(base: &Machine, Variants { gross, drawn, seed }: Variants) -> Ve
         (!is_base).then_some(machine)
     };
     let differences: &[Difference] = if gross { &GROSS } else { &EVERYDAY };
-    let mut all = vec![Machine { name: format!("{}-same", base.name), ..base.clone() }];
+    let mut all = vec![Machine { name: same_name(&base.name), ..base.clone() }];
     all.extend(differences.iter().filter_map(|difference| {
         named(&difference.name(), &mut |axis: &mut Axis, index| difference.change(axis, index))
     }));

@@ -1,4 +1,4 @@
-//! Never worse: a controller compared with the uncorrected cut on every program and every machine, and the cuts that it made worse.
+//! Never worse: controllers compared with the uncorrected cut on every program and every machine, and the cuts that it made worse.
 //!
 //! A cut is worse where its RMS or its largest contour error, or the uncut path, is worse than the uncorrected cut's by the rule
 //! of [`feedwright::harm`], or where the controller is not in the loop any more at the end. Each controller is made for the
@@ -9,7 +9,7 @@
 //! |---|---|
 //! | `never_worse/program.rs` | a program as it is cut, long ones shortened |
 //! | `never_worse/machines.rs` | the machines of the sweep |
-//! | `never_worse/cut.rs` | one program on one machine, uncorrected and corrected |
+//! | `never_worse/cut.rs` | one program on one machine, uncorrected and with each controller |
 //! | `never_worse/generated.rs` | random programs on random machines, and the smallest case of a failure |
 //! | `never_worse/verdict.rs` | in what a cut is worse |
 //! | `never_worse/summary.rs` | totals, quantiles, failures by severity |
@@ -31,6 +31,7 @@ use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use crate::compare::recorded;
 use crate::journal::Journal;
 use cut::{Cutter, SweepRow};
 use program::SweepProgram;
@@ -49,14 +50,38 @@ pub struct SweepJob {
 /// What the jobs have in common.
 #[derive(Debug, Clone)]
 pub struct SweepOptions {
-    /// The controller that is compared with the uncorrected cut.
-    pub controller: &'static Entry,
-    /// Its parameters that are set.
+    /// The controllers that are compared with the uncorrected cut.
+    pub controllers: Vec<&'static Entry>,
+    /// Parameters that are set.
     pub set: Vec<Setting>,
-    /// Seed of its training.
+    /// Whether a controller of which nothing is set has the values that a search found for the machine that it is made for.
+    pub recorded: bool,
+    /// Seed of the training.
     pub seed: u64,
     /// Threads.
     pub threads: usize,
+}
+
+/// Seed of the searches whose values are recorded.
+const RECORDED_SEED: u64 = 1;
+
+impl SweepOptions {
+    /// These controllers with their defaults, on one thread.
+    pub const fn of(controllers: Vec<&'static Entry>) -> Self {
+        Self { controllers, set: Vec::new(), recorded: false, seed: 1, threads: 1 }
+    }
+
+    /// Parameters of the controllers that are made for a machine.
+    fn set_for(&self, model: &Machine) -> Vec<Setting> {
+        let mut all = self.set.clone();
+        let known = if self.recorded { recorded::known(std::slice::from_ref(model), RECORDED_SEED) } else { vec![] };
+        for tuned in known {
+            let entry = self.controllers.iter().find(|entry| entry.name == tuned.controller);
+            let is_set = self.set.iter().any(|set| set.controller == tuned.controller);
+            all.extend(entry.filter(|_| !is_set).map_or(vec![], |&entry| tuned.settings(entry)));
+        }
+        all
+    }
 }
 
 /// Every program on every machine: by machine, so that each is identified once for a thread, and the longest program
@@ -84,11 +109,12 @@ pub fn sample(jobs: Vec<SweepJob>, count: usize, seed: u64) -> Vec<SweepJob> {
     drawn.into_iter().map(|i| jobs[i].clone()).collect()
 }
 
-/// What a cut depends on, apart from the program that makes it.
-fn key(job: &SweepJob, options: &SweepOptions) -> String {
+/// What a cut with a controller depends on, apart from the program that makes it.
+fn key(job: &SweepJob, options: &SweepOptions, controller: &Entry) -> String {
     let machine = serde_json::json!(*job.machine).to_string();
-    let SweepOptions { controller, set, seed, .. } = options;
-    let (seed, set_json) = (seed.to_le_bytes(), serde_json::json!(set).to_string());
+    let set: Vec<Setting> =
+        options.set_for(&job.model).into_iter().filter(|set| set.controller == controller.name).collect();
+    let (seed, set_json) = (options.seed.to_le_bytes(), serde_json::json!(set).to_string());
     let model: String;
     let mut parts = vec![job.program.key.as_bytes(), machine.as_bytes(), controller.name.as_bytes(), &seed];
     if !Arc::ptr_eq(&job.model, &job.machine) {
@@ -101,9 +127,10 @@ fn key(job: &SweepJob, options: &SweepOptions) -> String {
     key_of(&parts)
 }
 
-/// A row under the names that program and machine have now.
+/// A row under the names that program and machines have now.
 fn named(row: &SweepRow, job: &SweepJob) -> SweepRow {
-    SweepRow { program: job.program.name.clone(), machine: job.machine.name.clone(), ..row.clone() }
+    let model = (!Arc::ptr_eq(&job.model, &job.machine)).then(|| job.model.name.clone());
+    SweepRow { program: job.program.name.clone(), machine: job.machine.name.clone(), model, ..row.clone() }
 }
 
 /// The journal of a version in a folder.
@@ -114,7 +141,7 @@ pub fn journal_path(folder: &Path, version: &str) -> PathBuf {
 /// What a sweep came to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Swept {
-    /// In the order of the jobs.
+    /// In the order of the jobs, and for each in that of the controllers.
     pub rows: Vec<SweepRow>,
     /// How many of them the journal had.
     pub known: usize,
@@ -127,7 +154,40 @@ impl SweepJob {
     }
 }
 
-/// Cuts all jobs, uncorrected and corrected.
+/// Does `work` for each job on all threads; the results are in the order of the jobs. The controllers of a thread serve all jobs by the
+/// same model that follow each other.
+///
+/// # Errors
+/// An end from outside.
+pub(crate) fn each<T: Clone + Send>(
+    jobs: &[SweepJob],
+    options: &SweepOptions,
+    watch: &dyn Watch,
+    work: impl Fn(&SweepJob, &mut Cutter) -> Result<T, Cancelled> + Sync,
+) -> Result<Vec<T>, Cancelled> {
+    watch.begin(&format!("{} cuts", jobs.len()), jobs.iter().map(SweepJob::steps).sum());
+    let next = AtomicUsize::new(0);
+    let results = Mutex::new(vec![None; jobs.len()]);
+    let thread = || {
+        let mut cutter: Option<Cutter> = None;
+        loop {
+            let i = next.fetch_add(1, Ordering::Relaxed);
+            let Some(job) = jobs.get(i) else { break };
+            let cutter = match &mut cutter {
+                Some(cutter) if cutter.is_for(&job.model) => cutter,
+                other => other.insert(Cutter::new(&job.model, options)),
+            };
+            let Ok(result) = work(job, cutter) else { break };
+            results.lock().unwrap_or_else(PoisonError::into_inner)[i] = Some(result);
+            watch.advance(job.steps());
+        }
+    };
+    std::thread::scope(|scope| (0..options.threads.max(1)).for_each(|_| drop(scope.spawn(thread))));
+    watch.check()?;
+    Ok(results.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().flatten().collect())
+}
+
+/// Cuts all jobs, uncorrected and with each controller.
 ///
 /// # Errors
 /// An end from outside; what was cut is in the journal.
@@ -137,38 +197,20 @@ pub fn sweep(
     journal: &Journal<SweepRow>,
     watch: &dyn Watch,
 ) -> Result<Swept, Cancelled> {
-    watch.begin(&format!("{} cuts", jobs.len()), jobs.iter().map(SweepJob::steps).sum());
-    let (next, known) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let rows = Mutex::new(vec![None; jobs.len()]);
-    let work = || {
-        // Made where it is needed: what it has identified serves all programs of a machine that follow each other.
-        let mut cutter: Option<Cutter> = None;
-        loop {
-            let i = next.fetch_add(1, Ordering::Relaxed);
-            let Some(job) = jobs.get(i) else { break };
-            let key = key(job, options);
-            let row = match journal.get(&key).map(|row| named(row, job)) {
-                Some(row) => {
-                    known.fetch_add(1, Ordering::Relaxed);
-                    row
-                }
-                None => {
-                    let cutter = match &mut cutter {
-                        Some(cutter) if cutter.is_for(&job.model) => cutter,
-                        other => other.insert(Cutter::new(&job.model, options)),
-                    };
-                    let Ok(row) = cutter.row(&job.program, &job.machine, watch) else { break };
-                    journal.add(&key, &row);
-                    row
-                }
-            };
-            rows.lock().unwrap_or_else(PoisonError::into_inner)[i] = Some(row);
-            watch.advance(job.steps());
+    let known = AtomicUsize::new(0);
+    let work = |job: &SweepJob, cutter: &mut Cutter| {
+        let keys: Vec<String> = options.controllers.iter().map(|entry| key(job, options, entry)).collect();
+        let found: Option<Vec<SweepRow>> = keys.iter().map(|key| journal.get(key).map(|row| named(row, job))).collect();
+        if let Some(rows) = found {
+            known.fetch_add(rows.len(), Ordering::Relaxed);
+            return Ok(rows);
         }
+        let rows = cutter.rows(&job.program, &job.machine, watch)?;
+        let rows: Vec<SweepRow> = rows.iter().map(|row| named(row, job)).collect();
+        keys.iter().zip(&rows).for_each(|(key, row)| journal.add(key, row));
+        Ok(rows)
     };
-    std::thread::scope(|scope| (0..options.threads.max(1)).for_each(|_| drop(scope.spawn(work))));
-    watch.check()?;
-    let rows = rows.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().flatten().collect();
+    let rows = each(jobs, options, watch, work)?.concat();
     Ok(Swept { rows, known: known.into_inner() })
 }
 
@@ -176,8 +218,8 @@ pub fn sweep(
 mod tests {
     use super::*;
     use crate::never_worse::program::Length;
-    use crate::peers::CONTROLLERS;
-    use feedwright::BASELINE;
+    use crate::peers::{DISTURBANCE_OBSERVER, FEEDFORWARD_CROSS_COUPLED};
+    use feedwright::UNCORRECTED;
 
     #[test]
     fn what_was_cut_is_not_cut_again_and_half_a_line_does_no_harm() {
@@ -188,12 +230,7 @@ mod tests {
         let programs = ["G21 F1200\nG1 X5\nG1 Y5\nM2\n", "G21 F1200\nG1 X-5\nM2\n"]
             .map(|text| SweepProgram::from_text("lines", text, length).expect("a program"));
         let jobs = jobs(programs.to_vec(), vec![machine.clone()]);
-        let options = SweepOptions {
-            controller: CONTROLLERS.find(BASELINE).expect("in the table"),
-            set: Vec::new(),
-            seed: 1,
-            threads: 2,
-        };
+        let options = SweepOptions { threads: 2, ..SweepOptions::of(vec![&UNCORRECTED]) };
         let swept = |jobs: &[SweepJob]| {
             sweep(jobs, &options, &Journal::open(&path).expect("a journal"), &()).expect("nobody ends it")
         };
@@ -211,5 +248,22 @@ mod tests {
         };
         let named = swept(&[renamed]).rows;
         assert_eq!((named[0].program.as_str(), &named[0].uncorrected), ("other", &first.rows[0].uncorrected));
+    }
+
+    #[test]
+    fn recorded_values_are_those_of_the_machine_of_the_model_and_what_is_set_goes_before() {
+        let set = Setting { controller: FEEDFORWARD_CROSS_COUPLED.name, name: "kp", value: 0.25 };
+        let controllers = vec![&DISTURBANCE_OBSERVER, &FEEDFORWARD_CROSS_COUPLED];
+        let options = SweepOptions { recorded: true, set: vec![set], ..SweepOptions::of(controllers) };
+        let of = |name: &str| options.set_for(&Machine::load(name.as_ref()).expect("built in"));
+        let (workshop, router) = (of("workshop"), of("router"));
+        for all in [&workshop, &router] {
+            assert_eq!(all.len(), 2, "{all:?}");
+            assert_eq!((all[0], all[1].controller), (set, DISTURBANCE_OBSERVER.name));
+        }
+        assert_ne!(workshop[1].value, router[1].value);
+        let mut other = Machine::load("workshop".as_ref()).expect("built in");
+        other.axes[0].inertia_kg_m2 *= 1.1;
+        assert_eq!(options.set_for(&other), [set], "nothing was searched for another machine");
     }
 }

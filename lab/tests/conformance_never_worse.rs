@@ -54,3 +54,20 @@ fn what_cannot_be_cut_is_said() {
     folder.run(&arguments(&["circle.ngc", "--json", "circle.ngc"])).refused(&["circle.ngc"]);
     folder.run(&["never-worse", "circle.ngc", "--controller", "open"]).refused(&["no controller is called 'open'"]);
 }
+
+#[test]
+fn realistic_machines_are_others_and_the_rest_stays_as_it_was() {
+    let folder = Folder::new();
+    let draw = |more: &[&str]| {
+        let held_out = ["held-out", "5", "2", "--programs", "1", "--controller", "uncorrected", "--json", "n.json"];
+        folder.run(&[&held_out[..], &["--journal", "j.jsonl"], more].concat()).succeeded();
+        let results: Value = serde_json::from_slice(&folder.read("n.json")).unwrap();
+        results["rows"].as_array().unwrap().clone()
+    };
+    let (plain, realistic) = (draw(&[]), draw(&["--realistic"]));
+    let names = |rows: &[Value], key: &str| rows.iter().map(|row| row[key].to_string()).collect::<Vec<_>>();
+    assert_eq!(names(&plain, "program"), names(&realistic, "program"));
+    assert!(plain.iter().zip(&realistic).all(|(a, b)| a["uncorrected"] != b["uncorrected"]), "{realistic:?}");
+    assert_eq!(realistic, draw(&["--realistic"]));
+    folder.run(&["held-out", "5", "2", "--realistic", "--rigid"]).refused(&["--realistic", "--rigid"]);
+}

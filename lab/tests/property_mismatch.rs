@@ -25,16 +25,15 @@ fn what_a_model_gets_wrong_is_learned_while_cutting_and_nothing_is_worse() {
         let base = Arc::new(Machine::load(name.as_ref()).unwrap());
         let length = Length { machine: &base, limit_s: 60.0 };
         let program = SweepProgram::read(&star, &Settings::default(), length).unwrap();
-        let options =
-            SweepOptions { controller: CONTROLLERS.find(BEST).unwrap(), set: Vec::new(), seed: 1, threads: 1 };
+        let options = SweepOptions::of(vec![CONTROLLERS.find(BEST).unwrap()]);
         let mut cutter = Cutter::new(&base, &options);
         let all = variants(&base, Variants { gross: false, drawn: 1, seed: 77 });
-        let exact = cutter.row(&program, &all[0], &()).unwrap().rms_ratio();
+        let exact = cutter.rows(&program, &all[0], &()).unwrap()[0].rms_ratio();
         let mut more = vec![];
         for difference in differences {
             let wanted = format!("{name}-{difference}");
             let machine = all.iter().find(|machine| machine.name == wanted).expect(&wanted);
-            let row = cutter.row(&program, machine, &()).unwrap();
+            let row = &cutter.rows(&program, machine, &()).unwrap()[0];
             assert_eq!(row.faults(), [], "{wanted}: {row:?}");
             more.push(row.rms_ratio() - exact);
         }

@@ -26,7 +26,7 @@ const KNOWN: &str = "helix-836152549";
 const TRIALS: u32 = 60;
 
 fn options() -> SweepOptions {
-    SweepOptions { controller: CONTROLLERS.find(BEST).unwrap(), set: Vec::new(), seed: 1, threads: 1 }
+    SweepOptions::of(vec![CONTROLLERS.find(BEST).unwrap()])
 }
 
 fn told(row: &SweepRow) -> String {
@@ -52,7 +52,7 @@ fn random_programs_on_random_machines_are_cut_no_worse_than_uncorrected() {
     for of_machine in generated.chunks(FOR_EACH) {
         let mut cutter = Cutter::new(&of_machine[0].job.machine, &options);
         for made in of_machine {
-            let row = cutter.row(&made.job.program, &made.job.machine, &()).unwrap();
+            let row = cutter.rows(&made.job.program, &made.job.machine, &()).unwrap().remove(0);
             assert!(row.is_judged(), "the uncorrected cut is lost: {row:?}");
             if row.program == KNOWN {
                 let more = row.corrected.uncut_um.unwrap() / row.uncorrected.uncut_um.unwrap();
@@ -129,7 +129,7 @@ fn judged(name: &str, text: &str, variant: &Variant) -> SweepRow {
     let machine = Arc::new(variant.machine().unwrap());
     let length = Length { machine: &machine, limit_s: 60.0 };
     let program = SweepProgram::from_text(name, text, length).unwrap();
-    let row = Cutter::new(&machine, &options()).row(&program, &machine, &()).unwrap();
+    let row = Cutter::new(&machine, &options()).rows(&program, &machine, &()).unwrap().remove(0);
     eprintln!("{}", told(&row));
     row
 }

@@ -13,6 +13,8 @@ mod controller_list;
 mod cut;
 #[path = "../../crates/ident/tests/common/identification_log.rs"]
 mod identification_log;
+#[path = "../../crates/feedwright/tests/common/json_keys.rs"]
+mod json_keys;
 #[path = "../examples/noise_levels/levels.rs"]
 mod levels;
 #[path = "../../crates/feedwright/tests/common/made_up_report.rs"]
@@ -40,6 +42,7 @@ mod conformance_correction_acceleration;
 mod conformance_feed_planners;
 mod conformance_identified_control;
 mod conformance_independent;
+mod conformance_mismatch;
 mod conformance_never_worse;
 mod conformance_pages_in_browser;
 mod conformance_paper;

@@ -10,6 +10,8 @@ mod controller_list;
 mod cut;
 #[path = "../../ident/tests/common/identification_log.rs"]
 mod identification_log;
+#[path = "common/json_keys.rs"]
+mod json_keys;
 #[path = "../../gcode/tests/common/layers.rs"]
 mod layers;
 #[path = "common/made_up_report.rs"]

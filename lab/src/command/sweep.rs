@@ -1,4 +1,4 @@
-//! What the commands share that compare a controller with the uncorrected cut on many cuts: the journal, the bar, the table.
+//! What the commands share that compare controllers with the uncorrected cut on many cuts: the journal, the bar, the table.
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -9,6 +9,7 @@ use feedwright::command::{
 };
 use feedwright::{OutputFile, OutputFiles, cache_folder, key_of};
 use miette::{IntoDiagnostic, Result, WrapErr};
+use serde::Serialize;
 
 use crate::command::args::sweep::SweepArgs;
 use crate::journal::Journal;
@@ -26,13 +27,14 @@ pub(super) struct Sweep {
 }
 
 impl Sweep {
-    /// `inputs` are files that no output may take the place of.
-    pub(crate) fn new(args: &SweepArgs, inputs: &[&Path]) -> Result<Self> {
-        let controller = find(&args.controller, CONTROLLERS)?;
-        let set = settings(&args.set, CONTROLLERS, Some(controller), &[controller])?;
+    /// `controllers` are names, and `inputs` files that no output may take the place of.
+    pub(crate) fn new(args: &SweepArgs, controllers: &[String], inputs: &[&Path]) -> Result<Self> {
+        let controllers = controllers.iter().map(|name| find(name, CONTROLLERS)).collect::<Result<Vec<_>>>()?;
+        let only = if let [only] = controllers[..] { Some(only) } else { None };
+        let set = settings(&args.set, CONTROLLERS, only, &controllers)?;
         let threads =
             args.threads.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
-        let options = SweepOptions { controller, set, seed: args.seed, threads };
+        let options = SweepOptions { controllers, set, recorded: false, seed: args.seed, threads };
         let mut files = OutputFiles::new(inputs.iter().copied());
         let json = args.json.as_ref().map(|path| files.start(path)).transpose()?;
         let journal = journal(args.journal.as_deref())?;
@@ -42,21 +44,26 @@ impl Sweep {
         Ok(Self { options, journal, json, json_to: args.json.clone() })
     }
 
-    /// Cuts all jobs and writes what was asked for.
-    pub(crate) fn run(self, jobs: &[SweepJob], console: &Console) -> Result<Done> {
+    /// Cuts all jobs.
+    pub(crate) fn run(&self, jobs: &[SweepJob], console: &Console) -> Result<Done> {
         let bar = console.bar(0);
         let began = Instant::now();
         let swept = sweep(jobs, &self.options, &self.journal, &bar);
         bar.clear();
         let Swept { rows, known } = swept?;
-        let summary = SweepSummary::of(rows);
-        let (threads, took_s) = (self.options.threads, began.elapsed().as_secs_f64());
+        let SweepOptions { controllers, threads, .. } = &self.options;
+        let (times, took_s) = (1 + controllers.len(), began.elapsed().as_secs_f64());
+        Ok(Done { rows, known, times, threads: *threads, took_s })
+    }
+
+    /// Writes what a run came to where it was asked for, and returns where tables are printed.
+    pub(crate) fn write(self, summary: &impl Serialize, console: &Console) -> Result<Box<dyn Write>> {
         if let Some(mut file) = self.json {
-            serde_json::to_writer_pretty(&mut file, &summary).into_diagnostic().wrap_err("cannot write the cuts")?;
+            serde_json::to_writer_pretty(&mut file, summary).into_diagnostic().wrap_err("cannot write the cuts")?;
             file.write_all(b"\n").into_diagnostic()?;
-            OutputFile::commit_all(vec![file], &bar)?;
+            OutputFile::commit_all(vec![file], &console.bar(0))?;
         }
-        Ok(Done { summary, known, threads, took_s, json: self.json_to })
+        Ok(tables([self.json_to.as_deref()]))
     }
 }
 
@@ -72,25 +79,25 @@ fn journal(file: Option<&Path>) -> Result<Journal<SweepRow>> {
     Ok(path.and_then(|path| Journal::open(&path).ok()).unwrap_or_else(Journal::none))
 }
 
+/// 1 where any cut is worse.
+pub(super) fn code(worse: usize) -> ExitCode {
+    if worse > 0 { ExitCode::from(OUT_OF_TOLERANCE) } else { ExitCode::SUCCESS }
+}
+
 /// A sweep that is done.
 pub(super) struct Done {
-    pub(crate) summary: SweepSummary,
+    pub(crate) rows: Vec<SweepRow>,
     known: usize,
+    /// How often each program is cut on each machine.
+    times: usize,
     threads: usize,
     took_s: f64,
-    json: Option<PathBuf>,
 }
 
 impl Done {
-    /// 1 where any cut is worse.
-    pub(crate) fn code(&self) -> ExitCode {
-        if self.summary.worse > 0 { ExitCode::from(OUT_OF_TOLERANCE) } else { ExitCode::SUCCESS }
-    }
-
-    /// Failures, then totals.
-    pub(crate) fn print(&self) -> io::Result<()> {
-        let out = &mut *tables([self.json.as_deref()]);
-        let SweepSummary { judged, not_judged, worse, by_fault, rows, .. } = &self.summary;
+    /// Failures, then totals, of the cuts of one controller.
+    pub(crate) fn print(&self, summary: &SweepSummary, out: &mut dyn Write) -> io::Result<()> {
+        let SweepSummary { judged, not_judged, worse, by_fault, rows, .. } = summary;
         let failures: Vec<&Judged> = rows.iter().filter(|judged| !judged.faults.is_empty()).collect();
         let mut table = ConsoleTable::new(vec![
             TableColumn::new("RMS / max um"),
@@ -115,11 +122,11 @@ impl Done {
         if *not_judged > 0 {
             writeln!(out, "not judged, because the uncorrected cut itself is lost: {not_judged}")?;
         }
-        self.print_numbers(out)
+        self.print_numbers(summary, out)
     }
 
-    fn print_numbers(&self, out: &mut dyn Write) -> io::Result<()> {
-        let SweepSummary { rms_ratio, rms_ratio_rigid, engaged_share, machining_s, .. } = &self.summary;
+    fn print_numbers(&self, summary: &SweepSummary, out: &mut dyn Write) -> io::Result<()> {
+        let SweepSummary { rms_ratio, rms_ratio_rigid, engaged_share, machining_s, .. } = summary;
         let mut quantiles = |what: &str, ratios: &Option<Quantiles>| match ratios {
             Some(Quantiles { cuts, median, p90, p99, largest }) => {
                 let text = format!(
@@ -137,11 +144,11 @@ impl Done {
         if let Some(share) = engaged_share {
             writeln!(out, "share of the time with the controller in the loop: median {share:.3}")?;
         }
-        let Self { known, threads, took_s, .. } = self;
+        let Self { known, times, threads, took_s, .. } = self;
         let known = if *known > 0 { format!("; cuts that were in the journal: {known}") } else { String::new() };
         writeln!(
             out,
-            "{:.2} h of machining, cut twice, in {took_s:.0} s on {threads} threads{known}",
+            "{:.2} h of machining, cut {times} times, in {took_s:.0} s on {threads} threads{known}",
             machining_s / 3600.0
         )
     }

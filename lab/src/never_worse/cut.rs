@@ -1,16 +1,23 @@
-//! One program on one machine: uncorrected, and with the controller that was made for the machine.
+//! One program on one machine: uncorrected, and with controllers that were made for the machine or for another one.
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
 use feedwright::CutErrors;
-use feedwright::{BASELINE, Choices, Entry, Make, Setup, Statistics};
+use feedwright::{BASELINE, Choices, Entry, Make, Setup, Statistics, UNCORRECTED};
 use feedwright_control::Controller;
-use feedwright_sim::{Cancelled, Machine, Outcome, PlanCache, Run, RunError, RunResult, Watch};
+use feedwright_sim::{Cancelled, Commanded, Machine, Outcome, PlanCache, Row, Run, RunError, RunResult, Sink, Watch};
 use serde::{Deserialize, Serialize};
 
 use super::SweepOptions;
 use super::program::SweepProgram;
-use crate::peers::CONTROLLERS;
+
+/// Motion after which rows count for [`Figures::later_rms_um`], s: a controller that learns while it cuts has learned by then.
+const LATER_S: f64 = 2.0;
+/// Cutting time that they need to have, s: less is a corner or two.
+const LEAST_LATER_S: f64 = 1.0;
+/// What is said of a cut that panicked.
+const PANICKED: &str = "it panicked";
 
 /// What a cut came to.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -22,6 +29,9 @@ pub struct Figures {
     /// Uncut path: the largest distance of a point of the path from what the tool did around its time, um.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncut_um: Option<f64>,
+    /// RMS contour error from the third second of motion on, um; none where less than a second of cutting is left then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub later_rms_um: Option<f64>,
     /// Part of the cutting time during which the controller was in the loop.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub engaged_share: Option<f64>,
@@ -44,7 +54,7 @@ impl Figures {
         };
         let [rms_um, max_um] = [statistics.rms_um(), statistics.max_um()];
         let (uncut_um, engaged_share) = (Some(run.uncut_mm * 1e3), Some(run.engaged_share));
-        Self { rms_um, max_um, uncut_um, engaged_share, lost, time_s: run.time_s }
+        Self { rms_um, max_um, uncut_um, later_rms_um: None, engaged_share, lost, time_s: run.time_s }
     }
 
     /// The errors that decide whether one cut is worse than another.
@@ -65,6 +75,12 @@ pub struct SweepRow {
     pub program: String,
     /// Machine.
     pub machine: String,
+    /// Machine that the controller is made for, where that is another one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model: Option<String>,
+    /// Controller.
+    #[serde(default)]
+    pub controller: String,
     /// Whether the machine is rigid, without encoder steps and without delay: no noise, nothing that comes late.
     pub rigid: bool,
     /// Uncorrected.
@@ -81,21 +97,75 @@ pub fn is_rigid(machine: &Machine) -> bool {
     })
 }
 
-/// The two controllers of a number of axes, made where they are needed.
-type Pair<const N: usize> = Option<[Box<dyn Controller<N>>; 2]>;
+/// RMS contour error from the third second of motion on.
+#[derive(Debug, Default)]
+struct LaterError {
+    servo_s: f64,
+    moving: u64,
+    cutting: u64,
+    square_sum_mm2: f64,
+}
 
-/// Cuts with what was identified on one machine.
+impl LaterError {
+    /// In um; none where less than a second of cutting was left.
+    fn rms_um(&self) -> Option<f64> {
+        let is_enough = self.cutting as f64 * self.servo_s >= LEAST_LATER_S;
+        is_enough.then(|| 1e3 * (self.square_sum_mm2 / self.cutting as f64).sqrt())
+    }
+}
+
+impl Sink for LaterError {
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        self.moving += u64::from(row.commanded != Commanded::Rest);
+        if row.cutting && self.moving as f64 * self.servo_s > LATER_S {
+            self.cutting += 1;
+            self.square_sum_mm2 += row.contour_error_mm * row.contour_error_mm;
+        }
+        Ok(())
+    }
+}
+
+/// A cut that is about to be made.
+#[derive(Clone, Copy)]
+pub(crate) struct ProgramCut<'a> {
+    pub(crate) program: &'a SweepProgram,
+    /// How it is run: machine, plan, and who watches it.
+    pub(crate) run: Run<'a>,
+    pub(crate) servo_s: f64,
+}
+
+impl<'a> ProgramCut<'a> {
+    /// On a machine, by the plan of other cuts of the same program.
+    pub(crate) fn on(
+        machine: &'a Machine,
+        program: &'a SweepProgram,
+        plan: &'a PlanCache,
+        watch: &'a dyn Watch,
+    ) -> Self {
+        Self { program, run: Run::on(machine).sharing(plan).watched(watch), servo_s: machine.period.servo_s }
+    }
+}
+
+/// Controllers of a number of axes, each made where it is needed.
+type Made<const N: usize> = Vec<Option<Box<dyn Controller<N>>>>;
+
+/// Cuts with controllers that were made for one machine, and uncorrected.
 pub struct Cutter {
     model: Arc<Machine>,
-    options: SweepOptions,
-    plane: Pair<2>,
-    space: Pair<3>,
+    choices: Choices,
+    /// Uncorrected first.
+    entries: Vec<&'static Entry>,
+    plane: Made<2>,
+    space: Made<3>,
 }
 
 impl Cutter {
     /// By a machine; nothing is identified yet.
     pub fn new(model: &Arc<Machine>, options: &SweepOptions) -> Self {
-        Self { model: model.clone(), options: options.clone(), plane: None, space: None }
+        let entries: Vec<_> = [&UNCORRECTED].into_iter().chain(options.controllers.iter().copied()).collect();
+        let choices = Choices { seed: options.seed, set: options.set_for(model) };
+        let (plane, space) = (entries.iter().map(|_| None).collect(), entries.iter().map(|_| None).collect());
+        Self { model: model.clone(), choices, entries, plane, space }
     }
 
     /// Whether it is by this machine.
@@ -103,58 +173,95 @@ impl Cutter {
         Arc::ptr_eq(&self.model, model)
     }
 
-    /// Cuts a program on a machine both ways.
+    /// Number of ways to cut: uncorrected, and one for each controller.
+    pub(crate) const fn ways(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Name of the controller of a way.
+    pub(crate) fn name(&self, way: usize) -> &'static str {
+        self.entries[way].name
+    }
+
+    /// Cuts a program once, uncorrected (way 0) or with one of the controllers.
     ///
     /// # Errors
     /// An end from outside.
-    pub fn row(&mut self, program: &SweepProgram, machine: &Machine, watch: &dyn Watch) -> Result<SweepRow, Cancelled> {
-        let (model, options) = (&self.model, &self.options);
-        let [uncorrected, corrected] = match program.axes {
-            2 => both(machine, model, options, &mut self.plane, program, watch)?,
-            _ if machine.axis_count() < 3 => [Figures::failed("the machine has no Z"), Figures::default()],
-            _ => both(machine, model, options, &mut self.space, program, watch)?,
+    pub(crate) fn cut(
+        &mut self,
+        way: usize,
+        cut: &ProgramCut<'_>,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<Figures, Cancelled> {
+        let Self { model, choices, entries, plane, space } = self;
+        let entry = entries[way];
+        match cut.program.axes {
+            2 => once(&mut plane[way], entry, &mut Setup::new(model, choices), cut, sinks),
+            _ if model.axis_count() < 3 => Ok(Figures::failed("the machine has no Z")),
+            _ => once(&mut space[way], entry, &mut Setup::new(model, choices), cut, sinks),
+        }
+    }
+
+    /// Cuts a program on a machine uncorrected and with every controller: a row for each.
+    ///
+    /// # Errors
+    /// An end from outside.
+    pub fn rows(
+        &mut self,
+        program: &SweepProgram,
+        machine: &Machine,
+        watch: &dyn Watch,
+    ) -> Result<Vec<SweepRow>, Cancelled> {
+        let plan = PlanCache::default();
+        let cut = ProgramCut::on(machine, program, &plan, watch);
+        let mut uncorrected = self.cut(0, &cut, &mut [])?;
+        if uncorrected.lost.as_deref() == Some(PANICKED) {
+            // It is judged: so are the others, which panic too.
+            uncorrected = Figures::default();
+        }
+        let ways = 1..self.ways();
+        let row = |way: usize| {
+            Ok(SweepRow {
+                program: program.name.clone(),
+                machine: machine.name.clone(),
+                model: None,
+                controller: self.entries[way].name.to_owned(),
+                rigid: is_rigid(machine),
+                uncorrected: uncorrected.clone(),
+                corrected: self.cut(way, &cut, &mut [])?,
+            })
         };
-        let (program, machine_name) = (program.name.clone(), machine.name.clone());
-        Ok(SweepRow { program, machine: machine_name, rigid: is_rigid(machine), uncorrected, corrected })
+        ways.map(row).collect()
     }
 }
 
-/// Uncorrected first.
-fn both<const N: usize>(
-    machine: &Machine,
-    model: &Machine,
-    options: &SweepOptions,
-    pair: &mut Pair<N>,
-    program: &SweepProgram,
-    watch: &dyn Watch,
-) -> Result<[Figures; 2], Cancelled>
+/// Cuts a program once with a controller, which is made where there is none yet.
+fn once<const N: usize>(
+    made: &mut Option<Box<dyn Controller<N>>>,
+    entry: &Entry,
+    setup: &mut Setup<'_>,
+    cut: &ProgramCut<'_>,
+    sinks: &mut [&mut dyn Sink],
+) -> Result<Figures, Cancelled>
 where
     Entry: Make<N>,
 {
-    let base = CONTROLLERS.find(BASELINE).expect("the baseline is in the table");
-    let entries = [base, options.controller];
     let done = catch_unwind(AssertUnwindSafe(|| {
-        let controllers = pair.get_or_insert_with(|| {
-            let choices = Choices { seed: options.seed, set: options.set.clone() };
-            entries.map(|entry| Make::make(entry, &mut Setup::new(model, &choices)))
-        });
-        let [first, second] = controllers;
-        let plan = PlanCache::default();
-        let one = |controller: &mut dyn Controller<N>, entry: &Entry| {
-            let mut statistics = Statistics::new();
-            let run = Run::on(machine).laps(entry.laps).sharing(&plan).watched(watch);
-            match run.cut_steps(&program.steps, controller, &mut [&mut statistics]) {
-                Ok(run) => Ok(Figures::of(&run, &statistics, entry)),
-                Err(RunError::Cancelled(cancelled)) => Err(cancelled),
-                Err(error) => Ok(Figures::failed(&error.to_string())),
-            }
-        };
-        Ok([one(&mut **first, entries[0])?, one(&mut **second, entries[1])?])
+        let controller = made.get_or_insert_with(|| Make::make(entry, setup));
+        let (mut statistics, mut later) =
+            (Statistics::new(), LaterError { servo_s: cut.servo_s, ..Default::default() });
+        let mut all: Vec<&mut dyn Sink> = vec![&mut statistics, &mut later];
+        all.extend(sinks.iter_mut().map(|sink| &mut **sink as &mut dyn Sink));
+        match cut.run.laps(entry.laps).cut_steps(&cut.program.steps, &mut **controller, &mut all) {
+            Ok(run) => Ok(Figures { later_rms_um: later.rms_um(), ..Figures::of(&run, &statistics, entry) }),
+            Err(RunError::Cancelled(cancelled)) => Err(cancelled),
+            Err(error) => Ok(Figures::failed(&error.to_string())),
+        }
     }));
     // What has panicked is in no state to cut the next program.
     done.unwrap_or_else(|_| {
-        *pair = None;
-        Ok([Figures::default(), Figures::failed("it panicked")])
+        *made = None;
+        Ok(Figures::failed(PANICKED))
     })
 }
 
@@ -162,22 +269,42 @@ where
 mod tests {
     use super::*;
     use crate::never_worse::program::Length;
+    use crate::peers::{CONTROLLERS, DISTURBANCE_OBSERVER};
     use feedwright::BEST;
 
     #[test]
-    fn a_circle_is_cut_better_with_the_controller_than_without() {
+    fn a_circle_is_cut_better_with_the_controllers_than_without() {
         let machine = Arc::new(Machine::load("tnv40".as_ref()).expect("built in"));
         let length = Length { machine: &machine, limit_s: 10.0 };
         let program = SweepProgram::from_text("circle", "G21 F1200\nG2 X0 Y0 I5 J0\nM2\n", length).expect("a program");
-        let options = SweepOptions {
-            controller: CONTROLLERS.find(BEST).expect("in the table"),
-            set: Vec::new(),
-            seed: 1,
-            threads: 1,
+        let best = CONTROLLERS.find(BEST).expect("in the table");
+        let options = SweepOptions::of(vec![best, &DISTURBANCE_OBSERVER]);
+        let rows = Cutter::new(&machine, &options).rows(&program, &machine, &()).expect("nobody ends it");
+        let names: Vec<&str> = rows.iter().map(|row| row.controller.as_str()).collect();
+        assert_eq!(names, [BEST, DISTURBANCE_OBSERVER.name]);
+        assert!(rows[0].rigid && rows[0].corrected.rms_um < 0.1 * rows[0].uncorrected.rms_um, "{rows:?}");
+        assert_eq!((&rows[0].corrected.lost, rows[0].corrected.engaged_share), (&None, Some(1.0)));
+        assert_eq!(rows[0].uncorrected, rows[1].uncorrected);
+        assert!(rows[0].corrected != rows[1].corrected && rows[1].corrected.rms_um < rows[1].uncorrected.rms_um);
+    }
+
+    #[test]
+    fn the_later_error_is_that_of_cutting_rows_from_the_third_second_of_motion_on() {
+        let later = |seconds: f64| {
+            let mut later = LaterError { servo_s: 0.001, ..Default::default() };
+            let mut rows = |commanded, cutting, error_mm, count: u32| {
+                let row = Row { commanded, cutting, contour_error_mm: error_mm, ..Row::AT_REST };
+                (0..count).for_each(|_| later.row(&row).expect("nothing is written"));
+            };
+            // A second of rest, two of motion, then a rapid, and cutting with 3 and 4 um.
+            rows(Commanded::Rest, true, 1.0, 1000);
+            rows(Commanded::Cut, true, 1.0, 2000);
+            rows(Commanded::Rapid, false, 1.0, 500);
+            rows(Commanded::Cut, true, 3e-3, (500.0 * seconds) as u32);
+            rows(Commanded::Cut, true, -4e-3, (500.0 * seconds) as u32);
+            later.rms_um()
         };
-        let row = Cutter::new(&machine, &options).row(&program, &machine, &()).expect("nobody ends it");
-        assert!(row.rigid);
-        assert!(row.corrected.rms_um < 0.1 * row.uncorrected.rms_um, "{row:?}");
-        assert_eq!((row.corrected.lost, row.corrected.engaged_share), (None, Some(1.0)));
+        assert!((later(2.0).expect("long enough") - 12.5_f64.sqrt()).abs() < 1e-9);
+        assert_eq!(later(0.9), None);
     }
 }

@@ -73,7 +73,7 @@ impl<'a> Trials<'a> {
         if is_other {
             self.cutter = Some((case.machine.changes.clone(), Cutter::new(&machine, self.options)));
         }
-        self.cutter.as_mut()?.1.row(&program, &machine, self.watch).ok()
+        self.cutter.as_mut()?.1.rows(&program, &machine, self.watch).ok()?.into_iter().next()
     }
 }
 

@@ -81,6 +81,8 @@ pub(super) mod tests {
         SweepRow {
             program: "p".to_owned(),
             machine: "m".to_owned(),
+            model: None,
+            controller: "c".to_owned(),
             rigid: true,
             uncorrected: figures(open),
             corrected: figures(corrected),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::sweep::{SweepArgs, at_least_one};
+use super::sweep::{OneController, SweepArgs, at_least_one};
 
 /// Look for such harm with random programs on random machines
 ///
@@ -25,12 +25,17 @@ pub(crate) struct HeldOutArgs {
     /// Only machines without encoder steps and delay.
     #[arg(long)]
     pub(crate) rigid: bool,
+    /// Machines that also have what real axes have: ball screws, backlash, friction, cogging, feedforward, noise, other servo periods.
+    #[arg(long, conflicts_with = "rigid")]
+    pub(crate) realistic: bool,
     /// Make the worst failures smaller and write each as DIR/N.ngc and DIR/N.toml.
     #[arg(long, value_name = "DIR")]
     pub(crate) failures: Option<PathBuf>,
     /// Failures that are made smaller.
     #[arg(long, value_name = "N", default_value_t = 10, requires = "failures")]
     pub(crate) smallest: usize,
+    #[command(flatten)]
+    pub(crate) one: OneController,
     #[command(flatten)]
     pub(crate) sweep: SweepArgs,
 }

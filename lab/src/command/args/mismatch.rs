@@ -9,14 +9,25 @@ use super::sweep::SweepArgs;
 
 /// Cut by a model of one machine on machines that differ from it
 ///
-/// The controller is made for the machine, from a model that is identified on it. Then each program is cut on variants: inertia, friction,
-/// gains, feedforward and delay, alone and together.
+/// Each controller is made for the machine: from a model that is identified on it, or from its values. Then each program is cut on variants:
+/// inertia, friction, gains, feedforward and delay, alone and together. A controller of which nothing is set has the values that a search
+/// has found for the machine and that are recorded; without such values it has its defaults.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
-Example:
-  feedwright-lab mismatch parts --machine workshop --drawn 4 --seed 7
+Our controller is lqg-identified, or the first one where that is not named. Columns: median, 90 % and largest of the RMS error over the \
+uncorrected one; worse: cuts with a worse error than uncorrected; out: cuts that end without the controller in the loop; later: median of the \
+error from the third second of motion on, over that of the same controller without a difference.
 
-Exit codes: 0 nothing is worse; 1 a cut is; 2 an error.")]
+Columns of --sudden: back: cuts that are back within 1 s, of those that are long enough; median and largest time until they are back, s; \
+level: median of the error later than 1 s after the change, over that of the cut without the change; worse: cuts whose largest error is \
+worse than uncorrected; by: largest such excess, um, negative where there is none; out as above.
+
+Examples:
+  feedwright-lab mismatch parts --machine workshop --drawn 4 --seed 7
+  feedwright-lab mismatch parts --controller lqg-identified --controller feedforward
+  feedwright-lab mismatch parts --sudden
+
+Exit codes: 0 no cut of our controller is worse; 1 one is; 2 an error.")]
 pub(crate) struct MismatchArgs {
     /// G-code programs, and folders of programs.
     #[arg(required = true)]
@@ -24,12 +35,23 @@ pub(crate) struct MismatchArgs {
     /// Machine of the model: built-in, or a machine file; may be given several times. Without it, workshop, stiff, tnv40 and router.
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) machine: Vec<OsString>,
+    /// Controller; may be given several times. `feedwright-lab controllers` lists them.
+    #[arg(long, value_name = "NAME", default_value = feedwright::BEST)]
+    pub(crate) controller: Vec<String>,
     /// Gross differences: three times the inertia or a third of it, 0.7 of the position gain, 2 ms more delay, three times the friction.
     #[arg(long)]
     pub(crate) gross: bool,
     /// Variants in which everything differs, drawn by the seed, for each of 10 and 20 %.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) drawn: u32,
+    /// Change the machine in mid-cut: twice the inertia, twice the friction, or a blow.
+    ///
+    /// The change comes at half of the cutting time. A blow is a torque impulse that moves each axis by 35 um, uncorrected. Each cut is made
+    /// with and without the change. Within 1 s after it, the RMS error of the last 0.2 s has to be back: at most 1.5 times what it is at the
+    /// same moment without the change, plus 0.5 um. Where the change raises the uncorrected error at that moment, it may be higher by the
+    /// same ratio. The largest error from the change on may exceed the uncorrected one by 1 um. No journal is kept.
+    #[arg(long, conflicts_with_all = ["gross", "drawn", "journal"])]
+    pub(crate) sudden: bool,
     /// Cut no more of a program than this time of machining on the machine of the model, s.
     #[arg(long, value_name = "S", default_value_t = 60.0)]
     pub(crate) limit_s: f64,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use feedwright::command::ReaderArgs;
 
-use super::sweep::{SweepArgs, at_least_one};
+use super::sweep::{OneController, SweepArgs, at_least_one};
 
 /// Find programs and machines where a correction does harm
 ///
@@ -32,6 +32,8 @@ pub(crate) struct NeverWorseArgs {
     /// Cut N of all pairs of program and machine, drawn by the seed.
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     pub(crate) sample: Option<usize>,
+    #[command(flatten)]
+    pub(crate) one: OneController,
     #[command(flatten)]
     pub(crate) sweep: SweepArgs,
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! Options of the commands that compare a controller with the uncorrected cut on many machines.
+//! Options of the commands that compare controllers with the uncorrected cut on many machines.
 
 use std::path::PathBuf;
 
@@ -12,12 +12,17 @@ pub(super) fn at_least_one(text: &str) -> Result<usize, String> {
     }
 }
 
-/// How a controller is compared with the uncorrected cut.
+/// The one controller of a command.
 #[derive(Debug, Args)]
-pub(crate) struct SweepArgs {
+pub(crate) struct OneController {
     /// Controller; `feedwright-lab controllers` lists them.
     #[arg(long, value_name = "NAME", default_value = feedwright::BEST)]
     pub(crate) controller: String,
+}
+
+/// How controllers are compared with the uncorrected cut.
+#[derive(Debug, Args)]
+pub(crate) struct SweepArgs {
     /// Set a parameter of the controller, such as knots=10; may be given several times. `feedwright-lab controllers NAME` lists them.
     #[arg(long, value_name = "PARAMETER=VALUE")]
     pub(crate) set: Vec<String>,

@@ -9,32 +9,37 @@ use feedwright_sim::Watch;
 use miette::{IntoDiagnostic, Result};
 
 use crate::command::args::held_out::HeldOutArgs;
-use crate::command::sweep::Sweep;
+use crate::command::sweep::{Sweep, code};
 use crate::held_out::machines::Class;
 use crate::never_worse::generated::{Generated, draw, smallest};
-use crate::never_worse::summary::Judged;
+use crate::never_worse::summary::{Judged, SweepSummary};
 use crate::never_worse::{SweepJob, SweepOptions};
 
 /// Trials for each failure: enough for a few hundred lines and a machine of thirty changes.
 const TRIALS: u32 = 400;
 
 pub(crate) fn run(args: &HeldOutArgs, console: &Console) -> Result<ExitCode> {
-    let sweep = Sweep::new(&args.sweep, &[])?;
+    let sweep = Sweep::new(&args.sweep, std::slice::from_ref(&args.one.controller), &[])?;
     if let Some(folder) = &args.failures {
         make_folder(folder)?;
     }
-    let class = if args.rigid { Class::Rigid } else { Class::Any };
+    let class = match (args.rigid, args.realistic) {
+        (true, _) => Class::Rigid,
+        (_, true) => Class::Realistic,
+        _ => Class::Any,
+    };
     let generated = draw(args.drawn_by, args.count, args.programs.into(), class)?;
     eprintln!("{} cuts drawn by seed {}, {} programs for each machine", args.count, args.drawn_by, args.programs);
     let jobs: Vec<SweepJob> = generated.iter().map(|made| made.job.clone()).collect();
     let options = sweep.options.clone();
-    let done = sweep.run(&jobs, console)?;
-    let printing = done.print();
+    let mut done = sweep.run(&jobs, console)?;
+    let summary = SweepSummary::of(std::mem::take(&mut done.rows));
+    let printing = sweep.write(&summary, console).map(|mut out| done.print(&summary, &mut out))?;
     if let Some(folder) = &args.failures {
-        let failures = done.summary.rows.iter().filter(|judged| !judged.faults.is_empty()).take(args.smallest);
+        let failures = summary.rows.iter().filter(|judged| !judged.faults.is_empty()).take(args.smallest);
         write_smallest(folder, failures, &generated, &options, console)?;
     }
-    printed(printing, done.code())
+    printed(printing, code(summary.worse))
 }
 
 /// Makes each failure smaller and writes it.

@@ -47,7 +47,7 @@ pub(crate) fn run(args: &IndependentArgs, console: &Console) -> Result<ExitCode>
     let out = &mut *tables([args.json.as_deref()]);
     let printing = results.iter().try_for_each(|result| print(result, out));
     let is_worse =
-        |result: &IndependentResult| result.cuts.iter().any(|cut| cut.controller == BEST && !cut.faults.is_empty());
+        |result: &IndependentResult| result.cuts.iter().any(|cut| cut.row.controller == BEST && !cut.faults.is_empty());
     let worse = results.iter().any(is_worse);
     printed(printing, if worse { ExitCode::from(OUT_OF_TOLERANCE) } else { ExitCode::SUCCESS })
 }
@@ -142,7 +142,7 @@ fn print_cuts(result: &IndependentResult, out: &mut dyn Write) -> io::Result<()>
         let engaged = after.engaged_share.map_or(String::new(), |share| format!("{share:.2}"));
         let faults: Vec<&str> = cut.faults.iter().map(|fault| fault.name()).collect();
         table.row(vec![
-            format!("  {}", cut.controller),
+            format!("  {}", cut.row.controller),
             both(seen_after),
             ratio(seen_before[0], seen_after[0]),
             both(tool_after),

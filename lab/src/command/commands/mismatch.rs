@@ -1,20 +1,38 @@
-//! `feedwright-lab mismatch`: by a model of one machine, programs on machines that differ from it, uncorrected and corrected.
-use std::io::Write;
+//! `feedwright-lab mismatch`: by models of some machines, programs on machines that differ from them, uncorrected and corrected.
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use feedwright::command::{Console, printed, tables};
+use feedwright::command::{Console, ConsoleTable, TableColumn, printed};
+use feedwright::{BEST, RESULTS_FORMAT};
 use feedwright_sim::Machine;
-use miette::Result;
+use miette::{Result, miette};
+use serde::Serialize;
 
 use super::never_worse::{checked, found, read};
 use crate::command::args::mismatch::MismatchArgs;
-use crate::command::sweep::Sweep;
+use crate::command::sweep::{Sweep, code};
+use crate::mismatch::sudden::{SuddenRow, SuddenSummary, sudden};
+use crate::mismatch::table::{MismatchSummary, MismatchVerdict};
 use crate::mismatch::{Variants, variants};
-use crate::never_worse::summary::{Quantiles, SweepSummary};
-use crate::never_worse::verdict::Failure;
+use crate::never_worse::summary::Quantiles;
 use crate::never_worse::{SweepJob, jobs};
+
+/// A result with its format and version.
+#[derive(Serialize)]
+struct StampedResult<'a, T> {
+    format: u32,
+    version: &'static str,
+    #[serde(flatten)]
+    result: &'a T,
+}
+
+impl<'a, T> StampedResult<'a, T> {
+    const fn of(result: &'a T) -> Self {
+        Self { format: RESULTS_FORMAT, version: env!("CARGO_PKG_VERSION"), result }
+    }
+}
 
 /// Machines whose models are tried where none is named.
 const BASES: [&str; 4] = ["workshop", "stiff", "tnv40", "router"];
@@ -29,36 +47,114 @@ pub(crate) fn run(args: &MismatchArgs, console: &Console) -> Result<ExitCode> {
     let files = found(&args.programs)?;
     let machine_files = args.machine.iter().map(PathBuf::from).collect::<Vec<_>>();
     let inputs: Vec<&Path> = files.iter().chain(&machine_files).map(PathBuf::as_path).collect();
-    let sweep = Sweep::new(&args.sweep, &inputs)?;
+    let mut sweep = Sweep::new(&args.sweep, &args.controller, &inputs)?;
+    sweep.options.recorded = true;
+    let names: Vec<&'static str> = sweep.options.controllers.iter().map(|entry| entry.name).collect();
+    if let Some(twice) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
+        return Err(miette!(help = "leave one of them out", "--controller {} is there twice", names[twice]));
+    }
+    let ours = names.iter().find(|name| **name == BEST).unwrap_or(&names[0]);
     let which = Variants { gross: args.gross, drawn: args.drawn, seed: args.sweep.seed };
     let mut all = vec![];
     for base in &bases {
         let programs = read(&files, &args.reader.settings()?, base, args.limit_s, console)?;
         let model = Arc::new(base.clone());
-        let of_variants = jobs(programs, variants(base, which)).into_iter();
-        all.extend(of_variants.map(|job| SweepJob { model: model.clone(), ..job }));
+        let machines = if args.sudden { vec![base.clone()] } else { variants(base, which) };
+        all.extend(jobs(programs, machines).into_iter().map(|job| SweepJob { model: model.clone(), ..job }));
     }
-    eprintln!("{} cuts by models of {} machines", all.len(), bases.len());
-    let done = sweep.run(&all, console)?;
-    let printing = done.print().and_then(|()| {
-        let out = &mut *tables([args.sweep.json.as_deref()]);
-        bases.iter().try_for_each(|base| print_base(base, &done.summary, out))
-    });
-    printed(printing, done.code())
+    if args.sudden {
+        return run_sudden(&all, ours, sweep, console);
+    }
+    eprintln!("{} cuts by models of {} machines with {} controllers", all.len(), bases.len(), names.len());
+    let mut done = sweep.run(&all, console)?;
+    let summary = MismatchSummary::of(std::mem::take(&mut done.rows), ours);
+    let mut out = sweep.write(&StampedResult::of(&summary), console)?;
+    let printing = done.print(&summary.ours, &mut out).and_then(|()| print(&summary, &mut out));
+    printed(printing, code(summary.ours.worse))
 }
 
-/// What the cuts by the model of one machine came to.
-fn print_base(base: &Machine, summary: &SweepSummary, out: &mut dyn Write) -> std::io::Result<()> {
-    let prefix = format!("{}-", base.name);
-    let of_base = || summary.rows.iter().filter(|judged| judged.row.machine.starts_with(&prefix));
-    let ratios = of_base().filter(|judged| judged.row.is_judged()).map(|judged| judged.row.rms_ratio());
-    let Some(Quantiles { cuts, median, p90, .. }) = Quantiles::of(ratios.collect()) else { return Ok(()) };
-    let lost = of_base().filter(|judged| judged.faults.contains(&Failure::Lost)).count();
-    let worse = of_base().filter(|judged| judged.faults.iter().any(|fault| *fault != Failure::Lost)).count();
-    writeln!(
-        out,
-        "by the model of {}: median {median:.3}, 90 % {p90:.3} of the uncorrected RMS; {worse} of {cuts} cuts worse, \
-         {lost} uncorrected at the end",
-        base.name
-    )
+/// A row for each machine and controller, and a line for each machine; the help explains the columns.
+fn print(summary: &MismatchSummary, out: &mut dyn Write) -> io::Result<()> {
+    let columns = ["RMS / uncorrected", "cuts", "median", "90 %", "largest", "worse", "out", "later"];
+    let mut table = ConsoleTable::new(columns.into_iter().map(TableColumn::new).collect());
+    let mut model = "";
+    for group in &summary.groups {
+        if model != group.model {
+            model = &group.model;
+            table.section(format!("by {model}"));
+        }
+        let Quantiles { cuts, median, p90, largest, .. } = group.rms_ratio;
+        let later = group.later_ratio.map_or("-".to_owned(), |later| format!("{:.3}", later.median));
+        let ratios = [median, p90, largest].map(|ratio| format!("{ratio:.3}"));
+        let counts = [group.worse, group.lost].map(|count| count.to_string());
+        let name = [group.controller.clone(), cuts.to_string()];
+        table.row([&name[..], &ratios, &counts, &[later]].concat());
+    }
+    table.print(out)?;
+    for MismatchVerdict { model, ours, median, peer, peer_median, ratio } in &summary.verdicts {
+        if let (Some(peer), Some(peer_median), Some(ratio)) = (peer, peer_median, ratio) {
+            writeln!(out, "{model}: best peer {peer} {peer_median:.3}, {ours} {median:.3}, which is {ratio:.2} of it")?;
+        }
+    }
+    Ok(())
+}
+
+/// Cuts on machines that change in mid-cut.
+fn run_sudden(jobs: &[SweepJob], ours: &str, sweep: Sweep, console: &Console) -> Result<ExitCode> {
+    eprintln!("{} programs on machines that change in mid-cut", jobs.len());
+    let bar = console.bar(0);
+    let summary = sudden(jobs, &sweep.options, &bar);
+    bar.clear();
+    let summary = summary?;
+    let failures: Vec<&SuddenRow> =
+        summary.rows.iter().filter(|row| row.controller == ours && !row.faults.is_empty()).collect();
+    let mut out = sweep.write(&StampedResult::of(&summary), console)?;
+    let printing = print_failures(&failures, &mut out).and_then(|()| print_sudden(&summary, &mut out));
+    printed(printing, code(failures.len()))
+}
+
+/// Cuts of our controller that have a fault.
+fn print_failures(failures: &[&SuddenRow], out: &mut dyn Write) -> io::Result<()> {
+    if failures.is_empty() {
+        return Ok(());
+    }
+    let columns = ["after a change", "machine", "change", "back s", "max um", "uncorrected", "fault"];
+    let mut table = ConsoleTable::new(columns.into_iter().map(TableColumn::new).collect());
+    for row in failures {
+        let back = row.back_s.map_or("-".to_owned(), |back_s| format!("{back_s:.2}"));
+        let [open_um, own_um] = row.max_um.map(|um| format!("{um:.1}"));
+        let faults: Vec<&str> = row.faults.iter().map(|fault| fault.name()).collect();
+        let names = [row.program.clone(), row.machine.clone(), row.change.name().to_owned()];
+        table.row([names.to_vec(), vec![back, own_um, open_um, faults.join(", ")]].concat());
+        if let Some(why) = &row.lost {
+            table.remark(why.clone());
+        }
+    }
+    table.print(out)?;
+    writeln!(out)
+}
+
+/// A row for each machine, change and controller; the help explains the columns.
+fn print_sudden(summary: &SuddenSummary, out: &mut dyn Write) -> io::Result<()> {
+    let columns = ["change", "cuts", "back", "median s", "largest", "level", "worse", "by um", "out"];
+    let mut table = ConsoleTable::new(columns.into_iter().map(TableColumn::new).collect());
+    let mut last = None;
+    for group in &summary.groups {
+        if last.replace((&group.machine, group.change)) != Some((&group.machine, group.change)) {
+            table.section(format!("{}, {}", group.machine, group.change.name()));
+        }
+        let [late, max, lost] = group.faults;
+        let back = group.back_s.map_or("-".to_owned(), |s| format!("{} of {}", s.cuts - late, s.cuts));
+        let seconds = [|s: Quantiles| s.median, |s: Quantiles| s.largest]
+            .map(|of| group.back_s.map_or("-".to_owned(), |s| format!("{:.2}", of(s))));
+        let level = group.level.map_or("-".to_owned(), |level| format!("{level:.2}"));
+        let rest = [level, max.to_string(), format!("{:.1}", group.max_more_um), lost.to_string()];
+        let name = [group.controller.clone(), group.cuts.to_string(), back];
+        table.row([&name[..], &seconds, &rest].concat());
+    }
+    table.print(out)?;
+    if summary.not_judged > 0 {
+        writeln!(out, "not judged, because the uncorrected cut itself is lost: {}", summary.not_judged)?;
+    }
+    Ok(())
 }

@@ -10,8 +10,9 @@ use miette::{Result, miette};
 use rayon::prelude::*;
 
 use crate::command::args::never_worse::NeverWorseArgs;
-use crate::command::sweep::Sweep;
+use crate::command::sweep::{Sweep, code};
 use crate::never_worse::program::{Length, SweepProgram};
+use crate::never_worse::summary::SweepSummary;
 use crate::never_worse::{SweepJob, jobs, machines, sample};
 
 /// The machine whose time counts where long programs are shortened.
@@ -25,7 +26,7 @@ pub(crate) fn run(args: &NeverWorseArgs, console: &Console) -> Result<ExitCode> 
     let files = files(args)?;
     let machine_files = args.machine.iter().map(PathBuf::from).collect::<Vec<_>>();
     let inputs: Vec<&Path> = files.iter().chain(&machine_files).map(PathBuf::as_path).collect();
-    let sweep = Sweep::new(&args.sweep, &inputs)?;
+    let sweep = Sweep::new(&args.sweep, std::slice::from_ref(&args.one.controller), &inputs)?;
     let pace = Machine::load(PACE.as_ref())?;
     let programs = read(&files, &args.reader.settings()?, &pace, args.limit_s, console)?;
     let jobs = jobs(programs, machines);
@@ -34,8 +35,10 @@ pub(crate) fn run(args: &NeverWorseArgs, console: &Console) -> Result<ExitCode> 
         None => jobs,
     };
     announce(&jobs);
-    let done = sweep.run(&jobs, console)?;
-    printed(done.print(), done.code())
+    let mut done = sweep.run(&jobs, console)?;
+    let summary = SweepSummary::of(std::mem::take(&mut done.rows));
+    let mut out = sweep.write(&summary, console)?;
+    printed(done.print(&summary, &mut out), code(summary.worse))
 }
 
 /// A time of machining that can be cut, s.
