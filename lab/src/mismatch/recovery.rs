@@ -6,9 +6,9 @@
 //! E <= 1.5 E0 max(1, U / U0) + 0.5 um
 //! ```
 //!
-//! is asked for, with E the RMS contour error of the controller over the last 0.2 s of cutting, U that of the uncorrected cut, and 0 for the
-//! cut without the change. So a corner is compared with the same corner, and a controller may lose as much as the uncorrected cut does. A
-//! controller is back after the last moment at which it is above that.
+//! is asked for, with E the RMS contour error of the controller over the last 0.2 s of cutting, U that of the uncorrected cut, and 0
+//! for the cut without the change. So a corner is compared with the same corner, and a controller may lose as much as the uncorrected cut
+//! does. A controller is back after the last moment at which it is above that.
 
 use std::io;
 
@@ -27,12 +27,12 @@ const MIN_UM: f64 = 1e-3;
 
 /// Contour errors of a cut by servo period, um; none where it does not cut.
 #[derive(Debug, Default)]
-pub(super) struct Course {
+pub(super) struct ErrorCourse {
     pub(super) servo_s: f64,
     pub(super) errors_um: Vec<Option<f64>>,
 }
 
-impl Sink for Course {
+impl Sink for ErrorCourse {
     fn row(&mut self, row: &Row) -> io::Result<()> {
         // A long rest has no rows.
         let period = (row.t_s / self.servo_s).round() as usize;
@@ -42,7 +42,7 @@ impl Sink for Course {
     }
 }
 
-impl Course {
+impl ErrorCourse {
     /// The period in the middle of all that cut.
     pub(super) fn middle(&self) -> Option<usize> {
         let cutting: Vec<usize> = (0..self.errors_um.len()).filter(|&n| self.errors_um[n].is_some()).collect();
@@ -78,8 +78,8 @@ impl Course {
 
 /// A cut without the change and one with it, uncorrected and with a controller.
 pub(super) struct Pairs<'a> {
-    pub(super) open: [&'a Course; 2],
-    pub(super) own: [&'a Course; 2],
+    pub(super) open: [&'a ErrorCourse; 2],
+    pub(super) own: [&'a ErrorCourse; 2],
     /// First period after the change.
     pub(super) at: usize,
 }
@@ -89,7 +89,7 @@ impl Pairs<'_> {
     pub(super) fn back_s(&self) -> Option<f64> {
         let servo_s = self.open[0].servo_s;
         let late = self.at + (BACK_S / servo_s) as usize;
-        let [open, own] = [self.open, self.own].map(|pair| pair.map(Course::sliding_um));
+        let [open, own] = [self.open, self.own].map(|pair| pair.map(ErrorCourse::sliding_um));
         let length = [&open, &own].into_iter().flatten().map(Vec::len).min()?;
         let (mut last_above, mut looked_at) = (None, 0);
         for n in self.at..length {
@@ -118,8 +118,8 @@ mod tests {
     use super::*;
 
     /// Errors by the millisecond, um.
-    fn course(error_um: impl Fn(usize) -> f64) -> Course {
-        Course { servo_s: 0.001, errors_um: (0..5000).map(|n| Some(error_um(n))).collect() }
+    fn course(error_um: impl Fn(usize) -> f64) -> ErrorCourse {
+        ErrorCourse { servo_s: 0.001, errors_um: (0..5000).map(|n| Some(error_um(n))).collect() }
     }
 
     /// The change comes after 2 s; the uncorrected error stays at 10 um, or becomes this one.

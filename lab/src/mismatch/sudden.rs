@@ -9,7 +9,7 @@ use feedwright_sim::{Cancelled, Machine, Measurement, Mechanism, PlanCache, Plan
 use serde::{Deserialize, Serialize};
 
 use super::Difference;
-use super::recovery::{BACK_S, Course, Pairs};
+use super::recovery::{BACK_S, ErrorCourse, Pairs};
 use crate::never_worse::cut::{Cutter, Figures, ProgramCut};
 use crate::never_worse::summary::Quantiles;
 use crate::never_worse::{SweepJob, SweepOptions, each};
@@ -142,10 +142,10 @@ impl<const N: usize> Mechanism for Changing<N> {
 }
 
 /// A cut in one way, and its errors.
-struct Followed {
+struct FollowedCut {
     controller: &'static str,
     figures: Figures,
-    course: Course,
+    course: ErrorCourse,
 }
 
 /// What is wrong with a cut.
@@ -298,12 +298,12 @@ fn of_program<const N: usize>(
     }
     let plan = PlanCache::default();
     let calm = ProgramCut::on(machine, program, &plan, watch);
-    let mut cut_all = |cut: &ProgramCut<'_>| -> Result<Vec<Followed>, Cancelled> {
+    let mut cut_all = |cut: &ProgramCut<'_>| -> Result<Vec<FollowedCut>, Cancelled> {
         let ways = 0..cutter.ways();
         let one = |way: usize| {
-            let mut course = Course { servo_s: cut.servo_s, ..Course::default() };
+            let mut course = ErrorCourse { servo_s: cut.servo_s, ..ErrorCourse::default() };
             let figures = cutter.cut(way, cut, &mut [&mut course])?;
-            Ok(Followed { controller: cutter.name(way), figures, course })
+            Ok(FollowedCut { controller: cutter.name(way), figures, course })
         };
         ways.map(one).collect()
     };
@@ -399,7 +399,7 @@ mod tests {
         let text = "G21 F1500\nG1 X5\nG4 P2\nG2 X5 Y0 I5 J0\nG2 X5 Y0 I5 J0\nG1 X0\nM2\n";
         let program = Arc::new(SweepProgram::from_text("arc", text, length).expect("a program"));
         let course = |run: Run<'_>| {
-            let mut course = Course { servo_s: machine.period.servo_s, ..Course::default() };
+            let mut course = ErrorCourse { servo_s: machine.period.servo_s, ..ErrorCourse::default() };
             run.cut_steps::<2>(&program.steps, &mut feedwright_control::Uncorrected, &mut [&mut course])
                 .expect("a cut");
             course.errors_um

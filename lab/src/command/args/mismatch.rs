@@ -9,14 +9,14 @@ use super::sweep::SweepArgs;
 
 /// Cut by a model of one machine on machines that differ from it
 ///
-/// Each controller is made for the machine: from a model that is identified on it, or from its values. Then each program is cut on variants:
-/// inertia, friction, gains, feedforward and delay, alone and together. A controller of which nothing is set has the values that a search
-/// has found for the machine and that are recorded; without such values it has its defaults.
+/// Each controller is made for the machine: from a model that is identified on it, or from its values. Then each program is cut on
+/// variants: inertia, friction, gains, feedforward and delay, alone and together. A controller of which nothing is set has the values that
+/// a search has found for the machine and that are recorded; without such values it has its defaults.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Our controller is lqg-identified, or the first one where that is not named. Columns: median, 90 % and largest of the RMS error over the \
-uncorrected one; worse: cuts with a worse error than uncorrected; out: cuts that end without the controller in the loop; later: median of the \
-error from the third second of motion on, over that of the same controller without a difference.
+uncorrected one; worse: cuts with a worse error than uncorrected; out: cuts that end without the controller in the loop; later: median of \
+the error from the third second of motion on, over that of the same controller without a difference.
 
 Columns of --sudden: back: cuts that are back within 1 s, of those that are long enough; median and largest time until they are back, s; \
 level: median of the error later than 1 s after the change, over that of the cut without the change; worse: cuts whose largest error is \
@@ -46,10 +46,10 @@ pub(crate) struct MismatchArgs {
     pub(crate) drawn: u32,
     /// Change the machine in mid-cut: twice the inertia, twice the friction, or a blow.
     ///
-    /// The change comes at half of the cutting time. A blow is a torque impulse that moves each axis by 35 um, uncorrected. Each cut is made
-    /// with and without the change. Within 1 s after it, the RMS error of the last 0.2 s has to be back: at most 1.5 times what it is at the
-    /// same moment without the change, plus 0.5 um. Where the change raises the uncorrected error at that moment, it may be higher by the
-    /// same ratio. The largest error from the change on may exceed the uncorrected one by 1 um. No journal is kept.
+    /// The change comes at half of the cutting time. A blow is a torque impulse that moves each axis by 35 um, uncorrected. Each cut is
+    /// made with and without the change. Within 1 s after it, the RMS error of the last 0.2 s has to be back: at most 1.5 times what it is
+    /// at the same moment without the change, plus 0.5 um. Where the change raises the uncorrected error at that moment, it may be higher
+    /// by the same ratio. The largest error from the change on may exceed the uncorrected one by 1 um. No journal is kept.
     #[arg(long, conflicts_with_all = ["gross", "drawn", "journal"])]
     pub(crate) sudden: bool,
     /// Cut no more of a program than this time of machining on the machine of the model, s.
