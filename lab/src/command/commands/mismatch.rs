@@ -130,8 +130,7 @@ fn print_failures(failures: &[&SuddenRow], out: &mut dyn Write) -> io::Result<()
             table.remark(why.clone());
         }
     }
-    table.print(out)?;
-    writeln!(out)
+    table.print(out)
 }
 
 /// A row for each machine, change and controller; the help explains the columns.
