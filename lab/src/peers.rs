@@ -10,6 +10,8 @@
 
 pub mod cross_coupled;
 pub mod contour_compensation;
+pub mod corner_contour;
+pub mod constrained_feedrate;
 pub mod fuzzy_feedrate;
 pub mod cross_coupled_feedrate;
 pub mod input_shaping;
@@ -18,6 +20,7 @@ pub mod sum;
 pub mod disturbance_rejection;
 pub mod disturbance_observer;
 pub mod kalman_disturbance;
+pub mod h_infinity;
 pub mod iterative_learning;
 pub mod receding_horizon;
 pub mod model_predictive;
@@ -32,10 +35,11 @@ use feedwright::{
     TWO_DIMENSIONAL, UNCORRECTED, VELOCITY_GAIN, controller,
 };
 use rows::{
-    ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CHANGE_WEIGHT, CONTROL_WEIGHT,
-    CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT, FORESEEN_MM, INERTIA_SCALE, INNOVATION_SCALE_MM,
-    KNOTS, LAG_SCALE, LAST_WEIGHT, ON_RAPIDS, PLAN_PERIOD_S, RATE_WEIGHT, SHAPED_DAMPING, SHAPED_FREQUENCY,
-    SHAPER_IMPULSES, SOLVER_STEPS, TANGENTIAL_WEIGHT, TORQUE_NOISE,
+    ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CHANGE_WEIGHT, CONSTRAINED_ALLOWED,
+    CONTROL_WEIGHT, CORNER_REACH, CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT, FORESEEN_MM,
+    FUZZY_CHANGE, FUZZY_ERROR, FUZZY_SLOWEST, GAMMA_RATIO, INERTIA_SCALE, INNOVATION_SCALE_MM, KNOTS, LAG_SCALE,
+    LAST_WEIGHT, ON_RAPIDS, PLAN_PERIOD_S, RATE_WEIGHT, SHAPED_DAMPING, SHAPED_FREQUENCY, SHAPER_IMPULSES,
+    SOLVER_STEPS, TANGENTIAL_WEIGHT, TORQUE_NOISE,
 };
 
 /// PID control of the contour error, added to the command across the path.
@@ -79,44 +83,55 @@ pub static CONTOUR_COMPENSATION: Entry = controller!(
 pub static FUZZY_FEEDRATE: Entry = controller!(
     "fuzzy-feedrate",
     "fuzzy rules on the contour error and its change, speed along the path only",
-    "after Tsai and others (about 2003)",
+    "Tsai and others (1995), the feedrate alone",
     Nothing,
     laps: 1,
-    [
-        Parameter::number(
-            "error_mm",
-            fuzzy_feedrate::Settings::DEFAULT.error_mm,
-            [1e-4, 10.0],
-            Some([0.002, 0.2]),
-            "contour error that counts as large: small slows down for every error, large for none"
-        ),
-        Parameter::number(
-            "change_mm_s",
-            fuzzy_feedrate::Settings::DEFAULT.change_mm_s,
-            [1e-3, 1e3],
-            Some([0.05, 20.0]),
-            "change of the error that counts as large"
-        ),
-        Parameter::number(
-            "slowest",
-            fuzzy_feedrate::Settings::DEFAULT.slowest,
-            [0.05, 1.0],
-            Some([0.2, 1.0]),
-            "slowest it may run, as a part of the planned feedrate"
-        )
-    ],
+    [FUZZY_ERROR, FUZZY_CHANGE, FUZZY_SLOWEST],
     |setup, values| make::fuzzy_feedrate(setup, values)
+);
+
+/// H-infinity control of each axis, and fuzzy rules on the contour error for the feedrate.
+pub static FUZZY_H_INFINITY: Entry = controller!(
+    "fuzzy-h-infinity",
+    "H-infinity control of each axis, and fuzzy rules on the contour error for the feedrate",
+    "Tsai and others (1995); Shaked and Theodor (1992)",
+    ExactModel,
+    laps: 1,
+    [GAMMA_RATIO, DRIFT, FUZZY_ERROR, FUZZY_CHANGE, FUZZY_SLOWEST],
+    |setup, values| make::fuzzy_h_infinity(setup, values)
 );
 
 /// PID control of the contour error, and a feedrate that keeps it within what is allowed.
 pub static CROSS_COUPLED_FEEDRATE: Entry = controller!(
     "cross-coupled-feedrate",
     "PID control of the contour error, and a feedrate that keeps it within what is allowed",
-    "after Chuang and Liu (1991)",
+    "Chuang and Liu (1996)",
     Nothing,
     laps: 1,
     [ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, CROSS_COUPLED_KP, CROSS_COUPLED_KI, CROSS_COUPLED_KD],
     |setup, values| make::cross_coupled_feedrate(setup, values)
+);
+
+/// An additional reference contour at corners, from linear models of the axes.
+pub static CORNER_CONTOUR: Entry = controller!(
+    "corner-contour",
+    "an additional reference contour at corners, from linear models of the axes",
+    "Yang (1993)",
+    ExactModel,
+    laps: 1,
+    [CORNER_REACH, VELOCITY_GAIN, ACCELERATION_GAIN],
+    |setup, values| make::corner_contour(setup, values)
+);
+
+/// The feedrate of least time with a bounded contour error, by nonlinear programming on linear models of the axes.
+pub static CONSTRAINED_FEEDRATE: Entry = controller!(
+    "constrained-feedrate",
+    "the feedrate of least time with a bounded contour error, by nonlinear programming on linear models of the axes",
+    "Imamura and Kaufman (1989)",
+    ExactModel,
+    laps: 2,
+    [CONSTRAINED_ALLOWED, ALLOWED_SLOWEST],
+    |setup, values| make::constrained_feedrate(setup, values)
 );
 
 /// Velocity and acceleration feedforward as controls are delivered, set to each axis; nothing of friction.
@@ -286,12 +301,15 @@ pub const HORIZON: &str = "receding-horizon";
 /// All controllers: those that a machine runs, and the peers.
 pub const CONTROLLERS: Controllers = Controllers::new(&ROWS);
 
-static ROWS: [&Entry; 22] = [
+static ROWS: [&Entry; 25] = [
     &UNCORRECTED,
     &CROSS_COUPLED,
     &CONTOUR_COMPENSATION,
     &FUZZY_FEEDRATE,
+    &FUZZY_H_INFINITY,
     &CROSS_COUPLED_FEEDRATE,
+    &CORNER_CONTOUR,
+    &CONSTRAINED_FEEDRATE,
     &FEEDFORWARD,
     &FEEDFORWARD_AS_DELIVERED,
     &FEEDFORWARD_CROSS_COUPLED,

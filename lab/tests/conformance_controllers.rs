@@ -17,12 +17,17 @@ const SAGITTA_MM: f64 = 0.05 * 0.05 / (8.0 * 10.0);
 /// mm. A is 400 mm/s^2; T is the longest feed period, 12 ms.
 const BEND_MM: f64 = 400.0 * 0.012 * 0.012 / 8.0;
 
-/// Parameters that change nothing of one lap of a circle in one cut: there are no rapids, nothing is learned from a lap before, the
+/// Parameters that change nothing of one lap of a circle in one cut: there are no rapids and no corners, nothing is known from a lap before, the
 /// printed gradient corrects each knot for itself, and of a tool that moves as no servo does the predictions miss as much as is of account.
 const SILENT_HERE: &[(&str, &str)] = &[
     ("receding-horizon", "on_rapids"),
     ("receding-horizon", "foreseen_mm"),
     ("two-dimensional", "knots"),
+    ("corner-contour", "reach_s"),
+    ("corner-contour", "velocity_gain"),
+    ("corner-contour", "acceleration_gain"),
+    ("constrained-feedrate", "allowed_mm"),
+    ("constrained-feedrate", "slowest"),
     ("iterative-learning-1", "gain"),
     ("iterative-learning-1", "lead_s"),
     ("iterative-learning-1", "cut-off_hz"),

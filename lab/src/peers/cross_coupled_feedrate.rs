@@ -2,18 +2,17 @@
 //! high as keeps it within what is allowed.
 //!
 //! ```text
-//! e     = theta v^2                                     v: rate; e: size of the contour error
-//! theta(k+1) = theta(k) + T / (T + Tf) (e / v^2 - theta(k))
-//! v     = sqrt(allowed / theta),   slowest <= v <= 1
+//! e     = theta v                                       v: rate; e: size of the contour error
+//! theta(k+1) = theta(k) + T / (T + Tf) (e / v - theta(k))
+//! v     = allowed / theta,   slowest <= v <= 1
 //! ```
 //!
-//! Source: Chuang and Liu (1991), "Cross-coupled adaptive feedrate control for multiaxis machine tools", ASME J. Dyn. Sys. Meas.
-//! Control 113.
+//! Source: Chuang and Liu (1996), "Techniques in cross-coupled digital adaptive feedrate control for multiaxis machine tools".
 //!
-//! The paper was not at hand. Known of it: cross-coupled compensation and a feedrate that adapts to the contour error work together.
-//! Reconstructed here: both laws. The compensation is the PID of [`super::cross_coupled`]. That the error goes with the square of the
-//! feedrate is what lagging loops and inertia make of a curve, by its normal acceleration v^2 / R; theta is estimated by a first-order
-//! filter, which forgets over Tf, because curvature and load change along the path.
+//! The paper was not at hand. Lee, Cho and Jeon (2005) say of it: the relationship between feedrate and contour error is linear.
+//! Its title says: cross-coupled control and a digital adaptive feedrate work together. Reconstructed here: both laws. The
+//! compensation is the PID of [`super::cross_coupled`]. The slope theta is estimated by a first-order filter, which forgets over Tf,
+//! because curvature and load change along the path.
 //!
 //! Departures: the feed is never above the programmed one, and changes within the acceleration that the machine allows along the path.
 use feedwright_control::Window;
@@ -74,9 +73,9 @@ impl<const N: usize> Controller<N> for CrossCoupledFeedrate<N> {
         let error_mm = norm(measured.contour.vector_mm);
         if error_mm.is_finite() {
             let period_s = window.feed_period_s;
-            let missing_mm = error_mm / (self.rate * self.rate) - self.at_full_feed_mm;
+            let missing_mm = error_mm / self.rate - self.at_full_feed_mm;
             self.at_full_feed_mm += period_s / (period_s + filter_s) * missing_mm;
-            let wanted = libm::sqrt(allowed_mm / self.at_full_feed_mm.max(f64::MIN_POSITIVE));
+            let wanted = allowed_mm / self.at_full_feed_mm.max(f64::MIN_POSITIVE);
             self.rate = eased(self.rate, bounded(wanted, slowest, 1.0), acceleration_mm_s2, window);
         }
         Command { rate: self.rate, ..self.cross_coupled.command(window, measured) }

@@ -201,6 +201,13 @@ impl<const N: usize> DisturbanceRejection<N> {
     pub fn new(feedforward: Feedforward<N>, axes: [ObservedAxis; N], servo_s: f64) -> Self {
         Self { feedforward, observers: axes.map(|axis| AxisObserver::new(axis, servo_s)), started: false }
     }
+
+    /// The command of the next servo period on a path that runs at `rate` times the planned feed.
+    pub(super) fn command_at(&mut self, window: &Window<'_, N>, rate: f64) -> Command<N> {
+        let load_mm_s = self.observers.each_ref().map(|observer| -observer.disturbance_mm_s);
+        let at_mm = |after_s: f64| window.at(rate * (window.feed_period_s + after_s)).position_mm;
+        Command::straight(rate, self.feedforward.lead_mm(at_mm, window.offset_mm, load_mm_s))
+    }
 }
 
 impl<const N: usize> Controller<N> for DisturbanceRejection<N> {

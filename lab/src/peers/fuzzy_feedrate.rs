@@ -7,16 +7,16 @@
 //!   error large            3/4         1       1          rate = 1 - (1 - slowest) slow down
 //! ```
 //!
-//! Source: after the fuzzy logic feedrate controllers of Tsai and others (about 2003): rules on the contour error and its
-//! change, from which a factor of the programmed feedrate is inferred while the part is cut.
+//! Source: Tsai and others (1995), "DSP-based motion control by H-infinity axis-controller and fuzzy adaptive feedrate"; here its
+//! second half alone, [`super::h_infinity`] has both.
 //!
-//! Chosen here, because neither rules nor sets were to be had: three triangular sets on either input, which overlap by
-//! half and saturate at `error_mm` and `change_mm_s`; the nine rules above, inferred by the product, with the mean of the
-//! centres as the output. Every rule of the table is then met exactly, and the surface is monotonic in both inputs, which
-//! inference by the minimum does not grant.
+//! The paper was not at hand. Lee, Cho and Jeon (2005) say of it: a fuzzy adaptive feedrate. Chosen here: contour error and its
+//! change as inputs; three triangular sets on either, which overlap by half and saturate at `error_mm` and `change_mm_s`; the nine
+//! rules above, inferred by the product, with the mean of the centers as the output. Every rule of the table is then met exactly,
+//! and the surface is monotonic in both inputs, which inference by the minimum does not grant.
 //!
-//! Departures: curvature is no third input, because the feed plan knows it already; the feed is never above the
-//! programmed one; the factor changes within the acceleration that the machine allows along the path.
+//! Departures: the feed is never above the programmed one; the factor changes within the acceleration that the machine allows
+//! along the path.
 
 use feedwright_control::Window;
 use feedwright_control::vector::{bounded, norm};

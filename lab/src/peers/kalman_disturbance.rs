@@ -46,29 +46,39 @@ impl AxisNoise {
 
 /// Gains of the filter in its steady state.
 pub fn gains(axis: &SampledAxis, noise: &AxisNoise) -> [f64; 3] {
-    let SampledAxis { alpha, beta, gamma_s, delta_s, .. } = *axis;
-    let through = |[x, w, d]: [f64; 3]| [x + gamma_s * w + delta_s * d, alpha * w + beta * d, d];
-    let [drift, torque, encoder] = [noise.drift_mm_s, noise.torque_mm_s, noise.encoder_mm].map(|sigma| sigma * sigma);
-    let added = [
-        [torque * delta_s * delta_s, torque * delta_s * beta, 0.0],
-        [torque * delta_s * beta, torque * beta * beta, 0.0],
-        [0.0, 0.0, drift],
-    ];
+    let encoder = noise.encoder_mm * noise.encoder_mm;
+    let drift = noise.drift_mm_s * noise.drift_mm_s;
     // From any positive covariance the same is reached.
     let mut covariance = [[encoder, 0.0, 0.0], [0.0, drift, 0.0], [0.0, 0.0, drift]];
     let mut gains = [0.0; 3];
     for _ in 0..ITERATIONS {
         let [of_position, ..] = covariance;
         let filtered = of_position.map(|p| p / (of_position[0] + encoder));
-        gains = through(filtered);
-        let updated = minus_product(covariance, filtered, of_position);
-        covariance = plus(transposed(transposed(updated.map(through)).map(through)), added);
+        (gains, covariance) = predicted(axis, noise, filtered, minus_product(covariance, filtered, of_position));
     }
     gains
 }
 
+/// A correction and a covariance after one more servo period: `A k` and `A P A' + Q`.
+pub(super) fn predicted(
+    axis: &SampledAxis,
+    noise: &AxisNoise,
+    correction: [f64; 3],
+    covariance: [[f64; 3]; 3],
+) -> ([f64; 3], [[f64; 3]; 3]) {
+    let SampledAxis { alpha, beta, gamma_s, delta_s, .. } = *axis;
+    let through = |[x, w, d]: [f64; 3]| [x + gamma_s * w + delta_s * d, alpha * w + beta * d, d];
+    let [drift, torque] = [noise.drift_mm_s, noise.torque_mm_s].map(|sigma| sigma * sigma);
+    let added = [
+        [torque * delta_s * delta_s, torque * delta_s * beta, 0.0],
+        [torque * delta_s * beta, torque * beta * beta, 0.0],
+        [0.0, 0.0, drift],
+    ];
+    (through(correction), plus(transposed(transposed(covariance.map(through)).map(through)), added))
+}
+
 /// `m - a b'`.
-fn minus_product(m: [[f64; 3]; 3], a: [f64; 3], b: [f64; 3]) -> [[f64; 3]; 3] {
+pub(super) fn minus_product(m: [[f64; 3]; 3], a: [f64; 3], b: [f64; 3]) -> [[f64; 3]; 3] {
     core::array::from_fn(|i| core::array::from_fn(|j| m[i][j] - a[i] * b[j]))
 }
 

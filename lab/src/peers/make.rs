@@ -9,12 +9,15 @@ use feedwright_control::{
 use feedwright_sim::{Known, KnownAxis, Period};
 
 use super::closed_loop;
+use super::constrained_feedrate::{self, ConstrainedFeedrate, LinearAxis};
 use super::contour_compensation::{self, ContourCompensation};
+use super::corner_contour::CornerContour;
 use super::cross_coupled::{self, CrossCoupled};
 use super::cross_coupled_feedrate::{self, CrossCoupledFeedrate};
 use super::disturbance_observer;
 use super::disturbance_rejection::{DisturbanceRejection, ObservedAxis, ObservedDrive};
 use super::fuzzy_feedrate::{self, FuzzyFeedrate};
+use super::h_infinity::{self, FuzzyHInfinity};
 use super::input_shaping::{self, InputShaping};
 use super::iterative_learning::{self, IterativeLearning};
 use super::kalman_disturbance::{self, AxisNoise};
@@ -53,13 +56,51 @@ pub(super) fn contour_compensation<const N: usize>(_: &mut Setup<'_>, values: &V
 }
 
 pub(super) fn fuzzy_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    Box::new(FuzzyFeedrate::new(fuzzy_feedrate::Settings {
+    Box::new(fuzzy(setup, values))
+}
+
+fn fuzzy(setup: &Setup<'_>, values: &Values) -> FuzzyFeedrate {
+    FuzzyFeedrate::new(fuzzy_feedrate::Settings {
         servo_periods: setup.known.period.servo_periods(fuzzy_feedrate::FEED_PERIOD_S),
         error_mm: values.number("error_mm"),
         change_mm_s: values.number("change_mm_s"),
         slowest: values.number("slowest"),
         acceleration_mm_s2: setup.known.limits.tangential_accel_mm_s2,
-    }))
+    })
+}
+
+pub(super) fn fuzzy_h_infinity<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let noise = AxisNoise { drift_mm_s: values.number("drift_mm_s"), ..AxisNoise::DEFAULT };
+    let gamma_ratio = values.number("gamma_ratio");
+    let feedforward = feedforward_with::<N>(setup, Gains { friction: 0.0, ..Gains::EXACT });
+    let axes = observed_axes(&setup.known, |axis| h_infinity::gains(axis, &noise, gamma_ratio));
+    let rejection = DisturbanceRejection::new(feedforward, axes, setup.known.period.servo_s);
+    Box::new(FuzzyHInfinity::new(rejection, fuzzy(setup, values)))
+}
+
+pub(super) fn corner_contour<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let [velocity, acceleration] = ["velocity_gain", "acceleration_gain"].map(|name| values.number(name));
+    let inverse = feedforward_with::<N>(setup, Gains { velocity, acceleration, friction: 0.0 });
+    Box::new(CornerContour::new(inverse, values.number("reach_s"), setup.known.period.servo_s))
+}
+
+pub(super) fn constrained_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let settings = constrained_feedrate::Settings {
+        servo_periods: setup.known.period.servo_periods(constrained_feedrate::LINE_S),
+        allowed_mm: values.number("allowed_mm"),
+        slowest: values.number("slowest"),
+        acceleration_mm_s2: setup.known.limits.tangential_accel_mm_s2,
+    };
+    let axes = setup.known.axes().map(|KnownAxis { nominal, drive, .. }| {
+        let damping_nm_s = nominal.kv_nm_s_per_rad + nominal.viscous_friction_nm_s;
+        LinearAxis {
+            kp_1_s: nominal.kp_1_s,
+            bandwidth_1_s: damping_nm_s / nominal.inertia_kg_m2,
+            reached: nominal.kv_nm_s_per_rad / damping_nm_s,
+            fed_forward: drive.velocity_feedforward,
+        }
+    });
+    Box::new(ConstrainedFeedrate::<N>::new(settings, axes, setup.known.period.servo_s))
 }
 
 /// Feedforward of all three parts, by their gains.

@@ -6,7 +6,7 @@ use feedwright_ident::SERVO_FEED_PERIOD_S;
 
 use super::kalman_disturbance::AxisNoise;
 use super::receding_horizon::{MAX_KNOTS, RecedingHorizonSettings};
-use super::{cross_coupled, cross_coupled_feedrate, input_shaping};
+use super::{constrained_feedrate, cross_coupled, cross_coupled_feedrate, fuzzy_feedrate, h_infinity, input_shaping};
 
 // Of the limit.
 pub(super) const CONTROL_WEIGHT: Parameter = Parameter::number(
@@ -70,6 +70,50 @@ pub(super) const ALLOWED_SLOWEST: Parameter = Parameter::number(
     [0.1, 1.0],
     Some([0.2, 1.0]),
     "slowest it may run, as a part of the planned feedrate",
+);
+// Of the feedrate that is planned for a contour error.
+pub(super) const CONSTRAINED_ALLOWED: Parameter = Parameter {
+    default: constrained_feedrate::Settings::DEFAULT.allowed_mm,
+    reason: "contour error that the plan allows by its linear model: a small one is slow everywhere, a large one changes nothing",
+    ..ALLOWED
+};
+// Of the additional contour at corners.
+pub(super) const CORNER_REACH: Parameter = Parameter::number(
+    "reach_s",
+    0.05,
+    [0.005, 0.1],
+    Some([0.005, 0.1]),
+    "time to either side of a corner in which the addition has its whole weight: a short one begins while the axis still lags",
+);
+// Of the fuzzy rules.
+pub(super) const FUZZY_ERROR: Parameter = Parameter::number(
+    "error_mm",
+    fuzzy_feedrate::Settings::DEFAULT.error_mm,
+    [1e-4, 10.0],
+    Some([0.002, 0.2]),
+    "contour error that counts as large: small slows down for every error, large for none",
+);
+pub(super) const FUZZY_CHANGE: Parameter = Parameter::number(
+    "change_mm_s",
+    fuzzy_feedrate::Settings::DEFAULT.change_mm_s,
+    [1e-3, 1e3],
+    Some([0.05, 20.0]),
+    "change of the error that counts as large",
+);
+pub(super) const FUZZY_SLOWEST: Parameter = Parameter::number(
+    "slowest",
+    fuzzy_feedrate::Settings::DEFAULT.slowest,
+    [0.05, 1.0],
+    Some([0.2, 1.0]),
+    "slowest it may run, as a part of the planned feedrate",
+);
+// Of the H-infinity filter.
+pub(super) const GAMMA_RATIO: Parameter = Parameter::number(
+    "gamma_ratio",
+    h_infinity::GAMMA_RATIO,
+    [1.01, 100.0],
+    Some([1.01, 20.0]),
+    "worst case that is allowed, as a multiple of the least possible: near 1 the observer is fast and noisy, a large one is Kalman's",
 );
 // Of the Kalman filter, in servo periods and against an encoder of 1 um: of all three noises the ratios alone count.
 pub(super) const DRIFT: Parameter = Parameter::number(
