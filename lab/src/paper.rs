@@ -4,6 +4,7 @@
 //! with the magnitude only: once at the rho that gives it the same machining time, once at the same rho.
 
 mod curves;
+pub mod departures;
 pub mod figures;
 pub mod page;
 
@@ -125,7 +126,7 @@ impl Bench<'_> {
         Ok(SeedResult {
             seed,
             fit_um: trained.fit_um,
-            uncorrected: Numbers { rho: None, ..self.cut(&mut Uncorrected, &mut [], 0.0)? },
+            uncorrected: self.cut_uncorrected()?,
             magnitude_only: self.cut_magnitude_only(net, same_time)?,
             magnitude_only_same_rho: self.cut_magnitude_only(net, settings.inversion.rho)?,
             two_dimensional_exact_gradient: self.cut_two_dimensional(net, with_gradient(settings, Gradient::Exact))?,
@@ -135,7 +136,15 @@ impl Bench<'_> {
 
     /// The identifier as the paper trains it: on the circle.
     fn train(&self, seed: u64) -> TrainedContour<2> {
-        identified(self.machine, &Excitation::paper(), &Training::default(), seed, &mut |_| {})
+        self.train_on(&Excitation::paper(), &Training::default(), seed)
+    }
+
+    fn train_on(&self, excitation: &Excitation, training: &Training, seed: u64) -> TrainedContour<2> {
+        identified(self.machine, excitation, training, seed, &mut |_| {})
+    }
+
+    fn cut_uncorrected(&self) -> Result<Numbers, RunError> {
+        Ok(Numbers { rho: None, ..self.cut(&mut Uncorrected, &mut [], 0.0)? })
     }
 
     fn cut_two_dimensional(

@@ -39,6 +39,17 @@ pub enum Gradient {
     Absent,
 }
 
+/// Which derivative of the term of rho in eq. 7 the inversion follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TimeTerm {
+    /// The true one, -2 rho F / |F|^4: a larger rho is faster.
+    Derivative,
+    /// With the sign and the factor of eqs 9 and 10, + rho F / |F|^4: a larger rho is slower.
+    PrintedSign,
+    /// As eqs 9 and 10 are printed: beside that, the denominator of every axis but the first is (2 F_a^2)^2.
+    Printed,
+}
+
 /// Settings of an inversion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InversionSettings {
@@ -52,16 +63,28 @@ pub struct InversionSettings {
     pub step_limit: f64,
     /// Gradient of the error term.
     pub gradient: Gradient,
+    /// Gradient of the term of rho.
+    pub time_term: TimeTerm,
 }
 
 /// Below this feedrate (scaled; 1 mm/s) the term of rho is left out: near rest the feed plan decides, not the inversion.
 const MIN_FEED: f64 = 0.02;
 
-/// dE/dF of the term of rho in eq. 7: -2 rho F / |F|^4.
+/// dE/dF of the term of rho in eq. 7.
 #[inline]
-pub(crate) fn time_gradient<const N: usize>(feed: [f64; N], rho: f64) -> [f64; N] {
+fn time_gradient<const N: usize>(feed: [f64; N], rho: f64, term: TimeTerm) -> [f64; N] {
     let square = dot(feed, feed);
-    if square < MIN_FEED * MIN_FEED { [0.0; N] } else { scale(-2.0 * rho / (square * square), feed) }
+    if square < MIN_FEED * MIN_FEED {
+        return [0.0; N];
+    }
+    match term {
+        TimeTerm::Derivative => scale(-2.0 * rho / (square * square), feed),
+        TimeTerm::PrintedSign => scale(rho / (square * square), feed),
+        TimeTerm::Printed => core::array::from_fn(|axis| {
+            let printed = if axis == 0 { square } else { 2.0 * feed[axis] * feed[axis] };
+            if printed < MIN_FEED * MIN_FEED { 0.0 } else { rho * feed[axis] / (printed * printed) }
+        }),
+    }
 }
 
 /// Inverts in all components: both the speed and the geometry change. `inputs` are those of the first knot, of which F(k)
@@ -165,7 +188,7 @@ fn gradients<const N: usize, const H: usize, D: ContourModel<N>>(
                 own
             }
         };
-        *gradient = add_scaled(of_error, 1.0, time_gradient(*feed, settings.rho));
+        *gradient = add_scaled(of_error, 1.0, time_gradient(*feed, settings.rho, settings.time_term));
     }
     gradients
 }
@@ -214,7 +237,14 @@ mod tests {
     }
 
     fn settings(gradient: Gradient) -> InversionSettings {
-        InversionSettings { rho: 0.01, eta: 0.3, steps: 1, step_limit: f64::INFINITY, gradient }
+        InversionSettings {
+            rho: 0.01,
+            eta: 0.3,
+            steps: 1,
+            step_limit: f64::INFINITY,
+            gradient,
+            time_term: TimeTerm::Derivative,
+        }
     }
 
     /// Eq. 7 summed over the knots, without any of the above: the delays stand in one row.
@@ -291,6 +321,28 @@ mod tests {
             assert!((found[0][axis] - expected[axis]).abs() < 1e-14, "{found:?} {expected:?}");
             assert!((found[0][axis] - feed[axis]).abs() > 1e-3);
         }
+    }
+
+    #[test]
+    fn the_time_term_has_the_derivative_or_what_is_printed() {
+        let feed: [f64; 2] = [0.8, 0.3];
+        let [x, y] = feed;
+        let square: f64 = x * x + y * y;
+        let slope = |axis: usize| {
+            let moved = |by: f64| {
+                let mut feed = feed;
+                feed[axis] += by;
+                0.01 / dot(feed, feed)
+            };
+            (moved(1e-6) - moved(-1e-6)) / 2e-6
+        };
+        let close = |found: [f64; 2], expected: [f64; 2]| {
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?} {expected:?}");
+        };
+        let term = |term| time_gradient(feed, 0.01, term);
+        close(term(TimeTerm::Derivative), [slope(0), slope(1)]);
+        close(term(TimeTerm::PrintedSign), [-0.5 * slope(0), -0.5 * slope(1)]);
+        close(term(TimeTerm::Printed), [0.01 * x / square.powi(2), 0.01 * y / (y * y + y * y).powi(2)]);
     }
 
     #[test]

@@ -115,7 +115,7 @@ pub use identifier::{
     ContourModel, Delays, ERROR_SCALE_MM, FEED_PERIODS_S, FEED_SCALE_MM_S, HIDDEN, INPUTS, Identifier, IdentifierKind,
     Inputs, ServoModel, UNKNOWNS, seen_feed,
 };
-pub use inversion::{Gradient, InversionSettings};
+pub use inversion::{Gradient, InversionSettings, TimeTerm};
 pub use model::{
     BLOCK_FORMAT, BlockError, IdentifiedAxes, MAX_MECHANICS_PER_SERVO, MAX_SPREAD, MAX_WEIGHT, MECHANICS_PERIODS_S,
     ModelBlock, SERVO_PERIODS_S, Trained,

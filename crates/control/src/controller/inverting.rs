@@ -21,7 +21,7 @@ use super::{Controller, Schedule};
 use crate::command::{Command, Measured};
 use crate::identifier::contour::ContourIdentifier;
 use crate::identifier::{ContourModel, Delays, FEED_SCALE_MM_S, Inputs, seen_feed};
-use crate::inversion::{self, Gradient, MAX_KNOTS};
+use crate::inversion::{self, Gradient, MAX_KNOTS, TimeTerm};
 use crate::vector::{add_scaled, bounded, dot, norm, scale, sub};
 use crate::window::{PREVIEW_KNOTS, Window};
 
@@ -39,6 +39,8 @@ pub struct InvertingSettings {
     pub inversion: inversion::InversionSettings,
     /// Step of back-propagation while cutting, scaled units; 0 (frozen) to 0.5.
     pub learning_step: f64,
+    /// Part of the offset along the path that is taken back in each feed period; 0 to 1. The paper has none.
+    pub tangential_leak: f64,
     /// Slowest and fastest the controller may run, as a multiple of the planned feedrate.
     pub rate_range: [f64; 2],
     /// Whether another planner is told the rate and goes by it later: the path ahead is then what will be commanded, and the rate is no
@@ -57,7 +59,9 @@ impl InvertingSettings {
             steps: 5,
             step_limit: 0.1,
             gradient: Gradient::Printed,
+            time_term: TimeTerm::Derivative,
         },
+        tangential_leak: TANGENTIAL_LEAK,
         learning_step: 0.003,
         rate_range: [0.5, 1.2],
         is_planned_elsewhere: false,
@@ -178,7 +182,7 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
         let commanded = if self.settings.is_planned_elsewhere { 1.0 } else { rate };
         let feed = add_scaled(across, commanded, planned);
         self.last = Some(self.delays.inputs(seen_feed(feed)));
-        let stale = TANGENTIAL_LEAK * dot(window.offset_mm, direction);
+        let stale = self.settings.tangential_leak * dot(window.offset_mm, direction);
         Command::straight(rate, add_scaled(add_scaled(window.offset_mm, period_s, across), -stale, direction))
     }
 }
