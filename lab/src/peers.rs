@@ -299,7 +299,10 @@ pub static ITERATIVE_LEARNING_10: Entry = controller!(
 pub const HORIZON: &str = "receding-horizon";
 
 /// All controllers: those that a machine runs, and the peers.
-pub const CONTROLLERS: Controllers = Controllers::new(&ROWS);
+pub const CONTROLLERS: Controllers = Controllers::new(&ROWS, RECORDED);
+
+/// What searches of the laboratory came to, a value of `RecordedSearch` on each line.
+pub(crate) const RECORDED: &str = include_str!("compare/recorded.jsonl");
 
 static ROWS: [&Entry; 25] = [
     &UNCORRECTED,

@@ -5,6 +5,7 @@
 pub(crate) mod uncorrected;
 pub(crate) mod feedforward;
 pub(crate) mod lqg_preview;
+mod trial;
 pub(crate) mod inverting;
 pub(crate) mod magnitude_only;
 pub(crate) mod two_dimensional;

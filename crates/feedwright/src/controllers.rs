@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `controllers/parameters.rs` | parameters that a user can set, by name |
 //! | `controllers/rows.rs` | the parameters of the rows |
+//! | `controllers/recorded.rs` | values of parameters that a search on a machine came to |
 //! | `controllers/setup.rs` | what a controller is made from: what is known of a machine, and a model |
 //! | `controllers/make.rs` | how each row is made from that |
 
@@ -14,17 +15,20 @@ mod parameters;
 mod make;
 mod rows;
 mod setup;
+mod recorded;
 
 use feedwright_control::{Controller, IdentifierKind, Uncorrected};
 use feedwright_gcode::suggestion::nearest;
 use feedwright_ident::Model;
+use feedwright_sim::Machine;
 use serde::{Deserialize, Serialize};
 
 pub use make::offset_bounds;
 pub use parameters::{Parameter, ParameterKind, Setting, SettingError, Values};
+pub use recorded::RecordedValues;
 pub use rows::{ACCELERATION_GAIN, FRICTION_GAIN, VELOCITY_GAIN};
 use rows::{ETA, IDENTIFIED_WEIGHT, INVERSION_KNOTS, INVERSION_PERIOD_S, INVERSION_STEPS, LEARNING_STEP, RHO};
-pub use setup::{ModelMisfit, NothingIdentified, Setup};
+pub use setup::{CutsUncorrected, ModelMisfit, Setup};
 
 /// One row of the table.
 pub struct Entry {
@@ -150,7 +154,7 @@ pub static LQG_IDENTIFIED: Entry = controller!(
 );
 
 /// The controllers that a machine runs.
-pub const CONTROLLERS: Controllers = Controllers::new(&ROWS);
+pub const CONTROLLERS: Controllers = Controllers::new(&ROWS, include_str!("controllers/recorded.jsonl"));
 
 static ROWS: [&Entry; 5] = [&UNCORRECTED, &FEEDFORWARD, &MAGNITUDE_ONLY, &TWO_DIMENSIONAL, &LQG_IDENTIFIED];
 
@@ -161,12 +165,20 @@ pub const BASELINE: &str = "uncorrected";
 
 /// A table of controllers, in the order in which they are listed.
 #[derive(Debug, Clone, Copy)]
-pub struct Controllers(&'static [&'static Entry]);
+pub struct Controllers {
+    rows: &'static [&'static Entry],
+    recorded: &'static str,
+}
 
 impl Controllers {
-    /// A table of these rows.
-    pub const fn new(rows: &'static [&'static Entry]) -> Self {
-        Self(rows)
+    /// A table of these rows, and of what searches on machines came to: a line of JSON each.
+    pub const fn new(rows: &'static [&'static Entry], recorded: &'static str) -> Self {
+        Self { rows, recorded }
+    }
+
+    /// What is recorded of a controller on a machine, if anything.
+    pub fn recorded(self, machine: &Machine, entry: &'static Entry) -> Option<RecordedValues> {
+        recorded::find(self.recorded, machine, entry)
     }
 
     /// All rows.
@@ -191,7 +203,7 @@ impl IntoIterator for Controllers {
     type IntoIter = std::iter::Copied<std::slice::Iter<'static, &'static Entry>>;
 
     fn into_iter(self) -> Self::IntoIter {
-        self.0.iter().copied()
+        self.rows.iter().copied()
     }
 }
 
@@ -202,6 +214,9 @@ pub struct Choices {
     pub seed: u64,
     /// Parameters that were set, of any controller; the last of the same counts.
     pub set: Vec<Setting>,
+    /// Controllers that cut uncorrected, because none of their values is better than no correction on the machine.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unsuited: Vec<String>,
 }
 
 impl Entry {
@@ -240,12 +255,18 @@ pub trait Make<const N: usize> {
 
 impl Make<2> for Entry {
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<2>> {
+        if setup.is_unsuited(self) {
+            return Box::new(Uncorrected);
+        }
         (self.plane)(setup, &Values::of(self, &setup.choices.set))
     }
 }
 
 impl Make<3> for Entry {
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<3>> {
+        if setup.is_unsuited(self) {
+            return Box::new(Uncorrected);
+        }
         (self.space)(setup, &Values::of(self, &setup.choices.set))
     }
 }

@@ -35,7 +35,7 @@ use feedwright_plan::{AlignedPaths, Constraints, PlanSink, SpeedCaps, Step, Step
 use feedwright_sim::{Machine, Outcome, PlanCache, Row, Run, RunError, Sink, StageSteps, Stages, Watch, path_steps};
 use serde::{Deserialize, Serialize};
 
-use crate::controllers::{Choices, Entry, LQG_IDENTIFIED, Make, NothingIdentified, Setup, UNCORRECTED};
+use crate::controllers::{Choices, CutsUncorrected, Entry, LQG_IDENTIFIED, Make, Setup, UNCORRECTED};
 use crate::correct::{CorrectOutcome, TargetControl};
 use crate::cycle_time::CycleTimeOfCut;
 use crate::fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within, with_tolerance};
@@ -120,7 +120,7 @@ pub struct JobOutcome {
     /// What the reader warned of.
     pub warnings: Vec<feedwright_gcode::Diagnostic>,
     /// Controllers that cut uncorrected, because nothing was identified that they could go by.
-    pub without_identification: Vec<NothingIdentified>,
+    pub without_identification: Vec<CutsUncorrected>,
     /// What was guessed or noticed of the log.
     pub log_findings: Vec<LogFinding>,
     /// The model that the controller had at the end of the cut, where it was given one and that was asked for.
@@ -498,7 +498,7 @@ impl Job {
 struct Cuts {
     runs: Vec<ReportedRun>,
     /// For which controllers nothing was identified.
-    without_identification: Vec<NothingIdentified>,
+    without_identification: Vec<CutsUncorrected>,
     learned: Option<Model>,
 }
 

@@ -113,9 +113,9 @@ pub mod command;
 
 pub use checked_json::{checked, with_check};
 pub use controllers::{
-    ACCELERATION_GAIN, BASELINE, BEST, CONTROLLERS, Choices, Controllers, Entry, FEEDFORWARD, FRICTION_GAIN, Knows,
-    LQG_IDENTIFIED, MAGNITUDE_ONLY, Make, Maker, ModelMisfit, NothingIdentified, Parameter, ParameterKind, Setting,
-    SettingError, Setup, TWO_DIMENSIONAL, UNCORRECTED, VELOCITY_GAIN, Values, offset_bounds,
+    ACCELERATION_GAIN, BASELINE, BEST, CONTROLLERS, Choices, Controllers, CutsUncorrected, Entry, FEEDFORWARD,
+    FRICTION_GAIN, Knows, LQG_IDENTIFIED, MAGNITUDE_ONLY, Make, Maker, ModelMisfit, Parameter, ParameterKind,
+    RecordedValues, Setting, SettingError, Setup, TWO_DIMENSIONAL, UNCORRECTED, VELOCITY_GAIN, Values, offset_bounds,
 };
 pub use correct::advise::{Advice, AdviseJob, CutWay, ErrorPlace};
 pub use correct::arc_fit::{ArcFit, FitPoint};

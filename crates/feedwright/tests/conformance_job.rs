@@ -38,7 +38,7 @@ fn everything_that_can_be_asked_for_is_read_back() {
     let setting = Setting::parse("two-dimensional.eta=3.3e-10", None, CONTROLLERS).unwrap();
     let mut full = job("soft", BEST);
     full.feed_mm_s = Some(33.3);
-    full.choices = Choices { seed: u64::MAX, set: vec![setting] };
+    full.choices = Choices { seed: u64::MAX, set: vec![setting], ..Choices::default() };
     full.tolerance_um = Some(1.0 / 3.0);
     full.target = Some(&TARGETS[2]);
     full.reference = Some(Program::from_text("original", "G1 X1 F100\nM2\n"));

@@ -103,7 +103,7 @@ impl Competitor {
         tuned: Option<&Tuned>,
     ) -> Box<dyn Controller<2>> {
         let set = tuned.map_or(Vec::new(), |tuned| tuned.settings(self.entry));
-        let choices = Choices { seed, set };
+        let choices = Choices { seed, set, ..Choices::default() };
         // The periods of the control are never a secret.
         let unseen = Machine { period: machine.period, ..nominal.clone() };
         let told = match self.knowledge {

@@ -6,12 +6,11 @@ use feedwright::{BASELINE, Choices, Make, Setup};
 use feedwright_sim::{Machine, Outcome, Run, RunError};
 use serde::{Deserialize, Serialize};
 
-use super::recorded;
 use super::work::{CORNER, FEED_MM_S, Workpiece, steps};
 use crate::contour::CONTOURS;
 use crate::held_out::contours::placement;
 use crate::held_out::programs;
-use crate::peers::CONTROLLERS;
+use crate::peers::{CONTROLLERS, RECORDED};
 
 /// Programs of the set.
 const PROGRAMS: usize = 11;
@@ -106,7 +105,7 @@ pub fn settings_fingerprint() -> String {
             (entry.name, values)
         })
         .collect();
-    let content = serde_json::json!([controllers, recorded::RECORDED]);
+    let content = serde_json::json!([controllers, RECORDED]);
     blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
 }
 

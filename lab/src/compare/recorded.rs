@@ -7,9 +7,7 @@ use feedwright_sim::Machine;
 use serde::{Deserialize, Serialize};
 
 use super::tuned::Tuned;
-
-/// The file, a value of [`RecordedSearch`] on each line.
-pub const RECORDED: &str = include_str!("recorded.jsonl");
+use crate::peers::RECORDED;
 
 /// What a search came to.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -73,6 +71,17 @@ mod tests {
                 assert!((least..=most).contains(&value.value), "{search:?}");
             }
         }
+    }
+
+    #[test]
+    fn the_product_has_the_recorded_values_of_its_controllers() {
+        let product: Vec<&str> = feedwright::CONTROLLERS.iter().map(|entry| entry.name).collect();
+        let own: Vec<&str> = RECORDED
+            .lines()
+            .filter(|line| read(line).unwrap().iter().any(|search| product.contains(&search.tuned.controller.as_str())))
+            .collect();
+        let theirs = include_str!("../../../crates/feedwright/src/controllers/recorded.jsonl");
+        assert_eq!(theirs.lines().collect::<Vec<_>>(), own, "hint: copy the lines of these controllers");
     }
 
     #[test]

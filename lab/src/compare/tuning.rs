@@ -131,7 +131,7 @@ impl Trial<'_> {
     }
 
     fn evaluate(&self, settings: &[Setting]) -> Result<Evaluation, RunError> {
-        let choices = Choices { seed: self.seed, set: settings.to_vec() };
+        let choices = Choices { seed: self.seed, set: settings.to_vec(), ..Choices::default() };
         let mut controller = Make::<2>::make(self.entry, &mut Setup::new(self.machine, &choices));
         let run = Run::on(self.machine).laps(self.entry.laps).watched(self.watch);
         let (mut each_um, mut time_s, mut sound) = (Vec::with_capacity(self.workpieces.len()), 0.0, true);

@@ -163,7 +163,7 @@ impl Cutter {
     /// By a machine; nothing is identified yet.
     pub fn new(model: &Arc<Machine>, options: &SweepOptions) -> Self {
         let entries: Vec<_> = [&UNCORRECTED].into_iter().chain(options.controllers.iter().copied()).collect();
-        let choices = Choices { seed: options.seed, set: options.set_for(model) };
+        let choices = Choices { seed: options.seed, set: options.set_for(model), ..Choices::default() };
         let (plane, space) = (entries.iter().map(|_| None).collect(), entries.iter().map(|_| None).collect());
         Self { model: model.clone(), choices, entries, plane, space }
     }

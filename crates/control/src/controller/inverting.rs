@@ -17,6 +17,7 @@
 
 use core::marker::PhantomData;
 
+use super::trial::Trial;
 use super::{Controller, Schedule};
 use crate::command::{Command, Measured};
 use crate::identifier::contour::ContourIdentifier;
@@ -43,6 +44,9 @@ pub struct InvertingSettings {
     pub tangential_leak: f64,
     /// Slowest and fastest the controller may run, as a multiple of the planned feedrate.
     pub rate_range: [f64; 2],
+    /// If present, it has to show on the measured errors that it helps before it is followed, on axes whose speed loops respond within
+    /// this time, s; see `controller/trial.rs`.
+    pub tried_response_s: Option<f64>,
     /// Whether another planner is told the rate and goes by it later: the path ahead is then what will be commanded, and the rate is no
     /// part of this feed period.
     pub is_planned_elsewhere: bool,
@@ -64,6 +68,7 @@ impl InvertingSettings {
         tangential_leak: TANGENTIAL_LEAK,
         learning_step: 0.003,
         rate_range: [0.5, 1.2],
+        tried_response_s: None,
         is_planned_elsewhere: false,
     };
 }
@@ -98,6 +103,7 @@ pub struct Inverting<const N: usize, I, D = ContourIdentifier<N>> {
     delays: Delays<N>,
     last: Option<Inputs<N>>,
     prediction_error_mm: f64,
+    trial: Option<Trial<N>>,
     settings: InvertingSettings,
     how: PhantomData<I>,
 }
@@ -111,6 +117,7 @@ impl<const N: usize, I, D: ContourModel<N>> Inverting<N, I, D> {
             delays: Delays::REST,
             last: None,
             prediction_error_mm: 0.0,
+            trial: settings.tried_response_s.map(Trial::new),
             settings,
             how: PhantomData,
         }
@@ -133,18 +140,22 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
         self.delays = Delays::REST;
         self.last = None;
         self.prediction_error_mm = 0.0;
+        self.trial = self.settings.tried_response_s.map(Trial::new);
     }
 
     /// One step of back-propagation on the last command and its outcome, then both move into the delays.
-    fn observe(&mut self, _: &Window<'_, N>, measured: Option<&Measured<N>>) {
+    /// In a trial, on the error that the whole correction would have left, and without the step.
+    fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
         let Some(measured) = measured else { return };
-        let error_mm = measured.contour.vector_mm;
+        let error_mm = self.trial.as_mut().map_or(measured.contour.vector_mm, |trial| trial.observe(window, measured));
         if !norm(error_mm).is_finite() {
             return;
         }
+        let is_followed = self.trial.as_ref().is_none_or(Trial::is_whole);
+        let step = if is_followed { self.settings.learning_step } else { 0.0 };
         if let Some(inputs) = self.last {
             let error = error_mm.map(|e| e / D::ERROR_SCALE_MM);
-            let cost = self.net.learn(&inputs, error, self.settings.learning_step);
+            let cost = self.net.learn(&inputs, error, step);
             self.prediction_error_mm = D::ERROR_SCALE_MM * libm::sqrt(2.0 * cost);
             // As every feedrate, this one comes in mm/s: the delays then hold what a recording of it would give.
             let feed_mm_s = inputs.map(|axis| axis[0] * FEED_SCALE_MM_S);
@@ -158,13 +169,22 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
 
     /// Inverts from the planned feedrate and turns the result into a rate and a new offset.
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
+        let offset_mm = self.trial.as_ref().map_or(window.offset_mm, Trial::wanted_mm);
+        let wanted = self.wanted(window, offset_mm);
+        self.trial.as_mut().map_or(wanted, |trial| trial.follow(wanted))
+    }
+}
+
+impl<const N: usize, I: Invert, D: ContourModel<N>> Inverting<N, I, D> {
+    /// The command that goes on from an offset.
+    fn wanted(&mut self, window: &Window<'_, N>, offset_mm: [f64; N]) -> Command<N> {
         let period_s = window.feed_period_s;
         let planned = scale(1.0 / period_s, sub(window.ahead(1).position_mm, window.now().position_mm));
         let planned_feed = norm(planned);
         let inputs = self.delays.inputs(seen_feed(planned));
         if planned_feed < MIN_FEED_MM_S {
             self.last = Some(inputs);
-            return Command::straight(1.0, scale(1.0 - REST_LEAK, window.offset_mm));
+            return Command::straight(1.0, scale(1.0 - REST_LEAK, offset_mm));
         }
         let mut feeds = [inputs.map(|axis| axis[0]); MAX_KNOTS];
         let feeds = &mut feeds[..self.knots()];
@@ -182,8 +202,8 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
         let commanded = if self.settings.is_planned_elsewhere { 1.0 } else { rate };
         let feed = add_scaled(across, commanded, planned);
         self.last = Some(self.delays.inputs(seen_feed(feed)));
-        let stale = self.settings.tangential_leak * dot(window.offset_mm, direction);
-        Command::straight(rate, add_scaled(add_scaled(window.offset_mm, period_s, across), -stale, direction))
+        let stale = self.settings.tangential_leak * dot(offset_mm, direction);
+        Command::straight(rate, add_scaled(add_scaled(offset_mm, period_s, across), -stale, direction))
     }
 }
 

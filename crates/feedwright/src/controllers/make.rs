@@ -4,7 +4,7 @@ use feedwright_control::{
     Controller, Feedforward, Gains, Gradient, InvertingSettings, LqgPreview, LqgSettings, MagnitudeOnly, OffsetBounds,
     TwoDimensional, Uncorrected,
 };
-use feedwright_sim::Known;
+use feedwright_sim::{Known, KnownAxis};
 
 use super::Setup;
 use super::parameters::Values;
@@ -31,7 +31,8 @@ pub(super) fn magnitude_only<const N: usize>(setup: &mut Setup<'_>, values: &Val
 }
 
 pub(super) fn two_dimensional<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let settings = inverting(setup, values);
+    let response_s = setup.known.axes::<N>().map(|axis| response_s(&axis)).into_iter().fold(0.0, f64::max);
+    let settings = InvertingSettings { tried_response_s: Some(response_s), ..inverting(setup, values) };
     Box::new(TwoDimensional::new(setup.contour(values.number("feed_period_s")), settings))
 }
 
@@ -39,6 +40,12 @@ pub(super) fn two_dimensional<const N: usize>(setup: &mut Setup<'_>, values: &Va
 pub fn offset_bounds(known: &Known) -> OffsetBounds {
     let limits = known.limits;
     OffsetBounds { largest_mm: limits.max_deviation_mm, fastest_mm_s: limits.rapid_mm_s }
+}
+
+/// Time in which the speed loop of an axis responds: its time constant, and the delays of bus and encoder.
+fn response_s(KnownAxis { nominal, delays, .. }: &KnownAxis) -> f64 {
+    let damping_nm_s = nominal.kv_nm_s_per_rad + nominal.viscous_friction_nm_s;
+    nominal.inertia_kg_m2 / damping_nm_s + delays.drive_s + delays.measurement_s
 }
 
 /// Settings of the controllers that invert the paper's identifier.

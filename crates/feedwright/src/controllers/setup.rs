@@ -105,17 +105,42 @@ pub enum ModelMisfit {
     },
 }
 
-/// A controller that cuts uncorrected, because nothing was identified that it could go by.
+/// A controller that cuts uncorrected, and why.
 #[derive(Debug, Clone, PartialEq, Error, Diagnostic)]
-#[error("{controller} cuts uncorrected: the axes of `{machine}` cannot be identified: {cause}")]
 #[diagnostic(severity(Warning))]
-pub struct NothingIdentified {
-    /// Its name.
-    pub controller: &'static str,
-    /// Name of the machine.
-    pub machine: String,
-    /// Why.
-    pub cause: NotIdentified,
+pub enum CutsUncorrected {
+    /// Nothing was identified that it could go by.
+    #[error("{controller} cuts uncorrected: the axes of `{machine}` cannot be identified: {cause}")]
+    NothingIdentified {
+        /// Its name.
+        controller: &'static str,
+        /// Name of the machine.
+        machine: String,
+        /// Why.
+        cause: NotIdentified,
+    },
+    /// It does not suit the machine.
+    #[error(
+        "{controller} does not suit `{machine}` and cuts uncorrected: no values of its parameters are better there"
+    )]
+    Unsuited {
+        /// Its name.
+        controller: &'static str,
+        /// Name of the machine.
+        machine: String,
+        /// Remedy.
+        #[help]
+        hint: String,
+    },
+}
+
+impl CutsUncorrected {
+    /// Which controller.
+    pub fn controller(&self) -> &'static str {
+        match self {
+            Self::NothingIdentified { controller, .. } | Self::Unsuited { controller, .. } => controller,
+        }
+    }
 }
 
 /// Periods that differ by less are the same: they come from decimal numbers.
@@ -181,10 +206,22 @@ impl<'a> Setup<'a> {
         Self { progress: Some(progress), ..self }
     }
 
-    /// What is to be told of a controller that was made from this: where nothing was identified it cuts uncorrected.
-    pub fn remark(&self, entry: &Entry) -> Option<NothingIdentified> {
+    /// What is to be told of a controller that was made from this and cuts uncorrected.
+    pub fn remark(&self, entry: &Entry) -> Option<CutsUncorrected> {
+        let (controller, machine) = (entry.name, self.machine.name.clone());
+        if self.is_unsuited(entry) {
+            let hint =
+                entry.parameters.first().map(|parameter| format!("--set {}={}", parameter.name, parameter.default));
+            let hint = format!("{} cuts with it all the same", hint.unwrap_or_default());
+            return Some(CutsUncorrected::Unsuited { controller, machine, hint });
+        }
         let Some(Err(cause)) = &self.found else { return None };
-        Some(NothingIdentified { controller: entry.name, machine: self.machine.name.clone(), cause: *cause })
+        Some(CutsUncorrected::NothingIdentified { controller, machine, cause: *cause })
+    }
+
+    /// Whether a controller cuts uncorrected because it does not suit the machine.
+    pub(super) fn is_unsuited(&self, entry: &Entry) -> bool {
+        self.choices.unsuited.iter().any(|name| name == entry.name)
     }
 
     /// What was found of each axis by the last training of a model of axes, or why nothing was; none where there was none.

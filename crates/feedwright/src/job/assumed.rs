@@ -4,7 +4,7 @@ use feedwright_control::LoopDelays;
 use feedwright_sim::Axis;
 
 use super::Job;
-use crate::controllers::{Knows, NothingIdentified};
+use crate::controllers::{CutsUncorrected, Knows};
 use crate::report::{Assumptions, LawKnowledge};
 
 /// Whether an axis has something.
@@ -32,7 +32,7 @@ const IMPERFECTIONS: [(&str, Has); 4] = [
 
 impl Job {
     /// What the figures of its runs rest on; `axes` of the machine were simulated, `unidentified` are the controllers that nothing was identified for.
-    pub(super) fn assumptions(&self, axes: usize, unidentified: &[NothingIdentified]) -> Assumptions {
+    pub(super) fn assumptions(&self, axes: usize, unidentified: &[CutsUncorrected]) -> Assumptions {
         let (law, law_from) = self.law(unidentified);
         let simulated = &self.machine.axes[..axes.min(self.machine.axes.len())];
         let named = |table: &[(&'static str, Has)], there: bool| -> Vec<&'static str> {
@@ -56,9 +56,15 @@ impl Job {
     }
 
     /// How the controller that is asked for knows the law of the axes, and from what.
-    fn law(&self, unidentified: &[NothingIdentified]) -> (LawKnowledge, String) {
-        if unidentified.iter().any(|remark| remark.controller == self.controller.name) {
-            return (LawKnowledge::None, "nothing could be identified".to_owned());
+    fn law(&self, unidentified: &[CutsUncorrected]) -> (LawKnowledge, String) {
+        match unidentified.iter().find(|remark| remark.controller() == self.controller.name) {
+            Some(CutsUncorrected::NothingIdentified { .. }) => {
+                return (LawKnowledge::None, "nothing could be identified".to_owned());
+            }
+            Some(CutsUncorrected::Unsuited { .. }) => {
+                return (LawKnowledge::None, "it does not suit this machine and cuts uncorrected".to_owned());
+            }
+            None => {}
         }
         if let Some(about) = self.model.as_ref().map(|model| model.about()) {
             return (LawKnowledge::Identified, format!("the model: {}, {}", about.source, about.date));

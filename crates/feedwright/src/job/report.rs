@@ -6,7 +6,7 @@ use feedwright_plan::{AlignedPaths, Constraints};
 use feedwright_sim::{Machine, Stages, Watch, path_steps};
 
 use super::{Job, JobError};
-use crate::controllers::NothingIdentified;
+use crate::controllers::CutsUncorrected;
 use crate::cycle_time::{self, CycleTime, CycleTimeOfCut, cycle_time};
 use crate::fastest::FastestPlan;
 use crate::report::{FullCircle, LimitBand, Outcome, Report, ReportedRun, WorstPlace};
@@ -39,7 +39,7 @@ impl Job {
         summary: &Summary,
         circles: Vec<FullCircle>,
         runs: Vec<ReportedRun>,
-        unidentified: &[NothingIdentified],
+        unidentified: &[CutsUncorrected],
     ) -> Result<Report, JobError> {
         let value = |name: &str, value: String| (name.to_owned(), value);
         let mut settings = vec![

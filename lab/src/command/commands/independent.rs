@@ -84,7 +84,7 @@ fn options(args: &IndependentArgs) -> Result<IndependentOptions> {
         excitation: excitation.transpose()?,
         record_delay_s: (!args.open_delay).then_some(0.0),
         controllers: named.into_iter().map(|name| find(name, CONTROLLERS)).collect::<Result<_>>()?,
-        choices: Choices { seed: args.seed, set: Vec::new() },
+        choices: Choices { seed: args.seed, ..Choices::default() },
     })
 }
 

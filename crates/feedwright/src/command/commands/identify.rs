@@ -27,7 +27,7 @@ pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     };
     let controller = find(&args.controller, CONTROLLERS)?;
     let set = settings(&args.set, CONTROLLERS, Some(controller), &[controller])?;
-    let choices = Choices { seed: args.seed, set };
+    let choices = Choices { seed: args.seed, set, ..Choices::default() };
     let machine = Machine::load(&args.machine)?;
     let input = PathBuf::from(&args.machine);
     let input = Some(input.as_path()).filter(|path| is_machine_path(path));

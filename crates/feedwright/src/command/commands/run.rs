@@ -132,7 +132,10 @@ fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
     job.machine_file = machine_file.as_deref().map(input::name);
     (job.controller, job.against) = (controller, against);
     job.feed_mm_s = args.feed;
-    job.choices = Choices { seed: args.seed, set };
+    job.choices = Choices { seed: args.seed, set, ..Choices::default() };
+    let recorded =
+        [controller, against].into_iter().filter_map(|entry| Some((entry, table.recorded(&job.machine, entry)?)));
+    job.choices.take_recorded(recorded.collect::<Vec<_>>().into_iter());
     job.model = args.model.as_deref().map(Model::read).transpose()?;
     job.learned_on = outputs.learned.is_some().then(today).transpose()?;
     job.tolerance_um = args.tolerance;
