@@ -197,19 +197,31 @@ impl Values {
 
 #[cfg(test)]
 mod tests {
+    use feedwright_control::Uncorrected;
+
     use super::*;
 
+    static SWITCHED: Entry = crate::controller!(
+        "switched",
+        "has a switch",
+        "this test",
+        Nothing,
+        laps: 1,
+        [Parameter::switch("on", false, "for the test")],
+        |_setup, _values| Box::new(Uncorrected)
+    );
+
     fn told(text: &str) -> String {
-        let error = Setting::parse(text, CONTROLLERS.find("receding-horizon"), CONTROLLERS).unwrap_err();
+        let error = Setting::parse(text, CONTROLLERS.find("two-dimensional"), CONTROLLERS).unwrap_err();
         format!("{error}; {}", error.hint)
     }
 
     #[test]
     fn a_parameter_is_set_by_its_name_alone_or_with_its_controller() {
-        let best = CONTROLLERS.find("receding-horizon");
-        let set = Setting::parse("knots=10", best, CONTROLLERS).unwrap();
-        assert_eq!((set.controller, set.name, set.value), ("receding-horizon", "knots", 10.0));
-        let set = Setting::parse(" feedforward.friction_gain = 2.5 ", best, CONTROLLERS).unwrap();
+        let named = CONTROLLERS.find("two-dimensional");
+        let set = Setting::parse("knots=10", named, CONTROLLERS).unwrap();
+        assert_eq!((set.controller, set.name, set.value), ("two-dimensional", "knots", 10.0));
+        let set = Setting::parse(" feedforward.friction_gain = 2.5 ", named, CONTROLLERS).unwrap();
         assert_eq!((set.controller, set.name, set.value), ("feedforward", "friction_gain", 2.5));
         let entry = CONTROLLERS.find("feedforward").unwrap();
         let values = Values::of(entry, &[set]);
@@ -225,9 +237,10 @@ mod tests {
         assert!(told("feedforwrd.kp=3").contains("did you mean 'feedforward'?"));
         assert!(told("knots=ten").contains("'ten' is no number; knots is 1 to 20, whole"));
         for value in ["21", "0", "2.5", "nan", "-1", "1e400"] {
-            assert!(told(&format!("knots={value}")).contains("knots is 1 to 20, whole; its default is 20"), "{value}");
+            assert!(told(&format!("knots={value}")).contains("knots is 1 to 20, whole; its default is 1"), "{value}");
         }
-        assert!(told("on_rapids=2").contains("0 (off) or 1 (on)"));
+        let error = Setting::parse("on=2", Some(&SWITCHED), CONTROLLERS).unwrap_err();
+        assert!(error.to_string().contains("0 (off) or 1 (on)"), "{error}");
         let error = Setting::parse("kp=3", None, CONTROLLERS).unwrap_err();
         assert!(error.hint.contains("--set CONTROLLER.kp=3"));
     }
