@@ -40,6 +40,7 @@ mod conformance_controller_faults;
 mod conformance_controllers;
 mod conformance_correction_acceleration;
 mod conformance_feed_planners;
+mod conformance_harmless;
 mod conformance_identified_control;
 mod conformance_independent;
 mod conformance_mismatch;

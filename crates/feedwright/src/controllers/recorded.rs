@@ -8,6 +8,9 @@ use serde::Deserialize;
 
 use super::{Choices, Entry, Setting};
 
+/// A search that gains less than this part of the uncorrected error counts as none: parts differ by as much.
+const LEAST_GAIN: f64 = 0.05;
+
 /// A line.
 #[derive(Debug, Deserialize)]
 struct RecordedLine {
@@ -20,6 +23,8 @@ struct TunedLine {
     machine: String,
     controller: String,
     values: Vec<ValueLine>,
+    rms_um: f64,
+    open_um: f64,
     #[serde(default)]
     switched_off: bool,
 }
@@ -35,7 +40,7 @@ struct ValueLine {
 pub enum RecordedValues {
     /// Values that are better than no correction.
     Set(Vec<Setting>),
-    /// The search found nothing that is better than no correction.
+    /// The search found nothing that is clearly better than no correction.
     Unsuited,
 }
 
@@ -48,7 +53,7 @@ pub(super) fn find(lines: &str, machine: &Machine, entry: &'static Entry) -> Opt
         let tuned = &line.tuned;
         tuned.controller == entry.name && tuned.machine == machine.name && line.machine_file == fingerprint
     })?;
-    if line.tuned.switched_off {
+    if line.tuned.switched_off || line.tuned.rms_um > (1.0 - LEAST_GAIN) * line.tuned.open_um {
         return Some(RecordedValues::Unsuited);
     }
     let setting = |value: &ValueLine| {

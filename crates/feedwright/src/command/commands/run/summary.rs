@@ -4,6 +4,7 @@ use crate::command::terminal::ascii;
 use crate::report::headline::headline;
 use std::io::{self, Write};
 
+use crate::controllers::CutsUncorrected;
 use crate::correct::CorrectOutcome;
 use crate::correct::exported::ExportedFigures;
 use crate::fastest::FastestPlan;
@@ -22,7 +23,7 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outputs: &Outputs, outcome: 
     let say = |out: &mut dyn Write, text: &str| writeln!(out, "{}", wrapped(text, 2));
     say(out, &ascii(&headline(&outcome.report).to_string()))?;
     writeln!(out)?;
-    table(runs).print(out)?;
+    table(runs, &outcome.without_identification).print(out)?;
     say(
         out,
         "N m: peak torque; off: how far the command leaves the path at most; mm/s2: largest acceleration of the command",
@@ -80,7 +81,7 @@ fn peak_torque_nm(run: &RunSummary) -> f64 {
     run.peak_torque_nm.into_iter().flatten().fold(0.0, f64::max)
 }
 
-fn table(runs: &[ReportedRun]) -> ConsoleTable {
+fn table(runs: &[ReportedRun], uncorrected: &[CutsUncorrected]) -> ConsoleTable {
     let mut table = ConsoleTable::new(vec![
         TableColumn::new("simulated"),
         TableColumn::new("time s"),
@@ -104,6 +105,9 @@ fn table(runs: &[ReportedRun]) -> ConsoleTable {
             format!("{:.1}", now.max_deviation_um),
             if is_measured { "-".to_owned() } else { format!("{:.0}", now.max_command_accel_mm_s2) },
         ]);
+        if let Some(why) = uncorrected.iter().find(|why| why.controller() == now.controller) {
+            table.remark(why.to_string());
+        }
         if let (Some(rms_um), Some(max_um)) = (now.joint_rms_um, now.joint_max_um) {
             table.remark(format!("without the geometry that no encoder sees: RMS {rms_um:.2}, max {max_um:.2} um"));
         }
