@@ -41,7 +41,7 @@ fn worse(entries: &[&'static Entry], recorded: bool, is_worse: fn([f64; 2], [f64
     let of_case = |&(machine, part): &(&Machine, &Workpiece)| {
         let open_um = cut_um(machine, part, CONTROLLERS.find(BASELINE).unwrap(), &Choices::default());
         let found = entries.iter().filter_map(|&entry| {
-            let mut choices = Choices { seed: 1, ..Choices::default() };
+            let mut choices = Choices { seed: 1, tries: true, ..Choices::default() };
             let values = CONTROLLERS.recorded(machine, entry).filter(|_| recorded);
             choices.take_recorded(values.into_iter().map(|values| (entry, values)));
             let um = cut_um(machine, part, entry, &choices);

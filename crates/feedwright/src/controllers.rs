@@ -217,6 +217,9 @@ pub struct Choices {
     /// Controllers that cut uncorrected, because none of their values is better than no correction on the machine.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unsuited: Vec<String>,
+    /// Whether the paper's controller has to show that it helps before it is followed. The comparison cuts it as it was published.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub tries: bool,
 }
 
 impl Entry {

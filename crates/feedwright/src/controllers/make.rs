@@ -32,7 +32,8 @@ pub(super) fn magnitude_only<const N: usize>(setup: &mut Setup<'_>, values: &Val
 
 pub(super) fn two_dimensional<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let response_s = setup.known.axes::<N>().map(|axis| response_s(&axis)).into_iter().fold(0.0, f64::max);
-    let settings = InvertingSettings { tried_response_s: Some(response_s), ..inverting(setup, values) };
+    let settings =
+        InvertingSettings { tried_response_s: setup.choices.tries.then_some(response_s), ..inverting(setup, values) };
     Box::new(TwoDimensional::new(setup.contour(values.number("feed_period_s")), settings))
 }
 

@@ -132,7 +132,7 @@ fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
     job.machine_file = machine_file.as_deref().map(input::name);
     (job.controller, job.against) = (controller, against);
     job.feed_mm_s = args.feed;
-    job.choices = Choices { seed: args.seed, set, ..Choices::default() };
+    job.choices = Choices { seed: args.seed, set, tries: true, ..Choices::default() };
     let recorded =
         [controller, against].into_iter().filter_map(|entry| Some((entry, table.recorded(&job.machine, entry)?)));
     job.choices.take_recorded(recorded.collect::<Vec<_>>().into_iter());
