@@ -71,6 +71,8 @@ const DIFFERENCES: f64 = 3.0;
 /// An offset that differs by less from what was asked for is that, mm.
 const FOLLOWED_MM: f64 = 1e-4;
 
+/// Laws that have held in motion for longer than this, s, and are wrong then, are those of a machine that has changed.
+const CHANGED_S: f64 = 1.0;
 /// For so long a lost position is taken to be as the law says, s: a free run of it. Where it is there again and further from that, mm, everything begins anew.
 const FORESEEN_S: f64 = 0.03;
 const FORESEEN_MM: f64 = 0.05;
@@ -89,6 +91,8 @@ pub struct LqgPreview<const N: usize> {
     feasibility: Feasibility,
     /// The offset that was asked for last, mm.
     asked_mm: [f64; N],
+    /// For how long the laws have held in motion, s.
+    held_s: f64,
     /// For how long the position has been lost, s.
     lost_s: f64,
 }
@@ -107,6 +111,7 @@ impl<const N: usize> LqgPreview<N> {
             first_use: (!settings.is_known).then(|| FirstUse::new(axes.iter().map(AxisLqg::unforeseen_mm2).sum())),
             feasibility: Feasibility::FOLLOWED,
             asked_mm: [0.0; N],
+            held_s: 0.0,
             lost_s: 0.0,
             axes,
         }
@@ -252,6 +257,13 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
             let followed = norm(sub(window.offset_mm, self.asked_mm)) <= FOLLOWED_MM;
             validity.take_in_step(OneStep::sum(self.axes.iter().map(AxisLqg::step)), window.feed_period_s);
             validity.take_in(&shown, followed, window.feed_period_s);
+            let moves = window.now().feed_mm_s > 0.0;
+            let has_changed = validity.is_wrong() && self.held_s > CHANGED_S;
+            self.held_s =
+                if validity.is_wrong() { 0.0 } else { self.held_s + if moves { window.feed_period_s } else { 0.0 } };
+            if has_changed {
+                self.axes.iter_mut().for_each(AxisLqg::doubt);
+            }
         }
     }
 

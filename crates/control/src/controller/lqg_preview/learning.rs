@@ -226,6 +226,11 @@ impl Learner {
         }
     }
 
+    /// The machine is another one from now on: what is known of the differences is no better than at first.
+    pub(super) fn doubt(&self, learning: &mut Learning) {
+        learning.covariance = self.begin().covariance;
+    }
+
     /// A command was sent while a position was measured, rad.
     pub(super) fn sent(&self, learning: &mut Learning, command_rad: f64, measured_rad: f64) {
         let servo_s = self.nominal.periods.servo_s;

@@ -234,6 +234,13 @@ impl AxisLqg {
         (self.state, self.may_learn) = (None, false);
     }
 
+    /// The axis is another one from now on.
+    pub(super) fn doubt(&mut self) {
+        if let (Some(learner), Some(Running { learning: Some(learning), .. })) = (&self.learner, &mut self.state) {
+            learner.doubt(learning);
+        }
+    }
+
     /// Forgets all that came.
     pub(super) fn forget(&mut self) {
         (self.state, self.may_learn) = (None, true);
