@@ -19,7 +19,7 @@ const PD_GAIN: f64 = 0.05;
 
 /// What a cut of the circle is made with.
 #[derive(Debug, Clone)]
-struct Case {
+struct PaperCase {
     machine: Machine,
     settings: InvertingSettings,
     excitation: Excitation,
@@ -31,7 +31,7 @@ struct Departure {
     printed: &'static str,
     taken: &'static str,
     reason: &'static str,
-    apply: fn(&mut Case),
+    apply: fn(&mut PaperCase),
 }
 
 /// All of them.
@@ -112,13 +112,13 @@ pub struct DepartureResult {
 /// As [`experiment`](super::experiment).
 pub fn departures(machine: &Machine, seeds: &[u64], watch: &dyn Watch) -> Result<Vec<DepartureResult>, RunError> {
     watch.begin("cutting as printed", DEPARTURES.len() as u64 + 3);
-    let taken = || Case {
+    let taken = || PaperCase {
         machine: machine.clone(),
         settings: InvertingSettings::DEFAULT,
         excitation: Excitation::paper(),
         training: Training::default(),
     };
-    let row = |printed: &str, taken: &str, reason: &str, case: &Case| {
+    let row = |printed: &str, taken: &str, reason: &str, case: &PaperCase| {
         let [printed, taken, reason] = [printed, taken, reason].map(str::to_owned);
         let (uncorrected, worst, mean) = over_seeds(case, seeds, watch)?;
         watch.advance(1);
@@ -139,7 +139,7 @@ pub fn departures(machine: &Machine, seeds: &[u64], watch: &dyn Watch) -> Result
 }
 
 /// The uncorrected cut, and the worst and the mean of two-dimensional control.
-fn over_seeds(case: &Case, seeds: &[u64], watch: &dyn Watch) -> Result<(Numbers, Numbers, Numbers), RunError> {
+fn over_seeds(case: &PaperCase, seeds: &[u64], watch: &dyn Watch) -> Result<(Numbers, Numbers, Numbers), RunError> {
     let bench = Bench { machine: &case.machine, watch };
     let cut = |&seed: &u64| {
         let net = bench.train_on(&case.excitation, &case.training, seed).net;

@@ -30,7 +30,7 @@ use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 pub const LINE_S: f64 = 0.005;
 /// Longest program that is divided, s; the rest is cut as planned.
 const LONGEST_S: f64 = 120.0;
-/// Lines after which a line no longer acts on the tool: 0.16 s, eight time constants.
+/// DividedPath after which a line no longer acts on the tool: 0.16 s, eight time constants.
 const MEMORY: usize = 32;
 /// Steps of the outer method, passes over the multipliers, and the longest step in `ln r`.
 const STEPS: usize = 20;
@@ -45,7 +45,7 @@ const LEAST_MM: f64 = 1e-9;
 
 /// A linear axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LinearAxis {
+pub struct LaggingAxis {
     /// Gain of the position loop, 1/s.
     pub kp_1_s: f64,
     /// b: bandwidth of the speed loop, 1/s.
@@ -56,7 +56,7 @@ pub struct LinearAxis {
     pub fed_forward: f64,
 }
 
-impl LinearAxis {
+impl LaggingAxis {
     /// Following error and speed after `for_s` on a line at `v` mm/s.
     fn after(&self, [error_mm, speed_mm_s]: [f64; 2], v: f64, for_s: f64) -> [f64; 2] {
         let (b, stiffness) = (self.bandwidth_1_s, self.bandwidth_1_s * self.reached * self.kp_1_s);
@@ -99,7 +99,7 @@ impl Settings {
 #[derive(Debug, Clone)]
 pub struct ConstrainedFeedrate<const N: usize> {
     settings: Settings,
-    axes: [LinearAxis; N],
+    axes: [LaggingAxis; N],
     period_s: f64,
     /// Ends of the lines; the first is the start, mm.
     ends_mm: Vec<[f64; N]>,
@@ -108,7 +108,7 @@ pub struct ConstrainedFeedrate<const N: usize> {
 
 impl<const N: usize> ConstrainedFeedrate<N> {
     /// Before the lap that records the path; all memory of a tick is taken here.
-    pub fn new(settings: Settings, axes: [LinearAxis; N], servo_s: f64) -> Self {
+    pub fn new(settings: Settings, axes: [LaggingAxis; N], servo_s: f64) -> Self {
         let period_s = f64::from(settings.servo_periods.max(1)) * servo_s;
         let lines = (LONGEST_S / period_s) as usize;
         Self { settings, axes, period_s, ends_mm: Vec::with_capacity(lines), rates: Vec::new() }
@@ -134,7 +134,7 @@ impl<const N: usize> Controller<N> for ConstrainedFeedrate<N> {
     fn next_lap(&mut self) {
         if self.rates.is_empty() {
             self.rates =
-                Lines { ends_mm: &self.ends_mm, axes: &self.axes, period_s: self.period_s }.plan(&self.settings);
+                DividedPath { ends_mm: &self.ends_mm, axes: &self.axes, period_s: self.period_s }.plan(&self.settings);
         }
     }
 
@@ -147,17 +147,17 @@ impl<const N: usize> Controller<N> for ConstrainedFeedrate<N> {
     }
 }
 
-/// State of every axis: following error and speed.
-type State<const N: usize> = [[f64; 2]; N];
+/// AxisErrors of every axis: following error and speed.
+type AxisErrors<const N: usize> = [[f64; 2]; N];
 
 /// The path that is planned.
-struct Lines<'a, const N: usize> {
+struct DividedPath<'a, const N: usize> {
     ends_mm: &'a [[f64; N]],
-    axes: &'a [LinearAxis; N],
+    axes: &'a [LaggingAxis; N],
     period_s: f64,
 }
 
-impl<const N: usize> Lines<'_, N> {
+impl<const N: usize> DividedPath<'_, N> {
     fn count(&self) -> usize {
         self.ends_mm.len().saturating_sub(1)
     }
@@ -171,10 +171,10 @@ impl<const N: usize> Lines<'_, N> {
     }
 
     /// The state at the end of a line, and `ln` of the contour error there.
-    fn cut(&self, line: usize, state: &State<N>, log_rate: f64) -> (State<N>, f64) {
+    fn cut(&self, line: usize, state: &AxisErrors<N>, log_rate: f64) -> (AxisErrors<N>, f64) {
         let for_s = self.period_s * libm::exp(-log_rate);
         let v = scale(1.0 / for_s, self.chord_mm(line));
-        let state: State<N> = std::array::from_fn(|i| self.axes[i].after(state[i], v[i], for_s));
+        let state: AxisErrors<N> = std::array::from_fn(|i| self.axes[i].after(state[i], v[i], for_s));
         let tool_mm = sub(self.ends_mm[line + 1], state.map(|[error_mm, _]| error_mm));
         let near = line.saturating_sub(MEMORY)..(line + 2).min(self.count());
         let nearest_mm = near.map(|near| self.distance_mm(near, tool_mm)).fold(f64::INFINITY, f64::min);
@@ -188,7 +188,7 @@ impl<const N: usize> Lines<'_, N> {
     }
 
     /// States before each line, and `ln` of the error at its end.
-    fn cut_all(&self, log_rates: &[f64]) -> (Vec<State<N>>, Vec<f64>) {
+    fn cut_all(&self, log_rates: &[f64]) -> (Vec<AxisErrors<N>>, Vec<f64>) {
         let (mut states, mut errors) = (vec![[[0.0; 2]; N]], Vec::with_capacity(log_rates.len()));
         for (line, log_rate) in log_rates.iter().enumerate() {
             let (state, error) = self.cut(line, &states[line], *log_rate);
@@ -218,7 +218,7 @@ impl<const N: usize> Lines<'_, N> {
     }
 
     /// Derivative of the error at the end of each line to the rates of itself and of those before it, the nearest first.
-    fn slopes(&self, log_rates: &[f64], states: &[State<N>], errors: &[f64]) -> Vec<[f64; MEMORY]> {
+    fn slopes(&self, log_rates: &[f64], states: &[AxisErrors<N>], errors: &[f64]) -> Vec<[f64; MEMORY]> {
         let mut slopes = vec![[0.0; MEMORY]; errors.len()];
         for changed in (0..errors.len()).filter(|&line| self.is_moving(line)) {
             let mut state = states[changed];
@@ -233,7 +233,7 @@ impl<const N: usize> Lines<'_, N> {
     }
 
     /// The step that makes the time least where the constraints are linear: with `t = 1 / r` the time of a line in planned ones, its
-    /// derivative is `-t` and its second derivative `t`. Lines of rest stay as they are.
+    /// derivative is `-t` and its second derivative `t`. DividedPath of rest stay as they are.
     fn quadratic_step(&self, log_rates: &[f64], slopes: &[[f64; MEMORY]], over: &[f64], least: f64) -> Vec<f64> {
         let bounds = |line: usize| {
             let log_rate: f64 = log_rates[line];
@@ -289,7 +289,7 @@ impl<const N: usize> Lines<'_, N> {
 mod tests {
     use super::*;
 
-    const AXIS: LinearAxis = LinearAxis { kp_1_s: 50.0, bandwidth_1_s: 197.0, reached: 0.98, fed_forward: 0.0 };
+    const AXIS: LaggingAxis = LaggingAxis { kp_1_s: 50.0, bandwidth_1_s: 197.0, reached: 0.98, fed_forward: 0.0 };
     const SERVO_S: f64 = 0.001;
     /// Half axes 20 and 10 mm at 50 mm/s, by arc length to 1 % of a line.
     fn ellipse() -> Vec<[f64; 2]> {
@@ -306,7 +306,7 @@ mod tests {
     #[test]
     fn the_closed_form_is_what_small_steps_come_to() {
         for (bandwidth_1_s, fed_forward) in [(150.0, 0.0), (197.0, 0.0), (200.0 / 0.98 * 0.98, 0.95), (900.0, 0.5)] {
-            let axis = LinearAxis { bandwidth_1_s, fed_forward, ..AXIS };
+            let axis = LaggingAxis { bandwidth_1_s, fed_forward, ..AXIS };
             let found = axis.after([0.3, -20.0], 40.0, 0.02);
             let (mut e, mut w) = (0.3, -20.0);
             let steps = 200_000;
@@ -323,7 +323,7 @@ mod tests {
     #[test]
     fn the_feedrate_is_the_highest_that_holds_what_is_allowed() {
         let ends_mm = ellipse();
-        let lines = Lines { ends_mm: &ends_mm, axes: &[AXIS; 2], period_s: 5.0 * SERVO_S };
+        let lines = DividedPath { ends_mm: &ends_mm, axes: &[AXIS; 2], period_s: 5.0 * SERVO_S };
         let settings = Settings { acceleration_mm_s2: 1e9, slowest: 0.1, ..Settings::DEFAULT };
         let rates: Vec<f64> = lines.plan(&settings);
         let errors = |rates: &[f64]| lines.cut_all(&rates.iter().map(|rate| libm::log(*rate)).collect::<Vec<_>>()).1;
@@ -346,7 +346,7 @@ mod tests {
     #[test]
     fn the_feedrate_changes_no_faster_than_the_machine_may() {
         let ends_mm = ellipse();
-        let lines = Lines { ends_mm: &ends_mm, axes: &[AXIS; 2], period_s: 5.0 * SERVO_S };
+        let lines = DividedPath { ends_mm: &ends_mm, axes: &[AXIS; 2], period_s: 5.0 * SERVO_S };
         let rates = lines.plan(&Settings { allowed_mm: 0.002, ..Settings::DEFAULT });
         for pair in rates.windows(2) {
             let [before, after] = [pair[0] * 50.0, pair[1] * 50.0];

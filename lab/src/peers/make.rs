@@ -9,7 +9,7 @@ use feedwright_control::{
 use feedwright_sim::{Known, KnownAxis, Period};
 
 use super::closed_loop;
-use super::constrained_feedrate::{self, ConstrainedFeedrate, LinearAxis};
+use super::constrained_feedrate::{self, ConstrainedFeedrate, LaggingAxis};
 use super::contour_compensation::{self, ContourCompensation};
 use super::corner_contour::CornerContour;
 use super::cross_coupled::{self, CrossCoupled};
@@ -93,7 +93,7 @@ pub(super) fn constrained_feedrate<const N: usize>(setup: &mut Setup<'_>, values
     };
     let axes = setup.known.axes().map(|KnownAxis { nominal, drive, .. }| {
         let damping_nm_s = nominal.kv_nm_s_per_rad + nominal.viscous_friction_nm_s;
-        LinearAxis {
+        LaggingAxis {
             kp_1_s: nominal.kp_1_s,
             bandwidth_1_s: damping_nm_s / nominal.inertia_kg_m2,
             reached: nominal.kv_nm_s_per_rad / damping_nm_s,

@@ -17,7 +17,7 @@
 
 use core::marker::PhantomData;
 
-use super::trial::Trial;
+use super::trial::CorrectionTrial;
 use super::{Controller, Schedule};
 use crate::command::{Command, Measured};
 use crate::identifier::contour::ContourIdentifier;
@@ -103,7 +103,7 @@ pub struct Inverting<const N: usize, I, D = ContourIdentifier<N>> {
     delays: Delays<N>,
     last: Option<Inputs<N>>,
     prediction_error_mm: f64,
-    trial: Option<Trial<N>>,
+    trial: Option<CorrectionTrial<N>>,
     settings: InvertingSettings,
     how: PhantomData<I>,
 }
@@ -117,7 +117,7 @@ impl<const N: usize, I, D: ContourModel<N>> Inverting<N, I, D> {
             delays: Delays::REST,
             last: None,
             prediction_error_mm: 0.0,
-            trial: settings.tried_response_s.map(Trial::new),
+            trial: settings.tried_response_s.map(CorrectionTrial::new),
             settings,
             how: PhantomData,
         }
@@ -140,7 +140,7 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
         self.delays = Delays::REST;
         self.last = None;
         self.prediction_error_mm = 0.0;
-        self.trial = self.settings.tried_response_s.map(Trial::new);
+        self.trial = self.settings.tried_response_s.map(CorrectionTrial::new);
     }
 
     /// One step of back-propagation on the last command and its outcome, then both move into the delays.
@@ -151,7 +151,7 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
         if !norm(error_mm).is_finite() {
             return;
         }
-        let is_followed = self.trial.as_ref().is_none_or(Trial::is_whole);
+        let is_followed = self.trial.as_ref().is_none_or(CorrectionTrial::is_whole);
         let step = if is_followed { self.settings.learning_step } else { 0.0 };
         if let Some(inputs) = self.last {
             let error = error_mm.map(|e| e / D::ERROR_SCALE_MM);
@@ -169,7 +169,7 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
 
     /// Inverts from the planned feedrate and turns the result into a rate and a new offset.
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
-        let offset_mm = self.trial.as_ref().map_or(window.offset_mm, Trial::wanted_mm);
+        let offset_mm = self.trial.as_ref().map_or(window.offset_mm, CorrectionTrial::wanted_mm);
         let wanted = self.wanted(window, offset_mm);
         self.trial.as_mut().map_or(wanted, |trial| trial.follow(wanted))
     }

@@ -74,7 +74,7 @@ impl<const N: usize> FeltOffset<N> {
 
 /// A trial and its evidence.
 #[derive(Debug, Clone)]
-pub(super) struct Trial<const N: usize> {
+pub(super) struct CorrectionTrial<const N: usize> {
     wanted_mm: [f64; N],
     /// M, s.
     response_s: f64,
@@ -91,7 +91,7 @@ pub(super) struct Trial<const N: usize> {
     enough: f64,
 }
 
-impl<const N: usize> Trial<N> {
+impl<const N: usize> CorrectionTrial<N> {
     /// Before a program, on axes whose speed loops respond within `response_s`.
     pub(super) const fn new(response_s: f64) -> Self {
         Self {
@@ -212,7 +212,7 @@ mod tests {
     /// `open_mm` at each decision; the tool feels `real` times the offset of the trial's own servo.
     fn shares(gain: f64, real: f64, open_mm: impl Fn(u32) -> f64) -> [f64; 200] {
         let (mut register, mut preview) = (Register::default(), Preview::new(SERVO_S));
-        let (mut trial, mut felt) = (Trial::<2>::new(0.005), FeltOffset::<2>::NONE);
+        let (mut trial, mut felt) = (CorrectionTrial::<2>::new(0.005), FeltOffset::<2>::NONE);
         let mut offset_mm = [0.0; 2];
         core::array::from_fn(|n| {
             let decision = n as u32;
