@@ -30,7 +30,7 @@ use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 pub const LINE_S: f64 = 0.005;
 /// Longest program that is divided, s; the rest is cut as planned.
 const LONGEST_S: f64 = 120.0;
-/// DividedPath after which a line no longer acts on the tool: 0.16 s, eight time constants.
+/// Lines after which a line no longer acts on the tool: 0.16 s, eight time constants of a position loop of 50 1/s.
 const MEMORY: usize = 32;
 /// Steps of the outer method, passes over the multipliers, and the longest step in `ln r`.
 const STEPS: usize = 20;
@@ -147,8 +147,8 @@ impl<const N: usize> Controller<N> for ConstrainedFeedrate<N> {
     }
 }
 
-/// AxisErrors of every axis: following error and speed.
-type AxisErrors<const N: usize> = [[f64; 2]; N];
+/// State of every axis: following error and speed.
+type ServoStates<const N: usize> = [[f64; 2]; N];
 
 /// The path that is planned.
 struct DividedPath<'a, const N: usize> {
@@ -171,10 +171,10 @@ impl<const N: usize> DividedPath<'_, N> {
     }
 
     /// The state at the end of a line, and `ln` of the contour error there.
-    fn cut(&self, line: usize, state: &AxisErrors<N>, log_rate: f64) -> (AxisErrors<N>, f64) {
+    fn cut(&self, line: usize, state: &ServoStates<N>, log_rate: f64) -> (ServoStates<N>, f64) {
         let for_s = self.period_s * libm::exp(-log_rate);
         let v = scale(1.0 / for_s, self.chord_mm(line));
-        let state: AxisErrors<N> = std::array::from_fn(|i| self.axes[i].after(state[i], v[i], for_s));
+        let state: ServoStates<N> = std::array::from_fn(|i| self.axes[i].after(state[i], v[i], for_s));
         let tool_mm = sub(self.ends_mm[line + 1], state.map(|[error_mm, _]| error_mm));
         let near = line.saturating_sub(MEMORY)..(line + 2).min(self.count());
         let nearest_mm = near.map(|near| self.distance_mm(near, tool_mm)).fold(f64::INFINITY, f64::min);
@@ -188,7 +188,7 @@ impl<const N: usize> DividedPath<'_, N> {
     }
 
     /// States before each line, and `ln` of the error at its end.
-    fn cut_all(&self, log_rates: &[f64]) -> (Vec<AxisErrors<N>>, Vec<f64>) {
+    fn cut_all(&self, log_rates: &[f64]) -> (Vec<ServoStates<N>>, Vec<f64>) {
         let (mut states, mut errors) = (vec![[[0.0; 2]; N]], Vec::with_capacity(log_rates.len()));
         for (line, log_rate) in log_rates.iter().enumerate() {
             let (state, error) = self.cut(line, &states[line], *log_rate);
@@ -218,7 +218,7 @@ impl<const N: usize> DividedPath<'_, N> {
     }
 
     /// Derivative of the error at the end of each line to the rates of itself and of those before it, the nearest first.
-    fn slopes(&self, log_rates: &[f64], states: &[AxisErrors<N>], errors: &[f64]) -> Vec<[f64; MEMORY]> {
+    fn slopes(&self, log_rates: &[f64], states: &[ServoStates<N>], errors: &[f64]) -> Vec<[f64; MEMORY]> {
         let mut slopes = vec![[0.0; MEMORY]; errors.len()];
         for changed in (0..errors.len()).filter(|&line| self.is_moving(line)) {
             let mut state = states[changed];
@@ -233,7 +233,7 @@ impl<const N: usize> DividedPath<'_, N> {
     }
 
     /// The step that makes the time least where the constraints are linear: with `t = 1 / r` the time of a line in planned ones, its
-    /// derivative is `-t` and its second derivative `t`. DividedPath of rest stay as they are.
+    /// derivative is `-t` and its second derivative `t`. Lines of rest stay as they are.
     fn quadratic_step(&self, log_rates: &[f64], slopes: &[[f64; MEMORY]], over: &[f64], least: f64) -> Vec<f64> {
         let bounds = |line: usize| {
             let log_rate: f64 = log_rates[line];

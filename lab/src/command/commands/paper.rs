@@ -56,15 +56,13 @@ impl Extra {
                 "\n| Of {} draws | best | 5 % | 50 % | 95 % | worst |\n|---|--:|--:|--:|--:|--:|",
                 draws.len()
             )?;
-            let ratios: [(&str, fn(&Draw) -> f64); 3] = [
-                ("RMS ratio", |draw| draw.rms_ratio),
-                ("max ratio", |draw| draw.max_ratio),
-                ("time ratio", |draw| draw.time_ratio),
-            ];
-            for (name, of) in ratios {
+            let row = |out: &mut std::io::StdoutLock<'_>, name: &str, of: fn(&Draw) -> f64| {
                 let cells = [0.0, 0.05, 0.5, 0.95, 1.0].map(|part| format!("{:.3}", quantile(draws, of, part)));
-                writeln!(out, "| {name} | {} |", cells.join(" | "))?;
-            }
+                writeln!(out, "| {name} | {} |", cells.join(" | "))
+            };
+            row(&mut out, "RMS ratio", |draw| draw.rms_ratio)?;
+            row(&mut out, "max ratio", |draw| draw.max_ratio)?;
+            row(&mut out, "time ratio", |draw| draw.time_ratio)?;
         }
         Ok(())
     }
