@@ -2,7 +2,7 @@
 //!
 //! It holds each command within [`Bounds`], and follows a controller only while the tool is nearer to the path by it:
 //!
-//! | Seen | Test | Then |
+//! | DecisionInputs | Test | Then |
 //! |---|---|---|
 //! | the position is lost | it is no number, moves faster than the machine can, or stands still while the command moves | out at once |
 //! | the command is no number | | out at once |
@@ -52,7 +52,7 @@ use crate::window::Window;
 use benefit::Benefit;
 pub use bounds::Bounds;
 pub use engagement::{Cause, Fade, State};
-use engagement::{Engagement, Seen};
+use engagement::{DecisionInputs, Engagement};
 pub use fade::fade_acceleration;
 
 /// A correction that acts at once takes at least this long to come back, s: twice the time constant of a usual position loop.
@@ -171,7 +171,7 @@ impl<const N: usize> Supervisor<N> {
             None => Some((Cause::LostFeedback, None)),
         };
         let wanted = wanted.unwrap_or(Command::AS_PLANNED);
-        let state = self.engagement.go_on(&Seen {
+        let state = self.engagement.go_on(&DecisionInputs {
             allowed: self.allowed,
             bad,
             good: told.prediction_error_mm < GOOD_SHARE * self.wrong_mm(),

@@ -321,6 +321,8 @@ fn wild(mut controller: Wild, allowed: bool) -> Vec<(f64, State)> {
     (0..6000).map(period).collect()
 }
 
+/// What rounding makes of a position, mm.
+const ROUNDING_MM: f64 = 1e-12;
 /// An error beyond this many times the largest without the correction, and this much, mm, is harm.
 const HARM: [f64; 2] = [1.5, 0.03];
 /// Behind it the offset goes on moving the tool by this part of its bound, and for so long, servo periods.
@@ -347,5 +349,33 @@ proptest! {
         prop_assert!(for_periods <= FOR_PERIODS, "for {for_periods} servo periods");
         let most_mm2 = HARM_SQUARE[0] * square(&without) + HARM_SQUARE[1];
         prop_assert!(square(&with) <= most_mm2, "{} mm^2, not {most_mm2}", square(&with));
+    }
+    /// An owner's acceleration holds in the loop and out of it, whatever is asked for.
+    #[test]
+    fn an_offset_keeps_the_acceleration_of_the_owner(
+        amplitude_mm in prop::array::uniform2(-0.1..0.1_f64),
+        hz in prop::array::uniform2(0.2..25.0_f64),
+        engaged_mm_s2 in 50.0..1e5_f64,
+    ) {
+        let mut controller = Wild { amplitude_mm, hz, moved_mm: [0.0; 2], period: 0 };
+        let mut tick = Tick::new(SERVO_S, controller.schedule(), Bounds { engaged_mm_s2, ..BOUNDS });
+        let (mut tool_mm, mut offsets) = ([0.0; 2], Vec::new());
+        for _ in 0..2000 {
+            let setpoint = tick.step(&mut Circle, &mut controller, tool_mm);
+            offsets.push(sub(setpoint.command_mm, setpoint.path.position_mm));
+            for axis in 0..2 {
+                tool_mm[axis] += SERVO_S / LAG_S * (setpoint.command_mm[axis] - tool_mm[axis]);
+            }
+        }
+        // A fade that begins brakes what is on its way within a servo period.
+        let most_mm = SERVO_S * SERVO_S * engaged_mm_s2.max(FADE_MM_S2) + ROUNDING_MM;
+        for three in offsets.windows(3) {
+            for axis in 0..2 {
+                let bend_mm = three[2][axis] - 2.0 * three[1][axis] + three[0][axis];
+                let stops = three[2][axis].abs() <= three[1][axis].abs() + ROUNDING_MM;
+                prop_assert!(bend_mm.abs() <= most_mm || stops, "{} mm/s2", bend_mm / (SERVO_S * SERVO_S));
+            }
+        }
+        prop_assert!(offsets.iter().any(|offset| norm(*offset) > 0.0));
     }
 }

@@ -73,7 +73,7 @@ pub struct Fade {
 
 /// What a decision goes by.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Seen {
+pub(super) struct DecisionInputs {
     /// Whether a correction is wanted at all.
     pub(super) allowed: bool,
     /// Why the controller must not be followed, and what that rests on.
@@ -125,8 +125,8 @@ impl Engagement {
     }
 
     /// Goes on by a decision.
-    pub(super) fn go_on(&mut self, seen: &Seen) -> State {
-        let Seen { allowed, bad, good, over, period_s } = *seen;
+    pub(super) fn go_on(&mut self, seen: &DecisionInputs) -> State {
+        let DecisionInputs { allowed, bad, good, over, period_s } = *seen;
         self.for_s += period_s;
         self.good_s = if good && bad.is_none() { self.good_s + period_s } else { 0.0 };
         match (self.state, bad) {
@@ -169,7 +169,7 @@ mod tests {
     /// A decision with this fault of a controller whose offset has come to rest.
     fn goes_on(engagement: &mut Engagement, cause: Option<Cause>, good: bool, over: bool) -> State {
         let bad = cause.map(|cause| (cause, None));
-        engagement.go_on(&Seen { allowed: true, bad, good, over, period_s: PERIOD_S })
+        engagement.go_on(&DecisionInputs { allowed: true, bad, good, over, period_s: PERIOD_S })
     }
 
     /// Decisions until a controller that is good from now on is back.
@@ -217,8 +217,9 @@ mod tests {
     #[test]
     fn what_is_not_wanted_leaves_without_a_fault_and_comes_back_when_it_is() {
         let mut engagement = Engagement::START;
-        let mut asked =
-            |allowed| engagement.go_on(&Seen { allowed, bad: None, good: true, over: true, period_s: PERIOD_S });
+        let mut asked = |allowed| {
+            engagement.go_on(&DecisionInputs { allowed, bad: None, good: true, over: true, period_s: PERIOD_S })
+        };
         assert_eq!([true, false, false].map(&mut asked), [State::Engaged, State::Fading, State::Shadow]);
         assert!((0..1000).all(|_| asked(false) == State::Shadow));
         assert_eq!(asked(true), State::Engaged);
