@@ -55,7 +55,7 @@ typedef struct {
     double speed_mm_s;
     // Acceleration of an offset that fades; 0 is without limit.
     double correction_mm_s2;
-    // Acceleration of an offset in the loop; 0 is without limit. A correction that takes more leaves the loop.
+    // Acceleration of an offset in the loop; 0 is without limit. A correction that needs more leaves the loop.
     double engaged_mm_s2;
     // What 1 of the requested feedrate stands for, 0.1 to 1.
     double adaptive_scale;
