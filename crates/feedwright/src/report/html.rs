@@ -107,7 +107,7 @@ fn write_header(out: &mut impl Write, report: &Report) -> io::Result<()> {
 /// The band of the prediction, in one paragraph.
 fn band(report: &Report) -> String {
     report.band.as_ref().map_or_else(String::new, |band| {
-        format!("<p class=\"assumed\"><b>Predicted</b> {}.</p>\n", escaped(&band.sentence()))
+        format!("<p class=\"assumed\"><b>Predicted</b> {}.</p>\n", escaped(&band.sentence().replace(" um", " µm")))
     })
 }
 
