@@ -117,6 +117,23 @@ impl AxisKnowledge {
         Number { format: 3, ..Number::newer("command_delay_s", "s", 0.02, |axis| &mut axis.delays.command_s) },
     ];
 
+    /// Damping ratio of the command that asks the drive for a given speed:
+    ///
+    /// ```text
+    /// w = kp (c - x) + F c' + (J A / Kv) c''      zeta = F / (2 (kp J A / Kv)^(1/2))
+    /// ```
+    ///
+    /// with the position gain kp, the velocity feedforward F and the acceleration feedforward A. Infinite without A. Where it is low, the command rings.
+    pub fn command_damping(&self) -> f64 {
+        let Self { parameters, drive, .. } = self;
+        let added_s = parameters.inertia_kg_m2 * drive.acceleration_feedforward / parameters.kv_nm_s_per_rad;
+        if added_s > 0.0 {
+            drive.velocity_feedforward / (2.0 * libm::sqrt(parameters.kp_1_s * added_s))
+        } else {
+            f64::INFINITY
+        }
+    }
+
     /// Whether each of its numbers is within its range.
     pub fn is_possible(mut self) -> bool {
         Self::NUMBERS.iter().all(|number| number.holds(*(number.of)(&mut self)))
@@ -163,5 +180,22 @@ impl Number {
     pub fn holds(&self, value: f64) -> bool {
         let [least, most] = self.range;
         (value >= least && value <= most) || (self.or_none && value == 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_command_is_damped_by_velocity_feedforward() {
+        let mut axis = AxisKnowledge::NOTHING;
+        (axis.parameters.kp_1_s, axis.parameters.kv_nm_s_per_rad) = (50.0, 2.0);
+        axis.parameters.inertia_kg_m2 = 0.02;
+        assert_eq!(axis.command_damping(), f64::INFINITY);
+        axis.drive.acceleration_feedforward = 0.5;
+        assert_eq!(axis.command_damping(), 0.0);
+        axis.drive.velocity_feedforward = 1.0;
+        assert_eq!(axis.command_damping(), 1.0);
     }
 }

@@ -73,6 +73,9 @@ const FOLLOWED_MM: f64 = 1e-4;
 
 /// Laws that have held in motion for longer than this, s, and are wrong then, are those of a machine that has changed.
 const CHANGED_S: f64 = 1.0;
+/// A drive whose command is damped by less is not corrected: its acceleration feedforward makes of an offset one that rings, and takes all the torque. Random
+/// machines with 0.7 of it and no velocity feedforward came to 2 mm where 6 um were left uncorrected.
+const LEAST_DAMPING: f64 = 0.3;
 /// For so long a lost position is taken to be as the law says, s: a free run of it. Where it is there again and further from that, mm, everything begins anew.
 const FORESEEN_S: f64 = 0.03;
 const FORESEEN_MM: f64 = 0.05;
@@ -267,9 +270,10 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         }
     }
 
-    /// Infinite where the law is wrong.
+    /// Infinite where the law is wrong, or no command follows it.
     fn prediction_error_mm(&self) -> f64 {
-        if self.validity.as_ref().is_some_and(Validity::is_wrong) {
+        let is_damped = self.axes.iter().all(|axis| axis.known().command_damping() >= LEAST_DAMPING);
+        if self.validity.as_ref().is_some_and(|validity| validity.is_wrong() || !is_damped) {
             return f64::INFINITY;
         }
         self.missed_mm()
