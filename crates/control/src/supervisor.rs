@@ -2,7 +2,7 @@
 //!
 //! It holds each command within [`Bounds`], and follows a controller only while the tool is nearer to the path by it:
 //!
-//! | DecisionInputs | Test | Then |
+//! | Seen | Test | Then |
 //! |---|---|---|
 //! | the position is lost | it is no number, moves faster than the machine can, or stands still while the command moves | out at once |
 //! | the command is no number | | out at once |
@@ -20,7 +20,7 @@
 //! Each wrong prediction of a law counts only beyond four standard deviations of noise, and twice; a learned law is taken for better than a right one
 //! in one of a thousand trials (`controller/lqg_preview/learning.rs`).
 //!
-//! The bound of the harm, by a controller that harms as it likes within its bounds, on a machine with a lag of 20 ms: no error is beyond 1.5 times the largest
+//! The bound of the harm, by a controller that harms as it likes within its bounds and knows what its offset does, on a machine with a lag of 20 ms: no error is beyond 1.5 times the largest
 //! without it, 30 um and half the largest deviation; none stays beyond the first two for longer than 0.15 s; and the mean square is at most 1.75 times that
 //! without it and (5 um)^2. `tests/property_supervisor.rs` attacks it.
 //!
