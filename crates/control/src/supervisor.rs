@@ -188,7 +188,7 @@ impl<const N: usize> Supervisor<N> {
             State::Fading => self.faded(window, told.acts_at_once),
         };
         let command = self.bounds.hold(window, asked, self.rate, told.acts_at_once);
-        self.held = state == State::Engaged && command != asked;
+        self.held = state == State::Engaged && (command != asked || self.behind_mm > 0.0);
         self.rate = command.rate;
         if state != State::Engaged {
             (self.asked_mm, self.behind_mm) = (command.offset_mm, 0.0);

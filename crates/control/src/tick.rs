@@ -201,6 +201,7 @@ impl<const N: usize> Tick<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::window::tests::Line;
 
     #[test]
     fn plan_time_is_a_whole_number_of_servo_periods_whatever_its_size() {
@@ -218,15 +219,6 @@ mod tests {
         (0..8).for_each(|_| time = time.after(0.375));
         assert_eq!((time.periods, time.part), (3, 0.0));
         assert_eq!(time.after(f64::NAN).periods, 3);
-    }
-
-    /// 50 mm/s along the first axis.
-    struct Line;
-
-    impl KnotSource<2> for Line {
-        fn knot(&mut self, tau_s: f64) -> Knot<2> {
-            Knot { position_mm: [50.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0, cutting: true }
-        }
     }
 
     /// Every fifth servo period, an offset that grows by a micrometre.

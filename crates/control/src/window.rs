@@ -277,8 +277,17 @@ impl<'a, const N: usize> Window<'a, N> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
+
+    /// 50 mm/s along the first axis.
+    pub(crate) struct Line;
+
+    impl KnotSource<2> for Line {
+        fn knot(&mut self, tau_s: f64) -> Knot<2> {
+            Knot { position_mm: [50.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0, cutting: true }
+        }
+    }
 
     fn at(x: f64) -> Knot<2> {
         Knot { position_mm: [x, 0.0], tangent: [1.0, 0.0], feed_mm_s: 1.0, cutting: true }

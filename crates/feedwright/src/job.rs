@@ -32,7 +32,9 @@ use feedwright_gcode::canon::{Canon, MotionKind};
 use feedwright_gcode::{self, Program, ReadError, Summary};
 use feedwright_ident::{Log, LogFinding, Model, Origin};
 use feedwright_plan::{AlignedPaths, Constraints, PlanSink, SpeedCaps, Step, Steps};
-use feedwright_sim::{Machine, Outcome, PlanCache, Row, Run, RunError, Sink, StageSteps, Stages, Watch, path_steps};
+use feedwright_sim::{
+    Machine, Outcome, PlanCache, Row, Run, RunError, RunResult, Sink, StageSteps, Stages, Watch, path_steps,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::controllers::{Choices, CutsUncorrected, Entry, LQG_IDENTIFIED, Make, Setup, UNCORRECTED};
@@ -412,11 +414,11 @@ impl Job {
         summary: &Summary,
         entry: &Entry,
         controller: &mut dyn Controller<N>,
-        PlannedCut { machine, path_um, caps, kept, aligned, circles, looked_at }: PlannedCut<'_>,
+        plan: PlannedCut<'_>,
         rows: &mut [&mut dyn Sink],
         watch: &dyn Watch,
     ) -> Result<ReportedRun, JobError> {
-        let mut record = RunRecord::new(N, self.machine.period.servo_s, circles);
+        let mut record = RunRecord::new(N, self.machine.period.servo_s, plan.circles);
         let mut timeline = Timeline::new(&self.machine.plc_events);
         let steps = StageSteps::begin(watch, &format!("cutting, {}", entry.name));
         let mut cut = CutProgress { steps, length_mm: summary.feed_mm + summary.rapid_mm, rows: 0 };
@@ -425,6 +427,21 @@ impl Job {
         for sink in rows {
             sinks.push(&mut **sink);
         }
+        let run = self.cut_planned(plan, entry, controller, &mut sinks, watch);
+        let run = run.map_err(|error| JobError::of_run(&self.program, error))?;
+        drop(sinks);
+        Ok(ReportedRun { events: timeline.events, ..self.reported(record, entry.name, run)? })
+    }
+
+    /// Cuts the program on the machine of a plan.
+    fn cut_planned<const N: usize>(
+        &self,
+        PlannedCut { machine, path_um, caps, kept, aligned, looked_at, .. }: PlannedCut<'_>,
+        entry: &Entry,
+        controller: &mut dyn Controller<N>,
+        sinks: &mut [&mut dyn Sink],
+        watch: &dyn Watch,
+    ) -> Result<RunResult, RunError> {
         let steps = || {
             let steps = path_steps(self.steps()?);
             Ok(match path_um {
@@ -432,15 +449,11 @@ impl Job {
                 None => steps,
             })
         };
-        let run = Run::on(machine).capped(caps).laps(entry.laps).sharing(kept).watched(watch);
-        let run = run.planned_to(looked_at);
-        let run = match aligned {
-            Some(aligned) => run.cut_aligned(aligned, controller, &mut sinks),
-            None => run.cut(steps, controller, &mut sinks),
-        };
-        let run = run.map_err(|error| JobError::of_run(&self.program, error))?;
-        drop(sinks);
-        Ok(ReportedRun { events: timeline.events, ..self.reported(record, entry.name, run)? })
+        let run = Run::on(machine).capped(caps).laps(entry.laps).sharing(kept).watched(watch).planned_to(looked_at);
+        match aligned {
+            Some(aligned) => run.cut_aligned(aligned, controller, sinks),
+            None => run.cut(steps, controller, sinks),
+        }
     }
 
     /// The full circles of the program that errors are measured to.

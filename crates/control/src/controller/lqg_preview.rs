@@ -71,8 +71,6 @@ const DIFFERENCES: f64 = 3.0;
 /// An offset that differs by less from what was asked for is that, mm.
 const FOLLOWED_MM: f64 = 1e-4;
 
-/// Laws that have held in motion for longer than this, s, and are wrong then, are those of a machine that has changed.
-const CHANGED_S: f64 = 1.0;
 /// A drive whose command is damped by less is not corrected: its acceleration feedforward makes of an offset one that rings, and takes all the torque. Random
 /// machines with 0.7 of it and no velocity feedforward came to 2 mm where 6 um were left uncorrected.
 const LEAST_DAMPING: f64 = 0.3;
@@ -94,8 +92,6 @@ pub struct LqgPreview<const N: usize> {
     feasibility: Feasibility,
     /// The offset that was asked for last, mm.
     asked_mm: [f64; N],
-    /// For how long the laws have held in motion, s.
-    held_s: f64,
     /// For how long the position has been lost, s.
     lost_s: f64,
 }
@@ -106,30 +102,24 @@ impl<const N: usize> LqgPreview<N> {
         let axes = known.map(|axis| AxisLqg::new(axis, settings));
         let preview_knots = |axis: &AxisLqg| preview(axis.ahead_s(), axis.law().periods.servo_s);
         let longest = axes.iter().map(preview_knots).max().unwrap_or(0);
+        let unforeseen_mm2 = axes.iter().map(AxisLqg::unforeseen_mm2).sum();
         let lag_s = axes.iter().map(AxisLqg::lag_s).fold(0.0, f64::max);
         Self {
             lag_s,
             preview: longest + DIFFERENCES as u32,
-            validity: settings.learns.then(|| Validity::unknown(axes.iter().map(AxisLqg::unforeseen_mm2).sum())),
-            first_use: (!settings.is_known).then(|| FirstUse::new(axes.iter().map(AxisLqg::unforeseen_mm2).sum())),
+            validity: settings.learns.then(|| Validity::unknown(unforeseen_mm2)),
+            first_use: (!settings.is_known).then(|| FirstUse::new(unforeseen_mm2)),
             feasibility: Feasibility::FOLLOWED,
             asked_mm: [0.0; N],
-            held_s: 0.0,
             lost_s: 0.0,
             axes,
         }
     }
 
-    /// By how much the axes, as they are measured, are behind the plan at constant speed, s.
-    pub fn measured_lag_s(&self) -> f64 {
-        self.axes.iter().map(AxisLqg::measured_lag_s).fold(0.0, f64::max)
-    }
-
     /// Another machine may be there.
     pub fn forget_machine(&mut self) {
         self.reset();
-        let noise_mm2 = self.axes.iter().map(AxisLqg::unforeseen_mm2).sum();
-        self.first_use = self.first_use.map(|_| FirstUse::new(noise_mm2));
+        self.first_use.iter_mut().for_each(FirstUse::forget);
     }
 
     /// What the laws alone miss, and what there is to correct, mm^2, in motion.
@@ -256,15 +246,12 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
                 *open_mm = axis.open_off_mm(at_mm);
             }
             let by_noise_mm2 = self.axes.iter().map(AxisLqg::by_noise_mm2).sum();
-            let shown = Shown { missed_mm, open_mm, by_noise_mm2, path_mm };
+            let moves = window.now().feed_mm_s > 0.0;
+            let shown = Shown { missed_mm, open_mm, by_noise_mm2, path_mm, moves };
             let followed = norm(sub(window.offset_mm, self.asked_mm)) <= FOLLOWED_MM;
             validity.take_in_step(OneStep::sum(self.axes.iter().map(AxisLqg::step)), window.feed_period_s);
             validity.take_in(&shown, followed, window.feed_period_s);
-            let moves = window.now().feed_mm_s > 0.0;
-            let has_changed = validity.is_wrong() && self.held_s > CHANGED_S;
-            self.held_s =
-                if validity.is_wrong() { 0.0 } else { self.held_s + if moves { window.feed_period_s } else { 0.0 } };
-            if has_changed {
+            if validity.has_machine_changed() {
                 self.axes.iter_mut().for_each(AxisLqg::doubt);
             }
         }

@@ -194,19 +194,11 @@ impl<const N: usize> CorrectionTrial<N> {
 mod tests {
     use super::*;
     use crate::contour_error::ContourError;
-    use crate::window::{Knot, KnotSource, Preview, Register};
+    use crate::window::tests::Line;
+    use crate::window::{KnotSource, Preview, Register};
 
     const SERVO_S: f64 = 0.001;
     const LAG_KNOTS: u32 = 20;
-
-    /// 50 mm/s along the first axis.
-    struct Line;
-
-    impl KnotSource<2> for Line {
-        fn knot(&mut self, tau_s: f64) -> Knot<2> {
-            Knot { position_mm: [50.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0, cutting: true }
-        }
-    }
 
     /// Shares of a controller that wants `gain` times the error without it as its offset, over two seconds in which that error is
     /// `open_mm` at each decision; the tool feels `real` times the offset of the trial's own servo.

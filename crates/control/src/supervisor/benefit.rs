@@ -132,19 +132,11 @@ impl<const N: usize> Benefit<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::window::{Knot, KnotSource, Preview, Register};
+    use crate::window::tests::Line;
+    use crate::window::{KnotSource, Preview, Register};
 
     const SERVO_S: f64 = 0.001;
     const PERIOD_S: f64 = 0.003;
-
-    /// 50 mm/s along the first axis.
-    struct Line;
-
-    impl KnotSource<2> for Line {
-        fn knot(&mut self, tau_s: f64) -> Knot<2> {
-            Knot { position_mm: [50.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0, cutting: true }
-        }
-    }
 
     /// A second in which the tool is at `error_mm` beside the path, and the offset has moved it by `moved_mm`.
     fn after_a_second(error_mm: f64, moved_mm: f64) -> (Benefit<2>, bool) {

@@ -48,6 +48,11 @@ impl FirstUse {
         Self { least_mm2, moved_s: 0.0, missed_mm2: 0.0, distance_mm2: 0.0, is_shown: false, share: 0.0 }
     }
 
+    /// Nothing any more.
+    pub(crate) fn forget(&mut self) {
+        *self = Self { least_mm2: self.least_mm2, ..Self::new(0.0) };
+    }
+
     /// The law is another one from now on.
     pub(crate) fn begin_law(&mut self) {
         if !self.is_shown {

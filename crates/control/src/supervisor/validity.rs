@@ -45,6 +45,8 @@ const LEAST_MM2: f64 = 4e-6;
 const DEVIATIONS: f64 = 4.0;
 /// Standard deviations of what the innovations show, if they are white. Those of a law that is wrong are alike, and add up to 5 of them.
 const SHOWN_DEVIATIONS: f64 = 3.0;
+/// Laws that have held in motion for longer than this, s, and are wrong then, are those of a machine that has changed.
+const CHANGED_S: f64 = 1.0;
 /// Times what may be missed that are far more.
 const FAR: f64 = 2.0;
 
@@ -73,6 +75,8 @@ pub(crate) struct Shown<const N: usize> {
     pub(crate) by_noise_mm2: f64,
     /// Position that the plan commands, mm.
     pub(crate) path_mm: [f64; N],
+    /// Whether the plan moves.
+    pub(crate) moves: bool,
 }
 
 /// What is known of the laws of all axes.
@@ -91,6 +95,9 @@ pub(crate) struct Validity<const N: usize> {
     course: Course,
     /// How far the laws are trusted near the reference, 0 to 1.
     near: f64,
+    /// For how long they have held in motion, s, and whether they have just come to be wrong behind long enough of that.
+    held_s: f64,
+    has_changed: bool,
 }
 
 impl<const N: usize> Validity<N> {
@@ -107,6 +114,8 @@ impl<const N: usize> Validity<N> {
             proof: Proof::NOT_NEEDED,
             course: Course::AS_SAID,
             near: 0.0,
+            held_s: 0.0,
+            has_changed: false,
         }
     }
 
@@ -129,7 +138,7 @@ impl<const N: usize> Validity<N> {
 
     /// A servo period.
     pub(crate) fn take_in(&mut self, shown: &Shown<N>, followed: bool, servo_s: f64) {
-        let Shown { missed_mm, open_mm, by_noise_mm2, path_mm } = *shown;
+        let Shown { missed_mm, open_mm, by_noise_mm2, path_mm, moves } = *shown;
         let part = (servo_s / MEMORY_S).min(1.0);
         self.missed_mm2 += part * (largest_square(missed_mm) - self.missed_mm2);
         self.by_noise_mm2 += part * (by_noise_mm2 - self.by_noise_mm2);
@@ -145,6 +154,14 @@ impl<const N: usize> Validity<N> {
         let holds = followed && self.course.is_as_said() && !self.misses();
         let change = if holds { servo_s / self.course.trust_time_s() } else { -servo_s / TO_DOUBT_S };
         self.near = bounded(self.near + change, 0.0, 1.0);
+        let is_wrong = self.is_wrong();
+        self.has_changed = is_wrong && self.held_s > CHANGED_S;
+        self.held_s = if is_wrong { 0.0 } else { self.held_s + if moves { servo_s } else { 0.0 } };
+    }
+
+    /// Whether the machine has become another one: laws that have held for long are wrong from this servo period on.
+    pub(crate) fn has_machine_changed(&self) -> bool {
+        self.has_changed
     }
 
     /// Whether free runs miss more than they may: twice in a row, or once by far.
@@ -194,7 +211,7 @@ mod tests {
 
     fn shown([missed_mm, open_mm]: [f64; 2]) -> Shown<2> {
         let [missed_mm, open_mm] = [[missed_mm, 0.0], [0.0, open_mm]];
-        Shown { missed_mm, open_mm, by_noise_mm2: 0.0, path_mm: [0.0; 2] }
+        Shown { missed_mm, open_mm, by_noise_mm2: 0.0, path_mm: [0.0; 2], moves: true }
     }
 
     fn after(periods: u32, missed_and_open_mm: [f64; 2], unforeseen_mm2: f64) -> Validity<2> {
@@ -250,5 +267,25 @@ mod tests {
         assert_eq!(goes_on(&mut validity, f64::NAN, true, 10), 0.0);
         validity.forget();
         assert_eq!(goes_on(&mut validity, 0.0, true, 301), 1.0);
+    }
+
+    #[test]
+    fn a_machine_has_changed_where_laws_that_held_for_a_second_of_motion_are_wrong_and_once() {
+        let changes = |held: u32, forgotten: bool| {
+            let mut validity = after(held, [0.0; 2], 0.0);
+            if forgotten {
+                validity.forget();
+            }
+            (0..200)
+                .filter(|_| {
+                    validity.take_in(&shown([0.01, 0.0]), true, SERVO_S);
+                    validity.has_machine_changed()
+                })
+                .count()
+        };
+        assert_eq!(
+            [(1100, false), (900, false), (1100, true)].map(|(held, forgotten)| changes(held, forgotten)),
+            [1, 0, 0]
+        );
     }
 }

@@ -3,12 +3,11 @@
 //! The plan of the cut and the limits of the machine stay. So does what the recording does not show: the geometry. Each machine has
 //! noise of its own.
 
-use feedwright_sim::{Axis, Machine, Outcome, Row, Run, RunError, Sink, Watch, path_steps};
+use feedwright_sim::{Axis, Machine, Outcome, Row, RunError, Sink, Watch};
 use rayon::prelude::*;
 
 use super::{Job, JobError, PlannedCut};
 use crate::controllers::{Entry, Make};
-use crate::fastest::with_tolerance;
 use crate::report::{Band, BandErrors, RunSummary, Statistics};
 
 /// Machining time that a band covers at the most, s: of a longer cut only the beginning.
@@ -59,7 +58,7 @@ impl Job {
     fn cut_on<const N: usize>(
         &self,
         machine: &Machine,
-        PlannedCut { path_um, caps, kept, aligned, .. }: PlannedCut<'_>,
+        plan: PlannedCut<'_>,
         first_s: Option<f64>,
         watch: &dyn Watch,
     ) -> Result<CutOfOne, JobError>
@@ -68,21 +67,9 @@ impl Job {
     {
         let mut controller = self.own_controller::<N>()?;
         let cancels = CancelsOnly(watch);
-        let run = Run::on(machine).capped(caps).laps(self.controller.laps).sharing(kept).watched(&cancels);
         let mut beginning = Beginning { statistics: Statistics::new(), until_s: first_s.unwrap_or(f64::INFINITY) };
-        let steps = || {
-            let steps = path_steps(self.steps()?);
-            Ok(match path_um {
-                Some(path_um) => with_tolerance(steps, 1e-3 * path_um),
-                None => steps,
-            })
-        };
-        let mut sinks: [&mut dyn Sink; 1] = [&mut beginning];
-        let result = match aligned {
-            Some(aligned) => run.cut_aligned(aligned, &mut *controller, &mut sinks),
-            None => run.cut(steps, &mut *controller, &mut sinks),
-        };
-        let joints = match result {
+        let plan = PlannedCut { machine, looked_at: None, ..plan };
+        let joints = match self.cut_planned(plan, self.controller, &mut *controller, &mut [&mut beginning], &cancels) {
             Ok(result) if result.outcome != Outcome::Completed => return Ok(None),
             Ok(result) => result.joint_error.map(|error| [1e3 * error.rms_mm, 1e3 * error.max_mm]),
             // The sink takes no more behind the beginning.
@@ -142,6 +129,7 @@ fn on_axis(axis: &Axis, recorded: &Axis) -> Axis {
         torque_limit_nm: turns * recorded.torque_limit_nm,
         torque_noise_nm: turns * recorded.torque_noise_nm,
         correction_accel_mm_s2: axis.correction_accel_mm_s2,
+        fade_accel_mm_s2: axis.fade_accel_mm_s2,
         max_velocity_mm_s: axis.max_velocity_mm_s,
         max_accel_mm_s2: axis.max_accel_mm_s2,
         max_jerk_mm_s3: axis.max_jerk_mm_s3,
