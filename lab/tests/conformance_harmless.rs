@@ -12,6 +12,10 @@ const MORE_MAX_UM: f64 = 1.0;
 /// The same without recorded values, as a part of what is left uncorrected: a trial may let a correction in for some tenths of a second.
 const UNRECORDED: f64 = 1.1;
 
+/// Feedforward of friction breaks the axes of `router` loose where they start slowly: 43 um of 21. Its row says so, and `run` ends
+/// with exit code 1. Without friction_gain it leaves 22 um.
+const HARMFUL: (&str, &str, &str) = ("feedforward", "router", "square.ngc");
+
 fn machines() -> Vec<Machine> {
     let some = ["tnv40", "heavy", "workshop"];
     let all = || BUILT_IN_MACHINES.iter().map(|(name, _)| *name);
@@ -47,7 +51,9 @@ fn worse(entries: &[&'static Entry], recorded: bool, is_worse: fn([f64; 2], [f64
             let um = cut_um(machine, part, entry, &choices);
             let text = format!("{} on {}, {}: {um:.2?} of {open_um:.2?} um", entry.name, machine.name, part.name);
             eprintln!("{text}");
-            is_worse(um, open_um).then_some(text)
+            let is_known = HARMFUL == (entry.name, machine.name.as_str(), part.name.as_str());
+            assert!(!is_known || !recorded || is_worse(um, open_um), "no longer worse: {text}");
+            (is_worse(um, open_um) && !is_known).then_some(text)
         });
         found.collect::<Vec<_>>()
     };

@@ -112,7 +112,7 @@ pub static UNCORRECTED: Entry = controller!(
 /// Velocity, acceleration and friction feedforward with the exact model of the machine.
 pub static FEEDFORWARD: Entry = controller!(
     "feedforward",
-    "velocity, acceleration and friction feedforward with the exact model of the machine",
+    "velocity, acceleration and friction feedforward with the exact model of the machine; makes slow corners of router worse",
     "Masory (1986); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
     ExactModel,
     laps: 1,

@@ -4,7 +4,10 @@
 //! program of excite -> cut uncorrected -> log of commands and encoders -> law of each axis -> machine file -> model
 //! ```
 //!
-//! It is kept by content: the same program and the same machine find the same model.
+//! It is kept by content: the same program and the same machine find the same model. The built-in machines come with what their logs
+//! tell: `recorded_model/built_in.rs`.
+
+mod built_in;
 
 use std::path::Path;
 
@@ -79,6 +82,22 @@ impl Told {
         }
         Ok(made)
     }
+
+    /// What a new log of a machine tells.
+    fn identified(machine: &Machine, axes: usize, seed: u64, watch: &dyn Watch) -> Result<Self, RecordedModelError> {
+        let mut identified = identified(machine, axes, seed, watch)?;
+        let (name, doubts) = (format!("{} by its log", machine.name), doubts(&identified));
+        let text = machine_text(&identified, &name);
+        let found = identified.machine.axes.clone();
+        let mechanics_s = servo_period_s(identified.machine.sample_s) / f64::from(SERVO_MECHANICS);
+        let draw = |number: u64| {
+            let seed = |axis: usize| seed.wrapping_add((MOST_FITTING as u64 * axis as u64 + number) << SEED_SHIFT);
+            identified.machine.axes =
+                found.iter().enumerate().map(|(i, axis)| axis.drawn(seed(i), mechanics_s)).collect();
+            machine_text(&identified, &name)
+        };
+        Ok(Self { text, doubts, fitting: (1..=MOST_FITTING as u64).map(draw).collect() })
+    }
 }
 
 /// The model of the first axes of a machine, two or three, for a controller that goes by one: the machine cuts the program of `excite`
@@ -115,7 +134,7 @@ pub fn recorded_machine(
     seed: u64,
     watch: &dyn Watch,
 ) -> Result<(Machine, Vec<String>), RecordedModelError> {
-    let told = told_machine(machine, axes, seed, watch)?;
+    let told = told_machine(machine, axes, seed, 0, watch)?;
     let read = Machine::parse("the machine file of the log", &told.text);
     Ok((read.map_err(|error| not_told(machine, &error))?, told.doubts))
 }
@@ -132,27 +151,39 @@ pub fn fitting_machines(
     number: usize,
     watch: &dyn Watch,
 ) -> Result<Vec<Machine>, RecordedModelError> {
-    let told = told_machine(machine, axes, seed, watch)?;
+    let told = told_machine(machine, axes, seed, number, watch)?;
     let read = |text: &String| Machine::parse("a machine file of the log", text);
     told.fitting.iter().take(number).map(read).collect::<Result<_, _>>().map_err(|error| not_told(machine, &error))
 }
 
-/// The machine that the log tells, and those that fit as well.
-fn told_machine(machine: &Machine, axes: usize, seed: u64, watch: &dyn Watch) -> Result<Told, RecordedModelError> {
-    Told::of(&format!("machine and those that fit, {axes} {seed} {machine:?}"), || {
-        let mut identified = identified(machine, axes, seed, watch)?;
-        let (name, doubts) = (format!("{} by its log", machine.name), doubts(&identified));
-        let text = machine_text(&identified, &name);
-        let found = identified.machine.axes.clone();
-        let mechanics_s = servo_period_s(identified.machine.sample_s) / f64::from(SERVO_MECHANICS);
-        let draw = |number: u64| {
-            let seed = |axis: usize| seed.wrapping_add((MOST_FITTING as u64 * axis as u64 + number) << SEED_SHIFT);
-            identified.machine.axes =
-                found.iter().enumerate().map(|(i, axis)| axis.drawn(seed(i), mechanics_s)).collect();
-            machine_text(&identified, &name)
-        };
-        Ok(Told { text, doubts, fitting: (1..=MOST_FITTING as u64).map(draw).collect() })
-    })
+/// One line of what the program is shipped with: what a log of a built-in machine tells, identified anew.
+///
+/// # Errors
+/// As [`recorded_machine`].
+pub fn built_in_line(machine: &Machine, axes: usize, watch: &dyn Watch) -> Result<String, RecordedModelError> {
+    let seed = Choices::default().seed;
+    let told = Told::identified(machine, axes, seed, watch)?;
+    Ok(built_in::line(&content(machine, axes, seed), &told))
+}
+
+/// What the machine of a log follows from.
+fn content(machine: &Machine, axes: usize, seed: u64) -> String {
+    format!("machine and those that fit, {axes} {seed} {machine:?}")
+}
+
+/// The machine that the log tells, and those that fit as well, `fitting` at the least: shipped with the program, kept, or identified.
+fn told_machine(
+    machine: &Machine,
+    axes: usize,
+    seed: u64,
+    fitting: usize,
+    watch: &dyn Watch,
+) -> Result<Told, RecordedModelError> {
+    let content = content(machine, axes, seed);
+    match built_in::told(&content).filter(|told| told.fitting.len() >= fitting) {
+        Some(told) => Ok(told),
+        None => Told::of(&content, || Told::identified(machine, axes, seed, watch)),
+    }
 }
 
 /// Records the log, and identifies the axes.

@@ -30,10 +30,11 @@ fn a_run_with_the_model_that_identify_wrote_is_that_with_a_training_to_the_bit()
 #[test]
 fn a_run_without_a_model_goes_by_what_a_log_of_the_machine_tells_and_keeps_it() {
     let folder = Folder::new();
-    let cut = ["run", "circle.ngc", "--machine", "workshop", "--json", "r.json", "--report", "r.html"];
+    folder.file("mine.toml", "base = \"workshop\"\nname = \"mine\"\n");
+    let cut = ["run", "circle.ngc", "--machine", "mine.toml", "--json", "r.json", "--report", "r.html"];
     let first = folder.run(&cut).succeeded();
     let said = first.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(said.contains("from the model: simulated excitation of workshop by its log, seed 1"), "{said}");
+    assert!(said.contains("from the model: simulated excitation of mine by its log, seed 1"), "{said}");
     let ratio = |folder: &Folder| {
         let result: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
         let joint_um = |run: usize| result["runs"][run]["joint_rms_um"].as_f64().unwrap();
@@ -53,6 +54,10 @@ fn a_run_without_a_model_goes_by_what_a_log_of_the_machine_tells_and_keeps_it() 
     assert!(began.elapsed().as_secs_f64() < 5.0, "nothing is identified again: {:?}", began.elapsed());
     assert_eq!(ratio(&folder).to_bits(), of_log.to_bits());
     assert_eq!(band(&folder), first_band);
+    // The same machine under the name that is built in: what its log tells is shipped with the program.
+    folder.run(&["run", "circle.ngc", "--machine", "workshop", "--json", "r.json"]).succeeded();
+    assert_eq!(ratio(&folder).to_bits(), of_log.to_bits(), "hint: just built-in-logs");
+    assert_eq!(band(&folder), first_band, "hint: just built-in-logs");
     folder.run(&[&cut[..], &["--band", "3"]].concat()).succeeded();
     assert_eq!(band(&folder)["machines"], 3);
     folder.run(&[&cut[..], &["--band", "0"]].concat()).succeeded();
