@@ -45,10 +45,10 @@ least-time *contours:
 compare out="target/compare":
     cargo run --release -p feedwright-lab -- compare --only tnv40,heavy,sticky,rough,soft,coarse --knowledge own,unseen --at-tolerance --json {{ out }}.json --html {{ out }}.html
 
-# Controllers that the README shows.
-shown := "contour-compensation,cross-coupled,disturbance-observer,kalman-disturbance,feedforward-as-delivered,feedforward,feedforward-cross-coupled,receding-horizon,lqg-identified,lqg-preview"
+# Controllers that docs/results.md shows.
+shown := "contour-compensation,cross-coupled,cross-coupled-feedrate,corner-contour,constrained-feedrate,fuzzy-h-infinity,disturbance-observer,kalman-disturbance,feedforward-as-delivered,feedforward,feedforward-cross-coupled,receding-horizon,lqg-identified,lqg-preview"
 
-# The table of README.md: held-out work on machines with noise.
+# The table of docs/results.md: held-out work on machines with noise.
 held-out-table out="target/held_out":
     cargo run --release -p feedwright-lab -- compare --work held-out --only workshop,stiff,router,{{ shown }} --knowledge own,identified,20%off,log --json {{ out }}.json --html {{ out }}.html
 
@@ -136,7 +136,7 @@ tick ticks="100000" runs="5":
     cargo build --release --quiet -p feedwright-control --example tick_percentiles
     taskset --cpu-list 1 target/release/examples/tick_percentiles {{ ticks }} {{ runs }}
 
-# Regenerate the tables and the figures of README.md and of examples/.
+# Regenerate the tables and the figures of docs/results.md and of examples/.
 tables: paper compare held-out-table imperfections
     cp target/paper/figure_10.svg docs/paper_circle.svg
     cp target/paper/figure_*.svg target/paper/paper.json examples/01_paper_circle/

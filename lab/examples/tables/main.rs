@@ -1,4 +1,4 @@
-//! Regenerates the tables of README.md and of examples/*/README.md in their places: `just tables`, which makes
+//! Regenerates the tables of docs/results.md and of examples/*/README.md in their places: `just tables`, which makes
 //! the comparisons first.
 
 mod table;

@@ -54,12 +54,12 @@ impl Place {
     pub(crate) fn results() -> Result<Vec<Self>> {
         let [comparison, held_out, imperfections] =
             [comparison(COMPARISON)?, comparison(HELD_OUT)?, comparison(IMPERFECTIONS)?];
-        let readme = |name, table| Self { file: "README.md", name, table };
+        let results = |name, table| Self { file: "docs/results.md", name, table };
         let realism = |name, table| Self { file: "examples/03_realism/README.md", name, table };
         let study = |name, table| Self { file: "examples/02_horizon/README.md", name, table };
         Ok(vec![
-            readme("contours", contours(&comparison, SHOWN)?),
-            readme("held-out work", realism::held_out(&held_out)?),
+            results("contours", contours(&comparison, SHOWN)?),
+            results("held-out work", realism::held_out(&held_out)?),
             study("contours", contours(&comparison, &controllers(&comparison))?),
             study("machines", machines(&comparison)?),
             study("tuned", tuned(&comparison)?),
@@ -86,12 +86,16 @@ impl Place {
     }
 }
 
-/// Controllers that the README shows.
+/// Controllers that docs/results.md shows.
 const SHOWN: &[&str] = &[
     "uncorrected",
     "two-dimensional",
     "contour-compensation",
     "cross-coupled",
+    "cross-coupled-feedrate",
+    "corner-contour",
+    "constrained-feedrate",
+    "fuzzy-h-infinity",
     "feedforward-as-delivered",
     "feedforward",
     "feedforward-cross-coupled",
