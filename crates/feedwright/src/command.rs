@@ -70,6 +70,7 @@ fn run(command: CommandArgs, console: &Console) -> Result<ExitCode> {
         CommandArgs::Identify(args) => commands::identify::run(&args, console),
         CommandArgs::Excite(args) => commands::excite::run(&args, console),
         CommandArgs::Block(args) => commands::block::run(&args, console),
+        CommandArgs::Linuxcnc(args) => commands::linuxcnc::run(&args, console),
         CommandArgs::Check(args) => commands::check::run(&args, console),
         CommandArgs::Canon(args) => commands::canon::run(&args, console),
         CommandArgs::Machines => commands::list::machines(),

@@ -46,6 +46,7 @@
 //! | Real machine, from a log | [`LogJob`], [`LogIdentified`], [`measured()`] |
 //! | Controllers | [`CONTROLLERS`], [`Entry`], [`Setup`], [`Make`], [`Choices`], [`Setting`], [`controller!`] |
 //! | Figures and page | [`Statistics`], [`Report`], [`RunSummary`], [`write_html`] |
+//! | LinuxCNC | `LinuxcncSetup`, `LinuxcncWiring` |
 //! | Files | `OutputFile`, `OutputFiles`, `OutputError` |
 //!
 //! The crate re-exports the stages that it joins: [`gcode`] reads programs, [`control`] has the
@@ -108,6 +109,8 @@ mod correct;
 mod job;
 mod log_job;
 mod recorded_model;
+#[cfg(feature = "files")]
+mod linuxcnc_setup;
 #[cfg(feature = "command")]
 pub mod command;
 
@@ -127,6 +130,8 @@ pub use fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within
 pub use identifier_cache::files::folder as cache_folder;
 pub use identifier_cache::{identified, key_of, trained};
 pub use job::{CheckedJob, Job, JobError, JobOutcome, MEASURED, MeasuredLog};
+#[cfg(feature = "files")]
+pub use linuxcnc_setup::{HALLIB, LinuxcncSetup, LinuxcncSetupError, LinuxcncWiring};
 pub use log_job::{
     LogIdentified, LogJob, LogJobError, UpdateError, following_figure, informative, machine_text, updated_text,
     write_json, write_page,

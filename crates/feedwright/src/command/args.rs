@@ -12,6 +12,7 @@ pub(crate) mod excite;
 pub(crate) mod block;
 pub(crate) mod check;
 pub(crate) mod canon;
+pub(crate) mod linuxcnc;
 pub(crate) mod completions;
 pub(crate) mod man;
 
@@ -30,6 +31,7 @@ use correct::CorrectArgs;
 use excite::ExciteArgs;
 use identify::IdentifyArgs;
 use lab::LabArgs;
+use linuxcnc::LinuxcncArgs;
 use man::ManArgs;
 use plan::PlanArgs;
 use run::RunArgs;
@@ -104,6 +106,7 @@ pub(crate) enum CommandArgs {
     #[command(disable_help_flag = true)]
     Lab(LabArgs),
     Block(BlockArgs),
+    Linuxcnc(LinuxcncArgs),
     Completions(CompletionsArgs),
     Man(ManArgs),
 }

@@ -9,6 +9,7 @@ pub(crate) mod correct;
 pub(crate) mod excite;
 pub(crate) mod identify;
 pub(crate) mod lab;
+pub(crate) mod linuxcnc;
 pub(crate) mod list;
 pub(crate) mod man;
 pub(crate) mod plan;

@@ -1,0 +1,289 @@
+//! The joints of a configuration: which axis each is, what drives and measures it, its limits, and whether it can be corrected.
+
+use feedwright_gcode::INCH_MM;
+
+use super::drives::{DriveKind, FeedbackKind, drive_of, feedback_of};
+use super::ini::{IniEntry, IniFile, number};
+use super::netlist::Netlist;
+
+/// Servo period where the INI file states none, s: LinuxCNC's own.
+const SERVO_S: f64 = 1e-3;
+/// Most joints of LinuxCNC.
+const MOST_JOINTS: usize = 16;
+/// Letters of joints where the kinematics names none.
+const LETTERS: &str = "XYZABCUVW";
+
+/// Parameters of a `pid`, as they are set.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct PidGains {
+    pub(crate) p: Option<f64>,
+    /// FF0 to FF3.
+    pub(crate) feedforward: [Option<f64>; 4],
+}
+
+/// A joint.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct SetupJoint {
+    pub(crate) number: usize,
+    pub(crate) letter: char,
+    pub(crate) is_rotary: bool,
+    pub(crate) drive: DriveKind,
+    pub(crate) feedback: FeedbackKind,
+    pub(crate) gains: Option<PidGains>,
+    /// `maxvel` and `maxaccel` of a step generator that takes positions.
+    pub(crate) stepgen_limits: [Option<f64>; 2],
+}
+
+/// What the INI file says of a joint, in mm where a length is in it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct JointValue {
+    pub(crate) value: f64,
+    /// File and line.
+    pub(crate) place: String,
+}
+
+/// All joints.
+#[derive(Debug, Clone)]
+pub(crate) struct Joints {
+    pub(crate) joints: Vec<SetupJoint>,
+    /// Name of the kinematics.
+    pub(crate) kinematics: String,
+    /// mm in one unit of length of the configuration.
+    pub(crate) unit_mm: f64,
+    pub(crate) servo_s: f64,
+    ini: IniFile,
+}
+
+impl Joints {
+    pub(crate) fn of(ini: &IniFile, netlist: &Netlist) -> Self {
+        let kinematics = ini.value("KINS", "KINEMATICS").unwrap_or("trivkins").to_owned();
+        let stated = ini.number("KINS", "JOINTS").filter(|count| (1.0..=MOST_JOINTS as f64).contains(count));
+        let mut words = kinematics.split_whitespace();
+        let name = words.next().unwrap_or("").to_owned();
+        let coordinates = words.find_map(|word| word.strip_prefix("coordinates=")).unwrap_or(LETTERS);
+        let letters: Vec<char> = coordinates.chars().filter(char::is_ascii_alphabetic).collect();
+        let count = stated.map_or(letters.len().min(3), |count| count as usize);
+        let joint = |number: usize| {
+            let letter = letters.get(number).map_or('?', char::to_ascii_uppercase);
+            SetupJoint::of(ini, netlist, number, letter)
+        };
+        let unit_mm = match ini.value("TRAJ", "LINEAR_UNITS").unwrap_or("mm").to_lowercase().as_str() {
+            "inch" | "in" | "imperial" => INCH_MM,
+            _ => 1.0,
+        };
+        let servo_s = ini.number("EMCMOT", "SERVO_PERIOD").filter(|ns| *ns > 0.0).map_or(SERVO_S, |ns| 1e-9 * ns);
+        Self { joints: (0..count).map(joint).collect(), kinematics: name, unit_mm, servo_s, ini: ini.clone() }
+    }
+
+    /// The joints that the component corrects, in the order X, Y, Z.
+    pub(crate) fn wired(&self) -> impl Iterator<Item = &SetupJoint> {
+        ['X', 'Y', 'Z'].into_iter().filter_map(|letter| self.joints.iter().find(|joint| joint.letter == letter))
+    }
+
+    /// A number of a joint's section, and where it stands.
+    pub(crate) fn value(&self, joint: &SetupJoint, key: &str) -> Option<JointValue> {
+        let section = format!("JOINT_{}", joint.number);
+        let IniEntry { value, place, .. } = self.ini.entry(&section, key)?;
+        Some(JointValue { value: number(value)?, place: place.clone() })
+    }
+
+    /// The same of a length, a speed or an acceleration, in mm.
+    pub(crate) fn length_mm(&self, joint: &SetupJoint, key: &str) -> Option<JointValue> {
+        let JointValue { value, place } = self.value(joint, key)?;
+        Some(JointValue { value: value * self.unit_mm, place })
+    }
+
+    /// Unit of length of the configuration.
+    pub(crate) fn unit_name(&self) -> &'static str {
+        if self.unit_mm == 1.0 { "mm" } else { "inch" }
+    }
+
+    /// What was found, a line for each joint.
+    pub(crate) fn findings(&self) -> Vec<String> {
+        let mut lines = vec![format!(
+            "{} joints, kinematics {}, lengths in {}, a servo period of {} ms",
+            self.joints.len(),
+            self.kinematics,
+            self.unit_name(),
+            1e3 * self.servo_s
+        )];
+        lines.extend(self.joints.iter().map(|joint| {
+            let kind = if joint.is_rotary { "rotary" } else { "linear" };
+            let (number, letter) = (joint.number, joint.letter);
+            format!(
+                "joint {number} ({letter}, {kind}): {}, {}. {}",
+                joint.drive_words(),
+                joint.feedback_words(),
+                joint.verdict()
+            )
+        }));
+        lines
+    }
+
+    /// Why the joints cannot be wired.
+    pub(crate) fn refusals(&self, simulates: bool) -> Vec<String> {
+        let mut refusals = self.structure();
+        if !refusals.is_empty() {
+            return refusals;
+        }
+        let simulated = |joint: &SetupJoint| joint.is_simulated();
+        if !simulates && self.joints.iter().any(simulated) {
+            refusals.push(
+                "the drives are simulated, and follow their command without error: there is nothing to correct. To try the correction, let a \
+                 simulated machine stand in for the drives: --simulate tnv40"
+                    .to_owned(),
+            );
+        }
+        if simulates && !self.joints.iter().all(simulated) {
+            refusals
+                .push("--simulate is for a configuration without drives: leave it out, this one has drives".to_owned());
+        }
+        refusals.extend(self.joints.iter().filter(|joint| !joint.is_simulated()).filter_map(SetupJoint::refusal));
+        refusals
+    }
+
+    /// Why these joints do not fit the component.
+    fn structure(&self) -> Vec<String> {
+        let mut refusals = Vec::new();
+        if self.kinematics != "trivkins" {
+            refusals.push(format!(
+                "the kinematics is {}: joints are not axes. The component corrects axes, so it needs trivkins",
+                self.kinematics
+            ));
+            return refusals;
+        }
+        for joint in &self.joints {
+            let (number, letter) = (joint.number, joint.letter);
+            let twin = self.joints.iter().find(|other| other.number < number && other.letter == letter);
+            if let Some(twin) = twin {
+                refusals.push(format!(
+                    "joints {} and {number} drive axis {letter} in tandem. The component corrects one joint for each axis. Drive the second \
+                     motor from the first in the amplifier (master and slave), or leave this machine uncorrected",
+                    twin.number
+                ));
+            } else if joint.is_rotary {
+                refusals.push(format!(
+                    "joint {number} ({letter}) is rotary. The component delays X, Y and Z by 10 ms and {letter} not, so a simultaneous motion \
+                     would be wrong. Make a configuration without {letter} for work in X, Y and Z"
+                ));
+            } else if !"XYZ".contains(letter) {
+                refusals.push(format!(
+                    "joint {number} ({letter}) is a fourth or parallel axis. The component corrects X, Y and Z and would delay them alone. \
+                     Make a configuration without {letter}"
+                ));
+            }
+        }
+        let has = |letter: char| self.joints.iter().any(|joint| joint.letter == letter);
+        if refusals.is_empty() && !(has('X') && has('Y')) {
+            refusals.push(
+                "there is no X or no Y: a lathe or a single axis. feedwright's machine files have X and Y, so this machine cannot be identified \
+                 and corrected"
+                    .to_owned(),
+            );
+        }
+        refusals
+    }
+}
+
+impl SetupJoint {
+    fn of(ini: &IniFile, netlist: &Netlist, number: usize, letter: char) -> Self {
+        let section = format!("JOINT_{number}");
+        let is_rotary =
+            ini.value(&section, "TYPE").map_or("ABC".contains(letter), |kind| kind.to_uppercase() == "ANGULAR");
+        let (command, feedback) = (format!("joint.{number}.motor-pos-cmd"), format!("joint.{number}.motor-pos-fb"));
+        let drive = drive_of(netlist, &command);
+        let feedback = feedback_of(netlist, &command, &feedback);
+        let value = |name: String| number_of(netlist, &name);
+        let gains = match &drive {
+            DriveKind::PidAnalog { pid, .. } | DriveKind::PidStepgen { pid, .. } => Some(PidGains {
+                p: value(format!("{pid}.Pgain")),
+                feedforward: std::array::from_fn(|i| value(format!("{pid}.FF{i}"))),
+            }),
+            _ => None,
+        };
+        let stepgen_limits = match &drive {
+            DriveKind::Stepgen { stepgen } | DriveKind::PidStepgen { stepgen, .. } => {
+                ["maxvel", "maxaccel"].map(|name| value(format!("{stepgen}.{name}")))
+            }
+            _ => [None; 2],
+        };
+        Self { number, letter, is_rotary, drive, feedback, gains, stepgen_limits }
+    }
+
+    /// Whether there are no drives behind the joint.
+    pub(crate) fn is_simulated(&self) -> bool {
+        matches!(self.feedback, FeedbackKind::Loopback | FeedbackKind::Simulated { .. })
+    }
+
+    fn drive_words(&self) -> String {
+        match &self.drive {
+            DriveKind::PidAnalog { pid, output } => format!("{pid}{} drives {output}", self.gain_words()),
+            DriveKind::PidStepgen { pid, stepgen } => {
+                format!("{pid}{} drives the step generator {stepgen} by speed", self.gain_words())
+            }
+            DriveKind::Stepgen { stepgen } => format!("the step generator {stepgen} takes positions"),
+            DriveKind::EtherCat { pin } => format!("an EtherCAT drive takes positions at {pin}"),
+            DriveKind::Other { .. } if self.is_simulated() => "no drive".to_owned(),
+            DriveKind::Other { pin } => format!("{pin} takes the position"),
+            DriveKind::Nothing => "no drive is connected".to_owned(),
+        }
+    }
+
+    /// P and feedforward, as far as they are set.
+    fn gain_words(&self) -> String {
+        let Some(gains) = &self.gains else { return String::new() };
+        let named = [("P", gains.p)].into_iter().chain(["FF0", "FF1", "FF2", "FF3"].into_iter().zip(gains.feedforward));
+        let words: Vec<String> =
+            named.filter_map(|(name, value)| Some(format!("{name} {}", value.filter(|v| *v != 0.0)?))).collect();
+        if words.is_empty() { String::new() } else { format!(" ({})", words.join(", ")) }
+    }
+
+    fn feedback_words(&self) -> String {
+        match &self.feedback {
+            FeedbackKind::Measured { pin } => format!("{pin} measures it"),
+            FeedbackKind::FromDrive { pin } => format!("the drive reports its position at {pin}"),
+            FeedbackKind::OwnSteps { pin } => format!("{pin} reports the steps that were sent"),
+            FeedbackKind::Loopback => "the command is its own feedback".to_owned(),
+            FeedbackKind::Simulated { pin } => format!("{pin} computes its position from the command"),
+            FeedbackKind::Unknown { pin } => format!("its position comes from {pin}"),
+            FeedbackKind::Nothing => "no position comes back".to_owned(),
+        }
+    }
+
+    /// What can be corrected, in a few words.
+    fn verdict(&self) -> &'static str {
+        if self.is_rotary {
+            return "A rotary joint cannot be corrected";
+        }
+        match &self.feedback {
+            FeedbackKind::Measured { .. } | FeedbackKind::FromDrive { .. } => "It can be corrected",
+            FeedbackKind::OwnSteps { .. } => "There is nothing real to correct",
+            FeedbackKind::Loopback | FeedbackKind::Simulated { .. } => "It is simulated",
+            FeedbackKind::Unknown { .. } => "Setup does not know what this is",
+            FeedbackKind::Nothing => "It is not connected",
+        }
+    }
+
+    /// Why the joint cannot be corrected, and what to do.
+    fn refusal(&self) -> Option<String> {
+        let number = self.number;
+        match &self.feedback {
+            FeedbackKind::OwnSteps { pin } => Some(format!(
+                "joint {number}: {pin} reports the steps that were sent, not where the machine is. A correction by it would correct nothing \
+                 real. Connect an encoder of motor or table to joint.{number}.motor-pos-fb"
+            )),
+            FeedbackKind::Unknown { pin } => Some(format!(
+                "joint {number}: setup does not know whether {pin} is a measured position. If it is, wire by hand as docs/linuxcnc.md says"
+            )),
+            FeedbackKind::Nothing => Some(format!(
+                "joint {number}: joint.{number}.motor-pos-cmd or joint.{number}.motor-pos-fb is connected to nothing in the HAL files. \
+                 Connect both, or name the HAL file that does"
+            )),
+            _ => None,
+        }
+    }
+}
+
+fn number_of(netlist: &Netlist, name: &str) -> Option<f64> {
+    netlist.value(name).and_then(number)
+}

@@ -1,0 +1,141 @@
+//! Limits of LinuxCNC, of step generators and of drives that the correction needs.
+//!
+//! ```text
+//! T = (1 - FF1) / P                 lag of a drive whose position loop gives a speed, s
+//! MIN_FERROR = 1.5 a T (T + D)      still behind where the command has just stopped: it braked at a for T, and is seen D later
+//! FERROR     = 1.2 v T + MIN_FERROR
+//! ```
+//!
+//! D is the longest delay of the component. The factors are rounded up from the table *Following errors* of docs/linuxcnc.md. When LinuxCNC
+//! starts with a model, the component computes the need by that model and says so where MIN_FERROR is less.
+
+use feedwright_sim::{Machine, to_four_digits};
+
+use super::drives::DriveKind;
+use super::joints::{Joints, SetupJoint};
+
+/// Longest delay of the component, s.
+const DELAY_S: f64 = 0.015;
+/// Shortest lag that is reckoned with, s: delays that FF1 does not take out.
+const LEAST_LAG_S: f64 = 0.002;
+/// FF1 from which on a drive counts as one with feedforward.
+const FEEDFORWARD: f64 = 0.9;
+/// Acceleration of the corrected command in that of LinuxCNC's: with feedforward, and without.
+const ACCELERATIONS: [f64; 2] = [4.0, 40.0];
+/// Highest speed of the corrected command in MAX_VELOCITY.
+const SPEEDS: f64 = 1.4;
+
+/// Following errors that a joint needs, in the unit of the configuration.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct NeededFerror {
+    pub(crate) joint: usize,
+    pub(crate) ferror: f64,
+    pub(crate) min_ferror: f64,
+    /// FERROR and MIN_FERROR as they are.
+    given: [Option<f64>; 2],
+}
+
+/// What the joints need, as far as their lag is known: from their `pid`, or of the machine that stands in for them.
+pub(crate) fn needed(joints: &Joints, simulated: Option<&Machine>) -> Vec<NeededFerror> {
+    let of = |(axis, joint): (usize, &SetupJoint)| {
+        let lag_s = lag_s(joint, simulated.and_then(|machine| machine.axes.get(axis)))?;
+        let speed = joints.value(joint, "MAX_VELOCITY")?.value;
+        let acceleration = joints.value(joint, "MAX_ACCELERATION")?.value;
+        // Rounded up to a hundredth of a millimetre, and a thousandth of an inch.
+        let digit = if joints.unit_mm == 1.0 { 100.0 } else { 1000.0 };
+        let up = |value: f64| (digit * value).ceil() / digit;
+        let min_ferror = up(1.5 * acceleration * lag_s * (lag_s + DELAY_S));
+        let ferror = up(1.2 * speed * lag_s + min_ferror);
+        let given = ["FERROR", "MIN_FERROR"].map(|key| joints.value(joint, key).map(|found| found.value));
+        Some(NeededFerror { joint: joint.number, ferror, min_ferror, given })
+    };
+    joints.wired().enumerate().filter_map(of).filter(NeededFerror::is_more).collect()
+}
+
+impl NeededFerror {
+    /// Whether the configuration allows less.
+    fn is_more(&self) -> bool {
+        let [ferror, min_ferror] = self.given;
+        ferror.is_none_or(|given| given < self.ferror) || min_ferror.is_none_or(|given| given < self.min_ferror)
+    }
+
+    /// The values to write: no limit is made smaller.
+    pub(crate) fn values(&self) -> [(&'static str, f64); 2] {
+        let [ferror, min_ferror] = self.given.map(|given| given.unwrap_or(0.0));
+        [("FERROR", ferror.max(self.ferror)), ("MIN_FERROR", min_ferror.max(self.min_ferror))]
+    }
+}
+
+/// The lag of a drive, s, if it is known.
+fn lag_s(joint: &SetupJoint, simulated: Option<&feedwright_sim::Axis>) -> Option<f64> {
+    let [p, ff1] = match (simulated, &joint.gains) {
+        (Some(axis), _) => [axis.kp_1_s, axis.velocity_feedforward],
+        (None, Some(gains)) => [gains.p?, gains.feedforward[1].unwrap_or(0.0)],
+        (None, None) => return None,
+    };
+    (p > 0.0).then(|| ((1.0 - ff1) / p).max(LEAST_LAG_S))
+}
+
+/// What must change, in plain words. `raised` are following errors that the copy has already.
+pub(crate) fn changes(joints: &Joints, simulated: Option<&Machine>, raised: bool) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for need in needed(joints, simulated) {
+        let [(_, ferror), (_, min_ferror)] = need.values();
+        let (joint, unit) = (need.joint, joints.unit_name());
+        let now = need.given.map(|given| given.map_or("LinuxCNC's default".to_owned(), to_four_digits_of));
+        let how = if raised { "the copy has" } else { "set" };
+        lines.push(format!(
+            "[JOINT_{joint}] {how} FERROR = {ferror} and MIN_FERROR = {min_ferror} {unit} (now {} and {}): the delayed drive is farther behind",
+            now[0], now[1]
+        ));
+    }
+    if !raised && !lines.is_empty() {
+        lines.push("'feedwright linuxcnc setup --raise-ferror' writes these values into the copy".to_owned());
+    }
+    if joints.wired().any(|joint| lag_s(joint, None).is_none()) && simulated.is_none() {
+        lines.push(
+            "FERROR and MIN_FERROR: how far these drives are behind is not known before they are identified. When LinuxCNC starts with the model, \
+             the component names the MIN_FERROR that is needed"
+                .to_owned(),
+        );
+    }
+    lines.extend(joints.wired().filter_map(|joint| of_stepgen(joints, joint)));
+    let has_drives = |joint: &SetupJoint| matches!(joint.drive, DriveKind::EtherCat { .. } | DriveKind::Stepgen { .. });
+    if simulated.is_none() && joints.wired().any(has_drives) {
+        lines.push(
+            "in the drives: raise the following error window by a quarter, and switch off ramps and smoothing of the position command, because the \
+             correction moves it"
+                .to_owned(),
+        );
+    }
+    lines
+}
+
+fn of_stepgen(joints: &Joints, joint: &SetupJoint) -> Option<String> {
+    let (DriveKind::Stepgen { stepgen } | DriveKind::PidStepgen { stepgen, .. }) = &joint.drive else { return None };
+    let speed = SPEEDS * joints.value(joint, "MAX_VELOCITY")?.value;
+    let has_feedforward = joint.gains.as_ref().is_some_and(|gains| gains.feedforward[1] >= Some(FEEDFORWARD));
+    let times = ACCELERATIONS[usize::from(!has_feedforward)];
+    let acceleration = times * joints.value(joint, "MAX_ACCELERATION")?.value;
+    let [maxvel, maxaccel] = joint.stepgen_limits;
+    // Zero is without limit.
+    let low = |given: Option<f64>, need: f64| given.filter(|given| *given > 0.0 && *given < need);
+    let mut words = Vec::new();
+    if let Some(given) = low(maxvel, speed) {
+        words.push(format!("maxvel {} or more (now {})", to_four_digits(speed), to_four_digits(given)));
+    }
+    if let Some(given) = low(maxaccel, acceleration) {
+        words.push(format!(
+            "maxaccel {} or more, or 0 for no limit (now {})",
+            to_four_digits(acceleration),
+            to_four_digits(given)
+        ));
+    }
+    (!words.is_empty()).then(|| {
+        format!("{stepgen} needs {}: the correction moves its command faster than LinuxCNC does", words.join(" and "))
+    })
+}
+
+fn to_four_digits_of(value: f64) -> String {
+    to_four_digits(value).to_string()
+}

@@ -1,0 +1,407 @@
+//! The changed copies of HAL files, and the file that connects the component.
+//!
+//! ```text
+//! joint.N.motor-pos-cmd      -> feedwright.drive-I     the old signal now has the command of the drive: delayed and corrected
+//! joint.N.motor-pos-fb       -> feedwright.actual-I
+//! pid.*.command-deriv        -> not connected          the pid differentiates its own, corrected command
+//! joint.N.vel-cmd, else      -> ddt of the drive's command
+//! spindle.0.at-speed         -> feedwright.at-speed    and the component goes on to spindle.0.at-speed
+//! motion.feed-inhibit        -> an or2 with feedwright.feed-inhibit
+//! ```
+//!
+//! Every other line stays as it is.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+use std::ops::Range;
+
+use super::error::LinuxcncSetupError;
+use super::hal::{HalLine, HalPlace, HalScript, NamedBy};
+use super::ini::IniFile;
+use super::joints::{Joints, SetupJoint};
+use super::names::SetupNames;
+use super::netlist::{ARROWS, HalFunction, Netlist, last_part};
+use super::steps::SAMPLED;
+
+/// What is written of the HAL files.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct WiredHal {
+    /// Name and text of each changed copy.
+    pub(crate) copies: Vec<(String, String)>,
+    /// The file that connects the component.
+    pub(crate) hal: String,
+    /// Entries of the INI file, by their number, that name a copy now.
+    pub(crate) renamed: Vec<(usize, String)>,
+}
+
+/// The function behind which the component runs.
+const CONTROLLER: &str = "motion-controller";
+/// Commands whose pins are replaced.
+const WITH_PINS: [&str; 6] = ["net", "linksp", "linkps", "linkpp", "setp", "unlinkp"];
+
+/// Why the HAL files have no place for the component.
+pub(crate) fn refusals(ini: &IniFile, netlist: &Netlist) -> Vec<String> {
+    let mut refusals = Vec::new();
+    if ini.entries.iter().any(|entry| entry.section == "FEEDWRIGHT") || netlist.load("feedwright").is_some() {
+        refusals.push(
+            "feedwright is in this configuration already: give setup the original INI file, not the copy".to_owned(),
+        );
+    }
+    if motion(ini, netlist).is_none() {
+        refusals.push(
+            "no HAL file loads the motion controller (loadrt [EMCMOT]EMCMOT): name the HAL file that does as a HALFILE"
+                .to_owned(),
+        );
+    }
+    if netlist.function(CONTROLLER).is_none() {
+        refusals.push("no HAL file adds the function motion-controller to a thread (addf): name the HAL file that does as a HALFILE".to_owned());
+    }
+    if netlist.load("sampler").is_some() {
+        refusals.push(
+            "the component sampler is loaded already, and setup needs it for the record: take it out of the HAL files"
+                .to_owned(),
+        );
+    }
+    refusals
+}
+
+/// The line that loads the motion controller.
+fn motion(ini: &IniFile, netlist: &Netlist) -> Option<HalPlace> {
+    let name = ini.value("EMCMOT", "EMCMOT").and_then(|value| value.split_whitespace().next()).unwrap_or("motmod");
+    let name = name.rsplit('/').next().unwrap_or(name);
+    netlist.load(name).or_else(|| netlist.load("motmod")).map(|load| load.place)
+}
+
+/// Wires the component into a configuration that nothing refuses.
+pub(crate) fn wire(
+    ini: &IniFile,
+    script: &HalScript,
+    netlist: &Netlist,
+    joints: &Joints,
+    names: &SetupNames,
+    simulates: bool,
+) -> Result<WiredHal, LinuxcncSetupError> {
+    let (Some(load), Some(function)) = (motion(ini, netlist), netlist.function(CONTROLLER)) else {
+        let message = "there is no place for the component".to_owned();
+        let hint = "load the motion controller in a HAL file".to_owned();
+        return Err(LinuxcncSetupError::Line { place: names.original.clone(), message, hint });
+    };
+    let mut edits = HalEdits { script, netlist, lines: BTreeMap::new(), added: String::new() };
+    for (axis, joint) in joints.wired().enumerate() {
+        edits.joint(axis, joint.number, simulates);
+    }
+    edits.after(load, &loads(joints, simulates));
+    edits.functions(function, simulates);
+    for (axis, joint) in joints.wired().enumerate() {
+        edits.velocity(axis, joint.number, load, function);
+    }
+    let hal = edits.connections(joints, names, function, simulates);
+    let (copies, renamed) = edits.finish(names);
+    Ok(WiredHal { copies, hal, renamed })
+}
+
+/// Lines that load the component, the sampler and the simulated machine.
+fn loads(joints: &Joints, simulates: bool) -> Vec<String> {
+    let count = joints.wired().count();
+    let list = |key: &str| {
+        let of = |joint: &SetupJoint| joints.value(joint, key).map(|_| format!("[JOINT_{}]{key}", joint.number));
+        joints.wired().map(of).collect::<Option<Vec<_>>>().map(|all| all.join(","))
+    };
+    let limits = ["MAX_VELOCITY", "MAX_ACCELERATION", "FERROR", "MIN_FERROR"].map(list);
+    let mut line = format!("loadrt feedwright model=[FEEDWRIGHT]MODEL joints={count}");
+    let unit = if joints.unit_mm == 1.0 { String::new() } else { format!(" mm_per_unit={}", joints.unit_mm) };
+    line.push_str(&unit);
+    // The component compares following errors where all four are stated.
+    if let [Some(velocity), Some(acceleration), Some(ferror), Some(min_ferror)] = limits {
+        let _ = write!(
+            line,
+            " max_velocity={velocity} max_acceleration={acceleration} max_ferror={ferror} min_ferror={min_ferror}"
+        );
+    }
+    let mut lines = vec![line, format!("loadrt sampler depth=20000 cfg={}", "f".repeat(SAMPLED.len() * count))];
+    if simulates {
+        lines.push(format!("loadrt feedwright_plant model=[FEEDWRIGHT]MACHINE joints={count}{unit}"));
+    }
+    lines
+}
+
+/// Changes of one line.
+#[derive(Debug, Default)]
+struct LineEdit {
+    /// Words that are replaced, or taken out where there is nothing in their place.
+    words: Vec<(Range<usize>, Option<String>)>,
+    /// Lines behind it.
+    after: Vec<String>,
+}
+
+/// All changes of the HAL files.
+struct HalEdits<'a> {
+    script: &'a HalScript,
+    netlist: &'a Netlist,
+    lines: BTreeMap<HalPlace, LineEdit>,
+    /// Lines for the file of connections.
+    added: String,
+}
+
+impl HalEdits<'_> {
+    /// Replaces a pin wherever it is connected or set; nothing takes it out.
+    fn replace(&mut self, pin: &str, by: Option<&str>) {
+        for (place, line) in self.script.lines() {
+            if !WITH_PINS.contains(&line.word(0)) {
+                continue;
+            }
+            let first = if line.word(0) == "net" { 2 } else { 1 };
+            for word in line.words.iter().skip(first).filter(|word| word.text == pin) {
+                let edit = self.lines.entry(place).or_default();
+                if !edit.words.iter().any(|(span, _)| *span == word.span) {
+                    edit.words.push((word.span.clone(), by.map(str::to_owned)));
+                }
+            }
+        }
+    }
+
+    fn after(&mut self, place: HalPlace, lines: &[String]) {
+        self.lines.entry(place).or_default().after.extend_from_slice(lines);
+    }
+
+    fn joint(&mut self, axis: usize, number: usize, simulates: bool) {
+        self.replace(&format!("joint.{number}.motor-pos-cmd"), Some(&format!("feedwright.drive-{axis}")));
+        let actual = format!("feedwright.actual-{axis}");
+        self.replace(&format!("joint.{number}.motor-pos-fb"), Some(actual.as_str()).filter(|_| !simulates));
+    }
+
+    /// Puts the component, the sampler and the simulated machine behind the motion controller. The sampler sees what the component saw.
+    fn functions(&mut self, function: &HalFunction, simulates: bool) {
+        let all = ["feedwright", "sampler.0", "feedwright-plant"];
+        let count = if simulates { 3 } else { 2 };
+        let line = |(number, name): (usize, &&str)| {
+            let position = function.position.filter(|position| *position > 0);
+            let position = position.map_or_else(String::new, |position| format!(" {}", position + 1 + number as i32));
+            format!("addf {name} {}{position}", function.thread)
+        };
+        let lines: Vec<String> = all[..count].iter().enumerate().map(line).collect();
+        self.after(function.place, &lines);
+    }
+
+    /// What takes the speed of LinuxCNC's command takes that of the drive's command.
+    fn velocity(&mut self, axis: usize, number: usize, load: HalPlace, function: &HalFunction) {
+        let pin = format!("joint.{number}.vel-cmd");
+        let sinks: Vec<String> = self.netlist.beside(&pin).map(str::to_owned).collect();
+        for derivative in sinks.iter().filter(|sink| last_part(sink) == "command-deriv") {
+            self.replace(derivative, None);
+        }
+        let takes_speed = |sink: &&String| {
+            let last = last_part(sink);
+            last.contains("vel") && last.contains("cmd") || last.contains("ff") || last.contains("feedforward")
+        };
+        if sinks.iter().any(|sink| takes_speed(&sink)) {
+            let instance = self.instance("ddt", &format!("feedwright-speed-{axis}"), load);
+            self.after(function.place, &[format!("addf {instance} {}", function.thread)]);
+            self.replace(&pin, Some(&format!("{instance}.out")));
+            let command = self.drive_signal(axis, number);
+            let _ = writeln!(self.added, "net {command} => {instance}.in");
+        }
+    }
+
+    /// Another instance of a component of HAL: LinuxCNC loads a component once, so that its line takes one more.
+    fn instance(&mut self, module: &str, name: &str, load: HalPlace) -> String {
+        let Some(found) = self.netlist.load(module) else {
+            self.after(load, &[format!("loadrt {module} names={name}")]);
+            return name.to_owned();
+        };
+        let line = self.script.line(found.place);
+        let argument = |key: &str| line.words.iter().find(|word| word.text.starts_with(key));
+        let edit = self.lines.entry(found.place).or_default();
+        if let Some(word) = argument("names=") {
+            let before = edit.words.iter().position(|(span, _)| *span == word.span).map(|at| edit.words.remove(at));
+            let text = before.and_then(|(_, text)| text).unwrap_or_else(|| word.text.clone());
+            edit.words.push((word.span.clone(), Some(format!("{text},{name}"))));
+            return name.to_owned();
+        }
+        let word = argument("count=").or_else(|| line.words.get(1));
+        let before = word.and_then(|word| edit.words.iter().position(|(span, _)| *span == word.span));
+        let before = before.map(|at| edit.words.remove(at)).and_then(|(_, text)| text);
+        let text = before.or_else(|| word.map(|word| word.text.clone())).unwrap_or_default();
+        let count = text.rsplit_once("count=").and_then(|(_, count)| count.parse::<usize>().ok()).unwrap_or(1);
+        if let Some(word) = word {
+            let start = if word.text.starts_with("count=") { String::new() } else { format!("{} ", word.text) };
+            edit.words.push((word.span.clone(), Some(format!("{start}count={}", count + 1))));
+        }
+        format!("{module}.{count}")
+    }
+
+    /// The signal of the drive's command.
+    fn drive_signal(&self, axis: usize, number: usize) -> String {
+        let signal = self.netlist.signal_of(&format!("joint.{number}.motor-pos-cmd"));
+        signal.map_or_else(|| format!("feedwright-drive-{axis}"), str::to_owned)
+    }
+
+    /// Connects a pin of LinuxCNC with pins of the component, on the signal that it has or on a new one.
+    fn connect(&mut self, name: &str, pin: &str, to: &str) {
+        let _ = match self.netlist.signal_of(pin) {
+            Some(signal) => writeln!(self.added, "net {signal} => {to}"),
+            None => writeln!(self.added, "net feedwright-{name} {pin} => {to}"),
+        };
+    }
+
+    /// The file of connections.
+    fn connections(&mut self, joints: &Joints, names: &SetupNames, function: &HalFunction, simulates: bool) -> String {
+        let mut text = format!(
+            "# The correction between LinuxCNC and the drives: written by feedwright linuxcnc setup {}.\n\
+             # The copies of the other HAL files load the component and connect the drives with feedwright.drive-N and feedwright.actual-N.\n",
+            names.original
+        );
+        for (axis, joint) in joints.wired().enumerate() {
+            self.axis(axis, joint, simulates);
+        }
+        let first = joints.wired().next().map_or(0, |joint| joint.number);
+        let _ = writeln!(self.added, "\n# Amplifiers, and what LinuxCNC does.");
+        let powered = if simulates { "feedwright.powered feedwright-plant.powered" } else { "feedwright.powered" };
+        self.connect("powered", &format!("joint.{first}.amp-enable-out"), powered);
+        self.connect("coordinated", "motion.coord-mode", "feedwright.coordinated");
+        self.connect("motion-type", "motion.motion-type", "feedwright.motion-type");
+        self.connect("spindle-index", "spindle.0.index-enable", "feedwright.spindle-index");
+        self.feed(function);
+        let _ = writeln!(self.added, "\n# Threading and tapping wait until they are without delay.");
+        self.replace("spindle.0.at-speed", Some("feedwright.at-speed"));
+        let _ = writeln!(self.added, "net feedwright-at-speed feedwright.spindle-at-speed => spindle.0.at-speed");
+        let _ = writeln!(
+            self.added,
+            "\n# Settings.\n\
+             setp feedwright.delay [FEEDWRIGHT]DELAY\n\
+             setp feedwright.correction-acceleration [FEEDWRIGHT]CORRECTION_ACCELERATION\n\
+             setp feedwright.deviation-limit [FEEDWRIGHT]DEVIATION_LIMIT\n\
+             setp feedwright.enable [FEEDWRIGHT]ENABLE\n\
+             setp sampler.0.enable 0"
+        );
+        text.push_str(&self.added);
+        text
+    }
+
+    /// The nets of an axis.
+    fn axis(&mut self, axis: usize, joint: &SetupJoint, simulates: bool) {
+        let (number, letter) = (joint.number, joint.letter);
+        let command = self.drive_signal(axis, number);
+        let _ = writeln!(self.added, "\n# {letter}, joint {number}.");
+        let sample = SAMPLED.len() * axis;
+        let _ = writeln!(
+            self.added,
+            "net feedwright-command-{axis} joint.{number}.motor-pos-cmd => feedwright.command-{axis} sampler.0.pin.{sample}"
+        );
+        let _ = writeln!(self.added, "net {command} => sampler.0.pin.{}", sample + 1);
+        let actual = if simulates {
+            let _ = writeln!(self.added, "net {command} => feedwright-plant.command-{axis}");
+            let _ = writeln!(
+                self.added,
+                "net feedwright-actual-{axis} feedwright-plant.actual-{axis} => feedwright.actual-{axis}"
+            );
+            format!("feedwright-actual-{axis}")
+        } else {
+            let pin = format!("joint.{number}.motor-pos-fb");
+            self.netlist.signal_of(&pin).unwrap_or("").to_owned()
+        };
+        let _ = writeln!(self.added, "net {actual} => sampler.0.pin.{}", sample + 2);
+        let _ = writeln!(
+            self.added,
+            "net feedwright-feedback-{axis} feedwright.feedback-{axis} => joint.{number}.motor-pos-fb"
+        );
+    }
+
+    /// The pins that hold or change the feed.
+    fn feed(&mut self, function: &HalFunction) {
+        let _ = writeln!(self.added, "\n# A probing motion waits until it is without delay.");
+        if self.netlist.signal_of("motion.feed-inhibit").is_some() {
+            let instance = self.instance("or2", "feedwright-inhibit", function.place);
+            self.replace("motion.feed-inhibit", Some(&format!("{instance}.in0")));
+            let _ = writeln!(
+                self.added,
+                "addf {instance} {}\n\
+                 net feedwright-holds-feed feedwright.feed-inhibit => {instance}.in1\n\
+                 net feedwright-inhibit {instance}.out => motion.feed-inhibit",
+                function.thread
+            );
+        } else {
+            let _ = writeln!(self.added, "net feedwright-inhibit feedwright.feed-inhibit => motion.feed-inhibit");
+        }
+        let _ = match self.netlist.signal_of("motion.adaptive-feed") {
+            Some(signal) => writeln!(
+                self.added,
+                "# motion.adaptive-feed is on {signal}, and stays there: the controllers of Lee, Cho and Jeon do not change the feedrate."
+            ),
+            None => writeln!(self.added, "net feedwright-adaptive feedwright.adaptive-feed => motion.adaptive-feed"),
+        };
+    }
+
+    /// The copies, and who names them.
+    #[expect(clippy::type_complexity, reason = "two lists that are taken apart at once")]
+    fn finish(mut self, names: &SetupNames) -> (Vec<(String, String)>, Vec<(usize, String)>) {
+        let mut changed: BTreeSet<usize> = self.lines.keys().map(|place| place.0).collect();
+        // A file that sources a copy is a copy, too.
+        while let Some((by, _)) = self.script.named.iter().find(|(by, file)| {
+            changed.contains(file) && matches!(by, NamedBy::Source(place) if !changed.contains(&place.0))
+        }) {
+            if let NamedBy::Source(place) = by {
+                changed.insert(place.0);
+            }
+        }
+        let mut copy_names: BTreeMap<usize, String> = BTreeMap::new();
+        for &file in &changed {
+            let name = names.copy_of(&self.script.files[file].path);
+            let is_taken = copy_names.values().any(|other| *other == name);
+            copy_names.insert(file, if is_taken { format!("{file}-{name}") } else { name });
+        }
+        let mut renamed = Vec::new();
+        for (by, file) in &self.script.named {
+            let Some(name) = copy_names.get(file) else { continue };
+            match by {
+                NamedBy::Entry(number) => renamed.push((*number, name.clone())),
+                NamedBy::Source(place) => {
+                    if let Some(word) = self.script.line(*place).words.get(1) {
+                        let edit = self.lines.entry(*place).or_default();
+                        edit.words.push((word.span.clone(), Some(name.clone())));
+                    }
+                }
+            }
+        }
+        let copies = copy_names.iter().map(|(&file, name)| (name.clone(), self.copy(file))).collect();
+        (copies, renamed)
+    }
+
+    /// The text of a file with its changes.
+    fn copy(&self, file: usize) -> String {
+        let mut text = String::new();
+        for (number, line) in self.script.files[file].lines.iter().enumerate() {
+            let edit = self.lines.get(&(file, number));
+            text.push_str(&edit.map_or_else(|| line.text.clone(), |edit| edited(line, &edit.words)));
+            text.push('\n');
+            for line in edit.into_iter().flat_map(|edit| &edit.after) {
+                text.push_str(line);
+                text.push('\n');
+            }
+        }
+        text
+    }
+}
+
+/// A line with other words. A `net` that has no pin left becomes a comment.
+fn edited(line: &HalLine, words: &[(Range<usize>, Option<String>)]) -> String {
+    let taken = |span: &Range<usize>| words.iter().any(|(other, by)| other == span && by.is_none());
+    let has_pins = line.words.iter().skip(2).any(|word| !ARROWS.contains(&word.text.as_str()) && !taken(&word.span));
+    let takes_out = words.iter().any(|(_, by)| by.is_none());
+    if takes_out && (line.word(0) != "net" || !has_pins) {
+        return format!("# {}", line.text.replace('\n', "\n# "));
+    }
+    let mut changes = words.to_vec();
+    // An arrow in front of a word that is taken out goes with it.
+    for pair in line.words.windows(2) {
+        if taken(&pair[1].span) && ARROWS.contains(&pair[0].text.as_str()) {
+            changes.push((pair[0].span.clone(), None));
+        }
+    }
+    changes.sort_by_key(|(span, _)| std::cmp::Reverse(span.start));
+    let mut text = line.text.clone();
+    for (span, by) in changes {
+        text.replace_range(span, by.as_deref().unwrap_or(""));
+    }
+    text
+}
