@@ -25,10 +25,11 @@ A correction that fails is faded out, and comes back when its predictions have h
 that, and \\fBfound\\fR and \\fBallowed\\fR tell what was measured and from where on it is too much. \\fBenable\\fR fades the correction in and out in
 motion as well, within \\fBcorrection-acceleration\\fR.
 
-.B loadrt feedwright model=\\fIFILE.fwmodel\\fB [joints=2|3] [max_velocity=\\fIV,V,V\\fB max_acceleration=\\fIA,A,A\\fB max_ferror=\\fIF,F,F\\fB min_ferror=\\fIM,M,M\\fB] [record=\\fISECONDS\\fB recording=\\fIFILE\\fB]
+.B loadrt feedwright model=\\fIFILE.fwmodel\\fB [joints=2|3] [mm_per_unit=\\fIMM\\fB] [max_velocity=\\fIV,V,V\\fB max_acceleration=\\fIA,A,A\\fB max_ferror=\\fIF,F,F\\fB min_ferror=\\fIM,M,M\\fB] [record=\\fISECONDS\\fB recording=\\fIFILE\\fB]
 
 \\fBmodel\\fR is written by 'feedwright block'. A file that is missing, damaged, or for another machine raises \\fBfault\\fR; commands are
-then passed on as they are. \\fBrecord\\fR keeps the inputs and outputs of the first seconds in memory and writes them to
+then passed on as they are. Where LINEAR_UNITS is inch, \\fBmm_per_unit\\fR is 25.4: then commands, positions and limits of joints are in inches,
+and everything else is in mm. \\fBrecord\\fR keeps the inputs and outputs of the first seconds in memory and writes them to
 \\fBrecording\\fR when the component is unloaded; 'feedwright-replay' computes them again.""";
 
 examples """
@@ -47,10 +48,10 @@ and so on for each joint; feedwright.hal has all of it.""";
 
 see_also """\\fBfeedwright_plant\\fR(9), \\fBmotion\\fR(9)""";
 
-pin in float command-#[3] "Position command, from joint.N.motor-pos-cmd, mm";
-pin in float actual-#[3] "Actual position, from the drive or encoder, mm";
-pin out float drive-#[3] "Position command of the drive, mm";
-pin out float feedback-#[3] "To joint.N.motor-pos-fb, mm";
+pin in float command-#[3] "Position command, from joint.N.motor-pos-cmd, in units of the joints";
+pin in float actual-#[3] "Actual position, from the drive or encoder, in units of the joints";
+pin out float drive-#[3] "Position command of the drive, in units of the joints";
+pin out float feedback-#[3] "To joint.N.motor-pos-fb, in units of the joints";
 pin out float correction-#[3] "Offset of the drive's command from the path, mm";
 
 pin in bit powered "Whether the amplifiers are on, from joint.0.amp-enable-out";
@@ -93,6 +94,7 @@ param rw s32 tick-max "Longest of them, ns";
 
 modparam dummy model """Model file""";
 modparam dummy joints """Number of joints, 2 or 3 (default: 3)""";
+modparam dummy mm_per_unit """mm in one unit of the joints, 25.4 for inches (default: 1)""";
 modparam dummy max_velocity """MAX_VELOCITY of each joint, mm/s, separated by commas: with the following three, a MIN_FERROR that is too small is told at start""";
 modparam dummy max_acceleration """MAX_ACCELERATION of each joint, mm/s^2""";
 modparam dummy max_ferror """FERROR of each joint, mm""";
@@ -118,6 +120,8 @@ static char *model = "";
 RTAPI_MP_STRING(model, "model file");
 static int joints = 3;
 RTAPI_MP_INT(joints, "number of joints, 2 or 3");
+static char *mm_per_unit = "1";
+RTAPI_MP_STRING(mm_per_unit, "mm in one unit of the joints");
 static char *max_velocity = "", *max_acceleration = "", *max_ferror = "", *min_ferror = "";
 RTAPI_MP_STRING(max_velocity, "MAX_VELOCITY of each joint");
 RTAPI_MP_STRING(max_acceleration, "MAX_ACCELERATION of each joint");
@@ -132,6 +136,8 @@ static guarded link_;
 static uint8_t model_bytes[FEEDWRIGHT_MODEL_BYTES];
 static size_t model_length;
 static bool begun;
+/* mm in one unit of the joints. */
+static double unit_mm = 1;
 
 /* The next number of a list, or 0. */
 static double next_of(char **list)
@@ -149,16 +155,16 @@ static void check_ferror(const char *prefix)
     double given_mm[3] = { 0 }, least_mm[3] = { 0 };
     int i;
     for (i = 0; i < joints; i++) {
-        limits[i] = (feedwright_joint){ next_of(&max_velocity), next_of(&max_acceleration), next_of(&max_ferror) };
-        given_mm[i] = next_of(&min_ferror);
+        limits[i] = (feedwright_joint){ unit_mm * next_of(&max_velocity), unit_mm * next_of(&max_acceleration), unit_mm * next_of(&max_ferror) };
+        given_mm[i] = unit_mm * next_of(&min_ferror);
     }
     if (!CONTAINED(feedwright_min_ferror(model_bytes, model_length, (uint32_t)joints, &limits, &least_mm)))
         return;
     for (i = 0; i < joints; i++)
         if (given_mm[i] > 0 && given_mm[i] < least_mm[i])
             rtapi_print_msg(RTAPI_MSG_ERR, "%s: MIN_FERROR of joint %d is %.2f mm: LinuxCNC stops with a following error where it brakes from %.0f mm/s. "
-                            "With FERROR = %.2f it has to be %.2f or more\n", prefix, i, given_mm[i], limits[i].speed_mm_s, limits[i].ferror_mm,
-                            ceil(100 * least_mm[i]) / 100);
+                            "With FERROR = %.4g it has to be %.4g or more in the INI file\n", prefix, i, given_mm[i], limits[i].speed_mm_s,
+                            limits[i].ferror_mm / unit_mm, ceil(1000 * ceil(100 * least_mm[i]) / 100 / unit_mm) / 1000);
 }
 
 static int extra_setup(struct __comp_state *__comp_inst, char *prefix, long extra_arg)
@@ -173,6 +179,11 @@ static int extra_setup(struct __comp_state *__comp_inst, char *prefix, long extr
     }
     if (feedwright_servo_layout() != (sizeof(feedwright_inputs) << 16 | sizeof(feedwright_outputs))) {
         rtapi_print_msg(RTAPI_MSG_ERR, "%s: the library is of another version than the component\n", prefix);
+        return -EINVAL;
+    }
+    unit_mm = strtod(mm_per_unit, NULL);
+    if (!(unit_mm >= 0.001 && unit_mm <= 1000)) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s: mm_per_unit=%s: 1 for mm, 25.4 for inches\n", prefix, mm_per_unit);
         return -EINVAL;
     }
     link_.servo = library_memory(bytes);
@@ -222,8 +233,8 @@ FUNCTION(_)
     int i;
     for (i = 0; i < 3; i++) {
         bool there = i < joints;
-        in.command_mm[i] = there ? *c->command[i] : 0;
-        in.actual_mm[i] = there ? *c->actual[i] : 0;
+        in.command_mm[i] = there ? unit_mm * *c->command[i] : 0;
+        in.actual_mm[i] = there ? unit_mm * *c->actual[i] : 0;
     }
     if (!begun) {
         begun = true;
@@ -232,8 +243,8 @@ FUNCTION(_)
     }
     guarded_step(&link_, &in, &out);
     for (i = 0; i < joints; i++) {
-        *c->drive[i] = out.drive_mm[i];
-        *c->feedback[i] = out.feedback_mm[i];
+        *c->drive[i] = out.drive_mm[i] / unit_mm;
+        *c->feedback[i] = out.feedback_mm[i] / unit_mm;
         *c->correction[i] = out.correction_mm[i];
         *c->learned[i] = (out.learned >> i & 1) != 0;
     }

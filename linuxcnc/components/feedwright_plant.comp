@@ -4,14 +4,14 @@ description """
 Two or three servo axes as a model file has them: position loop, speed loop, inertia, friction, delays, disturbance and encoder. It takes
 position commands as drives do and shows the tool, so that LinuxCNC cuts on a simulated machine.
 
-.B loadrt feedwright_plant model=\\fIFILE.fwmodel\\fB [joints=2|3] [seed=\\fIN\\fB]
+.B loadrt feedwright_plant model=\\fIFILE.fwmodel\\fB [joints=2|3] [mm_per_unit=\\fIMM\\fB] [seed=\\fIN\\fB]
 
 The file is one of 'feedwright block', of a machine file or of an identified model. A file that is no model is an error.""";
 
 see_also """\\fBfeedwright\\fR(9)""";
 
-pin in float command-#[3] "Position command, mm";
-pin out float actual-#[3] "Position as it is measured, mm";
+pin in float command-#[3] "Position command, in units of the joints";
+pin out float actual-#[3] "Position as it is measured, in units of the joints";
 pin out float tool-#[3] "Where the tool is, mm";
 pin out float torque-#[3] "Motor torque, N m";
 pin in bit powered "Whether the drives have power; without, the axes stand";
@@ -21,6 +21,7 @@ pin in bit wire-noise "The measured position is not a number";
 
 modparam dummy model """Model file""";
 modparam dummy joints """Number of joints, 2 or 3 (default: 3)""";
+modparam dummy mm_per_unit """mm in one unit of commands and measured positions, 25.4 for inches (default: 1)""";
 modparam dummy seed """Seed of the random numbers (default: 1)""";
 
 option singleton yes;
@@ -41,6 +42,9 @@ static char *model = "";
 RTAPI_MP_STRING(model, "model file");
 static int joints = 3;
 RTAPI_MP_INT(joints, "number of joints, 2 or 3");
+static char *mm_per_unit = "1";
+RTAPI_MP_STRING(mm_per_unit, "mm in one unit of commands and measured positions");
+static double unit_mm = 1;
 static int seed = 1;
 RTAPI_MP_INT(seed, "seed of the random numbers");
 
@@ -54,6 +58,11 @@ static int extra_setup(struct __comp_state *__comp_inst, char *prefix, long extr
     bool made = false;
     (void)__comp_inst;
     (void)extra_arg;
+    unit_mm = strtod(mm_per_unit, NULL);
+    if (!(unit_mm >= 0.001 && unit_mm <= 1000)) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s: mm_per_unit=%s: 1 for mm, 25.4 for inches\n", prefix, mm_per_unit);
+        return -EINVAL;
+    }
     plant = library_memory(feedwright_plant_bytes());
     if (!plant)
         return -ENOMEM;
@@ -77,7 +86,7 @@ FUNCTION(_)
     int i;
     (void)period;
     for (i = 0; i < joints; i++)
-        command_mm[i] = *c->command[i];
+        command_mm[i] = unit_mm * *c->command[i];
     if (!failed && !CONTAINED(feedwright_plant_step(plant, &command_mm, *c->powered, *c->inertia, &tool_mm, &measured_mm, &torque_nm)))
         failed = true;
     for (i = 0; i < joints && !failed; i++) {
@@ -86,6 +95,6 @@ FUNCTION(_)
         if (*c->wire_noise)
             *c->actual[i] = NAN;
         else if (!*c->wire_broken)
-            *c->actual[i] = measured_mm[i];
+            *c->actual[i] = measured_mm[i] / unit_mm;
     }
 }

@@ -83,7 +83,7 @@ impl LinuxcncWiring {
                 let _ = writeln!(text, "{title}");
                 for line in lines {
                     // Commands stand alone in their line, so that they can be copied.
-                    let shown = if line.starts_with("    ") { line.clone() } else { wrapped(&format!("  {line}")) };
+                    let shown = if line.starts_with(' ') { line.clone() } else { wrapped(&format!("  {line}")) };
                     let _ = writeln!(text, "{shown}");
                 }
             }

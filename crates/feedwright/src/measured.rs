@@ -17,10 +17,11 @@
 
 mod pairing;
 
+use feedwright_gcode::INCH_MM;
 use feedwright_ident::{Log, LogAxis, LogFinding};
 use feedwright_plan::vector::{Vector, add_scaled, distance, sub};
 use feedwright_sim::{
-    Commanded, Foot, Machine, Reference, Row, RunResult, Sink, Stopped, Uncut, Watch, settled_s, shown,
+    AXIS_NAMES, Commanded, Foot, Machine, Reference, Row, RunResult, Sink, Stopped, Uncut, Watch, settled_s, shown,
 };
 use thiserror::Error;
 
@@ -40,6 +41,8 @@ const BEGUN_MM: f64 = 0.05;
 const LEFT_MM: f64 = 1.0;
 /// Boxes that differ by less have the same size, mm, and lie in the same place: corners are rounded.
 const SAME_SIZE_MM: f64 = 0.05;
+/// Part of their size by which boxes of the same size may differ: a record may begin before the program or end behind it.
+const SAME_SIZE: f64 = 0.01;
 /// A command that moves by less in a sample rests, mm.
 const RESTS_MM: f64 = 1e-6;
 /// The path is looked at in steps of so much plan time, s.
@@ -70,6 +73,24 @@ pub enum MeasuredError {
     Gap {
         /// Time of the last sample before it, s.
         at_s: f64,
+    },
+    /// The log is in another unit than it was read in.
+    #[error(
+        "the log goes over {} mm in {axis}, and the program over {} mm: {} times as much. The log is in {unit}, and was read in {read}",
+        shown(*log_mm), shown(*program_mm), shown((1e4 * program_mm / log_mm).round() / 1e4)
+    )]
+    #[diagnostic(help("write the line '# unit = {unit}' in front of the log, or say --columns unit={unit}"))]
+    Unit {
+        /// The axis that goes farthest.
+        axis: &'static str,
+        /// How far it goes in the log, as it was read, mm.
+        log_mm: f64,
+        /// How far it goes in the program, mm.
+        program_mm: f64,
+        /// The unit that fits.
+        unit: &'static str,
+        /// The unit that it was read in.
+        read: &'static str,
     },
     /// The program was not begun.
     #[error(
@@ -151,6 +172,7 @@ pub fn measured(
     let PairedAxes { axes: recorded, findings } = PairedAxes::of(log, planned.range_mm(), axes)?;
     let mut record =
         RecordedAxes { axes: recorded, time_s: &log.time_s, shift_mm: [0.0; 3], still_mm: planned.start_mm };
+    planned.check_unit(&record, axes)?;
     record.shift_mm = planned.shift_mm(&record, axes);
     let first = record.begins(planned.start_mm)?;
     record.shift_to(first, planned.start_mm);
@@ -205,6 +227,27 @@ impl PlannedPath {
     fn range_mm(&self) -> Vector {
         let [low, high] = self.boxes_mm[0];
         sub(high, low)
+    }
+
+    /// Refuses a log whose axes all go [`INCH_MM`] times less or more far than those of the program.
+    fn check_unit(&self, record: &RecordedAxes<'_>, axes: usize) -> Result<(), MeasuredError> {
+        let mut theirs = NO_BOX;
+        (0..record.len()).for_each(|k| grow(&mut theirs, record.at(k).command_mm));
+        let size = |[low, high]: [Vector; 2], i: usize| high[i] - low[i];
+        for (factor, [unit, read]) in [(INCH_MM, ["inch", "mm"]), (1.0 / INCH_MM, ["mm", "inch"])] {
+            let fits = |ours: [Vector; 2], i: usize| {
+                (size(ours, i) - factor * size(theirs, i)).abs() < SAME_SIZE_MM.max(SAME_SIZE * size(ours, i))
+            };
+            let is_scaled = |ours: &&[Vector; 2]| (0..axes).all(|i| fits(**ours, i));
+            let Some(ours) = self.boxes_mm.iter().find(is_scaled) else { continue };
+            let farthest = (0..axes).max_by(|&a, &b| size(*ours, a).total_cmp(&size(*ours, b))).unwrap_or(0);
+            // A program that goes nowhere fits every unit.
+            if size(*ours, farthest) > LEFT_MM {
+                let [log_mm, program_mm] = [size(theirs, farthest), size(*ours, farthest)];
+                return Err(MeasuredError::Unit { axis: AXIS_NAMES[farthest], log_mm, program_mm, unit, read });
+            }
+        }
+        Ok(())
     }
 
     /// Shift from the positions of the log to those of the program, mm. Zero if the log and the

@@ -8,7 +8,7 @@ use super::names::SetupNames;
 /// The pins that the sampler records of each axis: LinuxCNC's command, the drive's command, the measured position.
 pub(crate) const SAMPLED: [&str; 3] = ["joint.N.motor-pos-cmd", "feedwright.drive-N", "feedwright.actual-N"];
 
-/// The steps in their order. A line that begins with four blanks is a command.
+/// The steps in their order. A line that begins with blanks is a command.
 pub(crate) fn steps(names: &SetupNames, simulates: bool) -> Vec<String> {
     let SetupNames { ini, machine, record, model, original, .. } = names;
     let hardware =
@@ -17,33 +17,33 @@ pub(crate) fn steps(names: &SetupNames, simulates: bool) -> Vec<String> {
         "1. Start LinuxCNC with the copy. It reports that the model is missing, and passes every command on unchanged. Home, jog and run a \
          program in the air: the machine has to behave as before. Then record it (2)"
             .to_owned(),
-        format!("    linuxcnc {ini}"),
+        format!("        linuxcnc {ini}"),
         "2. Make the program that shows how the axes behave, and read its first lines. Then run it (3)".to_owned(),
-        format!("    feedwright excite --machine {machine} --out excite.ngc"),
-        "3. In a second terminal, switch the delay off and start the record. Run excite.ngc in LinuxCNC, with the feed override at 100 %. Press \
-         Enter in the terminal when it has ended. Then identify the machine (4)"
+        format!("        feedwright excite --machine {machine} --out excite.ngc"),
+        "3. Move the axes to the middle of their travel. In a second terminal, switch the delay off and start the record. Run excite.ngc in \
+         LinuxCNC, with the feed override at 100 %. Press Enter in the terminal when it has ended. Then identify the machine (4)"
             .to_owned(),
-        "    halcmd setp feedwright.direct 1".to_owned(),
-        format!("    sh {record} excite excite.txt"),
-        "    halcmd setp feedwright.direct 0".to_owned(),
+        "        halcmd setp feedwright.direct 1".to_owned(),
+        format!("        sh {record} excite excite.txt"),
+        "        halcmd setp feedwright.direct 0".to_owned(),
         "4. Identify the axes. The page ident.html shows how well the model fits. Then make the model file (5)".to_owned(),
-        "    feedwright identify excite.txt --record-delay 0 --out mine.toml --report ident.html".to_owned(),
+        "        feedwright identify excite.txt --record-delay 0 --out mine.toml --report ident.html".to_owned(),
         "5. Make the model file that the component reads. Then try the model in simulation (6)".to_owned(),
-        format!("    feedwright block mine.toml --out {model}"),
+        format!("        feedwright block mine.toml --out {model}"),
         "6. Cut your part in simulation with the model. The table shows the error without and with the correction. Then enable it (7)".to_owned(),
-        "    feedwright run part.ngc --machine mine.toml --controller lqg-identified".to_owned(),
+        "        feedwright run part.ngc --machine mine.toml --controller lqg-identified".to_owned(),
         "7. End LinuxCNC and start it again: it reads the model. If it names a MIN_FERROR that is too small, set that one. Cut in the air, and \
-         enable the correction during the cut. It moves the drives by 0.05 mm at most. Then measure (8)"
+         enable the correction during the cut. It moves the drives by 0.05 mm at most; DEVIATION_LIMIT in the copy raises that. Then measure (8)"
             .to_owned(),
-        format!("    linuxcnc {ini}"),
-        "    halcmd setp feedwright.enable 1".to_owned(),
+        format!("        linuxcnc {ini}"),
+        "        halcmd setp feedwright.enable 1".to_owned(),
         "8. Record a cut and compare it with the program. The table shows the measured error. 'halcmd getp feedwright.cause' says why a correction \
          is missing"
             .to_owned(),
-        format!("    sh {record} cut cut.txt"),
-        "    feedwright run part.ngc --machine mine.toml --log cut.txt".to_owned(),
+        format!("        sh {record} cut cut.txt"),
+        "        feedwright run part.ngc --machine mine.toml --log cut.txt".to_owned(),
         format!("To go back, start LinuxCNC with {original}, which is unchanged. This removes the copies:"),
-        format!("    feedwright linuxcnc setup {original} --undo"),
+        format!("        feedwright linuxcnc setup {original} --undo"),
     ];
     if !simulates {
         lines.insert(0, hardware.to_owned());

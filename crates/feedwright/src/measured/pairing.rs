@@ -31,7 +31,10 @@ impl<'a> PairedAxes<'a> {
             let found = match at.filter(|_| in_order) {
                 Some(at) => log.axes.get(at),
                 None if in_order => None,
-                None => log.axes.iter().chain(&log.still).find(|axis| axis.name.eq_ignore_ascii_case(name)),
+                // Joints of LinuxCNC's pins are the axes in their order where its kinematics is trivial.
+                None => [name, &format!("joint{i}")].into_iter().find_map(|name| {
+                    log.axes.iter().chain(&log.still).find(|axis| axis.name.eq_ignore_ascii_case(name))
+                }),
             };
             match found {
                 Some(axis) if axis.name.eq_ignore_ascii_case(name) => {}

@@ -32,7 +32,7 @@ pub(super) fn of_table(
             }
         }
     }
-    let unit = unit(table, roles, columns, clock, findings);
+    let unit = unit(path, table, roles, columns, clock, findings)?;
     let scale = unit.in_mm();
     let uses = |column: usize| {
         let used = roles.axes.iter().flat_map(|axis| [Some(axis.command), Some(axis.actual), axis.torque]);
@@ -69,20 +69,36 @@ fn way(values: &[f64], clock: &Clock) -> (f64, f64) {
     (high - low, step / clock.sample_time_s)
 }
 
-/// The unit of the positions: as said, as the file says, or by their size.
+/// The unit of the positions: as said, as the file says, or by their size. Fails where two of them differ.
 fn unit(
+    path: &Path,
     table: &LogTable,
     roles: &Roles,
     columns: &Columns,
     clock: &Clock,
     findings: &mut Vec<LogFinding>,
-) -> PositionUnit {
-    if let Some(unit) = columns.position_unit {
-        return unit;
+) -> Result<PositionUnit, LogError> {
+    let stated = table.position_unit.as_deref().and_then(PositionUnit::from_name);
+    match (columns.position_unit, stated) {
+        (Some(said), Some(stated)) if said != stated => {
+            let message =
+                format!("--columns says that positions are in {said}, and the file that they are in {stated}");
+            return Err(LogError::columns(
+                path,
+                message,
+                "leave unit= out, or correct the line '# unit = ...' of the file",
+            ));
+        }
+        (Some(said), _) => return Ok(said),
+        (None, Some(unit)) => {
+            findings.push(LogFinding::PositionUnit { unit, because: "a line of the file says so".to_owned() });
+            return Ok(unit);
+        }
+        (None, None) => {}
     }
     if let Some(unit) = roles.axes.iter().find_map(|axis| PositionUnit::from_name(&axis.unit)) {
         findings.push(LogFinding::PositionUnit { unit, because: "the column says so".to_owned() });
-        return unit;
+        return Ok(unit);
     }
     // Range and highest speed of each command; the axis in the middle counts, as one may be a spindle that turns and turns.
     let mut ways: Vec<(f64, f64)> = roles
@@ -104,5 +120,5 @@ fn unit(
         "guessed, as the command goes over {range} at up to {speed} a second; hint: --columns unit=mm or m, um, inch says it"
     );
     findings.push(LogFinding::PositionUnit { unit, because });
-    unit
+    Ok(unit)
 }

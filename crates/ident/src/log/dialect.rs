@@ -19,6 +19,8 @@ pub(super) struct TableDialect {
     pub(super) first_line: u64,
     /// Time between rows, s, where a line before them says so.
     pub(super) sample_time_s: Option<f64>,
+    /// Unit of the positions, where a line before the rows says so.
+    pub(super) position_unit: Option<String>,
     /// Whether the rows are names and numbers by turns, as `halscope` wrote them before LinuxCNC 2.9.
     pub(super) names_in_rows: bool,
 }
@@ -114,8 +116,12 @@ impl TableDialect {
             names = labels;
         }
         let sample_time_s = before.iter().find_map(|line| sample_time_s(&String::from_utf8_lossy(line)));
+        let position_unit =
+            before.iter().find_map(|line| stated(&String::from_utf8_lossy(line), &["unit", "position_unit"]));
         let first_line = first as u64 + 1;
-        Some((score, Self { delimiter, point, columns, names, units, first_line, sample_time_s, names_in_rows }))
+        let dialect =
+            Self { delimiter, point, columns, names, units, first_line, sample_time_s, position_unit, names_in_rows };
+        Some((score, dialect))
     }
 }
 
@@ -152,15 +158,23 @@ fn labels(row: &[u8], delimiter: u8, point: u8) -> Vec<String> {
 
 /// Time between samples, s, in a line such as `# Sampling period is 1000000 ns` or `# sample_time_s = 0.001`.
 fn sample_time_s(line: &str) -> Option<f64> {
-    let text = line.trim_start_matches(['#', '%', '!', '/', ';', ' ']).to_lowercase();
     let number = |text: &str| text.split_whitespace().next()?.parse::<f64>().ok();
-    let value = if let Some(rest) = text.strip_prefix(SAMPLING_PERIOD) {
-        1e-9 * number(rest)?
-    } else {
-        let (name, value) = text.split_once('=')?;
-        number(value).filter(|_| ["sample_time_s", "period_s"].contains(&name.trim()))?
+    let text = line.trim_start_matches(BEFORE_TEXT).to_lowercase();
+    let value = match text.strip_prefix(SAMPLING_PERIOD) {
+        Some(rest) => 1e-9 * number(rest)?,
+        None => number(&stated(line, &["sample_time_s", "period_s"])?)?,
     };
     Some(value).filter(|value| value.is_finite() && *value > 0.0)
+}
+
+/// Signs in front of the text of a comment.
+const BEFORE_TEXT: [char; 6] = ['#', '%', '!', '/', ';', ' '];
+
+/// What a line such as `# unit = inch` states of one of these names, in lower case.
+fn stated(line: &str, names: &[&str]) -> Option<String> {
+    let text = line.trim_start_matches(BEFORE_TEXT).to_lowercase();
+    let (name, value) = text.split_once('=')?;
+    names.contains(&name.trim()).then(|| value.trim().to_owned())
 }
 
 /// The most frequent number.
@@ -183,9 +197,13 @@ fn header(before: &[&[u8]], delimiter: u8, columns: usize) -> (Vec<String>, Vec<
             LineKind::Other => line,
             LineKind::Blank | LineKind::Overrun => return None,
         };
-        let words: Vec<String> = fields(line, delimiter)
+        let mut words: Vec<String> = fields(line, delimiter)
             .map(|field| String::from_utf8_lossy(decimal::trimmed(field)).into_owned())
             .collect();
+        // The pins of a sampler, without the counter that `halsampler -t` puts in front.
+        if words.len() + 1 == columns && words.iter().all(|word| word.contains('.')) && delimiter == b' ' {
+            words.insert(0, "n".to_owned());
+        }
         let is_header = words.len() == columns && words.iter().any(|word| word.contains(char::is_alphabetic));
         is_header.then_some(words)
     });
@@ -241,6 +259,9 @@ mod tests {
         let with_units = dialect("t;x cmd;x act\n[s];[mm];[mm]\n0;1,0;2\n1;2,5;3\n");
         assert_eq!(with_units.names[1], "x cmd");
         assert_eq!(with_units.units, ["[s]", "[mm]", "[mm]"]);
+        let pins = dialect("# unit = inch\n# joint.0.motor-pos-cmd joint.0.motor-pos-fb\n7 1 2\n8 2 3\n");
+        assert_eq!(pins.names, ["n", "joint.0.motor-pos-cmd", "joint.0.motor-pos-fb"]);
+        assert_eq!(pins.position_unit.as_deref(), Some("inch"));
         let commented = dialect("# sample_time_s = 0.001\n# n x.cmd x.act\n0 1 2\n1 2 3\n");
         assert_eq!(commented.names, ["n", "x.cmd", "x.act"]);
         assert_eq!(commented.sample_time_s, Some(0.001));

@@ -287,7 +287,7 @@ impl LogFinding {
             }
             Self::TakenFor { axis, program } => write!(
                 f,
-                "{axis} of the log is taken for {program} of the program, as the columns have no names and as many axes move in both"
+                "{axis} of the log is taken for {program} of the program: columns name no axes, and joints come in the order of axes"
             ),
             Self::TakenAsStill { axis } => write!(
                 f,

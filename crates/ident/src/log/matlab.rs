@@ -259,5 +259,13 @@ fn table(variables: Vec<Variable>) -> Option<LogTable> {
         }
     }
     let (breaks, lines) = (Vec::new(), LineNumbers::default());
-    Some(LogTable { format: LogFormat::Matlab, columns, breaks, lines, sample_time_s, cut_off_line: None })
+    Some(LogTable {
+        format: LogFormat::Matlab,
+        columns,
+        breaks,
+        lines,
+        sample_time_s,
+        position_unit: None,
+        cut_off_line: None,
+    })
 }

@@ -104,6 +104,9 @@ const LETTERS: &str = "xyzabcuvw";
 
 /// What a name says.
 pub(super) fn understand(name: &str) -> Meaning {
+    if let Some(meaning) = of_component(name) {
+        return meaning;
+    }
     let (bare, unit) = split_unit(name);
     let words = words(bare);
     let axis = Some(axis(&words)).filter(|axis| !axis.is_empty()).unwrap_or_else(|| remainder(&words));
@@ -135,6 +138,20 @@ pub(super) fn understand(name: &str) -> Meaning {
         (Quantity::Other, 0)
     };
     Meaning { quantity, axis, unit: unit.to_owned(), fit }
+}
+
+/// A pin of the HAL component `feedwright`, whose number is that of the joint. LinuxCNC's own command fits better than that of the drive.
+fn of_component(name: &str) -> Option<Meaning> {
+    let (kind, number) = name.strip_prefix("feedwright.")?.rsplit_once('-')?;
+    number.parse::<u8>().ok()?;
+    let (quantity, fit) = match kind {
+        "command" => (Quantity::Command, 2),
+        "drive" => (Quantity::Command, 1),
+        "actual" => (Quantity::Actual, 3),
+        "feedback" => (Quantity::Actual, 1),
+        _ => (Quantity::Other, 0),
+    };
+    Some(Meaning { quantity, axis: format!("joint{number}"), unit: String::new(), fit })
 }
 
 /// Whether an axis is a spindle by its name.
@@ -268,6 +285,11 @@ mod tests {
             ("joint.0.motor-pos-cmd", Command, "joint0"),
             ("joint.0.motor-pos-fb", Actual, "joint0"),
             ("joint.1.f-error", Other, "joint1"),
+            ("feedwright.drive-0", Command, "joint0"),
+            ("feedwright.actual-2", Actual, "joint2"),
+            ("feedwright.correction-1", Other, "joint1"),
+            ("x.planned", Position, "x"),
+            ("x.driven", Position, "x"),
             ("axis.x.pos-cmd", Command, "x"),
             ("x-pos-fb", Actual, "x"),
             ("pid.x.output", Other, "x"),

@@ -15,6 +15,8 @@ pub(crate) struct LogTable {
     pub lines: LineNumbers,
     /// Time between rows, s, where the file says so.
     pub sample_time_s: Option<f64>,
+    /// Unit of the positions, where the file says so.
+    pub position_unit: Option<String>,
     /// A last line that is cut off.
     pub cut_off_line: Option<u64>,
 }

@@ -112,6 +112,7 @@ impl<'a> TextRows<'a> {
             breaks: Vec::new(),
             lines: LineNumbers::default(),
             sample_time_s: dialect.sample_time_s,
+            position_unit: dialect.position_unit.clone(),
             cut_off_line: None,
         };
         let mut kept = super::roles::needed(&table, columns);
