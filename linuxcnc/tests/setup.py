@@ -136,6 +136,19 @@ def walk(ini, transcript):
         (folder / "part.ngc").write_text(PART)
         before = digest(folder)
         user = Walk(folder, transcript)
+        try:
+            return walked(ini, folder, before, user)
+        except headless.Failed:
+            if user.machine:
+                print(user.printed()[-6000:])
+                user.machine.terminate()
+                user.machine.wait(60)
+            raise
+
+
+def walked(ini, folder, before, user):
+    """The steps, in a folder that is ready."""
+    if True:
         user.type(f"feedwright linuxcnc setup {ini}", codes=(1,))
         setup = f"feedwright linuxcnc setup {ini} --simulate tnv40 --raise-ferror"
         printed = user.type(setup)
@@ -226,6 +239,7 @@ def screen():
                 machine.finish(LIMIT_S)
         except headless.Failed as failed:
             error = str(failed)
+        print(f"screen: {what} {rest}: {error} {machine.messages}", flush=True)
         (folder / "done.new").write_text(error or "; ".join(machine.messages))
         (folder / "done.new").rename(folder / "done")
         if what == "quit":

@@ -17,7 +17,8 @@ fn cut(folder: &Folder, columns: &str, unit: &str, unit_mm: f64, lost: Option<us
     folder.run_uncorrected(&["circle.ngc", "--machine", "tnv40", "--trace", "t.csv"]).succeeded();
     let text = folder.text("t.csv");
     let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
-    let at = ["cmd_x_mm", "act_x_mm", "cmd_y_mm", "act_y_mm"].map(|name| names.iter().position(|n| *n == name).unwrap());
+    let at =
+        ["cmd_x_mm", "act_x_mm", "cmd_y_mm", "act_y_mm"].map(|name| names.iter().position(|n| *n == name).unwrap());
     let mut log = head(unit, columns);
     for (row, line) in text.lines().skip(1).enumerate() {
         let cells: Vec<&str> = line.split(',').collect();
@@ -47,9 +48,12 @@ fn a_cut_is_the_same_in_every_unit_and_by_every_name() {
     folder.file("log.txt", cut(&folder, NAMED, "", 1.0, None));
     let wanted_um = measured_um(&folder);
     assert!(wanted_um > 1.0, "{wanted_um}");
-    for (columns, unit, unit_mm) in
-        [(PINS, "", 1.0), (PINS, "# unit = inch\n", INCH_MM), (NAMED, "# unit = mm\n", 1.0), (NAMED, "# unit = inch\n", INCH_MM)]
-    {
+    for (columns, unit, unit_mm) in [
+        (PINS, "", 1.0),
+        (PINS, "# unit = inch\n", INCH_MM),
+        (NAMED, "# unit = mm\n", 1.0),
+        (NAMED, "# unit = inch\n", INCH_MM),
+    ] {
         folder.file("log.txt", cut(&folder, columns, unit, unit_mm, None));
         let found_um = measured_um(&folder);
         // Nine digits of an inch are 25 fm.

@@ -27,7 +27,9 @@ fn setup_is_repeated_and_undone_without_a_trace() {
     assert_eq!(folder.content(), wired);
     folder.run(&["linuxcnc", "setup", "my.ini", "--undo"]).succeeded();
     assert_eq!(folder.content(), before);
-    folder.run(&["linuxcnc", "setup", "my.ini", "--undo"]).refused(&["nothing to undo", "name the INI file that setup was given"]);
+    folder
+        .run(&["linuxcnc", "setup", "my.ini", "--undo"])
+        .refused(&["nothing to undo", "name the INI file that setup was given"]);
 }
 
 #[test]
@@ -109,7 +111,11 @@ fn every_sample_of_debian_is_wired_or_told_why_not() {
             (Ok(plain), _) if plain.is_wired() => count("wired".to_owned()),
             (Ok(_), Ok(simulated)) if simulated.is_wired() => count("wired with --simulate".to_owned()),
             (Ok(plain), _) => {
-                assert!(!plain.refusals.is_empty() && plain.refusals.iter().all(|why| why.len() > 40), "{}", ini.display());
+                assert!(
+                    !plain.refusals.is_empty() && plain.refusals.iter().all(|why| why.len() > 40),
+                    "{}",
+                    ini.display()
+                );
                 count(format!("refused: {}", kind_of(&plain.refusals[0])));
             }
             (Err(LinuxcncSetupError::Unreadable { path, .. }), _) => {

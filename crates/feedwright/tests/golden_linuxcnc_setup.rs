@@ -64,7 +64,11 @@ fn what_setup_says_and_writes_is_as_it_was() {
                 None => write!(text, "==> {file}\n{}", String::from_utf8(bytes).unwrap()).unwrap(),
             }
         }
-        let place = fixture(name).join(if options.contains(&"--simulate") && code == 1 { "expected-simulate.txt" } else { "expected.txt" });
+        let place = fixture(name).join(if options.contains(&"--simulate") && code == 1 {
+            "expected-simulate.txt"
+        } else {
+            "expected.txt"
+        });
         if std::env::var_os("FEEDWRIGHT_UPDATE_DOCUMENTS").is_some() {
             std::fs::write(&place, &text).unwrap();
         }

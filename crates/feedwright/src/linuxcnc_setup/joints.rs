@@ -71,7 +71,7 @@ impl Joints {
             "inch" | "in" | "imperial" => INCH_MM,
             _ => 1.0,
         };
-        let servo_s = ini.number("EMCMOT", "SERVO_PERIOD").filter(|ns| *ns > 0.0).map_or(SERVO_S, |ns| 1e-9 * ns);
+        let servo_s = ini.number("EMCMOT", "SERVO_PERIOD").filter(|ns| *ns > 0.0).map_or(SERVO_S, |ns| ns / 1e9);
         Self { joints: (0..count).map(joint).collect(), kinematics: name, unit_mm, servo_s, ini: ini.clone() }
     }
 
@@ -82,7 +82,19 @@ impl Joints {
 
     /// A number of a joint's section, and where it stands.
     pub(crate) fn value(&self, joint: &SetupJoint, key: &str) -> Option<JointValue> {
-        let section = format!("JOINT_{}", joint.number);
+        self.number(joint.section(), key)
+    }
+
+    /// A limit of a joint in a program, and its section: LinuxCNC plans programs by the section of the axis, and jogs of a joint by that of the
+    /// joint. The larger one counts.
+    pub(crate) fn planned(&self, joint: &SetupJoint, key: &str) -> Option<(String, f64)> {
+        let sections = [joint.section(), format!("AXIS_{}", joint.letter)];
+        let values =
+            sections.into_iter().filter_map(|section| Some((section.clone(), self.number(section, key)?.value)));
+        values.reduce(|joint, axis| if axis.1 > joint.1 { axis } else { joint })
+    }
+
+    fn number(&self, section: String, key: &str) -> Option<JointValue> {
         let IniEntry { value, place, .. } = self.ini.entry(&section, key)?;
         Some(JointValue { value: number(value)?, place: place.clone() })
     }
@@ -208,6 +220,10 @@ impl SetupJoint {
             _ => [None; 2],
         };
         Self { number, letter, is_rotary, drive, feedback, gains, stepgen_limits }
+    }
+
+    fn section(&self) -> String {
+        format!("JOINT_{}", self.number)
     }
 
     /// Whether there are no drives behind the joint.

@@ -1,13 +1,16 @@
 //! Limits of LinuxCNC, of step generators and of drives that the correction needs.
 //!
 //! ```text
-//! T = (1 - FF1) / P                 lag of a drive whose position loop gives a speed, s
-//! MIN_FERROR = 1.5 a T (T + D)      still behind where the command has just stopped: it braked at a for T, and is seen D later
-//! FERROR     = 1.2 v T + MIN_FERROR
+//! T = (1 - FF1) / P                       lag of a drive whose position loop gives a speed, s
+//! E = a T (T + D)                         still behind where the command has just stopped: it braked at a for T, and is seen D later
+//! FERROR     = the given one, or 2 v T, or v T + 1.1 E, whichever is largest
+//! MIN_FERROR = 1.1 E / (1 - v T / FERROR)
 //! ```
 //!
-//! D is the longest delay of the component. The factors are rounded up from the table *Following errors* of docs/linuxcnc.md. When LinuxCNC
-//! starts with a model, the component computes the need by that model and says so where MIN_FERROR is less.
+//! LinuxCNC allows `FERROR u / v` at a speed u, and MIN_FERROR at least. A drive that brakes at u is `u T + E` behind. The two are equal at
+//! `u = v MIN_FERROR / FERROR`, which gives MIN_FERROR. D is the longest delay of the component; 1.1 is the margin. On the simulated tnv40, whose
+//! needs docs/linuxcnc.md states under *Following errors*, this is 2.6 mm where 2.0 are needed. When LinuxCNC starts with a model, the component
+//! computes the need by that model and says so where MIN_FERROR is less.
 
 use feedwright_sim::{Machine, to_four_digits};
 
@@ -16,6 +19,8 @@ use super::joints::{Joints, SetupJoint};
 
 /// Longest delay of the component, s.
 const DELAY_S: f64 = 0.015;
+/// Margin of following errors.
+const MARGIN: f64 = 1.1;
 /// Shortest lag that is reckoned with, s: delays that FF1 does not take out.
 const LEAST_LAG_S: f64 = 0.002;
 /// FF1 from which on a drive counts as one with feedforward.
@@ -39,14 +44,15 @@ pub(crate) struct NeededFerror {
 pub(crate) fn needed(joints: &Joints, simulated: Option<&Machine>) -> Vec<NeededFerror> {
     let of = |(axis, joint): (usize, &SetupJoint)| {
         let lag_s = lag_s(joint, simulated.and_then(|machine| machine.axes.get(axis)))?;
-        let speed = joints.value(joint, "MAX_VELOCITY")?.value;
-        let acceleration = joints.value(joint, "MAX_ACCELERATION")?.value;
+        let [(_, speed), (_, acceleration)] =
+            [joints.planned(joint, "MAX_VELOCITY")?, joints.planned(joint, "MAX_ACCELERATION")?];
+        let given = ["FERROR", "MIN_FERROR"].map(|key| joints.value(joint, key).map(|found| found.value));
         // Rounded up to a hundredth of a millimetre, and a thousandth of an inch.
         let digit = if joints.unit_mm == 1.0 { 100.0 } else { 1000.0 };
         let up = |value: f64| (digit * value).ceil() / digit;
-        let min_ferror = up(1.5 * acceleration * lag_s * (lag_s + DELAY_S));
-        let ferror = up(1.2 * speed * lag_s + min_ferror);
-        let given = ["FERROR", "MIN_FERROR"].map(|key| joints.value(joint, key).map(|found| found.value));
+        let (lag, behind) = (speed * lag_s, MARGIN * acceleration * lag_s * (lag_s + DELAY_S));
+        let ferror = up((2.0 * lag).max(lag + behind).max(given[0].unwrap_or(0.0)));
+        let min_ferror = up(behind / (1.0 - lag / ferror));
         Some(NeededFerror { joint: joint.number, ferror, min_ferror, given })
     };
     joints.wired().enumerate().filter_map(of).filter(NeededFerror::is_more).collect()
@@ -113,10 +119,10 @@ pub(crate) fn changes(joints: &Joints, simulated: Option<&Machine>, raised: bool
 
 fn of_stepgen(joints: &Joints, joint: &SetupJoint) -> Option<String> {
     let (DriveKind::Stepgen { stepgen } | DriveKind::PidStepgen { stepgen, .. }) = &joint.drive else { return None };
-    let speed = SPEEDS * joints.value(joint, "MAX_VELOCITY")?.value;
+    let speed = SPEEDS * joints.planned(joint, "MAX_VELOCITY")?.1;
     let has_feedforward = joint.gains.as_ref().is_some_and(|gains| gains.feedforward[1] >= Some(FEEDFORWARD));
     let times = ACCELERATIONS[usize::from(!has_feedforward)];
-    let acceleration = times * joints.value(joint, "MAX_ACCELERATION")?.value;
+    let acceleration = times * joints.planned(joint, "MAX_ACCELERATION")?.1;
     let [maxvel, maxaccel] = joint.stepgen_limits;
     // Zero is without limit.
     let low = |given: Option<f64>, need: f64| given.filter(|given| *given > 0.0 && *given < need);

@@ -86,15 +86,17 @@ pub(crate) fn wire(
         let hint = "load the motion controller in a HAL file".to_owned();
         return Err(LinuxcncSetupError::Line { place: names.original.clone(), message, hint });
     };
-    let mut edits = HalEdits { script, netlist, lines: BTreeMap::new(), added: String::new() };
+    let mut edits = HalEdits { script, netlist, load, lines: BTreeMap::new(), added: String::new() };
     for (axis, joint) in joints.wired().enumerate() {
         edits.joint(axis, joint.number, simulates);
     }
     edits.after(load, &loads(joints, simulates));
-    edits.functions(function, simulates);
+    let mut functions = vec!["feedwright".to_owned(), "sampler.0".to_owned()];
+    functions.extend(simulates.then(|| "feedwright-plant".to_owned()));
     for (axis, joint) in joints.wired().enumerate() {
-        edits.velocity(axis, joint.number, load, function);
+        functions.extend(edits.velocity(axis, joint.number, function));
     }
+    edits.functions(function, &functions);
     let hal = edits.connections(joints, names, function, simulates);
     let (copies, renamed) = edits.finish(names);
     Ok(WiredHal { copies, hal, renamed })
@@ -104,7 +106,7 @@ pub(crate) fn wire(
 fn loads(joints: &Joints, simulates: bool) -> Vec<String> {
     let count = joints.wired().count();
     let list = |key: &str| {
-        let of = |joint: &SetupJoint| joints.value(joint, key).map(|_| format!("[JOINT_{}]{key}", joint.number));
+        let of = |joint: &SetupJoint| joints.planned(joint, key).map(|(section, _)| format!("[{section}]{key}"));
         joints.wired().map(of).collect::<Option<Vec<_>>>().map(|all| all.join(","))
     };
     let limits = ["MAX_VELOCITY", "MAX_ACCELERATION", "FERROR", "MIN_FERROR"].map(list);
@@ -138,6 +140,8 @@ struct LineEdit {
 struct HalEdits<'a> {
     script: &'a HalScript,
     netlist: &'a Netlist,
+    /// The line that loads the motion controller.
+    load: HalPlace,
     lines: BTreeMap<HalPlace, LineEdit>,
     /// Lines for the file of connections.
     added: String,
@@ -170,21 +174,29 @@ impl HalEdits<'_> {
         self.replace(&format!("joint.{number}.motor-pos-fb"), Some(actual.as_str()).filter(|_| !simulates));
     }
 
-    /// Puts the component, the sampler and the simulated machine behind the motion controller. The sampler sees what the component saw.
-    fn functions(&mut self, function: &HalFunction, simulates: bool) {
-        let all = ["feedwright", "sampler.0", "feedwright-plant"];
-        let count = if simulates { 3 } else { 2 };
-        let line = |(number, name): (usize, &&str)| {
-            let position = function.position.filter(|position| *position > 0);
-            let position = position.map_or_else(String::new, |position| format!(" {}", position + 1 + number as i32));
+    /// Puts functions behind the motion controller. The sampler sees what the component saw, and the drives get what it gave. Functions that
+    /// are put behind it by number move on.
+    fn functions(&mut self, function: &HalFunction, names: &[String]) {
+        let first = function.position.filter(|position| *position > 0);
+        let line = |(number, name): (usize, &String)| {
+            let position = first.map_or_else(String::new, |first| format!(" {}", first + 1 + number as i32));
             format!("addf {name} {}{position}", function.thread)
         };
-        let lines: Vec<String> = all[..count].iter().enumerate().map(line).collect();
+        let lines: Vec<String> = names.iter().enumerate().map(line).collect();
         self.after(function.place, &lines);
+        let Some(first) = first else { return };
+        let later = self.netlist.functions.iter().skip_while(|other| other.place != function.place).skip(1);
+        for other in later.filter(|other| other.thread == function.thread) {
+            let Some(position) = other.position.filter(|position| *position > first) else { continue };
+            if let Some(word) = self.script.line(other.place).words.get(3) {
+                let moved = (position + names.len() as i32).to_string();
+                self.lines.entry(other.place).or_default().words.push((word.span.clone(), Some(moved)));
+            }
+        }
     }
 
-    /// What takes the speed of LinuxCNC's command takes that of the drive's command.
-    fn velocity(&mut self, axis: usize, number: usize, load: HalPlace, function: &HalFunction) {
+    /// What takes the speed of LinuxCNC's command takes that of the drive's command. Returns the function that has to run behind the component.
+    fn velocity(&mut self, axis: usize, number: usize, function: &HalFunction) -> Option<String> {
         let pin = format!("joint.{number}.vel-cmd");
         let sinks: Vec<String> = self.netlist.beside(&pin).map(str::to_owned).collect();
         for derivative in sinks.iter().filter(|sink| last_part(sink) == "command-deriv") {
@@ -194,19 +206,25 @@ impl HalEdits<'_> {
             let last = last_part(sink);
             last.contains("vel") && last.contains("cmd") || last.contains("ff") || last.contains("feedforward")
         };
-        if sinks.iter().any(|sink| takes_speed(&sink)) {
-            let instance = self.instance("ddt", &format!("feedwright-speed-{axis}"), load);
-            self.after(function.place, &[format!("addf {instance} {}", function.thread)]);
-            self.replace(&pin, Some(&format!("{instance}.out")));
-            let command = self.drive_signal(axis, number);
-            let _ = writeln!(self.added, "net {command} => {instance}.in");
+        if !sinks.iter().any(|sink| takes_speed(&sink)) {
+            return None;
         }
+        let instance = self.instance("ddt", &format!("feedwright-speed-{axis}"));
+        self.replace(&pin, Some(&format!("{instance}.out")));
+        let command = self.drive_signal(axis, number);
+        let _ = writeln!(self.added, "net {command} => {instance}.in");
+        // Where ddt is loaded behind the motion controller, its function is added there.
+        let place = |place: HalPlace| self.script.order.iter().position(|other| *other == place);
+        let late = self.netlist.load("ddt").map(|load| load.place).filter(|load| place(*load) > place(function.place));
+        let Some(late) = late else { return Some(instance) };
+        self.after(late, &[format!("addf {instance} {}", function.thread)]);
+        None
     }
 
     /// Another instance of a component of HAL: LinuxCNC loads a component once, so that its line takes one more.
-    fn instance(&mut self, module: &str, name: &str, load: HalPlace) -> String {
+    fn instance(&mut self, module: &str, name: &str) -> String {
         let Some(found) = self.netlist.load(module) else {
-            self.after(load, &[format!("loadrt {module} names={name}")]);
+            self.after(self.load, &[format!("loadrt {module} names={name}")]);
             return name.to_owned();
         };
         let line = self.script.line(found.place);
@@ -311,7 +329,7 @@ impl HalEdits<'_> {
     fn feed(&mut self, function: &HalFunction) {
         let _ = writeln!(self.added, "\n# A probing motion waits until it is without delay.");
         if self.netlist.signal_of("motion.feed-inhibit").is_some() {
-            let instance = self.instance("or2", "feedwright-inhibit", function.place);
+            let instance = self.instance("or2", "feedwright-inhibit");
             self.replace("motion.feed-inhibit", Some(&format!("{instance}.in0")));
             let _ = writeln!(
                 self.added,
