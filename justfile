@@ -235,6 +235,7 @@ linuxcnc-sweep: linuxcnc
     python3 tests/sweep.py
     python3 tests/paper.py --figure ../docs/linuxcnc_paper.svg
     python3 tests/identified.py
+    python3 tests/setup.py
     python3 tests/corrected.py
     python3 tests/planner.py
     python3 tests/following.py --machine configs/workshop-sim/tnv40.fwmodel

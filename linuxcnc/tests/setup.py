@@ -148,37 +148,36 @@ def walk(ini, transcript):
 
 def walked(ini, folder, before, user):
     """The steps, in a folder that is ready."""
-    if True:
-        user.type(f"feedwright linuxcnc setup {ini}", codes=(1,))
-        setup = f"feedwright linuxcnc setup {ini} --simulate tnv40 --raise-ferror"
-        printed = user.type(setup)
-        commands = [line.strip() for line in printed.splitlines() if line.startswith("        ")]
-        start, excite, direct, record_axes, indirect, identify, block, run, again, enable, record_cut, compare, undo = commands
-        user.start(start)
-        user.type(excite)
-        user.ask(f"mdi {MIDDLE}")
-        user.type(direct)
-        user.record(record_axes, "excite.ngc")
-        user.type(indirect)
-        user.type(identify)
-        user.type(block)
-        user.type(run)
-        user.end()
-        user.start(again)
-        user.record(record_cut, "part.ngc")
-        uncorrected = measured(user.type(compare, codes=(0, 1)))
-        user.type(enable)
-        user.record(record_cut, "part.ngc")
-        corrected = measured(user.type(compare, codes=(0, 1)))
-        for pin in ("state", "cause", "faults"):
-            user.type(f"halcmd getp feedwright.{pin}")
-        user.end()
-        user.type(undo)
-        after = digest(folder)
-        kept = all(after.get(file) == sum for file, sum in before.items())
-        left = [file for file in after if "-feedwright" in file and file not in before]
-        user.tell(f"uncorrected {uncorrected} um, corrected {corrected} um; originals unchanged: {kept}; left behind: {left}")
-        return 0 if corrected < FACTOR * uncorrected and kept and left == ["axis-feedwright.fwmodel"] else 1
+    user.type(f"feedwright linuxcnc setup {ini}", codes=(1,))
+    setup = f"feedwright linuxcnc setup {ini} --simulate tnv40 --raise-ferror"
+    printed = user.type(setup)
+    commands = [line.strip() for line in printed.splitlines() if line.startswith("        ")]
+    start, excite, direct, record_axes, indirect, identify, block, run, again, enable, record_cut, compare, undo = commands
+    user.start(start)
+    user.type(excite)
+    user.ask(f"mdi {MIDDLE}")
+    user.type(direct)
+    user.record(record_axes, "excite.ngc")
+    user.type(indirect)
+    user.type(identify)
+    user.type(block)
+    user.type(run)
+    user.end()
+    user.start(again)
+    user.record(record_cut, "part.ngc")
+    uncorrected = measured(user.type(compare, codes=(0, 1)))
+    user.type(enable)
+    user.record(record_cut, "part.ngc")
+    corrected = measured(user.type(compare, codes=(0, 1)))
+    for pin in ("state", "cause", "faults"):
+        user.type(f"halcmd getp feedwright.{pin}")
+    user.end()
+    user.type(undo)
+    after = digest(folder)
+    kept = all(after.get(file) == sum for file, sum in before.items())
+    left = [file for file in after if "-feedwright" in file and file not in before]
+    user.tell(f"uncorrected {uncorrected} um, corrected {corrected} um; originals unchanged: {kept}; left behind: {left}")
+    return 0 if corrected < FACTOR * uncorrected and kept and left == [f"{pathlib.Path(ini).stem}-feedwright.fwmodel"] else 1
 
 
 def measured(text):

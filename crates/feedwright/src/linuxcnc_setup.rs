@@ -1,12 +1,13 @@
-//! Wires the HAL component `feedwright` into a LinuxCNC configuration: reads the INI file and its HAL files, says of every joint what can be
-//! corrected, and writes a changed copy beside the original.
+//! Wires the HAL component `feedwright` into a LinuxCNC configuration: reads the INI file and its HAL
+//! files, says of every joint what can be corrected, and writes a changed copy beside the original.
 //!
 //! ```text
 //! INI -> HAL lines -> netlist -> joints -> verdict -> copies with feedwright between planner and drives, machine file, record script
 //! ```
 //!
-//! The original files are only read. The copies are named after the INI file, and a manifest lists them with checksums, so that they can be
-//! taken away again. Lengths of a configuration are in its own unit until a name ends in `_mm`.
+//! The original files are only read. The copies are named after the INI file, and a manifest lists them
+//! with checksums, so that they can be taken away again. Lengths of a configuration are in its own unit
+//! until a name ends in `_mm`.
 
 pub(crate) mod error;
 pub(crate) mod ini;
@@ -114,11 +115,12 @@ impl LinuxcncSetup {
         Ok(self.outcome(&read, self.stand_in()?.as_ref()))
     }
 
-    /// Wires the configuration: writes the copies, the machine file and the record script. If the configuration cannot be wired, nothing is
-    /// written, and the result says why.
+    /// Wires the configuration: writes the copies, the machine file and the record script. If the
+    /// configuration cannot be wired, nothing is written, and the result says why.
     ///
     /// # Errors
-    /// As [`LinuxcncSetup::survey`]; copies of an earlier setup that were changed by hand; files that cannot be written.
+    /// As [`LinuxcncSetup::survey`]; copies of an earlier setup that were changed by hand; files that
+    /// cannot be written.
     pub fn wire(&self, watch: &dyn Watch) -> Result<LinuxcncWiring, LinuxcncSetupError> {
         let read = self.read()?;
         let simulated = self.stand_in()?;
@@ -131,7 +133,8 @@ impl LinuxcncSetup {
         Ok(outcome)
     }
 
-    /// Removes what [`LinuxcncSetup::wire`] wrote: the removed files, and those that stay because they were changed by hand.
+    /// Removes what [`LinuxcncSetup::wire`] wrote: the removed files, and those that stay because they were
+    /// changed by hand.
     ///
     /// # Errors
     /// There is no manifest beside the INI file, or a file cannot be removed.

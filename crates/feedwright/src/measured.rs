@@ -41,6 +41,14 @@ const BEGUN_MM: f64 = 0.05;
 const LEFT_MM: f64 = 1.0;
 /// Boxes that differ by less have the same size, mm, and lie in the same place: corners are rounded.
 const SAME_SIZE_MM: f64 = 0.05;
+/// Sizes of a unit in another that a log was read in, and both: what is mistaken for one another.
+const UNITS: [(f64, &str, &str); 5] = [
+    (INCH_MM, "inch", "mm"),
+    (1.0 / INCH_MM, "mm", "inch"),
+    (1e-3 * INCH_MM, "inch", "m"),
+    (1e-3, "mm", "m"),
+    (1e3, "m", "mm"),
+];
 /// Part of their size by which boxes of the same size may differ: a record may begin before the program or end behind it.
 const SAME_SIZE: f64 = 0.01;
 /// A command that moves by less in a sample rests, mm.
@@ -229,12 +237,12 @@ impl PlannedPath {
         sub(high, low)
     }
 
-    /// Refuses a log whose axes all go [`INCH_MM`] times less or more far than those of the program.
+    /// Refuses a log whose axes all go as far as those of the program if it is read in another unit.
     fn check_unit(&self, record: &RecordedAxes<'_>, axes: usize) -> Result<(), MeasuredError> {
         let mut theirs = NO_BOX;
         (0..record.len()).for_each(|k| grow(&mut theirs, record.at(k).command_mm));
         let size = |[low, high]: [Vector; 2], i: usize| high[i] - low[i];
-        for (factor, [unit, read]) in [(INCH_MM, ["inch", "mm"]), (1.0 / INCH_MM, ["mm", "inch"])] {
+        for (factor, unit, read) in UNITS {
             let fits = |ours: [Vector; 2], i: usize| {
                 (size(ours, i) - factor * size(theirs, i)).abs() < SAME_SIZE_MM.max(SAME_SIZE * size(ours, i))
             };

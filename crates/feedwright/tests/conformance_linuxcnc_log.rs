@@ -12,9 +12,13 @@ fn head(unit: &str, columns: &str) -> String {
     format!("# sample_time_s = 0.001\n{unit}# {columns}\n")
 }
 
-/// The circle that every test may cut, as a sampler in a LinuxCNC of that unit records it, with lost samples behind row `lost`.
+/// A circle of 3 s.
+const PART: &str = "G21 G17 G90 G94 G64\nG0 X0 Y0\nG2 X0 Y0 I10 J0 F1200\nM2\n";
+
+/// The circle, as a sampler in a LinuxCNC of that unit records it, with lost samples behind row `lost`.
 fn cut(folder: &Folder, columns: &str, unit: &str, unit_mm: f64, lost: Option<usize>) -> String {
-    folder.run_uncorrected(&["circle.ngc", "--machine", "tnv40", "--trace", "t.csv"]).succeeded();
+    folder.file("part.ngc", PART);
+    folder.run_uncorrected(&["part.ngc", "--machine", "tnv40", "--trace", "t.csv"]).succeeded();
     let text = folder.text("t.csv");
     let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
     let at =
@@ -33,7 +37,7 @@ fn cut(folder: &Folder, columns: &str, unit: &str, unit_mm: f64, lost: Option<us
 
 const PINS: &str = "joint.0.motor-pos-cmd feedwright.actual-0 joint.1.motor-pos-cmd feedwright.actual-1";
 const NAMED: &str = "n x.cmd x.act y.cmd y.act";
-const RUN: [&str; 7] = ["circle.ngc", "--machine", "tnv40", "--log", "log.txt", "--json", "r.json"];
+const RUN: [&str; 7] = ["part.ngc", "--machine", "tnv40", "--log", "log.txt", "--json", "r.json"];
 
 fn measured_um(folder: &Folder) -> f64 {
     folder.run_uncorrected(&RUN).succeeded();

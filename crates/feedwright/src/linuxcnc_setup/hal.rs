@@ -1,8 +1,9 @@
 //! The HAL lines of a configuration, in the order in which LinuxCNC executes them.
 //!
-//! A line is words between blanks; quotation marks hold blanks together; `#` at the beginning of a word starts a comment; a backslash at the end
-//! joins the next line. `[SECTION]KEY`, `[SECTION](KEY)` and `$NAME` are replaced before the words are told apart. Each word keeps its place in
-//! its line, so that a copy can replace it and leave the rest as it is.
+//! A line is words between blanks; quotation marks hold blanks together; `#` at the beginning of a word
+//! starts a comment; a backslash at the end joins the next line. `[SECTION]KEY`, `[SECTION](KEY)` and
+//! `$NAME` are replaced before the words are told apart. Each word keeps its place in its line, so that a
+//! copy can replace it and leave the rest as it is.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,8 @@
 //! The INI file of a LinuxCNC configuration, with its includes in place.
 //!
-//! A line is `[SECTION]`, `KEY = VALUE`, `#INCLUDE FILE`, or a comment that begins with `#` or `;`. A backslash at the end of a line joins the
-//! next one. A key may come several times; the first counts, except in lists such as `HALFILE`.
+//! A line is `[SECTION]`, `KEY = VALUE`, `#INCLUDE FILE`, or a comment that begins with `#` or `;`. A
+//! backslash at the end of a line joins the next one. A key may come several times; the first counts,
+//! except in lists such as `HALFILE`.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,5 @@
-//! The copy of the INI file: other HAL files, a section of its own, and following errors where they are raised.
+//! The copy of the INI file: other HAL files, a section of its own, and following errors where they are
+//! raised.
 
 use std::fmt::Write as _;
 

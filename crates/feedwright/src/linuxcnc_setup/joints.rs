@@ -1,4 +1,5 @@
-//! The joints of a configuration: which axis each is, what drives and measures it, its limits, and whether it can be corrected.
+//! The joints of a configuration: which axis each is, what drives and measures it, its limits, and whether
+//! it can be corrected.
 
 use feedwright_gcode::INCH_MM;
 
@@ -85,8 +86,8 @@ impl Joints {
         self.number(joint.section(), key)
     }
 
-    /// A limit of a joint in a program, and its section: LinuxCNC plans programs by the section of the axis, and jogs of a joint by that of the
-    /// joint. The larger one counts.
+    /// A limit of a joint in a program, and its section: LinuxCNC plans programs by the section of the
+    /// axis, and jogs of a joint by that of the joint. The larger one counts.
     pub(crate) fn planned(&self, joint: &SetupJoint, key: &str) -> Option<(String, f64)> {
         let sections = [joint.section(), format!("AXIS_{}", joint.letter)];
         let values =

@@ -7,10 +7,11 @@
 //! MIN_FERROR = 1.1 E / (1 - v T / FERROR)
 //! ```
 //!
-//! LinuxCNC allows `FERROR u / v` at a speed u, and MIN_FERROR at least. A drive that brakes at u is `u T + E` behind. The two are equal at
-//! `u = v MIN_FERROR / FERROR`, which gives MIN_FERROR. D is the longest delay of the component; 1.1 is the margin. On the simulated tnv40, whose
-//! needs docs/linuxcnc.md states under *Following errors*, this is 2.6 mm where 2.0 are needed. When LinuxCNC starts with a model, the component
-//! computes the need by that model and says so where MIN_FERROR is less.
+//! LinuxCNC allows `FERROR u / v` at a speed u, and MIN_FERROR at least. A drive that brakes at u is `u T +
+//! E` behind. The two are equal at `u = v MIN_FERROR / FERROR`, which gives MIN_FERROR. D is the longest
+//! delay of the component; 1.1 is the margin. On the simulated tnv40, whose needs docs/linuxcnc.md states
+//! under *Following errors*, this is 2.6 mm where 2.0 are needed. When LinuxCNC starts with a model, the
+//! component computes the need by that model and says so where MIN_FERROR is less.
 
 use feedwright_sim::{Machine, to_four_digits};
 
@@ -40,7 +41,8 @@ pub(crate) struct NeededFerror {
     given: [Option<f64>; 2],
 }
 
-/// What the joints need, as far as their lag is known: from their `pid`, or of the machine that stands in for them.
+/// What the joints need, as far as their lag is known: from their `pid`, or of the machine that stands in
+/// for them.
 pub(crate) fn needed(joints: &Joints, simulated: Option<&Machine>) -> Vec<NeededFerror> {
     let of = |(axis, joint): (usize, &SetupJoint)| {
         let lag_s = lag_s(joint, simulated.and_then(|machine| machine.axes.get(axis)))?;

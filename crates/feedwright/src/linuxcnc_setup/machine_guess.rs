@@ -1,5 +1,6 @@
-//! The machine file that the configuration gives: limits and gains, each with its place, and what is still unknown. It suffices to write the
-//! program of `feedwright excite`; the numbers of the axes come from `feedwright identify`.
+//! The machine file that the configuration gives: limits and gains, each with its place, and what is still
+//! unknown. It suffices to write the program of `feedwright excite`; the numbers of the axes come from
+//! `feedwright identify`.
 
 use std::fmt::Write as _;
 
@@ -22,15 +23,15 @@ const ACCELERATIONS_MM_S2: [f64; 2] = [0.1, 1e6];
 pub(crate) fn machine_file(joints: &Joints, ini: &IniFile, names: &SetupNames) -> String {
     let mut text = format!(
         "# What {} says of the machine: written by feedwright linuxcnc setup.\n\
-         # Lengths there are in {}; here they are in mm. It is enough for feedwright excite. What comes from no line of the INI file is that of the\n\
-         # machine 'workshop', and unknown: lead, inertia, friction, gains of the speed loop, delays. feedwright identify finds what positions tell.\n\n\
+         # Lengths are in mm{}. It is enough for feedwright excite. What comes from no line of the INI file is that of the machine\n\
+         # 'workshop', and unknown: lead, inertia, friction, gains of the speed loop, delays. feedwright identify finds what positions tell.\n\n\
          format = {MACHINE_FORMAT}\n\
          base = \"workshop\"\n\
          name = {}\n\
          description = {}\n\
          source = {}\n",
         names.original,
-        joints.unit_name(),
+        if joints.unit_mm == 1.0 { "" } else { ", converted from inches" },
         quoted(&names.stem),
         quoted(&format!("limits of {}, the rest is unknown", names.original)),
         quoted(&names.original),

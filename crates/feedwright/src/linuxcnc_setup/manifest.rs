@@ -1,5 +1,6 @@
-//! Writes the copies, and takes them away again. A manifest beside them has the checksum of each, so that nothing is replaced or removed that was
-//! changed by hand. All files take their places together, or none does.
+//! Writes the copies, and takes them away again. A manifest beside them has the checksum of each, so that
+//! nothing is replaced or removed that was changed by hand. All files take their places together, or none
+//! does.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -22,7 +23,8 @@ pub(crate) struct SetupFile {
 /// What an earlier setup wrote: names and checksums.
 type Written = Vec<(String, String)>;
 
-/// Writes the files and the manifest; files that are as wanted stay untouched. Returns all files in their order.
+/// Writes the files and the manifest; files that are as wanted stay untouched. Returns all files in their
+/// order.
 pub(super) fn write(
     names: &SetupNames,
     files: Vec<SetupFile>,

@@ -1,4 +1,5 @@
-//! What the HAL lines build: signals with their pins, values of pins, loaded components, and the order of functions.
+//! What the HAL lines build: signals with their pins, values of pins, loaded components, and the order of
+//! functions.
 
 use std::collections::BTreeMap;
 

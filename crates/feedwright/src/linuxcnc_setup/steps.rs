@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use super::joints::Joints;
 use super::names::SetupNames;
 
-/// The pins that the sampler records of each axis: LinuxCNC's command, the drive's command, the measured position.
+/// The pins that the sampler records of each axis: LinuxCNC's command, the drive's command, the measured
+/// position.
 pub(crate) const SAMPLED: [&str; 3] = ["joint.N.motor-pos-cmd", "feedwright.drive-N", "feedwright.actual-N"];
 
 /// The steps in their order. A line that begins with blanks is a command.
@@ -51,7 +52,8 @@ pub(crate) fn steps(names: &SetupNames, simulates: bool) -> Vec<String> {
     lines
 }
 
-/// A shell script that records until Enter is pressed. Its first lines in the log name the columns, the period and the unit.
+/// A shell script that records until Enter is pressed. Its first lines in the log name the columns, the
+/// period and the unit.
 pub(crate) fn record_script(joints: &Joints, names: &SetupNames) -> String {
     // In a test of the axes the drive's command is what moves it; in a cut LinuxCNC's command is what is to be cut.
     let columns = |command: &str, other: &str| {

@@ -86,7 +86,8 @@ pub(crate) fn wire(
         let hint = "load the motion controller in a HAL file".to_owned();
         return Err(LinuxcncSetupError::Line { place: names.original.clone(), message, hint });
     };
-    let mut edits = HalEdits { script, netlist, load, lines: BTreeMap::new(), added: String::new() };
+    let mut edits =
+        HalEdits { script, netlist, load, lines: BTreeMap::new(), new: BTreeMap::new(), added: String::new() };
     for (axis, joint) in joints.wired().enumerate() {
         edits.joint(axis, joint.number, simulates);
     }
@@ -143,6 +144,8 @@ struct HalEdits<'a> {
     /// The line that loads the motion controller.
     load: HalPlace,
     lines: BTreeMap<HalPlace, LineEdit>,
+    /// Instances of components that the configuration does not load.
+    new: BTreeMap<String, Vec<String>>,
     /// Lines for the file of connections.
     added: String,
 }
@@ -174,8 +177,8 @@ impl HalEdits<'_> {
         self.replace(&format!("joint.{number}.motor-pos-fb"), Some(actual.as_str()).filter(|_| !simulates));
     }
 
-    /// Puts functions behind the motion controller. The sampler sees what the component saw, and the drives get what it gave. Functions that
-    /// are put behind it by number move on.
+    /// Puts functions behind the motion controller. The sampler sees what the component saw, and the drives
+    /// get what it gave. Functions that are put behind it by number move on.
     fn functions(&mut self, function: &HalFunction, names: &[String]) {
         let first = function.position.filter(|position| *position > 0);
         let line = |(number, name): (usize, &String)| {
@@ -195,7 +198,8 @@ impl HalEdits<'_> {
         }
     }
 
-    /// What takes the speed of LinuxCNC's command takes that of the drive's command. Returns the function that has to run behind the component.
+    /// What takes the speed of LinuxCNC's command takes that of the drive's command. Returns the function
+    /// that has to run behind the component.
     fn velocity(&mut self, axis: usize, number: usize, function: &HalFunction) -> Option<String> {
         let pin = format!("joint.{number}.vel-cmd");
         let sinks: Vec<String> = self.netlist.beside(&pin).map(str::to_owned).collect();
@@ -221,10 +225,11 @@ impl HalEdits<'_> {
         None
     }
 
-    /// Another instance of a component of HAL: LinuxCNC loads a component once, so that its line takes one more.
+    /// Another instance of a component of HAL: LinuxCNC loads a component once, so that its line takes one
+    /// more.
     fn instance(&mut self, module: &str, name: &str) -> String {
         let Some(found) = self.netlist.load(module) else {
-            self.after(self.load, &[format!("loadrt {module} names={name}")]);
+            self.new.entry(module.to_owned()).or_default().push(name.to_owned());
             return name.to_owned();
         };
         let line = self.script.line(found.place);
@@ -353,6 +358,12 @@ impl HalEdits<'_> {
     /// The copies, and who names them.
     #[expect(clippy::type_complexity, reason = "two lists that are taken apart at once")]
     fn finish(mut self, names: &SetupNames) -> (Vec<(String, String)>, Vec<(usize, String)>) {
+        let new: Vec<String> = self
+            .new
+            .iter()
+            .map(|(module, instances)| format!("loadrt {module} names={}", instances.join(",")))
+            .collect();
+        self.after(self.load, &new);
         let mut changed: BTreeSet<usize> = self.lines.keys().map(|place| place.0).collect();
         // A file that sources a copy is a copy, too.
         while let Some((by, _)) = self.script.named.iter().find(|(by, file)| {
