@@ -22,7 +22,7 @@ import time
 import headless
 
 SAMPLES = pathlib.Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim/axis")
-PART = "G21 G17 G90 G94 G64 P0.001 Q0\nG0 X0 Y0\nG0 X20 Y10\nG4 P0.3\nG2 X20 Y10 I-10 J0 F3000\nG1 X30 Y20\nG1 X10 Y30\nG1 X0 Y10\nG1 X20 Y10\nG4 P0.2\nM2\n"
+PART = "G21 G17 G90 G94 G64 P0.001 Q0\nG0 X0 Y0\nG0 X20 Y10\nG4 P0.3\nG2 X20 Y10 I-10 J0 F3000\nG1 X30 Y20\nG1 X10 Y30\nG1 X0 Y10\nG1 X20 Y10\nG4 P0.2\nG0 X0 Y0\nM2\n"
 # Motion to the middle of the travel, which is not the same for all axes of the sample.
 MIDDLE = "G21 G90 G53 G0 X0 Y0 Z-60"
 FACTOR = 0.1
@@ -138,10 +138,10 @@ def walk(ini, transcript):
         user = Walk(folder, transcript)
         try:
             return walked(ini, folder, before, user)
-        except headless.Failed:
-            if user.machine:
+        except BaseException:
+            if user.machine and user.machine.poll() is None:
                 print(user.printed()[-6000:])
-                user.machine.terminate()
+                (folder / "request").write_text("quit")
                 user.machine.wait(60)
             raise
 
@@ -182,7 +182,7 @@ def walked(ini, folder, before, user):
 
 def measured(text):
     """RMS of the measured cut in the table of `feedwright run`, um."""
-    row = re.search(r"^\s*measured\S*\s+([\d.]+)", text, re.MULTILINE)
+    row = re.search(r"^measured, not simulated +[\d.]+ +([\d.]+)", text, re.MULTILINE)
     if not row:
         raise headless.Failed("no measured cut in the table")
     return float(row[1])
@@ -232,10 +232,12 @@ def screen():
             if what == "mdi":
                 machine.mdi(rest)
             elif what == "run":
-                machine.mdi("G21 G90 G53 G0 X0 Y0" if rest == "part.ngc" else "G4 P0.1")
                 machine.open((folder / rest).read_text())
                 machine.begin()
-                machine.finish(LIMIT_S)
+                # Between a dwell and the next motion everything rests, too.
+                for _ in range(4):
+                    machine.finish(LIMIT_S)
+                    machine.wait(0.5)
         except headless.Failed as failed:
             error = str(failed)
         print(f"screen: {what} {rest}: {error} {machine.messages}", flush=True)

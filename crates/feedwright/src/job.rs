@@ -309,7 +309,7 @@ impl Job {
         let mut record = RunRecord::new(axes, log.sample_time_s, circles);
         let MeasuredRun { run, findings: of_axes } =
             measured(log, &self.machine, axes, &mut reference, &mut record.sinks(), watch)
-                .map_err(|error| JobError::Measured { log: name.clone(), part: self.program.name(), error })?;
+                .map_err(|error| JobError::of_log(name, &self.program, error))?;
         let run = self.reported(record, MEASURED, run)?;
         runs.insert(runs.len() - 1, run);
         Ok([log.findings.clone(), of_axes].concat())

@@ -87,8 +87,10 @@ pub enum JobError {
         /// The program.
         part: String,
         /// Why.
-        #[diagnostic_source]
         error: MeasuredError,
+        /// Remedy.
+        #[help]
+        hint: Option<String>,
     },
     /// No plan is within the tolerance.
     #[error("{part}: {error}")]
@@ -120,6 +122,12 @@ pub enum JobError {
 }
 
 impl JobError {
+    /// A log that is not one of the program, with the remedy.
+    pub(super) fn of_log(log: &str, program: &Program, error: MeasuredError) -> Self {
+        let hint = error.help().map(|hint| hint.to_string());
+        Self::Measured { log: log.to_owned(), part: program.name(), error, hint }
+    }
+
     /// Of a cut of a part.
     pub(crate) fn of_run(program: &Program, error: RunError) -> Self {
         match error {

@@ -22,6 +22,7 @@ use feedwright_ident::{Log, LogAxis, LogFinding};
 use feedwright_plan::vector::{Vector, add_scaled, distance, sub};
 use feedwright_sim::{
     AXIS_NAMES, Commanded, Foot, Machine, Reference, Row, RunResult, Sink, Stopped, Uncut, Watch, settled_s, shown,
+    to_four_digits,
 };
 use thiserror::Error;
 
@@ -85,7 +86,7 @@ pub enum MeasuredError {
     /// The log is in another unit than it was read in.
     #[error(
         "the log goes over {} mm in {axis}, and the program over {} mm: {} times as much. The log is in {unit}, and was read in {read}",
-        shown(*log_mm), shown(*program_mm), shown((1e4 * program_mm / log_mm).round() / 1e4)
+        to_four_digits(*log_mm), to_four_digits(*program_mm), to_four_digits(program_mm / log_mm)
     )]
     #[diagnostic(help("write the line '# unit = {unit}' in front of the log, or say --columns unit={unit}"))]
     Unit {

@@ -22,8 +22,11 @@ fn section() -> String {
         commands.map(|line| line.split_whitespace().next().unwrap()).filter(|name| !["help", "lab"].contains(name));
     let mut text = String::new();
     for name in names {
+        // A command of commands has one.
+        let words: &[&str] = if name == "linuxcnc" { &["linuxcnc", "setup"] } else { &[name] };
+        let name = words.join(" ");
         let lines: String =
-            help(&folder, &[name]).lines().map(|line| format!("    {line}\n").replace("    \n", "\n")).collect();
+            help(&folder, words).lines().map(|line| format!("    {line}\n").replace("    \n", "\n")).collect();
         text += &format!("### {name}\n\n{lines}\n");
     }
     text.trim_end().to_owned() + "\n"

@@ -64,4 +64,5 @@ mod oracle_contour_metric;
 mod oracle_grey_box;
 mod oracle_plant_terms;
 mod property_identification;
+mod property_linuxcnc_setup;
 mod property_report;
