@@ -152,7 +152,7 @@ def walked(ini, folder, before, user):
     setup = f"feedwright linuxcnc setup {ini} --simulate tnv40 --raise-ferror"
     printed = user.type(setup)
     commands = [line.strip() for line in printed.splitlines() if line.startswith("        ")]
-    start, excite, direct, record_axes, indirect, identify, block, run, again, enable, record_cut, compare, undo = commands
+    start, excite, direct, record_axes, indirect, identify, block, run, again, enable, limit, record_cut, compare, undo = commands
     user.start(start)
     user.type(excite)
     user.ask(f"mdi {MIDDLE}")
@@ -167,6 +167,7 @@ def walked(ini, folder, before, user):
     user.record(record_cut, "part.ngc")
     uncorrected = measured(user.type(compare, codes=(0, 1)))
     user.type(enable)
+    user.type(limit)
     user.record(record_cut, "part.ngc")
     corrected = measured(user.type(compare, codes=(0, 1)))
     for pin in ("state", "cause", "faults"):

@@ -87,7 +87,7 @@ pub enum JobError {
         /// The program.
         part: String,
         /// Why.
-        error: MeasuredError,
+        error: Box<MeasuredError>,
         /// Remedy.
         #[help]
         hint: Option<String>,
@@ -123,9 +123,9 @@ pub enum JobError {
 
 impl JobError {
     /// A log that is not one of the program, with the remedy.
-    pub(super) fn of_log(log: &str, program: &Program, error: MeasuredError) -> Self {
-        let hint = error.help().map(|hint| hint.to_string());
-        Self::Measured { log: log.to_owned(), part: program.name(), error, hint }
+    pub(crate) fn of_log(log: &str, program: &Program, error: MeasuredError) -> Self {
+        let hint = miette::Diagnostic::help(&error).map(|hint| hint.to_string());
+        Self::Measured { log: log.to_owned(), part: program.name(), error: Box::new(error), hint }
     }
 
     /// Of a cut of a part.

@@ -166,7 +166,7 @@ impl LinuxcncSetup {
         let wired = refusals.is_empty();
         let names = SetupNames::of(&self.ini);
         let changes = if wired { limits::changes(joints, simulated, self.raise_ferror) } else { Vec::new() };
-        let steps = if wired { steps::steps(&names, simulated.is_some()) } else { Vec::new() };
+        let steps = if wired { steps::steps(&names, joints.wired().count(), simulated.is_some()) } else { Vec::new() };
         LinuxcncWiring { findings, refusals, changes, steps, written: Vec::new() }
     }
 

@@ -43,7 +43,7 @@ pub(crate) fn ini_copy(
             }
         }
     }
-    if let Some((_, last)) = halfiles().last()
+    if let Some((_, last)) = halfiles().next_back()
         && let Some(line) = &mut lines[last.lines[0]]
     {
         let _ = write!(line, "\nHALFILE = {}", names.hal);

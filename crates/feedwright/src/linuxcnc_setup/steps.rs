@@ -10,7 +10,7 @@ use super::names::SetupNames;
 pub(crate) const SAMPLED: [&str; 3] = ["joint.N.motor-pos-cmd", "feedwright.drive-N", "feedwright.actual-N"];
 
 /// The steps in their order. A line that begins with blanks is a command.
-pub(crate) fn steps(names: &SetupNames, simulates: bool) -> Vec<String> {
+pub(crate) fn steps(names: &SetupNames, axes: usize, simulates: bool) -> Vec<String> {
     let SetupNames { ini, machine, record, model, original, .. } = names;
     let hardware =
         "Setup was tested in LinuxCNC on a simulated machine, not on your hardware: keep the emergency stop in reach";
@@ -30,16 +30,18 @@ pub(crate) fn steps(names: &SetupNames, simulates: bool) -> Vec<String> {
         "4. Identify the axes. The page ident.html shows how well the model fits. Then make the model file (5)".to_owned(),
         "        feedwright identify excite.txt --record-delay 0 --out mine.toml --report ident.html".to_owned(),
         "5. Make the model file that the component reads. Then try the model in simulation (6)".to_owned(),
-        format!("        feedwright block mine.toml --out {model}"),
+        format!("        feedwright block mine.toml --axes {axes} --out {model}"),
         "6. Cut your part in simulation with the model. The table shows the error without and with the correction. Then enable it (7)".to_owned(),
         "        feedwright run part.ngc --machine mine.toml --controller lqg-identified".to_owned(),
         "7. End LinuxCNC and start it again: it reads the model. If it names a MIN_FERROR that is too small, set that one. Cut in the air, and \
-         enable the correction during the cut. It moves the drives by 0.05 mm at most; DEVIATION_LIMIT in the copy raises that. Then measure (8)"
+         enable the correction during the cut. It moves the drives by 0.05 mm at most. If the cut stays calm, raise this limit to what step 6 \
+         says ('command beside the program by up to'), as far as the clearances allow. Then measure (8)"
             .to_owned(),
         format!("        linuxcnc {ini}"),
         "        halcmd setp feedwright.enable 1".to_owned(),
+        "        halcmd setp feedwright.deviation-limit 0.5".to_owned(),
         "8. Record a cut and compare it with the program. The table shows the measured error. 'halcmd getp feedwright.cause' says why a correction \
-         is missing"
+         is missing. ENABLE and DEVIATION_LIMIT in the copy keep both settings"
             .to_owned(),
         format!("        sh {record} cut cut.txt"),
         "        feedwright run part.ngc --machine mine.toml --log cut.txt".to_owned(),
@@ -88,6 +90,8 @@ pub(crate) fn record_script(joints: &Joints, names: &SetupNames) -> String {
          echo \"Recording to $file. Run the program, then press Enter.\"\n\
          read -r end || true\n\
          halcmd setp sampler.0.enable 0\n\
+         tries=0\n\
+         while [ \"$(halcmd getp sampler.0.curr-depth)\" -gt 0 ] && [ $tries -lt 100 ]; do tries=$((tries + 1)); sleep 0.3; done\n\
          sleep 1\n\
          echo \"Recorded $(grep -vc '^#' \"$file\") samples; $(halcmd getp sampler.0.overruns) were lost.\"\n",
         record = names.record,
