@@ -130,7 +130,7 @@ fn loads(joints: &Joints, simulates: bool) -> Vec<String> {
 
 /// Changes of one line.
 #[derive(Debug, Default)]
-struct LineEdit {
+struct HalLineEdit {
     /// Words that are replaced, or taken out where there is nothing in their place.
     words: Vec<(Range<usize>, Option<String>)>,
     /// Lines behind it.
@@ -143,7 +143,7 @@ struct HalEdits<'a> {
     netlist: &'a Netlist,
     /// The line that loads the motion controller.
     load: HalPlace,
-    lines: BTreeMap<HalPlace, LineEdit>,
+    lines: BTreeMap<HalPlace, HalLineEdit>,
     /// Instances of components that the configuration does not load.
     new: BTreeMap<String, Vec<String>>,
     /// Lines for the file of connections.
