@@ -209,7 +209,7 @@ fn head(machine: &Machine, travel_mm: f64, takes_s: f64, max_feed_mm_s: f64) -> 
         "- feed override at 100 %, emergency stop in reach; a first run at 10 % shows where it goes".to_owned(),
         "- the machine is warm, and its brakes are released".to_owned(),
         String::new(),
-        "Record with LinuxCNC, in a second terminal; where a pin is on a signal already, that signal takes the place of its net".to_owned(),
+        "Record with LinuxCNC. Where feedwright linuxcnc setup wired the machine, its record script does this. Elsewhere, in a second terminal; where a pin is on a signal already, that signal takes the place of its net".to_owned(),
         format!("  halcmd loadrt sampler depth=16000 cfg={}", "ff".repeat(names.len())),
         "  halcmd addf sampler.0 servo-thread".to_owned(),
     ];

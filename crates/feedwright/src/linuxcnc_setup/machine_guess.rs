@@ -90,6 +90,10 @@ fn axis(text: &mut String, joints: &Joints, joint: &SetupJoint, name: &str) {
         let _ =
             writeln!(text, "max_accel_mm_s2 = {} # MAX_ACCELERATION, {}", to_four_digits(value), acceleration.place);
     }
+    if joint.is_simulated() {
+        let _ = writeln!(text, "# unknown: everything else, because there is no drive");
+        return;
+    }
     gains(text, joints, joint);
     let scale =
         ["INPUT_SCALE", "ENCODER_SCALE", "SCALE"].into_iter().find_map(|key| Some((key, joints.value(joint, key)?)));

@@ -15,7 +15,7 @@ pub(crate) fn steps(names: &SetupNames, axes: usize, simulates: bool) -> Vec<Str
     let hardware =
         "Setup was tested in LinuxCNC on a simulated machine, not on your hardware: keep the emergency stop in reach";
     let mut lines = vec![
-        "1. Start LinuxCNC with the copy. It reports that the model is missing, and passes every command on unchanged. Home, jog and run a \
+        "1. Start LinuxCNC with the copy. The component reports that its model is missing, and passes every command on unchanged. Home, jog and run a \
          program in the air: the machine has to behave as before. Then record it (2)"
             .to_owned(),
         format!("        linuxcnc {ini}"),
