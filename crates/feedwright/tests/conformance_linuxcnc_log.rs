@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::command::Folder;
+use crate::command::{Folder, Ran};
 use crate::conformance_identify_log::rows as rows_of_one_axis;
 
 const INCH_MM: f64 = 25.4;
@@ -39,6 +39,11 @@ const PINS: &str = "joint.0.motor-pos-cmd feedwright.actual-0 joint.1.motor-pos-
 const NAMED: &str = "n x.cmd x.act y.cmd y.act";
 const RUN: [&str; 7] = ["part.ngc", "--machine", "tnv40", "--log", "log.txt", "--json", "r.json"];
 
+/// What it says on stderr, without the line that is drawn beside a long message.
+fn unframed(ran: &Ran) -> String {
+    ran.remarked().replace("\u{2502} ", "")
+}
+
 fn measured_um(folder: &Folder) -> f64 {
     folder.run_uncorrected(&RUN).succeeded();
     let json: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
@@ -71,13 +76,13 @@ fn a_log_in_another_unit_than_it_is_read_in_is_refused() {
     folder.file("log.txt", cut(&folder, NAMED, "", INCH_MM, None));
     let ran = folder.run_uncorrected(&RUN);
     assert_eq!(ran.code, Some(2));
-    let told = ran.remarked();
+    let told = unframed(&ran);
     assert!(told.contains("The log is in inch") && told.contains("--columns unit=inch"), "{told}");
     folder.file("log.txt", cut(&folder, NAMED, "# unit = inch\n", 1.0, None));
-    let told = folder.run_uncorrected(&RUN).remarked();
+    let told = unframed(&folder.run_uncorrected(&RUN));
     assert!(told.contains("The log is in mm, and was read in inch"), "{told}");
     let ran = folder.run_uncorrected(&[&RUN[..], &["--columns", "unit=mm"]].concat());
-    let told = ran.remarked();
+    let told = unframed(&ran);
     assert!(told.contains("--columns says that positions are in mm, and the file that they are in inch"), "{told}");
 }
 
