@@ -82,7 +82,8 @@
 //! The `mod` lines stand in the order in which data flows; each module uses only those above it.
 //! `output` writes files, `measured` compares a log with a cut, `cycle_time` and `fastest` look at
 //! plans, `controllers` is the table of controllers, `report` makes figures and the page, and
-//! `correct`, `job` and `log_job` are the jobs of the command line.
+//! `correct`, `job` and `log_job` are the jobs of the command line, and `linuxcnc_setup` wires a
+//! configuration of LinuxCNC.
 
 #![warn(clippy::disallowed_methods)]
 
