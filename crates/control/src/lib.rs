@@ -41,6 +41,7 @@
 //! |---|---|
 //! | One servo period | [`Tick`], [`Setpoint`] |
 //! | The path | [`KnotSource`], [`Knot`], [`Window`], [`Register`], [`Preview`] |
+//! | Geometry | [`KnownGeometry`], [`AxisGeometry`], [`ErrorTable`] |
 //! | Contour error | [`ContourError`], [`Estimator`], [`locate`] |
 //! | Controllers | [`Controller`], [`Schedule`], [`Measured`], [`Command`] |
 //! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`LqgPreview`] |
@@ -71,7 +72,7 @@
 //!
 //! The `mod` lines stand in the order in which data flows through a tick; each module uses only
 //! those above it. `axis` is the model of an axis, `window` holds the path behind and ahead,
-//! `contour_error` locates the tool on it, `identifier` and `model` predict, `inversion` computes
+//! `geometry` leads from the tool to the joints, `contour_error` locates the tool on it, `identifier` and `model` predict, `inversion` computes
 //! corrections, `supervisor` judges and bounds what controllers ask for, `controller` has them,
 //! and `tick` joins all of it.
 #![no_std]
@@ -82,6 +83,7 @@ mod activation;
 mod sine;
 mod axis;
 mod window;
+mod geometry;
 mod contour_error;
 mod identifier;
 mod model;
@@ -109,6 +111,7 @@ pub use controller::magnitude_only::MagnitudeOnly;
 pub use controller::two_dimensional::TwoDimensional;
 pub use controller::uncorrected::Uncorrected;
 pub use controller::{Controller, Schedule};
+pub use geometry::{AxisGeometry, ErrorTable, GeometryFault, KnownGeometry, MOST_SLOPE, TABLE_POINTS};
 pub use identifier::contour::ContourIdentifier;
 pub use identifier::servo::{FOLLOWING_SCALE_MM, ServoIdentifier, Spread};
 pub use identifier::{

@@ -6,7 +6,7 @@
 #![no_std]
 
 use core::panic::PanicInfo;
-use feedwright_control::{Feedforward, Knot, KnotSource, LqgPreview, MagnitudeOnly, ModelBlock, Tick, TwoDimensional, Uncorrected};
+use feedwright_control::{Feedforward, Knot, KnotSource, KnownGeometry, LqgPreview, MagnitudeOnly, ModelBlock, Tick, TwoDimensional, Uncorrected};
 
 unsafe extern "C" {
     fn a_panic_is_left_in_the_tick() -> !;
@@ -84,6 +84,12 @@ macro_rules! models {
 models! {
     model_2: 2;
     model_3: 3;
+}
+
+/// The knot of the joints.
+#[unsafe(no_mangle)]
+pub extern "C" fn geometry_3(geometry: &KnownGeometry<3>, knot: &mut Knot<3>) {
+    *knot = geometry.joint_knot(knot);
 }
 
 /// What does panic.
