@@ -146,6 +146,7 @@ fn row(
         commanded: Commanded::Cut,
         path_mm,
         cmd_mm: [path_mm[0] + 0.01, path_mm[1], path_mm[2]],
+        corrected_mm: [path_mm[0] + 0.01, path_mm[1], path_mm[2]],
         act_mm,
         torque_nm,
         foot_mm: foot,

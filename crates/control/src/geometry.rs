@@ -9,7 +9,7 @@
 //! T_ii is a table of positioning errors, T_ij with j other than i one of straightness. A table is a cubic between its points
 //! with continuous slope, without overshoot; beyond its ends the error stays what it is there.
 //!
-//! The inverse is a fixed point, `q <- t - E(q)`. All derivatives of E in a row sum up to L at most, and [`KnownGeometry::new`]
+//! The inverse is a fixed point, `q <- t - E(q)`. All derivatives of E in a row sum up to L at most, and [`KnownGeometry::check`]
 //! refuses an L above [`MOST_SLOPE`]. After n steps the rest is therefore at most L^n |E| / (1 - L) in the largest
 //! coordinate. Tangents solve `(I + dE/dq) u = t` by the same steps.
 //!
@@ -166,36 +166,45 @@ pub struct KnownGeometry<const N: usize> {
 
 impl<const N: usize> KnownGeometry<N> {
     /// Of axes with these errors and this squareness of y to x, z to x and z to y, rad.
-    ///
-    /// # Errors
-    /// Values that are not numbers, and errors that grow too fast with the travel.
-    pub fn new(axes: [AxisGeometry; N], squareness_rad: [f64; 3]) -> Result<Self, GeometryFault> {
+    pub fn new(axes: [AxisGeometry; N], squareness_rad: [f64; 3]) -> Self {
         let tables = core::array::from_fn(|_| core::array::from_fn(|_| None));
-        Self { axes, squareness_rad, tables }.checked()
+        Self { axes, squareness_rad, tables }
     }
 
     /// With a table of the errors of coordinate `of` over the position of joint `over`.
-    ///
-    /// # Errors
-    /// As [`KnownGeometry::new`].
-    pub fn with_table(mut self, of: usize, over: usize, table: ErrorTable) -> Result<Self, GeometryFault> {
+    #[must_use]
+    pub fn with_table(mut self, of: usize, over: usize, table: ErrorTable) -> Self {
         if let Some(place) = self.tables.get_mut(of).and_then(|row| row.get_mut(over)) {
             *place = Some(table);
         }
-        self.checked()
+        self
     }
 
-    fn checked(self) -> Result<Self, GeometryFault> {
-        for axis in 0..N {
+    /// Of the first M axes; one that is not there has no errors.
+    pub fn of_first<const M: usize>(&self) -> KnownGeometry<M> {
+        let table = |i: usize, j: usize| self.tables.get(i).and_then(|row| row.get(j)).cloned().flatten();
+        KnownGeometry {
+            axes: core::array::from_fn(|i| self.axes.get(i).copied().unwrap_or_default()),
+            squareness_rad: self.squareness_rad,
+            tables: core::array::from_fn(|i| core::array::from_fn(|j| table(i, j))),
+        }
+    }
+
+    /// Whether it can be compensated: the inverse is exact then.
+    ///
+    /// # Errors
+    /// Values that are not numbers, and errors that grow too fast with the travel.
+    pub fn check(&self) -> Result<(), GeometryFault> {
+        for (axis, own) in self.axes.iter().enumerate() {
             let slope = self.most_slope(axis);
-            if !slope.is_finite() || !self.axes[axis].pitch_phase_rad.is_finite() {
+            if !slope.is_finite() || !own.pitch_phase_rad.is_finite() {
                 return Err(GeometryFault::NotFinite);
             }
             if slope > MOST_SLOPE {
                 return Err(GeometryFault::Slope { axis, slope });
             }
         }
-        Ok(self)
+        Ok(())
     }
 
     /// Bound of the sum of the derivatives of an axis's errors.
@@ -306,7 +315,7 @@ mod tests {
             AxisGeometry::default(),
             AxisGeometry { pitch_mm: 0.003, pitch_rad_per_mm: TAU / 10.0, ..AxisGeometry::default() },
         ];
-        let geometry = KnownGeometry::new(axes, [50e-6, -30e-6, 10e-6]).unwrap();
+        let geometry = KnownGeometry::new(axes, [50e-6, -30e-6, 10e-6]);
         let moved = |joints: [f64; 3]| sub(geometry.tool_mm(joints), joints);
         let near = |found: [f64; 3], wanted: [f64; 3]| (0..3).all(|i| (found[i] - wanted[i]).abs() < 1e-12);
         assert!(near(moved([1000.0, 0.0, 0.0]), [0.02, 0.0, 0.0]));
@@ -338,11 +347,11 @@ mod tests {
         assert_eq!(ErrorTable::new(many), Err(GeometryFault::Points(TABLE_POINTS + 1)));
         let steep = AxisGeometry { scale: 0.06, ..AxisGeometry::default() };
         let found = KnownGeometry::new([AxisGeometry::default(), steep], [0.0; 3]);
-        assert_eq!(found, Err(GeometryFault::Slope { axis: 1, slope: 0.06 }));
+        assert_eq!(found.check(), Err(GeometryFault::Slope { axis: 1, slope: 0.06 }));
         let unknown = AxisGeometry { pitch_phase_rad: f64::NAN, ..AxisGeometry::default() };
-        assert_eq!(KnownGeometry::new([unknown; 2], [0.0; 3]), Err(GeometryFault::NotFinite));
+        assert_eq!(KnownGeometry::new([unknown; 2], [0.0; 3]).check(), Err(GeometryFault::NotFinite));
         let table = ErrorTable::new([[0.0, 0.0], [1.0, 0.05]]).unwrap();
-        let found = KnownGeometry::new([AxisGeometry::default(); 2], [0.0; 3]).and_then(|g| g.with_table(0, 1, table));
+        let found = KnownGeometry::new([AxisGeometry::default(); 2], [0.0; 3]).with_table(0, 1, table).check();
         assert!(matches!(found, Err(GeometryFault::Slope { axis: 0, .. })), "{found:?}");
     }
 }

@@ -30,9 +30,9 @@ fn geometry() -> impl Strategy<Value = KnownGeometry<3>> {
     let tables = prop::option::of((0..3_usize, 0..3_usize, table()));
     let squareness = prop::array::uniform3(-1e-3..1e-3);
     (prop::array::uniform3(axis()), squareness, tables).prop_map(|(axes, squareness_rad, table)| {
-        let geometry = KnownGeometry::new(axes, squareness_rad).unwrap();
+        let geometry = KnownGeometry::new(axes, squareness_rad);
         match table {
-            Some((of, over, table)) => geometry.with_table(of, over, table).unwrap(),
+            Some((of, over, table)) => geometry.with_table(of, over, table),
             None => geometry,
         }
     })
@@ -49,6 +49,7 @@ fn largest(difference: [f64; 3]) -> f64 {
 proptest! {
     #[test]
     fn the_joints_of_a_tool_bring_it_back(geometry in geometry(), tool_mm in place()) {
+        prop_assert_eq!(geometry.check(), Ok(()));
         let back_mm = geometry.tool_mm(geometry.joints_mm(tool_mm));
         prop_assert!(largest(sub(back_mm, tool_mm)) < 1e-9, "{tool_mm:?} {back_mm:?}");
     }

@@ -456,6 +456,7 @@ impl MeasuredCut {
             },
             path_mm: commanded.position_mm,
             cmd_mm: command_mm,
+            corrected_mm: command_mm,
             act_mm: actual_mm,
             torque_nm: [0.0; 3],
             foot_mm: foot.position_mm,

@@ -31,6 +31,7 @@ fn rows(spikes: &[(usize, f64)], rapids: &[(usize, usize)]) -> Vec<Row> {
                 commanded: Commanded::Cut,
                 path_mm,
                 cmd_mm: path_mm,
+                corrected_mm: path_mm,
                 act_mm: path_mm,
                 torque_nm: [0.1 * t_s.sin(), 0.0, 0.0],
                 foot_mm: path_mm,

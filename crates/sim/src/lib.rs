@@ -71,8 +71,8 @@
 mod watch;
 mod number;
 pub mod toml_file;
-mod kinematics;
 mod machine;
+mod kinematics;
 mod reference;
 mod plant;
 mod trace;

@@ -9,7 +9,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use feedwright_control::Controller;
+use feedwright_control::{Controller, KnownGeometry};
 use feedwright_gcode::ReadError;
 use feedwright_gcode::canon::Canon;
 use feedwright_plan::{
@@ -20,7 +20,7 @@ use thiserror::Error;
 
 use crate::machine::Machine;
 use crate::reference::Reference;
-use crate::simulate::{PlantMaker, RunResult, Stopped, simulate};
+use crate::simulate::{Bench, PlantMaker, RunResult, Stopped, simulate};
 use crate::trace::Sink;
 use crate::watch::{Cancelled, Watch};
 
@@ -99,6 +99,7 @@ const LAP_SEED_SHIFT: u32 = 32;
 pub struct Run<'a> {
     machine: &'a Machine,
     plant: Option<PlantMaker<'a>>,
+    known: Option<&'a KnownGeometry<3>>,
     caps: Option<&'a Arc<SpeedCaps>>,
     stages: Stages,
     laps: u32,
@@ -169,7 +170,17 @@ impl<'a> Run<'a> {
     /// One lap on a machine, by the stages that suit it.
     pub fn on(machine: &'a Machine) -> Self {
         let stages = Stages::of(machine);
-        Self { machine, plant: None, caps: None, stages, laps: 1, plan_sink: None, memory: None, watch: &() }
+        Self {
+            machine,
+            plant: None,
+            known: None,
+            caps: None,
+            stages,
+            laps: 1,
+            plan_sink: None,
+            memory: None,
+            watch: &(),
+        }
     }
 
     /// Cuts with another plant in place of the machine's own. Plan, limits and periods stay those of the machine.
@@ -195,6 +206,12 @@ impl<'a> Run<'a> {
     #[must_use]
     pub const fn stages(self, stages: Stages) -> Self {
         Self { stages, ..self }
+    }
+
+    /// With the command of the joints that brings the tool onto the path by this geometry; none is that of a machine without errors.
+    #[must_use]
+    pub const fn compensated(self, known: Option<&'a KnownGeometry<3>>) -> Self {
+        Self { known, ..self }
     }
 
     /// With one who is told of the plan of the last lap.
@@ -299,7 +316,9 @@ impl<'a> Run<'a> {
             }
         };
         let mut reference = Reference::new(plan.told_to(self.plan_sink));
-        let result = simulate(self.machine, self.plant, &mut reference, controller, sinks, self.watch)?;
+        let known = self.known.map(|known| Box::new(known.of_first::<N>()));
+        let bench = Bench { machine: self.machine, plant: self.plant, known: known.as_deref() };
+        let result = simulate(bench, &mut reference, controller, sinks, self.watch)?;
         if let Some(fault) = reference.fault() {
             return Err(fault.clone().into());
         }

@@ -27,9 +27,9 @@ mod torque;
 mod nonideal;
 use std::f64::consts::TAU;
 
-use feedwright_control::{AxisLaw, AxisState, Periods, friction_signs};
+use feedwright_control::{AxisLaw, AxisState, KnownGeometry, Periods, friction_signs};
 
-use crate::kinematics::{AxisErrors, GeometricErrors, joints_of, tool_of};
+use crate::kinematics::{joints_of, tool_of};
 use crate::machine::{Axis, Machine};
 use encoder::Moment;
 use nonideal::NonidealAxis;
@@ -105,7 +105,7 @@ pub struct Plant<const N: usize> {
     /// What a rigid axis with an ideal drive and encoder does not have; none where no axis has any of it.
     nonideal: Option<Box<[NonidealAxis; N]>>,
     /// Geometry that no encoder sees; none where there is no error in it.
-    geometry: Option<GeometricErrors<N>>,
+    geometry: Option<Box<KnownGeometry<N>>>,
 }
 
 impl<const N: usize> Plant<N> {
@@ -136,7 +136,7 @@ impl<const N: usize> Plant<N> {
             nonideal: nonideal.then(|| {
                 Box::new(std::array::from_fn(|i| NonidealAxis::new(machine, i, &laws[i], states[i].angle_rad, seed)))
             }),
-            geometry: geometry(machine),
+            geometry: machine.errors_of_geometry().map(Box::new),
             seed,
         }
     }
@@ -182,7 +182,7 @@ impl<const N: usize> Plant<N> {
     }
 
     fn tool_mm(&self, joint_mm: [f64; N]) -> [f64; N] {
-        self.geometry.map_or(joint_mm, |geometry| geometry.tool_mm(joint_mm))
+        self.geometry.as_ref().map_or(joint_mm, |geometry| geometry.tool_mm(joint_mm))
     }
 
     /// Travel of the table for angles at the motor shafts, mm.
@@ -291,20 +291,4 @@ fn cos_sin(angle_rad: f64) -> [f64; 2] {
 #[inline]
 fn turned([cos, sin]: [f64; 2], [by_cos, by_sin]: [f64; 2]) -> [f64; 2] {
     [cos * by_cos - sin * by_sin, sin * by_cos + cos * by_sin]
-}
-
-/// Geometry that no encoder sees, of the first N axes.
-fn geometry<const N: usize>(machine: &Machine) -> Option<GeometricErrors<N>> {
-    let squareness = machine.geometry;
-    let urad = [squareness.squareness_xy_urad, squareness.squareness_xz_urad, squareness.squareness_yz_urad];
-    let of_axes: [&Axis; N] = std::array::from_fn(|i| machine.axis(i));
-    let is_exact = of_axes.iter().all(|axis| axis.scale_um_m == 0.0 && axis.pitch_error_um == 0.0);
-    (!is_exact || urad != [0.0; 3]).then(|| GeometricErrors {
-        axes: of_axes.map(|axis| AxisErrors {
-            scale: axis.scale_um_m * 1e-6,
-            pitch_mm: axis.pitch_error_um * 1e-3,
-            pitch_rad_per_mm: axis.rad_per_mm(),
-        }),
-        squareness_rad: urad.map(|urad| urad * 1e-6),
-    })
 }

@@ -18,8 +18,8 @@ mod rests;
 mod tick_times;
 pub(crate) mod uncut;
 
-use feedwright_control::{Bounds, Controller, Fade, Knot, Setpoint, State, Tick};
-use feedwright_plan::vector::distance;
+use feedwright_control::{Bounds, Controller, Fade, Knot, KnownGeometry, Setpoint, State, Tick};
+use feedwright_plan::vector::{Vector, distance};
 
 use crate::kinematics::{joints_of, tool_of};
 use crate::machine::Machine;
@@ -99,20 +99,30 @@ impl From<Cancelled> for Stopped {
 /// Makes the machine of a lap, at rest with its joints at the given place, mm, and with random numbers by the given seed.
 pub type PlantMaker<'a> = &'a dyn Fn([f64; 3], u64) -> Box<dyn Mechanism>;
 
+/// What a lap is cut on.
+#[derive(Clone, Copy)]
+pub(crate) struct Bench<'a, const N: usize> {
+    /// The machine.
+    pub(crate) machine: &'a Machine,
+    /// What takes the place of its plant.
+    pub(crate) plant: Option<PlantMaker<'a>>,
+    /// The geometry that the control compensates.
+    pub(crate) known: Option<&'a KnownGeometry<N>>,
+}
+
 /// Cuts the whole reference, one lap; every row goes to every sink. The controller is as the caller has it: at its beginning, or
 /// with what it learnt in the laps before.
 ///
 /// # Errors
 /// What a sink says when it takes no more, or an end from outside.
 pub(crate) fn simulate<const N: usize>(
-    machine: &Machine,
-    plant: Option<PlantMaker<'_>>,
+    bench: Bench<'_, N>,
     reference: &mut Reference<'_>,
     controller: &mut dyn Controller<N>,
     sinks: &mut [&mut dyn Sink],
     watch: &dyn Watch,
 ) -> Result<RunResult, Stopped> {
-    let mut lap = ClosedLoop::new(machine, plant, reference, controller);
+    let mut lap = ClosedLoop::new(bench, reference, controller);
     let (mut n, mut rows) = (0_u64, 0_u64);
     while let Some(periods) = lap.servo_period(n, reference, controller, sinks, watch)? {
         n += periods;
@@ -127,6 +137,7 @@ pub(crate) fn simulate<const N: usize>(
 /// A lap under way.
 struct ClosedLoop<'a, const N: usize> {
     machine: &'a Machine,
+    joints: Joints<'a, N>,
     servo_s: f64,
     kept_s: f64,
     lost_mm: f64,
@@ -152,15 +163,13 @@ struct ClosedLoop<'a, const N: usize> {
 
 impl<'a, const N: usize> ClosedLoop<'a, N> {
     /// At rest at the start of the path.
-    fn new(
-        machine: &'a Machine,
-        plant: Option<PlantMaker<'_>>,
-        reference: &mut Reference<'_>,
-        controller: &dyn Controller<N>,
-    ) -> Self {
+    fn new(bench: Bench<'a, N>, reference: &mut Reference<'_>, controller: &dyn Controller<N>) -> Self {
+        let Bench { machine, plant, known } = bench;
+        let joints = Joints { known };
         let servo_s = machine.period.servo_s;
         let slowest_s = 1.0 / machine.slowest_kp_1_s();
-        let start_mm = joints_of(reference.at(0.0).position_mm);
+        let at_mm = reference.at(0.0).position_mm;
+        let start_mm = joints.at(at_mm);
         let fade_mm_s2 = (0..N).map(|i| machine.correction_accel_mm_s2(i)).fold(f64::INFINITY, f64::min);
         let limits = &machine.limits;
         let bounds = Bounds::new(limits.max_deviation_mm, limits.rapid_mm_s, fade_mm_s2);
@@ -172,15 +181,16 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         };
         Self {
             machine,
+            joints,
             servo_s,
             kept_s: KEPT_SETTLED_TIMES * settled_s(machine),
             lost_mm: LOST_MM.max(LOST_LAGS * machine.limits.rapid_mm_s * slowest_s),
             feed_periods: controller.schedule().servo_periods.max(1),
             tick: Tick::new(servo_s, controller.schedule(), bounds),
-            foot: FootTracker::new(machine, tool_of(start_mm)),
-            joint_error: plant.has_geometry().then(|| JointErrorMeter::new(machine, tool_of(start_mm))),
+            foot: FootTracker::new(machine, at_mm),
+            joint_error: (known.is_some() || plant.has_geometry()).then(|| JointErrorMeter::new(machine, at_mm)),
             plant,
-            uncut: Uncut::new(settled_periods(machine), tool_of(start_mm)),
+            uncut: Uncut::new(settled_periods(machine), at_mm),
             seen_mm: start_mm,
             run: RunResult::default(),
             ended_s: None,
@@ -206,16 +216,19 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         let setpoint = self.command(t_s, reference, controller, watch);
         let measurement: Measurement<N> = self.plant.step(tool_of(setpoint.command_mm)).of_axes();
         self.seen_mm = measurement.measured_mm;
-        if self.is_lost(t_s, distance(measurement.position_mm, setpoint.command_mm)) {
+        if self.is_lost(t_s, distance(measurement.joint_mm, setpoint.command_mm)) {
             return Ok(None);
         }
         let sample = reference.at(setpoint.tau_s);
         let tau_s = reference.end_s().map_or(setpoint.tau_s, |end_s| setpoint.tau_s.min(end_s));
         // A command that a correction holds beside the end of the path is not where the tool is to rest.
         // And where the encoders say so: what they do not see is not waited for.
-        let to_go_mm = distance(measurement.joint_mm, joints_of(sample.position_mm));
+        let to_go_mm = distance(measurement.joint_mm, self.joints.at(sample.position_mm));
         let foot = self.foot.foot(reference, tau_s, sample.s_mm, tool_of(measurement.position_mm));
-        let row = row(t_s, &setpoint, &measurement, &sample, &foot, to_go_mm <= ARRIVED_MM);
+        let row = Row {
+            corrected_mm: self.joints.tool(setpoint.command_mm),
+            ..row(t_s, &setpoint, &measurement, &sample, &foot, to_go_mm <= ARRIVED_MM)
+        };
         if row.cutting {
             self.cut[usize::from(self.tick.state() == State::Engaged)] += 1;
         }
@@ -229,7 +242,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         }
         self.uncut.row(&row);
         if let Some(meter) = &mut self.joint_error {
-            meter.row(reference, tau_s, tool_of(measurement.joint_mm), &row);
+            meter.row(reference, tau_s, self.joints.tool(measurement.joint_mm), &row);
         }
         reference.forget_before(tau_s - self.kept_s);
         if let Some(ended_s) = self.ended_s
@@ -253,7 +266,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         watch: &dyn Watch,
     ) -> Setpoint<N> {
         let began = watch.clock();
-        let setpoint = self.tick.step(&mut Axes(reference), controller, self.seen_mm);
+        let setpoint = self.tick.step(&mut Axes { reference, joints: self.joints }, controller, self.seen_mm);
         if setpoint.decided {
             self.run.ticks.add(watch.clock().saturating_sub(began).as_nanos());
             self.run.most_entries = self.run.most_entries.max(self.tick.contour().entries);
@@ -355,6 +368,7 @@ fn row<const N: usize>(
         },
         path_mm: sample.programmed_mm,
         cmd_mm: tool_of(setpoint.command_mm),
+        corrected_mm: tool_of(setpoint.command_mm),
         act_mm: tool_of(measurement.position_mm),
         torque_nm: tool_of(measurement.torque_nm),
         foot_mm: foot.position_mm,
@@ -368,12 +382,36 @@ fn crossing(t_s: f64, servo_s: f64, last_tau_s: f64, tau_s: f64, end_s: f64) -> 
     if tau_s > last_tau_s { t_s - servo_s * (tau_s - end_s) / (tau_s - last_tau_s) } else { t_s }
 }
 
-/// The planned path as the tick sees it: the joints.
-struct Axes<'a, 'p>(&'a mut Reference<'p>);
+/// Between the tool and the joints, by the geometry that the control knows.
+#[derive(Clone, Copy)]
+struct Joints<'a, const N: usize> {
+    known: Option<&'a KnownGeometry<N>>,
+}
 
-impl<const N: usize> feedwright_control::KnotSource<N> for Axes<'_, '_> {
+impl<const N: usize> Joints<'_, N> {
+    /// Where the joints have to be, mm.
+    fn at(&self, tool_mm: Vector) -> [f64; N] {
+        let tool_mm = joints_of(tool_mm);
+        self.known.map_or(tool_mm, |known| known.joints_mm(tool_mm))
+    }
+
+    /// Where the tool is then, mm.
+    fn tool(&self, joints_mm: [f64; N]) -> Vector {
+        tool_of(self.known.map_or(joints_mm, |known| known.tool_mm(joints_mm)))
+    }
+}
+
+/// The planned path as the tick sees it: the joints.
+struct Axes<'a, 'p, 'k, const N: usize> {
+    reference: &'a mut Reference<'p>,
+    joints: Joints<'k, N>,
+}
+
+impl<const N: usize> feedwright_control::KnotSource<N> for Axes<'_, '_, '_, N> {
     fn knot(&mut self, tau_s: f64) -> Knot<N> {
-        let Sample { position_mm, tangent, feed_mm_s, rapid, .. } = self.0.at(tau_s);
-        Knot { position_mm: joints_of(position_mm), tangent: joints_of(tangent), feed_mm_s, cutting: !rapid }
+        let Sample { position_mm, tangent, feed_mm_s, rapid, .. } = self.reference.at(tau_s);
+        let tool =
+            Knot { position_mm: joints_of(position_mm), tangent: joints_of(tangent), feed_mm_s, cutting: !rapid };
+        self.joints.known.map_or(tool, |known| known.joint_knot(&tool))
     }
 }

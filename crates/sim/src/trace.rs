@@ -38,6 +38,8 @@ pub struct Row {
     pub path_mm: [f64; 3],
     /// Position command of this servo period, as the servo drive gets it.
     pub cmd_mm: [f64; 3],
+    /// Where the geometry that the control compensates puts the tool with the joints at `cmd_mm`; without any, `cmd_mm`.
+    pub corrected_mm: [f64; 3],
     /// True position of the tool at the end of this servo period.
     pub act_mm: [f64; 3],
     /// Motor torque at the end of this servo period, N m.
@@ -62,6 +64,7 @@ impl Row {
         commanded: Commanded::Cut,
         path_mm: [0.0; 3],
         cmd_mm: [0.0; 3],
+        corrected_mm: [0.0; 3],
         act_mm: [0.0; 3],
         torque_nm: [0.0; 3],
         foot_mm: [0.0; 3],

@@ -200,7 +200,7 @@ impl Statistics {
 
 impl Sink for Statistics {
     fn row(&mut self, row: &Row) -> io::Result<()> {
-        let numbers = [row.path_mm, row.act_mm, row.cmd_mm, row.torque_nm];
+        let numbers = [row.path_mm, row.act_mm, row.cmd_mm, row.corrected_mm, row.torque_nm];
         let scalars = [row.t_s, row.s_mm, row.contour_error_mm];
         if !numbers.iter().flatten().chain(&scalars).all(|x| x.is_finite()) {
             return Ok(());
@@ -209,7 +209,7 @@ impl Sink for Statistics {
         for k in 0..3 {
             self.peak_torque_nm[k] = self.peak_torque_nm[k].max(row.torque_nm[k].abs());
         }
-        let (c, p) = (row.cmd_mm, row.path_mm);
+        let (c, p) = (row.corrected_mm, row.path_mm);
         let deviation_mm = libm::hypot(libm::hypot(c[0] - p[0], c[1] - p[1]), c[2] - p[2]);
         self.max_deviation_mm = self.max_deviation_mm.max(deviation_mm);
         self.command(row.t_s, c);
@@ -286,7 +286,7 @@ mod tests {
         for (at_um, deviation_um) in [([3.0, 4.0, 12.0], 13.0), ([0.0, 0.0, -7.0], 7.0)] {
             let mut statistics = Statistics::new();
             statistics
-                .row(&Row { path_mm: [1.0; 3], cmd_mm: at_um.map(|um: f64| 1.0 + um * 1e-3), ..row(0.0) })
+                .row(&Row { path_mm: [1.0; 3], corrected_mm: at_um.map(|um: f64| 1.0 + um * 1e-3), ..row(0.0) })
                 .unwrap();
             assert!((statistics.max_deviation_um() - deviation_um).abs() < 1e-9, "{}", statistics.max_deviation_um());
         }

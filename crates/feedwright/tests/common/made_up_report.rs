@@ -34,6 +34,7 @@ fn made_up_run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> Repo
             commanded: Commanded::Cut,
             path_mm,
             cmd_mm: path_mm,
+            corrected_mm: path_mm,
             act_mm,
             torque_nm: [0.1 * noise(), 0.1 * noise(), 0.1 * noise()],
             foot_mm: path_mm,

@@ -1,7 +1,7 @@
-//! The contour error of the joints: what it would be without the geometry that no encoder sees.
+//! The contour error by the encoders: that of the joints, where the control's geometry puts the tool with them.
 //!
-//! It is measured as the tool's is, with a foot of its own, over the same servo periods. The rest of the tool's error no control can
-//! take back that has encoders alone.
+//! It is measured as the tool's is, with a foot of its own, over the same servo periods. The rest of the tool's error is geometry that the
+//! control does not know.
 
 use feedwright_plan::vector::Vector;
 
@@ -10,7 +10,7 @@ use crate::machine::Machine;
 use crate::reference::Reference;
 use crate::trace::Row;
 
-/// Contour error of the joints over the servo periods that cut, mm.
+/// Contour error by the encoders over the servo periods that cut, mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointError {
     /// Root mean square; 0 where nothing cuts.
@@ -33,9 +33,9 @@ impl JointErrorMeter {
         Self { foot: FootTracker::new(machine, start_mm), square_sum_mm2: 0.0, max_mm: 0.0, rows: 0 }
     }
 
-    /// The joints at the end of the servo period of a row that begins with the reference at `tau_s`.
-    pub(super) fn row(&mut self, reference: &mut Reference<'_>, tau_s: f64, joints_mm: Vector, row: &Row) {
-        let error_mm = self.foot.foot(reference, tau_s, row.s_mm, joints_mm).distance_mm;
+    /// The tool by the joints at the end of the servo period of a row that begins with the reference at `tau_s`.
+    pub(super) fn row(&mut self, reference: &mut Reference<'_>, tau_s: f64, by_joints_mm: Vector, row: &Row) {
+        let error_mm = self.foot.foot(reference, tau_s, row.s_mm, by_joints_mm).distance_mm;
         if row.cutting {
             self.square_sum_mm2 += error_mm * error_mm;
             self.max_mm = self.max_mm.max(error_mm);

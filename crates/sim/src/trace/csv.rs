@@ -64,9 +64,8 @@ impl<W: Write> Sink for TraceWriter<W> {
             text.number(row.torque_nm[axis]);
         }
         text.number(row.contour_error_mm);
-        // What the controller asks for is what the drive gets.
         for axis in 0..self.axes {
-            text.number(row.cmd_mm[axis]);
+            text.number(row.corrected_mm[axis]);
         }
         text.whole(u32::from(row.cutting));
         text.end_line(&mut self.out)
@@ -154,6 +153,7 @@ mod tests {
             commanded: Commanded::Cut,
             path_mm: triple(0),
             cmd_mm: triple(5),
+            corrected_mm: triple(1),
             act_mm: triple(2),
             torque_nm: triple(3),
             foot_mm: triple(1),
@@ -200,7 +200,7 @@ mod tests {
                 expected.extend([row.path_mm[axis], row.cmd_mm[axis], row.act_mm[axis], row.torque_nm[axis]]);
             }
             expected.push(row.contour_error_mm);
-            expected.extend(&row.cmd_mm[..axes]);
+            expected.extend(&row.corrected_mm[..axes]);
             expected.push(f64::from(u8::from(cutting)));
             prop_assert_eq!(fields.len(), expected.len());
             for (field, value) in fields.iter().zip(expected) {
