@@ -34,7 +34,7 @@ const FOUND: f64 = 1e-12;
 
 /// Geometry of an axis by itself.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct AxisGeometry {
+pub struct AxisErrors {
     /// By which part of its way it goes farther than its encoder says.
     pub scale: f64,
     /// Amplitude of the pitch error, mm.
@@ -157,7 +157,7 @@ impl ErrorTable {
 /// Errors that encoders do not see, of N axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KnownGeometry<const N: usize> {
-    axes: [AxisGeometry; N],
+    axes: [AxisErrors; N],
     /// Of y to x, z to x and z to y, rad: a_xy, a_xz, a_yz.
     squareness_rad: [f64; 3],
     /// Error of the i-th coordinate of the tool over the position of the j-th joint.
@@ -166,7 +166,7 @@ pub struct KnownGeometry<const N: usize> {
 
 impl<const N: usize> KnownGeometry<N> {
     /// Of axes with these errors and this squareness of y to x, z to x and z to y, rad.
-    pub fn new(axes: [AxisGeometry; N], squareness_rad: [f64; 3]) -> Self {
+    pub fn new(axes: [AxisErrors; N], squareness_rad: [f64; 3]) -> Self {
         let tables = core::array::from_fn(|_| core::array::from_fn(|_| None));
         Self { axes, squareness_rad, tables }
     }
@@ -217,7 +217,7 @@ impl<const N: usize> KnownGeometry<N> {
 
     /// Whether it has no error at all.
     pub fn is_exact(&self) -> bool {
-        let exact = |axis: &AxisGeometry| axis.scale == 0.0 && axis.pitch_mm == 0.0;
+        let exact = |axis: &AxisErrors| axis.scale == 0.0 && axis.pitch_mm == 0.0;
         self.axes.iter().all(exact)
             && self.squareness_rad == [0.0; 3]
             && self.tables.iter().flatten().all(Option::is_none)
@@ -237,7 +237,7 @@ impl<const N: usize> KnownGeometry<N> {
     /// Where the tool is, mm.
     pub fn tool_mm(&self, joints_mm: [f64; N]) -> [f64; N] {
         core::array::from_fn(|i| {
-            let (AxisGeometry { scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad }, at_mm) =
+            let (AxisErrors { scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad }, at_mm) =
                 (self.axes[i], joints_mm[i]);
             let own_mm = at_mm + scale * at_mm + pitch_mm * libm::sin(pitch_rad_per_mm * at_mm + pitch_phase_rad);
             let tool_mm = own_mm + self.skew(i, joints_mm, |angle| angle);
@@ -251,7 +251,7 @@ impl<const N: usize> KnownGeometry<N> {
     /// By how much the tool moves farther than the joints, where these move by `moved` at a place: dE/dq times `moved`.
     fn stretched(&self, joints_mm: [f64; N], moved: [f64; N]) -> [f64; N] {
         core::array::from_fn(|i| {
-            let AxisGeometry { scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad } = self.axes[i];
+            let AxisErrors { scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad } = self.axes[i];
             let phase_rad = pitch_rad_per_mm * joints_mm[i] + pitch_phase_rad;
             let own = (scale + pitch_mm * pitch_rad_per_mm * libm::cos(phase_rad)) * moved[i];
             let whole = own + self.skew(i, moved, |angle| angle);
@@ -311,9 +311,9 @@ mod tests {
     #[test]
     fn a_square_becomes_a_rhomb_and_a_metre_a_little_more() {
         let axes = [
-            AxisGeometry { scale: 20e-6, ..AxisGeometry::default() },
-            AxisGeometry::default(),
-            AxisGeometry { pitch_mm: 0.003, pitch_rad_per_mm: TAU / 10.0, ..AxisGeometry::default() },
+            AxisErrors { scale: 20e-6, ..AxisErrors::default() },
+            AxisErrors::default(),
+            AxisErrors { pitch_mm: 0.003, pitch_rad_per_mm: TAU / 10.0, ..AxisErrors::default() },
         ];
         let geometry = KnownGeometry::new(axes, [50e-6, -30e-6, 10e-6]);
         let moved = |joints: [f64; 3]| sub(geometry.tool_mm(joints), joints);
@@ -345,13 +345,13 @@ mod tests {
         assert_eq!(ErrorTable::new([[0.0, f64::NAN], [1.0, 0.0]]), Err(GeometryFault::NotFinite));
         let many = (0..=TABLE_POINTS).map(|n| [n as f64, 0.0]);
         assert_eq!(ErrorTable::new(many), Err(GeometryFault::Points(TABLE_POINTS + 1)));
-        let steep = AxisGeometry { scale: 0.06, ..AxisGeometry::default() };
-        let found = KnownGeometry::new([AxisGeometry::default(), steep], [0.0; 3]);
+        let steep = AxisErrors { scale: 0.06, ..AxisErrors::default() };
+        let found = KnownGeometry::new([AxisErrors::default(), steep], [0.0; 3]);
         assert_eq!(found.check(), Err(GeometryFault::Slope { axis: 1, slope: 0.06 }));
-        let unknown = AxisGeometry { pitch_phase_rad: f64::NAN, ..AxisGeometry::default() };
+        let unknown = AxisErrors { pitch_phase_rad: f64::NAN, ..AxisErrors::default() };
         assert_eq!(KnownGeometry::new([unknown; 2], [0.0; 3]).check(), Err(GeometryFault::NotFinite));
         let table = ErrorTable::new([[0.0, 0.0], [1.0, 0.05]]).unwrap();
-        let found = KnownGeometry::new([AxisGeometry::default(); 2], [0.0; 3]).with_table(0, 1, table).check();
+        let found = KnownGeometry::new([AxisErrors::default(); 2], [0.0; 3]).with_table(0, 1, table).check();
         assert!(matches!(found, Err(GeometryFault::Slope { axis: 0, .. })), "{found:?}");
     }
 }

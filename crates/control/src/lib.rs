@@ -41,7 +41,7 @@
 //! |---|---|
 //! | One servo period | [`Tick`], [`Setpoint`] |
 //! | The path | [`KnotSource`], [`Knot`], [`Window`], [`Register`], [`Preview`] |
-//! | Geometry | [`KnownGeometry`], [`AxisGeometry`], [`ErrorTable`] |
+//! | Geometry | [`KnownGeometry`], [`AxisErrors`], [`ErrorTable`] |
 //! | Contour error | [`ContourError`], [`Estimator`], [`locate`] |
 //! | Controllers | [`Controller`], [`Schedule`], [`Measured`], [`Command`] |
 //! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`LqgPreview`] |
@@ -111,7 +111,7 @@ pub use controller::magnitude_only::MagnitudeOnly;
 pub use controller::two_dimensional::TwoDimensional;
 pub use controller::uncorrected::Uncorrected;
 pub use controller::{Controller, Schedule};
-pub use geometry::{AxisGeometry, ErrorTable, GeometryFault, KnownGeometry, MOST_SLOPE, TABLE_POINTS};
+pub use geometry::{AxisErrors, ErrorTable, GeometryFault, KnownGeometry, MOST_SLOPE, TABLE_POINTS};
 pub use identifier::contour::ContourIdentifier;
 pub use identifier::servo::{FOLLOWING_SCALE_MM, ServoIdentifier, Spread};
 pub use identifier::{

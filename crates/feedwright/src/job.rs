@@ -25,6 +25,7 @@ mod listing;
 mod results;
 mod stored;
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use feedwright_control::{Controller, IdentifiedAxes};
@@ -37,6 +38,7 @@ use feedwright_sim::{
 };
 use serde::{Deserialize, Serialize};
 
+use crate::compensation::Compensation;
 use crate::controllers::{Choices, CutsUncorrected, Entry, LQG_IDENTIFIED, Make, Setup, UNCORRECTED};
 use crate::correct::{CorrectOutcome, TargetControl};
 use crate::cycle_time::CycleTimeOfCut;
@@ -62,6 +64,8 @@ pub struct Job {
     pub machine: Machine,
     /// The file that the machine was read from, for the report; none where it is built in.
     pub machine_file: Option<String>,
+    /// The geometry that the control compensates, in all cuts.
+    pub compensation: Compensation,
     /// The controller that is asked for.
     #[serde(with = "stored::entry")]
     pub controller: &'static Entry,
@@ -145,7 +149,8 @@ pub struct JobOutcome {
 /// A job whose program was read to its end and has no mistakes.
 #[derive(Debug)]
 pub struct CheckedJob<'a> {
-    job: &'a Job,
+    /// With the geometry that is compensated in its machine.
+    job: Cow<'a, Job>,
     summary: Summary,
     axes: usize,
 }
@@ -157,6 +162,7 @@ impl Job {
             program,
             machine,
             machine_file: None,
+            compensation: Compensation::default(),
             controller: &LQG_IDENTIFIED,
             against: &UNCORRECTED,
             feed_mm_s: None,
@@ -195,13 +201,16 @@ impl Job {
     /// The same where the program was read to its end before.
     ///
     /// # Errors
-    /// Axes that the machine does not have, or a model that does not suit.
+    /// Axes that the machine does not have, a model that does not suit, and a geometry that cannot be compensated.
     pub fn check_read(&self, summary: Summary) -> Result<CheckedJob<'_>, JobError> {
         let axes = axes_that_move(&self.program, &summary, &self.machine)?;
         if let Some(model) = &self.model {
             self.controller.suits(model, &self.machine.known(), axes, &self.choices)?;
         }
-        Ok(CheckedJob { job: self, summary, axes })
+        let machine = self.compensation.on(&self.machine)?;
+        let as_it_is = machine.compensated.is_none() && self.machine.compensated.is_none();
+        let job = if as_it_is { Cow::Borrowed(self) } else { Cow::Owned(Self { machine, ..self.clone() }) };
+        Ok(CheckedJob { job, summary, axes })
     }
 }
 

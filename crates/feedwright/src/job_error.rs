@@ -2,7 +2,7 @@
 
 use feedwright_gcode::{self, CheckError, Program, ReadError, Summary};
 use feedwright_plan::{LimitsError, PathError};
-use feedwright_sim::{Cancelled, Machine, RunError, shown};
+use feedwright_sim::{Cancelled, CompensationError, Machine, RunError, shown};
 use thiserror::Error;
 
 use crate::controllers::ModelMisfit;
@@ -49,6 +49,10 @@ pub enum JobError {
         /// The program.
         part: String,
     },
+    /// The geometry of the machine cannot be compensated.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Geometry(#[from] CompensationError),
     /// The model does not suit.
     #[error(transparent)]
     #[diagnostic(transparent)]

@@ -105,6 +105,7 @@ mod override_time;
 mod fastest;
 mod controllers;
 mod report;
+mod compensation;
 mod job_error;
 mod correct;
 mod job;
@@ -116,6 +117,7 @@ mod linuxcnc_setup;
 pub mod command;
 
 pub use checked_json::{checked, with_check};
+pub use compensation::Compensation;
 pub use controllers::{
     ACCELERATION_GAIN, BASELINE, BEST, CONTROLLERS, Choices, Controllers, CutsUncorrected, Entry, FEEDFORWARD,
     FRICTION_GAIN, Knows, LQG_IDENTIFIED, MAGNITUDE_ONLY, Make, Maker, ModelMisfit, Parameter, ParameterKind,

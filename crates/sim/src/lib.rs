@@ -79,7 +79,7 @@ mod trace;
 mod simulate;
 mod pipeline;
 
-pub use kinematics::joints_of;
+pub use kinematics::{CompensationError, joints_of};
 #[doc(hidden)]
 pub use machine::keys as machine_keys;
 pub use machine::{

@@ -15,8 +15,9 @@ mod statistics;
 
 use std::ffi::OsStr;
 use std::path::Path;
+use std::sync::Arc;
 
-use feedwright_control::{AxisLaw, Periods};
+use feedwright_control::{AxisLaw, KnownGeometry, Periods};
 use feedwright_gcode::input;
 use feedwright_plan::{Durations, PlcEvent};
 use serde::Serialize;
@@ -74,6 +75,9 @@ pub struct Machine {
     /// What random numbers begin with.
     #[serde(skip_serializing_if = "is_default")]
     pub noise: Noise,
+    /// The geometry that its control compensates, by [`Machine::compensating`]; no key of the file.
+    #[serde(skip)]
+    pub compensated: Option<Arc<KnownGeometry<3>>>,
 }
 
 /// How far from square the axes are: table `[geometry]`, all zero without it. Positive where the angle between the positive

@@ -9,7 +9,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use feedwright_control::{Controller, KnownGeometry};
+use feedwright_control::Controller;
 use feedwright_gcode::ReadError;
 use feedwright_gcode::canon::Canon;
 use feedwright_plan::{
@@ -99,7 +99,7 @@ const LAP_SEED_SHIFT: u32 = 32;
 pub struct Run<'a> {
     machine: &'a Machine,
     plant: Option<PlantMaker<'a>>,
-    known: Option<&'a KnownGeometry<3>>,
+    compensates: bool,
     caps: Option<&'a Arc<SpeedCaps>>,
     stages: Stages,
     laps: u32,
@@ -173,7 +173,7 @@ impl<'a> Run<'a> {
         Self {
             machine,
             plant: None,
-            known: None,
+            compensates: true,
             caps: None,
             stages,
             laps: 1,
@@ -208,10 +208,10 @@ impl<'a> Run<'a> {
         Self { stages, ..self }
     }
 
-    /// With the command of the joints that brings the tool onto the path by this geometry; none is that of a machine without errors.
+    /// Without the compensation of the machine: as a control cuts that gets the program alone.
     #[must_use]
-    pub const fn compensated(self, known: Option<&'a KnownGeometry<3>>) -> Self {
-        Self { known, ..self }
+    pub const fn uncompensated(self) -> Self {
+        Self { compensates: false, ..self }
     }
 
     /// With one who is told of the plan of the last lap.
@@ -316,7 +316,8 @@ impl<'a> Run<'a> {
             }
         };
         let mut reference = Reference::new(plan.told_to(self.plan_sink));
-        let known = self.known.map(|known| Box::new(known.of_first::<N>()));
+        let known = self.machine.compensated.as_ref().filter(|_| self.compensates);
+        let known = known.map(|known| Box::new(known.of_first::<N>()));
         let bench = Bench { machine: self.machine, plant: self.plant, known: known.as_deref() };
         let result = simulate(bench, &mut reference, controller, sinks, self.watch)?;
         if let Some(fault) = reference.fault() {

@@ -89,8 +89,15 @@ impl ComparisonOptions {
         let machine = |machine: &Machine| (machine.name.clone(), machine.fingerprint());
         let machines: Vec<_> = self.machines.iter().map(machine).collect();
         let names: Vec<_> = self.controllers.iter().map(|entry| entry.name).collect();
+        let compensated: Vec<_> = self
+            .machines
+            .iter()
+            .filter_map(|machine| machine.compensated.as_ref())
+            .map(|known| format!("{known:?}"))
+            .collect();
         let content = serde_json::json!([
             workpieces,
+            compensated,
             machine(&self.nominal),
             machines,
             names,

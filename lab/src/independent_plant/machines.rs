@@ -256,6 +256,7 @@ impl IndependentMachine {
             plc_events: base.plc_events,
             geometry: Default::default(),
             noise: Default::default(),
+            compensated: None,
         })
     }
 }

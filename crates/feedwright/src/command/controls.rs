@@ -5,6 +5,7 @@ use feedwright_gcode::suggestion::nearest;
 use miette::{Result, miette};
 
 use crate::command::terminal::wrapped;
+use crate::compensation::Compensation;
 use crate::correct::{CorrectOutcome, TARGETS, TargetControl};
 
 /// Largest tolerance that is no slip of the unit, um.
@@ -21,6 +22,11 @@ pub(crate) fn control(name: &str) -> Result<&'static TargetControl> {
             names.join(", ")
         )
     })
+}
+
+/// What is compensated by `--no-geometry`.
+pub(crate) const fn compensation(no_geometry: bool) -> Compensation {
+    if no_geometry { Compensation::Off } else { Compensation::Machine }
 }
 
 /// Fails if a tolerance is not above 0 or exceeds [`MAX_TOLERANCE_UM`].

@@ -231,7 +231,7 @@ impl ExportedCut<'_> {
     /// Cuts a program once; the rows go to sinks.
     pub(super) fn cut(&self, program: &[Step], sinks: &mut [&mut dyn Sink]) -> Result<RunResult, RunError> {
         let aligned = AlignedPaths::new(self.original, program);
-        let run = Run::on(self.machine).stages(self.stages).watched(self.watch);
+        let run = Run::on(self.machine).uncompensated().stages(self.stages).watched(self.watch);
         match self.axes {
             2 => run.cut_aligned::<2>(&aligned, &mut Uncorrected, sinks),
             _ => run.cut_aligned::<3>(&aligned, &mut Uncorrected, sinks),

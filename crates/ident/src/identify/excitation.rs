@@ -41,7 +41,7 @@ pub(super) fn record<const N: usize>(machine: &Machine, excitation: &Excitation,
 
 /// Planned with constant accelerations on every machine: offsets excite the axes more than any plan, and a circle is planned in no time.
 fn cut_on(machine: &Machine) -> Run<'_> {
-    Run::on(machine).stages(Stages::default())
+    Run::on(machine).uncompensated().stages(Stages::default())
 }
 
 /// Cuts all laps one after the other, with offsets in all of them.

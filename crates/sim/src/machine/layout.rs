@@ -87,6 +87,7 @@ pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> R
         noise: root
             .optional_table("noise", &mut faults)
             .map_or(Noise::default(), |table| read_all(keys::NOISE, table, &mut faults)),
+        compensated: None,
     };
     tolerance_with_axes(&machine, in_limits, &mut faults);
     root.finish(&mut faults);

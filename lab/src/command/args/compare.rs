@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use feedwright::command::ReaderArgs;
+use feedwright_sim::{CompensationError, Machine, Squareness};
 
 use crate::compare::{Knowledge, MAX_SEEDS, Shard};
 
@@ -51,6 +52,9 @@ pub(crate) struct CompareArgs {
     /// What controllers are given of the machine; a row for each.
     #[arg(long, value_name = "GIVEN,...", value_enum, value_delimiter = ',', default_values_t = [Given::Own, Given::Identified, Given::TwentyPercentOff, Given::Unseen])]
     pub(crate) knowledge: Vec<Given>,
+    /// Geometry that every control compensates, uncorrected or not.
+    #[arg(long, value_name = "GEOMETRY", value_enum, default_value_t = Compensated::None)]
+    pub(crate) geometry: Compensated,
     /// Do only the i-th of n parts of the work; --merge puts the parts together.
     #[arg(long, value_name = "I/N", conflicts_with_all = ["json", "html", "merge"])]
     pub(crate) shard: Option<Shard>,
@@ -96,6 +100,40 @@ pub(crate) enum Work {
     Development,
     /// Contours turned and scaled, and random programs, whose seeds were drawn after everything was tuned.
     HeldOut,
+}
+
+/// What geometry a control compensates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Compensated {
+    /// None.
+    None,
+    /// What the machine file states: scale, pitch and squareness.
+    Known,
+    /// The same with wrong signs.
+    Opposite,
+}
+
+impl Compensated {
+    /// The machine with such a control.
+    pub(crate) fn on(self, machine: &Machine) -> Result<Machine, CompensationError> {
+        match self {
+            Self::None => Ok(machine.clone()),
+            Self::Known => machine.compensating_own(),
+            Self::Opposite => {
+                let mut opposite = machine.clone();
+                for axis in &mut opposite.axes {
+                    (axis.scale_um_m, axis.pitch_error_um) = (-axis.scale_um_m, -axis.pitch_error_um);
+                }
+                let Squareness { squareness_xy_urad, squareness_xz_urad, squareness_yz_urad } = machine.geometry;
+                opposite.geometry = Squareness {
+                    squareness_xy_urad: -squareness_xy_urad,
+                    squareness_xz_urad: -squareness_xz_urad,
+                    squareness_yz_urad: -squareness_yz_urad,
+                };
+                Ok(Machine { compensated: opposite.compensating_own()?.compensated, ..machine.clone() })
+            }
+        }
+    }
 }
 
 /// What controllers are given of a machine.

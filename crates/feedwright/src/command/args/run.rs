@@ -29,6 +29,10 @@ pub struct RunArgs {
     /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
     #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE)]
     pub(crate) machine: OsString,
+    /// Leave scale, pitch and squareness of the machine file uncompensated. Without this option the command leads the axes beside their
+    /// positions, so that the tool is on the path.
+    #[arg(long)]
+    pub(crate) no_geometry: bool,
     /// Controller that corrects the command; `feedwright controllers` lists them.
     #[arg(long, value_name = "NAME", default_value = crate::controllers::BEST)]
     pub(crate) controller: String,

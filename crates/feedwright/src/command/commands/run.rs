@@ -17,7 +17,7 @@ use miette::{Result, miette};
 use crate::command::args::run::RunArgs;
 use crate::command::console::Console;
 use crate::command::controllers::{find, settings};
-use crate::command::controls::control;
+use crate::command::controls::{compensation, control};
 use crate::command::date::today;
 use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell, tell_assumed_limits, warn};
 use crate::command::progress::Bar;
@@ -131,6 +131,7 @@ fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
     let mut job = Job::new(Program::in_file(&args.part), machine);
     job.machine_file = machine_file.as_deref().map(input::name);
     (job.controller, job.against) = (controller, against);
+    job.compensation = compensation(args.no_geometry);
     job.feed_mm_s = args.feed;
     job.choices = Choices { seed: args.seed, set, tries: true, ..Choices::default() };
     let recorded =
