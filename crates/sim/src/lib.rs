@@ -37,6 +37,7 @@
 //! | Rows | [`Sink`], [`Row`], [`Commanded`], [`Outcome`], [`FadedOut`], [`Transition`], [`CorrectionChange`] |
 //! | CSV | [`TraceWriter`], [`SetpointWriter`] |
 //! | Machine files | [`Machine`], [`Axis`], [`Limits`], [`Period`], [`Transmission`], [`Noise`], [`MachineError`] |
+//! | Geometry files | [`GeometryFile`], [`GeometryCheck`], [`GeometryRefused`], [`MeasuredSet`] |
 //! | Built-in machines | [`BUILT_IN_MACHINES`], [`DEFAULT_MACHINE`] |
 //! | What a controller may know | [`Known`], [`KnownAxis`] |
 //! | Plant | [`Plant`], [`Measurement`]; another one in its place: [`Mechanism`], [`PlantMaker`] |
@@ -63,7 +64,7 @@
 //! # Layers
 //!
 //! The `mod` lines stand in the order in which data flows; each module uses only those above it.
-//! `machine` reads machine files, `reference` looks the plan up by time, `plant` is the simulated
+//! `machine` reads machine files, `geometry_file` measured geometry, `reference` looks the plan up by time, `plant` is the simulated
 //! machine, `trace` takes the rows, `simulate` closes the loop, and `pipeline` joins all stages.
 
 #![warn(clippy::disallowed_methods)]
@@ -72,6 +73,7 @@ mod watch;
 mod number;
 pub mod toml_file;
 mod machine;
+mod geometry_file;
 mod kinematics;
 mod reference;
 mod plant;
@@ -79,6 +81,10 @@ mod trace;
 mod simulate;
 mod pipeline;
 
+pub use geometry_file::check::{CHECK_ERROR_RATE, GeometryCheck, GeometryRefused};
+pub use geometry_file::least_squares::{LeastSquares, f_exceeded};
+pub use geometry_file::observation::{MeasuredPlace, MeasuredSet, NUISANCES, Observation};
+pub use geometry_file::{AxisGeometry, GEOMETRY_FORMAT, GeometryFile, GeometryOrigin, MeasuredSquareness};
 pub use kinematics::{CompensationError, joints_of};
 #[doc(hidden)]
 pub use machine::keys as machine_keys;

@@ -53,7 +53,7 @@ pub enum Value<T> {
 }
 
 /// `field, unit, least, most`; `optional field` is an `Option`, `field or zero` has that where it is left out; `whole field`,
-/// `numbers field` and `text field` are of those kinds; `flag field` is 0 or 1, and 0 where it is left out.
+/// `numbers field`, `text field` and `optional text field` are of those kinds; `flag field` is 0 or 1, and 0 where it is left out.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! key {
@@ -82,6 +82,9 @@ macro_rules! key {
     };
     (numbers $field:ident, $unit:literal, $least:expr, $most:expr) => {
         key!(@ $field, $unit, [$least, $most], false, Numbers, |part| &part.$field, |part, value| part.$field = value)
+    };
+    (optional text $field:ident) => {
+        key!(@ $field, "", [0.0, 0.0], true, Text, |part| &part.$field, |part, value| part.$field = value)
     };
     (text $field:ident) => {
         key!(@ $field, "", [0.0, 0.0], false, Text, |part| &part.$field, |part, value| part.$field = value)
@@ -134,11 +137,18 @@ pub fn write<T>(keys: &[Key<T>], part: &T) -> String {
             Value::Number { get, .. } => format!("{:?}", get(part)?),
             Value::Whole { get, .. } => get(part)?.to_string(),
             Value::Numbers { get, .. } => array(Some(get(part)).filter(|numbers| !numbers.is_empty())?),
-            Value::Text { get, .. } => quoted(get(part)),
+            Value::Text { get, .. } => quoted(Some(get(part)).filter(|text| !(key.optional && text.is_empty()))?),
         };
         Some(format!("{} = {value}\n", key.name))
     };
     keys.iter().filter_map(line).collect()
+}
+
+/// A line of rows of numbers, a row in a line; nothing where there is none.
+pub(crate) fn write_rows<'r>(name: &str, rows: impl IntoIterator<Item = &'r [f64]>) -> String {
+    let row = |row: &[f64]| row.iter().map(|number| format!("{number:?}")).collect::<Vec<_>>().join(", ");
+    let lines: String = rows.into_iter().map(|numbers| format!("    [{}],\n", row(numbers))).collect();
+    if lines.is_empty() { lines } else { format!("{name} = [\n{lines}]\n") }
 }
 
 fn array(numbers: &[f64]) -> String {

@@ -15,6 +15,9 @@ use crate::number::shown;
 /// Most faults that are listed for one array; the last of them counts the others.
 const FAULTS_OF_AN_ARRAY: usize = 3;
 
+/// Largest number of a row, of whatever unit: a file of measurements has none above.
+const ROW_LIMIT: f64 = 1e9;
+
 /// A table under reading.
 pub struct Table<'t, 'i> {
     /// Dotted name, empty for the file itself.
@@ -107,6 +110,35 @@ impl<'t, 'i> Table<'t, 'i> {
         }
         faults.extend(wrong);
         Vec::new()
+    }
+
+    /// Rows of `width` numbers within 1e9, `[[1, 2], [3, 4]]`; empty where the key is missing, and with faults where a row is no such row.
+    pub(crate) fn rows(&mut self, key: &'static str, width: usize, faults: &mut Vec<Fault>) -> Vec<Vec<f64>> {
+        self.asked.push(key);
+        let Some(value) = self.value(key) else { return Vec::new() };
+        let Some(array) = value.get_ref().as_array() else {
+            faults.push(wrong_type(value.span(), key, "rows of numbers in brackets", value.get_ref()));
+            return Vec::new();
+        };
+        let mut rows = Vec::new();
+        for (at, row) in array.iter().enumerate() {
+            let named = format!("{key}, row {}", at + 1);
+            let numbers = row.get_ref().as_array().filter(|row| row.len() == width);
+            let numbers: Option<Result<Vec<f64>, Fault>> = numbers
+                .map(|row| row.iter().map(|value| number(value, key, &named, "", &(-ROW_LIMIT..=ROW_LIMIT))).collect());
+            match numbers {
+                Some(Ok(numbers)) => rows.push(numbers),
+                Some(Err(fault)) => faults.push(fault),
+                None => {
+                    let message = format!("{named} has to be {width} numbers in brackets");
+                    faults.push(Fault { at: row.span(), label: "no such row", message, hint: None });
+                }
+            }
+            if faults.len() >= FAULTS_OF_AN_ARRAY {
+                break;
+            }
+        }
+        rows
     }
 
     /// A text that is not blank; empty and a fault where it is.
