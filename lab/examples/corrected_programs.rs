@@ -39,7 +39,7 @@ fn mean(machine: &Machine, original: &[Step], program: &[Step], axes: usize) -> 
     for seed in 0..CUTS {
         let machine = machine.with_noise_seed(100 + seed);
         let stages = TARGETS[0].stages(&machine);
-        let cut = ExportedCut { machine: &machine, stages, original, axes, watch: &() };
+        let cut = ExportedCut { machine: &machine, tool: None, stages, original, axes, watch: &() };
         let now =
             cut.once(program, seed as f64 / CUTS as f64 / machine.axes[0].disturbance_hz.max(1.0)).expect("a cut");
         sum.rms_um += now.rms_um / CUTS as f64;

@@ -1,28 +1,131 @@
-//! Which geometry of a machine its control compensates.
+//! Which geometry of a machine its control compensates, and how well it is known.
 
-use feedwright_sim::{CompensationError, Machine};
+use std::io;
+
+use feedwright_sim::{GeometryFile, Machine, Row, Sink};
 use serde::{Deserialize, Serialize};
 
-/// What is known of the errors that no encoder sees: scale, pitch and squareness.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+use crate::job_error::JobError;
+use crate::report::CompensatedGeometry;
+
+/// What is known of the errors that no encoder sees.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Compensation {
     /// Nothing is compensated.
     Off,
-    /// What the machine file states.
+    /// Scale, pitch and squareness as the machine file states them.
     #[default]
     Machine,
+    /// What a geometry file states, whatever the machine file says.
+    File(Box<NamedGeometry>),
+}
+
+/// A geometry file and its name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NamedGeometry {
+    /// What messages call it.
+    pub name: String,
+    /// What it states.
+    #[serde(with = "text")]
+    pub geometry: GeometryFile,
+}
+
+/// A geometry as the text of its file.
+mod text {
+    use feedwright_sim::GeometryFile;
+    use serde::de::{Deserialize, Deserializer, Error};
+    use serde::ser::Serializer;
+
+    pub(super) fn serialize<S: Serializer>(geometry: &GeometryFile, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&geometry.text())
+    }
+
+    pub(super) fn deserialize<'d, D: Deserializer<'d>>(deserializer: D) -> Result<GeometryFile, D::Error> {
+        GeometryFile::parse("geometry", &String::deserialize(deserializer)?).map_err(Error::custom)
+    }
 }
 
 impl Compensation {
-    /// The machine with a control that compensates it.
+    /// The machine with a control that compensates it, for a part with these least and greatest positions, mm.
     ///
     /// # Errors
-    /// A geometry that is out of its range.
-    pub fn on(self, machine: &Machine) -> Result<Machine, CompensationError> {
-        match self {
-            Self::Off => Ok(Machine { compensated: None, ..machine.clone() }),
-            Self::Machine => machine.compensating_own(),
+    /// A geometry that is out of its range, does not suit the machine or the part, or does not pass its own check.
+    pub fn on(&self, machine: &Machine, box_mm: [[f64; 3]; 2]) -> Result<Machine, JobError> {
+        Ok(match self {
+            Self::Off => Machine { compensated: None, ..machine.clone() },
+            Self::Machine => machine.compensating_own()?,
+            Self::File(file) => {
+                file.geometry.check()?;
+                file.geometry.suits(machine, box_mm)?;
+                machine.compensating(file.geometry.known()?)?
+            }
+        })
+    }
+
+    /// What the report says of it; none where nothing is compensated.
+    pub(crate) fn reported(&self, machine: &Machine, spread: &SpreadMeter<'_>) -> Option<CompensatedGeometry> {
+        machine.compensated.as_ref()?;
+        let there = |terms: &[(&'static str, bool)]| -> Vec<&'static str> {
+            terms.iter().filter(|(_, there)| *there).map(|(term, _)| *term).collect()
+        };
+        let (from, terms) = match self {
+            Self::Off => return None,
+            Self::Machine => {
+                let square = machine.geometry != feedwright_sim::Squareness::default();
+                let scale = machine.axes.iter().any(|axis| axis.scale_um_m != 0.0);
+                let pitch = machine.axes.iter().any(|axis| axis.pitch_error_um != 0.0);
+                (None, there(&[("scale", scale), ("pitch", pitch), ("squareness", square)]))
+            }
+            Self::File(file) => {
+                let axes = &file.geometry.axes;
+                let terms = there(&[
+                    ("scale", axes.iter().any(|axis| axis.scale_um_m != 0.0)),
+                    ("pitch", axes.iter().any(|axis| axis.pitch_error_um != 0.0)),
+                    ("positions", axes.iter().any(|axis| !axis.table.is_empty())),
+                    ("straightness", axes.iter().flat_map(|axis| &axis.straightness).any(|table| !table.is_empty())),
+                    ("squareness", file.geometry.squareness != feedwright_sim::MeasuredSquareness::default()),
+                ]);
+                (Some(file.name.clone()), terms)
+            }
+        };
+        let [spread_rms_um, spread_max_um] = spread.finish().map_or([None; 2], |spread_um| spread_um.map(Some));
+        Some(CompensatedGeometry { from, terms, spread_rms_um, spread_max_um })
+    }
+
+    /// Takes the rows of a cut.
+    pub(crate) fn spread_meter(&self) -> SpreadMeter<'_> {
+        let geometry = match self {
+            Self::File(file) if file.geometry.states_spread() => Some(&file.geometry),
+            _ => None,
+        };
+        SpreadMeter { geometry, square_sum_um2: 0.0, max_um: 0.0, rows: 0 }
+    }
+}
+
+/// Standard deviation of the tool along a cut, by those of a geometry file.
+pub(crate) struct SpreadMeter<'a> {
+    geometry: Option<&'a GeometryFile>,
+    square_sum_um2: f64,
+    max_um: f64,
+    rows: u64,
+}
+
+impl SpreadMeter<'_> {
+    /// Its root mean square and its largest value, um; none where no standard deviations are stated or nothing cuts.
+    fn finish(&self) -> Option<[f64; 2]> {
+        (self.rows > 0).then(|| [(self.square_sum_um2 / self.rows as f64).sqrt(), self.max_um])
+    }
+}
+
+impl Sink for SpreadMeter<'_> {
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        if let (Some(geometry), true) = (self.geometry, row.cutting) {
+            let um = geometry.spread_um(row.foot_mm, row.tangent);
+            self.square_sum_um2 += um * um;
+            self.max_um = self.max_um.max(um);
+            self.rows += 1;
         }
+        Ok(())
     }
 }

@@ -67,6 +67,7 @@ pub(crate) mod advise;
 use feedwright_gcode::{Program, Settings};
 use feedwright_sim::{Machine, Watch};
 
+use crate::compensation::Compensation;
 use crate::job_error::{JobError, axes_that_move};
 use exported::ExportedCut;
 pub use nominal::deterministic;
@@ -88,6 +89,8 @@ pub struct CorrectJob {
     pub machine: Machine,
     /// What the correction believes of the machine; none is the machine itself.
     pub believed: Option<Machine>,
+    /// The geometry that the program compensates.
+    pub compensation: Compensation,
     /// The control that the corrected program is for.
     pub target: &'static TargetControl,
     /// Replaces every programmed feedrate, mm/s.
@@ -99,13 +102,21 @@ pub struct CorrectJob {
 impl CorrectJob {
     /// Corrects a program for a control, as the machine is and with the feedrates of the program.
     pub fn new(program: Program, machine: Machine, target: &'static TargetControl) -> Self {
-        Self { program, machine, believed: None, target, feed_mm_s: None, reader: Settings::default() }
+        Self {
+            program,
+            machine,
+            believed: None,
+            compensation: Compensation::default(),
+            target,
+            feed_mm_s: None,
+            reader: Settings::default(),
+        }
     }
 
     /// Corrects it and verifies the text.
     ///
     /// # Errors
-    /// A program with mistakes, more axes than the machine has, or an end from outside.
+    /// A program with mistakes, more axes than the machine has, a geometry that cannot be compensated, or an end from outside.
     pub fn run(&self, watch: &dyn Watch) -> Result<CorrectOutcome, JobError> {
         watch.begin("reading the program", 1);
         let summary = self.program.check(self.reader.clone())?;
@@ -115,10 +126,12 @@ impl CorrectJob {
         let original = steps_of(&source.steps).map_err(path_error)?;
         let nominal = deterministic(self.believed.as_ref().unwrap_or(&self.machine));
         let stages = self.target.stages(&self.machine);
-        let on = |machine| ExportedCut { machine, stages, original: &original, axes, watch };
+        let compensated = self.compensation.on(&self.machine, summary.box_mm)?.compensated;
+        let on = |machine| ExportedCut { machine, tool: None, stages, original: &original, axes, watch };
         let of_run = |error| JobError::of_run(&self.program, error);
         let parts = parts(&source.steps);
-        let found = rounds(&on(&nominal), &parts, self.target).map_err(of_run)?;
+        let believed = ExportedCut { tool: compensated.as_ref(), ..on(&nominal) };
+        let found = rounds(&believed, &parts, self.target).map_err(of_run)?;
         watch.begin("cutting the uncorrected program", 1);
         let uncorrected = on(&self.machine).figures(&original).map_err(of_run)?;
         let written = self.written(&source, &parts, &found);

@@ -47,7 +47,7 @@ pub use crate::job_error::JobError;
 use crate::job_error::axes_that_move;
 use crate::measured::{MeasuredRun, measured};
 use crate::report::harm::Harm;
-use crate::report::{FullCircle, Report, ReportedRun, full_circles};
+use crate::report::{CompensatedGeometry, FullCircle, Report, ReportedRun, full_circles};
 use record::{RunRecord, Timeline};
 
 /// A program, a machine, two controllers, and what is wanted of the cuts.
@@ -201,13 +201,13 @@ impl Job {
     /// The same where the program was read to its end before.
     ///
     /// # Errors
-    /// Axes that the machine does not have, a model that does not suit, and a geometry that cannot be compensated.
+    /// Axes that the machine does not have, a model that does not suit, and a geometry that cannot be compensated or does not suit.
     pub fn check_read(&self, summary: Summary) -> Result<CheckedJob<'_>, JobError> {
         let axes = axes_that_move(&self.program, &summary, &self.machine)?;
         if let Some(model) = &self.model {
             self.controller.suits(model, &self.machine.known(), axes, &self.choices)?;
         }
-        let machine = self.compensation.on(&self.machine)?;
+        let machine = self.compensation.on(&self.machine, summary.box_mm)?;
         let as_it_is = machine.compensated.is_none() && self.machine.compensated.is_none();
         let job = if as_it_is { Cow::Borrowed(self) } else { Cow::Owned(Self { machine, ..self.clone() }) };
         Ok(CheckedJob { job, summary, axes })
@@ -277,14 +277,16 @@ impl Job {
             circles: &circles,
             looked_at: looked_at.as_ref().map(|cycle| cycle as &dyn PlanSink),
         };
-        let Cuts { mut runs, without_identification, learned } = self.cut_with_each::<N>(summary, plan, rows, watch)?;
+        let Cuts { mut runs, without_identification, learned, geometry } =
+            self.cut_with_each::<N>(summary, plan, rows, watch)?;
         let band = runs.last().map_or(Ok(None), |run| self.band::<N>(plan, &run.summary, watch))?;
         let completed = runs.last().is_some_and(|run| run.summary.outcome == Outcome::Completed);
         let cycle = looked_at.filter(|_| completed).map(CycleTimeOfCut::finish);
         let log_findings = self.insert_measured(&mut runs, N, &circles, watch)?;
         let exported = self.push_exported(&mut runs, &circles, watch)?;
         let limits = self.limit_band(machine, fastest.as_ref().map(|plan| &plan.cycle).or(cycle.as_ref()), watch)?;
-        let report = Report { limits, band, ..self.report(N, summary, circles, runs, &without_identification)? };
+        let report =
+            Report { limits, band, geometry, ..self.report(N, summary, circles, runs, &without_identification)? };
         let exported_well = exported.as_ref().is_none_or(|outcome| outcome.refusal.is_none());
         Ok(JobOutcome {
             harm: report.harm(),
@@ -400,9 +402,14 @@ impl Job {
                     controller
                 }
             };
-            let rows: &mut [&mut dyn Sink] = if judged { &mut *rows } else { &mut [] };
+            let mut spread = self.compensation.spread_meter();
+            let mut sinks: Vec<&mut dyn Sink> = vec![&mut spread];
+            if judged {
+                sinks.extend(rows.iter_mut().map(|sink| &mut **sink as &mut dyn Sink));
+            }
             let plan = PlannedCut { looked_at: plan.looked_at.filter(|_| judged), ..plan };
-            cuts.runs.push(self.cut_once(summary, entry, &mut *controller, plan, rows, watch)?);
+            cuts.runs.push(self.cut_once(summary, entry, &mut *controller, plan, &mut sinks, watch)?);
+            cuts.geometry = self.compensation.reported(&self.machine, &spread);
             if let (Some(model), Some(date)) = (self.model.as_ref().filter(|_| judged), &self.learned_on) {
                 cuts.learned = self.learned(model, &*controller, date);
             }
@@ -522,6 +529,7 @@ struct Cuts {
     /// For which controllers nothing was identified.
     without_identification: Vec<CutsUncorrected>,
     learned: Option<Model>,
+    geometry: Option<CompensatedGeometry>,
 }
 
 /// What a cut is made by, besides the controller.

@@ -2,7 +2,7 @@
 
 use feedwright_gcode::{self, CheckError, Program, ReadError, Summary};
 use feedwright_plan::{LimitsError, PathError};
-use feedwright_sim::{Cancelled, CompensationError, Machine, RunError, shown};
+use feedwright_sim::{Cancelled, CompensationError, GeometryRefused, Machine, RunError, shown};
 use thiserror::Error;
 
 use crate::controllers::ModelMisfit;
@@ -53,6 +53,10 @@ pub enum JobError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Geometry(#[from] CompensationError),
+    /// The geometry does not pass the check of its own measurement.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    GeometryRefused(#[from] GeometryRefused),
     /// The model does not suit.
     #[error(transparent)]
     #[diagnostic(transparent)]

@@ -105,8 +105,8 @@ mod override_time;
 mod fastest;
 mod controllers;
 mod report;
-mod compensation;
 mod job_error;
+mod compensation;
 mod correct;
 mod job;
 mod log_job;
@@ -117,7 +117,7 @@ mod linuxcnc_setup;
 pub mod command;
 
 pub use checked_json::{checked, with_check};
-pub use compensation::Compensation;
+pub use compensation::{Compensation, NamedGeometry};
 pub use controllers::{
     ACCELERATION_GAIN, BASELINE, BEST, CONTROLLERS, Choices, Controllers, CutsUncorrected, Entry, FEEDFORWARD,
     FRICTION_GAIN, Knows, LQG_IDENTIFIED, MAGNITUDE_ONLY, Make, Maker, ModelMisfit, Parameter, ParameterKind,
@@ -152,8 +152,8 @@ pub use report::harm::{CutErrors, ErrorChange, Harm, MAX_UM, RMS_UM, UNCUT_UM, h
 pub use report::plain_page::{PagePart, write_foot, write_head, write_table_end, write_table_head};
 pub use report::text::{escaped, number};
 pub use report::{
-    Assumptions, Band, BandErrors, ErrorSpectrum, FullCircle, Histogram, LawKnowledge, LimitBand, ProgramLine, Report,
-    ReportedRun, Roundness, RunFacts, RunSummary, Series, SeriesPoint, SpectrumBand, Statistics, TimelineEvent,
-    WorstPlace, write_html,
+    Assumptions, Band, BandErrors, CompensatedGeometry, ErrorSpectrum, FullCircle, Histogram, LawKnowledge, LimitBand,
+    ProgramLine, Report, ReportedRun, Roundness, RunFacts, RunSummary, Series, SeriesPoint, SpectrumBand, Statistics,
+    TimelineEvent, WorstPlace, write_html,
 };
 pub use results_format::RESULTS_FORMAT;

@@ -24,11 +24,13 @@ mod summary;
 mod statistics;
 mod assumptions;
 mod band;
+mod compensated;
 
 pub use assumptions::{Assumptions, LawKnowledge};
 pub use band::{Band, BandErrors};
 pub use circles::{FullCircle, Roundness};
 pub(crate) use circles::{RadialDeviations, full_circles};
+pub use compensated::CompensatedGeometry;
 pub use error_spectrum::{ErrorSpectrum, SpectrumBand};
 pub use histogram::Histogram;
 pub use html::write_html;
@@ -56,6 +58,8 @@ pub struct Report {
     pub settings: Vec<(String, String)>,
     /// What the figures rest on.
     pub assumed: Assumptions,
+    /// The geometry that is compensated; none where nothing is.
+    pub geometry: Option<CompensatedGeometry>,
     /// Lines of the program, in their order; not all of a long one.
     pub program: Vec<ProgramLine>,
     /// The full circles of the program.

@@ -75,6 +75,7 @@ pub mod toml_file;
 mod machine;
 mod geometry_file;
 mod kinematics;
+mod known_geometry;
 mod reference;
 mod plant;
 mod trace;
@@ -85,7 +86,8 @@ pub use geometry_file::check::{CHECK_ERROR_RATE, GeometryCheck, GeometryRefused}
 pub use geometry_file::least_squares::{LeastSquares, f_exceeded};
 pub use geometry_file::observation::{MeasuredPlace, MeasuredSet, NUISANCES, Observation};
 pub use geometry_file::{AxisGeometry, GEOMETRY_FORMAT, GeometryFile, GeometryOrigin, MeasuredSquareness};
-pub use kinematics::{CompensationError, joints_of};
+pub use kinematics::joints_of;
+pub use known_geometry::CompensationError;
 #[doc(hidden)]
 pub use machine::keys as machine_keys;
 pub use machine::{

@@ -15,7 +15,7 @@
 //! | `plant/nonideal.rs` | an axis with all of it |
 //!
 //! What a controller may have to predict of a drive and of friction stands in [`feedwright_control::axis`], the geometry that no encoder
-//! sees in [`crate::kinematics`].
+//! sees in [`feedwright_control::KnownGeometry`].
 //!
 //! Source: Lee, Cho and Jeon (2005), section 4, Table 1 and Fig. 6; the values that the paper leaves open stand, with their reasons, in
 //! the machine file.

@@ -2,6 +2,7 @@
 
 pub(crate) mod reader;
 pub(crate) mod feed;
+pub(crate) mod geometry;
 pub(crate) mod correct;
 pub(crate) mod advise;
 pub(crate) mod run;

@@ -1,11 +1,14 @@
 //! Controls that programs are for, by name, and what is told of a corrected program.
 use std::io::{self, Write};
 
+use feedwright_gcode::input;
 use feedwright_gcode::suggestion::nearest;
+use feedwright_sim::GeometryFile;
 use miette::{Result, miette};
 
+use crate::command::args::geometry::GeometryArgs;
 use crate::command::terminal::wrapped;
-use crate::compensation::Compensation;
+use crate::compensation::{Compensation, NamedGeometry};
 use crate::correct::{CorrectOutcome, TARGETS, TargetControl};
 
 /// Largest tolerance that is no slip of the unit, um.
@@ -24,9 +27,16 @@ pub(crate) fn control(name: &str) -> Result<&'static TargetControl> {
     })
 }
 
-/// What is compensated by `--no-geometry`.
-pub(crate) const fn compensation(no_geometry: bool) -> Compensation {
-    if no_geometry { Compensation::Off } else { Compensation::Machine }
+/// What is compensated by `--geometry` and `--no-geometry`.
+pub(crate) fn compensation(args: &GeometryArgs) -> Result<Compensation> {
+    Ok(match &args.geometry {
+        _ if args.no_geometry => Compensation::Off,
+        None => Compensation::Machine,
+        Some(path) => {
+            let geometry = GeometryFile::read(path)?;
+            Compensation::File(Box::new(NamedGeometry { name: input::name(path), geometry }))
+        }
+    })
 }
 
 /// Fails if a tolerance is not above 0 or exceeds [`MAX_TOLERANCE_UM`].

@@ -36,24 +36,30 @@ pub(crate) struct ProgramInputs<'a> {
     part: &'a Path,
     machine: &'a Path,
     tools: Option<&'a Path>,
+    geometry: Option<&'a Path>,
 }
 
 impl<'a> ProgramInputs<'a> {
     /// Those that these arguments name.
     pub(crate) fn of(part: &'a Path, machine: &'a (impl AsRef<OsStr> + ?Sized), reader: &'a ReaderArgs) -> Self {
-        Self { part, machine: Path::new(machine), tools: reader.tool_table.as_deref() }
+        Self { part, machine: Path::new(machine), tools: reader.tool_table.as_deref(), geometry: None }
+    }
+
+    /// The same with a geometry file, where there is one.
+    pub(crate) const fn with_geometry(self, geometry: Option<&'a Path>) -> Self {
+        Self { geometry, ..self }
     }
 
     /// As [`check_inputs`].
     pub(crate) fn check(&self, console: &Console) -> Result<()> {
-        let named = [("the program", Some(self.part)), ("--machine", Some(self.machine)), ("--tool-table", self.tools)];
-        check_inputs(console, named)
+        let named = [("the program", Some(self.part)), ("--machine", Some(self.machine))];
+        check_inputs(console, named.into_iter().chain([("--tool-table", self.tools), ("--geometry", self.geometry)]))
     }
 
     /// Outputs that are none of these files.
     pub(crate) fn outputs(&self) -> OutputFiles {
         let machine = Some(self.machine).filter(|path| is_machine_path(path));
-        OutputFiles::new([Some(self.part), machine, self.tools].into_iter().flatten())
+        OutputFiles::new([Some(self.part), machine, self.tools, self.geometry].into_iter().flatten())
     }
 }
 

@@ -16,6 +16,7 @@ use serde::Serialize;
 use super::source::SourceProgram;
 use super::stretches::{ProgramPart, SmoothStretch, parts, stretches};
 use super::target::TargetControl;
+use crate::compensation::Compensation;
 use crate::controllers::{Choices, Entry, LQG_IDENTIFIED, Make, Setup};
 use crate::job_error::{JobError, axes_that_move};
 pub use feed_cuts::ErrorPlace;
@@ -36,6 +37,8 @@ pub struct AdviseJob {
     pub controller: &'static Entry,
     /// Settings of the controller.
     pub choices: Choices,
+    /// The geometry that is compensated, in the corrected program and in the cut with feedback.
+    pub compensation: Compensation,
     /// Largest contour error, um.
     pub tolerance_um: f64,
     /// Settings of the reader.
@@ -163,6 +166,7 @@ impl AdviseJob {
             target,
             controller: &LQG_IDENTIFIED,
             choices: Choices::default(),
+            compensation: Compensation::default(),
             tolerance_um,
             reader: Settings::default(),
         }
@@ -171,16 +175,17 @@ impl AdviseJob {
     /// Finds the feedrates.
     ///
     /// # Errors
-    /// A program with mistakes or without a feed motion, more axes than the machine has, or an end from outside.
+    /// A program with mistakes or without a feed motion, more axes than the machine has, a geometry that cannot be compensated, or an end from outside.
     pub fn run(&self, watch: &dyn Watch) -> Result<Advice, JobError> {
         watch.begin("reading the program", 1);
         let summary = self.program.check(self.reader.clone())?;
         let axes = axes_that_move(&self.program, &summary, &self.machine)?;
         let source = SourceProgram::read(&self.program, &self.reader, None)?;
         let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
+        let job = Self { machine: self.compensation.on(&self.machine, summary.box_mm)?, ..self.clone() };
         let found = match axes {
-            2 => self.of_axes::<2>(&source, watch),
-            _ => self.of_axes::<3>(&source, watch),
+            2 => job.of_axes::<2>(&source, watch),
+            _ => job.of_axes::<3>(&source, watch),
         };
         Ok(Advice { warnings, ..found? })
     }

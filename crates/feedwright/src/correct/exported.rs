@@ -2,11 +2,15 @@
 //!
 //! What disturbs has another phase, and noise other random numbers, each time a part is cut. So it is cut several times, with a rest before the start
 //! that is another part of a period of the disturbance, and with other seeds.
-use feedwright_control::Uncorrected;
+use std::sync::Arc;
+
+use feedwright_control::{KnownGeometry, Uncorrected};
 use feedwright_gcode::canon::{Event, EventKind};
 use feedwright_plan::vector::{Vector, sub};
 use feedwright_plan::{AlignedPaths, Step};
-use feedwright_sim::{Commanded, Machine, Outcome, Row, Run, RunError, RunResult, Sink, Stages, Watch};
+use feedwright_sim::{
+    Commanded, Machine, Measurement, Mechanism, Outcome, Plant, Row, Run, RunError, RunResult, Sink, Stages, Watch,
+};
 use serde::Serialize;
 
 use crate::report::Statistics;
@@ -143,10 +147,33 @@ fn path_steps(program: &[Step]) -> u64 {
     program.iter().filter(|step| matches!(step, Step::Piece(_))).count() as u64
 }
 
+/// A machine whose tool is where a geometry puts it.
+struct ToolOf {
+    plant: Plant<3>,
+    known: Arc<KnownGeometry<3>>,
+}
+
+impl Mechanism for ToolOf {
+    fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3> {
+        let measurement = self.plant.step(command_mm);
+        Measurement { position_mm: self.known.tool_mm(measurement.joint_mm), ..measurement }
+    }
+
+    fn skip(&mut self, periods: u64) {
+        self.plant.skip(periods);
+    }
+
+    fn has_geometry(&self) -> bool {
+        true
+    }
+}
+
 /// A program beside the original.
 pub struct ExportedCut<'a> {
     /// The machine that cuts it.
     pub machine: &'a Machine,
+    /// Where its tool is, in place of what the machine file says of it.
+    pub tool: Option<&'a Arc<KnownGeometry<3>>>,
     /// How the control plans.
     pub stages: Stages,
     /// The path that errors are measured to.
@@ -231,7 +258,15 @@ impl ExportedCut<'_> {
     /// Cuts a program once; the rows go to sinks.
     pub(super) fn cut(&self, program: &[Step], sinks: &mut [&mut dyn Sink]) -> Result<RunResult, RunError> {
         let aligned = AlignedPaths::new(self.original, program);
+        let plant = |start_mm: [f64; 3], seed: u64| -> Box<dyn Mechanism> {
+            let plant = Plant::<3>::with_seed(self.machine, start_mm, seed);
+            match self.tool {
+                Some(known) => Box::new(ToolOf { plant, known: Arc::clone(known) }),
+                None => Box::new(plant),
+            }
+        };
         let run = Run::on(self.machine).uncompensated().stages(self.stages).watched(self.watch);
+        let run = if self.tool.is_some() { run.plant(&plant) } else { run };
         match self.axes {
             2 => run.cut_aligned::<2>(&aligned, &mut Uncorrected, sinks),
             _ => run.cut_aligned::<3>(&aligned, &mut Uncorrected, sinks),

@@ -3,8 +3,9 @@
 //!
 //! Loops, masses, friction and the ball screw stay. Random effects are left out, and so are effects
 //! with an unknown phase or position: the disturbance, noise and steps of the encoder, jitter,
-//! cogging, ripple, and geometry errors that the encoders cannot see. A program that compensates
-//! one phase of them adds an error to the next cut.
+//! cogging and ripple. A program that compensates one phase of them adds an error to the next cut.
+//! Geometry errors of the machine file are left out too: the tool is where the geometry that is
+//! compensated puts it.
 
 use feedwright_sim::{Axis, Machine, Noise, Squareness};
 

@@ -20,6 +20,7 @@ impl Job {
         let job = CorrectJob {
             feed_mm_s: self.feed_mm_s,
             reader: self.reader.clone(),
+            compensation: self.compensation.clone(),
             ..CorrectJob::new(self.program.clone(), self.machine.clone(), target)
         };
         let outcome = job.run(watch)?;
@@ -41,6 +42,7 @@ impl Job {
         let stages = target.stages(&self.machine);
         let cut = ExportedCut {
             machine: &self.machine,
+            tool: None,
             stages,
             original: &outcome.original_steps,
             axes: outcome.axes,

@@ -71,6 +71,7 @@ impl Job {
             machine: describe(&self.machine),
             settings,
             assumed: self.assumptions(axes, unidentified),
+            geometry: None,
             program: self.listing(&runs)?,
             circles,
             tolerance_um: self.tolerance_um,

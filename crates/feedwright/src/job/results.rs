@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::{Job, JobOutcome};
 use crate::correct::CorrectOutcome;
 use crate::report::harm::Harm;
-use crate::report::{Assumptions, Band, RunSummary};
+use crate::report::{Assumptions, Band, CompensatedGeometry, RunSummary};
 use crate::results_format::{RESULTS_FORMAT, json_text};
 
 /// All results: `runs` and what they were made with.
@@ -27,6 +27,8 @@ struct Results<'a> {
     within_tolerance: bool,
     simulated: bool,
     assumed: &'a Assumptions,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    geometry: Option<&'a CompensatedGeometry>,
     worse_than_uncorrected: &'a [Harm],
     settings: BTreeMap<&'a str, &'a str>,
     machine: &'a Machine,
@@ -54,6 +56,7 @@ impl JobOutcome {
             within_tolerance: self.within_tolerance,
             simulated: true,
             assumed: &report.assumed,
+            geometry: report.geometry.as_ref(),
             worse_than_uncorrected: &self.harm,
             settings: report.settings.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect(),
             machine: &job.machine,

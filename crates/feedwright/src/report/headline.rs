@@ -284,6 +284,7 @@ mod tests {
             machine: Vec::new(),
             settings: Vec::new(),
             assumed: Assumptions::default(),
+            geometry: None,
             program: Vec::new(),
             circles: Vec::new(),
             tolerance_um,

@@ -118,7 +118,8 @@ fn assumed(report: &Report) -> String {
         return String::new();
     }
     let machine = format!("{}: {}", assumed.machine_sentence(), assumed.description);
-    let sentences = [machine, assumed.simulation_sentence(), assumed.law_sentence()];
+    let mut sentences = vec![machine, assumed.simulation_sentence(), assumed.law_sentence()];
+    sentences.extend(report.geometry.as_ref().map(|geometry| geometry.sentence().replace(" um", " µm")));
     let cut = Assumptions::cut_sentence(report.runs.iter().any(|run| run.summary.measured));
     format!("<p class=\"assumed\"><b>Assumed</b> {}. {cut}</p>\n", escaped(&sentences.join("; ")))
 }

@@ -76,7 +76,7 @@ pub struct RunSummary {
     pub rms_um: f64,
     /// Largest contour error of the rows that cut, µm.
     pub max_um: f64,
-    /// The same two without the geometry that no encoder sees, µm; none where the machine has no such geometry.
+    /// The same two by the encoders and the compensated geometry, µm; none where the machine has no geometry that no encoder sees.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joint_rms_um: Option<f64>,
     /// See above.

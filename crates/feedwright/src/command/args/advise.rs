@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::correct::controls;
+use super::geometry::GeometryArgs;
 use super::reader::ReaderArgs;
 
 /// Tell the feedrates at which a program holds a tolerance
@@ -45,6 +46,8 @@ pub(crate) struct AdviseArgs {
     /// Write all results as JSON, those of every feed that was cut too.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) geometry: GeometryArgs,
     #[command(flatten)]
     pub(crate) reader: ReaderArgs,
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::geometry::GeometryArgs;
 use super::reader::ReaderArgs;
 
 /// Write a corrected program for a control without feedback
@@ -35,6 +36,8 @@ pub(crate) struct CorrectArgs {
     /// Write all results as JSON.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) geometry: GeometryArgs,
     #[command(flatten)]
     pub(crate) reader: ReaderArgs,
 }

@@ -7,6 +7,7 @@ use clap::Args;
 
 use super::correct::controls;
 use super::feed::feed_mm_s;
+use super::geometry::GeometryArgs;
 use super::reader::ReaderArgs;
 
 /// Cut a part on a simulated machine, and show its contour error
@@ -29,10 +30,6 @@ pub struct RunArgs {
     /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
     #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE)]
     pub(crate) machine: OsString,
-    /// Leave scale, pitch and squareness of the machine file uncompensated. Without this option the command leads the axes beside their
-    /// positions, so that the tool is on the path.
-    #[arg(long)]
-    pub(crate) no_geometry: bool,
     /// Controller that corrects the command; `feedwright controllers` lists them.
     #[arg(long, value_name = "NAME", default_value = crate::controllers::BEST)]
     pub(crate) controller: String,
@@ -98,6 +95,8 @@ pub struct RunArgs {
     /// Which column of the log is what, by number from 0 or by name, and units: t=0,x.cmd=1,x.act=3,unit=mm,time=ms.
     #[arg(long, value_name = "COLUMNS", requires = "log")]
     pub(crate) columns: Option<String>,
+    #[command(flatten)]
+    pub(crate) geometry: GeometryArgs,
     #[command(flatten)]
     pub(crate) reader: ReaderArgs,
 }

@@ -10,7 +10,7 @@ use serde_json::json;
 use crate::command::args::advise::AdviseArgs;
 use crate::command::console::Console;
 use crate::command::controllers::find;
-use crate::command::controls::{check_tolerance, control};
+use crate::command::controls::{check_tolerance, compensation, control};
 use crate::command::message::{OUT_OF_TOLERANCE, printed, tell_assumed_limits, warn};
 use crate::command::streams::{ProgramInputs, tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn};
@@ -26,7 +26,8 @@ const LISTED: usize = 12;
 pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
     let target = control(&args.target)?;
     check_tolerance(Some(args.tolerance))?;
-    let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader);
+    let inputs =
+        ProgramInputs::of(&args.part, &args.machine, &args.reader).with_geometry(args.geometry.geometry.as_deref());
     inputs.check(console)?;
     let machine = Machine::load(&args.machine)?;
     tell_assumed_limits(&machine, target.stages(&machine));
@@ -37,6 +38,7 @@ pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
     let job = AdviseJob {
         controller: find(&args.controller, CONTROLLERS)?,
         choices: Choices { seed: args.seed, ..Choices::default() },
+        compensation: compensation(&args.geometry)?,
         reader: args.reader.settings()?,
         ..AdviseJob::new(Program::in_file(&args.part), machine, target, args.tolerance)
     };

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::command::args::correct::CorrectArgs;
 use crate::command::console::Console;
-use crate::command::controls::{check_tolerance, control, print_correction};
+use crate::command::controls::{check_tolerance, compensation, control, print_correction};
 use crate::command::message::{OUT_OF_TOLERANCE, printed, tell_assumed_limits, warn};
 use crate::command::streams::{ProgramInputs, tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn, figure};
@@ -22,7 +22,8 @@ use crate::results_format::{json_text, stamped};
 pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let target = control(&args.target)?;
     check_tolerance(args.tolerance)?;
-    let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader);
+    let inputs =
+        ProgramInputs::of(&args.part, &args.machine, &args.reader).with_geometry(args.geometry.geometry.as_deref());
     inputs.check(console)?;
     let machine = Machine::load(&args.machine)?;
     let mut files = inputs.outputs();
@@ -30,7 +31,8 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
     let reader = args.reader.settings()?;
     tell_assumed_limits(&machine, target.stages(&machine));
-    let job = CorrectJob { reader, ..CorrectJob::new(Program::in_file(&args.part), machine, target) };
+    let compensation = compensation(&args.geometry)?;
+    let job = CorrectJob { reader, compensation, ..CorrectJob::new(Program::in_file(&args.part), machine, target) };
     let bar = console.bar(0);
     let outcome = job.run(&bar)?;
     bar.clear();

@@ -40,6 +40,7 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
             ("--reference", args.reference.as_deref()),
             ("--model", args.model.as_deref()),
             ("--log", args.log.as_deref()),
+            ("--geometry", args.geometry.geometry.as_deref()),
             ("--tool-table", args.reader.tool_table.as_deref()),
         ],
     )?;
@@ -131,7 +132,7 @@ fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
     let mut job = Job::new(Program::in_file(&args.part), machine);
     job.machine_file = machine_file.as_deref().map(input::name);
     (job.controller, job.against) = (controller, against);
-    job.compensation = compensation(args.no_geometry);
+    job.compensation = compensation(&args.geometry)?;
     job.feed_mm_s = args.feed;
     job.choices = Choices { seed: args.seed, set, tries: true, ..Choices::default() };
     let recorded =
@@ -149,8 +150,9 @@ fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
         let columns = args.columns.as_deref().map(Columns::from_str).transpose()?.unwrap_or_default();
         job.log = Some(MeasuredLog { name: input::name(path), log: Log::read_watched(path, &columns, bar)? });
     }
-    let read = [machine_file, args.reader.tool_table, args.model, args.log, args.reference, Some(args.part)];
-    Ok(Asked { job, inputs: read.into_iter().flatten().collect(), outputs })
+    let models = [args.model, args.geometry.geometry, args.log];
+    let read = [machine_file, args.reader.tool_table, args.reference, Some(args.part)].into_iter().chain(models);
+    Ok(Asked { job, inputs: read.flatten().collect(), outputs })
 }
 
 /// The control that a program is for; setpoints are for none.

@@ -83,10 +83,11 @@ impl<const N: usize> FeedBench<'_, N> {
         let silent = Silent(self.watch);
         let stages = self.target.stages(self.machine);
         let nominal = deterministic(self.machine);
-        let on = |machine| ExportedCut { machine, stages, original: &original, axes: N, watch: &silent };
+        let on = |machine| ExportedCut { machine, tool: None, stages, original: &original, axes: N, watch: &silent };
         let program = match way {
             CutWay::Corrected => {
-                let found = rounds(&on(&nominal), &parts, self.target)?;
+                let tool = self.machine.compensated.as_ref();
+                let found = rounds(&ExportedCut { tool, ..on(&nominal) }, &parts, self.target)?;
                 steps_of(&assembled(&parts, &found.commands, found.dwell_s))?
             }
             CutWay::Uncorrected | CutWay::Controlled => original.clone(),

@@ -42,6 +42,9 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outputs: &Outputs, outcome: 
     }
     writeln!(out)?;
     say(out, &assumed(&outcome.report.assumed, measured))?;
+    if let Some(geometry) = &outcome.report.geometry {
+        say(out, &ascii(&geometry.sentence()))?;
+    }
     if outcome.report.is_mostly_uncorrected() && outcome.exported.is_none() {
         say(out, MOSTLY_UNCORRECTED)?;
     }
@@ -109,7 +112,7 @@ fn table(runs: &[ReportedRun], uncorrected: &[CutsUncorrected]) -> ConsoleTable 
             table.remark(why.to_string());
         }
         if let (Some(rms_um), Some(max_um)) = (now.joint_rms_um, now.joint_max_um) {
-            table.remark(format!("without the geometry that no encoder sees: RMS {rms_um:.2}, max {max_um:.2} um"));
+            table.remark(format!("by the encoders: RMS {rms_um:.2}, max {max_um:.2} um"));
         }
         if let Ending::Diverged { at_s } = now.outcome {
             table.remark(format!("diverged at {at_s:.3} s: the servo loop of this machine is unstable"));

@@ -1,0 +1,41 @@
+//! What a report says of the geometry that is compensated.
+
+use serde::Serialize;
+
+use super::text::number;
+
+/// The geometry that the control compensates.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CompensatedGeometry {
+    /// The geometry file; none where the machine file states the values.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from: Option<String>,
+    /// What is compensated.
+    pub terms: Vec<&'static str>,
+    /// Standard deviation of the tool across the path by those of the file: root mean square over the cut, um.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spread_rms_um: Option<f64>,
+    /// Its largest value, um.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spread_max_um: Option<f64>,
+}
+
+impl CompensatedGeometry {
+    /// In a sentence, without its full stop.
+    pub fn sentence(&self) -> String {
+        let from = self.from.as_ref().map_or_else(
+            || "exactly as the machine file states it; of a real machine it has to be measured".to_owned(),
+            |name| format!("as {name} states it"),
+        );
+        let known = match (self.spread_rms_um, self.spread_max_um) {
+            (Some(rms_um), Some(max_um)) => format!(
+                "; its standard deviations leave the tool {} um RMS and {} um at most on this part",
+                number(rms_um),
+                number(max_um)
+            ),
+            _ if self.from.is_some() => "; it states no standard deviations".to_owned(),
+            _ => String::new(),
+        };
+        format!("compensated geometry: {}, {from}{known}", self.terms.join(", "))
+    }
+}

@@ -1,0 +1,280 @@
+//! What is known of a machine's geometry, for a control that compensates it: from the machine file, or from a geometry file.
+//!
+//! How well a geometry file knows the tool follows from its standard deviations by linear propagation. With g_k the change of the
+//! tool by a standard deviation of value k, and n the plane across the direction of travel:
+//!
+//! ```text
+//! sigma^2 = sum over k of |g_k in n|^2
+//! ```
+//!
+//! Values count as independent of each other. Source: JCGM 100 (2008), Guide to the expression of uncertainty in measurement, eq. 10.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use feedwright_control::{AxisErrors, ErrorTable, GeometryFault, KnownGeometry, MOST_SLOPE, TABLE_POINTS};
+use feedwright_plan::vector::Vector;
+use thiserror::Error;
+
+use crate::geometry_file::{AxisGeometry, GeometryFile};
+use crate::machine::{AXIS_NAMES, Machine};
+use crate::number::to_four_digits;
+
+/// Leads that differ by a smaller part are equal: files state them with some digits.
+const SAME_LEAD: f64 = 1e-6;
+/// A part may leave the measured travel by this, mm: the errors there are those of its end to within what scale and pitch say.
+const BEYOND_MM: f64 = 1.0;
+
+/// Why a geometry cannot be compensated.
+#[derive(Debug, Clone, PartialEq, Error, miette::Diagnostic)]
+pub enum CompensationError {
+    /// A value is out of its range.
+    #[error("the geometry cannot be compensated: {0}")]
+    #[diagnostic(help("correct the geometry, or leave the compensation out with --no-geometry"))]
+    Range(String),
+    /// The screw is not that of the machine.
+    #[error(
+        "axis {axis}: the pitch error repeats every {lead_mm} mm, and lead_mm_per_rev of the machine is {machine_mm} mm; they must be equal"
+    )]
+    #[diagnostic(help("use the geometry of this machine, or correct lead_mm_per_rev in the machine file"))]
+    Lead {
+        /// The axis.
+        axis: &'static str,
+        /// Of the geometry, mm.
+        lead_mm: f64,
+        /// Of the machine, mm.
+        machine_mm: f64,
+    },
+    /// The part is outside of what was measured.
+    #[error("axis {axis}: the part reaches {at_mm} mm, and the geometry was measured from {from_mm} to {to_mm} mm")]
+    #[diagnostic(help(
+        "measure the whole travel. Where the errors go on alike beyond it, widen from_mm and to_mm in the geometry file"
+    ))]
+    Travel {
+        /// The axis.
+        axis: &'static str,
+        /// Farthest position of the part, mm.
+        at_mm: f64,
+        /// Least position that was measured, mm.
+        from_mm: f64,
+        /// Greatest, mm.
+        to_mm: f64,
+    },
+}
+
+impl From<GeometryFault> for CompensationError {
+    fn from(fault: GeometryFault) -> Self {
+        Self::Range(match fault {
+            GeometryFault::NotFinite => "a value is not a finite number".to_owned(),
+            GeometryFault::Points(points) => format!("a table has {points} points; it must have 2 to {TABLE_POINTS}"),
+            GeometryFault::Order(point) => {
+                format!("the position of point {} of a table is not beyond that of the point before", point + 1)
+            }
+            GeometryFault::Slope { axis, slope } => format!(
+                "the errors of axis {} grow by up to {} % of the travel; at most {} % are allowed",
+                AXIS_NAMES.get(axis).unwrap_or(&"?"),
+                to_four_digits(100.0 * slope),
+                100.0 * MOST_SLOPE
+            ),
+        })
+    }
+}
+
+impl Machine {
+    /// Errors of the first N axes that no encoder sees; none where there are none.
+    pub fn errors_of_geometry<const N: usize>(&self) -> Option<KnownGeometry<N>> {
+        let axes = std::array::from_fn(|i| {
+            let axis = self.axis(i);
+            AxisErrors {
+                scale: axis.scale_um_m * 1e-6,
+                pitch_mm: axis.pitch_error_um * 1e-3,
+                pitch_rad_per_mm: axis.rad_per_mm(),
+                pitch_phase_rad: 0.0,
+            }
+        });
+        let square = self.geometry;
+        let urad = [square.squareness_xy_urad, square.squareness_xz_urad, square.squareness_yz_urad];
+        let geometry = KnownGeometry::new(axes, urad.map(|urad| urad * 1e-6));
+        (!geometry.is_exact()).then_some(geometry)
+    }
+
+    /// The same machine with a control that compensates this geometry, whatever the errors of the machine are.
+    ///
+    /// # Errors
+    /// A geometry that is out of its range.
+    pub fn compensating(&self, known: KnownGeometry<3>) -> Result<Self, CompensationError> {
+        known.check()?;
+        Ok(Self { compensated: Some(Arc::new(known)), ..self.clone() })
+    }
+
+    /// The same machine with a control that compensates what the machine file says of its geometry.
+    ///
+    /// # Errors
+    /// As [`Machine::compensating`].
+    pub fn compensating_own(&self) -> Result<Self, CompensationError> {
+        match self.errors_of_geometry() {
+            Some(known) => self.compensating(known),
+            None => Ok(Self { compensated: None, ..self.clone() }),
+        }
+    }
+}
+
+impl GeometryFile {
+    /// The geometry to compensate; of a table, the mean of both directions. Backlash is not part of it: it depends on the direction.
+    ///
+    /// # Errors
+    /// A geometry that is out of its range.
+    pub fn known(&self) -> Result<KnownGeometry<3>, CompensationError> {
+        let errors = |axis: &AxisGeometry| AxisErrors {
+            scale: axis.scale_um_m * 1e-6,
+            pitch_mm: axis.pitch_error_um * 1e-3,
+            pitch_rad_per_mm: if axis.lead_mm_per_rev > 0.0 { TAU / axis.lead_mm_per_rev } else { 0.0 },
+            pitch_phase_rad: axis.pitch_phase_deg.to_radians(),
+        };
+        let square = self.squareness;
+        let urad = [square.squareness_xy_urad, square.squareness_xz_urad, square.squareness_yz_urad];
+        let mut known = KnownGeometry::new([0, 1, 2].map(|i| errors(&self.axes[i])), urad.map(|urad| urad * 1e-6));
+        for (over, axis) in self.axes.iter().enumerate() {
+            if !axis.table.is_empty() {
+                let mean = |&[at_mm, forward_um, backward_um]: &[f64; 3]| [at_mm, 0.5e-3 * (forward_um + backward_um)];
+                known = known.with_table(over, over, ErrorTable::new(axis.table.iter().map(mean))?);
+            }
+            for (of, straightness) in axis.straightness.iter().enumerate().filter(|(_, table)| !table.is_empty()) {
+                let in_mm = |&[at_mm, error_um]: &[f64; 2]| [at_mm, 1e-3 * error_um];
+                known = known.with_table(of, over, ErrorTable::new(straightness.iter().map(in_mm))?);
+            }
+        }
+        known.check()?;
+        Ok(known)
+    }
+
+    /// Whether it is one of this machine, and covers a part with these least and greatest positions, mm.
+    ///
+    /// # Errors
+    /// Another lead of a screw, or a part beyond the travel that was measured.
+    pub fn suits(&self, machine: &Machine, [least_mm, most_mm]: [Vector; 2]) -> Result<(), CompensationError> {
+        for (i, (geometry, axis)) in self.axes.iter().zip(AXIS_NAMES).enumerate().take(machine.axis_count()) {
+            let machine_mm = machine.axis(i).lead_mm_per_rev;
+            let AxisGeometry { lead_mm_per_rev: lead_mm, from_mm, to_mm, .. } = *geometry;
+            if geometry.pitch_error_um != 0.0 && (lead_mm / machine_mm - 1.0).abs() > SAME_LEAD {
+                return Err(CompensationError::Lead { axis, lead_mm, machine_mm });
+            }
+            let beyond = |at_mm: &f64| *at_mm < from_mm - BEYOND_MM || *at_mm > to_mm + BEYOND_MM;
+            if let Some(at_mm) = [least_mm[i], most_mm[i]].into_iter().find(|at_mm| to_mm > from_mm && beyond(at_mm)) {
+                return Err(CompensationError::Travel { axis, at_mm, from_mm, to_mm });
+            }
+        }
+        Ok(())
+    }
+
+    /// Standard deviation across the direction of travel of the tool that is at a place, um; 0 where the file states none.
+    pub fn spread_um(&self, at_mm: Vector, tangent: Vector) -> f64 {
+        let across = |i: usize, um: f64| um * um * (1.0 - tangent[i] * tangent[i]).max(0.0);
+        let mut sum_um2 = 0.0;
+        for (i, axis) in self.axes.iter().enumerate() {
+            let phase_rad = if axis.lead_mm_per_rev > 0.0 { TAU * at_mm[i] / axis.lead_mm_per_rev } else { 0.0 };
+            let (sin, cos) = libm::sincos(phase_rad + axis.pitch_phase_deg.to_radians());
+            let own = [
+                1e-3 * axis.scale_std_um_m * at_mm[i],
+                axis.pitch_error_std_um * sin,
+                axis.pitch_error_um * axis.pitch_phase_std_deg.to_radians() * cos,
+                // The mean of both directions.
+                if axis.table.is_empty() { 0.0 } else { axis.table_std_um / std::f64::consts::SQRT_2 },
+            ];
+            sum_um2 += own.iter().map(|&um| across(i, um)).sum::<f64>();
+            let straight = axis.straightness.iter().enumerate().filter(|(_, table)| !table.is_empty());
+            sum_um2 += straight.map(|(of, _)| across(of, axis.straightness_std_um)).sum::<f64>();
+        }
+        let square = self.squareness;
+        let [_, y_mm, z_mm] = at_mm;
+        sum_um2 += across(0, 1e-3 * square.squareness_xy_std_urad * y_mm);
+        sum_um2 += across(0, 1e-3 * square.squareness_xz_std_urad * z_mm);
+        sum_um2 += across(1, 1e-3 * square.squareness_yz_std_urad * z_mm);
+        sum_um2.sqrt()
+    }
+
+    /// Whether any standard deviation is stated.
+    pub fn states_spread(&self) -> bool {
+        let places = [[1e3, 2e3, 3e3], [1.0, 1.0, 1.0]];
+        places.iter().any(|&at_mm| {
+            (0..3).any(|i| self.spread_um(at_mm, std::array::from_fn(|k| f64::from(u8::from(k == i)))) > 0.0)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file() -> GeometryFile {
+        let mut file = GeometryFile::default();
+        file.axes[0] = AxisGeometry {
+            scale_um_m: 20.0,
+            scale_std_um_m: 3.0,
+            pitch_error_um: 2.0,
+            pitch_error_std_um: 0.1,
+            pitch_phase_deg: 30.0,
+            lead_mm_per_rev: 10.0,
+            from_mm: -50.0,
+            to_mm: 300.0,
+            table: vec![[0.0, 1.0, 3.0], [300.0, -1.0, 1.0]],
+            ..AxisGeometry::default()
+        };
+        file.axes[1].straightness[0] = vec![[0.0, 0.0], [100.0, 4.0]];
+        file.squareness.squareness_xy_urad = 25.0;
+        file.squareness.squareness_xy_std_urad = 4.0;
+        file
+    }
+
+    /// The file's own error without a direction is the mean of both.
+    #[test]
+    fn what_is_compensated_is_what_the_file_states() {
+        let file = file();
+        let known = file.known().unwrap();
+        for at_mm in [[0.0; 3], [123.4, 50.0, 7.0], [-40.0, 100.0, -20.0], [300.0, 0.0, 0.0]] {
+            let stated_um = file.error_um(at_mm, [0.0; 3]);
+            let tool_mm = known.tool_mm(at_mm);
+            for i in 0..3 {
+                assert!(
+                    (1e3 * (tool_mm[i] - at_mm[i]) - stated_um[i]).abs() < 1e-9,
+                    "{at_mm:?}: {tool_mm:?} {stated_um:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn another_lead_and_another_travel_are_refused() {
+        let machine = Machine::load("workshop".as_ref()).unwrap();
+        let part = |most_mm: f64| [[0.0; 3], [most_mm, 0.0, 0.0]];
+        assert_eq!(file().suits(&machine, part(300.0)), Ok(()));
+        let text = file().suits(&machine, part(302.5)).unwrap_err().to_string();
+        assert_eq!(text, "axis x: the part reaches 302.5 mm, and the geometry was measured from -50 to 300 mm");
+        let mut other = file();
+        other.axes[0].lead_mm_per_rev = 5.0;
+        let text = other.suits(&machine, part(0.0)).unwrap_err().to_string();
+        assert!(text.starts_with("axis x: the pitch error repeats every 5 mm"), "{text}");
+    }
+
+    /// At x 100 and y 50 mm: scale 0.3 um, squareness 0.2 um in x, and pitch 0.05 um.
+    #[test]
+    fn the_spread_is_that_of_the_values_across_the_path() {
+        let file = file();
+        assert!(file.states_spread() && !GeometryFile::default().states_spread());
+        let at_mm = [100.0, 50.0, 0.0];
+        let across = file.spread_um(at_mm, [0.0, 1.0, 0.0]);
+        assert!((across - f64::sqrt(0.09 + 0.04 + 0.0025)).abs() < 1e-12, "{across}");
+        assert_eq!(file.spread_um(at_mm, [1.0, 0.0, 0.0]), 0.0);
+    }
+
+    #[test]
+    fn a_geometry_that_no_inverse_holds_for_is_told_with_its_limit() {
+        let mut steep = Machine::load("workshop".as_ref()).unwrap();
+        steep.axes[1].pitch_error_um = 100.0;
+        let text = steep.compensating_own().unwrap_err().to_string();
+        assert_eq!(
+            text,
+            "the geometry cannot be compensated: the errors of axis y grow by up to 6.285 % of the travel; at most 5 % are allowed"
+        );
+    }
+}
