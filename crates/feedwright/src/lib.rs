@@ -67,7 +67,7 @@
 //! - The mistakes of a program and of a machine file are reported with their lines before a cut
 //!   starts.
 //! - A prediction is as good as the machine file. Errors that the encoders cannot see stay in the
-//!   part.
+//!   part, unless the machine file or a geometry file states them.
 //!
 //! # Features
 //!

@@ -43,7 +43,8 @@ first path point. What an encoder shows of an angle: interpolation error A sin(2
 motor's, or the table's where the scale is there, measurement_delay_s ago. Where t_s jumps, in a long rest, everything stays but t.
 
 The tool is where the geometry puts it: joint + scale joint + pitch_error sin(2 pi joint / lead), and of squareness x += xy y + xz z,
-y += yz z of the joints.
+y += yz z of the joints. Where `corrected` is not `cmd`, the run compensated the geometry of the machine file, and the joints start
+where it brings the tool onto the path.
 
 Random numbers: SplitMix64 (Steele, Lea and Flood 2014) with a state of its own for each axis and purpose, its output number n at
 moment n; a uniform number is its upper 53 bits, a normal one the sum of the twelve 16-bit parts of the outputs 3n to 3n + 2, less
@@ -346,6 +347,17 @@ def tools_mm(machine, joints_mm):
     return tools
 
 
+def starts_mm(machine, tool_mm, rows):
+    """Where the joints rest at the start: with the tool at the first point of the path, if its geometry is compensated."""
+    joints_mm = dict(tool_mm)
+    if all(row[f"cmd_{name}_mm"] == row[f"corrected_{name}_mm"] for row in rows for name in tool_mm):
+        return joints_mm
+    for _ in range(20):
+        reached = tools_mm(machine, {name: [at] for name, at in joints_mm.items()})
+        joints_mm = {name: at + tool_mm[name] - reached[name][0] for name, at in joints_mm.items()}
+    return joints_mm
+
+
 def limit_nm(axis, period, largest_mm_s2, finer):
     """What the tool may be off.
 
@@ -375,10 +387,11 @@ def main(machine_file, trace_file, finer="1", seed=None):
     period, finer = machine["period"], int(finer)
     seed = machine.get("noise", {}).get("seed", 0) if seed is None else int(seed)
     column = lambda of, name: [float(row[f"{of}_{name}_mm"]) for row in rows]
+    names = [name for name in "xyz" if f"cmd_{name}_mm" in rows[0]]
+    start_mm = starts_mm(machine, {name: column("path", name)[0] for name in names}, rows)
     cuts = {
-        name: cut(machine["axis"][name], index, period, seed, times_s, column("path", name)[0], column("cmd", name), finer)
-        for index, name in enumerate("xyz")
-        if f"cmd_{name}_mm" in rows[0]
+        name: cut(machine["axis"][name], "xyz".index(name), period, seed, times_s, start_mm[name], column("cmd", name), finer)
+        for name in names
     }
     tools = tools_mm(machine, {name: joint_mm for name, (joint_mm, _) in cuts.items()})
     holds = True
