@@ -43,6 +43,8 @@ pub struct AxisErrors {
     pub pitch_rad_per_mm: f64,
     /// Its phase at position 0, rad.
     pub pitch_phase_rad: f64,
+    /// Backlash, mm: the tool is half of it behind in either direction. It depends on the direction, and is not part of the map.
+    pub backlash_mm: f64,
 }
 
 /// Why a geometry is refused.
@@ -197,7 +199,7 @@ impl<const N: usize> KnownGeometry<N> {
     pub fn check(&self) -> Result<(), GeometryFault> {
         for (axis, own) in self.axes.iter().enumerate() {
             let slope = self.most_slope(axis);
-            if !slope.is_finite() || !own.pitch_phase_rad.is_finite() {
+            if !slope.is_finite() || !own.pitch_phase_rad.is_finite() || !own.backlash_mm.is_finite() {
                 return Err(GeometryFault::NotFinite);
             }
             if slope > MOST_SLOPE {
@@ -217,10 +219,24 @@ impl<const N: usize> KnownGeometry<N> {
 
     /// Whether it has no error at all.
     pub fn is_exact(&self) -> bool {
-        let exact = |axis: &AxisErrors| axis.scale == 0.0 && axis.pitch_mm == 0.0;
+        let exact = |axis: &AxisErrors| axis.scale == 0.0 && axis.pitch_mm == 0.0 && axis.backlash_mm == 0.0;
         self.axes.iter().all(exact)
             && self.squareness_rad == [0.0; 3]
             && self.tables.iter().flatten().all(Option::is_none)
+    }
+
+    /// Backlash of each axis, mm.
+    pub fn backlash_mm(&self) -> [f64; N] {
+        self.axes.map(|axis| axis.backlash_mm)
+    }
+
+    /// With this backlash of each axis, mm.
+    #[must_use]
+    pub fn with_backlash(mut self, backlash_mm: [f64; N]) -> Self {
+        for (axis, backlash_mm) in self.axes.iter_mut().zip(backlash_mm) {
+            axis.backlash_mm = backlash_mm;
+        }
+        self
     }
 
     /// What squareness adds to a coordinate, of each of its angles as `of` gives it.
@@ -237,7 +253,7 @@ impl<const N: usize> KnownGeometry<N> {
     /// Where the tool is, mm.
     pub fn tool_mm(&self, joints_mm: [f64; N]) -> [f64; N] {
         core::array::from_fn(|i| {
-            let (AxisErrors { scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad }, at_mm) =
+            let (AxisErrors { scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad, .. }, at_mm) =
                 (self.axes[i], joints_mm[i]);
             let own_mm = at_mm + scale * at_mm + pitch_mm * libm::sin(pitch_rad_per_mm * at_mm + pitch_phase_rad);
             let tool_mm = own_mm + self.skew(i, joints_mm, |angle| angle);
@@ -251,7 +267,7 @@ impl<const N: usize> KnownGeometry<N> {
     /// By how much the tool moves farther than the joints, where these move by `moved` at a place: dE/dq times `moved`.
     fn stretched(&self, joints_mm: [f64; N], moved: [f64; N]) -> [f64; N] {
         core::array::from_fn(|i| {
-            let AxisErrors { scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad } = self.axes[i];
+            let AxisErrors { scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad, .. } = self.axes[i];
             let phase_rad = pitch_rad_per_mm * joints_mm[i] + pitch_phase_rad;
             let own = (scale + pitch_mm * pitch_rad_per_mm * libm::cos(phase_rad)) * moved[i];
             let whole = own + self.skew(i, moved, |angle| angle);

@@ -9,7 +9,13 @@ const TRAVEL_MM: f64 = 1000.0;
 
 fn axis() -> impl Strategy<Value = AxisErrors> {
     (-2e-3..2e-3, -0.02..0.02, 4.0..20.0, -4.0..4.0).prop_map(|(scale, pitch_mm, lead_mm, pitch_phase_rad)| {
-        AxisErrors { scale, pitch_mm, pitch_rad_per_mm: std::f64::consts::TAU / lead_mm, pitch_phase_rad }
+        AxisErrors {
+            scale,
+            pitch_mm,
+            pitch_rad_per_mm: std::f64::consts::TAU / lead_mm,
+            pitch_phase_rad,
+            ..AxisErrors::default()
+        }
     })
 }
 

@@ -38,6 +38,7 @@ mod conformance_events;
 mod conformance_excite;
 mod conformance_fanuc_options;
 mod conformance_fastest;
+mod conformance_geometry;
 mod conformance_hidden_text;
 mod conformance_identification;
 mod conformance_identify_log;

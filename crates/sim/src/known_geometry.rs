@@ -89,7 +89,7 @@ impl Machine {
                 scale: axis.scale_um_m * 1e-6,
                 pitch_mm: axis.pitch_error_um * 1e-3,
                 pitch_rad_per_mm: axis.rad_per_mm(),
-                pitch_phase_rad: 0.0,
+                ..AxisErrors::default()
             }
         });
         let square = self.geometry;
@@ -112,15 +112,25 @@ impl Machine {
     /// # Errors
     /// As [`Machine::compensating`].
     pub fn compensating_own(&self) -> Result<Self, CompensationError> {
-        match self.errors_of_geometry() {
-            Some(known) => self.compensating(known),
-            None => Ok(Self { compensated: None, ..self.clone() }),
-        }
+        let of_axis = |i: usize| match self.axis(i).transmission {
+            // A scale on the table sees the gap.
+            Some(screw) if !screw.scale_on_table => 1e-3 * screw.backlash_um,
+            _ => 0.0,
+        };
+        let exact = || KnownGeometry::new([AxisErrors::default(); 3], [0.0; 3]);
+        let known = self.errors_of_geometry().unwrap_or_else(exact).with_backlash([0, 1, 2].map(of_axis));
+        if known.is_exact() { Ok(Self { compensated: None, ..self.clone() }) } else { self.compensating(known) }
     }
 }
 
+/// What the tool is behind in forward travel, from backward travel, over a table of both: mean, um.
+fn mean_reversal_um(table: &[[f64; 3]]) -> f64 {
+    let sum_um: f64 = table.iter().map(|[_, forward_um, backward_um]| backward_um - forward_um).sum();
+    sum_um / table.len().max(1) as f64
+}
+
 impl GeometryFile {
-    /// The geometry to compensate; of a table, the mean of both directions. Backlash is not part of it: it depends on the direction.
+    /// The geometry to compensate; of a table, the mean of both directions, and their mean difference as backlash.
     ///
     /// # Errors
     /// A geometry that is out of its range.
@@ -130,6 +140,7 @@ impl GeometryFile {
             pitch_mm: axis.pitch_error_um * 1e-3,
             pitch_rad_per_mm: if axis.lead_mm_per_rev > 0.0 { TAU / axis.lead_mm_per_rev } else { 0.0 },
             pitch_phase_rad: axis.pitch_phase_deg.to_radians(),
+            backlash_mm: 1e-3 * (axis.backlash_um + mean_reversal_um(&axis.table)),
         };
         let square = self.squareness;
         let urad = [square.squareness_xy_urad, square.squareness_xz_urad, square.squareness_yz_urad];

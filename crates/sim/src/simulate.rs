@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `simulate/foot.rs` | how far along the path the tool has come, and so the contour error |
 //! | `simulate/joints.rs` | the contour error without the geometric errors that no encoder sees |
+//! | `simulate/reversals.rs` | the command across a backlash that is known |
 //! | `simulate/rests.rs` | which part of a long rest is simulated |
 //! | `simulate/uncut.rs` | how far the tool stays away from what it should have cut |
 //! | `simulate/tick_times.rs` | how long the ticks took |
@@ -15,11 +16,12 @@
 pub(crate) mod foot;
 mod joints;
 mod rests;
+mod reversals;
 mod tick_times;
 pub(crate) mod uncut;
 
 use feedwright_control::{Bounds, Controller, Fade, Knot, KnownGeometry, Setpoint, State, Tick};
-use feedwright_plan::vector::{Vector, distance};
+use feedwright_plan::vector::{Vector, distance, sub};
 
 use crate::kinematics::{joints_of, tool_of};
 use crate::machine::Machine;
@@ -30,6 +32,7 @@ use crate::watch::{Cancelled, Watch};
 use foot::{FootTracker, settled_periods, settled_s};
 pub use joints::JointError;
 use joints::JointErrorMeter;
+use reversals::Reversals;
 pub use tick_times::TickTimes;
 use uncut::Uncut;
 
@@ -138,6 +141,7 @@ pub(crate) fn simulate<const N: usize>(
 struct ClosedLoop<'a, const N: usize> {
     machine: &'a Machine,
     joints: Joints<'a, N>,
+    reversals: Reversals<N>,
     servo_s: f64,
     kept_s: f64,
     lost_mm: f64,
@@ -171,6 +175,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         let at_mm = reference.at(0.0).position_mm;
         let start_mm = joints.at(at_mm);
         let fade_mm_s2 = (0..N).map(|i| machine.correction_accel_mm_s2(i)).fold(f64::INFINITY, f64::min);
+        let accel_mm_s2 = std::array::from_fn(|i| machine.correction_accel_mm_s2(i));
         let limits = &machine.limits;
         let bounds = Bounds::new(limits.max_deviation_mm, limits.rapid_mm_s, fade_mm_s2);
         let owners_mm_s2 = (0..N).filter_map(|i| machine.axis(i).correction_accel_mm_s2).fold(f64::INFINITY, f64::min);
@@ -182,6 +187,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         Self {
             machine,
             joints,
+            reversals: Reversals::new(uncrossed_mm(known, controller), accel_mm_s2, servo_s),
             servo_s,
             kept_s: KEPT_SETTLED_TIMES * settled_s(machine),
             lost_mm: LOST_MM.max(LOST_LAGS * machine.limits.rapid_mm_s * slowest_s),
@@ -225,8 +231,9 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         // And where the encoders say so: what they do not see is not waited for.
         let to_go_mm = distance(measurement.joint_mm, self.joints.at(sample.position_mm));
         let foot = self.foot.foot(reference, tau_s, sample.s_mm, tool_of(measurement.position_mm));
+        let lead_mm = Axes { reference, joints: self.joints, reversals: &mut self.reversals }.lead_mm(setpoint.tau_s);
         let row = Row {
-            corrected_mm: self.joints.tool(setpoint.command_mm),
+            corrected_mm: self.joints.tool(sub(setpoint.command_mm, lead_mm)),
             ..row(t_s, &setpoint, &measurement, &sample, &foot, to_go_mm <= ARRIVED_MM)
         };
         if row.cutting {
@@ -245,6 +252,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
             meter.row(reference, tau_s, self.joints.tool(measurement.joint_mm), &row);
         }
         reference.forget_before(tau_s - self.kept_s);
+        self.reversals.forget_before(tau_s - self.kept_s);
         if let Some(ended_s) = self.ended_s
             && (to_go_mm <= ARRIVED_MM || t_s >= ended_s + ARRIVAL_S)
         {
@@ -266,7 +274,10 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         watch: &dyn Watch,
     ) -> Setpoint<N> {
         let began = watch.clock();
-        let setpoint = self.tick.step(&mut Axes { reference, joints: self.joints }, controller, self.seen_mm);
+        let setpoint = {
+            let Self { tick, joints, reversals, seen_mm, .. } = self;
+            tick.step(&mut Axes { reference, joints: *joints, reversals }, controller, *seen_mm)
+        };
         if setpoint.decided {
             self.run.ticks.add(watch.clock().saturating_sub(began).as_nanos());
             self.run.most_entries = self.run.most_entries.max(self.tick.contour().entries);
@@ -401,10 +412,22 @@ impl<const N: usize> Joints<'_, N> {
     }
 }
 
-/// The planned path as the tick sees it: the joints.
+/// The planned path as the tick sees it: the joints, ahead by the backlash that the controller does not cross itself.
 struct Axes<'a, 'p, 'k, const N: usize> {
     reference: &'a mut Reference<'p>,
     joints: Joints<'k, N>,
+    reversals: &'a mut Reversals<N>,
+}
+
+impl<const N: usize> Axes<'_, '_, '_, N> {
+    /// By how much the joints are ahead, mm.
+    fn lead_mm(&mut self, tau_s: f64) -> [f64; N] {
+        let reference = &mut *self.reference;
+        self.reversals.lead_mm(tau_s, |at_s| {
+            let Sample { tangent, feed_mm_s, .. } = reference.at(at_s);
+            joints_of(tangent.map(|part| feed_mm_s * part))
+        })
+    }
 }
 
 impl<const N: usize> feedwright_control::KnotSource<N> for Axes<'_, '_, '_, N> {
@@ -412,6 +435,21 @@ impl<const N: usize> feedwright_control::KnotSource<N> for Axes<'_, '_, '_, N> {
         let Sample { position_mm, tangent, feed_mm_s, rapid, .. } = self.reference.at(tau_s);
         let tool =
             Knot { position_mm: joints_of(position_mm), tangent: joints_of(tangent), feed_mm_s, cutting: !rapid };
-        self.joints.known.map_or(tool, |known| known.joint_knot(&tool))
+        let Some(known) = self.joints.known else { return tool };
+        let joints = known.joint_knot(&tool);
+        let lead_mm = self.lead_mm(tau_s);
+        Knot { position_mm: std::array::from_fn(|i| joints.position_mm[i] + lead_mm[i]), ..joints }
     }
+}
+
+/// Backlash that is known, less what the controller crosses by its own model of the screw, mm.
+fn uncrossed_mm<const N: usize>(known: Option<&KnownGeometry<N>>, controller: &dyn Controller<N>) -> [f64; N] {
+    let axes = controller.known();
+    let Some(known) = known else { return [0.0; N] };
+    let crossed_mm =
+        |i: usize| axes.map_or(0.0, |axes| axes[i].transmission.backlash_rad / axes[i].parameters.rad_per_mm);
+    let backlash_mm = known.backlash_mm();
+    std::array::from_fn(
+        |i| if backlash_mm[i] > 0.0 { (backlash_mm[i] - crossed_mm(i)).max(0.0) } else { backlash_mm[i] },
+    )
 }

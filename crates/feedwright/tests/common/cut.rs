@@ -3,13 +3,25 @@
 use std::fs::File;
 use std::path::Path;
 
-use feedwright::{Entry, Job, RunSummary};
+use feedwright::{Compensation, Entry, Job, RunSummary};
 use feedwright_gcode::Program;
 use feedwright_sim::{Machine, TraceWriter};
 
 /// Cuts a part and leaves its trace.
 pub(crate) fn cut(part: &Path, machine: &Path, entry: &'static Entry, trace: &Path) -> RunSummary {
+    cut_with(Compensation::default(), part, machine, entry, trace)
+}
+
+/// The same with another compensation of the machine's geometry.
+pub(crate) fn cut_with(
+    compensation: Compensation,
+    part: &Path,
+    machine: &Path,
+    entry: &'static Entry,
+    trace: &Path,
+) -> RunSummary {
     let mut job = Job::new(Program::in_file(part), Machine::read(machine).unwrap());
+    job.compensation = compensation;
     (job.controller, job.against) = (entry, entry);
     let checked = job.check().unwrap();
     let mut rows = TraceWriter::new(File::create(trace).unwrap(), checked.axes()).unwrap();

@@ -104,7 +104,7 @@ pub(crate) enum Work {
 
 /// What geometry a control compensates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Compensated {
+pub(crate) enum Compensated {
     /// None.
     None,
     /// What the machine file states: scale, pitch and squareness.
