@@ -39,6 +39,8 @@
 //! | Axis with known drive settings | [`identify_axis`], [`DriveSettings`], [`AxisParameters`], [`AxisEstimate`], [`NotIdentified`] |
 //! | Models for controllers | [`train_axes`], [`train_servo`], [`train_contour`], [`axis_statistics`] |
 //! | Model files | [`Model`], [`Origin`], [`exact_block`] |
+//! | Geometry from measurements | [`GeometryInput`], [`fit_geometry`], [`FoundGeometry`], [`comp_file`] |
+//! | Geometry: programs, simulated bar | [`BallBarProgram`], [`GridProgram`], [`SimulatedBallBar`] |
 //! | Numbers | [`Spectrum`], [`median_and_spread`], [`quadratic_mean`] |
 //!
 //! # Units
@@ -62,7 +64,8 @@
 //!
 //! The `mod` lines stand in the order in which data flows; each module uses only those above it.
 //! `average` and `spectrum` are numerical helpers, `log` reads logs, `excite` writes the program
-//! that excites a machine, `identify` fits, and `model` reads and writes model files.
+//! that excites a machine, `identify` fits, `model` reads and writes model
+//! files, and `geometry` finds the errors that no encoder sees.
 
 #![warn(clippy::disallowed_methods)]
 
@@ -72,12 +75,19 @@ mod log;
 mod excite;
 mod identify;
 mod model;
+mod geometry;
 
 pub use average::{median_and_spread, quadratic_mean};
 pub use excite::recorded::recorded_log;
 pub use excite::{
     AxisExcitation, ExciteError, ExciteOptions, ExciteProgram, MotionPart, excitation_program, next_excitation,
 };
+pub use geometry::comp_file::{comp_file, geometry_of_tables, sampled_table};
+pub use geometry::fit::{FoundGeometry, FoundGeometryValue, FoundSet, NoGeometry, fit_geometry};
+pub use geometry::formats::GeometryInput;
+pub use geometry::programs::{BallBarProgram, GridProgram};
+pub use geometry::simulated::SimulatedBallBar;
+pub use geometry::text::MeasurementError;
 pub use identify::axes::{AxisRecordings, TrainedAxes, train_axes};
 pub use identify::axis_parameters::{AxisEstimate, AxisParameters, DriveSettings, NotIdentified, identify_axis};
 pub use identify::axis_statistics::axis_statistics;

@@ -7,7 +7,7 @@
 //! | `axis` | position (mm), direction, deviation | tool beyond the target, along the axis | offset |
 //! | `bar` | angle (degrees), direction (1 counterclockwise), deviation | radius longer than nominal | center (2), servo mismatch, radius |
 //! | `grid` | two positions (mm), two directions, two deviations | tool beyond the command, in each axis | offsets (2), rotation |
-//! | `distance` | two points (mm, mm), deviation | distance longer than nominal | size of the tool |
+//! | `distance` | two points (mm, mm), factor of the size, deviation | distance longer than nominal | size of the tool |
 //!
 //! The radius of a bar and the size of a tool are nuisances unless the set is calibrated. The servo mismatch of a bar is
 //! proportional to the direction times sin(2 angle): the axes lag by different times. Source: ISO 230-4 (2022); Kakino, Ihara,
@@ -20,7 +20,7 @@ use crate::machine::AXIS_NAMES;
 pub const NUISANCES: usize = 4;
 
 /// Kinds of sets: name, and numbers in a row.
-pub(super) const KINDS: [(&str, usize); 4] = [("axis", 3), ("bar", 3), ("grid", 6), ("distance", 5)];
+pub(super) const KINDS: [(&str, usize); 4] = [("axis", 3), ("bar", 3), ("grid", 6), ("distance", 6)];
 
 /// Values that were measured in one setup.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -109,8 +109,8 @@ impl MeasuredSet {
             ("grid", &[a_mm, b_mm, a_way, b_way, a_um, b_um]) => {
                 self.on_grid([axes[0], second], [a_mm, b_mm], [a_way, b_way], [a_um, b_um]).to_vec()
             }
-            ("distance", &[a1, b1, a2, b2, deviation_um]) => {
-                vec![self.between([axes[0], second], [[a1, b1], [a2, b2]], deviation_um)]
+            ("distance", &[a1, b1, a2, b2, size, deviation_um]) => {
+                vec![self.between([axes[0], second], [[a1, b1], [a2, b2]], [size, deviation_um])]
             }
             _ => Vec::new(),
         };
@@ -158,7 +158,7 @@ impl MeasuredSet {
         })
     }
 
-    fn between(&self, [a, b]: [usize; 2], ends: [[f64; 2]; 2], deviation_um: f64) -> Observation {
+    fn between(&self, [a, b]: [usize; 2], ends: [[f64; 2]; 2], [size, deviation_um]: [f64; 2]) -> Observation {
         let [from, to] = ends;
         let (along_a, along_b) = (to[0] - from[0], to[1] - from[1]);
         let length_mm = libm::hypot(along_a, along_b).max(f64::MIN_POSITIVE);
@@ -169,7 +169,7 @@ impl MeasuredSet {
             place.at_mm[b] += end[1];
             place
         };
-        let size = if self.calibrated { 0.0 } else { 1.0 };
+        let size = if self.calibrated { 0.0 } else { size };
         Observation { places: [place(from, -1.0), place(to, 1.0)], deviation_um, nuisance: [size, 0.0, 0.0, 0.0] }
     }
 }

@@ -8,11 +8,13 @@ use clap::Args;
 /// Write a program to record a log with, for identify
 ///
 /// Run it on the machine in the air, record commanded and actual positions meanwhile, and give the log to `feedwright identify`. The
-/// first lines of the program say what to check before.
+/// first lines of the program say what to check before. With --ballbar or --grid the program measures the geometry instead.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
-Example:
-  feedwright excite --machine limits.toml --travel 40 --out excite.ngc")]
+Examples:
+  feedwright excite --machine limits.toml --travel 40 --out excite.ngc
+  feedwright excite --machine mine.toml --ballbar 100 --feed 500 --out ballbar.ngc
+  feedwright excite --machine mine.toml --grid 10 --travel 80 --out grid.ngc")]
 pub(crate) struct ExciteArgs {
     /// Machine whose limits the program keeps: one that is built in, or a machine file (.toml).
     #[arg(long, value_name = "NAME|LIMITS.toml")]
@@ -20,7 +22,26 @@ pub(crate) struct ExciteArgs {
     /// Travel of each axis, mm: half of it on each side of where the machine stands.
     #[arg(long, value_name = "MM", default_value_t = feedwright_ident::ExciteOptions::default().travel_mm, allow_negative_numbers = true)]
     pub(crate) travel: f64,
+    /// Write the program of a ball bar of this radius: circles in both directions about the zero of the work coordinates.
+    #[arg(long, value_name = "RADIUS_MM", conflicts_with = "travel", value_parser = radius)]
+    pub(crate) ballbar: Option<f64>,
+    /// Write a program that rests at points of a grid, this far apart, over --travel from the zero of the work coordinates.
+    #[arg(long, value_name = "STEP_MM", conflicts_with = "ballbar", value_parser = radius)]
+    pub(crate) grid: Option<f64>,
+    /// Feedrate of --ballbar and --grid, mm/min. A ball bar shows the geometry best where servos lag least: slowly.
+    #[arg(long, value_name = "MM_MIN", default_value_t = 500.0, value_parser = radius)]
+    pub(crate) feed: f64,
+    /// Plane of --ballbar; with z, arcs of 220 degrees.
+    #[arg(long, value_name = "PLANE", default_value = "xy", value_parser = ["xy", "xz", "yz"], requires = "ballbar")]
+    pub(crate) plane: String,
     /// Place of the program.
     #[arg(long, value_name = "FILE.ngc")]
     pub(crate) out: PathBuf,
+}
+
+fn radius(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.1..=1e4).contains(&value) => Ok(value),
+        _ => Err("it must be 0.1 to 10000".to_owned()),
+    }
 }

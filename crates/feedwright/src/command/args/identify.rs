@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 use feedwright_ident::KnownValue;
 
 /// Identify a machine from its log, and write its machine file
@@ -11,13 +11,16 @@ use feedwright_ident::KnownValue;
 /// The log has commanded and actual positions of the axes at the servo period. Without a log a simulated machine is identified, and
 /// the model is written that `feedwright run --model` takes.
 #[derive(Debug, Args)]
+#[command(group(ArgGroup::new("measured").args(["log", "geometry"])))]
 #[command(after_long_help = "\
 Examples:
   feedwright identify cut.csv --out mine.toml --report mine.html
   feedwright identify today.csv --update mine.toml
   feedwright identify cut.csv --out mine.toml --excite-next next.ngc
   feedwright identify log.txt --kp 50±5% --integral-time 0.02±10% --out mine.toml
-  feedwright identify --machine workshop --out workshop.model.toml")]
+  feedwright identify --machine workshop --out workshop.model.toml
+  feedwright identify --geometry ballbar.csv --geometry x=laser.csv --machine mine.toml --out geometry.toml
+  feedwright identify --geometry x=x.comp --machine mine.toml --out geometry.toml")]
 pub(crate) struct IdentifyArgs {
     /// Log of commanded and actual positions of a real machine: halsampler, halscope, MATLAB v5, Sinumerik Edge, or a table of text.
     /// Several are of one machine, with the same axes.
@@ -25,6 +28,8 @@ pub(crate) struct IdentifyArgs {
     pub(crate) log: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) of_log: LogArgs,
+    #[command(flatten)]
+    pub(crate) of_geometry: GeometryArgs,
     /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
     #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE)]
     pub(crate) machine: OsString,
@@ -40,7 +45,7 @@ pub(crate) struct IdentifyArgs {
     /// Seed of the recording that a simulated machine is identified from.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Place of the machine file; of a simulated machine, of its model.
+    /// Place of the machine file; of a simulated machine, of its model; with --geometry, of the geometry file.
     #[arg(long, value_name = "FILE.toml", required_unless_present = "update")]
     pub(crate) out: Option<PathBuf>,
 }
@@ -109,8 +114,46 @@ pub(crate) struct LogArgs {
     #[arg(long, value_name = "FILE.html", requires = "log")]
     pub(crate) report: Option<PathBuf>,
     /// Write all results as JSON.
-    #[arg(long, value_name = "FILE.json", requires = "log")]
+    #[arg(long, value_name = "FILE.json", requires = "measured")]
     pub(crate) json: Option<PathBuf>,
+}
+
+/// What is said of measurements of the geometry.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Options of the geometry")]
+pub(crate) struct GeometryArgs {
+    /// Measurement of the geometry of --machine: ball bar, laser or scale, test part, grid encoder, or compensation file of LinuxCNC.
+    /// x=FILE says which axis it is of. Several are fitted together; --out gets the geometry file.
+    #[arg(long, value_name = "[AXIS=]FILE", conflicts_with_all = ["log", "controller", "axes", "set", "seed"], requires = "out")]
+    pub(crate) geometry: Vec<AxisFile>,
+    /// Write the errors of an axis as a compensation file of LinuxCNC.
+    #[arg(long, value_name = "AXIS=FILE", requires = "geometry")]
+    pub(crate) comp_file: Vec<AxisFile>,
+    /// Type of the compensation files that are written: 0 has positions of the tool, 1 has what is added to the command.
+    #[arg(long, value_name = "0|1", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=1))]
+    pub(crate) comp_type: u8,
+}
+
+/// A file, perhaps of an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct AxisFile {
+    pub(crate) axis: Option<usize>,
+    pub(crate) path: PathBuf,
+}
+
+impl std::str::FromStr for AxisFile {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let axis_of = |name: &str| feedwright_sim::AXIS_NAMES.iter().position(|axis| *axis == name.to_lowercase());
+        let named = text.split_once('=').and_then(|(name, path)| Some((axis_of(name)?, path)));
+        let (axis, path) = named.map_or((None, text), |(axis, path)| (Some(axis), path));
+        if path.is_empty() {
+            Err("the name of the file is missing".to_owned())
+        } else {
+            Ok(Self { axis, path: path.into() })
+        }
+    }
 }
 
 /// A number above zero.

@@ -1,6 +1,7 @@
-//! `feedwright identify`: a model of a machine, trained and written.
+//! `feedwright identify`: a model of a machine, trained and written; its machine file from a log; its geometry from measurements.
 
 mod from_log;
+mod from_measurement;
 use std::f64::consts::TAU;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -21,6 +22,9 @@ use crate::controllers::{CONTROLLERS, Choices, Setup};
 use crate::output::{OutputError, OutputFile, OutputFiles};
 
 pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
+    if !args.of_geometry.geometry.is_empty() {
+        return from_measurement::run(args, console);
+    }
     // Without --out there is --update, which belongs to a log.
     let Some(out) = args.out.as_deref().filter(|_| args.log.is_empty()) else {
         return from_log::run(&args.log, args, console);
