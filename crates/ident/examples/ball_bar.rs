@@ -11,7 +11,7 @@
 
 use std::f64::consts::TAU;
 
-use feedwright_ident::{BallBarProgram, FoundGeometry, GeometryInput, SimulatedBallBar, fit_geometry};
+use feedwright_ident::{BallBarProgram, FoundGeometry, GeometryInput, KnownScrew, SimulatedBallBar, fit_geometry};
 use feedwright_sim::{AxisGeometry, GeometryFile, Machine, MeasuredSquareness};
 use rayon::prelude::*;
 
@@ -55,8 +55,8 @@ fn found(machine: &Machine, bar: SimulatedBallBar) -> FoundGeometry {
     let GeometryInput::Sets(sets) = GeometryInput::parse("bar", &bar.text(machine).unwrap(), None).unwrap() else {
         unreachable!("a bar")
     };
-    let leads_mm = [0, 1, 2].map(|i| Some(machine.axis(i).lead_mm_per_rev));
-    fit_geometry(sets, leads_mm, "a simulated bar").unwrap()
+    let screws = [0, 1, 2].map(|axis| KnownScrew::of(machine, axis));
+    fit_geometry(sets, screws, "a simulated bar").unwrap()
 }
 
 /// The true value of a found one.

@@ -8,6 +8,7 @@ mod logs;
 mod sweep;
 
 mod conformance_excite;
+mod conformance_geometry;
 mod conformance_log_refusals;
 mod conformance_logs;
 mod oracle_axis_parameters;

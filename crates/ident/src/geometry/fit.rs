@@ -12,7 +12,7 @@
 use std::f64::consts::TAU;
 
 use feedwright_sim::{
-    AXIS_NAMES, CHECK_ERROR_RATE, GeometryCheck, GeometryFile, GeometryOrigin, GeometryRefused, LeastSquares,
+    AXIS_NAMES, CHECK_ERROR_RATE, GeometryCheck, GeometryFile, GeometryOrigin, GeometryRefused, LeastSquares, Machine,
     MeasuredSet, NUISANCES, Observation, f_exceeded,
 };
 use miette::Diagnostic;
@@ -101,16 +101,41 @@ const ROUNDS: usize = 3;
 /// Least noise of a set, um: an exact measurement does not get infinite weight.
 const LEAST_NOISE_UM: f64 = 1e-3;
 
-/// The geometry of a machine whose screws have `leads_mm`; an axis without lead is not there.
+/// What is known of the screw of an axis.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct KnownScrew {
+    /// Travel of a turn, mm.
+    pub lead_mm: f64,
+    /// Lost motion by friction that winds the screw up, um. A law of the axis that has the screw predicts it; it is no geometry.
+    pub windup_um: f64,
+}
+
+impl KnownScrew {
+    /// Of an axis of a machine file; `None` where the machine has no such axis.
+    ///
+    /// The screw of stiffness k = Jt (2 pi f)^2 gives way by Fc / k in either direction.
+    pub fn of(machine: &Machine, axis: usize) -> Option<Self> {
+        let axis = machine.axes.get(axis)?;
+        let windup_rad = axis.transmission.filter(|screw| !screw.scale_on_table).map_or(0.0, |screw| {
+            let table_kg_m2 = axis.inertia_kg_m2 * screw.table_share;
+            let resonance_rad_s = TAU * screw.resonance_hz;
+            2.0 * axis.coulomb_friction_nm / (table_kg_m2 * resonance_rad_s * resonance_rad_s)
+        });
+        let lead_mm = axis.lead_mm_per_rev;
+        Some(Self { lead_mm, windup_um: 1e3 * windup_rad * lead_mm / TAU })
+    }
+}
+
+/// The geometry of a machine with these screws; an axis without screw is not there.
 ///
 /// # Errors
 /// See [`NoGeometry`].
 pub fn fit_geometry(
     sets: Vec<MeasuredSet>,
-    leads_mm: [Option<f64>; 3],
+    screws: [Option<KnownScrew>; 3],
     source: &str,
 ) -> Result<FoundGeometry, NoGeometry> {
-    let mut fit = Fit::new(sets, leads_mm)?;
+    let mut fit = Fit::new(sets, screws)?;
     fit.solve()?;
     fit.drop_pitch_of_noise()?;
     let mut found = fit.found(source)?;
@@ -132,7 +157,19 @@ struct Fit {
 }
 
 impl Fit {
-    fn new(sets: Vec<MeasuredSet>, leads_mm: [Option<f64>; 3]) -> Result<Self, NoGeometry> {
+    fn new(mut sets: Vec<MeasuredSet>, screws: [Option<KnownScrew>; 3]) -> Result<Self, NoGeometry> {
+        let mut notes = Vec::new();
+        for (axis, screw) in screws.iter().enumerate().filter_map(|(axis, screw)| Some((axis, screw.as_ref()?))) {
+            if screw.windup_um > 0.0 {
+                sets.iter_mut().for_each(|set| take_off_windup(set, axis, screw.windup_um));
+                let um = feedwright_sim::to_four_digits(screw.windup_um);
+                notes.push(format!(
+                    "backlash {}: without {um} um by which friction winds the screw of the machine file up",
+                    AXIS_NAMES[axis]
+                ));
+            }
+        }
+        let leads_mm = screws.map(|screw| screw.map(|screw| screw.lead_mm));
         let repeatability_um = sets.iter().map(repeatability_um).collect();
         let least_lead_mm = leads_mm.iter().flatten().copied().fold(f64::INFINITY, f64::min);
         let sets: Vec<MeasuredSet> = sets.into_iter().map(|set| binned(set, least_lead_mm)).collect();
@@ -151,10 +188,9 @@ impl Fit {
             };
             seen.iter().zip(&of_sets).any(shows).then_some(lead_mm)
         });
-        let notes = axes.iter().filter(|&&axis| turns[axis].is_none()).map(|&axis| {
+        notes.extend(axes.iter().filter(|&&axis| turns[axis].is_none()).map(|&axis| {
             format!("pitch error of {}: not told, the positions are too far apart for its lead", AXIS_NAMES[axis])
-        });
-        let notes = notes.collect();
+        }));
         let unknowns = unknowns(&axes, &planes, turns);
         let solution = LeastSquares::default();
         let correlation = vec![1.0; sets.len()];
@@ -430,6 +466,18 @@ impl Fit {
             correlation: self.correlation[at],
             nuisances: nuisances.map(|((name, unit), value)| (name, value, unit)).collect(),
         }
+    }
+}
+
+/// Takes the lost motion by windup off the deviations of a set; its geometry is then without.
+fn take_off_windup(set: &mut MeasuredSet, axis: usize, windup_um: f64) {
+    let mut windup = GeometryFile::default();
+    windup.axes[axis].backlash_um = windup_um;
+    let predicted: Vec<f64> = set.observations().iter().map(|seen| seen.predicted_um(&windup)).collect();
+    let values = if set.kind == "grid" { 2 } else { 1 };
+    for (row, predicted) in set.rows.iter_mut().zip(predicted.chunks(values)) {
+        let first = row.len() - values;
+        row[first..].iter_mut().zip(predicted).for_each(|(value, predicted)| *value -= predicted);
     }
 }
 

@@ -102,7 +102,7 @@ impl<'b> Record<'b> {
         let SimulatedBallBar { program, noise_um, samples, has_encoders, .. } = *self.bar;
         let center_mm = self.bar.center_mm;
         let [a, b] = program.plane.map(|axis| sample.position_mm[axis] - center_mm[axis]);
-        if (libm::hypot(a, b) - program.radius_mm).abs() > ON_CIRCLE_MM || sample.resting {
+        if (libm::hypot(a, b) - program.radius_mm).abs() > ON_CIRCLE_MM || sample.resting || sample.rapid {
             self.arc = None;
             return;
         }

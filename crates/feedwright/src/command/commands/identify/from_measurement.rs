@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use feedwright_gcode::input;
-use feedwright_ident::{FoundGeometry, GeometryInput, comp_file, fit_geometry, geometry_of_tables, sampled_table};
+use feedwright_ident::{
+    FoundGeometry, GeometryInput, KnownScrew, comp_file, fit_geometry, geometry_of_tables, sampled_table,
+};
 use feedwright_sim::{AXIS_NAMES, GeometryFile, Machine, is_machine_path, to_four_digits};
 use miette::{IntoDiagnostic, Result, miette};
 
@@ -83,13 +85,9 @@ fn found(measured: &[AxisFile], machine: &Machine) -> Result<FoundGeometry> {
     for (number, set) in sets.iter_mut().enumerate() {
         set.name = format!("{} {} {}", set.kind, set.axes, number + 1);
     }
-    let leads_mm = [0, 1, 2].map(|axis| machine.axes.get(axis).map(|axis| axis.lead_mm_per_rev));
+    let screws = [0, 1, 2].map(|axis| KnownScrew::of(machine, axis));
     let source = format!("{}, on {}", names.join(", "), machine.name);
-    if tables.is_empty() {
-        Ok(fit_geometry(sets, leads_mm, &source)?)
-    } else {
-        Ok(geometry_of_tables(tables, &source)?)
-    }
+    if tables.is_empty() { Ok(fit_geometry(sets, screws, &source)?) } else { Ok(geometry_of_tables(tables, &source)?) }
 }
 
 fn print(found: &FoundGeometry, places: &[&Path]) -> std::io::Result<()> {
