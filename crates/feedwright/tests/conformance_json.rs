@@ -28,6 +28,8 @@ fn every_key_of_a_result_is_documented_and_every_documented_key_is_there() {
     holds("plan", &json(&["plan", "circle.ngc", "--machine", "tnv40"]));
     folder.file("log.csv", text(HEAD, rows(1)));
     holds("identify", &json(&["identify", "log.csv", "--out", "mine.toml"]));
+    folder.file("bar.csv", crate::conformance_geometry_command::bar());
+    holds("identify --geometry", &json(&["identify", "--geometry", "bar.csv", "--out", "geometry.toml"]));
     folder.file("wrong.ngc", "G1 X1 F100 Q\n");
     holds("check --format json", &folder.run(&["check", "--format", "json", "circle.ngc", "wrong.ngc"]).stdout);
 }

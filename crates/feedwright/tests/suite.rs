@@ -39,6 +39,7 @@ mod conformance_excite;
 mod conformance_fanuc_options;
 mod conformance_fastest;
 mod conformance_geometry;
+mod conformance_geometry_command;
 mod conformance_hidden_text;
 mod conformance_identification;
 mod conformance_identify_log;
