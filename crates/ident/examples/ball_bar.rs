@@ -4,8 +4,9 @@
 //! cargo run --release -p feedwright-ident --example ball_bar -- [SEEDS] [RADIUS_MM] [FEED_MM_MIN] [0|1] [MACHINE...]
 //! ```
 //!
-//! With 1 the bar is recorded together with the encoders. For each value: truth, value of the first seed, its standard deviation, largest deviation, and in how many seeds the truth is within one and two
-//! standard deviations. Then the error that the geometry leaves on a circle of 50 mm about the center, by the first seed.
+//! With 1 the bar is recorded together with the encoders. The columns are truth, value of the first seed, its standard deviation, mean
+//! and largest deviation, and in how many seeds the truth is within one and two standard deviations. Below them stands the error that
+//! the geometry leaves on a circle of 50 mm about the center, by the first seed.
 
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "an example stops at what it did not expect")]
 

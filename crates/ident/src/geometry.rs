@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `geometry/text.rs` | keys, columns and rows of a text |
 //! | `geometry/unknowns.rs` | the unknowns that a measurement may tell |
+//! | `geometry/readings.rs` | readings before and behind the fit: bins, repeatability, tables |
 //! | `geometry/fit.rs` | the fit |
 //! | `geometry/comp_file.rs` | compensation files of LinuxCNC, read and written |
 //! | `geometry/formats.rs` | recognizes a file, and reads its rows |
@@ -16,6 +17,7 @@
 
 pub(crate) mod text;
 mod unknowns;
+pub(crate) mod readings;
 pub(crate) mod fit;
 pub(crate) mod comp_file;
 pub(crate) mod formats;

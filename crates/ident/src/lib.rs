@@ -83,9 +83,10 @@ pub use excite::{
     AxisExcitation, ExciteError, ExciteOptions, ExciteProgram, MotionPart, excitation_program, next_excitation,
 };
 pub use geometry::comp_file::{comp_file, geometry_of_tables, sampled_table};
-pub use geometry::fit::{FoundGeometry, FoundGeometryValue, FoundSet, KnownScrew, NoGeometry, fit_geometry};
+pub use geometry::fit::{FoundGeometry, FoundGeometryValue, FoundSet, NoGeometry, fit_geometry};
 pub use geometry::formats::GeometryInput;
 pub use geometry::programs::{BallBarProgram, GridProgram};
+pub use geometry::readings::KnownScrew;
 pub use geometry::simulated::SimulatedBallBar;
 pub use geometry::text::MeasurementError;
 pub use identify::axes::{AxisRecordings, TrainedAxes, train_axes};

@@ -299,7 +299,7 @@ fn what_is_no_measurement_is_refused_with_a_remedy() {
     assert!(missing.to_string().contains("is of z, and the machine has no such axis"), "{missing}");
 }
 
-/// Two decimals behind the truth at 0.3 um noise: what a bar finds of machines by their plants. The servo leaves about 1 um/m of mean scale.
+/// What a bar of 0.3 um noise finds of a machine by its plant, read against the encoders.
 #[test]
 fn a_ball_bar_on_a_simulated_machine_finds_its_geometry() {
     let machine = Machine::load("stiff".as_ref()).unwrap();

@@ -9,15 +9,14 @@
 //! sum of the autocorrelations up to the first that is negative (Geyer 1992, Practical Markov chain Monte Carlo). A pitch error that an
 //! F-test at 0.1 % does not tell from none is left out.
 
-use std::f64::consts::TAU;
-
 use feedwright_sim::{
-    AXIS_NAMES, CHECK_ERROR_RATE, GeometryCheck, GeometryFile, GeometryOrigin, GeometryRefused, LeastSquares, Machine,
+    AXIS_NAMES, CHECK_ERROR_RATE, GeometryCheck, GeometryFile, GeometryOrigin, GeometryRefused, LeastSquares,
     MeasuredSet, NUISANCES, Observation, f_exceeded,
 };
 use miette::Diagnostic;
 use thiserror::Error;
 
+use super::readings::{KnownScrew, binned, repeatability_um, table_of, take_off_windup};
 use super::unknowns::{PAIRS, Unknown, UnknownKind, angle, shows_turns, unknowns};
 use crate::model::version;
 
@@ -100,31 +99,6 @@ pub struct FoundGeometry {
 const ROUNDS: usize = 3;
 /// Least noise of a set, um: an exact measurement does not get infinite weight.
 const LEAST_NOISE_UM: f64 = 1e-3;
-
-/// What is known of the screw of an axis.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct KnownScrew {
-    /// Travel of a turn, mm.
-    pub lead_mm: f64,
-    /// Lost motion by friction that winds the screw up, um. A law of the axis that has the screw predicts it; it is no geometry.
-    pub windup_um: f64,
-}
-
-impl KnownScrew {
-    /// Of an axis of a machine file; `None` where the machine has no such axis.
-    ///
-    /// The screw of stiffness k = Jt (2 pi f)^2 gives way by Fc / k in either direction.
-    pub fn of(machine: &Machine, axis: usize) -> Option<Self> {
-        let axis = machine.axes.get(axis)?;
-        let windup_rad = axis.transmission.filter(|screw| !screw.scale_on_table).map_or(0.0, |screw| {
-            let table_kg_m2 = axis.inertia_kg_m2 * screw.table_share;
-            let resonance_rad_s = TAU * screw.resonance_hz;
-            2.0 * axis.coulomb_friction_nm / (table_kg_m2 * resonance_rad_s * resonance_rad_s)
-        });
-        let lead_mm = axis.lead_mm_per_rev;
-        Some(Self { lead_mm, windup_um: 1e3 * windup_rad * lead_mm / TAU })
-    }
-}
 
 /// The geometry of a machine with these screws; an axis without screw is not there.
 ///
@@ -469,18 +443,6 @@ impl Fit {
     }
 }
 
-/// Takes the lost motion by windup off the deviations of a set; its geometry is then without.
-fn take_off_windup(set: &mut MeasuredSet, axis: usize, windup_um: f64) {
-    let mut windup = GeometryFile::default();
-    windup.axes[axis].backlash_um = windup_um;
-    let predicted: Vec<f64> = set.observations().iter().map(|seen| seen.predicted_um(&windup)).collect();
-    let values = if set.kind == "grid" { 2 } else { 1 };
-    for (row, predicted) in set.rows.iter_mut().zip(predicted.chunks(values)) {
-        let first = row.len() - values;
-        row[first..].iter_mut().zip(predicted).for_each(|(value, predicted)| *value -= predicted);
-    }
-}
-
 /// Nuisances, and what is left of a set by a geometry, um.
 fn left_um(seen: &[Observation], file: &GeometryFile) -> (Vec<f64>, Vec<f64>) {
     let mut left: Vec<f64> = seen.iter().map(|seen| seen.deviation_um - seen.predicted_um(file)).collect();
@@ -514,91 +476,4 @@ fn correlation(left: &[f64]) -> f64 {
         tau += 2.0 * product / power;
     }
     tau
-}
-
-/// Parts of a turn of the screw that a bin of a ball bar reaches over at the most: the mean over one loses 0.6 % of a pitch error.
-const BINS_PER_TURN: f64 = 16.0;
-/// Least bins of a circle.
-const LEAST_BINS: f64 = 360.0;
-
-/// Samples of a ball bar, averaged over narrow bins; other sets, and those with fewer samples, as they are.
-fn binned(mut set: MeasuredSet, lead_mm: f64) -> MeasuredSet {
-    if set.kind != "bar" {
-        return set;
-    }
-    let bins = (TAU * set.radius_mm * BINS_PER_TURN / lead_mm).max(LEAST_BINS).ceil();
-    let mut rows: Vec<Vec<f64>> = Vec::new();
-    for way in [1.0, -1.0] {
-        let mut sums = vec![[0.0; 3]; bins as usize];
-        for row in set.rows.iter().filter(|row| row[1] == way) {
-            let angle_deg = row[0] - 360.0 * (row[0] / 360.0).floor();
-            let sum = &mut sums[((angle_deg / 360.0 * bins) as usize).min(bins as usize - 1)];
-            sum.iter_mut().zip([1.0, angle_deg, row[2]]).for_each(|(sum, value)| *sum += value);
-        }
-        let digits = |value: f64, factor: f64| (value * factor).round() / factor;
-        let mean =
-            |[count, angle_deg, um]: &[f64; 3]| vec![digits(angle_deg / count, 1e4), way, digits(um / count, 1e4)];
-        rows.extend(sums.iter().filter(|sum| sum[0] > 0.0 && settled(sum[1] / sum[0], way)).map(mean));
-    }
-    set.rows = rows;
-    set
-}
-
-/// Angle behind a reversal of an axis in which friction turns around, degrees: what the tool does there is no geometry.
-const REVERSAL_DEG: f64 = 4.0;
-
-/// Whether no axis has just reversed at an angle.
-fn settled(angle_deg: f64, way: f64) -> bool {
-    let behind_deg = way * angle_deg - 90.0 * (way * angle_deg / 90.0).floor();
-    behind_deg > REVERSAL_DEG
-}
-
-/// Standard deviation of values at the same place in the same direction, um.
-fn repeatability_um(set: &MeasuredSet) -> Option<f64> {
-    let last = set.rows.first()?.len().checked_sub(1)?;
-    let mut rows: Vec<&Vec<f64>> = set.rows.iter().collect();
-    rows.sort_by(|a, b| {
-        a[..last]
-            .iter()
-            .zip(&b[..last])
-            .map(|(a, b)| a.total_cmp(b))
-            .find(|order| order.is_ne())
-            .unwrap_or(std::cmp::Ordering::Equal)
-    });
-    let (mut squares, mut free) = (0.0, 0.0);
-    for same in rows.chunk_by(|a, b| a[..last] == b[..last]).filter(|same| same.len() > 1) {
-        let mean = same.iter().map(|row| row[last]).sum::<f64>() / same.len() as f64;
-        squares += same.iter().map(|row| (row[last] - mean) * (row[last] - mean)).sum::<f64>();
-        free += same.len() as f64 - 1.0;
-    }
-    (free > 0.0).then(|| (squares / free).sqrt())
-}
-
-/// Mean of what is left at each target in each direction, and the quotient of its variance to that of the runs, with the standard
-/// deviation of a mean. None where a target has fewer than two runs in a direction.
-fn table_of(set: &MeasuredSet, left: &[f64]) -> Option<(Vec<[f64; 3]>, [f64; 2])> {
-    let mut targets: Vec<f64> = set.rows.iter().map(|row| row[0]).collect();
-    targets.sort_by(f64::total_cmp);
-    targets.dedup();
-    let (mut rows, mut between, mut within, mut runs) = (Vec::new(), 0.0, 0.0, f64::INFINITY);
-    for at_mm in &targets {
-        let mut row = [*at_mm, 0.0, 0.0];
-        for (column, way) in [(1, 1.0), (2, -1.0)] {
-            let here = |(of, _): &(&Vec<f64>, &f64)| of[0] == *at_mm && of[1] == way;
-            let values: Vec<f64> = set.rows.iter().zip(left).filter(here).map(|(_, left)| *left).collect();
-            let count = values.len() as f64;
-            if count < 2.0 {
-                return None;
-            }
-            let mean = values.iter().sum::<f64>() / count;
-            within += values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>();
-            between += count * mean * mean;
-            runs = runs.min(count);
-            row[column] = (mean * 1e3).round() / 1e3 + 0.0;
-        }
-        rows.push(row);
-    }
-    let places = 2.0 * rows.len() as f64;
-    let variance = within / (left.len() as f64 - places);
-    (places > 3.0).then(|| (rows, [between / (places - 3.0) / variance, (variance / runs).sqrt()]))
 }

@@ -85,10 +85,8 @@ fn inverse(factors: &[Vec<f64>], kept: &[usize], count: usize) -> Vec<Vec<f64>> 
 
 /// Probability that a quotient of variances with `over` and `under` degrees of freedom exceeds `quotient` by chance.
 pub fn f_exceeded(quotient: f64, over: f64, under: f64) -> f64 {
-    if quotient.is_nan() || over <= 0.0 || under <= 0.0 {
-        return 1.0;
-    }
-    if quotient <= 0.0 {
+    let is_sensible = quotient > 0.0 && over > 0.0 && under > 0.0;
+    if !is_sensible {
         return 1.0;
     }
     incomplete_beta(under / (under + over * quotient), 0.5 * under, 0.5 * over)
