@@ -12,17 +12,17 @@
 //!
 //! | File | What |
 //! |---|---|
-//! | `geometry_file/keys.rs` | keys of the file |
-//! | `geometry_file/observation.rs` | what each row of a measurement says about the geometry |
 //! | `geometry_file/least_squares.rs` | weighted least squares with a rank test, and the F distribution |
+//! | `geometry_file/observation.rs` | what each row of a measurement says about the geometry |
+//! | `geometry_file/keys.rs` | keys of the file |
 //! | `geometry_file/check.rs` | tests a geometry against its own measurement |
 //! | `geometry_file/layout.rs` | reads the file |
 
-pub(crate) mod check;
-pub(crate) mod keys;
-mod layout;
 pub(crate) mod least_squares;
 pub(crate) mod observation;
+pub(crate) mod keys;
+pub(crate) mod check;
+mod layout;
 
 use std::f64::consts::TAU;
 use std::path::Path;

@@ -83,7 +83,7 @@ mod simulate;
 mod pipeline;
 
 pub use geometry_file::check::{CHECK_ERROR_RATE, GeometryCheck, GeometryRefused};
-pub use geometry_file::least_squares::{LeastSquares, f_exceeded};
+pub use geometry_file::least_squares::{RankedLeastSquares, f_exceeded};
 pub use geometry_file::observation::{MeasuredPlace, MeasuredSet, NUISANCES, Observation};
 pub use geometry_file::{AxisGeometry, GEOMETRY_FORMAT, GeometryFile, GeometryOrigin, MeasuredSquareness};
 pub use kinematics::joints_of;

@@ -10,8 +10,8 @@
 //! F-test at 0.1 % does not tell from none is left out.
 
 use feedwright_sim::{
-    AXIS_NAMES, CHECK_ERROR_RATE, GeometryCheck, GeometryFile, GeometryOrigin, GeometryRefused, LeastSquares,
-    MeasuredSet, NUISANCES, Observation, f_exceeded,
+    AXIS_NAMES, CHECK_ERROR_RATE, GeometryCheck, GeometryFile, GeometryOrigin, GeometryRefused, MeasuredSet, NUISANCES,
+    Observation, RankedLeastSquares, f_exceeded,
 };
 use miette::Diagnostic;
 use thiserror::Error;
@@ -109,7 +109,7 @@ pub fn fit_geometry(
     screws: [Option<KnownScrew>; 3],
     source: &str,
 ) -> Result<FoundGeometry, NoGeometry> {
-    let mut fit = Fit::new(sets, screws)?;
+    let mut fit = GeometryFit::new(sets, screws)?;
     fit.solve()?;
     fit.drop_pitch_of_noise()?;
     let mut found = fit.found(source)?;
@@ -120,17 +120,17 @@ pub fn fit_geometry(
     Ok(found)
 }
 
-struct Fit {
+struct GeometryFit {
     sets: Vec<MeasuredSet>,
     seen: Vec<Vec<Observation>>,
     unknowns: Vec<Unknown>,
     repeatability_um: Vec<Option<f64>>,
-    solution: LeastSquares,
+    solution: RankedLeastSquares,
     correlation: Vec<f64>,
     notes: Vec<String>,
 }
 
-impl Fit {
+impl GeometryFit {
     fn new(mut sets: Vec<MeasuredSet>, screws: [Option<KnownScrew>; 3]) -> Result<Self, NoGeometry> {
         let mut notes = Vec::new();
         for (axis, screw) in screws.iter().enumerate().filter_map(|(axis, screw)| Some((axis, screw.as_ref()?))) {
@@ -166,7 +166,7 @@ impl Fit {
             format!("pitch error of {}: not told, the positions are too far apart for its lead", AXIS_NAMES[axis])
         }));
         let unknowns = unknowns(&axes, &planes, turns);
-        let solution = LeastSquares::default();
+        let solution = RankedLeastSquares::default();
         let correlation = vec![1.0; sets.len()];
         Ok(Self { sets, seen, unknowns, repeatability_um, solution, correlation, notes })
     }
@@ -197,7 +197,7 @@ impl Fit {
     fn solve(&mut self) -> Result<(), NoGeometry> {
         for _ in 0..ROUNDS {
             let (columns, right) = self.system();
-            self.solution = LeastSquares::new(&columns, &right);
+            self.solution = RankedLeastSquares::new(&columns, &right);
             let (rows, unknowns) = (self.rows(), self.solution.rank());
             if rows <= unknowns {
                 return Err(NoGeometry::TooFew { rows, unknowns });
@@ -218,7 +218,7 @@ impl Fit {
             }
         }
         let (columns, right) = self.system();
-        self.solution = LeastSquares::new(&columns, &right);
+        self.solution = RankedLeastSquares::new(&columns, &right);
         Ok(())
     }
 
@@ -447,7 +447,7 @@ impl Fit {
 fn left_um(seen: &[Observation], file: &GeometryFile) -> (Vec<f64>, Vec<f64>) {
     let mut left: Vec<f64> = seen.iter().map(|seen| seen.deviation_um - seen.predicted_um(file)).collect();
     let columns: Vec<Vec<f64>> = (0..NUISANCES).map(|i| seen.iter().map(|seen| seen.nuisance[i]).collect()).collect();
-    let fit = LeastSquares::new(&columns, &left);
+    let fit = RankedLeastSquares::new(&columns, &left);
     for (column, value) in columns.iter().zip(&fit.values) {
         left.iter_mut().zip(column).for_each(|(left, column)| *left -= value * column);
     }

@@ -30,15 +30,15 @@ impl GeometryInput {
         let mut sets = Vec::new();
         for block in &blocks {
             let reader = reader(block).ok_or_else(|| unknown(block, block.line()))?;
-            if let Reader::CompFile = reader {
+            if let MeasurementFormat::CompFile = reader {
                 let axis = axis_of(block, axis)?;
                 let (table, kind) = comp_file::table(block)?;
                 return Ok(Self::Table(axis, table, kind));
             }
             let mut set = match reader {
-                Reader::BallBar => ball_bar(block)?,
-                Reader::Grid => grid(block)?,
-                Reader::TestPart => test_part(block)?,
+                MeasurementFormat::BallBar => ball_bar(block)?,
+                MeasurementFormat::Grid => grid(block)?,
+                MeasurementFormat::TestPart => test_part(block)?,
                 _ => positioning(block, axis)?,
             };
             set.source = file.to_owned();
@@ -56,7 +56,7 @@ impl GeometryInput {
 }
 
 #[derive(Clone, Copy)]
-enum Reader {
+enum MeasurementFormat {
     BallBar,
     Grid,
     TestPart,
@@ -64,21 +64,21 @@ enum Reader {
     CompFile,
 }
 
-fn reader(block: &TextBlock) -> Option<Reader> {
+fn reader(block: &TextBlock) -> Option<MeasurementFormat> {
     let has = |begins: &str| block.columns.iter().any(|column| column.starts_with(begins));
     let measured_of = |axis: &&'static str| {
         has(&format!("{axis}_mm")) && (has(&format!("{axis}_measured")) || has(&format!("d{axis}_")))
     };
     if has("angle") {
-        Some(Reader::BallBar)
+        Some(MeasurementFormat::BallBar)
     } else if AXIS_NAMES.into_iter().filter(measured_of).count() == 2 {
-        Some(Reader::Grid)
+        Some(MeasurementFormat::Grid)
     } else if has("name") && has("nominal") && has("measured") {
-        Some(Reader::TestPart)
+        Some(MeasurementFormat::TestPart)
     } else if has("position") || has("target") {
-        Some(Reader::Positioning)
+        Some(MeasurementFormat::Positioning)
     } else if block.columns.is_empty() && block.rows.iter().all(|(_, cells)| cells.len() == 3) {
-        Some(Reader::CompFile)
+        Some(MeasurementFormat::CompFile)
     } else {
         None
     }

@@ -49,7 +49,7 @@ impl SimulatedBallBar {
         let canon = Reader::from_text("ballbar.ngc", program.as_str(), Settings::default())?.map_while(Result::ok);
         let mut reference = Stages::of(&machine).reference(path_steps(canon), &machine)?;
         let mut plant = Plant::<N>::new(&machine, joints_of(reference.at(0.0).position_mm));
-        let mut record = Record::new(self);
+        let mut record = BarRecord::new(self);
         for n in 0_u32.. {
             let t_s = f64::from(n) * machine.period.servo_s;
             let sample = reference.at(t_s);
@@ -71,7 +71,7 @@ impl SimulatedBallBar {
 }
 
 /// What a bar has recorded.
-struct Record<'b> {
+struct BarRecord<'b> {
     bar: &'b SimulatedBallBar,
     text: String,
     rng: Rng,
@@ -84,7 +84,7 @@ struct Record<'b> {
 /// Distance of the command from the circle at which the bar is on it, mm: beyond the rounding of its corners.
 const ON_CIRCLE_MM: f64 = 0.1;
 
-impl<'b> Record<'b> {
+impl<'b> BarRecord<'b> {
     fn new(bar: &'b SimulatedBallBar) -> Self {
         let BallBarProgram { radius_mm, feed_mm_min, plane: [a, b] } = bar.program;
         let calibrated = if bar.calibrated { "yes" } else { "no" };

@@ -15,7 +15,7 @@ use miette::Diagnostic;
 use thiserror::Error;
 
 use super::GeometryFile;
-use super::least_squares::{LeastSquares, f_exceeded};
+use super::least_squares::{RankedLeastSquares, f_exceeded};
 use crate::number::to_four_digits;
 
 /// Rate of false alarms of each test, for independent normal errors. At 1e-3 a correct file is refused once in a thousand, and a
@@ -181,7 +181,7 @@ impl GeometryFile {
             let columns: Vec<Vec<f64>> = (0..super::observation::NUISANCES)
                 .map(|i| observations.iter().map(|seen| seen.nuisance[i]).collect())
                 .collect();
-            let um2 = LeastSquares::new(&columns, &left).left;
+            let um2 = RankedLeastSquares::new(&columns, &left).left;
             misfit.um2 += um2;
             misfit.weighted += um2 / (set.noise_um * set.noise_um);
             misfit.rows += observations.len();

@@ -8,7 +8,7 @@ const LEAST_LEFT: f64 = 1e-3;
 
 /// A solution.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct LeastSquares {
+pub struct RankedLeastSquares {
     /// The unknowns; 0 where one was dropped.
     pub values: Vec<f64>,
     /// Which were found.
@@ -27,7 +27,7 @@ fn without(from: &mut [f64], times: f64, of: &[f64]) {
     from.iter_mut().zip(of).for_each(|(from, of)| *from -= times * of);
 }
 
-impl LeastSquares {
+impl RankedLeastSquares {
     /// Fits `right` by columns of the same length; the earlier ones have precedence.
     pub fn new(columns: &[Vec<f64>], right: &[f64]) -> Self {
         let count = columns.len();
@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn a_line_is_found_and_a_column_that_repeats_another_is_dropped() {
         let [one, x, twice] = [[1.0, 1.0, 1.0, 1.0], [0.0, 1.0, 2.0, 3.0], [1.0, 3.0, 5.0, 7.0]].map(Vec::from);
-        let fit = LeastSquares::new(&[one, x, twice], &[1.0, 3.0, 5.0, 8.0]);
+        let fit = RankedLeastSquares::new(&[one, x, twice], &[1.0, 3.0, 5.0, 8.0]);
         // Closed form of a line: slope 2.3, intercept 0.8, squares left 0.3.
         assert!((fit.values[0] - 0.8).abs() < 1e-12 && (fit.values[1] - 2.3).abs() < 1e-12, "{fit:?}");
         assert!((fit.left - 0.3).abs() < 1e-12 && (fit.covariance[1][1] - 0.2).abs() < 1e-12, "{fit:?}");

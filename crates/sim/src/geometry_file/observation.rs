@@ -49,7 +49,7 @@ pub struct MeasuredSet {
     pub noise_um: f64,
     /// Root mean square of what the fit left.
     pub left_um: f64,
-    /// The rows, see [the module](self).
+    /// The rows; docs/geometry-file.md has the numbers of each kind.
     pub rows: Vec<Vec<f64>>,
 }
 
