@@ -15,6 +15,11 @@ There is no delay and no correction while the machine jogs, homes or probes, whi
 wherever \\fBdirect\\fR is set. The delay is taken up and given up where the command rests. So that it is given up before a program probes
 or follows a spindle, connect \\fBfeed-inhibit\\fR to motion.feed-inhibit and \\fBspindle-at-speed\\fR to spindle.0.at-speed.
 
+Other joints and signals pass through: \\fBthrough-drive-N\\fR is \\fBthrough-command-N\\fR with the delay of the corrected joints, to the bit, and
+\\fBthrough-feedback-N\\fR goes back to joint.N.motor-pos-fb. Rotary joints and the second motors of gantries belong there: \\fBtandem\\fR
+names the corrected joint whose correction a second motor gets as well. The delay is taken up and given up only where these joints rest too.
+\\fBsignal-out-N\\fR is \\fBsignal-in-N\\fR with the same delay, such as the power of a laser; a signal may change while the joints rest.
+
 While \\fBpowered\\fR is off, drives and LinuxCNC get the actual position.
 
 After the amplifiers were off, a model of axes first has to show that it is of this machine: 20 ms of motion that changes its speed do, such as the rapid
@@ -25,7 +30,7 @@ A correction that fails is faded out, and comes back when its predictions have h
 that, and \\fBfound\\fR and \\fBallowed\\fR tell what was measured and from where on it is too much. \\fBenable\\fR fades the correction in and out in
 motion as well, within \\fBcorrection-acceleration\\fR.
 
-.B loadrt feedwright model=\\fIFILE.fwmodel\\fB [joints=2|3] [mm_per_unit=\\fIMM\\fB] [max_velocity=\\fIV,V,V\\fB max_acceleration=\\fIA,A,A\\fB max_ferror=\\fIF,F,F\\fB min_ferror=\\fIM,M,M\\fB] [record=\\fISECONDS\\fB recording=\\fIFILE\\fB]
+.B loadrt feedwright model=\\fIFILE.fwmodel\\fB [joints=2|3] [mm_per_unit=\\fIMM\\fB] [through=\\fI0..6\\fB tandem=\\fIJ,J...\\fB] [signals=\\fI0..6\\fB] [max_velocity=\\fIV,V,V\\fB max_acceleration=\\fIA,A,A\\fB max_ferror=\\fIF,F,F\\fB min_ferror=\\fIM,M,M\\fB] [record=\\fISECONDS\\fB recording=\\fIFILE\\fB]
 
 \\fBmodel\\fR is written by 'feedwright block'. A file that is missing, damaged, or for another machine raises \\fBfault\\fR; commands are
 then passed on as they are. Where LINEAR_UNITS is inch, \\fBmm_per_unit\\fR is 25.4: then commands, positions and limits of joints are in inches,
@@ -53,6 +58,13 @@ pin in float actual-#[3] "Actual position, from the drive or encoder, in units o
 pin out float drive-#[3] "Position command of the drive, in units of the joints";
 pin out float feedback-#[3] "To joint.N.motor-pos-fb, in units of the joints";
 pin out float correction-#[3] "Offset of the drive's command from the path, mm";
+
+pin in float through-command-#[6 : personality & 15] "Position command of a joint that is delayed and not corrected, from joint.N.motor-pos-cmd";
+pin in float through-actual-#[6 : personality & 15] "Its actual position, from the drive or encoder";
+pin out float through-drive-#[6 : personality & 15] "Position command of its drive";
+pin out float through-feedback-#[6 : personality & 15] "To its joint.N.motor-pos-fb";
+pin in float signal-in-#[6 : personality >> 4] "A number that is delayed with the commands";
+pin out float signal-out-#[6 : personality >> 4] "The same, later by the delay";
 
 pin in bit powered "Whether the amplifiers are on, from joint.0.amp-enable-out";
 pin in bit enable "Whether the correction is wanted";
@@ -95,6 +107,9 @@ param rw s32 tick-max "Longest of them, ns";
 modparam dummy model """Model file""";
 modparam dummy joints """Number of joints, 2 or 3 (default: 3)""";
 modparam dummy mm_per_unit """mm in one unit of the joints, 25.4 for inches (default: 1)""";
+modparam dummy through """Number of joints that pass through, delayed and not corrected (default: 0)""";
+modparam dummy tandem """For each of them, the corrected joint of which it is the second motor, or -1, separated by commas (default: -1)""";
+modparam dummy signals """Number of signals that pass through; with the joints six at the most (default: 0)""";
 modparam dummy max_velocity """MAX_VELOCITY of each joint, mm/s, separated by commas: with the following three, a MIN_FERROR that is too small is told at start""";
 modparam dummy max_acceleration """MAX_ACCELERATION of each joint, mm/s^2""";
 modparam dummy max_ferror """FERROR of each joint, mm""";
@@ -122,6 +137,11 @@ static int joints = 3;
 RTAPI_MP_INT(joints, "number of joints, 2 or 3");
 static char *mm_per_unit = "1";
 RTAPI_MP_STRING(mm_per_unit, "mm in one unit of the joints");
+static int through = 0, signals = 0;
+RTAPI_MP_INT(through, "number of joints that pass through");
+RTAPI_MP_INT(signals, "number of signals that pass through");
+static char *tandem = "";
+RTAPI_MP_STRING(tandem, "corrected joint of each second motor, or -1");
 static char *max_velocity = "", *max_acceleration = "", *max_ferror = "", *min_ferror = "";
 RTAPI_MP_STRING(max_velocity, "MAX_VELOCITY of each joint");
 RTAPI_MP_STRING(max_acceleration, "MAX_ACCELERATION of each joint");
@@ -138,14 +158,39 @@ static size_t model_length;
 static bool begun;
 /* mm in one unit of the joints. */
 static double unit_mm = 1;
+static uint32_t carries;
 
-/* The next number of a list, or 0. */
-static double next_of(char **list)
+/* The next number of a list, or another one where it ends. */
+static double next_or(char **list, double otherwise)
 {
     char *end;
     double number = strtod(*list, &end);
+    number = end == *list ? otherwise : number;
     *list = *end == ',' ? end + 1 : end;
     return number;
+}
+
+/* What passes through, as of feedwright.h; false where that cannot be. */
+static bool read_through(const char *prefix)
+{
+    int i;
+    if (through < 0 || signals < 0 || through > FEEDWRIGHT_CHANNELS || signals > FEEDWRIGHT_CHANNELS - through) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s: through=%d signals=%d: no more than %d pass through together\n", prefix, through, signals, FEEDWRIGHT_CHANNELS);
+        return false;
+    }
+    for (i = 0; i < through; i++) {
+        double master = next_or(&tandem, -1);
+        if (!(master >= -1 && master < joints && master == floor(master))) {
+            rtapi_print_msg(RTAPI_MSG_ERR, "%s: tandem: %g is no corrected joint: 0 to %d, or -1\n", prefix, master, joints - 1);
+            return false;
+        }
+        carries |= (uint32_t)(FEEDWRIGHT_JOINT + 1 + (int)master) << 4 * i;
+    }
+    if (*tandem) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s: tandem has more than the %d joints that pass through: '%s' is left\n", prefix, through, tandem);
+        return false;
+    }
+    return true;
 }
 
 /* Tells which joints LinuxCNC will stop with a following error. */
@@ -155,8 +200,8 @@ static void check_ferror(const char *prefix)
     double given_mm[3] = { 0 }, least_mm[3] = { 0 };
     int i;
     for (i = 0; i < joints; i++) {
-        limits[i] = (feedwright_joint){ unit_mm * next_of(&max_velocity), unit_mm * next_of(&max_acceleration), unit_mm * next_of(&max_ferror) };
-        given_mm[i] = unit_mm * next_of(&min_ferror);
+        limits[i] = (feedwright_joint){ unit_mm * next_or(&max_velocity, 0), unit_mm * next_or(&max_acceleration, 0), unit_mm * next_or(&max_ferror, 0) };
+        given_mm[i] = unit_mm * next_or(&min_ferror, 0);
     }
     if (!CONTAINED(feedwright_min_ferror(model_bytes, model_length, (uint32_t)joints, &limits, &least_mm)))
         return;
@@ -171,12 +216,15 @@ static int extra_setup(struct __comp_state *__comp_inst, char *prefix, long extr
 {
     size_t bytes = feedwright_servo_bytes();
     uint32_t fault;
-    (void)__comp_inst;
     (void)extra_arg;
     if (joints != 2 && joints != 3) {
         rtapi_print_msg(RTAPI_MSG_ERR, "%s: joints=%d: 2 or 3 can be corrected\n", prefix, joints);
         return -EINVAL;
     }
+    if (!read_through(prefix))
+        return -EINVAL;
+    /* How many pins there are. */
+    __comp_inst->_personality = through | signals << 4;
     if (feedwright_servo_layout() != (sizeof(feedwright_inputs) << 16 | sizeof(feedwright_outputs))) {
         rtapi_print_msg(RTAPI_MSG_ERR, "%s: the library is of another version than the component\n", prefix);
         return -EINVAL;
@@ -206,6 +254,12 @@ static void extra_cleanup(void)
     free(link_.servo);
 }
 
+/* mm in one unit of what passes through: the second motor of a corrected joint takes the correction, in mm. */
+static double unit_of_through(int i)
+{
+    return (carries >> 4 * i & 15) > FEEDWRIGHT_JOINT ? unit_mm : 1;
+}
+
 static uint32_t flags(const struct __comp_state *c)
 {
     bool direct = *c->direct || !*c->coordinated;
@@ -227,6 +281,7 @@ FUNCTION(_)
         .engaged_mm_s2 = *c->acceleration_limit,
         .adaptive_scale = c->adaptive_scale,
         .flags = flags(c),
+        .carries = carries,
     };
     feedwright_outputs out;
     uint32_t last_cause = *c->fault ? *c->cause : 0;
@@ -236,6 +291,12 @@ FUNCTION(_)
         in.command_mm[i] = there ? unit_mm * *c->command[i] : 0;
         in.actual_mm[i] = there ? unit_mm * *c->actual[i] : 0;
     }
+    for (i = 0; i < through; i++) {
+        in.through[i] = unit_of_through(i) * *c->through_command[i];
+        in.through_actual[i] = unit_of_through(i) * *c->through_actual[i];
+    }
+    for (i = 0; i < signals; i++)
+        in.through[through + i] = in.through_actual[through + i] = *c->signal_in[i];
     if (!begun) {
         begun = true;
         guarded_begin(&link_, period * 1e-9);
@@ -248,6 +309,12 @@ FUNCTION(_)
         *c->correction[i] = out.correction_mm[i];
         *c->learned[i] = (out.learned >> i & 1) != 0;
     }
+    for (i = 0; i < through; i++) {
+        *c->through_drive[i] = out.through_drive[i] / unit_of_through(i);
+        *c->through_feedback[i] = out.through_feedback[i] / unit_of_through(i);
+    }
+    for (i = 0; i < signals; i++)
+        *c->signal_out[i] = out.through_drive[through + i];
     *c->contour_error = out.contour_error_mm;
     *c->contour_error_without = out.without_mm;
     *c->adaptive_feed = out.adaptive_feed;

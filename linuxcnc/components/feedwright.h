@@ -29,6 +29,13 @@
 // This motion probes.
 #define FEEDWRIGHT_PROBING 64
 
+// Values that pass through at the most.
+#define FEEDWRIGHT_CHANNELS 6
+
+// What a channel carries, in four bits of `carries` for each, the first in the lowest: this for a joint, this and 1 + n for a second motor of the
+// corrected joint n, 0 for a signal.
+#define FEEDWRIGHT_JOINT 1
+
 // What [`feedwright_servo_new`] returns where it made nothing.
 #define FEEDWRIGHT_NOT_MADE 255
 
@@ -59,10 +66,14 @@ typedef struct {
     double engaged_mm_s2;
     // What 1 of the requested feedrate stands for, 0.1 to 1.
     double adaptive_scale;
+    // Commands that are delayed and not corrected.
+    double through[FEEDWRIGHT_CHANNELS];
+    // Their actual positions; of a signal its command.
+    double through_actual[FEEDWRIGHT_CHANNELS];
     // The sum of FEEDWRIGHT_POWERED and so on.
     uint32_t flags;
-    // Nothing.
-    uint32_t reserved;
+    // What the channels carry.
+    uint32_t carries;
 } feedwright_inputs;
 
 // What goes to the drives and the control.
@@ -73,6 +84,9 @@ typedef struct {
     double feedback_mm[3];
     // Offsets of the drives' commands from the path.
     double correction_mm[3];
+    // Commands of the drives of what passes through, and what the control takes for the actual positions.
+    double through_drive[FEEDWRIGHT_CHANNELS];
+    double through_feedback[FEEDWRIGHT_CHANNELS];
     // Distance of the actual position from the path.
     double contour_error_mm;
     // The same without the correction, by the model.

@@ -40,6 +40,23 @@ static void guarded_pass(const feedwright_inputs *in, feedwright_outputs *out)
         out->drive_mm[i] = powered ? in->command_mm[i] : in->actual_mm[i];
         out->feedback_mm[i] = in->actual_mm[i];
     }
+    for (int i = 0; i < FEEDWRIGHT_CHANNELS; i++) {
+        out->through_drive[i] = powered ? in->through[i] : in->through_actual[i];
+        out->through_feedback[i] = in->through_actual[i];
+    }
+}
+
+/* Holds the last one of what is not a number; whether all were numbers. */
+static bool held(double *numbers, const double *last, int count)
+{
+    bool all = true;
+    for (int i = 0; i < count; i++) {
+        if (!isfinite(numbers[i])) {
+            numbers[i] = last[i];
+            all = false;
+        }
+    }
+    return all;
 }
 
 /* One servo period. What goes to drives and LinuxCNC is always a number. */
@@ -51,14 +68,10 @@ static void guarded_step(guarded *g, const feedwright_inputs *in, feedwright_out
         g->made = false;
         guarded_pass(in, out);
     }
-    for (int i = 0; i < 3; i++) {
-        if (!isfinite(out->drive_mm[i])) {
-            out->drive_mm[i] = g->last.drive_mm[i];
-            out->fault = FEEDWRIGHT_FAILED;
-        }
-        if (!isfinite(out->feedback_mm[i]))
-            out->feedback_mm[i] = g->last.feedback_mm[i];
-    }
+    if (!(held(out->drive_mm, g->last.drive_mm, 3) && held(out->through_drive, g->last.through_drive, FEEDWRIGHT_CHANNELS)))
+        out->fault = FEEDWRIGHT_FAILED;
+    held(out->feedback_mm, g->last.feedback_mm, 3);
+    held(out->through_feedback, g->last.through_feedback, FEEDWRIGHT_CHANNELS);
     g->last = *out;
 }
 

@@ -6,7 +6,7 @@
 
 /* The fastest thread of which seconds are kept whole, Hz. */
 #define RECORD_HZ 1000
-/* Ten minutes are 120 MB. */
+/* Ten minutes are 264 MB. */
 #define RECORD_SECONDS 600
 
 static recorded *recorded_periods;

@@ -6,7 +6,7 @@
 
 #include "feedwright.h"
 
-#define RECORDING_MAGIC "FWREPLY3"
+#define RECORDING_MAGIC "FWREPLY4"
 
 typedef struct {
     char magic[8];

@@ -57,7 +57,7 @@ static bool cut(const char *name, const uint8_t *model, size_t length, bool fail
     size_t bytes = feedwright_servo_bytes();
     guarded g = { .servo = library_memory(bytes) };
     feedwright_outputs out = { 0 };
-    double last_mm = 0, actual_mm = 0, step_mm = 0, delayed_mm = 0;
+    double last_mm = 0, last_through_mm = 0, actual_mm = 0, step_mm = 0, delayed_mm = 0, through_mm = 0;
     int told = NEVER;
     bool numbers = true, passed = true;
     if (!g.servo)
@@ -66,10 +66,13 @@ static bool cut(const char *name, const uint8_t *model, size_t length, bool fail
     guarded_begin(&g, T);
     for (period = 0; period < PERIODS; period++) {
         feedwright_inputs in = { .command_mm = { command_mm(period), 0, 0 }, .actual_mm = { actual_mm, 0, 0 }, .delay_s = 0.01, .deviation_mm = 0.5,
-                                 .speed_mm_s = 400, .correction_mm_s2 = 400, .adaptive_scale = 1, .flags = FEEDWRIGHT_POWERED | FEEDWRIGHT_CUTTING };
+                                 .speed_mm_s = 400, .correction_mm_s2 = 400, .adaptive_scale = 1, .through = { command_mm(period) }, .through_actual = { actual_mm },
+                                 .carries = FEEDWRIGHT_JOINT, .flags = FEEDWRIGHT_POWERED | FEEDWRIGHT_CUTTING };
         guarded_step(&g, &in, &out);
         numbers = numbers && isfinite(out.drive_mm[0]) && isfinite(out.feedback_mm[0]);
-        step_mm = fmax(step_mm, fabs(out.drive_mm[0] - last_mm));
+        step_mm = fmax(step_mm, fmax(fabs(out.drive_mm[0] - last_mm), fabs(out.through_drive[0] - last_through_mm)));
+        through_mm = fmax(through_mm, fabs(out.through_drive[0] - out.drive_mm[0] + out.correction_mm[0]));
+        last_through_mm = out.through_drive[0];
         passed = passed && out.drive_mm[0] == command_mm(period);
         last_mm = out.drive_mm[0];
         delayed_mm = fmax(delayed_mm, command_mm(period) - last_mm);
@@ -82,6 +85,10 @@ static bool cut(const char *name, const uint8_t *model, size_t length, bool fail
     printf("%-24s fault 14 %s %d; steps of %.3f mm; behind by %.3f mm, at the end by %.6f mm\n", name,
            told == NEVER ? "in no servo period up to" : "from servo period", told == NEVER ? PERIODS : told, step_mm, delayed_mm,
            command_mm(PERIODS) - last_mm);
+    if (is_number && through_mm > 1e-9) {
+        fprintf(stderr, "%s: what passes through is out of step by %.9f mm\n", name, through_mm);
+        return false;
+    }
     return numbers && told == first_fault && step_mm < MOST_STEP_MM && (!failed || passed) &&
            (!is_number || fabs(command_mm(PERIODS) - last_mm) < 1e-6);
 }

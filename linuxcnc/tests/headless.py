@@ -72,9 +72,10 @@ class Failed(Exception):
     """LinuxCNC or the scenario did not come to its end."""
 
 
-def run(scenario, settings=None, ini=None, hal="", limit_s=270, keep=None):
+def run(scenario, settings=None, ini=None, hal="", limit_s=270, keep=None, change=None):
     """Runs a scenario of scenarios.py. `settings` go to it; `ini` are values of the INI file, as {"SECTION": {"KEY": value}}, and `hal` are
-    lines of HAL beside those of the configuration. Recordings of the component go to the folder `keep`."""
+    lines of HAL beside those of the configuration; `change` gets the folder of the configuration before LinuxCNC starts. Recordings of the component
+    go to the folder `keep`."""
     with tempfile.TemporaryDirectory(prefix="feedwright-") as name, open("/tmp/feedwright-linuxcnc.lock", "w") as lock:
         folder = pathlib.Path(name)
         for file in CONFIG.iterdir():
@@ -90,6 +91,8 @@ def run(scenario, settings=None, ini=None, hal="", limit_s=270, keep=None):
         text = text.replace("HALFILE = feedwright.hal\n", "HALFILE = feedwright.hal\nHALFILE = sampled.hal\n")
         (folder / "workshop-sim.ini").write_text(text)
         (folder / "sampled.hal").write_text(sampled_hal() + hal)
+        if change:
+            change(folder)
         environment = dict(os.environ, HOME=str(home), FEEDWRIGHT_SCENARIO=scenario, FEEDWRIGHT_FOLDER=name,
                            FEEDWRIGHT_SETTINGS=json.dumps(settings or {}), FEEDWRIGHT_LIMIT_S=str(limit_s))
         environment.pop("DISPLAY", None)
@@ -198,7 +201,7 @@ class Machine:
         self.command.teleop_enable(0)
         self.command.wait_complete(5)
         self.command.home(-1)
-        self.until("homed", lambda: all(self.status.homed[:3]), limit_s)
+        self.until("homed", lambda: all(self.status.homed[:self.status.joints]), limit_s)
 
     def mode(self, mode):
         self.command.mode(mode)

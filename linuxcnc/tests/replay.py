@@ -14,8 +14,8 @@ import programs
 
 # Smaller recordings than this hold no cut, servo periods.
 LEAST_PERIODS = 2000
-# As of feedwright.h: twelve numbers and the flags; fourteen numbers, eight whole ones.
-INPUT_BYTES, PERIOD_BYTES = 104, 248
+# As of feedwright.h: 24 numbers and the flags; 26 numbers, eight whole ones.
+INPUT_BYTES, PERIOD_BYTES = 200, 440
 
 
 def main():

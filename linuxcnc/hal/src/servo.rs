@@ -5,6 +5,7 @@ use feedwright_servo::limits::{LinkLimits, Setting};
 use feedwright_servo::machine::{Refused, model_of};
 use feedwright_servo::play_out::PlayOut;
 use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkOutputs, Servo};
+use feedwright_servo::through::{Carries, Through};
 
 use crate::memory::{TwoOrThree, first, model, put, three};
 
@@ -22,6 +23,11 @@ pub const FEEDWRIGHT_CUTTING: u32 = 16;
 pub const FEEDWRIGHT_SPEED_ALONE: u32 = 32;
 /// This motion probes.
 pub const FEEDWRIGHT_PROBING: u32 = 64;
+/// Values that pass through at the most.
+pub const FEEDWRIGHT_CHANNELS: usize = 6;
+/// What a channel carries, in four bits of `carries` for each, the first in the lowest: this for a joint, this and 1 + n for a second motor of the
+/// corrected joint n, 0 for a signal.
+pub const FEEDWRIGHT_JOINT: u32 = 1;
 /// What [`feedwright_servo_new`] returns where it made nothing.
 pub const FEEDWRIGHT_NOT_MADE: u32 = 255;
 /// The fault of a link that failed: known to the caller alone.
@@ -46,10 +52,14 @@ pub struct CInputs {
     engaged_mm_s2: f64,
     /// What 1 of the requested feedrate stands for, 0.1 to 1.
     adaptive_scale: f64,
+    /// Commands that are delayed and not corrected.
+    through: [f64; FEEDWRIGHT_CHANNELS],
+    /// Their actual positions; of a signal its command.
+    through_actual: [f64; FEEDWRIGHT_CHANNELS],
     /// The sum of FEEDWRIGHT_POWERED and so on.
     flags: u32,
-    /// Nothing.
-    reserved: u32,
+    /// What the channels carry.
+    carries: u32,
 }
 
 /// What goes to the drives and the control.
@@ -61,6 +71,9 @@ pub struct COutputs {
     feedback_mm: [f64; 3],
     /// Offsets of the drives' commands from the path.
     correction_mm: [f64; 3],
+    /// Commands of the drives of what passes through, and what the control takes for the actual positions.
+    through_drive: [f64; FEEDWRIGHT_CHANNELS],
+    through_feedback: [f64; FEEDWRIGHT_CHANNELS],
     /// Distance of the actual position from the path.
     contour_error_mm: f64,
     /// The same without the correction, by the model.
@@ -182,6 +195,26 @@ impl CInputs {
     fn is(&self, flag: u32) -> bool {
         self.flags & flag != 0
     }
+
+    fn link<const N: usize>(&self) -> LinkInputs<N> {
+        let carries = |i| match self.carries >> (4 * i as u32) & 15 {
+            0 => Carries::Signal,
+            FEEDWRIGHT_JOINT => Carries::Joint,
+            more => Carries::Tandem((more - FEEDWRIGHT_JOINT - 1) as usize),
+        };
+        let (command, actual) = (self.through, self.through_actual);
+        LinkInputs {
+            command_mm: first(self.command_mm),
+            actual_mm: first(self.actual_mm),
+            through: Through { command, actual, carries: core::array::from_fn(carries) },
+            powered: self.is(FEEDWRIGHT_POWERED),
+            enabled: self.is(FEEDWRIGHT_ENABLED),
+            direct: self.is(FEEDWRIGHT_DIRECT),
+            probing: self.is(FEEDWRIGHT_PROBING),
+            spindle: self.is(FEEDWRIGHT_SPINDLE),
+            cutting: self.is(FEEDWRIGHT_CUTTING),
+        }
+    }
 }
 
 impl<const N: usize> Guarded<N> {
@@ -191,16 +224,7 @@ impl<const N: usize> Guarded<N> {
     }
 
     fn step(&mut self, inputs: &CInputs) -> COutputs {
-        let of = LinkInputs {
-            command_mm: first(inputs.command_mm),
-            actual_mm: first(inputs.actual_mm),
-            powered: inputs.is(FEEDWRIGHT_POWERED),
-            enabled: inputs.is(FEEDWRIGHT_ENABLED),
-            direct: inputs.is(FEEDWRIGHT_DIRECT),
-            probing: inputs.is(FEEDWRIGHT_PROBING),
-            spindle: inputs.is(FEEDWRIGHT_SPINDLE),
-            cutting: inputs.is(FEEDWRIGHT_CUTTING),
-        };
+        let of = inputs.link();
         let CInputs { delay_s, deviation_mm, speed_mm_s, correction_mm_s2, engaged_mm_s2, adaptive_scale, .. } =
             *inputs;
         let speed_alone = inputs.is(FEEDWRIGHT_SPEED_ALONE);
@@ -215,11 +239,13 @@ impl<const N: usize> Guarded<N> {
         };
         let outputs = self.servo.step(&of, &limits);
         let found = outputs.left.and_then(|left| left.evidence);
-        self.play_out.keep(of.command_mm, of.powered, outputs.drive_mm, outputs.delay_periods);
+        self.play_out.keep(&of, outputs.drive_mm, outputs.delay_periods);
         COutputs {
             drive_mm: three(outputs.drive_mm),
             feedback_mm: three(outputs.feedback_mm),
             correction_mm: three(outputs.correction_mm),
+            through_drive: outputs.through.drive,
+            through_feedback: outputs.through.feedback,
             contour_error_mm: outputs.contour_error_mm,
             without_mm: outputs.without_mm,
             adaptive_feed: outputs.adaptive_feed,
@@ -238,12 +264,14 @@ impl<const N: usize> Guarded<N> {
 
     fn play_out(&mut self, inputs: &CInputs) -> COutputs {
         let powered = inputs.is(FEEDWRIGHT_POWERED);
-        let out = self.play_out.step(first(inputs.command_mm), first(inputs.actual_mm), powered);
+        let out = self.play_out.step(&inputs.link());
         let is_settled = out.delay_periods == 0;
         COutputs {
             drive_mm: three(out.drive_mm),
             feedback_mm: three(out.feedback_mm),
             correction_mm: three(out.correction_mm),
+            through_drive: out.through.drive,
+            through_feedback: out.through.feedback,
             contour_error_mm: 0.0,
             without_mm: 0.0,
             adaptive_feed: 1.0,

@@ -12,6 +12,8 @@
 use feedwright_control::vector::{add_scaled, dot, norm, scale, sub};
 use feedwright_control::{Knot, KnotSource};
 
+use crate::through::{CHANNELS, Through};
+
 /// Commands that are kept.
 pub const KEPT: usize = 256;
 /// Newer commands that a point needs for its velocity.
@@ -30,6 +32,7 @@ struct Received<const N: usize> {
     /// Direction of the last motion.
     direction: [f64; N],
     cutting: bool,
+    through: [f64; CHANNELS],
 }
 
 /// The last [`KEPT`] commands.
@@ -38,14 +41,19 @@ pub struct History<const N: usize> {
     received: [Received<N>; KEPT],
     /// Commands received so far.
     count: u64,
-    /// Servo periods in which the command has not moved.
+    /// Servo periods in which neither the command nor a joint beside it has moved.
     at_rest: u64,
 }
 
 impl<const N: usize> History<N> {
     /// Nothing received.
     pub const EMPTY: Self = Self {
-        received: [Received { position_mm: [0.0; N], direction: Knot::<N>::REST.tangent, cutting: false }; KEPT],
+        received: [Received {
+            position_mm: [0.0; N],
+            direction: Knot::<N>::REST.tangent,
+            cutting: false,
+            through: [0.0; CHANNELS],
+        }; KEPT],
         count: 0,
         at_rest: 0,
     };
@@ -56,15 +64,17 @@ impl<const N: usize> History<N> {
     }
 
     /// Takes in the command of a servo period.
-    pub fn push(&mut self, position_mm: [f64; N], cutting: bool) {
+    pub fn push(&mut self, position_mm: [f64; N], through: &Through, cutting: bool) {
         let last = *self.at(self.count.saturating_sub(1));
         let chord = sub(position_mm, last.position_mm);
         let length_mm = norm(chord);
         let is_first = self.count == 0;
         let moved = !is_first && length_mm > SAME_PLACE_MM;
         let direction = if moved { scale(1.0 / length_mm, chord) } else { last.direction };
-        self.at_rest = if moved { 0 } else { self.at_rest + 1 };
-        self.received[(self.count % KEPT as u64) as usize] = Received { position_mm, direction, cutting };
+        let is_moving = moved || (!is_first && through.has_moved(&last.through));
+        self.at_rest = if is_moving { 0 } else { self.at_rest + 1 };
+        self.received[(self.count % KEPT as u64) as usize] =
+            Received { position_mm, direction, cutting, through: through.command };
         self.count += 1;
     }
 
@@ -73,7 +83,7 @@ impl<const N: usize> History<N> {
         self.count.saturating_sub(1)
     }
 
-    /// Servo periods in which the command has not moved.
+    /// Servo periods in which neither the command nor a joint beside it has moved.
     pub fn at_rest(&self) -> u64 {
         self.at_rest
     }
@@ -81,6 +91,11 @@ impl<const N: usize> History<N> {
     /// The command of this number; the nearest that is kept where it is not.
     pub fn position_mm(&self, number: u64) -> [f64; N] {
         self.at(number).position_mm
+    }
+
+    /// What was passed through with the command of this number.
+    pub fn through(&self, number: u64) -> [f64; CHANNELS] {
+        self.at(number).through
     }
 
     fn at(&self, number: u64) -> &Received<N> {
@@ -161,7 +176,7 @@ mod tests {
 
     fn of(points: impl IntoIterator<Item = [f64; 2]>) -> History<2> {
         let mut history = History::EMPTY;
-        points.into_iter().for_each(|point| history.push(point, true));
+        points.into_iter().for_each(|point| history.push(point, &Through::NONE, true));
         history
     }
 

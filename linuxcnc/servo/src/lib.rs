@@ -5,6 +5,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod through;
 pub mod history;
 pub mod plant;
 pub mod machine;
@@ -12,5 +13,5 @@ pub mod following;
 pub mod live_controller;
 pub mod fading;
 pub mod limits;
-pub mod play_out;
 pub mod servo;
+pub mod play_out;

@@ -31,6 +31,7 @@ use crate::history::{Delayed, History, NEWER};
 use crate::limits::{LinkLimits, Setting};
 use crate::live_controller::LiveController;
 use crate::machine::{self, LinkModel, Refused};
+use crate::through::{PassedThrough, Through};
 
 /// A spindle is followed until the command has rested for so long since its index was awaited, s: it begins to move with the index.
 const FOLLOWED_S: f64 = 0.5;
@@ -59,6 +60,8 @@ pub struct LinkInputs<const N: usize> {
     pub command_mm: [f64; N],
     /// Actual position, mm.
     pub actual_mm: [f64; N],
+    /// What goes through uncorrected.
+    pub through: Through,
     /// Whether the amplifiers are on.
     pub powered: bool,
     /// Whether the correction is wanted.
@@ -110,6 +113,8 @@ pub struct LinkOutputs<const N: usize> {
     pub feedback_mm: [f64; N],
     /// Offset of the command from the path, mm.
     pub correction_mm: [f64; N],
+    /// What goes through uncorrected.
+    pub through: PassedThrough,
     /// Contour error of the actual position, mm.
     pub contour_error_mm: f64,
     /// What it would be without the correction, by the model, mm.
@@ -162,6 +167,7 @@ pub struct Servo<const N: usize> {
     actual_mm: [f64; N],
     command_mm: [f64; N],
     drive_mm: [f64; N],
+    through: Through,
     /// How large the offset of the correction was in the last servo period, mm.
     offset_mm: f64,
     /// Whether the motion follows a spindle, and servo periods since it was about to.
@@ -194,6 +200,7 @@ impl<const N: usize> Servo<N> {
             actual_mm: [0.0; N],
             command_mm: [0.0; N],
             drive_mm: [0.0; N],
+            through: Through::NONE,
             offset_mm: 0.0,
             follows: false,
             unasked: 0,
@@ -215,12 +222,13 @@ impl<const N: usize> Servo<N> {
     /// One servo period.
     pub fn step(&mut self, inputs: &LinkInputs<N>, limits: &LinkLimits) -> LinkOutputs<N> {
         let refused = self.take_over(limits);
-        let told = norm(inputs.command_mm).is_finite();
+        let is_heard = norm(inputs.command_mm).is_finite();
+        let told = self.through.hear(&inputs.through) && is_heard;
         if norm(inputs.actual_mm).is_finite() {
             self.actual_mm = inputs.actual_mm;
         }
         self.since_leap = self.since_leap.saturating_add(1);
-        if told {
+        if is_heard {
             let step_mm = norm(sub(inputs.command_mm, self.command_mm));
             if self.heard && step_mm > LEAP * self.limits.speed_mm_s * self.servo_s {
                 self.since_leap = 0;
@@ -266,7 +274,7 @@ impl<const N: usize> Servo<N> {
 
     fn on(&mut self, inputs: &LinkInputs<N>, told: bool) -> LinkOutputs<N> {
         self.choose(inputs);
-        self.history.push(self.command_mm, inputs.cutting);
+        self.history.push(self.command_mm, &self.through, inputs.cutting);
         self.residual.step(self.servo_s, self.limits.correction_mm_s2);
         let mut outputs = match self.link {
             Link::Delayed => self.delayed(inputs),
@@ -306,7 +314,8 @@ impl<const N: usize> Servo<N> {
             controller.forget_machine();
         }
         let fault = if told || !self.heard { self.refused() } else { LinkFault::Command };
-        LinkOutputs { drive_mm: self.actual_mm, feedback_mm: self.actual_mm, fault, ..self.nothing() }
+        let through = self.through.off();
+        LinkOutputs { drive_mm: self.actual_mm, feedback_mm: self.actual_mm, through, fault, ..self.nothing() }
     }
 
     /// Takes the delay up or gives it up, where that can be.
@@ -373,6 +382,7 @@ impl<const N: usize> Servo<N> {
             drive_mm: self.command_mm,
             feedback_mm: self.actual_mm,
             correction_mm: [0.0; N],
+            through: self.through.passed(None, [0.0; N]),
             contour_error_mm: 0.0,
             without_mm: 0.0,
             rate: 1.0,
@@ -399,6 +409,7 @@ impl<const N: usize> Servo<N> {
             drive_mm: add_scaled(self.command_mm, 1.0, correction_mm),
             feedback_mm: self.actual_mm,
             correction_mm,
+            through: self.through.passed(None, correction_mm),
             link: Link::Direct,
             fault,
             ..self.nothing()
@@ -421,12 +432,15 @@ impl<const N: usize> Servo<N> {
         let offset_mm = sub(setpoint.command_mm, path_mm);
         self.offset_mm = norm(offset_mm);
         let (state, left) = (self.tick.state(), self.tick.fade());
+        let correction_mm = add_scaled(offset_mm, 1.0, self.residual.value_mm());
+        let before = self.history.through(self.history.newest().saturating_sub(u64::from(self.delay)));
         let is_out = inputs.enabled && state != State::Engaged;
         let cause = left.filter(|_| is_out).map(|left| left.cause);
         LinkOutputs {
             drive_mm: add_scaled(setpoint.command_mm, 1.0, self.residual.value_mm()),
             feedback_mm: add_scaled(self.command_mm, 1.0, sub(self.actual_mm, path_mm)),
-            correction_mm: add_scaled(offset_mm, 1.0, self.residual.value_mm()),
+            correction_mm,
+            through: self.through.passed(Some(before), correction_mm),
             contour_error_mm: known(norm(self.tick.contour().vector_mm)),
             without_mm: known(self.tick.without_mm()),
             rate: if state == State::Engaged { controller.rate() } else { 1.0 },

@@ -144,10 +144,10 @@ fn failed_at(period: usize, powered: impl Fn(usize) -> bool) -> (Vec<[f64; 2]>, 
     let (mut drives_mm, mut delay) = (Vec::new(), 0);
     for (n, Period { inputs, outputs, .. }) in good.iter().enumerate() {
         if n < period {
-            play_out.keep(inputs.command_mm, true, outputs.drive_mm, outputs.delay_periods);
+            play_out.keep(inputs, outputs.drive_mm, outputs.delay_periods);
             drives_mm.push(outputs.drive_mm);
         } else {
-            let out = play_out.step(inputs.command_mm, inputs.actual_mm, powered(n));
+            let out = play_out.step(&LinkInputs { powered: powered(n), ..*inputs });
             drives_mm.push(out.drive_mm);
             delay = out.delay_periods;
         }

@@ -2,6 +2,7 @@
 
 use feedwright_servo::limits::LinkLimits;
 use feedwright_servo::servo::LinkInputs;
+use feedwright_servo::through::Through;
 
 /// Servo period, s.
 pub(crate) const SERVO_S: f64 = 0.001;
@@ -13,6 +14,7 @@ pub(crate) const fn cutting(command_mm: [f64; 2], actual_mm: [f64; 2]) -> LinkIn
     LinkInputs {
         command_mm,
         actual_mm,
+        through: Through::NONE,
         powered: true,
         enabled: true,
         direct: false,
