@@ -220,6 +220,10 @@ linuxcnc:
 linuxcnc-check:
     linuxcnc/check
 
+# Random programs, settings and faults in a real LinuxCNC for so many minutes; SEED draws others, RESUME is a file that keeps what was done.
+linuxcnc-soak minutes="15" seed="1" resume="": linuxcnc
+    cd linuxcnc && FEEDWRIGHT=$(./command) python3 tests/soak.py {{ minutes }} --seed {{ seed }} {{ if resume == "" { "" } else { "--resume " + resume } }}
+
 # The library as a WebAssembly module, run under node beside the command.
 web-check:
     web/check

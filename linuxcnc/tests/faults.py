@@ -33,13 +33,6 @@ ZERO_VECTOR = (0.0, 0.0, 0.0)
 QUICK = ("enabled_in_mid_cut", "emergency_stop", "feedback_wire_pulled", "feedback_not_a_number", "model_damaged", "machine_of_another_inertia", "probing",
          "probing_in_a_program", "threading_in_a_program", "feed_is_not_held", "pins_out_of_range", "deviation_lowered_in_mid_cut", "min_ferror_too_small")
 
-PROBE = """loadrt comp names=probed
-addf probed servo-thread
-setp probed.in1 -10
-setp probed.hyst 0
-net sampled-5 => probed.in0
-net probe-input probed.out => motion.probe-input
-"""
 SWITCHES = "loadrt comp names=x-switch,y-switch,z-switch\n" + "".join(f"""addf {axis}-switch servo-thread
 setp {axis}-switch.in0 {place}
 net sampled-{3 + i} => {axis}-switch.in1
@@ -205,7 +198,7 @@ class Cases:
         return f"homes at {homes}; {self.quiet(recording)}"
 
     def case_probing(self):
-        trips = [self.run("probe", {"enable": enable}, hal=PROBE).result["trips"] for enable in (0, 1)]
+        trips = [self.run("probe", {"enable": enable}, hal=headless.PROBE).result["trips"] for enable in (0, 1)]
         apart = [abs(a - b) * 1e3 for a, b in zip(*trips)]
         # A trip is known to the servo period: how far the probe goes in one depends on the phase of what disturbs it.
         travels = [speed / 60 for speed in scenarios.PROBE_MM_MIN]
@@ -214,7 +207,7 @@ class Cases:
 
     def case_probing_in_a_program(self):
         program = scenarios.probing_program()
-        direct, on = (self.run("logged", {"program": program, "params": {"feedwright.direct": int(direct)}}, hal=PROBE) for direct in (True, False))
+        direct, on = (self.run("logged", {"program": program, "params": {"feedwright.direct": int(direct)}}, hal=headless.PROBE) for direct in (True, False))
         trips = list(zip(direct.result["trips"], on.result["trips"]))
         assert len(trips) >= 36 and len(direct.result["trips"]) == len(on.result["trips"]), (direct.result, on.result)
         # How far behind that of the other run each trip is, along its motion, um, and the travel of a servo period.
@@ -247,7 +240,7 @@ class Cases:
     def case_feed_is_not_held(self):
         cut = "unlinkp motion.feed-inhibit\nunlinkp spindle.0.at-speed\nsetp spindle.0.at-speed 1\n"
         threads, periods, late = self.threads(cut)
-        probes = self.run("logged", {"program": scenarios.probing_program(3)}, hal=PROBE + cut)
+        probes = self.run("logged", {"program": scenarios.probing_program(3)}, hal=headless.PROBE + cut)
         told = [faults(recording.rows) for recording in (threads, probes)]
         assert late > 0 and all(21 in causes for causes in told), (late, told)
         return f"cause 21; {late} of {periods} servo periods of threading delayed"

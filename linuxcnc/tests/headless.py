@@ -39,6 +39,14 @@ SIGNALS = {"joint.0.motor-pos-cmd": "x-command", "joint.1.motor-pos-cmd": "y-com
            "feedwright.drive-0": "x-drive", "feedwright.drive-1": "y-drive", "feedwright.drive-2": "z-drive",
            "feedwright.feedback-0": "x-feedback", "feedwright.feedback-1": "y-feedback", "feedwright.feedback-2": "z-feedback",
            "motion.motion-type": "motion-type"}
+# A touch probe that meets a plane at -10 mm of the tool's Z.
+PROBE = """loadrt comp names=probed
+addf probed servo-thread
+setp probed.in1 -10
+setp probed.hyst 0
+net sampled-5 => probed.in0
+net probe-input probed.out => motion.probe-input
+"""
 STARTS_S, ENDS_S = 40, 20
 # The command that makes models and reads programs.
 FEEDWRIGHT = os.environ.get("FEEDWRIGHT", "feedwright")
@@ -74,7 +82,7 @@ class Failed(Exception):
 
 def run(scenario, settings=None, ini=None, hal="", limit_s=270, keep=None, change=None):
     """Runs a scenario of scenarios.py. `settings` go to it; `ini` are values of the INI file, as {"SECTION": {"KEY": value}}, and `hal` are
-    lines of HAL beside those of the configuration; `change` gets the folder of the configuration before LinuxCNC starts. Recordings of the component
+    lines of HAL beside those of the configuration; `change` gets the folder of the configuration before LinuxCNC starts. Recordings
     go to the folder `keep`."""
     with tempfile.TemporaryDirectory(prefix="feedwright-") as name, open("/tmp/feedwright-linuxcnc.lock", "w") as lock:
         folder = pathlib.Path(name)
@@ -111,7 +119,7 @@ def run(scenario, settings=None, ini=None, hal="", limit_s=270, keep=None, chang
         if done.returncode != 0 or not result.exists():
             raise Failed(f"{scenario}: LinuxCNC ended with {done.returncode}\n{done.stdout[-4000:]}")
         if keep:
-            for file in folder.glob("*.fwreplay"):
+            for file in (*folder.glob("*.fwreplay"), *folder.glob("samples-*.txt")):
                 shutil.copy(file, keep)
         return Recording(rows(folder / "samples.txt"), json.loads(result.read_text()), done.stdout)
 
@@ -234,8 +242,8 @@ class Machine:
         self.until("end of the program", self.is_idle, limit_s)
         self.wait(0.15)
 
-    def record(self):
-        self.sampler = subprocess.Popen(["halsampler", "-t", str(self.folder / "samples.txt")])
+    def record(self, file="samples.txt"):
+        self.sampler = subprocess.Popen(["halsampler", "-t", str(self.folder / file)])
         time.sleep(0.1)
         self.hal("setp", "sampler.0.enable", 1)
 

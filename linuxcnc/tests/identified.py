@@ -39,22 +39,39 @@ def products(axis):
             "Fc / J": axis["coulomb_friction_nm"] / inertia}
 
 
+def run(*words):
+    """What the command of feedwright prints."""
+    return subprocess.run([headless.FEEDWRIGHT, "--quiet", *map(str, words)], check=True, capture_output=True, text=True).stdout
+
+
+def truth_of(machine):
+    """The machine file of a built-in machine."""
+    return tomllib.loads((headless.HERE.parents[1] / "crates" / "sim" / "machines" / f"{machine}.toml").read_text())
+
+
+def identify(folder, machine):
+    """Identifies a machine through LinuxCNC, as its owner does. Returns the files of the machine, of what was found, and of the model of it."""
+    block, program, log, found, model = (folder / file for file in ("machine.fwmodel", "excite.ngc", "log.txt", "found.toml", "model.fwmodel"))
+    run("block", machine, "--axes", 3, "--out", block)
+    run("excite", "--machine", machine, "--out", program)
+    recording = headless.run("cut", {"program": program.read_text(), "params": {"feedwright.direct": 1}},
+                             {"FEEDWRIGHT": {"MACHINE": block, "MODEL": block}}, limit_s=300)
+    log.write_text(log_of(recording, "drive", "feedback"))
+    axis = truth_of(machine)["axis"]["x"]
+    run("identify", log, "--lead", axis["lead_mm_per_rev"], "--inertia", axis["inertia_kg_m2"], "--out", found)
+    run("block", found, "--out", model)
+    return block, found, model
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--machine", default="tnv40")
     args = parser.parse_args()
-    run = lambda *words: subprocess.run([headless.FEEDWRIGHT, "--quiet", *map(str, words)], check=True, capture_output=True, text=True).stdout
     with tempfile.TemporaryDirectory(prefix="feedwright-identified-") as name:
         folder = pathlib.Path(name)
         folder.chmod(0o755)
-        block, program, log, found = (folder / file for file in ("machine.fwmodel", "excite.ngc", "log.txt", "found.toml"))
-        run("block", args.machine, "--axes", 3, "--out", block)
-        run("excite", "--machine", args.machine, "--out", program)
-        recording = headless.run("cut", {"program": program.read_text(), "params": {"feedwright.direct": 1}},
-                                 {"FEEDWRIGHT": {"MACHINE": block, "MODEL": block}}, limit_s=300)
-        log.write_text(log_of(recording, "drive", "feedback"))
-        truth = tomllib.loads((headless.HERE.parents[1] / "crates" / "sim" / "machines" / f"{args.machine}.toml").read_text())
-        run("identify", log, "--lead", truth["axis"]["x"]["lead_mm_per_rev"], "--inertia", truth["axis"]["x"]["inertia_kg_m2"], "--out", found)
+        block, found, model = identify(folder, args.machine)
+        log, truth = folder / "log.txt", truth_of(args.machine)
         machine, wrong = tomllib.loads(found.read_text()), 0
         for axis in "xyz":
             for product, value in products(machine["axis"][axis]).items():
@@ -62,8 +79,6 @@ def main():
                 off = value / true - 1
                 wrong += abs(off) > SAME
                 print(f"{axis} {product:14} {value:10.3f}, true {true:10.3f}: {100 * off:+.2f} %")
-        model = folder / "model.fwmodel"
-        run("block", found, "--out", model)
         wrong += measure.table((str(block), str(model)), {}, programs.programs(True))
         for name, program, _ in programs.programs(True):
             part, results = folder / "part.ngc", folder / "results.json"

@@ -10,9 +10,12 @@ OUTPUTS = struct.Struct(f"<3d3d3d{CHANNELS}d{CHANNELS}d5d8I")
 
 @dataclasses.dataclass
 class Period:
-    """What went through the link."""
+    """What went through the link. `settings` are delay, deviation, speed, acceleration of fades and of the loop, and scale."""
     command: tuple
+    actual: tuple
+    settings: tuple
     drive: tuple
+    feedback: tuple
     correction: tuple
     through: tuple
     through_actual: tuple
@@ -21,6 +24,7 @@ class Period:
     state: int
     fault: int
     delay: int
+    numbers: tuple
 
 
 def read(path):
@@ -33,6 +37,6 @@ def read(path):
         given, made = INPUTS.unpack_from(content, at), OUTPUTS.unpack_from(content, at + INPUTS.size)
         ends = (9, 9 + CHANNELS, 9 + 2 * CHANNELS)
         state, fault, _, delay = made[ends[2] + 5:ends[2] + 9]
-        periods.append(Period(given[:3], made[:3], made[6:9], given[12:12 + CHANNELS], given[12 + CHANNELS:12 + 2 * CHANNELS],
-                              made[ends[0]:ends[1]], made[ends[1]:ends[2]], state, fault, delay))
+        periods.append(Period(given[:3], given[3:6], given[6:12], made[:3], made[3:6], made[6:9], given[12:12 + CHANNELS], given[12 + CHANNELS:12 + 2 * CHANNELS],
+                              made[ends[0]:ends[1]], made[ends[1]:ends[2]], state, fault, delay, made[ends[2]:ends[2] + 5]))
     return periods

@@ -201,3 +201,22 @@ def thread(machine):
     machine.mdi("G33 Z-10 K1")
     machine.mdi("G1 X5 Z0 F3000")
     machine.mdi("M5")
+
+
+def soak(machine, **settings):
+    """Random actions and faults."""
+    import soaking
+    return soaking.run(machine, **settings)
+
+
+def cuts(machine, programs, enable):
+    """One program after another, each recorded in a file of its own."""
+    machine.on()
+    machine.home()
+    machine.hal("setp", "feedwright.enable", int(enable))
+    for number, program in enumerate(programs):
+        machine.open(program)
+        machine.record(f"samples-{number}.txt")
+        machine.begin()
+        machine.finish(LIMIT_S)
+        machine.end_record()

@@ -239,7 +239,9 @@ impl<const N: usize> Supervisor<N> {
             Some((Cause::NotANumber, None))
         } else if self.wrong >= WRONG_DECISIONS {
             let missed = FaultEvidence { found_mm: told.prediction_error_mm, limit_mm: self.wrong_mm() };
-            Some((Cause::WrongPredictions, told.doubt.or(Some(missed))))
+            // An infinite error is the controller's own judgment: nothing was measured.
+            let measured = Some(missed).filter(|missed| missed.found_mm < f64::INFINITY);
+            Some((Cause::WrongPredictions, told.doubt.or(measured)))
         } else if self.behind_mm > MOST_BEHIND_MM {
             Some((Cause::TooQuick, Some(FaultEvidence { found_mm: self.behind_mm, limit_mm: MOST_BEHIND_MM })))
         } else {

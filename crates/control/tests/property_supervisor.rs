@@ -234,6 +234,11 @@ fn predictions_that_are_wrong_several_times_in_a_row_take_the_controller_out() {
     let from_100_on = |k: u32| if k > 100 { 1.0 } else { 0.0 };
     let fade = run(2000, as_it_is, good, from_100_on).fade;
     assert_eq!(fade.map(|fade| (fade.cause, fade.decision)), Some((Cause::WrongPredictions, 103)));
+    assert!(fade.is_some_and(|fade| fade.evidence.is_some_and(|evidence| evidence.found_mm == 1.0)));
+    // A controller that gives itself up has measured nothing.
+    let gives_up = |k: u32| if k > 100 { f64::INFINITY } else { 0.0 };
+    let fade = run(2000, as_it_is, good, gives_up).fade;
+    assert_eq!(fade.map(|fade| (fade.cause, fade.evidence)), Some((Cause::WrongPredictions, None)));
 }
 
 #[test]

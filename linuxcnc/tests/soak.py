@@ -1,0 +1,156 @@
+#!/usr/bin/python3
+"""Random programs, modes, settings and faults in a real LinuxCNC on simulated machines, by a seed: what must hold in every servo period.
+
+    soak.py [MINUTES] [--seed S] [--resume FILE] [--session K]
+
+A session of LinuxCNC takes half a minute or more: its machine, its model (right, of another machine, damaged or missing) and what is done follow
+from the seed and its number. `--resume` keeps what was done in a file and goes on from there; `--session` runs one again. Exit code 1 where
+something did not hold.
+"""
+import argparse
+import collections
+import json
+import math
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import time
+
+import headless
+import measure
+import paths
+import recordings
+import through
+
+MACHINES = ("tnv40", "workshop", "stiff")
+SESSION_S = 40
+# Farthest that a drive's command goes in a servo period, mm: rapids of 200 mm/s along three axes, and as much again for a correction.
+MOST_STEP_MM = 0.7
+# A limit that is lowered takes effect within this, servo periods.
+LOWERED = 210
+# A path is looked for among so many of the last commands.
+LATEST = 40
+ROUND_MM = 1e-3
+# Travel of a joint, mm.
+TRAVEL_MM = 300.0
+DEVIATIONS_MM = (0.0, 10.0)
+
+
+def models(folder):
+    """Block of each machine, its identified model, and a damaged one."""
+    run = lambda *words: subprocess.run([headless.FEEDWRIGHT, "--quiet", *map(str, words)], check=True, stdout=subprocess.DEVNULL)
+    for machine in MACHINES:
+        found = folder / f"{machine}.model.toml"
+        run("block", machine, "--axes", 3, "--out", folder / f"{machine}.machine")
+        run("identify", "--machine", machine, "--controller", "lqg-identified", "--axes", 3, "--out", found)
+        run("block", found, "--out", folder / f"{machine}.model")
+    block = bytearray((folder / "tnv40.model").read_bytes())
+    block[300] ^= 1
+    (folder / "damaged.model").write_bytes(block)
+
+
+def check(periods, with_rotary):
+    """What did not hold, in words."""
+    wrong, deviation_mm, lowered = [], 0.5, collections.deque(maxlen=LOWERED)
+    commands = [period.command for period in periods]
+    for n, period in enumerate(periods):
+        told = (*period.drive, *period.feedback, *period.through_drive, *period.through_feedback, *period.numbers)
+        if not all(map(math.isfinite, told)):
+            wrong.append(f"{n}: not a number: {told}")
+            continue
+        asked_mm = period.settings[1]
+        deviation_mm = asked_mm if DEVIATIONS_MM[0] <= asked_mm <= DEVIATIONS_MM[1] else deviation_mm
+        lowered.append(deviation_mm)
+        if period.state == 0:
+            if all(map(math.isfinite, period.actual)) and period.drive != period.actual:
+                wrong.append(f"{n}: without power a drive gets {period.drive}, and is at {period.actual}")
+            continue
+        allowed_mm = max(lowered) + ROUND_MM
+        if math.dist(period.correction, (0, 0, 0)) > allowed_mm and period.state > 1:
+            off_mm, _ = paths.to_commands(commands, period.drive, n, LATEST)
+            if off_mm > allowed_mm:
+                wrong.append(f"{n}: {off_mm:.4f} mm off the path, {allowed_mm:.4f} are allowed")
+        if max(map(abs, period.drive)) > TRAVEL_MM + allowed_mm:
+            wrong.append(f"{n}: beyond the travel: {period.drive}")
+        last = periods[n - 1] if n else period
+        step_mm = math.dist(period.drive, last.drive)
+        if last.state > 0 and step_mm > MOST_STEP_MM:
+            wrong.append(f"{n}: the drive's command leapt by {step_mm:.3f} mm, the command by {math.dist(period.command, last.command):.3f}; "
+                         f"states {last.state}, {period.state}; settings {period.settings}")
+        if with_rotary:
+            wrong += out_of_step(periods, n)
+    return wrong
+
+
+def out_of_step(periods, n):
+    """Of joints that pass through: the rotary one and the signal to the bit, the second motor with its correction."""
+    period = periods[n]
+    due = periods[n - period.delay]
+    tandem_mm = period.through_drive[0] - due.through[0] - period.correction[1]
+    if period.through_drive[1:3] != due.through[1:3] or abs(tandem_mm) > through.ROUNDING_MM:
+        return [f"{n}: out of step with a delay of {period.delay}: {period.through_drive}, {due.through}"]
+    return []
+
+
+def session(folder, seed, number):
+    """Runs a session. Returns what it was, what it did, and what did not hold."""
+    pick = random.Random(f"{seed}/{number}")
+    machine, kind = pick.choice(MACHINES), pick.choice(("right", "right", "right", "wrong", "damaged", "missing"))
+    other = pick.choice([name for name in MACHINES if name != machine])
+    model = folder / {"right": f"{machine}.model", "wrong": f"{other}.model", "damaged": "damaged.model", "missing": "none.model"}[kind]
+    periods_s = [measure.servo_s(folder / f"{of}.machine") for of in (machine, other)]
+    # A model for another servo period is refused.
+    corrects = {"right": [4], "wrong": [2, 3, 4] if periods_s[0] == periods_s[1] else [1]}
+    expects = corrects.get(kind, [1])
+    with_rotary = pick.random() < 0.5
+    ini = {"FEEDWRIGHT": {"MACHINE": folder / f"{machine}.machine", "MODEL": model, "RECORD": 400, "RECORDING": "recording.fwreplay"},
+           "EMCMOT": {"SERVO_PERIOD": round(1e9 * periods_s[0])}}
+    settings = {"seed": f"{seed}/{number}/actions", "seconds": SESSION_S, "expects": expects, "with_rotary": with_rotary}
+    name = f"{machine}, {kind} model{', gantry with a rotary axis' if with_rotary else ''}"
+    # One component has all the switches.
+    hal = through.HAL.replace("names=", "names=probed,") + headless.PROBE.split("\n", 1)[1] if with_rotary else headless.PROBE
+    with tempfile.TemporaryDirectory(prefix="feedwright-soak-") as kept:
+        try:
+            run = headless.run("soak", settings, ini, hal, keep=kept, change=through.gantry if with_rotary else None)
+        except headless.Failed as failed:
+            return name, {}, 0, [str(failed)[-3000:]]
+        periods = recordings.read(pathlib.Path(kept) / "recording.fwreplay")
+    return name, run.result["counts"], len(periods), run.result["wrong"] + check(periods, with_rotary)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("minutes", nargs="?", type=float, default=5.0)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--resume", type=pathlib.Path, help="file of what was done")
+    parser.add_argument("--session", type=int, help="this one alone")
+    args = parser.parse_args()
+    done = {"seed": args.seed, "sessions": 0, "periods": 0, "wrong": []}
+    if args.resume and args.resume.exists():
+        done = json.loads(args.resume.read_text())
+    totals, end = {}, time.monotonic() + 60 * args.minutes
+    with tempfile.TemporaryDirectory(prefix="feedwright-soak-models-") as folder:
+        folder = pathlib.Path(folder)
+        folder.chmod(0o755)
+        models(folder)
+        for number in [args.session] if args.session is not None else iter(lambda: done["sessions"], None):
+            if time.monotonic() >= end:
+                break
+            name, counts, periods, wrong = session(folder, done["seed"], number)
+            totals = {what: totals.get(what, 0) + counts.get(what, 0) for what in {*totals, *counts}}
+            done["sessions"], done["periods"] = number + 1, done["periods"] + periods
+            done["wrong"] += [f"session {number}, {name}: {what}" for what in wrong[:5]]
+            print(f"session {number}: {name}: {periods} servo periods, {sum(counts.values())} actions{'' if not wrong else f', {len(wrong)} WRONG'}", flush=True)
+            for what in wrong[:5]:
+                print(f"    {what}", flush=True)
+            if args.resume:
+                args.resume.write_text(json.dumps(done, indent=1) + "\n")
+    print(f"seed {done['seed']}, {done['sessions']} sessions, {done['periods']} servo periods: {', '.join(f'{what} {totals[what]}' for what in sorted(totals))}")
+    print("everything held" if not done["wrong"] else f"{len(done['wrong'])} did not hold")
+    return 1 if done["wrong"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
