@@ -145,6 +145,30 @@ def check_recorder(looks, hal, home):
     looks.expect("it records again", "LOST" not in panel.told["text"] and "not recorded" not in panel.told["text"])
 
 
+def check_switch_of_hal(looks):
+    """A panel that comes later takes the switch again; where another pin drives it, it does not."""
+    for name, others, expected in (("it switches again", [], True), ("a switch of HAL is left alone", [("loadrt", "not"), ("net", f"{looks.module.NAME}-enable", "not.0.out")], False)):
+        for words in others:
+            subprocess.run(["halcmd", *words], check=True)
+        component = looks.module.Component()
+        component.connect()
+        looks.expect(name, component.owns_switch is expected)
+        component.me.exit()
+
+
+def check_layout(looks, home):
+    """In the tab of AXIS, and on an inch machine."""
+    ini = home / "inch.ini"
+    ini.write_text("[TRAJ]\nLINEAR_UNITS = inch # as of old\n[HAL]\nHALFILE = a.hal\nHALFILE = b.hal\n")
+    looks.expect("it shows inches on an inch machine", [looks.module.machine_units(file) for file in (str(ini), None)] == ["inch", "mm"])
+    looks.root.geometry("400x465")
+    looks.run(0.5)
+    panel = looks.panel
+    below = panel.table.winfo_rooty() >= panel.chart.canvas.winfo_rooty() + panel.chart.canvas.winfo_height()
+    fits = panel.table.winfo_rooty() + panel.table.winfo_height() <= panel.button.winfo_rooty()
+    looks.expect("in the tab of AXIS the numbers are below the chart, and fit", panel.narrow and below and fits)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--machine", required=True)
@@ -184,9 +208,12 @@ def main():
             if args.picture:
                 subprocess.run(["import", "-window", "root", args.picture], check=True)
             check_recorder(looks, hal, home)
+            check_layout(looks, home)
             looks.panel.close()
-            looks.expect("the correction stays as it was", bool(hal.get_value("feedwright.enable")))
             component.me.exit()
+            enable = subprocess.run(["halcmd", "getp", "feedwright.enable"], capture_output=True, text=True, check=True).stdout.strip()
+            looks.expect("the correction stays on without the panel", enable == "TRUE")
+            check_switch_of_hal(looks)
         finally:
             unload()
             server.terminate()
