@@ -40,8 +40,9 @@ class Figures:
     time_s: float
 
 
-def figures(recording, program, period_s=0.001):
-    """What a recording of a program came to. The tool cuts where the command that is nearest to it does."""
+def figures(recording, program, period_s=0.001, home=None):
+    """What a recording of a program came to. The tool cuts where the command that is nearest to it does. The program's zero is where the recording
+    begins, or at `home`."""
     path, rows = paths.pieces(program), recording.rows
     commands = [row.command for row in rows]
     cuts = [row.motion_type in (2, 3) for row in rows]
@@ -52,7 +53,7 @@ def figures(recording, program, period_s=0.001):
     arrived = min(end + round(0.15 / period_s), len(rows) - 1)
     latest = round(0.1 / period_s)
     # Homing takes the place where the axis stands for its home, and the program begins there.
-    home = commands[0]
+    home = home or commands[0]
     of_program = lambda point: [at - zero for at, zero in zip(point, home)]
     distance, planned, piece = paths.Distance(path), {}, {}
     for i in range(begin, end + 1):

@@ -86,7 +86,9 @@ def errors(block, model, mode, drawn, enable):
         ini = {"FEEDWRIGHT": {"MACHINE": block, "MODEL": model}}
         run = headless.run("cuts", {"programs": texts, "enable": enable}, ini, limit_s=400, keep=folder)
         recorded = [of_file(run, pathlib.Path(folder) / f"samples-{k}.txt") for k in range(len(drawn))]
-        return [measure.figures(recording, text).programmed for recording, text in zip(recorded, texts)]
+        # The first program begins where the machine was homed.
+        home = recorded[0].rows[0].command
+        return [measure.figures(recording, text, home=home).programmed for recording, text in zip(recorded, texts)]
 
 
 def of_file(run, file):

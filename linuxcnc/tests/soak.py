@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """Random programs, modes, settings and faults in a real LinuxCNC on simulated machines, by a seed: what must hold in every servo period.
 
-    soak.py [MINUTES] [--seed S] [--resume FILE] [--session K]
+    soak.py [MINUTES] [--seed S] [--resume FILE] [--session K] [--keep FOLDER]
 
 A session of LinuxCNC takes half a minute or more: its machine, its model (right, of another machine, damaged or missing) and what is done follow
-from the seed and its number. `--resume` keeps what was done in a file and goes on from there; `--session` runs one again. Exit code 1 where
-something did not hold.
+from the seed and its number. `--resume` keeps what was done in a file and goes on from there; `--session` runs one again, and
+`--keep` keeps the recording of each in which something did not hold. Exit code 1 where something did not hold.
 """
 import argparse
 import collections
@@ -14,6 +14,7 @@ import json
 import math
 import pathlib
 import random
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -31,9 +32,10 @@ SESSION_S = 40
 MOST_STEP_MM = 0.7
 # A limit that is lowered takes effect within this, servo periods.
 LOWERED = 210
-# A path is looked for among so many of the last commands.
-LATEST = 40
-ROUND_MM = 1e-3
+# A path is looked for among so many of the last commands, as the component keeps, and of the next ones: along it a drive may lead, or stay behind.
+LATEST, LATER = 250, 60
+# An offset along the path is along its tangent, which leaves the path beside a corner: 4.5 um are the most that was found, mm.
+ROUND_MM = 0.01
 # Travel of a joint, mm.
 TRAVEL_MM = 300.0
 DEVIATIONS_MM = (0.0, 10.0)
@@ -70,9 +72,9 @@ def check(periods, with_rotary):
             continue
         allowed_mm = max(lowered) + ROUND_MM
         if math.dist(period.correction, (0, 0, 0)) > allowed_mm and period.state > 1:
-            off_mm, _ = paths.to_commands(commands, period.drive, n, LATEST)
+            off_mm, _ = paths.to_commands(commands, period.drive, min(n + LATER, len(commands) - 1), LATEST + LATER)
             if off_mm > allowed_mm:
-                wrong.append(f"{n}: {off_mm:.4f} mm off the path, {allowed_mm:.4f} are allowed")
+                wrong.append(f"{n}: {off_mm:.4f} mm off the path, {allowed_mm:.4f} are allowed; state {period.state}, settings {period.settings}")
         if max(map(abs, period.drive)) > TRAVEL_MM + allowed_mm:
             wrong.append(f"{n}: beyond the travel: {period.drive}")
         last = periods[n - 1] if n else period
@@ -114,7 +116,7 @@ def blind():
     return found
 
 
-def session(folder, seed, number):
+def session(folder, seed, number, keep=None):
     """Runs a session. Returns what it was, what it did, and what did not hold."""
     pick = random.Random(f"{seed}/{number}")
     machine, kind = pick.choice(MACHINES), pick.choice(("right", "right", "right", "wrong", "damaged", "missing"))
@@ -136,8 +138,12 @@ def session(folder, seed, number):
             run = headless.run("soak", settings, ini, hal, keep=kept, change=through.gantry if with_rotary else None)
         except headless.Failed as failed:
             return name, {}, 0, [str(failed)[-3000:]]
-        periods = recordings.read(pathlib.Path(kept) / "recording.fwreplay")
-    return name, run.result["counts"], len(periods), run.result["wrong"] + check(periods, with_rotary)
+        recording = pathlib.Path(kept) / "recording.fwreplay"
+        periods = recordings.read(recording)
+        wrong = run.result["wrong"] + check(periods, with_rotary)
+        if wrong and keep:
+            shutil.copy(recording, keep / f"session-{number}.fwreplay")
+    return name, run.result["counts"], len(periods), wrong
 
 
 def main():
@@ -146,6 +152,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--resume", type=pathlib.Path, help="file of what was done")
     parser.add_argument("--session", type=int, help="this one alone")
+    parser.add_argument("--keep", type=pathlib.Path, help="folder for recordings in which something did not hold")
     args = parser.parse_args()
     done = {"seed": args.seed, "sessions": 0, "periods": 0, "wrong": []}
     if args.resume and args.resume.exists():
@@ -161,7 +168,7 @@ def main():
         for number in [args.session] if args.session is not None else iter(lambda: done["sessions"], None):
             if time.monotonic() >= end:
                 break
-            name, counts, periods, wrong = session(folder, done["seed"], number)
+            name, counts, periods, wrong = session(folder, done["seed"], number, args.keep)
             totals = {what: totals.get(what, 0) + counts.get(what, 0) for what in {*totals, *counts}}
             done["sessions"], done["periods"] = number + 1, done["periods"] + periods
             done["wrong"] += [f"session {number}, {name}: {what}" for what in wrong[:5]]

@@ -3,7 +3,7 @@
 //! | Setting | Range |
 //! |---|---|
 //! | delay | 0.008 to 0.015 s |
-//! | deviation | 0 to 10 mm; 0 corrects nothing |
+//! | deviation from the path | 0 to 10 mm; 0 corrects along the path alone |
 //! | speed | 1 to 10,000 mm/s |
 //! | acceleration of a correction that fades, and of one in the loop | 1 to 1,000,000 mm/s2; 0 is without limit |
 //! | scale of the feedrate that is asked for | 0.1 to 1 |
