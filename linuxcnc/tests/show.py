@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Programs that nobody has chosen: drawn from generators by a seed, cut in a real LinuxCNC without and with the correction.
 
-    show.py [--machine NAME] [--seed S] [--count N] [--mode MODE]
+    show.py [--machine NAME] [--seed S] [--count N] [--mode MODE] [--models FOLDER]
 
 Prints the RMS error to the programmed path, uncorrected, corrected by the machine's own model, and by one that was identified through LinuxCNC.
-Without a seed one is drawn. Exit code 1 where a correction leaves more than 0.05.
+Without a seed one is drawn. `--models` keeps the models in a folder, and takes those that are there. Exit code 1 where a correction leaves more than 0.05.
 """
 import argparse
 import math
@@ -84,7 +84,14 @@ def errors(block, model, mode, drawn, enable):
     texts = [text.replace("MODE", mode) for _, text in drawn]
     with tempfile.TemporaryDirectory(prefix="feedwright-show-") as folder:
         ini = {"FEEDWRIGHT": {"MACHINE": block, "MODEL": model}}
-        run = headless.run("cuts", {"programs": texts, "enable": enable}, ini, limit_s=400, keep=folder)
+        for trial in range(measure.TRIALS):
+            try:
+                run = headless.run("cuts", {"programs": texts, "enable": enable}, ini, limit_s=400, keep=folder)
+                break
+            except headless.Failed:
+                # On a busy machine LinuxCNC misses its own deadlines.
+                if trial == measure.TRIALS - 1:
+                    raise
         recorded = [of_file(run, pathlib.Path(folder) / f"samples-{k}.txt") for k in range(len(drawn))]
         # The first program begins where the machine was homed.
         home = recorded[0].rows[0].command
@@ -102,15 +109,18 @@ def main():
     parser.add_argument("--seed", type=int)
     parser.add_argument("--count", type=int, default=20)
     parser.add_argument("--mode", choices=MODES, help="this path mode alone")
+    parser.add_argument("--models", type=pathlib.Path, help="folder of machine.fwmodel and model.fwmodel")
     args = parser.parse_args()
     seed = args.seed if args.seed is not None else random.SystemRandom().randrange(10**6)
     pick, missed = random.Random(seed), 0
     drawn = [draw(pick) for _ in range(args.count)]
     print(f"seed {seed}, machine {args.machine}; um RMS / largest to the program", flush=True)
     with tempfile.TemporaryDirectory(prefix="feedwright-show-models-") as name:
-        folder = pathlib.Path(name)
+        folder = args.models or pathlib.Path(name)
         folder.chmod(0o755)
-        block, _, model = identified.identify(folder, args.machine)
+        block, model = folder / "machine.fwmodel", folder / "model.fwmodel"
+        if not model.exists():
+            identified.identify(folder, args.machine)
         for mode in [args.mode] if args.mode else MODES:
             off, own, found = (errors(block, of, mode, drawn, enable) for of, enable in ((block, False), (block, True), (model, True)))
             for (title, _), *each in zip(drawn, off, own, found):
