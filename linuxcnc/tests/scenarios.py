@@ -210,7 +210,8 @@ def soak(machine, **settings):
 
 
 def cuts(machine, programs, enable):
-    """One program after another, each recorded in a file of its own."""
+    """One program after another, each recorded in a file of its own; behind each, which joints are corrected by what was learned."""
+    learned = []
     machine.on()
     machine.home()
     machine.hal("setp", "feedwright.enable", int(enable))
@@ -220,3 +221,5 @@ def cuts(machine, programs, enable):
         machine.begin()
         machine.finish(LIMIT_S)
         machine.end_record()
+        learned.append("".join(axis for i, axis in enumerate("xyz") if machine.hal("getp", f"feedwright.learned-{i}") == "TRUE"))
+    return {"learned": learned}
