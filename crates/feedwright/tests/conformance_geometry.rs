@@ -41,8 +41,8 @@ fn a_geometry_file_takes_the_place_of_the_machine_file_and_is_as_good_as_it_says
     assert!((tool_um - encoders_um).abs() < 1e-6, "{tool_um} {encoders_um}");
     assert_eq!(geometry["from"], "geometry.toml");
     // At most 2 um/m over the 100 mm of both axes, and 0.1 um of pitch.
-    let [rms_um, max_um] = ["spread_rms_um", "spread_max_um"].map(|key| geometry[key].as_f64().unwrap());
-    assert!(0.01 < rms_um && rms_um < max_um && max_um < 0.3, "{rms_um} {max_um}");
+    let [spread_um, most_um] = ["spread_rms_um", "spread_max_um"].map(|key| geometry[key].as_f64().unwrap());
+    assert!(0.01 < spread_um && spread_um < most_um && most_um < 0.3, "{spread_um} {most_um}");
     // With wrong signs the error of the geometry is there twice.
     let wrong = MEASURED.replace("scale_um_m = -15", "scale_um_m = 15");
     folder.file("wrong.toml", wrong.replace("pitch_error_um = 2\n", "pitch_error_um = 2\npitch_phase_deg = 180\n"));

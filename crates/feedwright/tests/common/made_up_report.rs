@@ -80,6 +80,7 @@ pub(crate) fn report(axes: usize, rows: usize) -> Report {
         part: HOSTILE.to_owned(),
         machine: vec![(HOSTILE.to_owned(), HOSTILE.to_owned())],
         settings: vec![(HOSTILE.to_owned(), HOSTILE.to_owned())],
+        geometry: None,
         assumed: Assumptions {
             machine: HOSTILE.to_owned(),
             description: HOSTILE.to_owned(),
