@@ -11,7 +11,7 @@ use crate::report::CompensatedGeometry;
 /// What is known of the errors that no encoder sees.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Compensation {
+pub enum GeometryChoice {
     /// Nothing is compensated.
     Off,
     /// Scale, pitch and squareness as the machine file states them.
@@ -46,7 +46,7 @@ mod text {
     }
 }
 
-impl Compensation {
+impl GeometryChoice {
     /// The machine with a control that compensates it, for a part with these least and greatest positions, mm.
     ///
     /// # Errors

@@ -67,7 +67,7 @@ pub(crate) mod advise;
 use feedwright_gcode::{Program, Settings};
 use feedwright_sim::{Machine, Watch};
 
-use crate::compensation::Compensation;
+use crate::compensation::GeometryChoice;
 use crate::job_error::{JobError, axes_that_move};
 use exported::ExportedCut;
 pub use nominal::deterministic;
@@ -90,7 +90,7 @@ pub struct CorrectJob {
     /// What the correction believes of the machine; none is the machine itself.
     pub believed: Option<Machine>,
     /// The geometry that the program compensates.
-    pub compensation: Compensation,
+    pub compensation: GeometryChoice,
     /// The control that the corrected program is for.
     pub target: &'static TargetControl,
     /// Replaces every programmed feedrate, mm/s.
@@ -106,7 +106,7 @@ impl CorrectJob {
             program,
             machine,
             believed: None,
-            compensation: Compensation::default(),
+            compensation: GeometryChoice::default(),
             target,
             feed_mm_s: None,
             reader: Settings::default(),

@@ -38,7 +38,7 @@ use feedwright_sim::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::compensation::Compensation;
+use crate::compensation::GeometryChoice;
 use crate::controllers::{Choices, CutsUncorrected, Entry, LQG_IDENTIFIED, Make, Setup, UNCORRECTED};
 use crate::correct::{CorrectOutcome, TargetControl};
 use crate::cycle_time::CycleTimeOfCut;
@@ -65,7 +65,7 @@ pub struct Job {
     /// The file that the machine was read from, for the report; none where it is built in.
     pub machine_file: Option<String>,
     /// The geometry that the control compensates, in all cuts.
-    pub compensation: Compensation,
+    pub compensation: GeometryChoice,
     /// The controller that is asked for.
     #[serde(with = "stored::entry")]
     pub controller: &'static Entry,
@@ -162,7 +162,7 @@ impl Job {
             program,
             machine,
             machine_file: None,
-            compensation: Compensation::default(),
+            compensation: GeometryChoice::default(),
             controller: &LQG_IDENTIFIED,
             against: &UNCORRECTED,
             feed_mm_s: None,

@@ -117,7 +117,7 @@ mod linuxcnc_setup;
 pub mod command;
 
 pub use checked_json::{checked, with_check};
-pub use compensation::{Compensation, NamedGeometry};
+pub use compensation::{GeometryChoice, NamedGeometry};
 pub use controllers::{
     ACCELERATION_GAIN, BASELINE, BEST, CONTROLLERS, Choices, Controllers, CutsUncorrected, Entry, FEEDFORWARD,
     FRICTION_GAIN, Knows, LQG_IDENTIFIED, MAGNITUDE_ONLY, Make, Maker, ModelMisfit, Parameter, ParameterKind,

@@ -10,7 +10,7 @@ use std::process::{Command, Output};
 use crate::cut::{cut, cut_with};
 use crate::python::python;
 use crate::sweep::part_or_whole;
-use feedwright::{BASELINE, BEST, CONTROLLERS, Compensation, Entry};
+use feedwright::{BASELINE, BEST, CONTROLLERS, Entry, GeometryChoice};
 use feedwright_sim::machine_keys as keys;
 use feedwright_sim::{Machine, Plant};
 
@@ -246,7 +246,7 @@ fn the_error_of_the_joints_is_that_of_the_machine_without_its_geometry() {
             let entry = CONTROLLERS.find(controller).unwrap();
             let trace = folder.path().join("t.csv");
             let [with, plain] =
-                files.each_ref().map(|file| cut_with(Compensation::Off, &part(name), file, entry, &trace));
+                files.each_ref().map(|file| cut_with(GeometryChoice::Off, &part(name), file, entry, &trace));
             let (rms_um, max_um) = (with.joint_rms_um.unwrap(), with.joint_max_um.unwrap());
             let of_geometry = [with.rms_um - plain.rms_um, with.max_um - plain.max_um];
             let of_joints = [rms_um - plain.rms_um, max_um - plain.max_um];

@@ -20,7 +20,7 @@ use thiserror::Error;
 
 use crate::machine::Machine;
 use crate::reference::Reference;
-use crate::simulate::{Bench, PlantMaker, RunResult, Stopped, simulate};
+use crate::simulate::{LapSetup, PlantMaker, RunResult, Stopped, simulate};
 use crate::trace::Sink;
 use crate::watch::{Cancelled, Watch};
 
@@ -318,8 +318,8 @@ impl<'a> Run<'a> {
         let mut reference = Reference::new(plan.told_to(self.plan_sink));
         let known = self.machine.compensated.as_ref().filter(|_| self.compensates);
         let known = known.map(|known| Box::new(known.of_first::<N>()));
-        let bench = Bench { machine: self.machine, plant: self.plant, known: known.as_deref() };
-        let result = simulate(bench, &mut reference, controller, sinks, self.watch)?;
+        let setup = LapSetup { machine: self.machine, plant: self.plant, known: known.as_deref() };
+        let result = simulate(setup, &mut reference, controller, sinks, self.watch)?;
         if let Some(fault) = reference.fault() {
             return Err(fault.clone().into());
         }

@@ -104,7 +104,7 @@ pub type PlantMaker<'a> = &'a dyn Fn([f64; 3], u64) -> Box<dyn Mechanism>;
 
 /// What a lap is cut on.
 #[derive(Clone, Copy)]
-pub(crate) struct Bench<'a, const N: usize> {
+pub(crate) struct LapSetup<'a, const N: usize> {
     /// The machine.
     pub(crate) machine: &'a Machine,
     /// What takes the place of its plant.
@@ -119,13 +119,13 @@ pub(crate) struct Bench<'a, const N: usize> {
 /// # Errors
 /// What a sink says when it takes no more, or an end from outside.
 pub(crate) fn simulate<const N: usize>(
-    bench: Bench<'_, N>,
+    setup: LapSetup<'_, N>,
     reference: &mut Reference<'_>,
     controller: &mut dyn Controller<N>,
     sinks: &mut [&mut dyn Sink],
     watch: &dyn Watch,
 ) -> Result<RunResult, Stopped> {
-    let mut lap = ClosedLoop::new(bench, reference, controller);
+    let mut lap = ClosedLoop::new(setup, reference, controller);
     let (mut n, mut rows) = (0_u64, 0_u64);
     while let Some(periods) = lap.servo_period(n, reference, controller, sinks, watch)? {
         n += periods;
@@ -167,8 +167,8 @@ struct ClosedLoop<'a, const N: usize> {
 
 impl<'a, const N: usize> ClosedLoop<'a, N> {
     /// At rest at the start of the path.
-    fn new(bench: Bench<'a, N>, reference: &mut Reference<'_>, controller: &dyn Controller<N>) -> Self {
-        let Bench { machine, plant, known } = bench;
+    fn new(setup: LapSetup<'a, N>, reference: &mut Reference<'_>, controller: &dyn Controller<N>) -> Self {
+        let LapSetup { machine, plant, known } = setup;
         let joints = Joints { known };
         let servo_s = machine.period.servo_s;
         let slowest_s = 1.0 / machine.slowest_kp_1_s();

@@ -8,7 +8,7 @@ use miette::{Result, miette};
 
 use crate::command::args::geometry::GeometryArgs;
 use crate::command::terminal::wrapped;
-use crate::compensation::{Compensation, NamedGeometry};
+use crate::compensation::{GeometryChoice, NamedGeometry};
 use crate::correct::{CorrectOutcome, TARGETS, TargetControl};
 
 /// Largest tolerance that is no slip of the unit, um.
@@ -28,13 +28,13 @@ pub(crate) fn control(name: &str) -> Result<&'static TargetControl> {
 }
 
 /// What is compensated by `--geometry` and `--no-geometry`.
-pub(crate) fn compensation(args: &GeometryArgs) -> Result<Compensation> {
+pub(crate) fn compensation(args: &GeometryArgs) -> Result<GeometryChoice> {
     Ok(match &args.geometry {
-        _ if args.no_geometry => Compensation::Off,
-        None => Compensation::Machine,
+        _ if args.no_geometry => GeometryChoice::Off,
+        None => GeometryChoice::Machine,
         Some(path) => {
             let geometry = GeometryFile::read(path)?;
-            Compensation::File(Box::new(NamedGeometry { name: input::name(path), geometry }))
+            GeometryChoice::File(Box::new(NamedGeometry { name: input::name(path), geometry }))
         }
     })
 }

@@ -16,7 +16,7 @@ use serde::Serialize;
 use super::source::SourceProgram;
 use super::stretches::{ProgramPart, SmoothStretch, parts, stretches};
 use super::target::TargetControl;
-use crate::compensation::Compensation;
+use crate::compensation::GeometryChoice;
 use crate::controllers::{Choices, Entry, LQG_IDENTIFIED, Make, Setup};
 use crate::job_error::{JobError, axes_that_move};
 pub use feed_cuts::ErrorPlace;
@@ -38,7 +38,7 @@ pub struct AdviseJob {
     /// Settings of the controller.
     pub choices: Choices,
     /// The geometry that is compensated, in the corrected program and in the cut with feedback.
-    pub compensation: Compensation,
+    pub compensation: GeometryChoice,
     /// Largest contour error, um.
     pub tolerance_um: f64,
     /// Settings of the reader.
@@ -166,7 +166,7 @@ impl AdviseJob {
             target,
             controller: &LQG_IDENTIFIED,
             choices: Choices::default(),
-            compensation: Compensation::default(),
+            compensation: GeometryChoice::default(),
             tolerance_um,
             reader: Settings::default(),
         }

@@ -3,18 +3,18 @@
 use std::fs::File;
 use std::path::Path;
 
-use feedwright::{Compensation, Entry, Job, RunSummary};
+use feedwright::{Entry, GeometryChoice, Job, RunSummary};
 use feedwright_gcode::Program;
 use feedwright_sim::{Machine, TraceWriter};
 
 /// Cuts a part and leaves its trace.
 pub(crate) fn cut(part: &Path, machine: &Path, entry: &'static Entry, trace: &Path) -> RunSummary {
-    cut_with(Compensation::default(), part, machine, entry, trace)
+    cut_with(GeometryChoice::default(), part, machine, entry, trace)
 }
 
 /// The same with another compensation of the machine's geometry.
 pub(crate) fn cut_with(
-    compensation: Compensation,
+    compensation: GeometryChoice,
     part: &Path,
     machine: &Path,
     entry: &'static Entry,

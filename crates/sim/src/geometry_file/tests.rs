@@ -93,14 +93,15 @@ fn what_is_written_reads_back() {
 fn the_errors_are_those_of_the_simulated_machine() {
     let mut geometry = truth();
     geometry.axes.iter_mut().for_each(|axis| (axis.pitch_phase_deg, axis.backlash_um) = (0.0, 0.0));
-    let axes = [0, 1, 2].map(|i| crate::kinematics::AxisErrors {
+    let axes = [0, 1, 2].map(|i| feedwright_control::AxisErrors {
         scale: 1e-6 * geometry.axes[i].scale_um_m,
         pitch_mm: 1e-3 * geometry.axes[i].pitch_error_um,
         pitch_rad_per_mm: TAU / 10.0,
+        ..feedwright_control::AxisErrors::default()
     });
     let square = geometry.squareness;
     let angles = [square.squareness_xy_urad, square.squareness_xz_urad, square.squareness_yz_urad];
-    let machine = crate::kinematics::GeometricErrors { axes, squareness_rad: angles.map(|urad| 1e-6 * urad) };
+    let machine = feedwright_control::KnownGeometry::new(axes, angles.map(|urad| 1e-6 * urad));
     for at_mm in [[12.0, -7.0, 33.0], [-100.0, 3.3, 0.0]] {
         let error_um = geometry.error_um(at_mm, [1.0; 3]);
         let tool_mm = machine.tool_mm(at_mm);
