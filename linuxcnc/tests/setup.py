@@ -24,7 +24,7 @@ import headless
 SAMPLES = pathlib.Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim/axis")
 PART = "G21 G17 G90 G94 G64 P0.001 Q0\nG0 X0 Y0\nG0 X20 Y10\nG4 P0.3\nG2 X20 Y10 I-10 J0 F3000\nG1 X30 Y20\nG1 X10 Y30\nG1 X0 Y10\nG1 X20 Y10\nG4 P0.2\nG0 X0 Y0\nM2\n"
 # Motion to the middle of the travel, which is not the same for all axes of the sample.
-MIDDLE = "G21 G90 G53 G0 X0 Y0 Z-60"
+MIDDLE = "G21 G90 G53 G0 X0 Y0 Z-30"
 FACTOR = 0.1
 LIMIT_S = 400
 
