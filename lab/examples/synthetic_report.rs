@@ -166,6 +166,7 @@ fn main() -> io::Result<()> {
     ];
     for job in &jobs {
         let report = Report {
+            geometry: None,
             assumed: Assumptions { machine: "a lag that was made up".to_owned(), ..Assumptions::default() },
             title: format!("{} <b>&</b>", job.name),
             part: format!("{}.ngc", job.name),
