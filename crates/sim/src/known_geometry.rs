@@ -281,11 +281,12 @@ mod tests {
     #[test]
     fn a_geometry_that_no_inverse_holds_for_is_told_with_its_limit() {
         let mut steep = Machine::load("workshop".as_ref()).unwrap();
+        // 2 pi 0.1 / 10, and 15e-6 each of scale and squareness.
         steep.axes[1].pitch_error_um = 100.0;
         let text = steep.compensating_own().unwrap_err().to_string();
         assert_eq!(
             text,
-            "the geometry cannot be compensated: the errors of axis y grow by up to 6.285 % of the travel; at most 5 % are allowed"
+            "the geometry cannot be compensated: the errors of axis y grow by up to 6.286 % of the travel; at most 5 % are allowed"
         );
     }
 }
