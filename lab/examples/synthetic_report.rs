@@ -172,7 +172,6 @@ fn main() -> io::Result<()> {
             part: format!("{}.ngc", job.name),
             machine: vec![("axes".to_owned(), job.axes.to_string()), ("servo period".to_owned(), "1 ms".to_owned())],
             settings: vec![("controllers".to_owned(), "uncorrected, less lag".to_owned())],
-            geometry: None,
             program: Vec::new(),
             circles: Vec::new(),
             tolerance_um: Some(20.0),

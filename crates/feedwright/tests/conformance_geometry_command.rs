@@ -51,8 +51,8 @@ fn a_ball_bar_becomes_a_geometry_file_and_a_compensation_file() {
 fn what_is_no_measurement_or_goes_with_no_other_is_refused() {
     let folder = Folder::new();
     folder.file("bar.csv", bar());
-    folder.file("x.comp", "0 0.001 0.002\n100 -0.001 0.003\n".to_owned());
-    folder.file("log.csv", "t,x.cmd\n0,1\n".to_owned());
+    folder.file("x.comp", "0 0.001 0.002\n100 -0.001 0.003\n");
+    folder.file("log.csv", "t,x.cmd\n0,1\n");
     let refused = |arguments: &[&str], said: &str| {
         let ran = folder.run(&[&["identify", "--out", "g.toml"], arguments].concat());
         assert!(ran.stderr.contains(said), "no '{said}' in {}", ran.stderr);

@@ -112,14 +112,20 @@ impl Machine {
     /// # Errors
     /// As [`Machine::compensating`].
     pub fn compensating_own(&self) -> Result<Self, CompensationError> {
-        let of_axis = |i: usize| match self.axis(i).transmission {
-            // A scale on the table sees the gap.
-            Some(screw) if !screw.scale_on_table => 1e-3 * screw.backlash_um,
-            _ => 0.0,
-        };
+        let of_axis = |i: usize| self.hidden_backlash_mm(i);
         let exact = || KnownGeometry::new([AxisErrors::default(); 3], [0.0; 3]);
         let known = self.errors_of_geometry().unwrap_or_else(exact).with_backlash([0, 1, 2].map(of_axis));
         if known.is_exact() { Ok(Self { compensated: None, ..self.clone() }) } else { self.compensating(known) }
+    }
+
+    /// Whether an axis has backlash that its encoder does not see.
+    pub fn has_hidden_backlash(&self) -> bool {
+        (0..self.axis_count()).any(|i| self.hidden_backlash_mm(i) > 0.0)
+    }
+
+    /// Backlash of an axis that its encoder does not see, mm: a scale on the table sees the gap.
+    fn hidden_backlash_mm(&self, i: usize) -> f64 {
+        self.axis(i).transmission.filter(|screw| !screw.scale_on_table).map_or(0.0, |screw| 1e-3 * screw.backlash_um)
     }
 }
 
