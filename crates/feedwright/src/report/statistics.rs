@@ -212,7 +212,7 @@ impl Sink for Statistics {
         let (c, p) = (row.corrected_mm, row.path_mm);
         let deviation_mm = libm::hypot(libm::hypot(c[0] - p[0], c[1] - p[1]), c[2] - p[2]);
         self.max_deviation_mm = self.max_deviation_mm.max(deviation_mm);
-        self.command(row.t_s, c);
+        self.command(row.t_s, row.cmd_mm);
         if row.cutting {
             self.cut(row);
         }
