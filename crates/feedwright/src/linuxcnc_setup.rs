@@ -32,7 +32,7 @@ use feedwright_sim::{Machine, Watch};
 pub use error::LinuxcncSetupError;
 use hal::HalScript;
 use ini::IniFile;
-use joints::Joints;
+use joints::SetupJoints;
 use manifest::SetupFile;
 use names::SetupNames;
 use netlist::Netlist;
@@ -102,7 +102,7 @@ struct Configuration {
     ini: IniFile,
     script: HalScript,
     netlist: Netlist,
-    joints: Joints,
+    joints: SetupJoints,
 }
 
 impl LinuxcncSetup {
@@ -146,7 +146,7 @@ impl LinuxcncSetup {
         let ini = IniFile::read(&self.ini)?;
         let script = HalScript::read(&ini, folder_of(&self.ini), &self.hallib)?;
         let netlist = Netlist::of(&script);
-        let joints = Joints::of(&ini, &netlist);
+        let joints = SetupJoints::of(&ini, &netlist);
         Ok(Configuration { ini, script, netlist, joints })
     }
 

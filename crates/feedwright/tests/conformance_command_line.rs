@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use crate::command::{Folder, Ran, skipped};
 
 /// All commands.
-const COMMANDS: [&str; 13] = [
+const COMMANDS: [&str; 14] = [
     "run",
     "correct",
     "advise",
@@ -14,6 +14,7 @@ const COMMANDS: [&str; 13] = [
     "check",
     "identify",
     "excite",
+    "linuxcnc",
     "machines",
     "controllers",
     "canon",

@@ -45,7 +45,7 @@ pub(crate) struct JointValue {
 
 /// All joints.
 #[derive(Debug, Clone)]
-pub(crate) struct Joints {
+pub(crate) struct SetupJoints {
     pub(crate) joints: Vec<SetupJoint>,
     /// Name of the kinematics.
     pub(crate) kinematics: String,
@@ -55,7 +55,7 @@ pub(crate) struct Joints {
     ini: IniFile,
 }
 
-impl Joints {
+impl SetupJoints {
     pub(crate) fn of(ini: &IniFile, netlist: &Netlist) -> Self {
         let kinematics = ini.value("KINS", "KINEMATICS").unwrap_or("trivkins").to_owned();
         let stated = ini.number("KINS", "JOINTS").filter(|count| (1.0..=MOST_JOINTS as f64).contains(count));

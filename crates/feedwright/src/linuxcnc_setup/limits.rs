@@ -16,7 +16,7 @@
 use feedwright_sim::{Machine, to_four_digits};
 
 use super::drives::DriveKind;
-use super::joints::{Joints, SetupJoint};
+use super::joints::{SetupJoints, SetupJoint};
 
 /// Longest delay of the component, s.
 const DELAY_S: f64 = 0.015;
@@ -43,7 +43,7 @@ pub(crate) struct NeededFerror {
 
 /// What the joints need, as far as their lag is known: from their `pid`, or of the machine that stands in
 /// for them.
-pub(crate) fn needed(joints: &Joints, simulated: Option<&Machine>) -> Vec<NeededFerror> {
+pub(crate) fn needed(joints: &SetupJoints, simulated: Option<&Machine>) -> Vec<NeededFerror> {
     let of = |(axis, joint): (usize, &SetupJoint)| {
         let lag_s = lag_s(joint, simulated.and_then(|machine| machine.axes.get(axis)))?;
         let [(_, speed), (_, acceleration)] =
@@ -85,7 +85,7 @@ fn lag_s(joint: &SetupJoint, simulated: Option<&feedwright_sim::Axis>) -> Option
 }
 
 /// What must change, in plain words. `raised` are following errors that the copy has already.
-pub(crate) fn changes(joints: &Joints, simulated: Option<&Machine>, raised: bool) -> Vec<String> {
+pub(crate) fn changes(joints: &SetupJoints, simulated: Option<&Machine>, raised: bool) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for need in needed(joints, simulated) {
         let [(_, ferror), (_, min_ferror)] = need.values();
@@ -119,7 +119,7 @@ pub(crate) fn changes(joints: &Joints, simulated: Option<&Machine>, raised: bool
     lines
 }
 
-fn of_stepgen(joints: &Joints, joint: &SetupJoint) -> Option<String> {
+fn of_stepgen(joints: &SetupJoints, joint: &SetupJoint) -> Option<String> {
     let (DriveKind::Stepgen { stepgen } | DriveKind::PidStepgen { stepgen, .. }) = &joint.drive else { return None };
     let speed = SPEEDS * joints.planned(joint, "MAX_VELOCITY")?.1;
     let has_feedforward = joint.gains.as_ref().is_some_and(|gains| gains.feedforward[1] >= Some(FEEDFORWARD));

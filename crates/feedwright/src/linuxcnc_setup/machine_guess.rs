@@ -8,7 +8,7 @@ use feedwright_sim::toml_file::quoted;
 use feedwright_sim::{MACHINE_FORMAT, to_four_digits};
 
 use super::ini::IniFile;
-use super::joints::{JointValue, Joints, SetupJoint};
+use super::joints::{JointValue, SetupJoints, SetupJoint};
 use super::names::SetupNames;
 
 /// Gain below and above which no position loop is, 1/s: such a P is of another unit.
@@ -20,7 +20,7 @@ const SPEEDS_MM_S: [f64; 2] = [0.01, 1e4];
 const ACCELERATIONS_MM_S2: [f64; 2] = [0.1, 1e6];
 
 /// The text of the machine file.
-pub(crate) fn machine_file(joints: &Joints, ini: &IniFile, names: &SetupNames) -> String {
+pub(crate) fn machine_file(joints: &SetupJoints, ini: &IniFile, names: &SetupNames) -> String {
     let mut text = format!(
         "# What {} says of the machine: written by feedwright linuxcnc setup.\n\
          # Lengths are in mm{}. It is enough for feedwright excite. What comes from no line of the INI file is that of the machine\n\
@@ -53,7 +53,7 @@ pub(crate) fn machine_file(joints: &Joints, ini: &IniFile, names: &SetupNames) -
 }
 
 /// The limits of all axes: the smallest of each, so that a program keeps those of every joint.
-fn limits(text: &mut String, joints: &Joints) {
+fn limits(text: &mut String, joints: &SetupJoints) {
     let least = |key: &str, [low, high]: [f64; 2]| {
         let values = joints.wired().filter_map(|joint| joints.length_mm(joint, key)).filter(|found| found.value > 0.0);
         let least = values.min_by(|a, b| a.value.total_cmp(&b.value))?;
@@ -79,7 +79,7 @@ fn limits(text: &mut String, joints: &Joints) {
 }
 
 /// What is known of an axis; the rest is that of the base.
-fn axis(text: &mut String, joints: &Joints, joint: &SetupJoint, name: &str) {
+fn axis(text: &mut String, joints: &SetupJoints, joint: &SetupJoint, name: &str) {
     let _ = writeln!(text, "\n[axis.{name}] # joint {}", joint.number);
     if let Some(speed) = joints.length_mm(joint, "MAX_VELOCITY").filter(|found| found.value > 0.0) {
         let value = speed.value.clamp(SPEEDS_MM_S[0], SPEEDS_MM_S[1]);
@@ -116,7 +116,7 @@ fn axis(text: &mut String, joints: &Joints, joint: &SetupJoint, name: &str) {
 }
 
 /// P and feedforward of the `pid`, if they can be what a machine file means.
-fn gains(text: &mut String, joints: &Joints, joint: &SetupJoint) {
+fn gains(text: &mut String, joints: &SetupJoints, joint: &SetupJoint) {
     let Some(gains) = &joint.gains else {
         let _ = writeln!(text, "# unknown: kp_1_s, velocity_feedforward; the position loop is in the drive");
         return;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::joints::Joints;
+use super::joints::SetupJoints;
 use super::names::SetupNames;
 
 /// The pins that the sampler records of each axis: LinuxCNC's command, the drive's command, the measured
@@ -56,7 +56,7 @@ pub(crate) fn steps(names: &SetupNames, axes: usize, simulates: bool) -> Vec<Str
 
 /// A shell script that records until Enter is pressed. Its first lines in the log name the columns, the
 /// period and the unit.
-pub(crate) fn record_script(joints: &Joints, names: &SetupNames) -> String {
+pub(crate) fn record_script(joints: &SetupJoints, names: &SetupNames) -> String {
     // In a test of the axes the drive's command is what moves it; in a cut LinuxCNC's command is what is to be cut.
     let columns = |command: &str, other: &str| {
         let of = |joint: &super::joints::SetupJoint| {

@@ -18,7 +18,7 @@ use std::ops::Range;
 use super::error::LinuxcncSetupError;
 use super::hal::{HalLine, HalPlace, HalScript, NamedBy};
 use super::ini::IniFile;
-use super::joints::{Joints, SetupJoint};
+use super::joints::{SetupJoints, SetupJoint};
 use super::names::SetupNames;
 use super::netlist::{ARROWS, HalFunction, Netlist, last_part};
 use super::steps::SAMPLED;
@@ -77,7 +77,7 @@ pub(crate) fn wire(
     ini: &IniFile,
     script: &HalScript,
     netlist: &Netlist,
-    joints: &Joints,
+    joints: &SetupJoints,
     names: &SetupNames,
     simulates: bool,
 ) -> Result<WiredHal, LinuxcncSetupError> {
@@ -104,7 +104,7 @@ pub(crate) fn wire(
 }
 
 /// Lines that load the component, the sampler and the simulated machine.
-fn loads(joints: &Joints, simulates: bool) -> Vec<String> {
+fn loads(joints: &SetupJoints, simulates: bool) -> Vec<String> {
     let count = joints.wired().count();
     let list = |key: &str| {
         let of = |joint: &SetupJoint| joints.planned(joint, key).map(|(section, _)| format!("[{section}]{key}"));
@@ -268,7 +268,7 @@ impl HalEdits<'_> {
     }
 
     /// The file of connections.
-    fn connections(&mut self, joints: &Joints, names: &SetupNames, function: &HalFunction, simulates: bool) -> String {
+    fn connections(&mut self, joints: &SetupJoints, names: &SetupNames, function: &HalFunction, simulates: bool) -> String {
         let mut text = format!(
             "# The correction between LinuxCNC and the drives: written by feedwright linuxcnc setup {}.\n\
              # The copies of the other HAL files load the component and connect the drives with feedwright.drive-N and feedwright.actual-N.\n",

@@ -15,7 +15,7 @@ pub(super) const FITTING: usize = 8;
 
 /// What a log tells, in short: a machine that fits as well differs in some lines of the text.
 #[derive(Serialize, Deserialize)]
-struct Line {
+struct BuiltInLog {
     /// Hash of the content. It is the first key: lines are found by it without parsing the others.
     content: String,
     text: String,
@@ -31,7 +31,7 @@ fn beginning(content: &str) -> String {
 /// What the program was shipped with of a content.
 pub(super) fn told(content: &str) -> Option<Told> {
     let beginning = beginning(content);
-    let Line { text, doubts, fitting, .. } =
+    let BuiltInLog { text, doubts, fitting, .. } =
         serde_json::from_str(BUILT_IN.lines().find(|line| line.starts_with(&beginning))?).ok()?;
     let with = |changes: &Vec<(usize, String)>| {
         let mut lines: Vec<&str> = text.split('\n').collect();
@@ -53,6 +53,6 @@ pub(super) fn line(content: &str, told: &Told) -> String {
     };
     let fitting = told.fitting.iter().filter_map(changes).take(FITTING).collect();
     let content = key_of(&[content.as_bytes()]);
-    let line = Line { content, text: told.text.clone(), doubts: told.doubts.clone(), fitting };
+    let line = BuiltInLog { content, text: told.text.clone(), doubts: told.doubts.clone(), fitting };
     serde_json::to_string(&line).unwrap_or_default()
 }

@@ -29,7 +29,7 @@ pub(crate) struct IdentifyArgs {
     #[command(flatten)]
     pub(crate) of_log: LogArgs,
     #[command(flatten)]
-    pub(crate) of_geometry: GeometryArgs,
+    pub(crate) of_geometry: MeasuredGeometryArgs,
     /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
     #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE)]
     pub(crate) machine: OsString,
@@ -121,7 +121,7 @@ pub(crate) struct LogArgs {
 /// What is said of measurements of the geometry.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Options of the geometry")]
-pub(crate) struct GeometryArgs {
+pub(crate) struct MeasuredGeometryArgs {
     /// Measurement of the geometry of --machine: ball bar, laser or scale, test part, grid encoder, or compensation file of LinuxCNC.
     /// x=FILE says which axis it is of. Several are fitted together; --out gets the geometry file.
     #[arg(long, value_name = "[AXIS=]FILE", conflicts_with_all = ["log", "controller", "axes", "set", "seed"], requires = "out")]
