@@ -16,7 +16,7 @@
 use feedwright_sim::{Machine, to_four_digits};
 
 use super::drives::DriveKind;
-use super::joints::{SetupJoints, SetupJoint};
+use super::joints::{SetupJoint, SetupJoints};
 
 /// Longest delay of the component, s.
 const DELAY_S: f64 = 0.015;

@@ -8,7 +8,7 @@ use feedwright_sim::toml_file::quoted;
 use feedwright_sim::{MACHINE_FORMAT, to_four_digits};
 
 use super::ini::IniFile;
-use super::joints::{JointValue, SetupJoints, SetupJoint};
+use super::joints::{JointValue, SetupJoint, SetupJoints};
 use super::names::SetupNames;
 
 /// Gain below and above which no position loop is, 1/s: such a P is of another unit.

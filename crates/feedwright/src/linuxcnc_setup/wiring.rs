@@ -18,7 +18,7 @@ use std::ops::Range;
 use super::error::LinuxcncSetupError;
 use super::hal::{HalLine, HalPlace, HalScript, NamedBy};
 use super::ini::IniFile;
-use super::joints::{SetupJoints, SetupJoint};
+use super::joints::{SetupJoint, SetupJoints};
 use super::names::SetupNames;
 use super::netlist::{ARROWS, HalFunction, Netlist, last_part};
 use super::steps::SAMPLED;
@@ -268,7 +268,13 @@ impl HalEdits<'_> {
     }
 
     /// The file of connections.
-    fn connections(&mut self, joints: &SetupJoints, names: &SetupNames, function: &HalFunction, simulates: bool) -> String {
+    fn connections(
+        &mut self,
+        joints: &SetupJoints,
+        names: &SetupNames,
+        function: &HalFunction,
+        simulates: bool,
+    ) -> String {
         let mut text = format!(
             "# The correction between LinuxCNC and the drives: written by feedwright linuxcnc setup {}.\n\
              # The copies of the other HAL files load the component and connect the drives with feedwright.drive-N and feedwright.actual-N.\n",
