@@ -170,19 +170,19 @@ impl SetupJoints {
             let twin = self.joints.iter().find(|other| other.number < number && other.letter == letter);
             if let Some(twin) = twin {
                 refusals.push(format!(
-                    "joints {} and {number} drive axis {letter} in tandem. The component corrects one joint for each axis. Drive the second \
-                     motor from the first in the amplifier (master and slave), or leave this machine uncorrected",
-                    twin.number
+                    "joints {} and {number} drive axis {letter} in tandem. setup does not wire a second motor. Connect it by hand, as \
+                     docs/linuxcnc.md says of gantries: loadrt feedwright through=1 tandem={}",
+                    twin.number, twin.number
                 ));
             } else if joint.is_rotary {
                 refusals.push(format!(
-                    "joint {number} ({letter}) is rotary. The component delays X, Y and Z by 10 ms and {letter} not, so a simultaneous motion \
-                     would be wrong. Make a configuration without {letter} for work in X, Y and Z"
+                    "joint {number} ({letter}) is rotary. setup does not wire it. Connect it by hand, as docs/linuxcnc.md says of rotary axes, \
+                     so that it is delayed as X, Y and Z are: loadrt feedwright through=1"
                 ));
             } else if !"XYZ".contains(letter) {
                 refusals.push(format!(
-                    "joint {number} ({letter}) is a fourth or parallel axis. The component corrects X, Y and Z and would delay them alone. \
-                     Make a configuration without {letter}"
+                    "joint {number} ({letter}) is a fourth or parallel axis. setup does not wire it. Connect it by hand, as docs/linuxcnc.md \
+                     says of rotary axes, so that it is delayed as X, Y and Z are: loadrt feedwright through=1"
                 ));
             }
         }
