@@ -60,7 +60,7 @@ pub enum GeometryFault {
     Slope {
         /// The joint: 0 is x.
         axis: usize,
-        /// By how much they may grow, as a part of the travel.
+        /// Largest growth of the errors over the travel, mm/mm.
         slope: f64,
     },
 }
@@ -264,7 +264,7 @@ impl<const N: usize> KnownGeometry<N> {
         })
     }
 
-    /// By how much the tool moves farther than the joints, where these move by `moved` at a place: dE/dq times `moved`.
+    /// Extra motion of the tool when the joints move by `moved` from a place: dE/dq times `moved`.
     fn stretched(&self, joints_mm: [f64; N], moved: [f64; N]) -> [f64; N] {
         core::array::from_fn(|i| {
             let AxisErrors { scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad, .. } = self.axes[i];

@@ -130,8 +130,8 @@ impl CorrectJob {
         let on = |machine| ExportedCut { machine, tool: None, stages, original: &original, axes, watch };
         let of_run = |error| JobError::of_run(&self.program, error);
         let parts = parts(&source.steps);
-        let believed = ExportedCut { tool: compensated.as_ref(), ..on(&nominal) };
-        let found = rounds(&believed, &parts, self.target).map_err(of_run)?;
+        let predicted = ExportedCut { tool: compensated.as_ref(), ..on(&nominal) };
+        let found = rounds(&predicted, &parts, self.target).map_err(of_run)?;
         watch.begin("cutting the uncorrected program", 1);
         let uncorrected = on(&self.machine).figures(&original).map_err(of_run)?;
         let written = self.written(&source, &parts, &found);

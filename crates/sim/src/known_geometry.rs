@@ -112,9 +112,9 @@ impl Machine {
     /// # Errors
     /// As [`Machine::compensating`].
     pub fn compensating_own(&self) -> Result<Self, CompensationError> {
-        let of_axis = |i: usize| self.hidden_backlash_mm(i);
+        let backlash_mm = [0, 1, 2].map(|i| self.hidden_backlash_mm(i));
         let exact = || KnownGeometry::new([AxisErrors::default(); 3], [0.0; 3]);
-        let known = self.errors_of_geometry().unwrap_or_else(exact).with_backlash([0, 1, 2].map(of_axis));
+        let known = self.errors_of_geometry().unwrap_or_else(exact).with_backlash(backlash_mm);
         if known.is_exact() { Ok(Self { compensated: None, ..self.clone() }) } else { self.compensating(known) }
     }
 
