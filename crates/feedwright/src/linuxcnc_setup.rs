@@ -188,8 +188,8 @@ impl LinuxcncSetup {
             files.push(SetupFile { path: names.path(&names.plant), bytes: exact_block(machine, axes) });
         }
         // The INI file comes last: whoever finds it finds the others.
-        let ferror = if self.raise_ferror { limits::needed(joints, simulated) } else { Vec::new() };
-        files.push(text(&names.ini, ini_copy::ini_copy(ini, &wired.renamed, names, simulated.is_some(), &ferror)));
+        let values = limits::written(joints, simulated, self.raise_ferror);
+        files.push(text(&names.ini, ini_copy::ini_copy(ini, &wired.renamed, names, simulated.is_some(), &values)));
         Ok(files)
     }
 }

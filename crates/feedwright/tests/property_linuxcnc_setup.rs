@@ -7,8 +7,8 @@ use proptest::prelude::*;
 
 use crate::golden_linuxcnc_setup::copied;
 
-const NAMES: [&str; 6] =
-    ["mesa-servo-inch", "analog-servo", "ethercat", "stepper-with-encoders", "broken", "simulated"];
+const NAMES: [&str; 8] =
+    ["mesa-servo-inch", "analog-servo", "ethercat", "stepper-with-encoders", "broken", "simulated", "gantry", "rotary"];
 /// Signs that mean something in a HAL file or an INI file, and some that do not.
 const SIGNS: [&str; 14] = ["\"", "'", "[", "]", "$", "(", ")", "#", "\\", "=", "<=", "\n", " ", "\u{fc}"];
 

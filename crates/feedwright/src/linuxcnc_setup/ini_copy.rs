@@ -1,10 +1,9 @@
-//! The copy of the INI file: other HAL files, a section of its own, and following errors where they are
-//! raised.
+//! The copy of the INI file: other HAL files, a section of its own, and the values that change.
 
 use std::fmt::Write as _;
 
 use super::ini::{IniEntry, IniFile};
-use super::limits::NeededFerror;
+use super::limits::IniValue;
 use super::names::SetupNames;
 
 /// Acceleration with which a correction fades, mm/s2: the component's own.
@@ -18,7 +17,7 @@ pub(crate) fn ini_copy(
     renamed: &[(usize, String)],
     names: &SetupNames,
     simulates: bool,
-    ferror: &[NeededFerror],
+    values: &[IniValue],
 ) -> String {
     let mut lines: Vec<Option<String>> = ini.lines.iter().cloned().map(Some).collect();
     let mut set = |entry: &IniEntry, value: &str| {
@@ -34,13 +33,10 @@ pub(crate) fn ini_copy(
         }
     }
     let mut missing: Vec<(String, String)> = Vec::new();
-    for need in ferror {
-        let section = format!("JOINT_{}", need.joint);
-        for (key, value) in need.values() {
-            match ini.entry(&section, key) {
-                Some(entry) => set(entry, &value.to_string()),
-                None => missing.push((section.clone(), format!("{key} = {value}"))),
-            }
+    for IniValue { section, key, value } in values {
+        match ini.entry(section, key) {
+            Some(entry) => set(entry, &value.to_string()),
+            None => missing.push((section.clone(), format!("{key} = {value}"))),
         }
     }
     if let Some((_, last)) = halfiles().next_back()

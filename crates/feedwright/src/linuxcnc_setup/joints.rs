@@ -13,6 +13,10 @@ const SERVO_S: f64 = 1e-3;
 const MOST_JOINTS: usize = 16;
 /// Letters of joints where the kinematics names none.
 const LETTERS: &str = "XYZABCUVW";
+/// The letter of a joint that belongs to no axis.
+const NO_AXIS: char = '?';
+/// Joints that pass through the component at the most.
+const MOST_PASSING: usize = 6;
 
 /// Parameters of a `pid`, as they are set.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -20,6 +24,19 @@ pub(crate) struct PidGains {
     pub(crate) p: Option<f64>,
     /// FF0 to FF3.
     pub(crate) feedforward: [Option<f64>; 4],
+}
+
+/// What the component does with a joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum JointRole {
+    /// Corrects it, as this axis.
+    Corrected(usize),
+    /// Delays it, and gives it the correction of this axis: the second motor of a gantry.
+    Second(usize),
+    /// Delays it: a rotary or parallel axis.
+    Passes,
+    /// Nothing: no axis of a program moves it.
+    Stays,
 }
 
 /// A joint.
@@ -65,7 +82,7 @@ impl SetupJoints {
         let letters: Vec<char> = coordinates.chars().filter(char::is_ascii_alphabetic).collect();
         let count = stated.map_or(letters.len().min(3), |count| count as usize);
         let joint = |number: usize| {
-            let letter = letters.get(number).map_or('?', char::to_ascii_uppercase);
+            let letter = letters.get(number).map_or(NO_AXIS, char::to_ascii_uppercase);
             SetupJoint::of(ini, netlist, number, letter)
         };
         let unit_mm = match ini.value("TRAJ", "LINEAR_UNITS").unwrap_or("mm").to_lowercase().as_str() {
@@ -78,7 +95,30 @@ impl SetupJoints {
 
     /// The joints that the component corrects, in the order X, Y, Z.
     pub(crate) fn wired(&self) -> impl Iterator<Item = &SetupJoint> {
-        ['X', 'Y', 'Z'].into_iter().filter_map(|letter| self.joints.iter().find(|joint| joint.letter == letter))
+        let first = |letter: char| self.joints.iter().find(|joint| joint.letter == letter && !joint.is_rotary);
+        ['X', 'Y', 'Z'].into_iter().filter_map(first)
+    }
+
+    /// The joints that pass through the component, and the axis whose correction they get.
+    pub(crate) fn passing(&self) -> impl Iterator<Item = (&SetupJoint, Option<usize>)> {
+        self.joints.iter().filter_map(|joint| match self.role(joint) {
+            JointRole::Second(axis) => Some((joint, Some(axis))),
+            JointRole::Passes => Some((joint, None)),
+            JointRole::Corrected(_) | JointRole::Stays => None,
+        })
+    }
+
+    /// What the component does with a joint.
+    pub(crate) fn role(&self, joint: &SetupJoint) -> JointRole {
+        let axis = self.wired().position(|wired| wired.letter == joint.letter);
+        match axis.filter(|_| !joint.is_rotary) {
+            Some(axis) if self.wired().nth(axis).is_some_and(|wired| wired.number == joint.number) => {
+                JointRole::Corrected(axis)
+            }
+            Some(axis) => JointRole::Second(axis),
+            None if joint.letter == NO_AXIS => JointRole::Stays,
+            None => JointRole::Passes,
+        }
     }
 
     /// A number of a joint's section, and where it stands.
@@ -89,18 +129,32 @@ impl SetupJoints {
     /// A limit of a joint in a program, and its section: LinuxCNC plans programs by the section of the
     /// axis, and jogs of a joint by that of the joint. The larger one counts.
     pub(crate) fn planned(&self, joint: &SetupJoint, key: &str) -> Option<(String, f64)> {
-        let sections = [joint.section(), format!("AXIS_{}", joint.letter)];
-        let values =
-            sections.into_iter().filter_map(|section| Some((section.clone(), self.number(section, key)?.value)));
+        let values = self
+            .sections(joint)
+            .into_iter()
+            .filter_map(|section| Some((section.clone(), self.number(section, key)?.value)));
         values.reduce(|joint, axis| if axis.1 > joint.1 { axis } else { joint })
     }
 
-    fn number(&self, section: String, key: &str) -> Option<JointValue> {
+    /// The sections of a joint and of its axis.
+    pub(crate) fn sections(&self, joint: &SetupJoint) -> [String; 2] {
+        [joint.section(), format!("AXIS_{}", joint.letter)]
+    }
+
+    /// A number of a section, and where it stands.
+    pub(crate) fn number(&self, section: String, key: &str) -> Option<JointValue> {
         let IniEntry { value, place, .. } = self.ini.entry(&section, key)?;
         Some(JointValue { value: number(value)?, place: place.clone() })
     }
 
-    /// The same of a length, a speed or an acceleration, in mm.
+    /// A limit of a joint in programs, in mm: of its axis, or of the joint where that states none.
+    pub(crate) fn program_mm(&self, joint: &SetupJoint, key: &str) -> Option<JointValue> {
+        let sections = self.sections(joint).into_iter().rev();
+        let found = sections.filter_map(|section| self.number(section, key)).find(|found| found.value > 0.0);
+        found.map(|JointValue { value, place }| JointValue { value: value * self.unit_mm, place })
+    }
+
+    /// A number of a joint's section, a length, a speed or an acceleration, in mm.
     pub(crate) fn length_mm(&self, joint: &SetupJoint, key: &str) -> Option<JointValue> {
         let JointValue { value, place } = self.value(joint, key)?;
         Some(JointValue { value: value * self.unit_mm, place })
@@ -127,7 +181,7 @@ impl SetupJoints {
                 "joint {number} ({letter}, {kind}): {}, {}. {}",
                 joint.drive_words(),
                 joint.feedback_words(),
-                joint.verdict()
+                joint.verdict(self.role(joint))
             )
         }));
         lines
@@ -140,18 +194,19 @@ impl SetupJoints {
             return refusals;
         }
         let simulated = |joint: &SetupJoint| joint.is_simulated();
-        if !simulates && self.joints.iter().any(simulated) {
+        if !simulates && self.wired().any(simulated) {
             refusals.push(
                 "the drives are simulated, and follow their command without error: there is nothing to correct. To try the correction, let a \
                  simulated machine stand in for the drives: --simulate tnv40"
                     .to_owned(),
             );
         }
-        if simulates && !self.joints.iter().all(simulated) {
+        if simulates && !self.wired().all(simulated) {
             refusals
                 .push("--simulate is for a configuration without drives: leave it out, this one has drives".to_owned());
         }
-        refusals.extend(self.joints.iter().filter(|joint| !joint.is_simulated()).filter_map(SetupJoint::refusal));
+        refusals.extend(self.wired().filter_map(SetupJoint::refusal));
+        refusals.extend(self.passing().filter_map(|(joint, _)| joint.unconnected()));
         refusals
     }
 
@@ -165,28 +220,14 @@ impl SetupJoints {
             ));
             return refusals;
         }
-        for joint in &self.joints {
-            let (number, letter) = (joint.number, joint.letter);
-            let twin = self.joints.iter().find(|other| other.number < number && other.letter == letter);
-            if let Some(twin) = twin {
-                refusals.push(format!(
-                    "joints {} and {number} drive axis {letter} in tandem. setup does not wire a second motor. Connect it by hand, as \
-                     docs/linuxcnc.md says of gantries: loadrt feedwright through=1 tandem={}",
-                    twin.number, twin.number
-                ));
-            } else if joint.is_rotary {
-                refusals.push(format!(
-                    "joint {number} ({letter}) is rotary. setup does not wire it. Connect it by hand, as docs/linuxcnc.md says of rotary axes, \
-                     so that it is delayed as X, Y and Z are: loadrt feedwright through=1"
-                ));
-            } else if !"XYZ".contains(letter) {
-                refusals.push(format!(
-                    "joint {number} ({letter}) is a fourth or parallel axis. setup does not wire it. Connect it by hand, as docs/linuxcnc.md \
-                     says of rotary axes, so that it is delayed as X, Y and Z are: loadrt feedwright through=1"
-                ));
-            }
+        let passing = self.passing().count();
+        if passing > MOST_PASSING {
+            refusals.push(format!(
+                "{passing} joints would have to pass through the component, delayed as X, Y and Z are. It has room for {MOST_PASSING}. Leave out \
+                 of [KINS]KINEMATICS what no program moves"
+            ));
         }
-        let has = |letter: char| self.joints.iter().any(|joint| joint.letter == letter);
+        let has = |letter: char| self.wired().any(|joint| joint.letter == letter);
         if refusals.is_empty() && !(has('X') && has('Y')) {
             refusals.push(
                 "there is no X or no Y: a lathe or a single axis. feedwright's machine files have X and Y, so this machine cannot be identified \
@@ -268,9 +309,14 @@ impl SetupJoint {
     }
 
     /// What can be corrected, in a few words.
-    fn verdict(&self) -> &'static str {
-        if self.is_rotary {
-            return "A rotary joint cannot be corrected";
+    fn verdict(&self, role: JointRole) -> &'static str {
+        match role {
+            JointRole::Corrected(_) => {}
+            JointRole::Second(_) => {
+                return "The second motor of its axis: it gets the delay and the correction of the first";
+            }
+            JointRole::Passes => return "It passes through: it gets the delay, and no correction",
+            JointRole::Stays => return "No axis of a program: it stays as it is",
         }
         match &self.feedback {
             FeedbackKind::Measured { .. } | FeedbackKind::FromDrive { .. } => "It can be corrected",
@@ -292,12 +338,19 @@ impl SetupJoint {
             FeedbackKind::Unknown { pin } => Some(format!(
                 "joint {number}: setup does not know whether {pin} is a measured position. If it is, wire by hand as docs/linuxcnc.md says"
             )),
-            FeedbackKind::Nothing => Some(format!(
+            _ => self.unconnected(),
+        }
+    }
+
+    /// That the joint is not connected, and what to do.
+    fn unconnected(&self) -> Option<String> {
+        let number = self.number;
+        (self.feedback == FeedbackKind::Nothing).then(|| {
+            format!(
                 "joint {number}: joint.{number}.motor-pos-cmd or joint.{number}.motor-pos-fb is connected to nothing in the HAL files. \
                  Connect both, or name the HAL file that does"
-            )),
-            _ => None,
-        }
+            )
+        })
     }
 }
 

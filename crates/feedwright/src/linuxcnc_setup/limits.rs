@@ -13,6 +13,8 @@
 //! under *Following errors*, this is 2.6 mm where 2.0 are needed. When LinuxCNC starts with a model, the
 //! component computes the need by that model and says so where MIN_FERROR is less.
 
+use std::collections::BTreeMap;
+
 use feedwright_sim::{Machine, to_four_digits};
 
 use super::drives::DriveKind;
@@ -28,6 +30,8 @@ const LEAST_LAG_S: f64 = 0.002;
 const FEEDFORWARD: f64 = 0.9;
 /// Acceleration of the corrected command in that of LinuxCNC's: with feedforward, and without.
 const ACCELERATIONS: [f64; 2] = [4.0, 40.0];
+/// Room between HOME and a limit of travel for a position that is measured, mm: a pid leaves less when it is at rest.
+const HOME_ROOM_MM: f64 = 0.1;
 /// Highest speed of the corrected command in MAX_VELOCITY.
 const SPEEDS: f64 = 1.4;
 
@@ -39,13 +43,14 @@ pub(crate) struct NeededFerror {
     pub(crate) min_ferror: f64,
     /// FERROR and MIN_FERROR as they are.
     given: [Option<f64>; 2],
+    unit: &'static str,
 }
 
 /// What the joints need, as far as their lag is known: from their `pid`, or of the machine that stands in
 /// for them.
 pub(crate) fn needed(joints: &SetupJoints, simulated: Option<&Machine>) -> Vec<NeededFerror> {
-    let of = |(axis, joint): (usize, &SetupJoint)| {
-        let lag_s = lag_s(joint, simulated.and_then(|machine| machine.axes.get(axis)))?;
+    let of = |(joint, axis): (&SetupJoint, Option<&feedwright_sim::Axis>)| {
+        let lag_s = lag_s(joint, axis)?;
         let [(_, speed), (_, acceleration)] =
             [joints.planned(joint, "MAX_VELOCITY")?, joints.planned(joint, "MAX_ACCELERATION")?];
         let given = ["FERROR", "MIN_FERROR"].map(|key| joints.value(joint, key).map(|found| found.value));
@@ -55,9 +60,14 @@ pub(crate) fn needed(joints: &SetupJoints, simulated: Option<&Machine>) -> Vec<N
         let (lag, behind) = (speed * lag_s, MARGIN * acceleration * lag_s * (lag_s + DELAY_S));
         let ferror = up((2.0 * lag).max(lag + behind).max(given[0].unwrap_or(0.0)));
         let min_ferror = up(behind / (1.0 - lag / ferror));
-        Some(NeededFerror { joint: joint.number, ferror, min_ferror, given })
+        let unit = if joint.is_rotary { "degrees" } else { joints.unit_name() };
+        Some(NeededFerror { joint: joint.number, ferror, min_ferror, given, unit })
     };
-    joints.wired().enumerate().filter_map(of).filter(NeededFerror::is_more).collect()
+    let axis = |axis: usize| simulated.and_then(|machine| machine.axes.get(axis));
+    let corrected = joints.wired().enumerate().map(|(number, joint)| (joint, axis(number)));
+    // What passes through is delayed as well. Nothing stands in for its drives.
+    let passing = joints.passing().filter(|_| simulated.is_none()).map(|(joint, _)| (joint, None));
+    corrected.chain(passing).filter_map(of).filter(NeededFerror::is_more).collect()
 }
 
 impl NeededFerror {
@@ -72,6 +82,69 @@ impl NeededFerror {
         let [ferror, min_ferror] = self.given.map(|given| given.unwrap_or(0.0));
         [("FERROR", ferror.max(self.ferror)), ("MIN_FERROR", min_ferror.max(self.min_ferror))]
     }
+}
+
+/// A value of the copy.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct IniValue {
+    pub(crate) section: String,
+    pub(crate) key: &'static str,
+    pub(crate) value: f64,
+}
+
+/// The values that the copy has in place of those of the original.
+pub(crate) fn written(joints: &SetupJoints, simulated: Option<&Machine>, raise_ferror: bool) -> Vec<IniValue> {
+    let ferror = if raise_ferror { needed(joints, simulated) } else { Vec::new() };
+    let value = |(section, key, value): (String, &'static str, f64)| IniValue { section, key, value };
+    let raised =
+        ferror.iter().flat_map(|need| need.values().map(|(key, value)| (format!("JOINT_{}", need.joint), key, value)));
+    let mut values: Vec<IniValue> = raised.map(value).collect();
+    if simulated.is_some() {
+        values.extend(travels(joints));
+    }
+    values
+}
+
+/// Limits of travel that the copy moves, of corrected joints and of second motors.
+fn travels(joints: &SetupJoints) -> impl Iterator<Item = IniValue> {
+    let second = joints.passing().filter(|(_, axis)| axis.is_some()).map(|(joint, _)| joint);
+    joints.wired().chain(second).flat_map(|joint| travel(joints, joint))
+}
+
+/// What is said of them, a line for each value.
+fn travel_words(joints: &SetupJoints) -> Vec<String> {
+    let mut sections: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for IniValue { section, key, value } in travels(joints) {
+        let named = sections.entry(format!("{key} = {} {}", to_four_digits(value), joints.unit_name())).or_default();
+        if !named.contains(&format!("[{section}]")) {
+            named.push(format!("[{section}]"));
+        }
+    }
+    let line = |(value, sections): (String, Vec<String>)| {
+        let sections = sections.join(", ");
+        format!(
+            "the copy has {value} in {sections}: HOME lies on that limit, and a measured position is beyond it now and then"
+        )
+    };
+    sections.into_iter().map(line).collect()
+}
+
+/// Limits of travel on which HOME lies. A position that is its own command is exactly there; one that is measured is beyond now and
+/// then, and LinuxCNC stops.
+fn travel(joints: &SetupJoints, joint: &SetupJoint) -> Vec<IniValue> {
+    let home = joints.value(joint, "HOME").map_or(0.0, |home| home.value);
+    let room = HOME_ROOM_MM / joints.unit_mm;
+    let of = |section: String| {
+        [("MIN_LIMIT", -1.0), ("MAX_LIMIT", 1.0)].into_iter().filter_map(move |(key, sign)| {
+            let limit = joints.number(section.clone(), key)?.value;
+            (sign * (limit - home) < room).then(|| IniValue {
+                section: section.clone(),
+                key,
+                value: home + sign * room,
+            })
+        })
+    };
+    joints.sections(joint).into_iter().flat_map(of).collect()
 }
 
 /// The lag of a drive, s, if it is known.
@@ -89,7 +162,7 @@ pub(crate) fn changes(joints: &SetupJoints, simulated: Option<&Machine>, raised:
     let mut lines: Vec<String> = Vec::new();
     for need in needed(joints, simulated) {
         let [(_, ferror), (_, min_ferror)] = need.values();
-        let (joint, unit) = (need.joint, joints.unit_name());
+        let (joint, unit) = (need.joint, need.unit);
         let now = need.given.map(|given| given.map_or("LinuxCNC's default".to_owned(), to_four_digits_of));
         let how = if raised { "the copy has" } else { "set" };
         lines.push(format!(
@@ -100,6 +173,9 @@ pub(crate) fn changes(joints: &SetupJoints, simulated: Option<&Machine>, raised:
     if !raised && !lines.is_empty() {
         lines.push("'feedwright linuxcnc setup --raise-ferror' writes these values into the copy".to_owned());
     }
+    if simulated.is_some() {
+        lines.extend(travel_words(joints));
+    }
     if joints.wired().any(|joint| lag_s(joint, None).is_none()) && simulated.is_none() {
         lines.push(
             "FERROR and MIN_FERROR: how far these drives are behind is not known before they are identified. When LinuxCNC starts with the model, \
@@ -107,7 +183,8 @@ pub(crate) fn changes(joints: &SetupJoints, simulated: Option<&Machine>, raised:
                 .to_owned(),
         );
     }
-    lines.extend(joints.wired().filter_map(|joint| of_stepgen(joints, joint)));
+    let second = joints.passing().filter(|(_, axis)| axis.is_some()).map(|(joint, _)| joint);
+    lines.extend(joints.wired().chain(second).filter_map(|joint| of_stepgen(joints, joint)));
     let has_drives = |joint: &SetupJoint| matches!(joint.drive, DriveKind::EtherCat { .. } | DriveKind::Stepgen { .. });
     if simulated.is_none() && joints.wired().any(has_drives) {
         lines.push(

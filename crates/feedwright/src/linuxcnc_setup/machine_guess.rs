@@ -55,7 +55,7 @@ pub(crate) fn machine_file(joints: &SetupJoints, ini: &IniFile, names: &SetupNam
 /// The limits of all axes: the smallest of each, so that a program keeps those of every joint.
 fn limits(text: &mut String, joints: &SetupJoints) {
     let least = |key: &str, [low, high]: [f64; 2]| {
-        let values = joints.wired().filter_map(|joint| joints.length_mm(joint, key)).filter(|found| found.value > 0.0);
+        let values = joints.wired().filter_map(|joint| joints.program_mm(joint, key));
         let least = values.min_by(|a, b| a.value.total_cmp(&b.value))?;
         Some(JointValue { value: least.value.clamp(low, high), place: least.place })
     };
@@ -81,11 +81,11 @@ fn limits(text: &mut String, joints: &SetupJoints) {
 /// What is known of an axis; the rest is that of the base.
 fn axis(text: &mut String, joints: &SetupJoints, joint: &SetupJoint, name: &str) {
     let _ = writeln!(text, "\n[axis.{name}] # joint {}", joint.number);
-    if let Some(speed) = joints.length_mm(joint, "MAX_VELOCITY").filter(|found| found.value > 0.0) {
+    if let Some(speed) = joints.program_mm(joint, "MAX_VELOCITY") {
         let value = speed.value.clamp(SPEEDS_MM_S[0], SPEEDS_MM_S[1]);
         let _ = writeln!(text, "max_velocity_mm_s = {} # MAX_VELOCITY, {}", to_four_digits(value), speed.place);
     }
-    if let Some(acceleration) = joints.length_mm(joint, "MAX_ACCELERATION").filter(|found| found.value > 0.0) {
+    if let Some(acceleration) = joints.program_mm(joint, "MAX_ACCELERATION") {
         let value = acceleration.value.clamp(ACCELERATIONS_MM_S2[0], ACCELERATIONS_MM_S2[1]);
         let _ =
             writeln!(text, "max_accel_mm_s2 = {} # MAX_ACCELERATION, {}", to_four_digits(value), acceleration.place);

@@ -88,19 +88,50 @@ pub(crate) fn wire(
     };
     let mut edits =
         HalEdits { script, netlist, load, lines: BTreeMap::new(), new: BTreeMap::new(), added: String::new() };
-    for (axis, joint) in joints.wired().enumerate() {
-        edits.joint(axis, joint.number, simulates);
+    let passages = passages(joints);
+    for passage in &passages {
+        edits.joint(passage, simulates);
     }
     edits.after(load, &loads(joints, simulates));
     let mut functions = vec!["feedwright".to_owned(), "sampler.0".to_owned()];
     functions.extend(simulates.then(|| "feedwright-plant".to_owned()));
-    for (axis, joint) in joints.wired().enumerate() {
-        functions.extend(edits.velocity(axis, joint.number, function));
+    for passage in &passages {
+        functions.extend(edits.velocity(passage, function));
     }
     edits.functions(function, &functions);
-    let hal = edits.connections(joints, names, function, simulates);
+    let hal = edits.connections(&passages, names, function, simulates);
     let (copies, renamed) = edits.finish(names);
     Ok(WiredHal { copies, hal, renamed })
+}
+
+/// Where a joint goes through the component.
+struct Passage<'a> {
+    joint: &'a SetupJoint,
+    /// Its place among all nets of the component.
+    net: usize,
+    /// Beginning of its pins' names, and its number behind them.
+    prefix: &'static str,
+    channel: usize,
+}
+
+impl Passage<'_> {
+    /// A pin of the component: `command`, `drive`, `actual` or `feedback`.
+    fn pin(&self, what: &str) -> String {
+        format!("feedwright.{}{what}-{}", self.prefix, self.channel)
+    }
+
+    /// A pin of LinuxCNC.
+    fn joint_pin(&self, what: &str) -> String {
+        format!("joint.{}.{what}", self.joint.number)
+    }
+}
+
+/// The corrected joints, and behind them those that pass through.
+fn passages(joints: &SetupJoints) -> Vec<Passage<'_>> {
+    let corrected = joints.wired().enumerate().map(|(channel, joint)| (joint, "", channel));
+    let passing = joints.passing().enumerate().map(|(channel, (joint, _))| (joint, "through-", channel));
+    let all = corrected.chain(passing).enumerate();
+    all.map(|(net, (joint, prefix, channel))| Passage { joint, net, prefix, channel }).collect()
 }
 
 /// Lines that load the component, the sampler and the simulated machine.
@@ -114,6 +145,11 @@ fn loads(joints: &SetupJoints, simulates: bool) -> Vec<String> {
     let mut line = format!("loadrt feedwright model=[FEEDWRIGHT]MODEL joints={count}");
     let unit = if joints.unit_mm == 1.0 { String::new() } else { format!(" mm_per_unit={}", joints.unit_mm) };
     line.push_str(&unit);
+    let tandem: Vec<String> =
+        joints.passing().map(|(_, axis)| axis.map_or_else(|| "-1".to_owned(), |axis| axis.to_string())).collect();
+    if !tandem.is_empty() {
+        let _ = write!(line, " through={} tandem={}", tandem.len(), tandem.join(","));
+    }
     // The component compares following errors where all four are stated.
     if let [Some(velocity), Some(acceleration), Some(ferror), Some(min_ferror)] = limits {
         let _ = write!(
@@ -171,10 +207,12 @@ impl HalEdits<'_> {
         self.lines.entry(place).or_default().after.extend_from_slice(lines);
     }
 
-    fn joint(&mut self, axis: usize, number: usize, simulates: bool) {
-        self.replace(&format!("joint.{number}.motor-pos-cmd"), Some(&format!("feedwright.drive-{axis}")));
-        let actual = format!("feedwright.actual-{axis}");
-        self.replace(&format!("joint.{number}.motor-pos-fb"), Some(actual.as_str()).filter(|_| !simulates));
+    fn joint(&mut self, passage: &Passage<'_>, simulates: bool) {
+        self.replace(&passage.joint_pin("motor-pos-cmd"), Some(&passage.pin("drive")));
+        let actual = passage.pin("actual");
+        // A simulated machine stands in for the drives of corrected joints.
+        let by = Some(actual.as_str()).filter(|_| !simulates || !passage.prefix.is_empty());
+        self.replace(&passage.joint_pin("motor-pos-fb"), by);
     }
 
     /// Puts functions behind the motion controller. The sampler sees what the component saw, and the drives
@@ -200,8 +238,8 @@ impl HalEdits<'_> {
 
     /// What takes the speed of LinuxCNC's command takes that of the drive's command. Returns the function
     /// that has to run behind the component.
-    fn velocity(&mut self, axis: usize, number: usize, function: &HalFunction) -> Option<String> {
-        let pin = format!("joint.{number}.vel-cmd");
+    fn velocity(&mut self, passage: &Passage<'_>, function: &HalFunction) -> Option<String> {
+        let pin = passage.joint_pin("vel-cmd");
         let sinks: Vec<String> = self.netlist.beside(&pin).map(str::to_owned).collect();
         for derivative in sinks.iter().filter(|sink| last_part(sink) == "command-deriv") {
             self.replace(derivative, None);
@@ -213,9 +251,9 @@ impl HalEdits<'_> {
         if !sinks.iter().any(|sink| takes_speed(&sink)) {
             return None;
         }
-        let instance = self.instance("ddt", &format!("feedwright-speed-{axis}"));
+        let instance = self.instance("ddt", &format!("feedwright-speed-{}", passage.net));
         self.replace(&pin, Some(&format!("{instance}.out")));
-        let command = self.drive_signal(axis, number);
+        let command = self.drive_signal(passage);
         let _ = writeln!(self.added, "net {command} => {instance}.in");
         // Where ddt is loaded behind the motion controller, its function is added there.
         let place = |place: HalPlace| self.script.order.iter().position(|other| *other == place);
@@ -254,9 +292,9 @@ impl HalEdits<'_> {
     }
 
     /// The signal of the drive's command.
-    fn drive_signal(&self, axis: usize, number: usize) -> String {
-        let signal = self.netlist.signal_of(&format!("joint.{number}.motor-pos-cmd"));
-        signal.map_or_else(|| format!("feedwright-drive-{axis}"), str::to_owned)
+    fn drive_signal(&self, passage: &Passage<'_>) -> String {
+        let signal = self.netlist.signal_of(&passage.joint_pin("motor-pos-cmd"));
+        signal.map_or_else(|| format!("feedwright-drive-{}", passage.net), str::to_owned)
     }
 
     /// Connects a pin of LinuxCNC with pins of the component, on the signal that it has or on a new one.
@@ -270,7 +308,7 @@ impl HalEdits<'_> {
     /// The file of connections.
     fn connections(
         &mut self,
-        joints: &SetupJoints,
+        passages: &[Passage<'_>],
         names: &SetupNames,
         function: &HalFunction,
         simulates: bool,
@@ -280,10 +318,10 @@ impl HalEdits<'_> {
              # The copies of the other HAL files load the component and connect the drives with feedwright.drive-N and feedwright.actual-N.\n",
             names.original
         );
-        for (axis, joint) in joints.wired().enumerate() {
-            self.axis(axis, joint, simulates);
+        for passage in passages {
+            self.passage(passage, simulates);
         }
-        let first = joints.wired().next().map_or(0, |joint| joint.number);
+        let first = passages.first().map_or(0, |passage| passage.joint.number);
         let _ = writeln!(self.added, "\n# Amplifiers, and what LinuxCNC does.");
         let powered = if simulates { "feedwright.powered feedwright-plant.powered" } else { "feedwright.powered" };
         self.connect("powered", &format!("joint.{first}.amp-enable-out"), powered);
@@ -307,33 +345,32 @@ impl HalEdits<'_> {
         text
     }
 
-    /// The nets of an axis.
-    fn axis(&mut self, axis: usize, joint: &SetupJoint, simulates: bool) {
-        let (number, letter) = (joint.number, joint.letter);
-        let command = self.drive_signal(axis, number);
-        let _ = writeln!(self.added, "\n# {letter}, joint {number}.");
-        let sample = SAMPLED.len() * axis;
-        let _ = writeln!(
-            self.added,
-            "net feedwright-command-{axis} joint.{number}.motor-pos-cmd => feedwright.command-{axis} sampler.0.pin.{sample}"
-        );
-        let _ = writeln!(self.added, "net {command} => sampler.0.pin.{}", sample + 1);
-        let actual = if simulates {
-            let _ = writeln!(self.added, "net {command} => feedwright-plant.command-{axis}");
-            let _ = writeln!(
-                self.added,
-                "net feedwright-actual-{axis} feedwright-plant.actual-{axis} => feedwright.actual-{axis}"
-            );
-            format!("feedwright-actual-{axis}")
-        } else {
-            let pin = format!("joint.{number}.motor-pos-fb");
-            self.netlist.signal_of(&pin).unwrap_or("").to_owned()
+    /// The nets of a joint.
+    fn passage(&mut self, passage: &Passage<'_>, simulates: bool) {
+        let (net, joint, command) = (passage.net, passage.joint, self.drive_signal(passage));
+        let [planned, feedback] = ["motor-pos-cmd", "motor-pos-fb"].map(|what| passage.joint_pin(what));
+        let is_corrected = passage.prefix.is_empty();
+        let _ = writeln!(self.added, "\n# {}, joint {}.", joint.letter, joint.number);
+        let sample = |what: usize| match is_corrected {
+            true => format!("sampler.0.pin.{}", SAMPLED.len() * passage.channel + what),
+            false => String::new(),
         };
-        let _ = writeln!(self.added, "net {actual} => sampler.0.pin.{}", sample + 2);
-        let _ = writeln!(
-            self.added,
-            "net feedwright-feedback-{axis} feedwright.feedback-{axis} => joint.{number}.motor-pos-fb"
-        );
+        let line = format!("net feedwright-command-{net} {planned} => {} {}", passage.pin("command"), sample(0));
+        let _ = writeln!(self.added, "{}", line.trim_end());
+        if is_corrected {
+            let _ = writeln!(self.added, "net {command} => {}", sample(1));
+            let actual = if simulates {
+                let pin = |what: &str| format!("feedwright-plant.{what}-{}", passage.channel);
+                let signal = format!("feedwright-actual-{net}");
+                let _ = writeln!(self.added, "net {command} => {}", pin("command"));
+                let _ = writeln!(self.added, "net {signal} {} => {}", pin("actual"), passage.pin("actual"));
+                signal
+            } else {
+                self.netlist.signal_of(&feedback).unwrap_or("").to_owned()
+            };
+            let _ = writeln!(self.added, "net {actual} => {}", sample(2));
+        }
+        let _ = writeln!(self.added, "net feedwright-feedback-{net} {} => {feedback}", passage.pin("feedback"));
     }
 
     /// The pins that hold or change the feed.
