@@ -24,7 +24,7 @@ use std::process::ExitCode;
 use miette::Result;
 
 use crate::controllers::CONTROLLERS;
-use args::{Cli, CommandArgs};
+use args::{Cli, CommandArgs, MachinesArgs};
 
 pub use args::feed::feed_mm_s;
 pub use args::reader::ReaderArgs;
@@ -73,7 +73,10 @@ fn run(command: CommandArgs, console: &Console) -> Result<ExitCode> {
         CommandArgs::Linuxcnc(args) => commands::linuxcnc::run(&args, console),
         CommandArgs::Check(args) => commands::check::run(&args, console),
         CommandArgs::Canon(args) => commands::canon::run(&args, console),
-        CommandArgs::Machines => commands::list::machines(),
+        CommandArgs::Machines(MachinesArgs { name: None, .. }) => commands::list::machines(),
+        CommandArgs::Machines(MachinesArgs { name: Some(name), out }) => {
+            commands::list::machine(&name, out.as_deref(), console)
+        }
         CommandArgs::Controllers { name: None } => controllers(CONTROLLERS),
         CommandArgs::Controllers { name: Some(name) } => controller(&name, CONTROLLERS),
         CommandArgs::Lab(args) => commands::lab::run(&args),

@@ -111,6 +111,8 @@ mod correct;
 mod job;
 mod log_job;
 mod recorded_model;
+#[cfg(feature = "command")]
+mod machine_document;
 #[cfg(feature = "files")]
 mod linuxcnc_setup;
 #[cfg(feature = "command")]

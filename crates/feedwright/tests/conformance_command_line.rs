@@ -266,3 +266,22 @@ fn the_laboratory_is_started_where_it_is_installed() {
     let ran = run();
     assert_eq!((ran.code, ran.stdout.as_str()), (Some(7), "compare --only circle --help\n"), "{ran:?}");
 }
+
+#[test]
+fn a_built_in_machine_is_written_as_a_file_to_start_from() {
+    let folder = Folder::new();
+    let ran = folder.run(&["machines", "workshop", "--out", "mine.toml"]).succeeded();
+    assert!(ran.told().contains("wrote mine.toml"), "{ran:?}");
+    folder.run(&["check", "mine.toml"]).succeeded();
+    assert_eq!(folder.run(&["machines", "workshop"]).succeeded().stdout, folder.text("mine.toml"));
+    let rows = |machine: &str| {
+        let json = format!("{}.json", machine.len());
+        folder.run_uncorrected(&["circle.ngc", "--machine", machine, "--json", &json]).succeeded();
+        let results: serde_json::Value = serde_json::from_slice(&folder.read(json)).unwrap();
+        results["runs"][0]["rms_um"].clone()
+    };
+    assert_eq!(rows("mine.toml"), rows("workshop"));
+    folder.run(&["machines", "workshp", "--out", "other.toml"]).refused(&["workshp", "did you mean 'workshop'?"]);
+    folder.run(&["machines", "mine.toml"]).refused(&["no built-in machine", "feedwright machines"]);
+    assert!(!folder.path().join("other.toml").exists());
+}

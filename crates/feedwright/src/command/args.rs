@@ -19,6 +19,7 @@ pub(crate) mod man;
 
 use std::ffi::OsString;
 use std::io::{self, IsTerminal};
+use std::path::PathBuf;
 
 use clap::{Args, ColorChoice, Command, CommandFactory, Parser, Subcommand, ValueEnum};
 use feedwright_gcode::visible;
@@ -93,8 +94,7 @@ pub(crate) enum CommandArgs {
     Check(CheckArgs),
     Identify(Box<IdentifyArgs>),
     Excite(ExciteArgs),
-    /// List the built-in machines
-    Machines,
+    Machines(MachinesArgs),
     /// List the controllers, or the parameters of one
     Controllers {
         /// Its name.
@@ -112,10 +112,27 @@ pub(crate) enum CommandArgs {
     Man(ManArgs),
 }
 
+/// List the built-in machines, or write one as a file
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Example:
+  feedwright machines workshop --out mine.toml
+  feedwright check mine.toml")]
+pub(crate) struct MachinesArgs {
+    /// Built-in machine: its file has every key, with a comment where each value comes from.
+    pub(crate) name: Option<String>,
+    /// Place of the machine file [default: the standard output].
+    #[arg(long, value_name = "FILE.toml", requires = "name")]
+    pub(crate) out: Option<PathBuf>,
+}
+
 impl CommandArgs {
     /// Whether it writes files, which an interrupt must not leave half-written.
     pub(crate) const fn writes_files(&self) -> bool {
-        !matches!(self, Self::Check(_) | Self::Canon(_) | Self::Machines | Self::Controllers { .. })
+        !matches!(
+            self,
+            Self::Check(_) | Self::Canon(_) | Self::Machines(MachinesArgs { out: None, .. }) | Self::Controllers { .. }
+        )
     }
 }
 

@@ -1,14 +1,20 @@
 //! `feedwright machines` and `feedwright controllers`.
 use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
-use feedwright_sim::{BUILT_IN_MACHINES, Machine, shown};
-use miette::Result;
+use feedwright_gcode::visible;
+use feedwright_sim::{BUILT_IN_MACHINES, Machine, is_machine_path, shown};
+use miette::{IntoDiagnostic, Result, miette};
 
+use crate::command::console::Console;
 use crate::command::controllers::find;
 use crate::command::message::printed;
+use crate::command::streams::{tables, tell_written};
 use crate::command::terminal::wrapped;
 use crate::controllers::{BEST, Controllers, Knows};
+use crate::machine_document::machine_document;
+use crate::output::{OutputError, OutputFile, OutputFiles};
 
 pub(crate) fn machines() -> Result<ExitCode> {
     let mut lines = String::new();
@@ -18,6 +24,20 @@ pub(crate) fn machines() -> Result<ExitCode> {
         lines += &(wrapped(&line, 19) + "\n");
     }
     print(&lines)
+}
+
+/// Writes a built-in machine as a file to start from.
+pub(crate) fn machine(name: &str, out: Option<&Path>, console: &Console) -> Result<ExitCode> {
+    if is_machine_path(Path::new(name)) {
+        return Err(miette!(help = "`feedwright machines` lists them", "'{}' is no built-in machine", visible(name)));
+    }
+    Machine::load(name.as_ref())?;
+    let text = machine_document(name).into_diagnostic()?.unwrap_or_default();
+    let Some(out) = out else { return print(&text) };
+    let mut file = OutputFiles::new([]).start(out)?;
+    file.write_all(text.as_bytes()).map_err(|error| OutputError::from_io(error, out))?;
+    OutputFile::commit_all(vec![file], &console.bar(0))?;
+    printed(tell_written(&mut *tables([Some(out)]), [Some(out)]), ExitCode::SUCCESS)
 }
 
 /// Lists the controllers of a table.
