@@ -33,6 +33,7 @@ static inline const char *feedwright_fault(uint32_t fault)
         "adaptive-scale is not within 0.1 and 1: the last good one stays",
         "a motion that probes or follows a spindle is delayed: connect feed-inhibit and spindle-at-speed",
         "acceleration-limit is not 0, or within 1 and 1,000,000 mm/s^2: the last good one stays",
+        "the geometry of the model cannot be compensated: its errors grow by more than 5 % of the travel, or its numbers are none",
     };
     return fault < sizeof words / sizeof words[0] ? words[fault] : "unknown";
 }

@@ -30,6 +30,10 @@ A correction that fails is faded out, and comes back when its predictions have h
 that, and \\fBfound\\fR and \\fBallowed\\fR tell what was measured and from where on it is too much. \\fBenable\\fR fades the correction in and out in
 motion as well, within \\fBcorrection-acceleration\\fR.
 
+The model may state the geometry of the machine: scale, pitch, tables and squareness, which no encoder sees. Where all of \\fBhomed-N\\fR are on and
+\\fBgeometry\\fR is on, the joints go where the tool is then at LinuxCNC's command, while it jogs and probes, too, and \\fBfeedback-N\\fR tells where the
+tool is. It fades in and out within \\fBcorrection-acceleration\\fR. Connect \\fBoffset-N\\fR to joint.N.motor-offset: it says where on its screw an axis is.
+
 .B loadrt feedwright model=\\fIFILE.fwmodel\\fB [joints=2|3] [mm_per_unit=\\fIMM\\fB] [through=\\fI0..6\\fB tandem=\\fIJ,J...\\fB] [signals=\\fI0..6\\fB] [max_velocity=\\fIV,V,V\\fB max_acceleration=\\fIA,A,A\\fB max_ferror=\\fIF,F,F\\fB min_ferror=\\fIM,M,M\\fB] [record=\\fISECONDS\\fB recording=\\fIFILE\\fB]
 
 \\fBmodel\\fR is written by 'feedwright block'. A file that is missing, damaged, or for another machine raises \\fBfault\\fR; commands are
@@ -57,7 +61,12 @@ pin in float command-#[3] "Position command, from joint.N.motor-pos-cmd, in unit
 pin in float actual-#[3] "Actual position, from the drive or encoder, in units of the joints";
 pin out float drive-#[3] "Position command of the drive, in units of the joints";
 pin out float feedback-#[3] "To joint.N.motor-pos-fb, in units of the joints";
-pin out float correction-#[3] "Offset of the drive's command from the path, mm";
+pin out float correction-#[3] "Offset of the drive's command from the path of the joints, mm";
+pin in float offset-#[3] "Motor offset of the joint, from joint.N.motor-offset, in units of the joints";
+pin in bit homed-#[3] "Whether the joint is homed, from joint.N.homed: until all are, no geometry is compensated";
+pin in bit geometry = 1 "Whether the geometry that the model states is to be compensated";
+pin out bit compensates "The geometry is compensated, and nothing of it fades";
+pin out float geometry-offset-#[3] "By how much the joint is commanded beside LinuxCNC's command, so that the tool is there, mm";
 
 pin in float through-command-#[6 : personality & 15] "Position command of a joint that is delayed and not corrected, from joint.N.motor-pos-cmd";
 pin in float through-actual-#[6 : personality & 15] "Its actual position, from the drive or encoder";
@@ -91,7 +100,7 @@ param rw float adaptive-scale = 1 "0.1 to 1: 0.5 where the feed override stands 
 pin out bit saturated "A limit holds the correction";
 pin out u32 state "0 amplifiers off, 1 without delay, 2 delayed, without correction, 3 the correction fades, 4 it is in the loop";
 pin out bit fault "There is no correction, or a setting is refused, for the reason in \\fBcause\\fR; it clears itself";
-pin out u32 cause """What was wrong last: 1 to 7 model file, 8 servo period, 9 the correction was not a number, 10 actual position
+pin out u32 cause """What was wrong last: 1 to 7 and 23 model file, 8 servo period, 9 the correction was not a number, 10 actual position
 lost, 11 predictions wrong, 12 contour error larger, 13 command not a number, 14 failed inside, 15 the correction takes more acceleration than acceleration-limit; out of range, so that the last good value stays in force and the correction goes on:
 16 delay, 17 deviation-limit, 18 speed-limit, 19 correction-acceleration, 20 adaptive-scale, 22 acceleration-limit; 21 a motion that probes or follows a spindle is delayed""";
 pin out u32 faults "How often there was a fault";
@@ -262,10 +271,13 @@ static double unit_of_through(int i)
 
 static uint32_t flags(const struct __comp_state *c)
 {
-    bool direct = *c->direct || !*c->coordinated;
+    bool direct = *c->direct || !*c->coordinated, homed = true;
+    for (int i = 0; i < joints; i++)
+        homed = homed && *c->homed[i];
     return (*c->powered ? FEEDWRIGHT_POWERED : 0) | (*c->enable ? FEEDWRIGHT_ENABLED : 0) | (direct ? FEEDWRIGHT_DIRECT : 0) |
            (*c->spindle_index ? FEEDWRIGHT_SPINDLE : 0) | (*c->motion_type != 1 ? FEEDWRIGHT_CUTTING : 0) |
-           (*c->speed_alone ? FEEDWRIGHT_SPEED_ALONE : 0) | (*c->motion_type == 5 ? FEEDWRIGHT_PROBING : 0);
+           (*c->speed_alone ? FEEDWRIGHT_SPEED_ALONE : 0) | (*c->motion_type == 5 ? FEEDWRIGHT_PROBING : 0) |
+           (*c->geometry ? FEEDWRIGHT_GEOMETRY : 0) | (homed ? FEEDWRIGHT_HOMED : 0);
 }
 
 #define FUNCTION(name) static void name(struct __comp_state *__comp_inst, long period)
@@ -290,6 +302,7 @@ FUNCTION(_)
         bool there = i < joints;
         in.command_mm[i] = there ? unit_mm * *c->command[i] : 0;
         in.actual_mm[i] = there ? unit_mm * *c->actual[i] : 0;
+        in.offset_mm[i] = there ? unit_mm * *c->offset[i] : 0;
     }
     for (i = 0; i < through; i++) {
         in.through[i] = unit_of_through(i) * *c->through_command[i];
@@ -307,6 +320,7 @@ FUNCTION(_)
         *c->drive[i] = out.drive_mm[i] / unit_mm;
         *c->feedback[i] = out.feedback_mm[i] / unit_mm;
         *c->correction[i] = out.correction_mm[i];
+        *c->geometry_offset[i] = out.geometry_mm[i];
         *c->learned[i] = (out.learned >> i & 1) != 0;
     }
     for (i = 0; i < through; i++) {
@@ -330,6 +344,7 @@ FUNCTION(_)
     *c->times_out = out.times_out;
     *c->found = out.found_mm;
     *c->allowed = out.limit_mm;
+    *c->compensates = out.compensates != 0;
     *c->delay_periods = out.delay_periods;
     *c->heartbeat = !*c->heartbeat;
     record_period_of(&in, &out);

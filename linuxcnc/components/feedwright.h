@@ -29,6 +29,12 @@
 // This motion probes.
 #define FEEDWRIGHT_PROBING 64
 
+// The geometry of the model is to be compensated.
+#define FEEDWRIGHT_GEOMETRY 128
+
+// Every corrected joint is homed, so that its motor offset says where it is.
+#define FEEDWRIGHT_HOMED 256
+
 // Values that pass through at the most.
 #define FEEDWRIGHT_CHANNELS 6
 
@@ -54,6 +60,8 @@ typedef struct {
     double command_mm[3];
     // Actual positions.
     double actual_mm[3];
+    // Motor offsets: motor position less position of the joint.
+    double offset_mm[3];
     // Delay of the command, 0.008 to 0.015. A setting out of its range is refused; the last good one stays in force.
     double delay_s;
     // Largest distance of the drive's command from the path.
@@ -84,6 +92,8 @@ typedef struct {
     double feedback_mm[3];
     // Offsets of the drives' commands from the path.
     double correction_mm[3];
+    // Offsets of the joints' commands from those of the control, by the geometry.
+    double geometry_mm[3];
     // Commands of the drives of what passes through, and what the control takes for the actual positions.
     double through_drive[FEEDWRIGHT_CHANNELS];
     double through_feedback[FEEDWRIGHT_CHANNELS];
@@ -112,6 +122,10 @@ typedef struct {
     uint32_t times_out;
     // Joints that are corrected by what was learned while they moved: 1, 2 and 4.
     uint32_t learned;
+    // Whether the geometry is compensated, and nothing of it fades.
+    uint32_t compensates;
+    // Zero.
+    uint32_t reserved;
 } feedwright_outputs;
 
 // What the control allows a joint.
@@ -180,7 +194,7 @@ void feedwright_plant_step(feedwright_plant *plant,
                            const double (*command_mm)[3],
                            bool powered,
                            double inertia,
-                           double (*position_mm)[3],
+                           double (*tool_mm)[3],
                            double (*measured_mm)[3],
                            double (*torque_nm)[3]);
 

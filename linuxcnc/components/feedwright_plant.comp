@@ -1,7 +1,7 @@
 component feedwright_plant "Simulated servo axes in place of drives";
 
 description """
-Two or three servo axes as a model file has them: position loop, speed loop, inertia, friction, delays, disturbance and encoder. It takes
+Two or three servo axes as a model file has them: position loop, speed loop, inertia, friction, delays, disturbance, encoder and geometry. It takes
 position commands as drives do and shows the tool, so that LinuxCNC cuts on a simulated machine.
 
 .B loadrt feedwright_plant model=\\fIFILE.fwmodel\\fB [joints=2|3] [mm_per_unit=\\fIMM\\fB] [seed=\\fIN\\fB]
@@ -12,7 +12,7 @@ see_also """\\fBfeedwright\\fR(9)""";
 
 pin in float command-#[3] "Position command, in units of the joints";
 pin out float actual-#[3] "Position as it is measured, in units of the joints";
-pin out float tool-#[3] "Where the tool is, mm";
+pin out float tool-#[3] "Where the tool is, by the geometry of the model with its zero at the motors' zero, mm";
 pin out float torque-#[3] "Motor torque, N m";
 pin in bit powered "Whether the drives have power; without, the axes stand";
 pin in float inertia = 1 "Times the inertia of the model";

@@ -6,7 +6,7 @@
 
 #include "feedwright.h"
 
-#define RECORDING_MAGIC "FWREPLY4"
+#define RECORDING_MAGIC "FWREPLY5"
 
 typedef struct {
     char magic[8];

@@ -4,8 +4,8 @@ import struct
 
 CHANNELS = 6
 HEADER = struct.Struct("<8sIIqQ")
-INPUTS = struct.Struct(f"<3d3d6d{CHANNELS}d{CHANNELS}d2I")
-OUTPUTS = struct.Struct(f"<3d3d3d{CHANNELS}d{CHANNELS}d5d8I")
+INPUTS = struct.Struct(f"<3d3d3d6d{CHANNELS}d{CHANNELS}d2I")
+OUTPUTS = struct.Struct(f"<3d3d3d3d{CHANNELS}d{CHANNELS}d5d10I")
 
 
 @dataclasses.dataclass
@@ -17,6 +17,7 @@ class Period:
     drive: tuple
     feedback: tuple
     correction: tuple
+    geometry: tuple
     through: tuple
     through_actual: tuple
     through_drive: tuple
@@ -35,8 +36,9 @@ def read(path):
     for i in range(count):
         at = begin + i * (INPUTS.size + OUTPUTS.size)
         given, made = INPUTS.unpack_from(content, at), OUTPUTS.unpack_from(content, at + INPUTS.size)
-        ends = (9, 9 + CHANNELS, 9 + 2 * CHANNELS)
+        ends = (12, 12 + CHANNELS, 12 + 2 * CHANNELS)
         state, fault, _, delay = made[ends[2] + 5:ends[2] + 9]
-        periods.append(Period(given[:3], given[3:6], given[6:12], made[:3], made[3:6], made[6:9], given[12:12 + CHANNELS], given[12 + CHANNELS:12 + 2 * CHANNELS],
+        periods.append(Period(given[:3], given[3:6], given[9:15], made[:3], made[3:6], made[6:9], made[9:12],
+                              given[15:15 + CHANNELS], given[15 + CHANNELS:15 + 2 * CHANNELS],
                               made[ends[0]:ends[1]], made[ends[1]:ends[2]], state, fault, delay, made[ends[2]:ends[2] + 5]))
     return periods

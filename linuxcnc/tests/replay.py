@@ -14,8 +14,8 @@ import programs
 
 # Smaller recordings than this hold no cut, servo periods.
 LEAST_PERIODS = 2000
-# As of feedwright.h: 24 numbers and the flags; 26 numbers, eight whole ones.
-INPUT_BYTES, PERIOD_BYTES = 200, 440
+# As of feedwright.h: 27 numbers and the flags; 29 numbers, ten whole ones.
+INPUT_BYTES, PERIOD_BYTES = 224, 496
 
 
 def main():

@@ -48,7 +48,7 @@ def models(folder):
         found = folder / f"{machine}.model.toml"
         run("block", machine, "--axes", 3, "--out", folder / f"{machine}.machine")
         run("identify", "--machine", machine, "--controller", "lqg-identified", "--axes", 3, "--out", found)
-        run("block", found, "--out", folder / f"{machine}.model")
+        run("block", found, "--machine", machine, "--out", folder / f"{machine}.model")
     block = bytearray((folder / "tnv40.model").read_bytes())
     block[300] ^= 1
     (folder / "damaged.model").write_bytes(block)
@@ -57,7 +57,8 @@ def models(folder):
 def check(periods, with_rotary):
     """What did not hold, in words."""
     wrong, deviation_mm, lowered = [], 0.5, collections.deque(maxlen=LOWERED)
-    commands = [period.command for period in periods]
+    # Where the joints are asked to be.
+    commands = [tuple(map(sum, zip(period.command, period.geometry))) for period in periods]
     for n, period in enumerate(periods):
         told = (*period.drive, *period.feedback, *period.through_drive, *period.through_feedback, *period.numbers)
         if not all(map(math.isfinite, told)):
@@ -91,7 +92,7 @@ def out_of_step(periods, n):
     """Of joints that pass through: the rotary one and the signal to the bit, the second motor with its correction."""
     period = periods[n]
     due = periods[n - period.delay]
-    tandem_mm = period.through_drive[0] - due.through[0] - period.correction[1]
+    tandem_mm = period.through_drive[0] - due.through[0] - period.correction[1] - due.geometry[1]
     if period.through_drive[1:3] != due.through[1:3] or abs(tandem_mm) > through.ROUNDING_MM:
         return [f"{n}: out of step with a delay of {period.delay}: {period.through_drive}, {due.through}"]
     return []
@@ -102,7 +103,7 @@ def blind():
     rest = (0.0,) * recordings.CHANNELS
     at = lambda n: (0.05 * n, 0.0, 0.0)
     through_at = lambda n: (0.0, 0.1 * n, *rest[2:])
-    good = [recordings.Period(at(n), at(n), (0.01, 0.5, 400.0, 400.0, 0.0, 1.0), at(n - 10), at(n), (0.0,) * 3, through_at(n), rest, through_at(n - 10), rest,
+    good = [recordings.Period(at(n), at(n), (0.01, 0.5, 400.0, 400.0, 0.0, 1.0), at(n - 10), at(n), (0.0,) * 3, (0.0,) * 3, through_at(n), rest, through_at(n - 10), rest,
                               4, 0, 10, (0.0,)) for n in range(300)]
     good = [dataclasses.replace(period, delay=0, drive=at(n), through_drive=through_at(n)) if n < 10 else period for n, period in enumerate(good)]
     wrong = {"not a number": {"feedback": (math.nan, 0.0, 0.0)}, "off the path": {"drive": (9.5, 0.6, 0.0), "correction": (0.0, 0.6, 0.0)},

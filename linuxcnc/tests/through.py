@@ -98,10 +98,10 @@ def check(periods, run):
         # Rotary axis and signal to the bit; the linear axes but for the rounding of the correction.
         if (period.through_drive[1], period.through_drive[2]) != (due.through[1], due.through[2]):
             wrong.append(f"{n}: {period.through_drive[1:3]} is not the command of {period.delay} servo periods before")
-        axes = [drive - offset - command for drive, offset, command in zip(period.drive, period.correction, due.command)]
+        axes = [drive - offset - command - of_joint for drive, offset, command, of_joint in zip(period.drive, period.correction, due.command, due.geometry)]
         if max(map(abs, axes)) > ROUNDING_MM:
             wrong.append(f"{n}: a linear axis is not as late as the rotary one: {axes}")
-        tandem = period.through_drive[0] - due.through[0] - period.correction[1]
+        tandem = period.through_drive[0] - due.through[0] - period.correction[1] - due.geometry[1]
         if abs(tandem) > ROUNDING_MM:
             wrong.append(f"{n}: the second motor of Y does not get its correction: off by {tandem}")
     moved = [max(period.through[1] for period in periods), max(period.through[2] for period in periods)]

@@ -19,6 +19,8 @@
 //! "Geometric error measurement and compensation of machines", CIRP Annals 57, for the tool's position by them. Fritsch and Butland
 //! (1984), "A method for constructing local monotone piecewise cubic interpolants", for the tables.
 
+mod numbers;
+
 use crate::vector::{bounded, norm, scale, sub};
 use crate::window::Knot;
 

@@ -4,10 +4,10 @@
 //! | Offset | Bytes | What |
 //! |---|---|---|
 //! | 0 | 8 | `FWMODEL` and a zero byte |
-//! | 8 | 4 | format: 2, or 3 with a number that format 2 lacks |
+//! | 8 | 4 | format: 2, or 3 with a number that format 2 lacks, or 4 with a geometry |
 //! | 12 | 4 | kind of the identifier: 1 contour, 2 servo, 3 axes |
 //! | 16 | 4 | N, number of axes |
-//! | 20 | 4 | n, number of numbers that follow the periods |
+//! | 20 | 4 | n, number of numbers that follow the periods, those of a geometry included |
 //! | 24 | 8 | servo period, s |
 //! | 32 | 8 | feed period, s: time between knots |
 //! | 40 | 8 n | numbers of the model, in the order below |
@@ -17,7 +17,11 @@
 //! [`Identifier::weights`]. A servo identifier has its spread after the weights, axis by axis and
 //! row by row. Axes have the mechanics period, s, and then [`AxisKnowledge::NUMBERS`], axis by
 //! axis. [`Number::format`] is the first format that has a number; in an earlier block the number is
-//! missing and zero. A block has the lowest format that holds its model.
+//! missing and zero. Behind the model, a block of format 4 has the geometry that the control
+//! compensates: of each axis its scale, the amplitude of its pitch error (mm), its phase for a travel
+//! (rad/mm) and at position 0 (rad); the three angles of squareness, rad; and row by row the tables of
+//! the errors of a coordinate over a joint, each as the number of its points, 0 without a table, and
+//! position and error (mm) of each point. A block has the lowest format that holds its content.
 //!
 //! Integers are unsigned; all other numbers are IEEE 754 double precision. Everything is
 //! little-endian. [`ModelBlock::from_bytes`] needs no memory beyond its result and never panics,
@@ -27,6 +31,7 @@ use core::{fmt, slice};
 
 use crate::axis::Periods;
 use crate::axis::knowledge::{AxisKnowledge, Number};
+use crate::geometry::KnownGeometry;
 use crate::identifier::UNKNOWNS;
 use crate::identifier::contour::ContourIdentifier;
 use crate::identifier::servo::{ServoIdentifier, Spread};
@@ -35,9 +40,13 @@ use crate::identifier::{FEED_PERIODS_S, Identifier, IdentifierKind};
 /// What a block begins with.
 pub(crate) const MAGIC: [u8; 8] = *b"FWMODEL\0";
 /// The latest format that is read and written. It is raised whenever the layout or the meaning of a number changes.
-pub const BLOCK_FORMAT: u32 = 3;
+pub const BLOCK_FORMAT: u32 = 4;
 /// The earliest format that is read. Models without later numbers are still written in it.
 const EARLIEST_FORMAT: u32 = 2;
+/// The format from which on a block has a geometry.
+const GEOMETRY_FORMAT: u32 = 4;
+/// Largest size of a number of a geometry: positions are in mm.
+const MAX_GEOMETRY: f64 = 1e6;
 /// Servo periods that a machine can have, s: as a machine file bounds them.
 pub const SERVO_PERIODS_S: [f64; 2] = [1e-5, 0.1];
 /// Periods of the speed loop that it can have, s.
@@ -62,6 +71,8 @@ pub struct ModelBlock<const N: usize> {
     pub feed_period_s: f64,
     /// What was trained.
     pub trained: Trained<N>,
+    /// The geometry that the control compensates, without backlash; none where nothing is compensated.
+    pub geometry: Option<KnownGeometry<N>>,
 }
 
 /// Identified axes.
@@ -142,6 +153,8 @@ pub enum BlockError {
     /// [`MAX_MECHANICS_PER_SERVO`] whole parts. The index after the last number stands for an
     /// invalid spread.
     Number(usize),
+    /// The geometry cannot be compensated: see [`KnownGeometry::check`].
+    Geometry,
 }
 
 impl fmt::Display for BlockError {
@@ -156,6 +169,7 @@ impl fmt::Display for BlockError {
             Self::Length => f.write_str("the model is cut off, or has something behind it"),
             Self::Checksum => f.write_str("the model is damaged: its checksum does not fit"),
             Self::Number(index) => write!(f, "number {index} of the model is out of its bounds"),
+            Self::Geometry => f.write_str("the geometry of the model cannot be compensated"),
         }
     }
 }
@@ -189,8 +203,10 @@ impl<const N: usize> ModelBlock<N> {
         let mut expected = 0_usize;
         trained.numbers_of(format, &mut |_, group| expected += group.len());
         let (content, checksum) = bytes.split_last_chunk().ok_or(BlockError::Length)?;
+        let numbers = numbers as usize;
+        let is_whole = if format < GEOMETRY_FORMAT { numbers == expected } else { numbers > expected };
         // The periods are two numbers more.
-        if numbers as usize != expected || rest.rest.len() != 8 * (expected + 2) + 4 {
+        if !is_whole || numbers.checked_add(2).and_then(|all| all.checked_mul(8)) != rest.rest.len().checked_sub(4) {
             return Err(BlockError::Length);
         }
         if crc_32(content) != u32::from_le_bytes(*checksum) {
@@ -215,7 +231,8 @@ impl<const N: usize> ModelBlock<N> {
             // The mechanics period is the first number behind the two others.
             *axes = axes.with_periods(servo_s).ok_or(BlockError::Number(2))?;
         }
-        Ok(Self { servo_s, feed_period_s, trained })
+        let geometry = if format < GEOMETRY_FORMAT { None } else { Some(rest.geometry()?) };
+        Ok(Self { servo_s, feed_period_s, trained, geometry })
     }
 
     /// Hands over the block that reads as this model, piece by piece.
@@ -228,6 +245,10 @@ impl<const N: usize> ModelBlock<N> {
             }
         });
         let mut numbers = 0_u32;
+        if let Some(geometry) = &self.geometry {
+            format = GEOMETRY_FORMAT;
+            geometry.numbers(|_| numbers += 1);
+        }
         trained.numbers_of(format, &mut |_, group| numbers += group.len() as u32);
         let kind = match self.trained.kind() {
             IdentifierKind::Contour => CONTOUR,
@@ -250,6 +271,9 @@ impl<const N: usize> ModelBlock<N> {
             group.iter().for_each(|number| put_counted(&number.to_le_bytes()));
         };
         trained.numbers_of(format, put_group);
+        if let Some(geometry) = &self.geometry {
+            geometry.numbers(|number| put_counted(&number.to_le_bytes()));
+        }
         put(&(!crc).to_le_bytes());
     }
 }
@@ -354,6 +378,13 @@ impl Bytes<'_> {
         let number = f64::from_le_bytes(self.take().ok_or(BlockError::Length)?);
         if bounds.hold(number) { Ok(number) } else { Err(BlockError::Number(index)) }
     }
+
+    /// The geometry that takes all that is left but the checksum.
+    fn geometry<const N: usize>(&mut self) -> Result<KnownGeometry<N>, BlockError> {
+        let bounds = NumberBounds::Within(-MAX_GEOMETRY, MAX_GEOMETRY);
+        let geometry = KnownGeometry::from_numbers(|| self.number(&bounds))?.map_err(|_| BlockError::Geometry)?;
+        if self.rest.len() == 4 { Ok(geometry) } else { Err(BlockError::Length) }
+    }
 }
 
 const CRC_START: u32 = !0;
@@ -380,6 +411,7 @@ mod tests {
     use std::vec::Vec;
 
     use super::*;
+    use crate::geometry::{AxisErrors, ErrorTable};
     use crate::identifier::contour::tests::sequence;
 
     fn servo<const N: usize>() -> ModelBlock<N> {
@@ -388,14 +420,14 @@ mod tests {
         net.weights(&mut |_, group| group.iter_mut().for_each(|weight| *weight = next()));
         let factors: [f64; UNKNOWNS] = core::array::from_fn(|_| next());
         let spread = [core::array::from_fn(|i| core::array::from_fn(|j| 0.1 * factors[i] * factors[j])); N];
-        ModelBlock { servo_s: 0.001, feed_period_s: 0.003, trained: Trained::Servo(net, spread) }
+        ModelBlock { servo_s: 0.001, feed_period_s: 0.003, trained: Trained::Servo(net, spread), geometry: None }
     }
 
     fn contour<const N: usize>() -> ModelBlock<N> {
         let mut next = sequence();
         let mut net = ContourIdentifier::NULL;
         net.weights(&mut |_, group| group.iter_mut().for_each(|weight| *weight = 3.0 * next()));
-        ModelBlock { servo_s: 0.001, feed_period_s: 0.01, trained: Trained::Contour(net) }
+        ModelBlock { servo_s: 0.001, feed_period_s: 0.01, trained: Trained::Contour(net), geometry: None }
     }
 
     /// Each number within its range, and all different.
@@ -409,7 +441,7 @@ mod tests {
             }
         }
         let trained = Trained::Axes(axes.with_periods(0.001).unwrap());
-        ModelBlock { servo_s: 0.001, feed_period_s: 0.001, trained }
+        ModelBlock { servo_s: 0.001, feed_period_s: 0.001, trained, geometry: None }
     }
 
     fn block<const N: usize>(model: &ModelBlock<N>) -> Vec<u8> {
@@ -483,9 +515,48 @@ mod tests {
         assert_eq!(ModelBlock::<2>::from_bytes(&sealed(relabeled)), Err(BlockError::Length));
     }
 
+    /// With every kind of error.
+    fn with_geometry<const N: usize>(model: ModelBlock<N>) -> ModelBlock<N> {
+        let axis =
+            AxisErrors { scale: 1e-5, pitch_mm: 0.002, pitch_rad_per_mm: 0.6, pitch_phase_rad: 1.0, backlash_mm: 0.0 };
+        let table = ErrorTable::new([[-10.0, 0.001], [0.0, 0.0], [30.0, -0.002]]).unwrap();
+        let geometry = KnownGeometry::new([axis; N], [2e-5, -1e-5, 1e-5]).with_table(0, 1, table);
+        ModelBlock { geometry: Some(geometry), ..model }
+    }
+
+    #[test]
+    fn a_geometry_comes_back_to_the_bit_in_a_block_of_format_4() {
+        let model = with_geometry(axes::<3>());
+        let bytes = block(&model);
+        assert_eq!((bytes[8], bytes.len()), (4, block(&axes::<3>()).len() + 8 * (3 * 4 + 3 + 9 + 6)));
+        assert_eq!(ModelBlock::from_bytes(&bytes), Ok(model));
+        assert_eq!(ModelBlock::from_bytes(&block(&with_geometry(contour::<2>()))), Ok(with_geometry(contour::<2>())));
+        // A geometry is not what an earlier format has, and a later one does not go without.
+        for (bytes, format) in [(bytes, 3), (block(&axes::<3>()), 4)] {
+            let mut relabeled = bytes;
+            relabeled[8] = format;
+            assert_eq!(ModelBlock::<3>::from_bytes(&sealed(relabeled)), Err(BlockError::Length));
+        }
+    }
+
+    #[test]
+    fn every_number_of_a_geometry_has_bounds() {
+        let bytes = block(&with_geometry(axes::<2>()));
+        let [first, end] = [block(&axes::<2>()).len(), bytes.len()].map(|length| (length - 28) / 8);
+        for index in first..end {
+            for number in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e7, -1e7] {
+                let read = ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), index, number));
+                assert_eq!(read, Err(BlockError::Number(index)), "{number}");
+            }
+        }
+        let read = |number| ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), first, number));
+        assert_eq!(read(0.06), Err(BlockError::Geometry));
+        assert!(read(0.03).is_ok());
+    }
+
     #[test]
     fn any_changed_byte_is_refused() {
-        for bytes in [block(&servo::<2>()), block(&axes::<2>())] {
+        for bytes in [block(&servo::<2>()), block(&axes::<2>()), block(&with_geometry(axes::<2>()))] {
             for at in 0..bytes.len() {
                 for change in [0x01, 0x80, 0xff] {
                     let mut changed = bytes.clone();
@@ -500,6 +571,7 @@ mod tests {
     fn any_other_length_is_refused() {
         of_any_other_length_are_refused(block(&contour::<2>()));
         of_any_other_length_are_refused(block(&axes::<2>()));
+        of_any_other_length_are_refused(block(&with_geometry(axes::<2>())));
     }
 
     fn of_any_other_length_are_refused(bytes: Vec<u8>) {

@@ -52,15 +52,27 @@ impl GeometryChoice {
     /// The machine with a control that compensates it, for a part with these least and greatest positions, mm.
     ///
     /// # Errors
-    /// A geometry that is out of its range, does not suit the machine or the part, or does not pass its own check.
+    /// As [`Self::on_any_part`], and a geometry that was not measured where the part is.
     pub fn on(&self, machine: &Machine, box_mm: [[f64; 3]; 2]) -> Result<Machine, JobError> {
+        let compensating = self.on_any_part(machine)?;
+        if let Self::File(file) = self {
+            file.geometry.covers(machine.axis_count(), box_mm)?;
+        }
+        Ok(compensating)
+    }
+
+    /// The machine with a control that compensates it, wherever it cuts.
+    ///
+    /// # Errors
+    /// A geometry that is out of its range, does not suit the machine, or does not pass its own check.
+    pub fn on_any_part(&self, machine: &Machine) -> Result<Machine, JobError> {
         Ok(match self {
             Self::Off => Machine { compensated: None, ..machine.clone() },
             Self::Machine if machine.has_hidden_backlash() => Machine { compensated: None, ..machine.clone() },
             Self::Machine => machine.compensating_own()?,
             Self::File(file) => {
                 file.geometry.check()?;
-                file.geometry.suits(machine, box_mm)?;
+                file.geometry.suits(machine)?;
                 machine.compensating(file.geometry.known()?)?
             }
         })
@@ -69,31 +81,40 @@ impl GeometryChoice {
     /// What the report says of it; none where nothing is compensated.
     pub(crate) fn reported(&self, machine: &Machine, spread: &SpreadMeter<'_>) -> Option<CompensatedGeometry> {
         machine.compensated.as_ref()?;
+        let from = match self {
+            Self::Off => return None,
+            Self::Machine => None,
+            Self::File(file) => Some(file.name.clone()),
+        };
+        let terms = self.terms(Some(machine));
+        let [spread_rms_um, spread_max_um] = spread.finish().map_or([None; 2], |spread_um| spread_um.map(Some));
+        Some(CompensatedGeometry { from, terms, spread_rms_um, spread_max_um })
+    }
+
+    /// Names of the errors that it states, of a machine or of none.
+    pub(crate) fn terms(&self, machine: Option<&Machine>) -> Vec<&'static str> {
         let there = |terms: &[(&'static str, bool)]| -> Vec<&'static str> {
             terms.iter().filter(|(_, there)| *there).map(|(term, _)| *term).collect()
         };
-        let (from, terms) = match self {
-            Self::Off => return None,
-            Self::Machine => {
+        match (self, machine) {
+            (Self::Off, _) | (Self::Machine, None) => Vec::new(),
+            (Self::Machine, Some(machine)) => {
                 let square = machine.geometry != feedwright_sim::Squareness::default();
                 let scale = machine.axes.iter().any(|axis| axis.scale_um_m != 0.0);
                 let pitch = machine.axes.iter().any(|axis| axis.pitch_error_um != 0.0);
-                (None, there(&[("scale", scale), ("pitch", pitch), ("squareness", square)]))
+                there(&[("scale", scale), ("pitch", pitch), ("squareness", square)])
             }
-            Self::File(file) => {
+            (Self::File(file), _) => {
                 let axes = &file.geometry.axes;
-                let terms = there(&[
+                there(&[
                     ("scale", axes.iter().any(|axis| axis.scale_um_m != 0.0)),
                     ("pitch", axes.iter().any(|axis| axis.pitch_error_um != 0.0)),
                     ("positions", axes.iter().any(|axis| !axis.table.is_empty())),
                     ("straightness", axes.iter().flat_map(|axis| &axis.straightness).any(|table| !table.is_empty())),
                     ("squareness", file.geometry.squareness != feedwright_sim::MeasuredSquareness::default()),
-                ]);
-                (Some(file.name.clone()), terms)
+                ])
             }
-        };
-        let [spread_rms_um, spread_max_um] = spread.finish().map_or([None; 2], |spread_um| spread_um.map(Some));
-        Some(CompensatedGeometry { from, terms, spread_rms_um, spread_max_um })
+        }
     }
 
     /// Takes the rows of a cut.

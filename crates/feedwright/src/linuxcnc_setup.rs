@@ -160,6 +160,7 @@ impl LinuxcncSetup {
         let mut findings = script.notes.clone();
         findings.extend(joints.findings());
         findings.extend(netlist.findings());
+        findings.extend(joints.compensated());
         let mut refusals = script.refusals.clone();
         refusals.extend(joints.refusals(simulated.is_some()));
         refusals.extend(wiring::refusals(ini, netlist));
@@ -185,7 +186,8 @@ impl LinuxcncSetup {
         files.push(text(&names.record, steps::record_script(joints, names)));
         if let Some(machine) = simulated {
             let axes = joints.wired().count().min(machine.axis_count());
-            files.push(SetupFile { path: names.path(&names.plant), bytes: exact_block(machine, axes) });
+            let bytes = exact_block(machine, axes, machine.errors_of_geometry().as_ref());
+            files.push(SetupFile { path: names.path(&names.plant), bytes });
         }
         // The INI file comes last: whoever finds it finds the others.
         let values = limits::written(joints, simulated, self.raise_ferror);

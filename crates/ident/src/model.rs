@@ -14,8 +14,8 @@ mod layout;
 use std::path::Path;
 
 use feedwright_control::{
-    AxisKnowledge, ContourIdentifier, IdentifiedAxes, Identifier, IdentifierKind, ModelBlock, Number, ServoIdentifier,
-    Spread, Trained, UNKNOWNS,
+    AxisKnowledge, ContourIdentifier, IdentifiedAxes, Identifier, IdentifierKind, KnownGeometry, ModelBlock, Number,
+    ServoIdentifier, Spread, Trained, UNKNOWNS,
 };
 use feedwright_gcode::input;
 use feedwright_sim::toml_file::key::write;
@@ -336,17 +336,17 @@ impl Model {
             IdentifierKind::Axes => Trained::Axes(self.identified_axes()?),
         };
         let ModelPeriods { servo_s, feed_period_s } = self.period;
-        Some(ModelBlock { servo_s, feed_period_s, trained })
+        Some(ModelBlock { servo_s, feed_period_s, trained, geometry: None })
     }
 
-    /// The block of bytes that a component in a servo thread is given.
-    pub fn block(&self) -> Vec<u8> {
+    /// The block of bytes that a component in a servo thread is given, with the geometry that it compensates.
+    pub fn block(&self, geometry: Option<&KnownGeometry<3>>) -> Vec<u8> {
         let mut bytes = Vec::new();
         let put = |more: &[u8]| bytes.extend_from_slice(more);
         if let Some(model) = self.control::<2>() {
-            model.to_bytes(put);
+            ModelBlock { geometry: exact::of_a_block(geometry), ..model }.to_bytes(put);
         } else if let Some(model) = self.control::<3>() {
-            model.to_bytes(put);
+            ModelBlock { geometry: exact::of_a_block(geometry), ..model }.to_bytes(put);
         }
         bytes
     }

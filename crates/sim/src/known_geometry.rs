@@ -165,17 +165,28 @@ impl GeometryFile {
         Ok(known)
     }
 
-    /// Whether it is one of this machine, and covers a part with these least and greatest positions, mm.
+    /// Whether its screws are those of this machine.
     ///
     /// # Errors
-    /// Another lead of a screw, or a part beyond the travel that was measured.
-    pub fn suits(&self, machine: &Machine, [least_mm, most_mm]: [Vector; 2]) -> Result<(), CompensationError> {
+    /// Another lead of a screw.
+    pub fn suits(&self, machine: &Machine) -> Result<(), CompensationError> {
         for (i, (geometry, axis)) in self.axes.iter().zip(AXIS_NAMES).enumerate().take(machine.axis_count()) {
             let machine_mm = machine.axis(i).lead_mm_per_rev;
-            let AxisGeometry { lead_mm_per_rev: lead_mm, from_mm, to_mm, .. } = *geometry;
+            let lead_mm = geometry.lead_mm_per_rev;
             if geometry.pitch_error_um != 0.0 && (lead_mm / machine_mm - 1.0).abs() > SAME_LEAD {
                 return Err(CompensationError::Lead { axis, lead_mm, machine_mm });
             }
+        }
+        Ok(())
+    }
+
+    /// Whether it was measured where a part of this many axes with these least and greatest positions, mm, is cut.
+    ///
+    /// # Errors
+    /// A part beyond the travel that was measured.
+    pub fn covers(&self, axes: usize, [least_mm, most_mm]: [Vector; 2]) -> Result<(), CompensationError> {
+        for (i, (geometry, axis)) in self.axes.iter().zip(AXIS_NAMES).enumerate().take(axes) {
+            let AxisGeometry { from_mm, to_mm, .. } = *geometry;
             let beyond = |at_mm: &f64| *at_mm < from_mm - BEYOND_MM || *at_mm > to_mm + BEYOND_MM;
             if let Some(at_mm) = [least_mm[i], most_mm[i]].into_iter().find(|at_mm| to_mm > from_mm && beyond(at_mm)) {
                 return Err(CompensationError::Travel { axis, at_mm, from_mm, to_mm });
@@ -264,12 +275,12 @@ mod tests {
     fn another_lead_and_another_travel_are_refused() {
         let machine = Machine::load("workshop".as_ref()).unwrap();
         let part = |most_mm: f64| [[0.0; 3], [most_mm, 0.0, 0.0]];
-        assert_eq!(file().suits(&machine, part(300.0)), Ok(()));
-        let text = file().suits(&machine, part(302.5)).unwrap_err().to_string();
+        assert_eq!(file().covers(3, part(300.0)), Ok(()));
+        let text = file().covers(3, part(302.5)).unwrap_err().to_string();
         assert_eq!(text, "axis x: the part reaches 302.5 mm, and the geometry was measured from -50 to 300 mm");
         let mut other = file();
         other.axes[0].lead_mm_per_rev = 5.0;
-        let text = other.suits(&machine, part(0.0)).unwrap_err().to_string();
+        let text = other.suits(&machine).unwrap_err().to_string();
         assert!(text.starts_with("axis x: the pitch error repeats every 5 mm"), "{text}");
     }
 

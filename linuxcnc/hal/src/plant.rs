@@ -1,6 +1,7 @@
 //! The simulated machine.
 
-use feedwright_servo::machine::axes_of;
+use feedwright_control::IdentifiedAxes;
+use feedwright_servo::machine::{axes_of, geometry_of};
 use feedwright_servo::plant::SimulatedMachine;
 
 use crate::memory::{TwoOrThree, first, model, put, three};
@@ -32,12 +33,16 @@ pub unsafe extern "C" fn feedwright_plant_new(
     if joints == 2 {
         let Ok(machine) = axes_of(bytes) else { return false };
         // SAFETY: as the caller promises.
-        unsafe { put(memory, memory_bytes, || CPlant(TwoOrThree::Two(SimulatedMachine::new(&machine, seed)))) }
+        unsafe { put(memory, memory_bytes, || CPlant(TwoOrThree::Two(made(bytes, &machine, seed)))) }
     } else {
         let Ok(machine) = axes_of(bytes) else { return false };
         // SAFETY: as the caller promises.
-        unsafe { put(memory, memory_bytes, || CPlant(TwoOrThree::Three(SimulatedMachine::new(&machine, seed)))) }
+        unsafe { put(memory, memory_bytes, || CPlant(TwoOrThree::Three(made(bytes, &machine, seed)))) }
     }
+}
+
+fn made<const N: usize>(bytes: &[u8], machine: &IdentifiedAxes<N>, seed: u64) -> SimulatedMachine<N> {
+    SimulatedMachine::new(machine, seed).with_geometry(geometry_of(bytes))
 }
 
 /// One servo period under a command; tool, measured position and torque at its end.
@@ -50,11 +55,11 @@ pub unsafe extern "C" fn feedwright_plant_step(
     command_mm: &[f64; 3],
     powered: bool,
     inertia: f64,
-    position_mm: &mut [f64; 3],
+    tool_mm: &mut [f64; 3],
     measured_mm: &mut [f64; 3],
     torque_nm: &mut [f64; 3],
 ) {
-    [*position_mm, *measured_mm, *torque_nm] = match &mut plant.0 {
+    [*tool_mm, *measured_mm, *torque_nm] = match &mut plant.0 {
         TwoOrThree::Two(plant) => step(plant, *command_mm, powered, inertia),
         TwoOrThree::Three(plant) => step(plant, *command_mm, powered, inertia),
     };
@@ -67,5 +72,5 @@ fn step<const N: usize>(
     inertia: f64,
 ) -> [[f64; 3]; 3] {
     plant.step(first(command_mm), powered, inertia);
-    [plant.position_mm(), plant.measured_mm(), plant.torque_nm()].map(three)
+    [plant.tool_mm(), plant.measured_mm(), plant.torque_nm()].map(three)
 }

@@ -1,8 +1,9 @@
 //! The link between command and drive.
 
 use feedwright_control::{BlockError, Cause, State};
+use feedwright_servo::compensation::{Compensation, MachinePlace};
 use feedwright_servo::limits::{LinkLimits, Setting};
-use feedwright_servo::machine::{Refused, model_of};
+use feedwright_servo::machine::{Refused, geometry_of, model_of};
 use feedwright_servo::play_out::PlayOut;
 use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkOutputs, Servo};
 use feedwright_servo::through::{Carries, Through};
@@ -23,6 +24,10 @@ pub const FEEDWRIGHT_CUTTING: u32 = 16;
 pub const FEEDWRIGHT_SPEED_ALONE: u32 = 32;
 /// This motion probes.
 pub const FEEDWRIGHT_PROBING: u32 = 64;
+/// The geometry of the model is to be compensated.
+pub const FEEDWRIGHT_GEOMETRY: u32 = 128;
+/// Every corrected joint is homed, so that its motor offset says where it is.
+pub const FEEDWRIGHT_HOMED: u32 = 256;
 /// Values that pass through at the most.
 pub const FEEDWRIGHT_CHANNELS: usize = 6;
 /// What a channel carries, in four bits of `carries` for each, the first in the lowest: this for a joint, this and 1 + n for a second motor of the
@@ -40,6 +45,8 @@ pub struct CInputs {
     command_mm: [f64; 3],
     /// Actual positions.
     actual_mm: [f64; 3],
+    /// Motor offsets: motor position less position of the joint.
+    offset_mm: [f64; 3],
     /// Delay of the command, 0.008 to 0.015. A setting out of its range is refused; the last good one stays in force.
     delay_s: f64,
     /// Largest distance of the drive's command from the path.
@@ -71,6 +78,8 @@ pub struct COutputs {
     feedback_mm: [f64; 3],
     /// Offsets of the drives' commands from the path.
     correction_mm: [f64; 3],
+    /// Offsets of the joints' commands from those of the control, by the geometry.
+    geometry_mm: [f64; 3],
     /// Commands of the drives of what passes through, and what the control takes for the actual positions.
     through_drive: [f64; FEEDWRIGHT_CHANNELS],
     through_feedback: [f64; FEEDWRIGHT_CHANNELS],
@@ -99,6 +108,10 @@ pub struct COutputs {
     times_out: u32,
     /// Joints that are corrected by what was learned while they moved: 1, 2 and 4.
     learned: u32,
+    /// Whether the geometry is compensated, and nothing of it fades.
+    compensates: u32,
+    /// Zero.
+    reserved: u32,
 }
 
 /// The link between command and drives.
@@ -106,6 +119,7 @@ pub struct CServo(TwoOrThree<Guarded<2>, Guarded<3>>);
 
 /// A link, and what stands in for it where it fails.
 struct Guarded<const N: usize> {
+    compensation: Compensation<N>,
     servo: Servo<N>,
     play_out: PlayOut<N>,
 }
@@ -152,7 +166,9 @@ pub unsafe extern "C" fn feedwright_servo_new(
 fn made<const N: usize>(bytes: &[u8], fault: &mut u32) -> Guarded<N> {
     let model = model_of(bytes);
     *fault = model.as_ref().err().map_or(0, |refused| number(LinkFault::Model(*refused)));
-    Guarded { servo: Servo::new(model), play_out: PlayOut::new() }
+    // A model that is refused compensates nothing.
+    let geometry = if model.is_ok() { geometry_of(bytes) } else { None };
+    Guarded { compensation: Compensation::new(geometry), servo: Servo::new(model), play_out: PlayOut::new() }
 }
 
 /// Tells the servo period of the thread, before the first step; the fault that there is then.
@@ -196,6 +212,20 @@ impl CInputs {
         self.flags & flag != 0
     }
 
+    fn limits(&self) -> LinkLimits {
+        let CInputs { delay_s, deviation_mm, speed_mm_s, correction_mm_s2, engaged_mm_s2, adaptive_scale, .. } = *self;
+        let speed_alone = self.is(FEEDWRIGHT_SPEED_ALONE);
+        LinkLimits { delay_s, deviation_mm, speed_mm_s, correction_mm_s2, engaged_mm_s2, adaptive_scale, speed_alone }
+    }
+
+    fn place<const N: usize>(&self) -> MachinePlace<N> {
+        MachinePlace {
+            zero_mm: first(self.offset_mm),
+            is_known: self.is(FEEDWRIGHT_HOMED),
+            is_wanted: self.is(FEEDWRIGHT_GEOMETRY),
+        }
+    }
+
     fn link<const N: usize>(&self) -> LinkInputs<N> {
         let carries = |i| match self.carries >> (4 * i as u32) & 15 {
             0 => Carries::Signal,
@@ -219,33 +249,29 @@ impl CInputs {
 
 impl<const N: usize> Guarded<N> {
     fn runs_at(&mut self, servo_s: f64) -> LinkFault {
+        self.compensation.runs_at(servo_s);
         self.play_out.runs_at(servo_s);
-        self.servo.runs_at(servo_s)
+        let fault = self.servo.runs_at(servo_s);
+        if fault != LinkFault::None {
+            self.compensation.refuse();
+        }
+        fault
     }
 
     fn step(&mut self, inputs: &CInputs) -> COutputs {
-        let of = inputs.link();
-        let CInputs { delay_s, deviation_mm, speed_mm_s, correction_mm_s2, engaged_mm_s2, adaptive_scale, .. } =
-            *inputs;
-        let speed_alone = inputs.is(FEEDWRIGHT_SPEED_ALONE);
-        let limits = LinkLimits {
-            delay_s,
-            deviation_mm,
-            speed_mm_s,
-            correction_mm_s2,
-            engaged_mm_s2,
-            adaptive_scale,
-            speed_alone,
-        };
+        let limits = inputs.limits();
+        let of = self.compensation.joints(&inputs.link(), &inputs.place(), &limits);
         let outputs = self.servo.step(&of, &limits);
+        let (feedback_mm, through) = self.compensation.tool(outputs.feedback_mm, outputs.through, &of.through.carries);
         let found = outputs.left.and_then(|left| left.evidence);
         self.play_out.keep(&of, outputs.drive_mm, outputs.delay_periods);
         COutputs {
             drive_mm: three(outputs.drive_mm),
-            feedback_mm: three(outputs.feedback_mm),
+            feedback_mm: three(feedback_mm),
             correction_mm: three(outputs.correction_mm),
-            through_drive: outputs.through.drive,
-            through_feedback: outputs.through.feedback,
+            geometry_mm: three(self.compensation.offset_mm()),
+            through_drive: through.drive,
+            through_feedback: through.feedback,
             contour_error_mm: outputs.contour_error_mm,
             without_mm: outputs.without_mm,
             adaptive_feed: outputs.adaptive_feed,
@@ -259,19 +285,24 @@ impl<const N: usize> Guarded<N> {
             is_settled: u32::from(outputs.is_settled),
             times_out: outputs.left.map_or(0, |left| left.count),
             learned: outputs.learned.iter().rev().fold(0, |bits, learned| 2 * bits + u32::from(*learned)),
+            compensates: u32::from(self.compensation.compensates()),
+            reserved: 0,
         }
     }
 
     fn play_out(&mut self, inputs: &CInputs) -> COutputs {
         let powered = inputs.is(FEEDWRIGHT_POWERED);
-        let out = self.play_out.step(&inputs.link());
+        let of = self.compensation.joints(&inputs.link(), &inputs.place(), &inputs.limits());
+        let out = self.play_out.step(&of);
+        let (feedback_mm, through) = self.compensation.tool(out.feedback_mm, out.through, &of.through.carries);
         let is_settled = out.delay_periods == 0;
         COutputs {
             drive_mm: three(out.drive_mm),
-            feedback_mm: three(out.feedback_mm),
+            feedback_mm: three(feedback_mm),
             correction_mm: three(out.correction_mm),
-            through_drive: out.through.drive,
-            through_feedback: out.through.feedback,
+            geometry_mm: three(self.compensation.offset_mm()),
+            through_drive: through.drive,
+            through_feedback: through.feedback,
             contour_error_mm: 0.0,
             without_mm: 0.0,
             adaptive_feed: 1.0,
@@ -291,6 +322,8 @@ impl<const N: usize> Guarded<N> {
             is_settled: u32::from(is_settled),
             times_out: 0,
             learned: 0,
+            compensates: u32::from(self.compensation.compensates()),
+            reserved: 0,
         }
     }
 }
@@ -318,6 +351,7 @@ fn number(fault: LinkFault) -> u32 {
             BlockError::Length => 5,
             BlockError::Checksum => 6,
             BlockError::Number(_) => 7,
+            BlockError::Geometry => 23,
         },
         LinkFault::Model(Refused::Kind) => 3,
         LinkFault::Model(Refused::Period) => 8,

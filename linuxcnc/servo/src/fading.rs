@@ -17,9 +17,14 @@ impl<const N: usize> Fading<N> {
     /// Nothing left to fade.
     pub const NONE: Self = Self { value_mm: [0.0; N], speed_mm_s: [0.0; N] };
 
+    /// From here on, with these speeds, mm/s.
+    pub fn from(value_mm: [f64; N], speed_mm_s: [f64; N]) -> Self {
+        Self { value_mm, speed_mm_s }
+    }
+
     /// From here on, at rest.
     pub fn from_rest(value_mm: [f64; N]) -> Self {
-        Self { value_mm, ..Self::NONE }
+        Self::from(value_mm, [0.0; N])
     }
 
     /// What is left, mm.

@@ -15,3 +15,4 @@ pub mod fading;
 pub mod limits;
 pub mod servo;
 pub mod play_out;
+pub mod compensation;

@@ -1,6 +1,6 @@
 //! What is read from a model file.
 
-use feedwright_control::{BlockError, ContourIdentifier, IdentifiedAxes, ModelBlock, Trained};
+use feedwright_control::{BlockError, ContourIdentifier, IdentifiedAxes, KnownGeometry, ModelBlock, Trained};
 
 /// Why a model cannot be used here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,12 +52,18 @@ const PERIOD_TOLERANCE: f64 = 1e-3;
 /// # Errors
 /// What is wrong with them.
 pub fn model_of<const N: usize>(bytes: &[u8]) -> Result<LinkModel<N>, Refused> {
-    let ModelBlock { servo_s, feed_period_s, trained } = ModelBlock::from_bytes(bytes).map_err(Refused::Block)?;
+    let block = ModelBlock::from_bytes(bytes).map_err(Refused::Block)?;
+    let ModelBlock { servo_s, feed_period_s, trained, .. } = block;
     match trained {
         Trained::Axes(axes) => Ok(LinkModel::Axes(axes)),
         Trained::Contour(identifier) => Ok(LinkModel::Contour(TrainedContour { identifier, servo_s, feed_period_s })),
         Trained::Servo(..) => Err(Refused::Kind),
     }
+}
+
+/// The geometry in these bytes; none where there is none, or no model.
+pub fn geometry_of<const N: usize>(bytes: &[u8]) -> Option<KnownGeometry<N>> {
+    ModelBlock::from_bytes(bytes).ok().and_then(|block| block.geometry)
 }
 
 /// The axes in these bytes.

@@ -1,7 +1,7 @@
 //! A simulated machine: the servo axes of [`feedwright_control::AxisLaw`], each with what a model file has of it.
 //!
 //! Loops, inertia, friction, delays, the drive's feedforward and filter, the disturbance, cogging, broadband torque, and the encoder's noise
-//! and step are those of the file. Two masses, geometry and jitter are not in a model file, and not here.
+//! and step are those of the file. The tool is where the geometry of the file has it. Two masses and jitter are not in a model file, and not here.
 //!
 //! ```text
 //! load = D sin(W t) + x                  t at the start of a mechanics period; x(c+1) = a x(c) + s sqrt(1 - a^2) n(c), a = exp(-dt / T)
@@ -15,7 +15,7 @@ use core::f64::consts::TAU;
 
 use feedwright_control::{
     AxisKnowledge, AxisLaw, AxisState, AxisStatistics, CommandQueue, DriveLaw, DriveReference, DriveState, FrictionLaw,
-    FrictionParameters, IdentifiedAxes, friction_signs, sin,
+    FrictionParameters, IdentifiedAxes, KnownGeometry, friction_signs, sin,
 };
 
 /// References and positions that are kept, servo periods: 20 ms each way at 1 ms, and some.
@@ -25,6 +25,7 @@ const KEPT: usize = 128;
 #[derive(Debug, Clone)]
 pub struct SimulatedMachine<const N: usize> {
     axes: [SimulatedAxis; N],
+    geometry: Option<KnownGeometry<N>>,
     /// Servo periods since the start.
     period: u64,
 }
@@ -36,13 +37,19 @@ impl<const N: usize> SimulatedMachine<N> {
         for (i, axis) in axes.iter_mut().enumerate() {
             axis.noise.state ^= splitmix(seed.wrapping_add(i as u64));
         }
-        Self { axes, period: 0 }
+        Self { axes, geometry: None, period: 0 }
     }
 
     /// The same axes, without noise and disturbance.
     pub fn without_noise(machine: &IdentifiedAxes<N>) -> Self {
         let quiet = |axis| SimulatedAxis::new(AxisKnowledge { statistics: AxisStatistics::NOTHING, ..axis });
-        Self { axes: machine.axes.map(quiet), period: 0 }
+        Self { axes: machine.axes.map(quiet), geometry: None, period: 0 }
+    }
+
+    /// With this geometry, or none.
+    #[must_use]
+    pub fn with_geometry(self, geometry: Option<KnownGeometry<N>>) -> Self {
+        Self { geometry, ..self }
     }
 
     /// Stands at a place.
@@ -64,9 +71,14 @@ impl<const N: usize> SimulatedMachine<N> {
         self.period += 1;
     }
 
-    /// Where the tool is, mm.
+    /// Where the joints are, mm.
     pub fn position_mm(&self) -> [f64; N] {
         self.axes.each_ref().map(SimulatedAxis::position_mm)
+    }
+
+    /// Where the tool is, mm.
+    pub fn tool_mm(&self) -> [f64; N] {
+        self.geometry.as_ref().map_or(self.position_mm(), |geometry| geometry.tool_mm(self.position_mm()))
     }
 
     /// Where the control has it, mm.

@@ -187,6 +187,33 @@ impl SetupJoints {
         lines
     }
 
+    /// What LinuxCNC compensates itself of the joints that are wired: the geometry of a model must not have it, too.
+    pub(crate) fn compensated(&self) -> Vec<String> {
+        let of = |joint: &SetupJoint| {
+            let section = joint.section();
+            let file = self.ini.entry(&section, "COMP_FILE").filter(|entry| !entry.value.is_empty());
+            let screw = file.map(|IniEntry { value, place, .. }| {
+                format!(
+                    "joint {} ({}): LinuxCNC compensates the screw by COMP_FILE = {value} ({place}). What is in a geometry as well is compensated \
+                     twice. Make the model file with 'feedwright block --no-geometry', or take COMP_FILE out: 'feedwright identify --geometry' reads \
+                     that file",
+                    joint.number, joint.letter
+                )
+            });
+            let gap = self.number(section, "BACKLASH").filter(|found| found.value != 0.0).map(|JointValue { value, place }| {
+                format!(
+                    "joint {} ({}): LinuxCNC compensates a BACKLASH of {value} {} ({place}). It stays in force: the component compensates none. \
+                     Where the position is measured on the table, take it out",
+                    joint.number,
+                    joint.letter,
+                    self.unit_name()
+                )
+            });
+            [screw, gap].into_iter().flatten()
+        };
+        self.wired().flat_map(of).collect()
+    }
+
     /// Why the joints cannot be wired.
     pub(crate) fn refusals(&self, simulates: bool) -> Vec<String> {
         let mut refusals = self.structure();

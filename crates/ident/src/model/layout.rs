@@ -138,7 +138,7 @@ fn refused(model: &Model) -> Option<String> {
     if model.kind() == IdentifierKind::Axes {
         return refused_axes(model);
     }
-    let bytes = model.block();
+    let bytes = model.block(None);
     let error = match model.axes() {
         2 => ModelBlock::<2>::from_bytes(&bytes).err(),
         _ => ModelBlock::<3>::from_bytes(&bytes).err(),
@@ -148,7 +148,7 @@ fn refused(model: &Model) -> Option<String> {
 
 /// What a range alone does not tell of axes.
 fn refused_axes(model: &Model) -> Option<String> {
-    if model.block().is_empty() {
+    if model.block(None).is_empty() {
         return Some(format!("servo_s is no whole multiple of mechanics_s, 1 to {MAX_MECHANICS_PER_SERVO} times"));
     }
     AxisKnowledge::NUMBERS.iter().zip(&model.weights.axes).find_map(|(number, values)| {

@@ -82,7 +82,7 @@ fn what_is_written_reads_back_to_the_bit() {
     for model in [servo::<2>(), servo::<3>(), contour::<2>(), contour::<3>(), axes::<2>(), axes::<3>()] {
         let read = Model::parse("written.model.toml", &model.text()).unwrap();
         assert_eq!(read, model);
-        assert_eq!(read.block(), model.block());
+        assert_eq!(read.block(None), model.block(None));
         assert_eq!(read.text(), model.text());
     }
     let (net, _) = Model::parse("m", &servo::<3>().text()).unwrap().servo::<3>().unwrap();
@@ -92,11 +92,11 @@ fn what_is_written_reads_back_to_the_bit() {
 
 #[test]
 fn the_block_is_what_control_takes() {
-    let taken = ModelBlock::<2>::from_bytes(&servo::<2>().block()).unwrap();
+    let taken = ModelBlock::<2>::from_bytes(&servo::<2>().block(None)).unwrap();
     assert_eq!(Some(taken), servo::<2>().control::<2>());
-    let taken = ModelBlock::<3>::from_bytes(&contour::<3>().block()).unwrap();
+    let taken = ModelBlock::<3>::from_bytes(&contour::<3>().block(None)).unwrap();
     assert_eq!(Some(taken), contour::<3>().control::<3>());
-    let taken = ModelBlock::<3>::from_bytes(&axes::<3>().block()).unwrap();
+    let taken = ModelBlock::<3>::from_bytes(&axes::<3>().block(None)).unwrap();
     assert_eq!(Some(taken), axes::<3>().control::<3>());
 }
 
@@ -305,7 +305,7 @@ fn a_file_that_cannot_be_read_is_told_of_as_a_model_file() {
     assert!(message.starts_with("cannot read model file") && hint.contains("identify --out"), "{message} {hint}");
     let (message, hint) = tell("huge", Some(&vec![b' '; 2 << 20]));
     assert!(message.ends_with("this is no model file") && hint.contains("pages of TOML"), "{message} {hint}");
-    let (message, hint) = tell("block", Some(&servo::<2>().block()));
+    let (message, hint) = tell("block", Some(&servo::<2>().block(None)));
     assert!(message.contains("is not text") && hint.contains("a model file is TOML text"), "{message} {hint}");
 }
 

@@ -3,38 +3,48 @@ use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
-use feedwright_ident::{Model, exact_block};
+use feedwright_control::KnownGeometry;
+use feedwright_ident::{Model, exact_block, identifier_name};
 use feedwright_sim::{Machine, is_machine_path};
 use miette::{Result, miette};
 
 use crate::command::args::block::BlockArgs;
 use crate::command::console::Console;
+use crate::command::controls::compensation;
 use crate::command::message::printed;
 use crate::command::streams::{tables, tell_written};
+use crate::command::terminal::wrapped;
+use crate::compensation::GeometryChoice;
 use crate::output::{OutputError, OutputFile, OutputFiles};
 
 pub(crate) fn run(args: &BlockArgs, console: &Console) -> Result<ExitCode> {
     let from = Path::new(&args.file);
     let is_model = from.to_string_lossy().ends_with(".model.toml");
-    let (bytes, axes, what) = if is_model {
+    let choice = compensation(&args.geometry)?;
+    let (bytes, axes, what, geometry) = if is_model {
         let model = Model::read(from)?;
         if args.axes.is_some_and(|axes| axes != model.axes()) {
             let hint = "identify the machine again with --axes";
             return Err(miette!(help = hint, "the model {} has {} axes", from.display(), model.axes()));
         }
-        (
-            model.block(),
-            model.axes(),
-            format!("the model of kind '{}'", feedwright_ident::identifier_name(model.kind())),
-        )
+        let machine = args.machine.as_deref().map(Machine::load).transpose()?;
+        let geometry = BlockGeometry::of(&choice, machine.as_ref())?;
+        let what = format!("the model of kind '{}'", identifier_name(model.kind()));
+        (model.block(geometry.known.as_ref()), model.axes(), what, geometry)
     } else {
+        if args.machine.is_some() {
+            let hint = "leave --machine out: the geometry is that of the machine itself, or of --geometry";
+            return Err(miette!(help = hint, "--machine goes with a model file (.model.toml), not with a machine"));
+        }
         let machine = Machine::load(&args.file)?;
         let axes = args.axes.unwrap_or(machine.axis_count());
         if axes > machine.axis_count() {
             let hint = "leave --axes out";
             return Err(miette!(help = hint, "the machine '{}' has {} axes", machine.name, machine.axis_count()));
         }
-        (exact_block(&machine, axes), axes, format!("the machine '{}' with its own numbers", machine.name))
+        let geometry = BlockGeometry::of(&choice, Some(&machine))?;
+        let what = format!("the machine '{}' with its own numbers", machine.name);
+        (exact_block(&machine, axes, geometry.known.as_ref()), axes, what, geometry)
     };
     let input = (is_model || is_machine_path(from)).then_some(from);
     let mut file = OutputFiles::new(input).start(&args.out)?;
@@ -43,5 +53,40 @@ pub(crate) fn run(args: &BlockArgs, console: &Console) -> Result<ExitCode> {
     let place = Some(args.out.as_path());
     let mut out = tables([place]);
     let told = writeln!(out, "{what}, {axes} axes: {} bytes", bytes.len());
+    let told = told.and_then(|()| writeln!(out, "{}", wrapped(&geometry.told, 2)));
     printed(told.and_then(|()| tell_written(&mut *out, [place])), ExitCode::SUCCESS)
+}
+
+/// The geometry of a block, and what is told of it.
+struct BlockGeometry {
+    known: Option<KnownGeometry<3>>,
+    told: String,
+}
+
+impl BlockGeometry {
+    /// What is chosen of a machine, if there is one.
+    fn of(choice: &GeometryChoice, machine: Option<&Machine>) -> Result<Self> {
+        let known = match (choice, machine) {
+            (_, Some(machine)) => choice.on_any_part(machine)?.compensated.as_deref().cloned(),
+            (GeometryChoice::File(file), None) => {
+                file.geometry.check()?;
+                Some(file.geometry.known()?)
+            }
+            (GeometryChoice::Off | GeometryChoice::Machine, None) => None,
+        };
+        let terms = choice.terms(machine).join(", ");
+        let told = match (choice, machine) {
+            _ if known.as_ref().is_some_and(|known| known.backlash_mm() != [0.0; 3]) => {
+                format!("geometry: {terms}. Backlash is left out: the component does not compensate it")
+            }
+            _ if known.is_some() => format!("geometry: {terms}"),
+            (GeometryChoice::Off, _) => "geometry: none, as --no-geometry says".to_owned(),
+            (_, None) => "geometry: none. A model file states none: name the machine with --machine, or a geometry file with --geometry".to_owned(),
+            (_, Some(machine)) if machine.has_hidden_backlash() => {
+                "geometry: none. An axis has backlash that its encoder does not see; --geometry FILE compensates all the same".to_owned()
+            }
+            _ => "geometry: none. The machine file states no errors".to_owned(),
+        };
+        Ok(Self { known, told })
+    }
 }
