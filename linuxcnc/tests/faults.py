@@ -295,6 +295,18 @@ class Cases:
         return f"G33 without delay; {self.quiet(recording)}"
 
 
+def all_of(cases, names):
+    """Runs cases, and prints what each came to. Returns the exit code."""
+    wrong = 0
+    for name in names:
+        try:
+            told = getattr(cases, name)()
+        except (AssertionError, headless.Failed) as error:
+            told, wrong = f"WRONG: {str(error)[-1500:]}", wrong + 1
+        print(f"{name[5:].replace('_', ' '):28} {told}", flush=True)
+    return 1 if wrong else 0
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--machine", required=True, help="MACHINE.fwmodel[:MODEL.fwmodel]")
@@ -302,15 +314,9 @@ def main():
     parser.add_argument("--quick", action="store_true", help="the first of each kind")
     args = parser.parse_args()
     files = [str(pathlib.Path(file).resolve()) for file in args.machine.split(":")]
-    cases, wrong = Cases(files[0], files[-1]), 0
+    cases = Cases(files[0], files[-1])
     names = [f"case_{name}" for name in QUICK] if args.quick else [name for name in dir(cases) if name.startswith("case_")]
-    for name in [name for name in names if args.only in name]:
-        try:
-            told = getattr(cases, name)()
-        except (AssertionError, headless.Failed) as error:
-            told, wrong = f"WRONG: {str(error)[-1500:]}", wrong + 1
-        print(f"{name[5:].replace('_', ' '):28} {told}", flush=True)
-    return 1 if wrong else 0
+    return all_of(cases, [name for name in names if args.only in name])
 
 
 if __name__ == "__main__":

@@ -203,6 +203,64 @@ def thread(machine):
     machine.mdi("M5")
 
 
+def places(machine, places, plane, params):
+    """Stands at places, and where a joint was jogged to alone; then probes across X, far along Y."""
+    machine.on()
+    machine.home()
+    for pin, value in params.items():
+        machine.hal("setp", pin, value)
+    machine.record()
+    for x, y, z in places:
+        machine.mdi(f"G21 G90 G1 X{x} Y{y} Z{z} F3000")
+        machine.wait(0.7)
+    machine.mode(machine.linuxcnc.MODE_MANUAL)
+    machine.command.teleop_enable(0)
+    machine.wait(0.2)
+    machine.command.jog(machine.linuxcnc.JOG_INCREMENT, 1, 1, 60.0, 180.0)
+    machine.wait(4.5)
+    machine.mdi(f"G1 X{plane + 0.2} F3000")
+    machine.wait(0.4)
+    machine.hal("setp", "probed.in1", plane)
+    machine.mdi(f"G38.2 X{plane - 0.2} F6")
+    machine.poll()
+    return {"probed": machine.status.probed_position[0], "compensates": machine.hal("getp", "feedwright.compensates")}
+
+
+def home_twice(machine):
+    """Homes, goes far, homes again from there, and goes far again; zeros of the joints."""
+    zeros, compensates = [], []
+    machine.on()
+    compensates.append(machine.hal("getp", "feedwright.compensates"))
+    machine.record()
+    for _ in range(2):
+        machine.home(120)
+        zeros.append([float(machine.hal("getp", f"joint.{i}.motor-offset")) for i in range(3)])
+        for place in ("X0 Y0 Z0", "X-100 Y-150 Z-50"):
+            machine.mdi(f"G21 G90 G1 {place} F6000")
+            machine.wait(0.7)
+        compensates.append(machine.hal("getp", "feedwright.compensates"))
+    return {"zeros": zeros, "compensates": compensates}
+
+
+def estop_far(machine):
+    """Power off and on, standing and in motion, far from zero."""
+    machine.on()
+    machine.home()
+    machine.record()
+    machine.mdi("G21 G90 G1 X150 Y200 F6000")
+    for k in range(4):
+        if k % 2:
+            machine.command.mdi(f"G1 X{150 - 10 * k} F3000")
+            machine.wait(0.3)
+        machine.command.state(machine.linuxcnc.STATE_ESTOP)
+        machine.wait(0.4)
+        machine.on()
+        machine.wait(0.4)
+        machine.mode(machine.linuxcnc.MODE_MDI)
+    machine.mdi("G1 X150 Y200 F3000")
+    return {"compensates": machine.hal("getp", "feedwright.compensates")}
+
+
 def soak(machine, **settings):
     """Random actions and faults."""
     import soaking

@@ -88,7 +88,7 @@ impl ErrorTable {
             if !(at_mm.is_finite() && error_mm.is_finite()) {
                 return Err(GeometryFault::NotFinite);
             }
-            if table.len > 0 && at_mm <= table.at_mm[table.len - 1] {
+            if table.len > 0 && at_mm <= table.point(table.len - 1)[0] {
                 return Err(GeometryFault::Order(table.len));
             }
             let (Some(at), Some(error)) = (table.at_mm.get_mut(table.len), table.error_mm.get_mut(table.len)) else {
@@ -109,21 +109,36 @@ impl ErrorTable {
         [self.at_mm[0], self.at_mm[self.len.saturating_sub(1).min(TABLE_POINTS - 1)]]
     }
 
-    /// Slope of the chord behind the n-th point.
-    fn chord(&self, n: usize) -> f64 {
-        (self.error_mm[n + 1] - self.error_mm[n]) / (self.at_mm[n + 1] - self.at_mm[n])
+    /// Position, error and slope of the n-th point; zero where there is none.
+    fn point(&self, n: usize) -> [f64; 3] {
+        match (self.at_mm.get(n), self.error_mm.get(n), self.slope.get(n)) {
+            (Some(&at_mm), Some(&error_mm), Some(&slope)) => [at_mm, error_mm, slope],
+            _ => [0.0; 3],
+        }
+    }
+
+    /// Length and slope of the chord behind the n-th point.
+    fn chord(&self, n: usize) -> [f64; 2] {
+        let ([from_mm, from_error_mm, _], [to_mm, to_error_mm, _]) = (self.point(n), self.point(n + 1));
+        [to_mm - from_mm, (to_error_mm - from_error_mm) / (to_mm - from_mm)]
     }
 
     /// Slopes at the points: those of the chords at the ends; within, their weighted harmonic mean, and 0 at a turn.
     fn set_slopes(&mut self) {
-        let last = self.len - 1;
-        self.slope[0] = self.chord(0);
-        self.slope[last] = self.chord(last - 1);
-        for n in 1..last {
-            let [before, after] = [self.chord(n - 1), self.chord(n)];
-            let [h, next_h] = [self.at_mm[n] - self.at_mm[n - 1], self.at_mm[n + 1] - self.at_mm[n]];
+        let last = self.len.saturating_sub(1);
+        for n in 0..self.len {
+            let ([h, before], [next_h, after]) = (self.chord(n.saturating_sub(1)), self.chord(n));
             let [w, next_w] = [2.0 * next_h + h, next_h + 2.0 * h];
-            self.slope[n] = if before * after > 0.0 { (w + next_w) / (w / before + next_w / after) } else { 0.0 };
+            let within = if before * after > 0.0 { (w + next_w) / (w / before + next_w / after) } else { 0.0 };
+            if let Some(slope) = self.slope.get_mut(n) {
+                *slope = if n == 0 {
+                    after
+                } else if n == last {
+                    before
+                } else {
+                    within
+                };
+            }
         }
     }
 
@@ -131,15 +146,11 @@ impl ErrorTable {
     fn at(&self, position_mm: f64) -> [f64; 2] {
         let held = self.at_mm.get(..self.len).unwrap_or(&self.at_mm);
         let after = held.partition_point(|&at_mm| at_mm <= position_mm);
-        let point = |n: usize| match (self.at_mm.get(n), self.error_mm.get(n), self.slope.get(n)) {
-            (Some(&at_mm), Some(&error_mm), Some(&slope)) => [at_mm, error_mm, slope],
-            _ => [0.0; 3],
-        };
-        let [to_mm, to_error_mm, to_slope] = point(after.min(held.len().saturating_sub(1)));
+        let [to_mm, to_error_mm, to_slope] = self.point(after.min(held.len().saturating_sub(1)));
         if after == 0 || after >= held.len() {
             return [to_error_mm, 0.0];
         }
-        let [from_mm, from_error_mm, from_slope] = point(after - 1);
+        let [from_mm, from_error_mm, from_slope] = self.point(after - 1);
         let (h, rise_mm) = (to_mm - from_mm, to_error_mm - from_error_mm);
         let part = (position_mm - from_mm) / h;
         let rest = 1.0 - part;
@@ -154,7 +165,7 @@ impl ErrorTable {
 
     /// Bound of the derivative: three times the steepest chord, as for every such cubic without overshoot.
     fn most_slope(&self) -> f64 {
-        (0..self.len - 1).map(|n| 3.0 * self.chord(n).abs()).fold(0.0, f64::max)
+        (1..self.len).map(|n| 3.0 * self.chord(n - 1)[1].abs()).fold(0.0, f64::max)
     }
 }
 
