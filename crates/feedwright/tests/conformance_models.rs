@@ -280,8 +280,11 @@ fn a_block_is_of_a_model_or_of_a_machine_and_nothing_is_written_where_neither_is
         .succeeded();
     let told = folder.run(&["block", "m.model.toml", "--out", "found.fwmodel"]).succeeded().stdout;
     assert!(told.contains("the model of kind 'axes', 2 axes: 660 bytes"), "{told}");
+    geometry_of_a_block(&folder);
     let before = folder.content();
     for (arguments, texts) in [
+        (["workshop", "--machine", "tnv40"], ["--machine goes with a model file", "leave --machine out"]),
+        (["workshop", "--geometry", "missing.toml"], ["missing.toml", "cannot"]),
         (
             ["m.model.toml", "--axes", "3"],
             ["the model m.model.toml has 2 axes", "identify the machine again with --axes"],
@@ -291,5 +294,28 @@ fn a_block_is_of_a_model_or_of_a_machine_and_nothing_is_written_where_neither_is
     ] {
         folder.run(&[&["block"], &arguments[..], &["--out", "more.fwmodel"]].concat()).refused(&texts);
         assert_eq!(folder.content(), before, "{arguments:?}");
+    }
+}
+
+/// Each way of naming a geometry, what is told of it, and whether the block then has one.
+fn geometry_of_a_block(folder: &Folder) {
+    let of_a_screw = "format = 1\n[axis.x]\nlead_mm_per_rev = 10\npitch_error_um = 3\nbacklash_um = 2\n";
+    folder.file("screw.toml", of_a_screw);
+    folder.file("line.toml", "format = 1\n[axis.x]\nstraightness_y = [\n  [-100, 0],\n  [100, 5],\n]\n");
+    let none = "geometry: none";
+    for (arguments, told, format) in [
+        (&["workshop"][..], "geometry: scale, pitch, squareness\n", 4),
+        (&["workshop", "--no-geometry"], "geometry: none, as --no-geometry says", 2),
+        (&["tnv40"], none, 2),
+        (&["router"], "geometry: none. An axis has backlash that its encoder does not see", 2),
+        (&["router", "--geometry", "screw.toml"], "geometry: pitch. Backlash is left out", 4),
+        (&["tnv40", "--geometry", "line.toml"], "geometry: straightness\n", 4),
+        (&["m.model.toml"], "geometry: none. A model file states none", 2),
+        (&["m.model.toml", "--machine", "workshop"], "geometry: scale, pitch, squareness\n", 4),
+        (&["m.model.toml", "--geometry", "line.toml"], "geometry: straightness\n", 4),
+    ] {
+        let said = folder.run(&[&["block"], arguments, &["--out", "some.fwmodel"]].concat()).succeeded().stdout;
+        assert!(said.replace("\n  ", " ").contains(told), "{arguments:?}: {said}");
+        assert_eq!(folder.content()[std::path::Path::new("some.fwmodel")][8], format, "{arguments:?}");
     }
 }

@@ -371,6 +371,10 @@ impl HalEdits<'_> {
             let _ = writeln!(self.added, "net {actual} => {}", sample(2));
         }
         let _ = writeln!(self.added, "net feedwright-feedback-{net} {} => {feedback}", passage.pin("feedback"));
+        for (name, pin) in [("offset", "motor-offset"), ("homed", "homed")].into_iter().filter(|_| is_corrected) {
+            let to = format!("feedwright.{name}-{}", passage.channel);
+            self.connect(&format!("{name}-{net}"), &passage.joint_pin(pin), &to);
+        }
     }
 
     /// The pins that hold or change the feed.
