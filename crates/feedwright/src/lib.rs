@@ -145,7 +145,7 @@ pub use measured::{MeasuredError, measured};
 #[cfg(feature = "files")]
 pub use output::{FileOperation, OutputError, OutputFile, OutputFiles};
 pub use recorded_model::{
-    MOST_FITTING, RecordedModel, RecordedModelError, built_in_line, fitting_machines, recorded_machine, recorded_model,
+    MOST_FITTING, RecordedModel, RecordedModelError, built_in_lines, fitting_machines, recorded_machine, recorded_model,
 };
 pub use report::figure::{
     COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline, figure_parts, write_figure_page, write_figure_part,

@@ -69,8 +69,7 @@ fn left_out<T>(keys: &[Key<T>]) -> Vec<(&'static str, String)> {
     let line = |key: &Key<T>| {
         let [least, most] = key.range;
         let unit = if key.unit.starts_with('(') { "" } else { key.unit };
-        let allowed =
-            if key.unit == "(0 or 1)" { "0 or 1".to_owned() } else { format!("{least} to {most} {unit}") };
+        let allowed = if key.unit == "(0 or 1)" { "0 or 1".to_owned() } else { format!("{least} to {most} {unit}") };
         (key.name, format!("# {} is left out: {}", key.name, allowed.trim_end()))
     };
     keys.iter().map(line).collect()

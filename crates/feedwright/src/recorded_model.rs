@@ -115,16 +115,33 @@ pub fn recorded_model(
     date: String,
     watch: &dyn Watch,
 ) -> Result<RecordedModel, RecordedModelError> {
-    let content = format!("model {axes} {} {choices:?} {machine:?}", entry.name);
-    let told = Told::of(&content, || {
+    let content = model_content(machine, axes, (entry, choices));
+    let make = || {
         let (told, doubts) = recorded_machine(machine, axes, choices.seed, watch)?;
         watch.begin("identifying from the log", 1);
-        let model = Setup::new(&told, choices).train(entry, axes, date);
-        let text = model.map_err(|error| not_told(machine, &error))?.text();
+        let text = trained(machine, &told, axes, (entry, choices), date)?;
         Ok(Told { text, doubts, fitting: vec![] })
-    })?;
+    };
+    let told = built_in::told(&content).map_or_else(|| Told::of(&content, make), Ok)?;
     let model = Model::parse("the model of the log", &told.text).map_err(|error| not_told(machine, &error))?;
     Ok(RecordedModel { model, doubts: told.doubts })
+}
+
+/// What the model of a log follows from.
+fn model_content(machine: &Machine, axes: usize, (entry, choices): (&Entry, &Choices)) -> String {
+    format!("model {axes} {} {choices:?} {machine:?}", entry.name)
+}
+
+/// The model file of a machine that a log told of.
+fn trained(
+    machine: &Machine,
+    told: &Machine,
+    axes: usize,
+    (entry, choices): (&Entry, &Choices),
+    date: String,
+) -> Result<String, RecordedModelError> {
+    let model = Setup::new(told, choices).train(entry, axes, date).map_err(|error| not_told(machine, &error))?;
+    Ok(model.text())
 }
 
 /// The first axes of a machine as their log tells them, and what the log does not tell well enough.
@@ -159,13 +176,28 @@ pub fn fitting_machines(
     told.fitting.iter().take(number).map(read).collect::<Result<_, _>>().map_err(|error| not_told(machine, &error))
 }
 
-/// One line of what the program is shipped with: what a log of a built-in machine tells, identified anew.
+/// What the program is shipped with of a built-in machine, made anew: what its log tells, and the model by that for a controller, as `run` has
+/// them by default. `date` becomes the date in the model.
 ///
 /// # Errors
-/// As [`recorded_machine`].
-pub fn built_in_line(machine: &Machine, axes: usize, watch: &dyn Watch) -> Result<String, RecordedModelError> {
+/// As [`recorded_model`].
+pub fn built_in_lines(
+    machine: &Machine,
+    axes: usize,
+    entry: &Entry,
+    date: String,
+    watch: &dyn Watch,
+) -> Result<Vec<String>, RecordedModelError> {
     let told = Told::identified(machine, axes, BUILT_IN_SEED, watch)?;
-    Ok(built_in::line(&content(machine, axes, BUILT_IN_SEED), &told))
+    let found = Machine::parse("the machine file of the log", &told.text).map_err(|error| not_told(machine, &error))?;
+    let choices = Choices { seed: BUILT_IN_SEED, tries: true, ..Choices::default() };
+    let mut lines = vec![built_in::line(&content(machine, axes, BUILT_IN_SEED), &told)];
+    // A log that tells a machine need not tell a model: that is said at each cut.
+    if let Ok(text) = trained(machine, &found, axes, (entry, &choices), date) {
+        let model = Told { text, doubts: told.doubts, fitting: vec![] };
+        lines.push(built_in::line(&model_content(machine, axes, (entry, &choices)), &model));
+    }
+    Ok(lines)
 }
 
 /// What the machine of a log follows from.

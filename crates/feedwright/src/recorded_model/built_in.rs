@@ -1,6 +1,6 @@
-//! What the logs of the built-in machines tell, shipped with the program: their first cut waits for no identification.
+//! What the logs of the built-in machines tell, and the models by that, shipped with the program: their first cut waits for no identification.
 //!
-//! `just built-in-logs` writes the file, one line for each machine and number of axes. A line is found by a hash of what it follows
+//! `just built-in-logs` writes the file, for each machine and number of axes a line of the log and one of the model for the default controller. A line is found by a hash of what it follows
 //! from: a machine with another value, or another seed, is identified anew. A test compares a line with a new identification.
 
 use serde::{Deserialize, Serialize};
