@@ -11,6 +11,10 @@ check:
 sweep:
     FEEDWRIGHT_SWEEP=1 cargo test --release --workspace --locked -- --include-ignored
 
+# Builds wheel, Debian packages and archive, installs each into an empty place and cuts the star with it.
+packages profile="dist":
+    packaging/check {{ profile }}
+
 # Cut a part and write its report.
 run part="parts/star.ngc" *options:
     cargo run --release -- run {{ part }} {{ options }}
