@@ -45,7 +45,8 @@ pub struct AxisErrors {
     pub pitch_rad_per_mm: f64,
     /// Its phase at position 0, rad.
     pub pitch_phase_rad: f64,
-    /// Backlash, mm: the tool is half of it behind in either direction. It depends on the direction, and is not part of the map.
+    /// Lost motion, mm: backlash, and what friction winds the screw up. The tool is half of it behind in either direction. It depends
+    /// on the direction, and is not part of the map.
     pub backlash_mm: f64,
 }
 
@@ -238,12 +239,12 @@ impl<const N: usize> KnownGeometry<N> {
             && self.tables.iter().flatten().all(Option::is_none)
     }
 
-    /// Backlash of each axis, mm.
+    /// Lost motion of each axis, mm.
     pub fn backlash_mm(&self) -> [f64; N] {
         self.axes.map(|axis| axis.backlash_mm)
     }
 
-    /// With this backlash of each axis, mm.
+    /// With this lost motion of each axis, mm.
     #[must_use]
     pub fn with_backlash(mut self, backlash_mm: [f64; N]) -> Self {
         for (axis, backlash_mm) in self.axes.iter_mut().zip(backlash_mm) {

@@ -32,6 +32,17 @@ fn the_geometry_of_the_machine_file_is_compensated_unless_that_is_turned_off() {
     assert!(tool_um < 0.3 * off_um && by_encoders_um < 1.5 * tool_um, "{tool_um} {off_um} {by_encoders_um}");
 }
 
+/// Windup and backlash of its thin screws are most of what is left of the error of `router`.
+#[test]
+fn the_lost_motion_of_a_machine_with_backlash_is_compensated() {
+    let folder = Folder::new();
+    folder.file("star.ngc", STAR);
+    let ([with_um, _], geometry) = rms_um(&folder, &["--machine", "router"]);
+    assert_eq!(geometry["terms"], serde_json::json!(["backlash"]));
+    let ([without_um, _], _) = rms_um(&folder, &["--machine", "router", "--no-geometry"]);
+    assert!(with_um < 0.7 * without_um, "{with_um} {without_um}");
+}
+
 #[test]
 fn a_geometry_file_takes_the_place_of_the_machine_file_and_is_as_good_as_it_says() {
     let folder = Folder::new();

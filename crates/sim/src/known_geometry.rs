@@ -98,34 +98,38 @@ impl Machine {
         (!geometry.is_exact()).then_some(geometry)
     }
 
-    /// The same machine with a control that compensates this geometry, whatever the errors of the machine are.
+    /// The same machine with a control that compensates this geometry, whatever the errors of the machine are. The windup of its
+    /// screws is part of the lost motion, and is not in `known`.
     ///
     /// # Errors
     /// A geometry that is out of its range.
     pub fn compensating(&self, known: KnownGeometry<3>) -> Result<Self, CompensationError> {
         known.check()?;
-        Ok(Self { compensated: Some(Arc::new(known)), ..self.clone() })
+        let backlash_mm = known.backlash_mm();
+        let lost_mm = [0, 1, 2].map(|i| backlash_mm[i] + self.axis(i).hidden_windup_mm());
+        Ok(Self { compensated: Some(Arc::new(known.with_backlash(lost_mm))), ..self.clone() })
     }
 
-    /// The same machine with a control that compensates what the machine file says of its geometry.
+    /// The same machine with a control that compensates what the machine file says of its geometry. Where an axis has backlash that its
+    /// encoder does not see, this is the lost motion alone: a table behind a gap does not follow the small steps that the rest asks for.
     ///
     /// # Errors
     /// As [`Machine::compensating`].
     pub fn compensating_own(&self) -> Result<Self, CompensationError> {
-        let backlash_mm = [0, 1, 2].map(|i| self.hidden_backlash_mm(i));
-        let exact = || KnownGeometry::new([AxisErrors::default(); 3], [0.0; 3]);
-        let known = self.errors_of_geometry().unwrap_or_else(exact).with_backlash(backlash_mm);
-        if known.is_exact() { Ok(Self { compensated: None, ..self.clone() }) } else { self.compensating(known) }
+        let backlash_mm = [0, 1, 2].map(|i| self.axis(i).hidden_backlash_mm());
+        let exact = KnownGeometry::new([AxisErrors::default(); 3], [0.0; 3]);
+        if self.has_hidden_backlash() {
+            return self.compensating(exact.with_backlash(backlash_mm));
+        }
+        match self.errors_of_geometry() {
+            Some(known) => self.compensating(known),
+            None => Ok(Self { compensated: None, ..self.clone() }),
+        }
     }
 
     /// Whether an axis has backlash that its encoder does not see.
     pub fn has_hidden_backlash(&self) -> bool {
-        (0..self.axis_count()).any(|i| self.hidden_backlash_mm(i) > 0.0)
-    }
-
-    /// Backlash of an axis that its encoder does not see, mm: a scale on the table sees the gap.
-    fn hidden_backlash_mm(&self, i: usize) -> f64 {
-        self.axis(i).transmission.filter(|screw| !screw.scale_on_table).map_or(0.0, |screw| 1e-3 * screw.backlash_um)
+        self.axes.iter().any(|axis| axis.hidden_backlash_mm() > 0.0)
     }
 }
 

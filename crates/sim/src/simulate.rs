@@ -8,19 +8,21 @@
 //! |---|---|
 //! | `simulate/foot.rs` | how far along the path the tool has come, and so the contour error |
 //! | `simulate/joints.rs` | the contour error without the geometric errors that no encoder sees |
-//! | `simulate/reversals.rs` | the command across a backlash that is known |
+//! | `simulate/lost_motion.rs` | the command ahead of a table that lags by lost motion |
 //! | `simulate/rests.rs` | which part of a long rest is simulated |
 //! | `simulate/uncut.rs` | how far the tool stays away from what it should have cut |
 //! | `simulate/tick_times.rs` | how long the ticks took |
 
 pub(crate) mod foot;
 mod joints;
+mod lost_motion;
 mod rests;
-mod reversals;
 mod tick_times;
 pub(crate) mod uncut;
 
-use feedwright_control::{Bounds, Controller, Fade, Knot, KnownGeometry, Setpoint, State, Tick};
+use feedwright_control::{
+    Bounds, Controller, Fade, Knot, KnownGeometry, Setpoint, State, Tick, TransmissionParameters,
+};
 use feedwright_plan::vector::{Vector, distance, sub};
 
 use crate::kinematics::{joints_of, tool_of};
@@ -32,7 +34,7 @@ use crate::watch::{Cancelled, Watch};
 use foot::{FootTracker, settled_periods, settled_s};
 pub use joints::JointError;
 use joints::JointErrorMeter;
-use reversals::Reversals;
+use lost_motion::LostMotion;
 pub use tick_times::TickTimes;
 use uncut::Uncut;
 
@@ -141,7 +143,7 @@ pub(crate) fn simulate<const N: usize>(
 struct ClosedLoop<'a, const N: usize> {
     machine: &'a Machine,
     joints: Joints<'a, N>,
-    reversals: Reversals<N>,
+    lost_motion: LostMotion<N>,
     servo_s: f64,
     kept_s: f64,
     lost_mm: f64,
@@ -187,7 +189,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         Self {
             machine,
             joints,
-            reversals: Reversals::new(uncrossed_mm(known, controller), accel_mm_s2, servo_s),
+            lost_motion: LostMotion::new(uncrossed_mm(known, controller), accel_mm_s2),
             servo_s,
             kept_s: KEPT_SETTLED_TIMES * settled_s(machine),
             lost_mm: LOST_MM.max(LOST_LAGS * machine.limits.rapid_mm_s * slowest_s),
@@ -231,7 +233,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         // And where the encoders say so: what they do not see is not waited for.
         let to_go_mm = distance(measurement.joint_mm, self.joints.at(sample.position_mm));
         let foot = self.foot.foot(reference, tau_s, sample.s_mm, tool_of(measurement.position_mm));
-        let lead_mm = Axes { reference, joints: self.joints, reversals: &mut self.reversals }.lead_mm(setpoint.tau_s);
+        let lead_mm = Axes { reference, joints: self.joints, lost_motion: self.lost_motion }.lead_mm(setpoint.tau_s);
         let row = Row {
             corrected_mm: self.joints.tool(sub(setpoint.command_mm, lead_mm)),
             ..row(t_s, &setpoint, &measurement, &sample, &foot, to_go_mm <= ARRIVED_MM)
@@ -252,7 +254,6 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
             meter.row(reference, tau_s, self.joints.tool(measurement.joint_mm), &row);
         }
         reference.forget_before(tau_s - self.kept_s);
-        self.reversals.forget_before(tau_s - self.kept_s);
         if let Some(ended_s) = self.ended_s
             && (to_go_mm <= ARRIVED_MM || t_s >= ended_s + ARRIVAL_S)
         {
@@ -275,8 +276,8 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
     ) -> Setpoint<N> {
         let began = watch.clock();
         let setpoint = {
-            let Self { tick, joints, reversals, seen_mm, .. } = self;
-            tick.step(&mut Axes { reference, joints: *joints, reversals }, controller, *seen_mm)
+            let Self { tick, joints, lost_motion, seen_mm, .. } = self;
+            tick.step(&mut Axes { reference, joints: *joints, lost_motion: *lost_motion }, controller, *seen_mm)
         };
         if setpoint.decided {
             self.run.ticks.add(watch.clock().saturating_sub(began).as_nanos());
@@ -412,21 +413,18 @@ impl<const N: usize> Joints<'_, N> {
     }
 }
 
-/// The planned path as the tick sees it: the joints, ahead by the backlash that the controller does not cross itself.
+/// The planned path as the tick sees it: the joints, ahead by the lost motion that the controller does not cross itself.
 struct Axes<'a, 'p, 'k, const N: usize> {
     reference: &'a mut Reference<'p>,
     joints: Joints<'k, N>,
-    reversals: &'a mut Reversals<N>,
+    lost_motion: LostMotion<N>,
 }
 
 impl<const N: usize> Axes<'_, '_, '_, N> {
     /// By how much the joints are ahead, mm.
     fn lead_mm(&mut self, tau_s: f64) -> [f64; N] {
-        let reference = &mut *self.reference;
-        self.reversals.lead_mm(tau_s, |at_s| {
-            let Sample { tangent, feed_mm_s, .. } = reference.at(at_s);
-            joints_of(tangent.map(|part| feed_mm_s * part))
-        })
+        let Self { reference, lost_motion, .. } = self;
+        lost_motion.lead_mm(tau_s, |at_s| joints_of(reference.at(at_s).position_mm))
     }
 }
 
@@ -442,14 +440,11 @@ impl<const N: usize> feedwright_control::KnotSource<N> for Axes<'_, '_, '_, N> {
     }
 }
 
-/// Backlash that is known, less what the controller crosses by its own model of the screw, mm.
+/// Lost motion that is known, mm; none where the controller leads the motor by its own model of the screw.
 fn uncrossed_mm<const N: usize>(known: Option<&KnownGeometry<N>>, controller: &dyn Controller<N>) -> [f64; N] {
-    let axes = controller.known();
     let Some(known) = known else { return [0.0; N] };
-    let crossed_mm =
-        |i: usize| axes.map_or(0.0, |axes| axes[i].transmission.backlash_rad / axes[i].parameters.rad_per_mm);
-    let backlash_mm = known.backlash_mm();
-    std::array::from_fn(
-        |i| if backlash_mm[i] > 0.0 { (backlash_mm[i] - crossed_mm(i)).max(0.0) } else { backlash_mm[i] },
-    )
+    let axes = controller.known();
+    let crosses = |i: usize| axes.as_ref().is_some_and(|axes| axes[i].transmission != TransmissionParameters::RIGID);
+    let lost_mm = known.backlash_mm();
+    std::array::from_fn(|i| if crosses(i) { 0.0 } else { lost_mm[i] })
 }

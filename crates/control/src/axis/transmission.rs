@@ -33,6 +33,12 @@ pub struct TransmissionParameters {
 impl TransmissionParameters {
     /// A screw that does not give.
     pub const RIGID: Self = Self { table_share: 0.0, resonance_rad_s: 0.0, damping_ratio: 0.0, backlash_rad: 0.0 };
+
+    /// What the friction of both directions winds the screw of an axis up, rad: 2 Fc / k. 0 where it is rigid.
+    pub fn windup_rad(&self, inertia_kg_m2: f64, coulomb_friction_nm: f64) -> f64 {
+        let stiffness_nm_rad = inertia_kg_m2 * self.table_share * self.resonance_rad_s * self.resonance_rad_s;
+        if stiffness_nm_rad > 0.0 { 2.0 * coulomb_friction_nm / stiffness_nm_rad } else { 0.0 }
+    }
 }
 
 /// Where the table is and how fast, at the motor shaft.

@@ -65,7 +65,9 @@ impl Band {
         };
         let beginning = first_s.map_or_else(String::new, |first_s| format!(", the first {first_s:.0} s of the cut"));
         let joints = joint_rms_um.as_ref().zip(joint_max_um.as_ref());
-        let joints = joints.map_or_else(String::new, |(rms, max)| format!("; by the encoders: {}", both(rms, max)));
+        let tool = both(rms_um, max_um);
+        let joints = joints.map(|(rms, max)| both(rms, max)).filter(|joints| *joints != tool);
+        let joints = joints.map_or_else(String::new, |joints| format!("; by the encoders: {joints}"));
         let lost = if *diverged == 0 {
             String::new()
         } else {

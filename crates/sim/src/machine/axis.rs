@@ -206,6 +206,22 @@ impl Axis {
         })
     }
 
+    /// Backlash that the encoder does not see, mm: a scale on the table sees the gap.
+    pub fn hidden_backlash_mm(&self) -> f64 {
+        self.hidden_screw().map_or(0.0, |screw| 1e-3 * screw.backlash_um)
+    }
+
+    /// What the friction of both directions winds the screw up before the table moves, without the encoder seeing it, mm.
+    pub fn hidden_windup_mm(&self) -> f64 {
+        let windup_rad = self.transmission().windup_rad(self.inertia_kg_m2, self.coulomb_friction_nm);
+        self.hidden_screw().map_or(0.0, |_| windup_rad / self.rad_per_mm())
+    }
+
+    /// The screw, where the encoder is at the motor.
+    fn hidden_screw(&self) -> Option<Transmission> {
+        self.transmission.filter(|screw| !screw.scale_on_table)
+    }
+
     /// Turn of the motor for a travel, rad/mm.
     pub fn rad_per_mm(&self) -> f64 {
         TAU / self.lead_mm_per_rev

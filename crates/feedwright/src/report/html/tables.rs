@@ -62,7 +62,10 @@ fn write_summary_row(
         swatch(index),
         escaped(&run.controller)
     )?;
-    let joints = |um: Option<f64>| um.map_or(String::new(), |um| format!("<small>{} by encoders</small>", number(um)));
+    let joints = |um: Option<f64>, tool_um: f64| {
+        let shown = um.map(number).filter(|shown| *shown != number(tool_um));
+        shown.map_or(String::new(), |shown| format!("<small>{shown} by encoders</small>"))
+    };
     let mut cell = |label: &str, text: String, value: fn(&RunSummary, usize) -> f64, k: usize| {
         // A value that a run does not have is no number, and has no ratio.
         let ratio = first.and_then(|f| change(value(f, k), value(run, k)));
@@ -70,7 +73,7 @@ fn write_summary_row(
         write!(out, "<td role=\"cell\" data-label=\"{label}\">{text}{ratio}</td>")
     };
     let [rms, max] = [(run.rms_um, run.joint_rms_um), (run.max_um, run.joint_max_um)]
-        .map(|(um, joint_um)| format!("{}{}", number(um), joints(joint_um)));
+        .map(|(um, joint_um)| format!("{}{}", number(um), joints(joint_um, um)));
     cell("RMS error, µm", rms, |r, _| r.rms_um, 0)?;
     cell("Largest error, µm", max, |r, _| r.max_um, 0)?;
     cell("Uncut path, µm", number(run.uncut_um), |r, _| r.uncut_um, 0)?;

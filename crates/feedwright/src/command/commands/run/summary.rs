@@ -112,7 +112,11 @@ fn table(runs: &[ReportedRun], uncorrected: &[CutsUncorrected]) -> ConsoleTable 
             table.remark(why.to_string());
         }
         if let (Some(rms_um), Some(max_um)) = (now.joint_rms_um, now.joint_max_um) {
-            table.remark(format!("by the encoders: RMS {rms_um:.2}, max {max_um:.2} um"));
+            let both = |rms_um: f64, max_um: f64| format!("RMS {rms_um:.2}, max {max_um:.2} um");
+            let encoders = both(rms_um, max_um);
+            if encoders != both(now.rms_um, now.max_um) {
+                table.remark(format!("by the encoders: {encoders}"));
+            }
         }
         if let Ending::Diverged { at_s } = now.outcome {
             table.remark(format!("diverged at {at_s:.3} s: the servo loop of this machine is unstable"));
