@@ -31,5 +31,6 @@ fn run(command: CommandArgs, console: &Console) -> Result<ExitCode> {
         CommandArgs::Independent(args) => commands::independent::run(&args, console),
         CommandArgs::Paper(args) => commands::paper::run(&args, console),
         CommandArgs::ExportContour(args) => commands::export_contour::run(&args, console),
+        CommandArgs::BallBar(args) => commands::ball_bar::run(&args, console),
     }
 }

@@ -8,6 +8,7 @@
 //! | `geometry/text.rs` | keys, columns and rows of a text |
 //! | `geometry/unknowns.rs` | the unknowns that a measurement may tell |
 //! | `geometry/readings.rs` | readings before and behind the fit: bins, repeatability, tables |
+//! | `geometry/circularity.rs` | circular deviations of a ball bar |
 //! | `geometry/fit.rs` | the fit |
 //! | `geometry/comp_file.rs` | compensation files of LinuxCNC, read and written |
 //! | `geometry/formats.rs` | recognizes a file, and reads its rows |
@@ -18,6 +19,7 @@
 pub(crate) mod text;
 mod unknowns;
 pub(crate) mod readings;
+pub(crate) mod circularity;
 pub(crate) mod fit;
 pub(crate) mod comp_file;
 pub(crate) mod formats;

@@ -39,7 +39,7 @@
 //! | Axis with known drive settings | [`identify_axis`], [`DriveSettings`], [`AxisParameters`], [`AxisEstimate`], [`NotIdentified`] |
 //! | Models for controllers | [`train_axes`], [`train_servo`], [`train_contour`], [`axis_statistics`] |
 //! | Model files | [`Model`], [`Origin`], [`exact_block`] |
-//! | Geometry from measurements | [`GeometryInput`], [`fit_geometry`], [`FoundGeometry`], [`comp_file`] |
+//! | Geometry from measurements | [`GeometryInput`], [`fit_geometry`], [`FoundGeometry`], [`Circularity`], [`comp_file`] |
 //! | Geometry: programs, simulated bar | [`BallBarProgram`], [`GridProgram`], [`SimulatedBallBar`] |
 //! | Numbers | [`Spectrum`], [`median_and_spread`], [`quadratic_mean`] |
 //!
@@ -82,6 +82,7 @@ pub use excite::recorded::recorded_log;
 pub use excite::{
     AxisExcitation, ExciteError, ExciteOptions, ExciteProgram, MotionPart, excitation_program, next_excitation,
 };
+pub use geometry::circularity::Circularity;
 pub use geometry::comp_file::{comp_file, geometry_of_tables, sampled_table};
 pub use geometry::fit::{FoundGeometry, FoundGeometryValue, FoundSet, NoGeometry, fit_geometry};
 pub use geometry::formats::GeometryInput;

@@ -8,10 +8,12 @@ pub(crate) mod never_worse;
 pub(crate) mod held_out;
 pub(crate) mod paper;
 pub(crate) mod export_contour;
+pub(crate) mod ball_bar;
 
 use clap::{Parser, Subcommand};
 use feedwright::command::{COLUMNS, CommonArgs, RunArgs};
 
+use ball_bar::BallBarArgs;
 use compare::CompareArgs;
 use export_contour::ExportContourArgs;
 use held_out::HeldOutArgs;
@@ -52,4 +54,5 @@ pub(crate) enum CommandArgs {
         name: Option<String>,
     },
     ExportContour(ExportContourArgs),
+    BallBar(BallBarArgs),
 }

@@ -7,7 +7,8 @@
 //! The noise of a set is what the fit leaves of it; fit and noise are found in turns. Residuals that follow each other alike, as
 //! those of a servo that lags, tell less than independent ones: standard deviations are multiplied by sqrt(tau), tau = 1 + 2 times the
 //! sum of the autocorrelations up to the first that is negative (Geyer 1992, Practical Markov chain Monte Carlo). A pitch error that an
-//! F-test at 0.1 % does not tell from none is left out.
+//! F-test at 0.1 % does not tell from none is left out. The windup of a screw is taken off the deviations. It is known to a tenth, which adds
+//! to the variance of the backlash.
 
 use feedwright_sim::{
     AXIS_NAMES, CHECK_ERROR_RATE, GeometryCheck, GeometryFile, GeometryOrigin, GeometryRefused, MeasuredSet, NUISANCES,
@@ -16,7 +17,8 @@ use feedwright_sim::{
 use miette::Diagnostic;
 use thiserror::Error;
 
-use super::readings::{KnownScrew, binned, repeatability_um, table_of, take_off_windup};
+use super::circularity::Circularity;
+use super::readings::{KnownScrew, WINDUP_DOUBT, binned, repeatability_um, table_of, take_off_windup};
 use super::unknowns::{PAIRS, Unknown, UnknownKind, angle, shows_turns, unknowns};
 use crate::model::version;
 
@@ -76,6 +78,8 @@ pub struct FoundSet {
     pub repeatability_um: Option<f64>,
     /// Factor tau by which its residuals tell less than independent ones.
     pub correlation: f64,
+    /// Circular deviations of a ball bar, as it was read.
+    pub circularity: Option<Circularity>,
     /// Nuisances: name, value, unit.
     pub nuisances: Vec<(&'static str, f64, &'static str)>,
 }
@@ -125,13 +129,17 @@ struct GeometryFit {
     seen: Vec<Vec<Observation>>,
     unknowns: Vec<Unknown>,
     repeatability_um: Vec<Option<f64>>,
+    circularity: Vec<Option<Circularity>>,
     solution: RankedLeastSquares,
     correlation: Vec<f64>,
+    /// Standard deviation of the windup of each axis that was taken off, um.
+    windup_std_um: [f64; 3],
     notes: Vec<String>,
 }
 
 impl GeometryFit {
     fn new(mut sets: Vec<MeasuredSet>, screws: [Option<KnownScrew>; 3]) -> Result<Self, NoGeometry> {
+        let circularity = sets.iter().map(Circularity::of).collect();
         let mut notes = Vec::new();
         for (axis, screw) in screws.iter().enumerate().filter_map(|(axis, screw)| Some((axis, screw.as_ref()?))) {
             if screw.windup_um > 0.0 {
@@ -168,7 +176,8 @@ impl GeometryFit {
         let unknowns = unknowns(&axes, &planes, turns);
         let solution = RankedLeastSquares::default();
         let correlation = vec![1.0; sets.len()];
-        Ok(Self { sets, seen, unknowns, repeatability_um, solution, correlation, notes })
+        let windup_std_um = screws.map(|screw| screw.map_or(0.0, |screw| WINDUP_DOUBT * screw.windup_um));
+        Ok(Self { sets, seen, unknowns, repeatability_um, circularity, solution, correlation, windup_std_um, notes })
     }
 
     fn rows(&self) -> usize {
@@ -301,8 +310,9 @@ impl GeometryFit {
                 let found = put(format!("scale {name}"), "um/m", scale);
                 (file.axes[axis].scale_um_m, file.axes[axis].scale_std_um_m) = (found.value, found.std);
             }
-            if let Some(backlash) = self.sum(|unknown| unknown.unit.axes[axis].backlash_um) {
-                let found = put(format!("backlash {name}"), "um", backlash);
+            if let Some((backlash, std)) = self.sum(|unknown| unknown.unit.axes[axis].backlash_um) {
+                let std = libm::hypot(std, self.windup_std_um[axis]);
+                let found = put(format!("backlash {name}"), "um", (backlash, std));
                 (file.axes[axis].backlash_um, file.axes[axis].backlash_std_um) = (found.value, found.std);
             }
             if let Some([amplitude, phase, lead_mm]) = self.pitch(axis) {
@@ -438,6 +448,7 @@ impl GeometryFit {
             left_um: rms(&left),
             repeatability_um: self.repeatability_um[at],
             correlation: self.correlation[at],
+            circularity: self.circularity[at],
             nuisances: nuisances.map(|((name, unit), value)| (name, value, unit)).collect(),
         }
     }

@@ -37,6 +37,7 @@ impl FoundGeometry {
             let nuisances =
                 set.nuisances.iter().map(|(name, value, unit)| format!("{name} {} {unit}", to_four_digits(*value)));
             lines.push(format!("  {}", nuisances.collect::<Vec<_>>().join(", ")));
+            lines.extend(set.circularity.map(|circularity| format!("  {}", circularity.line())));
         }
         lines.extend(self.notes.iter().cloned());
         lines
@@ -56,6 +57,12 @@ impl FoundGeometry {
                 "left_um": set.left_um,
                 "repeatability_um": set.repeatability_um,
                 "correlation": set.correlation,
+                "circularity": set.circularity.map(|of| json!({
+                    "g_ccw_um": of.deviation_um[0],
+                    "g_cw_um": of.deviation_um[1],
+                    "h_um": of.hysteresis_um,
+                    "f_um": of.radial_um,
+                })),
                 "nuisances": nuisances.collect::<Vec<_>>(),
             })
         });

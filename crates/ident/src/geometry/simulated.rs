@@ -35,17 +35,25 @@ impl SimulatedBallBar {
     /// # Errors
     /// A machine without a plan.
     pub fn text(&self, machine: &Machine) -> Result<String, RunError> {
-        let [x, y, z] = self.center_mm;
-        if self.program.plane == [0, 1] && z == 0.0 {
-            return self.cut::<2>(machine, format!("G10 L2 P1 X{x} Y{y}\nG54\n"));
-        }
-        self.cut::<3>(machine, format!("G10 L2 P1 X{x} Y{y} Z{z}\nG54\n"))
+        self.text_of(machine, &self.program.text())
     }
 
-    fn cut<const N: usize>(&self, machine: &Machine, shift: String) -> Result<String, RunError> {
+    /// The same with a program in the place of its own, such as that one corrected.
+    ///
+    /// # Errors
+    /// A program that cannot be read, or a machine without a plan.
+    pub fn text_of(&self, machine: &Machine, program: &str) -> Result<String, RunError> {
+        let [x, y, z] = self.center_mm;
+        if self.program.plane == [0, 1] && z == 0.0 {
+            return self.cut::<2>(machine, format!("G10 L2 P1 X{x} Y{y}\nG54\n") + program);
+        }
+        self.cut::<3>(machine, format!("G10 L2 P1 X{x} Y{y} Z{z}\nG54\n") + program)
+    }
+
+    fn cut<const N: usize>(&self, machine: &Machine, program: String) -> Result<String, RunError> {
         let machine = machine.with_noise_seed(self.seed);
-        let program = shift + &self.program.text().replace("M0 (", "G4 P0.5 (");
-        // The program is our own; what cannot be read ends it.
+        // A stop of the program is a rest in which the bar is mounted. What cannot be read ends it.
+        let program = program.replace("M0 (", "G4 P0.5 (");
         let canon = Reader::from_text("ballbar.ngc", program.as_str(), Settings::default())?.map_while(Result::ok);
         let mut reference = Stages::of(&machine).reference(path_steps(canon), &machine)?;
         let mut plant = Plant::<N>::new(&machine, joints_of(reference.at(0.0).position_mm));
@@ -81,8 +89,9 @@ struct BarRecord<'b> {
     arc: Option<[f64; 4]>,
 }
 
-/// Distance of the command from the circle at which the bar is on it, mm: beyond the rounding of its corners.
-const ON_CIRCLE_MM: f64 = 0.1;
+/// Distance of the command from the circle at which the bar is on it, mm: beyond the rounding of its corners, and beyond what a
+/// corrected program departs from it.
+const ON_CIRCLE_MM: f64 = 0.5;
 
 impl<'b> BarRecord<'b> {
     fn new(bar: &'b SimulatedBallBar) -> Self {

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use feedwright::command::ReaderArgs;
-use feedwright_sim::{CompensationError, Machine, Squareness};
+use feedwright_sim::{GeometryFile, Machine, Squareness};
+use miette::Result;
 
 use crate::compare::{Knowledge, MAX_SEEDS, Shard};
 
@@ -52,8 +53,9 @@ pub(crate) struct CompareArgs {
     /// What controllers are given of the machine; a row for each.
     #[arg(long, value_name = "GIVEN,...", value_enum, value_delimiter = ',', default_values_t = [Given::Own, Given::Identified, Given::TwentyPercentOff, Given::Unseen])]
     pub(crate) knowledge: Vec<Given>,
-    /// Geometry that every control compensates, uncorrected or not.
-    #[arg(long, value_name = "GEOMETRY", value_enum, default_value_t = Compensated::None)]
+    /// Geometry that every control compensates, uncorrected or not: none, known (as the machine file states it), opposite (the same
+    /// with wrong signs), or a geometry file (.toml).
+    #[arg(long, value_name = "GEOMETRY", default_value = "none")]
     pub(crate) geometry: Compensated,
     /// Do only the i-th of n parts of the work; --merge puts the parts together.
     #[arg(long, value_name = "I/N", conflicts_with_all = ["json", "html", "merge"])]
@@ -103,7 +105,7 @@ pub(crate) enum Work {
 }
 
 /// What geometry a control compensates.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Compensated {
     /// None.
     None,
@@ -111,14 +113,32 @@ pub(crate) enum Compensated {
     Known,
     /// The same with wrong signs.
     Opposite,
+    /// What a geometry file states.
+    File(PathBuf),
+}
+
+impl From<OsString> for Compensated {
+    fn from(text: OsString) -> Self {
+        match text.to_str() {
+            Some("none") => Self::None,
+            Some("known") => Self::Known,
+            Some("opposite") => Self::Opposite,
+            _ => Self::File(text.into()),
+        }
+    }
 }
 
 impl Compensated {
     /// The machine with such a control.
-    pub(crate) fn on(self, machine: &Machine) -> Result<Machine, CompensationError> {
+    pub(crate) fn on(&self, machine: &Machine) -> Result<Machine> {
         match self {
             Self::None => Ok(machine.clone()),
-            Self::Known => machine.compensating_own(),
+            Self::Known => Ok(machine.compensating_own()?),
+            Self::File(path) => {
+                let geometry = GeometryFile::read(path)?;
+                geometry.check()?;
+                Ok(machine.compensating(geometry.known()?)?)
+            }
             Self::Opposite => {
                 let mut opposite = machine.clone();
                 for axis in &mut opposite.axes {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::geometry::GeometryArgs;
 use super::reader::ReaderArgs;
 
 /// Tell the cycle time of a program, and what limits it
@@ -45,6 +46,8 @@ pub(crate) struct PlanArgs {
     /// Write all results as JSON.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) geometry: GeometryArgs,
     #[command(flatten)]
     pub(crate) reader: ReaderArgs,
 }

@@ -15,10 +15,11 @@ use serde_json::json;
 
 use crate::command::args::plan::PlanArgs;
 use crate::command::console::Console;
-use crate::command::controls::control;
+use crate::command::controls::{compensation, control};
 use crate::command::message::{printed, remark, tell_assumed_limits, warn};
 use crate::command::progress::Bar;
 use crate::command::streams::{ProgramInputs, tables, tell_written};
+use crate::compensation::GeometryChoice;
 use crate::cycle_time::along::BindingStretch;
 use crate::cycle_time::{CycleTime, CycleTimeOptions, LineTime, cycle_time_by, limit_names};
 use crate::job::{Job, JobError};
@@ -28,7 +29,8 @@ use crate::results_format::{json_text, stamped};
 use bound::{Bound, MOST_BOUND_S, bound};
 
 pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
-    let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader);
+    let inputs =
+        ProgramInputs::of(&args.part, &args.machine, &args.reader).with_geometry(args.geometry.geometry.as_deref());
     inputs.check(console)?;
     let machine = machine(args)?;
     let stages = stages(args, &machine)?;
@@ -179,10 +181,18 @@ fn within_tolerance(
     settings: &feedwright_gcode::Settings,
     bar: &Bar,
 ) -> Result<(Machine, Option<f64>)> {
+    let choice = compensation(&args.geometry)?;
     let Some(tolerance_um) = args.tolerance else {
+        if choice != GeometryChoice::Machine {
+            return Err(miette!(
+                help = "the error of the tool is predicted with --tolerance alone",
+                "--geometry and --no-geometry need --tolerance: a path is planned alike with and without geometry"
+            ));
+        }
         return Ok((machine, None));
     };
     let mut job = Job::new(program.clone(), machine.clone());
+    job.compensation = choice;
     (job.tolerance_um, job.reader) = (Some(tolerance_um), settings.clone());
     let found = job.check()?.tolerance_plan(bar)?;
     bar.clear();

@@ -53,7 +53,7 @@ pub(super) fn options(args: &CompareArgs) -> Result<ComparisonOptions> {
         TuningSource::Search => Tuning::Search,
         TuningSource::Defaults => Tuning::Defaults,
     };
-    let machines = machines.iter().map(|machine| args.geometry.on(machine)).collect::<Result<_, _>>()?;
+    let machines = machines.iter().map(|machine| args.geometry.on(machine)).collect::<Result<_>>()?;
     Ok(ComparisonOptions {
         workpieces,
         nominal,
