@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Re-simulates a trace from the machine file and its cmd columns alone; needs Python 3.11 and nothing else.
 
-    resimulate.py MACHINE.toml TRACE.csv [FINER [SEED]]
+    resimulate.py MACHINE.toml TRACE.csv [FINER [SEED [GEOMETRY.toml]]]
 
 Prints the largest difference from the act columns in nm, per axis, with its limit; exit code 1 where it is above. Written
 from the laws below, not from the program's source. A key that a machine file leaves out is zero, and the term with it is not there.
@@ -43,8 +43,9 @@ first path point. What an encoder shows of an angle: interpolation error A sin(2
 motor's, or the table's where the scale is there, measurement_delay_s ago. Where t_s jumps, in a long rest, everything stays but t.
 
 The tool is where the geometry puts it: joint + scale joint + pitch_error sin(2 pi joint / lead), and of squareness x += xy y + xz z,
-y += yz z of the joints. Where `corrected` is not `cmd`, the run compensated the geometry of the machine file, and the joints start
-where it brings the tool onto the path.
+y += yz z of the joints. Where `corrected` is not `cmd`, the run compensated the geometry of the machine file, or of GEOMETRY.toml, and
+the joints start where it brings the tool onto the path. With backlash that its encoders do not see, the geometry of a machine file is not
+compensated: only lost motion is, and at the start there is none.
 
 Random numbers: SplitMix64 (Steele, Lea and Flood 2014) with a state of its own for each axis and purpose, its output number n at
 moment n; a uniform number is its upper 53 bits, a normal one the sum of the twelve 16-bit parts of the outputs 3n to 3n + 2, less
@@ -332,28 +333,37 @@ def cut(axis, index, period, seed, times_s, start_mm, commands_mm, finer):
 
 
 def tools_mm(machine, joints_mm):
-    """Where the tool is, axis by axis, of where the joints are."""
+    """Where the tool is, axis by axis, of where the joints are, by a machine file or a geometry file."""
     geometry = machine.get("geometry", {})
     square = {pair: geometry.get(f"squareness_{pair}_urad", 0) * 1e-6 for pair in ("xy", "xz", "yz")}
     tools = {}
     for name, joint_mm in joints_mm.items():
-        axis = machine["axis"][name]
+        axis = machine["axis"].get(name, {})
+        if any(key == "table" or key.startswith("straightness_") and key[-1] in "xyz" for key in axis):
+            sys.exit(f"axis {name}: this script knows no tables")
         scale, pitch = axis.get("scale_um_m", 0) * 1e-6, axis.get("pitch_error_um", 0) * 1e-3
-        phase = 2 * math.pi / axis["lead_mm_per_rev"]
-        tools[name] = [at + scale * at + pitch * math.sin(phase * at) for at in joint_mm]
+        turn, phase = 2 * math.pi / axis.get("lead_mm_per_rev", 1), math.radians(axis.get("pitch_phase_deg", 0))
+        tools[name] = [at + scale * at + pitch * math.sin(turn * at + phase) for at in joint_mm]
         for other in "yz":
             if other in joints_mm and name + other in square:
                 tools[name] = [at + square[name + other] * by for at, by in zip(tools[name], joints_mm[other])]
     return tools
 
 
-def starts_mm(machine, tool_mm, rows):
-    """Where the joints rest at the start: with the tool at the first point of the path, if its geometry is compensated."""
+def has_hidden_backlash(machine):
+    screws = [axis.get("transmission", {}) for axis in machine["axis"].values()]
+    return any(screw.get("backlash_um", 0) > 0 and screw.get("scale_on_table", 0) < 0.5 for screw in screws)
+
+
+def starts_mm(machine, geometry, tool_mm, rows):
+    """Where the joints rest at the start: with the tool at the first point of the path, if a geometry is compensated."""
     joints_mm = dict(tool_mm)
+    if geometry is None and has_hidden_backlash(machine):
+        return joints_mm
     if all(row[f"cmd_{name}_mm"] == row[f"corrected_{name}_mm"] for row in rows for name in tool_mm):
         return joints_mm
     for _ in range(20):
-        reached = tools_mm(machine, {name: [at] for name, at in joints_mm.items()})
+        reached = tools_mm(geometry or machine, {name: [at] for name, at in joints_mm.items()})
         joints_mm = {name: at + tool_mm[name] - reached[name][0] for name, at in joints_mm.items()}
     return joints_mm
 
@@ -379,8 +389,9 @@ def limit_nm(axis, period, largest_mm_s2, finer):
     return (integration_mm + steps_mm) * 1e6
 
 
-def main(machine_file, trace_file, finer="1", seed=None):
+def main(machine_file, trace_file, finer="1", seed=None, geometry_file=None):
     machine = machine_of(pathlib.Path(machine_file))
+    geometry = tomllib.loads(pathlib.Path(geometry_file).read_text(encoding="utf-8")) if geometry_file else None
     with open(trace_file, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     times_s = [float(row["t_s"]) for row in rows]
@@ -388,7 +399,7 @@ def main(machine_file, trace_file, finer="1", seed=None):
     seed = machine.get("noise", {}).get("seed", 0) if seed is None else int(seed)
     column = lambda of, name: [float(row[f"{of}_{name}_mm"]) for row in rows]
     names = [name for name in "xyz" if f"cmd_{name}_mm" in rows[0]]
-    start_mm = starts_mm(machine, {name: column("path", name)[0] for name in names}, rows)
+    start_mm = starts_mm(machine, geometry, {name: column("path", name)[0] for name in names}, rows)
     cuts = {
         name: cut(machine["axis"][name], "xyz".index(name), period, seed, times_s, start_mm[name], column("cmd", name), finer)
         for name in names
@@ -405,4 +416,4 @@ def main(machine_file, trace_file, finer="1", seed=None):
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:5]))
+    sys.exit(main(*sys.argv[1:6]))

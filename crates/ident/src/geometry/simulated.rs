@@ -89,7 +89,7 @@ struct BarRecord<'b> {
     arc: Option<[f64; 4]>,
 }
 
-/// Distance of the command from the circle at which the bar is on it, mm: beyond the rounding of its corners, and beyond what a
+/// Largest distance of the command from the circle at which the bar is on it, mm: beyond the rounding of its corners, and beyond what a
 /// corrected program departs from it.
 const ON_CIRCLE_MM: f64 = 0.5;
 
@@ -111,7 +111,7 @@ impl<'b> BarRecord<'b> {
         let SimulatedBallBar { program, noise_um, samples, has_encoders, .. } = *self.bar;
         let center_mm = self.bar.center_mm;
         let [a, b] = program.plane.map(|axis| sample.position_mm[axis] - center_mm[axis]);
-        if (libm::hypot(a, b) - program.radius_mm).abs() > ON_CIRCLE_MM || sample.resting || sample.rapid {
+        if (libm::hypot(a, b) - program.radius_mm).abs() > ON_CIRCLE_MM || sample.rapid {
             self.arc = None;
             return;
         }
