@@ -33,6 +33,7 @@
 //! | `command_update.rs` | a better command from the errors of a cut |
 //! | `stretch_cut.rs` | errors and time of each stretch in a cut |
 //! | `budget.rs` | how many blocks and how much time a program may have |
+//! | `unchanged.rs` | why stretches stay as they are |
 //! | `rounds.rs` | cut, change, fit, until it gets no better |
 //! | `block_words.rs` | motions and events as blocks |
 //! | `source_line.rs` | a line without its motion |
@@ -56,6 +57,7 @@ mod slow_end;
 mod command_update;
 mod stretch_cut;
 mod budget;
+mod unchanged;
 mod rounds;
 mod block_words;
 mod source_line;
@@ -78,6 +80,8 @@ use rounds::{RoundsResult, rounds, steps_of};
 use source::SourceProgram;
 use stretches::{ProgramPart, assembled, parts, stretches};
 pub use target::{MacroLanguage, TARGETS, TargetControl};
+pub use unchanged::UnchangedStretch;
+use unchanged::unchanged_stretches;
 
 /// A program, a machine, and a control that the corrected program is for.
 #[derive(Debug, Clone)]
@@ -143,6 +147,7 @@ impl CorrectJob {
         let corrected =
             written.as_ref().map(|written| on(&self.machine).figures(&written.steps).map_err(of_run)).transpose()?;
         let changed = found.commands.iter().flatten().count();
+        let unchanged = unchanged_stretches(&parts, &found.reasons);
         Ok(CorrectOutcome {
             control: self.target.name,
             planner: stages.planner.name,
@@ -152,6 +157,7 @@ impl CorrectJob {
             corrected: corrected.unwrap_or(uncorrected),
             stretches: stretches(&parts).count(),
             stretches_changed: changed,
+            unchanged,
             expanded: written.as_ref().is_some_and(|written| written.expanded),
             rounds: found.rounds,
             dwell_s: found.dwell_s,

@@ -128,7 +128,7 @@ pub use controllers::{
 pub use correct::advise::{Advice, AdviseJob, CutWay, ErrorPlace};
 pub use correct::arc_fit::{ArcFit, FitPoint};
 pub use correct::exported::{ExportedCut, ExportedFigures};
-pub use correct::{CorrectJob, CorrectOutcome, MacroLanguage, TARGETS, TargetControl, deterministic};
+pub use correct::{CorrectJob, CorrectOutcome, MacroLanguage, TARGETS, TargetControl, UnchangedStretch, deterministic};
 pub use cycle_time::{CycleTime, CycleTimeOptions, LineTime, cycle_time, cycle_time_by, cycle_time_within};
 pub use fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within};
 #[cfg(feature = "files")]

@@ -9,10 +9,13 @@ use miette::{Result, miette};
 use crate::command::args::geometry::GeometryArgs;
 use crate::command::terminal::wrapped;
 use crate::compensation::{GeometryChoice, NamedGeometry};
-use crate::correct::{CorrectOutcome, TARGETS, TargetControl};
+use crate::correct::{CorrectOutcome, TARGETS, TargetControl, UnchangedStretch};
 
 /// Largest tolerance that is no slip of the unit, um.
 const MAX_TOLERANCE_UM: f64 = 1e6;
+
+/// Unchanged stretches that are listed for each reason.
+const LISTED: usize = 6;
 
 /// The control of that name.
 pub(crate) fn control(name: &str) -> Result<&'static TargetControl> {
@@ -57,6 +60,9 @@ pub(crate) fn print_correction(out: &mut dyn Write, outcome: &CorrectOutcome) ->
         "{stretches_changed} of {stretches} stretches between corners were changed, found in {rounds} simulated cuts"
     );
     writeln!(out, "{}", wrapped(&changed, 2))?;
+    for sentence in UnchangedStretch::sentences(&outcome.unchanged, LISTED) {
+        writeln!(out, "{}", wrapped(&sentence, 2))?;
+    }
     if outcome.expanded {
         writeln!(out, "loops and subroutines are written out")?;
     }

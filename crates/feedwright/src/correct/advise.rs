@@ -16,6 +16,7 @@ use serde::Serialize;
 use super::source::SourceProgram;
 use super::stretches::{ProgramPart, SmoothStretch, parts, stretches};
 use super::target::TargetControl;
+use super::unchanged::lines_of;
 use crate::compensation::GeometryChoice;
 use crate::controllers::{Choices, Entry, LQG_IDENTIFIED, Make, Setup};
 use crate::job_error::{JobError, axes_that_move};
@@ -283,6 +284,26 @@ impl NearestCut {
             None => nearest,
         }
     }
+
+    /// Why no feed holds, and what would, in one sentence.
+    pub fn why(&self) -> String {
+        let [first, last] = self.lines;
+        match self.place {
+            ErrorPlace::Start => format!(
+                "No feed helps, because the tool is still settling from the motion before when line {first} begins, and rapids keep their speed: a dwell \
+                 (G4) before line {first} would, or a slow feed motion in place of the end of the rapid."
+            ),
+            ErrorPlace::End => format!(
+                "No feed helps, because the tool runs over the end of line {last} when the control brakes, from any feed: a lower acceleration of the \
+                 control would, or a slow last piece."
+            ),
+            ErrorPlace::Way => format!(
+                "No feed helps, because at {:.0} % the error on lines {first} to {last} no longer comes from the speed but from friction, the \
+                 disturbance and noise: a stiffer loop would, or a controller that sees the tool, or a larger tolerance.",
+                100.0 * self.cut.factor.unwrap_or(1.0)
+            ),
+        }
+    }
 }
 
 impl StretchAdvice {
@@ -312,11 +333,6 @@ impl StretchAdvice {
 pub(crate) const STRETCH_LEGEND: &str = "in brackets: holds beside the ends of the stretch, where the tool comes from rest or goes there and is off by more at every feed that was cut (a \
                                   corrected program goes there slowly); -: holds at no feed that was cut; left: the error that no feed takes back, at its start, \
                                   its end, or on its way";
-
-/// First and last line of a stretch.
-fn lines_of(stretch: &SmoothStretch) -> [u32; 2] {
-    [0, stretch.motions.len() - 1].map(|n| stretch.motions[n].line)
-}
 
 /// The parts of a program with other feedrates in its stretches, up to what the machine can.
 fn with_factors(program: &[ProgramPart], factors: &[f64], most_mm_s: f64) -> Vec<ProgramPart> {

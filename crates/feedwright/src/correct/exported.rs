@@ -76,6 +76,12 @@ pub(super) struct CutRow {
 /// Rows that are kept of a cut, at the most: some 2 GB.
 const MOST_ROWS: usize = 10_000_000;
 
+/// Refuses a cut of so many seconds whose rows cannot be kept.
+pub(super) fn check_rows(time_s: f64, servo_s: f64) -> Result<(), RunError> {
+    let most_s = MOST_ROWS as f64 * servo_s;
+    if time_s > most_s { Err(RunError::TooLong { most_periods: MOST_ROWS, most_s }) } else { Ok(()) }
+}
+
 /// Keeps the rows of a cut.
 pub(super) struct CutRows<'a> {
     pub(super) rows: Vec<CutRow>,
@@ -195,7 +201,7 @@ impl ExportedCut<'_> {
         let phases = self.phases();
         let mut square_sum_um2 = 0.0;
         for (phase, CutPhase { machine, wait_s }) in phases.iter().enumerate() {
-            let now = ExportedCut { machine, ..*self }.once(program, *wait_s)?;
+            let now = ExportedCut { machine, ..*self }.once(program, *wait_s, &mut [])?;
             square_sum_um2 += now.rms_um * now.rms_um;
             if now.max_um > figures.max_um || !now.completed {
                 (figures.max_um, figures.worst_phase) = (now.max_um, phase);
@@ -236,13 +242,20 @@ impl ExportedCut<'_> {
         }
     }
 
-    /// What one cut comes to, after a rest; its time is that without the rest.
+    /// What one cut comes to, after a rest; its time is that without the rest. The rows go to sinks, those of the rest too.
     ///
     /// # Errors
     /// As [`ExportedCut::figures`].
-    pub fn once(&self, program: &[Step], wait_s: f64) -> Result<ExportedFigures, RunError> {
+    pub fn once(
+        &self,
+        program: &[Step],
+        wait_s: f64,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<ExportedFigures, RunError> {
         let mut statistics = Statistics::new();
-        let run = self.cut(&waited(program, wait_s), &mut [&mut statistics])?;
+        let mut all: Vec<&mut dyn Sink> = vec![&mut statistics];
+        all.extend(sinks.iter_mut().map(|sink| &mut **sink as &mut dyn Sink));
+        let run = self.cut(&waited(program, wait_s), &mut all)?;
         let figures = ExportedFigures {
             rms_um: statistics.rms_um(),
             max_um: statistics.max_um(),

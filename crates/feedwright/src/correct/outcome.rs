@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::expanded_text::UnwritableLine;
 use super::exported::ExportedFigures;
+use super::unchanged::UnchangedStretch;
 
 /// A corrected program whose RMS error is not smaller by this share is no better than the uncorrected program. A smaller gain does not
 /// pay for a longer program.
@@ -35,6 +36,8 @@ pub struct CorrectOutcome {
     pub stretches: usize,
     /// Those that have another command.
     pub stretches_changed: usize,
+    /// Those that stay as they are, and why.
+    pub unchanged: Vec<UnchangedStretch>,
     /// Whether loops and subroutines had to be written out.
     pub expanded: bool,
     /// Cuts that the correction was found in.
@@ -118,7 +121,7 @@ pub(super) fn refusal(
         return Some("the servo loop is unstable".to_owned());
     }
     if changed == 0 {
-        return Some("no stretch of the program gets better by another command".to_owned());
+        return Some("no stretch of the program gets better by another command, for the reasons above".to_owned());
     }
     if let Some(fault) = unwritten {
         return Some(format!("the corrected program cannot be written: {fault}"));

@@ -11,17 +11,18 @@ use feedwright_plan::{PathError, Pieces, Step};
 use feedwright_sim::{Machine, RunError, StageSteps};
 
 use super::arc_fit::{ArcFit, FitMotion, FitPoint};
-use super::budget::{StretchBudget, StretchCost, details_to_give_up};
+use super::budget::{StretchBudget, StretchCost, details_to_give_up, program_more_s};
 use super::command_update::{UpdateSettings, new_command};
-use super::exported::{CutRow, CutRows, ExportedCut};
+use super::exported::{CutRow, CutRows, ExportedCut, check_rows};
 use super::loop_lag::{LoopLag, loop_lags};
 use super::slow_end::{SlowEnd, slow_approach, slow_end, slow_last};
 use super::stretch_cut::{StretchCut, by_stretch, overshoot_mm, rapid_overshoot_mm};
-use super::stretches::{NewMotions, ProgramPart, SmoothStretch, StretchCommand, assembled, rest_s, stretches};
+use super::stretches::{NewMotions, ProgramPart, SmoothStretch, StretchCommand, assembled, dwells, rest_s, stretches};
 use super::target::TargetControl;
+use super::unchanged::UnchangedReason;
 
 /// Cuts at the most, and those without a gain after which a stretch is left alone.
-const ROUNDS: u32 = 10;
+const ROUNDS: u32 = 12;
 const NO_GAIN: u32 = 3;
 /// Cuts at the most in which commands are given up that are worse together.
 const CHECKS: u32 = 4;
@@ -32,7 +33,7 @@ const GOOD_MM: f64 = 1e-3;
 /// Distance of blocks from the command, mm: the finest at which they are few enough, from this part of the RMS error that they are to correct and
 /// no less than this and a printed step, in steps of this factor.
 const FIT_SHARE: f64 = 0.04;
-const FINEST_MM: f64 = 1e-4;
+const FINEST_MM: f64 = 5e-5;
 const COARSER: f64 = 1.25;
 /// Where no such distance is left, mm, and whether blocks may be many.
 const TOLERANCES_MM: [(f64, bool); 4] = [(1e-3, false), (2e-3, false), (1e-3, true), (4e-3, true)];
@@ -45,15 +46,30 @@ const FADE_S: f64 = 0.01;
 const LEAST_MM: f64 = 0.005;
 /// A tool that runs over the end of a stretch, or of the rapid to it, by more goes there slowly, mm.
 const OVERSHOOT_MM: f64 = 2e-3;
+/// A slow end that is shorter than this part of a usual one gets no slower: the tool would run ahead over all of it.
+const SLOWEST: f64 = 0.4;
 /// A dwell is three lags of the loop and five of its time constants, within these bounds, s.
 const DWELL_TIME_CONSTANTS: f64 = 5.0;
 const DWELL_LAGS: f64 = 3.0;
 const DWELL_S: [f64; 2] = [0.03, 0.06];
+/// Where a program takes too long in one of the first rounds, its dwells and its slow ends get shorter, down to these parts: on a slow end that is
+/// shorter, the tool does not come back from running ahead. No dwell is shorter than this, s.
+const HASTY_ROUNDS: u32 = 5;
+const MOST_HASTE: [f64; 2] = [0.05, 0.7];
+const LEAST_DWELL_S: f64 = 0.002;
+/// Part of the time that a program may take longer that is for its rests, as long as no command is corrected.
+const FOR_RESTS: f64 = 0.6;
+/// Where a stretch takes too long, the Gaussian over its command gets wider by a factor between these: what the command bends more than the
+/// path slows the control down. It gets wider by so much at the most.
+const WIDER: [f64; 2] = [1.15, 1.6];
+const WIDEST: f64 = 4.0;
 
 /// What the rounds have come to.
 pub(super) struct RoundsResult {
     /// A command for each stretch.
     pub(super) commands: Vec<StretchCommand>,
+    /// Why stretches stay as they are; none of those that have another command.
+    pub(super) reasons: Vec<Option<UnchangedReason>>,
     /// How long the tool rests where it has to come to rest, s.
     pub(super) dwell_s: f64,
     /// Cuts that were simulated.
@@ -68,6 +84,7 @@ struct StretchRounds {
     best_mm: f64,
     best_s: f64,
     budget: StretchBudget,
+    programmed_mm: f64,
     programmed_max_mm: f64,
     /// Distance of blocks from the command that is small beside what they are to correct, mm.
     tolerance_mm: f64,
@@ -76,6 +93,10 @@ struct StretchRounds {
     since: u32,
     slow_end: Option<SlowEnd>,
     slow_rapid: Option<SlowEnd>,
+    /// Width of the Gaussian over the command, in its usual width.
+    width: f64,
+    /// What has last kept it from a better command.
+    reason: UnchangedReason,
     done: bool,
 }
 
@@ -100,8 +121,13 @@ pub(super) fn rounds(
     let dwell_s = (1e3 * dwell_s).round() / 1e3;
     let settings = settings(cut.machine);
     let mut progress = StageSteps::begin(cut.watch, "correcting");
-    let bench = RoundsBench { cut, parts, target, lags, settings, dwell_s, count: stretches(parts).count() };
+    let count = stretches(parts).count();
+    let mut bench =
+        RoundsBench { cut, parts, target, lags, settings, settles_s: dwell_s, dwell_s, haste: Haste([1.0; 2]), count };
+    bench.check_length()?;
     let (cuts, rows) = bench.cut(&vec![None; bench.count])?;
+    let time_s = rows.len() as f64 * settings.servo_s;
+    let most_s = time_s + program_more_s(time_s, count);
     let mut under_way: Vec<StretchRounds> =
         stretches(parts).zip(&cuts).map(|(stretch, cut)| bench.begun(stretch, cut, &rows)).collect();
     let mut round = 1;
@@ -111,14 +137,36 @@ pub(super) fn rounds(
         for (stretch, cut) in under_way.iter_mut().zip(&cuts) {
             stretch.judge(cut, settings.servo_s, dwell_s);
         }
+        let more_s = rows.len() as f64 * settings.servo_s - most_s;
+        let more_s = if round == 1 { more_s + (1.0 - FOR_RESTS) * (most_s - time_s) } else { more_s };
+        if round <= HASTY_ROUNDS {
+            bench.hurry(&mut under_way, more_s);
+        }
         bench.update(&mut under_way, &cuts, &rows);
         round += 1;
         progress.reach(f64::from(round) / f64::from(ROUNDS + CHECKS));
     }
     bench.give_up_details(&mut under_way);
     let checks = bench.give_up_what_is_worse(&mut under_way)?;
+    let reasons = under_way.iter().map(|stretch| stretch.best.is_none().then_some(stretch.reason)).collect();
     let commands = under_way.into_iter().map(|stretch| stretch.best).collect();
-    Ok(RoundsResult { commands, dwell_s, rounds: round + checks })
+    Ok(RoundsResult { commands, reasons, dwell_s: bench.dwell_s, rounds: round + checks })
+}
+
+/// Parts of what dwells and slow ends usually take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Haste([f64; 2]);
+
+impl Haste {
+    /// Shortens one of them, which takes `takes_s` now, by up to `more_s`. By how much, s.
+    fn shorten(&mut self, which: usize, takes_s: f64, more_s: f64) -> f64 {
+        if takes_s <= 0.0 || more_s <= 0.0 {
+            return 0.0;
+        }
+        let part = (1.0 - more_s / takes_s).max(MOST_HASTE[which] / self.0[which]).min(1.0);
+        self.0[which] *= part;
+        (1.0 - part) * takes_s
+    }
 }
 
 /// What every round needs.
@@ -128,11 +176,26 @@ struct RoundsBench<'a> {
     target: &'a TargetControl,
     lags: Vec<LoopLag>,
     settings: UpdateSettings,
+    /// In which the tool settles, s.
+    settles_s: f64,
+    /// How long it rests, s.
     dwell_s: f64,
+    haste: Haste,
     count: usize,
 }
 
 impl RoundsBench<'_> {
+    /// Refuses a program whose cut cannot be kept, before it is cut: by the time that it takes at the programmed feedrates.
+    fn check_length(&self) -> Result<(), RunError> {
+        let limits = &self.cut.machine.limits;
+        let time_s = |step: &Step| match step {
+            Step::Piece(piece) if piece.cutting => piece.length_mm / piece.feed_mm_s.min(limits.max_feed_mm_s),
+            Step::Piece(piece) => piece.length_mm / limits.rapid_mm_s,
+            Step::Event(_) | Step::Rest(_) => 0.0,
+        };
+        check_rows(self.cut.original.iter().map(time_s).sum(), self.settings.servo_s)
+    }
+
     /// What every stretch comes to, and the rows.
     fn cut(&self, commands: &[StretchCommand]) -> Result<(Vec<StretchCut>, Vec<CutRow>), RunError> {
         let steps = steps_of(&assembled(self.parts, commands, self.dwell_s))?;
@@ -146,9 +209,10 @@ impl RoundsBench<'_> {
     fn begun(&self, stretch: &SmoothStretch, cut: &StretchCut, rows: &[CutRow]) -> StretchRounds {
         let servo_s = self.settings.servo_s;
         let overruns = rapid_overshoot_mm(rows, cut, stretch, servo_s) > OVERSHOOT_MM;
+        let good = cut.max_mm < GOOD_MM;
         let slow_rapid = overruns.then(|| slow_end(self.cut.machine));
         let approach = slow_rapid.and_then(|slow| slow_approach(stretch, slow, self.target));
-        let done = cut.max_mm < GOOD_MM || cut.rows.is_empty();
+        let done = good || cut.rows.is_empty();
         let time_s = f64::from(cut.periods) * servo_s;
         let finest_mm = (1.0 / self.target.steps_per_mm()).clamp(FINEST_MM, TOLERANCES_MM[0].0);
         let programmed = NewMotions { motions: stretch.motions.clone(), approach, settles: false };
@@ -163,30 +227,64 @@ impl RoundsBench<'_> {
                 lines: stretch.motions.iter().filter(|motion| motion.shape == Shape::Line).count(),
                 loop_s: 1.0 / self.cut.machine.slowest_kp_1_s(),
             },
+            programmed_mm: cut.figure_mm(),
             programmed_max_mm: cut.max_mm,
             tolerance_mm: (FIT_SHARE * cut.rms_mm()).clamp(finest_mm, TOLERANCES_MM[0].0),
             square_sums_mm2: [cut.square_sum_mm2; 2],
             since: 0,
             slow_end: None,
             slow_rapid,
+            width: 1.0,
+            reason: if done { UnchangedReason::Good } else { UnchangedReason::NoGain },
             done,
+        }
+    }
+
+    /// Makes a program faster that takes longer than it may by `more_s`: first its dwells get shorter, then its slow ends. The stretches are judged
+    /// again.
+    fn hurry(&mut self, under_way: &mut [StretchRounds], more_s: f64) {
+        if more_s <= 0.0 {
+            return;
+        }
+        let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.current.clone()).collect();
+        let rests = (0..self.count).flat_map(|k| dwells(self.parts, &commands, k, self.dwell_s)).flatten();
+        let slow = under_way.iter().filter(|stretch| stretch.current.is_some());
+        let slow = slow.flat_map(|stretch| [stretch.slow_end, stretch.slow_rapid]).flatten().map(SlowEnd::time_s);
+        let (rests_s, slow_s): (f64, f64) = (rests.sum(), slow.sum());
+        let before = self.haste;
+        let saved_s = self.haste.shorten(0, rests_s, more_s);
+        self.haste.shorten(1, slow_s, more_s - saved_s);
+        if self.haste == before {
+            return;
+        }
+        let part = self.haste.0[1] / before.0[1];
+        self.dwell_s = (1e3 * self.haste.0[0] * self.settles_s).round().max(1e3 * LEAST_DWELL_S) / 1e3;
+        for stretch in under_way.iter_mut().filter(|stretch| stretch.reason != UnchangedReason::Good) {
+            stretch.slow_end = stretch.slow_end.map(|slow| slow.shorter(part));
+            stretch.slow_rapid = stretch.slow_rapid.map(|slow| slow.shorter(part));
+            (stretch.best, stretch.best_mm, stretch.since) = (None, stretch.programmed_mm, 0);
+            stretch.done = stretch.current.is_none();
         }
     }
 
     /// New commands for those that are not done.
     fn update(&self, under_way: &mut [StretchRounds], cuts: &[StretchCut], rows: &[CutRow]) {
-        let (settings, slow_end) = (&self.settings, slow_end(self.cut.machine));
+        let slow_end = slow_end(self.cut.machine).shorter(self.haste.0[1]);
+        let slower = |slow: SlowEnd| if slow.length_mm < SLOWEST * slow_end.length_mm { slow } else { slow.slower() };
         for ((state, stretch), cut) in under_way.iter_mut().zip(stretches(self.parts)).zip(cuts) {
             if state.done {
                 continue;
             }
+            let mut settings = self.settings;
+            settings.command_smoothing_s *= state.width;
             if overshoot_mm(rows, cut, stretch, settings.servo_s) > OVERSHOOT_MM {
-                state.slow_end = Some(state.slow_end.map_or(slow_end, SlowEnd::slower));
+                state.slow_end = Some(state.slow_end.map_or(slow_end, slower));
             }
             if rapid_overshoot_mm(rows, cut, stretch, settings.servo_s) > OVERSHOOT_MM {
-                state.slow_rapid = Some(state.slow_rapid.map_or(slow_end, SlowEnd::slower));
+                state.slow_rapid = Some(state.slow_rapid.map_or(slow_end, slower));
             }
-            let points = new_command(rows, cut.rows.clone(), &self.lags, stretch, settings, state.slow_end);
+            let points = new_command(rows, cut.rows.clone(), &self.lags, stretch, &settings, state.slow_end);
+            state.reason = if points.is_none() { UnchangedReason::LeavesPath } else { state.reason };
             let fitted = points.and_then(|points| state.fitted(&points, self.target.steps_per_mm()));
             let fitted: Option<Vec<Motion>> = fitted
                 .map(|motions| motions.into_iter().map(|motion| as_motion(motion, stretch, self.target)).collect())
@@ -196,7 +294,12 @@ impl RoundsBench<'_> {
                     let approach = state.slow_rapid.and_then(|slow| slow_approach(stretch, slow, self.target));
                     state.current = Some(NewMotions { motions, approach, settles: state.slow_end.is_some() });
                 }
-                None => state.finish(),
+                None => {
+                    if state.reason != UnchangedReason::LeavesPath {
+                        state.reason = UnchangedReason::Blocks;
+                    }
+                    state.finish();
+                }
             }
         }
     }
@@ -207,7 +310,7 @@ impl RoundsBench<'_> {
         let kept = |part: &&ProgramPart| matches!(part, ProgramPart::Kept(Canon::Motion(_)));
         let costs: Vec<StretchCost> = under_way.iter().map(|stretch| stretch.cost(dwell_s)).collect();
         for k in details_to_give_up(&costs, self.parts.iter().filter(kept).count(), dwell_s) {
-            under_way[k].best = None;
+            (under_way[k].best, under_way[k].reason) = (None, UnchangedReason::Detail);
         }
     }
 
@@ -233,7 +336,7 @@ fn give_up_culprits(under_way: &mut [StretchRounds], cuts: &[StretchCut]) -> boo
     for k in (0..worse.len()).filter(|&k| worse[k]) {
         // A stretch as it is programmed is worse at its start because of the command of the one before.
         let culprit = if under_way[k].best.is_some() || k == 0 { k } else { k - 1 };
-        under_way[culprit].best = None;
+        (under_way[culprit].best, under_way[culprit].reason) = (None, UnchangedReason::Worse);
     }
     worse.contains(&true)
 }
@@ -269,8 +372,13 @@ impl StretchRounds {
             return;
         }
         let (figure_mm, time_s) = (cut.figure_mm(), f64::from(cut.periods) * servo_s);
-        let slow_s = self.slow_end.map_or(0.0, |slow| slow.length_mm / slow.speed_mm_s);
-        let most_s = self.budget.most_s(dwell_s) + slow_s;
+        let most_s = self.budget.most_s(dwell_s) + self.slow_end.map_or(0.0, SlowEnd::time_s);
+        if time_s >= most_s && self.width < WIDEST {
+            let times = (time_s - self.budget.time_s) / (most_s - self.budget.time_s);
+            self.width *= times.clamp(WIDER[0], WIDER[1]);
+            self.reason = UnchangedReason::TooSlow { percent: 100.0 * (time_s / self.budget.time_s - 1.0) };
+            return;
+        }
         let better = figure_mm < self.best_mm && time_s < most_s;
         self.since = if better && figure_mm < (1.0 - LEAST_GAIN) * self.best_mm { 0 } else { self.since + 1 };
         if better {
@@ -326,12 +434,15 @@ mod tests {
             best_mm: 0.0,
             best_s: 1.0,
             budget: StretchBudget { time_s: 1.0, blocks: 1, lines: 0, loop_s: 0.02 },
+            programmed_mm: 0.0,
             programmed_max_mm: 0.01,
             tolerance_mm: FINEST_MM,
             square_sums_mm2: [1.0; 2],
             since: 0,
             slow_end: None,
             slow_rapid: None,
+            width: 1.0,
+            reason: UnchangedReason::NoGain,
             done: true,
         };
         (0..count).map(stretch).collect()

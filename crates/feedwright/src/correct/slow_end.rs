@@ -32,6 +32,16 @@ impl SlowEnd {
         Self { speed_mm_s: 0.5 * self.speed_mm_s, length_mm: 0.5 * self.length_mm }
     }
 
+    /// As fast, and this part as long.
+    pub(super) fn shorter(self, part: f64) -> Self {
+        Self { length_mm: part * self.length_mm, ..self }
+    }
+
+    /// How long it takes, s.
+    pub(super) fn time_s(self) -> f64 {
+        self.length_mm / self.speed_mm_s
+    }
+
     /// Lowers the feedrates of the last points.
     pub(super) fn slow_down(self, points: &mut [FitPoint]) {
         let mut to_go_mm = 0.0;

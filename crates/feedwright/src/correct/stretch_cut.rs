@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use feedwright_plan::vector::{dot, norm, sub};
+use feedwright_plan::vector::{angle, dot, norm, sub};
 use feedwright_sim::Commanded;
 
 use super::exported::CutRow;
-use super::stretches::SmoothStretch;
+use super::stretches::{CORNER_RAD, SmoothStretch};
 
 /// Weight of the largest error beside the RMS.
 const MAX_WEIGHT: f64 = 0.3;
@@ -57,7 +57,13 @@ pub(super) fn rapid_overshoot_mm(rows: &[CutRow], cut: &StretchCut, stretch: &Sm
     let to = cut.rows.start + (AROUND_END_S / servo_s) as usize;
     let from = rows[..cut.rows.start].iter().rposition(|row| row.commanded == Commanded::Rapid).unwrap_or(0);
     let near = &rows[from..to.min(rows.len())];
-    near.iter().map(|row| -dot(row.error_mm, way) / norm(way)).fold(0.0, f64::max)
+    let [goes_on, _] = stretch.directions();
+    let over_mm = |row: &CutRow| {
+        let along_mm = dot(row.error_mm, way) / norm(way);
+        // Where the stretch goes on in the same direction, the foot runs ahead with the tool and stays there when the tool comes back.
+        if angle(way, goes_on) < CORNER_RAD { along_mm.abs() } else { -along_mm }
+    };
+    near.iter().map(over_mm).fold(0.0, f64::max)
 }
 
 /// Rows and errors of each stretch. What the tool still does when the command has gone on belongs to it, until the next begins; what it does at

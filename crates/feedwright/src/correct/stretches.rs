@@ -192,7 +192,7 @@ fn slow_down(program: &mut Vec<Canon>, approach: &[Motion; 2]) {
 
 /// How long a dwell is, s, where the tool comes slowly or does not.
 pub(super) fn rest_s(comes_slowly: bool, dwell_s: f64) -> f64 {
-    if comes_slowly { (SETTLED * dwell_s * 1e3).round() / 1e3 } else { dwell_s }
+    if comes_slowly { (SETTLED * dwell_s * 1e3).round().max(1.0) / 1e3 } else { dwell_s }
 }
 
 /// How long the tool rests before and behind a stretch, s: where it, or the stretch before, has another command, a dwell, and less where the tool comes

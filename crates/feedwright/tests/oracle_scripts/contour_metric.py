@@ -17,7 +17,7 @@ least 0.1 um), r(t) where the reference is, W = 5 / Kp + delay:
     more along the path there than at the foot, and there no more than 0.99 m.
 
 Uncut: the largest, over the rows whose reference moves on a cutting line, of the distance from the path point of the row to the
-polyline of the tool from t to t + W. A tool that ends within 10 um of the end of the path has come there.
+polyline of the tool from t - W to t + W. A tool that ends within 10 um of the end of the path has come there.
 """
 import bisect
 import csv
@@ -182,7 +182,7 @@ def uncut(path, machine, rows):
     largest, last = 0.0, None
     for n, row in enumerate(rows):
         point = (row["path_x_mm"], row["path_y_mm"])
-        ends = range(n + 1, min(n + window, len(trace) - 1) + 1)
+        ends = range(max(n + 1 - window, 1), min(n + window, len(trace) - 1) + 1)
         if point != last and path.cuts.get(int(row["line"])) and row["feed_plan_mm_s"] > 0:
             # Backwards, since a tool that lags comes near late; enough as soon as it is no further than the largest.
             nearest = math.inf

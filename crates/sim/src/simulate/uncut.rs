@@ -1,13 +1,14 @@
 //! The uncut path: how far the tool stays away from what it should have cut.
 //!
 //! ```text
-//! uncut = max over feed points P(t) of the distance from P(t) to the tool's trace over [t, t + W],   W = 5 / Kp + delay
+//! uncut = max over feed points P(t) of the distance from P(t) to the tool's trace over [t - W, t + W],   W = 5 / Kp + delay
 //! ```
 //!
 //! A feed point is where the reference stands at the start of a servo period in a programmed cutting motion; the trace is
 //! the polyline through the tool's positions at the ends of the servo periods. The contour error asks how far the tool
 //! is from the path; this asks how far the path is from the tool, and sees the corner that was rounded, the spike that was
-//! cut short, the leg that was left out.
+//! cut short, the leg that was left out. Feedforward can take the tool ahead of the command, so that it has been at a feed point
+//! before the command comes there; the time before `t` counts for that reason.
 //!
 //! A feed point no further from the trace than the largest found so far is done with. One that is further by `g` is
 //! looked at again when the tool has gone `g`, since nothing nearer can come before; what is left at the end of its time is
@@ -38,6 +39,8 @@ pub struct Uncut {
 struct FeedPoint {
     point_mm: Vector,
     row: u64,
+    /// Its distance from the trace before.
+    before_mm: f64,
     /// Length of the trace from which on it can be nearer.
     again_mm: f64,
 }
@@ -60,8 +63,11 @@ impl Uncut {
     pub fn row(&mut self, row: &Row) {
         let from_mm = self.trace_mm[self.trace_mm.len() - 1];
         if row.commanded == Commanded::Cut && self.last_mm != Some(row.path_mm) {
-            let again_mm = self.way_mm + distance(row.path_mm, from_mm) - self.largest_mm;
-            self.waiting.push_back(FeedPoint { point_mm: row.path_mm, row: self.rows, again_mm });
+            let before_mm = self.to_trace(row.path_mm, 0);
+            if before_mm > self.largest_mm {
+                let again_mm = self.way_mm + distance(row.path_mm, from_mm) - self.largest_mm;
+                self.waiting.push_back(FeedPoint { point_mm: row.path_mm, row: self.rows, before_mm, again_mm });
+            }
         }
         self.last_mm = Some(row.path_mm);
         self.go(from_mm, row.act_mm);
@@ -105,13 +111,18 @@ impl Uncut {
 
     /// The time of the oldest feed point is over.
     fn settle(&mut self) {
-        let Some(FeedPoint { point_mm, row, .. }) = self.waiting.pop_front() else { return };
+        let Some(FeedPoint { point_mm, row, before_mm, .. }) = self.waiting.pop_front() else { return };
         let first = self.trace_mm.len() as u64 - 1 - (self.rows - row);
-        let trace = self.trace_mm.range(first as usize..).zip(self.trace_mm.range(first as usize + 1..));
-        let nearest = trace.map(|(from, to)| to_segment(point_mm, *from, *to)).fold(f64::INFINITY, f64::min);
+        let nearest = self.to_trace(point_mm, first as usize).min(before_mm);
         if nearest.is_finite() {
             self.largest_mm = self.largest_mm.max(nearest);
         }
+    }
+
+    /// Distance of a point from the trace, from its `first` position on; infinite where the trace has not begun.
+    fn to_trace(&self, point_mm: Vector, first: usize) -> f64 {
+        let trace = self.trace_mm.range(first..).zip(self.trace_mm.range(first + 1..));
+        trace.map(|(from, to)| to_segment(point_mm, *from, *to)).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -141,7 +152,7 @@ mod tests {
     fn by_definition(path: &[Vector], tool: impl Fn(usize) -> Vector, periods: usize) -> f64 {
         let at = |n: usize| if n == 0 { path[0] } else { tool(n - 1) };
         let nearest = |n: usize| {
-            let ends = n + 1..=(n + periods).min(path.len());
+            let ends = (n + 1).saturating_sub(periods).max(1)..=(n + periods).min(path.len());
             ends.map(|k| to_segment(path[n], at(k - 1), at(k))).fold(f64::INFINITY, f64::min)
         };
         (0..path.len()).map(nearest).fold(0.0, f64::max)
@@ -174,6 +185,12 @@ mod tests {
         let stays = |n: usize| path[if (220..400).contains(&n) { 210 } else { n }];
         let largest_mm = uncut(&path, stays, 100);
         assert!(largest_mm > 0.4, "{largest_mm}");
+    }
+
+    #[test]
+    fn a_tool_that_is_ahead_of_the_command_and_does_not_come_back_leaves_nothing_uncut() {
+        let path = battlement();
+        assert!(uncut(&path, |n| path[(n + 20).min(path.len() - 1)], 100) < 1e-12);
     }
 
     #[test]

@@ -105,7 +105,7 @@ fn print(args: &AdviseArgs, job: &AdviseJob, advice: &Advice) -> std::io::Result
         }
         table.row(cells);
         if let Some(nearest) = nearest {
-            table.remark(nearest.sentence("um", *largest_mm_s));
+            table.remark(format!("{}. {}", nearest.sentence("um", *largest_mm_s), nearest.why()));
         }
     }
     table.print(out)?;

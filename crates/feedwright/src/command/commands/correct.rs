@@ -42,7 +42,7 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let ExportedFigures { max_um, completed, .. } = outcome.corrected;
     let within = completed && args.tolerance.is_none_or(|tolerance_um| max_um <= tolerance_um);
     let mut complete = Vec::new();
-    match (outcome.program(), &mut out) {
+    match (outcome.program().filter(|_| within), &mut out) {
         (Some(program), Some(file)) => file.write_all(program.as_bytes()).into_diagnostic()?,
         _ => out = None,
     }
@@ -65,7 +65,7 @@ fn results(args: &CorrectArgs, job: &CorrectJob, outcome: &CorrectOutcome, withi
         "machine": job.machine.name,
         "tolerance_um": args.tolerance,
         "within_tolerance": within,
-        "written": outcome.program().is_some() && args.out.is_some(),
+        "written": within && outcome.program().is_some() && args.out.is_some(),
     });
     if let (Value::Object(all), Value::Object(figures)) = (&mut results, serde_json::to_value(outcome)?) {
         all.extend(figures);
@@ -101,6 +101,9 @@ fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io:
         let verdict = if within { "within" } else { "out of" };
         writeln!(out, "{verdict} tolerance: max {} um, allowed {tolerance_um} um", figure(corrected.max_um, 2))?;
     }
-    let written = args.out.as_deref().filter(|_| outcome.program().is_some());
+    let written = args.out.as_deref().filter(|_| within && outcome.program().is_some());
+    if let (None, Some(path), None) = (written, &args.out, &outcome.refusal) {
+        writeln!(out, "{} is not written", path.display())?;
+    }
     tell_written(&mut *out, [written, args.json.as_deref()])
 }

@@ -7,8 +7,9 @@
 use feedwright_sim::{RunError, StageSteps};
 
 use super::feed_cuts::{ErrorPlace, FeedBench, FeedErrors, StretchErrors};
-use super::{CutWay, FeedCut, NearestCut, NearestFeed, WayAdvice, lines_of};
+use super::{CutWay, FeedCut, NearestCut, NearestFeed, WayAdvice};
 use crate::correct::stretches::stretches;
+use crate::correct::unchanged::lines_of;
 
 /// Steps between factors, and the least and the largest factor.
 const STEP: f64 = std::f64::consts::SQRT_2;

@@ -1,0 +1,143 @@
+//! Why a stretch stays as it is programmed, and what would help.
+
+use std::fmt;
+
+use feedwright_gcode::canon::{Canon, Motion, MotionKind, Plane, Shape};
+use serde::Serialize;
+
+use super::stretches::{ProgramPart, SmoothStretch};
+
+/// Why a stretch has no other command.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum UnchangedReason {
+    /// Its largest error is below what blocks can correct.
+    Good,
+    /// Another command does not lower its error by enough.
+    NoGain,
+    /// Every better command takes longer than it may: by this share of its time, %.
+    TooSlow { percent: f64 },
+    /// A better command takes more blocks than the stretch may have.
+    Blocks,
+    /// A better command leaves the path by more than the machine file allows.
+    LeavesPath,
+    /// It is short, and the blocks or the time that the program may have are used where they gain more.
+    Detail,
+    /// Beside the other stretches its command makes an error larger.
+    Worse,
+    /// An arc outside of the XY plane.
+    OtherPlane,
+    /// A spline, or more than a turn.
+    OtherShape,
+    /// It moves axes beside X, Y and Z.
+    OtherAxes,
+}
+
+impl fmt::Display for UnchangedReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Good => write!(f, "the error is below 1 um already"),
+            Self::NoGain => {
+                write!(
+                    f,
+                    "no command lowers the error: what is left is friction and rounding of the blocks; a lower feedrate may help"
+                )
+            }
+            Self::TooSlow { percent } => write!(
+                f,
+                "the control would take {percent:.0} % longer for a better command, since it bends more sharply where lines meet arcs; a lower \
+                 feedrate on these lines leaves it room"
+            ),
+            Self::Blocks => write!(
+                f,
+                "a better command takes more blocks than the control may get; a lower feedrate, or longer blocks from the CAM system, would help"
+            ),
+            Self::LeavesPath => write!(
+                f,
+                "a better command is further from the path than max_deviation_mm of the machine file; a lower feedrate would help"
+            ),
+            Self::Detail => write!(
+                f,
+                "the stretch is short, and others gain more from the blocks and the time that the program may have; a lower feedrate here would help"
+            ),
+            Self::Worse => write!(
+                f,
+                "its command makes an error larger beside the stretches around it; a lower feedrate, or G61 at its ends, separates them"
+            ),
+            Self::OtherPlane => {
+                write!(f, "it has arcs of G18 or G19, which are not corrected; lines in their place are")
+            }
+            Self::OtherShape => {
+                write!(f, "it has splines or arcs of several turns, which are not corrected; lines or single turns are")
+            }
+            Self::OtherAxes => write!(f, "it moves axes beside X, Y and Z, which are not corrected"),
+        }
+    }
+}
+
+/// A stretch that stays as it is programmed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct UnchangedStretch {
+    /// First and last line.
+    pub lines: [u32; 2],
+    /// Why it stays, and what would help.
+    pub reason: String,
+}
+
+/// What of a shape no correction bends.
+fn shape_reason(motion: &Motion) -> Option<UnchangedReason> {
+    match &motion.shape {
+        Shape::Line => None,
+        Shape::Arc { plane, .. } if *plane != Plane::Xy => Some(UnchangedReason::OtherPlane),
+        Shape::Arc { turns, .. } if turns.abs() == 1 => None,
+        Shape::Arc { .. } | Shape::Spline(_) => Some(UnchangedReason::OtherShape),
+    }
+}
+
+/// The stretches that stay as they are, in the order of the program; `reasons` has one entry for each stretch.
+pub(super) fn unchanged_stretches(parts: &[ProgramPart], reasons: &[Option<UnchangedReason>]) -> Vec<UnchangedStretch> {
+    let mut reasons = reasons.iter();
+    let of_part = |part: &ProgramPart| match part {
+        ProgramPart::Stretch(stretch) => {
+            let reason = reasons.next().copied().flatten()?;
+            let better = stretch.motions.iter().find_map(shape_reason);
+            let reason = if reason == UnchangedReason::Good { reason } else { better.unwrap_or(reason) };
+            Some(UnchangedStretch { lines: lines_of(stretch), reason: reason.to_string() })
+        }
+        ProgramPart::Kept(Canon::Motion(motion)) if motion.kind == MotionKind::Feed && !motion.others.is_none() => {
+            Some(UnchangedStretch { lines: [motion.line; 2], reason: UnchangedReason::OtherAxes.to_string() })
+        }
+        ProgramPart::Kept(_) => None,
+    };
+    parts.iter().filter_map(of_part).collect()
+}
+
+/// First and last line of a stretch.
+pub(super) fn lines_of(stretch: &SmoothStretch) -> [u32; 2] {
+    [0, stretch.motions.len() - 1].map(|n| stretch.motions[n].line)
+}
+
+impl UnchangedStretch {
+    /// One line for each reason, with the lines that it holds for, at most the first `most` of them.
+    pub(crate) fn sentences(all: &[Self], most: usize) -> Vec<String> {
+        let mut reasons: Vec<&str> = Vec::new();
+        for stretch in all {
+            if !reasons.contains(&stretch.reason.as_str()) {
+                reasons.push(&stretch.reason);
+            }
+        }
+        let sentence = |reason: &&str| {
+            let of: Vec<String> = all
+                .iter()
+                .filter(|stretch| stretch.reason == **reason)
+                .map(
+                    |Self { lines: [first, last], .. }| {
+                        if first == last { first.to_string() } else { format!("{first} to {last}") }
+                    },
+                )
+                .collect();
+            let more = if of.len() > most { format!(" and {} more", of.len() - most) } else { String::new() };
+            format!("unchanged, lines {}{more}: {reason}", of[..of.len().min(most)].join(", "))
+        };
+        reasons.iter().map(sentence).collect()
+    }
+}

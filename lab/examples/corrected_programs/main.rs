@@ -1,0 +1,302 @@
+//! What corrected programs deliver on a control without a correction of its own:
+//! `cargo run --release -p feedwright-lab --example corrected_programs [MACHINE,...] [PROGRAM...]`.
+//!
+//! Each program is corrected for `generic` on each machine. The machine then cuts the uncorrected
+//! and the corrected program without feedback, over [`CUTS`] phases of its disturbance and seeds of
+//! its noise. Errors are those by encoders, to the original path: scale, pitch and squareness, which
+//! no encoder sees, are zero.
+//!
+//! What repeats from cut to cut is the mean of the error vectors of all cuts in a servo period. Its
+//! square is less by a [`CUTS`]-th of the variance over the cuts, which is what the mean keeps of
+//! the rest. Ratios compare what repeats. The rest is the standard deviation over the cuts of the
+//! corrected program: no program can remove it. Some effects repeat, but no model knows their phase:
+//! cogging, ripple and errors within a period of the encoder. The ratios in brackets leave them out:
+//! those are of one cut of each program by the machine without them.
+//!
+//! With `--drawn SEED` the programs are drawn from that seed (`kinds.rs`), `--count N` of each kind
+//! of `--kinds KIND,...`; `--write FOLDER` writes them there and cuts nothing. With `--wrong` the correction uses a model whose inertia, friction and
+//! speed-loop gain are 20 % off, each up or down. With `--one-wrong` only one of them is off.
+
+mod kinds;
+
+use std::path::{Path, PathBuf};
+
+use feedwright::{CorrectJob, ExportedCut, TARGETS, deterministic};
+use feedwright_gcode::{Program, Reader, Settings};
+use feedwright_plan::vector::{Vector, norm, sub};
+use feedwright_plan::{Pieces, Step};
+use feedwright_sim::{Axis, Machine, Row, Sink, Squareness};
+
+use kinds::{KINDS, drawn};
+
+/// Cuts of each program.
+const CUTS: u64 = 8;
+/// Seed of the noise of the first cut.
+const FIRST_SEED: u64 = 100;
+
+/// Programs of the table that are no files: name, text, and true corners.
+const LETTERS: &str = "G21 G90 G64 F3000\nG0 X0 Y0\nG1 X4 Y14\nX8 Y0\nX6.5 Y5\nX1.5\nG0 X12 Y0\nG1 Y14\nX16\nG2 X16 Y7 J-3.5\nG1 X12\nX16.5\n\
+                       G2 X16.5 Y0 J-3.5\nG1 X12\nG0 X32 Y11\nG3 X22 Y11 R5\nG1 Y3\nG3 X32 Y3 R5\nM2\n";
+const RHOMBUS: &str = "G21 G90 G64 F3000\nG0 X0 Y0\nG1 X10 Y6\nX20 Y0\nX10 Y-6\nX0 Y0\nM2\n";
+const OWN: [(&str, &str); 2] = [("letters", LETTERS), ("rhombus", RHOMBUS)];
+
+/// Error vectors of the servo periods that cut; none in the others.
+#[derive(Default)]
+struct Errors {
+    skipped: usize,
+    rows: Vec<Option<Vector>>,
+}
+
+impl Sink for Errors {
+    fn row(&mut self, row: &Row) -> std::io::Result<()> {
+        if self.skipped > 0 {
+            self.skipped -= 1;
+        } else {
+            self.rows.push(row.cutting.then(|| sub(row.foot_mm, row.act_mm)));
+        }
+        Ok(())
+    }
+}
+
+/// What a program comes to over all cuts.
+#[derive(Clone, Copy, Default)]
+struct Measured {
+    /// RMS and largest error of what repeats, um.
+    rms_um: f64,
+    max_um: f64,
+    /// RMS of what does not, um.
+    rest_um: f64,
+    time_s: f64,
+    uncut_um: f64,
+    blocks: u64,
+}
+
+fn steps(text: &str) -> Vec<Step> {
+    let reader = Reader::from_text("part.ngc", text, Settings::default()).expect("a program");
+    Pieces::new(reader.map_while(Result::ok)).map_while(Result::ok).collect()
+}
+
+/// Cuts a program over phases of the disturbance and seeds of the noise.
+fn measured(machine: &Machine, original: &[Step], program: &[Step], axes: usize) -> Measured {
+    let mut cuts = Vec::new();
+    let mut measured = Measured::default();
+    for cut in 0..CUTS {
+        let machine = machine.with_noise_seed(FIRST_SEED + cut);
+        let servo_s = machine.period.servo_s;
+        let phase_s = cut as f64 / CUTS as f64 / machine.axes[0].disturbance_hz.max(1.0);
+        let periods = (phase_s / servo_s).round();
+        let stages = TARGETS[0].stages(&machine);
+        let exported = ExportedCut { machine: &machine, tool: None, stages, original, axes, watch: &() };
+        let mut errors = Errors { skipped: periods as usize, rows: Vec::new() };
+        let now = exported.once(program, periods * servo_s, &mut [&mut errors]).expect("a cut");
+        (measured.time_s, measured.blocks) = (now.time_s, now.blocks);
+        measured.uncut_um = now.uncut_um.max(measured.uncut_um);
+        cuts.push(errors.rows);
+    }
+    let periods = cuts.iter().map(Vec::len).min().unwrap_or(0);
+    let (mut squares, mut variances, mut count) = (0.0, 0.0, 0.0);
+    for n in 0..periods {
+        let errors: Vec<Vector> = cuts.iter().filter_map(|rows| rows[n]).collect();
+        if errors.len() < cuts.len() {
+            continue;
+        }
+        let mean: Vector = std::array::from_fn(|i| errors.iter().map(|error| error[i]).sum::<f64>() / CUTS as f64);
+        let variance = errors.iter().map(|error| norm(sub(*error, mean)).powi(2)).sum::<f64>() / (CUTS - 1) as f64;
+        measured.max_um = measured.max_um.max(1e3 * norm(mean));
+        (squares, variances, count) = (squares + norm(mean).powi(2), variances + variance, count + 1.0);
+    }
+    measured.rest_um = 1e3 * (variances / count).sqrt();
+    measured.rms_um = 1e3 * ((squares - variances / CUTS as f64).max(0.0) / count).sqrt();
+    measured
+}
+
+/// A machine whose encoders see all of it.
+fn seen_by_encoders(machine: &Machine) -> Machine {
+    let axis = |axis: &Axis| Axis { scale_um_m: 0.0, pitch_error_um: 0.0, ..*axis };
+    Machine { axes: machine.axes.iter().map(axis).collect(), geometry: Squareness::default(), ..machine.clone() }
+}
+
+/// The machine with inertia, friction and gain of the speed loop times these factors; gains of the position loop, feedforward and delays stay.
+fn wrong(machine: &Machine, factors: [f64; 3]) -> Machine {
+    let factor = |which: usize| factors[which];
+    let axis = |axis: &Axis| Axis {
+        inertia_kg_m2: axis.inertia_kg_m2 * factor(0),
+        coulomb_friction_nm: axis.coulomb_friction_nm * factor(1),
+        viscous_friction_nm_s: axis.viscous_friction_nm_s * factor(1),
+        stribeck_nm: axis.stribeck_nm * factor(1),
+        kv_nm_s_per_rad: axis.kv_nm_s_per_rad * factor(2),
+        ..*axis
+    };
+    Machine { axes: machine.axes.iter().map(axis).collect(), ..machine.clone() }
+}
+
+/// Every one of the three 20 % off, up or down.
+fn all_wrong() -> Vec<[f64; 3]> {
+    (0..8).map(|way| [0, 1, 2].map(|bit: usize| if way >> bit & 1 == 1 { 1.2 } else { 0.8 })).collect()
+}
+
+/// One of the three 20 % off, up or down.
+fn one_wrong() -> Vec<[f64; 3]> {
+    let one = |which: usize, factor: f64| std::array::from_fn(|k| if k == which { factor } else { 1.0 });
+    (0..3).flat_map(|which| [one(which, 0.8), one(which, 1.2)]).collect()
+}
+
+/// Ratios of corrected to original: RMS, largest error, time, and the first two of what a model knows.
+type Ratios = [f64; 5];
+
+/// Corrects a program, cuts both and prints a line. None where no program was written.
+fn line(name: &str, machine: &Machine, text: &str, believed: Option<Machine>) -> Option<Ratios> {
+    let program = Program::from_text("part.ngc", text);
+    let summary = program.check(Settings::default()).expect("a program");
+    let axes = if summary.moves[2] { 3 } else { 2 };
+    let mut job = CorrectJob::new(program, machine.clone(), &TARGETS[0]);
+    job.believed = believed;
+    let outcome = match job.run(&()) {
+        Ok(outcome) => outcome,
+        Err(error) => {
+            println!("{:<9} {name:<32} {error}", machine.name);
+            return None;
+        }
+    };
+    let Some(corrected) = outcome.program() else {
+        println!("{:<9} {name:<32} not written: {}", machine.name, outcome.refusal.clone().unwrap_or_default());
+        return None;
+    };
+    let (original, corrected) = (steps(text), steps(corrected));
+    let was = measured(machine, &original, &original, axes);
+    let is = measured(machine, &original, &corrected, axes);
+    let known = |program: &[Step]| {
+        let machine = deterministic(machine);
+        let stages = TARGETS[0].stages(&machine);
+        let cut = ExportedCut { machine: &machine, tool: None, stages, original: &original, axes, watch: &() };
+        cut.once(program, 0.0, &mut []).expect("a cut")
+    };
+    let (known_was, known_is) = (known(&original), known(&corrected));
+    let ratios = [
+        is.rms_um / was.rms_um,
+        is.max_um / was.max_um,
+        is.time_s / was.time_s,
+        known_is.rms_um / known_was.rms_um,
+        known_is.max_um / known_was.max_um,
+    ];
+    println!(
+        "{:<9} {name:<32} {:>6.2} {:>6.2} {:>6.3} ({:.3})  {:>6.1} {:>6.1} {:>6.3} ({:.3})  {:>5.2} {:>5.1}  {:>8.2} {:>6.3} {:>6} {:>6}  {:>3}/{}",
+        machine.name,
+        was.rms_um,
+        is.rms_um,
+        ratios[0],
+        ratios[3],
+        was.max_um,
+        is.max_um,
+        ratios[1],
+        ratios[4],
+        is.rest_um,
+        is.uncut_um,
+        was.time_s,
+        ratios[2],
+        was.blocks,
+        is.blocks,
+        outcome.stretches_changed,
+        outcome.stretches,
+    );
+    for stretch in &outcome.unchanged {
+        println!("          lines {} to {}: {}", stretch.lines[0], stretch.lines[1], stretch.reason);
+    }
+    Some(ratios)
+}
+
+/// Prints the median, the 90 % and the largest of ratios; programs that were not written count as 1.
+fn print_spread(name: &str, ratios: &[Option<Ratios>]) {
+    print!("{name:<42}");
+    for (which, what) in ["RMS", "largest", "time", "(RMS)", "(largest)"].into_iter().enumerate() {
+        let mut of: Vec<f64> = ratios.iter().map(|ratios| ratios.map_or(1.0, |ratios| ratios[which])).collect();
+        of.sort_by(f64::total_cmp);
+        let at = |part: f64| of[((of.len() - 1) as f64 * part).round() as usize];
+        print!("  {what} {:.3} {:.3} {:.3}", at(0.5), at(0.9), at(1.0));
+    }
+    println!("  ({} of {} written)", ratios.iter().flatten().count(), ratios.len());
+}
+
+/// The value behind an option of the command line.
+fn value<'a>(arguments: &'a [String], option: &str) -> Option<&'a str> {
+    let at = arguments.iter().position(|argument| argument == option)?;
+    arguments.get(at + 1).map(String::as_str)
+}
+
+/// The programs that are asked for: group, name and text.
+fn programs(arguments: &[String], files: &[String]) -> Vec<(String, String, String)> {
+    let parts = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../parts"));
+    let read = |path: &Path| {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let text = std::fs::read(path).expect("a file");
+        ("files".to_owned(), name, String::from_utf8_lossy(&text).into_owned())
+    };
+    if let Some(seed) = value(arguments, "--drawn") {
+        let seed: u64 = seed.parse().expect("a seed");
+        let count: u64 = value(arguments, "--count").map_or(3, |count| count.parse().expect("a count"));
+        let wanted = value(arguments, "--kinds").map_or_else(|| KINDS.join(","), str::to_owned);
+        let of_kind = |kind: &str| -> Vec<(String, String, String)> {
+            let one = |number: u64| {
+                let (text, what) = drawn(kind, 100 * seed + number);
+                (kind.to_owned(), what, text)
+            };
+            (0..count).map(one).collect()
+        };
+        return wanted.split(',').flat_map(of_kind).collect();
+    }
+    if !files.is_empty() {
+        return files.iter().map(|path| read(path.as_ref())).collect();
+    }
+    let paths: Vec<PathBuf> =
+        ["circle", "ellipse", "eight", "star", "square"].map(|name| parts.join(name).with_extension("ngc")).to_vec();
+    let own = OWN.map(|(name, text)| ("files".to_owned(), name.to_owned(), text.to_owned()));
+    paths.iter().map(|path| read(path)).chain(own).collect()
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let is_value =
+        |k: usize| k > 0 && ["--drawn", "--count", "--kinds", "--write"].contains(&arguments[k - 1].as_str());
+    let plain = (0..arguments.len()).filter(|&k| !arguments[k].starts_with("--") && !is_value(k));
+    let plain: Vec<String> = plain.map(|k| arguments[k].clone()).collect();
+    let machines = plain.first().cloned().unwrap_or_else(|| "tnv40,stiff,workshop".to_owned());
+    let given = |wanted: &str| arguments.iter().any(|argument| argument == wanted);
+    let programs = programs(&arguments, &plain[1.min(plain.len())..]);
+    if let Some(folder) = value(&arguments, "--write") {
+        for (number, (group, _, text)) in programs.iter().enumerate() {
+            std::fs::write(Path::new(folder).join(format!("{group}_{number}.ngc")), text).expect("a file");
+        }
+        return;
+    }
+    println!(
+        "what repeats of RMS and largest error, original and corrected in um, and their ratio; RMS of the rest and uncut path, corrected; time of \
+         the original in s, and ratio; blocks; stretches changed"
+    );
+    for machine in machines.split(',') {
+        let machine = seen_by_encoders(&Machine::load(machine.as_ref()).expect("a machine"));
+        let mut groups: Vec<(String, Vec<Option<Ratios>>)> = Vec::new();
+        for (group, name, text) in &programs {
+            let beliefs = match (given("--wrong"), given("--one-wrong")) {
+                (true, _) => all_wrong(),
+                (_, true) => one_wrong(),
+                _ => vec![[1.0; 3]],
+            };
+            for factors in &beliefs {
+                let off = factors.map(|factor| (100.0 * (factor - 1.0)).round());
+                let name = if off == [0.0; 3] {
+                    name.clone()
+                } else {
+                    format!("{name} {:+} {:+} {:+} %", off[0], off[1], off[2])
+                };
+                let ratios = line(&name, &machine, text, Some(wrong(&machine, *factors)));
+                match groups.iter_mut().find(|(name, _)| name == group) {
+                    Some((_, all)) => all.push(ratios),
+                    None => groups.push((group.clone(), vec![ratios])),
+                }
+            }
+        }
+        for (group, ratios) in &groups {
+            print_spread(&format!("{} {group}: 50 %, 90 %, all:", machine.name), ratios);
+        }
+    }
+}
