@@ -216,7 +216,27 @@ fn a_rapid_that_overruns_its_end_goes_there_slowly() {
 fn what_cannot_get_better_is_refused_with_a_reason() {
     let outcome = corrected("G21 G90 G64\nG1 X40 F300\nM2\n", &TARGETS[0]);
     assert_eq!(outcome.program(), None);
-    assert!(outcome.refusal.is_some(), "{outcome:?}");
+    assert!(outcome.refusal.is_some() && outcome.unchanged[0].lines == [2, 2], "{outcome:?}");
+}
+
+#[test]
+fn a_square_with_rounded_corners_is_corrected_in_a_little_more_time() {
+    let text = "G21 G90 G64 F9000\nG0 X10 Y0\nG1 X190\nG3 X200 Y10 J10\nG1 Y190\nG3 X190 Y200 I-10\nG1 X10\nG3 X0 Y190 J-10\nG1 Y10\n\
+                G3 X10 Y0 I10\nM2\n";
+    let outcome = corrected(text, &TARGETS[0]);
+    let (was, is) = (outcome.uncorrected, outcome.corrected);
+    assert!(
+        outcome.unchanged.is_empty() && is.rms_um < 0.15 * was.rms_um && is.max_um < 0.35 * was.max_um,
+        "{outcome:?}"
+    );
+    assert!(is.time_s < 1.1 * was.time_s, "{is:?} {was:?}");
+}
+
+#[test]
+fn a_program_of_many_hours_is_refused_before_it_is_cut() {
+    let lines: String = (0..40).map(|k| format!("G1 X{}\n", 400 * (k % 2))).collect();
+    let error = job(&format!("G21 G90 G64 F60\n{lines}M2\n"), &TARGETS[0]).run(&()).unwrap_err();
+    assert!(error.to_string().contains("10000000"), "{error}");
 }
 
 #[test]

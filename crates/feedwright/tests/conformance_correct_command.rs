@@ -16,10 +16,13 @@ fn what_is_told_is_that_of_the_file_and_decides_the_tolerance() {
     assert!(number("as_exported", "max_um") <= 2.0 && number("as_exported", "uncut_um") < 3.0, "{results}");
     assert_eq!(results["written"], true);
     assert!(folder.text("p.ngc").starts_with("(corrected by feedwright for the machine tnv40, control generic)\n"));
-    let tight = ["correct", "circle.ngc", "--machine", "tnv40", "--tolerance", "0.01"];
+    let tight =
+        ["correct", "circle.ngc", "--machine", "tnv40", "--out", "t.ngc", "--json", "t.json", "--tolerance", "0.01"];
     let ran = folder.run(&tight);
     assert_eq!(ran.code, Some(1));
-    assert!(ran.stdout.contains("out of tolerance"), "{}", ran.stdout);
+    assert!(ran.stdout.contains("out of tolerance") && ran.stdout.contains("t.ngc is not written"), "{}", ran.stdout);
+    let results: Value = serde_json::from_slice(&folder.read("t.json")).unwrap();
+    assert!(!folder.path().join("t.ngc").exists() && results["written"] == false, "{results}");
 }
 
 #[test]
@@ -29,6 +32,7 @@ fn a_program_that_is_no_better_is_not_written() {
     let ran = folder.run(&["correct", "line.ngc", "--machine", "tnv40", "--out", "p.ngc", "--json", "p.json"]);
     assert_eq!(ran.code, Some(1));
     assert!(ran.stdout.contains("no corrected program:"), "{}", ran.stdout);
+    assert!(ran.stdout.contains("unchanged, lines 2: the error is below 1 um already"), "{}", ran.stdout);
     assert!(!folder.path().join("p.ngc").exists());
     let results: Value = serde_json::from_slice(&folder.read("p.json")).unwrap();
     assert!(results["written"] == false && results["refusal"].is_string(), "{results}");
