@@ -47,6 +47,18 @@ fn links_lead_somewhere() {
 }
 
 #[test]
+fn every_page_is_in_the_manual() {
+    let docs = root().join("docs");
+    let manual = std::fs::read_to_string(docs.join("README.md")).unwrap();
+    let listed: Vec<&str> = targets(&manual).collect();
+    let pages = files(&docs, &["md"]);
+    assert!(pages.len() > 15, "{pages:?}");
+    let missing: Vec<String> =
+        pages.into_iter().filter(|page| page != "README.md" && !listed.contains(&page.as_str())).collect();
+    assert!(missing.is_empty(), "docs/README.md does not list {missing:?}");
+}
+
+#[test]
 fn every_key_of_a_machine_file_is_explained() {
     fn keys(table: &toml::Table, found: &mut Vec<String>) {
         for (key, value) in table {

@@ -74,7 +74,9 @@ impl BlockGeometry {
             }
             (GeometryChoice::Off | GeometryChoice::Machine, None) => None,
         };
+        // Lost motion alone is no matter of the component.
         let terms = choice.terms(machine).join(", ");
+        let known = known.filter(|_| !terms.is_empty());
         let told = match (choice, machine) {
             _ if known.as_ref().is_some_and(|known| known.backlash_mm() != [0.0; 3]) => {
                 format!("geometry: {terms}. Backlash is left out: the component does not compensate it")
