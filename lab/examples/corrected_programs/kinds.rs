@@ -271,9 +271,9 @@ fn steps(draw: &mut Draw) -> (String, String) {
     for leg in 0..count {
         let length = draw.between(3.0, 25.0);
         if leg % 2 == 0 {
-            x += length
+            x += length;
         } else {
-            y += length
+            y += length;
         }
         let _ = writeln!(text, "X{x:.3} Y{y:.3}");
     }
