@@ -84,7 +84,7 @@ fn main() {
             unreachable!("a grid")
         };
         let screws = [Some(KnownScrew { lead_mm: 16.0, windup_um: 0.0 }); 3];
-        let known = fit_geometry(sets, screws, "a simulated grid").and_then(|found| Ok(found.file.known().unwrap()));
+        let known = fit_geometry(sets, screws, "a simulated grid").map(|found| found.file.known().unwrap());
         let known = known.ok();
         let shown = |[rms, most]: [f64; 2]| format!("{rms:.2} / {most:.2}");
         let after = |warm_s: f64| shown(left_um(&grid(errors, warm_s, known.as_ref())));

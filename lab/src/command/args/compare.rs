@@ -109,7 +109,7 @@ pub(crate) enum Work {
 pub(crate) enum Compensated {
     /// None.
     None,
-    /// What the machine file states: scale, pitch and squareness.
+    /// What the machine file states, as `feedwright run` compensates it.
     Known,
     /// The same with wrong signs.
     Opposite,
