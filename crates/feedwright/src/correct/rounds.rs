@@ -306,7 +306,7 @@ impl RoundsBench<'_> {
 
     /// Takes details back to what they were until the program has few enough blocks and is fast enough.
     fn give_up_details(&self, under_way: &mut [StretchRounds]) {
-        let dwell_s = self.dwell_s;
+        let dwell_s = self.settles_s;
         let kept = |part: &&ProgramPart| matches!(part, ProgramPart::Kept(Canon::Motion(_)));
         let costs: Vec<StretchCost> = under_way.iter().map(|stretch| stretch.cost(dwell_s)).collect();
         for k in details_to_give_up(&costs, self.parts.iter().filter(kept).count(), dwell_s) {

@@ -26,8 +26,6 @@ pub(super) enum UnchangedReason {
     Worse,
     /// An arc outside of the XY plane.
     OtherPlane,
-    /// A spline, or more than a turn.
-    OtherShape,
     /// It moves axes beside X, Y and Z.
     OtherAxes,
 }
@@ -63,12 +61,10 @@ impl fmt::Display for UnchangedReason {
                 f,
                 "its command makes an error larger beside the stretches around it; a lower feedrate, or G61 at its ends, separates them"
             ),
-            Self::OtherPlane => {
-                write!(f, "it has arcs of G18 or G19, which are not corrected; lines in their place are")
-            }
-            Self::OtherShape => {
-                write!(f, "it has splines or arcs of several turns, which are not corrected; lines or single turns are")
-            }
+            Self::OtherPlane => write!(
+                f,
+                "it has arcs of G18 or G19, and a better command would take more lines than the control may get; a lower feedrate lowers the error"
+            ),
             Self::OtherAxes => write!(f, "it moves axes beside X, Y and Z, which are not corrected"),
         }
     }
@@ -83,14 +79,9 @@ pub struct UnchangedStretch {
     pub reason: String,
 }
 
-/// What of a shape no correction bends.
-fn shape_reason(motion: &Motion) -> Option<UnchangedReason> {
-    match &motion.shape {
-        Shape::Line => None,
-        Shape::Arc { plane, .. } if *plane != Plane::Xy => Some(UnchangedReason::OtherPlane),
-        Shape::Arc { turns, .. } if turns.abs() == 1 => None,
-        Shape::Arc { .. } | Shape::Spline(_) => Some(UnchangedReason::OtherShape),
-    }
+/// Whether a motion is an arc outside of the XY plane.
+fn is_in_other_plane(motion: &Motion) -> bool {
+    matches!(&motion.shape, Shape::Arc { plane, .. } if *plane != Plane::Xy)
 }
 
 /// The stretches that stay as they are, in the order of the program; `reasons` has one entry for each stretch.
@@ -99,8 +90,10 @@ pub(super) fn unchanged_stretches(parts: &[ProgramPart], reasons: &[Option<Uncha
     let of_part = |part: &ProgramPart| match part {
         ProgramPart::Stretch(stretch) => {
             let reason = reasons.next().copied().flatten()?;
-            let better = stretch.motions.iter().find_map(shape_reason);
-            let reason = if reason == UnchangedReason::Good { reason } else { better.unwrap_or(reason) };
+            let reason = match reason {
+                UnchangedReason::Blocks if stretch.motions.iter().any(is_in_other_plane) => UnchangedReason::OtherPlane,
+                reason => reason,
+            };
             Some(UnchangedStretch { lines: lines_of(stretch), reason: reason.to_string() })
         }
         ProgramPart::Kept(Canon::Motion(motion)) if motion.kind == MotionKind::Feed && !motion.others.is_none() => {
