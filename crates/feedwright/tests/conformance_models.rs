@@ -316,6 +316,6 @@ fn geometry_of_a_block(folder: &Folder) {
     ] {
         let said = folder.run(&[&["block"], arguments, &["--out", "some.fwmodel"]].concat()).succeeded().stdout;
         assert!(said.replace("\n  ", " ").contains(told), "{arguments:?}: {said}");
-        assert_eq!(folder.content()[std::path::Path::new("some.fwmodel")][8], format, "{arguments:?}");
+        assert_eq!(folder.read("some.fwmodel")[8], format, "{arguments:?}");
     }
 }
