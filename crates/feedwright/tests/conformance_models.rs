@@ -299,9 +299,13 @@ fn a_block_is_of_a_model_or_of_a_machine_and_nothing_is_written_where_neither_is
 
 /// Each way of naming a geometry, what is told of it, and whether the block then has one.
 fn geometry_of_a_block(folder: &Folder) {
-    let of_a_screw = "format = 1\n[axis.x]\nlead_mm_per_rev = 10\npitch_error_um = 3\nbacklash_um = 2\n";
+    let of_a_screw =
+        "format = 1\nsource = \"a test\"\n[axis.x]\nlead_mm_per_rev = 8\npitch_error_um = 3\nbacklash_um = 2\n";
     folder.file("screw.toml", of_a_screw);
-    folder.file("line.toml", "format = 1\n[axis.x]\nstraightness_y = [\n  [-100, 0],\n  [100, 5],\n]\n");
+    folder.file(
+        "line.toml",
+        "format = 1\nsource = \"a test\"\n[axis.x]\nstraightness_y = [\n  [-100, 0],\n  [100, 5],\n]\n",
+    );
     let none = "geometry: none";
     for (arguments, told, format) in [
         (&["workshop"][..], "geometry: scale, pitch, squareness\n", 4),
