@@ -4,10 +4,10 @@
 //! cargo run --release -p feedwright-lab --example unknown_errors
 //! ```
 //!
-//! The machining center of the independent plant has roll, pitch and yaw of 10 urad over 400 mm, an Abbe arm of 150, 100 and -200 mm, and grows
-//! by 10 um/m with a time constant of 30 min. A grid encoder of 200 mm with 0.1 um of noise is read while it is cold. The geometry that is found
-//! is compensated, and the grid is read again cold, and after 30 and 120 min. Rows have the deviations of the tool from the grid, um RMS and
-//! largest, about their mean.
+//! The machining center of the independent plant has roll, pitch and yaw of 10 urad over 400 mm, an Abbe arm of 150, 100 and -200
+//! mm, and grows by 10 um/m with a time constant of 30 min. A grid encoder of 200 mm with 0.1 um of noise is read while it is cold.
+//! The geometry that is found is compensated, and the grid is read again cold, and after 30 and 120 min. Rows have the deviations
+//! of the tool from the grid, um RMS and largest, about their mean.
 
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "an example stops at what it did not expect")]
 

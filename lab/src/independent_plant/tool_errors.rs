@@ -5,14 +5,14 @@
 //! dg/dtau = (G - g) / T                  g(tau) = G (1 - exp(-tau / T)) from a cold machine on
 //! ```
 //!
-//! theta has the roll, pitch and yaw of each table, and r is the Abbe arm from where the scales are to the tool. g is the growth of each axis
-//! while the machine warms up.
+//! theta has the roll, pitch and yaw of each table, and r is the Abbe arm from where the scales are to the tool. g is the growth of
+//! each axis while the machine warms up.
 //!
 //! Symbols: q joints, mm; A amplitude of the rotation about x, y and z, rad; P period, mm; r arm, mm; G growth of a warm machine, mm/mm;
 //! T its time constant, s; tau time, s.
 //!
-//! Source: ISO 230-1 (2012) for angular errors, Bryan (1979), "The Abbe principle revisited", Precision Engineering 1, for the arm. ISO 230-3
-//! (2007) for drift by heat. A lumped heat capacity grows by a first-order law.
+//! Source: ISO 230-1 (2012) for angular errors, Bryan (1979), "The Abbe principle revisited", Precision Engineering 1, for the arm.
+//! ISO 230-3 (2007) for drift by heat. A lumped heat capacity grows by a first-order law.
 
 use std::f64::consts::TAU;
 

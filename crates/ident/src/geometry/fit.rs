@@ -5,10 +5,10 @@
 //! ```
 //!
 //! The noise of a set is what the fit leaves of it; fit and noise are found in turns. Residuals that follow each other alike, as
-//! those of a servo that lags, tell less than independent ones: standard deviations are multiplied by sqrt(tau), tau = 1 + 2 times the
-//! sum of the autocorrelations up to the first that is negative (Geyer 1992, Practical Markov chain Monte Carlo). A pitch error that an
-//! F-test at 0.1 % does not tell from none is left out. The windup of a screw is taken off the deviations. It is known to a tenth, which adds
-//! to the variance of the backlash.
+//! those of a servo that lags, tell less than independent ones: standard deviations are multiplied by sqrt(tau), tau = 1 + 2 times
+//! the sum of the autocorrelations up to the first that is negative (Geyer 1992, Practical Markov chain Monte Carlo). A pitch error
+//! that an F-test at 0.1 % does not tell from none is left out. The windup of a screw is taken off the deviations. It is known to a
+//! tenth, which adds to the variance of the backlash.
 
 use feedwright_sim::{
     AXIS_NAMES, CHECK_ERROR_RATE, GeometryCheck, GeometryFile, GeometryOrigin, GeometryRefused, MeasuredSet, NUISANCES,

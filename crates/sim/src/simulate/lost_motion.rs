@@ -5,10 +5,10 @@
 //! L_i = b_i + 2 F_i / k_i           v_i = sqrt(0.385 L_i a_i)       T = max v_i / a_i
 //! ```
 //!
-//! Lost motion is the backlash b and what the friction F of both directions winds the screw of stiffness k up. A table at rest needs no
-//! torque, so that an axis that rests has no lead. An axis that turns at its acceleration a passes its speed by w / v = +-1 in the time 2 T.
-//! The lead then changes by no more than that acceleration: the largest second derivative of tanh is 0.77. The mean speed over 2 T
-//! takes the place of the speed, because the lead must not leap where the speed does, at a corner.
+//! Lost motion is the backlash b and what the friction F of both directions winds the screw of stiffness k up. A table at rest
+//! needs no torque, so that an axis that rests has no lead. An axis that turns at its acceleration a passes its speed by w / v =
+//! +-1 in the time 2 T. The lead then changes by no more than that acceleration: the largest second derivative of tanh is 0.77. The
+//! mean speed over 2 T takes the place of the speed, because the lead must not leap where the speed does, at a corner.
 //!
 //! Below v, vibration carries the table over most of its friction, so that it lags by less there. On `router`, v is 3.2 mm/s. With 2 and
 //! 4 mm/s, star, circle, slot and pocket leave 16.2, 16.4, 17.7, 22.1 and 16.8, 16.2, 17.7, 20.6 um at the tool.
