@@ -246,8 +246,8 @@ fn at_rest_every_axis_stays_where_it_was_and_a_rest_that_is_skipped_is_one_that_
     }
 }
 
-/// A pitch of 10 urad at a quarter of the period moves a tool that is 200 mm below the scales by 2 um along the axis; its yaw moves a tool that
-/// is 300 mm out by 3 um across.
+/// A pitch of 10 urad at a quarter of the period moves a tool that is 200 mm below the scales by 2 um along the axis; a yaw of
+/// 10 urad moves a tool that is 300 mm out by 3 um across.
 #[test]
 fn angular_errors_move_the_tool_by_the_angle_times_the_abbe_arm() {
     let errors = ToolErrors {

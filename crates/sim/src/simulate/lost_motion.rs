@@ -1,8 +1,8 @@
 //! The command ahead of a table that lags by lost motion: half of it, in the direction of travel.
 //!
 //! ```text
-//! lead_i = L_i / 2 tanh(w / v_i),   w = (r(tau + T_i) - r(tau - T_i)) / 2 T_i
-//! L_i = b_i + 2 F_i / k_i           v_i = sqrt(0.385 L_i a_i)       T = max v_i / a_i
+//! lead_i = L_i / 2 tanh(w / v_i),   w = (r_i(tau + T) - r_i(tau - T)) / 2 T
+//! L_i = b_i + 2 F_i / k_i           v_i = sqrt(0.385 L_i a_i)       T = max_i v_i / a_i
 //! ```
 //!
 //! Lost motion is the backlash b and what the friction F of both directions winds the screw of stiffness k up. A table at rest
@@ -18,7 +18,7 @@
 //! Source: Nordin and Gutman (2002), "Controlling mechanical systems with backlash: a survey", Automatica 38, section 4: the inverse of
 //! the gap, with a crossing of finite speed.
 
-/// Product of half and the largest second derivative of tanh, 4 / (3 sqrt 3).
+/// Half of the largest second derivative of tanh, 4 / (3 sqrt 3).
 const STEEPEST: f64 = 0.385;
 
 /// What compensates the lost motion of N axes.
