@@ -245,6 +245,7 @@ linuxcnc-sweep: linuxcnc
     python3 tests/identified.py
     python3 tests/setup.py
     python3 tests/corrected.py
+    python3 tests/learned.py
     python3 tests/planner.py
     python3 tests/following.py --machine configs/workshop-sim/tnv40.fwmodel
     python3 tests/faults.py --machine configs/workshop-sim/machine.fwmodel:configs/workshop-sim/model.fwmodel

@@ -28,6 +28,7 @@
 //! | `source.rs` | the program with its text and modes |
 //! | `stretches.rs` | stretches without a corner, and all else |
 //! | `arc_fit.rs` | points to arcs and lines |
+//! | `learned.rs` | what logs of cuts of the part tell |
 //! | `exported.rs` | a program as the other control cuts it |
 //! | `slow_end.rs` | slow ways to where the tool would run over |
 //! | `command_update.rs` | a better command from the errors of a cut |
@@ -40,6 +41,7 @@
 //! | `program_text.rs` | the text |
 //! | `expanded_text.rs` | the text of a program with loops, subroutines and jumps written out |
 //! | `verified.rs` | what the text says when it is read again |
+//! | `predicted.rs` | what logs predict of the next cut |
 //! | `outcome.rs` | the result, and why a corrected program is refused |
 //! | `advise.rs` | the feedrates at which a tolerance is held |
 //! | `advise/feed_cuts.rs` | a program at other feedrates |
@@ -52,6 +54,7 @@ mod target;
 mod source;
 mod stretches;
 pub(crate) mod arc_fit;
+pub(crate) mod learned;
 pub(crate) mod exported;
 mod slow_end;
 mod command_update;
@@ -64,17 +67,25 @@ mod source_line;
 mod program_text;
 mod expanded_text;
 mod verified;
+mod predicted;
 mod outcome;
 pub(crate) mod advise;
 use feedwright_gcode::{Program, Settings};
+use feedwright_plan::Step;
 use feedwright_sim::{Machine, Watch};
 
 use crate::compensation::GeometryChoice;
 use crate::job_error::{JobError, axes_that_move};
+use crate::measured::MeasuredLog;
 use exported::ExportedCut;
+pub use learned::{
+    CutProgram, LearnError, LearnedLog, LearnedOutcome, LearnedValue, ModelValue, PlaceError, PredictedCut,
+};
+use learned::{LearnedMachine, LoggedProgram};
 pub use nominal::deterministic;
 pub use outcome::CorrectOutcome;
 use outcome::{UnwrittenProgram, WrittenProgram, refusal};
+use predicted::{no_gain, predicted_cut};
 use program_text::TextParts;
 use rounds::{RoundsResult, rounds, steps_of};
 use source::SourceProgram;
@@ -101,6 +112,8 @@ pub struct CorrectJob {
     pub feed_mm_s: Option<f64>,
     /// Settings of the reader.
     pub reader: Settings,
+    /// Logs of cuts of the part, by this program or by corrected ones.
+    pub logs: Vec<MeasuredLog>,
 }
 
 impl CorrectJob {
@@ -114,6 +127,7 @@ impl CorrectJob {
             target,
             feed_mm_s: None,
             reader: Settings::default(),
+            logs: Vec::new(),
         }
     }
 
@@ -128,16 +142,19 @@ impl CorrectJob {
         let source = SourceProgram::read(&self.program, &self.reader, self.feed_mm_s)?;
         let path_error = |fault| JobError::Path { part: self.program.name(), fault };
         let original = steps_of(&source.steps).map_err(path_error)?;
-        let nominal = deterministic(self.believed.as_ref().unwrap_or(&self.machine));
         let stages = self.target.stages(&self.machine);
+        let learned = self.learned(&original, axes, watch)?;
+        let machine = learned.as_ref().map_or(&self.machine, |learned| &learned.machine);
+        let nominal = deterministic(self.believed.as_ref().unwrap_or(machine));
         let compensated = self.compensation.on(&self.machine, summary.box_mm)?.compensated;
-        let on = |machine| ExportedCut { machine, tool: None, stages, original: &original, axes, watch };
+        let error = learned.as_ref().map(|learned| &learned.error);
+        let on = |machine| ExportedCut { machine, tool: None, error, stages, original: &original, axes, watch };
         let of_run = |error| JobError::of_run(&self.program, error);
         let parts = parts(&source.steps);
         let predicted = ExportedCut { tool: compensated.as_ref(), ..on(&nominal) };
         let found = rounds(&predicted, &parts, self.target).map_err(of_run)?;
         watch.begin("cutting the uncorrected program", 1);
-        let uncorrected = on(&self.machine).figures(&original).map_err(of_run)?;
+        let uncorrected = on(machine).figures(&original).map_err(of_run)?;
         let written = self.written(&source, &parts, &found);
         let (written, unwritten) = match written {
             Ok(written) => (Some(written), None),
@@ -145,13 +162,20 @@ impl CorrectJob {
         };
         watch.begin("cutting as exported", 1);
         let corrected =
-            written.as_ref().map(|written| on(&self.machine).figures(&written.steps).map_err(of_run)).transpose()?;
+            written.as_ref().map(|written| on(machine).figures(&written.steps).map_err(of_run)).transpose()?;
+        let predict = |learned: &LearnedMachine| {
+            let next = |written: &WrittenProgram| predicted_cut(learned, &on(machine), &written.steps).map_err(of_run);
+            let predicted = written.as_ref().map(next).transpose()?;
+            Ok::<_, JobError>(LearnedOutcome { predicted, ..learned.outcome.clone() })
+        };
+        let learned = learned.as_ref().map(predict).transpose()?;
         let changed = found.commands.iter().flatten().count();
         let unchanged = unchanged_stretches(&parts, &found.reasons);
+        let no_gain = learned.as_ref().and_then(|learned| no_gain(learned, &uncorrected));
         Ok(CorrectOutcome {
             control: self.target.name,
             planner: stages.planner.name,
-            refusal: refusal(&uncorrected, corrected.as_ref(), changed, unwritten.as_ref()),
+            refusal: refusal(&uncorrected, corrected.as_ref(), changed, unwritten.as_ref()).or(no_gain),
             hint: unwritten.and_then(|fault| fault.hint()),
             uncorrected,
             corrected: corrected.unwrap_or(uncorrected),
@@ -163,9 +187,22 @@ impl CorrectJob {
             dwell_s: found.dwell_s,
             warnings: summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect(),
             written,
+            learned,
             original_steps: original,
             axes,
         })
+    }
+
+    /// What the logs tell, where there are any.
+    fn learned(&self, original: &[Step], axes: usize, watch: &dyn Watch) -> Result<Option<LearnedMachine>, JobError> {
+        if self.logs.is_empty() {
+            return Ok(None);
+        }
+        watch.begin("learning from the logs", 1);
+        let program =
+            LoggedProgram { machine: &self.machine, stages: self.target.stages(&self.machine), original, axes, watch };
+        let learned = program.learned(&self.logs);
+        learned.map(Some).map_err(|(log, error)| JobError::of_part_log(&log, &self.program, &error))
     }
 
     /// A text that says what was found, with as many lines of the original as can be.

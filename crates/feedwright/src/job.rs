@@ -31,7 +31,7 @@ use std::sync::Arc;
 use feedwright_control::{Controller, IdentifiedAxes};
 use feedwright_gcode::canon::{Canon, MotionKind};
 use feedwright_gcode::{self, Program, ReadError, Summary};
-use feedwright_ident::{Log, LogFinding, Model, Origin};
+use feedwright_ident::{LogFinding, Model, Origin};
 use feedwright_plan::{AlignedPaths, Constraints, PlanSink, SpeedCaps, Step, Steps};
 use feedwright_sim::{
     Machine, Outcome, PlanCache, Row, Run, RunError, RunResult, Sink, StageSteps, Stages, Watch, path_steps,
@@ -45,7 +45,7 @@ use crate::cycle_time::CycleTimeOfCut;
 use crate::fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within, with_tolerance};
 pub use crate::job_error::JobError;
 use crate::job_error::axes_that_move;
-use crate::measured::{MeasuredRun, measured};
+use crate::measured::{MeasuredLog, MeasuredRun, measured};
 use crate::report::harm::Harm;
 use crate::report::{CompensatedGeometry, FullCircle, Report, ReportedRun, full_circles};
 use record::{RunRecord, Timeline};
@@ -106,15 +106,6 @@ pub struct Job {
 
 /// What stands for a controller in the run of a log.
 pub const MEASURED: &str = "measured";
-
-/// A log of a cut.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MeasuredLog {
-    /// What messages call it.
-    pub name: String,
-    /// The log.
-    pub log: Log,
-}
 
 /// What a job came to. The runs stand in the order in which they were made: what is compared against, what was
 /// measured, where there is a log, then the controller that was asked for.

@@ -100,6 +100,19 @@ pub enum JobError {
         #[help]
         hint: Option<String>,
     },
+    /// Nothing can be learned from a log of the part.
+    #[error("{log} tells nothing for {part}: {error}")]
+    NotLearned {
+        /// The log.
+        log: String,
+        /// The program.
+        part: String,
+        /// Why.
+        error: String,
+        /// Remedy.
+        #[help]
+        hint: Option<String>,
+    },
     /// No plan is within the tolerance.
     #[error("{part}: {error}")]
     Fastest {
@@ -134,6 +147,12 @@ impl JobError {
     pub(crate) fn of_log(log: &str, program: &Program, error: MeasuredError) -> Self {
         let hint = miette::Diagnostic::help(&error).map(|hint| hint.to_string());
         Self::Measured { log: log.to_owned(), part: program.name(), error: Box::new(error), hint }
+    }
+
+    /// A log of the part that nothing can be learned from, with the remedy.
+    pub(crate) fn of_part_log(log: &str, program: &Program, error: &dyn miette::Diagnostic) -> Self {
+        let hint = error.help().map(|hint| hint.to_string());
+        Self::NotLearned { log: log.to_owned(), part: program.name(), error: error.to_string(), hint }
     }
 
     /// Of a cut of a part.

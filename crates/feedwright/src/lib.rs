@@ -128,20 +128,23 @@ pub use controllers::{
 pub use correct::advise::{Advice, AdviseJob, CutWay, ErrorPlace};
 pub use correct::arc_fit::{ArcFit, FitPoint};
 pub use correct::exported::{ExportedCut, ExportedFigures};
-pub use correct::{CorrectJob, CorrectOutcome, MacroLanguage, TARGETS, TargetControl, UnchangedStretch, deterministic};
+pub use correct::{
+    CorrectJob, CorrectOutcome, CutProgram, LearnError, LearnedLog, LearnedOutcome, LearnedValue, MacroLanguage,
+    ModelValue, PlaceError, PredictedCut, TARGETS, TargetControl, UnchangedStretch, deterministic,
+};
 pub use cycle_time::{CycleTime, CycleTimeOptions, LineTime, cycle_time, cycle_time_by, cycle_time_within};
 pub use fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within};
 #[cfg(feature = "files")]
 pub use identifier_cache::files::folder as cache_folder;
 pub use identifier_cache::{identified, key_of, trained};
-pub use job::{CheckedJob, Job, JobError, JobOutcome, MEASURED, MeasuredLog};
+pub use job::{CheckedJob, Job, JobError, JobOutcome, MEASURED};
 #[cfg(feature = "files")]
 pub use linuxcnc_setup::{HALLIB, LinuxcncSetup, LinuxcncSetupError, LinuxcncWiring};
 pub use log_job::{
     LogIdentified, LogJob, LogJobError, UpdateError, following_figure, informative, machine_text, updated_text,
     write_json, write_page,
 };
-pub use measured::{MeasuredError, measured};
+pub use measured::{MeasuredError, MeasuredLog, measured};
 #[cfg(feature = "files")]
 pub use output::{FileOperation, OutputError, OutputFile, OutputFiles};
 pub use recorded_model::{

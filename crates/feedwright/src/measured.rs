@@ -61,6 +61,15 @@ const HALVINGS: usize = 30;
 /// Samples between two questions whether to go on.
 const SAMPLES_BETWEEN_CHECKS: usize = 10_000;
 
+/// A log of a cut.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredLog {
+    /// What messages call it.
+    pub name: String,
+    /// The log.
+    pub log: Log,
+}
+
 /// Why a log cannot be compared with a program.
 #[derive(Debug, Error, miette::Diagnostic)]
 pub enum MeasuredError {
@@ -174,28 +183,100 @@ pub fn measured(
     sinks: &mut [&mut dyn Sink],
     watch: &dyn Watch,
 ) -> Result<MeasuredRun, MeasuredError> {
-    if let [first, _, ..] = &log.stretches[..] {
-        return Err(MeasuredError::Gap { at_s: log.time_s[first.end - 1] });
-    }
-    let planned = PlannedPath::of(reference)?;
-    let PairedAxes { axes: recorded, findings } = PairedAxes::of(log, planned.range_mm(), axes)?;
-    let mut record =
-        RecordedAxes { axes: recorded, time_s: &log.time_s, shift_mm: [0.0; 3], still_mm: planned.start_mm };
-    planned.check_unit(&record, axes)?;
-    record.shift_mm = planned.shift_mm(&record, axes);
-    let first = record.begins(planned.start_mm)?;
-    record.shift_to(first, planned.start_mm);
-    let mut comparison = MeasuredCut::new(machine, log.sample_time_s, planned.start_s_mm, &record.at(first));
-    for k in first..record.len() {
-        let row = comparison.row(&record, first, k, reference)?;
-        for sink in sinks.iter_mut() {
-            sink.row(&row).map_err(|error| MeasuredError::Stopped { stopped: error.into() })?;
+    let located = LocatedLog::of(log, axes, reference)?;
+    let run = located.compared(machine, reference, watch, &mut |row| {
+        sinks.iter_mut().try_for_each(|sink| sink.row(row)).map_err(Into::into)
+    })?;
+    Ok(MeasuredRun { run, findings: located.findings })
+}
+
+/// A log in the coordinates of its program.
+#[derive(Debug, Clone)]
+pub(crate) struct RecordedCut {
+    /// Time between two samples, s.
+    pub(crate) sample_s: f64,
+    /// Commanded and actual positions of all samples, mm.
+    pub(crate) command_mm: Vec<Vector>,
+    pub(crate) actual_mm: Vec<Vector>,
+    /// The sample that the first row is of.
+    pub(crate) first: usize,
+    /// The samples from where the program begins to cut, as rows of a run.
+    pub(crate) rows: Vec<Row>,
+}
+
+/// All samples of a log beside its program, see [`measured`].
+///
+/// # Errors
+/// As [`measured`].
+pub(crate) fn recorded_cut(
+    log: &Log,
+    machine: &Machine,
+    axes: usize,
+    reference: &mut Reference<'_>,
+    watch: &dyn Watch,
+) -> Result<RecordedCut, MeasuredError> {
+    let located = LocatedLog::of(log, axes, reference)?;
+    let mut rows = Vec::new();
+    located.compared(machine, reference, watch, &mut |row| {
+        rows.push(*row);
+        Ok(())
+    })?;
+    let LocatedLog { record, first, .. } = located;
+    let samples: Vec<Sampled> = (0..record.len()).map(|k| record.at(k)).collect();
+    Ok(RecordedCut {
+        sample_s: log.sample_time_s,
+        command_mm: samples.iter().map(|sample| sample.command_mm).collect(),
+        actual_mm: samples.iter().map(|sample| sample.actual_mm).collect(),
+        first,
+        rows,
+    })
+}
+
+/// A log whose place in the program is known.
+struct LocatedLog<'a> {
+    sample_s: f64,
+    planned: PlannedPath,
+    record: RecordedAxes<'a>,
+    /// The sample in which the command begins to cut.
+    first: usize,
+    findings: Vec<LogFinding>,
+}
+
+impl<'a> LocatedLog<'a> {
+    fn of(log: &'a Log, axes: usize, reference: &mut Reference<'_>) -> Result<Self, MeasuredError> {
+        if let [first, _, ..] = &log.stretches[..] {
+            return Err(MeasuredError::Gap { at_s: log.time_s[first.end - 1] });
         }
-        if (k - first).is_multiple_of(SAMPLES_BETWEEN_CHECKS) {
-            watch.check().map_err(|cancelled| MeasuredError::Stopped { stopped: cancelled.into() })?;
-        }
+        let planned = PlannedPath::of(reference)?;
+        let PairedAxes { axes: recorded, findings } = PairedAxes::of(log, planned.range_mm(), axes)?;
+        let mut record =
+            RecordedAxes { axes: recorded, time_s: &log.time_s, shift_mm: [0.0; 3], still_mm: planned.start_mm };
+        planned.check_unit(&record, axes)?;
+        record.shift_mm = planned.shift_mm(&record, axes);
+        let first = record.begins(planned.start_mm)?;
+        record.shift_to(first, planned.start_mm);
+        Ok(Self { sample_s: log.sample_time_s, planned, record, first, findings })
     }
-    Ok(MeasuredRun { run: comparison.finish(&planned)?, findings })
+
+    /// Hands every row to `take`.
+    fn compared(
+        &self,
+        machine: &Machine,
+        reference: &Reference<'_>,
+        watch: &dyn Watch,
+        take: &mut dyn FnMut(&Row) -> Result<(), Stopped>,
+    ) -> Result<RunResult, MeasuredError> {
+        let Self { record, first, .. } = self;
+        let stopped = |stopped| MeasuredError::Stopped { stopped };
+        let mut comparison = MeasuredCut::new(machine, self.sample_s, self.planned.start_s_mm, &record.at(*first));
+        for k in *first..record.len() {
+            take(&comparison.row(record, *first, k, reference)?).map_err(stopped)?;
+            if (k - first).is_multiple_of(SAMPLES_BETWEEN_CHECKS) {
+                watch.check().map_err(|cancelled| stopped(cancelled.into()))?;
+            }
+        }
+        comparison.finish(&self.planned)
+    }
 }
 
 /// What the plan of the program says of its path.

@@ -46,6 +46,7 @@ mod conformance_identify_log;
 mod conformance_job;
 mod conformance_json;
 mod conformance_layers;
+mod conformance_learn;
 mod conformance_linuxcnc_log;
 mod conformance_linuxcnc_setup;
 mod conformance_measured;

@@ -86,7 +86,7 @@ fn measured(machine: &Machine, original: &[Step], program: &[Step], axes: usize)
         let phase_s = cut as f64 / CUTS as f64 / machine.axes[0].disturbance_hz.max(1.0);
         let periods = (phase_s / servo_s).round();
         let stages = TARGETS[0].stages(&machine);
-        let exported = ExportedCut { machine: &machine, tool: None, stages, original, axes, watch: &() };
+        let exported = ExportedCut { machine: &machine, tool: None, error: None, stages, original, axes, watch: &() };
         let mut errors = Errors { skipped: periods as usize, rows: Vec::new() };
         let now = exported.once(program, periods * servo_s, &mut [&mut errors]).expect("a cut");
         (measured.time_s, measured.blocks) = (now.time_s, now.blocks);
@@ -168,7 +168,8 @@ fn line(name: &str, machine: &Machine, text: &str, believed: Option<Machine>) ->
     let known = |program: &[Step]| {
         let machine = deterministic(machine);
         let stages = TARGETS[0].stages(&machine);
-        let cut = ExportedCut { machine: &machine, tool: None, stages, original: &original, axes, watch: &() };
+        let cut =
+            ExportedCut { machine: &machine, tool: None, error: None, stages, original: &original, axes, watch: &() };
         cut.once(program, 0.0, &mut []).expect("a cut")
     };
     let (known_was, known_is) = (known(&original), known(&corrected));

@@ -6,13 +6,15 @@ use std::sync::Arc;
 
 use feedwright_control::{KnownGeometry, Uncorrected};
 use feedwright_gcode::canon::{Event, EventKind};
-use feedwright_plan::vector::{Vector, sub};
+use feedwright_plan::vector::{Vector, add_scaled, sub};
 use feedwright_plan::{AlignedPaths, Step};
 use feedwright_sim::{
-    Commanded, Machine, Measurement, Mechanism, Outcome, Plant, Row, Run, RunError, RunResult, Sink, Stages, Watch,
+    Commanded, Machine, Measurement, Mechanism, Outcome, PlanCache, Plant, PlantMaker, Row, Run, RunError, RunResult,
+    Sink, Stages, Watch,
 };
 use serde::Serialize;
 
+use super::learned::{PathTrack, PlaceError};
 use crate::report::Statistics;
 use crate::report::harm::CutErrors;
 
@@ -155,7 +157,7 @@ fn path_steps(program: &[Step]) -> u64 {
 
 /// A machine whose tool is where a geometry puts it.
 struct ToolOf {
-    plant: Plant<3>,
+    plant: Box<dyn Mechanism>,
     known: Arc<KnownGeometry<3>>,
 }
 
@@ -180,6 +182,8 @@ pub struct ExportedCut<'a> {
     pub machine: &'a Machine,
     /// Where its tool is, in place of what the machine file says of it.
     pub tool: Option<&'a Arc<KnownGeometry<3>>>,
+    /// What its joints have beside, as logs of the part show.
+    pub error: Option<&'a PlaceError>,
     /// How the control plans.
     pub stages: Stages,
     /// The path that errors are measured to.
@@ -271,18 +275,120 @@ impl ExportedCut<'_> {
     /// Cuts a program once; the rows go to sinks.
     pub(super) fn cut(&self, program: &[Step], sinks: &mut [&mut dyn Sink]) -> Result<RunResult, RunError> {
         let aligned = AlignedPaths::new(self.original, program);
+        let plan = PlanCache::default();
+        let error_mm = match self.error {
+            Some(error) => error.along(&self.track(&aligned, &plan)?),
+            None => Vec::new(),
+        };
         let plant = |start_mm: [f64; 3], seed: u64| -> Box<dyn Mechanism> {
             let plant = Plant::<3>::with_seed(self.machine, start_mm, seed);
+            let plant: Box<dyn Mechanism> = match self.error {
+                Some(_) => Box::new(BesideModel { plant, error_mm: error_mm.clone(), period: 0 }),
+                None => Box::new(plant),
+            };
             match self.tool {
                 Some(known) => Box::new(ToolOf { plant, known: Arc::clone(known) }),
-                None => Box::new(plant),
+                None => plant,
             }
         };
+        let is_own = self.tool.is_none() && self.error.is_none();
+        let plant: Option<PlantMaker<'_>> = if is_own { None } else { Some(&plant) };
+        self.run(&aligned, &plan, plant, sinks)
+    }
+
+    /// One run along the path.
+    fn run(
+        &self,
+        aligned: &AlignedPaths,
+        plan: &PlanCache,
+        plant: Option<PlantMaker<'_>>,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
         let run = Run::on(self.machine).uncompensated().stages(self.stages).watched(self.watch);
-        let run = if self.tool.is_some() { run.plant(&plant) } else { run };
+        let run = if self.error.is_some() { run.sharing(plan) } else { run };
+        let run = plant.map_or(run, |plant| run.plant(plant));
         match self.axes {
-            2 => run.cut_aligned::<2>(&aligned, &mut Uncorrected, sinks),
-            _ => run.cut_aligned::<3>(&aligned, &mut Uncorrected, sinks),
+            2 => run.cut_aligned::<2>(aligned, &mut Uncorrected, sinks),
+            _ => run.cut_aligned::<3>(aligned, &mut Uncorrected, sinks),
         }
+    }
+
+    /// The command of a program, servo period by servo period.
+    fn track(&self, aligned: &AlignedPaths, plan: &PlanCache) -> Result<PathTrack, RunError> {
+        let servo_s = self.machine.period.servo_s;
+        let mut track = PathTrack { sample_s: servo_s, ..PathTrack::default() };
+        let mut kept = KeptTrack { track: &mut track };
+        let ideal = |_: [f64; 3], _: u64| -> Box<dyn Mechanism> { Box::new(IdealMachine) };
+        self.run(aligned, plan, Some(&ideal), &mut [&mut kept])?;
+        Ok(track)
+    }
+}
+
+/// A machine whose tool is where the command is.
+struct IdealMachine;
+
+impl Mechanism for IdealMachine {
+    fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3> {
+        Measurement { position_mm: command_mm, joint_mm: command_mm, measured_mm: command_mm, torque_nm: [0.0; 3] }
+    }
+
+    fn skip(&mut self, _: u64) {}
+
+    fn has_geometry(&self) -> bool {
+        false
+    }
+}
+
+/// Keeps the command of a run; what is skipped of a rest too.
+struct KeptTrack<'a> {
+    track: &'a mut PathTrack,
+}
+
+impl Sink for KeptTrack<'_> {
+    fn row(&mut self, row: &Row) -> std::io::Result<()> {
+        let period = (row.t_s / self.track.sample_s).round() as usize;
+        if period >= MOST_ROWS {
+            return Err(std::io::ErrorKind::OutOfMemory.into());
+        }
+        if let (Some(&s_mm), Some(&command_mm)) = (self.track.s_mm.last(), self.track.command_mm.last()) {
+            self.track.s_mm.resize(period.max(self.track.s_mm.len()), s_mm);
+            self.track.command_mm.resize(period.max(self.track.command_mm.len()), command_mm);
+        }
+        self.track.s_mm.push(row.s_mm);
+        self.track.command_mm.push(row.cmd_mm);
+        Ok(())
+    }
+}
+
+/// A machine whose joints have an error beside the model.
+struct BesideModel {
+    plant: Plant<3>,
+    /// By servo period, mm.
+    error_mm: Vec<Vector>,
+    period: usize,
+}
+
+impl Mechanism for BesideModel {
+    fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3> {
+        let Measurement { position_mm, joint_mm, measured_mm, torque_nm } = self.plant.step(command_mm);
+        self.period += 1;
+        // A position is that at the end of the period.
+        let error_mm = self.error_mm.get(self.period).or(self.error_mm.last()).copied().unwrap_or_default();
+        let with = |at_mm| add_scaled(at_mm, 1.0, error_mm);
+        Measurement {
+            position_mm: with(position_mm),
+            joint_mm: with(joint_mm),
+            measured_mm: with(measured_mm),
+            torque_nm,
+        }
+    }
+
+    fn skip(&mut self, periods: u64) {
+        self.plant.skip(periods);
+        self.period += periods as usize;
+    }
+
+    fn has_geometry(&self) -> bool {
+        self.plant.has_geometry()
     }
 }

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::expanded_text::UnwritableLine;
 use super::exported::ExportedFigures;
+use super::learned::LearnedOutcome;
 use super::unchanged::UnchangedStretch;
 
 /// A corrected program whose RMS error is not smaller by this share is no better than the uncorrected program. A smaller gain does not
@@ -47,6 +48,9 @@ pub struct CorrectOutcome {
     /// What the reader warned of.
     #[serde(skip)]
     pub warnings: Vec<Diagnostic>,
+    /// What was learned from logs of the part.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub learned: Option<LearnedOutcome>,
     /// The text that was cut, whether it is to be used or not.
     #[serde(skip)]
     pub(crate) written: Option<WrittenProgram>,

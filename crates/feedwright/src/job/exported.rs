@@ -43,6 +43,7 @@ impl Job {
         let cut = ExportedCut {
             machine: &self.machine,
             tool: None,
+            error: None,
             stages,
             original: &outcome.original_steps,
             axes: outcome.axes,

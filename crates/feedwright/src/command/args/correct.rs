@@ -14,8 +14,9 @@ use super::reader::ReaderArgs;
 /// again, planned as that control would, cut in simulation and compared with the original before it is written.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
-Example:
+Examples:
   feedwright correct part.ngc --machine mine.toml --for linuxcnc --out corrected.ngc
+  feedwright correct part.ngc --machine mine.toml --for linuxcnc --log cut.csv --out second.ngc
 
 Exit codes: 0 done; 1 out of --tolerance, or no better than uncorrected: nothing is written then; 2 an error.")]
 pub(crate) struct CorrectArgs {
@@ -27,6 +28,13 @@ pub(crate) struct CorrectArgs {
     /// Control that the corrected program is for: how it plans the speed, and what its blocks may hold.
     #[arg(long = "for", value_name = "CONTROL", default_value = crate::correct::TARGETS[0].name, long_help = controls("Control that the corrected program is for: how it plans the speed, and what its blocks may hold."))]
     pub(crate) target: String,
+    /// Log of a cut of this part: commanded and actual positions, by this program or by one that was corrected from it. What the logs show is
+    /// corrected, not what the machine file says. Several logs: repeat the option.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) log: Vec<PathBuf>,
+    /// Which column of the logs is what, by number from 0 or by name, and units: t=0,x.cmd=1,x.act=3,unit=mm,time=ms.
+    #[arg(long, value_name = "COLUMNS", requires = "log")]
+    pub(crate) columns: Option<String>,
     /// Place of the corrected program; it is written only if it is better than the uncorrected program; otherwise the exit code is 1.
     #[arg(long, value_name = "FILE.ngc")]
     pub(crate) out: Option<PathBuf>,

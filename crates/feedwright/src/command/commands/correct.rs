@@ -1,9 +1,12 @@
 //! `feedwright correct`: a corrected program for a control that gets no feedback from us.
 use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::str::FromStr;
 
-use feedwright_gcode::Program;
-use feedwright_sim::Machine;
+use feedwright_gcode::{Program, input};
+use feedwright_ident::{Columns, Log};
+use feedwright_sim::{Machine, Watch};
 use miette::{IntoDiagnostic, Result};
 use serde_json::{Value, json};
 
@@ -15,7 +18,8 @@ use crate::command::streams::{ProgramInputs, tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn, figure};
 use crate::command::terminal::wrapped;
 use crate::correct::exported::ExportedFigures;
-use crate::correct::{CorrectJob, CorrectOutcome};
+use crate::correct::{CorrectJob, CorrectOutcome, CutProgram, LearnedOutcome, LearnedValue, PredictedCut};
+use crate::measured::MeasuredLog;
 use crate::output::OutputFile;
 use crate::results_format::{json_text, stamped};
 
@@ -32,8 +36,10 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let reader = args.reader.settings()?;
     tell_assumed_limits(&machine, target.stages(&machine));
     let compensation = compensation(&args.geometry)?;
-    let job = CorrectJob { reader, compensation, ..CorrectJob::new(Program::in_file(&args.part), machine, target) };
     let bar = console.bar(0);
+    let logs = logs(args, &bar)?;
+    let job =
+        CorrectJob { reader, compensation, logs, ..CorrectJob::new(Program::in_file(&args.part), machine, target) };
     let outcome = job.run(&bar)?;
     bar.clear();
     for warning in outcome.warnings.iter().cloned() {
@@ -56,6 +62,14 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let good = within && outcome.refusal.is_none();
     let code = if good { ExitCode::SUCCESS } else { ExitCode::from(OUT_OF_TOLERANCE) };
     printed(print(args, &outcome, within), code)
+}
+
+/// The logs of the part.
+fn logs(args: &CorrectArgs, watch: &dyn Watch) -> Result<Vec<MeasuredLog>> {
+    let columns = args.columns.as_deref().map(Columns::from_str).transpose()?.unwrap_or_default();
+    let read =
+        |path: &PathBuf| Ok(MeasuredLog { name: input::name(path), log: Log::read_watched(path, &columns, watch)? });
+    args.log.iter().map(read).collect()
 }
 
 /// The figures of a correction, and what was asked for.
@@ -96,6 +110,9 @@ fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io:
     table.print(&mut *out)?;
     let note = "both cut without feedback, as the control plans them; errors are distances to the programmed path";
     writeln!(out, "{}", wrapped(note, 2))?;
+    if let Some(learned) = &outcome.learned {
+        print_learned(&mut *out, learned)?;
+    }
     print_correction(&mut *out, outcome)?;
     if let Some(tolerance_um) = args.tolerance {
         let verdict = if within { "within" } else { "out of" };
@@ -106,4 +123,52 @@ fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io:
         writeln!(out, "{} is not written", path.display())?;
     }
     tell_written(&mut *out, [written, args.json.as_deref()])
+}
+
+/// What the logs told, and what the next cut is to show.
+fn print_learned(out: &mut dyn Write, learned: &LearnedOutcome) -> std::io::Result<()> {
+    let mut table = ConsoleTable::new(vec![
+        TableColumn::new("log"),
+        TableColumn::new("program"),
+        TableColumn::new("RMS um"),
+        TableColumn::new("max um"),
+        TableColumn::optional("model misses um", 1),
+        TableColumn::optional("corrected um", 1),
+    ]);
+    for log in &learned.logs {
+        let program = match log.program {
+            CutProgram::Original => "original",
+            CutProgram::Corrected => "corrected",
+        };
+        let figures = [log.rms_um, log.max_um, log.model_missed_um, log.missed_um].map(|um| figure(um, 2));
+        let name = Path::new(&log.log).file_name().map_or(log.log.clone(), |name| name.to_string_lossy().into_owned());
+        table.row([name, program.to_owned()].into_iter().chain(figures).collect());
+    }
+    writeln!(out)?;
+    table.print(out)?;
+    for log in learned.logs.iter().filter(|log| log.takes_another_time()) {
+        let note = format!(
+            "{} took {} s, and {} s are planned: the limits of the control or its feed override are not those of the machine file",
+            log.log,
+            figure(log.time_s, 3),
+            figure(log.planned_s, 3)
+        );
+        writeln!(out, "{}", wrapped(&note, 2))?;
+    }
+    let values = learned.values.iter().filter(|value| (value.factor - 1.0).abs() > 2.0 * value.standard_deviation);
+    let values = values.map(|LearnedValue { axis, value, factor, standard_deviation }| {
+        let [percent, sd] = [factor - 1.0, *standard_deviation].map(|part| 100.0 * part);
+        format!("{axis} {} {percent:+.1} +- {sd:.1} %", value.words())
+    });
+    let values: Vec<String> = values.collect();
+    if !values.is_empty() {
+        writeln!(out, "{}", wrapped(&format!("the machine is not as its file: {}", values.join(", ")), 2))?;
+    }
+    let [repeats, rest] = [learned.repeats_um, learned.rest_um].map(|um| figure(um, 2));
+    let note = format!("beside that, RMS {repeats} um repeat and are corrected, and {rest} um do not");
+    writeln!(out, "{}", wrapped(&note, 2))?;
+    let Some(PredictedCut { rms_um, band_um, max_um, .. }) = learned.predicted else { return Ok(()) };
+    let [rms, low, high, max] = [rms_um, band_um[0], band_um[1], max_um].map(|um| figure(um, 2));
+    let note = format!("the encoders are to show RMS {rms} um ({low} to {high}) and max {max} um in the next cut");
+    writeln!(out, "{}", wrapped(&note, 2))
 }

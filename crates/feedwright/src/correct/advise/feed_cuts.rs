@@ -83,7 +83,15 @@ impl<const N: usize> FeedBench<'_, N> {
         let silent = Silent(self.watch);
         let stages = self.target.stages(self.machine);
         let nominal = deterministic(self.machine);
-        let on = |machine| ExportedCut { machine, tool: None, stages, original: &original, axes: N, watch: &silent };
+        let on = |machine| ExportedCut {
+            machine,
+            tool: None,
+            error: None,
+            stages,
+            original: &original,
+            axes: N,
+            watch: &silent,
+        };
         let program = match way {
             CutWay::Corrected => {
                 let tool = self.machine.compensated.as_ref();

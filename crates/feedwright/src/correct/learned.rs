@@ -1,0 +1,235 @@
+//! What logs of cuts of the part tell of the machine, for the next correction: iterative learning from part to part.
+//!
+//! Each log is the cut of a program: the original, or one that was corrected before. The log has that program's command, so its text is
+//! not needed.
+//!
+//! 1. The log is checked and aligned with the original by its command (`part_record.rs`).
+//! 2. The [values of the model](model_fit) are corrected as far as the logs show them: what was seen at one command then holds at another.
+//! 3. What the model still does not say is laid over the path. [What of it repeats](repeats) is added to the simulated tool.
+//!
+//! The correction then goes by the simulated tool as before. What it predicts has a band: values of the model that are as likely, and what
+//! did not repeat.
+//!
+//! Source: iterative learning control (Bristow, Tharayil and Alleyne 2006).
+//!
+//! | File | What |
+//! |---|---|
+//! | `error.rs` | why nothing is learned from a log |
+//! | `part_record.rs` | a log in the coordinates of the program |
+//! | `model_fit.rs` | values of the model |
+//! | `repeats.rs` | what repeats |
+//! | `place_error.rs` | errors from the samples of one command to those of another |
+
+mod error;
+mod part_record;
+mod model_fit;
+mod repeats;
+mod place_error;
+
+use feedwright_plan::Step;
+use feedwright_plan::vector::{Vector, add_scaled, dot, sub};
+use feedwright_sim::{Machine, Row, Stages, Watch};
+use serde::Serialize;
+
+use super::nominal::deterministic;
+use crate::measured::MeasuredLog;
+pub use error::LearnError;
+pub use model_fit::{LearnedValue, ModelValue};
+use model_fit::{ModelFit, at, fit, followed, noise_of};
+pub use part_record::CutProgram;
+use part_record::PartRecord;
+pub(super) use place_error::PathTrack;
+pub use place_error::PlaceError;
+use repeats::repeating;
+
+/// Seed of the example of noise.
+const SEED: u64 = 0x5eed;
+/// What a model leaves across the path may be so much of the contour error that it explains, and this beside, um. Beyond it, a log
+/// tells nothing.
+const MOST_LEFT: f64 = 0.7;
+const MOST_LEFT_UM: f64 = 0.5;
+/// A cut of the program that takes longer or shorter by this part than it was planned is told.
+const SAME_TIME: f64 = 0.02;
+
+/// What a log was of and showed.
+#[derive(Debug, Clone, Serialize)]
+pub struct LearnedLog {
+    /// The log.
+    pub log: String,
+    /// Which program it was cut by.
+    pub program: CutProgram,
+    /// RMS distance of its command from the original program, um.
+    pub off_um: f64,
+    /// Time between samples, s.
+    pub sample_time_s: f64,
+    /// Duration of the cut, s.
+    pub time_s: f64,
+    /// Time that the original is planned to take, s.
+    pub planned_s: f64,
+    /// Measured RMS contour error, um.
+    pub rms_um: f64,
+    /// Largest measured contour error, um.
+    pub max_um: f64,
+    /// RMS by which the model of the machine file misses the measured position across the path, um.
+    pub model_missed_um: f64,
+    /// The same at the values that the logs show, um.
+    pub missed_um: f64,
+}
+
+/// The error that the next cut is predicted to have at the encoders.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct PredictedCut {
+    /// RMS contour error, um.
+    pub rms_um: f64,
+    /// Band of the RMS contour error, um.
+    pub band_um: [f64; 2],
+    /// Upper end of the part that repeats from cut to cut, um.
+    pub repeats_um: f64,
+    /// Largest contour error, um.
+    pub max_um: f64,
+}
+
+/// What was learned from logs.
+#[derive(Debug, Clone, Serialize)]
+pub struct LearnedOutcome {
+    /// The logs, in their order.
+    pub logs: Vec<LearnedLog>,
+    /// Values of the model.
+    pub values: Vec<LearnedValue>,
+    /// RMS across the path of what repeats beside the model, and is corrected, um.
+    pub repeats_um: f64,
+    /// The same of what does not, um.
+    pub rest_um: f64,
+    /// The next cut, where a program was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub predicted: Option<PredictedCut>,
+}
+
+impl LearnedLog {
+    /// Whether the control took another time for the program than is planned.
+    pub(crate) fn takes_another_time(&self) -> bool {
+        self.program == CutProgram::Original && (self.time_s / self.planned_s - 1.0).abs() > SAME_TIME
+    }
+}
+
+/// The machine as the logs show it.
+pub(super) struct LearnedMachine {
+    /// The machine file with values that the logs show.
+    pub(super) machine: Machine,
+    /// The same at values that are as likely.
+    pub(super) likely: Vec<Machine>,
+    /// What repeats beside the model.
+    pub(super) error: PlaceError,
+    pub(super) outcome: LearnedOutcome,
+}
+
+/// The program that logs are of.
+pub(super) struct LoggedProgram<'a> {
+    pub(super) machine: &'a Machine,
+    pub(super) stages: Stages,
+    pub(super) original: &'a [Step],
+    pub(super) axes: usize,
+    pub(super) watch: &'a dyn Watch,
+}
+
+impl LoggedProgram<'_> {
+    /// What logs tell.
+    ///
+    /// # Errors
+    /// The name of a log that tells nothing, and why.
+    pub(super) fn learned(&self, logs: &[MeasuredLog]) -> Result<LearnedMachine, (String, LearnError)> {
+        let record = |log: &MeasuredLog| {
+            let record = PartRecord::of(log, self.machine, self.stages, self.original, self.axes, self.watch);
+            record.map_err(|error| (log.name.clone(), error))
+        };
+        let records = logs.iter().map(record).collect::<Result<Vec<_>, _>>()?;
+        let all = || logs.iter().map(|log| log.name.as_str()).collect::<Vec<_>>().join(", ");
+        let fit = fit(self.machine, &records, self.axes, self.watch).map_err(|error| (all(), error))?;
+        let outcomes = self.outcomes(&records, &fit).map_err(|error| (all(), error))?;
+        // A corrected part has less error than the noise of its log: the largest error of all counts.
+        let error = |log: &LearnedLog| (log.rms_um.powi(2) - log.missed_um.powi(2)).max(0.0).sqrt();
+        let error_um = outcomes.iter().map(error).fold(0.0, f64::max);
+        if let Some(log) = outcomes.iter().find(|log| log.missed_um > MOST_LEFT * error_um + MOST_LEFT_UM) {
+            return Err((log.log.clone(), LearnError::TooNoisy { rest_um: log.missed_um, error_um }));
+        }
+        // The cut that is nearest to the next is the best.
+        let best = (0..records.len()).min_by(|&a, &b| records[a].rms_mm.total_cmp(&records[b].rms_mm)).unwrap_or(0);
+        let (error, apart) = placed(&records, &fit, best);
+        let rows = &records[best].cut.rows;
+        let [repeats_um, rest_um] = [&error.error_mm, &apart].map(|error_mm| across_um(rows, error_mm));
+        let outcome = LearnedOutcome { logs: outcomes, values: fit.values, repeats_um, rest_um, predicted: None };
+        Ok(LearnedMachine { machine: fit.machine, likely: fit.likely, error, outcome })
+    }
+
+    fn outcomes(&self, records: &[PartRecord], fit: &ModelFit) -> Result<Vec<LearnedLog>, LearnError> {
+        let steps = Box::new(self.original.iter().cloned().map(Ok));
+        let mut reference = self.stages.reference(steps, self.machine).map_err(LearnError::Limits)?;
+        let end_s = reference.read_to_end_s();
+        let file = deterministic(self.machine);
+        let mut outcome = |n: usize, record: &PartRecord| {
+            let first = record.cut.first;
+            let start_s_mm = record.cut.rows.first().map_or(0.0, |row| row.s_mm);
+            // Rests before and behind the cut do not count.
+            let step_s = record.cut.sample_s;
+            let moves = |k: &usize| {
+                let sample = reference.at(*k as f64 * step_s);
+                !sample.resting && sample.s_mm > start_s_mm
+            };
+            let mut moving = (0..(end_s / step_s) as usize).filter(moves);
+            let begin = moving.next().unwrap_or(0);
+            let planned_s = (moving.next_back().unwrap_or(begin) - begin) as f64 * step_s;
+            let samples = record.cut.command_mm.len();
+            let ratio = record.cut.sample_s / self.machine.period.servo_s;
+            let model = followed(&file, record, samples, None);
+            let late = fit.late_s[n] / record.cut.sample_s;
+            let missed = |k: usize| sub(record.cut.actual_mm[k], at(&model, (k as f64 + late) * ratio));
+            let missed: Vec<Vector> = (first..samples).map(missed).collect();
+            LearnedLog {
+                log: record.name.clone(),
+                program: record.program,
+                off_um: 1e3 * record.off_mm,
+                sample_time_s: record.cut.sample_s,
+                time_s: record.time_s(),
+                planned_s,
+                rms_um: 1e3 * record.rms_mm,
+                max_um: 1e3 * record.max_mm,
+                model_missed_um: across_um(&record.cut.rows, &missed),
+                missed_um: across_um(&record.cut.rows, &fit.left_mm[n][first..]),
+            }
+        };
+        Ok(records.iter().enumerate().map(|(n, record)| outcome(n, record)).collect())
+    }
+}
+
+/// RMS of what vectors beside the rows have across the path, where the tool cuts, um.
+fn across_um(rows: &[Row], vectors_mm: &[Vector]) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (row, vector) in rows.iter().zip(vectors_mm).filter(|(row, _)| row.cutting) {
+        let along = dot(*vector, row.tangent);
+        sum += dot(*vector, *vector) - along * along;
+        count += 1.0;
+    }
+    1e3 * (f64::max(sum, 0.0) / f64::max(count, 1.0)).sqrt()
+}
+
+/// What the fit leaves of all records, laid over the samples of the best: what repeats of it, and what does not in the best.
+fn placed(records: &[PartRecord], fit: &ModelFit, best: usize) -> (PlaceError, Vec<Vector>) {
+    let track = |record: &PartRecord| PathTrack {
+        sample_s: record.cut.sample_s,
+        s_mm: record.cut.rows.iter().map(|row| row.s_mm).collect(),
+        command_mm: record.cut.rows.iter().map(|row| row.cmd_mm).collect(),
+    };
+    let here = track(&records[best]);
+    let left = |n: usize| fit.left_mm[n][records[n].cut.first..].to_vec();
+    let beside = |n: usize| {
+        if n == best {
+            return left(n);
+        }
+        PlaceError { track: track(&records[n]), error_mm: left(n) }.along(&here)
+    };
+    let all: Vec<Vec<Vector>> = (0..records.len()).map(beside).collect();
+    let noise = noise_of(&fit.machine, &records[best], SEED).split_off(records[best].cut.first);
+    let error_mm = repeating(&all, &noise);
+    let apart = left(best).iter().zip(&error_mm).map(|(left, repeats)| add_scaled(*left, -1.0, *repeats)).collect();
+    (PlaceError { track: here, error_mm }, apart)
+}
