@@ -211,3 +211,13 @@ fn equation_error(recording: &Recording<2>, axis: usize, settings: &DriveSetting
         ..AxisParameters::default()
     }
 }
+
+/// Its x axis was once no law: without friction for a moment, presliding changes nothing, and the search took that for an axis that does not move.
+#[test]
+fn a_search_that_comes_by_no_friction_goes_on() {
+    let machine = Machine::parse("stiff.toml", include_str!("common/stiff_by_its_log.toml")).unwrap();
+    let known = machine.known();
+    let (recording, _) = Excitation::axis_parameters(&machine).record::<3>(&machine, 1);
+    let found = identify_axis(&recording, 0, &DriveSettings::of(known.axis(0), &known.period)).unwrap();
+    assert!((found.parameters.inertia_kg_m2 / machine.axes[0].inertia_kg_m2 - 1.0).abs() < 0.01, "{found:?}");
+}

@@ -122,7 +122,11 @@ impl OutputErrorFit<'_> {
             }
             state.steps += 1;
             let mut damped = state.here.curvature.clone();
-            (0..state.free).for_each(|i| damped[(i, i)] *= 1.0 + state.damping);
+            let most = damped.diagonal().max();
+            for i in 0..state.free {
+                // Without friction for a moment, presliding changes nothing, and stays what it is.
+                damped[(i, i)] = if damped[(i, i)] == 0.0 { most } else { damped[(i, i)] * (1.0 + state.damping) };
+            }
             let step = damped.cholesky().ok_or(NotIdentified::NotExcited)?.solve(&state.here.gradient);
             let next = self.stepped(state, &step);
             let next_left = self.left_mm(&next);
