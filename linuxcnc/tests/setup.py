@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 """From Debian's sample configuration sim/axis to a corrected cut, by the commands that `feedwright linuxcnc setup` prints and nothing else.
 
-    setup.py [--ini axis.ini] [--transcript FILE]
+    setup.py [--ini axis.ini] [--known] [--transcript FILE]
 
---ini names another sample of that folder, such as gantry/gantry_mm.ini. The configuration is copied to a folder of its own, and its screen is
+--ini names another sample of that folder, such as gantry/gantry_mm.ini. With --known the model is made of the simulated machine itself: nothing is
+recorded and identified. The configuration is copied to a folder of its own, and its screen is
 this file: it homes the machine and runs a program when it is asked to, in place of somebody at AXIS. The simulated machine tnv40 stands in for the
 drives. Prints commands and their output. Exit code 1 where the corrected cut does not come below a tenth of the uncorrected one, a second motor is
 not with the first, or the folder is not as before after --undo.
@@ -141,7 +142,7 @@ def sample(ini, folder):
     (folder / "bin" / "feedwright").symlink_to(shutil.which(headless.FEEDWRIGHT))
 
 
-def walk(ini, transcript):
+def walk(ini, known, transcript):
     with tempfile.TemporaryDirectory(prefix="feedwright-setup-") as name:
         folder = pathlib.Path(name)
         sample(ini, folder)
@@ -149,7 +150,7 @@ def walk(ini, transcript):
         before = digest(folder)
         user = Walk(folder, transcript)
         try:
-            return walked(pathlib.Path(ini).name, folder, before, user)
+            return walked(pathlib.Path(ini).name, known, folder, before, user)
         except BaseException:
             if user.machine and user.machine.poll() is None:
                 print(user.printed()[-6000:])
@@ -158,23 +159,27 @@ def walk(ini, transcript):
             raise
 
 
-def walked(ini, folder, before, user):
+def walked(ini, known, folder, before, user):
     """The steps, in a folder that is ready."""
     user.type(f"feedwright linuxcnc setup {ini}", codes=(1,))
     setup = f"feedwright linuxcnc setup {ini} --simulate tnv40 --raise-ferror"
     printed = user.type(setup)
     commands = [line.strip() for line in printed.splitlines() if line.startswith("        ")]
     start, excite, direct, record_axes, indirect, identify, block, run, again, enable, limit, record_cut, compare, undo = commands
-    user.start(start)
-    user.type(excite)
-    user.ask(f"mdi {middle((folder / ini).read_text())}")
-    user.type(direct)
-    user.record(record_axes, "excite.ngc")
-    user.type(indirect)
-    user.type(identify)
-    user.type(block)
-    user.type(run)
-    user.end()
+    if known:
+        user.type("feedwright machines tnv40 --out mine.toml")
+        user.type(block)
+    else:
+        user.start(start)
+        user.type(excite)
+        user.ask(f"mdi {middle((folder / ini).read_text())}")
+        user.type(direct)
+        user.record(record_axes, "excite.ngc")
+        user.type(indirect)
+        user.type(identify)
+        user.type(block)
+        user.type(run)
+        user.end()
     user.start(again)
     user.record(record_cut, "part.ngc")
     uncorrected = measured(user.type(compare, codes=(0, 1)))
@@ -218,11 +223,12 @@ def measured(text):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--ini", default="axis.ini")
+    parser.add_argument("--known", action="store_true")
     parser.add_argument("--transcript", type=pathlib.Path)
     args = parser.parse_args()
     transcript = []
     try:
-        return walk(args.ini, transcript)
+        return walk(args.ini, args.known, transcript)
     finally:
         if args.transcript:
             args.transcript.write_text("\n".join(transcript) + "\n")
