@@ -164,8 +164,7 @@ class Soak:
     # Meddling: what goes wrong, or is set, while it moves.
 
     def meddle(self):
-        doings = [self.meddle_pin] * 6 + [self.meddle_enable] * 3 + [self.meddle_direct] * 2 + [self.meddle_geometry] * 2 + [
-            self.meddle_override] * 3 + [self.meddle_hold] * 2 + [
+        doings = [self.meddle_pin] * 6 + [self.meddle_enable] * 3 + [self.meddle_direct] * 2 + [self.meddle_override] * 3 + [self.meddle_hold] * 2 + [
             self.meddle_abort, self.meddle_estop, self.meddle_off, self.meddle_noise, self.meddle_inertia, self.meddle_wire]
         doing = self.pick.choice(doings)
         self.note(doing.__name__)
@@ -177,9 +176,6 @@ class Soak:
 
     def meddle_enable(self):
         self.set("enable", self.pick.randint(0, 1))
-
-    def meddle_geometry(self):
-        self.set("geometry", self.pick.randint(0, 1))
 
     def meddle_direct(self):
         self.set("direct", self.pick.randint(0, 1))
