@@ -11,25 +11,21 @@ use feedwright_sim::toml_file::Key;
 use feedwright_sim::{AXIS_NAMES, BUILT_IN_MACHINES, MACHINE_FORMAT, machine_keys};
 use toml_edit::{DocumentMut, Item, Table, TomlError};
 
-/// Keys of the top that stand in the head of the text.
-const HEAD: [&str; 5] = ["format", "base", "name", "description", "source"];
-
 /// The text of a built-in machine with all of its keys; none without such a machine.
 ///
 /// # Errors
 /// A built-in machine that is no TOML, which a test keeps out.
 pub(crate) fn machine_document(name: &str) -> Result<Option<String>, TomlError> {
     let Some(document) = merged(name)? else { return Ok(None) };
-    let text = |key: &str| document.get(key).and_then(Item::as_value).map(|value| value.to_string().trim().to_owned());
-    let mut head = format!(
+    let value = |key: &str| document.get(key).and_then(Item::as_value).map(|value| value.to_string().trim().to_owned());
+    let mut text = format!(
         "# The built-in machine {name}, with all of its keys. Change what your machine has otherwise, and give it a name of its own.\n\
          # docs/machine-file.md explains every key. A comment beside a value says where the value comes from.\n\n\
          format = {MACHINE_FORMAT}\n"
     );
     for key in ["name", "description", "source"] {
-        let _ = writeln!(head, "{key} = {}", text(key).unwrap_or_default());
+        let _ = writeln!(text, "{key} = {}", value(key).unwrap_or_default());
     }
-    let mut text = head;
     table(&mut text, &document, "period", &left_out(machine_keys::PERIOD));
     table(&mut text, &document, "limits", &left_out(machine_keys::LIMITS));
     for axis in AXIS_NAMES {
@@ -85,7 +81,7 @@ fn table(text: &mut String, document: &Table, name: &str, keys: &[(&str, String)
     };
     let _ = writeln!(text, "\n[{name}]");
     for (key, item) in table {
-        if let Some(value) = item.as_value().filter(|_| !HEAD.contains(&key)) {
+        if let Some(value) = item.as_value() {
             let decor = value.decor().suffix().and_then(|suffix| suffix.as_str()).unwrap_or("").trim();
             let bare = value.clone().decorated("", "");
             let _ = writeln!(text, "{}", format!("{key} = {bare} {decor}").trim_end());

@@ -74,8 +74,15 @@ struct Told {
 }
 
 impl Told {
-    /// What is kept for a content; made anew where there is none.
-    fn of(content: &str, make: impl FnOnce() -> Result<Self, RecordedModelError>) -> Result<Self, RecordedModelError> {
+    /// What is shipped with the program or kept for a content, with `fitting` machines at the least; made anew where there is none.
+    fn of(
+        content: &str,
+        fitting: usize,
+        make: impl FnOnce() -> Result<Self, RecordedModelError>,
+    ) -> Result<Self, RecordedModelError> {
+        if let Some(shipped) = built_in::told(content).filter(|told| told.fitting.len() >= fitting) {
+            return Ok(shipped);
+        }
         if let Some(kept) = kept_text(content).and_then(|text| serde_json::from_str(&text).ok()) {
             return Ok(kept);
         }
@@ -122,7 +129,7 @@ pub fn recorded_model(
         let text = trained(machine, &told, axes, (entry, choices), date)?;
         Ok(Told { text, doubts, fitting: vec![] })
     };
-    let told = built_in::told(&content).map_or_else(|| Told::of(&content, make), Ok)?;
+    let told = Told::of(&content, 0, make)?;
     let model = Model::parse("the model of the log", &told.text).map_err(|error| not_told(machine, &error))?;
     Ok(RecordedModel { model, doubts: told.doubts })
 }
@@ -213,11 +220,7 @@ fn told_machine(
     fitting: usize,
     watch: &dyn Watch,
 ) -> Result<Told, RecordedModelError> {
-    let content = content(machine, axes, seed);
-    match built_in::told(&content).filter(|told| told.fitting.len() >= fitting) {
-        Some(told) => Ok(told),
-        None => Told::of(&content, || Told::identified(machine, axes, seed, watch)),
-    }
+    Told::of(&content(machine, axes, seed), fitting, || Told::identified(machine, axes, seed, watch))
 }
 
 /// Records the log, and identifies the axes.

@@ -78,7 +78,7 @@ pub(super) struct CutRow {
 /// Rows that are kept of a cut, at the most: some 2 GB.
 const MOST_ROWS: usize = 10_000_000;
 
-/// Refuses a cut of so many seconds whose rows cannot be kept.
+/// Refuses a cut that takes longer than its rows can be kept.
 pub(super) fn check_rows(time_s: f64, servo_s: f64) -> Result<(), RunError> {
     let most_s = MOST_ROWS as f64 * servo_s;
     if time_s > most_s { Err(RunError::TooLong { most_periods: MOST_ROWS, most_s }) } else { Ok(()) }

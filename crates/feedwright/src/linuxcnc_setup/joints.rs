@@ -108,6 +108,11 @@ impl SetupJoints {
         })
     }
 
+    /// The joints that get a correction: those that the component corrects, and the second motors of their axes.
+    pub(crate) fn with_correction(&self) -> impl Iterator<Item = &SetupJoint> {
+        self.wired().chain(self.passing().filter_map(|(joint, axis)| axis.map(|_| joint)))
+    }
+
     /// What the component does with a joint.
     pub(crate) fn role(&self, joint: &SetupJoint) -> JointRole {
         let axis = self.wired().position(|wired| wired.letter == joint.letter);

@@ -107,8 +107,7 @@ pub(crate) fn written(joints: &SetupJoints, simulated: Option<&Machine>, raise_f
 
 /// Limits of travel that the copy moves, of corrected joints and of second motors.
 fn travels(joints: &SetupJoints) -> impl Iterator<Item = IniValue> {
-    let second = joints.passing().filter(|(_, axis)| axis.is_some()).map(|(joint, _)| joint);
-    joints.wired().chain(second).flat_map(|joint| travel(joints, joint))
+    joints.with_correction().flat_map(|joint| travel(joints, joint))
 }
 
 /// What is said of them, a line for each value.
@@ -183,8 +182,7 @@ pub(crate) fn changes(joints: &SetupJoints, simulated: Option<&Machine>, raised:
                 .to_owned(),
         );
     }
-    let second = joints.passing().filter(|(_, axis)| axis.is_some()).map(|(joint, _)| joint);
-    lines.extend(joints.wired().chain(second).filter_map(|joint| of_stepgen(joints, joint)));
+    lines.extend(joints.with_correction().filter_map(|joint| of_stepgen(joints, joint)));
     let has_drives = |joint: &SetupJoint| matches!(joint.drive, DriveKind::EtherCat { .. } | DriveKind::Stepgen { .. });
     if simulated.is_none() && joints.wired().any(has_drives) {
         lines.push(

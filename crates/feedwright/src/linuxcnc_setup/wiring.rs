@@ -115,6 +115,11 @@ struct Passage<'a> {
 }
 
 impl Passage<'_> {
+    /// Whether the component corrects the joint.
+    fn is_corrected(&self) -> bool {
+        self.prefix.is_empty()
+    }
+
     /// A pin of the component: `command`, `drive`, `actual` or `feedback`.
     fn pin(&self, what: &str) -> String {
         format!("feedwright.{}{what}-{}", self.prefix, self.channel)
@@ -211,7 +216,7 @@ impl HalEdits<'_> {
         self.replace(&passage.joint_pin("motor-pos-cmd"), Some(&passage.pin("drive")));
         let actual = passage.pin("actual");
         // A simulated machine stands in for the drives of corrected joints.
-        let by = Some(actual.as_str()).filter(|_| !simulates || !passage.prefix.is_empty());
+        let by = Some(actual.as_str()).filter(|_| !simulates || !passage.is_corrected());
         self.replace(&passage.joint_pin("motor-pos-fb"), by);
     }
 
@@ -349,7 +354,7 @@ impl HalEdits<'_> {
     fn passage(&mut self, passage: &Passage<'_>, simulates: bool) {
         let (net, joint, command) = (passage.net, passage.joint, self.drive_signal(passage));
         let [planned, feedback] = ["motor-pos-cmd", "motor-pos-fb"].map(|what| passage.joint_pin(what));
-        let is_corrected = passage.prefix.is_empty();
+        let is_corrected = passage.is_corrected();
         let _ = writeln!(self.added, "\n# {}, joint {}.", joint.letter, joint.number);
         let sample = |what: usize| match is_corrected {
             true => format!("sampler.0.pin.{}", SAMPLED.len() * passage.channel + what),
