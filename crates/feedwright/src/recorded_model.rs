@@ -31,7 +31,7 @@ pub const MOST_FITTING: usize = 32;
 const SEED_SHIFT: u32 = 32;
 
 /// Seed of the logs that the program is shipped with: the default of `run`.
-const BUILT_IN_SEED: u64 = 1;
+pub(crate) const BUILT_IN_SEED: u64 = 1;
 
 /// A model that was identified from a log of a simulated machine.
 #[derive(Debug, Clone, PartialEq)]

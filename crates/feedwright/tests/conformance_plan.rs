@@ -48,7 +48,7 @@ fn the_cycle_time_is_that_of_its_parts() {
 #[test]
 fn a_larger_tolerance_is_faster_and_works_on_every_machine() {
     let folder = folder();
-    let time = |um: &str| planned(&folder, &["--machine", "m.toml", "--tolerance", um])["time_s"].as_f64().unwrap();
+    let time = |um: &str| planned(&folder, &["--machine", "workshop", "--tolerance", um])["time_s"].as_f64().unwrap();
     assert!(time("100") < time("1"));
     for machine in ["tnv40", "workshop", "stiff", "router"] {
         let found = planned(&folder, &["--machine", machine, "--tolerance", "1000"]);

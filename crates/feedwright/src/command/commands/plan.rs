@@ -14,17 +14,20 @@ use miette::{IntoDiagnostic, Result, miette};
 use serde_json::json;
 
 use crate::command::args::plan::PlanArgs;
+use crate::command::commands::run::take_recorded_model;
 use crate::command::console::Console;
 use crate::command::controls::{compensation, control};
 use crate::command::message::{printed, remark, tell_assumed_limits, warn};
 use crate::command::progress::Bar;
 use crate::command::streams::{ProgramInputs, tables, tell_written};
 use crate::compensation::GeometryChoice;
+use crate::controllers::Choices;
 use crate::cycle_time::along::BindingStretch;
 use crate::cycle_time::{CycleTime, CycleTimeOptions, LineTime, cycle_time_by, limit_names};
 use crate::job::{Job, JobError};
 use crate::output::OutputFile;
 use crate::override_time::{HoldStop, OperatorRequest, OverrideTime, override_time};
+use crate::recorded_model::BUILT_IN_SEED;
 use crate::results_format::{json_text, stamped};
 use bound::{Bound, MOST_BOUND_S, bound};
 
@@ -173,7 +176,7 @@ fn machine(args: &PlanArgs) -> Result<Machine> {
 }
 
 /// With a tolerance of the tool, the machine whose path uses what the machine leaves of it, and the tolerance of that path, um. The default
-/// controller is simulated for it.
+/// controller is simulated for it, with the model that `run` has of the machine.
 fn within_tolerance(
     args: &PlanArgs,
     machine: Machine,
@@ -193,7 +196,10 @@ fn within_tolerance(
     };
     let mut job = Job::new(program.clone(), machine.clone());
     job.compensation = choice;
+    job.choices = Choices { seed: BUILT_IN_SEED, tries: true, ..Choices::default() };
     (job.tolerance_um, job.reader) = (Some(tolerance_um), settings.clone());
+    let axes = job.check()?.axes();
+    take_recorded_model(&mut job, &Machine::load(&args.machine)?, axes, 0, bar)?;
     let found = job.check()?.tolerance_plan(bar)?;
     bar.clear();
     if let Some(plan) = found {

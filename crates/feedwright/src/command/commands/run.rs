@@ -52,7 +52,8 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
     let read = job.check()?;
     let (axes, summary) = (read.axes(), read.into_summary());
     let mut files = Files::create(&outputs, inputs.iter().map(PathBuf::as_path), axes)?;
-    let doubts = if exact_settings { vec![] } else { take_recorded_model(&mut job, axes, band, &bar)? };
+    let of_machine = job.machine.clone();
+    let doubts = if exact_settings { vec![] } else { take_recorded_model(&mut job, &of_machine, axes, band, &bar)? };
     let checked = job.check_read(summary)?;
     let outcome = match checked.run(&mut [&mut files], &bar) {
         Ok(outcome) => outcome,
@@ -87,16 +88,21 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
 }
 
 /// Gives the controller the model that a log of the machine tells, where it goes by one and has none, and the job `band` machines that fit
-/// the log as well; returns what is to be said of the model.
-fn take_recorded_model(job: &mut Job, axes: usize, band: usize, bar: &Bar) -> Result<Vec<String>> {
+/// the log as well; returns what is to be said of the model. The machine is as its file has it, whatever limits the job plans with.
+pub(super) fn take_recorded_model(
+    job: &mut Job,
+    machine: &Machine,
+    axes: usize,
+    band: usize,
+    bar: &Bar,
+) -> Result<Vec<String>> {
     if job.model.is_some() || job.controller.identifier != Some(IdentifierKind::Axes) {
         return Ok(vec![]);
     }
-    let RecordedModel { model, doubts } =
-        recorded_model(&job.machine, axes, (job.controller, &job.choices), today()?, bar)?;
+    let RecordedModel { model, doubts } = recorded_model(machine, axes, (job.controller, &job.choices), today()?, bar)?;
     job.model = Some(model);
     if band > 0 {
-        job.fitting = fitting_machines(&job.machine, axes, job.choices.seed, band, bar)?;
+        job.fitting = fitting_machines(machine, axes, job.choices.seed, band, bar)?;
     }
     Ok(doubts)
 }
