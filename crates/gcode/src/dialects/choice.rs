@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::dialects::fanuc::mill_or_lathe::{Evidence, MillOrLathe};
+use crate::dialects::file_kind::FileKind;
 use crate::settings::Dialect;
 use crate::text::characters::is_utf16;
 use crate::text::read_error::ReadError;
@@ -29,6 +30,9 @@ pub(crate) fn choose(head: &[u8], name: &Arc<str>, asked: Option<Dialect>) -> Re
     let head = &head[..head.len().min(LOOK_BYTES)];
     if is_utf16(head) {
         return Err(ReadError::Utf16 { name: name.clone() });
+    }
+    if let Some(FileKind { kind, hint, .. }) = FileKind::of(head) {
+        return Err(ReadError::OtherFile { name: name.clone(), kind, hint });
     }
     if let Some(offset) = memchr::memchr(0, head) {
         return Err(ReadError::Binary { name: name.clone(), offset });

@@ -34,6 +34,17 @@ pub enum ReadError {
         /// Offset of the first NUL byte.
         offset: usize,
     },
+    /// A file of another kind.
+    #[error("{name}: this is {kind}, not a G-code program")]
+    #[diagnostic(help("{hint}"))]
+    OtherFile {
+        /// As the user named it.
+        name: Arc<str>,
+        /// What it is.
+        kind: &'static str,
+        /// What to do.
+        hint: &'static str,
+    },
     /// Two bytes a character.
     #[error("{name}: the file is UTF-16 text, which no control reads")]
     #[diagnostic(help("save it as UTF-8 or plain ASCII; editors ask for the encoding in \"Save as\""))]
