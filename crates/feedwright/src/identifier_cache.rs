@@ -32,6 +32,12 @@ struct StoredWeights {
     samples: usize,
 }
 
+/// The text of a model file.
+#[derive(Serialize, Deserialize)]
+struct StoredModel {
+    model: String,
+}
+
 /// The identifier of a machine, from the cache where it is there.
 pub fn identified<const N: usize>(
     machine: &Machine,
@@ -72,21 +78,19 @@ pub(crate) fn identified_axes<const N: usize>(
     used_on: &Known,
 ) -> Result<IdentifiedAxes<N>, NotIdentified> {
     let recording = recordings.joined();
-    // The program is read where there is a cache only.
-    let name = files::program().map(|program| {
-        let key =
-            key_of(&[program.as_bytes(), recording.hash().as_bytes(), format!("{known:?}{used_on:?}").as_bytes()]);
-        format!("{key}.toml")
+    let content = || format!("axes {} {known:?}{used_on:?}", recording.hash());
+    let kept = kept_text(&content()).and_then(|text| {
+        let StoredModel { model } = serde_json::from_str(&text).ok()?;
+        Model::parse("cache", &model).ok()?.identified_axes()
     });
-    let kept =
-        name.as_deref().and_then(files::read).and_then(|text| Model::parse("cache", &text).ok()?.identified_axes());
     if let Some(axes) = kept {
         return Ok(axes);
     }
     let trained = train_axes(recordings, known, used_on)?;
-    if let Some(name) = name {
-        let origin = Origin { source: "a simulated excitation".to_owned(), date: "1970-01-01".to_owned() };
-        files::write(&name, &Model::of_axes(&recording, &trained, origin).text());
+    let origin = Origin { source: "a simulated excitation".to_owned(), date: "1970-01-01".to_owned() };
+    let model = StoredModel { model: Model::of_axes(&recording, &trained, origin).text() };
+    if let Ok(text) = serde_json::to_string(&model) {
+        keep_text(&content(), &text);
     }
     Ok(trained.axes)
 }
