@@ -372,11 +372,14 @@ impl StretchRounds {
             return;
         }
         let (figure_mm, time_s) = (cut.figure_mm(), f64::from(cut.periods) * servo_s);
-        let most_s = self.budget.most_s(dwell_s) + self.slow_end.map_or(0.0, SlowEnd::time_s);
+        let slow_s = self.slow_end.map_or(0.0, SlowEnd::time_s);
+        let most_s = self.budget.most_s(dwell_s) + slow_s;
         if time_s >= most_s && self.width < WIDEST {
             let times = (time_s - self.budget.time_s) / (most_s - self.budget.time_s);
             self.width *= times.clamp(WIDER[0], WIDER[1]);
-            self.reason = UnchangedReason::TooSlow { percent: 100.0 * (time_s / self.budget.time_s - 1.0) };
+            let [percent, rests] =
+                [time_s - self.budget.time_s, slow_s].map(|more_s| 100.0 * more_s / self.budget.time_s);
+            self.reason = UnchangedReason::TooSlow { percent, rests };
             return;
         }
         let better = figure_mm < self.best_mm && time_s < most_s;

@@ -14,8 +14,9 @@ pub(super) enum UnchangedReason {
     Good,
     /// Another command does not lower its error by enough.
     NoGain,
-    /// Every better command takes longer than it may: by this share of its time, %.
-    TooSlow { percent: f64 },
+    /// Every better command takes longer than it may: by this share of its time, %. `rests` is the share of a slow way to its
+    /// end, %.
+    TooSlow { percent: f64, rests: f64 },
     /// A better command takes more blocks than the stretch may have.
     Blocks,
     /// A better command leaves the path by more than the machine file allows.
@@ -40,7 +41,12 @@ impl fmt::Display for UnchangedReason {
                     "no command lowers the error: what is left is friction and rounding of the blocks; a lower feedrate may help"
                 )
             }
-            Self::TooSlow { percent } => write!(
+            Self::TooSlow { percent, rests } if 2.0 * rests > *percent => write!(
+                f,
+                "the control would take {percent:.0} % longer for a better command, most of that to come to rest at its end; \
+                 a rounded corner in place of a stop leaves it room"
+            ),
+            Self::TooSlow { percent, .. } => write!(
                 f,
                 "the control would take {percent:.0} % longer for a better command, since it bends more sharply where lines meet arcs; a lower \
                  feedrate on these lines leaves it room"
@@ -132,5 +138,19 @@ impl UnchangedStretch {
             format!("unchanged, lines {}{more}: {reason}", of[..of.len().min(most)].join(", "))
         };
         reasons.iter().map(sentence).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_takes_the_time_of_a_better_command_is_named() {
+        let said = |rests: f64| UnchangedReason::TooSlow { percent: 20.0, rests }.to_string();
+        assert!(said(15.0).starts_with(
+            "the control would take 20 % longer for a better command, most of that to come to rest at its end"
+        ));
+        assert!(said(5.0).contains("since it bends more sharply where lines meet arcs"));
     }
 }
