@@ -180,13 +180,19 @@ impl Job {
         self.check()?.run(&mut [], watch)
     }
 
-    /// Reads the program to its end, so that every mistake is known before anything is cut.
+    /// Reads the program and the reference to their ends and looks whether the log is one of the program, so that every mistake is known before
+    /// anything is identified or cut.
     ///
     /// # Errors
-    /// A value out of its range, a program with mistakes, more axes than the machine has, and a model that does not suit.
+    /// A value out of its range, a program with mistakes, more axes than the machine has, a model that does not suit, and a log of another program.
     pub fn check(&self) -> Result<CheckedJob<'_>, JobError> {
         self.check_values()?;
-        self.check_read(self.program.check(self.reader.clone())?)
+        let checked = self.check_read(self.program.check(self.reader.clone())?)?;
+        if let Some(reference) = &self.reference {
+            reference.check(self.reader.clone())?;
+        }
+        checked.job.measured_run(checked.axes, &mut [], &())?;
+        Ok(checked)
     }
 
     /// The same where the program was read to its end before.
@@ -303,18 +309,30 @@ impl Job {
         circles: &[FullCircle],
         watch: &dyn Watch,
     ) -> Result<Vec<LogFinding>, JobError> {
-        let Some(MeasuredLog { name, log }) = &self.log else { return Ok(Vec::new()) };
+        let Some(MeasuredLog { log, .. }) = &self.log else { return Ok(Vec::new()) };
         watch.begin("comparing the log", 1);
+        let mut record = RunRecord::new(axes, log.sample_time_s, circles);
+        let Some(MeasuredRun { run, findings }) = self.measured_run(axes, &mut record.sinks(), watch)? else {
+            return Ok(Vec::new());
+        };
+        let run = self.reported(record, MEASURED, run)?;
+        runs.insert(runs.len() - 1, run);
+        Ok([log.findings.clone(), findings].concat())
+    }
+
+    /// The cut that the log shows, where there is one.
+    fn measured_run(
+        &self,
+        axes: usize,
+        rows: &mut [&mut dyn Sink],
+        watch: &dyn Watch,
+    ) -> Result<Option<MeasuredRun>, JobError> {
+        let Some(MeasuredLog { name, log }) = &self.log else { return Ok(None) };
         let steps = path_steps(self.steps()?);
         let limits = |error| JobError::of_run(&self.program, RunError::Limits(error));
         let mut reference = Stages::of(&self.machine).reference(steps, &self.machine).map_err(limits)?;
-        let mut record = RunRecord::new(axes, log.sample_time_s, circles);
-        let MeasuredRun { run, findings: of_axes } =
-            measured(log, &self.machine, axes, &mut reference, &mut record.sinks(), watch)
-                .map_err(|error| JobError::of_log(name, &self.program, error))?;
-        let run = self.reported(record, MEASURED, run)?;
-        runs.insert(runs.len() - 1, run);
-        Ok([log.findings.clone(), of_axes].concat())
+        let run = measured(log, &self.machine, axes, &mut reference, rows, watch);
+        run.map(Some).map_err(|error| JobError::of_log(name, &self.program, error))
     }
 
     /// The plan of least time, found with a controller of its own.
