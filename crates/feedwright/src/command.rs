@@ -6,8 +6,10 @@
 //! What is public here serves the laboratory, which has commands of its own and the same look. It may change at any time.
 
 mod date;
+mod inches;
 mod terminal;
 mod args;
+mod folded;
 mod message;
 mod progress;
 mod console;
@@ -26,7 +28,7 @@ use miette::Result;
 use crate::controllers::CONTROLLERS;
 use args::{Cli, CommandArgs, MachinesArgs};
 
-pub use args::feed::feed_mm_s;
+pub use args::quantity::feed_mm_s;
 pub use args::reader::ReaderArgs;
 pub use args::run::RunArgs;
 pub use args::{COLUMNS, CommonArgs, parse};
@@ -71,6 +73,7 @@ fn run(command: CommandArgs, console: &Console) -> Result<ExitCode> {
         CommandArgs::Excite(args) => commands::excite::run(&args, console),
         CommandArgs::Block(args) => commands::block::run(&args, console),
         CommandArgs::Linuxcnc(args) => commands::linuxcnc::run(&args, console),
+        CommandArgs::Diff(args) => commands::diff::run(&args, console),
         CommandArgs::Check(args) => commands::check::run(&args, console),
         CommandArgs::Canon(args) => commands::canon::run(&args, console),
         CommandArgs::Machines(MachinesArgs { name: None, .. }) => commands::list::machines(),
@@ -80,6 +83,7 @@ fn run(command: CommandArgs, console: &Console) -> Result<ExitCode> {
         CommandArgs::Controllers { name: None } => controllers(CONTROLLERS),
         CommandArgs::Controllers { name: Some(name) } => controller(&name, CONTROLLERS),
         CommandArgs::Lab(args) => commands::lab::run(&args),
+        CommandArgs::Cache(args) => commands::cache::run(&args),
         CommandArgs::Completions(args) => commands::completions::run(&args, console),
         CommandArgs::Man(args) => commands::man::run(&args, console),
     }

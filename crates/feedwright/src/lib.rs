@@ -105,6 +105,8 @@ mod override_time;
 mod fastest;
 mod controllers;
 mod report;
+#[cfg(feature = "command")]
+mod results_diff;
 mod job_error;
 mod compensation;
 mod correct;

@@ -5,6 +5,7 @@ use std::ffi::OsStr;
 use std::process::Command;
 
 use crate::command::{Folder, Ran, skipped};
+use crate::conformance_identify_log::{HEAD, rows, text};
 
 /// The machine of the paper.
 const TNV40: &str = include_str!("../../sim/machines/tnv40.toml");
@@ -411,5 +412,46 @@ fn a_correction_of_a_machine_that_diverges_has_no_figures() {
         let figures = &results[program];
         assert_eq!(figures["completed"], false);
         assert!(["time_s", "rms_um", "max_um", "uncut_um"].iter().all(|key| figures[key].is_null()), "{figures}");
+    }
+}
+
+/// Identification writes into the cache, so an empty one shows that a mistake was found before anything was simulated.
+#[test]
+fn a_wrong_input_is_found_before_anything_is_identified() {
+    let folder = Folder::new();
+    // Of no built-in machine: the program is not shipped with its model.
+    folder.file("own.toml", TNV40.replacen("tnv40", "own", 1));
+    folder.file("table.csv", "1 2\n3 4\n");
+    folder.file("text.csv", "no log\n");
+    // A log of X alone.
+    folder.file("other.csv", text(HEAD, rows(1)));
+    folder.file("bad.ngc", "G1 X1 F100 Q\n");
+    folder.file("page.ngc", "<!DOCTYPE html>\n<html></html>\n");
+    folder.file("bad.toml", "kp = x\n");
+    let cases: [(&[&str], &[&str]); 18] = [
+        (&["run", "circle.ngc", "--log", "none.csv"], &["none.csv"]),
+        (&["run", "circle.ngc", "--log", "text.csv"], &["text.csv", "hint:"]),
+        (&["run", "circle.ngc", "--log", "other.csv"], &["other.csv", "circle.ngc"]),
+        (&["run", "circle.ngc", "--reference", "none.ngc"], &["none.ngc"]),
+        (&["run", "circle.ngc", "--reference", "bad.ngc"], &["bad.ngc", "mistake"]),
+        (&["run", "page.ngc"], &["page.ngc", "a web page (HTML)", "hint:"]),
+        (&["run", "circle.ngc", "--geometry", "bad.toml"], &["bad.toml"]),
+        (&["run", "circle.ngc", "--model", "bad.toml"], &["bad.toml"]),
+        (&["run", "circle.ngc", "--tool-table", "none.tbl"], &["none.tbl"]),
+        (&["run", "circle.ngc", "--subroutines", "none"], &["none", "no folder"]),
+        (&["run", "circle.ngc", "--tolerance", "0"], &["--tolerance is 0 um", "above 0"]),
+        (&["run", "circle.ngc", "--set", "knots=1"], &["--set knots=1"]),
+        (&["run", "circle.ngc", "--json", "none/r.json"], &["none/r.json", "mkdir -p none"]),
+        (&["correct", "circle.ngc", "--log", "text.csv"], &["text.csv", "hint:"]),
+        (&["correct", "circle.ngc", "--log", "other.csv"], &["other.csv", "circle.ngc"]),
+        (&["correct", "page.ngc"], &["a web page (HTML)"]),
+        (&["advise", "page.ngc", "--tolerance", "10"], &["a web page (HTML)"]),
+        (&["plan", "page.ngc", "--tolerance", "10"], &["a web page (HTML)"]),
+    ];
+    for (arguments, told) in cases {
+        let mut command = folder.command();
+        command.env("FEEDWRIGHT_CACHE", "kept").args(arguments).args(["--machine", "own.toml"]);
+        Ran::from(command.output().unwrap()).refused(told);
+        assert!(!folder.path().join("kept").exists(), "{arguments:?}");
     }
 }

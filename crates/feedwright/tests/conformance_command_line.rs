@@ -1,16 +1,18 @@
 //! The command line as such: `-` in place of files, units, widths, colours, help, version, completions, manual pages.
 
+use std::collections::BTreeSet;
 use std::io::Write;
 use std::process::{Command, Stdio};
 
 use crate::command::{Folder, Ran, skipped};
 
 /// All commands.
-const COMMANDS: [&str; 14] = [
+const COMMANDS: [&str; 16] = [
     "run",
     "correct",
     "advise",
     "plan",
+    "diff",
     "check",
     "identify",
     "excite",
@@ -19,6 +21,7 @@ const COMMANDS: [&str; 14] = [
     "controllers",
     "canon",
     "block",
+    "cache",
     "completions",
     "man",
 ];
@@ -182,9 +185,135 @@ fn every_command_has_a_short_help_and_a_long_one_and_a_version() {
         assert_eq!(long.contains("Example"), examples, "{command}:\n{long}");
         assert!(folder.run(&[command, "--version"]).succeeded().stdout.contains(env!("CARGO_PKG_VERSION")));
     }
-    let listed = root.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    let listed = root.lines().take_while(|line| *line != "Options:").filter(|line| line.starts_with("  "));
     // The commands, `lab`, which another program answers, and help itself; each on one line.
     assert_eq!(listed.count(), COMMANDS.len() + 2, "{root}");
+}
+
+/// Names of the options that a help shows. What is said of an option is indented by more.
+fn options(help: &str) -> Vec<String> {
+    let is_option = |line: &&str| line.trim_start().starts_with('-') && line.len() - line.trim_start().len() <= 6;
+    let names = help.lines().filter(is_option).filter_map(|line| line.split("--").nth(1));
+    names.map(|name| name.split([' ', '=', '\n']).next().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn the_help_is_short_and_all_options_are_one_option_away() {
+    let folder = Folder::new();
+    let root = folder.run(&["--help"]).succeeded().stdout;
+    for heading in ["Program:", "Machine:", "LinuxCNC:", "feedwright itself:"] {
+        assert!(root.lines().any(|line| line == heading), "{heading}\n{root}");
+    }
+    for command in COMMANDS {
+        let of = |option: &str| options(&folder.run(&[command, option]).succeeded().stdout);
+        let [short, long, all] = ["-h", "--help", "--help-all"].map(of);
+        assert_eq!(BTreeSet::from_iter(&short), BTreeSet::from_iter(&long), "{command}");
+        assert!(short.len() <= 15 && short.contains(&"help-all".to_owned()), "{command}: {short:?}");
+        assert!(short.iter().all(|name| all.contains(name)), "{command}: {short:?} {all:?}");
+    }
+    let all = folder.run(&["run", "--help-all"]).succeeded().stdout;
+    for told in ["--exact-settings", "--max-idle-lines", "Machine and cut:", "Controller:", "Results:"] {
+        assert!(all.contains(told), "{told}\n{all}");
+    }
+    assert!(!folder.run(&["run", "--help"]).succeeded().stdout.contains("--exact-settings"));
+    // The page and the completions have what the short help leaves out.
+    folder.run(&["man", "--out", "man"]).succeeded();
+    assert!(folder.text("man/feedwright-run.1").contains("exact\\-settings"));
+    assert!(folder.run(&["completions", "bash"]).succeeded().stdout.contains("--exact-settings"));
+}
+
+#[test]
+fn lengths_have_units_and_inches_are_printed_where_they_are_asked_for() {
+    let folder = Folder::new();
+    let tolerance_um = |text: &str| {
+        folder.run_uncorrected(&["circle.ngc", "--machine", "tnv40", "--tolerance", text, "--json", "r.json"]);
+        let json: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+        json["tolerance_um"].as_f64().unwrap()
+    };
+    assert_eq!(["100", "100um", "0.1mm", "4thou"].map(tolerance_um), [100.0, 100.0, 100.0, 101.6]);
+    folder.run(&["plan", "circle.ngc", "--tolerance", "10nm"]).refused(&[
+        "--tolerance",
+        "no unit of a length",
+        "um, mm, in",
+    ]);
+    folder.run(&["excite", "--machine", "tnv40", "--travel", "1in", "--out", "inch.ngc"]).succeeded();
+    folder.run(&["excite", "--machine", "tnv40", "--travel", "25.4", "--out", "mm.ngc"]).succeeded();
+    assert_eq!(folder.text("inch.ngc"), folder.text("mm.ngc"));
+    let run = |units: &str| {
+        let ran = folder.run_uncorrected(&["circle.ngc", "--machine", "tnv40", "--json", "r.json", "--units", units]);
+        let json: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+        (ran.succeeded().stdout, json["runs"][0]["rms_um"].as_f64().unwrap())
+    };
+    let ((metric, rms_um), (inch, same_um)) = (run("metric"), run("inch"));
+    assert_eq!(rms_um, same_um);
+    let row = |text: &str| {
+        let row = text.lines().find(|line| line.starts_with("uncorrected ")).unwrap();
+        row.split_whitespace().nth(2).unwrap().to_owned()
+    };
+    assert_eq!(
+        (row(&metric), row(&inch)),
+        (format!("{rms_um:.2}"), format!("{:.3}", row(&metric).parse::<f64>().unwrap() / 25.4))
+    );
+    assert!(inch.contains("RMS thou") && !inch.contains(" um"), "{inch}");
+}
+
+#[test]
+fn the_torques_of_the_table_are_those_of_the_headline() {
+    let folder = Folder::new();
+    folder.file("long.ngc", "G21 G90 G64\nG1 X40 Y2 F1200\nX0 Y4\nX1 Y30\nM2\n");
+    for part in ["long.ngc", "circle.ngc"] {
+        let ran = folder.run(&["run", part, "--controller", "feedforward", "--json", "r.json"]);
+        let json: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+        let (_, rest) = ran.stdout.split_once("peak torque of ").unwrap();
+        let axis = "XYZ".find(&rest[..1]).unwrap();
+        for (run, name) in ["uncorrected", "feedforward"].iter().enumerate() {
+            let row = ran.stdout.lines().find(|line| line.starts_with(&format!("{name} "))).unwrap();
+            let torque_nm = json["runs"][run]["peak_torque_nm"][axis].as_f64().unwrap();
+            assert_eq!(row.split_whitespace().nth(5).unwrap(), format!("{torque_nm:.2}"), "{part}: {}", ran.stdout);
+        }
+    }
+}
+
+#[test]
+fn two_results_and_two_programs_are_compared() {
+    let folder = Folder::new();
+    folder.file("line.ngc", "G21 G90 F600\nG1 X10\nM2\n");
+    folder.run_uncorrected(&["circle.ngc", "--machine", "tnv40", "--json", "a.json"]).succeeded();
+    let slow = ["circle.ngc", "--machine", "tnv40", "--feed", "10mm/s", "--json", "b.json"];
+    folder.run_uncorrected(&slow).succeeded();
+    let ran = folder.run(&["diff", "a.json", "b.json", "--report", "d.html"]).succeeded();
+    let figure = |file: &str| {
+        let json: serde_json::Value = serde_json::from_slice(&folder.read(file)).unwrap();
+        json["runs"][0]["rms_um"].as_f64().unwrap()
+    };
+    let [before, after] = ["a.json", "b.json"].map(figure);
+    let row = ran.stdout.lines().find(|line| line.starts_with("RMS um ")).unwrap();
+    let cells: Vec<&str> = row.split_whitespace().skip(2).collect();
+    assert_eq!(cells, [format!("{before:.3}"), format!("{after:.3}"), format!("{:.3}", after / before)]);
+    assert!(folder.text("d.html").contains("Contour error [\u{b5}m]"));
+    assert!(folder.run(&["diff", "circle.ngc", "line.ngc"]).succeeded().stdout.contains("feed mm"));
+    folder.run(&["diff", "circle.ngc", "a.json"]).refused(&["nothing in common", "hint:"]);
+    folder.file("c.json", "{}");
+    folder.run(&["diff", "a.json", "c.json"]).refused(&["c.json", "no result of run, correct or plan"]);
+}
+
+#[test]
+fn what_is_kept_is_shown_and_removed() {
+    let folder = Folder::new();
+    let cache = |arguments: &[&str], place: &str| {
+        let output = folder.command().arg("cache").args(arguments).env("FEEDWRIGHT_CACHE", place).output().unwrap();
+        Ran::from(output).succeeded().stdout
+    };
+    assert!(cache(&[], "").contains("nothing is kept"));
+    assert!(cache(&[], "kept").contains("0 identified models"));
+    std::fs::create_dir(folder.path().join("kept")).unwrap();
+    let model = format!("kept/{}.json", "a".repeat(64));
+    folder.file(&model, [b'x'; 250_000]);
+    folder.file("kept/mine.json", "{}");
+    let told = cache(&[], "kept");
+    assert!(told.starts_with("kept\n") && told.contains("1 identified model, 250 kB of at most 67109 kB"), "{told}");
+    assert!(cache(&["--clear"], "kept").contains("removed 1 identified model from kept"));
+    assert!(!folder.path().join(&model).exists() && folder.path().join("kept/mine.json").exists());
 }
 
 #[test]

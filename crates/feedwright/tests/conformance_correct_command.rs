@@ -43,11 +43,11 @@ fn run_writes_the_program_that_correct_writes_and_its_cut_is_the_last() {
     let folder = Folder::new();
     folder.run(&["correct", "circle.ngc", "--machine", "tnv40", "--out", "p.ngc"]).succeeded();
     let run = ["circle.ngc", "--machine", "tnv40", "--out", "r.ngc", "--json", "r.json", "--tolerance", "2"];
-    let ran = folder.run_uncorrected(&run).succeeded();
+    let ran = folder.run(&[&["run"], &run[..]].concat()).succeeded();
     assert!(ran.stdout.contains("\nas exported ") && ran.told().contains("within tolerance"), "{}", ran.stdout);
     assert_eq!(folder.text("r.ngc"), folder.text("p.ngc"));
     let results: Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
-    let (last, exported) = (&results["runs"][1], &results["exported"]);
+    let (last, exported) = (&results["runs"][2], &results["exported"]);
     assert_eq!(last["controller"], "as exported");
     for key in ["rms_um", "max_um", "uncut_um", "time_s"] {
         assert_eq!(last[key], exported["as_exported"][key], "{key}");
@@ -64,7 +64,7 @@ fn run_writes_the_program_that_correct_writes_and_its_cut_is_the_last() {
 fn run_writes_no_program_that_is_no_better_and_the_exit_code_says_so() {
     let folder = Folder::new();
     folder.file("line.ngc", "G21 G90 G64\nG1 X40 F300\nM2\n");
-    let ran = folder.run_uncorrected(&["line.ngc", "--machine", "tnv40", "--out", "p.ngc", "--tolerance", "100"]);
+    let ran = folder.run(&["run", "line.ngc", "--machine", "tnv40", "--out", "p.ngc", "--tolerance", "100"]);
     assert_eq!(ran.code, Some(1));
     assert!(ran.stdout.contains("no corrected program:") && !ran.stdout.contains("wrote p.ngc"), "{}", ran.stdout);
     assert!(!folder.path().join("p.ngc").exists() && folder.path().join("line.report.html").exists());
@@ -76,6 +76,10 @@ fn run_writes_no_program_that_is_no_better_and_the_exit_code_says_so() {
         (&["--out", "p.ngc", "--reference", "circle.ngc"], &["no corrected program", "--reference", "original"]),
         (&["--out", "p.ngc", "--for", "grpl"], &["--for", "did you mean 'grbl'?"]),
         (&["--out", "p.csv", "--for", "grbl"], &["--for", "p.csv", "setpoints"]),
+        (
+            &["--out", "p.ngc", "--controller", "feedforward"],
+            &["--controller feedforward", "feedwright correct line.ngc --out p.ngc"],
+        ),
     ] {
         folder.run(&[&["run", "line.ngc", "--machine", "tnv40"], arguments].concat()).refused(told);
     }

@@ -20,7 +20,7 @@ fn every_key_of_a_result_is_documented_and_every_documented_key_is_there() {
         assert!(ran.stdout.contains("wrote result.json"), "{ran:?}");
         folder.text("result.json")
     };
-    holds("run", &json(&["run", "circle.ngc", "--controller", "feedforward", "--out", "new.ngc", "--tolerance", "10"]));
+    holds("run", &json(&["run", "circle.ngc", "--out", "new.ngc", "--tolerance", "10"]));
     holds("run", &json(&["run", "circle.ngc", "--against", "feedforward", "--controller", "uncorrected"]));
     holds("correct", &json(&["correct", "circle.ngc", "--machine", "tnv40", "--for", "generic"]));
     holds("advise", &json(&["advise", "circle.ngc", "--controller", "feedforward", "--tolerance", "10"]));

@@ -24,7 +24,7 @@ fn an_interrupt_leaves_no_file() {
         let laps = "G1 X400\nG1 Y400\nG1 X0\nG1 Y0\n".repeat(20_000);
         folder.file("long.ngc", format!("G21 G90 F600\n{laps}M2\n"));
         let before = folder.content();
-        let outputs = ["--trace", "t.csv", "--out", "o.ngc", "--json", "r.json", "--report", "r.html"];
+        let outputs = ["--trace", "t.csv", "--out", "o.csv", "--json", "r.json", "--report", "r.html"];
         let mut command = folder.command();
         command.args(["run", "long.ngc", "--controller", "uncorrected"]).args(outputs);
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();

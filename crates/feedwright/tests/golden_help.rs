@@ -7,17 +7,17 @@ use crate::command::{Folder, Ran};
 /// What stands before the help in the document.
 const HEADING: &str = "\n## Commands\n\n";
 
-fn help(folder: &Folder, arguments: &[&str]) -> String {
+fn help(folder: &Folder, arguments: &[&str], all: &str) -> String {
     let mut command = folder.command();
-    let ran = Ran::from(command.env_remove("COLUMNS").args(arguments).arg("-h").output().unwrap()).succeeded();
+    let ran = Ran::from(command.env_remove("COLUMNS").args(arguments).arg(all).output().unwrap()).succeeded();
     ran.stdout.trim_end().to_owned()
 }
 
 /// The help as it is to stand in the document; `lab` hands everything to another program.
 fn section() -> String {
     let folder = Folder::new();
-    let root = help(&folder, &[]);
-    let commands = root.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    let root = help(&folder, &[], "-h");
+    let commands = root.lines().take_while(|line| *line != "Options:").filter(|line| line.starts_with("  "));
     let names =
         commands.map(|line| line.split_whitespace().next().unwrap()).filter(|name| !["help", "lab"].contains(name));
     let mut text = String::new();
@@ -25,8 +25,10 @@ fn section() -> String {
         // A command of commands has one.
         let words: &[&str] = if name == "linuxcnc" { &["linuxcnc", "setup"] } else { &[name] };
         let name = words.join(" ");
-        let lines: String =
-            help(&folder, words).lines().map(|line| format!("    {line}\n").replace("    \n", "\n")).collect();
+        let lines: String = help(&folder, words, "--help-all")
+            .lines()
+            .map(|line| format!("    {line}\n").replace("    \n", "\n"))
+            .collect();
         text += &format!("### {name}\n\n{lines}\n");
     }
     text.trim_end().to_owned() + "\n"

@@ -1,7 +1,8 @@
 //! The command line: a file of options for each command.
 
+pub(crate) mod headings;
+pub(crate) mod quantity;
 pub(crate) mod reader;
-pub(crate) mod feed;
 pub(crate) mod geometry;
 pub(crate) mod correct;
 pub(crate) mod advise;
@@ -12,16 +13,18 @@ pub(crate) mod lab;
 pub(crate) mod excite;
 pub(crate) mod block;
 pub(crate) mod check;
+pub(crate) mod diff;
 pub(crate) mod canon;
 pub(crate) mod linuxcnc;
 pub(crate) mod completions;
 pub(crate) mod man;
+pub(crate) mod help;
 
 use std::ffi::OsString;
 use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 
-use clap::{Args, ColorChoice, Command, CommandFactory, Parser, Subcommand, ValueEnum};
+use clap::{ArgAction, Args, ColorChoice, Command, CommandFactory, Parser, Subcommand, ValueEnum};
 use feedwright_gcode::visible;
 
 use advise::AdviseArgs;
@@ -30,6 +33,7 @@ use canon::CanonArgs;
 use check::CheckArgs;
 use completions::CompletionsArgs;
 use correct::CorrectArgs;
+use diff::DiffArgs;
 use excite::ExciteArgs;
 use identify::IdentifyArgs;
 use lab::LabArgs;
@@ -38,17 +42,21 @@ use man::ManArgs;
 use plan::PlanArgs;
 use run::RunArgs;
 
-use crate::command::terminal::{ColorWhen, columns, is_dumb, set_color};
+use crate::command::terminal::{ColorWhen, LengthUnits, columns, is_dumb, set_color, set_units};
+use help::{grouped, shown_options};
 
 /// Predict the contour error of a CNC program on a machine, and correct it
 ///
 /// feedwright reads a G-code program and a machine file, simulates the cut servo period by servo period, and shows how far the tool
 /// leaves the programmed path, and where. Then it corrects the command.
 #[derive(Debug, Parser)]
-#[command(name = "feedwright", version, propagate_version = true, max_term_width = COLUMNS, after_long_help = AFTER)]
+#[command(name = "feedwright", version, propagate_version = true, disable_version_flag = true, max_term_width = COLUMNS, after_long_help = AFTER)]
 pub(crate) struct Cli {
     #[command(flatten)]
     pub(crate) common: CommonArgs,
+    /// Print version
+    #[arg(short = 'V', long, global = true, action = ArgAction::Version, help_heading = EVERYWHERE, hide_short_help = true)]
+    version: Option<bool>,
     #[command(subcommand)]
     pub(crate) command: CommandArgs,
 }
@@ -62,8 +70,17 @@ pub struct CommonArgs {
     /// When messages are coloured.
     ///
     /// auto colours on a terminal, unless NO_COLOR is set or TERM is dumb.
-    #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = ColorWhen::Auto, help_heading = EVERYWHERE)]
+    #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = ColorWhen::Auto, help_heading = EVERYWHERE, hide_short_help = true)]
     pub color: ColorWhen,
+    /// Units of what is printed: metric (mm, um) or inch (in, thousandths of an inch). The report and JSON stay metric.
+    ///
+    /// Contour errors are in thousandths with three decimals: drawings state tolerances in thousandths, and the last decimal is a
+    /// millionth, about 0.025 um.
+    #[arg(long, global = true, value_name = "UNITS", value_enum, default_value_t = LengthUnits::Metric, help_heading = EVERYWHERE)]
+    pub units: LengthUnits,
+    /// Print help with all options
+    #[arg(long, global = true, action = ArgAction::HelpLong, help_heading = EVERYWHERE)]
+    help_all: Option<bool>,
 }
 
 const EVERYWHERE: &str = "Options of every command";
@@ -82,8 +99,8 @@ Environment: FEEDWRIGHT_CACHE is the folder of what is kept between runs, empty 
 TERM=dumb progress too; COLUMNS is the width of tables and messages where it is not that of the terminal.
 
 First steps:
-  feedwright run parts/star.ngc
-cuts a part on a simulated machine, and star.report.html shows how it went. `feedwright COMMAND --help` has examples of each command.";
+  feedwright run part.ngc
+cuts your program on a simulated machine, and part.report.html shows how it went. `feedwright COMMAND --help` has examples of each command.";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum CommandArgs {
@@ -91,6 +108,7 @@ pub(crate) enum CommandArgs {
     Correct(CorrectArgs),
     Advise(AdviseArgs),
     Plan(PlanArgs),
+    Diff(DiffArgs),
     Check(CheckArgs),
     Identify(Box<IdentifyArgs>),
     Excite(ExciteArgs),
@@ -108,6 +126,7 @@ pub(crate) enum CommandArgs {
     Lab(LabArgs),
     Block(BlockArgs),
     Linuxcnc(LinuxcncArgs),
+    Cache(CacheArgs),
     Completions(CompletionsArgs),
     Man(ManArgs),
 }
@@ -126,6 +145,18 @@ pub(crate) struct MachinesArgs {
     pub(crate) out: Option<PathBuf>,
 }
 
+/// Show what is kept between runs, or remove it
+///
+/// Identified models are kept, so that the next run with the same machine begins at once. What was used longest ago is removed when the
+/// store is full. Several runs may use it at once.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Example:\n  feedwright cache --clear")]
+pub(crate) struct CacheArgs {
+    /// Remove everything that is kept.
+    #[arg(long)]
+    pub(crate) clear: bool,
+}
+
 impl CommandArgs {
     /// Whether it writes files, which an interrupt must not leave half-written.
     pub(crate) const fn writes_files(&self) -> bool {
@@ -141,6 +172,9 @@ pub fn parse<T: Parser>() -> T {
     let color = color_said(std::env::args_os());
     set_color(color);
     let matches = command::<T>(color).try_get_matches().unwrap_or_else(|error| leave::<T>(color, error));
+    if let Ok(Some(units)) = matches.try_get_one::<LengthUnits>("units") {
+        set_units(*units);
+    }
     T::from_arg_matches(&matches).unwrap_or_else(|error| leave::<T>(color, error))
 }
 
@@ -159,7 +193,9 @@ fn command<T: CommandFactory>(color: ColorWhen) -> Command {
         ColorWhen::Auto if is_dumb() => ColorChoice::Never,
         ColorWhen::Auto => ColorChoice::Auto,
     };
-    let command = T::command().color(color);
+    let wants_all =
+        std::env::args_os().skip(1).take_while(|argument| argument != "--").any(|argument| argument == "--help-all");
+    let command = shown_options(grouped(T::command()), wants_all).color(color);
     if io::stdout().is_terminal() { command } else { command.term_width(columns().min(COLUMNS)) }
 }
 

@@ -2,10 +2,12 @@
 
 pub(crate) mod advise;
 pub(crate) mod block;
+pub(crate) mod cache;
 pub(crate) mod canon;
 pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod correct;
+pub(crate) mod diff;
 pub(crate) mod excite;
 pub(crate) mod identify;
 pub(crate) mod lab;

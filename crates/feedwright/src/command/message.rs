@@ -9,6 +9,7 @@ use miette::{
     Diagnostic, GraphicalReportHandler, GraphicalTheme, Report, Result, ThemeCharacters, ThemeStyles, miette,
 };
 
+use crate::command::folded::folded_report;
 use crate::command::terminal::{is_stderr_colored, shows_unicode, text_columns, without_hidden, wrapped};
 
 /// The result is out of tolerance.
@@ -22,7 +23,7 @@ pub(crate) const INTERRUPTED: u8 = 130;
 
 /// Shows an error.
 pub(crate) fn fail(report: &Report) -> ExitCode {
-    show(report);
+    show(folded_report(report).as_ref().unwrap_or(report));
     ExitCode::from(ERROR)
 }
 

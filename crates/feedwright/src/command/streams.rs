@@ -9,6 +9,8 @@ use miette::{Result, miette};
 
 use crate::command::args::reader::ReaderArgs;
 use crate::command::console::Console;
+use crate::command::inches::in_inches;
+use crate::command::terminal::is_inch;
 use crate::output::{OutputFiles, is_standard_output};
 
 /// Refuses the standard input for two things at once, and says so where a person has to type it. `inputs` are options and files.
@@ -78,10 +80,35 @@ pub fn make_folder(folder: &Path) -> Result<()> {
 
 /// Where tables and remarks go: to stdout, or to stderr where data go to stdout.
 pub fn tables<'a>(outputs: impl IntoIterator<Item = Option<&'a Path>>) -> Box<dyn Write> {
-    if outputs.into_iter().flatten().any(is_standard_output) {
+    let out: Box<dyn Write> = if outputs.into_iter().flatten().any(is_standard_output) {
         Box::new(io::stderr().lock())
     } else {
         Box::new(io::stdout().lock())
+    };
+    if is_inch() { Box::new(InchLines { out, line: Vec::new() }) } else { out }
+}
+
+/// Writes lines with their lengths in inches.
+struct InchLines {
+    out: Box<dyn Write>,
+    line: Vec<u8>,
+}
+
+impl Write for InchLines {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        for byte in bytes {
+            self.line.push(*byte);
+            if *byte == b'\n' {
+                self.flush()?;
+            }
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let line = std::mem::take(&mut self.line);
+        self.out.write_all(in_inches(&String::from_utf8_lossy(&line)).as_bytes())?;
+        self.out.flush()
     }
 }
 

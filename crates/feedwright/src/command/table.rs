@@ -1,27 +1,29 @@
 //! Tables that fit the terminal: where there is no room, the least important columns are left out, and the table says so.
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 use feedwright_gcode::visible;
 
-use crate::command::terminal::columns;
+use crate::command::inches::{cell_in_inches, heading_in_inches};
+use crate::command::terminal::{columns, is_inch};
 
 /// A column: its heading, in one line or two, and how important it is; 0 is never left out.
 #[derive(Debug, Clone)]
 pub struct TableColumn {
-    heading: &'static str,
+    heading: Cow<'static, str>,
     importance: u8,
 }
 
 impl TableColumn {
     /// One that is always there.
     pub const fn new(heading: &'static str) -> Self {
-        Self { heading, importance: 0 }
+        Self { heading: Cow::Borrowed(heading), importance: 0 }
     }
 
     /// One that may be left out, those of the highest number first.
     pub const fn optional(heading: &'static str, importance: u8) -> Self {
-        Self { heading, importance }
+        Self { heading: Cow::Borrowed(heading), importance }
     }
 }
 
@@ -76,6 +78,35 @@ impl ConsoleTable {
     }
 
     fn print_within(&self, out: &mut dyn Write, room: usize) -> io::Result<()> {
+        if is_inch() { self.in_inches().print_metric(out, room) } else { self.print_metric(out, room) }
+    }
+
+    /// The table with lengths in inches.
+    fn in_inches(&self) -> Self {
+        let headings: Vec<(String, Option<f64>)> =
+            self.columns.iter().map(|column| heading_in_inches(&column.heading)).collect();
+        let cells = |cells: &Vec<String>| {
+            let pairs = cells.iter().zip(&headings);
+            pairs
+                .map(|(cell, (_, factor))| factor.map_or_else(|| cell.clone(), |factor| cell_in_inches(cell, factor)))
+                .collect()
+        };
+        let row = |row: &TableRow| match row {
+            TableRow::Cells(of_row) => TableRow::Cells(cells(of_row)),
+            TableRow::Remark(text) => TableRow::Remark(text.clone()),
+            TableRow::Section(name) => TableRow::Section(name.clone()),
+        };
+        let column = |(column, (heading, _)): (&TableColumn, &(String, Option<f64>))| TableColumn {
+            heading: Cow::Owned(heading.clone()),
+            importance: column.importance,
+        };
+        Self {
+            columns: self.columns.iter().zip(&headings).map(column).collect(),
+            rows: self.rows.iter().map(row).collect(),
+        }
+    }
+
+    fn print_metric(&self, out: &mut dyn Write, room: usize) -> io::Result<()> {
         let widths = self.widths();
         let shown = self.shown(&widths, room);
         // Two blanks between the columns where there is room.
@@ -88,7 +119,7 @@ impl ConsoleTable {
         let others: usize = shown.iter().filter(|&&i| i > 0).map(|&i| widths[i] + 1).sum();
         let name = widths[0].min(room.saturating_sub(others).max(8));
         if !matches!(self.rows.first(), Some(TableRow::Section(_))) {
-            self.heading(out, self.columns[0].heading, name, &shown, &widths)?;
+            self.heading(out, &self.columns[0].heading, name, &shown, &widths)?;
         }
         for row in &self.rows {
             match row {
@@ -107,7 +138,7 @@ impl ConsoleTable {
             }
         }
         let left_out: Vec<&str> =
-            (0..self.columns.len()).filter(|i| !shown.contains(i)).map(|i| self.columns[i].heading).collect();
+            (0..self.columns.len()).filter(|i| !shown.contains(i)).map(|i| &*self.columns[i].heading).collect();
         if !left_out.is_empty() {
             let text = format!(
                 "no room for the columns {}: a wider terminal, or COLUMNS=160, shows them",

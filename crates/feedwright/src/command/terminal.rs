@@ -1,10 +1,13 @@
 //! The terminal: how wide it is, and whether it shows colours.
 
+use std::borrow::Cow;
 use std::io::{self, IsTerminal};
 use std::sync::OnceLock;
 
 use clap::ValueEnum;
 use feedwright_gcode::visible;
+
+use crate::command::inches::in_inches;
 
 /// Columns where there is no terminal to ask.
 const COLUMNS: usize = 80;
@@ -23,6 +26,30 @@ pub enum ColorWhen {
     Always,
     /// Nowhere
     Never,
+}
+
+/// Units of lengths and speeds that are printed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum LengthUnits {
+    /// mm, um, mm/min
+    #[default]
+    Metric,
+    /// in, thousandths of an inch, in/min
+    Inch,
+}
+
+/// As `--units` says.
+static UNITS: OnceLock<LengthUnits> = OnceLock::new();
+
+/// Takes what `--units` says.
+pub(crate) fn set_units(units: LengthUnits) {
+    // It is said once.
+    let _ = UNITS.set(units);
+}
+
+/// Whether lengths are printed in inches.
+pub(crate) fn is_inch() -> bool {
+    UNITS.get() == Some(&LengthUnits::Inch)
 }
 
 /// As `--color` says, from when the command line is read.
@@ -87,13 +114,18 @@ pub(crate) fn text_columns() -> usize {
 /// Wraps a text to the width of the terminal. Every line but the first begins with `indent` blanks.
 /// A number and its unit stay together, and nothing is hidden.
 pub fn wrapped(text: &str, indent: usize) -> String {
-    let text = &with_units(&without_hidden(text));
+    let text = &with_units(&in_units(&without_hidden(text)));
     let blanks = " ".repeat(indent);
     let options = textwrap::Options::new(text_columns())
         .subsequent_indent(&blanks)
         .break_words(false)
         .word_splitter(textwrap::WordSplitter::NoHyphenation);
     textwrap::fill(text, options).replace(KEPT, " ")
+}
+
+/// A text in the units that `--units` asks for.
+pub(crate) fn in_units(text: &str) -> Cow<'_, str> {
+    if is_inch() { Cow::Owned(in_inches(text)) } else { Cow::Borrowed(text) }
 }
 
 /// `text` with ASCII in place of the signs that the report uses.

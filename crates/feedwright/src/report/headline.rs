@@ -9,7 +9,7 @@ use super::text::{change, duration, fixed, number};
 use super::{AS_EXPORTED, Outcome, Report, RunSummary};
 use crate::controllers::BASELINE;
 
-const AXES: [&str; 3] = ["X", "Y", "Z"];
+pub(crate) const AXES: [&str; 3] = ["X", "Y", "Z"];
 
 /// Part of the headline. Only the page sets the kinds apart.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -84,6 +84,11 @@ impl Report {
     /// Whether the controller that was asked for left most of the part uncorrected, or its end.
     pub fn is_mostly_uncorrected(&self) -> bool {
         self.controlled().is_some_and(RunSummary::is_mostly_uncorrected)
+    }
+
+    /// Index of the axis whose peak torque the headline names; the table of the terminal shows that axis, too.
+    pub(crate) fn costly_axis(&self) -> usize {
+        self.judged().map_or(0, |judged| costly_axis(self.compared(), judged).0)
     }
 
     /// The errors of the controller that was asked for that are worse than the uncorrected errors. Empty if one of the two runs
@@ -351,6 +356,8 @@ mod tests {
             rest.split_once(", command").unwrap_or_default().0.to_owned()
         };
         // The largest of all axes, X, goes from 1 to 2.72 N m; Y from 0.5 to 1.48.
+        let largest_is_another = report(vec![uncorrected(), run("two-dimensional", [1.0; 3], [2.72, 1.48])], None);
+        assert_eq!(largest_is_another.costly_axis(), 1);
         assert_eq!(torque([2.72, 1.48]), "Y, which rises most, 0.50 N m → 1.48 N m (+196 %)");
         assert_eq!(torque([3.0, 1.48]), "X, which rises most, 1.00 N m → 3.00 N m (+200 %)");
         assert_eq!(torque([0.8, 0.3]), "X, which falls least, 1.00 N m → 0.80 N m (−20 %)");

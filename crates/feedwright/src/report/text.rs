@@ -69,7 +69,7 @@ pub(super) fn duration(seconds: f64) -> String {
 
 /// Change from `before` to `after` in per cent: "−87 %"; nothing where `before` is zero. Near −100 % it is what is left that
 /// tells, and beyond ten times it is the factor.
-pub(super) fn change(before: f64, after: f64) -> Option<String> {
+pub(crate) fn change(before: f64, after: f64) -> Option<String> {
     let percent = (after / before - 1.0) * 100.0;
     if before == 0.0 || !percent.is_finite() {
         return None;

@@ -7,12 +7,14 @@ use clap::Args;
 
 use super::correct::controls;
 use super::geometry::GeometryArgs;
+use super::headings::{CONTROLLER, CUT, RESULTS};
+use super::quantity::length_um;
 use super::reader::ReaderArgs;
 
 /// Tell the feedrates at which a program holds a tolerance
 ///
-/// For the program as it is, corrected, and cut with a controller that sees the tool: for all of it, and for each stretch between corners and stops. Where no feed
-/// holds, the table tells which error stays, and where.
+/// For the program as it is, corrected, and cut with a controller that sees the tool: for all of it, and for each stretch between corners
+/// and stops. Where no feed holds, the table tells which error stays, and where.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Example:
@@ -23,28 +25,28 @@ pub(crate) struct AdviseArgs {
     /// G-code program.
     pub(crate) part: PathBuf,
     /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
-    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE)]
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE, help_heading = CUT)]
     pub(crate) machine: OsString,
-    /// Largest contour error, um.
-    #[arg(long, value_name = "UM", allow_negative_numbers = true)]
+    /// Largest contour error, such as 10um, 0.01mm or 0.0004in; um where it has no unit.
+    #[arg(long, value_name = "LENGTH", value_parser = length_um, allow_negative_numbers = true, help_heading = CUT)]
     pub(crate) tolerance: f64,
     /// Control that cuts the program without feedback, as it is and corrected.
-    #[arg(long = "for", value_name = "CONTROL", default_value = crate::correct::TARGETS[0].name, long_help = controls("Control that cuts the program without feedback, as it is and corrected."))]
+    #[arg(long = "for", value_name = "CONTROL", default_value = crate::correct::TARGETS[0].name, long_help = controls("Control that cuts the program without feedback, as it is and corrected."), help_heading = CUT)]
     pub(crate) target: String,
     /// Controller of the cut with feedback; `feedwright controllers` lists them.
-    #[arg(long, value_name = "NAME", default_value = crate::controllers::BEST)]
+    #[arg(long, value_name = "NAME", default_value = crate::controllers::BEST, help_heading = CONTROLLER, hide_short_help = true)]
     pub(crate) controller: String,
     /// Seed of the recording that the machine is identified from.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, help_heading = CONTROLLER, hide_short_help = true)]
     pub(crate) seed: u64,
     /// Write a page: table, figure, and the feedrates of each stretch.
-    #[arg(long, value_name = "FILE.html")]
+    #[arg(long, value_name = "FILE.html", help_heading = RESULTS)]
     pub(crate) report: Option<PathBuf>,
     /// Write the figure: error over feedrate, and the feedrate that each stretch holds.
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", help_heading = RESULTS, hide_short_help = true)]
     pub(crate) figure: Option<PathBuf>,
     /// Write all results as JSON, those of every feed that was cut too.
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, value_name = "FILE.json", help_heading = RESULTS)]
     pub(crate) json: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) geometry: GeometryArgs,

@@ -6,6 +6,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::geometry::GeometryArgs;
+use super::headings::{CUT, MEASURED, RESULTS};
+use super::quantity::length_um;
 use super::reader::ReaderArgs;
 
 /// Write a corrected program for a control without feedback
@@ -23,26 +25,27 @@ pub(crate) struct CorrectArgs {
     /// G-code program.
     pub(crate) part: PathBuf,
     /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
-    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE)]
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE, help_heading = CUT)]
     pub(crate) machine: OsString,
     /// Control that the corrected program is for: how it plans the speed, and what its blocks may hold.
-    #[arg(long = "for", value_name = "CONTROL", default_value = crate::correct::TARGETS[0].name, long_help = controls("Control that the corrected program is for: how it plans the speed, and what its blocks may hold."))]
+    #[arg(long = "for", value_name = "CONTROL", default_value = crate::correct::TARGETS[0].name, long_help = controls("Control that the corrected program is for: how it plans the speed, and what its blocks may hold."), help_heading = CUT)]
     pub(crate) target: String,
-    /// Log of a cut of this part: commanded and actual positions, by this program or by one that was corrected from it. What the logs show is
-    /// corrected, not what the machine file says. Several logs: repeat the option.
-    #[arg(long, value_name = "FILE")]
+    /// Log of a cut of this part: commanded and actual positions, by this program or by one that was corrected from it. What the logs show
+    /// is corrected, not what the machine file says. Several logs: repeat the option.
+    #[arg(long, value_name = "FILE", help_heading = MEASURED)]
     pub(crate) log: Vec<PathBuf>,
     /// Which column of the logs is what, by number from 0 or by name, and units: t=0,x.cmd=1,x.act=3,unit=mm,time=ms.
-    #[arg(long, value_name = "COLUMNS", requires = "log")]
+    #[arg(long, value_name = "COLUMNS", requires = "log", help_heading = MEASURED)]
     pub(crate) columns: Option<String>,
     /// Place of the corrected program; it is written only if it is better than the uncorrected program; otherwise the exit code is 1.
-    #[arg(long, value_name = "FILE.ngc")]
+    #[arg(long, value_name = "FILE.ngc", help_heading = RESULTS)]
     pub(crate) out: Option<PathBuf>,
-    /// Largest contour error allowed of the corrected program as the control cuts it, um: exit code 1 where it is exceeded.
-    #[arg(long, value_name = "UM", allow_negative_numbers = true)]
+    /// Largest contour error allowed of the corrected program as the control cuts it, such as 10um, 0.01mm or 0.0004in; um where it has no
+    /// unit. Exit code 1 where it is exceeded.
+    #[arg(long, value_name = "LENGTH", value_parser = length_um, allow_negative_numbers = true, help_heading = CUT)]
     pub(crate) tolerance: Option<f64>,
     /// Write all results as JSON.
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, value_name = "FILE.json", help_heading = RESULTS)]
     pub(crate) json: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) geometry: GeometryArgs,

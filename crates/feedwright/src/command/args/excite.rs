@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::quantity::{length_mm, size_mm, slow_feed_mm_min};
+
 /// Write a program to record a log with, for identify
 ///
 /// Run it on the machine in the air, record commanded and actual positions meanwhile, and give the log to `feedwright identify`. The
@@ -19,17 +21,20 @@ pub(crate) struct ExciteArgs {
     /// Machine whose limits the program keeps: one that is built in, or a machine file (.toml).
     #[arg(long, value_name = "NAME|LIMITS.toml")]
     pub(crate) machine: OsString,
-    /// Travel of each axis, mm: half of it on each side of where the machine stands.
-    #[arg(long, value_name = "MM", default_value_t = feedwright_ident::ExciteOptions::default().travel_mm, allow_negative_numbers = true)]
+    /// Travel of each axis, such as 40mm or 1.5in; mm where it has no unit: half of it on each side of where the machine stands.
+    #[arg(long, value_name = "LENGTH", value_parser = length_mm, default_value_t = feedwright_ident::ExciteOptions::default().travel_mm, allow_negative_numbers = true)]
     pub(crate) travel: f64,
-    /// Write the program of a ball bar of this radius: circles in both directions about the zero of the work coordinates.
-    #[arg(long, value_name = "RADIUS_MM", conflicts_with = "travel", value_parser = radius)]
+    /// Write the program of a ball bar of this radius, mm where it has no unit: circles in both directions about the zero of the work
+    /// coordinates.
+    #[arg(long, value_name = "RADIUS", conflicts_with = "travel", value_parser = size_mm)]
     pub(crate) ballbar: Option<f64>,
-    /// Write a program that rests at points of a grid, this far apart, over --travel from the zero of the work coordinates.
-    #[arg(long, value_name = "STEP_MM", conflicts_with = "ballbar", value_parser = radius)]
+    /// Write a program that rests at points of a grid, this far apart (mm where it has no unit), over --travel from the zero of the work
+    /// coordinates.
+    #[arg(long, value_name = "STEP", conflicts_with = "ballbar", value_parser = size_mm)]
     pub(crate) grid: Option<f64>,
-    /// Feedrate of --ballbar and --grid, mm/min. A ball bar shows the geometry best where servos lag least: slowly.
-    #[arg(long, value_name = "MM_MIN", default_value_t = 500.0, value_parser = radius)]
+    /// Feedrate of --ballbar and --grid, such as 500mm/min or 20ipm; mm/min where it has no unit. A ball bar shows the geometry best where
+    /// servos lag least: slowly.
+    #[arg(long, value_name = "FEED", default_value_t = 500.0, value_parser = slow_feed_mm_min)]
     pub(crate) feed: f64,
     /// Plane of --ballbar; with z, arcs of 220 degrees.
     #[arg(long, value_name = "PLANE", default_value = "xy", value_parser = ["xy", "xz", "yz"], requires = "ballbar")]
@@ -37,11 +42,4 @@ pub(crate) struct ExciteArgs {
     /// Place of the program.
     #[arg(long, value_name = "FILE.ngc")]
     pub(crate) out: PathBuf,
-}
-
-fn radius(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if (0.1..=1e4).contains(&value) => Ok(value),
-        _ => Err("it must be 0.1 to 10000".to_owned()),
-    }
 }

@@ -4,14 +4,16 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::headings::CUT;
+
 /// The geometry that the control compensates.
 #[derive(Debug, Args)]
 pub(crate) struct GeometryArgs {
     /// Leave the geometry uncompensated. Without this option, the command leads the axes so that scale, pitch and squareness of the machine
     /// file do not move the tool off the path.
-    #[arg(long)]
+    #[arg(long, help_heading = CUT, hide_short_help = true)]
     pub(crate) no_geometry: bool,
     /// Compensate the geometry of this file in place of that of the machine file; `feedwright identify --geometry` writes one.
-    #[arg(long, value_name = "GEOMETRY.toml", conflicts_with = "no_geometry")]
+    #[arg(long, value_name = "GEOMETRY.toml", conflicts_with = "no_geometry", help_heading = CUT)]
     pub(crate) geometry: Option<PathBuf>,
 }

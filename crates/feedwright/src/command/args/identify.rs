@@ -6,6 +6,9 @@ use std::path::PathBuf;
 use clap::{ArgGroup, Args};
 use feedwright_ident::KnownValue;
 
+use super::headings::SIMULATED;
+use super::quantity::length_mm;
+
 /// Identify a machine from its log, and write its machine file
 ///
 /// The log has commanded and actual positions of the axes at the servo period. Without a log a simulated machine is identified, and
@@ -31,19 +34,19 @@ pub(crate) struct IdentifyArgs {
     #[command(flatten)]
     pub(crate) of_geometry: MeasuredGeometryArgs,
     /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
-    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE)]
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE, help_heading = SIMULATED)]
     pub(crate) machine: OsString,
     /// Controller that the model is for; `feedwright controllers` lists them.
-    #[arg(long, value_name = "NAME", default_value = crate::controllers::BEST)]
+    #[arg(long, value_name = "NAME", default_value = crate::controllers::BEST, help_heading = SIMULATED, hide_short_help = true)]
     pub(crate) controller: String,
     /// Axes of the model: 2 for programs that stay in the XY plane, 3 for others.
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3), help_heading = SIMULATED, hide_short_help = true)]
     pub(crate) axes: u8,
     /// Set a parameter of the controller; feed_period_s is the one that the model depends on.
-    #[arg(long, value_name = "PARAMETER=VALUE")]
+    #[arg(long, value_name = "PARAMETER=VALUE", help_heading = SIMULATED, hide_short_help = true)]
     pub(crate) set: Vec<String>,
     /// Seed of the recording that a simulated machine is identified from.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, help_heading = SIMULATED, hide_short_help = true)]
     pub(crate) seed: u64,
     /// Place of the machine file; of a simulated machine, of its model; with --geometry, of the geometry file.
     #[arg(long, value_name = "FILE.toml", required_unless_present = "update")]
@@ -61,53 +64,53 @@ pub(crate) struct LogArgs {
     #[arg(long, value_name = "FILE.toml", requires = "log")]
     pub(crate) update: Option<PathBuf>,
     /// Identify from this part of the log, s; --score says by which to judge. Without both, blocks of motion take turns.
-    #[arg(long, value_name = "FROM:TO", requires = "score", requires = "log")]
+    #[arg(long, value_name = "FROM:TO", requires = "score", requires = "log", hide_short_help = true)]
     pub(crate) fit: Option<Times>,
     /// Judge by this part of the log, s.
-    #[arg(long, value_name = "FROM:TO", requires = "fit", requires = "log")]
+    #[arg(long, value_name = "FROM:TO", requires = "fit", requires = "log", hide_short_help = true)]
     pub(crate) score: Option<Times>,
-    /// Travel for a turn of the motor, mm; without it an axis counts as linear: kg, N s/m, N.
-    #[arg(long, value_name = "MM_PER_REV", requires = "log", value_parser = positive)]
+    /// Travel for a turn of the motor, such as 5mm or 0.2in; mm where it has no unit. Without it an axis counts as linear: kg, N s/m, N.
+    #[arg(long, value_name = "LENGTH", requires = "log", value_parser = lead_mm)]
     pub(crate) lead: Option<f64>,
     /// Inertia at the motor, kg m2; without --lead the mass, kg. Positions do not tell it.
     #[arg(long, value_name = "KG_M2|KG", requires = "log", value_parser = positive)]
     pub(crate) inertia: Option<f64>,
     /// Viscous friction at the motor, N m s/rad; without --lead N s/m.
-    #[arg(long, value_name = "N_M_S|N_S_PER_M", requires = "log", value_parser = positive)]
+    #[arg(long, value_name = "N_M_S|N_S_PER_M", requires = "log", value_parser = positive, hide_short_help = true)]
     pub(crate) viscous: Option<f64>,
     /// Torque, N m, for a unit of the torque column; without --lead force, N.
-    #[arg(long, value_name = "N_M|N", requires = "log", value_parser = positive)]
+    #[arg(long, value_name = "N_M|N", requires = "log", value_parser = positive, hide_short_help = true)]
     pub(crate) torque_gain: Option<f64>,
     /// Position gain of the drive, 1/s. With ± it is known within that standard deviation, and the log corrects it; without, it is
     /// taken as it is.
     #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
     pub(crate) kp: Option<KnownValue>,
     /// Integral time of the speed loop, s, as --kp; 0 is a loop without integral.
-    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
+    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log", hide_short_help = true)]
     pub(crate) integral_time: Option<KnownValue>,
     /// Part of the commanded speed that is fed forward, as --kp.
-    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
+    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log", hide_short_help = true)]
     pub(crate) velocity_feedforward: Option<KnownValue>,
     /// Part of the commanded acceleration that is fed forward, as --kp.
-    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
+    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log", hide_short_help = true)]
     pub(crate) acceleration_feedforward: Option<KnownValue>,
     /// Delay from the control to the drive, s, as --kp.
-    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
+    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log", hide_short_help = true)]
     pub(crate) drive_delay: Option<KnownValue>,
     /// Delay from the control to a position loop in the drive, s: a whole number of servo periods. Without it the log tells the
     /// delay, where --record-delay is given.
-    #[arg(long, value_name = "S", requires = "log", value_parser = command_delay)]
+    #[arg(long, value_name = "S", requires = "log", value_parser = command_delay, hide_short_help = true)]
     pub(crate) command_delay: Option<f64>,
     /// Time over which the drive takes the speed from positions, s, of one that closes its loops at the rate of the log and recorded it
     /// itself: two samples are 0.002 at 1 kHz. Positions do not tell it.
-    #[arg(long, value_name = "S", requires = "log", value_parser = positive)]
+    #[arg(long, value_name = "S", requires = "log", value_parser = positive, hide_short_help = true)]
     pub(crate) speed_window: Option<f64>,
     /// Delay of the recorded actual position behind the recorded command, s: 0 if both are sampled at the same moment, as halsampler
     /// does. Without it, a delay of the drive counts as a delay of the record.
-    #[arg(long, value_name = "S", requires = "log", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", requires = "log", allow_negative_numbers = true, hide_short_help = true)]
     pub(crate) record_delay: Option<f64>,
-    /// Write the program that moves the axes as the log did not, and as it would take to settle what is open. Where nothing is open, none is
-    /// written.
+    /// Write the program that moves the axes as the log did not, and as it would take to settle what is open. Where nothing is open, none
+    /// is written.
     #[arg(long, value_name = "FILE.ngc", requires = "log")]
     pub(crate) excite_next: Option<PathBuf>,
     /// Write a page: numbers, measured against predicted, what is left.
@@ -127,10 +130,10 @@ pub(crate) struct MeasuredGeometryArgs {
     #[arg(long, value_name = "[AXIS=]FILE", conflicts_with_all = ["log", "controller", "axes", "set", "seed"], requires = "out")]
     pub(crate) geometry: Vec<AxisFile>,
     /// Write the errors of an axis as a compensation file of LinuxCNC.
-    #[arg(long, value_name = "AXIS=FILE", requires = "geometry")]
+    #[arg(long, value_name = "AXIS=FILE", requires = "geometry", hide_short_help = true)]
     pub(crate) comp_file: Vec<AxisFile>,
     /// Type of the compensation files that are written: 0 has positions of the tool, 1 has what is added to the command.
-    #[arg(long, value_name = "0|1", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=1))]
+    #[arg(long, value_name = "0|1", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=1), hide_short_help = true)]
     pub(crate) comp_type: u8,
 }
 
@@ -162,6 +165,11 @@ fn positive(text: &str) -> Result<f64, String> {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
         _ => Err("it must be a number above 0".to_owned()),
     }
+}
+
+fn lead_mm(text: &str) -> Result<f64, String> {
+    let lead_mm = length_mm(text)?;
+    if lead_mm > 0.0 && lead_mm.is_finite() { Ok(lead_mm) } else { Err("it must be above 0 mm".to_owned()) }
 }
 
 fn command_delay(text: &str) -> Result<f64, String> {

@@ -21,6 +21,7 @@ use crate::command::args::check::{CheckArgs, Format};
 use crate::command::console::Console;
 use crate::command::files_to_check::FilesToCheck;
 use crate::command::findings::{Finding, sarif};
+use crate::command::folded::folded;
 use crate::command::message::{ERROR, MISTAKES, printed, tell, warn};
 use crate::command::progress::Bar;
 use crate::command::streams::check_inputs;
@@ -265,7 +266,7 @@ fn program(file: &Path, settings: Settings) -> CheckedFile {
         Err(CheckError::Read(error)) => return refused(file, FileOutcome::Unreadable, error.into()),
         Err(CheckError::Faults(faults)) => {
             let findings = faults.iter().map(Finding::of).collect();
-            let reports = faults.into_iter().map(Report::new).collect();
+            let reports = folded(&faults).into_iter().map(Report::new).collect();
             return CheckedFile { outcome: FileOutcome::Mistakes, line: None, reports, findings };
         }
     };
@@ -278,7 +279,7 @@ fn program(file: &Path, settings: Settings) -> CheckedFile {
         summary.rapid_mm
     );
     let findings = summary.warnings.iter().map(Finding::of).collect();
-    let reports = summary.warnings.into_iter().map(Report::new).collect();
+    let reports = folded(&summary.warnings).into_iter().map(Report::new).collect();
     CheckedFile { outcome: FileOutcome::Fine, line: Some(line), reports, findings }
 }
 

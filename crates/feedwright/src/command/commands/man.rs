@@ -6,6 +6,7 @@ use clap_mangen::Man;
 use miette::Result;
 
 use crate::command::args::Cli;
+use crate::command::args::help::with_all_options;
 use crate::command::args::man::ManArgs;
 use crate::command::console::Console;
 use crate::command::message::printed;
@@ -14,7 +15,7 @@ use crate::output::{OutputError, OutputFile, OutputFiles};
 
 pub(crate) fn run(args: &ManArgs, console: &Console) -> Result<ExitCode> {
     make_folder(&args.out)?;
-    let mut root = Cli::command().disable_help_subcommand(true);
+    let mut root = with_all_options(Cli::command()).disable_help_subcommand(true);
     root.build();
     let commands = root.get_subcommands().map(|command| {
         let name = format!("{}-{}", root.get_name(), command.get_name());

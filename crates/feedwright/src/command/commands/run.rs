@@ -120,7 +120,19 @@ fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
     let report = args.report.unwrap_or_else(|| report_of(&args.part));
     let outputs =
         Outputs { report: Some(report), json: args.json, trace: args.trace, learned: args.learned, out: args.out };
-    let (controller, against) = (find(&args.controller, table)?, find(&args.against, table)?);
+    if let (Some(controller), true, Some(out)) = (&args.controller, outputs.is_program()?, &outputs.out) {
+        return Err(miette!(
+            help = format!(
+                "feedwright correct {} --out {} writes the program; or leave --controller out; or write the setpoints of \
+                 {controller}: --out FILE.csv",
+                args.part.display(),
+                out.display()
+            ),
+            "--controller {controller} has no part in a corrected program, which is cut without a controller"
+        ));
+    }
+    let controller = find(args.controller.as_deref().unwrap_or(BEST), table)?;
+    let against = find(&args.against, table)?;
     if outputs.learned.is_some() && controller.identifier != Some(IdentifierKind::Axes) {
         return Err(miette!(
             help = format!("leave --learned out, or choose --controller {BEST}"),

@@ -1,7 +1,7 @@
 //! What a run came to, as text: the headline, the table, what was assumed, and what is to be done with it.
 
 use crate::command::terminal::ascii;
-use crate::report::headline::headline;
+use crate::report::headline::{AXES, headline};
 use std::io::{self, Write};
 
 use crate::controllers::CutsUncorrected;
@@ -9,13 +9,13 @@ use crate::correct::CorrectOutcome;
 use crate::correct::exported::ExportedFigures;
 use crate::fastest::FastestPlan;
 use crate::job::{Job, JobOutcome, MEASURED};
-use crate::report::{AS_EXPORTED, Assumptions, CorrectionChange, Outcome as Ending, ReportedRun, RunSummary};
+use crate::report::{AS_EXPORTED, Assumptions, CorrectionChange, Outcome as Ending, Report, ReportedRun, RunSummary};
 
 use super::files::Outputs;
 use crate::command::controls::print_correction;
 use crate::command::streams::tell_written;
 use crate::command::table::{ConsoleTable, TableColumn, figure};
-use crate::command::terminal::wrapped;
+use crate::command::terminal::{is_inch, wrapped};
 
 pub(super) fn print(out: &mut dyn Write, job: &Job, outputs: &Outputs, outcome: &JobOutcome) -> io::Result<()> {
     let runs = &outcome.report.runs;
@@ -23,11 +23,13 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outputs: &Outputs, outcome: 
     let say = |out: &mut dyn Write, text: &str| writeln!(out, "{}", wrapped(text, 2));
     say(out, &ascii(&headline(&outcome.report).to_string()))?;
     writeln!(out)?;
-    table(runs, &outcome.without_identification).print(out)?;
-    say(
-        out,
-        "N m: peak torque; off: how far the command leaves the path at most; mm/s2: largest acceleration of the command",
-    )?;
+    table(&outcome.report, &outcome.without_identification).print(out)?;
+    let axis = AXES[outcome.report.costly_axis()];
+    let legend = format!(
+        "N m: peak torque of {axis}; off: how far the command leaves the path at most; {}: largest acceleration of the command",
+        if is_inch() { "in/s2" } else { "mm/s2" }
+    );
+    say(out, &legend)?;
     if measured {
         say(
             out,
@@ -79,12 +81,9 @@ fn chip_load(runs: &[ReportedRun]) -> Option<String> {
     ))
 }
 
-/// The largest torque of all axes, N m.
-fn peak_torque_nm(run: &RunSummary) -> f64 {
-    run.peak_torque_nm.into_iter().flatten().fold(0.0, f64::max)
-}
-
-fn table(runs: &[ReportedRun], uncorrected: &[CutsUncorrected]) -> ConsoleTable {
+fn table(report: &Report, uncorrected: &[CutsUncorrected]) -> ConsoleTable {
+    // The axis of the headline: the largest torques of all axes may belong to different drives, and their ratio means nothing.
+    let axis = report.costly_axis();
     let mut table = ConsoleTable::new(vec![
         TableColumn::new("simulated"),
         TableColumn::new("time s"),
@@ -95,7 +94,7 @@ fn table(runs: &[ReportedRun], uncorrected: &[CutsUncorrected]) -> ConsoleTable 
         TableColumn::optional("off um", 2),
         TableColumn::optional("mm/s2", 3),
     ]);
-    for run in runs {
+    for run in &report.runs {
         let now = &run.summary;
         let is_measured = now.controller == MEASURED;
         table.row(vec![
@@ -104,7 +103,7 @@ fn table(runs: &[ReportedRun], uncorrected: &[CutsUncorrected]) -> ConsoleTable 
             figure(now.rms_um, 2),
             figure(now.max_um, 2),
             figure(now.uncut_um, 2),
-            if is_measured { "-".to_owned() } else { format!("{:.2}", peak_torque_nm(now)) },
+            figure(now.peak_torque_nm.map_or(f64::NAN, |peaks_nm| peaks_nm[axis]), 2),
             format!("{:.1}", now.max_deviation_um),
             if is_measured { "-".to_owned() } else { format!("{:.0}", now.max_command_accel_mm_s2) },
         ]);
