@@ -176,6 +176,7 @@ fn main() -> io::Result<()> {
             circles: Vec::new(),
             tolerance_um: Some(20.0),
             limits: None,
+            axis_limits: Vec::new(),
             band: None,
             runs: vec![run(job, "uncorrected", [0.012, 0.015, 0.012])?, run(job, "less lag", [0.006, 0.0065, 0.006])?],
         };

@@ -159,8 +159,8 @@ pub use report::harm::{CutErrors, ErrorChange, Harm, MAX_UM, RMS_UM, UNCUT_UM, h
 pub use report::plain_page::{PagePart, write_foot, write_head, write_table_end, write_table_head};
 pub use report::text::{escaped, number};
 pub use report::{
-    Assumptions, Band, BandErrors, CompensatedGeometry, ErrorSpectrum, FullCircle, Histogram, LawKnowledge, LimitBand,
-    ProgramLine, Report, ReportedRun, Roundness, RunFacts, RunSummary, Series, SeriesPoint, SpectrumBand, Statistics,
-    TimelineEvent, WorstPlace, write_html,
+    Assumptions, Band, BandErrors, CompensatedGeometry, DrawnLimits, ErrorSpectrum, FullCircle, Histogram,
+    LawKnowledge, LimitBand, ProgramLine, Report, ReportedRun, Roundness, RunFacts, RunSummary, Series, SeriesPoint,
+    SpectrumBand, Statistics, TimelineEvent, WorstPlace, write_html,
 };
 pub use results_format::RESULTS_FORMAT;

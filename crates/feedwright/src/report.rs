@@ -68,10 +68,21 @@ pub struct Report {
     pub tolerance_um: Option<f64>,
     /// What binds the plan along the path, where it is planned axis by axis.
     pub limits: Option<LimitBand>,
+    /// What the machine allows each axis, drawn beside what the runs ask of it.
+    pub axis_limits: Vec<DrawnLimits>,
     /// What other machines that fit the recording come to, where they were cut.
     pub band: Option<Band>,
     /// One for each controller. The first is what the others are compared with; the last is the one that is judged.
     pub runs: Vec<ReportedRun>,
+}
+
+/// What an axis may at the most.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct DrawnLimits {
+    /// Torque at which the drive saturates, N m.
+    pub torque_nm: f64,
+    /// Acceleration that the plan keeps, mm/s2; none where the plan has no limits of axes.
+    pub accel_mm_s2: Option<f64>,
 }
 
 /// One controller's run.

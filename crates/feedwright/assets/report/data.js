@@ -30,6 +30,7 @@ function readModel(raw) {
       plan: decode(columns.plan, u.feed_mm_s * 60), feed: decode(columns.feed, u.feed_mm_s * 60),
       line: decode(columns.line, 1), cutting: decode(columns.cutting, 1),
       foot: axisColumns("f", u.point_mm), deviation: axisColumns("d", meta.error_mm),
+      accel: columns.accel_x ? axisColumns("accel_", u.accel_m_s2).slice(0, axes) : null,
       torque: columns.torque_x ? axisColumns("torque_", u.torque_nm).slice(0, axes) : null,
     };
   });
@@ -43,7 +44,7 @@ function readModel(raw) {
       g_um: run.g_um, radial_um: run.radial.map((v) => (v === null ? null : v * raw.meta.runs[i].error_mm * 1e3)),
     }),
   }));
-  return { axes, runs, outline, circles, listing: raw.meta.program, tolerance_um: raw.meta.tolerance_um };
+  return { axes, runs, outline, circles, listing: raw.meta.program, limits: raw.meta.limits, tolerance_um: raw.meta.tolerance_um };
 }
 
 // Index of the value nearest to x in an increasing array.

@@ -12,7 +12,8 @@ function definitions(model, state) {
     errorPlot(model, state.log, "t", "Contour error over time", "Time, s"),
     errorPlot(model, state.log, "s", "Contour error over arc length", "Arc length, mm"),
     feedPlot(model),
-    ...torquePlots(model),
+    ...axisPlots(model, "torque", "Torque", "N m", "torque_nm"),
+    ...axisPlots(model, "accel", "Command acceleration", "m/s\u00b2", "accel_m_s2"),
   ];
   for (const alone of [state.log ? exceedancePlot(model) : histogramPlot(model), spectrumPlot(model)]) if (alone) all.push(alone);
   return all;
@@ -28,15 +29,30 @@ function feedPlot(model) {
   };
 }
 
-// A run of a log has none.
-function torquePlots(model) {
-  const runs = model.runs.filter((r) => r.torque);
-  return Array.from({ length: runs.length ? model.axes : 0 }, (_, k) => ({
-    kind: "t", title: `Torque ${"XYZ"[k]}, N m`, x: "Time, s", unit: "N m",
-    data: uPlot.join(runs.map((r) => [r.t, r.torque[k]])),
-    series: runs.map((r) => ({ run: r.index, width: 1.25 })),
-    levels: [{ value: 0 }], read: (r, i) => (r.torque ? formatNumber(r.torque[k][i]) : "\u2013"),
-  }));
+// What each axis is asked for, beside what it may. A run of a log has none.
+function axisPlots(model, column, title, unit, limitName) {
+  const runs = model.runs.filter((r) => r[column]);
+  return Array.from({ length: runs.length ? model.axes : 0 }, (_, k) => {
+    const limit = model.limits[k]?.[limitName], levels = [{ value: 0 }];
+    if (limit) levels.push({ value: limit, dash: true }, { value: -limit, dash: true });
+    return {
+      kind: "t", title: `${title} ${"XYZ"[k]}, ${unit}${limit ? ` \u00b7 limit \u00b1${formatNumber(limit)}` : ""}`, x: "Time, s", unit,
+      data: uPlot.join(runs.map((r) => [r.t, r[column][k]])),
+      series: runs.map((r) => ({ run: r.index, width: 1.25 })),
+      levels, read: (r, i) => (r[column] ? formatNumber(r[column][k][i]) : "\u2013"), range: limitedRange(limit),
+    };
+  });
+}
+
+// Limits further off than this, in sizes of the curve, are told but not drawn: the curve would be flat.
+const FAR_LIMIT = 4;
+
+function limitedRange(limit) {
+  return (u, low, high) => {
+    const size = Math.max(Math.abs(low ?? 0), Math.abs(high ?? 0)), near = limit && limit < FAR_LIMIT * size;
+    const [least, most] = near ? [Math.min(low, -limit), Math.max(high, limit)] : [low ?? -1, high ?? 1];
+    return uPlot.rangeNum(least, most, 0.1, true);
+  };
 }
 
 function errorPlot(model, logarithmic, kind, title, x) {

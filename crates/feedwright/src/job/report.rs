@@ -9,7 +9,17 @@ use super::{Job, JobError};
 use crate::controllers::CutsUncorrected;
 use crate::cycle_time::{self, CycleTime, CycleTimeOfCut, cycle_time};
 use crate::fastest::FastestPlan;
-use crate::report::{FullCircle, LimitBand, Outcome, Report, ReportedRun, WorstPlace};
+use crate::report::{DrawnLimits, FullCircle, LimitBand, Outcome, Report, ReportedRun, WorstPlace};
+
+/// What the machine allows each axis.
+fn drawn_limits(machine: &Machine) -> Vec<DrawnLimits> {
+    let planned = machine.has_axis_limits();
+    let limits = |axis: &feedwright_sim::Axis| DrawnLimits {
+        torque_nm: axis.torque_limit_nm,
+        accel_mm_s2: axis.max_accel_mm_s2.filter(|_| planned),
+    };
+    machine.axes.iter().map(limits).collect()
+}
 
 impl Job {
     /// That the program could not be read once more.
@@ -76,6 +86,7 @@ impl Job {
             circles,
             tolerance_um: self.tolerance_um,
             limits: None,
+            axis_limits: drawn_limits(&self.machine),
             band: None,
             runs,
         })

@@ -96,7 +96,7 @@ fn write_axis(
         out,
         "<figure>{}<figcaption><b>Following error of axis {name}.</b> Measured, and as free runs over the scored samples have it; below, what they leave. \
          Gaps are samples that were fitted.</figcaption></figure>",
-        following(identified, i, f64::NEG_INFINITY..f64::INFINITY).to_svg()
+        following(identified, i, f64::NEG_INFINITY..f64::INFINITY).to_html()
     )?;
     write_table_head(out, ["number", "value", "interval", "unit", ""])?;
     for number in axis.numbers() {
@@ -116,7 +116,7 @@ fn write_axis(
     writeln!(
         out,
         "<figure>{}<figcaption><b>Spectrum of what the free run of axis {name} leaves.</b> RMS in a band of a hertz. Correlation from sample to sample: {:.2} of what is left, {:.2} one step ahead.</figcaption></figure>",
-        spectrum(identified, i, axis).to_svg(),
+        spectrum(identified, i, axis).to_html(),
         axis.scores.residual_correlation,
         axis.scores.innovation_correlation
     )?;

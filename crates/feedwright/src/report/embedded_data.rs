@@ -8,7 +8,7 @@ use std::io::{self, Write};
 use serde_json::json;
 
 use super::series::SeriesPoint;
-use super::{FullCircle, ProgramLine, Report, ReportedRun, RunSummary};
+use super::{DrawnLimits, FullCircle, ProgramLine, Report, ReportedRun, RunSummary};
 use crate::results_format::spelled_out;
 
 /// What one count of a column stands for.
@@ -21,6 +21,7 @@ mod units {
     pub(super) const ERROR_MM: f64 = 1e-5;
     pub(super) const FEED_MM_S: f64 = 1e-2;
     pub(super) const TORQUE_NM: f64 = 1e-4;
+    pub(super) const ACCEL_MM_S2: f64 = 1.0;
 }
 
 /// Writes the object.
@@ -63,7 +64,9 @@ fn meta(report: &Report) -> serde_json::Value {
         "units": {
             "time_s": units::TIME_S, "length_mm": units::LENGTH_MM, "point_mm": units::POINT_MM,
             "feed_mm_s": units::FEED_MM_S, "torque_nm": units::TORQUE_NM,
+            "accel_m_s2": units::ACCEL_MM_S2 * 1e-3,
         },
+        "limits": report.axis_limits.iter().map(limits_meta).collect::<Vec<_>>(),
         "runs": runs,
         "circles": report.circles.iter().enumerate().map(|(i, circle)| circle_meta(report, i, circle)).collect::<Vec<_>>(),
         "program": listing(report),
@@ -94,6 +97,11 @@ fn run_meta(run: &ReportedRun) -> serde_json::Value {
         "measured": summary.measured,
         "spectrum": run.spectrum.iter().map(|band| [band.from_hz, band.to_hz, band.rms_um].map(digits)).collect::<Vec<_>>(),
     })
+}
+
+/// What an axis may, in the units in which it is drawn.
+fn limits_meta(limits: &DrawnLimits) -> serde_json::Value {
+    json!({"torque_nm": limits.torque_nm, "accel_m_s2": limits.accel_mm_s2.map(|accel_mm_s2| accel_mm_s2 * 1e-3)})
 }
 
 /// A circle, and the radial deviation of each run from it in counts of [`error_unit_mm`].
@@ -162,6 +170,7 @@ fn write_run(out: &mut impl Write, run: &ReportedRun) -> io::Result<()> {
         object.column(&format!("d{axis}"), error_mm, points.iter().map(|p| p.deviation_mm[k]))?;
         if run.summary.peak_torque_nm.is_some() {
             object.column(&format!("torque_{axis}"), units::TORQUE_NM, points.iter().map(|p| p.torque_nm[k]))?;
+            object.column(&format!("accel_{axis}"), units::ACCEL_MM_S2, points.iter().map(|p| p.accel_mm_s2[k]))?;
         }
     }
     object.end()

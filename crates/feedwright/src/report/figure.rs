@@ -1,7 +1,7 @@
 //! Figures as a paper prints them: line charts in panels, as SVG, and a page that holds several with captions.
 //!
-//! Equal figures give equal bytes. The drawing is black on no background; text is text, so that it can be searched and
-//! edited.
+//! Equal figures give equal bytes. As a file the drawing is black on a white plate, so that it is read on any page; a page
+//! takes the plate away and has colours for light and dark. Text is text, so that it can be searched and edited.
 
 mod axis;
 mod svg;
@@ -88,7 +88,13 @@ pub struct CaptionedFigure {
 impl Figure {
     /// The figure as an SVG document.
     pub fn to_svg(&self) -> String {
-        svg::write(self)
+        svg::write(self, svg::WIDTH)
+    }
+
+    /// The figure for a page: once as wide as a text column, and once for phones; the style sheet shows one of the two.
+    pub fn to_html(&self) -> String {
+        let [roomy, narrow] = [svg::WIDTH, svg::NARROW].map(|page_px| svg::write(self, page_px));
+        format!("<div class=\"roomy\">{roomy}</div><div class=\"narrow\">{narrow}</div>")
     }
 }
 
@@ -116,7 +122,7 @@ pub fn figure_parts(figures: &[CaptionedFigure]) -> impl Iterator<Item = PagePar
 /// One of them.
 pub fn write_figure_part(out: &mut impl Write, part: &PagePart, entry: &CaptionedFigure) -> io::Result<()> {
     part.begin(out)?;
-    let (svg, number, caption) = (entry.figure.to_svg(), escaped(&entry.number), escaped(&entry.caption));
+    let (svg, number, caption) = (entry.figure.to_html(), escaped(&entry.number), escaped(&entry.caption));
     writeln!(out, "<figure>\n{svg}<figcaption><b>{number}.</b> {caption}</figcaption>\n</figure>")?;
     PagePart::end(out)
 }

@@ -294,6 +294,7 @@ mod tests {
             circles: Vec::new(),
             tolerance_um,
             limits: None,
+            axis_limits: Vec::new(),
             band: None,
             runs,
         }

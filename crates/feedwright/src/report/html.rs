@@ -43,8 +43,8 @@ pub fn write_html(out: &mut impl Write, report: &Report) -> io::Result<()> {
     out.write_all(b"<body>\n")?;
     write_header(out, report)?;
     out.write_all(b"<main>\n")?;
-    tables::write_summary(out, report)?;
     out.write_all(DRAWINGS.as_bytes())?;
+    tables::write_summary(out, report, &assumed(report))?;
     limit_band::write(out, report.limits.as_ref())?;
     circularity::write_circularity(out, report)?;
     tables::write_worst(out, report)?;
@@ -92,7 +92,7 @@ fn write_header(out: &mut impl Write, report: &Report) -> io::Result<()> {
 <h1>{title} <span class="badge">{how}</span></h1>
 <p class="subject"><span>Part <b>{part}</b></span> <span>Machine <b>{machine}</b></span></p>
 <p class="verdict">{verdict}</p>
-{band}{assumed}</header>
+{band}</header>
 "#,
         title = escaped(&report.title),
         part = escaped(&report.part),
@@ -100,7 +100,6 @@ fn write_header(out: &mut impl Write, report: &Report) -> io::Result<()> {
         how = if measured { "simulated, beside a log" } else { "simulated" },
         verdict = verdict::verdict(report),
         band = band(report),
-        assumed = assumed(report),
     )
 }
 

@@ -96,8 +96,14 @@ pub fn write_foot(out: &mut impl Write) -> io::Result<()> {
 
 /// The beginning of a table, up to its first row.
 pub fn write_table_head<'a>(out: &mut impl Write, heads: impl IntoIterator<Item = &'a str>) -> io::Result<()> {
-    out.write_all(b"<div class=\"wide\"><table><thead><tr>")?;
-    heads.into_iter().try_for_each(|head| write!(out, "<th>{}</th>", escaped(head)))?;
+    // With the keyboard a table that is wider than the screen is moved once it has the focus. A heading says something.
+    out.write_all(b"<div class=\"wide\" tabindex=\"0\"><table><thead><tr>")?;
+    for head in heads {
+        match head {
+            "" => out.write_all(b"<td></td>")?,
+            head => write!(out, "<th scope=\"col\">{}</th>", escaped(head))?,
+        }
+    }
     out.write_all(b"</tr></thead><tbody>\n")
 }
 

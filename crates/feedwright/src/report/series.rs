@@ -40,6 +40,31 @@ pub struct SeriesPoint {
     pub feed_act_mm_s: f64,
     /// Torque of largest magnitude on each axis, N m, with its sign.
     pub torque_nm: [f64; 3],
+    /// Acceleration of largest magnitude of each axis's command, mm/s2, with its sign: the second difference over servo periods.
+    pub accel_mm_s2: [f64; 3],
+}
+
+/// Periods that differ by less are the same: times are rounded.
+const SAME_PERIOD: f64 = 1e-3;
+
+/// Acceleration of the command, by second differences over servo periods.
+#[derive(Debug, Clone, Default)]
+pub(super) struct CommandAcceleration {
+    /// Times and commands of the last two rows, the last first.
+    commands: [Option<(f64, [f64; 3])>; 2],
+}
+
+impl CommandAcceleration {
+    /// Takes the command of a row; the acceleration of each axis, mm/s2, where the rows before are a period apart.
+    pub(super) fn push(&mut self, t_s: f64, command_mm: [f64; 3]) -> Option<[f64; 3]> {
+        let [last, before] = self.commands;
+        self.commands = [Some((t_s, command_mm)), last];
+        let ((last_s, last_mm), (before_s, before_mm)) = (last?, before?);
+        let dt_s = t_s - last_s;
+        let second = |k: usize| command_mm[k] - 2.0 * last_mm[k] + before_mm[k];
+        let even = (dt_s - (last_s - before_s)).abs() <= SAME_PERIOD * dt_s;
+        even.then(|| std::array::from_fn(|k| second(k) / (dt_s * dt_s)))
+    }
 }
 
 /// Bounded record of a run.
@@ -49,6 +74,7 @@ pub struct Series {
     rows_per_point: u64,
     outline: OutlineBuilder,
     previous: Option<(f64, [f64; 3])>,
+    acceleration: CommandAcceleration,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -74,7 +100,13 @@ impl Series {
 
     /// An empty record.
     pub fn new() -> Self {
-        Self { buckets: Vec::new(), rows_per_point: 1, outline: OutlineBuilder::default(), previous: None }
+        Self {
+            buckets: Vec::new(),
+            rows_per_point: 1,
+            outline: OutlineBuilder::default(),
+            previous: None,
+            acceleration: CommandAcceleration::default(),
+        }
     }
 
     /// Rows that one point stands for.
@@ -116,8 +148,9 @@ impl Series {
 impl Sink for Series {
     /// Rows with a number that is not finite are left out: only a run that diverged has them.
     fn row(&mut self, row: &Row) -> io::Result<()> {
-        let numbers = [row.path_mm, row.act_mm, row.foot_mm, row.torque_nm, [row.t_s, row.s_mm, row.contour_error_mm]];
-        if !numbers.iter().flatten().all(|x| x.is_finite()) || !row.feed_plan_mm_s.is_finite() {
+        let numbers = [row.path_mm, row.act_mm, row.foot_mm, row.cmd_mm, row.torque_nm];
+        let scalars = [row.t_s, row.s_mm, row.contour_error_mm, row.feed_plan_mm_s];
+        if !numbers.iter().flatten().chain(&scalars).all(|x| x.is_finite()) {
             return Ok(());
         }
         let (travel_mm, span_s) = match self.previous {
@@ -125,6 +158,7 @@ impl Sink for Series {
             None => (0.0, 0.0),
         };
         self.previous = Some((row.t_s, row.act_mm));
+        let accel_mm_s2 = self.acceleration.push(row.t_s, row.cmd_mm).unwrap_or_default();
         self.outline.push(Vertex { point_mm: row.path_mm, cutting: row.cutting });
         self.push(Bucket {
             point: SeriesPoint {
@@ -140,6 +174,7 @@ impl Sink for Series {
                 feed_plan_mm_s: row.feed_plan_mm_s,
                 feed_act_mm_s: 0.0,
                 torque_nm: row.torque_nm,
+                accel_mm_s2,
             },
             rows: 1,
             plan_sum_mm_s: row.feed_plan_mm_s,
@@ -173,8 +208,9 @@ impl Bucket {
             point.error_max_mm = a.error_max_mm.max(b.error_max_mm);
         }
         for k in 0..3 {
-            let (x, y) = (a.torque_nm[k], b.torque_nm[k]);
-            point.torque_nm[k] = if y.abs() > x.abs() { y } else { x };
+            let larger = |x: f64, y: f64| if y.abs() > x.abs() { y } else { x };
+            point.torque_nm[k] = larger(a.torque_nm[k], b.torque_nm[k]);
+            point.accel_mm_s2[k] = larger(a.accel_mm_s2[k], b.accel_mm_s2[k]);
         }
         Self {
             point,

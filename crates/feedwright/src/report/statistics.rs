@@ -18,11 +18,9 @@ use feedwright_plan::vector::distance;
 use feedwright_sim::{Outcome, Row, Sink};
 
 use super::histogram::Counts;
+use super::series::CommandAcceleration;
 use super::summary::{FeedShares, RunFacts, RunSummary};
 use super::worst::WorstFinder;
-
-/// Periods that differ by less are the same: times are rounded.
-const SAME_PERIOD: f64 = 1e-3;
 
 /// Parts of the programmed feedrate that a tool is slow below and fast above: the chip is then a fifth thinner or thicker than it was
 /// programmed.
@@ -67,8 +65,7 @@ pub struct Statistics {
     max_mm: f64,
     max_deviation_mm: f64,
     max_command_accel_mm_s2: f64,
-    /// Times and commands of the last two rows, the last first.
-    commands: [Option<(f64, [f64; 3])>; 2],
+    acceleration: CommandAcceleration,
     peak_torque_nm: [f64; 3],
     cutting_length_mm: f64,
     cutting_time_s: f64,
@@ -94,7 +91,7 @@ impl Statistics {
             max_mm: 0.0,
             max_deviation_mm: 0.0,
             max_command_accel_mm_s2: 0.0,
-            commands: [None; 2],
+            acceleration: CommandAcceleration::default(),
             peak_torque_nm: [0.0; 3],
             cutting_length_mm: 0.0,
             cutting_time_s: 0.0,
@@ -169,20 +166,6 @@ impl Statistics {
         self.max_mm * 1e3
     }
 
-    /// Takes the command of a row.
-    fn command(&mut self, t_s: f64, command_mm: [f64; 3]) {
-        let [last, before] = self.commands;
-        self.commands = [Some((t_s, command_mm)), last];
-        let (Some((last_s, last_mm)), Some((before_s, before_mm))) = (last, before) else { return };
-        let (dt_s, dt_before_s) = (t_s - last_s, last_s - before_s);
-        if (dt_s - dt_before_s).abs() > SAME_PERIOD * dt_s {
-            return;
-        }
-        let second: [f64; 3] = std::array::from_fn(|k| command_mm[k] - 2.0 * last_mm[k] + before_mm[k]);
-        let accel_mm_s2 = libm::hypot(libm::hypot(second[0], second[1]), second[2]) / (dt_s * dt_s);
-        self.max_command_accel_mm_s2 = self.max_command_accel_mm_s2.max(accel_mm_s2);
-    }
-
     fn cut(&mut self, row: &Row) {
         let error_mm = row.contour_error_mm;
         self.cutting_rows += 1;
@@ -212,7 +195,10 @@ impl Sink for Statistics {
         let (c, p) = (row.corrected_mm, row.path_mm);
         let deviation_mm = libm::hypot(libm::hypot(c[0] - p[0], c[1] - p[1]), c[2] - p[2]);
         self.max_deviation_mm = self.max_deviation_mm.max(deviation_mm);
-        self.command(row.t_s, row.cmd_mm);
+        if let Some(accel) = self.acceleration.push(row.t_s, row.cmd_mm) {
+            let accel_mm_s2 = libm::hypot(libm::hypot(accel[0], accel[1]), accel[2]);
+            self.max_command_accel_mm_s2 = self.max_command_accel_mm_s2.max(accel_mm_s2);
+        }
         if row.cutting {
             self.cut(row);
         }

@@ -1,8 +1,8 @@
 //! A report of two made-up runs, in which every text is hostile to the page.
 
 use feedwright::{
-    Assumptions, ErrorSpectrum, FullCircle, MEASURED, ProgramLine, Report, ReportedRun, Roundness, RunFacts, Series,
-    Statistics, TimelineEvent, write_html,
+    Assumptions, DrawnLimits, ErrorSpectrum, FullCircle, MEASURED, ProgramLine, Report, ReportedRun, Roundness,
+    RunFacts, Series, Statistics, TimelineEvent, write_html,
 };
 use feedwright_sim::{Commanded, Row, Sink};
 
@@ -99,6 +99,7 @@ pub(crate) fn report(axes: usize, rows: usize) -> Report {
         }],
         tolerance_um: Some(10.0),
         limits: None,
+        axis_limits: vec![DrawnLimits { torque_nm: 3.0, accel_mm_s2: Some(900.0) }; axes],
         band: None,
         runs: vec![made_up_run(HOSTILE, axes, rows, 0.03), made_up_run("corrected", axes, rows, 0.005)],
     }

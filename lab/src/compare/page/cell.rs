@@ -41,7 +41,7 @@ pub(super) fn write(out: &mut impl Write, rows: &[ComparisonRow]) -> io::Result<
     rows.iter().try_for_each(|row| write_row(out, row, has_joints))?;
     write_table_end(out)?;
     let caption = "Contour error over the cut, each controller on a scale of its own.";
-    writeln!(out, "<figure>{}<figcaption>{caption}</figcaption></figure>", errors(rows).to_svg())
+    writeln!(out, "<figure>{}<figcaption>{caption}</figcaption></figure>", errors(rows).to_html())
 }
 
 fn write_row(out: &mut impl Write, row: &ComparisonRow, has_joints: bool) -> io::Result<()> {

@@ -101,7 +101,7 @@ impl Advice {
             out,
             "<figure>{}<figcaption><b>Largest contour error over the feedrate</b>, the largest of the program; below, the feedrate at which each stretch \
              holds the tolerance, in the order of the program. Gaps hold it at no feedrate that was cut.</figcaption></figure>",
-            self.figure().to_svg()
+            self.figure().to_html()
         )?;
         PagePart::end(out)?;
         stretches.begin(out)?;

@@ -10,9 +10,14 @@ pub(super) fn range(values: impl Iterator<Item = f64>, margin: f64) -> [f64; 2] 
     if low > high {
         return [0.0, 1.0];
     }
-    // A constant still needs a span, and one that its own rounding does not swallow.
-    let span = (high - low).max(1e-9 * low.abs().max(high.abs())).max(1e-12);
-    [low - margin * span, low + (1.0 + margin) * span]
+    // What is constant but for its rounding is drawn in the middle of a tenth of its size: its ticks are then short numbers.
+    let size = low.abs().max(high.abs());
+    if high - low <= 1e-6 * size {
+        let (middle, half) = (0.5 * (low + high), if size > 0.0 { 0.05 * size } else { 0.5 });
+        return [middle - half, middle + half];
+    }
+    let span = high - low;
+    [low - margin * span, high + margin * span]
 }
 
 /// Ticks at multiples of 1, 2 or 5 times a power of ten, about `wanted` of them, with their texts.
@@ -63,6 +68,16 @@ mod tests {
         assert_eq!(texts([-20.0, 31.0], 5.0), ["−20", "−10", "0", "10", "20", "30"]);
         assert_eq!(texts([0.0, 1.76], 4.0), ["0.0", "0.5", "1.0", "1.5"]);
         assert_eq!(texts([0.0, 0.001], 2.0), ["0.0000", "0.0005", "0.0010"]);
+    }
+
+    #[test]
+    fn a_constant_has_short_labels() {
+        let values = [3000.0, 3000.000_000_1, 2999.999_999_9];
+        let shown = range(values.into_iter(), 0.04);
+        assert!(shown[0] < 2900.0 && shown[1] > 3100.0, "{shown:?}");
+        assert!(ticks(shown, 5.0).iter().all(|tick| tick.1.len() <= 4), "{:?}", ticks(shown, 5.0));
+        assert_eq!(range([0.0, 0.0].into_iter(), 0.04), [-0.5, 0.5]);
+        assert_eq!(range([0.0, 1e-12].into_iter(), 0.0), [0.0, 1e-12]);
     }
 
     #[test]

@@ -6,7 +6,9 @@ use super::{Figure, LineStyle, Panel, Polyline, axis};
 use crate::report::text::escaped;
 
 /// Width of a figure, px: a text column at 96 px/in.
-const WIDTH: f64 = 720.0;
+pub(super) const WIDTH: f64 = 720.0;
+/// Width of a figure on a phone, px; its panels stand below each other.
+pub(super) const NARROW: f64 = 350.0;
 const FONT_PX: f64 = 12.5;
 /// Mean width of a digit, for the room that labels need.
 const DIGIT_PX: f64 = 7.0;
@@ -54,15 +56,16 @@ impl Area {
     }
 }
 
-pub(super) fn write(figure: &Figure) -> String {
-    let columns = figure.columns.max(1);
+/// The figure, `page_px` wide.
+pub(super) fn write(figure: &Figure, page_px: f64) -> String {
+    let columns = if page_px < WIDTH { 1 } else { figure.columns.max(1) };
     let aspect = if figure.aspect > 0.0 { figure.aspect } else { DEFAULT_ASPECT };
     let entries = legend(figure);
     let mut body = String::new();
-    let lines = put_legend(&mut body, &entries);
+    let lines = put_legend(&mut body, &entries, page_px);
     let mut top = if lines == 0 { 2.0 } else { LEGEND_PX + LEGEND_LINE_PX * (lines - 1) as f64 };
-    let left = figure.panels.iter().map(|p| left_room(p, aspect, columns)).fold(0.0, f64::max);
-    let cell = (WIDTH - GAP_PX * (columns - 1) as f64) / columns as f64;
+    let left = figure.panels.iter().map(|p| left_room(p, aspect, page_px / columns as f64)).fold(0.0, f64::max);
+    let cell = (page_px - GAP_PX * (columns - 1) as f64) / columns as f64;
     for row in figure.panels.chunks(columns) {
         let title = if row.iter().all(|p| p.title.is_empty()) { 4.0 } else { TITLE_PX };
         let (width, height) = (cell - left - 8.0, (cell - left - 8.0) * aspect);
@@ -74,16 +77,29 @@ pub(super) fn write(figure: &Figure) -> String {
         top += title + height + LABELS_PX + if titled { AXIS_TITLE_PX } else { 0.0 };
     }
     format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {top:.0}\" width=\"{WIDTH}\" height=\"{top:.0}\" \
-         role=\"img\" font-family=\"'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', sans-serif\" \
-         font-size=\"{FONT_PX}\" fill=\"currentColor\">\n{body}</svg>\n"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {page_px} {top:.0}\" width=\"{page_px}\" height=\"{top:.0}\" \
+         role=\"img\" aria-label=\"{}\" font-family=\"'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', sans-serif\" \
+         font-size=\"{FONT_PX}\" fill=\"currentColor\">\n\
+         <rect class=\"plate\" width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{body}</svg>\n",
+        escaped(&spoken(figure))
     )
 }
 
+/// What a screen reader says of the figure: what its panels show.
+fn spoken(figure: &Figure) -> String {
+    let panel = |panel: &Panel| match (panel.title.as_str(), panel.y_title.as_str()) {
+        (title, "") => title.to_owned(),
+        ("", y) => format!("{y} over {}", panel.x_title),
+        (title, y) => format!("{title}: {y} over {}", panel.x_title),
+    };
+    let panels: Vec<String> = figure.panels.iter().map(panel).filter(|text| !text.is_empty()).collect();
+    if panels.is_empty() { "Chart".to_owned() } else { format!("Chart. {}", panels.join("; ")) }
+}
+
 /// Room for the vertical axis: its title and its widest label.
-fn left_room(panel: &Panel, aspect: f64, columns: usize) -> f64 {
+fn left_room(panel: &Panel, aspect: f64, cell_px: f64) -> f64 {
     // What the room leaves is not known yet; a tenth more or less makes the same labels.
-    let width = 0.85 * WIDTH / columns as f64;
+    let width = 0.85 * cell_px;
     let area = fitted(panel, 0.0, 0.0, width, width * aspect);
     let labels = (area.ticks)(area.y, area.height / Y_TICK_PX);
     let widest = labels.iter().map(|t| t.1.chars().count()).max().unwrap_or(1);
@@ -203,11 +219,11 @@ fn legend(figure: &Figure) -> Vec<&Polyline> {
 }
 
 /// Puts the legend; its lines.
-fn put_legend(out: &mut String, entries: &[&Polyline]) -> usize {
+fn put_legend(out: &mut String, entries: &[&Polyline], page_px: f64) -> usize {
     let (mut x, mut lines) = (0.0, usize::from(!entries.is_empty()));
     for curve in entries {
         let end = x + 35.0 + text_px(&curve.label);
-        if x > 0.0 && end > WIDTH {
+        if x > 0.0 && end > page_px {
             (x, lines) = (0.0, lines + 1);
         }
         let down = LEGEND_LINE_PX * (lines - 1) as f64;

@@ -10,11 +10,11 @@ const AXES: [&str; 3] = ["X", "Y", "Z"];
 /// Events drawn on a strip; the rest is given as a number. More would be a solid bar.
 const SHOWN_EVENTS: usize = 200;
 
-/// A row for each controller.
-pub(super) fn write_summary(out: &mut impl Write, report: &Report) -> io::Result<()> {
+/// A row for each controller; behind them `assumed`, what they rest on, and what happened in each run.
+pub(super) fn write_summary(out: &mut impl Write, report: &Report, assumed: &str) -> io::Result<()> {
     let axes = report.runs.iter().map(|r| r.summary.axes).max().unwrap_or(2).min(3);
     out.write_all(
-        b"<section aria-labelledby=\"h-summary\">\n<h2 id=\"h-summary\">Summary</h2>\n<div class=\"scroll\"><table class=\"summary\" role=\"table\">\n\
+        b"<section aria-labelledby=\"h-summary\">\n<h2 id=\"h-summary\">Summary</h2>\n<div class=\"scroll\" tabindex=\"0\"><table class=\"summary\" role=\"table\">\n\
           <thead role=\"rowgroup\"><tr role=\"row\"><th scope=\"col\">Controller</th><th scope=\"col\">RMS error<i>\xc2\xb5m</i></th>\
           <th scope=\"col\">Largest error<i>\xc2\xb5m</i></th><th scope=\"col\">Uncut path<i>\xc2\xb5m</i></th>\
           <th scope=\"col\">Machining time</th>\
@@ -30,7 +30,7 @@ pub(super) fn write_summary(out: &mut impl Write, report: &Report) -> io::Result
     for (i, run) in report.runs.iter().enumerate() {
         write_summary_row(out, i, &run.summary, first.filter(|_| i > 0), axes)?;
     }
-    out.write_all(b"</tbody></table></div>\n")?;
+    write!(out, "</tbody></table></div>\n{assumed}")?;
     for (i, run) in report.runs.iter().enumerate() {
         write_events(out, i, run)?;
         write_transitions(out, i, &run.summary)?;
@@ -96,6 +96,9 @@ pub(super) fn swatch(index: usize) -> String {
     format!("<span class=\"swatch\" style=\"--run: var(--run-{})\"></span>", index % 6)
 }
 
+/// Behind this part of the machining time only the end of the program comes.
+const ENDS_WITHIN: f64 = 0.995;
+
 /// Rows of a timeline. A machine has a dozen units; a file that names hundreds is not drawn further.
 const SHOWN_ROWS: usize = 24;
 
@@ -131,7 +134,8 @@ fn write_moments(out: &mut impl Write, moments: impl ExactSizeIterator<Item = (f
 }
 
 fn write_events(out: &mut impl Write, index: usize, run: &ReportedRun) -> io::Result<()> {
-    if run.events.is_empty() {
+    // That a program ends is no event: every one does.
+    if run.events.iter().all(|event| event.duration_s == 0.0 && event.t_s >= ENDS_WITHIN * run.summary.time_s) {
         return Ok(());
     }
     let end_s = run.events.iter().map(|e| e.t_s + e.duration_s).fold(run.summary.time_s, f64::max);
@@ -188,7 +192,7 @@ pub(super) fn write_worst(out: &mut impl Write, report: &Report) -> io::Result<(
         let axes = run.summary.axes.clamp(2, 3);
         write!(
             out,
-            "<div><h3>{}{}</h3>\n<div class=\"scroll\"><table class=\"worst\"><thead><tr><th scope=\"col\">#</th>\
+            "<div><h3>{}{}</h3>\n<div class=\"scroll\" tabindex=\"0\"><table class=\"worst\"><thead><tr><th scope=\"col\">#</th>\
              <th scope=\"col\">Error<i>µm</i></th><th scope=\"col\">Line</th><th scope=\"col\" class=\"code\">Program</th>",
             swatch(i),
             escaped(&run.summary.controller)
