@@ -57,6 +57,39 @@ fn the_report_answers_mouse_and_keys() {
     assert_eq!(browser.faults(), [""; 0]);
 }
 
+/// How far the panel of the path reaches below the beginning of the charts under it, at any place that the page is scrolled to, px.
+const OVERLAP: &str = "(() => {
+    const box = (selector) => document.querySelector(selector).getBoundingClientRect();
+    let most = -Infinity;
+    for (let y = 0; y < document.documentElement.scrollHeight; y += 50) {
+        scrollTo(0, y);
+        most = Math.max(most, box('.path-panel').bottom - box('#others').top);
+    }
+    scrollTo(0, 0);
+    return most;
+})()";
+
+/// The picture of the part is on the first screen, and the panel that stays beside the curves covers no chart.
+#[test]
+fn the_part_is_on_the_first_screen_and_covers_nothing() {
+    let (_folder, path) = file(&crate::made_up_report::page(&crate::made_up_report::report(2, 3000)));
+    let Some(mut browser) = Browser::start() else { return };
+    for (width, height) in [(1440, 900), (1920, 1080)] {
+        browser.screen(width, height, false);
+        browser.open(&path, "");
+        ready(&mut browser);
+        let end = browser.value("document.querySelector('#views').getBoundingClientRect().bottom").as_f64().unwrap();
+        assert!(end <= f64::from(height), "{width} by {height}: the picture ends at {end}");
+        let overlap = browser.value(OVERLAP).as_f64().unwrap();
+        assert!(overlap <= 0.0, "{width} by {height}: {overlap} px of the charts are covered");
+    }
+    let titles = text(&mut browser, "#plots");
+    assert!(
+        titles.contains("Torque X, N m · limit ±3.00") && titles.contains("Command acceleration X, m/s² · limit ±0.90")
+    );
+    assert_eq!(browser.faults(), [""; 0]);
+}
+
 /// A run from a log has no torque. The page shows a dash for it and reports no faults.
 #[test]
 fn a_measured_run_is_drawn_without_torque() {
