@@ -213,10 +213,10 @@ struct Case {
     name: String,
     was: Errors,
     /// With the right file, without a log, with one and with two, and what was predicted.
-    ways: [(Errors, Option<PredictedCut>, Option<String>); 4],
+    ways: Vec<(Errors, Option<PredictedCut>, Option<String>)>,
 }
 
-fn case(number: usize, part: &str, seed: u64, off: Off) -> Result<Case, Box<dyn Error + Send + Sync>> {
+fn case(number: usize, part: &str, seed: u64, off: Off, logs: bool) -> Result<Case, Box<dyn Error + Send + Sync>> {
     let name = MACHINES[number % MACHINES.len()];
     let built_in = file(name).map_err(|error| error.to_string())?;
     let other = drawn(&built_in, seed.wrapping_add(number as u64));
@@ -250,11 +250,14 @@ fn case(number: usize, part: &str, seed: u64, off: Off) -> Result<Case, Box<dyn 
     };
     let right = way(by(&machine, Vec::new()), &mut original.clone());
     let without = way(corrected(Vec::new()), &mut original.clone());
+    if !logs {
+        return Ok(Case { name: format!("{name}-{number} {part}"), was, ways: vec![right, without] });
+    }
     let first = log(&machine, &original, 1, folder.path())?;
     let one = way(corrected(vec![first.clone()]), &mut program);
     let second = log(&machine, &program, 2, folder.path())?;
     let two = way(corrected(vec![first, second]), &mut program);
-    Ok(Case { name: format!("{name}-{number} {part}"), was, ways: [right, without, one, two] })
+    Ok(Case { name: format!("{name}-{number} {part}"), was, ways: vec![right, without, one, two] })
 }
 
 const WAYS: [&str; 4] = ["right file", "no log", "one log", "two logs"];
@@ -289,7 +292,7 @@ fn summary(cases: &[&Case], name: &str) {
     if cases.is_empty() {
         return;
     }
-    for (way, label) in WAYS.iter().enumerate() {
+    for (way, label) in WAYS.iter().enumerate().take(cases[0].ways.len()) {
         let all: Vec<[f64; 2]> = cases.iter().map(|case| ratios(&case.was, &case.ways[way].0)).collect();
         let of = |which: usize| all.iter().map(|ratios| ratios[which]).collect::<Vec<_>>();
         let most = |values: Vec<f64>| values.into_iter().fold(0.0, f64::max);
@@ -321,11 +324,13 @@ fn summary(cases: &[&Case], name: &str) {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (options, arguments): (Vec<String>, Vec<String>) = std::env::args().skip(1).partition(|a| a.starts_with("--"));
-    let off = match options.first().map(String::as_str) {
-        Some("--machine") => Off::Machine,
-        Some("--unknown") => Off::Unknown,
+    let given = |wanted: &str| options.iter().any(|option| option == wanted);
+    let off = match (given("--machine"), given("--unknown")) {
+        (true, _) => Off::Machine,
+        (_, true) => Off::Unknown,
         _ => Off::File,
     };
+    let logs = !given("--without-logs");
     let mut arguments = arguments.into_iter();
     let seed = arguments.next().map_or(Ok(1), |seed| seed.parse())?;
     let machines = arguments.next().map_or(Ok(COUNT), |count| count.parse())?;
@@ -335,7 +340,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     let cases: Vec<Case> = work
         .par_iter()
-        .filter_map(|&(number, part)| match case(number, part, seed, off) {
+        .filter_map(|&(number, part)| match case(number, part, seed, off, logs) {
             Ok(case) => {
                 print(&case);
                 Some(case)

@@ -23,6 +23,7 @@
 //! | File | What |
 //! |---|---|
 //! | `nominal.rs` | the machine without effects that do not repeat |
+//! | `file_prior.rs` | what a machine file most probably describes |
 //! | `loop_lag.rs` | how an axis lags behind its command |
 //! | `target.rs` | the controls that programs are for |
 //! | `source.rs` | the program with its text and modes |
@@ -49,6 +50,7 @@
 //! | `advise/page.rs` | its figure and its page |
 
 mod nominal;
+mod file_prior;
 mod loop_lag;
 mod target;
 mod source;
@@ -78,6 +80,8 @@ use crate::compensation::GeometryChoice;
 use crate::job_error::{JobError, axes_that_move};
 use crate::measured::MeasuredLog;
 use exported::ExportedCut;
+pub use file_prior::{AssumedValue, FileAssumption};
+use file_prior::{FILE_ERROR, FileModel};
 pub use learned::{
     CutProgram, LearnError, LearnedLog, LearnedOutcome, LearnedValue, ModelValue, PlaceError, PredictedCut,
 };
@@ -114,6 +118,8 @@ pub struct CorrectJob {
     pub reader: Settings,
     /// Logs of cuts of the part, by this program or by corrected ones.
     pub logs: Vec<MeasuredLog>,
+    /// Standard deviation of each value of the machine, as a fraction of it; 0 where it is exact. Of no use with logs or `believed`.
+    pub file_error: f64,
 }
 
 impl CorrectJob {
@@ -128,6 +134,7 @@ impl CorrectJob {
             feed_mm_s: None,
             reader: Settings::default(),
             logs: Vec::new(),
+            file_error: FILE_ERROR,
         }
     }
 
@@ -144,7 +151,10 @@ impl CorrectJob {
         let original = steps_of(&source.steps).map_err(path_error)?;
         let stages = self.target.stages(&self.machine);
         let learned = self.learned(&original, axes, watch)?;
-        let machine = learned.as_ref().map_or(&self.machine, |learned| &learned.machine);
+        let uncertain = learned.is_none() && self.believed.is_none() && self.file_error > 0.0;
+        let file = uncertain.then(|| FileModel::new(&self.machine, axes, self.file_error));
+        let machine = learned.as_ref().map(|learned| &learned.machine);
+        let machine = machine.or(file.as_ref().map(|file| &file.machine)).unwrap_or(&self.machine);
         let nominal = deterministic(self.believed.as_ref().unwrap_or(machine));
         let compensated = self.compensation.on(&self.machine, summary.box_mm)?.compensated;
         let error = learned.as_ref().map(|learned| &learned.error);
@@ -152,7 +162,7 @@ impl CorrectJob {
         let of_run = |error| JobError::of_run(&self.program, error);
         let parts = parts(&source.steps);
         let predicted = ExportedCut { tool: compensated.as_ref(), ..on(&nominal) };
-        let found = rounds(&predicted, &parts, self.target).map_err(of_run)?;
+        let found = rounds(&predicted, &parts, self.target, file.as_ref()).map_err(of_run)?;
         watch.begin("cutting the uncorrected program", 1);
         let uncorrected = on(machine).figures(&original).map_err(of_run)?;
         let written = self.written(&source, &parts, &found);
@@ -188,6 +198,7 @@ impl CorrectJob {
             warnings: summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect(),
             written,
             learned,
+            assumed: file.map(|file| file.assumption),
             original_steps: original,
             axes,
         })

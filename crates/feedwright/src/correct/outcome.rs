@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::expanded_text::UnwritableLine;
 use super::exported::ExportedFigures;
+use super::file_prior::FileAssumption;
 use super::learned::LearnedOutcome;
 use super::unchanged::UnchangedStretch;
 
@@ -51,6 +52,9 @@ pub struct CorrectOutcome {
     /// What was learned from logs of the part.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub learned: Option<LearnedOutcome>,
+    /// What is assumed of the machine beside its file, where there is no log.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub assumed: Option<FileAssumption>,
     /// The text that was cut, whether it is to be used or not.
     #[serde(skip)]
     pub(crate) written: Option<WrittenProgram>,

@@ -14,9 +14,11 @@ use super::arc_fit::{ArcFit, FitMotion, FitPoint};
 use super::budget::{StretchBudget, StretchCost, details_to_give_up, program_more_s};
 use super::command_update::{UpdateSettings, new_command};
 use super::exported::{CutRow, CutRows, ExportedCut, check_rows};
+use super::file_prior::FileModel;
 use super::loop_lag::{LoopLag, loop_lags};
+use super::nominal::deterministic;
 use super::slow_end::{SlowEnd, slow_approach, slow_end, slow_last};
-use super::stretch_cut::{StretchCut, by_stretch, overshoot_mm, rapid_overshoot_mm};
+use super::stretch_cut::{StretchCut, StretchGain, by_stretch, overshoot_mm, rapid_overshoot_mm};
 use super::stretches::{NewMotions, ProgramPart, SmoothStretch, StretchCommand, assembled, dwells, rest_s, stretches};
 use super::target::TargetControl;
 use super::unchanged::UnchangedReason;
@@ -110,6 +112,7 @@ pub(super) fn rounds(
     cut: &ExportedCut<'_>,
     parts: &[ProgramPart],
     target: &TargetControl,
+    file: Option<&FileModel>,
 ) -> Result<RoundsResult, RunError> {
     let lags: Vec<LoopLag> = match cut.axes {
         2 => loop_lags::<2>(cut.machine).to_vec(),
@@ -147,6 +150,9 @@ pub(super) fn rounds(
         progress.reach(f64::from(round) / f64::from(ROUNDS + CHECKS));
     }
     bench.give_up_details(&mut under_way);
+    if let Some(file) = file {
+        bench.give_up_what_is_uncertain(&mut under_way, file)?;
+    }
     let checks = bench.give_up_what_is_worse(&mut under_way)?;
     let reasons = under_way.iter().map(|stretch| stretch.best.is_none().then_some(stretch.reason)).collect();
     let commands = under_way.into_iter().map(|stretch| stretch.best).collect();
@@ -170,6 +176,7 @@ impl Haste {
 }
 
 /// What every round needs.
+#[derive(Clone)]
 struct RoundsBench<'a> {
     cut: &'a ExportedCut<'a>,
     parts: &'a [ProgramPart],
@@ -312,6 +319,30 @@ impl RoundsBench<'_> {
         for k in details_to_give_up(&costs, self.parts.iter().filter(kept).count(), dwell_s) {
             (under_way[k].best, under_way[k].reason) = (None, UnchangedReason::Detail);
         }
+    }
+
+    /// Gives up the commands that are likely to be worse on a machine that the file may describe as well.
+    fn give_up_what_is_uncertain(&self, under_way: &mut [StretchRounds], file: &FileModel) -> Result<(), RunError> {
+        let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.best.clone()).collect();
+        let programmed = vec![None; self.count];
+        let gains = |machine: &Machine| {
+            let machine = deterministic(machine);
+            let bench = RoundsBench { cut: &ExportedCut { machine: &machine, ..*self.cut }, ..self.clone() };
+            let [was, is] = [bench.cut(&programmed)?.0, bench.cut(&commands)?.0];
+            Ok::<_, RunError>(was.iter().zip(&is).map(|(was, is)| StretchGain::new(was, is)).collect::<Vec<_>>())
+        };
+        let plausible = file.plausible.iter().map(gains).collect::<Result<Vec<_>, _>>()?;
+        let mistaken = file.mistaken.iter().map(gains).collect::<Result<Vec<_>, _>>()?;
+        for (k, stretch) in under_way.iter_mut().enumerate().filter(|(_, stretch)| stretch.best.is_some()) {
+            let gains: Vec<StretchGain> = plausible.iter().map(|gains| gains[k]).collect();
+            if std::env::var_os("FW_DEBUG").is_some() {
+                eprintln!("stretch {k}: {:?}", StretchGain::certainty(&gains));
+            }
+            if !StretchGain::is_certain(&gains) || mistaken.iter().any(|gains| gains[k].is_loss()) {
+                (stretch.best, stretch.reason) = (None, UnchangedReason::Uncertain);
+            }
+        }
+        Ok(())
     }
 
     /// Cuts the best of all together: where the tool does not come to rest between them, they are not what they were each by itself. How often

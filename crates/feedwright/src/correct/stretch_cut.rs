@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::report::harm;
+
 use feedwright_plan::vector::{angle, dot, norm, sub};
 use feedwright_sim::Commanded;
 
@@ -12,6 +14,9 @@ use super::stretches::{CORNER_RAD, SmoothStretch};
 const MAX_WEIGHT: f64 = 0.3;
 /// How long before and behind the end of a stretch the tool may run over it, s.
 const AROUND_END_S: f64 = 0.02;
+
+/// Standard deviations that a gain has to be: a normal value is negative with 5 %.
+const CERTAIN: f64 = 1.645;
 
 /// What a stretch came to in a cut.
 #[derive(Debug, Clone, Default)]
@@ -106,5 +111,42 @@ impl StretchCut {
             }
             self.cutting += 1;
         }
+    }
+}
+
+/// What a command gains in a stretch on one machine.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StretchGain {
+    /// Mean square of the errors that is gone, mm2.
+    square_mm2: f64,
+    /// By how much the largest error is less than a worse one may be, mm.
+    max_mm: f64,
+}
+
+impl StretchGain {
+    /// From the cuts of the programmed and of another command.
+    pub(super) fn new(was: &StretchCut, is: &StretchCut) -> Self {
+        let square = |cut: &StretchCut| cut.rms_mm() * cut.rms_mm();
+        Self { square_mm2: square(was) - square(is), max_mm: was.max_mm + 1e-3 * harm::MAX_UM - is.max_mm }
+    }
+
+    pub(super) const fn is_loss(&self) -> bool {
+        self.square_mm2 < 0.0 || self.max_mm < 0.0
+    }
+
+    /// Means over machines, in standard deviations.
+    pub(super) fn certainty(all: &[Self]) -> [f64; 2] {
+        let of = |value: fn(&Self) -> f64| {
+            let count = all.len() as f64;
+            let mean = all.iter().map(value).sum::<f64>() / count;
+            let variance = all.iter().map(|gain| (value(gain) - mean).powi(2)).sum::<f64>() / count;
+            mean / variance.sqrt().max(1e-12)
+        };
+        [of(|gain| gain.square_mm2), of(|gain| gain.max_mm)]
+    }
+
+    /// Whether a gain over machines is so much larger than its standard deviation that a loss is unlikely.
+    pub(super) fn is_certain(all: &[Self]) -> bool {
+        Self::certainty(all).iter().all(|certainty| *certainty > CERTAIN)
     }
 }

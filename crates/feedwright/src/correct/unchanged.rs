@@ -25,6 +25,8 @@ pub(super) enum UnchangedReason {
     Detail,
     /// Beside the other stretches its command makes an error larger.
     Worse,
+    /// A machine that the file may describe as well would cut it worse.
+    Uncertain,
     /// An arc outside of the XY plane.
     OtherPlane,
     /// It moves axes beside X, Y and Z.
@@ -66,6 +68,10 @@ impl fmt::Display for UnchangedReason {
             Self::Worse => write!(
                 f,
                 "its command makes an error larger beside the stretches around it; a lower feedrate, or G61 at its ends, separates them"
+            ),
+            Self::Uncertain => write!(
+                f,
+                "the machine file is not exact enough to be sure of a gain; a log of a cut (--log) would help, or values that are exact"
             ),
             Self::OtherPlane => write!(
                 f,

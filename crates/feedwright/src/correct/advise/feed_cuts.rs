@@ -95,7 +95,7 @@ impl<const N: usize> FeedBench<'_, N> {
         let program = match way {
             CutWay::Corrected => {
                 let tool = self.machine.compensated.as_ref();
-                let found = rounds(&ExportedCut { tool, ..on(&nominal) }, &parts, self.target)?;
+                let found = rounds(&ExportedCut { tool, ..on(&nominal) }, &parts, self.target, None)?;
                 steps_of(&assembled(&parts, &found.commands, found.dwell_s))?
             }
             CutWay::Uncorrected | CutWay::Controlled => original.clone(),

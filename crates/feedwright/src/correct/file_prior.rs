@@ -1,0 +1,183 @@
+//! The machine that a machine file most probably describes, and others that it may describe as well.
+//!
+//! Values of a machine file are typed in or estimated. Their error `s` counts as normal, in natural
+//! logarithms, each value of each axis by itself. Builders match the axes that interpolate: the
+//! same following error at the same speed, thus the same position gain and the same feedforward.
+//! Manuals of controls ask for it (Heidenhain, TNC 430 Technical Manual, 2001, "The Control Loop":
+//! kv factors must be equal; Siemens, SINUMERIK 840Di sl Manual, 2007, section 11.5.4: the same
+//! following error). So the ratio between two axes is known far better than each value.
+//!
+//! For a matched value, let the file have `v_i` for axis `i` of `n`. The most probable machine has
+//!
+//! ```text
+//! ln v = mean(ln v_i)    where    max(ln v_i) - min(ln v_i) < z s sqrt(2),    with    sd(ln v) = s / sqrt(n).
+//! ```
+//!
+//! Beyond `z` = [`BY_CHANCE`] the axes count as different and keep their values. A mistake in the
+//! file is possible as well, so the [plausible machines](FileModel::plausible) then include one
+//! whose axes are matched. Velocity feedforward above 1 makes an axis run ahead of its command, so
+//! it counts as 1.
+//!
+//! Plausible machines are one standard deviation off in each uncertain value, with the signs of an
+//! orthogonal array of 8 runs. Then the mean square over the machines is the variance of every
+//! quantity that is linear in the values (Plackett and Burman 1946).
+
+use feedwright_sim::{AXIS_NAMES, Axis, Machine};
+use serde::Serialize;
+
+/// Standard deviation of a value of a machine file, as a fraction of it, where the user states none.
+pub(super) const FILE_ERROR: f64 = 0.1;
+/// Two axes whose values differ by more standard deviations are different: 1 of 1000 pairs that
+/// are equal differ by as much.
+const BY_CHANCE: f64 = 3.29;
+/// Plausible machines.
+const RUNS: usize = 8;
+/// Columns of the orthogonal array: position gain, feedforward of velocity and of acceleration,
+/// friction, and the speed loop of each axis.
+const SPEED_LOOP_COLUMNS: [usize; 3] = [5, 6, 7];
+
+/// A value that counts as equal in all axes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AssumedValue {
+    /// Which value.
+    pub value: &'static str,
+    /// What the machine file has, axis by axis.
+    pub file: Vec<f64>,
+    /// What is assumed for each axis.
+    pub assumed: Vec<f64>,
+}
+
+/// What a correction assumes of the machine beside its file.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FileAssumption {
+    /// Standard deviation of each value of the machine file, as a fraction of it.
+    pub file_error: f64,
+    /// Values that are not those of the file.
+    pub values: Vec<AssumedValue>,
+    /// Values in which the axes differ by more than chance.
+    pub different: Vec<&'static str>,
+}
+
+/// A machine file with what is uncertain in it.
+pub(super) struct FileModel {
+    /// The most probable machine.
+    pub(super) machine: Machine,
+    /// Machines one standard deviation off.
+    pub(super) plausible: Vec<Machine>,
+    /// Machines that a mistake in the file would leave.
+    pub(super) mistaken: Option<Machine>,
+    pub(super) assumption: FileAssumption,
+}
+
+/// A value that builders match.
+struct MatchedValue {
+    name: &'static str,
+    of: fn(&mut Axis) -> &mut f64,
+    /// Largest sensible value.
+    most: f64,
+    column: usize,
+}
+
+const MATCHED: [MatchedValue; 3] = [
+    MatchedValue { name: "kp_1_s", of: |axis| &mut axis.kp_1_s, most: f64::INFINITY, column: 1 },
+    MatchedValue {
+        name: "velocity_feedforward",
+        of: |axis| &mut axis.velocity_feedforward,
+        most: 1.0,
+        column: 2,
+    },
+    MatchedValue {
+        name: "acceleration_feedforward",
+        of: |axis| &mut axis.acceleration_feedforward,
+        most: f64::INFINITY,
+        column: 3,
+    },
+];
+
+/// Sign of a column of the orthogonal array in a run.
+const fn sign(run: usize, column: usize) -> f64 {
+    if (run & column).count_ones() % 2 == 0 { 1.0 } else { -1.0 }
+}
+
+/// Gives all axes the geometric mean of their values, below `most`.
+fn match_axes(axes: &mut [Axis], value: &MatchedValue) {
+    let logs: f64 = axes.iter_mut().map(|axis| libm::log(*(value.of)(axis))).sum();
+    let mean = libm::exp(logs / axes.len() as f64).min(value.most);
+    axes.iter_mut().for_each(|axis| *(value.of)(axis) = mean);
+}
+
+impl FileModel {
+    /// The machine of a file whose values have this standard deviation, as a fraction; `axes` of them move.
+    pub(super) fn new(file: &Machine, axes: usize, file_error: f64) -> Self {
+        let mut machine = file.clone();
+        let mut mistaken = file.clone();
+        let mut assumption = FileAssumption { file_error, values: Vec::new(), different: Vec::new() };
+        let axes = axes.min(machine.axes.len());
+        for value in &MATCHED {
+            let typed: Vec<f64> = machine.axes[..axes].iter_mut().map(|axis| *(value.of)(axis)).collect();
+            let (least, most) = typed.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(*v), b.max(*v)));
+            if most == 0.0 {
+                continue;
+            }
+            let differ = least <= 0.0 || libm::log(most / least) > BY_CHANCE * file_error * std::f64::consts::SQRT_2;
+            if differ {
+                assumption.different.push(value.name);
+                if least > 0.0 {
+                    match_axes(&mut mistaken.axes[..axes], value);
+                }
+                continue;
+            }
+            if most > least || most > value.most {
+                for machine in [&mut machine, &mut mistaken] {
+                    match_axes(&mut machine.axes[..axes], value);
+                }
+                let assumed = machine.axes[..axes].iter_mut().map(|axis| *(value.of)(axis)).collect();
+                assumption.values.push(AssumedValue { value: value.name, file: typed, assumed });
+            }
+        }
+        let plausible = (0..RUNS).map(|run| plausible(&machine, axes, file_error, run)).collect();
+        let mistaken = (!assumption.different.is_empty()).then_some(mistaken);
+        Self { machine, plausible, mistaken, assumption }
+    }
+}
+
+/// The machine of a run of the orthogonal array.
+fn plausible(machine: &Machine, axes: usize, file_error: f64, run: usize) -> Machine {
+    let mut machine = machine.clone();
+    let common = file_error / (axes as f64).sqrt();
+    let times = |sd: f64, column: usize| libm::exp(sd * sign(run, column));
+    for (i, axis) in machine.axes.iter_mut().enumerate() {
+        for value in &MATCHED {
+            let now = (value.of)(axis);
+            *now = (*now * times(common, value.column)).min(value.most.max(*now));
+        }
+        // What counts of inertia and gain of the speed loop is their ratio.
+        axis.inertia_kg_m2 *= times(std::f64::consts::SQRT_2 * file_error, SPEED_LOOP_COLUMNS[i % 3]);
+        let friction = times(file_error, 4);
+        axis.coulomb_friction_nm *= friction;
+        axis.viscous_friction_nm_s *= friction;
+        axis.stribeck_nm *= friction;
+        axis.coulomb_asymmetry_nm *= friction;
+    }
+    machine
+}
+
+impl FileAssumption {
+    /// What was assumed, as a sentence; none where the file is taken as it is.
+    pub(crate) fn sentence(&self) -> Option<String> {
+        let list = |value: &AssumedValue| {
+            let typed: Vec<String> =
+                AXIS_NAMES.iter().zip(&value.file).map(|(axis, file)| format!("{axis} {file:.4}")).collect();
+            format!("{} is taken as {:.4} ({} in the file)", value.value, value.assumed[0], typed.join(", "))
+        };
+        let mut parts: Vec<String> = self.values.iter().map(list).collect();
+        parts.extend(self.different.iter().map(|value| format!("{value} differs between the axes")));
+        (!parts.is_empty()).then(|| {
+            format!(
+                "the axes of a machine are matched, and values of the machine file are good to {:.0} %: {}",
+                100.0 * self.file_error,
+                parts.join("; ")
+            )
+        })
+    }
+}
