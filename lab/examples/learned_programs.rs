@@ -1,10 +1,12 @@
 //! What corrected programs deliver that learn from logs of the parts that were cut:
-//! `cargo run --release -p feedwright-lab --example learned_programs [--machine|--unknown] [SEED [COUNT]]`.
+//! `cargo run --release -p feedwright-lab --example learned_programs [OPTION...] [SEED [COUNT]]`.
 //!
 //! The machine that cuts is one of [`MACHINES`], with disturbance, noise and encoder steps. Its geometry has no errors: all errors are
 //! those that encoders see. In the machine file, position gain, speed-loop gain, inertia, friction, integral time and feedforward of
 //! each axis are up to 20 % off, drawn by the seed. With `--machine` the file is right and the machine is drawn. With `--unknown` the
-//! machine also has effects that its file does not have: cogging, ripple and more friction at rest. Each program is planned for
+//! machine also has effects that its file does not have: cogging, ripple and more friction at rest. With `--friction` only the friction of
+//! the file is wrong, by up to a factor of two, and with `--mistyped` one value is, by a factor of two. `--without-logs` leaves the last
+//! two rows out, and `--exact` corrects by files that count as exact. Each program is planned for
 //! `generic`.
 //!
 //! | Row | Program |
@@ -108,6 +110,40 @@ fn drawn(file: &Machine, seed: u64) -> Machine {
     Machine { axes: file.axes.iter().map(&mut axis).collect(), ..file.clone() }
 }
 
+/// A file whose friction alone is wrong: times 0.5 to 2.
+fn with_friction(file: &Machine, seed: u64) -> Machine {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let mut machine = file.clone();
+    for axis in &mut machine.axes {
+        let factor = 2.0_f64.powf(random.random_range(-1.0..=1.0));
+        axis.coulomb_friction_nm *= factor;
+        axis.viscous_friction_nm_s *= factor;
+        axis.stribeck_nm *= factor;
+    }
+    machine
+}
+
+/// A file with one wrong value in one axis: twice or half of it.
+fn mistyped(file: &Machine, seed: u64) -> Machine {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let mut machine = file.clone();
+    let axis = &mut machine.axes[random.random_range(0..2)];
+    let factor = if random.random_bool(0.5) { 2.0 } else { 0.5 };
+    let values = [
+        &mut axis.kp_1_s,
+        &mut axis.kv_nm_s_per_rad,
+        &mut axis.inertia_kg_m2,
+        &mut axis.coulomb_friction_nm,
+        &mut axis.speed_integral_s,
+        &mut axis.velocity_feedforward,
+        &mut axis.acceleration_feedforward,
+    ];
+    let mut there: Vec<&mut f64> = values.into_iter().filter(|value| **value > 0.0).collect();
+    let which = random.random_range(0..there.len());
+    *there[which] *= factor;
+    machine
+}
+
 /// A machine with what no machine file has.
 fn with_unknown(machine: &Machine) -> Machine {
     let axis = |axis: &Axis| Axis {
@@ -128,6 +164,8 @@ enum Off {
     File,
     Machine,
     Unknown,
+    Friction,
+    Mistyped,
 }
 
 fn steps(text: &str) -> Vec<Step> {
@@ -216,13 +254,22 @@ struct Case {
     ways: Vec<(Errors, Option<PredictedCut>, Option<String>)>,
 }
 
-fn case(number: usize, part: &str, seed: u64, off: Off, logs: bool) -> Result<Case, Box<dyn Error + Send + Sync>> {
+fn case(
+    number: usize,
+    part: &str,
+    seed: u64,
+    off: Off,
+    [logs, exact]: [bool; 2],
+) -> Result<Case, Box<dyn Error + Send + Sync>> {
     let name = MACHINES[number % MACHINES.len()];
     let built_in = file(name).map_err(|error| error.to_string())?;
-    let other = drawn(&built_in, seed.wrapping_add(number as u64));
+    let seed = seed.wrapping_add(number as u64);
+    let other = drawn(&built_in, seed);
     let (file, machine) = match off {
         Off::File => (other, built_in),
         Off::Machine => (built_in, other),
+        Off::Friction => (with_friction(&built_in, seed), built_in),
+        Off::Mistyped => (mistyped(&built_in, seed), built_in),
         Off::Unknown => (other, with_unknown(&built_in)),
     };
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../parts")).join(part).with_extension("ngc");
@@ -231,6 +278,9 @@ fn case(number: usize, part: &str, seed: u64, off: Off, logs: bool) -> Result<Ca
     let by = |file: &Machine, logs: Vec<MeasuredLog>| -> Result<CorrectOutcome, String> {
         let mut job = CorrectJob::new(Program::in_file(&path), file.clone(), &TARGETS[0]);
         job.logs = logs;
+        if exact {
+            job.file_error = 0.0;
+        }
         job.run(&()).map_err(|error| error.to_string())
     };
     let mut program = original.clone();
@@ -325,12 +375,15 @@ fn summary(cases: &[&Case], name: &str) {
 fn main() -> Result<(), Box<dyn Error>> {
     let (options, arguments): (Vec<String>, Vec<String>) = std::env::args().skip(1).partition(|a| a.starts_with("--"));
     let given = |wanted: &str| options.iter().any(|option| option == wanted);
-    let off = match (given("--machine"), given("--unknown")) {
-        (true, _) => Off::Machine,
-        (_, true) => Off::Unknown,
-        _ => Off::File,
-    };
+    let kinds = [
+        ("--machine", Off::Machine),
+        ("--unknown", Off::Unknown),
+        ("--friction", Off::Friction),
+        ("--mistyped", Off::Mistyped),
+    ];
+    let off = kinds.into_iter().find(|(option, _)| given(option)).map_or(Off::File, |(_, off)| off);
     let logs = !given("--without-logs");
+    let exact = given("--exact");
     let mut arguments = arguments.into_iter();
     let seed = arguments.next().map_or(Ok(1), |seed| seed.parse())?;
     let machines = arguments.next().map_or(Ok(COUNT), |count| count.parse())?;
@@ -340,7 +393,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     let cases: Vec<Case> = work
         .par_iter()
-        .filter_map(|&(number, part)| match case(number, part, seed, off, logs) {
+        .filter_map(|&(number, part)| match case(number, part, seed, off, [logs, exact]) {
             Ok(case) => {
                 print(&case);
                 Some(case)

@@ -80,8 +80,9 @@ use crate::compensation::GeometryChoice;
 use crate::job_error::{JobError, axes_that_move};
 use crate::measured::MeasuredLog;
 use exported::ExportedCut;
+pub(crate) use file_prior::FILE_ERROR;
+use file_prior::FileModel;
 pub use file_prior::{AssumedValue, FileAssumption};
-use file_prior::{FILE_ERROR, FileModel};
 pub use learned::{
     CutProgram, LearnError, LearnedLog, LearnedOutcome, LearnedValue, ModelValue, PlaceError, PredictedCut,
 };
@@ -198,6 +199,7 @@ impl CorrectJob {
             warnings: summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect(),
             written,
             learned,
+            machine: machine.clone(),
             assumed: file.map(|file| file.assumption),
             original_steps: original,
             axes,

@@ -131,8 +131,9 @@ pub use correct::advise::{Advice, AdviseJob, CutWay, ErrorPlace};
 pub use correct::arc_fit::{ArcFit, FitPoint};
 pub use correct::exported::{ExportedCut, ExportedFigures};
 pub use correct::{
-    CorrectJob, CorrectOutcome, CutProgram, LearnError, LearnedLog, LearnedOutcome, LearnedValue, MacroLanguage,
-    ModelValue, PlaceError, PredictedCut, TARGETS, TargetControl, UnchangedStretch, deterministic,
+    AssumedValue, CorrectJob, CorrectOutcome, CutProgram, FileAssumption, LearnError, LearnedLog, LearnedOutcome,
+    LearnedValue, MacroLanguage, ModelValue, PlaceError, PredictedCut, TARGETS, TargetControl, UnchangedStretch,
+    deterministic,
 };
 pub use cycle_time::{CycleTime, CycleTimeOptions, LineTime, cycle_time, cycle_time_by, cycle_time_within};
 pub use fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within};

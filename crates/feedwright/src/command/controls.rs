@@ -9,10 +9,13 @@ use miette::{Result, miette};
 use crate::command::args::geometry::GeometryArgs;
 use crate::command::terminal::wrapped;
 use crate::compensation::{GeometryChoice, NamedGeometry};
-use crate::correct::{CorrectOutcome, TARGETS, TargetControl, UnchangedStretch};
+use crate::correct::{CorrectOutcome, FileAssumption, TARGETS, TargetControl, UnchangedStretch};
 
 /// Largest tolerance that is no slip of the unit, um.
 const MAX_TOLERANCE_UM: f64 = 1e6;
+
+/// Largest error of a machine file that `--file-error` takes, %: beyond it, a file says too little of a machine.
+const MAX_FILE_ERROR: f64 = 50.0;
 
 /// Unchanged stretches that are listed for each reason.
 const LISTED: usize = 6;
@@ -53,6 +56,17 @@ pub(crate) fn check_tolerance(tolerance_um: Option<f64>) -> Result<()> {
     }
 }
 
+/// Fails if the error of a machine file is below 0 or above [`MAX_FILE_ERROR`].
+pub(crate) fn check_file_error(percent: f64) -> Result<()> {
+    if (0.0..=MAX_FILE_ERROR).contains(&percent) {
+        return Ok(());
+    }
+    Err(miette!(
+        help = "the unit is percent: 0 if the values are exact, 10 if they are typed by hand",
+        "--file-error is {percent} %; it must lie between 0 and {MAX_FILE_ERROR} %"
+    ))
+}
+
 /// What was changed, and why nothing is written.
 pub(crate) fn print_correction(out: &mut dyn Write, outcome: &CorrectOutcome) -> io::Result<()> {
     let CorrectOutcome { stretches, stretches_changed, rounds, .. } = outcome;
@@ -60,6 +74,9 @@ pub(crate) fn print_correction(out: &mut dyn Write, outcome: &CorrectOutcome) ->
         "{stretches_changed} of {stretches} stretches between corners were changed, found in {rounds} simulated cuts"
     );
     writeln!(out, "{}", wrapped(&changed, 2))?;
+    if let Some(assumed) = outcome.assumed.as_ref().map(FileAssumption::sentence) {
+        writeln!(out, "{}", wrapped(&assumed, 2))?;
+    }
     for sentence in UnchangedStretch::sentences(&outcome.unchanged, LISTED) {
         writeln!(out, "{}", wrapped(&sentence, 2))?;
     }

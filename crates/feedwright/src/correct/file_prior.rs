@@ -26,14 +26,15 @@ use feedwright_sim::{AXIS_NAMES, Axis, Machine};
 use serde::Serialize;
 
 /// Standard deviation of a value of a machine file, as a fraction of it, where the user states none.
-pub(super) const FILE_ERROR: f64 = 0.1;
+pub(crate) const FILE_ERROR: f64 = 0.1;
 /// Two axes whose values differ by more standard deviations are different: 1 of 1000 pairs that
 /// are equal differ by as much.
 const BY_CHANCE: f64 = 3.29;
 /// Plausible machines.
 const RUNS: usize = 8;
-/// Columns of the orthogonal array: position gain, feedforward of velocity and of acceleration,
-/// friction, and the speed loop of each axis.
+/// Column of the orthogonal array for friction, and for the speed loop of each axis; the first three
+/// are for [`MATCHED`].
+const FRICTION_COLUMN: usize = 4;
 const SPEED_LOOP_COLUMNS: [usize; 3] = [5, 6, 7];
 
 /// A value that counts as equal in all axes.
@@ -64,7 +65,7 @@ pub(super) struct FileModel {
     pub(super) machine: Machine,
     /// Machines one standard deviation off.
     pub(super) plausible: Vec<Machine>,
-    /// Machines that a mistake in the file would leave.
+    /// The machine with matched axes, where the file has axes that differ.
     pub(super) mistaken: Option<Machine>,
     pub(super) assumption: FileAssumption,
 }
@@ -80,12 +81,7 @@ struct MatchedValue {
 
 const MATCHED: [MatchedValue; 3] = [
     MatchedValue { name: "kp_1_s", of: |axis| &mut axis.kp_1_s, most: f64::INFINITY, column: 1 },
-    MatchedValue {
-        name: "velocity_feedforward",
-        of: |axis| &mut axis.velocity_feedforward,
-        most: 1.0,
-        column: 2,
-    },
+    MatchedValue { name: "velocity_feedforward", of: |axis| &mut axis.velocity_feedforward, most: 1.0, column: 2 },
     MatchedValue {
         name: "acceleration_feedforward",
         of: |axis| &mut axis.acceleration_feedforward,
@@ -153,7 +149,7 @@ fn plausible(machine: &Machine, axes: usize, file_error: f64, run: usize) -> Mac
         }
         // What counts of inertia and gain of the speed loop is their ratio.
         axis.inertia_kg_m2 *= times(std::f64::consts::SQRT_2 * file_error, SPEED_LOOP_COLUMNS[i % 3]);
-        let friction = times(file_error, 4);
+        let friction = times(file_error, FRICTION_COLUMN);
         axis.coulomb_friction_nm *= friction;
         axis.viscous_friction_nm_s *= friction;
         axis.stribeck_nm *= friction;
@@ -163,21 +159,77 @@ fn plausible(machine: &Machine, axes: usize, file_error: f64, run: usize) -> Mac
 }
 
 impl FileAssumption {
-    /// What was assumed, as a sentence; none where the file is taken as it is.
-    pub(crate) fn sentence(&self) -> Option<String> {
+    /// What was assumed, as a sentence.
+    pub(crate) fn sentence(&self) -> String {
         let list = |value: &AssumedValue| {
             let typed: Vec<String> =
                 AXIS_NAMES.iter().zip(&value.file).map(|(axis, file)| format!("{axis} {file:.4}")).collect();
             format!("{} is taken as {:.4} ({} in the file)", value.value, value.assumed[0], typed.join(", "))
         };
-        let mut parts: Vec<String> = self.values.iter().map(list).collect();
-        parts.extend(self.different.iter().map(|value| format!("{value} differs between the axes")));
-        (!parts.is_empty()).then(|| {
-            format!(
-                "the axes of a machine are matched, and values of the machine file are good to {:.0} %: {}",
-                100.0 * self.file_error,
-                parts.join("; ")
-            )
-        })
+        let mut parts = vec![format!(
+            "assumed: values of the machine file have a standard deviation of {:.0} % (--file-error), and the loops of its axes are matched",
+            100.0 * self.file_error
+        )];
+        parts.extend(self.values.iter().map(list));
+        parts
+            .extend(self.different.iter().map(|value| format!("{value} differs between the axes by more than chance")));
+        parts.join("; ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(change: impl Fn(&mut Machine)) -> FileModel {
+        let mut machine = Machine::load("workshop".as_ref()).expect("built in");
+        change(&mut machine);
+        FileModel::new(&machine, 2, 0.1)
+    }
+
+    #[test]
+    fn a_file_with_matched_axes_is_taken_as_it_is() {
+        let built_in = Machine::load("workshop".as_ref()).expect("built in");
+        let file = file(|_| {});
+        for (was, is) in built_in.axes.iter().zip(&file.machine.axes) {
+            assert_eq!((was.parameters(), was.drive(), was.friction()), (is.parameters(), is.drive(), is.friction()));
+        }
+        assert!(file.assumption.values.is_empty() && file.mistaken.is_none(), "{:?}", file.assumption);
+    }
+
+    #[test]
+    fn gains_that_differ_by_chance_are_matched_and_others_are_not() {
+        let near = file(|machine| machine.axes[0].kp_1_s = 72.0);
+        assert_eq!(near.assumption.values[0].file, [72.0, 50.0]);
+        for axis in &near.machine.axes[..2] {
+            assert!((axis.kp_1_s - 60.0).abs() < 1e-9, "{}", axis.kp_1_s);
+        }
+        let far = file(|machine| machine.axes[0].kp_1_s = 100.0);
+        assert_eq!(far.assumption.different, ["kp_1_s"]);
+        assert_eq!([far.machine.axes[0].kp_1_s, far.machine.axes[1].kp_1_s], [100.0, 50.0]);
+        let mistaken = far.mistaken.expect("another machine");
+        assert!((mistaken.axes[0].kp_1_s - mistaken.axes[1].kp_1_s).abs() < 1e-9);
+    }
+
+    #[test]
+    fn feedforward_above_one_counts_as_one() {
+        let file = file(|machine| machine.axes.iter_mut().for_each(|axis| axis.velocity_feedforward = 1.1));
+        assert_eq!([0, 1].map(|i| file.machine.axes[i].velocity_feedforward), [1.0; 2]);
+    }
+
+    #[test]
+    fn plausible_machines_are_one_standard_deviation_off_in_every_direction_by_itself() {
+        let file = file(|_| {});
+        let logs = |of: fn(&Axis) -> f64, i: usize| -> Vec<f64> {
+            file.plausible.iter().map(|machine| libm::log(of(&machine.axes[i]) / of(&file.machine.axes[i]))).collect()
+        };
+        let gains = logs(|axis| axis.kp_1_s, 0);
+        let loops = [0, 1].map(|i| logs(|axis| axis.inertia_kg_m2, i));
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / a.len() as f64;
+        assert!((product(&gains, &gains) - 0.005).abs() < 1e-12, "{gains:?}");
+        assert!((product(&loops[0], &loops[0]) - 0.02).abs() < 1e-12, "{loops:?}");
+        for (a, b) in [(&gains, &loops[0]), (&gains, &loops[1]), (&loops[0], &loops[1])] {
+            assert!(product(a, b).abs() < 1e-12);
+        }
     }
 }

@@ -5,6 +5,7 @@ use std::fmt;
 
 use feedwright_gcode::Diagnostic;
 use feedwright_plan::Step;
+use feedwright_sim::Machine;
 use serde::Serialize;
 
 use super::expanded_text::UnwritableLine;
@@ -61,6 +62,9 @@ pub struct CorrectOutcome {
     /// The path of the original.
     #[serde(skip)]
     pub(crate) original_steps: Vec<Step>,
+    /// The machine that the program is corrected and verified for.
+    #[serde(skip)]
+    pub(crate) machine: Machine,
     /// Axes that move.
     #[serde(skip)]
     pub(crate) axes: usize,

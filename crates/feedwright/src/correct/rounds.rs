@@ -335,9 +335,6 @@ impl RoundsBench<'_> {
         let mistaken = file.mistaken.iter().map(gains).collect::<Result<Vec<_>, _>>()?;
         for (k, stretch) in under_way.iter_mut().enumerate().filter(|(_, stretch)| stretch.best.is_some()) {
             let gains: Vec<StretchGain> = plausible.iter().map(|gains| gains[k]).collect();
-            if std::env::var_os("FW_DEBUG").is_some() {
-                eprintln!("stretch {k}: {:?}", StretchGain::certainty(&gains));
-            }
             if !StretchGain::is_certain(&gains) || mistaken.iter().any(|gains| gains[k].is_loss()) {
                 (stretch.best, stretch.reason) = (None, UnchangedReason::Uncertain);
             }

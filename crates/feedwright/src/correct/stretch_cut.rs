@@ -150,3 +150,19 @@ impl StretchGain {
         Self::certainty(all).iter().all(|certainty| *certainty > CERTAIN)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gain_counts_where_it_is_larger_than_its_deviation_over_machines_allows() {
+        let gain = |square_mm2: f64, max_mm: f64| StretchGain { square_mm2, max_mm };
+        // Mean 2 and standard deviation 1: 2 of them.
+        assert!(StretchGain::is_certain(&[gain(1.0, 1.0), gain(3.0, 1.0)]));
+        // Mean 1.5 and standard deviation 1.
+        assert!(!StretchGain::is_certain(&[gain(0.5, 1.0), gain(2.5, 1.0)]));
+        assert!(!StretchGain::is_certain(&[gain(1.0, -1.0), gain(3.0, 1.0)]));
+        assert!(gain(1.0, -1.0).is_loss() && gain(-1.0, 1.0).is_loss() && !gain(1.0, 1.0).is_loss());
+    }
+}

@@ -41,7 +41,7 @@ impl Job {
         let mut timeline = Timeline::new(&self.machine.plc_events);
         let stages = target.stages(&self.machine);
         let cut = ExportedCut {
-            machine: &self.machine,
+            machine: &outcome.machine,
             tool: None,
             error: None,
             stages,
