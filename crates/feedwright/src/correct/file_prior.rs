@@ -15,8 +15,10 @@
 //!
 //! Beyond `z` = [`BY_CHANCE`] the axes count as different and keep their values. A mistake in the
 //! file is possible as well, so the [plausible machines](FileModel::plausible) then include one
-//! whose axes are matched. Velocity feedforward above 1 makes an axis run ahead of its command, so
-//! it counts as 1.
+//! whose axes are matched. Velocity feedforward above 1 makes an axis run ahead of its command, and
+//! below 1 it leaves the axis behind. Where it is used, it lies between 0.9 and 1 (Heidenhain,
+//! MANUALplus 620 Technical Manual, 2012, section 6.16: 1 by default, and equal in axes that
+//! interpolate). A mean outside of that by no more than `z s / sqrt(n)` counts as the nearer end.
 //!
 //! Plausible machines are one standard deviation off in each uncertain value, with the signs of an
 //! orthogonal array of 8 runs. Then the mean square over the machines is the variance of every
@@ -74,18 +76,27 @@ pub(super) struct FileModel {
 struct MatchedValue {
     name: &'static str,
     of: fn(&mut Axis) -> &mut f64,
-    /// Largest sensible value.
-    most: f64,
+    /// Where it usually lies.
+    usual: [f64; 2],
     column: usize,
 }
 
+/// Every value is usual.
+const ANY: [f64; 2] = [0.0, f64::INFINITY];
+
+/// Values that builders match.
 const MATCHED: [MatchedValue; 3] = [
-    MatchedValue { name: "kp_1_s", of: |axis| &mut axis.kp_1_s, most: f64::INFINITY, column: 1 },
-    MatchedValue { name: "velocity_feedforward", of: |axis| &mut axis.velocity_feedforward, most: 1.0, column: 2 },
+    MatchedValue { name: "kp_1_s", of: |axis| &mut axis.kp_1_s, usual: ANY, column: 1 },
+    MatchedValue {
+        name: "velocity_feedforward",
+        of: |axis| &mut axis.velocity_feedforward,
+        usual: [0.9, 1.0],
+        column: 2,
+    },
     MatchedValue {
         name: "acceleration_feedforward",
         of: |axis| &mut axis.acceleration_feedforward,
-        most: f64::INFINITY,
+        usual: ANY,
         column: 3,
     },
 ];
@@ -95,11 +106,27 @@ const fn sign(run: usize, column: usize) -> f64 {
     if (run & column).count_ones() % 2 == 0 { 1.0 } else { -1.0 }
 }
 
-/// Gives all axes the geometric mean of their values, below `most`.
-fn match_axes(axes: &mut [Axis], value: &MatchedValue) {
-    let logs: f64 = axes.iter_mut().map(|axis| libm::log(*(value.of)(axis))).sum();
-    let mean = libm::exp(logs / axes.len() as f64).min(value.most);
-    axes.iter_mut().for_each(|axis| *(value.of)(axis) = mean);
+impl MatchedValue {
+    /// Gives all axes the most probable value: the geometric mean of theirs, or the nearer end of what is usual.
+    fn match_axes(&self, axes: &mut [Axis], file_error: f64) {
+        let logs: f64 = axes.iter_mut().map(|axis| libm::log(*(self.of)(axis))).sum();
+        let mean = libm::exp(logs / axes.len() as f64);
+        let usual = mean.clamp(self.usual[0], self.usual[1]);
+        let by_chance = BY_CHANCE * file_error / (axes.len() as f64).sqrt();
+        let value = if libm::log(usual / mean).abs() < by_chance { usual } else { mean };
+        axes.iter_mut().for_each(|axis| *(self.of)(axis) = value);
+    }
+
+    /// The value one standard deviation further, up or down; `sd` is the one by the file, as a fraction.
+    fn moved(&self, value: f64, sd: f64, sign: f64) -> f64 {
+        let [least, most] = self.usual;
+        if most.is_finite() && (least..=most).contains(&value) {
+            // A uniform distribution has a standard deviation of its width over the square root of 12.
+            let sd = (sd * value).min((most - least) / 12.0_f64.sqrt());
+            return (value + sign * sd).clamp(least, most);
+        }
+        value * libm::exp(sign * sd)
+    }
 }
 
 impl FileModel {
@@ -119,13 +146,13 @@ impl FileModel {
             if differ {
                 assumption.different.push(value.name);
                 if least > 0.0 {
-                    match_axes(&mut mistaken.axes[..axes], value);
+                    value.match_axes(&mut mistaken.axes[..axes], file_error);
                 }
                 continue;
             }
-            if most > least || most > value.most {
+            if most > least || !(value.usual[0]..=value.usual[1]).contains(&most) {
                 for machine in [&mut machine, &mut mistaken] {
-                    match_axes(&mut machine.axes[..axes], value);
+                    value.match_axes(&mut machine.axes[..axes], file_error);
                 }
                 let assumed = machine.axes[..axes].iter_mut().map(|axis| *(value.of)(axis)).collect();
                 assumption.values.push(AssumedValue { value: value.name, file: typed, assumed });
@@ -145,7 +172,7 @@ fn plausible(machine: &Machine, axes: usize, file_error: f64, run: usize) -> Mac
     for (i, axis) in machine.axes.iter_mut().enumerate() {
         for value in &MATCHED {
             let now = (value.of)(axis);
-            *now = (*now * times(common, value.column)).min(value.most.max(*now));
+            *now = value.moved(*now, common, sign(run, value.column));
         }
         // What counts of inertia and gain of the speed loop is their ratio.
         axis.inertia_kg_m2 *= times(std::f64::consts::SQRT_2 * file_error, SPEED_LOOP_COLUMNS[i % 3]);
@@ -212,9 +239,12 @@ mod tests {
     }
 
     #[test]
-    fn feedforward_above_one_counts_as_one() {
-        let file = file(|machine| machine.axes.iter_mut().for_each(|axis| axis.velocity_feedforward = 1.1));
-        assert_eq!([0, 1].map(|i| file.machine.axes[i].velocity_feedforward), [1.0; 2]);
+    fn feedforward_that_is_unusual_by_chance_counts_as_usual() {
+        for (typed, assumed) in [(1.1, 1.0), (0.8, 0.9), (0.95, 0.95), (0.5, 0.5)] {
+            let file = file(|machine| machine.axes.iter_mut().for_each(|axis| axis.velocity_feedforward = typed));
+            let is = [0, 1].map(|i| file.machine.axes[i].velocity_feedforward);
+            assert!(is.iter().all(|is| (is - assumed).abs() < 1e-12), "{typed}: {is:?}");
+        }
     }
 
     #[test]
