@@ -59,7 +59,7 @@ def main():
                 return measure.figures(recording, original).programmed
 
             def correct(out, *logs):
-                words = ["correct", source, "--machine", machine, "--for", "linuxcnc", "--out", out, *(word for log in logs for word in ("--log", log))]
+                words = ["correct", source, "--machine", machine, "--for", "linuxcnc", "--file-error", "0", "--out", out, *(word for log in logs for word in ("--log", log))]
                 done = subprocess.run([headless.FEEDWRIGHT, "--quiet", *map(str, words)], check=False, capture_output=True, text=True)
                 print(done.stdout if logs else "", done.stderr, sep="", file=sys.stderr)
                 return programs.with_rests(out.read_text()) if out.exists() else None

@@ -90,6 +90,9 @@ fn what_is_asked_for_wrongly_is_refused_with_a_hint() {
     let folder = Folder::new();
     folder.run(&["correct", "circle.ngc", "--for", "fanuk"]).refused(&["--for", "fanuk", "did you mean 'fanuc'?"]);
     folder.run(&["correct", "circle.ngc", "--tolerance", "-1"]).refused(&["--tolerance is -1 um", "above 0"]);
+    folder
+        .run(&["correct", "circle.ngc", "--file-error", "-1"])
+        .refused(&["--file-error is -1 %", "between 0 and 50 %"]);
     folder.run(&["correct", "circle.ngc", "--out", "circle.ngc"]).refused(&["circle.ngc"]);
     folder.run(&["correct", "none.ngc"]).refused(&["none.ngc"]);
 }

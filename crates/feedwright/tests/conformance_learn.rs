@@ -65,7 +65,7 @@ fn a_program_learns_from_the_log_of_the_original_and_a_good_one_is_kept() {
     let late = samples.clone();
     samples.iter_mut().skip(9).zip(&late).for_each(|(sample, late)| (sample[2], sample[4]) = (late[2], late[4]));
     write(&folder, "cut.csv", &samples);
-    folder.run(&["correct", "circle.ngc", "--machine", "file.toml", "--out", "p0.ngc"]);
+    folder.run(&["correct", "circle.ngc", "--machine", "file.toml", "--file-error", "0", "--out", "p0.ngc"]);
     let unlearned_um = if folder.path().join("p0.ngc").exists() { cut(&folder, "p0.ngc").0 } else { original_um };
     let (ran, results) = correct(&folder, &["cut.csv"], "p1.ngc");
     let (ran, results) = (ran.succeeded(), results.unwrap());
