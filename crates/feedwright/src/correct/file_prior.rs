@@ -103,7 +103,7 @@ const MATCHED: [MatchedValue; 3] = [
 
 /// Sign of a column of the orthogonal array in a run.
 const fn sign(run: usize, column: usize) -> f64 {
-    if (run & column).count_ones() % 2 == 0 { 1.0 } else { -1.0 }
+    if (run & column).count_ones().is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
 impl MatchedValue {

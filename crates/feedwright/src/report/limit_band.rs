@@ -55,7 +55,7 @@ pub(super) fn write(out: &mut impl Write, band: Option<&LimitBand>) -> io::Resul
           <p>Feedrate of the plan over its time, rests left out, and which limit holds it down where. Several bind at once; a pale stretch is one in which a limit \
           binds for a part of the time.</p>\n",
     )?;
-    write!(out, "<div class=\"scroll\" tabindex=\"0\">{}</div></section>\n", drawing(band))
+    writeln!(out, "<div class=\"scroll\" tabindex=\"0\">{}</div></section>", drawing(band))
 }
 
 fn drawing(band: &LimitBand) -> String {

@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn a_constant_has_short_labels() {
-        let values = [3000.0, 3000.000_000_1, 2999.999_999_9];
+        let values = [3_000.0, 3_000.000_000_1, 2_999.999_999_9];
         let shown = range(values.into_iter(), 0.04);
         assert!(shown[0] < 2900.0 && shown[1] > 3100.0, "{shown:?}");
         assert!(ticks(shown, 5.0).iter().all(|tick| tick.1.len() <= 4), "{:?}", ticks(shown, 5.0));
