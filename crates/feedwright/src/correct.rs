@@ -152,8 +152,7 @@ impl CorrectJob {
         let original = steps_of(&source.steps).map_err(path_error)?;
         let stages = self.target.stages(&self.machine);
         let learned = self.learned(&original, axes, watch)?;
-        let uncertain = learned.is_none() && self.believed.is_none() && self.file_error > 0.0;
-        let file = uncertain.then(|| FileModel::new(&self.machine, axes, self.file_error));
+        let file = learned.is_none().then(|| self.uncertain_file(axes)).flatten();
         let machine = learned.as_ref().map(|learned| &learned.machine);
         let machine = machine.or(file.as_ref().map(|file| &file.machine)).unwrap_or(&self.machine);
         let nominal = deterministic(self.believed.as_ref().unwrap_or(machine));
@@ -166,8 +165,7 @@ impl CorrectJob {
         let found = rounds(&predicted, &parts, self.target, file.as_ref()).map_err(of_run)?;
         watch.begin("cutting the uncorrected program", 1);
         let uncorrected = on(machine).figures(&original).map_err(of_run)?;
-        let written = self.written(&source, &parts, &found);
-        let (written, unwritten) = match written {
+        let (written, unwritten) = match self.written(&source, &parts, &found) {
             Ok(written) => (Some(written), None),
             Err(fault) => (None, Some(fault)),
         };
@@ -204,6 +202,12 @@ impl CorrectJob {
             original_steps: original,
             axes,
         })
+    }
+
+    /// The machines that an uncertain file may describe.
+    fn uncertain_file(&self, axes: usize) -> Option<FileModel> {
+        let is_uncertain = self.believed.is_none() && self.file_error > 0.0;
+        is_uncertain.then(|| FileModel::new(&self.machine, axes, self.file_error))
     }
 
     /// What the logs tell, where there are any.

@@ -118,7 +118,7 @@ fn a_dialect_that_is_none_is_refused() {
     for command in ["check", "canon", "run"] {
         let says = ["'fanuk'", "auto, linuxcnc, fanuc, haas, fanuc-mill", "did you mean 'fanuc'?"];
         folder.run(&[command, "circle.ngc", "--dialect", "fanuk"]).refused(&says);
-        let help = folder.run(&[command, "--help"]).succeeded().stdout;
+        let help = folder.run(&[command, "--help-all"]).succeeded().stdout;
         assert!(DIALECTS.iter().all(|(name, _)| help.contains(name)) && help.contains("--tool-table"), "{help}");
     }
 }

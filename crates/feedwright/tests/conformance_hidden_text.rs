@@ -99,8 +99,8 @@ fn machine_files_command_nothing() {
         assert_eq!(inert(&folder, &["check", "--format", format, "m.toml"], &[]).code, Some(0));
     }
     let machine = ["--machine", "m.toml", "--json", "r.json"];
-    let cut = ["run", "circle.ngc", "--controller", "uncorrected", "--report", "r.html", "--out", "o.ngc"];
-    inert(&folder, &[&cut[..], &machine].concat(), &["r.html", "r.json", "o.ngc"]);
+    let cut = ["run", "circle.ngc", "--controller", "uncorrected", "--report", "r.html", "--out", "o.csv"];
+    inert(&folder, &[&cut[..], &machine].concat(), &["r.html", "r.json"]);
     inert(&folder, &[&["plan", "circle.ngc"][..], &machine].concat(), &["r.json"]);
     inert(&folder, &[&["correct", "circle.ngc", "--out", "c.ngc"][..], &machine].concat(), &["r.json", "c.ngc"]);
     let results: Value = serde_json::from_str(&folder.text("r.json")).unwrap();

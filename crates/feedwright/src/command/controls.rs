@@ -1,15 +1,22 @@
-//! Controls that programs are for, by name, and what is told of a corrected program.
+//! What several commands take from their arguments: the control, the machine's error and model, and what they tell of a corrected program.
+
+use std::ffi::OsStr;
 use std::io::{self, Write};
 
+use feedwright_control::IdentifierKind;
 use feedwright_gcode::input;
 use feedwright_gcode::suggestion::nearest;
-use feedwright_sim::GeometryFile;
+use feedwright_sim::{GeometryFile, Machine, is_machine_path};
 use miette::{Result, miette};
 
 use crate::command::args::geometry::GeometryArgs;
+use crate::command::date::today;
+use crate::command::progress::Bar;
 use crate::command::terminal::wrapped;
 use crate::compensation::{GeometryChoice, NamedGeometry};
-use crate::correct::{CorrectOutcome, FileAssumption, TARGETS, TargetControl, UnchangedStretch};
+use crate::correct::{CorrectOutcome, FILE_ERROR, FileAssumption, TARGETS, TargetControl, UnchangedStretch};
+use crate::job::Job;
+use crate::recorded_model::{RecordedModel, fitting_machines, recorded_model};
 
 /// Largest tolerance that is no slip of the unit, um.
 const MAX_TOLERANCE_UM: f64 = 1e6;
@@ -56,10 +63,16 @@ pub(crate) fn check_tolerance(tolerance_um: Option<f64>) -> Result<()> {
     }
 }
 
-/// Fails if the error of a machine file is below 0 or above [`MAX_FILE_ERROR`].
-pub(crate) fn check_file_error(percent: f64) -> Result<()> {
+/// The error of a machine by `--file-error`, as a fraction. Without that a file is uncertain, and a built-in machine is simulated as it is
+/// written.
+///
+/// # Errors
+/// A percentage below 0 or above [`MAX_FILE_ERROR`].
+pub(crate) fn file_error(percent: Option<f64>, machine: &OsStr) -> Result<f64> {
+    let by_default = if is_machine_path(machine.as_ref()) { 100.0 * FILE_ERROR } else { 0.0 };
+    let percent = percent.unwrap_or(by_default);
     if (0.0..=MAX_FILE_ERROR).contains(&percent) {
-        return Ok(());
+        return Ok(percent / 100.0);
     }
     Err(miette!(
         help = "the unit is percent: 0 if the values are exact, 10 if they are typed by hand",
@@ -91,4 +104,24 @@ pub(crate) fn print_correction(out: &mut dyn Write, outcome: &CorrectOutcome) ->
         Some(hint) => writeln!(out, "{}", wrapped(&format!("  hint: {hint}"), 8)),
         None => Ok(()),
     }
+}
+
+/// Gives the controller the model that a log of the machine tells, where it goes by one and has none, and the job `band` machines that fit
+/// the log as well; returns what is to be said of the model. The machine is as its file has it, whatever limits the job plans with.
+pub(crate) fn take_recorded_model(
+    job: &mut Job,
+    machine: &Machine,
+    axes: usize,
+    band: usize,
+    bar: &Bar,
+) -> Result<Vec<String>> {
+    if job.model.is_some() || job.controller.identifier != Some(IdentifierKind::Axes) {
+        return Ok(vec![]);
+    }
+    let RecordedModel { model, doubts } = recorded_model(machine, axes, (job.controller, &job.choices), today()?, bar)?;
+    job.model = Some(model);
+    if band > 0 {
+        job.fitting = fitting_machines(machine, axes, job.choices.seed, band, bar)?;
+    }
+    Ok(doubts)
 }

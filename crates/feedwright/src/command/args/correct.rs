@@ -34,10 +34,11 @@ pub(crate) struct CorrectArgs {
     /// is corrected, not what the machine file says. Several logs: repeat the option.
     #[arg(long, value_name = "FILE", help_heading = MEASURED)]
     pub(crate) log: Vec<PathBuf>,
-    /// How exact the values of the machine file are: standard deviation of each, %. 0: exact. Without a log, axes whose gains differ by chance
-    /// count as matched, and a stretch is changed only where a gain is likely on every machine that the file may describe.
-    #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * crate::correct::FILE_ERROR, allow_negative_numbers = true)]
-    pub(crate) file_error: f64,
+    /// How exact the values of the machine file are: standard deviation of each, %. 0: exact. By default a file has 10 %, and a built-in machine,
+    /// which is simulated as it is written, 0. Without a log, axes whose gains differ by chance count as matched, and a stretch is changed
+    /// only where a gain is likely on every machine that the file may describe.
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true)]
+    pub(crate) file_error: Option<f64>,
     /// Which column of the logs is what, by number from 0 or by name, and units: t=0,x.cmd=1,x.act=3,unit=mm,time=ms.
     #[arg(long, value_name = "COLUMNS", requires = "log", help_heading = MEASURED)]
     pub(crate) columns: Option<String>,

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use crate::command::args::correct::CorrectArgs;
 use crate::command::console::Console;
-use crate::command::controls::{check_file_error, check_tolerance, compensation, control, print_correction};
+use crate::command::controls::{check_tolerance, compensation, control, file_error, print_correction};
 use crate::command::message::{OUT_OF_TOLERANCE, printed, tell_assumed_limits, warn};
 use crate::command::streams::{ProgramInputs, tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn, figure};
@@ -26,7 +26,7 @@ use crate::results_format::{json_text, stamped};
 pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let target = control(&args.target)?;
     check_tolerance(args.tolerance)?;
-    check_file_error(args.file_error)?;
+    let file_error = file_error(args.file_error, &args.machine)?;
     let inputs =
         ProgramInputs::of(&args.part, &args.machine, &args.reader).with_geometry(args.geometry.geometry.as_deref());
     inputs.check(console)?;
@@ -39,7 +39,6 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let compensation = compensation(&args.geometry)?;
     let bar = console.bar(0);
     let logs = logs(args, &bar)?;
-    let file_error = args.file_error / 100.0;
     let job = CorrectJob::new(Program::in_file(&args.part), machine, target);
     let job = CorrectJob { reader, compensation, logs, file_error, ..job };
     let outcome = job.run(&bar)?;

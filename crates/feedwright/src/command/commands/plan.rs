@@ -14,9 +14,8 @@ use miette::{IntoDiagnostic, Result, miette};
 use serde_json::json;
 
 use crate::command::args::plan::PlanArgs;
-use crate::command::commands::run::take_recorded_model;
 use crate::command::console::Console;
-use crate::command::controls::{compensation, control};
+use crate::command::controls::{compensation, control, take_recorded_model};
 use crate::command::message::{printed, remark, tell_assumed_limits, warn};
 use crate::command::progress::Bar;
 use crate::command::streams::{ProgramInputs, tables, tell_written};

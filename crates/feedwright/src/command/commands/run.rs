@@ -17,7 +17,7 @@ use miette::{Result, miette};
 use crate::command::args::run::RunArgs;
 use crate::command::console::Console;
 use crate::command::controllers::{find, settings};
-use crate::command::controls::{compensation, control};
+use crate::command::controls::{compensation, control, take_recorded_model};
 use crate::command::date::today;
 use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell, tell_assumed_limits, warn};
 use crate::command::progress::Bar;
@@ -28,7 +28,6 @@ use crate::fastest::FastestError;
 use crate::job::{Job, JobError};
 use crate::measured::MeasuredLog;
 use crate::output::OutputError;
-use crate::recorded_model::{RecordedModel, fitting_machines, recorded_model};
 use files::{Files, Outputs};
 
 /// Cuts a part with controllers of a table.
@@ -85,26 +84,6 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
     let Outputs { report, json, trace, learned, out } = &outputs;
     let mut table = tables([report, json, trace, learned, out].map(Option::as_deref));
     printed(summary::print(&mut *table, &job, &outputs, &outcome), code)
-}
-
-/// Gives the controller the model that a log of the machine tells, where it goes by one and has none, and the job `band` machines that fit
-/// the log as well; returns what is to be said of the model. The machine is as its file has it, whatever limits the job plans with.
-pub(super) fn take_recorded_model(
-    job: &mut Job,
-    machine: &Machine,
-    axes: usize,
-    band: usize,
-    bar: &Bar,
-) -> Result<Vec<String>> {
-    if job.model.is_some() || job.controller.identifier != Some(IdentifierKind::Axes) {
-        return Ok(vec![]);
-    }
-    let RecordedModel { model, doubts } = recorded_model(machine, axes, (job.controller, &job.choices), today()?, bar)?;
-    job.model = Some(model);
-    if band > 0 {
-        job.fitting = fitting_machines(machine, axes, job.choices.seed, band, bar)?;
-    }
-    Ok(doubts)
 }
 
 /// What the arguments ask for.
