@@ -11,6 +11,7 @@ use thiserror::Error;
 pub enum ReadError {
     /// No such file, no permission, or the disk fails.
     #[error("{path}: the program cannot be read: {cause}")]
+    #[diagnostic(help("give the path to the program from the current folder, or - for the standard input"))]
     Io {
         /// As the user named it.
         path: PathBuf,
