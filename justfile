@@ -228,7 +228,7 @@ linuxcnc-check:
 linuxcnc-soak minutes="15" seed="1" resume="": linuxcnc
     cd linuxcnc && FEEDWRIGHT=$(./command) python3 tests/soak.py {{ minutes }} --seed {{ seed }} {{ if resume == "" { "" } else { "--resume " + resume } }}
 
-# The library as a WebAssembly module, run under node beside the command.
+# The library as a WebAssembly module, run under node beside the command, and the page in a browser.
 web-check:
     web/check
 

@@ -7,10 +7,16 @@ import { performance } from "node:perf_hooks";
 const [modulePath, resultsPath, tracePath] = process.argv.slice(2);
 const bytes = await readFile(modulePath);
 const module = await WebAssembly.compile(bytes);
-assert.deepEqual(WebAssembly.Module.imports(module), [], "the module needs something from outside");
+const imported = WebAssembly.Module.imports(module).map(({ module: from, name, kind }) => `${kind} ${from}.${name}`);
+assert.deepEqual(imported.sort(), ["function page.cut", "function page.progress"], "the module needs something else from outside");
 
 async function answer(request) {
-  const { exports } = await WebAssembly.instantiate(module, {});
+  const told = { stages: [], points: 0 };
+  const page = {
+    progress: (at, length) => told.stages.push(new TextDecoder().decode(new Uint8Array(exports.memory.buffer, at, length))),
+    cut: (at, count) => (told.points += count),
+  };
+  const { exports } = await WebAssembly.instantiate(module, { page });
   const text = new TextEncoder().encode(JSON.stringify(request));
   // Room for the input may make the memory grow, and its buffer is another one then.
   const at = exports.input(text.length);
@@ -18,8 +24,9 @@ async function answer(request) {
   const began = performance.now();
   const succeeded = exports.run() === 1;
   const seconds = (performance.now() - began) / 1000;
-  const output = (k) => new TextDecoder().decode(new Uint8Array(exports.memory.buffer, exports.at(k), exports.length(k)));
-  return { succeeded, seconds, megabytes: exports.memory.buffer.byteLength / 1e6, outputs: [output(0), output(1)] };
+  const output = (k) =>
+    new TextDecoder().decode(new Uint8Array(exports.memory.buffer, exports.at(k), exports.length(k)));
+  return { succeeded, seconds, megabytes: exports.memory.buffer.byteLength / 1e6, outputs: [0, 1, 2, 3].map(output), told };
 }
 
 const program = await readFile(new URL("../../parts/star.ngc", import.meta.url), "utf8");
@@ -42,6 +49,12 @@ const [rows, nativeRows] = [cut.outputs[1], await readFile(tracePath, "utf8")].m
 assert.equal(rows.length, nativeRows.length);
 rows.forEach((row, k) => assert.equal(row, nativeRows[k], `row ${k}`));
 
+// The page hears of both cuts, and can draw the second.
+for (const cutting of ["cutting, uncorrected", `cutting, ${here.runs[1].controller}`]) {
+  assert.ok(cut.told.stages.includes(cutting), `${cutting} is not told`);
+}
+assert.ok(cut.told.points > 500, `${cut.told.points} points`);
+
 // The same input gives the same bits, in a module of its own.
 assert.deepEqual((await answer(star)).outputs, cut.outputs);
 
@@ -56,6 +69,20 @@ await refused({ machine: "name = 1\n" }, "machine");
 await refused({ controller: "none" }, "no controller is called 'none'");
 await refused({ tolerance_um: -1 }, "tolerance");
 await refused({ surplus: 1 }, "surplus");
+await refused({ task: "correct", target: "none" }, "no control is called 'none'");
+
+// The mistakes of a program have their places, and its path goes as far as the first of them.
+const checked = await answer({ task: "check", name: "a.ngc", program: "G21 G90 F600\nG1 X10\nG1 X20 Q\nG1 X30\nM2\n" });
+assert.ok(checked.succeeded, checked.outputs[0]);
+const { findings, amounts_to, is_whole } = JSON.parse(checked.outputs[0]);
+assert.deepEqual([findings.length, findings[0].line, findings[0].severity, amounts_to, is_whole], [1, 3, "error", null, false]);
+
+// A corrected program is better, by the figures of the command.
+const corrected = await answer({ ...star, task: "correct", rows: false });
+assert.ok(corrected.succeeded, corrected.outputs[0]);
+const [before, after] = JSON.parse(corrected.outputs[0]).figures;
+assert.ok(Number(after.rms_um) < 0.5 * Number(before.rms_um), corrected.outputs[0]);
+assert.ok(corrected.outputs[1].includes("corrected by feedwright"));
 
 console.log(
   `module ${(bytes.length / 1e6).toFixed(2)} MB, ${cut.seconds.toFixed(2)} s, ${cut.megabytes.toFixed(0)} MB of memory; ` +

@@ -19,6 +19,7 @@ mod files_to_check;
 mod findings;
 mod controllers;
 mod controls;
+mod page_server;
 mod commands;
 
 use std::process::ExitCode;
@@ -75,6 +76,7 @@ fn run(command: CommandArgs, console: &Console) -> Result<ExitCode> {
         CommandArgs::Linuxcnc(args) => commands::linuxcnc::run(&args, console),
         CommandArgs::Diff(args) => commands::diff::run(&args, console),
         CommandArgs::Check(args) => commands::check::run(&args, console),
+        CommandArgs::Open(args) => commands::open::run(args, console),
         CommandArgs::Canon(args) => commands::canon::run(&args, console),
         CommandArgs::Machines(MachinesArgs { name: None, .. }) => commands::list::machines(),
         CommandArgs::Machines(MachinesArgs { name: Some(name), out }) => {

@@ -7,13 +7,14 @@ use std::process::{Command, Stdio};
 use crate::command::{Folder, Ran, skipped};
 
 /// All commands.
-const COMMANDS: [&str; 16] = [
+const COMMANDS: [&str; 17] = [
     "run",
     "correct",
     "advise",
     "plan",
     "diff",
     "check",
+    "open",
     "identify",
     "excite",
     "linuxcnc",

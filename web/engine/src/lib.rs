@@ -1,52 +1,40 @@
-//! The library as a WebAssembly module: a request goes in as JSON, results and rows come out as text.
+//! The library as a WebAssembly module: a request goes in as JSON, results come out as bytes.
 //!
 //! ```text
 //! input(n)    room for a request of n bytes: where it is in the memory of the module
-//! run()       runs the request; 1 where it succeeds, 0 where output 0 is the reason why not
-//! at(k), length(k)   where output k is, and its bytes: 0 the results as `run --json` has them, 1 the rows as `run --trace` has them
+//! run()       answers the request; 1 where it succeeds, 0 where output 0 is the reason why not
+//! at(k), length(k)   where output k is, and its bytes
 //! ```
 //!
-//! The module imports nothing: it has no files, no clock and no threads.
+//! The outputs of a request follow from its `task`:
+//!
+//! | `task` | output 0 | output 1 | output 2 | output 3 |
+//! |---|---|---|---|---|
+//! | `run` | results, as `run --json` | rows, as `run --trace` | the page of the report | the table of `run`, as JSON |
+//! | `check` | findings, as JSON | programmed path: x, y, z in mm, as 32-bit floats | line and kind of each point | |
+//! | `correct` | results, as JSON | the corrected program | | |
+//! | `lists` | machines, controllers and controls, as JSON | | | |
+//!
+//! The module imports two functions of the page, `page.progress` and `page.cut`: see [`page`]. It has
+//! no files, no clock and no threads.
+
+mod page;
+mod request;
+mod lists;
+mod check;
+mod correct;
+mod cut;
 
 use std::sync::{Mutex, PoisonError};
 
-use feedwright::gcode::Program;
-use feedwright::sim::{Machine, TraceWriter};
-use feedwright::{CONTROLLERS, Job};
-use serde::Deserialize;
-
-/// What is asked for.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Request {
-    /// What messages call the program.
-    name: String,
-    /// Its text.
-    program: String,
-    /// Name of a built-in machine, or the text of a machine file.
-    machine: String,
-    /// Name of the controller; none is the default.
-    controller: Option<String>,
-    /// Largest contour error that is allowed, um.
-    tolerance_um: Option<f64>,
-    /// Seed of the recording that a controller identifies the machine from; 1 as in the command.
-    #[serde(default = "first_seed")]
-    seed: u64,
-    /// Whether the rows are wanted.
-    #[serde(default)]
-    rows: bool,
-}
-
-const fn first_seed() -> u64 {
-    1
-}
+use request::{Outputs, Request, Task};
 
 struct Buffers {
     input: Vec<u8>,
-    outputs: [Vec<u8>; 2],
+    outputs: Outputs,
 }
 
-static BUFFERS: Mutex<Buffers> = Mutex::new(Buffers { input: Vec::new(), outputs: [Vec::new(), Vec::new()] });
+static BUFFERS: Mutex<Buffers> = Mutex::new(Buffers { input: Vec::new(), outputs: Vec::new() });
 
 fn with_buffers<T>(act: impl FnOnce(&mut Buffers) -> T) -> T {
     act(&mut BUFFERS.lock().unwrap_or_else(PoisonError::into_inner))
@@ -64,14 +52,14 @@ pub extern "C" fn input(bytes: usize) -> usize {
     })
 }
 
-/// Runs the request that was written. 1 where it succeeds; else 0, and output 0 is the reason.
+/// Answers the request that was written. 1 where it succeeds; else 0, and output 0 is the reason.
 #[expect(unsafe_code, reason = "the attribute exports the function")]
 #[unsafe(no_mangle)]
 pub extern "C" fn run() -> u32 {
     let input = with_buffers(|buffers| std::mem::take(&mut buffers.input));
     let (outputs, succeeded) = match answer(&input) {
         Ok(outputs) => (outputs, 1),
-        Err(error) => ([error.to_string().into_bytes(), Vec::new()], 0),
+        Err(error) => (vec![told(&error).into_bytes()], 0),
     };
     with_buffers(|buffers| buffers.outputs = outputs);
     succeeded
@@ -91,28 +79,19 @@ pub extern "C" fn length(output: usize) -> usize {
     with_buffers(|buffers| buffers.outputs.get(output).map_or(0, Vec::len))
 }
 
-/// Results and rows of a request.
-fn answer(input: &[u8]) -> Result<[Vec<u8>; 2], Box<dyn std::error::Error>> {
-    let request: Request = serde_json::from_slice(input)?;
-    let machine = if request.machine.contains('\n') {
-        Machine::parse("machine", &request.machine)?
-    } else {
-        Machine::load(request.machine.as_ref())?
-    };
-    let mut job = Job::new(Program::from_text(request.name, request.program), machine);
-    job.tolerance_um = request.tolerance_um;
-    job.choices.seed = request.seed;
-    if let Some(name) = &request.controller {
-        job.controller = CONTROLLERS.find(name).ok_or_else(|| format!("no controller is called '{name}'"))?;
+fn answer(input: &[u8]) -> miette::Result<Outputs> {
+    let request: Request = serde_json::from_slice(input).map_err(|error| miette::miette!("{error}"))?;
+    match request.task {
+        Task::Run => cut::run(&request),
+        Task::Check => check::check(&request),
+        Task::Correct => correct::correct(&request),
+        Task::Lists => lists::lists(),
     }
-    let checked = job.check()?;
-    let (outcome, rows) = if request.rows {
-        let mut trace = TraceWriter::new(Vec::new(), checked.axes())?;
-        (checked.run(&mut [&mut trace], &())?, trace.finish()?)
-    } else {
-        (checked.run(&mut [], &())?, Vec::new())
-    };
-    let mut results = Vec::new();
-    outcome.write_json(&job, &mut results)?;
-    Ok([results, rows])
+}
+
+/// An error, the errors that belong to it, and the remedy.
+fn told(error: &miette::Report) -> String {
+    let related = error.related().into_iter().flatten().map(|fault| format!("\n{fault}"));
+    let hint = error.help().map(|hint| format!("\nhint: {hint}"));
+    std::iter::once(error.to_string()).chain(related).chain(hint).collect()
 }

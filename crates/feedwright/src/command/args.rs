@@ -19,6 +19,7 @@ pub(crate) mod linuxcnc;
 pub(crate) mod completions;
 pub(crate) mod man;
 pub(crate) mod help;
+pub(crate) mod open;
 
 use std::ffi::OsString;
 use std::io::{self, IsTerminal};
@@ -39,6 +40,7 @@ use identify::IdentifyArgs;
 use lab::LabArgs;
 use linuxcnc::LinuxcncArgs;
 use man::ManArgs;
+use open::OpenArgs;
 use plan::PlanArgs;
 use run::RunArgs;
 
@@ -110,6 +112,7 @@ pub(crate) enum CommandArgs {
     Plan(PlanArgs),
     Diff(DiffArgs),
     Check(CheckArgs),
+    Open(OpenArgs),
     Identify(Box<IdentifyArgs>),
     Excite(ExciteArgs),
     Machines(MachinesArgs),
@@ -162,7 +165,11 @@ impl CommandArgs {
     pub(crate) const fn writes_files(&self) -> bool {
         !matches!(
             self,
-            Self::Check(_) | Self::Canon(_) | Self::Machines(MachinesArgs { out: None, .. }) | Self::Controllers { .. }
+            Self::Check(_)
+                | Self::Open(_)
+                | Self::Canon(_)
+                | Self::Machines(MachinesArgs { out: None, .. })
+                | Self::Controllers { .. }
         )
     }
 }

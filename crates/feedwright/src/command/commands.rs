@@ -14,5 +14,6 @@ pub(crate) mod lab;
 pub(crate) mod linuxcnc;
 pub(crate) mod list;
 pub(crate) mod man;
+pub(crate) mod open;
 pub(crate) mod plan;
 pub(crate) mod run;

@@ -1,0 +1,52 @@
+//! `feedwright open`: the page in a browser.
+
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::Path;
+use std::process::{Command, ExitCode, Stdio};
+
+use feedwright_gcode::input::{self, is_standard_input};
+use miette::{IntoDiagnostic, Result, miette};
+
+use crate::command::args::open::OpenArgs;
+use crate::command::console::Console;
+use crate::command::message::{printed, remark};
+use crate::command::page_server::PageServer;
+use crate::command::streams::check_inputs;
+
+pub(crate) fn run(args: OpenArgs, console: &Console) -> Result<ExitCode> {
+    check_inputs(console, args.files.iter().map(|file| ("the program", Some(file.as_path()))))?;
+    for file in args.files.iter().filter(|file| !is_standard_input(file)) {
+        let opened = File::open(file).and_then(|file| file.metadata());
+        let kind = opened.map_err(|error| miette!("cannot read {}: {error}", input::name(file)))?;
+        if kind.is_dir() {
+            return Err(miette!(help = "give the programs in it", "{} is a folder", input::name(file)));
+        }
+    }
+    let server = PageServer::bind(args.files).into_diagnostic()?;
+    let address = server.address();
+    let mut out = io::stdout();
+    let told = writeln!(out, "{address}").and_then(|()| out.flush());
+    if !args.no_browser && !show(&address) {
+        remark("no browser was found: open the address above in one");
+    }
+    if !console.is_quiet() {
+        remark("the page is for this computer only; Ctrl-C ends it");
+    }
+    server.serve();
+    printed(told, ExitCode::SUCCESS)
+}
+
+/// Asks the desktop to show an address; false if it cannot.
+fn show(address: &str) -> bool {
+    let (program, first): (&str, &[&str]) = if cfg!(target_os = "windows") {
+        ("rundll32", &["url.dll,FileProtocolHandler"])
+    } else if cfg!(target_os = "macos") {
+        ("open", &[])
+    } else {
+        ("xdg-open", &[])
+    };
+    let mut command = Command::new(Path::new(program));
+    command.args(first).arg(address).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.spawn().is_ok()
+}

@@ -1,0 +1,215 @@
+// The page in a browser, as `feedwright open` serves it:
+//   node page.test.mjs FEEDWRIGHT TABLE      the latter is what `feedwright run parts/star.ngc` prints
+// Where SCREENSHOTS names a folder, the pictures go there.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { readFile } from "node:fs/promises";
+import { chromium } from "playwright-core";
+
+const [command, tablePath] = process.argv.slice(2);
+const PATIENCE_MS = 120_000;
+const star = new URL("../../parts/star.ngc", import.meta.url).pathname;
+
+/** Starts the command; its address comes first. */
+function open(...files) {
+  const child = spawn(command, ["open", "--no-browser", "--quiet", ...files], { stdio: ["ignore", "pipe", "inherit"] });
+  const address = new Promise((resolve, reject) => {
+    child.stdout.once("data", (text) => resolve(String(text).trim()));
+    child.once("exit", (code) => reject(new Error(`feedwright open ended with ${code}`)));
+  });
+  return { child, address };
+}
+
+const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
+const served = [open(), open(star)];
+const [address, withFile] = await Promise.all(served.map((one) => one.address));
+const faults = [];
+
+async function visit(at, options = {}) {
+  const page = await browser.newPage({ viewport: { width: 1440, height: 900 }, colorScheme: "light", acceptDownloads: true, ...options });
+  page.setDefaultTimeout(PATIENCE_MS);
+  page.on("console", (message) => message.type() === "error" && faults.push(message.text()));
+  page.on("pageerror", (error) => faults.push(error.message));
+  page.on("request", (request) => {
+    if (!request.url().startsWith(at.split("#")[0]) && !/^(blob|data):/.test(request.url())) faults.push(`asks for ${request.url()}`);
+  });
+  await page.goto(at);
+  return page;
+}
+
+const seen = (page, selector) => page.waitForSelector(selector, { state: "visible" });
+const cells = (page, table) => page.$$eval(`${table} tbody tr`, (rows) => rows.map((row) => [...row.children].map((cell) => cell.textContent)));
+const picture = (page, name) => process.env.SCREENSHOTS && page.screenshot({ path: `${process.env.SCREENSHOTS}/${name}.png` });
+async function saved(page, button) {
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click(button)]);
+  return [download.suggestedFilename(), await readFile(await download.path(), "utf8")];
+}
+
+const tests = {
+  async "a first visit shows the examples, and a click cuts one with the figures of the command"() {
+    const page = await visit(address);
+    await seen(page, "#cards button");
+    assert.equal(await page.locator("#cards button").count(), 4);
+    await picture(page, "first");
+    await page.click("[data-example=star]");
+    await seen(page, "#figures");
+    const table = (await readFile(tablePath, "utf8")).split("\n");
+    for (const [name, ...figures] of await cells(page, "#figures")) {
+      const row = table.find((line) => line.trim().startsWith(name) && line.includes(figures[0]));
+      assert.deepEqual(row?.trim().split(/\s+/).slice(1, 4), figures, `${name}: ${row}`);
+    }
+    assert.match(page.url(), /#example=star$/);
+    await picture(page, "star");
+    // A worst place is shown, with its line.
+    await page.click("#worst button >> nth=0");
+    assert.match(await page.textContent("#readout"), /line \d+ .*error \d/);
+    // In inches the figures are thousandths.
+    await page.click("[data-units=in]");
+    const [[, , rms]] = await cells(page, "#figures");
+    assert.ok(Math.abs(Number(rms) * 25.4 - Number(table.find((line) => line.trim().startsWith("uncorrected")).trim().split(/\s+/)[2])) < 0.03, rms);
+    const [name, report] = await saved(page, "#report");
+    assert.ok(name === "star.report.html" && report.includes("contour report"), name);
+    await page.close();
+  },
+
+  async "a corrected program is predicted and downloaded"() {
+    const page = await visit(`${address}#example=star`);
+    await seen(page, "#figures");
+    await page.click("#correct");
+    await seen(page, "#corrected");
+    const [before, after] = await cells(page, "#corrected");
+    assert.ok(Number(after[2]) < 0.5 * Number(before[2]), `${before} ${after}`);
+    const [name, program] = await saved(page, "#download");
+    assert.ok(name === "star.corrected.ngc" && program.includes("corrected by feedwright"), name);
+    await picture(page, "corrected");
+    await page.close();
+  },
+
+  async "a mistake is told while it is typed, and a corrected line is cut"() {
+    const page = await visit(address);
+    await page.fill("#text", "G21 G90 F600\nG1 X10\nG1 X20 Q\nM2\n");
+    await seen(page, "#findings .error");
+    assert.match(await page.textContent("#findings"), /^3:\d+ error/);
+    assert.ok(await page.isDisabled("#run"));
+    await picture(page, "mistake");
+    await page.fill("#text", "G21 G90 F600\nG1 X10\nG1 X20\nM2\n");
+    await page.waitForSelector("#run:enabled");
+    await page.click("#run");
+    await seen(page, "#figures");
+    // What is changed has no results.
+    await page.fill("#text", "G21 G90 F600\nG1 X10\nM2\n");
+    await page.waitForSelector("#figures", { state: "hidden" });
+    await page.close();
+  },
+
+  async "files are dropped, the program and the machine"() {
+    const page = await visit(address);
+    await seen(page, "#cards button");
+    const drop = (name, text) => page.evaluate(([name, text]) => {
+      const data = new DataTransfer();
+      data.items.add(new File([text], name));
+      dispatchEvent(new DragEvent("drop", { dataTransfer: data, cancelable: true }));
+    }, [name, text]);
+    await drop("part.nc", "G21 G90 F600\nG1 X10\nM2\n");
+    await page.waitForSelector("#run:enabled");
+    assert.equal(await page.textContent("#name"), "part.nc");
+    await drop("mine.toml", "name = 1\n");
+    await seen(page, "#message");
+    assert.match(await page.textContent("#message"), /mine\.toml/);
+    await page.close();
+  },
+
+  async "a cut is cancelled"() {
+    const page = await visit(address);
+    const lines = Array.from({ length: 4000 }, (_, k) => `G1 X${k % 2 ? 50 : 0} Y${k / 100}`);
+    await page.fill("#text", `G21 G90 F6000\n${lines.join("\n")}\nM2\n`);
+    await page.waitForSelector("#run:enabled");
+    await page.click("#run");
+    await seen(page, "#work");
+    await page.waitForFunction(() => document.querySelector("#bar").value > 0);
+    await page.click("#cancel");
+    await page.waitForSelector("#work", { state: "hidden" });
+    assert.ok(await page.isHidden("#figures"));
+    assert.ok(await page.isEnabled("#run"));
+    await page.close();
+  },
+
+  async "the file of the command line is there"() {
+    const page = await visit(withFile);
+    await page.waitForSelector("#run:enabled");
+    assert.equal(await page.textContent("#name"), "star.ngc");
+    assert.equal(await page.inputValue("#text"), await readFile(star, "utf8"));
+    await page.close();
+  },
+
+  async "everything can be done by keyboard"() {
+    const page = await visit(address);
+    await seen(page, "#cards button");
+    const focus = () => page.evaluate(() => document.activeElement?.dataset.example ?? document.activeElement?.id);
+    for (let tab = 0; (await focus()) !== "star"; tab++) {
+      assert.ok(tab < 40, "the examples cannot be reached");
+      await page.keyboard.press("Tab");
+    }
+    assert.notEqual(await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle), "none");
+    await page.keyboard.press("Enter");
+    await seen(page, "#figures");
+    await page.focus("#view > canvas:last-of-type");
+    for (const key of ["ArrowLeft", "+", "-", "0"]) await page.keyboard.press(key);
+    await page.focus("#time");
+    await page.keyboard.press("End");
+    assert.match(await page.textContent("#readout"), /^\d/);
+    await page.focus("#text");
+    await page.keyboard.press("Control+Enter");
+    await seen(page, "#work");
+    await page.keyboard.press("Escape");
+    await page.waitForSelector("#work", { state: "hidden" });
+    await page.close();
+  },
+
+  async "colors have the contrast of WCAG AA, light and dark, and nothing moves for those who want that"() {
+    for (const colorScheme of ["light", "dark"]) {
+      const page = await visit(address, { colorScheme, reducedMotion: "reduce" });
+      const ratios = await page.evaluate(() => {
+        const probe = document.body.appendChild(document.createElement("i"));
+        const g = Object.assign(document.createElement("canvas"), { width: 1, height: 1 }).getContext("2d", { willReadFrequently: true });
+        const luminance = (name) => {
+          probe.style.setProperty("color", `var(${name})`);
+          g.fillStyle = getComputedStyle(probe).color;
+          g.fillRect(0, 0, 1, 1);
+          const [r, green, b] = [...g.getImageData(0, 0, 1, 1).data].map((v) => (v /= 255) <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+          return 0.2126 * r + 0.7152 * green + 0.0722 * b;
+        };
+        const pairs = ["--ink", "--ink-2", "--ink-3", "--alarm"].flatMap((ink) => ["--bg", "--panel", "--hover"].map((ground) => [ink, ground]));
+        return [...pairs, ["--on-accent", "--accent"], ["--on-accent", "--alarm"]].map(([ink, ground]) => {
+          const [low, high] = [luminance(ink), luminance(ground)].sort((a, b) => a - b);
+          return [`${ink} on ${ground}`, (high + 0.05) / (low + 0.05)];
+        });
+      });
+      for (const [pair, ratio] of ratios) assert.ok(ratio >= 4.5, `${colorScheme}, ${pair}: ${ratio.toFixed(2)}`);
+      assert.match(await page.$eval("#open", (button) => getComputedStyle(button).transitionDuration), /^0s$/);
+      await seen(page, "#cards button");
+      await picture(page, colorScheme);
+      await page.close();
+    }
+  },
+
+  async "on a phone nothing is wider than the screen"() {
+    const page = await visit(`${address}#example=star`, { viewport: { width: 390, height: 844 }, hasTouch: true });
+    await seen(page, "#figures");
+    assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 390);
+    await picture(page, "phone");
+    await page.close();
+  },
+};
+
+try {
+  for (const [name, test] of Object.entries(tests)) {
+    const began = Date.now();
+    await test();
+    assert.deepEqual(faults, [], name);
+    console.log(`page: ${name} (${((Date.now() - began) / 1000).toFixed(1)} s)`);
+  }
+} finally {
+  await browser.close();
+  served.forEach(({ child }) => child.kill());
+}

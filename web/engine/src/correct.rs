@@ -1,0 +1,38 @@
+//! A corrected program for a control without feedback.
+
+use feedwright::{CorrectJob, ExportedFigures, TARGETS, TargetControl};
+use serde_json::{Value, json};
+
+use crate::page::PageWatch;
+use crate::request::{Outputs, Request, figure, json};
+
+pub(crate) fn correct(request: &Request) -> miette::Result<Outputs> {
+    let target = match &request.target {
+        None => &TARGETS[0],
+        Some(name) => TargetControl::find(name).ok_or_else(|| miette::miette!("no control is called '{name}'"))?,
+    };
+    let outcome = CorrectJob::new(request.program(), request.machine()?, target).run(&PageWatch::default())?;
+    let program = outcome.program().unwrap_or_default().as_bytes().to_vec();
+    let answer = json!({
+        "figures": [figures("uncorrected", &outcome.uncorrected), figures("as exported", &outcome.corrected)],
+        "control": outcome.control,
+        "refusal": outcome.refusal,
+        "hint": outcome.hint,
+        "stretches": outcome.stretches,
+        "stretches_changed": outcome.stretches_changed,
+        "rounds": outcome.rounds,
+    });
+    Ok(vec![json(&answer), program])
+}
+
+/// A row of the table of `correct`.
+fn figures(name: &str, figures: &ExportedFigures) -> Value {
+    let ExportedFigures { rms_um, max_um, time_s, blocks, .. } = figures;
+    json!({
+        "name": name,
+        "time_s": figure(*time_s, 3),
+        "rms_um": figure(*rms_um, 2),
+        "max_um": figure(*max_um, 2),
+        "blocks": blocks,
+    })
+}

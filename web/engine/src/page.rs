@@ -1,0 +1,99 @@
+//! What the page is told while a request is answered, through two functions that the module imports.
+
+use std::io;
+use std::sync::{Mutex, PoisonError};
+
+use feedwright::sim::{Row, Sink, Watch};
+
+#[cfg(target_arch = "wasm32")]
+mod imports {
+    #[expect(unsafe_code, reason = "the attribute names where the functions come from")]
+    #[link(wasm_import_module = "page")]
+    unsafe extern "C" {
+        /// A stage has come so far: its name as text in the memory of the module, and thousandths.
+        pub(super) safe fn progress(stage: usize, bytes: usize, thousandths: u32);
+        /// So many points were cut: x, y, z in mm and the contour error in um, as 32-bit floats.
+        pub(super) safe fn cut(points: usize, count: usize);
+    }
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+mod imports {
+    pub(super) fn progress(_stage: usize, _bytes: usize, _thousandths: u32) {}
+    pub(super) fn cut(_points: usize, _count: usize) {}
+}
+
+/// Thousandths of a stage between two reports of its progress.
+const STEP: u64 = 10;
+
+#[derive(Debug, Default)]
+struct Stage {
+    name: String,
+    steps: u64,
+    done: u64,
+    told: u64,
+}
+
+/// Tells the page the progress of a stage.
+#[derive(Debug, Default)]
+pub(crate) struct PageWatch(Mutex<Stage>);
+
+impl Watch for PageWatch {
+    fn begin(&self, stage: &str, steps: u64) {
+        let mut now = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        *now = Stage { name: stage.to_owned(), steps: steps.max(1), done: 0, told: 0 };
+        imports::progress(now.name.as_ptr() as usize, now.name.len(), 0);
+    }
+
+    fn advance(&self, steps: u64) {
+        let mut now = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        now.done += steps;
+        let thousandths = (1000 * now.done / now.steps.max(1)).min(1000);
+        if thousandths >= now.told + STEP {
+            now.told = thousandths;
+            imports::progress(now.name.as_ptr() as usize, now.name.len(), thousandths as u32);
+        }
+    }
+}
+
+/// Points that are kept before the page is told of them.
+const POINTS: usize = 256;
+
+/// Draws the cut on the page while it is computed.
+#[derive(Debug)]
+pub(crate) struct PageCut {
+    /// Least distance between two points, mm.
+    apart_mm: f64,
+    last_mm: [f64; 3],
+    points: Vec<[f32; 4]>,
+}
+
+impl PageCut {
+    /// Points that are `apart_mm` apart at least.
+    pub(crate) fn new(apart_mm: f64) -> Self {
+        Self { apart_mm, last_mm: [f64::INFINITY; 3], points: Vec::with_capacity(POINTS) }
+    }
+
+    /// Tells the page of the last points.
+    pub(crate) fn flush(&mut self) {
+        imports::cut(self.points.as_ptr() as usize, self.points.len());
+        self.points.clear();
+    }
+}
+
+impl Sink for PageCut {
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        let squares = row.act_mm.iter().zip(self.last_mm).map(|(now, last)| (now - last) * (now - last));
+        if squares.sum::<f64>() < self.apart_mm * self.apart_mm {
+            return Ok(());
+        }
+        self.last_mm = row.act_mm;
+        let [x, y, z] = row.act_mm.map(|mm| mm as f32);
+        let error_um = if row.cutting { 1e3 * row.contour_error_mm as f32 } else { f32::NAN };
+        self.points.push([x, y, z, error_um]);
+        if self.points.len() == POINTS {
+            self.flush();
+        }
+        Ok(())
+    }
+}
