@@ -26,11 +26,19 @@ export function grouped(points: Float32Array, groups: number, shade: (end: numbe
 /** Shorter pieces of a line than this are drawn with the next one, pixels. */
 const SHORTEST = 0.7;
 
-/** Adds a group to the current path of a canvas. `at` has x and y of each point in pixels; nothing outside of the canvas is drawn. */
-export function trace(g: CanvasRenderingContext2D, { ends, starts }: Strokes, group: number, at: Float32Array, width: number, height: number): void {
+/** Segments that are drawn or left out together. */
+const RUN = 32;
+
+/** Where a polyline is drawn: x and y of each point and the size of the canvas, in pixels, and one of how many segments. */
+export interface Sheet { at: Float32Array; width: number; height: number; oneOf: number }
+
+/** Adds a group to the current path of a canvas. Nothing outside of the canvas is drawn. */
+export function trace(g: CanvasRenderingContext2D, { ends, starts }: Strokes, group: number, { at, width, height, oneOf }: Sheet): void {
   let pen = -1, penX = 0, penY = 0;
   for (let k = starts[group]; k < starts[group + 1]; k++) {
-    const end = ends[k], x = at[2 * end], y = at[2 * end + 1], x0 = at[2 * end - 2], y0 = at[2 * end - 1];
+    const end = ends[k];
+    if (oneOf > 1 && Math.floor(end / RUN) % oneOf) continue;
+    const x = at[2 * end], y = at[2 * end + 1], x0 = at[2 * end - 2], y0 = at[2 * end - 1];
     if ((x < 0 && x0 < 0) || (y < 0 && y0 < 0) || (x > width && x0 > width) || (y > height && y0 > height)) continue;
     const isNext = pen === end - 1;
     if (!isNext) {

@@ -18,6 +18,13 @@ const SIDES: Record<Side, [Vector, Vector]> = {
 
 const MARGIN = 28;
 
+/** While the view moves, a frame that takes longer than the first makes the next one coarser; one below the second makes it finer. */
+const [SLOW_MS, FAST_MS] = [50, 20];
+/** At the coarsest, one of so many segments is drawn while the view moves. */
+const COARSEST = 256;
+/** After so long at rest, everything is drawn. */
+const REST_MS = 200;
+
 export class PathView {
   /** Factor by which errors are drawn too large; 0 chooses one. */
   gain = 0;
@@ -36,6 +43,9 @@ export class PathView {
   #tool: Vector | undefined;
   #screen = new Float32Array(0);
   #frame = 0;
+  #oneOf = 1;
+  #moved_ms = -Infinity;
+  #resting = 0;
   #box: [Vector, Vector] | undefined;
 
   constructor(place: HTMLElement) {
@@ -116,8 +126,27 @@ export class PathView {
     });
   }
 
-  /** Draws at once. */
-  draw(): void {
+  /** Draws while the view moves: as much as leaves the motion smooth, and all of it at rest. */
+  #move(): void {
+    this.#isFitted = false;
+    clearTimeout(this.#resting);
+    this.#resting = setTimeout(() => {
+      this.#moved_ms = -Infinity;
+      this.redraw();
+    }, REST_MS);
+    this.#frame ||= requestAnimationFrame((now_ms) => {
+      this.#frame = 0;
+      const took_ms = now_ms - this.#moved_ms;
+      this.#moved_ms = now_ms;
+      // The first frame of a motion tells nothing.
+      if (took_ms < REST_MS * 5 && took_ms > SLOW_MS) this.#oneOf = Math.min(COARSEST, 2 * this.#oneOf);
+      else if (took_ms < FAST_MS) this.#oneOf = Math.max(1, this.#oneOf / 2);
+      this.draw(this.#oneOf);
+    });
+  }
+
+  /** Draws at once, one of so many segments. */
+  draw(oneOf = 1): void {
     const g = this.#path.getContext("2d")!, ratio = devicePixelRatio, { clientWidth: w, clientHeight: h } = this.#path;
     g.setTransform(ratio, 0, 0, ratio, 0, 0);
     g.clearRect(0, 0, w, h);
@@ -125,7 +154,7 @@ export class PathView {
     this.#grid(g, w, h);
     const stroke = (strokes: Strokes, group: number, at: Float32Array) => {
       g.beginPath();
-      trace(g, strokes, group, at, w, h);
+      trace(g, strokes, group, { at, width: w, height: h, oneOf });
       g.stroke();
     };
     if (this.#programmed) {
@@ -259,21 +288,19 @@ export class PathView {
   }
 
   pan(dx: number, dy: number): void {
-    this.#isFitted = false;
     this.#camera.x -= dx / this.#camera.scale;
     this.#camera.y += dy / this.#camera.scale;
-    this.redraw();
+    this.#move();
   }
 
   /** Zooms about a pixel. */
   zoom(factor: number, px = this.#path.clientWidth / 2, py = this.#path.clientHeight / 2): void {
-    this.#isFitted = false;
     const camera = this.#camera, [dx, dy] = [px - this.#path.clientWidth / 2, this.#path.clientHeight / 2 - py];
     const scale = Math.min(1e6, Math.max(1e-4, camera.scale * factor));
     camera.x += dx / camera.scale - dx / scale;
     camera.y += dy / camera.scale - dy / scale;
     camera.scale = scale;
-    this.redraw();
+    this.#move();
   }
 
   /** The point of the cut nearest to a pixel; none beyond a finger's width. */
