@@ -58,8 +58,9 @@ export class Editor {
   }
 
   #count(): void {
+    const program = this.value;
     this.#lines = 1;
-    for (let at = -1; (at = this.value.indexOf("\n", at + 1)) >= 0; ) this.#lines++;
+    for (let at = -1; (at = program.indexOf("\n", at + 1)) >= 0; ) this.#lines++;
     this.#draw();
   }
 
