@@ -164,7 +164,7 @@ fn content(path: &PathBuf) -> io::Result<Vec<u8>> {
     }
     let mut bytes = Vec::new();
     File::open(path)?.take(FILE_BYTES).read_to_end(&mut bytes)?;
-    Ok(bytes)
+    if bytes.len() as u64 == FILE_BYTES { Err(io::ErrorKind::FileTooLarge.into()) } else { Ok(bytes) }
 }
 
 /// An answer that says no more than its status.
