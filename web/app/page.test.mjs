@@ -25,7 +25,7 @@ const served = [open(), open(star)];
 const [address, withFile] = await Promise.all(served.map((one) => one.address));
 const faults = [];
 
-async function visit(at, options = {}) {
+async function visit(at, options = {}, prepare = async () => {}) {
   const page = await browser.newPage({ viewport: { width: 1440, height: 900 }, colorScheme: "light", acceptDownloads: true, ...options });
   page.setDefaultTimeout(PATIENCE_MS);
   page.on("console", (message) => message.type() === "error" && faults.push(message.text()));
@@ -33,6 +33,7 @@ async function visit(at, options = {}) {
   page.on("request", (request) => {
     if (!request.url().startsWith(at.split("#")[0]) && !/^(blob|data):/.test(request.url())) faults.push(`asks for ${request.url()}`);
   });
+  await prepare(page);
   await page.goto(at);
   return page;
 }
@@ -91,8 +92,18 @@ const tests = {
   },
 
   async "a mistake is told while it is typed, and a corrected line is cut"() {
-    const page = await visit(address);
+    // The first text comes while the engine starts.
+    const later = () => { let resolve; const promise = new Promise((r) => (resolve = r)); return { promise, resolve }; };
+    const [asked, typed] = [later(), later()];
+    const page = await visit(address, {}, (page) => page.route("**/engine.js", async (route) => {
+      asked.resolve();
+      await typed.promise;
+      await route.continue();
+    }));
+    await asked.promise;
     await page.fill("#text", "G21 G90 F600\nG1 X10\nG1 X20 Q\nM2\n");
+    await page.waitForTimeout(500);
+    typed.resolve();
     await seen(page, "#findings .error");
     assert.match(await page.textContent("#findings"), /^3:\d+ error/);
     assert.ok(await page.isDisabled("#run"));

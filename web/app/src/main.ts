@@ -18,8 +18,8 @@ const view = new PathView($("view"));
 const curve = new Curve($("curve"));
 const editor = new Editor($("text"), $("gutter"));
 const playback = new Playback($("play"), $("time"), $("speed"));
-// What is typed is checked while a program is cut.
-const [checker, cutter] = [new Engine(), new Engine()];
+// What is typed is checked while a program is cut; the start has an engine of its own.
+const [checker, cutter, drawer] = [new Engine(), new Engine(), new Engine()];
 
 const machineSelect = $<HTMLSelectElement>("machine"), controllerSelect = $<HTMLSelectElement>("controller");
 const exampleSelect = $<HTMLSelectElement>("example"), controlSelect = $<HTMLSelectElement>("control");
@@ -103,7 +103,8 @@ let lastCheck = 0;
 async function check(): Promise<void> {
   const number = ++lastCheck;
   checker.cancel();
-  if (!editor.value.trim()) {
+  // The start checks what was typed before the machines were there.
+  if (!state.lists || !editor.value.trim()) {
     state.checked = undefined;
     showChecked();
     return;
@@ -479,12 +480,10 @@ async function showCards(): Promise<void> {
     return { card, canvas, name };
   });
   $("cards").replaceChildren(...cards.map(({ card }) => card));
-  const drawer = new Engine();
   for (const { canvas, name } of cards) {
     const { points, kinds } = await drawer.ask({ task: "check", name, program: EXAMPLES[name].program });
     drawCard(canvas, points, kinds);
   }
-  drawer.cancel();
 }
 
 function drawCard(canvas: HTMLCanvasElement, points: Float32Array, kinds: Uint32Array): void {
@@ -518,7 +517,8 @@ async function start(): Promise<void> {
   for (const [name, { about }] of Object.entries(EXAMPLES)) exampleSelect.append(Object.assign(new Option(name, name), { title: about }));
   try {
     await engineModule();
-    const lists = (state.lists = await checker.ask({ task: "lists" }));
+    // Typing cancels the checker, and must not end this.
+    const lists = (state.lists = await drawer.ask({ task: "lists" }));
     fill(machineSelect, lists.machines, lists.machine);
     fill(controllerSelect, lists.controllers, lists.controller);
     fill(controlSelect, lists.controls, lists.control);
@@ -531,6 +531,7 @@ async function start(): Promise<void> {
   } catch (error) {
     say(`The engine does not start: ${(error as Error).message}`);
   }
+  drawer.cancel();
 }
 
 // For tests and measurements.
