@@ -1,5 +1,5 @@
 // The page in a browser, as `feedwright open` serves it:
-//   node page.test.mjs FEEDWRIGHT TABLE [NAME]      TABLE is what `feedwright run parts/star.ngc` prints; NAME is a part of the name of a test
+//   node page.test.mjs FEEDWRIGHT TABLE [NAME]      TABLE: what `feedwright run parts/star.ngc` prints; NAME: a part of the name of a test
 // Where SCREENSHOTS names a folder, the pictures go there.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
