@@ -9,7 +9,7 @@ const MOST_OPTIONS: usize = 15;
 
 /// The commands by what they are for. A command that is in no group is listed in the last.
 const GROUPS: [(&str, &[&str]); 4] = [
-    ("Program", &["run", "correct", "advise", "plan", "diff", "check", "canon"]),
+    ("Program", &["run", "correct", "advise", "plan", "open", "diff", "check", "canon"]),
     ("Machine", &["identify", "excite", "machines", "controllers"]),
     ("LinuxCNC", &["linuxcnc", "block"]),
     ("feedwright itself", &[]),
