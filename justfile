@@ -158,6 +158,18 @@ help:
 gcode-compare programs="20000" first="1":
     cargo run --release --quiet -p feedwright-plan --example gcode_compare -- {{ programs }} {{ first }}
 
+# Every fuzz target for so many minutes, one after the other (`cargo install cargo-fuzz`). What is found is in fuzz/artifacts; as a test it
+# goes to fuzz/seeds. The stable compiler is told to take the flags of the unstable one.
+fuzz minutes="5" targets="reader expressions files block logs corrected planner tick":
+    #!/usr/bin/env bash
+    set -euo pipefail
+    export RUSTC_BOOTSTRAP=1
+    for target in {{ targets }}; do
+        mkdir -p fuzz/corpus/$target
+        cargo fuzz run --sanitizer none $target fuzz/corpus/$target fuzz/seeds/$target -- \
+            -max_total_time=$(({{ minutes }} * 60)) -max_len=2000 -timeout=60 -rss_limit_mb=3000
+    done
+
 # Instructions of one piece of work in the servo thread, counted by callgrind (Debian: valgrind).
 instructions:
     #!/usr/bin/env bash

@@ -1,0 +1,88 @@
+//! Blocks of models: bytes as they come with a checksum that fits, and axes whose numbers are at the ends of their ranges.
+
+use std::f64::consts::TAU;
+
+use feedwright_control::{
+    AxisKnowledge, DriveParameters, IdentifiedAxes, LoopDelays, ModelBlock, Parameters, Periods, Trained,
+};
+
+use crate::draw::Draw;
+
+/// Servo period of a usual machine, s.
+pub(crate) const SERVO_S: f64 = 0.001;
+/// Servo and mechanics periods of blocks, s.
+const PERIODS_S: &[[f64; 2]] =
+    &[[1e-3, 1e-4], [1e-3, 1e-3], [2e-3, 1e-4], [1e-3, 1e-5], [1e-5, 1e-5], [0.1, 0.1], [0.1, 1e-4], [1e-3, 1e-7]];
+
+/// Axes with the numbers of the machine of Lee, Cho and Jeon (2005), with delays and an integral of the speed loop.
+pub(crate) fn known_axes<const N: usize>() -> IdentifiedAxes<N> {
+    let parameters = Parameters {
+        rad_per_mm: TAU / 10.0,
+        kp_1_s: 50.0,
+        kd: 0.0,
+        kv_nm_s_per_rad: 2.0,
+        torque_limit_nm: 30.0,
+        inertia_kg_m2: 0.0103,
+        viscous_friction_nm_s: 0.0336,
+        coulomb_friction_nm: 0.2,
+        coulomb_smoothing_rad_s: 0.05,
+    };
+    let periods = Periods { servo_s: SERVO_S, mechanics_s: 0.0001, mechanics_per_servo: 10 };
+    let delays = LoopDelays { command_s: 0.0, drive_s: 0.001, measurement_s: 0.0005 };
+    let drive = DriveParameters { speed_integral_s: 0.02, ..AxisKnowledge::NOTHING.drive };
+    let axis = AxisKnowledge { parameters, periods, delays, drive, ..AxisKnowledge::NOTHING };
+    IdentifiedAxes { mechanics_s: periods.mechanics_s, axes: [axis; N] }
+}
+
+/// A block of axes: usual ones of which some numbers are anything in their ranges.
+pub(crate) fn absurd<const N: usize>(draw: &mut Draw) -> Vec<u8> {
+    let mut axes = known_axes::<N>();
+    let [servo_s, mechanics_s] = draw.pick(PERIODS_S);
+    axes.mechanics_s = mechanics_s;
+    for axis in &mut axes.axes {
+        for _ in 0..draw.below(12) {
+            let number = draw.pick(AxisKnowledge::NUMBERS);
+            let [least, most] = number.range;
+            *(number.of)(axis) = match draw.below(6) {
+                0 => least,
+                1 => most,
+                2 if least > 0.0 => (least * most).sqrt(),
+                3 if number.or_none => 0.0,
+                _ => least + draw.part() * (most - least),
+            };
+        }
+    }
+    let block = ModelBlock { servo_s, feed_period_s: 0.005, trained: Trained::Axes(axes), geometry: None };
+    let mut bytes = Vec::new();
+    block.to_bytes(|part| bytes.extend_from_slice(part));
+    bytes
+}
+
+/// Bytes as a block with the header of a kind and the checksum that fits them.
+pub(crate) fn with_checksum(draw: &mut Draw) -> Vec<u8> {
+    let [format, kind, axes] = [draw.pick(&[2_u32, 3, 4]), draw.pick(&[1, 2, 3]), draw.pick(&[2, 3])];
+    let mut content = b"FWMODEL\0".to_vec();
+    let numbers = (draw.rest().len() / 8) as u32;
+    for whole in [format, kind, axes, numbers.saturating_sub(2)] {
+        content.extend_from_slice(&whole.to_le_bytes());
+    }
+    content.extend_from_slice(&draw.rest()[..8 * numbers as usize]);
+    let checksum = crc_32(&content);
+    content.extend_from_slice(&checksum.to_le_bytes());
+    content
+}
+
+/// CRC-32 of IEEE 802.3, bit by bit.
+fn crc_32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(*byte), |crc, _| (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg()))
+    })
+}
+
+/// Reads a block: what is accepted is written as bytes that read as the same.
+pub(crate) fn read<const N: usize>(bytes: &[u8]) {
+    let Ok(block) = ModelBlock::<N>::from_bytes(bytes) else { return };
+    let mut again = Vec::new();
+    block.to_bytes(|part| again.extend_from_slice(part));
+    assert_eq!(ModelBlock::from_bytes(&again).as_ref(), Ok(&block));
+}

@@ -1,0 +1,121 @@
+//! What the fuzz targets run and check. Each takes any bytes, and panics where a promise is broken.
+//!
+//! | Target | What must hold |
+//! |---|---|
+//! | [`reader`] | any text in any dialect: finite coordinates in reach, motions that meet, messages without control characters |
+//! | [`expressions`] | the value of an expression is the same when it is written in brackets; never a number that is none |
+//! | [`files`] | files of machines, geometries and models: what is accepted is written as a file that says the same |
+//! | [`block`] | blocks of models: what is accepted is written as a block that says the same |
+//! | [`logs`] | CSV and MAT: what is accepted is finite and complete |
+//! | [`corrected`] | a corrected program is read again without mistakes, ends where the original ends and stays near it |
+//! | [`planner`] | phases join; velocity, acceleration and jerk of every axis and the tolerance of the path hold |
+//! | [`tick`] | any accepted model, plant and pins: commands are finite and near the path |
+//!
+//! `just fuzz MINUTES` runs all of them. `tests/suite.rs` replays the seeds and what the fuzzer found.
+
+mod draw;
+mod programs;
+mod paths;
+mod blocks;
+mod files;
+mod logs;
+mod corrected;
+mod planned;
+mod tick;
+
+use std::fmt::Write;
+
+use feedwright_gcode::canon::Canon;
+
+use draw::Draw;
+
+/// A target: its name, and what it runs.
+pub type FuzzTarget = (&'static str, fn(&[u8]));
+
+/// All targets.
+pub const TARGETS: [FuzzTarget; 8] = [
+    ("reader", reader),
+    ("expressions", expressions),
+    ("files", files),
+    ("block", block),
+    ("logs", logs),
+    ("corrected", corrected),
+    ("planner", planner),
+    ("tick", tick),
+];
+
+/// Programs in any dialect.
+pub fn reader(data: &[u8]) {
+    let mut draw = Draw::new(data);
+    let dialect = programs::dialect(&mut draw);
+    if draw.below(4) == 0 {
+        programs::read(draw.rest(), dialect);
+    } else {
+        programs::read(programs::program(&mut draw).as_bytes(), dialect);
+    }
+}
+
+/// Expressions.
+pub fn expressions(data: &[u8]) {
+    let mut draw = Draw::new(data);
+    let dialect = programs::dialect(&mut draw);
+    let mut expression = String::new();
+    programs::expression(&mut draw, &mut expression, 6);
+    let mut text = String::from("G21 G90 F600\n");
+    for k in 1..6 {
+        let _ = writeln!(text, "#{k}={}", draw.number(9.0));
+    }
+    let _ = writeln!(text, "#7=[{expression}]\n#8=[[{expression}]]\nG1 X[#7]\nG1 X[#8]\nM2");
+    let steps = programs::read(text.as_bytes(), dialect);
+    let ends =
+        steps.iter().filter_map(|step| if let Canon::Motion(motion) = step { Some(motion.end_mm[0]) } else { None });
+    let ends: Vec<f64> = ends.collect();
+    assert!(ends.len() < 2 || ends[0] == ends[1], "{ends:?}\n{text}");
+}
+
+/// Files of machines, geometries and models.
+pub fn files(data: &[u8]) {
+    files::read(data);
+}
+
+/// Blocks of models.
+pub fn block(data: &[u8]) {
+    let mut draw = Draw::new(data);
+    match draw.below(4) {
+        0 => {
+            blocks::read::<2>(draw.rest());
+            blocks::read::<3>(draw.rest());
+        }
+        1 => blocks::read::<3>(&blocks::absurd::<3>(&mut draw)),
+        2 => blocks::read::<2>(&blocks::absurd::<2>(&mut draw)),
+        _ => {
+            let bytes = blocks::with_checksum(&mut draw);
+            blocks::read::<2>(&bytes);
+            blocks::read::<3>(&bytes);
+        }
+    }
+}
+
+/// Logs of machines.
+pub fn logs(data: &[u8]) {
+    logs::read(data);
+}
+
+/// Corrected programs.
+pub fn corrected(data: &[u8]) {
+    corrected::run(data);
+}
+
+/// Plans.
+pub fn planner(data: &[u8]) {
+    planned::run(data);
+}
+
+/// The servo thread.
+pub fn tick(data: &[u8]) {
+    match data.split_first() {
+        Some((first, rest)) if first % 2 == 1 => tick::run::<3>(rest),
+        Some((_, rest)) => tick::run::<2>(rest),
+        None => {}
+    }
+}
