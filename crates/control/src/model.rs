@@ -51,8 +51,8 @@ const MAX_GEOMETRY: f64 = 1e6;
 pub const SERVO_PERIODS_S: [f64; 2] = [1e-5, 0.1];
 /// Periods of the speed loop that it can have, s.
 pub const MECHANICS_PERIODS_S: [f64; 2] = [1e-7, 0.1];
-/// Most of them in a servo period: with more a tick takes longer than that.
-pub const MAX_MECHANICS_PER_SERVO: f64 = 10_000.0;
+/// Most of them in a servo period. A controller is made in a time that grows with them: with 10,000 it took seconds. Usual machines have 1 to 20.
+pub const MAX_MECHANICS_PER_SERVO: f64 = 1_000.0;
 /// Relative distance from a whole number below which the servo period counts as a whole multiple: rounding of decimal numbers.
 const WHOLE_RATIO_TOLERANCE: f64 = 1e-9;
 /// Largest size of a weight. A hidden node that turns its sign within 0.25 mm/s has weights of 400.
@@ -644,10 +644,11 @@ mod tests {
     fn axes_have_whole_mechanics_periods_in_a_servo_period() {
         let bytes = block(&axes::<2>());
         let read = |mechanics_s| ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), 2, mechanics_s));
-        for hostile_s in [0.0, -0.0, -1e-4, f64::NAN, f64::INFINITY, 1e-300, 9e-8, 0.0003, 0.002, 0.1, 1e7] {
+        for hostile_s in [0.0, -0.0, -1e-4, f64::NAN, f64::INFINITY, 1e-300, 9e-8, 1e-7, 5e-7, 0.0003, 0.002, 0.1, 1e7]
+        {
             assert_eq!(read(hostile_s), Err(BlockError::Number(2)), "{hostile_s}");
         }
-        for (fine_s, periods) in [(1e-7, 10_000), (1e-4, 10), (0.0005, 2), (0.001, 1)] {
+        for (fine_s, periods) in [(1e-6, 1_000), (1e-4, 10), (0.0005, 2), (0.001, 1)] {
             let Ok(ModelBlock { trained: Trained::Axes(axes), .. }) = read(fine_s) else { panic!("{fine_s}") };
             assert!(axes.axes.iter().all(|axis| axis.periods.mechanics_per_servo == periods), "{fine_s}");
         }

@@ -8,7 +8,7 @@ use feedwright_gcode::canon::{Motion, Shape};
 pub(crate) type Point = [f64; 3];
 
 /// Distance of chords from their arc, mm.
-pub(crate) const CHORD_MM: f64 = 1e-4;
+pub(crate) const CHORD_MM: f64 = 1e-3;
 /// Chords of an arc at most.
 const MOST_CHORDS: f64 = 5_000.0;
 /// Below this angle an arc is a full turn, rad.

@@ -15,8 +15,8 @@ const JOIN: [f64; 3] = [1e-6, 1e-4, 1e-1];
 /// Relative rounding of a limit.
 const ROUNDING: f64 = 1e-6;
 /// Phases that are checked, and places of each.
-const PHASES: usize = 3_000;
-const PLACES: u32 = 4;
+const PHASES: usize = 600;
+const PLACES: u32 = 2;
 /// Tolerances of the path, um.
 const TOLERANCES_UM: &[f64] = &[10.0, 1.0, 100.0, 5.0];
 

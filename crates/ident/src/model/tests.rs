@@ -239,7 +239,7 @@ fn axes_that_cannot_be_computed_with_are_refused() {
     let presliding = AxisKnowledge::NUMBERS.iter().position(|number| number.name == "presliding_rad").unwrap();
     divides.weights.axes[presliding][1] = 1e-300;
     for (model, said) in [
-        (uneven, "servo_s is no whole multiple of mechanics_s, 1 to 10000 times"),
+        (uneven, "servo_s is no whole multiple of mechanics_s, 1 to 1000 times"),
         (divides, "presliding_rad, number 2 is 1e-300 rad; it must be 0 or lie between 1e-12 and 1e4 rad"),
     ] {
         let told = told_of(model);

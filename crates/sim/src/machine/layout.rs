@@ -2,7 +2,7 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use feedwright_control::MAX_COMMAND_PERIODS;
+use feedwright_control::{MAX_COMMAND_PERIODS, MAX_MECHANICS_PER_SERVO};
 use feedwright_plan::{Durations, PlcEvent};
 
 use super::{AXIS_NAMES, Axis, MACHINE_FORMAT, Machine, Noise, Period, Squareness, Transmission, keys};
@@ -13,10 +13,6 @@ use crate::toml_file::{Document, Fault, Table};
 /// Relative distance from a whole number below which `servo_s / mechanics_s` counts as whole: a hundred times the
 /// rounding of two decimal numbers and their quotient, far below any ratio that is off by a digit.
 const WHOLE_RATIO_TOLERANCE: f64 = 1e-12;
-
-/// Most mechanics steps in a servo period. The reader rejects a file with more: a unit is wrong,
-/// and the simulation would take too long.
-const MAX_MECHANICS_PER_SERVO: f64 = 10_000.0;
 
 /// Refuses a file of another format, whatever else stands in it.
 pub(super) fn of_this_format(document: &Document<'_>) -> Result<(), Vec<Fault>> {
