@@ -12,8 +12,8 @@ const DRAWN: [(&str, u64); 8] = [
     ("block", 300),
     ("logs", 60),
     ("corrected", 2),
-    ("planner", 20),
-    ("tick", 12),
+    ("planner", 1),
+    ("tick", 1),
 ];
 const BYTES: u64 = 600;
 
