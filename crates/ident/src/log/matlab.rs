@@ -22,7 +22,7 @@ use super::{LogError, LogFormat};
 const HEADER_BYTES: usize = 128;
 /// Bytes that the numbers of a file may take in memory: these, and so many for each byte of the file. Measured positions deflate to a
 /// quarter and more of their size; zeros to a thousandth, so that a small file could fill the memory.
-const FREE_BYTES: usize = 64 << 20;
+const FREE_BYTES: usize = 16 << 20;
 const BYTES_PER_BYTE: usize = 16;
 /// Bytes of a number in memory.
 const NUMBER_BYTES: usize = 8;
@@ -194,16 +194,19 @@ fn matrix(mut data: &[u8], order: ByteOrder, most_bytes: usize) -> Result<Option
     if rows.saturating_mul(columns).saturating_mul(NUMBER_BYTES) > most_bytes {
         return Err(VariableFault::TooLarge);
     }
-    let values = numbers(next()?, order).ok_or("has numbers of an unknown type")?;
-    if Some(values.len()) != rows.checked_mul(columns) {
-        return Err(VariableFault::Broken(format!("'{name}' has {} numbers, not {rows} x {columns}", values.len())));
+    let element = next()?;
+    let of = |data| numbers(Element { data, ..element }, order).ok_or("has numbers of an unknown type");
+    let number_bytes = NUMBER_BYTES / of(&[0; NUMBER_BYTES])?.len();
+    let count = element.data.len() / number_bytes;
+    if Some(count) != rows.checked_mul(columns) {
+        return Err(VariableFault::Broken(format!("'{name}' has {count} numbers, not {rows} x {columns}")));
     }
-    let columns = match (rows, columns) {
-        (0, _) | (_, 0) => Vec::new(),
-        (1, _) | (_, 1) => vec![values],
-        _ if rows > columns && columns <= MAX_COLUMNS => values.chunks_exact(rows).map(<[f64]>::to_vec).collect(),
-        _ => Vec::new(),
-    };
+    let is_vector = rows == 1 || columns == 1;
+    let is_read = count > 0 && (is_vector || rows > columns && columns <= MAX_COLUMNS);
+    // Column by column: all numbers at once would be in memory twice.
+    let column_bytes = number_bytes * if is_vector { count } else { rows };
+    let columns =
+        if is_read { element.data.chunks_exact(column_bytes).map(of).collect::<Result<_, _>>()? } else { Vec::new() };
     Ok(Some(Variable { name, columns }))
 }
 
