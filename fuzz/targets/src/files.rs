@@ -41,6 +41,9 @@ const GEOMETRY: &str = "format = 1\nname = \"x\"\nsource = \"ball bar\"\ndate = 
 /// A text with some of its lines left out, twice there, or with other values.
 fn spoilt(draw: &mut Draw, text: &str) -> String {
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    if lines.is_empty() {
+        return String::new();
+    }
     for _ in 0..=draw.below(SPOILT) {
         let at = usize::from(u16::from_le_bytes([draw.byte(), draw.byte()])) % lines.len();
         let key = lines[at].split_once('=').map(|(key, _)| key.trim().to_owned());
