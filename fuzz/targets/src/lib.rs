@@ -65,7 +65,7 @@ pub fn expressions(data: &[u8]) {
     for k in 1..6 {
         let _ = writeln!(text, "#{k}={}", draw.number(9.0));
     }
-    let _ = writeln!(text, "#7=[{expression}]\n#8=[[{expression}]]\nG1 X[#7]\nG1 X[#8]\nM2");
+    let _ = writeln!(text, "#27=[{expression}]\n#28=[[{expression}]]\nG1 X[#27]\nG1 X[#28]\nM2");
     let steps = programs::read(text.as_bytes(), dialect);
     let ends =
         steps.iter().filter_map(|step| if let Canon::Motion(motion) = step { Some(motion.end_mm[0]) } else { None });

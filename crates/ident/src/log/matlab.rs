@@ -199,7 +199,10 @@ fn matrix(mut data: &[u8], order: ByteOrder, most_bytes: usize) -> Result<Option
     let number_bytes = NUMBER_BYTES / of(&[0; NUMBER_BYTES])?.len();
     let count = element.data.len() / number_bytes;
     if Some(count) != rows.checked_mul(columns) {
-        return Err(VariableFault::Broken(format!("'{name}' has {count} numbers, not {rows} x {columns}")));
+        return Err(VariableFault::Broken(format!(
+            "'{}' has {count} numbers, not {rows} x {columns}",
+            name.escape_debug()
+        )));
     }
     let is_vector = rows == 1 || columns == 1;
     let is_read = count > 0 && (is_vector || rows > columns && columns <= MAX_COLUMNS);
