@@ -51,7 +51,7 @@ const MAX_GEOMETRY: f64 = 1e6;
 pub const SERVO_PERIODS_S: [f64; 2] = [1e-5, 0.1];
 /// Periods of the speed loop that it can have, s.
 pub const MECHANICS_PERIODS_S: [f64; 2] = [1e-7, 0.1];
-/// Most of them in a servo period. A controller is made in a time that grows with them: with 10,000 it took seconds. Usual machines have 1 to 20.
+/// Most of them in a servo period. A controller is made in a time that grows with them. Usual machines have 1 to 20.
 pub const MAX_MECHANICS_PER_SERVO: f64 = 1_000.0;
 /// Relative distance from a whole number below which the servo period counts as a whole multiple: rounding of decimal numbers.
 const WHOLE_RATIO_TOLERANCE: f64 = 1e-9;
