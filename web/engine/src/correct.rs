@@ -11,7 +11,12 @@ pub(crate) fn correct(request: &Request) -> miette::Result<Outputs> {
         None => &TARGETS[0],
         Some(name) => TargetControl::find(name).ok_or_else(|| miette::miette!("no control is called '{name}'"))?,
     };
-    let outcome = CorrectJob::new(request.program(), request.machine()?, target).run(&PageWatch::default())?;
+    let mut job = CorrectJob::new(request.program(), request.machine()?, target);
+    if !request.is_machine_text() {
+        // A built-in machine is simulated as it is written.
+        job.file_error = 0.0;
+    }
+    let outcome = job.run(&PageWatch::default())?;
     let program = outcome.program().unwrap_or_default().as_bytes().to_vec();
     let answer = json!({
         "figures": [figures("uncorrected", &outcome.uncorrected), figures("as exported", &outcome.corrected)],
