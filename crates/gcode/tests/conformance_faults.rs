@@ -182,7 +182,7 @@ fn files_that_are_no_program_are_named() {
         Program::in_file(file.path()).check(Settings::default()),
         Err(CheckError::Read(ReadError::Empty { .. }))
     ));
-    file.write_all(b"\x7fELF\0\0").unwrap();
+    file.write_all(b"\x01\x02\0\0").unwrap();
     assert!(matches!(
         Program::in_file(file.path()).check(Settings::default()),
         Err(CheckError::Read(ReadError::Binary { .. }))

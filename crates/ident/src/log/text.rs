@@ -3,6 +3,7 @@
 use std::io::Read;
 use std::path::Path;
 
+use feedwright_gcode::visible;
 use feedwright_sim::{StageSteps, Watch};
 use memchr::memchr_iter;
 
@@ -153,8 +154,8 @@ impl<'a> TextRows<'a> {
             if let (Some(true), Some(column)) = (self.kept.get(count), self.table.columns.get_mut(count)) {
                 let value = decimal::parse(field, self.dialect.point).unwrap_or(f64::NAN);
                 if value.is_nan() && column.not_a_number.is_none() {
-                    let shown = String::from_utf8_lossy(decimal::trimmed(field)).chars().take(40).collect();
-                    column.not_a_number = Some((self.row, shown));
+                    let text: String = String::from_utf8_lossy(decimal::trimmed(field)).chars().take(40).collect();
+                    column.not_a_number = Some((self.row, visible(&text).into_owned()));
                 }
                 column.values.push(value);
             }
