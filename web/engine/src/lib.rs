@@ -15,7 +15,7 @@
 //! | `correct` | results, as JSON | the corrected program | | |
 //! | `lists` | machines, controllers and controls, as JSON | | | |
 //!
-//! The module imports two functions of the page, `page.progress` and `page.cut`: see [`page`]. It has
+//! The module imports two functions of the page, `page.progress` and `page.cut`: see `page`. It has
 //! no files, no clock and no threads.
 
 mod page;
