@@ -80,9 +80,8 @@ use crate::compensation::GeometryChoice;
 use crate::job_error::{JobError, axes_that_move};
 use crate::measured::MeasuredLog;
 use exported::ExportedCut;
-pub(crate) use file_prior::FILE_ERROR;
-use file_prior::FileModel;
 pub use file_prior::{AssumedValue, FileAssumption};
+use file_prior::{FILE_ERROR, FileModel};
 pub use learned::{
     CutProgram, LearnError, LearnedLog, LearnedOutcome, LearnedValue, ModelValue, PlaceError, PredictedCut,
 };
@@ -119,7 +118,7 @@ pub struct CorrectJob {
     pub reader: Settings,
     /// Logs of cuts of the part, by this program or by corrected ones.
     pub logs: Vec<MeasuredLog>,
-    /// Standard deviation of each value of the machine, as a fraction of it; 0 where it is exact. Of no use with logs or `believed`.
+    /// Standard deviation of each value of the machine, as a fraction of it; 0 where it is exact. With logs or `believed` it is ignored.
     pub file_error: f64,
 }
 
@@ -137,6 +136,12 @@ impl CorrectJob {
             logs: Vec::new(),
             file_error: FILE_ERROR,
         }
+    }
+
+    /// The error of a machine, as a fraction, where the user states none: a file is uncertain, and a built-in machine is simulated as it is
+    /// written.
+    pub const fn usual_file_error(is_file: bool) -> f64 {
+        if is_file { FILE_ERROR } else { 0.0 }
     }
 
     /// Corrects it and verifies the text.

@@ -12,10 +12,7 @@ pub(crate) fn correct(request: &Request) -> miette::Result<Outputs> {
         Some(name) => TargetControl::find(name).ok_or_else(|| miette::miette!("no control is called '{name}'"))?,
     };
     let mut job = CorrectJob::new(request.program(), request.machine()?, target);
-    if !request.is_machine_text() {
-        // A built-in machine is simulated as it is written.
-        job.file_error = 0.0;
-    }
+    job.file_error = CorrectJob::usual_file_error(request.is_machine_text());
     let outcome = job.run(&PageWatch::default())?;
     let program = outcome.program().unwrap_or_default().as_bytes().to_vec();
     let answer = json!({

@@ -14,7 +14,7 @@ use crate::command::date::today;
 use crate::command::progress::Bar;
 use crate::command::terminal::wrapped;
 use crate::compensation::{GeometryChoice, NamedGeometry};
-use crate::correct::{CorrectOutcome, FILE_ERROR, FileAssumption, TARGETS, TargetControl, UnchangedStretch};
+use crate::correct::{CorrectJob, CorrectOutcome, FileAssumption, TARGETS, TargetControl, UnchangedStretch};
 use crate::job::Job;
 use crate::recorded_model::{RecordedModel, fitting_machines, recorded_model};
 
@@ -63,14 +63,12 @@ pub(crate) fn check_tolerance(tolerance_um: Option<f64>) -> Result<()> {
     }
 }
 
-/// The error of a machine by `--file-error`, as a fraction. Without that a file is uncertain, and a built-in machine is simulated as it is
-/// written.
+/// The error of a machine by `--file-error`, as a fraction.
 ///
 /// # Errors
 /// A percentage below 0 or above [`MAX_FILE_ERROR`].
 pub(crate) fn file_error(percent: Option<f64>, machine: &OsStr) -> Result<f64> {
-    let by_default = if is_machine_path(machine.as_ref()) { 100.0 * FILE_ERROR } else { 0.0 };
-    let percent = percent.unwrap_or(by_default);
+    let percent = percent.unwrap_or_else(|| 100.0 * CorrectJob::usual_file_error(is_machine_path(machine.as_ref())));
     if (0.0..=MAX_FILE_ERROR).contains(&percent) {
         return Ok(percent / 100.0);
     }

@@ -5,7 +5,7 @@
 
 use feedwright_gcode::INCH_MM;
 
-/// A metric unit, what stands in its place, and by how much the number grows.
+/// A metric unit, the unit in its place, and the factor of the number.
 type MetricUnit = (&'static str, &'static str, f64);
 
 /// Longest first.
@@ -63,7 +63,7 @@ fn number_of(text: &str) -> &str {
     text[..end].trim_end_matches('.')
 }
 
-/// The unit of a number that `rest` stands behind: its own, or that of the number that it is listed with.
+/// The unit of the number before `rest`: its own, or that of the number that it is listed with.
 fn unit_behind(rest: &str) -> Option<&'static MetricUnit> {
     unit_of(rest).or_else(|| {
         let next = BETWEEN.iter().find_map(|between| rest.strip_prefix(between))?;
@@ -72,7 +72,7 @@ fn unit_behind(rest: &str) -> Option<&'static MetricUnit> {
     })
 }
 
-/// A heading of a table with its unit in inches, and by how much the numbers below it grow.
+/// A heading of a table with its unit in inches, and the factor of the numbers below it.
 pub(crate) fn heading_in_inches(heading: &str) -> (String, Option<f64>) {
     let unit = heading.rsplit(' ').next().unwrap_or_default();
     match UNITS.iter().find(|(metric, ..)| *metric == unit) {
@@ -84,7 +84,7 @@ pub(crate) fn heading_in_inches(heading: &str) -> (String, Option<f64>) {
     }
 }
 
-/// A number of a table that grows by a factor; what is no number stays.
+/// A number of a table times a factor; other text stays.
 pub(crate) fn cell_in_inches(cell: &str, factor: f64) -> String {
     let bare = cell.trim_matches(['(', ')']);
     match bare.parse::<f64>() {

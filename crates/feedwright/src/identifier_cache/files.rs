@@ -89,7 +89,7 @@ pub(crate) struct CacheFile {
     pub(crate) used: SystemTime,
 }
 
-/// The files of a cache: those with a name that the cache gives. Others in the folder are none of its own.
+/// The files of a cache: those with a name that the cache gives. Other files in the folder are not its own.
 pub(crate) fn entries(folder: &Path) -> std::io::Result<Vec<CacheFile>> {
     let mut files = Vec::new();
     let found = match std::fs::read_dir(folder) {
