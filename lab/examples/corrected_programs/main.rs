@@ -147,7 +147,10 @@ type Ratios = [f64; 5];
 /// Corrects a program, cuts both and prints a line. None where no program was written.
 fn line(name: &str, machine: &Machine, text: &str, believed: Option<Machine>) -> Option<Ratios> {
     let program = Program::from_text("part.ngc", text);
-    let summary = program.check(Settings::default()).expect("a program");
+    let Ok(summary) = program.check(Settings::default()) else {
+        println!("{:<9} {name:<32} is refused", machine.name);
+        return None;
+    };
     let axes = if summary.moves[2] { 3 } else { 2 };
     let mut job = CorrectJob::new(program, machine.clone(), &TARGETS[0]);
     job.believed = believed;

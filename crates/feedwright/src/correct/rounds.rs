@@ -5,6 +5,7 @@
 
 use crate::report::harm;
 use std::iter;
+use std::ops::RangeInclusive;
 
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Shape};
 use feedwright_plan::{PathError, Pieces, Step};
@@ -356,17 +357,26 @@ impl RoundsBench<'_> {
     }
 }
 
-/// Gives up the commands that make a stretch of a common cut worse, and returns whether any stretch is worse.
+/// Gives up the commands that make a stretch of a common cut worse, and returns whether any was given up.
+///
+/// A stretch as it is programmed is worse at its start because of the command of the one before. That command is weighed by the largest error of both.
 fn give_up_culprits(under_way: &mut [StretchRounds], cuts: &[StretchCut]) -> bool {
-    let is_worse =
-        |(stretch, cut): (&StretchRounds, &StretchCut)| cut.max_mm > stretch.programmed_max_mm + 1e-3 * harm::MAX_UM;
-    let worse: Vec<bool> = under_way.iter().zip(cuts).map(is_worse).collect();
-    for k in (0..worse.len()).filter(|&k| worse[k]) {
-        // A stretch as it is programmed is worse at its start because of the command of the one before.
-        let culprit = if under_way[k].best.is_some() || k == 0 { k } else { k - 1 };
-        (under_way[culprit].best, under_way[culprit].reason) = (None, UnchangedReason::Worse);
+    let is_worse = |range: RangeInclusive<usize>| {
+        let programmed_mm =
+            under_way[range.clone()].iter().map(|stretch| stretch.programmed_max_mm).fold(0.0, f64::max);
+        cuts[range].iter().map(|cut| cut.max_mm).fold(0.0, f64::max) > programmed_mm + 1e-3 * harm::MAX_UM
+    };
+    let has_command = |k: usize| under_way[k].best.is_some();
+    let culprit = |k: usize| {
+        let own = has_command(k) || k == 0;
+        let culprit = if own { k } else { k - 1 };
+        (is_worse(k..=k) && has_command(culprit) && is_worse(culprit..=k)).then_some(culprit)
+    };
+    let culprits: Vec<usize> = (0..under_way.len()).filter_map(culprit).collect();
+    for &k in &culprits {
+        (under_way[k].best, under_way[k].reason) = (None, UnchangedReason::Worse);
     }
-    worse.contains(&true)
+    !culprits.is_empty()
 }
 
 fn settings(machine: &Machine) -> UpdateSettings {
@@ -498,6 +508,19 @@ mod tests {
     #[test]
     fn a_stretch_as_programmed_that_is_worse_is_blamed_on_the_command_before_it() {
         assert_eq!(kept(&[0, 1], &[0.001, 0.001, 0.012]), (vec![0], true));
-        assert_eq!(kept(&[1], &[0.012, 0.001]), (vec![1], true));
+        // No command is before the first.
+        assert_eq!(kept(&[1], &[0.012, 0.001]), (vec![1], false));
+    }
+
+    #[test]
+    fn a_command_stays_that_costs_the_next_stretch_less_than_it_gains() {
+        let after = |max_mm: f64| {
+            let mut under_way = stretches_with_commands(2, &[0]);
+            (under_way[0].programmed_max_mm, under_way[1].programmed_max_mm) = (0.03, 0.0001);
+            let cuts = [0.002, max_mm].map(|max_mm| StretchCut { max_mm, ..StretchCut::default() });
+            (give_up_culprits(&mut under_way, &cuts), under_way[0].best.is_some())
+        };
+        assert_eq!(after(0.0022), (false, true));
+        assert_eq!(after(0.0312), (true, false));
     }
 }
