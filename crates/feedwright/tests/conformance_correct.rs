@@ -110,6 +110,16 @@ fn a_loop_is_written_out_and_says_so() {
 }
 
 #[test]
+fn a_program_for_fanuc_that_is_written_out_is_still_read_as_one() {
+    let text = "%\nO0001\nG21 G90 G17 G0 X0. Y0.\nM98 P2 L2\nM30\nO0002\nG2 X0. Y0. I6. J0. F2400.\nM99\n%\n";
+    let outcome = corrected(text, TargetControl::find("generic").unwrap());
+    let program = outcome.program().unwrap();
+    assert!(outcome.expanded && program.starts_with("%\nO0001\n(") && program.ends_with("M2\n%\n"), "{program}");
+    // Its dwells are in milliseconds.
+    assert!(Reader::from_text("part.ngc", program, Settings::default()).unwrap().dialect().0.is_fanuc());
+}
+
+#[test]
 fn a_program_that_is_written_out_stays_in_the_coordinates_of_its_places() {
     let text = "G21 G90 G64 F2400\nG10 L2 P1 X5 Y-3\nG10 L2 P2 X50\nG54\nG0 X0 Y0\n#1=0\no1 while [#1 LT 2]\nG2 X0 Y0 I6 J0\n#1=[#1+1]\n\
                 o1 endwhile\nG55 G0 X1 Y1\nG2 X1 Y1 I6 J0\nG92 X0\nG1 X3\nM2\n";

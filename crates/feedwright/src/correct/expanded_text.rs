@@ -6,7 +6,7 @@
 use feedwright_gcode::canon::{Canon, Corner, EventKind, Motion, MotionKind, Shape};
 
 use super::block_words::{BlockWords, dwell, event};
-use super::program_text::{TextParts, corner_words, joined, line_of};
+use super::program_text::{TextParts, corner_words, is_head, joined, line_of};
 use super::source_line::PartedLine;
 use super::stretches::{ProgramPart, dwells};
 
@@ -49,8 +49,10 @@ impl TextParts<'_> {
     /// # Errors
     /// The first line of which one of them cannot be said.
     pub(super) fn expanded(&self) -> Result<String, UnwritableLine> {
-        let head = ["(expanded: loops, subroutines and jumps are written out)", "G17 G90 G94"];
-        let mut text = ExpandedText { unit_mm: 0.0, corner: None, lines: head.map(str::to_owned).to_vec() };
+        let mut lines = self.tape_head();
+        let is_tape = lines.first().is_some_and(|line| line.starts_with('%'));
+        lines.extend(["(expanded: loops, subroutines and jumps are written out)", "G17 G90 G94"].map(str::to_owned));
+        let mut text = ExpandedText { unit_mm: 0.0, corner: None, lines };
         let (mut step, mut number, mut ends) = (0, 0, false);
         for part in self.parts {
             self.put_place(step, &mut text)?;
@@ -84,9 +86,16 @@ impl TextParts<'_> {
         }
         let mut lines = text.lines;
         lines.extend((!ends).then(|| "M2".to_owned()));
+        lines.extend(is_tape.then(|| "%".to_owned()));
         lines.retain(|line| !line.is_empty());
         self.put_notes(&mut lines);
         Ok(joined(&lines))
+    }
+
+    /// `%` and the number of a program for Fanuc: by these it is known for one.
+    fn tape_head(&self) -> Vec<String> {
+        let head = self.source.lines.iter().take_while(|line| self.source.dialect.is_fanuc() && is_head(line));
+        head.filter(|line| !line.trim().is_empty()).cloned().collect()
     }
 
     /// The slow end of the rapid that leads to a stretch, in place of the rapid.

@@ -204,14 +204,16 @@ impl TextParts<'_> {
 
     /// Notes as comments behind `%` and the program's number.
     pub(super) fn put_notes(&self, text: &mut Vec<String>) {
-        let head = |line: &&String| {
-            let line = line.trim_start();
-            line.is_empty() || line.starts_with('%') || line.starts_with(['O', 'o']) && !line.contains(' ')
-        };
-        let at = text.iter().take_while(head).count();
+        let at = text.iter().take_while(|line| is_head(line)).count();
         let notes = self.notes.iter().map(|note| format!("({})", visible(note).replace(['(', ')'], " ")));
         text.splice(at..at, notes);
     }
+}
+
+/// Whether a line before the first block is `%` or the program's number.
+pub(super) fn is_head(line: &str) -> bool {
+    let line = line.trim_start();
+    line.is_empty() || line.starts_with('%') || line.starts_with(['O', 'o']) && !line.contains(' ')
 }
 
 pub(super) fn joined(lines: &[String]) -> String {
