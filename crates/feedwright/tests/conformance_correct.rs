@@ -2,7 +2,7 @@
 
 use feedwright::{CorrectJob, CorrectOutcome, TARGETS, TargetControl};
 use feedwright_gcode::canon::{Canon, MotionKind};
-use feedwright_gcode::{Program, Reader, Settings};
+use feedwright_gcode::{Dialect, Program, Reader, Settings};
 use feedwright_sim::Machine;
 
 fn corrected(text: &str, target: &'static TargetControl) -> CorrectOutcome {
@@ -120,6 +120,19 @@ fn a_program_for_fanuc_that_is_written_out_is_still_read_as_one() {
 }
 
 #[test]
+fn a_rest_on_a_printer_is_in_milliseconds() {
+    let text = "; a printer\nG21\nG90\nM104 S200\nG0 X0 Y0\nG1 X20 F3000\nG1 X20 Y20\nG1 X0 Y0\n";
+    let settings = Settings { dialect: Some(Dialect::Printer), ..Settings::default() };
+    let mut job = job(text, &TARGETS[0]);
+    job.reader = settings;
+    let outcome = job.run(&()).unwrap();
+    let program = outcome.program().unwrap();
+    // Whole numbers: seconds would be a few hundredths.
+    let mut rests = program.lines().filter_map(|line| line.strip_prefix("G4 P")).peekable();
+    assert!(rests.peek().is_some() && rests.all(|rest| rest.parse::<u32>().is_ok_and(|rest| rest > 0)), "{program}");
+}
+
+#[test]
 fn a_program_that_is_written_out_stays_in_the_coordinates_of_its_places() {
     let text = "G21 G90 G64 F2400\nG10 L2 P1 X5 Y-3\nG10 L2 P2 X50\nG54\nG0 X0 Y0\n#1=0\no1 while [#1 LT 2]\nG2 X0 Y0 I6 J0\n#1=[#1+1]\n\
                 o1 endwhile\nG55 G0 X1 Y1\nG2 X1 Y1 I6 J0\nG92 X0\nG1 X3\nM2\n";
@@ -203,7 +216,7 @@ fn programs_for_grbl_have_80_columns_and_arcs_that_grbl_takes() {
         at = end;
     }
     assert!(arcs > 10, "{program}");
-    let read = Settings { dialect: Some(feedwright_gcode::Dialect::Grbl), ..Settings::default() };
+    let read = Settings { dialect: Some(Dialect::Grbl), ..Settings::default() };
     let reader = Reader::from_text("part.ngc", program, read).unwrap();
     assert!(reader.into_iter().all(|step| step.is_ok()), "{program}");
 }

@@ -27,6 +27,9 @@ const MOST_RAD: f64 = 3.0;
 const STRAIGHT_MM: f64 = 2e4;
 /// An arc of a smaller radius is straight, mm: its centre is only as good as its printed digits.
 const POINT_MM: f64 = 0.02;
+/// An arc between ends that are closer is straight, printed steps: rounded to steps, its end could come to lie before its start, and the arc
+/// would be a full turn.
+const LEAST_STEPS: f64 = 10.0;
 /// Lengths in the plane up to this count as zero, mm.
 const NO_WAY_MM: f64 = 1e-6;
 /// Most points of a stretch: bounds the work.
@@ -163,7 +166,7 @@ impl<'a> ArcFit<'a> {
         let square = dot(v, v);
         // The root of the equation that does not lose digits where the tangents are almost equal.
         let d = square / (along + (along * along + bend * square).sqrt());
-        if !(d.is_finite() && d > NO_WAY_MM) {
+        if !(d.is_finite() && d > self.least_mm()) {
             return None;
         }
         let joint = [0, 1].map(|i| 0.5 * (p0[i] + p1[i] + d * (t0[i] - t1[i])));
@@ -190,7 +193,7 @@ impl<'a> ArcFit<'a> {
         let (aside, along, square) = (dot(way, normal), dot(way, tangent), dot(way, way));
         let radius_mm = square / (2.0 * aside);
         let sweep_rad = 2.0 * libm::atan2(aside, along);
-        if !(square > NO_WAY_MM * NO_WAY_MM
+        if !(square > self.least_mm() * self.least_mm()
             && (POINT_MM..STRAIGHT_MM).contains(&radius_mm.abs())
             && sweep_rad.abs() > 1e-9)
         {
@@ -219,6 +222,10 @@ impl<'a> ArcFit<'a> {
         let [i, j] = [0, 1].map(|k| self.print(arc.center_mm[k] - arc.start_mm[k]));
         let center_mm = [arc.start_mm[0] + i, arc.start_mm[1] + j, arc.start_mm[2]];
         Shape::Arc { plane: Plane::Xy, center_mm, turns: if radius_mm > 0.0 { 1 } else { -1 } }
+    }
+
+    fn least_mm(&self) -> f64 {
+        (LEAST_STEPS / self.steps_per_mm).max(NO_WAY_MM)
     }
 
     fn print(&self, value: f64) -> f64 {
@@ -295,6 +302,17 @@ mod tests {
                 FitPoint { at_mm: [5.0 * cos, 5.0 * sin, rise_mm * part], tangent: [-sin, cos], feed_mm_s: 10.0 }
             })
             .collect()
+    }
+
+    #[test]
+    fn a_plunge_that_is_a_step_aside_has_no_arc() {
+        let point = |k: u32| {
+            let aside_mm = f64::from(k % 2) * 2e-5;
+            FitPoint { at_mm: [1.0, 1.0 + aside_mm, -0.1 * f64::from(k)], tangent: [1.0, 0.0], feed_mm_s: 10.0 }
+        };
+        let points: Vec<FitPoint> = (0..20).map(point).collect();
+        let motions = ArcFit::new(&points, 1e-3, 1e5).motions();
+        assert!(motions.iter().all(|motion| motion.shape == Shape::Line), "{motions:?}");
     }
 
     #[test]

@@ -91,7 +91,8 @@ pub(super) fn feed_number(feed_mm_s: f64, unit_mm: f64) -> String {
 
 /// A rest of so long.
 pub(super) fn dwell(seconds: f64, dialect: Dialect) -> String {
-    if dialect.is_fanuc() { format!("G4 P{}", (seconds * 1e3).round()) } else { format!("G4 P{}", number(seconds, 4)) }
+    let milliseconds = dialect.is_fanuc() || dialect == Dialect::Printer;
+    if milliseconds { format!("G4 P{}", (seconds * 1e3).round()) } else { format!("G4 P{}", number(seconds, 4)) }
 }
 
 /// The block of an event; none of one that a block cannot say, empty where it needs none.

@@ -43,12 +43,21 @@ pub(super) struct SmoothStretch {
     pub(super) ends: [Vector; 2],
 }
 
+/// The pieces of the path of a motion.
+fn pieces(motion: &Motion) -> Vec<Piece> {
+    let alone = Motion { feed_mm_s: motion.feed_mm_s.max(1.0), ..motion.clone() };
+    let steps = Pieces::new(std::iter::once(Canon::Motion(alone)));
+    steps.filter_map(|step| if let Ok(Step::Piece(piece)) = step { Some(piece) } else { None }).collect()
+}
+
+/// How long the path of a motion is, mm.
+pub(super) fn length_mm(motion: &Motion) -> f64 {
+    pieces(motion).iter().map(|piece| piece.length_mm).sum()
+}
+
 /// Direction of travel at both ends of a motion; none of one without length.
 fn directions(motion: &Motion) -> Option<[Vector; 2]> {
-    let alone = Motion { feed_mm_s: motion.feed_mm_s.max(1.0), ..motion.clone() };
-    let pieces: Vec<Piece> = Pieces::new(std::iter::once(Canon::Motion(alone)))
-        .filter_map(|step| if let Ok(Step::Piece(piece)) = step { Some(piece) } else { None })
-        .collect();
+    let pieces = pieces(motion);
     let (first, last) = (pieces.first()?, pieces.last()?);
     Some([first.curve.at(0.0).tangent, last.curve.at(last.length_mm).tangent])
 }

@@ -1,8 +1,12 @@
 //! Whether a text says what it is meant to say: it is read again and compared, step by step.
 
+use std::f64::consts::PI;
+
 use feedwright_gcode::canon::{Canon, EventKind, Motion, MotionKind, Shape};
 use feedwright_gcode::{Dialect, ModesInForce, Reader, Settings};
 use feedwright_plan::vector::distance;
+
+use super::stretches::length_mm;
 
 /// Feedrates may differ by this part: their printed digits.
 const FEED_PART: f64 = 1e-3;
@@ -105,11 +109,11 @@ fn same_motion(found: &Motion, wanted: &Motion, step_mm: f64) -> bool {
         && found.others == wanted.others
         && distance(found.end_mm, wanted.end_mm) < 2.0 * step_mm
         && (found.feed_mm_s - wanted.feed_mm_s).abs() <= FEED_PART * wanted.feed_mm_s + 1e-6
-        && same_shape(&found.shape, wanted, step_mm)
+        && same_shape(found, wanted, step_mm)
 }
 
-fn same_shape(found: &Shape, wanted: &Motion, step_mm: f64) -> bool {
-    match (found, &wanted.shape) {
+fn same_shape(found: &Motion, wanted: &Motion, step_mm: f64) -> bool {
+    match (&found.shape, &wanted.shape) {
         (Shape::Line, Shape::Line) => true,
         (
             Shape::Arc { plane, center_mm, turns },
@@ -119,6 +123,8 @@ fn same_shape(found: &Shape, wanted: &Motion, step_mm: f64) -> bool {
             plane == wanted_plane
                 && turns == wanted_turns
                 && distance(*center_mm, *wanted_mm) < CENTER_STEPS * step_mm + CENTER_PART * radius_mm
+                // The ends of a short arc can change places by rounding: then it is a full turn.
+                && (length_mm(found) - length_mm(wanted)).abs() < PI * radius_mm
         }
         (Shape::Spline(found), Shape::Spline(wanted)) => found == wanted,
         _ => false,
