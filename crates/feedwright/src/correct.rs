@@ -26,6 +26,7 @@
 //! | `file_prior.rs` | what a machine file most probably describes |
 //! | `loop_lag.rs` | how an axis lags behind its command |
 //! | `target.rs` | the controls that programs are for |
+//! | `kept_work.rs` | long work in parts, on threads, kept in a file |
 //! | `source.rs` | the program with its text and modes |
 //! | `stretches.rs` | stretches without a corner, and all else |
 //! | `arc_fit.rs` | points to arcs and lines |
@@ -37,6 +38,7 @@
 //! | `budget.rs` | how many blocks and how much time a program may have |
 //! | `unchanged.rs` | why stretches stay as they are |
 //! | `rounds.rs` | cut, change, fit, until it gets no better |
+//! | `pieces.rs` | a long program in pieces |
 //! | `block_words.rs` | motions and events as blocks |
 //! | `source_line.rs` | a line without its motion |
 //! | `program_text.rs` | the text |
@@ -53,6 +55,7 @@ mod nominal;
 mod file_prior;
 mod loop_lag;
 mod target;
+mod kept_work;
 mod source;
 mod stretches;
 pub(crate) mod arc_fit;
@@ -64,6 +67,7 @@ mod stretch_cut;
 mod budget;
 mod unchanged;
 mod rounds;
+mod pieces;
 mod block_words;
 mod source_line;
 mod program_text;
@@ -72,9 +76,14 @@ mod verified;
 mod predicted;
 mod outcome;
 pub(crate) mod advise;
-use feedwright_gcode::{Program, Settings};
+use std::io::{BufRead, BufReader};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use feedwright_gcode::canon::Canon;
+use feedwright_gcode::{Program, Settings, Summary};
 use feedwright_plan::Step;
-use feedwright_sim::{Machine, Watch};
+use feedwright_sim::{Machine, RunError, Watch};
 
 use crate::compensation::GeometryChoice;
 use crate::job_error::{JobError, axes_that_move};
@@ -82,6 +91,7 @@ use crate::measured::MeasuredLog;
 use exported::ExportedCut;
 pub use file_prior::{AssumedValue, FileAssumption};
 use file_prior::{FILE_ERROR, FileModel};
+use kept_work::{Workers, forget, hash_of};
 pub use learned::{
     CutProgram, LearnError, LearnedLog, LearnedOutcome, LearnedValue, ModelValue, PlaceError, PredictedCut,
 };
@@ -89,11 +99,12 @@ use learned::{LearnedMachine, LoggedProgram};
 pub use nominal::deterministic;
 pub use outcome::CorrectOutcome;
 use outcome::{UnwrittenProgram, WrittenProgram, refusal};
+use pieces::{PIECE_PERIODS, ProgramPiece, pieces, rounds_of_pieces, splits};
 use predicted::{no_gain, predicted_cut};
 use program_text::TextParts;
-use rounds::{RoundsResult, rounds, steps_of};
+use rounds::{RoundsResult, steps_of};
 use source::SourceProgram;
-use stretches::{ProgramPart, assembled, parts, stretches};
+use stretches::{ProgramPart, assembled, parts};
 pub use target::{MacroLanguage, TARGETS, TargetControl};
 pub use unchanged::UnchangedStretch;
 use unchanged::unchanged_stretches;
@@ -120,7 +131,35 @@ pub struct CorrectJob {
     pub logs: Vec<MeasuredLog>,
     /// Standard deviation of each value of the machine, as a fraction of it; 0 where it is exact. With logs or `believed` it is ignored.
     pub file_error: f64,
+    /// Servo periods of a piece. A program of more than twice as many is corrected in pieces.
+    pub piece_periods: u64,
+    /// Threads that correct pieces. The result is the same with any number.
+    pub threads: usize,
+    /// Where finished pieces of a long program are kept, for a run that ends early. See [`CorrectJob::forget_pieces`].
+    pub keep: Option<PathBuf>,
 }
+
+/// Motions and events of a program, at the most: they are all in memory when the text is verified.
+const MOST_MOTIONS: u64 = 2_000_000;
+
+/// How the note of a corrected program begins; machine and control follow.
+const CORRECTED_FOR: &str = "corrected by feedwright for the machine";
+/// Lines in which the note is looked for.
+const NOTED_WITHIN: usize = 100;
+
+/// The control that a corrected program was made for, as its note says; none where it has no such note or cannot be read.
+pub(crate) fn corrected_for(program: &Program) -> Option<&'static TargetControl> {
+    let (text, _) = program.text().ok()?;
+    let lines = BufReader::new(text).lines().take(NOTED_WITHIN).map_while(Result::ok);
+    let mut controls = lines.filter_map(|line| {
+        let (_, control) = line.split_once(CORRECTED_FOR)?.1.rsplit_once(", control ")?;
+        TargetControl::find(control.trim_end().trim_end_matches(')'))
+    });
+    controls.next()
+}
+
+/// Pieces that are corrected at the same time, each with its rows in memory.
+const MOST_THREADS: usize = 2;
 
 impl CorrectJob {
     /// Corrects a program for a control, as the machine is and with the feedrates of the program.
@@ -135,6 +174,9 @@ impl CorrectJob {
             reader: Settings::default(),
             logs: Vec::new(),
             file_error: FILE_ERROR,
+            piece_periods: PIECE_PERIODS,
+            threads: std::thread::available_parallelism().map_or(1, |cores| cores.get().min(MOST_THREADS)),
+            keep: None,
         }
     }
 
@@ -152,6 +194,7 @@ impl CorrectJob {
         watch.begin("reading the program", 1);
         let summary = self.program.check(self.reader.clone())?;
         let axes = axes_that_move(&self.program, &summary, &self.machine)?;
+        self.check_motions(&summary)?;
         let source = SourceProgram::read(&self.program, &self.reader, self.feed_mm_s)?;
         let path_error = |fault| JobError::Path { part: self.program.name(), fault };
         let original = steps_of(&source.steps).map_err(path_error)?;
@@ -165,26 +208,27 @@ impl CorrectJob {
         let error = learned.as_ref().map(|learned| &learned.error);
         let on = |machine| ExportedCut { machine, tool: None, error, stages, original: &original, axes, watch };
         let of_run = |error| JobError::of_run(&self.program, error);
-        let parts = parts(&source.steps);
         let predicted = ExportedCut { tool: compensated.as_ref(), ..on(&nominal) };
-        let found = rounds(&predicted, &parts, self.target, file.as_ref()).map_err(of_run)?;
-        watch.begin("cutting the uncorrected program", 1);
-        let uncorrected = on(machine).figures(&original).map_err(of_run)?;
-        let (written, unwritten) = match self.written(&source, &parts, &found) {
-            Ok(written) => (Some(written), None),
-            Err(fault) => (None, Some(fault)),
-        };
-        watch.begin("cutting as exported", 1);
-        let corrected =
-            written.as_ref().map(|written| on(machine).figures(&written.steps).map_err(of_run)).transpose()?;
+        let pieces = self.pieces(&predicted, &source.steps).map_err(of_run)?;
+        let parts = parts(&source.steps, &splits(&pieces));
+        let workers = self.workers(&source, pieces.len());
+        let found = rounds_of_pieces(&predicted, &source.steps, &pieces, self.target, file.as_ref(), &workers)
+            .map_err(of_run)?;
+        let written = self.written(&source, &parts, &found);
+        let (written, unwritten) = written.map_or_else(|fault| (None, Some(fault)), |written| (Some(written), None));
+        let changed = found.commands.iter().flatten().count();
+        let unchanged = unchanged_stretches(&parts, &found.reasons);
+        // The cuts need the room.
+        drop((source, parts));
+        let figures = |program: &[Step], stage: &str| on(machine).figures_by(program, stage, &workers).map_err(of_run);
+        let uncorrected = figures(&original, "cutting the uncorrected program")?;
+        let corrected = written.as_ref().map(|written| figures(&written.steps, "cutting as exported")).transpose()?;
         let predict = |learned: &LearnedMachine| {
             let next = |written: &WrittenProgram| predicted_cut(learned, &on(machine), &written.steps).map_err(of_run);
             let predicted = written.as_ref().map(next).transpose()?;
             Ok::<_, JobError>(LearnedOutcome { predicted, ..learned.outcome.clone() })
         };
         let learned = learned.as_ref().map(predict).transpose()?;
-        let changed = found.commands.iter().flatten().count();
-        let unchanged = unchanged_stretches(&parts, &found.reasons);
         let no_gain = learned.as_ref().and_then(|learned| no_gain(learned, &uncorrected));
         Ok(CorrectOutcome {
             control: self.target.name,
@@ -193,11 +237,12 @@ impl CorrectJob {
             hint: unwritten.and_then(|fault| fault.hint()),
             uncorrected,
             corrected: corrected.unwrap_or(uncorrected),
-            stretches: stretches(&parts).count(),
+            stretches: found.commands.len(),
             stretches_changed: changed,
             unchanged,
             expanded: written.as_ref().is_some_and(|written| written.expanded),
             rounds: found.rounds,
+            pieces: pieces.len(),
             dwell_s: found.dwell_s,
             warnings: summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect(),
             written,
@@ -213,6 +258,42 @@ impl CorrectJob {
     fn uncertain_file(&self, axes: usize) -> Option<FileModel> {
         let is_uncertain = self.believed.is_none() && self.file_error > 0.0;
         is_uncertain.then(|| FileModel::new(&self.machine, axes, self.file_error))
+    }
+
+    /// Refuses a program that does not fit in memory, before it is read into it.
+    fn check_motions(&self, summary: &Summary) -> Result<(), JobError> {
+        let motions = summary.motions + summary.events;
+        if motions > MOST_MOTIONS {
+            return Err(JobError::TooManyMotions { part: self.program.name(), motions, most: MOST_MOTIONS });
+        }
+        Ok(())
+    }
+
+    /// The pieces of a program. Errors that logs show lie along the whole path: with logs there is one piece.
+    fn pieces(&self, cut: &ExportedCut<'_>, program: &[Canon]) -> Result<Vec<ProgramPiece>, RunError> {
+        if self.logs.is_empty() {
+            return pieces(cut, program, self.piece_periods);
+        }
+        Ok(vec![ProgramPiece::whole(program.len())])
+    }
+
+    /// Who does the work in pieces.
+    fn workers(&self, source: &SourceProgram, pieces: usize) -> Workers {
+        let Some(path) = self.keep.as_ref().filter(|_| pieces > 1) else { return Workers::new(self.threads) };
+        let Self { machine, believed, compensation, target, feed_mm_s, reader, piece_periods, .. } = self;
+        let work = hash_of(format_args!(
+            "{:?} {:?} {machine:?} {believed:?} {compensation:?} {target:?} {feed_mm_s:?} {reader:?} {piece_periods}",
+            source.lines, source.steps
+        ));
+        Workers::keeping(self.threads, path, &work)
+    }
+
+    /// Removes the finished pieces that were kept: what they were for is done.
+    ///
+    /// # Errors
+    /// A file that is there and cannot be removed.
+    pub fn forget_pieces(&self) -> std::io::Result<()> {
+        self.keep.as_deref().map_or(Ok(()), forget)
     }
 
     /// What the logs tell, where there are any.
@@ -234,17 +315,17 @@ impl CorrectJob {
         parts: &[ProgramPart],
         found: &RoundsResult,
     ) -> Result<WrittenProgram, UnwrittenProgram> {
-        let RoundsResult { commands, dwell_s, .. } = found;
+        let RoundsResult { commands, rests_s, .. } = found;
         let notes = [
-            format!("corrected by feedwright for the machine {}, control {}", self.machine.name, self.target.name),
+            format!("{CORRECTED_FOR} {}, control {}", self.machine.name, self.target.name),
             format!(
                 "{} of {} stretches between corners were changed",
                 commands.iter().flatten().count(),
                 commands.len()
             ),
         ];
-        let text = TextParts { source, parts, commands, dwell_s: *dwell_s, target: self.target, notes: &notes };
-        let wanted = assembled(parts, commands, *dwell_s);
+        let text = TextParts { source, parts, commands, rests_s, target: self.target, notes: &notes };
+        let wanted = assembled(parts, commands, rests_s);
         let step_mm = 1.0 / self.target.steps_per_mm();
         let checked = |text: String, expanded: bool| {
             let is_own = |line: &str| source.lines.iter().any(|kept| kept == line);
@@ -254,7 +335,8 @@ impl CorrectJob {
             let (read, modes) =
                 verified::read(&text, &self.reader, source.dialect).ok_or(UnwrittenProgram::ReadOtherwise)?;
             let steps = steps_of(&read).map_err(|_| UnwrittenProgram::ReadOtherwise)?;
-            let frames = verified::same_frames(read.iter().zip(&modes), source.steps_and_modes());
+            let frames =
+                verified::same_frames(read.iter().zip(modes.iter().map(Arc::as_ref)), source.steps_and_modes());
             let same = frames && verified::same(&read, &wanted, step_mm);
             if same { Ok(WrittenProgram { text, steps, expanded }) } else { Err(UnwrittenProgram::ReadOtherwise) }
         };

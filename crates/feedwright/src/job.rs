@@ -91,6 +91,9 @@ pub struct Job {
     /// The control, without feedback, that a corrected program is made for.
     #[serde(with = "stored::target")]
     pub target: Option<&'static TargetControl>,
+    /// The control whose planner plans the program, in place of that of the machine.
+    #[serde(default, with = "stored::target", skip_serializing_if = "Option::is_none")]
+    pub planned_as: Option<&'static TargetControl>,
     /// A program that errors are measured to, in place of the one that is cut.
     pub reference: Option<Program>,
     /// Cut as fast as the tolerance allows the controller that is asked for.
@@ -163,6 +166,7 @@ impl Job {
             learned_on: None,
             tolerance_um: None,
             target: None,
+            planned_as: None,
             reference: None,
             fastest: false,
             with_limits: false,
@@ -474,7 +478,10 @@ impl Job {
                 None => steps,
             })
         };
-        let run = Run::on(machine).capped(caps).laps(entry.laps).sharing(kept).watched(watch).planned_to(looked_at);
+        let run = self
+            .planned_as
+            .map_or_else(|| Run::on(machine), |control| Run::on(machine).stages(control.stages(machine)));
+        let run = run.capped(caps).laps(entry.laps).sharing(kept).watched(watch).planned_to(looked_at);
         match aligned {
             Some(aligned) => run.cut_aligned(aligned, controller, sinks),
             None => run.cut(steps, controller, sinks),

@@ -42,6 +42,21 @@ pub enum JobError {
         /// The machine.
         machine: String,
     },
+    /// A program with more motions than a correction keeps in memory.
+    #[error(
+        "{part} has {motions} motions and events, and a correction keeps up to {most} of them in memory, 1.5 kB each"
+    )]
+    #[diagnostic(help(
+        "split the program at a rapid and correct its parts one by one, or write it with longer blocks"
+    ))]
+    TooManyMotions {
+        /// The program.
+        part: String,
+        /// Motions and events that it has.
+        motions: u64,
+        /// How many it may have.
+        most: u64,
+    },
     /// A program without a feed motion.
     #[error("{part} has no feed motion: there is nothing to cut")]
     #[diagnostic(help("G1, G2 and G3 cut; G0 is a rapid"))]

@@ -49,6 +49,7 @@ mod conformance_layers;
 mod conformance_learn;
 mod conformance_linuxcnc_log;
 mod conformance_linuxcnc_setup;
+mod conformance_long_programs;
 mod conformance_measured;
 mod conformance_measured_run;
 mod conformance_models;

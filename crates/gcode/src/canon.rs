@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// One step of a program, in program order.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -17,7 +17,7 @@ pub enum Canon {
 }
 
 /// A motion from `start_mm` to `end_mm`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Motion {
     /// Line of the program, from 1.
     pub line: u32,
@@ -34,12 +34,12 @@ pub struct Motion {
     /// How the corner at the end of this motion is taken.
     pub corner: Corner,
     /// What moves along with X, Y and Z.
-    #[serde(skip_serializing_if = "AuxiliaryAxes::is_none")]
+    #[serde(default, skip_serializing_if = "AuxiliaryAxes::is_none")]
     pub others: AuxiliaryAxes,
 }
 
 /// What moves along with X, Y and Z during a motion; `AuxiliaryAxes::default()` is nothing.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct AuxiliaryAxes {
     /// Filament pushed during the motion (E of 3D printers), mm; negative pulls back.
     pub extruder_mm: f64,
@@ -56,7 +56,7 @@ impl AuxiliaryAxes {
 }
 
 /// Whether a motion cuts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MotionKind {
     /// G0: at the machine's rapid rate, not cutting.
@@ -66,7 +66,7 @@ pub enum MotionKind {
 }
 
 /// The curve of a motion.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shape {
     /// Straight.
@@ -86,7 +86,7 @@ pub enum Shape {
 }
 
 /// Plane of an arc: G17 is XY, G18 is ZX, G19 is YZ.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Plane {
     /// G17, normal +Z.
@@ -109,7 +109,7 @@ impl Plane {
 }
 
 /// Non-uniform rational B-spline with `control_mm.len() + degree + 1` knots.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Spline {
     /// Polynomial degree, at least 1.
     pub degree: usize,
@@ -122,7 +122,7 @@ pub struct Spline {
 }
 
 /// How a corner is taken.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Corner {
     /// G61.1: a full stop at the end of every motion, corner or not.

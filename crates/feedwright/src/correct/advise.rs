@@ -195,7 +195,7 @@ impl AdviseJob {
     where
         Entry: Make<N>,
     {
-        let parts = parts(&source.steps);
+        let parts = parts(&source.steps, &[]);
         let feeds: Vec<f64> = stretches(&parts).map(feed_mm_s).collect();
         let largest_mm_s = feeds.iter().copied().fold(0.0, f64::max);
         if largest_mm_s == 0.0 {
@@ -354,5 +354,6 @@ fn with_factors(program: &[ProgramPart], factors: &[f64], most_mm_s: f64) -> Vec
 
 /// The steps of parts as they are, each motion by the number of its stretch.
 fn canon_of(parts: &[ProgramPart]) -> Vec<Canon> {
-    super::stretches::assembled(parts, &vec![None; stretches(parts).count()], 0.0)
+    let count = stretches(parts).count();
+    super::stretches::assembled(parts, &vec![None; count], &vec![0.0; count])
 }

@@ -73,7 +73,7 @@ impl TextParts<'_> {
                         return Err(self.unwritable(step, OFFSETS_WITHIN));
                     }
                     let motions = self.commands[number].as_ref().map_or(&stretch.motions, |command| &command.motions);
-                    let [before, behind] = dwells(self.parts, self.commands, number, self.dwell_s);
+                    let [before, behind] = dwells(stretch, self.commands, number, self.rests_s);
                     let rest = |seconds: f64| dwell(seconds, self.source.dialect);
                     self.put_approach(step, number, &mut text)?;
                     text.lines.extend(before.map(rest));

@@ -12,8 +12,9 @@ use feedwright_sim::{
     Commanded, Machine, Measurement, Mechanism, Outcome, PlanCache, Plant, PlantMaker, Row, Run, RunError, RunResult,
     Sink, Stages, Watch,
 };
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use super::kept_work::Workers;
 use super::learned::{PathTrack, PlaceError};
 use crate::report::Statistics;
 use crate::report::harm::CutErrors;
@@ -22,7 +23,7 @@ use crate::report::harm::CutErrors;
 const CUTS: u32 = 4;
 
 /// What a program comes to, cut without feedback. Errors and time of a cut that diverged are not a number, null in JSON.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ExportedFigures {
     /// Contour error against the original: quadratic mean of the RMS over the cuts, um.
     pub rms_um: f64,
@@ -138,6 +139,34 @@ impl Sink for CutRows<'_> {
     }
 }
 
+/// A program of more steps is cut on one thread: each cut has the paths in memory.
+const SHARED_STEPS: usize = 300_000;
+/// Progress of a cut, steps.
+const CUT_STEPS: u64 = 100;
+
+/// Tells the progress of a cut along the original path.
+struct CutProgress<'a> {
+    watch: &'a dyn Watch,
+    length_mm: f64,
+    done: u64,
+}
+
+impl Sink for CutProgress<'_> {
+    fn row(&mut self, row: &Row) -> std::io::Result<()> {
+        // A float that is not a number saturates to zero here.
+        let done = ((CUT_STEPS as f64 * row.s_mm / self.length_mm) as u64).clamp(self.done, CUT_STEPS);
+        if done > self.done {
+            self.watch.advance(done - self.done);
+            self.done = done;
+        }
+        Ok(())
+    }
+}
+
+fn length_mm(path: &[Step]) -> f64 {
+    path.iter().map(|step| if let Step::Piece(piece) = step { piece.length_mm } else { 0.0 }).sum()
+}
+
 /// The machine of one cut, and how long it rests before.
 pub(super) struct CutPhase {
     pub(super) machine: Machine,
@@ -200,12 +229,28 @@ impl ExportedCut<'_> {
     /// # Errors
     /// A machine without sensible limits, or an end from outside.
     pub fn figures(&self, program: &[Step]) -> Result<ExportedFigures, RunError> {
+        self.figures_by(program, "cutting", &Workers::new(1))
+    }
+
+    /// The same, a part of the work for each cut, as a stage of this name.
+    pub(super) fn figures_by(
+        &self,
+        program: &[Step],
+        stage: &str,
+        workers: &Workers,
+    ) -> Result<ExportedFigures, RunError> {
         let mut figures =
             ExportedFigures { completed: true, blocks: path_steps(program), ..ExportedFigures::default() };
         let phases = self.phases();
         let mut square_sum_um2 = 0.0;
-        for (phase, CutPhase { machine, wait_s }) in phases.iter().enumerate() {
-            let now = ExportedCut { machine, ..*self }.once(program, *wait_s, &mut [])?;
+        self.watch.begin(stage, CUT_STEPS * phases.len() as u64);
+        let threads = if program.len() > SHARED_STEPS { 1 } else { usize::MAX };
+        let all = workers.each(stage, phases.len(), threads, |phase| {
+            let CutPhase { machine, wait_s } = &phases[phase];
+            let mut progress = CutProgress { watch: self.watch, length_mm: length_mm(self.original), done: 0 };
+            ExportedCut { machine, ..*self }.once(program, *wait_s, &mut [&mut progress])
+        })?;
+        for (phase, now) in all.into_iter().enumerate() {
             square_sum_um2 += now.rms_um * now.rms_um;
             if now.max_um > figures.max_um || !now.completed {
                 (figures.max_um, figures.worst_phase) = (now.max_um, phase);
@@ -259,7 +304,8 @@ impl ExportedCut<'_> {
         let mut statistics = Statistics::new();
         let mut all: Vec<&mut dyn Sink> = vec![&mut statistics];
         all.extend(sinks.iter_mut().map(|sink| &mut **sink as &mut dyn Sink));
-        let run = self.cut(&waited(program, wait_s), &mut all)?;
+        let aligned = AlignedPaths::new(self.original, &waited(program, wait_s));
+        let run = self.cut_along(&aligned, &mut all)?;
         let figures = ExportedFigures {
             rms_um: statistics.rms_um(),
             max_um: statistics.max_um(),
@@ -274,10 +320,14 @@ impl ExportedCut<'_> {
 
     /// Cuts a program once; the rows go to sinks.
     pub(super) fn cut(&self, program: &[Step], sinks: &mut [&mut dyn Sink]) -> Result<RunResult, RunError> {
-        let aligned = AlignedPaths::new(self.original, program);
+        self.cut_along(&AlignedPaths::new(self.original, program), sinks)
+    }
+
+    /// The same of a program beside the original.
+    fn cut_along(&self, aligned: &AlignedPaths, sinks: &mut [&mut dyn Sink]) -> Result<RunResult, RunError> {
         let plan = PlanCache::default();
         let error_mm = match self.error {
-            Some(error) => error.along(&self.track(&aligned, &plan)?),
+            Some(error) => error.along(&self.track(aligned, &plan)?),
             None => Vec::new(),
         };
         let plant = |start_mm: [f64; 3], seed: u64| -> Box<dyn Mechanism> {
@@ -293,7 +343,7 @@ impl ExportedCut<'_> {
         };
         let is_own = self.tool.is_none() && self.error.is_none();
         let plant: Option<PlantMaker<'_>> = if is_own { None } else { Some(&plant) };
-        self.run(&aligned, &plan, plant, sinks)
+        self.run(aligned, &plan, plant, sinks)
     }
 
     /// One run along the path.
@@ -317,10 +367,26 @@ impl ExportedCut<'_> {
     fn track(&self, aligned: &AlignedPaths, plan: &PlanCache) -> Result<PathTrack, RunError> {
         let servo_s = self.machine.period.servo_s;
         let mut track = PathTrack { sample_s: servo_s, ..PathTrack::default() };
-        let mut kept = KeptTrack { track: &mut track };
-        let ideal = |_: [f64; 3], _: u64| -> Box<dyn Mechanism> { Box::new(IdealMachine) };
-        self.run(aligned, plan, Some(&ideal), &mut [&mut kept])?;
+        self.walk(aligned, plan, &mut KeptTrack { track: &mut track })?;
         Ok(track)
+    }
+
+    /// The rows of a machine whose tool is where the command is.
+    fn walk(&self, aligned: &AlignedPaths, plan: &PlanCache, sink: &mut dyn Sink) -> Result<(), RunError> {
+        let ideal = |_: [f64; 3], _: u64| -> Box<dyn Mechanism> { Box::new(IdealMachine) };
+        self.run(aligned, plan, Some(&ideal), &mut [sink]).map(|_| ())
+    }
+
+    /// Servo periods that are simulated until the end of each line, up to `lines`, as the control plans a program.
+    pub(super) fn periods(&self, program: &[Step], lines: usize) -> Result<Vec<u64>, RunError> {
+        let mut kept = LinePeriods { until: vec![0; lines], periods: 0 };
+        self.walk(&AlignedPaths::new(program, program), &PlanCache::default(), &mut kept)?;
+        let mut before = 0;
+        for until in &mut kept.until {
+            before = before.max(*until);
+            *until = before;
+        }
+        Ok(kept.until)
     }
 }
 
@@ -356,6 +422,22 @@ impl Sink for KeptTrack<'_> {
         }
         self.track.s_mm.push(row.s_mm);
         self.track.command_mm.push(row.cmd_mm);
+        Ok(())
+    }
+}
+
+/// Counts the servo periods until the end of each line.
+struct LinePeriods {
+    until: Vec<u64>,
+    periods: u64,
+}
+
+impl Sink for LinePeriods {
+    fn row(&mut self, row: &Row) -> std::io::Result<()> {
+        self.periods += 1;
+        if let Some(until) = self.until.get_mut(row.line as usize).filter(|_| row.commanded != Commanded::Rest) {
+            *until = self.periods;
+        }
         Ok(())
     }
 }

@@ -45,6 +45,8 @@ pub struct CorrectOutcome {
     pub expanded: bool,
     /// Cuts that the correction was found in.
     pub rounds: u32,
+    /// Pieces that the program was corrected in.
+    pub pieces: usize,
     /// Longest rest that was put in, s.
     pub dwell_s: f64,
     /// What the reader warned of.

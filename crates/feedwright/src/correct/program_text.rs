@@ -21,7 +21,8 @@ pub(super) struct TextParts<'a> {
     pub(super) source: &'a SourceProgram,
     pub(super) parts: &'a [ProgramPart],
     pub(super) commands: &'a [StretchCommand],
-    pub(super) dwell_s: f64,
+    /// A dwell for each stretch, s.
+    pub(super) rests_s: &'a [f64],
     pub(super) target: &'a TargetControl,
     /// What the program says of itself.
     pub(super) notes: &'a [String],
@@ -61,15 +62,14 @@ impl TextParts<'_> {
         }
         let mut edits: BTreeMap<usize, LineEdit> = BTreeMap::new();
         for (number, stretch) in stretches(self.parts).enumerate() {
-            let [before, _] = dwells(self.parts, self.commands, number, self.dwell_s);
+            let rests = dwells(stretch, self.commands, number, self.rests_s);
             let from = line_of(&steps[stretch.steps[0]]);
             if let Some(command) = &self.commands[number] {
                 if let (Some(approach), Some((step, _))) = (&command.approach, &stretch.rapid) {
                     edits.insert(line_of(&steps[*step]), self.replaced([*step; 2], approach, [None; 2])?);
                 }
-                let rests = dwells(self.parts, self.commands, number, self.dwell_s);
                 edits.insert(from, self.replaced(stretch.steps, &command.motions, rests)?);
-            } else if let Some(seconds) = before {
+            } else if let [Some(seconds), _] = rests {
                 let text = vec![dwell(seconds, self.source.dialect)];
                 edits.insert(from, LineEdit { to: from - 1, text });
             }

@@ -5,11 +5,12 @@
 
 use crate::report::harm;
 use std::iter;
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Shape};
 use feedwright_plan::{PathError, Pieces, Step};
 use feedwright_sim::{Machine, RunError, StageSteps};
+use serde::{Deserialize, Serialize};
 
 use super::arc_fit::{ArcFit, FitMotion, FitPoint};
 use super::budget::{StretchBudget, StretchCost, details_to_give_up, program_more_s};
@@ -68,12 +69,15 @@ const WIDER: [f64; 2] = [1.15, 1.6];
 const WIDEST: f64 = 4.0;
 
 /// What the rounds have come to.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct RoundsResult {
     /// A command for each stretch.
     pub(super) commands: Vec<StretchCommand>,
     /// Why stretches stay as they are; none of those that have another command.
     pub(super) reasons: Vec<Option<UnchangedReason>>,
-    /// How long the tool rests where it has to come to rest, s.
+    /// How long the tool rests where it has to come to rest, for each stretch, s.
+    pub(super) rests_s: Vec<f64>,
+    /// The longest of them, s.
     pub(super) dwell_s: f64,
     /// Cuts that were simulated.
     pub(super) rounds: u32,
@@ -108,12 +112,13 @@ pub(super) fn steps_of(program: &[Canon]) -> Result<Vec<Step>, PathError> {
     Pieces::new(program.iter().cloned()).collect()
 }
 
-/// Finds commands for the stretches of a program, on the machine of `cut`.
+/// Finds commands for the stretches of a program, on the machine of `cut`. Only the stretches of `own`, by number, get another command.
 pub(super) fn rounds(
     cut: &ExportedCut<'_>,
     parts: &[ProgramPart],
     target: &TargetControl,
     file: Option<&FileModel>,
+    own: Range<usize>,
 ) -> Result<RoundsResult, RunError> {
     let lags: Vec<LoopLag> = match cut.axes {
         2 => loop_lags::<2>(cut.machine).to_vec(),
@@ -126,14 +131,17 @@ pub(super) fn rounds(
     let settings = settings(cut.machine);
     let mut progress = StageSteps::begin(cut.watch, "correcting");
     let count = stretches(parts).count();
-    let mut bench =
-        RoundsBench { cut, parts, target, lags, settings, settles_s: dwell_s, dwell_s, haste: Haste([1.0; 2]), count };
+    let haste = Haste([1.0; 2]);
+    let mut bench = RoundsBench { cut, parts, target, lags, settings, settles_s: dwell_s, dwell_s, haste, count };
     bench.check_length()?;
     let (cuts, rows) = bench.cut(&vec![None; bench.count])?;
     let time_s = rows.len() as f64 * settings.servo_s;
     let most_s = time_s + program_more_s(time_s, count);
     let mut under_way: Vec<StretchRounds> =
         stretches(parts).zip(&cuts).map(|(stretch, cut)| bench.begun(stretch, cut, &rows)).collect();
+    for (_, other) in under_way.iter_mut().enumerate().filter(|(number, _)| !own.contains(number)) {
+        other.finish();
+    }
     let mut round = 1;
     while round <= ROUNDS && under_way.iter().any(|stretch| !stretch.done) {
         let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.current.clone()).collect();
@@ -157,7 +165,7 @@ pub(super) fn rounds(
     let checks = bench.give_up_what_is_worse(&mut under_way)?;
     let reasons = under_way.iter().map(|stretch| stretch.best.is_none().then_some(stretch.reason)).collect();
     let commands = under_way.into_iter().map(|stretch| stretch.best).collect();
-    Ok(RoundsResult { commands, reasons, dwell_s: bench.dwell_s, rounds: round + checks })
+    Ok(RoundsResult { commands, reasons, rests_s: bench.rests_s(), dwell_s: bench.dwell_s, rounds: round + checks })
 }
 
 /// Parts of what dwells and slow ends usually take.
@@ -204,9 +212,14 @@ impl RoundsBench<'_> {
         check_rows(self.cut.original.iter().map(time_s).sum(), self.settings.servo_s)
     }
 
+    /// A dwell for each stretch, s.
+    fn rests_s(&self) -> Vec<f64> {
+        vec![self.dwell_s; self.count]
+    }
+
     /// What every stretch comes to, and the rows.
     fn cut(&self, commands: &[StretchCommand]) -> Result<(Vec<StretchCut>, Vec<CutRow>), RunError> {
-        let steps = steps_of(&assembled(self.parts, commands, self.dwell_s))?;
+        let steps = steps_of(&assembled(self.parts, commands, &self.rests_s()))?;
         let mut kept = CutRows::new(self.cut.original);
         let cut = self.cut.cut(&steps, &mut [&mut kept]).map(|_| ());
         cut.map_err(|error| kept.fault(error, self.settings.servo_s))?;
@@ -255,7 +268,9 @@ impl RoundsBench<'_> {
             return;
         }
         let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.current.clone()).collect();
-        let rests = (0..self.count).flat_map(|k| dwells(self.parts, &commands, k, self.dwell_s)).flatten();
+        let rests_s = self.rests_s();
+        let rests = stretches(self.parts).enumerate();
+        let rests = rests.flat_map(|(k, stretch)| dwells(stretch, &commands, k, &rests_s)).flatten();
         let slow = under_way.iter().filter(|stretch| stretch.current.is_some());
         let slow = slow.flat_map(|stretch| [stretch.slow_end, stretch.slow_rapid]).flatten().map(SlowEnd::time_s);
         let (rests_s, slow_s): (f64, f64) = (rests.sum(), slow.sum());

@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 use feedwright_gcode::canon::{Canon, Corner, Event, EventKind, Motion, MotionKind, Shape};
 use feedwright_plan::vector::{Vector, angle};
 use feedwright_plan::{Piece, Pieces, Step};
+use serde::{Deserialize, Serialize};
 
 /// A sharper turn is a corner: no arc is to replace it.
 pub(super) const CORNER_RAD: f64 = 25.0 / 180.0 * PI;
@@ -56,14 +57,14 @@ pub(super) fn length_mm(motion: &Motion) -> f64 {
 }
 
 /// Direction of travel at both ends of a motion; none of one without length.
-fn directions(motion: &Motion) -> Option<[Vector; 2]> {
+pub(super) fn directions(motion: &Motion) -> Option<[Vector; 2]> {
     let pieces = pieces(motion);
     let (first, last) = (pieces.first()?, pieces.last()?);
     Some([first.curve.at(0.0).tangent, last.curve.at(last.length_mm).tangent])
 }
 
-/// The parts of a program, in order.
-pub(super) fn parts(program: &[Canon]) -> Vec<ProgramPart> {
+/// The parts of a program, in order. A stretch ends before each step of `splits`, which is sorted; the tool does not rest there.
+pub(super) fn parts(program: &[Canon], splits: &[usize]) -> Vec<ProgramPart> {
     let mut parts: Vec<ProgramPart> = Vec::new();
     // Direction at the end of the last motion, and whether nothing has happened since.
     let (mut before, mut adjacent) = (None::<Vector>, false);
@@ -80,9 +81,12 @@ pub(super) fn parts(program: &[Canon]) -> Vec<ProgramPart> {
         };
         let turn_rad = before.map(|before| angle(before, starts));
         let bends = motion.kind == MotionKind::Feed && motion.others.is_none();
+        let mut corner = turn_rad.is_some();
         if bends && let Some(ProgramPart::Stretch(stretch)) = parts.last_mut().filter(|_| adjacent) {
-            let corner = stretch.motions.last().map_or(motion.corner, |last| last.corner);
-            if turn_rad.is_some_and(|turn| turn < most_turn_rad(corner)) {
+            let mode = stretch.motions.last().map_or(motion.corner, |last| last.corner);
+            let smooth = turn_rad.is_some_and(|turn| turn < most_turn_rad(mode));
+            corner &= !smooth;
+            if smooth && splits.binary_search(&index).is_err() {
                 stretch.motions.push(motion.clone());
                 stretch.ends[1] = ends;
                 stretch.steps[1] = index;
@@ -90,7 +94,6 @@ pub(super) fn parts(program: &[Canon]) -> Vec<ProgramPart> {
                 continue;
             }
         }
-        let corner = turn_rad.is_some();
         let mut follows = false;
         if let Some(last) = last_stretch(&mut parts) {
             last.rests[1] = !bends;
@@ -149,7 +152,7 @@ impl SmoothStretch {
 }
 
 /// Motions in place of those of a stretch.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct NewMotions {
     /// In place of those of the stretch.
     pub(super) motions: Vec<Motion>,
@@ -165,7 +168,7 @@ pub(super) type StretchCommand = Option<NewMotions>;
 /// The program with other motions in place of its stretches, and dwells where the tool has to come to rest.
 ///
 /// The line of a motion is the number of its stretch, from 1, and 0 of all that is kept.
-pub(super) fn assembled(parts: &[ProgramPart], commands: &[StretchCommand], dwell_s: f64) -> Vec<Canon> {
+pub(super) fn assembled(parts: &[ProgramPart], commands: &[StretchCommand], rests_s: &[f64]) -> Vec<Canon> {
     let (mut program, mut number) = (Vec::new(), 0);
     let rest = |seconds: f64| Canon::Event(Event { line: 0, kind: EventKind::Dwell { seconds } });
     let numbered = |motion: &Motion, line: u32| Canon::Motion(Motion { line, ..motion.clone() });
@@ -174,7 +177,7 @@ pub(super) fn assembled(parts: &[ProgramPart], commands: &[StretchCommand], dwel
             ProgramPart::Kept(Canon::Motion(motion)) => program.push(numbered(motion, 0)),
             ProgramPart::Kept(event) => program.push(event.clone()),
             ProgramPart::Stretch(stretch) => {
-                let [before, behind] = dwells(parts, commands, number, dwell_s);
+                let [before, behind] = dwells(stretch, commands, number, rests_s);
                 let command = commands[number].as_ref();
                 let motions = command.map_or(&stretch.motions, |command| &command.motions);
                 if let Some(approach) = command.and_then(|command| command.approach.as_ref()) {
@@ -205,14 +208,14 @@ pub(super) fn rest_s(comes_slowly: bool, dwell_s: f64) -> f64 {
 }
 
 /// How long the tool rests before and behind a stretch, s: where it, or the stretch before, has another command, a dwell, and less where the tool comes
-/// so slowly that it has settled.
+/// so slowly that it has settled. `rests_s` has a dwell for each stretch.
 pub(super) fn dwells(
-    parts: &[ProgramPart],
+    stretch: &SmoothStretch,
     commands: &[StretchCommand],
     number: usize,
-    dwell_s: f64,
+    rests_s: &[f64],
 ) -> [Option<f64>; 2] {
-    let Some(stretch) = stretches(parts).nth(number) else { return [None; 2] };
+    let dwell_s = rests_s[number];
     let command = commands[number].as_ref();
     let before = if number > 0 && stretch.follows { commands[number - 1].as_ref() } else { None };
     let comes_slowly = command.is_some_and(|command| command.approach.is_some());

@@ -3,12 +3,12 @@
 use std::fmt;
 
 use feedwright_gcode::canon::{Canon, Motion, MotionKind, Plane, Shape};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::stretches::{ProgramPart, SmoothStretch};
 
 /// Why a stretch has no other command.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) enum UnchangedReason {
     /// Its largest error is below what blocks can correct.
     Good,

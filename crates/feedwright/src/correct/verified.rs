@@ -1,6 +1,7 @@
 //! Whether a text says what it is meant to say: it is read again and compared, step by step.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use feedwright_gcode::canon::{Canon, EventKind, Motion, MotionKind, Shape};
 use feedwright_gcode::{Dialect, ModesInForce, Reader, Settings};
@@ -17,14 +18,16 @@ const DWELL_S: f64 = 1e-3;
 const CENTER_STEPS: f64 = 100.0;
 const CENTER_PART: f64 = 1e-3;
 
-/// The steps of a text, and the modes behind each; none where it has a mistake.
-pub(super) fn read(text: &str, settings: &Settings, dialect: Dialect) -> Option<(Vec<Canon>, Vec<ModesInForce>)> {
+/// The steps of a text, and the modes behind each; none where it has a mistake. Steps with the same modes share them.
+pub(super) fn read(text: &str, settings: &Settings, dialect: Dialect) -> Option<(Vec<Canon>, Vec<Arc<ModesInForce>>)> {
     let settings = Settings { dialect: Some(dialect), ..settings.clone() };
     let mut reader = Reader::from_text("corrected.ngc", text, settings).ok()?;
-    let (mut steps, mut modes) = (Vec::new(), Vec::new());
+    let (mut steps, mut modes) = (Vec::new(), Vec::<Arc<ModesInForce>>::new());
     while let Some(step) = reader.next() {
         steps.push(step.ok()?);
-        modes.push(reader.modes());
+        let now = reader.modes();
+        let last = modes.last().filter(|last| ***last == now);
+        modes.push(last.map_or_else(|| Arc::new(now), Arc::clone));
     }
     Some((steps, modes))
 }

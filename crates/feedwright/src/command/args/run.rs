@@ -51,6 +51,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "LENGTH", value_parser = length_um, allow_negative_numbers = true, help_heading = CUT)]
     pub(crate) tolerance: Option<f64>,
     /// Measure errors and uncut path to this program in place of PART: what another program for the same part comes to.
+    /// A corrected program is planned as the control plans that its comment names.
     #[arg(long, value_name = "ORIGINAL.ngc", conflicts_with = "fastest", help_heading = MEASURED, hide_short_help = true)]
     pub(crate) reference: Option<PathBuf>,
     /// Cut in the least time in which the tool stays within --tolerance; feedrates are the ceiling.

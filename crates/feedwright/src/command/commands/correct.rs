@@ -20,7 +20,7 @@ use crate::command::terminal::wrapped;
 use crate::correct::exported::ExportedFigures;
 use crate::correct::{CorrectJob, CorrectOutcome, CutProgram, LearnedOutcome, LearnedValue, PredictedCut};
 use crate::measured::MeasuredLog;
-use crate::output::OutputFile;
+use crate::output::{OutputFile, is_standard_output};
 use crate::results_format::{json_text, stamped};
 
 pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
@@ -40,7 +40,7 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let bar = console.bar(0);
     let logs = logs(args, &bar)?;
     let job = CorrectJob::new(Program::in_file(&args.part), machine, target);
-    let job = CorrectJob { reader, compensation, logs, file_error, ..job };
+    let job = CorrectJob { reader, compensation, logs, file_error, keep: kept_beside(args), ..job };
     let outcome = job.run(&bar)?;
     bar.clear();
     for warning in outcome.warnings.iter().cloned() {
@@ -60,9 +60,21 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
         complete.push(file);
     }
     OutputFile::commit_all(complete, &bar)?;
+    job.forget_pieces().into_diagnostic()?;
     let good = within && outcome.refusal.is_none();
     let code = if good { ExitCode::SUCCESS } else { ExitCode::from(OUT_OF_TOLERANCE) };
     printed(print(args, &outcome, within), code)
+}
+
+/// Where finished pieces of a long program are kept: beside the corrected program, where that is a file.
+fn kept_beside(args: &CorrectArgs) -> Option<PathBuf> {
+    let is_file =
+        |path: &&Path| !is_standard_output(path) && !std::fs::metadata(path).is_ok_and(|found| !found.is_file());
+    args.out.as_deref().filter(is_file).map(|path| {
+        let mut name = path.as_os_str().to_owned();
+        name.push(".pieces");
+        name.into()
+    })
 }
 
 /// The logs of the part.
@@ -111,6 +123,11 @@ fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io:
     table.print(&mut *out)?;
     let note = "both cut without feedback, as the control plans them; errors are distances to the programmed path";
     writeln!(out, "{}", wrapped(note, 2))?;
+    if outcome.pieces > 1 {
+        let note =
+            format!("corrected in {} pieces, one by one; each has its own limits of blocks and time", outcome.pieces);
+        writeln!(out, "{}", wrapped(&note, 2))?;
+    }
     if let Some(learned) = &outcome.learned {
         print_learned(&mut *out, learned)?;
     }

@@ -95,8 +95,8 @@ impl<const N: usize> FeedBench<'_, N> {
         let program = match way {
             CutWay::Corrected => {
                 let tool = self.machine.compensated.as_ref();
-                let found = rounds(&ExportedCut { tool, ..on(&nominal) }, &parts, self.target, None)?;
-                steps_of(&assembled(&parts, &found.commands, found.dwell_s))?
+                let found = rounds(&ExportedCut { tool, ..on(&nominal) }, &parts, self.target, None, 0..usize::MAX)?;
+                steps_of(&assembled(&parts, &found.commands, &found.rests_s))?
             }
             CutWay::Uncorrected | CutWay::Controlled => original.clone(),
         };

@@ -5,8 +5,8 @@ use crate::report::headline::{AXES, headline};
 use std::io::{self, Write};
 
 use crate::controllers::CutsUncorrected;
-use crate::correct::CorrectOutcome;
 use crate::correct::exported::ExportedFigures;
+use crate::correct::{CorrectOutcome, TargetControl};
 use crate::fastest::FastestPlan;
 use crate::job::{Job, JobOutcome, MEASURED};
 use crate::report::{AS_EXPORTED, Assumptions, CorrectionChange, Outcome as Ending, Report, ReportedRun, RunSummary};
@@ -52,6 +52,9 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outputs: &Outputs, outcome: 
     }
     if let Some(reference) = &job.reference {
         say(out, &format!("errors and uncut path are those to {}", reference.name()))?;
+        if let Some(control) = job.planned_as {
+            say(out, &planned_as(control))?;
+        }
     }
     if let Some(exported) = &outcome.exported {
         print_exported(out, exported)?;
@@ -63,6 +66,15 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outputs: &Outputs, outcome: 
         say(out, &path_share(path_um))?;
     }
     print_written(out, outputs, outcome)
+}
+
+/// How a program is planned that says which control it was corrected for.
+fn planned_as(control: &TargetControl) -> String {
+    format!(
+        "the program says that it was corrected for the control {}: it is planned as this control plans, and its geometry is not \
+         compensated a second time",
+        control.name
+    )
 }
 
 /// Said where the correction was out of the loop for most of the cutting time, or at its end.

@@ -1,0 +1,276 @@
+//! Long work in parts: on several threads, and kept in a file, so that a run that was killed goes
+//! on where it was.
+//!
+//! The file has a line of JSON for each finished part, with a checksum. The first line says what
+//! the file is and which work it belongs to. A line that is not complete, and all behind it, counts
+//! as not finished. A file of other work is begun anew. A file that is something else stays as it
+//! is, and nothing is kept. The same holds where the file cannot be written: the disk is full, or
+//! another process has the file.
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::checked_json::{checked, with_check};
+
+/// Raised whenever the same work has another result.
+const FORMAT: u32 = 1;
+const ABOUT: &str =
+    "finished parts of a feedwright correct that has not ended; the same command goes on with them; may be deleted";
+
+/// The first line of the file.
+#[derive(Serialize, Deserialize, PartialEq)]
+struct KeptHead {
+    about: String,
+    format: u32,
+    version: String,
+    /// Hash of all that the work depends on.
+    work: String,
+}
+
+/// A finished part.
+#[derive(Serialize, Deserialize)]
+struct KeptPart<T> {
+    part: String,
+    result: T,
+}
+
+/// Does work in parts.
+pub(super) struct Workers {
+    threads: usize,
+    /// Lines of the parts that an earlier run has finished, by their name.
+    found: HashMap<String, String>,
+    /// Where finished parts go.
+    file: Mutex<Option<File>>,
+}
+
+impl Workers {
+    /// Keeps nothing.
+    pub(super) fn new(threads: usize) -> Self {
+        Self { threads, found: HashMap::new(), file: Mutex::new(None) }
+    }
+
+    /// Keeps finished parts in a file, and goes on with those that it has; `work` is a hash of all
+    /// that the work depends on.
+    pub(super) fn keeping(threads: usize, path: &Path, work: &str) -> Self {
+        let head = KeptHead {
+            about: ABOUT.to_owned(),
+            format: FORMAT,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            work: work.to_owned(),
+        };
+        let (found, file) = opened(path, &head).map_or_else(Default::default, |(found, file)| (found, Some(file)));
+        Self { threads, found, file: Mutex::new(file) }
+    }
+
+    /// The results of `count` parts in their order, whatever the number of threads, which is up to
+    /// `threads`. Parts are kept by the name of the work and their number.
+    ///
+    /// # Errors
+    /// The error of the first part that failed. No part is begun after that.
+    pub(super) fn each<T, E>(
+        &self,
+        name: &str,
+        count: usize,
+        threads: usize,
+        work: impl Fn(usize) -> Result<T, E> + Sync,
+    ) -> Result<Vec<T>, E>
+    where
+        T: Serialize + DeserializeOwned + Send,
+        E: Send,
+    {
+        let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
+        let results: Mutex<Vec<Option<Result<T, E>>>> = Mutex::new((0..count).map(|_| None).collect());
+        let run = || loop {
+            let part = next.fetch_add(1, Ordering::Relaxed);
+            if part >= count || failed.load(Ordering::Relaxed) {
+                return;
+            }
+            let result = self.kept(&format!("{name} {part}"), || work(part));
+            failed.fetch_or(result.is_err(), Ordering::Relaxed);
+            results.lock().unwrap_or_else(PoisonError::into_inner)[part] = Some(result);
+        };
+        std::thread::scope(|scope| {
+            for _ in 1..self.threads.min(threads).min(count) {
+                scope.spawn(run);
+            }
+            run();
+        });
+        results.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().flatten().collect()
+    }
+
+    /// The result of a part, from the file where it is there.
+    fn kept<T: Serialize + DeserializeOwned, E>(
+        &self,
+        name: &str,
+        work: impl FnOnce() -> Result<T, E>,
+    ) -> Result<T, E> {
+        let found = self.found.get(name).and_then(|text| serde_json::from_str::<KeptPart<T>>(text).ok());
+        if let Some(found) = found {
+            return Ok(found.result);
+        }
+        let result = work()?;
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(open) = file.as_mut() {
+            let part = KeptPart { part: name.to_owned(), result: &result };
+            if append(open, &part).is_err() {
+                *file = None;
+            }
+        }
+        Ok(result)
+    }
+}
+
+/// Removes a file that keeps finished parts; one of something else stays.
+///
+/// # Errors
+/// A file that cannot be removed.
+pub(super) fn forget(path: &Path) -> std::io::Result<()> {
+    let mut first = String::new();
+    let read = File::open(path).and_then(|file| BufReader::new(file).read_line(&mut first));
+    let head = read.ok().and_then(|_| checked(&first)).and_then(|text| serde_json::from_str::<KeptHead>(&text).ok());
+    if head.is_some_and(|head| head.about == ABOUT) { std::fs::remove_file(path) } else { Ok(()) }
+}
+
+/// Puts a line behind the others; where it does not fit, none of it stays.
+fn append(file: &mut File, line: &impl Serialize) -> std::io::Result<()> {
+    let end = file.seek(SeekFrom::End(0))?;
+    let line = format!("{}\n", with_check(&serde_json::to_string(line)?));
+    let written = file.write_all(line.as_bytes()).and_then(|()| file.sync_data());
+    written.inspect_err(|_| {
+        // What cannot be taken back is found by its checksum.
+        let _ = file.set_len(end);
+    })
+}
+
+/// The finished parts of a file, and the file; none where it is something else, or cannot be had.
+fn opened(path: &Path, head: &KeptHead) -> Option<(HashMap<String, String>, File)> {
+    let mut file = File::options().read(true).write(true).create(true).truncate(false).open(path).ok()?;
+    file.try_lock().ok()?;
+    let mut text = String::new();
+    file.read_to_string(&mut text).ok()?;
+    let first = text.split_inclusive('\n').next().unwrap_or_default();
+    let begun = checked(first).and_then(|text| serde_json::from_str::<KeptHead>(&text).ok());
+    let is_ours = begun.as_ref().is_some_and(|begun| begun.about == ABOUT);
+    if !is_ours && !text.is_empty() && !is_torn_head(&text) {
+        return None;
+    }
+    let mut found = HashMap::new();
+    let mut good = 0;
+    if begun.as_ref() == Some(head) {
+        good = first.len();
+        for line in text[good..].split_inclusive('\n') {
+            let part = checked(line).filter(|_| line.ends_with('\n'));
+            let Some((name, part)) = part.and_then(|part| Some((name_of(&part)?, part))) else { break };
+            found.insert(name, part);
+            good += line.len();
+        }
+    }
+    file.set_len(good as u64).ok()?;
+    if good == 0 {
+        append(&mut file, head).ok()?;
+    }
+    Some((found, file))
+}
+
+/// Whether a run was killed, or the disk full, while the first line was written.
+fn is_torn_head(text: &str) -> bool {
+    text.len() < 2 * ABOUT.len() + 200
+        && !text.contains('\n')
+        && with_check("{}").starts_with(&text[..text.len().min(10)])
+}
+
+fn name_of(part: &str) -> Option<String> {
+    serde_json::from_str::<KeptPart<serde::de::IgnoredAny>>(part).ok().map(|part| part.part)
+}
+
+/// Hashes what is printed.
+struct HashedText(blake3::Hasher);
+
+impl std::fmt::Write for HashedText {
+    fn write_str(&mut self, text: &str) -> std::fmt::Result {
+        self.0.update(text.as_bytes());
+        Ok(())
+    }
+}
+
+/// A hash of all that some values print, as hexadecimal digits.
+pub(super) fn hash_of(values: std::fmt::Arguments<'_>) -> String {
+    let mut text = HashedText(blake3::Hasher::new());
+    // Writing to a hash does not fail.
+    let _ = std::fmt::Write::write_fmt(&mut text, values);
+    text.0.finalize().to_hex().to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Does three parts, and returns their results and how many were not found in the file.
+    fn done(path: &Path, work: &str, threads: usize) -> (Vec<f64>, usize) {
+        let anew = AtomicUsize::new(0);
+        let workers = Workers::keeping(threads, path, work);
+        let part = |part: usize| {
+            anew.fetch_add(1, Ordering::Relaxed);
+            Ok::<f64, ()>(1.0 / (3.0 + part as f64))
+        };
+        (workers.each("piece", 3, threads, part).unwrap(), anew.into_inner())
+    }
+
+    #[test]
+    fn finished_parts_are_found_again_to_the_bit_unless_they_are_of_other_work() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("kept");
+        let all = vec![1.0 / 3.0, 0.25, 0.2];
+        assert_eq!(done(&path, "a", 2), (all.clone(), 3));
+        assert_eq!(done(&path, "a", 1), (all.clone(), 0));
+        assert_eq!(done(&path, "b", 1), (all.clone(), 3));
+        assert_eq!(done(&path, "a", 1), (all, 3));
+        forget(&path).unwrap();
+        assert!(!path.exists());
+    }
+
+    #[test]
+    fn a_file_that_ends_anywhere_gives_the_same_results() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("kept");
+        let (all, _) = done(&path, "a", 1);
+        let whole = std::fs::read(&path).unwrap();
+        let line_ends: Vec<usize> = (0..whole.len()).filter(|&at| whole[at] == b'\n').collect();
+        for length in 0..whole.len() {
+            std::fs::write(&path, &whole[..length]).unwrap();
+            let finished = line_ends.iter().filter(|&&end| end < length).count().saturating_sub(1);
+            assert_eq!(done(&path, "a", 1), (all.clone(), 3 - finished), "{length} bytes");
+            assert_eq!(std::fs::read(&path).unwrap(), whole, "{length} bytes");
+        }
+    }
+
+    #[test]
+    fn a_file_of_something_else_stays_as_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("kept");
+        for text in ["G0 X1\n", "{\"check\":\"0123456789abcdef\",\"mine\":1}\n"] {
+            std::fs::write(&path, text).unwrap();
+            assert_eq!(done(&path, "a", 1).1, 3);
+            forget(&path).unwrap();
+            assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+        }
+    }
+
+    #[test]
+    fn the_first_part_that_fails_ends_the_work() {
+        let begun = AtomicUsize::new(0);
+        let part = |part: usize| {
+            begun.fetch_add(1, Ordering::Relaxed);
+            if part < 2 { Ok(part) } else { Err(part) }
+        };
+        assert_eq!(Workers::new(1).each("piece", 100, 1, part), Err(2));
+        assert_eq!(begun.into_inner(), 3);
+    }
+}

@@ -1,0 +1,229 @@
+//! A long program in pieces, so that the rows of a cut fit in memory.
+//!
+//! Each piece is corrected by itself, with budgets of blocks and time of its own. Before and behind
+//! its own steps it has a lead: steps of the program that are cut as they are programmed. The lead
+//! is as long as the loop remembers, plus the time in which the control stops from its highest
+//! feedrate, which bounds its look-ahead. So neither the tool nor the control tells the piece from
+//! the whole program. A program that is short enough is one piece, without a lead.
+//!
+//! A piece ends where the machine stands or moves rapidly; where there is no such place, at a
+//! corner. Where there is no corner either, it ends where the path bends least: the correction
+//! fades out and in there, and what it would be is small.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use feedwright_gcode::canon::{Canon, Motion, MotionKind, Shape};
+use feedwright_plan::Step;
+use feedwright_plan::vector::angle;
+use feedwright_sim::{Machine, RunError, Watch};
+
+use super::exported::ExportedCut;
+use super::file_prior::FileModel;
+use super::kept_work::Workers;
+use super::rounds::{RoundsResult, rounds, steps_of};
+use super::stretches::{ProgramPart, directions, parts, stretches};
+use super::target::TargetControl;
+
+/// Servo periods of a piece: their rows take some 100 MB. A program of up to [`WHOLE_PIECES`]
+/// pieces is one piece.
+pub(super) const PIECE_PERIODS: u64 = 500_000;
+const WHOLE_PIECES: u64 = 2;
+/// A piece ends within these parts of its length.
+const ENDS_WITHIN: [f64; 2] = [0.75, 1.25];
+/// Time constants of the position loop after which the tool no longer shows how it started: less
+/// than 1e-8 is left.
+const MEMORY: f64 = 20.0;
+/// A motion takes no longer than at its programmed feedrate plus this, s: an estimate that spares
+/// short programs a plan.
+const STOP_S: f64 = 0.2;
+/// Progress of a piece, steps.
+const STEPS: u64 = 1000;
+
+/// Steps that are corrected together.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct ProgramPiece {
+    /// Its own steps.
+    own: Range<usize>,
+    /// Those, and the leads.
+    cut: Range<usize>,
+}
+
+impl ProgramPiece {
+    /// A program of so many steps in one piece.
+    pub(super) const fn whole(steps: usize) -> Self {
+        Self { own: 0..steps, cut: 0..steps }
+    }
+}
+
+/// The steps at which pieces begin behind others.
+pub(super) fn splits(pieces: &[ProgramPiece]) -> Vec<usize> {
+    pieces.iter().skip(1).map(|piece| piece.own.start).collect()
+}
+
+/// The pieces of a program, of about `periods` servo periods each, as the control plans it.
+pub(super) fn pieces(cut: &ExportedCut<'_>, program: &[Canon], periods: u64) -> Result<Vec<ProgramPiece>, RunError> {
+    let servo_s = cut.machine.period.servo_s;
+    let whole = WHOLE_PIECES * periods;
+    if most_s(cut) <= whole as f64 * servo_s {
+        return Ok(vec![ProgramPiece::whole(program.len())]);
+    }
+    let numbered = program.iter().enumerate().map(|(step, canon)| match canon {
+        Canon::Motion(motion) => Canon::Motion(Motion { line: step as u32, ..motion.clone() }),
+        Canon::Event(event) => Canon::Event(event.clone()),
+    });
+    let until = cut.periods(&steps_of(&numbered.collect::<Vec<_>>())?, program.len())?;
+    if until.last().is_none_or(|&all| all <= whole) {
+        return Ok(vec![ProgramPiece::whole(program.len())]);
+    }
+    let lead = (lead_s(cut.machine) / servo_s).ceil() as u64;
+    let begins = begins(program, &until, periods);
+    let ends = begins.iter().skip(1).copied().chain([program.len()]);
+    Ok(begins.iter().zip(ends).map(|(&from, to)| with_leads(from..to, &until, lead)).collect())
+}
+
+/// Time that a program takes at the most, s.
+fn most_s(cut: &ExportedCut<'_>) -> f64 {
+    let limits = &cut.machine.limits;
+    let time_s = |step: &Step| match step {
+        Step::Piece(piece) if piece.cutting => STOP_S + piece.length_mm / piece.feed_mm_s.min(limits.max_feed_mm_s),
+        Step::Piece(piece) => STOP_S + piece.length_mm / limits.rapid_mm_s,
+        Step::Event(_) | Step::Rest(_) => STOP_S,
+    };
+    cut.original.iter().map(time_s).sum()
+}
+
+/// How long a lead is, s.
+fn lead_s(machine: &Machine) -> f64 {
+    let limits = &machine.limits;
+    let fastest_mm_s = limits.rapid_mm_s.max(limits.max_feed_mm_s);
+    MEMORY / machine.slowest_kp_1_s() + fastest_mm_s / limits.tangential_accel_mm_s2
+}
+
+/// Own steps between leads of at least one step, where there is any.
+fn with_leads(own: Range<usize>, until: &[u64], lead: u64) -> ProgramPiece {
+    let before = |step: usize| if step == 0 { 0 } else { until[step - 1] };
+    let (from, to) = (before(own.start), before(own.end));
+    let first = until.partition_point(|&until| until + lead < from).min(own.start.saturating_sub(1));
+    let last = until.partition_point(|&until| until < to + lead) + 1;
+    ProgramPiece { cut: first..last.max(own.end + 1).min(until.len()), own }
+}
+
+/// The first steps of all pieces.
+fn begins(program: &[Canon], until: &[u64], periods: u64) -> Vec<usize> {
+    let mut corner = vec![false; program.len()];
+    let mut step = 0;
+    for part in parts(program, &[]) {
+        corner[step] = true;
+        step += if let ProgramPart::Stretch(stretch) = part { stretch.motions.len() } else { 1 };
+    }
+    let all = until.last().copied().unwrap_or(0);
+    let mut begins = vec![0];
+    let mut from = 0;
+    while (all - from) as f64 > ENDS_WITHIN[1] * periods as f64 {
+        let [earliest, latest] = ENDS_WITHIN.map(|part| from + (part * periods as f64) as u64);
+        let first = until.partition_point(|&until| until < earliest) + 1;
+        let last = (until.partition_point(|&until| until <= latest) + 1).min(program.len());
+        // Where a single step is longer than all that, the piece ends behind it.
+        let best = (first..last.max(first + 1)).filter(|&step| step < program.len());
+        let Some(best) = best.max_by(|&a, &b| fitness(program, &corner, a).total_cmp(&fitness(program, &corner, b)))
+        else {
+            break;
+        };
+        begins.push(best);
+        from = until[best - 1];
+    }
+    begins
+}
+
+/// How well a piece begins with a step: 3 before a rapid or an event, 2 behind one, 1 at a corner,
+/// less where the path goes on smoothly.
+fn fitness(program: &[Canon], corner: &[bool], step: usize) -> f64 {
+    let rests = |step: usize| !matches!(&program[step], Canon::Motion(motion) if motion.kind == MotionKind::Feed);
+    match (&program[step - 1], &program[step]) {
+        _ if rests(step) && !rests(step - 1) => 3.0,
+        _ if rests(step) || rests(step - 1) => 2.0,
+        _ if corner[step] => 1.0,
+        (Canon::Motion(last), Canon::Motion(next)) => {
+            let is_straight = last.shape == Shape::Line && next.shape == Shape::Line;
+            let turn_rad = directions(last).zip(directions(next)).map_or(0.0, |(last, next)| angle(last[1], next[0]));
+            f64::from(u8::from(is_straight)) - 1.0 - turn_rad
+        }
+        _ => 0.0,
+    }
+}
+
+/// Finds commands for the stretches of all pieces; the stretches are those of the program split
+/// where pieces begin.
+pub(super) fn rounds_of_pieces(
+    cut: &ExportedCut<'_>,
+    program: &[Canon],
+    pieces: &[ProgramPiece],
+    target: &TargetControl,
+    file: Option<&FileModel>,
+    workers: &Workers,
+) -> Result<RoundsResult, RunError> {
+    cut.watch.begin("correcting", STEPS * pieces.len() as u64);
+    let splits = splits(pieces);
+    let work = |k: usize| rounds_of_piece(cut, program, &pieces[k], &splits, target, file);
+    let all = workers.each("piece", pieces.len(), usize::MAX, work)?;
+    let mut whole = RoundsResult::default();
+    for piece in all {
+        whole.commands.extend(piece.commands);
+        whole.reasons.extend(piece.reasons);
+        whole.rests_s.extend(piece.rests_s);
+        whole.dwell_s = whole.dwell_s.max(piece.dwell_s);
+        whole.rounds += piece.rounds;
+    }
+    Ok(whole)
+}
+
+/// Finds commands for the stretches that begin in a piece.
+fn rounds_of_piece(
+    cut: &ExportedCut<'_>,
+    program: &[Canon],
+    piece: &ProgramPiece,
+    splits: &[usize],
+    target: &TargetControl,
+    file: Option<&FileModel>,
+) -> Result<RoundsResult, RunError> {
+    let (from, program) = (piece.cut.start, &program[piece.cut.clone()]);
+    let original = steps_of(program)?;
+    let watch = PieceWatch { of_all: cut.watch, done: AtomicU64::new(0) };
+    let within: Vec<usize> = splits.iter().filter(|&&step| step > from).map(|step| step - from).collect();
+    let parts = parts(program, &within);
+    let before = |step: usize| stretches(&parts).take_while(|stretch| stretch.steps[0] + from < step).count();
+    let own = before(piece.own.start)..before(piece.own.end);
+    let found = rounds(&ExportedCut { original: &original, watch: &watch, ..*cut }, &parts, target, file, own.clone())?;
+    cut.watch.advance(STEPS.saturating_sub(watch.done.into_inner()));
+    let RoundsResult { commands, reasons, rests_s, dwell_s, rounds } = found;
+    Ok(RoundsResult {
+        commands: commands[own.clone()].to_vec(),
+        reasons: reasons[own.clone()].to_vec(),
+        rests_s: rests_s[own].to_vec(),
+        dwell_s,
+        rounds,
+    })
+}
+
+/// Progress of a piece as a part of that of all.
+struct PieceWatch<'a> {
+    of_all: &'a dyn Watch,
+    done: AtomicU64,
+}
+
+impl Watch for PieceWatch<'_> {
+    fn advance(&self, steps: u64) {
+        self.done.fetch_add(steps, Ordering::Relaxed);
+        self.of_all.advance(steps);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.of_all.is_cancelled()
+    }
+
+    fn clock(&self) -> Duration {
+        self.of_all.clock()
+    }
+}
