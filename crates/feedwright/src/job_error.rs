@@ -43,9 +43,7 @@ pub enum JobError {
         machine: String,
     },
     /// A program with more motions than a correction keeps in memory.
-    #[error(
-        "{part} has {motions} motions and events, and a correction keeps up to {most} of them in memory, 1.5 kB each"
-    )]
+    #[error("{part} has {motions} motions and events, and a correction keeps up to {most} of them in memory")]
     #[diagnostic(help(
         "split the program at a rapid and correct its parts one by one, or write it with longer blocks"
     ))]
