@@ -32,6 +32,7 @@
 //! | `arc_fit.rs` | points to arcs and lines |
 //! | `learned.rs` | what logs of cuts of the part tell |
 //! | `exported.rs` | a program as the other control cuts it |
+//! | `seams.rs` | where the commands of two pieces meet |
 //! | `slow_end.rs` | slow ways to where the tool would run over |
 //! | `command_update.rs` | a better command from the errors of a cut |
 //! | `stretch_cut.rs` | errors and time of each stretch in a cut |
@@ -61,6 +62,7 @@ mod stretches;
 pub(crate) mod arc_fit;
 pub(crate) mod learned;
 pub(crate) mod exported;
+mod seams;
 mod slow_end;
 mod command_update;
 mod stretch_cut;
@@ -99,7 +101,7 @@ use learned::{LearnedMachine, LoggedProgram};
 pub use nominal::deterministic;
 pub use outcome::CorrectOutcome;
 use outcome::{UnwrittenProgram, WrittenProgram, refusal};
-use pieces::{PIECE_PERIODS, ProgramPiece, pieces, rounds_of_pieces, splits};
+use pieces::{LongProgram, PIECE_PERIODS, ProgramPiece, pieces, rounds_of_pieces, splits};
 use predicted::{no_gain, predicted_cut};
 use program_text::TextParts;
 use rounds::{RoundsResult, steps_of};
@@ -212,8 +214,8 @@ impl CorrectJob {
         let pieces = self.pieces(&predicted, &source.steps).map_err(of_run)?;
         let parts = parts(&source.steps, &splits(&pieces));
         let workers = self.workers(&source, pieces.len());
-        let found = rounds_of_pieces(&predicted, &source.steps, &pieces, self.target, file.as_ref(), &workers)
-            .map_err(of_run)?;
+        let program = LongProgram { steps: &source.steps, parts: &parts, pieces: &pieces };
+        let found = rounds_of_pieces(&predicted, &program, self.target, file.as_ref(), &workers).map_err(of_run)?;
         let written = self.written(&source, &parts, &found);
         let (written, unwritten) = written.map_or_else(|fault| (None, Some(fault)), |written| (Some(written), None));
         let changed = found.commands.iter().flatten().count();

@@ -1,5 +1,5 @@
-//! A program that is corrected in pieces has the same result with any number of threads, and when
-//! the run was ended in between.
+//! A program that is corrected in pieces is corrected as it is in one: wherever it is cut, with any
+//! number of threads, and when the run was ended in between.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -17,11 +17,49 @@ fn with_rests() -> String {
     format!("G21 G90 G64\n{}M2\n", (0..10).map(arc).collect::<String>())
 }
 
+/// A wave of lines and arcs that never stops.
+fn without_rest() -> String {
+    let wave = |k: u32| {
+        let x = 20 * k;
+        format!("G3 X{} Y0 R6\nG1 X{}\nG2 X{} Y0 R6\nG1 X{}\n", x + 5, x + 10, x + 15, x + 20)
+    };
+    format!("G21 G90 G64\nG0 X0 Y0\nF1500\n{}M2\n", (0..12).map(wave).collect::<String>())
+}
+
 fn job(text: &str, target: &'static TargetControl) -> CorrectJob {
     let mut job =
         CorrectJob::new(Program::from_text("part.ngc", text), Machine::load("tnv40".as_ref()).unwrap(), target);
     (job.piece_periods, job.threads) = (PIECE, 1);
     job
+}
+
+fn in_pieces(text: &str) -> CorrectOutcome {
+    job(text, &TARGETS[0]).run(&()).unwrap()
+}
+
+fn in_one(text: &str) -> CorrectOutcome {
+    let mut job = job(text, &TARGETS[0]);
+    job.piece_periods = u64::MAX / 8;
+    job.run(&()).unwrap()
+}
+
+#[test]
+fn a_program_with_rests_is_corrected_in_pieces_as_in_one() {
+    let (pieces, whole) = (in_pieces(&with_rests()), in_one(&with_rests()));
+    println!("{pieces:?}\n{whole:?}");
+    println!("{}\n-----\n{}", pieces.program().unwrap(), whole.program().unwrap());
+    assert!(pieces.pieces > 3 && whole.pieces == 1, "{}", pieces.pieces);
+    assert_eq!(pieces.program(), whole.program());
+}
+
+#[test]
+fn a_program_without_rest_is_corrected_in_pieces_as_in_one() {
+    let (pieces, whole) = (in_pieces(&without_rest()), in_one(&without_rest()));
+    println!("{pieces:?}\n{whole:?}");
+    println!("{}\n-----\n{}", pieces.program().unwrap(), whole.program().unwrap());
+    assert!(pieces.pieces > 3 && whole.pieces == 1, "{}", pieces.pieces);
+    assert!((pieces.corrected.rms_um - whole.corrected.rms_um).abs() < 0.02 * whole.uncorrected.rms_um);
+    assert!((pieces.corrected.max_um - whole.corrected.max_um).abs() < 0.1 * whole.uncorrected.max_um);
 }
 
 /// Ends the work after some progress.

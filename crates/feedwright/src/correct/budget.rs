@@ -48,9 +48,9 @@ pub(super) struct StretchBudget {
     pub(super) loop_s: f64,
 }
 
-/// How much longer than `time_s` a program of `stretches` may take, s.
-pub(super) fn program_more_s(time_s: f64, stretches: usize) -> f64 {
-    PROGRAM_MORE_TIME[usize::from(stretches > 1)] * time_s
+/// How much longer than `time_s` a program may take that has several stretches or one, s.
+pub(super) fn program_more_s(time_s: f64, several: bool) -> f64 {
+    PROGRAM_MORE_TIME[usize::from(several)] * time_s
 }
 
 impl StretchBudget {

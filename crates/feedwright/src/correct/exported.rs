@@ -2,6 +2,7 @@
 //!
 //! What disturbs has another phase, and noise other random numbers, each time a part is cut. So it is cut several times, with a rest before the start
 //! that is another part of a period of the disturbance, and with other seeds.
+use std::ops::Range;
 use std::sync::Arc;
 
 use feedwright_control::{KnownGeometry, Uncorrected};
@@ -67,6 +68,8 @@ pub(super) struct CutRow {
     pub(super) commanded: Commanded,
     /// Whether the tool is where the program cuts.
     pub(super) cutting: bool,
+    /// Whether the row is in the piece that is corrected, and not in a lead.
+    pub(super) own: bool,
     pub(super) cmd_mm: Vector,
     /// From the tool to its foot; zero where it does not cut.
     pub(super) error_mm: Vector,
@@ -88,12 +91,14 @@ pub(super) fn check_rows(time_s: f64, servo_s: f64) -> Result<(), RunError> {
 /// Keeps the rows of a cut.
 pub(super) struct CutRows<'a> {
     pub(super) rows: Vec<CutRow>,
-    original: &'a [Step],
+    pub(super) original: &'a [Step],
+    /// Arc lengths of the piece that is corrected, mm.
+    pub(super) own_mm: Range<f64>,
 }
 
 impl<'a> CutRows<'a> {
     pub(super) const fn new(original: &'a [Step]) -> Self {
-        Self { rows: Vec::new(), original }
+        Self { rows: Vec::new(), original, own_mm: f64::NEG_INFINITY..f64::INFINITY }
     }
 
     /// What is wrong with a cut that could not be kept.
@@ -130,6 +135,7 @@ impl Sink for CutRows<'_> {
             line: if row.commanded == Commanded::Rest { 0 } else { row.line },
             commanded: row.commanded,
             cutting: row.cutting,
+            own: self.own_mm.contains(&row.s_mm),
             cmd_mm: row.cmd_mm,
             error_mm: if row.cutting { sub(row.foot_mm, row.act_mm) } else { [0.0; 3] },
             path_mm: row.path_mm,
@@ -163,7 +169,7 @@ impl Sink for CutProgress<'_> {
     }
 }
 
-fn length_mm(path: &[Step]) -> f64 {
+pub(super) fn length_mm(path: &[Step]) -> f64 {
     path.iter().map(|step| if let Step::Piece(piece) = step { piece.length_mm } else { 0.0 }).sum()
 }
 

@@ -1,14 +1,15 @@
 //! A long program in pieces, so that the rows of a cut fit in memory.
 //!
 //! Each piece is corrected by itself, with budgets of blocks and time of its own. Before and behind
-//! its own steps it has a lead: steps of the program that are cut as they are programmed. The lead
-//! is as long as the loop remembers, plus the time in which the control stops from its highest
-//! feedrate, which bounds its look-ahead. So neither the tool nor the control tells the piece from
-//! the whole program. A program that is short enough is one piece, without a lead.
+//! its own steps it has a lead: steps of the program that are corrected with it, and belong to
+//! another piece. They count in no budget. The lead is as long as the loop remembers, plus the time
+//! in which the control stops from its highest feedrate, which bounds its look-ahead. So neither
+//! the tool nor the control tells the piece from the whole program. A program that is short enough
+//! is one piece, without a lead.
 //!
 //! A piece ends where the machine stands or moves rapidly; where there is no such place, at a
-//! corner. Where there is no corner either, it ends where the path bends least: the correction
-//! fades out and in there, and what it would be is small.
+//! corner. Where there is no corner either, it ends where the path bends least, and the commands of
+//! both pieces meet in a [seam](super::seams).
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -19,12 +20,14 @@ use feedwright_plan::Step;
 use feedwright_plan::vector::angle;
 use feedwright_sim::{Machine, RunError, Watch};
 
-use super::exported::ExportedCut;
+use super::exported::{ExportedCut, length_mm};
 use super::file_prior::FileModel;
 use super::kept_work::Workers;
-use super::rounds::{RoundsResult, rounds, steps_of};
-use super::stretches::{ProgramPart, directions, parts, stretches};
+use super::rounds::{JudgedPart, RoundsResult, rounds, steps_of};
+use super::seams::{Seam, is_parted, meet};
+use super::stretches::{NewMotions, ProgramPart, directions, parts, stretches};
 use super::target::TargetControl;
+use super::unchanged::UnchangedReason;
 
 /// Servo periods of a piece: their rows take some 100 MB. A program of up to [`WHOLE_PIECES`]
 /// pieces is one piece.
@@ -38,6 +41,8 @@ const MEMORY: f64 = 20.0;
 /// A motion takes no longer than at its programmed feedrate plus this, s: an estimate that spares
 /// short programs a plan.
 const STOP_S: f64 = 0.2;
+/// The rest at the end of a step belongs to the next, mm: rounding does not decide.
+const AT_END_MM: f64 = 1e-6;
 /// Progress of a piece, steps.
 const STEPS: u64 = 1000;
 
@@ -158,16 +163,17 @@ fn fitness(program: &[Canon], corner: &[bool], step: usize) -> f64 {
 /// where pieces begin.
 pub(super) fn rounds_of_pieces(
     cut: &ExportedCut<'_>,
-    program: &[Canon],
-    pieces: &[ProgramPiece],
+    program: &LongProgram<'_>,
     target: &TargetControl,
     file: Option<&FileModel>,
     workers: &Workers,
 ) -> Result<RoundsResult, RunError> {
+    let LongProgram { parts, pieces, .. } = program;
     cut.watch.begin("correcting", STEPS * pieces.len() as u64);
-    let splits = splits(pieces);
-    let work = |k: usize| rounds_of_piece(cut, program, &pieces[k], &splits, target, file);
-    let all = workers.each("piece", pieces.len(), usize::MAX, work)?;
+    if pieces.len() == 1 {
+        return rounds(cut, parts, target, file, &JudgedPart::whole(parts));
+    }
+    let all = workers.each("piece", pieces.len(), usize::MAX, |k| program.rounds(k, cut, target, file))?;
     let mut whole = RoundsResult::default();
     for piece in all {
         whole.commands.extend(piece.commands);
@@ -176,35 +182,82 @@ pub(super) fn rounds_of_pieces(
         whole.dwell_s = whole.dwell_s.max(piece.dwell_s);
         whole.rounds += piece.rounds;
     }
+    meet(&mut whole.commands, parts, &splits(pieces));
     Ok(whole)
 }
 
-/// Finds commands for the stretches that begin in a piece.
-fn rounds_of_piece(
-    cut: &ExportedCut<'_>,
-    program: &[Canon],
-    piece: &ProgramPiece,
-    splits: &[usize],
-    target: &TargetControl,
-    file: Option<&FileModel>,
-) -> Result<RoundsResult, RunError> {
-    let (from, program) = (piece.cut.start, &program[piece.cut.clone()]);
-    let original = steps_of(program)?;
-    let watch = PieceWatch { of_all: cut.watch, done: AtomicU64::new(0) };
-    let within: Vec<usize> = splits.iter().filter(|&&step| step > from).map(|step| step - from).collect();
-    let parts = parts(program, &within);
-    let before = |step: usize| stretches(&parts).take_while(|stretch| stretch.steps[0] + from < step).count();
-    let own = before(piece.own.start)..before(piece.own.end);
-    let found = rounds(&ExportedCut { original: &original, watch: &watch, ..*cut }, &parts, target, file, own.clone())?;
-    cut.watch.advance(STEPS.saturating_sub(watch.done.into_inner()));
-    let RoundsResult { commands, reasons, rests_s, dwell_s, rounds } = found;
-    Ok(RoundsResult {
-        commands: commands[own.clone()].to_vec(),
-        reasons: reasons[own.clone()].to_vec(),
-        rests_s: rests_s[own].to_vec(),
-        dwell_s,
-        rounds,
-    })
+/// A program and its pieces.
+pub(super) struct LongProgram<'a> {
+    pub(super) steps: &'a [Canon],
+    /// Split where pieces begin.
+    pub(super) parts: &'a [ProgramPart],
+    pub(super) pieces: &'a [ProgramPiece],
+}
+
+impl LongProgram<'_> {
+    /// Whether it has several stretches, before it is split.
+    fn of_several(&self) -> bool {
+        let splits = splits(self.pieces);
+        stretches(self.parts).filter(|stretch| !is_parted(stretch, &splits)).nth(1).is_some()
+    }
+
+    /// Finds commands for the stretches of a piece, as far as they are in it.
+    fn rounds(
+        &self,
+        number: usize,
+        cut: &ExportedCut<'_>,
+        target: &TargetControl,
+        file: Option<&FileModel>,
+    ) -> Result<RoundsResult, RunError> {
+        let piece = &self.pieces[number];
+        let (from, steps) = (piece.cut.start, &self.steps[piece.cut.clone()]);
+        let own = piece.own.start - from..piece.own.end - from;
+        let original = steps_of(steps)?;
+        let watch = PieceWatch { of_all: cut.watch, done: AtomicU64::new(0) };
+        let parts = parts(steps, &[]);
+        let count =
+            |is: &dyn Fn(&[usize; 2]) -> bool| stretches(&parts).take_while(|stretch| is(&stretch.steps)).count();
+        let inside = count(&|[_, last]| *last < own.start)..count(&|[first, _]| *first < own.end);
+        let until_mm = |step: usize| Ok::<f64, RunError>(length_mm(&steps_of(&steps[..step])?) - AT_END_MM);
+        let path_mm = until_mm(own.start)?..until_mm(own.end)?;
+        let judged = JudgedPart { stretches: inside.clone(), path_mm, of_several: self.of_several() };
+        let cut = ExportedCut { original: &original, watch: &watch, ..*cut };
+        let mut found = rounds(&cut, &parts, target, file, &judged)?;
+        cut.watch.advance(STEPS.saturating_sub(watch.done.load(Ordering::Relaxed)));
+        let seams = [own.start, own.end].map(|step| seam(steps, step));
+        for (k, stretch) in stretches(&parts).enumerate().filter(|(k, _)| inside.contains(k)) {
+            let [begins, ends] = [stretch.steps[0] < own.start, stretch.steps[1] >= own.end];
+            let sides = [seams[0].filter(|_| begins), seams[1].filter(|_| ends)];
+            let Some(command) = found.commands[k].take() else { continue };
+            found.commands[k] = within(command, sides);
+            found.reasons[k] = found.commands[k].is_none().then_some(UnchangedReason::LeavesPath);
+        }
+        Ok(RoundsResult {
+            commands: found.commands[inside.clone()].to_vec(),
+            reasons: found.reasons[inside.clone()].to_vec(),
+            rests_s: found.rests_s[inside].to_vec(),
+            ..found
+        })
+    }
+}
+
+/// The seam before a step.
+fn seam(steps: &[Canon], step: usize) -> Option<Seam> {
+    match steps.get(step) {
+        Some(Canon::Motion(motion)) => Seam::before(motion),
+        _ => None,
+    }
+}
+
+/// What of a command is between seams; none where it does not cross one.
+fn within(mut command: NewMotions, [first, last]: [Option<Seam>; 2]) -> Option<NewMotions> {
+    if let Some(seam) = first {
+        (command.motions, command.approach) = (seam.behind_it(&command.motions)?, None);
+    }
+    if let Some(seam) = last {
+        (command.motions, command.settles) = (seam.before_it(&command.motions)?, false);
+    }
+    Some(command)
 }
 
 /// Progress of a piece as a part of that of all.

@@ -83,6 +83,25 @@ pub(super) struct RoundsResult {
     pub(super) rounds: u32,
 }
 
+/// The part of a program that is judged; what is before and behind it leads to it, and is corrected for that alone.
+#[derive(Debug, Clone)]
+pub(super) struct JudgedPart {
+    /// Numbers of its stretches.
+    pub(super) stretches: Range<usize>,
+    /// Its arc lengths along the program, mm.
+    pub(super) path_mm: Range<f64>,
+    /// Whether the whole program has several stretches.
+    pub(super) of_several: bool,
+}
+
+impl JudgedPart {
+    /// All of a program.
+    pub(super) fn whole(parts: &[ProgramPart]) -> Self {
+        let count = stretches(parts).count();
+        Self { stretches: 0..count, path_mm: f64::NEG_INFINITY..f64::INFINITY, of_several: count > 1 }
+    }
+}
+
 /// A stretch under way.
 struct StretchRounds {
     current: StretchCommand,
@@ -112,13 +131,13 @@ pub(super) fn steps_of(program: &[Canon]) -> Result<Vec<Step>, PathError> {
     Pieces::new(program.iter().cloned()).collect()
 }
 
-/// Finds commands for the stretches of a program, on the machine of `cut`. Only the stretches of `own`, by number, get another command.
+/// Finds commands for the stretches of a program, on the machine of `cut`. Budgets are those of `judged`.
 pub(super) fn rounds(
     cut: &ExportedCut<'_>,
     parts: &[ProgramPart],
     target: &TargetControl,
     file: Option<&FileModel>,
-    own: Range<usize>,
+    judged: &JudgedPart,
 ) -> Result<RoundsResult, RunError> {
     let lags: Vec<LoopLag> = match cut.axes {
         2 => loop_lags::<2>(cut.machine).to_vec(),
@@ -132,24 +151,22 @@ pub(super) fn rounds(
     let mut progress = StageSteps::begin(cut.watch, "correcting");
     let count = stretches(parts).count();
     let haste = Haste([1.0; 2]);
-    let mut bench = RoundsBench { cut, parts, target, lags, settings, settles_s: dwell_s, dwell_s, haste, count };
+    let mut bench =
+        RoundsBench { cut, parts, target, lags, settings, settles_s: dwell_s, dwell_s, haste, count, judged };
     bench.check_length()?;
     let (cuts, rows) = bench.cut(&vec![None; bench.count])?;
-    let time_s = rows.len() as f64 * settings.servo_s;
-    let most_s = time_s + program_more_s(time_s, count);
+    let time_s = bench.time_s(&rows);
+    let most_s = time_s + program_more_s(time_s, judged.of_several);
     let mut under_way: Vec<StretchRounds> =
         stretches(parts).zip(&cuts).map(|(stretch, cut)| bench.begun(stretch, cut, &rows)).collect();
-    for (_, other) in under_way.iter_mut().enumerate().filter(|(number, _)| !own.contains(number)) {
-        other.finish();
-    }
     let mut round = 1;
-    while round <= ROUNDS && under_way.iter().any(|stretch| !stretch.done) {
+    while round <= ROUNDS && under_way[judged.stretches.clone()].iter().any(|stretch| !stretch.done) {
         let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.current.clone()).collect();
         let (cuts, rows) = bench.cut(&commands)?;
         for (stretch, cut) in under_way.iter_mut().zip(&cuts) {
             stretch.judge(cut, settings.servo_s, dwell_s);
         }
-        let more_s = rows.len() as f64 * settings.servo_s - most_s;
+        let more_s = bench.time_s(&rows) - most_s;
         let more_s = if round == 1 { more_s + (1.0 - FOR_RESTS) * (most_s - time_s) } else { more_s };
         if round <= HASTY_ROUNDS {
             bench.hurry(&mut under_way, more_s);
@@ -198,6 +215,7 @@ struct RoundsBench<'a> {
     dwell_s: f64,
     haste: Haste,
     count: usize,
+    judged: &'a JudgedPart,
 }
 
 impl RoundsBench<'_> {
@@ -212,6 +230,11 @@ impl RoundsBench<'_> {
         check_rows(self.cut.original.iter().map(time_s).sum(), self.settings.servo_s)
     }
 
+    /// Time of what is judged in a cut, s.
+    fn time_s(&self, rows: &[CutRow]) -> f64 {
+        rows.iter().filter(|row| row.own).count() as f64 * self.settings.servo_s
+    }
+
     /// A dwell for each stretch, s.
     fn rests_s(&self) -> Vec<f64> {
         vec![self.dwell_s; self.count]
@@ -220,10 +243,10 @@ impl RoundsBench<'_> {
     /// What every stretch comes to, and the rows.
     fn cut(&self, commands: &[StretchCommand]) -> Result<(Vec<StretchCut>, Vec<CutRow>), RunError> {
         let steps = steps_of(&assembled(self.parts, commands, &self.rests_s()))?;
-        let mut kept = CutRows::new(self.cut.original);
+        let mut kept = CutRows { own_mm: self.judged.path_mm.clone(), ..CutRows::new(self.cut.original) };
         let cut = self.cut.cut(&steps, &mut [&mut kept]).map(|_| ());
         cut.map_err(|error| kept.fault(error, self.settings.servo_s))?;
-        Ok((by_stretch(&kept.rows, self.count), kept.rows))
+        Ok((by_stretch(&kept.rows, self.count, &self.judged.stretches), kept.rows))
     }
 
     /// From the cut of the program as it is.
@@ -270,8 +293,10 @@ impl RoundsBench<'_> {
         let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.current.clone()).collect();
         let rests_s = self.rests_s();
         let rests = stretches(self.parts).enumerate();
+        let own = self.judged.stretches.clone();
+        let rests = rests.filter(|(k, _)| own.contains(k));
         let rests = rests.flat_map(|(k, stretch)| dwells(stretch, &commands, k, &rests_s)).flatten();
-        let slow = under_way.iter().filter(|stretch| stretch.current.is_some());
+        let slow = under_way[own.clone()].iter().filter(|stretch| stretch.current.is_some());
         let slow = slow.flat_map(|stretch| [stretch.slow_end, stretch.slow_rapid]).flatten().map(SlowEnd::time_s);
         let (rests_s, slow_s): (f64, f64) = (rests.sum(), slow.sum());
         let before = self.haste;
@@ -330,9 +355,15 @@ impl RoundsBench<'_> {
     /// Takes details back to what they were until the program has few enough blocks and is fast enough.
     fn give_up_details(&self, under_way: &mut [StretchRounds]) {
         let dwell_s = self.settles_s;
-        let kept = |part: &&ProgramPart| matches!(part, ProgramPart::Kept(Canon::Motion(_)));
-        let costs: Vec<StretchCost> = under_way.iter().map(|stretch| stretch.cost(dwell_s)).collect();
-        for k in details_to_give_up(&costs, self.parts.iter().filter(kept).count(), dwell_s) {
+        let own = self.judged.stretches.clone();
+        let costs: Vec<StretchCost> = under_way[own.clone()].iter().map(|stretch| stretch.cost(dwell_s)).collect();
+        let mut number = 0;
+        let others = self.parts.iter().filter(|part| {
+            number += usize::from(matches!(part, ProgramPart::Stretch(_)));
+            matches!(part, ProgramPart::Kept(Canon::Motion(_))) && (own.start..=own.end).contains(&number)
+        });
+        for k in details_to_give_up(&costs, others.count(), dwell_s) {
+            let k = own.start + k;
             (under_way[k].best, under_way[k].reason) = (None, UnchangedReason::Detail);
         }
     }

@@ -72,10 +72,11 @@ pub(super) fn rapid_overshoot_mm(rows: &[CutRow], cut: &StretchCut, stretch: &Sm
 }
 
 /// Rows and errors of each stretch. What the tool still does when the command has gone on belongs to it, until the next begins; what it does at
-/// the end of a rapid belongs to the stretch that the rapid leads to.
-pub(super) fn by_stretch(rows: &[CutRow], count: usize) -> Vec<StretchCut> {
+/// the end of a rapid belongs to the stretch that the rapid leads to. Errors in a lead do not count for the stretches of `own`.
+pub(super) fn by_stretch(rows: &[CutRow], count: usize, own: &Range<usize>) -> Vec<StretchCut> {
     let mut cuts = vec![StretchCut::default(); count];
     let (mut last, mut behind_rapid) = (None, None);
+    let counts = |row: &CutRow, number: Option<usize>| row.own || number.is_none_or(|number| !own.contains(&number));
     for (n, row) in rows.iter().enumerate() {
         match row.commanded {
             Commanded::Cut => {
@@ -85,7 +86,7 @@ pub(super) fn by_stretch(rows: &[CutRow], count: usize) -> Vec<StretchCut> {
                     cut.rows = from..n + 1;
                     cut.periods += 1;
                     if let Some(from) = behind_rapid.take() {
-                        (from..n).for_each(|n| cut.take(n, &rows[n]));
+                        (from..n).filter(|&n| counts(&rows[n], number)).for_each(|n| cut.take(n, &rows[n]));
                     }
                 }
                 last = number;
@@ -93,7 +94,7 @@ pub(super) fn by_stretch(rows: &[CutRow], count: usize) -> Vec<StretchCut> {
             Commanded::Rapid => (last, behind_rapid) = (None, Some(n)),
             Commanded::Rest => {}
         }
-        if let Some(cut) = last.and_then(|last| cuts.get_mut(last)) {
+        if let Some(cut) = last.filter(|_| counts(row, last)).and_then(|last| cuts.get_mut(last)) {
             cut.take(n, row);
         }
     }

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::{CutWay, FeedCut, canon_of, with_factors};
 use crate::correct::exported::{CutPhase, CutRow, CutRows, ExportedCut, waited};
 use crate::correct::nominal::deterministic;
-use crate::correct::rounds::{rounds, steps_of};
+use crate::correct::rounds::{JudgedPart, rounds, steps_of};
 use crate::correct::stretch_cut::{StretchCut, by_stretch};
 use crate::correct::stretches::{ProgramPart, assembled, stretches};
 use crate::correct::target::TargetControl;
@@ -95,7 +95,13 @@ impl<const N: usize> FeedBench<'_, N> {
         let program = match way {
             CutWay::Corrected => {
                 let tool = self.machine.compensated.as_ref();
-                let found = rounds(&ExportedCut { tool, ..on(&nominal) }, &parts, self.target, None, 0..usize::MAX)?;
+                let found = rounds(
+                    &ExportedCut { tool, ..on(&nominal) },
+                    &parts,
+                    self.target,
+                    None,
+                    &JudgedPart::whole(&parts),
+                )?;
                 steps_of(&assembled(&parts, &found.commands, &found.rests_s))?
             }
             CutWay::Uncorrected | CutWay::Controlled => original.clone(),
@@ -144,7 +150,7 @@ impl FeedErrors {
         self.max_um = cutting.fold(self.max_um, f64::max);
         let servo_s = machine.period.servo_s;
         let settles = (SETTLES_IN / machine.slowest_kp_1_s() / servo_s).ceil() as usize;
-        let by_stretch = by_stretch(rows, self.stretches.len());
+        let by_stretch = by_stretch(rows, self.stretches.len(), &(0..self.stretches.len()));
         for (stretch, cut) in self.stretches.iter_mut().zip(by_stretch) {
             stretch.take(&cut, rows, settles);
             stretch.time_s = f64::from(cut.periods) * servo_s;
