@@ -79,7 +79,7 @@ mod predicted;
 mod outcome;
 pub(crate) mod advise;
 use std::io::{BufRead, BufReader};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use feedwright_gcode::canon::Canon;
@@ -93,7 +93,7 @@ use crate::measured::MeasuredLog;
 use exported::ExportedCut;
 pub use file_prior::{AssumedValue, FileAssumption};
 use file_prior::{FILE_ERROR, FileModel};
-use kept_work::{Workers, forget, hash_of};
+use kept_work::{Workers, forget, hash_of, keeps_parts};
 pub use learned::{
     CutProgram, LearnError, LearnedLog, LearnedOutcome, LearnedValue, ModelValue, PlaceError, PredictedCut,
 };
@@ -245,6 +245,7 @@ impl CorrectJob {
             expanded: written.as_ref().is_some_and(|written| written.expanded),
             rounds: found.rounds,
             pieces: pieces.len(),
+            kept_fault: workers.fault().map(|fault| fault.to_string()),
             dwell_s: found.dwell_s,
             warnings: summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect(),
             written,
@@ -288,6 +289,11 @@ impl CorrectJob {
             source.lines, source.steps
         ));
         Workers::keeping(self.threads, path, &work)
+    }
+
+    /// The file of finished pieces, where there is one to go on with.
+    pub fn kept_pieces(&self) -> Option<&Path> {
+        self.keep.as_deref().filter(|path| keeps_parts(path))
     }
 
     /// Removes the finished pieces that were kept: what they were for is done.

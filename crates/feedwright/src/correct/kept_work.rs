@@ -8,6 +8,7 @@
 //! another process has the file.
 
 use std::collections::HashMap;
+use std::fmt;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::Path;
@@ -41,6 +42,30 @@ struct KeptPart<T> {
     result: T,
 }
 
+/// Why parts of a file are not taken, or none is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum KeptFault {
+    /// The work of the file is another one.
+    OtherWork,
+    /// A line is not what was written.
+    Damaged,
+    /// The file is something else.
+    Foreign,
+    /// It cannot be opened or written, or another process has it.
+    Unwritable,
+}
+
+impl fmt::Display for KeptFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::OtherWork => "belongs to another program, machine, option or version; all pieces were corrected anew",
+            Self::Damaged => "is damaged; the pieces from the damaged line on were corrected anew",
+            Self::Foreign => "holds no pieces of feedwright; it stays as it is, and no piece was kept for another run",
+            Self::Unwritable => "cannot be written, or another run uses it; pieces were not kept for another run",
+        })
+    }
+}
+
 /// Does work in parts.
 pub(super) struct Workers {
     threads: usize,
@@ -48,12 +73,16 @@ pub(super) struct Workers {
     found: HashMap<String, String>,
     /// Where finished parts go.
     file: Mutex<Option<File>>,
+    /// What was wrong with the file when it was opened.
+    fault: Option<KeptFault>,
+    /// Whether a part could not be written.
+    is_lost: AtomicBool,
 }
 
 impl Workers {
     /// Keeps nothing.
     pub(super) fn new(threads: usize) -> Self {
-        Self { threads, found: HashMap::new(), file: Mutex::new(None) }
+        Self { threads, found: HashMap::new(), file: Mutex::new(None), fault: None, is_lost: AtomicBool::new(false) }
     }
 
     /// Keeps finished parts in a file, and goes on with those that it has; `work` is a hash of all
@@ -65,8 +94,15 @@ impl Workers {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             work: work.to_owned(),
         };
-        let (found, file) = opened(path, &head).map_or_else(Default::default, |(found, file)| (found, Some(file)));
-        Self { threads, found, file: Mutex::new(file) }
+        match opened(path, &head) {
+            Ok((found, file, fault)) => Self { found, file: Mutex::new(Some(file)), fault, ..Self::new(threads) },
+            Err(fault) => Self { fault: Some(fault), ..Self::new(threads) },
+        }
+    }
+
+    /// What is wrong with the file, where something is.
+    pub(super) fn fault(&self) -> Option<KeptFault> {
+        self.fault.or_else(|| self.is_lost.load(Ordering::Relaxed).then_some(KeptFault::Unwritable))
     }
 
     /// The results of `count` parts in their order, whatever the number of threads, which is up to
@@ -121,10 +157,19 @@ impl Workers {
             let part = KeptPart { part: name.to_owned(), result: &result };
             if append(open, &part).is_err() {
                 *file = None;
+                self.is_lost.store(true, Ordering::Relaxed);
             }
         }
         Ok(result)
     }
+}
+
+/// Whether a file keeps finished parts.
+pub(super) fn keeps_parts(path: &Path) -> bool {
+    let mut first = String::new();
+    let read = File::open(path).and_then(|file| BufReader::new(file).read_line(&mut first));
+    let head = read.ok().and_then(|_| checked(&first)).and_then(|text| serde_json::from_str::<KeptHead>(&text).ok());
+    head.is_some_and(|head| head.about == ABOUT)
 }
 
 /// Removes a file that keeps finished parts; one of something else stays.
@@ -132,10 +177,7 @@ impl Workers {
 /// # Errors
 /// A file that cannot be removed.
 pub(super) fn forget(path: &Path) -> std::io::Result<()> {
-    let mut first = String::new();
-    let read = File::open(path).and_then(|file| BufReader::new(file).read_line(&mut first));
-    let head = read.ok().and_then(|_| checked(&first)).and_then(|text| serde_json::from_str::<KeptHead>(&text).ok());
-    if head.is_some_and(|head| head.about == ABOUT) { std::fs::remove_file(path) } else { Ok(()) }
+    if keeps_parts(path) { std::fs::remove_file(path) } else { Ok(()) }
 }
 
 /// Puts a line behind the others; where it does not fit, none of it stays.
@@ -149,35 +191,44 @@ fn append(file: &mut File, line: &impl Serialize) -> std::io::Result<()> {
     })
 }
 
-/// The finished parts of a file, and the file; none where it is something else, or cannot be had.
-fn opened(path: &Path, head: &KeptHead) -> Option<(HashMap<String, String>, File)> {
-    let mut file = File::options().read(true).write(true).create(true).truncate(false).open(path).ok()?;
-    file.try_lock().ok()?;
+/// The finished parts of a file, the file, and why there are not all.
+///
+/// # Errors
+/// A file of something else, and one that cannot be had.
+fn opened(path: &Path, head: &KeptHead) -> Result<(HashMap<String, String>, File, Option<KeptFault>), KeptFault> {
+    let unwritable = |_: std::io::Error| KeptFault::Unwritable;
+    let mut file =
+        File::options().read(true).write(true).create(true).truncate(false).open(path).map_err(unwritable)?;
+    file.try_lock().map_err(|_| KeptFault::Unwritable)?;
     let mut text = String::new();
-    file.read_to_string(&mut text).ok()?;
+    file.read_to_string(&mut text).map_err(|_| KeptFault::Foreign)?;
     let first = text.split_inclusive('\n').next().unwrap_or_default();
-    let begun = checked(first).filter(|_| first.ends_with('\n'));
-    let begun = begun.and_then(|text| serde_json::from_str::<KeptHead>(&text).ok());
+    let begun = checked(first).and_then(|text| serde_json::from_str::<KeptHead>(&text).ok());
     let is_ours = begun.as_ref().is_some_and(|begun| begun.about == ABOUT);
     if !is_ours && !text.is_empty() && !is_torn_head(&text) {
-        return None;
+        return Err(KeptFault::Foreign);
     }
+    let mut fault = begun.as_ref().filter(|begun| *begun != head).map(|_| KeptFault::OtherWork);
     let mut found = HashMap::new();
     let mut good = 0;
-    if begun.as_ref() == Some(head) {
+    if is_ours && fault.is_none() {
         good = first.len();
         for line in text[good..].split_inclusive('\n') {
             let part = checked(line).filter(|_| line.ends_with('\n'));
-            let Some((name, part)) = part.and_then(|part| Some((name_of(&part)?, part))) else { break };
+            let Some((name, part)) = part.and_then(|part| Some((name_of(&part)?, part))) else {
+                // A line without an end is that of a run that was killed.
+                fault = line.ends_with('\n').then_some(KeptFault::Damaged);
+                break;
+            };
             found.insert(name, part);
             good += line.len();
         }
     }
-    file.set_len(good as u64).ok()?;
+    file.set_len(good as u64).map_err(unwritable)?;
     if good == 0 {
-        append(&mut file, head).ok()?;
+        append(&mut file, head).map_err(unwritable)?;
     }
-    Some((found, file))
+    Ok((found, file, fault))
 }
 
 /// Whether a run was killed, or the disk full, while the first line was written.
@@ -262,6 +313,24 @@ mod tests {
             forget(&path).unwrap();
             assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
         }
+    }
+
+    #[test]
+    fn a_line_that_was_changed_is_not_taken_and_the_fault_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("kept");
+        let (all, _) = done(&path, "a", 1);
+        let fault = |work: &str| Workers::keeping(1, &path, work).fault();
+        assert_eq!(fault("a"), None);
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert_eq!(text.matches("0.25").count(), 1);
+        std::fs::write(&path, text.replace("0.25", "0.75")).unwrap();
+        assert_eq!(fault("a"), Some(KeptFault::Damaged));
+        assert_eq!(done(&path, "a", 1), (all, 2));
+        assert_eq!(fault("b"), Some(KeptFault::OtherWork));
+        std::fs::write(&path, "G0 X1\n").unwrap();
+        assert_eq!(fault("b"), Some(KeptFault::Foreign));
+        assert_eq!(Workers::keeping(1, folder.path(), "a").fault(), Some(KeptFault::Unwritable));
     }
 
     #[test]

@@ -49,6 +49,9 @@ pub struct CorrectOutcome {
     pub pieces: usize,
     /// Longest rest that was put in, s.
     pub dwell_s: f64,
+    /// What was wrong with the file of finished pieces, where something was.
+    #[serde(skip)]
+    pub kept_fault: Option<String>,
     /// What the reader warned of.
     #[serde(skip)]
     pub warnings: Vec<Diagnostic>,

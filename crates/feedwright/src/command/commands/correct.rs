@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use crate::command::args::correct::CorrectArgs;
 use crate::command::console::Console;
 use crate::command::controls::{check_tolerance, compensation, control, file_error, print_correction};
-use crate::command::message::{OUT_OF_TOLERANCE, printed, tell_assumed_limits, warn};
+use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell_assumed_limits, warn};
 use crate::command::streams::{ProgramInputs, tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn, figure};
 use crate::command::terminal::wrapped;
@@ -41,8 +41,16 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let logs = logs(args, &bar)?;
     let job = CorrectJob::new(Program::in_file(&args.part), machine, target);
     let job = CorrectJob { reader, compensation, logs, file_error, keep: kept_beside(args), ..job };
-    let outcome = job.run(&bar)?;
+    let outcome = job.run(&bar).inspect_err(|_| {
+        bar.clear();
+        if let Some(kept) = job.kept_pieces() {
+            remark(&format!("finished pieces are kept in {}; the same command goes on with them", kept.display()));
+        }
+    })?;
     bar.clear();
+    if let (Some(fault), Some(kept)) = (&outcome.kept_fault, &job.keep) {
+        remark(&format!("{} {fault}", kept.display()));
+    }
     for warning in outcome.warnings.iter().cloned() {
         warn(warning.into());
     }
