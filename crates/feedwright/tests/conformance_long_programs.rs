@@ -4,12 +4,14 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use feedwright::{CorrectJob, CorrectOutcome, TARGETS, TargetControl};
+use feedwright::{CorrectJob, CorrectOutcome, TARGETS};
 use feedwright_gcode::Program;
 use feedwright_sim::{Machine, Watch};
 
-/// Servo periods of a piece: 2 s.
-const PIECE: u64 = 2000;
+/// Servo periods of a piece: 4 s of a program that takes 4.4 s between its rests, and 2 s of one
+/// without rests.
+const PIECE: u64 = 4000;
+const SHORT_PIECE: u64 = 2000;
 
 /// Curves with a rapid between them: the machine stands.
 fn with_rests(curves: u32) -> String {
@@ -29,21 +31,19 @@ fn without_rest(waves: u32) -> String {
     format!("G21 G90 G64\nG0 X0 Y0\nF1500\n{}M2\n", (0..waves).map(wave).collect::<String>())
 }
 
-fn job(text: &str, target: &'static TargetControl) -> CorrectJob {
+fn job(text: &str, piece: u64) -> CorrectJob {
     let mut job =
-        CorrectJob::new(Program::from_text("part.ngc", text), Machine::load("tnv40".as_ref()).unwrap(), target);
-    (job.piece_periods, job.threads) = (PIECE, 1);
+        CorrectJob::new(Program::from_text("part.ngc", text), Machine::load("tnv40".as_ref()).unwrap(), &TARGETS[0]);
+    (job.piece_periods, job.threads) = (piece, 1);
     job
 }
 
 /// Corrects a program in pieces and in one, and compares both: RMS within 1 % and largest error
 /// within 2 % of what was to be corrected, time within 1 %.
-fn compare(text: &str, least_pieces: usize) {
-    let pieces = job(text, &TARGETS[0]).run(&()).unwrap();
-    let mut job = job(text, &TARGETS[0]);
-    job.piece_periods = u64::MAX / 8;
-    let whole = job.run(&()).unwrap();
-    assert!(pieces.pieces >= least_pieces && whole.pieces == 1, "{}", pieces.pieces);
+fn compare(text: &str, piece: u64) {
+    let pieces = job(text, piece).run(&()).unwrap();
+    let whole = job(text, u64::MAX / 8).run(&()).unwrap();
+    assert!(pieces.pieces >= 3 && whole.pieces == 1, "{}", pieces.pieces);
     let (one, other, was) = (&whole.corrected, &pieces.corrected, &whole.uncorrected);
     assert_eq!(&pieces.uncorrected, was);
     assert!(one.rms_um < 0.6 * was.rms_um, "{one:?} {was:?}");
@@ -54,12 +54,12 @@ fn compare(text: &str, least_pieces: usize) {
 
 #[test]
 fn a_program_with_rests_is_corrected_in_pieces_as_in_one() {
-    compare(&with_rests(3), 3);
+    compare(&with_rests(3), PIECE);
 }
 
 #[test]
 fn a_program_without_rest_is_corrected_in_pieces_as_in_one() {
-    compare(&without_rest(6), 3);
+    compare(&without_rest(6), SHORT_PIECE);
 }
 
 /// Ends the work after some progress.
@@ -81,7 +81,7 @@ impl Watch for Ending {
 /// A run that keeps its pieces, up to an end from outside; its outcome, and the progress in which
 /// work was done.
 fn kept(path: &Path, threads: usize, most: u64) -> (Option<CorrectOutcome>, usize) {
-    let mut job = job(&with_rests(3), &TARGETS[0]);
+    let mut job = job(&with_rests(3), PIECE);
     (job.keep, job.threads) = (Some(path.to_owned()), threads);
     let outcome = job.run(&Ending { steps: AtomicU64::new(0), most }).ok();
     let lines = std::fs::read_to_string(path).map_or(0, |text| text.lines().count());

@@ -245,18 +245,18 @@ fn name_of(part: &str) -> Option<String> {
 /// Hashes what is printed.
 struct HashedText(blake3::Hasher);
 
-impl std::fmt::Write for HashedText {
-    fn write_str(&mut self, text: &str) -> std::fmt::Result {
+impl fmt::Write for HashedText {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
         self.0.update(text.as_bytes());
         Ok(())
     }
 }
 
 /// A hash of all that some values print, as hexadecimal digits.
-pub(super) fn hash_of(values: std::fmt::Arguments<'_>) -> String {
+pub(super) fn hash_of(values: fmt::Arguments<'_>) -> String {
     let mut text = HashedText(blake3::Hasher::new());
     // Writing to a hash does not fail.
-    let _ = std::fmt::Write::write_fmt(&mut text, values);
+    let _ = fmt::Write::write_fmt(&mut text, values);
     text.0.finalize().to_hex().to_string()
 }
 
