@@ -102,7 +102,7 @@ pub use nominal::deterministic;
 pub use outcome::CorrectOutcome;
 use outcome::{UnwrittenProgram, WrittenProgram, refusal};
 use pieces::{LongProgram, PIECE_PERIODS, ProgramPiece, pieces, rounds_of_pieces, splits};
-use predicted::{no_gain, predicted_cut};
+use predicted::{learned_outcome, no_gain};
 use program_text::TextParts;
 use rounds::{RoundsResult, steps_of};
 use source::SourceProgram;
@@ -220,16 +220,12 @@ impl CorrectJob {
         let (written, unwritten) = written.map_or_else(|fault| (None, Some(fault)), |written| (Some(written), None));
         let changed = found.commands.iter().flatten().count();
         let unchanged = unchanged_stretches(&parts, &found.reasons);
-        // The cuts need the room.
-        drop((source, parts));
+        drop((source, parts)); // The cuts need the room.
         let figures = |program: &[Step], stage: &str| on(machine).figures_by(program, stage, &workers).map_err(of_run);
         let uncorrected = figures(&original, "cutting the uncorrected program")?;
         let corrected = written.as_ref().map(|written| figures(&written.steps, "cutting as exported")).transpose()?;
-        let predict = |learned: &LearnedMachine| {
-            let next = |written: &WrittenProgram| predicted_cut(learned, &on(machine), &written.steps).map_err(of_run);
-            let predicted = written.as_ref().map(next).transpose()?;
-            Ok::<_, JobError>(LearnedOutcome { predicted, ..learned.outcome.clone() })
-        };
+        let steps = written.as_ref().map(|written| written.steps.as_slice());
+        let predict = |learned: &LearnedMachine| learned_outcome(learned, &on(machine), steps).map_err(of_run);
         let learned = learned.as_ref().map(predict).transpose()?;
         let no_gain = learned.as_ref().and_then(|learned| no_gain(learned, &uncorrected));
         Ok(CorrectOutcome {

@@ -169,10 +169,10 @@ pub(super) fn rounds_of_pieces(
     workers: &Workers,
 ) -> Result<RoundsResult, RunError> {
     let LongProgram { parts, pieces, .. } = program;
-    cut.watch.begin("correcting", STEPS * pieces.len() as u64);
     if pieces.len() == 1 {
         return rounds(cut, parts, target, file, &JudgedPart::whole(parts));
     }
+    cut.watch.begin(&format!("correcting in {} pieces", pieces.len()), STEPS * pieces.len() as u64);
     let all = workers.each("piece", pieces.len(), usize::MAX, |k| program.rounds(k, cut, target, file))?;
     let mut whole = RoundsResult::default();
     for piece in all {

@@ -26,6 +26,16 @@ fn as_encoders_see(machine: &Machine) -> Machine {
     }
 }
 
+/// What was learned, with the next cut by a program where there is one.
+pub(super) fn learned_outcome(
+    learned: &LearnedMachine,
+    cut: &ExportedCut<'_>,
+    program: Option<&[Step]>,
+) -> Result<LearnedOutcome, RunError> {
+    let predicted = program.map(|program| predicted_cut(learned, cut, program)).transpose()?;
+    Ok(LearnedOutcome { predicted, ..learned.outcome.clone() })
+}
+
 /// The next cut at the encoders:
 ///
 /// ```text
@@ -34,11 +44,7 @@ fn as_encoders_see(machine: &Machine) -> Machine {
 ///
 /// with `q` of the simulated cut, `r` of what does not repeat in the logs, and `v`, by which the mean of `q^2` grows over values of the
 /// model that are as likely.
-pub(super) fn predicted_cut(
-    learned: &LearnedMachine,
-    cut: &ExportedCut<'_>,
-    program: &[Step],
-) -> Result<PredictedCut, RunError> {
+fn predicted_cut(learned: &LearnedMachine, cut: &ExportedCut<'_>, program: &[Step]) -> Result<PredictedCut, RunError> {
     let seen = as_encoders_see(&learned.machine);
     let ExportedFigures { max_um, .. } = ExportedCut { machine: &seen, ..*cut }.figures(program)?;
     let square_um2 = |machine: &Machine| -> Result<f64, RunError> {
