@@ -77,7 +77,7 @@ fn check(name: &str, constraints: &Constraints, path: &[Piece], tolerance_mm: f6
             let now = motion.after(span.duration_s * f64::from(i) / 8.0);
             for k in 0..3 {
                 let limits = constraints.axes[k];
-                assert!(now.velocity_mm_s[k].abs() <= limits.velocity_mm_s * (1.0 + 2e-4), "{name}: {now:?}");
+                assert!(now.velocity_mm_s[k].abs() <= limits.velocity_mm_s * (1.0 + OVER), "{name}: {now:?}");
                 assert!(now.accel_mm_s2[k].abs() <= limits.accel_mm_s2 * (1.0 + OVER), "{name}: {now:?}");
                 assert!(now.jerk_mm_s3[k].abs() <= limits.jerk_mm_s3 * (1.0 + OVER), "{name}: {now:?}");
             }

@@ -364,7 +364,9 @@ impl TimeOptimal {
             let soon = if ends { steps.len() } else { self.soon(&steps) };
             let mut excesses = path_deviation::excesses(&self.track, &self.caps, &steps, soon);
             if round + 1 == ROUNDS {
-                excesses.retain(|excess| excess.tube_mm > LAST_OVER_MM || excess.feed_part < 1.0 - LAST_OVER);
+                excesses.retain(|excess| {
+                    excess.tube_mm > LAST_OVER_MM || excess.feed_part < 1.0 - LAST_OVER || excess.axes_mm_s.is_finite()
+                });
             }
             if excesses.is_empty() {
                 return Some((steps, ends));

@@ -21,8 +21,11 @@ const OVER_MM: f64 = 1e-5;
 /// Where a step exceeds its feedrate, the limit falls by this many times the relative excess.
 const FEED_TIGHTER: f64 = 1.2;
 
-/// What the velocity of an axis may be exceeded by between nodes. A step that exceeds it gets a node more as if it left the tube by this, mm.
-const FAST_OVER: f64 = 1e-4;
+/// What the velocity of an axis may be exceeded by between nodes, for rounding.
+const FAST_OVER: f64 = 1e-7;
+
+/// Beyond this part a step gets a node more, too, as if it left the tube by so much, mm.
+const FAR_TOO_FAST: f64 = 1e-4;
 const TOO_FAST_MM: f64 = 6e-5;
 
 /// A radius is made no smaller than this part at once.
@@ -36,10 +39,12 @@ const SLOWLY: f64 = 0.97;
 pub(super) struct Excess {
     pub(super) step: usize,
     /// Distance by which it leaves the tube, mm; 0 if it stays inside or was not checked. An axis
-    /// above its velocity counts as `TOO_FAST_MM`.
+    /// far above its velocity counts as `TOO_FAST_MM`.
     pub(super) tube_mm: f64,
     /// The part of the feedrate that would keep it, 1 where it does.
     pub(super) feed_part: f64,
+    /// Speed along the path at which every axis keeps its velocity, mm/s; infinite where each does.
+    pub(super) axes_mm_s: f64,
 }
 
 /// All steps that exceed something; whether they leave the tube is asked of the first ones only.
@@ -47,28 +52,42 @@ pub(super) fn excesses(track: &Track, caps: &AxisCaps, steps: &[PlannedStep], fi
     let mut found = Vec::new();
     for (i, step) in steps.iter().enumerate() {
         let mut tube_mm = if i < first { away_mm(track, steps, i).max(left_out_mm(track, steps, i)) } else { 0.0 };
-        if i < first && is_too_fast(caps, step) {
+        let (used, axes_mm_s) = if i < first { axis_use(caps, step) } else { (0.0, f64::INFINITY) };
+        if used > 1.0 + FAR_TOO_FAST {
             tube_mm = tube_mm.max(TOO_FAST_MM);
         }
-        let feed_mm_s =
-            track.between(step.from_mm, step.to_mm).map(|piece| piece.feed_mm_s).fold(f64::INFINITY, f64::min);
-        let feed_part = (feed_mm_s / fastest_mm_s(step)).min(1.0);
-        if tube_mm > OVER_MM || feed_part < 1.0 {
-            found.push(Excess { step: i, tube_mm: tube_mm.max(0.0), feed_part });
+        let feed_part = (feed_mm_s(track, step) / fastest_mm_s(step)).min(1.0);
+        if tube_mm > OVER_MM || feed_part < 1.0 || axes_mm_s.is_finite() {
+            found.push(Excess { step: i, tube_mm: tube_mm.max(0.0), feed_part, axes_mm_s });
         }
     }
     found
 }
 
-/// Whether an axis exceeds its velocity within a step: between nodes the velocity of an axis has its extreme where the acceleration is
-/// zero.
-fn is_too_fast(caps: &AxisCaps, step: &PlannedStep) -> bool {
+/// The smallest feedrate within a step.
+fn feed_mm_s(track: &Track, step: &PlannedStep) -> f64 {
+    track.between(step.from_mm, step.to_mm).map(|piece| piece.feed_mm_s).fold(f64::INFINITY, f64::min)
+}
+
+/// The largest part of its velocity that an axis uses within a step, and the speed along the path at which it would keep it; infinite
+/// where every axis does. Between nodes the velocity of an axis has its extreme where the acceleration is zero.
+fn axis_use(caps: &AxisCaps, step: &PlannedStep) -> (f64, f64) {
     let AxisMotion { accel_mm_s2: a, jerk_mm_s3: j, .. } = step.motion;
-    (0..3).any(|k| {
+    let (mut most, mut axes_mm_s) = (0.0, f64::INFINITY);
+    for k in 0..3 {
         let t = (-a[k] / j[k]).clamp(0.0, step.duration_s);
         // Without jerk the extremes are at the ends.
-        t.is_finite() && step.motion.after(t).velocity_mm_s[k].abs() > (1.0 + FAST_OVER) * caps.axes[k].velocity_mm_s
-    })
+        if !t.is_finite() {
+            continue;
+        }
+        let velocity_mm_s = step.motion.after(t).velocity_mm_s;
+        let used = velocity_mm_s[k].abs() / caps.axes[k].velocity_mm_s;
+        if used > 1.0 + FAST_OVER {
+            axes_mm_s = axes_mm_s.min(norm(velocity_mm_s) * (1.0 - FEED_TIGHTER * (1.0 - 1.0 / used)));
+        }
+        most = used.max(most);
+    }
+    (most, axes_mm_s)
 }
 
 /// The largest speed along the path within a step. The velocity is a quadratic, so its square has at most two maxima within: each is
@@ -176,9 +195,9 @@ pub(super) fn tightened(
             node.radius_mm = (node.radius_mm - 1.2 * excess.tube_mm).max(least.min(node.radius_mm));
         }
         // The velocity of a step is between its control velocity and those of its neighbours.
-        let last = parts.len() - 1;
-        for part in &mut parts[excess.step.saturating_sub(2)..=(excess.step + 2).min(last)] {
-            *part *= 1.0 - FEED_TIGHTER * (1.0 - excess.feed_part);
+        for i in excess.step.saturating_sub(2)..=(excess.step + 2).min(steps.len() - 1) {
+            parts[i] *= 1.0 - FEED_TIGHTER * (1.0 - excess.feed_part);
+            parts[i] = parts[i].min(excess.axes_mm_s / feed_mm_s(track, &steps[i]));
         }
     }
     for excess in excesses.iter().rev().filter(|excess| excess.tube_mm > 0.0) {
