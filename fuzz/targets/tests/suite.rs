@@ -11,7 +11,7 @@ const DRAWN: [(&str, u64); 8] = [
     ("files", 60),
     ("block", 300),
     ("logs", 60),
-    ("corrected", 2),
+    ("corrected", 12),
     ("planner", 1),
     ("tick", 20),
 ];
