@@ -154,9 +154,10 @@ mistakes:
 help:
     FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test -p feedwright --test suite golden_help
 
-# The reader beside LinuxCNC on random programs (Debian: linuxcnc-uspace): about a quarter of an hour for 20,000.
-gcode-compare programs="20000" first="1":
-    cargo run --release --quiet -p feedwright-plan --example gcode_compare -- {{ programs }} {{ first }}
+# The reader beside LinuxCNC on random programs (Debian: linuxcnc-uspace): about a quarter of an hour for 20,000. The kind "nested" is
+# of control flow.
+gcode-compare programs="20000" first="1" kind="":
+    cargo run --release --quiet -p feedwright-plan --example gcode_compare -- {{ programs }} {{ first }} {{ kind }}
 
 # Every fuzz target for so many minutes, one after the other (`cargo install cargo-fuzz`). What is found is in fuzz/artifacts; as a test it
 # goes to fuzz/seeds. The stable compiler is told to take the flags of the unstable one.

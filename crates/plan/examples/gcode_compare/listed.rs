@@ -218,8 +218,14 @@ const ROWS: &[Row] = &[
     row(
         MOTION,
         "theirs",
-        |case| case.lines[..case.at].iter().any(|line| line.contains(" BREAK")) && case.text.contains(" do"),
+        |case| has_flow(case, " BREAK") && has_flow(case, " DO"),
         "a do behind a while that was left by break",
+    ),
+    row(
+        MOTION,
+        "theirs",
+        |case| has_flow(case, " CONTINUE") && has_flow(case, " DO") && has_flow(case, " REPEAT"),
+        "a repeat behind a do that was continued",
     ),
     row(THEY, "Unknown g code used", |case| case.has(&["G50"]), "G50 without words"),
     row(
@@ -267,6 +273,11 @@ const ROWS: &[Row] = &[
     ),
     row(WE, "needs its word Q", |case| case.has(&["M67", "M68"]) && !case.has_word('Q'), "M67 and M68 without Q"),
 ];
+
+/// Whether an O-word with this keyword is anywhere: the line of the motion may be in a subroutine before it.
+fn has_flow(case: &Case, keyword: &str) -> bool {
+    case.lines.iter().any(|line| line.starts_with('O') && line.contains(keyword))
+}
 
 /// Whether the first motion of a profile does not go down from where its cycle with D starts: it has no word of that axis.
 fn level_entry(case: &Case) -> bool {
@@ -337,7 +348,7 @@ fn turned_under_g92(case: &Case) -> bool {
     (0..=case.at).any(|at| {
         let line = &case.lines[at];
         has(line, &["G10"])
-            && line.contains("L2 ")
+            && line.contains("L2")
             && line.contains('R')
             && case.last_before(at, &shifts).is_some_and(|(_, code)| !["G92.1", "G92.2"].contains(&code.as_str()))
     })

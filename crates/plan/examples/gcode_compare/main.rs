@@ -1,6 +1,7 @@
 //! Compares this reader with LinuxCNC on random programs: verdicts, end points, centres and arcs, all to 1e-6 mm.
 //!
-//! Usage: `cargo run --release -p feedwright-plan --example gcode_compare -- [PROGRAMS] [FIRST]`. Needs the interpreter's Python module
+//! Usage: `cargo run --release -p feedwright-plan --example gcode_compare -- [PROGRAMS] [FIRST] [nested]`, with `nested` programs of control
+//! flow from a generator of their own. Needs the interpreter's Python module
 //! (Debian: `linuxcnc-uspace`). The same numbers give the same programs. Every difference that is not listed is written to
 //! `gcode_compare_NUMBER.ngc` and ends the run with exit code 1; in the end it says which codes the programs had. A program
 //! alone is printed.
@@ -11,6 +12,7 @@ mod cut;
 #[path = "../../tests/common/linuxcnc.rs"]
 mod linuxcnc;
 mod listed;
+mod nested;
 mod programs;
 
 use std::collections::BTreeMap;
@@ -37,17 +39,19 @@ struct Outcome {
 }
 
 fn main() -> ExitCode {
-    let mut arguments = std::env::args().skip(1).map(|text| text.parse::<u64>());
+    let (words, numbers): (Vec<String>, Vec<String>) = std::env::args().skip(1).partition(|text| text == "nested");
+    let program = if words.is_empty() { programs::program } else { nested::nested };
+    let mut arguments = numbers.iter().map(|text| text.parse::<u64>());
     let (programs, first) = match (arguments.next().unwrap_or(Ok(20_000)), arguments.next().unwrap_or(Ok(1))) {
         (Ok(programs), Ok(first)) => (programs, first),
         _ => {
-            eprintln!("usage: gcode_compare [PROGRAMS] [FIRST]: two numbers");
+            eprintln!("usage: gcode_compare [PROGRAMS] [FIRST] [nested]: two numbers");
             return ExitCode::from(2);
         }
     };
     let mut outcome = Outcome::default();
     for begin in (first..first + programs).step_by(BATCH as usize) {
-        if let Err(error) = outcome.batch(begin, (begin + BATCH).min(first + programs)) {
+        if let Err(error) = outcome.batch(program, begin, (begin + BATCH).min(first + programs)) {
             eprintln!("the programs cannot be written: {error}");
             return ExitCode::from(2);
         }
@@ -56,9 +60,9 @@ fn main() -> ExitCode {
 }
 
 impl Outcome {
-    fn batch(&mut self, begin: u64, end: u64) -> std::io::Result<()> {
+    fn batch(&mut self, program: fn(u64) -> String, begin: u64, end: u64) -> std::io::Result<()> {
         let folder = tempfile::tempdir()?;
-        let texts: Vec<String> = (begin..end).map(programs::program).collect();
+        let texts: Vec<String> = (begin..end).map(program).collect();
         if end - begin == 1 {
             println!("{}", texts[0]);
         }
