@@ -1,9 +1,10 @@
-//! Blocks of models: bytes as they come with a checksum that fits, and axes whose numbers are at the ends of their ranges.
+//! Blocks of models: bytes as they come with a checksum that fits, and axes and weights with numbers at the ends of their ranges.
 
 use std::f64::consts::TAU;
 
 use feedwright_control::{
-    AxisKnowledge, DriveParameters, IdentifiedAxes, LoopDelays, ModelBlock, Parameters, Periods, Trained,
+    AxisKnowledge, ContourIdentifier, DriveParameters, FEED_PERIODS_S, IdentifiedAxes, Identifier, LoopDelays,
+    MAX_WEIGHT, ModelBlock, Parameters, Periods, Trained,
 };
 
 use crate::draw::Draw;
@@ -52,7 +53,29 @@ pub(crate) fn absurd<const N: usize>(draw: &mut Draw) -> Vec<u8> {
             };
         }
     }
-    let block = ModelBlock { servo_s, feed_period_s: 0.005, trained: Trained::Axes(axes), geometry: None };
+    written(&ModelBlock { servo_s, feed_period_s: 0.005, trained: Trained::Axes(axes), geometry: None })
+}
+
+/// A block of an identifier of the contour error, its weights anything in their range.
+pub(crate) fn contour<const N: usize>(draw: &mut Draw) -> Vec<u8> {
+    let mut identifier = ContourIdentifier::<N>::NULL;
+    let reach = draw.pick(&[1.0, 1e-3, 100.0, MAX_WEIGHT]);
+    identifier.weights(&mut |_, group| {
+        for weight in group {
+            *weight = match draw.below(8) {
+                0 => MAX_WEIGHT,
+                1 => -MAX_WEIGHT,
+                _ => reach * (2.0 * draw.part() - 1.0),
+            };
+        }
+    });
+    let [least_s, most_s] = FEED_PERIODS_S;
+    let feed_period_s = draw.pick(&[0.005, 0.001, least_s, most_s]);
+    let trained = Trained::Contour(identifier);
+    written(&ModelBlock { servo_s: draw.pick(PERIODS_S)[0], feed_period_s, trained, geometry: None })
+}
+
+fn written<const N: usize>(block: &ModelBlock<N>) -> Vec<u8> {
     let mut bytes = Vec::new();
     block.to_bytes(|part| bytes.extend_from_slice(part));
     bytes
@@ -82,7 +105,5 @@ fn crc_32(bytes: &[u8]) -> u32 {
 /// Reads a block: what is accepted is written as bytes that read as the same.
 pub(crate) fn read<const N: usize>(bytes: &[u8]) {
     let Ok(block) = ModelBlock::<N>::from_bytes(bytes) else { return };
-    let mut again = Vec::new();
-    block.to_bytes(|part| again.extend_from_slice(part));
-    assert_eq!(ModelBlock::from_bytes(&again).as_ref(), Ok(&block));
+    assert_eq!(ModelBlock::from_bytes(&written(&block)).as_ref(), Ok(&block));
 }

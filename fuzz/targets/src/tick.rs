@@ -18,8 +18,11 @@ const ROUNDING: f64 = 1e-9;
 /// Runs the link of a machine with `N` axes.
 pub(crate) fn run<const N: usize>(data: &[u8]) {
     let mut draw = Draw::new(data);
-    let bytes =
-        if draw.below(4) == 0 { blocks::with_checksum(&mut Draw::new(data)) } else { blocks::absurd::<N>(&mut draw) };
+    let bytes = match draw.below(8) {
+        0 => blocks::with_checksum(&mut Draw::new(data)),
+        1 | 2 => blocks::contour::<N>(&mut draw),
+        _ => blocks::absurd::<N>(&mut draw),
+    };
     let model = model_of::<N>(&bytes);
     let servo_s = model.as_ref().map_or(blocks::SERVO_S, |model| model.servo_s());
     let mut servo = Servo::new(model);
