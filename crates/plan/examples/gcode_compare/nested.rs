@@ -65,7 +65,7 @@ pub(crate) fn nested(number: u64) -> String {
         counters: COUNTERS,
         routines: Vec::new(),
         uses,
-        turns: number % 2 == 0,
+        turns: number.is_multiple_of(2),
         around: Vec::new(),
     };
     for _ in 0..writer.below(MOST_ROUTINES + 1) {
