@@ -335,7 +335,8 @@ impl NestedWriter {
             1 => format!("G0 X{radius} Y1\nG1 ^[{angle} + #{counter}] Z1"),
             2 => format!("G0 X{radius} Y2\nG91 G1 @1 ^{angle}\nG90"),
             3 => format!("G0 @{radius} ^{angle}\nG91 ^15\n@.5\nG90"),
-            _ => format!("G3 @{radius} ^{angle} R100"),
+            // A flatter arc would count as one around a flat corner of compensation.
+            _ => format!("G3 @{radius} ^{angle} R30"),
         };
         line.lines().for_each(|line| self.line(line));
     }
