@@ -403,11 +403,13 @@ impl Job {
         let mut cuts = Cuts::default();
         for entry in self.controllers() {
             watch.check()?;
-            let mut steps = StageSteps::begin(watch, &format!("identifying for {}", entry.name));
-            let mut progress = |part: f64| steps.reach(part);
-            let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
             let judged = entry.name == self.controller.name;
-            let mut controller = match self.model.as_ref().filter(|_| judged) {
+            let model = self.model.as_ref().filter(|_| judged);
+            let mut steps = (entry.identifier.is_some() && model.is_none())
+                .then(|| StageSteps::begin(watch, &format!("identifying {}", self.machine.name)));
+            let mut progress = |part: f64| steps.iter_mut().for_each(|steps| steps.reach(part));
+            let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
+            let mut controller = match model {
                 Some(model) => entry.make_with::<N>(setup, model)?,
                 None => {
                     let controller = Make::<N>::make(entry, &mut setup);

@@ -1,5 +1,6 @@
 //! Who is told how far work has come, can end it, and has the clock.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use thiserror::Error;
@@ -63,9 +64,101 @@ impl<'a> StageSteps<'a> {
         self.watch.advance(done - self.done);
         self.done = done;
     }
+
+    /// Does work that tells stages of its own: each of them fills the stage from here up to the part `to`.
+    pub fn filled<T>(&mut self, to: f64, work: impl FnOnce(&dyn Watch) -> T) -> T {
+        let most = ((to * STEPS as f64) as u64).clamp(self.done, STEPS) - self.done;
+        let part = StagePart {
+            watch: self.watch,
+            most,
+            told: AtomicU64::new(0),
+            steps: AtomicU64::new(0),
+            done: AtomicU64::new(0),
+        };
+        let result = work(&part);
+        self.done += part.told.into_inner();
+        self.reach(to);
+        result
+    }
+}
+
+/// Tells the stages of some work as a part of another stage.
+struct StagePart<'a> {
+    watch: &'a dyn Watch,
+    /// Steps of the other stage that the work fills, and those that it was told.
+    most: u64,
+    told: AtomicU64,
+    /// Steps of the stage of the work, and those that are done.
+    steps: AtomicU64,
+    done: AtomicU64,
+}
+
+impl Watch for StagePart<'_> {
+    fn begin(&self, _stage: &str, steps: u64) {
+        self.steps.store(steps, Ordering::Relaxed);
+        self.done.store(0, Ordering::Relaxed);
+    }
+
+    fn advance(&self, steps: u64) {
+        let done = self.done.fetch_add(steps, Ordering::Relaxed) + steps;
+        let of = self.steps.load(Ordering::Relaxed).max(1);
+        let reached = (self.most as f64 * (done as f64 / of as f64).min(1.0)) as u64;
+        let told = self.told.fetch_max(reached, Ordering::Relaxed);
+        self.watch.advance(reached.saturating_sub(told));
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.watch.is_cancelled()
+    }
+
+    fn clock(&self) -> Duration {
+        self.watch.clock()
+    }
 }
 
 /// The work was ended from outside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error, miette::Diagnostic)]
 #[error("interrupted; no file was written")]
 pub struct Cancelled;
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+
+    /// Stages with their steps, and the steps that are done.
+    #[derive(Default)]
+    struct Told(Mutex<Vec<(String, u64, u64)>>);
+
+    impl Watch for Told {
+        fn begin(&self, stage: &str, steps: u64) {
+            self.0.lock().unwrap().push((stage.to_owned(), steps, 0));
+        }
+
+        fn advance(&self, steps: u64) {
+            self.0.lock().unwrap().last_mut().unwrap().2 += steps;
+        }
+    }
+
+    #[test]
+    fn stages_of_work_within_a_stage_fill_their_part_of_it() {
+        let told = Told::default();
+        let mut steps = StageSteps::begin(&told, "identifying");
+        steps.reach(0.1);
+        let of = |told: &Told| told.0.lock().unwrap().clone();
+        steps.filled(0.6, |watch| {
+            let mut inner = StageSteps::begin(watch, "reading");
+            inner.reach(0.5);
+            assert_eq!(of(&told), [("identifying".to_owned(), STEPS, 350)]);
+            // A second stage goes over the same part, and takes nothing back.
+            let mut inner = StageSteps::begin(watch, "fitting");
+            inner.filled(0.8, |watch| StageSteps::begin(watch, "an axis").reach(1.0));
+            assert_eq!(of(&told)[0].2, 500);
+            inner.reach(0.9);
+        });
+        assert_eq!(of(&told), [("identifying".to_owned(), STEPS, 600)]);
+        steps.reach(1.0);
+        assert_eq!(of(&told)[0].2, STEPS);
+    }
+}

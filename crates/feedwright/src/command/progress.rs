@@ -1,4 +1,6 @@
 //! A progress bar on stderr, where stderr is a terminal.
+//!
+//! A thread of its own draws the bar ten times a second: a stage shows when it begins, even if its first step takes long.
 
 use std::fmt::Write;
 use std::sync::Arc;
@@ -11,6 +13,9 @@ use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
 use crate::command::terminal::{is_dumb, shows_unicode};
 
+/// Time between two drawings of the bar: short enough that a stage seems to show at once.
+const DRAWN_EACH: Duration = Duration::from_millis(100);
+
 /// Shows the progress of work, tells it of an interrupt, and has its clock.
 pub struct Bar {
     bar: ProgressBar,
@@ -22,13 +27,23 @@ impl Bar {
     /// Where stderr is no terminal, or one without a cursor, nothing is drawn.
     pub(crate) fn new(quiet: bool, steps: u64, interrupted: Arc<AtomicBool>) -> Self {
         let bar = if quiet || is_dumb() { ProgressBar::hidden() } else { ProgressBar::new(steps) };
-        // A template that is written here parses.
-        if let Ok(style) = ProgressStyle::with_template("{msg:32!} {wide_bar} {percent:>3} % {left:>14}") {
-            let style = style.with_key("left", |state: &ProgressState, out: &mut dyn Write| {
-                // Writing to a line does not fail.
-                let _ = out.write_str(&left(state.eta(), state.pos(), state.len().unwrap_or(0)));
-            });
+        Self::on(bar, interrupted)
+    }
+
+    fn on(bar: ProgressBar, interrupted: Arc<AtomicBool>) -> Self {
+        // A template that is written here parses. Writing to a line does not fail.
+        if let Ok(style) = ProgressStyle::with_template("{msg:32!} {wide_bar} {done:>5} {left:>14}") {
+            let style = style
+                .with_key("done", |state: &ProgressState, out: &mut dyn Write| {
+                    let _ = out.write_str(&done(state.pos(), state.len().unwrap_or(0)));
+                })
+                .with_key("left", |state: &ProgressState, out: &mut dyn Write| {
+                    let _ = out.write_str(&left(state.eta(), state.pos(), state.len().unwrap_or(0)));
+                });
             bar.set_style(if shows_unicode() { style } else { style.progress_chars("#> ") });
+        }
+        if !bar.is_hidden() {
+            bar.enable_steady_tick(DRAWN_EACH);
         }
         Self { bar, interrupted, began: Instant::now() }
     }
@@ -44,6 +59,14 @@ impl Bar {
 
     pub fn clear(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+/// How much of a stage is done; nothing before its first step, as a stage may have no other. 100 % stands for the end alone.
+fn done(done: u64, steps: u64) -> String {
+    match done {
+        0 => String::new(),
+        _ => format!("{} %", 100 * done.min(steps) / steps.max(1)),
     }
 }
 
@@ -84,7 +107,81 @@ impl Watch for Bar {
 
 #[cfg(test)]
 mod tests {
+    use std::io;
+    use std::sync::Mutex;
+
+    use indicatif::{ProgressDrawTarget, TermLike};
+
     use super::*;
+
+    /// A terminal that keeps what is written to it.
+    #[derive(Debug, Clone, Default)]
+    struct Kept(Arc<Mutex<String>>);
+
+    impl TermLike for Kept {
+        fn width(&self) -> u16 {
+            100
+        }
+
+        fn move_cursor_up(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn move_cursor_down(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn move_cursor_right(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn move_cursor_left(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn write_line(&self, line: &str) -> io::Result<()> {
+            self.write_str(line)
+        }
+
+        fn write_str(&self, text: &str) -> io::Result<()> {
+            self.0.lock().unwrap().push_str(text);
+            Ok(())
+        }
+
+        fn clear_line(&self) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn flush(&self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_stage_shows_before_its_first_step_though_the_one_before_was_drawn_just_now() {
+        let terminal = Kept::default();
+        let target = ProgressDrawTarget::term_like(Box::new(terminal.clone()));
+        let bar = Bar::on(ProgressBar::with_draw_target(Some(0), target), Arc::default());
+        bar.begin("cutting, uncorrected", 1000);
+        (0..999).for_each(|_| bar.advance(1));
+        bar.begin("identifying mine", 1000);
+        let shows = |what: &str| {
+            (0..1000).any(|_| {
+                std::thread::sleep(Duration::from_millis(10));
+                terminal.0.lock().unwrap().contains(what)
+            })
+        };
+        assert!(shows("identifying mine"), "{terminal:?}");
+        let text = terminal.0.lock().unwrap().clone();
+        assert!(!text.contains("100 %") && !text[text.find("identifying").unwrap()..].contains('%'), "{text}");
+        bar.advance(370);
+        assert!(shows("37 %"), "{terminal:?}");
+    }
+
+    #[test]
+    fn a_stage_is_done_when_all_of_its_steps_are() {
+        assert_eq!([done(0, 1000), done(1, 1000), done(999, 1000), done(1000, 1000)], ["", "0 %", "99 %", "100 %"]);
+    }
 
     #[test]
     fn the_time_left_is_told_once_it_is_known() {

@@ -38,7 +38,7 @@ pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     let mut file = OutputFiles::new(input).start(out)?;
     let date = today()?;
     let bar = console.bar(0);
-    let mut steps = StageSteps::begin(&bar, &format!("identifying for {}", controller.name));
+    let mut steps = StageSteps::begin(&bar, &format!("identifying {}", machine.name));
     let mut progress = |part: f64| steps.reach(part);
     let mut setup = Setup::new(&machine, &choices).telling(&mut progress);
     let trained = setup.train(controller, usize::from(args.axes), date);
