@@ -255,8 +255,7 @@ impl CorrectJob {
 
     /// The machines that an uncertain file may describe.
     fn uncertain_file(&self, axes: usize) -> Option<FileModel> {
-        let is_uncertain = self.believed.is_none() && self.file_error > 0.0;
-        is_uncertain.then(|| FileModel::new(&self.machine, axes, self.file_error))
+        self.believed.is_none().then(|| FileModel::uncertain(&self.machine, axes, self.file_error)).flatten()
     }
 
     /// Refuses a program that does not fit in memory, before it is read into it.

@@ -1,6 +1,6 @@
 //! The feedrates that are advised hold the tolerance, each way for itself, and are told with what they are cut at.
 
-use feedwright::{Advice, AdviseJob, CONTROLLERS, CutWay, ErrorPlace, JobError, TARGETS};
+use feedwright::{Advice, AdviseJob, CONTROLLERS, CorrectJob, CutWay, ErrorPlace, JobError, TARGETS};
 use feedwright_gcode::Program;
 use feedwright_sim::Machine;
 
@@ -10,11 +10,15 @@ fn advice(text: &str, tolerance_um: f64) -> Result<Advice, JobError> {
 
 fn job(text: &str, tolerance_um: f64) -> AdviseJob {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
-    AdviseJob::new(Program::from_text("part.ngc", text), machine, &TARGETS[0], tolerance_um)
+    let mut job = AdviseJob::new(Program::from_text("part.ngc", text), machine, &TARGETS[0], tolerance_um);
+    job.file_error = CorrectJob::usual_file_error(false);
+    job
 }
 
 /// What is to be held.
 const TOLERANCE_UM: f64 = 10.0;
+/// Decimals of a corrected program: an error moves by no more than the rounding of both coordinates.
+const ROUNDED_UM: f64 = 1.0;
 /// Two circles from rest to rest, the smaller of which asks for a lower feedrate.
 const CIRCLES: &str = "G21 G90 G64\nG2 X0 Y0 I2 J0 F1800\nG4 P0.2\nG2 X0 Y0 I6 J0\nM2\n";
 
@@ -67,4 +71,32 @@ fn what_no_feedrate_holds_is_said_and_a_program_that_cuts_nothing_is_refused() {
     assert!(overrun.stretches[0].remark("um").unwrap().ends_with("um, start"), "{overrun:?}");
     let error = advice("G21 G0 X5\nM2\n", 10.0).unwrap_err();
     assert!(error.to_string().ends_with("has no feed motion: there is nothing to cut"), "{error}");
+}
+
+/// A machine file counts as uncertain as `correct` takes it: the cuts at the programmed feed are those of `correct`.
+#[test]
+fn a_machine_file_is_as_uncertain_as_it_is_for_a_correction() {
+    for is_file in [true, false] {
+        let mut job = job(CIRCLES, TOLERANCE_UM);
+        // A typing mistake, or chance: 4 % between the gains of two axes.
+        job.machine.axes[1].kp_1_s *= 1.04;
+        job.file_error = CorrectJob::usual_file_error(is_file);
+        let mut same = CorrectJob::new(job.program.clone(), job.machine.clone(), job.target);
+        same.file_error = job.file_error;
+        let (advice, corrected) = (job.run(&()).unwrap(), same.run(&()).unwrap());
+        assert_eq!(advice.assumed, corrected.assumed);
+        assert_eq!(advice.assumed.is_some(), is_file);
+        let cut = |way: usize| advice.ways[way].cuts.iter().find(|cut| cut.factor == Some(1.0)).unwrap().max_um;
+        assert_eq!(cut(0), corrected.uncorrected.max_um, "{is_file}");
+        // The text of a corrected program has its coordinates rounded to 1 um.
+        assert!(
+            (cut(1) - corrected.corrected.max_um).abs() < ROUNDED_UM,
+            "{is_file}: {} {:?}",
+            cut(1),
+            corrected.corrected
+        );
+        let mut page = Vec::new();
+        advice.write_page(&mut page, "part.ngc", "tnv40").unwrap();
+        assert_eq!(String::from_utf8(page).unwrap().contains("kp_1_s is taken as"), is_file);
+    }
 }

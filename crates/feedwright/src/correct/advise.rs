@@ -13,6 +13,7 @@ use feedwright_gcode::{Diagnostic, Program, Settings};
 use feedwright_sim::{Machine, StageSteps, Watch};
 use serde::Serialize;
 
+use super::file_prior::{FILE_ERROR, FileAssumption, FileModel};
 use super::source::SourceProgram;
 use super::stretches::{ProgramPart, SmoothStretch, parts, stretches};
 use super::target::TargetControl;
@@ -44,6 +45,8 @@ pub struct AdviseJob {
     pub tolerance_um: f64,
     /// Settings of the reader.
     pub reader: Settings,
+    /// Standard deviation of each value of the machine, as a fraction of it; 0 where it is exact. As [`CorrectJob::file_error`](super::CorrectJob).
+    pub file_error: f64,
 }
 
 /// How a program is cut.
@@ -146,6 +149,9 @@ pub struct Advice {
     pub ways: Vec<WayAdvice>,
     /// The stretches in the order of the program.
     pub stretches: Vec<StretchAdvice>,
+    /// What is assumed beside the machine file; none of an exact one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub assumed: Option<FileAssumption>,
     /// What the reader warned of.
     #[serde(skip)]
     pub warnings: Vec<Diagnostic>,
@@ -170,6 +176,7 @@ impl AdviseJob {
             compensation: GeometryChoice::default(),
             tolerance_um,
             reader: Settings::default(),
+            file_error: FILE_ERROR,
         }
     }
 
@@ -183,15 +190,23 @@ impl AdviseJob {
         let axes = axes_that_move(&self.program, &summary, &self.machine)?;
         let source = SourceProgram::read(&self.program, &self.reader, None)?;
         let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
-        let job = Self { machine: self.compensation.on(&self.machine, summary.box_mm)?, ..self.clone() };
+        let compensated = self.compensation.on(&self.machine, summary.box_mm)?;
+        let file = FileModel::uncertain(&compensated, axes, self.file_error);
+        let machine = file.as_ref().map_or(compensated, |file| file.machine.clone());
+        let job = Self { machine, ..self.clone() };
         let found = match axes {
-            2 => job.of_axes::<2>(&source, watch),
-            _ => job.of_axes::<3>(&source, watch),
+            2 => job.of_axes::<2>(&source, file.as_ref(), watch),
+            _ => job.of_axes::<3>(&source, file.as_ref(), watch),
         };
-        Ok(Advice { warnings, ..found? })
+        Ok(Advice { warnings, assumed: file.map(|file| file.assumption), ..found? })
     }
 
-    fn of_axes<const N: usize>(&self, source: &SourceProgram, watch: &dyn Watch) -> Result<Advice, JobError>
+    fn of_axes<const N: usize>(
+        &self,
+        source: &SourceProgram,
+        file: Option<&FileModel>,
+        watch: &dyn Watch,
+    ) -> Result<Advice, JobError>
     where
         Entry: Make<N>,
     {
@@ -201,12 +216,14 @@ impl AdviseJob {
         if largest_mm_s == 0.0 {
             return Err(JobError::NothingToCut { part: self.program.name() });
         }
-        let mut steps = StageSteps::begin(watch, &format!("identifying for {}", self.controller.name));
-        let mut progress = |part: f64| steps.reach(part);
+        let mut steps = (self.controller.identifier.is_some())
+            .then(|| StageSteps::begin(watch, &format!("identifying {}", self.machine.name)));
+        let mut progress = |part: f64| steps.iter_mut().for_each(|steps| steps.reach(part));
         let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
         let controller = Make::<N>::make(self.controller, &mut setup);
         let mut bench = FeedBench::<N> {
             machine: &self.machine,
+            file,
             target: self.target,
             laps: self.controller.laps,
             parts: &parts,
@@ -239,6 +256,7 @@ impl AdviseJob {
             programmed_mm_s: [least_mm_s.fold(f64::INFINITY, f64::min), largest_mm_s],
             ways,
             stretches: stretches(&parts).enumerate().map(of_stretch).collect(),
+            assumed: None,
             warnings: Vec::new(),
         })
     }

@@ -130,6 +130,11 @@ impl MatchedValue {
 }
 
 impl FileModel {
+    /// The machine of a file that has an error; none of an exact one.
+    pub(super) fn uncertain(file: &Machine, axes: usize, file_error: f64) -> Option<Self> {
+        (file_error > 0.0).then(|| Self::new(file, axes, file_error))
+    }
+
     /// The machine of a file whose values have this standard deviation, as a fraction; `axes` of them move.
     pub(super) fn new(file: &Machine, axes: usize, file_error: f64) -> Self {
         let mut machine = file.clone();

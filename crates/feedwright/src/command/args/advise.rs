@@ -33,6 +33,10 @@ pub(crate) struct AdviseArgs {
     /// Control that cuts the program without feedback, as it is and corrected.
     #[arg(long = "for", value_name = "CONTROL", default_value = crate::correct::TARGETS[0].name, long_help = controls("Control that cuts the program without feedback, as it is and corrected."), help_heading = CUT)]
     pub(crate) target: String,
+    /// How exact the values of the machine file are: standard deviation of each, %. 0: exact. As of `feedwright correct`: by default a file has 10 %,
+    /// and a built-in machine, which is simulated as it is written, 0.
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, help_heading = CUT, hide_short_help = true)]
+    pub(crate) file_error: Option<f64>,
     /// Controller of the cut with feedback; `feedwright controllers` lists them.
     #[arg(long, value_name = "NAME", default_value = crate::controllers::BEST, help_heading = CONTROLLER, hide_short_help = true)]
     pub(crate) controller: String,

@@ -10,12 +10,13 @@ use serde_json::json;
 use crate::command::args::advise::AdviseArgs;
 use crate::command::console::Console;
 use crate::command::controllers::find;
-use crate::command::controls::{check_tolerance, compensation, control};
+use crate::command::controls::{check_tolerance, compensation, control, file_error};
 use crate::command::message::{OUT_OF_TOLERANCE, printed, tell_assumed_limits, warn};
 use crate::command::streams::{ProgramInputs, tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn};
 use crate::command::terminal::wrapped;
 use crate::controllers::{CONTROLLERS, Choices};
+use crate::correct::FileAssumption;
 use crate::correct::advise::{Advice, AdviseJob, FeedCut, STRETCH_LEGEND, WayAdvice};
 use crate::output::OutputFile;
 use crate::results_format::{json_text, stamped};
@@ -26,6 +27,7 @@ const LISTED: usize = 12;
 pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
     let target = control(&args.target)?;
     check_tolerance(Some(args.tolerance))?;
+    let file_error = file_error(args.file_error, &args.machine)?;
     let inputs =
         ProgramInputs::of(&args.part, &args.machine, &args.reader).with_geometry(args.geometry.geometry.as_deref());
     inputs.check(console)?;
@@ -40,6 +42,7 @@ pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
         choices: Choices { seed: args.seed, ..Choices::default() },
         compensation: compensation(&args.geometry)?,
         reader: args.reader.settings()?,
+        file_error,
         ..AdviseJob::new(Program::in_file(&args.part), machine, target, args.tolerance)
     };
     let bar = console.bar(0);
@@ -113,7 +116,8 @@ fn print(args: &AdviseArgs, job: &AdviseJob, advice: &Advice) -> std::io::Result
         "feed: of the programmed; mm/min: where F is the largest of the program; each: each stretch at the feed that it holds".to_owned(),
         format!("uncorrected, corrected: cut without feedback as {control} plans (planner {planner}); corrected: for that feed"),
     ];
-    notes.iter().try_for_each(|note| writeln!(out, "{}", wrapped(note, 2)))?;
+    let assumed = advice.assumed.as_ref().map(FileAssumption::sentence);
+    notes.iter().chain(&assumed).try_for_each(|note| writeln!(out, "{}", wrapped(note, 2)))?;
     print_stretches(out, advice)?;
     tell_written(out, files())
 }

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::{CutWay, FeedCut, canon_of, with_factors};
 use crate::correct::exported::{CutPhase, CutRow, CutRows, ExportedCut, waited};
+use crate::correct::file_prior::FileModel;
 use crate::correct::nominal::deterministic;
 use crate::correct::rounds::{JudgedPart, rounds, steps_of};
 use crate::correct::stretch_cut::{StretchCut, by_stretch};
@@ -17,6 +18,8 @@ use crate::correct::target::TargetControl;
 /// What cuts.
 pub(super) struct FeedBench<'a, const N: usize> {
     pub(super) machine: &'a Machine,
+    /// Machines that an uncertain file may describe: the corrected program is to be good on all of them.
+    pub(super) file: Option<&'a FileModel>,
     pub(super) target: &'a TargetControl,
     pub(super) laps: u32,
     pub(super) parts: &'a [ProgramPart],
@@ -99,7 +102,7 @@ impl<const N: usize> FeedBench<'_, N> {
                     &ExportedCut { tool, ..on(&nominal) },
                     &parts,
                     self.target,
-                    None,
+                    self.file,
                     &JudgedPart::whole(&parts),
                 )?;
                 steps_of(&assembled(&parts, &found.commands, &found.rests_s))?

@@ -83,6 +83,8 @@ impl Advice {
             self.planner,
             self.controller
         );
+        let assumed = self.assumed.as_ref().map_or_else(String::new, |assumed| format!(" {}.", assumed.sentence()));
+        let introduction = introduction + &assumed;
         let parts = [
             PagePart::new("program", "The whole program"),
             PagePart::new("feedrates", "Errors and feedrates"),
