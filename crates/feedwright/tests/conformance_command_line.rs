@@ -415,3 +415,31 @@ fn a_built_in_machine_is_written_as_a_file_to_start_from() {
     folder.run(&["machines", "mine.toml"]).refused(&["no built-in machine", "feedwright machines"]);
     assert!(!folder.path().join("other.toml").exists());
 }
+
+#[test]
+fn a_controller_is_shown_with_its_source_its_gains_and_the_units_of_its_parameters() {
+    let folder = Folder::new();
+    for (name, parts) in [
+        (
+            "lqg-identified",
+            ["source: Anderson and Moore", "gains: computed when it starts", "servo periods squared, allowed"],
+        ),
+        ("two-dimensional", ["source: Lee, Cho and Jeon", "gains: none", "feed_period_s = 0.01 s, allowed"]),
+        (
+            "feedforward",
+            ["source: Masory", "from the model", "velocity_gain = 1 times the feedforward of the exact model"],
+        ),
+    ] {
+        let told = folder.run(&["controllers", name]).succeeded().told();
+        assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+    }
+}
+
+#[test]
+fn a_rate_of_planning_is_printed_of_programs_that_are_long_enough_for_one() {
+    let folder = Folder::new();
+    assert!(!folder.run(&["plan", "circle.ngc"]).succeeded().told().contains("blocks/s"));
+    let lines: String = (1..1200).map(|k| format!("G1 X{}\n", f64::from(k % 7) * 0.1)).collect();
+    folder.file("long.ngc", format!("G21 G90 G64 F1200\n{lines}M2\n"));
+    assert!(folder.run(&["plan", "long.ngc"]).succeeded().told().contains("blocks/s"));
+}

@@ -22,6 +22,8 @@ pub struct Parameter {
     pub kind: ParameterKind,
     /// What it is, and what goes wrong on either side.
     pub reason: &'static str,
+    /// Unit of a value that is no plain number.
+    pub unit: Option<&'static str>,
 }
 
 /// Which values a parameter can have.
@@ -44,18 +46,23 @@ impl Parameter {
         searched: Option<[f64; 2]>,
         reason: &'static str,
     ) -> Self {
-        Self { name, default, allowed, searched, kind: ParameterKind::Number, reason }
+        Self { name, default, allowed, searched, kind: ParameterKind::Number, reason, unit: None }
     }
 
     /// A parameter that is a whole number.
     pub const fn whole(name: &'static str, default: usize, allowed: [f64; 2], reason: &'static str) -> Self {
-        Self { name, default: default as f64, allowed, searched: None, kind: ParameterKind::Whole, reason }
+        Self { name, default: default as f64, allowed, searched: None, kind: ParameterKind::Whole, reason, unit: None }
     }
 
     /// A parameter that is on or off.
     pub const fn switch(name: &'static str, default: bool, reason: &'static str) -> Self {
         let default = if default { 1.0 } else { 0.0 };
-        Self { name, default, allowed: [0.0, 1.0], searched: None, kind: ParameterKind::Switch, reason }
+        Self { name, default, allowed: [0.0, 1.0], searched: None, kind: ParameterKind::Switch, reason, unit: None }
+    }
+
+    /// The parameter with a unit of its values.
+    pub const fn of_unit(self, unit: &'static str) -> Self {
+        Self { unit: Some(unit), ..self }
     }
 
     /// What it can be set to, in words.

@@ -3,6 +3,7 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
+use feedwright_control::IdentifierKind;
 use feedwright_gcode::visible;
 use feedwright_sim::{BUILT_IN_MACHINES, Machine, is_machine_path, shown};
 use miette::{IntoDiagnostic, Result, miette};
@@ -12,7 +13,7 @@ use crate::command::controllers::find;
 use crate::command::message::printed;
 use crate::command::streams::{tables, tell_written};
 use crate::command::terminal::wrapped;
-use crate::controllers::{BEST, Controllers, Knows};
+use crate::controllers::{BEST, Controllers, Entry, Knows};
 use crate::machine_document::machine_document;
 use crate::output::{OutputError, OutputFile, OutputFiles};
 
@@ -65,6 +66,7 @@ pub fn controller(name: &str, table: Controllers) -> Result<ExitCode> {
         format!("{}: {}", entry.name, entry.summary),
         format!("source: {}", entry.source),
         format!("knows of the machine: {knows}"),
+        format!("gains: {}", gains(entry)),
     ];
     let mut lines: String = head.iter().map(|line| wrapped(line, 2) + "\n").collect();
     if entry.laps > 1 {
@@ -76,9 +78,26 @@ pub fn controller(name: &str, table: Controllers) -> Result<ExitCode> {
     for parameter in entry.parameters {
         let default = shown(parameter.default);
         let reason = wrapped(&format!("    {}", parameter.reason), 4);
-        lines += &format!("\n{} = {default}, allowed {}\n{reason}\n", parameter.name, parameter.range());
+        let unit = parameter.unit.map_or(String::new(), |unit| format!(" {unit}"));
+        lines += &format!("\n{} = {default}{unit}, allowed {}\n{reason}\n", parameter.name, parameter.range());
     }
     print(&lines)
+}
+
+/// Where the gains of a controller come from.
+const fn gains(entry: &Entry) -> &'static str {
+    match (entry.identifier, entry.knows) {
+        (Some(IdentifierKind::Axes), _) => {
+            "computed when it starts, from the identified law of each axis and the parameters below; none is typed in"
+        }
+        (Some(_), _) => "none; it follows the gradient of a trained network",
+        (None, Knows::Nothing) if entry.parameters.is_empty() => "none",
+        (None, Knows::Nothing) => "those of the parameters below",
+        (None, Knows::EarlierLaps) => "those of the parameters below, on the errors of earlier laps",
+        (None, Knows::Identified | Knows::ExactModel | Knows::Everything) => {
+            "computed when it starts, from the model of the machine and the parameters below"
+        }
+    }
 }
 
 fn print(lines: &str) -> Result<ExitCode> {
