@@ -40,7 +40,9 @@ pub use statistics::Statistics;
 pub use summary::{RunFacts, RunSummary};
 pub use worst::WorstPlace;
 
-pub(crate) use feedwright_sim::{CorrectionChange, FadedOut, Outcome, Transition};
+#[cfg(feature = "command")]
+pub(crate) use feedwright_sim::CorrectionChange;
+pub(crate) use feedwright_sim::{FadedOut, Outcome, Transition};
 
 /// In place of a controller: the run of a corrected program, cut without feedback by another control.
 pub(crate) const AS_EXPORTED: &str = "as exported";

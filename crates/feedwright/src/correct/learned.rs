@@ -49,6 +49,7 @@ const SEED: u64 = 0x5eed;
 const MOST_LEFT: f64 = 0.7;
 const MOST_LEFT_UM: f64 = 0.5;
 /// A cut of the program that takes longer or shorter by this part than it was planned is told.
+#[cfg(feature = "command")]
 const SAME_TIME: f64 = 0.02;
 
 /// What a log was of and showed.
@@ -107,6 +108,7 @@ pub struct LearnedOutcome {
 
 impl LearnedLog {
     /// Whether the control took another time for the program than is planned.
+    #[cfg(feature = "command")]
     pub(crate) fn takes_another_time(&self) -> bool {
         self.program == CutProgram::Original && (self.time_s / self.planned_s - 1.0).abs() > SAME_TIME
     }

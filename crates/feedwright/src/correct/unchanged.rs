@@ -123,6 +123,7 @@ pub(super) fn lines_of(stretch: &SmoothStretch) -> [u32; 2] {
 
 impl UnchangedStretch {
     /// One line for each reason, with the lines that it holds for, at most the first `most` of them.
+    #[cfg(feature = "command")]
     pub(crate) fn sentences(all: &[Self], most: usize) -> Vec<String> {
         let mut reasons: Vec<&str> = Vec::new();
         for stretch in all {

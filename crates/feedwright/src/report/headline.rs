@@ -87,6 +87,7 @@ impl Report {
     }
 
     /// Index of the axis whose peak torque the headline names; the table of the terminal shows that axis, too.
+    #[cfg(feature = "command")]
     pub(crate) fn costly_axis(&self) -> usize {
         self.judged().map_or(0, |judged| costly_axis(self.compared(), judged).0)
     }
