@@ -16,6 +16,7 @@ mod names;
 mod pairs;
 mod roles;
 mod decimal;
+mod scopes;
 mod dialect;
 mod text;
 mod matlab;
@@ -89,6 +90,12 @@ pub enum LogFormat {
     Matlab,
     /// Recorder of Sinumerik Edge: JSON.
     SinumerikEdge,
+    /// Heidenhain TNCscope, saved as text.
+    TncScope,
+    /// Fanuc Servo Guide, exported as CSV.
+    ServoGuide,
+    /// TwinCAT Scope, exported as CSV.
+    TwinCatScope,
     /// Rows of numbers.
     TextTable,
 }
@@ -100,8 +107,23 @@ impl std::fmt::Display for LogFormat {
             Self::Halscope => "halscope",
             Self::Matlab => "MATLAB v5",
             Self::SinumerikEdge => "Sinumerik Edge",
+            Self::TncScope => "TNCscope",
+            Self::ServoGuide => "Servo Guide",
+            Self::TwinCatScope => "TwinCAT Scope",
             Self::TextTable => "text table",
         })
+    }
+}
+
+impl LogFormat {
+    /// What to record with the scope of a control; none of a format whose columns may have any names.
+    const fn record(self) -> Option<&'static str> {
+        match self {
+            Self::TncScope => Some("record 's nominal' and 's actual', or 's actual' and 's dif', of each axis"),
+            Self::ServoGuide => Some("record POSF and ERR of each axis: their sum is the command"),
+            Self::TwinCatScope => Some("add SetPos and ActPos of each axis to the scope"),
+            Self::Halsampler | Self::Halscope | Self::Matlab | Self::SinumerikEdge | Self::TextTable => None,
+        }
     }
 }
 
@@ -221,6 +243,9 @@ fn read_table(
 fn of_table(path: &Path, mut table: LogTable, columns: &Columns) -> Result<Log, LogError> {
     let mut findings: Vec<LogFinding> =
         table.cut_off_line.map(|line| LogFinding::CutOff { line }).into_iter().collect();
+    if let Some(announced) = table.announced_rows.filter(|announced| *announced > table.rows()) {
+        findings.push(LogFinding::Short { announced, found: table.rows() });
+    }
     let roles = roles::find(path, &table, columns, &mut findings)?;
     let clock = clock::of_table(path, &mut table, &roles, columns, &mut findings)?;
     let axes = axes::of_table(path, &mut table, &roles, columns, &clock, &mut findings)?;

@@ -11,6 +11,7 @@ mod conformance_excite;
 mod conformance_geometry;
 mod conformance_log_refusals;
 mod conformance_logs;
+mod conformance_scopes;
 mod oracle_axis_parameters;
 mod oracle_halsampler;
 mod oracle_logs;

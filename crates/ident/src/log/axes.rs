@@ -23,7 +23,8 @@ pub(super) fn of_table(
     findings: &mut Vec<LogFinding>,
 ) -> Result<Vec<LogAxis>, LogError> {
     for axis in &roles.axes {
-        for (what, column) in [("command", axis.command), ("actual position", axis.actual)] {
+        let lag = axis.lag.as_ref().map(|(column, _)| ("following error", *column));
+        for (what, column) in [("command", axis.command), ("actual position", axis.actual)].into_iter().chain(lag) {
             if let Some((row, text)) = &table.columns[column].not_a_number {
                 let shown = if text.is_empty() { "nothing" } else { text };
                 let message = format!("the {what} of {} is no number at {}: {shown}", axis.name, table.place(*row));
@@ -34,10 +35,7 @@ pub(super) fn of_table(
     }
     let unit = unit(path, table, roles, columns, clock, findings)?;
     let scale = unit.in_mm();
-    let uses = |column: usize| {
-        let used = roles.axes.iter().flat_map(|axis| [Some(axis.command), Some(axis.actual), axis.torque]);
-        used.filter(|&used| used == Some(column)).count()
-    };
+    let uses = |column: usize| roles.axes.iter().flat_map(AxisRoles::columns).filter(|&used| used == column).count();
     let shared: Vec<bool> = (0..table.columns.len()).map(|column| uses(column) > 1).collect();
     let mut take = |column: usize, scale: f64| {
         let values = &mut table.columns[column].values;
@@ -47,9 +45,19 @@ pub(super) fn of_table(
         }
         values
     };
-    let axes = roles.axes.iter().map(|axis: &AxisRoles| LogAxis {
+    let mut command = |axis: &AxisRoles| {
+        let mut command_mm = take(axis.command, scale);
+        if let Some((lag, unit)) = &axis.lag {
+            let scale =
+                columns.position_unit.or_else(|| PositionUnit::from_name(unit)).map_or(scale, PositionUnit::in_mm);
+            command_mm.iter_mut().zip(take(*lag, scale)).for_each(|(command, lag)| *command += lag);
+        }
+        command_mm
+    };
+    let commands: Vec<Vec<f64>> = roles.axes.iter().map(&mut command).collect();
+    let axes = roles.axes.iter().zip(commands).map(|(axis, command_mm)| LogAxis {
         name: axis.name.clone(),
-        command_mm: take(axis.command, scale),
+        command_mm,
         actual_mm: take(axis.actual, scale),
         torque: axis.torque.map(|column| take(column, 1.0)),
         torque_unit: axis.torque_unit,

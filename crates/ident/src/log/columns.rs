@@ -3,6 +3,7 @@
 //! ```text
 //! t=0,x.cmd=1,x.act=3,x.torque=5          by number, from 0
 //! t=t,x.cmd=qg,x.act=qm,x.torque=vir      by name
+//! x.act=POSF X,x.err=ERR X                command as the sum of actual position and following error
 //! unit=mm,time=ms,period_s=0.001          units; time between samples where there is no column of it
 //! ```
 
@@ -28,6 +29,8 @@ pub struct AxisChoice {
     pub command: Option<ColumnChoice>,
     /// Its actual position.
     pub actual: Option<ColumnChoice>,
+    /// Its command minus its actual position, in place of the command.
+    pub error: Option<ColumnChoice>,
     /// Its torque.
     pub torque: Option<ColumnChoice>,
 }
@@ -65,7 +68,7 @@ const EXAMPLE: &str = "such as t=0,x.cmd=1,x.act=3,x.torque=5; columns by number
 /// What may stand before `=`.
 const KEYS: [&str; 4] = ["t", "unit", "time", "period_s"];
 /// What may stand behind the name of an axis.
-const PARTS: [&str; 3] = ["cmd", "act", "torque"];
+const PARTS: [&str; 4] = ["cmd", "act", "err", "torque"];
 
 impl FromStr for Columns {
     type Err = ColumnsError;
@@ -76,7 +79,8 @@ impl FromStr for Columns {
             columns.add(item)?;
         }
         for axis in &columns.axes {
-            for (part, column) in [("cmd", &axis.command), ("act", &axis.actual)] {
+            let command = axis.command.as_ref().or(axis.error.as_ref());
+            for (part, column) in [("cmd", command), ("act", axis.actual.as_ref())] {
                 if column.is_none() {
                     let item = axis.name.clone();
                     let message = format!("no {part} of this axis");
@@ -139,10 +143,11 @@ impl Columns {
         let field = match part {
             "cmd" => &mut axis.command,
             "act" => &mut axis.actual,
+            "err" => &mut axis.error,
             "torque" => &mut axis.torque,
             _ => {
                 let hint = nearest(part, &PARTS).map(|near| format!("did you mean '{name}.{near}'?"));
-                let message = format!("an axis has no '{part}', but cmd, act and torque");
+                let message = format!("an axis has no '{part}', but cmd, act, err and torque");
                 return Err((message, hint.unwrap_or_else(|| EXAMPLE.to_owned())));
             }
         };

@@ -1,6 +1,7 @@
 //! How a text table is written: what stands between its columns, which sign its decimal point is, what its columns are called.
 
-use super::decimal;
+use super::scopes::{ScopeChannel, ScopeHeader};
+use super::{LogFormat, decimal};
 
 /// How a text table is written.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +24,8 @@ pub(super) struct TableDialect {
     pub(super) position_unit: Option<String>,
     /// Whether the rows are names and numbers by turns, as `halscope` wrote them before LinuxCNC 2.9.
     pub(super) names_in_rows: bool,
+    /// The scope that wrote the table, and what its header says of each column; none of any other table.
+    pub(super) scope: Option<(LogFormat, Vec<ScopeChannel>)>,
 }
 
 /// Lines that are looked at.
@@ -93,6 +96,28 @@ impl TableDialect {
         best.map(|(_, dialect)| dialect)
     }
 
+    /// The dialect of an export with this header. Its decimal point is the one by which more of the first rows are numbers.
+    pub(super) fn of_scope(header: ScopeHeader, head: &[u8]) -> Self {
+        let ScopeHeader { format, delimiter, channels, first_line, sample_time_s } = header;
+        let numbers = |point: u8| -> usize {
+            let rows = head.split(|&byte| byte == b'\n').skip(first_line as usize - 1).take(LINES);
+            rows.map(|row| count(row.strip_suffix(b"\r").unwrap_or(row), delimiter, point).1).sum()
+        };
+        let has_comma = delimiter != b',' && numbers(b',') > numbers(b'.');
+        Self {
+            delimiter,
+            point: if has_comma { b',' } else { b'.' },
+            columns: channels.len(),
+            names: channels.iter().map(|channel| channel.name.clone()).collect(),
+            units: channels.iter().map(|channel| channel.unit.clone()).collect(),
+            first_line,
+            sample_time_s,
+            position_unit: None,
+            names_in_rows: false,
+            scope: Some((format, channels)),
+        }
+    }
+
     /// The dialect with this delimiter and point, and how many numbers it finds.
     fn with(lines: &[&[u8]], delimiter: u8, point: u8) -> Option<(usize, Self)> {
         // Fields and numbers of each line; comments have none.
@@ -119,8 +144,18 @@ impl TableDialect {
         let position_unit =
             before.iter().find_map(|line| stated(&String::from_utf8_lossy(line), &["unit", "position_unit"]));
         let first_line = first as u64 + 1;
-        let dialect =
-            Self { delimiter, point, columns, names, units, first_line, sample_time_s, position_unit, names_in_rows };
+        let dialect = Self {
+            delimiter,
+            point,
+            columns,
+            names,
+            units,
+            first_line,
+            sample_time_s,
+            position_unit,
+            names_in_rows,
+            scope: None,
+        };
         Some((score, dialect))
     }
 }

@@ -77,6 +77,13 @@ pub enum LogFinding {
         /// The line, from 1.
         line: u64,
     },
+    /// The file has fewer samples than its header announces.
+    Short {
+        /// Samples that are announced.
+        announced: usize,
+        /// Samples that are there.
+        found: usize,
+    },
     /// A rotary axis, which is left out.
     Rotary {
         /// The axis.
@@ -228,6 +235,10 @@ impl fmt::Display for LogFinding {
             Self::MoreGaps { count } => write!(f, "{count} more gaps"),
             Self::Joined { path, from_s } => write!(f, "{path} is joined at {} s of the time", to_four_digits(*from_s)),
             Self::CutOff { line } => write!(f, "line {line}, the last, is cut off and left out"),
+            Self::Short { announced, found } => write!(
+                f,
+                "the header announces {announced} samples, and {found} are there: the rest is cut off; hint: save the record again if it is needed"
+            ),
             Self::Rotary { axis } => write!(f, "axis {axis} is rotary, in degrees, and left out"),
             Self::StandsStill { axis } => write!(f, "axis {axis} stands still: nothing can be identified of it"),
             Self::Endless { axis, range_mm } => {

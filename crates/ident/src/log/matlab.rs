@@ -273,5 +273,6 @@ fn table(variables: Vec<Variable>) -> Option<LogTable> {
         sample_time_s,
         position_unit: None,
         cut_off_line: None,
+        announced_rows: None,
     })
 }

@@ -10,6 +10,8 @@ pub(super) enum Quantity {
     Actual,
     /// A position, whichever.
     Position,
+    /// Command minus actual position.
+    Lag,
     Torque,
     /// Actual speed.
     Velocity,
@@ -59,9 +61,10 @@ const TORQUES: [&str; 11] = ["torque", "trq", "tq", "tau", "moment", "force", "c
 const POSITIONS: [&str; 4] = ["pos", "position", "posn", "lage"];
 const TIMES: [&str; 8] = ["t", "time", "timestamp", "zeit", "clock", "seconds", "millis", "ms"];
 const COUNTERS: [&str; 9] = ["n", "sample", "samples", "cycle", "index", "idx", "counter", "count", "k"];
-const SPEEDS: [&str; 5] = ["velocity", "vel", "speed", "geschwindigkeit", "v"];
+const SPEEDS: [&str; 6] = ["velocity", "vel", "velo", "speed", "geschwindigkeit", "v"];
 /// Words of quantities that are none of these.
-const OTHERS: [&str; 36] = [
+const OTHERS: [&str; 37] = [
+    "modulo",
     "acceleration",
     "accel",
     "acc",
@@ -99,12 +102,21 @@ const OTHERS: [&str; 36] = [
     "integral",
     "overrun",
 ];
+/// Signals of Servo Guide: what stands before the axis in the name of a channel.
+pub(super) const SERVO_GUIDE_SIGNALS: [(&str, Quantity); 6] = [
+    ("POSF", Quantity::Actual),
+    ("ERR", Quantity::Lag),
+    ("TCMD", Quantity::Torque),
+    ("SPEED", Quantity::Velocity),
+    ("VCMD", Quantity::Other),
+    ("MCMD", Quantity::Other),
+];
 /// Letters of axes.
 const LETTERS: &str = "xyzabcuvw";
 
 /// What a name says.
 pub(super) fn understand(name: &str) -> Meaning {
-    if let Some(meaning) = of_component(name) {
+    if let Some(meaning) = of_component(name).or_else(|| of_scope(name)) {
         return meaning;
     }
     let (bare, unit) = split_unit(name);
@@ -113,6 +125,8 @@ pub(super) fn understand(name: &str) -> Meaning {
     let has = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()) || without_axis(word, list));
     let (quantity, fit) = if is_spindle(&axis) {
         (Quantity::Other, 0)
+    } else if words.iter().any(|word| word == "diff") && has(&POSITIONS) && !has(&SPEEDS) {
+        (Quantity::Lag, 1)
     } else if has(&SPEEDS) && !has(&OTHERS) {
         (if has(&COMMANDS) { Quantity::Other } else { Quantity::Velocity }, 1)
     } else if has(&SPEEDS) || has(&OTHERS) {
@@ -152,6 +166,33 @@ fn of_component(name: &str) -> Option<Meaning> {
         _ => (Quantity::Other, 0),
     };
     Some(Meaning { quantity, axis: format!("joint{number}"), unit: String::new(), fit })
+}
+
+/// A channel of Servo Guide, such as `POSF X`, or of TNCscope, such as `s actual X`: s is a position, v a speed, i a current.
+fn of_scope(name: &str) -> Option<Meaning> {
+    let (bare, unit) = split_unit(name);
+    let words: Vec<&str> = bare.split_whitespace().collect();
+    let (quantity, axis) = match words[..] {
+        [signal, ref axis @ ..] if SERVO_GUIDE_SIGNALS.iter().any(|(name, _)| *name == signal) => {
+            (SERVO_GUIDE_SIGNALS.iter().find(|(name, _)| *name == signal)?.1, axis)
+        }
+        [letter @ ("s" | "v" | "a" | "j" | "i"), kind, ref axis @ ..] if !axis.is_empty() => {
+            let quantity = match (letter, kind.trim_end_matches('.')) {
+                ("s", "nominal" | "nom" | "soll") => Quantity::Command,
+                ("s", "actual" | "act" | "ist") => Quantity::Actual,
+                ("s", "dif" | "diff") => Quantity::Lag,
+                ("v", "actual" | "act" | "ist") => Quantity::Velocity,
+                ("i", "actual" | "act" | "ist") => Quantity::Torque,
+                (_, "nominal" | "nom" | "soll" | "actual" | "act" | "ist" | "dif" | "diff") => Quantity::Other,
+                _ => return None,
+            };
+            (quantity, axis)
+        }
+        _ => return None,
+    };
+    let axis = axis.concat().to_lowercase();
+    let quantity = if is_spindle(&axis) { Quantity::Other } else { quantity };
+    Some(Meaning { quantity, axis, unit: unit.to_owned(), fit: 2 })
 }
 
 /// Whether an axis is a spindle by its name.
@@ -306,5 +347,32 @@ mod tests {
         assert_eq!(understand("time_ms").unit, "ms");
         assert_eq!(understand("torque (N m)").unit, "N m");
         assert_eq!(understand("x(1)").unit, "");
+    }
+
+    #[test]
+    fn names_that_scopes_give_are_understood() {
+        use Quantity::{Actual, Command, Lag, Other, Torque, Velocity};
+        for (name, quantity, axis) in [
+            ("s nominal X", Command, "x"),
+            ("s actual Y [mm]", Actual, "y"),
+            ("s dif Z", Lag, "z"),
+            ("v act. X", Velocity, "x"),
+            ("a actual X", Other, "x"),
+            ("i actual X", Torque, "x"),
+            ("s actual S1", Other, "s1"),
+            ("v act", Velocity, "v"),
+            ("POSF X", Actual, "x"),
+            ("ERR X", Lag, "x"),
+            ("TCMD X", Torque, "x"),
+            ("VCMD X", Other, "x"),
+            ("MAIN.axisX.NcToPlc.ActPos", Actual, "x"),
+            ("Axes.Axis 1.SetPos", Command, "axis1"),
+            ("Axes.Axis 1.PosDiff", Lag, "axis1"),
+            ("Axes.Axis 1.SetVelo", Other, "axis1"),
+            ("Axes.Axis 1.ModuloActPos", Other, "axis1"),
+        ] {
+            let found = understand(name);
+            assert_eq!((found.quantity, found.axis.as_str()), (quantity, axis), "{name}: {found:?}");
+        }
     }
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use feedwright_gcode::suggestion::nearest;
+use feedwright_sim::to_four_digits;
 
 use super::columns::{AxisChoice, ColumnChoice, Columns};
 use super::error::LogError;
@@ -33,8 +34,11 @@ pub(super) struct TimeColumn {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct AxisRoles {
     pub(super) name: String,
+    /// The command; the actual position too, where `lag` is to be added to it.
     pub(super) command: usize,
     pub(super) actual: usize,
+    /// Command minus actual position, and its unit, where the file has no command.
+    pub(super) lag: Option<(usize, String)>,
     pub(super) torque: Option<usize>,
     pub(super) torque_unit: TorqueUnit,
     /// Measured speed, from which the time between samples can be told.
@@ -46,15 +50,25 @@ pub(super) struct AxisRoles {
 impl AxisRoles {
     /// What the axis takes from a column, if it takes anything.
     fn role_of(&self, column: usize) -> Option<&'static str> {
-        let roles = [("command", Some(self.command)), ("actual position", Some(self.actual)), ("torque", self.torque)];
+        let lag = self.lag.as_ref().map(|(column, _)| *column);
+        let command = Some(self.command).filter(|_| lag.is_none());
+        let roles = [
+            ("command", command),
+            ("actual position", Some(self.actual)),
+            ("following error", lag),
+            ("torque", self.torque),
+        ];
         roles.into_iter().find_map(|(role, of)| (of == Some(column)).then_some(role))
     }
 
-    fn columns(&self) -> impl Iterator<Item = usize> {
-        [Some(self.command), Some(self.actual), self.torque, self.velocity].into_iter().flatten()
+    pub(super) fn columns(&self) -> impl Iterator<Item = usize> {
+        let lag = self.lag.as_ref().map(|(column, _)| *column);
+        [Some(self.command), Some(self.actual), lag, self.torque, self.velocity].into_iter().flatten()
     }
 }
 
+/// Sample times that differ by less, as a fraction, are the same: headers round them.
+const SAME_RATE: f64 = 1e-3;
 /// Names of axes that have none.
 const NAMES: [&str; MAX_AXES] = ["x", "y", "z", "a", "b", "c", "u", "v", "w"];
 
@@ -91,6 +105,9 @@ pub(super) fn find(
     if axes.is_empty() {
         axes = named(table, &meanings, &mut incomplete);
     }
+    if let (true, Some(hint)) = (axes.is_empty(), table.format.record()) {
+        return Err(lacking(path, table, &incomplete, hint));
+    }
     if axes.is_empty() {
         by_data = true;
         time = time.or_else(|| clock_like(table));
@@ -110,16 +127,8 @@ pub(super) fn find(
         return Err(fault("all axes with command and actual position are rotary".to_owned()));
     }
     axes.truncate(MAX_AXES);
-    for axis in &axes {
-        findings.push(LogFinding::AxisColumns {
-            axis: axis.name.clone(),
-            command: table.label(axis.command),
-            actual: table.label(axis.actual),
-            torque: axis.torque.map(|column| table.label(column)),
-            torque_unit: axis.torque_unit,
-            by_data,
-        });
-    }
+    at_one_rate(path, table, &axes)?;
+    findings.extend(axes.iter().map(|axis| columns_of(table, axis, by_data)));
     findings.append(&mut incomplete);
     if by_data {
         let used: Vec<usize> =
@@ -131,6 +140,52 @@ pub(super) fn find(
         }
     }
     Ok(Roles { time, axes })
+}
+
+/// Which columns an axis is.
+fn columns_of(table: &LogTable, axis: &AxisRoles, by_data: bool) -> LogFinding {
+    let command = table.label(axis.command);
+    LogFinding::AxisColumns {
+        axis: axis.name.clone(),
+        command: match &axis.lag {
+            Some((lag, _)) => format!("{command} + {}", table.label(*lag)),
+            None => command,
+        },
+        actual: table.label(axis.actual),
+        torque: axis.torque.map(|column| table.label(column)),
+        torque_unit: axis.torque_unit,
+        by_data,
+    }
+}
+
+/// A record of a scope in which no axis is complete.
+fn lacking(path: &Path, table: &LogTable, incomplete: &[LogFinding], hint: &str) -> LogError {
+    let lacks: Vec<String> = incomplete.iter().map(LogFinding::to_string).collect();
+    let lacks = if lacks.is_empty() { "no channel is a position".to_owned() } else { lacks.join("; ") };
+    let message = format!("no axis of this {} record has command and actual position: {lacks}", table.format);
+    LogError::columns(path, message, format!("{hint}; or {}", there_are(table)))
+}
+
+/// Refuses positions that are sampled at different rates.
+fn at_one_rate(path: &Path, table: &LogTable, axes: &[AxisRoles]) -> Result<(), LogError> {
+    let positions =
+        axes.iter().flat_map(|axis| [axis.command, axis.actual].into_iter().chain(axis.lag.as_ref().map(|lag| lag.0)));
+    let mut rates = positions.filter_map(|at| Some((at, table.columns.get(at)?.sample_time_s?)));
+    let Some((first, first_s)) = rates.next() else { return Ok(()) };
+    match rates.find(|(_, sample_s)| (sample_s / first_s - 1.0).abs() > SAME_RATE) {
+        None => Ok(()),
+        Some((other, other_s)) => {
+            let message = format!(
+                "{} is sampled every {} ms, and {} every {} ms",
+                table.label(first),
+                to_four_digits(1e3 * first_s),
+                table.label(other),
+                to_four_digits(1e3 * other_s)
+            );
+            let hint = "record all positions with one sample time, or name the axes that have one with --columns";
+            Err(LogError::columns(path, message, hint))
+        }
+    }
 }
 
 /// Refuses a column that is the time and belongs to an axis too.
@@ -200,13 +255,17 @@ fn chosen(table: &LogTable, columns: &Columns) -> Result<Vec<AxisRoles>, String>
     let meanings = meanings(table);
     let axis = |choice: &AxisChoice| {
         let column = |of: &Option<ColumnChoice>| of.as_ref().map(|choice| resolve(table, choice)).transpose();
-        let (Some(command), Some(actual)) = (column(&choice.command)?, column(&choice.actual)?) else {
-            return Err(format!("axis {} needs both cmd and act", choice.name));
+        let (command, lag) = (column(&choice.command)?, column(&choice.error)?);
+        let lag = lag.filter(|_| command.is_none());
+        let actual = column(&choice.actual)?;
+        let (Some(command), Some(actual)) = (command.or(lag.and(actual)), actual) else {
+            return Err(format!("axis {} needs act, and cmd or err", choice.name));
         };
         let torque = column(&choice.torque)?;
         let torque_unit = torque.map_or(TorqueUnit::Unknown, |at| torque_unit(table, &meanings, at));
         let unit = unit_of(&meanings, command, actual);
-        Ok(AxisRoles { name: choice.name.clone(), command, actual, torque, torque_unit, velocity: None, unit })
+        let lag = lag.map(|at| (at, meanings[at].unit.clone()));
+        Ok(AxisRoles { name: choice.name.clone(), command, actual, lag, torque, torque_unit, velocity: None, unit })
     };
     columns.axes.iter().map(axis).collect()
 }
@@ -265,7 +324,9 @@ fn named(table: &LogTable, meanings: &[Meaning], findings: &mut Vec<LogFinding>)
         };
         let (command, actual, position) = (best(Quantity::Command), best(Quantity::Actual), best(Quantity::Position));
         let shown = if name.is_empty() { NAMES[0] } else { name };
+        let lag = best(Quantity::Lag).filter(|_| command.is_none() && position.is_none());
         let both = match (command, actual, position) {
+            (None, Some(actual), None) if lag.is_some() => Some((actual, actual)),
             (Some(command), Some(actual), _)
             | (Some(command), None, Some(actual))
             | (None, Some(actual), Some(command)) => Some((command, actual)),
@@ -281,6 +342,7 @@ fn named(table: &LogTable, meanings: &[Meaning], findings: &mut Vec<LogFinding>)
             name: shown.to_owned(),
             command,
             actual,
+            lag: lag.map(|at| (at, meanings[at].unit.clone())),
             torque,
             torque_unit: torque.map_or(TorqueUnit::Unknown, |at| torque_unit(table, meanings, at)),
             velocity: best(Quantity::Velocity),
@@ -334,6 +396,7 @@ fn by_likeness(table: &LogTable, time: Option<&TimeColumn>) -> Vec<AxisRoles> {
             name: name(number),
             command: pair.command,
             actual: pair.actual,
+            lag: None,
             torque: None,
             torque_unit: TorqueUnit::Unknown,
             velocity: None,

@@ -189,6 +189,7 @@ fn table_of(header: Header) -> LogTable {
         position_unit: None,
         sample_time_s: header.cycle_time_ms.filter(|ms| ms.is_finite() && *ms > 0.0).map(|ms| 1e-3 * ms),
         cut_off_line: None,
+        announced_rows: None,
     }
 }
 

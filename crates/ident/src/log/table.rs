@@ -19,6 +19,8 @@ pub(crate) struct LogTable {
     pub position_unit: Option<String>,
     /// A last line that is cut off.
     pub cut_off_line: Option<u64>,
+    /// Rows that the header of the file announces.
+    pub announced_rows: Option<usize>,
 }
 
 /// A column.
@@ -30,6 +32,8 @@ pub(crate) struct LogColumn {
     pub unit: String,
     /// The axis that it belongs to, where the file says so.
     pub axis: Option<String>,
+    /// Time between its samples, s, where the file says so of each column.
+    pub sample_time_s: Option<f64>,
     /// One value per row; empty if the reader does not need the column.
     pub values: Vec<f64>,
     /// The first row whose value is no number, and what stands there.

@@ -9,6 +9,7 @@ use memchr::memchr_iter;
 
 use super::columns::Columns;
 use super::dialect::{LineKind, TableDialect, fields};
+use super::scopes::{self, END_MARK};
 use super::table::{LineNumbers, LogColumn, LogTable};
 use super::{LogError, LogFormat, decimal};
 
@@ -70,7 +71,7 @@ pub(super) fn read(
 /// Dialect of the table that begins with `head`. Fails if `head` is empty, binary or UTF-16, or has
 /// no rows of at least two numbers.
 fn dialect_of(path: &Path, head: &[u8]) -> Result<TableDialect, LogError> {
-    const HINT: &str = "logs are text tables, files of halsampler and halscope, MATLAB files (version 5 to 7) and JSON of Sinumerik Edge";
+    const HINT: &str = "logs are text tables, files of halsampler, halscope, TNCscope, Servo Guide and TwinCAT Scope, MATLAB files (version 5 to 7) and JSON of Sinumerik Edge";
     if head.is_empty() {
         return Err(LogError::format(path, None, "the file is empty", HINT));
     }
@@ -81,6 +82,9 @@ fn dialect_of(path: &Path, head: &[u8]) -> Result<TableDialect, LogError> {
     if let Some(at) = head.iter().position(|&byte| byte == 0) {
         let message = format!("the file is neither text nor a binary format that is read: byte {at} is zero");
         return Err(LogError::format(path, None, message, HINT));
+    }
+    if let Some(header) = scopes::header(path, head)? {
+        return Ok(TableDialect::of_scope(header, head));
     }
     TableDialect::of(head).ok_or_else(|| {
         let message = "no rows of at least two numbers within the first 64 KiB";
@@ -99,28 +103,44 @@ struct TextRows<'a> {
     /// Lines so far.
     line: u64,
     is_last: bool,
+    /// What follows is no part of the record.
+    is_over: bool,
 }
 
 impl<'a> TextRows<'a> {
     fn new(path: &'a Path, dialect: TableDialect, columns: &Columns) -> Self {
         let name = |names: &[String], i: usize| names.get(i).cloned().unwrap_or_default();
+        let channels = dialect.scope.as_ref().map_or(&[][..], |(_, channels)| channels);
         let found = (0..dialect.columns)
-            .map(|i| LogColumn { name: name(&dialect.names, i), unit: name(&dialect.units, i), ..LogColumn::default() })
+            .map(|i| LogColumn {
+                name: name(&dialect.names, i),
+                unit: name(&dialect.units, i),
+                sample_time_s: channels.get(i).and_then(|channel| channel.sample_time_s),
+                axis: channels.get(i).and_then(|channel| channel.axis.clone()),
+                ..LogColumn::default()
+            })
             .collect();
-        let table = LogTable {
-            format: LogFormat::TextTable,
+        let mut table = LogTable {
+            format: dialect.scope.as_ref().map_or(LogFormat::TextTable, |(format, _)| *format),
             columns: found,
             breaks: Vec::new(),
             lines: LineNumbers::default(),
             sample_time_s: dialect.sample_time_s,
             position_unit: dialect.position_unit.clone(),
             cut_off_line: None,
+            announced_rows: None,
         };
         let mut kept = super::roles::needed(&table, columns);
         if dialect.names_in_rows {
             kept.iter_mut().step_by(2).for_each(|kept| *kept = false);
         }
-        Self { path, dialect, table, kept, row: 0, line: 0, is_last: false }
+        let samples = channels.iter().zip(&kept).filter(|(_, kept)| **kept).filter_map(|(channel, _)| channel.samples);
+        table.announced_rows = samples.min();
+        table.sample_time_s = table.sample_time_s.or_else(|| {
+            let mut kept = table.columns.iter().zip(&kept).filter(|(_, kept)| **kept);
+            kept.find_map(|(column, _)| column.sample_time_s)
+        });
+        Self { path, dialect, table, kept, row: 0, line: 0, is_last: false, is_over: false }
     }
 
     /// Room for about as many rows as there are, so that columns need not grow: that would take twice their memory.
@@ -136,7 +156,7 @@ impl<'a> TextRows<'a> {
     /// One line, without its end.
     fn line(&mut self, line: &[u8]) -> Result<(), LogError> {
         self.line += 1;
-        if self.line < self.dialect.first_line {
+        if self.line < self.dialect.first_line || self.is_over {
             return Ok(());
         }
         let line = if self.line == 1 { line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line) } else { line };
@@ -148,6 +168,10 @@ impl<'a> TextRows<'a> {
                 return Ok(());
             }
             LineKind::Other => {}
+        }
+        let line = if self.dialect.scope.is_some() { self.of_scope(line) } else { line };
+        if self.is_over {
+            return Ok(());
         }
         let mut count = 0;
         for field in fields(line, self.dialect.delimiter) {
@@ -167,6 +191,18 @@ impl<'a> TextRows<'a> {
         self.table.lines.note(self.row, self.line);
         self.row += 1;
         Ok(())
+    }
+
+    /// A row of a scope without the delimiter that may end it. The record is over behind its last sample, at an end mark, and where all channels that are
+    /// kept are empty: others were sampled for longer.
+    fn of_scope<'l>(&mut self, line: &'l [u8]) -> &'l [u8] {
+        let delimiter = self.dialect.delimiter;
+        let is_complete = self.table.announced_rows.is_some_and(|rows| self.row >= rows);
+        let mut kept = fields(line, delimiter).zip(&self.kept).filter(|(_, kept)| **kept).peekable();
+        let is_empty = kept.peek().is_some() && kept.all(|(field, _)| decimal::trimmed(field).is_empty());
+        self.is_over = is_complete || is_empty || line.trim_ascii() == END_MARK;
+        let ends = memchr_iter(delimiter, line).count() == self.dialect.columns;
+        if ends { line.strip_suffix(&[delimiter]).unwrap_or(line) } else { line }
     }
 
     /// A line with more or fewer fields than the rows: fine at the end of a record that was cut off.
@@ -199,6 +235,9 @@ impl<'a> TextRows<'a> {
 impl TextRows<'_> {
     /// Whose text it is: LinuxCNC's recorders have marks of their own.
     fn format(&self) -> LogFormat {
+        if self.dialect.scope.is_some() {
+            return self.table.format;
+        }
         let first = self.table.columns.first();
         let counts = first.is_some_and(|column| {
             let is_named = ["", "n"].contains(&column.name.as_str()) && column.values.len() > 1;

@@ -20,12 +20,14 @@ pub enum PositionUnit {
 }
 
 impl PositionUnit {
-    /// By the name that somebody gives it.
+    /// By the name that somebody gives it. A micro sign that is no UTF-8 has become U+FFFD.
     pub fn from_name(name: &str) -> Option<Self> {
         match name.to_lowercase().as_str() {
             "m" | "meter" | "metre" => Some(Self::Metre),
             "mm" | "millimeter" | "millimetre" => Some(Self::Millimetre),
-            "um" | "\u{b5}m" | "\u{3bc}m" | "micron" | "micrometer" | "micrometre" => Some(Self::Micrometre),
+            "um" | "\u{b5}m" | "\u{3bc}m" | "\u{fffd}m" | "micron" | "micrometer" | "micrometre" => {
+                Some(Self::Micrometre)
+            }
             "in" | "inch" | "inches" | "\"" => Some(Self::Inch),
             _ => None,
         }
