@@ -6,7 +6,6 @@
 //! What is public here serves the laboratory, which has commands of its own and the same look. It may change at any time.
 
 mod date;
-mod inches;
 mod terminal;
 mod args;
 mod folded;

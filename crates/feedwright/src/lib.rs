@@ -104,6 +104,7 @@ mod cycle_time;
 mod override_time;
 mod fastest;
 mod controllers;
+mod inches;
 mod report;
 #[cfg(feature = "command")]
 mod results_diff;
@@ -161,7 +162,7 @@ pub use report::plain_page::{PagePart, write_foot, write_head, write_table_end, 
 pub use report::text::{escaped, number};
 pub use report::{
     Assumptions, Band, BandErrors, CompensatedGeometry, DrawnLimits, ErrorSpectrum, FullCircle, Histogram,
-    LawKnowledge, LimitBand, ProgramLine, Report, ReportedRun, Roundness, RunFacts, RunSummary, Series, SeriesPoint,
-    SpectrumBand, Statistics, TimelineEvent, WorstPlace, write_html,
+    LawKnowledge, LimitBand, PageUnits, ProgramLine, Report, ReportedRun, Roundness, RunFacts, RunSummary, Series,
+    SeriesPoint, SpectrumBand, Statistics, TimelineEvent, WorstPlace, write_html, write_html_in,
 };
 pub use results_format::RESULTS_FORMAT;

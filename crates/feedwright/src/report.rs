@@ -7,6 +7,7 @@
 //! Only rows that cut count for the contour error; rapids and dwells are recorded and drawn, but not judged.
 
 pub(crate) mod text;
+mod page_units;
 pub(crate) mod plain_page;
 pub(crate) mod figure;
 mod outline;
@@ -33,8 +34,9 @@ pub(crate) use circles::{RadialDeviations, full_circles};
 pub use compensated::CompensatedGeometry;
 pub use error_spectrum::{ErrorSpectrum, SpectrumBand};
 pub use histogram::Histogram;
-pub use html::write_html;
+pub use html::{write_html, write_html_in};
 pub use limit_band::LimitBand;
+pub use page_units::PageUnits;
 pub use series::{Series, SeriesPoint};
 pub use statistics::Statistics;
 pub use summary::{RunFacts, RunSummary};

@@ -2,7 +2,7 @@
 //! reports give equal bytes, bounded size.
 
 use crate::made_up_report::{HOSTILE, page, report, report_with_log};
-use feedwright::{Report, Series};
+use feedwright::{PageUnits, Report, Series, write_html_in};
 use feedwright_sim::Outcome;
 
 /// Largest page for two controllers and three axes at full resolution, bytes.
@@ -122,4 +122,43 @@ fn a_report_without_runs_or_rows_is_still_a_page() {
     bare.runs[1].series = Series::new();
     bare.runs[1].summary.outcome = Outcome::Diverged { at_s: 0.25 };
     assert!(page(&bare).contains("diverged at 0.25 s"));
+}
+
+/// An inch is to a thousandth what a millimeter is to a micrometer.
+const INCH_MM: f64 = 25.4;
+
+#[test]
+fn a_page_in_inches_is_the_metric_page_with_other_numbers_and_units() {
+    let report = report(3, 2000);
+    let mut inches = Vec::new();
+    write_html_in(&mut inches, &report, PageUnits::Inch).unwrap();
+    let (metric, inches) = (page(&report), String::from_utf8(inches).unwrap());
+    let markup = |page: &str| page[..page.find("<script").unwrap()].to_owned();
+    let tables = |page: &str| markup(page).matches("<table").count();
+    assert_eq!(tables(&metric), tables(&inches));
+    for unit in ["<i>µm</i>", "<i>mm</i>", " µm<", " µm)", ", µm\""] {
+        assert!(!markup(&inches).contains(unit), "{unit}");
+    }
+    assert!(markup(&inches).contains("<i>thou</i>") && markup(&inches).contains("<i>in</i>"));
+    for place in &report.runs[0].summary.worst {
+        let error = format!("{:.3}</td>", place.error_um / INCH_MM);
+        let length = format!("<td>{:.3}</td></tr>", place.s_mm / INCH_MM);
+        assert!(markup(&inches).contains(&error) && markup(&inches).contains(&length), "{error} {length}");
+    }
+    let [metric, inches] = [metric, inches].map(|page| embedded_data(&page));
+    assert_eq!(inches["meta"]["names"], serde_json::json!(["thou", "in", "in/min"]));
+    assert_eq!(metric["meta"]["names"], serde_json::json!(["µm", "mm", "mm/min"]));
+    // The columns are the same counts of other units.
+    assert_eq!(metric["runs"], inches["runs"]);
+    for key in [
+        "/meta/units/length_mm",
+        "/meta/units/feed_mm_s",
+        "/meta/tolerance_um",
+        "/meta/runs/0/max_um",
+        "/meta/circles/0/radius_mm",
+    ] {
+        let [of_metric, of_inches] = [&metric, &inches].map(|data| data.pointer(key).unwrap().as_f64().unwrap());
+        assert!((of_metric / of_inches - INCH_MM).abs() < 1e-9 * INCH_MM, "{key}: {of_metric} {of_inches}");
+    }
+    assert_eq!(metric["meta"]["units"]["accel_m_s2"], inches["meta"]["units"]["accel_m_s2"]);
 }

@@ -34,7 +34,7 @@ class CircularityPlots {
 }
 
 function circleName(circle) {
-  return `${circle.plane} R ${+circle.radius_mm.toFixed(3)} mm, line ${circle.line}`;
+  return `${circle.plane} R ${+circle.radius_mm.toFixed(3)} ${LENGTH_UNIT}, line ${circle.line}`;
 }
 
 function svgElement(name, attributes, text) {
@@ -52,7 +52,7 @@ function polarPlot(circle, run, largest_um) {
   figure.className = "polar";
   const svg = figure.appendChild(svgElement("svg", {
     viewBox: `0 0 ${POLAR_SIZE} ${POLAR_SIZE}`, role: "img",
-    "aria-label": `Circularity of ${run.name}: circular deviation ${formatNumber(g_um)} µm`,
+    "aria-label": `Circularity of ${run.name}: circular deviation ${formatNumber(g_um)} ${ERROR_UNIT}`,
   }));
   const ring = (r, kind) => svg.append(svgElement("circle", { cx: middle, cy: middle, r, class: kind }));
   for (let k = -Math.floor(ROOM / scale / step_um); k * step_um * scale <= ROOM; k++) {
@@ -63,11 +63,11 @@ function polarPlot(circle, run, largest_um) {
   svg.append(svgElement("path", { d: `M${middle - reach} ${middle}h${2 * reach}M${middle} ${middle - reach}v${2 * reach}`, class: "ring" }));
   svg.append(svgElement("text", { x: middle + reach + 3, y: middle + 4 }, `${first}+`));
   svg.append(svgElement("text", { x: middle + 4, y: middle - reach - 2 }, `${second}+`));
-  svg.append(svgElement("text", { x: middle, y: middle - 6, "text-anchor": "middle" }, `${+step_um.toPrecision(2)} µm`));
+  svg.append(svgElement("text", { x: middle, y: middle - 6, "text-anchor": "middle" }, `${+step_um.toPrecision(2)} ${ERROR_UNIT}`));
   svg.append(svgElement("text", { x: middle, y: middle + 14, "text-anchor": "middle" }, "a division"));
   svg.append(svgElement("path", { d: polarPath(radial_um, middle, scale), class: "trace", style: `stroke: var(--run-${run.index % 6})` }));
   const caption = figure.appendChild(document.createElement("figcaption"));
-  caption.append(swatch(run.index), `${run.name}: G ${formatNumber(g_um)} µm`);
+  caption.append(swatch(run.index), `${run.name}: G ${formatNumber(g_um)} ${ERROR_UNIT}`);
   return figure;
 }
 

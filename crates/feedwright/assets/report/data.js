@@ -2,6 +2,9 @@
 
 const AXIS_NAMES = ["x", "y", "z"];
 
+// Names of the units of errors, lengths and feedrates. Values named _um and _mm are in these units: one of errors is a thousandth of one of lengths.
+let ERROR_UNIT = "\u00b5m", LENGTH_UNIT = "mm", FEED_UNIT = "mm/min";
+
 function decode(differences, unit) {
   const values = new Float64Array(differences.length);
   let sum = 0;
@@ -14,6 +17,7 @@ function decode(differences, unit) {
 
 function readModel(raw) {
   const u = raw.meta.units, axes = Math.min(3, Math.max(2, raw.meta.axes));
+  [ERROR_UNIT, LENGTH_UNIT, FEED_UNIT] = raw.meta.names;
   const zeros = (n) => new Float64Array(n);
   const runs = raw.runs.map((columns, i) => {
     const meta = raw.meta.runs[i], n = columns.t.length;
@@ -58,7 +62,7 @@ function nearestIndex(values, x) {
 }
 
 function formatNumber(x) {
-  const size = Math.abs(x), digits = size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2;
+  const size = Math.abs(x), digits = size >= 99.95 ? 0 : size >= 9.995 ? 1 : size < 0.9995 && ERROR_UNIT === "thou" ? 3 : 2;
   const text = size.toFixed(digits);
   return (x < 0 && Number(text) !== 0 ? "\u2212" : "") + text;
 }

@@ -158,7 +158,7 @@ function drawKey(state, changed) {
   if (model.tolerance_um) {
     const dash = document.createElement("span");
     dash.className = "dash";
-    $("key").append(dash, `tolerance ${formatNumber(model.tolerance_um)} \u00b5m`);
+    $("key").append(dash, `tolerance ${formatNumber(model.tolerance_um)} ${ERROR_UNIT}`);
   }
 }
 
@@ -194,7 +194,7 @@ function drawLegends(state) {
       g.fillRect(x, 0, 1, 1);
     }
     const scale_um = state.scaleOf(run ?? state.lead()), end = document.createElement("span");
-    end.append(`${formatNumber(scale_um)} \u00b5m contour error`);
+    end.append(`${formatNumber(scale_um)} ${ERROR_UNIT} contour error`);
     if (run && runs.length > 1) end.append(" ", swatch(run.index), run.name);
     legend.append("0", bar, end);
     return legend;

@@ -194,9 +194,9 @@ function drawGrid(g, camera) {
     }
   }
   g.textAlign = "right";
-  g.fillText(`${names[0]}, mm`, camera.width - 6, camera.height - 7);
+  g.fillText(`${names[0]}, ${LENGTH_UNIT}`, camera.width - 6, camera.height - 7);
   g.textAlign = "left";
-  g.fillText(`${names[1]}, mm`, 6, 36);
+  g.fillText(`${names[1]}, ${LENGTH_UNIT}`, 6, 36);
 }
 
 function drawTriad(g, camera) {
@@ -222,7 +222,7 @@ function drawTriad(g, camera) {
 function drawScaleBars(g, camera, gain) {
   const length = roundStep(Math.min(camera.width * 0.3, 150) / camera.scale);
   const [right, y] = [camera.width - 14, 22], left = right - length * camera.scale;
-  const size = (mm) => (mm >= 0.9999 ? `${+mm.toPrecision(2)} mm` : `${+(mm * 1e3).toPrecision(2)} \u00b5m`);
+  const size = (mm) => (mm >= 0.9999 ? `${+mm.toPrecision(2)} ${LENGTH_UNIT}` : `${+(mm * 1e3).toPrecision(2)} ${ERROR_UNIT}`);
   g.strokeStyle = g.fillStyle = color("--ink-2");
   g.lineWidth = 1.5;
   g.beginPath();

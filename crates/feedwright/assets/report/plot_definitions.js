@@ -10,7 +10,7 @@ const ENVELOPE_PARTS = 1200;
 function definitions(model, state) {
   const all = [
     errorPlot(model, state.log, "t", "Contour error over time", "Time, s"),
-    errorPlot(model, state.log, "s", "Contour error over arc length", "Arc length, mm"),
+    errorPlot(model, state.log, "s", "Contour error over arc length", `Arc length, ${LENGTH_UNIT}`),
     feedPlot(model),
     ...axisPlots(model, "torque", "Torque", "N m", "torque_nm"),
     ...axisPlots(model, "accel", "Command acceleration", "m/s\u00b2", "accel_m_s2"),
@@ -21,7 +21,7 @@ function definitions(model, state) {
 
 function feedPlot(model) {
   return {
-    kind: "t", title: "Feed, mm/min", x: "Time, s", unit: "mm/min",
+    kind: "t", title: `Feed, ${FEED_UNIT}`, x: "Time, s", unit: FEED_UNIT,
     data: uPlot.join(model.runs.map((r) => [r.t, r.feed, r.plan])),
     series: model.runs.flatMap((r) => [{ run: r.index }, { run: r.index, width: 1.25, dash: [5, 4], alpha: 0.75 }]),
     read: (r, i) => `${Math.round(r.feed[i])} (plan ${Math.round(r.plan[i])})`,
@@ -73,7 +73,7 @@ function errorPlot(model, logarithmic, kind, title, x) {
   if (tolerance) levels.push({ value: tolerance, dash: true });
   if (tolerance && model.axes === 2) levels.push({ value: -tolerance, dash: true });
   return {
-    kind, title: `${title}, \u00b5m${logarithmic ? ", largest around, logarithmic" : ""}`, x, unit: "\u00b5m",
+    kind, title: `${title}, ${ERROR_UNIT}${logarithmic ? ", largest around, logarithmic" : ""}`, x, unit: ERROR_UNIT,
     data: uPlot.join(tables), series, bands, levels, logarithmic,
     range: logarithmic ? (u, low, high) => logarithmicRange(Math.max(low ?? 1, (high ?? 1) * 1e-4), high ?? 1) : undefined,
     read: (r, i) => (r.cutting[i] ? formatError(r.error_um[i]) : "rapid"),
@@ -137,11 +137,11 @@ function histogramPlot(model) {
   const first = Math.min(...keys) - 1, last = Math.max(...keys) + 1, numbers = [];
   for (let b = first; b <= last; b++) numbers.push(b);
   return {
-    kind: "bins", title: "Distribution of the contour error, % of cutting time, logarithmic", x: "Contour error, \u00b5m",
+    kind: "bins", title: "Distribution of the contour error, % of cutting time, logarithmic", x: `Contour error, ${ERROR_UNIT}`,
     data: [numbers.map((b) => b * width), ...binned.map((bins) => numbers.map((b) => Math.max(bins.get(b) || 0, LEAST_SHARE / 2)))],
     series: model.runs.map((r) => ({ run: r.index, fill: true })), paths: uPlot.paths.stepped({ align: 1 }),
     logarithmic: true, range: () => [LEAST_SHARE, 100],
-    read: (share) => `${formatNumber(share < LEAST_SHARE ? 0 : share)} %`, place: (um) => `at ${formatNumber(um)} \u00b5m`,
+    read: (share) => `${formatNumber(share < LEAST_SHARE ? 0 : share)} %`, place: (um) => `at ${formatNumber(um)} ${ERROR_UNIT}`,
   };
 }
 
@@ -151,11 +151,11 @@ function exceedancePlot(model) {
   const tables = model.runs.filter((r) => r.histogram.counts.length).map((r) => exceedance(r.histogram));
   if (tables.length !== model.runs.length) return null;
   return {
-    kind: "bins", title: "Time with a larger contour error, % of cutting time, logarithmic", x: "Contour error, \u00b5m, magnitude",
+    kind: "bins", title: "Time with a larger contour error, % of cutting time, logarithmic", x: `Contour error, ${ERROR_UNIT}, magnitude`,
     data: uPlot.join(tables), series: model.runs.map((r) => ({ run: r.index, spanGaps: true })),
     logarithmic: true, logarithmicX: true, range: () => [LEAST_SHARE, 100],
     read: (share) => (share === null || share === undefined ? "\u2013" : `${formatNumber(share)} %`),
-    place: (um) => `above ${formatNumber(um)} \u00b5m`,
+    place: (um) => `above ${formatNumber(um)} ${ERROR_UNIT}`,
   };
 }
 
@@ -186,11 +186,11 @@ function spectrumPlot(model) {
   const middle = ([from, to]) => (from > 0 ? Math.sqrt(from * to) : to / 2);
   const largest = Math.max(1e-6, ...runs.flatMap((r) => r.spectrum.map((band) => band[2])));
   return {
-    kind: "hz", title: "Spectrum of the contour error, \u00b5m RMS in each band, logarithmic", x: "Frequency, Hz",
+    kind: "hz", title: `Spectrum of the contour error, ${ERROR_UNIT} RMS in each band, logarithmic`, x: "Frequency, Hz",
     data: uPlot.join(runs.map((r) => [r.spectrum.map(middle), r.spectrum.map((band) => Math.max(band[2], largest * 1e-7))])),
     series: runs.map((r) => ({ run: r.index, spanGaps: true })),
     logarithmic: true, logarithmicX: true,
     range: (u, low, high) => logarithmicRange(Math.max(low ?? 1, (high ?? 1) * 1e-6), high ?? 1),
-    read: (um) => (um === null || um === undefined ? "\u2013" : `${um.toPrecision(2)} \u00b5m`), place: (hz) => `at ${formatNumber(hz)} Hz`,
+    read: (um) => (um === null || um === undefined ? "\u2013" : `${um.toPrecision(2)} ${ERROR_UNIT}`), place: (hz) => `at ${formatNumber(hz)} Hz`,
   };
 }

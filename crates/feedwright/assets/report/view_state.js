@@ -105,10 +105,10 @@ class Actions {
     const run = model.runs[focus.lead], i = focus.indices[focus.lead];
     const errors = model.runs.map((r) => {
       const k = focus.indices[r.index];
-      return `${r.name} ${r.cutting[k] ? `${formatError(r.error_um[k])} \u00b5m` : "rapid"}`;
+      return `${r.name} ${r.cutting[k] ? `${formatError(r.error_um[k])} ${ERROR_UNIT}` : "rapid"}`;
     });
     $("readout").textContent =
-      [`line ${run.line[i]}`, `t ${run.t[i].toFixed(3)} s`, `s ${run.s[i].toFixed(2)} mm`, ...errors].join("  \u00b7  ");
+      [`line ${run.line[i]}`, `t ${run.t[i].toFixed(3)} s`, `s ${run.s[i].toFixed(LENGTH_UNIT === "in" ? 3 : 2)} ${LENGTH_UNIT}`, ...errors].join("  \u00b7  ");
     this.player.showPlace(focus.at.t, run.line[i]);
   }
 }

@@ -9,8 +9,8 @@ use miette::{Result, miette};
 
 use crate::command::args::reader::ReaderArgs;
 use crate::command::console::Console;
-use crate::command::inches::in_inches;
 use crate::command::terminal::is_inch;
+use crate::inches::in_inches;
 use crate::output::{OutputFiles, is_standard_output};
 
 /// Refuses the standard input for two things at once, and says so where a person has to type it. `inputs` are options and files.

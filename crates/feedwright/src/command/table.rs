@@ -5,8 +5,8 @@ use std::io::{self, Write};
 
 use feedwright_gcode::visible;
 
-use crate::command::inches::{cell_in_inches, heading_in_inches};
 use crate::command::terminal::{columns, is_inch};
+use crate::inches::{cell_in_inches, heading_in_inches};
 
 /// A column: its heading, in one line or two, and how important it is; 0 is never left out.
 #[derive(Debug, Clone)]

@@ -7,7 +7,8 @@ use std::sync::OnceLock;
 use clap::ValueEnum;
 use feedwright_gcode::visible;
 
-use crate::command::inches::in_inches;
+use crate::inches::in_inches;
+use crate::report::PageUnits;
 
 /// Columns where there is no terminal to ask.
 const COLUMNS: usize = 80;
@@ -50,6 +51,11 @@ pub(crate) fn set_units(units: LengthUnits) {
 /// Whether lengths are printed in inches.
 pub(crate) fn is_inch() -> bool {
     UNITS.get() == Some(&LengthUnits::Inch)
+}
+
+/// Units of the page that is written.
+pub(crate) fn page_units() -> PageUnits {
+    if is_inch() { PageUnits::Inch } else { PageUnits::Metric }
 }
 
 /// As `--color` says, from when the command line is read.

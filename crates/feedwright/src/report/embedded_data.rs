@@ -8,7 +8,7 @@ use std::io::{self, Write};
 use serde_json::json;
 
 use super::series::SeriesPoint;
-use super::{DrawnLimits, FullCircle, ProgramLine, Report, ReportedRun, RunSummary};
+use super::{DrawnLimits, FullCircle, Histogram, PageUnits, ProgramLine, Report, ReportedRun, RunSummary};
 use crate::results_format::spelled_out;
 
 /// What one count of a column stands for.
@@ -25,8 +25,8 @@ mod units {
 }
 
 /// Writes the object.
-pub(super) fn write(out: &mut impl Write, report: &Report) -> io::Result<()> {
-    write!(out, "{{\"meta\":{},\"outline\":", inert(&meta(report)))?;
+pub(super) fn write(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
+    write!(out, "{{\"meta\":{},\"outline\":", inert(&meta(report, units)))?;
     match report.runs.first() {
         Some(run) => write_outline(out, run)?,
         None => out.write_all(b"null")?,
@@ -56,19 +56,22 @@ fn inert(value: &serde_json::Value) -> String {
     out
 }
 
-fn meta(report: &Report) -> serde_json::Value {
-    let runs: Vec<_> = report.runs.iter().map(run_meta).collect();
+/// Lengths, errors and speeds are in units of the page: the keys have the names of the metric ones.
+fn meta(report: &Report, of: PageUnits) -> serde_json::Value {
+    let factor = of.factor();
+    let runs: Vec<_> = report.runs.iter().map(|run| run_meta(run, factor)).collect();
     json!({
         "axes": report.runs.iter().map(|r| r.summary.axes).max().unwrap_or(2),
-        "tolerance_um": report.tolerance_um,
+        "tolerance_um": report.tolerance_um.map(|um| factor * um),
+        "names": [of.error(), of.length(), of.feed()],
         "units": {
-            "time_s": units::TIME_S, "length_mm": units::LENGTH_MM, "point_mm": units::POINT_MM,
-            "feed_mm_s": units::FEED_MM_S, "torque_nm": units::TORQUE_NM,
+            "time_s": units::TIME_S, "length_mm": factor * units::LENGTH_MM, "point_mm": factor * units::POINT_MM,
+            "feed_mm_s": factor * units::FEED_MM_S, "torque_nm": units::TORQUE_NM,
             "accel_m_s2": units::ACCEL_MM_S2 * 1e-3,
         },
         "limits": report.axis_limits.iter().map(limits_meta).collect::<Vec<_>>(),
         "runs": runs,
-        "circles": report.circles.iter().enumerate().map(|(i, circle)| circle_meta(report, i, circle)).collect::<Vec<_>>(),
+        "circles": report.circles.iter().enumerate().map(|(i, circle)| circle_meta(report, (i, circle), factor)).collect::<Vec<_>>(),
         "program": listing(report),
     })
 }
@@ -80,22 +83,25 @@ fn error_unit_mm(summary: &RunSummary) -> f64 {
     10_f64.powi(libm::log10(largest_mm).floor() as i32 - 3).min(units::ERROR_MM)
 }
 
-fn run_meta(run: &ReportedRun) -> serde_json::Value {
+fn run_meta(run: &ReportedRun, factor: f64) -> serde_json::Value {
     let summary = &run.summary;
     let worst: Vec<_> = summary
         .worst
         .iter()
-        .map(|w| json!({"t_s": w.t_s, "s_mm": w.s_mm, "error_um": w.error_um, "position_mm": w.position_mm}))
+        .map(|w| {
+            let position_mm = w.position_mm.map(|mm| factor * mm);
+            json!({"t_s": w.t_s, "s_mm": factor * w.s_mm, "error_um": factor * w.error_um, "position_mm": position_mm})
+        })
         .collect();
     json!({
         "controller": summary.controller,
-        "max_um": summary.max_um,
-        "error_mm": error_unit_mm(summary),
+        "max_um": factor * summary.max_um,
+        "error_mm": factor * error_unit_mm(summary),
         "rows_per_point": run.series.rows_per_point(),
-        "histogram": summary.histogram,
+        "histogram": Histogram { bin_um: factor * summary.histogram.bin_um, ..summary.histogram.clone() },
         "worst": worst,
         "measured": summary.measured,
-        "spectrum": run.spectrum.iter().map(|band| [band.from_hz, band.to_hz, band.rms_um].map(digits)).collect::<Vec<_>>(),
+        "spectrum": run.spectrum.iter().map(|band| [band.from_hz, band.to_hz, factor * band.rms_um].map(digits)).collect::<Vec<_>>(),
     })
 }
 
@@ -105,17 +111,17 @@ fn limits_meta(limits: &DrawnLimits) -> serde_json::Value {
 }
 
 /// A circle, and the radial deviation of each run from it in counts of [`error_unit_mm`].
-fn circle_meta(report: &Report, index: usize, circle: &FullCircle) -> serde_json::Value {
+fn circle_meta(report: &Report, (index, circle): (usize, &FullCircle), factor: f64) -> serde_json::Value {
     let run = |run: &ReportedRun| {
         let (roundness, unit_mm) = (run.roundness_of(index)?, error_unit_mm(&run.summary));
         let counts = |um: &Option<f64>| um.map(|um| (um * 1e-3 / unit_mm).round() as i64);
         Some(json!({
-            "g_um": digits(roundness.circular_deviation_um),
+            "g_um": digits(factor * roundness.circular_deviation_um),
             "radial": roundness.radial_um.iter().map(counts).collect::<Vec<_>>(),
         }))
     };
     json!({
-        "plane": circle.plane, "radius_mm": circle.radius_mm, "line": circle.line,
+        "plane": circle.plane, "radius_mm": factor * circle.radius_mm, "line": circle.line,
         "runs": report.runs.iter().map(run).collect::<Vec<_>>(),
     })
 }

@@ -9,7 +9,7 @@ use std::io::{self, Write};
 use super::embedded_data;
 use super::limit_band;
 use super::text::escaped;
-use super::{Assumptions, Report};
+use super::{Assumptions, PageUnits, Report};
 
 mod tables;
 mod circularity;
@@ -39,19 +39,27 @@ const SCRIPTS: [&str; 11] = [
 /// # Errors
 /// Where `out` takes no more.
 pub fn write_html(out: &mut impl Write, report: &Report) -> io::Result<()> {
+    write_html_in(out, report, PageUnits::Metric)
+}
+
+/// As [`write_html`], with lengths and speeds in other units.
+///
+/// # Errors
+/// Where `out` takes no more.
+pub fn write_html_in(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
     write_head(out, report)?;
     out.write_all(b"<body>\n")?;
-    write_header(out, report)?;
+    write_header(out, report, units)?;
     out.write_all(b"<main>\n")?;
     out.write_all(DRAWINGS.as_bytes())?;
-    tables::write_summary(out, report, &assumed(report))?;
-    limit_band::write(out, report.limits.as_ref())?;
-    circularity::write_circularity(out, report)?;
-    tables::write_worst(out, report)?;
-    tables::write_notes(out, report)?;
+    tables::write_summary(out, report, units, &assumed(report, units))?;
+    limit_band::write(out, report.limits.as_ref(), units)?;
+    circularity::write_circularity(out, report, units)?;
+    tables::write_worst(out, report, units)?;
+    tables::write_notes(out, report, units)?;
     out.write_all(b"</main>\n<footer>Simulated and written by feedwright. Charts: uPlot (MIT).</footer>\n")?;
     out.write_all(b"<script type=\"application/json\" id=\"data\">")?;
-    embedded_data::write(out, report)?;
+    embedded_data::write(out, report, units)?;
     write!(out, "</script>\n<script>{UPLOT_JS}</script>\n<script>(() => {{\n\"use strict\";\n")?;
     for script in SCRIPTS {
         out.write_all(script.as_bytes())?;
@@ -81,7 +89,7 @@ fn write_head(out: &mut impl Write, report: &Report) -> io::Result<()> {
     )
 }
 
-fn write_header(out: &mut impl Write, report: &Report) -> io::Result<()> {
+fn write_header(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
     let machine = report.runs.first().map_or("", |run| &run.summary.machine);
     let measured = report.runs.iter().any(|run| run.summary.measured);
     write!(
@@ -98,27 +106,30 @@ fn write_header(out: &mut impl Write, report: &Report) -> io::Result<()> {
         part = escaped(&report.part),
         machine = escaped(machine),
         how = if measured { "simulated, beside a log" } else { "simulated" },
-        verdict = verdict::verdict(report),
-        band = band(report),
+        verdict = verdict::verdict(report, units),
+        band = band(report, units),
     )
 }
 
 /// The band of the prediction, in one paragraph.
-fn band(report: &Report) -> String {
+fn band(report: &Report, units: PageUnits) -> String {
     report.band.as_ref().map_or_else(String::new, |band| {
-        format!("<p class=\"assumed\"><b>Predicted</b> {}.</p>\n", escaped(&band.sentence().replace(" um", " µm")))
+        format!(
+            "<p class=\"assumed\"><b>Predicted</b> {}.</p>\n",
+            escaped(&units.text(&band.sentence().replace(" um", " µm")))
+        )
     })
 }
 
 /// What was assumed, in one paragraph.
-fn assumed(report: &Report) -> String {
+fn assumed(report: &Report, units: PageUnits) -> String {
     let assumed = &report.assumed;
     if assumed.machine.is_empty() {
         return String::new();
     }
     let machine = format!("{}: {}", assumed.machine_sentence(), assumed.description);
     let mut sentences = vec![machine, assumed.simulation_sentence(), assumed.law_sentence()];
-    sentences.extend(report.geometry.as_ref().map(|geometry| geometry.sentence().replace(" um", " µm")));
+    sentences.extend(report.geometry.as_ref().map(|geometry| units.text(&geometry.sentence().replace(" um", " µm"))));
     let cut = Assumptions::cut_sentence(report.runs.iter().any(|run| run.summary.measured));
     format!("<p class=\"assumed\"><b>Assumed</b> {}. {cut}</p>\n", escaped(&sentences.join("; ")))
 }

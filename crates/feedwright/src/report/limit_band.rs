@@ -5,6 +5,7 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
+use super::page_units::PageUnits;
 use super::text::escaped;
 use crate::cycle_time::along::{BindingAlong, BindingStretch, LIMITS};
 
@@ -46,7 +47,7 @@ fn color(name: &str) -> &'static str {
 }
 
 /// The section, where there is something to show.
-pub(super) fn write(out: &mut impl Write, band: Option<&LimitBand>) -> io::Result<()> {
+pub(super) fn write(out: &mut impl Write, band: Option<&LimitBand>, units: PageUnits) -> io::Result<()> {
     let Some(band) = band.filter(|band| !band.along.stretches().is_empty()) else {
         return Ok(());
     };
@@ -55,7 +56,7 @@ pub(super) fn write(out: &mut impl Write, band: Option<&LimitBand>) -> io::Resul
           <p>Feedrate of the plan over its time, rests left out, and which limit holds it down where. Several bind at once; a pale stretch is one in which a limit \
           binds for a part of the time.</p>\n",
     )?;
-    writeln!(out, "<div class=\"scroll\" tabindex=\"0\">{}</div></section>", drawing(band))
+    writeln!(out, "<div class=\"scroll\" tabindex=\"0\">{}</div></section>", units.text(&drawing(band)))
 }
 
 fn drawing(band: &LimitBand) -> String {

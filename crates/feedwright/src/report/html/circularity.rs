@@ -3,11 +3,11 @@
 use std::io::{self, Write};
 
 use super::tables::swatch;
-use crate::report::Report;
-use crate::report::text::{escaped, fixed, number, signed};
+use crate::report::text::escaped;
+use crate::report::{PageUnits, Report};
 
 /// A row for each circle and run; nothing where the program has no circle.
-pub(super) fn write_circularity(out: &mut impl Write, report: &Report) -> io::Result<()> {
+pub(super) fn write_circularity(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
     let mut rows = Vec::new();
     for (c, circle) in report.circles.iter().enumerate() {
         for (i, run) in report.runs.iter().enumerate() {
@@ -17,27 +17,29 @@ pub(super) fn write_circularity(out: &mut impl Write, report: &Report) -> io::Re
     if rows.is_empty() {
         return Ok(());
     }
-    out.write_all(
+    let unit = units.error();
+    write!(
+        out,
         "<section aria-labelledby=\"h-circles\">\n<h2 id=\"h-circles\">Circularity</h2>\n<div class=\"circles\">\n\
          <div id=\"circularity\" class=\"needs-script\"></div>\n<div class=\"scroll\"><table class=\"circularity\"><thead><tr>\
          <th scope=\"col\">Circle</th><th scope=\"col\" class=\"run\">Controller</th>\
-         <th scope=\"col\">Circular deviation G<i>µm</i></th><th scope=\"col\">Fmax<i>µm</i></th><th scope=\"col\">Fmin<i>µm</i></th>\
+         <th scope=\"col\">Circular deviation G<i>{unit}</i></th><th scope=\"col\">Fmax<i>{unit}</i></th><th scope=\"col\">Fmin<i>{unit}</i></th>\
          </tr></thead>\n<tbody>\n"
-            .as_bytes(),
     )?;
     for (circle, run, reported, roundness) in rows {
+        let length = units.length();
         let sense = if circle.counter_clockwise { "counter-clockwise" } else { "clockwise" };
         writeln!(
             out,
-            "<tr><th scope=\"row\">{} R {} mm, {sense}, line {}</th><td class=\"run\">{}{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
+            "<tr><th scope=\"row\">{} R {} {length}, {sense}, line {}</th><td class=\"run\">{}{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
             circle.plane,
-            fixed(circle.radius_mm, 3),
+            units.fixed(circle.radius_mm, 3),
             circle.line,
             swatch(run),
             escaped(&reported.summary.controller),
-            number(roundness.circular_deviation_um),
-            signed(roundness.radial_max_um, 2),
-            signed(roundness.radial_min_um, 2)
+            units.number(roundness.circular_deviation_um),
+            units.signed(roundness.radial_max_um, 2),
+            units.signed(roundness.radial_min_um, 2)
         )?;
     }
     out.write_all(b"</tbody></table></div>\n</div></section>\n")

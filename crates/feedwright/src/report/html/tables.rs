@@ -2,8 +2,10 @@
 
 use std::io::{self, Write};
 
-use crate::report::text::{change, duration, escaped, fixed, number, signed};
-use crate::report::{FadedOut, Outcome, Report, ReportedRun, RunSummary, TimelineEvent, Transition, WorstPlace};
+use crate::report::text::{change, duration, escaped, fixed, number};
+use crate::report::{
+    FadedOut, Outcome, PageUnits, Report, ReportedRun, RunSummary, TimelineEvent, Transition, WorstPlace,
+};
 
 const AXES: [&str; 3] = ["X", "Y", "Z"];
 
@@ -11,16 +13,18 @@ const AXES: [&str; 3] = ["X", "Y", "Z"];
 const SHOWN_EVENTS: usize = 200;
 
 /// A row for each controller; behind them `assumed`, what they rest on, and what happened in each run.
-pub(super) fn write_summary(out: &mut impl Write, report: &Report, assumed: &str) -> io::Result<()> {
+pub(super) fn write_summary(out: &mut impl Write, report: &Report, units: PageUnits, assumed: &str) -> io::Result<()> {
     let axes = report.runs.iter().map(|r| r.summary.axes).max().unwrap_or(2).min(3);
-    out.write_all(
-        b"<section aria-labelledby=\"h-summary\">\n<h2 id=\"h-summary\">Summary</h2>\n<div class=\"scroll\" tabindex=\"0\"><table class=\"summary\" role=\"table\">\n\
-          <thead role=\"rowgroup\"><tr role=\"row\"><th scope=\"col\">Controller</th><th scope=\"col\">RMS error<i>\xc2\xb5m</i></th>\
-          <th scope=\"col\">Largest error<i>\xc2\xb5m</i></th><th scope=\"col\">Uncut path<i>\xc2\xb5m</i></th>\
+    let unit = units.error();
+    write!(
+        out,
+        "<section aria-labelledby=\"h-summary\">\n<h2 id=\"h-summary\">Summary</h2>\n<div class=\"scroll\" tabindex=\"0\"><table class=\"summary\" role=\"table\">\n\
+          <thead role=\"rowgroup\"><tr role=\"row\"><th scope=\"col\">Controller</th><th scope=\"col\">RMS error<i>{unit}</i></th>\
+          <th scope=\"col\">Largest error<i>{unit}</i></th><th scope=\"col\">Uncut path<i>{unit}</i></th>\
           <th scope=\"col\">Machining time</th>\
-          <th scope=\"col\">Outside \xc2\xb120 % of F<i>%</i></th>\
-          <th scope=\"col\">Command deviation<i>\xc2\xb5m</i></th>\
-          <th scope=\"col\">Command acceleration<i>m/s\xc2\xb2</i></th>",
+          <th scope=\"col\">Outside ±20 % of F<i>%</i></th>\
+          <th scope=\"col\">Command deviation<i>{unit}</i></th>\
+          <th scope=\"col\">Command acceleration<i>m/s²</i></th>",
     )?;
     for axis in &AXES[..axes] {
         write!(out, "<th scope=\"col\">Peak torque {axis}<i>N m</i></th>")?;
@@ -28,7 +32,7 @@ pub(super) fn write_summary(out: &mut impl Write, report: &Report, assumed: &str
     out.write_all(b"</tr></thead>\n<tbody role=\"rowgroup\">\n")?;
     let first = report.runs.first().map(|run| &run.summary);
     for (i, run) in report.runs.iter().enumerate() {
-        write_summary_row(out, i, &run.summary, first.filter(|_| i > 0), axes)?;
+        write_summary_row(out, i, &run.summary, first.filter(|_| i > 0), (axes, units))?;
     }
     write!(out, "</tbody></table></div>\n{assumed}")?;
     for (i, run) in report.runs.iter().enumerate() {
@@ -43,7 +47,7 @@ fn write_summary_row(
     index: usize,
     run: &RunSummary,
     first: Option<&RunSummary>,
-    axes: usize,
+    (axes, units): (usize, PageUnits),
 ) -> io::Result<()> {
     let note = match (&run.outcome, &run.faded_out) {
         (Outcome::Diverged { at_s }, _) => format!("<small class=\"alarm\">diverged at {}</small>", duration(*at_s)),
@@ -63,7 +67,7 @@ fn write_summary_row(
         escaped(&run.controller)
     )?;
     let joints = |um: Option<f64>, tool_um: f64| {
-        let shown = um.map(number).filter(|shown| *shown != number(tool_um));
+        let shown = um.map(|um| units.number(um)).filter(|shown| *shown != units.number(tool_um));
         shown.map_or(String::new(), |shown| format!("<small>{shown} by encoders</small>"))
     };
     let mut cell = |label: &str, text: String, value: fn(&RunSummary, usize) -> f64, k: usize| {
@@ -73,15 +77,16 @@ fn write_summary_row(
         write!(out, "<td role=\"cell\" data-label=\"{label}\">{text}{ratio}</td>")
     };
     let [rms, max] = [(run.rms_um, run.joint_rms_um), (run.max_um, run.joint_max_um)]
-        .map(|(um, joint_um)| format!("{}{}", number(um), joints(joint_um, um)));
-    cell("RMS error, µm", rms, |r, _| r.rms_um, 0)?;
-    cell("Largest error, µm", max, |r, _| r.max_um, 0)?;
-    cell("Uncut path, µm", number(run.uncut_um), |r, _| r.uncut_um, 0)?;
+        .map(|(um, joint_um)| format!("{}{}", units.number(um), joints(joint_um, um)));
+    let unit = units.error();
+    cell(&format!("RMS error, {unit}"), rms, |r, _| r.rms_um, 0)?;
+    cell(&format!("Largest error, {unit}"), max, |r, _| r.max_um, 0)?;
+    cell(&format!("Uncut path, {unit}"), units.number(run.uncut_um), |r, _| r.uncut_um, 0)?;
     cell("Machining time", duration(run.time_s), |r, _| r.time_s, 0)?;
     let outside =
         |r: &RunSummary, _: usize| r.feed.map_or(f64::NAN, |feed| 100.0 * (feed.slow_share + feed.fast_share));
     cell("Outside ±20 % of F, %", number(outside(run, 0)), outside, 0)?;
-    cell("Command deviation, µm", number(run.max_deviation_um), |r, _| r.max_deviation_um, 0)?;
+    cell(&format!("Command deviation, {unit}"), units.number(run.max_deviation_um), |r, _| r.max_deviation_um, 0)?;
     let accel_m_s2 = |r: &RunSummary, _: usize| if r.measured { f64::NAN } else { r.max_command_accel_mm_s2 * 1e-3 };
     cell("Command acceleration, m/s²", number(accel_m_s2(run, 0)), accel_m_s2, 0)?;
     for (k, axis) in AXES.iter().enumerate().take(axes) {
@@ -183,7 +188,7 @@ fn event_text(event: &TimelineEvent) -> String {
 }
 
 /// The worst places, a table for each controller.
-pub(super) fn write_worst(out: &mut impl Write, report: &Report) -> io::Result<()> {
+pub(super) fn write_worst(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
     out.write_all(
         b"<section aria-labelledby=\"h-worst\">\n<h2 id=\"h-worst\">Worst places</h2>\n\
           <p class=\"hint needs-script\">Choose a place to see it on the path.</p>\n<div class=\"pair\">\n",
@@ -193,18 +198,21 @@ pub(super) fn write_worst(out: &mut impl Write, report: &Report) -> io::Result<(
         write!(
             out,
             "<div><h3>{}{}</h3>\n<div class=\"scroll\" tabindex=\"0\"><table class=\"worst\"><thead><tr><th scope=\"col\">#</th>\
-             <th scope=\"col\">Error<i>µm</i></th><th scope=\"col\">Line</th><th scope=\"col\" class=\"code\">Program</th>",
+             <th scope=\"col\">Error<i>{}</i></th><th scope=\"col\">Line</th><th scope=\"col\" class=\"code\">Program</th>",
             swatch(i),
-            escaped(&run.summary.controller)
+            escaped(&run.summary.controller),
+            units.error()
         )?;
+        let length = units.length();
         for axis in &AXES[..axes] {
-            write!(out, "<th scope=\"col\">{axis}<i>mm</i></th>")?;
+            write!(out, "<th scope=\"col\">{axis}<i>{length}</i></th>")?;
         }
-        out.write_all(
-            b"<th scope=\"col\">Time<i>s</i></th><th scope=\"col\">Arc length<i>mm</i></th></tr></thead>\n<tbody>\n",
+        write!(
+            out,
+            "<th scope=\"col\">Time<i>s</i></th><th scope=\"col\">Arc length<i>{length}</i></th></tr></thead>\n<tbody>\n"
         )?;
         for (rank, place) in run.summary.worst.iter().enumerate() {
-            write_place(out, i, rank, place, axes)?;
+            write_place(out, (i, rank), place, axes, units)?;
         }
         if run.summary.worst.is_empty() {
             out.write_all(b"<tr><td colspan=\"9\" class=\"empty\">No contour error where the tool cuts.</td></tr>\n")?;
@@ -214,28 +222,37 @@ pub(super) fn write_worst(out: &mut impl Write, report: &Report) -> io::Result<(
     out.write_all(b"</div></section>\n")
 }
 
-fn write_place(out: &mut impl Write, run: usize, rank: usize, place: &WorstPlace, axes: usize) -> io::Result<()> {
+fn write_place(
+    out: &mut impl Write,
+    (run, rank): (usize, usize),
+    place: &WorstPlace,
+    axes: usize,
+    units: PageUnits,
+) -> io::Result<()> {
     let text = escaped(place.text.trim());
     write!(
         out,
         "<tr data-run=\"{run}\" data-place=\"{rank}\"><th scope=\"row\">{}</th><td>{}</td><td>{}</td>\
          <td class=\"code\"><code title=\"{text}\">{text}</code></td>",
         rank + 1,
-        signed(place.error_um, 2),
+        units.signed(place.error_um, 2),
         place.line,
     )?;
     for k in 0..axes {
-        write!(out, "<td>{}</td>", fixed(place.position_mm[k], 3))?;
+        write!(out, "<td>{}</td>", units.fixed(place.position_mm[k], 3))?;
     }
-    writeln!(out, "<td>{}</td><td>{}</td></tr>", fixed(place.t_s, 3), fixed(place.s_mm, 2))
+    writeln!(out, "<td>{}</td><td>{}</td></tr>", fixed(place.t_s, 3), units.fixed(place.s_mm, 2))
 }
 
 /// How to read the page, the settings and the machine.
-pub(super) fn write_notes(out: &mut impl Write, report: &Report) -> io::Result<()> {
+pub(super) fn write_notes(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
     out.write_all(NOTES.as_bytes())?;
     out.write_all(b"<div class=\"pair\">\n")?;
-    write_list(out, "Settings", &report.settings)?;
-    write_list(out, "Machine", &report.machine)?;
+    let told = |entries: &[(String, String)]| -> Vec<(String, String)> {
+        entries.iter().map(|(name, value)| (name.clone(), units.text(value))).collect()
+    };
+    write_list(out, "Settings", &told(&report.settings))?;
+    write_list(out, "Machine", &told(&report.machine))?;
     let mut facts = Vec::new();
     for run in &report.runs {
         let summary = &run.summary;
@@ -244,9 +261,10 @@ pub(super) fn write_notes(out: &mut impl Write, report: &Report) -> io::Result<(
         facts.push((
             summary.controller.clone(),
             format!(
-                "{} servo periods{thinned}; {} mm cut in {}",
+                "{} servo periods{thinned}; {} {} cut in {}",
                 summary.rows,
-                fixed(summary.cutting_length_mm, 2),
+                units.fixed(summary.cutting_length_mm, 2),
+                units.length(),
                 duration(summary.cutting_time_s)
             ),
         ));

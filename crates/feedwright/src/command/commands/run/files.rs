@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use feedwright_sim::{Row, SetpointWriter, Sink, TraceWriter, Watch};
 use miette::{Result, miette};
 
+use crate::command::terminal::page_units;
 use crate::job::{Job, JobOutcome};
 use crate::output::{OutputError, OutputFile, OutputFiles, is_standard_output};
-use crate::report::write_html;
+use crate::report::write_html_in;
 
 /// Where to write what; `None` is not written.
 #[derive(Debug)]
@@ -100,7 +101,7 @@ impl Files {
         };
         let of_rows = |error| OutputError::from_io(error, Path::new("the output"));
         if let Some(mut output) = self.report {
-            write_html(&mut output, &outcome.report).map_err(named(output.path()))?;
+            write_html_in(&mut output, &outcome.report, page_units()).map_err(named(output.path()))?;
             complete.push(output);
         }
         if let Some(mut output) = self.json {

@@ -73,6 +73,7 @@ fn unit_behind(rest: &str) -> Option<&'static MetricUnit> {
 }
 
 /// A heading of a table with its unit in inches, and the factor of the numbers below it.
+#[cfg(feature = "command")]
 pub(crate) fn heading_in_inches(heading: &str) -> (String, Option<f64>) {
     let unit = heading.rsplit(' ').next().unwrap_or_default();
     match UNITS.iter().find(|(metric, ..)| *metric == unit) {
@@ -85,6 +86,7 @@ pub(crate) fn heading_in_inches(heading: &str) -> (String, Option<f64>) {
 }
 
 /// A number of a table times a factor; other text stays.
+#[cfg(feature = "command")]
 pub(crate) fn cell_in_inches(cell: &str, factor: f64) -> String {
     let bare = cell.trim_matches(['(', ')']);
     match bare.parse::<f64>() {
@@ -129,6 +131,7 @@ mod tests {
         }
     }
 
+    #[cfg(feature = "command")]
     #[test]
     fn a_table_is_converted_by_its_headings() {
         assert_eq!(heading_in_inches("RMS um"), ("RMS thou".to_owned(), Some(1.0 / INCH_MM)));
