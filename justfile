@@ -140,9 +140,18 @@ tick ticks="100000" runs="5":
     cargo build --release --quiet -p feedwright-control --example tick_percentiles
     taskset --cpu-list 1 target/release/examples/tick_percentiles {{ ticks }} {{ runs }}
 
+# The picture of README.md: the report of the star, in a browser (Debian: chromium, npm).
+readme-picture:
+    #!/usr/bin/env bash
+    set -euo pipefail
+    folder=$(mktemp --directory)
+    trap 'rm -r "$folder"' EXIT
+    cargo run --release --quiet -- run parts/star.ngc --report "$folder/star.report.html"
+    web/page tools
+    node web/app/readme-picture.mjs "$folder/star.report.html" docs
+
 # Regenerate the tables and the figures of docs/results.md and of examples/.
 tables: paper compare held-out-table imperfections
-    cp target/paper/figure_10.svg docs/paper_circle.svg
     cp target/paper/figure_*.svg target/paper/paper.json examples/01_paper_circle/
     cargo run --release -p feedwright-lab --example tables
 

@@ -53,7 +53,7 @@ pub enum CompensationError {
     Travel {
         /// The axis.
         axis: &'static str,
-        /// Farthest position of the part, mm.
+        /// Farthest position of the part, mm, to 0.001.
         at_mm: f64,
         /// Least position that was measured, mm.
         from_mm: f64,
@@ -193,6 +193,7 @@ impl GeometryFile {
             let AxisGeometry { from_mm, to_mm, .. } = *geometry;
             let beyond = |at_mm: &f64| *at_mm < from_mm - BEYOND_MM || *at_mm > to_mm + BEYOND_MM;
             if let Some(at_mm) = [least_mm[i], most_mm[i]].into_iter().find(|at_mm| to_mm > from_mm && beyond(at_mm)) {
+                let at_mm = libm::round(at_mm * 1e3) / 1e3;
                 return Err(CompensationError::Travel { axis, at_mm, from_mm, to_mm });
             }
         }

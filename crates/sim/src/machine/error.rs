@@ -12,7 +12,8 @@ pub(super) const KIND: Kind = Kind {
     name: "machine file",
     is: "a machine file is a page of TOML text, like crates/sim/machines/tnv40.toml",
     code: "machine::file",
-    where_to_find: "a name without .toml means a built-in machine; 'feedwright machines' lists them",
+    where_to_find: "'feedwright machines workshop --out my.toml' writes one to begin with; a name without .toml means a built-in \
+                    machine",
 };
 
 /// Why there is no machine.
