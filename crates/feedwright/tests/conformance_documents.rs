@@ -1,4 +1,4 @@
-//! The documents are consistent with the repository: their links lead to existing files,
+//! The documents are consistent with the repository: their links lead to existing files and headings,
 //! docs/machine-file.md explains every key of a machine file, and ARCHITECTURE.md names only source
 //! files that exist.
 
@@ -24,17 +24,37 @@ fn documents() -> Vec<PathBuf> {
     entries.map(|entry| entry.unwrap().path()).filter(|path| path.extension().is_some_and(|e| e == "md")).collect()
 }
 
+/// Links and figures of a text that stay within the repository, each as its file, empty for this one, and its heading.
+fn links(text: &str) -> impl Iterator<Item = (&str, &str)> {
+    let markdown = text.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
+    let html = ["src=\"", "srcset=\""].into_iter().flat_map(|name| text.split(name).skip(1));
+    let all = markdown.chain(html.filter_map(|rest| rest.split_once('"'))).map(|(target, _)| target);
+    all.filter(|target| !target.contains("://")).map(|target| target.split_once('#').unwrap_or((target, "")))
+}
+
 /// Targets of the links and figures of a text that are files.
 fn targets(text: &str) -> impl Iterator<Item = &str> {
-    let links = text.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
-    let files = links.map(|(target, _)| target).filter(|target| !target.contains("://") && !target.starts_with('#'));
-    files.map(|target| target.split_once('#').map_or(target, |(file, _)| file))
+    links(text).map(|(file, _)| file).filter(|file| !file.is_empty())
+}
+
+/// A heading as GitHub and mdbook name it in a link.
+fn name(heading: &str) -> String {
+    let kept = heading.chars().filter(|c| c.is_alphanumeric() || [' ', '-', '_'].contains(c));
+    kept.collect::<String>().to_lowercase().replace(' ', "-")
+}
+
+fn has_heading(text: &str, wanted: &str) -> bool {
+    text.lines().any(|line| line.starts_with('#') && name(line.trim_start_matches('#').trim()) == wanted)
 }
 
 fn lead_nowhere(document: &Path) -> Vec<String> {
     let text = std::fs::read_to_string(document).unwrap();
-    let folder = document.parent().unwrap();
-    targets(&text).filter(|target| !folder.join(target).exists()).map(str::to_owned).collect()
+    let leads = |file: &str, heading: &str| {
+        let path = if file.is_empty() { document.to_owned() } else { document.parent().unwrap().join(file) };
+        path.exists() && (heading.is_empty() || has_heading(&std::fs::read_to_string(path).unwrap(), heading))
+    };
+    let wrong = links(&text).filter(|(file, heading)| !leads(file, heading));
+    wrong.map(|(file, heading)| format!("{file}#{heading}")).collect()
 }
 
 #[test]
@@ -122,4 +142,6 @@ fn every_file_of_which_the_architecture_speaks_is_there() {
 fn a_link_to_nothing_is_found() {
     let text = "[a](b.md) ![c](d.svg) [e](https://example.org) [f](#g)";
     assert_eq!(targets(text).collect::<Vec<_>>(), ["b.md", "d.svg"]);
+    assert_eq!(links("[a](b.md#c) <img src=\"d.png\">").collect::<Vec<_>>(), [("b.md", "c"), ("d.png", "")]);
+    assert!(has_heading("## `[axis.x]`, and _more_", "axisx-and-_more_") && !has_heading("## a", "b"));
 }
