@@ -27,9 +27,9 @@ const MOST_RAD: f64 = 3.0;
 const STRAIGHT_MM: f64 = 2e4;
 /// An arc of a smaller radius is straight, mm: its centre is only as good as its printed digits.
 const POINT_MM: f64 = 0.02;
-/// An arc between ends that are closer is straight, printed steps: rounded to steps, its end could come to lie before its start, and the arc
-/// would be a full turn.
-const LEAST_STEPS: f64 = 10.0;
+/// An arc between ends that are closer is straight, mm: four printed steps in inches. Rounded to steps, its end could come to lie before its start, and
+/// the arc would be a full turn.
+const LEAST_MM: f64 = 1e-4;
 /// Lengths in the plane up to this count as zero, mm.
 const NO_WAY_MM: f64 = 1e-6;
 /// Most points of a stretch: bounds the work.
@@ -166,7 +166,7 @@ impl<'a> ArcFit<'a> {
         let square = dot(v, v);
         // The root of the equation that does not lose digits where the tangents are almost equal.
         let d = square / (along + (along * along + bend * square).sqrt());
-        if !(d.is_finite() && d > self.least_mm()) {
+        if !(d.is_finite() && d > LEAST_MM) {
             return None;
         }
         let joint = [0, 1].map(|i| 0.5 * (p0[i] + p1[i] + d * (t0[i] - t1[i])));
@@ -193,7 +193,7 @@ impl<'a> ArcFit<'a> {
         let (aside, along, square) = (dot(way, normal), dot(way, tangent), dot(way, way));
         let radius_mm = square / (2.0 * aside);
         let sweep_rad = 2.0 * libm::atan2(aside, along);
-        if !(square > self.least_mm() * self.least_mm()
+        if !(square > LEAST_MM * LEAST_MM
             && (POINT_MM..STRAIGHT_MM).contains(&radius_mm.abs())
             && sweep_rad.abs() > 1e-9)
         {
@@ -222,10 +222,6 @@ impl<'a> ArcFit<'a> {
         let [i, j] = [0, 1].map(|k| self.print(arc.center_mm[k] - arc.start_mm[k]));
         let center_mm = [arc.start_mm[0] + i, arc.start_mm[1] + j, arc.start_mm[2]];
         Shape::Arc { plane: Plane::Xy, center_mm, turns: if radius_mm > 0.0 { 1 } else { -1 } }
-    }
-
-    fn least_mm(&self) -> f64 {
-        (LEAST_STEPS / self.steps_per_mm).max(NO_WAY_MM)
     }
 
     fn print(&self, value: f64) -> f64 {

@@ -151,13 +151,13 @@ const SHARED_STEPS: usize = 300_000;
 const CUT_STEPS: u64 = 100;
 
 /// Tells the progress of a cut along the original path.
-struct CutProgress<'a> {
+struct ExportedProgress<'a> {
     watch: &'a dyn Watch,
     length_mm: f64,
     done: u64,
 }
 
-impl Sink for CutProgress<'_> {
+impl Sink for ExportedProgress<'_> {
     fn row(&mut self, row: &Row) -> std::io::Result<()> {
         // A float that is not a number saturates to zero here.
         let done = ((CUT_STEPS as f64 * row.s_mm / self.length_mm) as u64).clamp(self.done, CUT_STEPS);
@@ -253,7 +253,7 @@ impl ExportedCut<'_> {
         let threads = if program.len() > SHARED_STEPS { 1 } else { usize::MAX };
         let all = workers.each(stage, phases.len(), threads, |phase| {
             let CutPhase { machine, wait_s } = &phases[phase];
-            let mut progress = CutProgress { watch: self.watch, length_mm: length_mm(self.original), done: 0 };
+            let mut progress = ExportedProgress { watch: self.watch, length_mm: length_mm(self.original), done: 0 };
             ExportedCut { machine, ..*self }.once(program, *wait_s, &mut [&mut progress])
         })?;
         for (phase, now) in all.into_iter().enumerate() {

@@ -26,7 +26,7 @@ pub(super) struct Seam {
 
 /// Ends of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum End {
+enum MotionEnd {
     Start,
     End,
 }
@@ -79,7 +79,7 @@ impl Seam {
         if last > 0 && distance(motions[last].start_mm, at_mm) < SLIVER_MM {
             kept.pop();
         } else {
-            end_at(kept.last_mut()?, End::End, at_mm);
+            end_at(kept.last_mut()?, MotionEnd::End, at_mm);
         }
         Some(kept)
     }
@@ -90,16 +90,16 @@ impl Seam {
         let is_sliver = distance(at_mm, motions[first].end_mm) < SLIVER_MM;
         first += usize::from(is_sliver && first + 1 < motions.len());
         let mut kept = motions[first..].to_vec();
-        end_at(kept.first_mut()?, End::Start, at_mm);
+        end_at(kept.first_mut()?, MotionEnd::Start, at_mm);
         Some(kept)
     }
 }
 
 /// Moves an end of a motion. The center of an arc moves by as little as leaves it as far from one end as from the other.
-fn end_at(motion: &mut Motion, end: End, at_mm: Vector) {
+fn end_at(motion: &mut Motion, end: MotionEnd, at_mm: Vector) {
     match end {
-        End::Start => motion.start_mm = at_mm,
-        End::End => motion.end_mm = at_mm,
+        MotionEnd::Start => motion.start_mm = at_mm,
+        MotionEnd::End => motion.end_mm = at_mm,
     }
     if let Shape::Arc { plane: Plane::Xy, center_mm, .. } = &mut motion.shape {
         let chord = sub(motion.end_mm, motion.start_mm);
@@ -129,9 +129,9 @@ pub(super) fn meet(commands: &mut [StretchCommand], parts: &[ProgramPart], split
         let last = before[number - 1].as_mut().and_then(|command| command.motions.last_mut());
         let first = behind[0].as_mut().and_then(|command| command.motions.first_mut());
         match (last, first) {
-            (Some(last), Some(first)) => end_at(first, End::Start, last.end_mm),
-            (Some(last), None) => end_at(last, End::End, stretch.start_mm()),
-            (None, Some(first)) => end_at(first, End::Start, stretch.start_mm()),
+            (Some(last), Some(first)) => end_at(first, MotionEnd::Start, last.end_mm),
+            (Some(last), None) => end_at(last, MotionEnd::End, stretch.start_mm()),
+            (None, Some(first)) => end_at(first, MotionEnd::Start, stretch.start_mm()),
             (None, None) => {}
         }
     }
@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn an_arc_that_begins_elsewhere_has_both_ends_as_far_from_its_center() {
         let mut arc = quarter_and_line().remove(0);
-        end_at(&mut arc, End::Start, [10.001, -0.002, 0.5]);
+        end_at(&mut arc, MotionEnd::Start, [10.001, -0.002, 0.5]);
         let Shape::Arc { center_mm, .. } = arc.shape else { panic!("{arc:?}") };
         let radius_mm = |at_mm: Vector| (at_mm[0] - center_mm[0]).hypot(at_mm[1] - center_mm[1]);
         assert!((radius_mm(arc.start_mm) - radius_mm(arc.end_mm)).abs() < 1e-12, "{center_mm:?}");

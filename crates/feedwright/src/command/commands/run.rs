@@ -101,15 +101,7 @@ fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
     let outputs =
         Outputs { report: Some(report), json: args.json, trace: args.trace, learned: args.learned, out: args.out };
     if let (Some(controller), true, Some(out)) = (&args.controller, outputs.is_program()?, &outputs.out) {
-        return Err(miette!(
-            help = format!(
-                "feedwright correct {} --out {} writes the program; or leave --controller out; or write the setpoints of \
-                 {controller}: --out FILE.csv",
-                args.part.display(),
-                out.display()
-            ),
-            "--controller {controller} has no part in a corrected program, which is cut without a controller"
-        ));
+        return Err(no_part(controller, &args.part, out));
     }
     let controller = find(args.controller.as_deref().unwrap_or(BEST), table)?;
     let against = find(&args.against, table)?;
@@ -157,6 +149,19 @@ fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
     let models = [args.model, args.geometry.geometry, args.log];
     let read = [machine_file, args.reader.tool_table, args.reference, Some(args.part)].into_iter().chain(models);
     Ok(Asked { job, inputs: read.flatten().collect(), outputs })
+}
+
+/// A corrected program was asked for, and a controller.
+fn no_part(controller: &str, part: &Path, out: &Path) -> miette::Report {
+    miette!(
+        help = format!(
+            "feedwright correct {} --out {} writes the program; or leave --controller out; or write the setpoints of \
+             {controller}: --out FILE.csv",
+            part.display(),
+            out.display()
+        ),
+        "--controller {controller} has no part in a corrected program, which is cut without a controller"
+    )
 }
 
 /// The control that a program is for; setpoints are for none.
