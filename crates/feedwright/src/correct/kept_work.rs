@@ -191,11 +191,14 @@ fn append(file: &mut File, line: &impl Serialize) -> std::io::Result<()> {
     })
 }
 
-/// The finished parts of a file, the file, and why there are not all.
+/// The finished parts of a file by their names, the file, and why there are not all.
+type OpenedParts = (HashMap<String, String>, File, Option<KeptFault>);
+
+/// Opens a file of finished parts, and begins it anew where it has none.
 ///
 /// # Errors
 /// A file of something else, and one that cannot be had.
-fn opened(path: &Path, head: &KeptHead) -> Result<(HashMap<String, String>, File, Option<KeptFault>), KeptFault> {
+fn opened(path: &Path, head: &KeptHead) -> Result<OpenedParts, KeptFault> {
     let unwritable = |_: std::io::Error| KeptFault::Unwritable;
     let mut file =
         File::options().read(true).write(true).create(true).truncate(false).open(path).map_err(unwritable)?;

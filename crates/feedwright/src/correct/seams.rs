@@ -175,7 +175,7 @@ mod tests {
         let mut arc = quarter_and_line().remove(0);
         end_at(&mut arc, MotionEnd::Start, [10.001, -0.002, 0.5]);
         let Shape::Arc { center_mm, .. } = arc.shape else { panic!("{arc:?}") };
-        let radius_mm = |at_mm: Vector| (at_mm[0] - center_mm[0]).hypot(at_mm[1] - center_mm[1]);
+        let radius_mm = |at_mm: Vector| libm::hypot(at_mm[0] - center_mm[0], at_mm[1] - center_mm[1]);
         assert!((radius_mm(arc.start_mm) - radius_mm(arc.end_mm)).abs() < 1e-12, "{center_mm:?}");
         assert!(radius_mm([0.0; 3]) < 0.002 && center_mm[2] == 0.5, "{center_mm:?}");
     }
