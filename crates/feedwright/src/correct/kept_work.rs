@@ -206,7 +206,8 @@ fn opened(path: &Path, head: &KeptHead) -> Result<OpenedParts, KeptFault> {
     let mut text = String::new();
     file.read_to_string(&mut text).map_err(|_| KeptFault::Foreign)?;
     let first = text.split_inclusive('\n').next().unwrap_or_default();
-    let begun = checked(first).and_then(|text| serde_json::from_str::<KeptHead>(&text).ok());
+    let begun = checked(first).filter(|_| first.ends_with('\n'));
+    let begun = begun.and_then(|text| serde_json::from_str::<KeptHead>(&text).ok());
     let is_ours = begun.as_ref().is_some_and(|begun| begun.about == ABOUT);
     if !is_ours && !text.is_empty() && !is_torn_head(&text) {
         return Err(KeptFault::Foreign);

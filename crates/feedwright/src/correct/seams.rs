@@ -4,11 +4,10 @@
 //! point, across the direction of travel there. Each command is cut where it crosses that plane. Then the second begins where the first
 //! ends. Where one of the two stays as it is programmed, the other meets it in the programmed point.
 
-use feedwright_gcode::canon::{Canon, Motion, Plane, Shape};
+use feedwright_gcode::canon::{Motion, Plane, Shape};
 use feedwright_plan::vector::{Vector, add_scaled, distance, dot, sub};
-use feedwright_plan::{Piece, Pieces, Step};
 
-use super::stretches::{ProgramPart, SmoothStretch, StretchCommand, directions, stretches};
+use super::stretches::{ProgramPart, SmoothStretch, StretchCommand, directions, pieces, stretches};
 
 /// A command crosses the seam no further than this from the programmed point, mm.
 const NEAR_MM: f64 = 1.0;
@@ -51,9 +50,7 @@ impl Seam {
         {
             return None;
         }
-        let pieces: Vec<Piece> = Pieces::new(std::iter::once(Canon::Motion(motion.clone())))
-            .filter_map(|step| if let Ok(Step::Piece(piece)) = step { Some(piece) } else { None })
-            .collect();
+        let pieces = pieces(motion);
         let piece = pieces.iter().find(|piece| self.behind_mm(piece.curve.at(piece.length_mm).position_mm) > 0.0)?;
         let (mut low, mut high) = (0.0, piece.length_mm);
         for _ in 0..HALVINGS {

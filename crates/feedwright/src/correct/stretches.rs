@@ -45,7 +45,7 @@ pub(super) struct SmoothStretch {
 }
 
 /// The pieces of the path of a motion.
-fn pieces(motion: &Motion) -> Vec<Piece> {
+pub(super) fn pieces(motion: &Motion) -> Vec<Piece> {
     let alone = Motion { feed_mm_s: motion.feed_mm_s.max(1.0), ..motion.clone() };
     let steps = Pieces::new(std::iter::once(Canon::Motion(alone)));
     steps.filter_map(|step| if let Ok(Step::Piece(piece)) = step { Some(piece) } else { None }).collect()
