@@ -9,11 +9,13 @@
 
 use std::collections::HashMap;
 use std::fmt;
-use std::fs::File;
+use std::fs::{File, TryLockError};
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -24,6 +26,10 @@ use crate::checked_json::{checked, with_check};
 const FORMAT: u32 = 1;
 const ABOUT: &str =
     "finished parts of a feedwright correct that has not ended; the same command goes on with them; may be deleted";
+
+/// How often, and after which wait, a lock is tried that another process holds.
+const LOCK_TRIES: u32 = 20;
+const LOCK_WAIT: Duration = Duration::from_millis(10);
 
 /// The first line of the file.
 #[derive(Serialize, Deserialize, PartialEq)]
@@ -132,7 +138,7 @@ impl Workers {
             failed.fetch_or(result.is_err(), Ordering::Relaxed);
             results.lock().unwrap_or_else(PoisonError::into_inner)[part] = Some(result);
         };
-        std::thread::scope(|scope| {
+        thread::scope(|scope| {
             for _ in 1..self.threads.min(threads).min(count) {
                 scope.spawn(run);
             }
@@ -202,7 +208,7 @@ fn opened(path: &Path, head: &KeptHead) -> Result<OpenedParts, KeptFault> {
     let unwritable = |_: std::io::Error| KeptFault::Unwritable;
     let mut file =
         File::options().read(true).write(true).create(true).truncate(false).open(path).map_err(unwritable)?;
-    file.try_lock().map_err(|_| KeptFault::Unwritable)?;
+    lock(&file).map_err(|_| KeptFault::Unwritable)?;
     let mut text = String::new();
     file.read_to_string(&mut text).map_err(|_| KeptFault::Foreign)?;
     let first = text.split_inclusive('\n').next().unwrap_or_default();
@@ -233,6 +239,17 @@ fn opened(path: &Path, head: &KeptHead) -> Result<OpenedParts, KeptFault> {
         append(&mut file, head).map_err(unwritable)?;
     }
     Ok((found, file, fault))
+}
+
+/// Locks a file for this run. A process that is just being started holds what was locked before for a moment.
+fn lock(file: &File) -> Result<(), TryLockError> {
+    for _ in 0..LOCK_TRIES {
+        if file.try_lock().is_ok() {
+            return Ok(());
+        }
+        thread::sleep(LOCK_WAIT);
+    }
+    file.try_lock()
 }
 
 /// Whether a run was killed, or the disk full, while the first line was written.
