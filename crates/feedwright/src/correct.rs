@@ -278,12 +278,30 @@ impl CorrectJob {
     /// Who does the work in pieces.
     fn workers(&self, source: &SourceProgram, pieces: usize) -> Workers {
         let Some(path) = self.keep.as_ref().filter(|_| pieces > 1) else { return Workers::new(self.threads) };
-        let Self { machine, believed, compensation, target, feed_mm_s, reader, piece_periods, .. } = self;
-        let work = hash_of(format_args!(
-            "{:?} {:?} {machine:?} {believed:?} {compensation:?} {target:?} {feed_mm_s:?} {reader:?} {piece_periods}",
-            source.lines, source.steps
-        ));
+        let work = hash_of(format_args!("{:?} {:?} {}", source.lines, source.steps, self.depends_on()));
         Workers::keeping(self.threads, path, &work)
+    }
+
+    /// All that the commands of pieces depend on beside the program. With logs there is one piece.
+    fn depends_on(&self) -> String {
+        // Without `..`, so that a new field is not forgotten.
+        let Self {
+            program: _,
+            machine,
+            believed,
+            compensation,
+            target,
+            feed_mm_s,
+            reader,
+            logs: _,
+            file_error,
+            piece_periods,
+            threads: _,
+            keep: _,
+        } = self;
+        format!(
+            "{machine:?} {believed:?} {compensation:?} {target:?} {feed_mm_s:?} {reader:?} {file_error} {piece_periods}"
+        )
     }
 
     /// The file of finished pieces, where there is one to go on with.
@@ -347,5 +365,21 @@ impl CorrectJob {
             return Ok(written);
         }
         checked(text.expanded().map_err(UnwrittenProgram::Line)?, true)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_of_another_uncertainty_of_the_file_are_other_work() {
+        let work = |file_error: f64| {
+            let machine = Machine::load("tnv40".as_ref()).unwrap();
+            let job = CorrectJob::new(Program::from_text("part.ngc", "M2\n"), machine, &TARGETS[0]);
+            CorrectJob { file_error, ..job }.depends_on()
+        };
+        assert_eq!(work(0.1), work(0.1));
+        assert_ne!(work(0.1), work(0.0));
     }
 }
