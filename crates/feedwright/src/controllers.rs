@@ -20,7 +20,7 @@ mod recorded;
 use feedwright_control::{Controller, IdentifierKind, Uncorrected};
 use feedwright_gcode::suggestion::nearest;
 use feedwright_ident::Model;
-use feedwright_sim::Machine;
+use feedwright_sim::{Machine, StageSteps, Watch};
 use serde::{Deserialize, Serialize};
 
 pub use make::offset_bounds;
@@ -29,6 +29,11 @@ pub use recorded::RecordedValues;
 pub use rows::{ACCELERATION_GAIN, FRICTION_GAIN, VELOCITY_GAIN};
 use rows::{ETA, IDENTIFIED_WEIGHT, INVERSION_KNOTS, INVERSION_PERIOD_S, INVERSION_STEPS, LEARNING_STEP, RHO};
 pub use setup::{CutsUncorrected, ModelMisfit, Setup};
+
+/// The stage of all that a first cut on a machine waits for.
+pub(crate) fn identifying<'a>(machine: &Machine, watch: &'a dyn Watch) -> StageSteps<'a> {
+    StageSteps::begin(watch, &format!("identifying {}", machine.name))
+}
 
 /// One row of the table.
 pub struct Entry {

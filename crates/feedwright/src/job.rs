@@ -39,7 +39,7 @@ use feedwright_sim::{
 use serde::{Deserialize, Serialize};
 
 use crate::compensation::GeometryChoice;
-use crate::controllers::{Choices, CutsUncorrected, Entry, LQG_IDENTIFIED, Make, Setup, UNCORRECTED};
+use crate::controllers::{Choices, CutsUncorrected, Entry, LQG_IDENTIFIED, Make, Setup, UNCORRECTED, identifying};
 use crate::correct::{CorrectOutcome, TargetControl};
 use crate::cycle_time::CycleTimeOfCut;
 use crate::fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within, with_tolerance};
@@ -91,7 +91,7 @@ pub struct Job {
     /// The control, without feedback, that a corrected program is made for.
     #[serde(with = "stored::target")]
     pub target: Option<&'static TargetControl>,
-    /// The control whose planner plans the program, in place of that of the machine.
+    /// Plans the program with the planner of this control, not with that of the machine.
     #[serde(default, with = "stored::target", skip_serializing_if = "Option::is_none")]
     pub planned_as: Option<&'static TargetControl>,
     /// A program that errors are measured to, in place of the one that is cut.
@@ -405,8 +405,7 @@ impl Job {
             watch.check()?;
             let judged = entry.name == self.controller.name;
             let model = self.model.as_ref().filter(|_| judged);
-            let mut steps = (entry.identifier.is_some() && model.is_none())
-                .then(|| StageSteps::begin(watch, &format!("identifying {}", self.machine.name)));
+            let mut steps = (entry.identifier.is_some() && model.is_none()).then(|| identifying(&self.machine, watch));
             let mut progress = |part: f64| steps.iter_mut().for_each(|steps| steps.reach(part));
             let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
             let mut controller = match model {

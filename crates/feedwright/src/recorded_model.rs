@@ -16,12 +16,12 @@ use feedwright_ident::{
     AxisFacts, Columns, ExciteOptions, LawVerdict, Log, Model, SERVO_MECHANICS, excitation_program, recorded_log,
     servo_period_s,
 };
-use feedwright_sim::{Cancelled, Machine, StageSteps, Watch};
+use feedwright_sim::{Cancelled, Machine, Watch};
 use miette::Diagnostic;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::controllers::{Choices, Entry, Setup};
+use crate::controllers::{Choices, Entry, Setup, identifying};
 use crate::identifier_cache::{keep_text, kept_text};
 use crate::log_job::{LogIdentified, LogJob, LogJobError, machine_text};
 
@@ -210,11 +210,6 @@ pub fn built_in_lines(
         lines.push(built_in::line(&model_content(machine, axes, (entry, &choices)), &model));
     }
     Ok(lines)
-}
-
-/// The stage of all that a first cut on a machine waits for.
-fn identifying<'a>(machine: &Machine, watch: &'a dyn Watch) -> StageSteps<'a> {
-    StageSteps::begin(watch, &format!("identifying {}", machine.name))
 }
 
 /// What the machine of a log follows from.

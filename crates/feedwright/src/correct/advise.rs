@@ -19,7 +19,7 @@ use super::stretches::{ProgramPart, SmoothStretch, parts, stretches};
 use super::target::TargetControl;
 use super::unchanged::lines_of;
 use crate::compensation::GeometryChoice;
-use crate::controllers::{Choices, Entry, LQG_IDENTIFIED, Make, Setup};
+use crate::controllers::{Choices, Entry, LQG_IDENTIFIED, Make, Setup, identifying};
 use crate::job_error::{JobError, axes_that_move};
 pub use feed_cuts::ErrorPlace;
 use feed_cuts::FeedBench;
@@ -216,8 +216,7 @@ impl AdviseJob {
         if largest_mm_s == 0.0 {
             return Err(JobError::NothingToCut { part: self.program.name() });
         }
-        let mut steps = (self.controller.identifier.is_some())
-            .then(|| StageSteps::begin(watch, &format!("identifying {}", self.machine.name)));
+        let mut steps = (self.controller.identifier.is_some()).then(|| identifying(&self.machine, watch));
         let mut progress = |part: f64| steps.iter_mut().for_each(|steps| steps.reach(part));
         let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
         let controller = Make::<N>::make(self.controller, &mut setup);

@@ -324,6 +324,17 @@ impl ExportedCut<'_> {
         Ok(figures.of_whole())
     }
 
+    /// Time of the original at its programmed feedrates, and `stop_s` for each of its steps, s.
+    pub(super) fn programmed_s(&self, stop_s: f64) -> f64 {
+        let limits = &self.machine.limits;
+        let time_s = |step: &Step| match step {
+            Step::Piece(piece) if piece.cutting => stop_s + piece.length_mm / piece.feed_mm_s.min(limits.max_feed_mm_s),
+            Step::Piece(piece) => stop_s + piece.length_mm / limits.rapid_mm_s,
+            Step::Event(_) | Step::Rest(_) => stop_s,
+        };
+        self.original.iter().map(time_s).sum()
+    }
+
     /// Cuts a program once; the rows go to sinks.
     pub(super) fn cut(&self, program: &[Step], sinks: &mut [&mut dyn Sink]) -> Result<RunResult, RunError> {
         self.cut_along(&AlignedPaths::new(self.original, program), sinks)

@@ -41,6 +41,13 @@ struct KeptHead {
     work: String,
 }
 
+impl KeptHead {
+    /// What a line says; none of a line that is not what was written.
+    fn of(line: &str) -> Option<Self> {
+        serde_json::from_str(&checked(line)?).ok()
+    }
+}
+
 /// A finished part.
 #[derive(Serialize, Deserialize)]
 struct KeptPart<T> {
@@ -174,7 +181,7 @@ impl Workers {
 pub(super) fn keeps_parts(path: &Path) -> bool {
     let mut first = String::new();
     let read = File::open(path).and_then(|file| BufReader::new(file).read_line(&mut first));
-    let head = read.ok().and_then(|_| checked(&first)).and_then(|text| serde_json::from_str::<KeptHead>(&text).ok());
+    let head = read.ok().and_then(|_| KeptHead::of(&first));
     head.is_some_and(|head| head.about == ABOUT)
 }
 
@@ -212,8 +219,7 @@ fn opened(path: &Path, head: &KeptHead) -> Result<OpenedParts, KeptFault> {
     let mut text = String::new();
     file.read_to_string(&mut text).map_err(|_| KeptFault::Foreign)?;
     let first = text.split_inclusive('\n').next().unwrap_or_default();
-    let begun = checked(first).filter(|_| first.ends_with('\n'));
-    let begun = begun.and_then(|text| serde_json::from_str::<KeptHead>(&text).ok());
+    let begun = KeptHead::of(first).filter(|_| first.ends_with('\n'));
     let is_ours = begun.as_ref().is_some_and(|begun| begun.about == ABOUT);
     if !is_ours && !text.is_empty() && !is_torn_head(&text) {
         return Err(KeptFault::Foreign);
@@ -226,7 +232,7 @@ fn opened(path: &Path, head: &KeptHead) -> Result<OpenedParts, KeptFault> {
         for line in text[good..].split_inclusive('\n') {
             let part = checked(line).filter(|_| line.ends_with('\n'));
             let Some((name, part)) = part.and_then(|part| Some((name_of(&part)?, part))) else {
-                // A line without an end is that of a run that was killed.
+                // A run that was killed leaves a line without an end.
                 fault = line.ends_with('\n').then_some(KeptFault::Damaged);
                 break;
             };

@@ -16,7 +16,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use feedwright_gcode::canon::{Canon, Motion, MotionKind, Shape};
-use feedwright_plan::Step;
 use feedwright_plan::vector::angle;
 use feedwright_sim::{Machine, RunError, Watch};
 
@@ -56,7 +55,7 @@ pub(super) struct ProgramPiece {
 }
 
 impl ProgramPiece {
-    /// A program of so many steps in one piece.
+    /// All steps of a program as one piece.
     pub(super) const fn whole(steps: usize) -> Self {
         Self { own: 0..steps, cut: 0..steps }
     }
@@ -71,7 +70,7 @@ pub(super) fn splits(pieces: &[ProgramPiece]) -> Vec<usize> {
 pub(super) fn pieces(cut: &ExportedCut<'_>, program: &[Canon], periods: u64) -> Result<Vec<ProgramPiece>, RunError> {
     let servo_s = cut.machine.period.servo_s;
     let whole = WHOLE_PIECES * periods;
-    if most_s(cut) <= whole as f64 * servo_s {
+    if cut.programmed_s(STOP_S) <= whole as f64 * servo_s {
         return Ok(vec![ProgramPiece::whole(program.len())]);
     }
     let numbered = program.iter().enumerate().map(|(step, canon)| match canon {
@@ -86,17 +85,6 @@ pub(super) fn pieces(cut: &ExportedCut<'_>, program: &[Canon], periods: u64) -> 
     let begins = begins(program, &until, periods);
     let ends = begins.iter().skip(1).copied().chain([program.len()]);
     Ok(begins.iter().zip(ends).map(|(&from, to)| with_leads(from..to, &until, lead)).collect())
-}
-
-/// Time that a program takes at the most, s.
-fn most_s(cut: &ExportedCut<'_>) -> f64 {
-    let limits = &cut.machine.limits;
-    let time_s = |step: &Step| match step {
-        Step::Piece(piece) if piece.cutting => STOP_S + piece.length_mm / piece.feed_mm_s.min(limits.max_feed_mm_s),
-        Step::Piece(piece) => STOP_S + piece.length_mm / limits.rapid_mm_s,
-        Step::Event(_) | Step::Rest(_) => STOP_S,
-    };
-    cut.original.iter().map(time_s).sum()
 }
 
 /// How long a lead is, s.
@@ -260,7 +248,7 @@ fn within(mut command: NewMotions, [first, last]: [Option<Seam>; 2]) -> Option<N
     Some(command)
 }
 
-/// Progress of a piece as a part of that of all.
+/// Passes the progress of one piece on to that of all.
 struct PieceWatch<'a> {
     of_all: &'a dyn Watch,
     done: AtomicU64,

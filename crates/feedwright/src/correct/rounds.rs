@@ -221,13 +221,7 @@ struct RoundsBench<'a> {
 impl RoundsBench<'_> {
     /// Refuses a program whose cut cannot be kept, before it is cut: by the time that it takes at the programmed feedrates.
     fn check_length(&self) -> Result<(), RunError> {
-        let limits = &self.cut.machine.limits;
-        let time_s = |step: &Step| match step {
-            Step::Piece(piece) if piece.cutting => piece.length_mm / piece.feed_mm_s.min(limits.max_feed_mm_s),
-            Step::Piece(piece) => piece.length_mm / limits.rapid_mm_s,
-            Step::Event(_) | Step::Rest(_) => 0.0,
-        };
-        check_rows(self.cut.original.iter().map(time_s).sum(), self.settings.servo_s)
+        check_rows(self.cut.programmed_s(0.0), self.settings.servo_s)
     }
 
     /// Time of what is judged in a cut, s.
@@ -292,9 +286,8 @@ impl RoundsBench<'_> {
         }
         let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.current.clone()).collect();
         let rests_s = self.rests_s();
-        let rests = stretches(self.parts).enumerate();
         let own = self.judged.stretches.clone();
-        let rests = rests.filter(|(k, _)| own.contains(k));
+        let rests = stretches(self.parts).enumerate().filter(|(k, _)| own.contains(k));
         let rests = rests.flat_map(|(k, stretch)| dwells(stretch, &commands, k, &rests_s)).flatten();
         let slow = under_way[own.clone()].iter().filter(|stretch| stretch.current.is_some());
         let slow = slow.flat_map(|stretch| [stretch.slow_end, stretch.slow_rapid]).flatten().map(SlowEnd::time_s);
@@ -414,9 +407,8 @@ fn give_up_culprits(under_way: &mut [StretchRounds], cuts: &[StretchCut]) -> boo
     };
     let has_command = |k: usize| under_way[k].best.is_some();
     let culprit = |k: usize| {
-        let own = has_command(k) || k == 0;
-        let culprit = if own { k } else { k - 1 };
-        (is_worse(k..=k) && has_command(culprit) && is_worse(culprit..=k)).then_some(culprit)
+        let culprit = if has_command(k) { k } else { k.checked_sub(1)? };
+        (has_command(culprit) && is_worse(k..=k) && is_worse(culprit..=k)).then_some(culprit)
     };
     let culprits: Vec<usize> = (0..under_way.len()).filter_map(culprit).collect();
     for &k in &culprits {

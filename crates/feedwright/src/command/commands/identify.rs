@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use feedwright_ident::{AxisEstimate, AxisParameters, Model, identifier_name};
-use feedwright_sim::{Machine, StageSteps, is_machine_path};
+use feedwright_sim::{Machine, is_machine_path};
 use miette::Result;
 
 use crate::command::args::identify::IdentifyArgs;
@@ -18,7 +18,7 @@ use crate::command::date::today;
 use crate::command::message::printed;
 use crate::command::streams::{tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn};
-use crate::controllers::{CONTROLLERS, Choices, Setup};
+use crate::controllers::{CONTROLLERS, Choices, Setup, identifying};
 use crate::output::{OutputError, OutputFile, OutputFiles};
 
 pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
@@ -38,7 +38,7 @@ pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     let mut file = OutputFiles::new(input).start(out)?;
     let date = today()?;
     let bar = console.bar(0);
-    let mut steps = StageSteps::begin(&bar, &format!("identifying {}", machine.name));
+    let mut steps = identifying(&machine, &bar);
     let mut progress = |part: f64| steps.reach(part);
     let mut setup = Setup::new(&machine, &choices).telling(&mut progress);
     let trained = setup.train(controller, usize::from(args.axes), date);

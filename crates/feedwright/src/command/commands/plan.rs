@@ -345,7 +345,7 @@ impl PlanOutcome {
 const LEAST_TIMED: u64 = 1000;
 
 /// Ratio to a limit from which on the planner has not kept it: LinuxCNC's has no limit of the jerk. Time-optimal plans stay below, since
-/// their excess is that of their rounding.
+/// only rounding puts them above it.
 const LARGEST_KEPT: f64 = 1.01;
 
 /// As in a machine file.
