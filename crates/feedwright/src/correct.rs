@@ -356,8 +356,8 @@ impl CorrectJob {
             let (read, modes) =
                 verified::read(&text, &self.reader, source.dialect).ok_or(UnwrittenProgram::ReadOtherwise)?;
             let steps = steps_of(&read).map_err(|_| UnwrittenProgram::ReadOtherwise)?;
-            let frames =
-                verified::same_frames(read.iter().zip(modes.iter().map(Arc::as_ref)), source.steps_and_modes());
+            let found = read.iter().zip(modes.iter().map(Arc::as_ref));
+            let frames = verified::same_frames(found, source.steps_and_modes(), step_mm);
             let same = frames && verified::same(&read, &wanted, step_mm);
             if same { Ok(WrittenProgram { text, steps, expanded }) } else { Err(UnwrittenProgram::ReadOtherwise) }
         };

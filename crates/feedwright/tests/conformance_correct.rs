@@ -110,6 +110,34 @@ fn a_loop_is_written_out_and_says_so() {
 }
 
 #[test]
+fn arcs_of_other_planes_stay_where_lines_are_kept_and_where_they_are_written_out() {
+    // A smooth stretch goes from G17 to G18, and the arc behind its corner has no word of a plane.
+    let kept = corrected(
+        "G21 G17 G90 G64 F2400\nG0 X0 Y0 Z0\nG3 X10 Y10 I0 J10\nG3 X0 Y20 I-10 J0\nG1 X-10\nG18 G3 X-20 Z10 I0 K10\nG1 Z15\nX-25\nG2 X-35 Z5 I0 K-10\n\
+         G17\nM2\n",
+        &TARGETS[0],
+    );
+    assert!(!kept.expanded && kept.stretches_changed > 0, "{kept:?}");
+    assert!(kept.program().is_some_and(|program| program.contains("\nG18\n")), "{kept:?}");
+    let written_out = corrected(
+        "G21 G90 G64 F2400\nO1 repeat [2]\nG0 X0 Y0 Z0\nG17 G3 X0 Y0 I0 J10\nG18 G3 X-10 Z10 I0 K10\nO1 endrepeat\nM2\n",
+        &TARGETS[0],
+    );
+    let program = written_out.program().unwrap();
+    assert!(written_out.expanded && program.contains("G18 G3 X-10.0 Z10.0 I0.0 K10.0 F2400.0\nG17\n"), "{program}");
+}
+
+#[test]
+fn messages_and_offsets_from_where_the_tool_is_are_written_out() {
+    let outcome = corrected(
+        "G21 G90 G64 F2400\nG10 L2 P1 X0 Y0 R45\nG54\n#1=0\nO1 repeat [2]\n(DEBUG, turn #1)\nG10 L20 P1 X-1\nG3 X-1 Y0 I0 J10\nG1 X0\n#1=[#1+1]\nO1 endrepeat\nM2\n",
+        &TARGETS[0],
+    );
+    let program = outcome.program();
+    assert!(program.is_some_and(|program| program.contains("(MSG, turn 1.000000)")), "{outcome:?}");
+}
+
+#[test]
 fn a_program_for_fanuc_that_is_written_out_is_still_read_as_one() {
     let text = "%\nO0001\nG21 G90 G17 G0 X0. Y0.\nM98 P2 L2\nM30\nO0002\nG2 X0. Y0. I6. J0. F2400.\nM99\n%\n";
     let outcome = corrected(text, TargetControl::find("generic").unwrap());

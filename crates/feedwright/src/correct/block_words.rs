@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use feedwright_gcode::canon::{EventKind, Motion, MotionKind, Shape};
+use feedwright_gcode::canon::{EventKind, Motion, MotionKind, Plane, Shape};
 use feedwright_gcode::{Dialect, ModesInForce};
 
 use super::target::TargetControl;
@@ -16,6 +16,8 @@ pub(super) struct BlockWords<'a> {
     /// Modes that the blocks are written under; none is mm in machine coordinates.
     modes: Option<&'a ModesInForce>,
     feed: String,
+    /// Plane of the last arc; G17 is in force before the first block.
+    plane: Plane,
 }
 
 /// A number without zeros at its end, but with a point: controls count in steps without it.
@@ -28,7 +30,7 @@ fn number(value: f64, decimals: usize) -> String {
 
 impl<'a> BlockWords<'a> {
     pub(super) const fn new(target: &'a TargetControl, modes: Option<&'a ModesInForce>) -> Self {
-        Self { target, modes, feed: String::new() }
+        Self { target, modes, feed: String::new(), plane: Plane::Xy }
     }
 
     fn unit_mm(&self) -> f64 {
@@ -45,7 +47,7 @@ impl<'a> BlockWords<'a> {
         program_mm.map(|value| value / self.unit_mm())
     }
 
-    /// The block of a motion; none of one that no block of straight lines and arcs of the XY plane can say, empty where nothing moves.
+    /// The block of a motion; none of one that no block of straight lines and arcs can say, empty where nothing moves.
     pub(super) fn motion(&mut self, motion: &Motion) -> Option<String> {
         if !motion.others.is_none() {
             return None;
@@ -53,23 +55,32 @@ impl<'a> BlockWords<'a> {
         let decimals = self.decimals();
         let (start, end) = (self.to_program(motion.start_mm), self.to_program(motion.end_mm));
         let print = |value: f64| number(value, decimals);
+        let mut in_plane: &[usize] = &[];
         let mut text = match (&motion.shape, motion.kind) {
             (Shape::Line, MotionKind::Rapid) => "G0".to_owned(),
             (Shape::Line, MotionKind::Feed) => "G1".to_owned(),
-            (Shape::Arc { plane: feedwright_gcode::canon::Plane::Xy, turns, .. }, _) if turns.abs() == 1 => {
-                if *turns > 0 { "G3".to_owned() } else { "G2".to_owned() }
+            (Shape::Arc { plane, turns, .. }, _) if turns.abs() == 1 => {
+                in_plane = match plane {
+                    Plane::Xy => &[0, 1],
+                    Plane::Zx => &[0, 2],
+                    Plane::Yz => &[1, 2],
+                };
+                let words = (self.plane != *plane).then(|| format!("{} ", plane_word(*plane))).unwrap_or_default();
+                self.plane = *plane;
+                words + if *turns > 0 { "G3" } else { "G2" }
             }
             _ => return None,
         };
-        let is_arc = !matches!(motion.shape, Shape::Line);
         for (axis, letter) in ['X', 'Y', 'Z'].into_iter().enumerate() {
-            if is_arc && axis < 2 || print(start[axis]) != print(end[axis]) {
+            if in_plane.contains(&axis) || print(start[axis]) != print(end[axis]) {
                 let _ = write!(text, " {letter}{}", print(end[axis]));
             }
         }
         if let Shape::Arc { center_mm, .. } = &motion.shape {
             let center = self.to_program(*center_mm);
-            let _ = write!(text, " I{} J{}", print(center[0] - start[0]), print(center[1] - start[1]));
+            for &axis in in_plane {
+                let _ = write!(text, " {}{}", ['I', 'J', 'K'][axis], print(center[axis] - start[axis]));
+            }
         } else if !text.contains(' ') {
             return Some(String::new());
         }
@@ -81,6 +92,20 @@ impl<'a> BlockWords<'a> {
             }
         }
         Some(text)
+    }
+
+    /// The block behind the last motion that puts G17 in force again, where an arc had another plane.
+    pub(super) fn plane_back(&self) -> Option<String> {
+        (self.plane != Plane::Xy).then(|| plane_word(Plane::Xy).to_owned())
+    }
+}
+
+/// The word of a plane.
+pub(super) const fn plane_word(plane: Plane) -> &'static str {
+    match plane {
+        Plane::Xy => "G17",
+        Plane::Zx => "G18",
+        Plane::Yz => "G19",
     }
 }
 
@@ -107,7 +132,7 @@ pub(super) fn event(kind: &EventKind, dialect: Dialect) -> Option<String> {
             format!("M{code}{}{}", word('P', p), word('Q', q))
         }
         EventKind::ToolSelect { tool } => format!("T{tool}"),
-        EventKind::Message { text } => format!("(MSG, {})", text.replace(['(', ')', '\n', '\r'], " ")),
+        EventKind::Message { text } => format!("(MSG, {})", text.trim().replace(['(', ')', '\n', '\r'], " ")),
         EventKind::ProgramEnd => "M2".to_owned(),
         EventKind::SpindleSync { .. } | EventKind::Probe => return None,
     })

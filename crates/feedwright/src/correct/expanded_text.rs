@@ -26,8 +26,7 @@ const SYNCHRONIZED: (&str, &str) =
 const PROBING: (&str, &str) = ("probing", "correct the program without it, and put it back by hand");
 const OTHER_AXES: (&str, &str) = ("an axis beside X, Y and Z", "write the line outside of loops and subroutines");
 const SPLINES: (&str, &str) = ("a spline", "write the line outside of loops and subroutines");
-const OTHER_ARCS: (&str, &str) =
-    ("an arc of more than a turn, or of a plane other than XY", "write the line outside of loops and subroutines");
+const OTHER_ARCS: (&str, &str) = ("an arc of more than a turn", "write the line outside of loops and subroutines");
 const OFFSETS: (&str, &str) = (
     "offsets that are no plain numbers",
     "write G10, G43, G52, G68 and G92 with numbers in place of parameters, and G54 in place of M72",
@@ -128,6 +127,7 @@ impl TextParts<'_> {
             };
             text.lines.push(words.motion(motion).ok_or_else(|| self.unwritable(step, fault))?);
         }
+        text.lines.extend(words.plane_back());
         Ok(())
     }
 

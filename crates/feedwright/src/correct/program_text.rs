@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use feedwright_gcode::canon::{Canon, Corner, Motion, MotionKind, Plane, Shape};
 use feedwright_gcode::{ModesInForce, visible};
 
-use super::block_words::{BlockWords, dwell, feed_number};
+use super::block_words::{BlockWords, dwell, feed_number, plane_word};
 use super::source::SourceProgram;
 use super::source_line::{PartedLine, has_macros, with_feed, with_word};
 use super::stretches::{ProgramPart, StretchCommand, dwells, stretches};
@@ -165,8 +165,11 @@ impl TextParts<'_> {
         let steps = &self.source.steps;
         let (from, to) = (line_of(&steps[first]), line_of(&steps[last]));
         let (modes, at_end) = (self.source.modes(first), self.source.modes(last));
-        let as_first = modes == at_end && !self.source.sets_offsets_within([first, last]);
-        if !as_first || modes.changes_coordinates || !modes.feed_per_minute {
+        let plain = |modes: &ModesInForce| !modes.changes_coordinates && modes.feed_per_minute;
+        let same_places = modes.unit_mm == at_end.unit_mm
+            && modes.same_frame(at_end)
+            && !self.source.sets_offsets_within([first, last]);
+        if !(same_places && plain(modes) && plain(at_end)) {
             return None;
         }
         let (mut before, mut behind) = (Vec::new(), Vec::new());
@@ -189,12 +192,13 @@ impl TextParts<'_> {
         let rest = |seconds: f64| dwell(seconds, self.source.dialect);
         let mut text = before;
         text.extend(rests_before.map(rest));
-        let [enter, leave] = around(modes, command);
+        let [enter, leave] = around([modes, at_end], command);
         text.extend(enter);
         let mut words = BlockWords::new(self.target, Some(modes));
         for motion in command {
             text.push(words.motion(motion)?);
         }
+        text.extend(words.plane_back());
         text.extend(leave);
         text.extend(rests_behind.map(rest));
         text.extend(behind);
@@ -232,24 +236,22 @@ pub(super) fn corner_words(corner: Corner) -> String {
     }
 }
 
-/// Codes that put modes in force which blocks need, and those that take them back.
-fn around(modes: &ModesInForce, command: &[Motion]) -> [Option<String>; 2] {
-    let (mut enter, mut leave) = (Vec::new(), Vec::new());
-    let mut need = |needed: bool, on: String, off: String| {
-        if needed {
-            enter.push(on);
-            leave.push(off);
-        }
+/// Codes that put the modes in force that blocks need, and those that put in force what the program has behind them.
+fn around([before, behind]: [&ModesInForce; 2], command: &[Motion]) -> [Option<String>; 2] {
+    let corner = command.first().map_or(before.corner, |motion| motion.corner);
+    let words = |now: &ModesInForce, wanted: &ModesInForce| {
+        let distance = if wanted.incremental { "G91" } else { "G90" };
+        let center = if wanted.arc_absolute { "G90.1" } else { "G91.1" };
+        let words = [
+            (now.incremental != wanted.incremental).then(|| distance.to_owned()),
+            (now.arc_absolute != wanted.arc_absolute).then(|| center.to_owned()),
+            (now.plane != wanted.plane).then(|| plane_word(wanted.plane).to_owned()),
+            (now.corner != wanted.corner).then(|| corner_words(wanted.corner)),
+        ];
+        let words: Vec<String> = words.into_iter().flatten().collect();
+        (!words.is_empty()).then(|| words.join(" "))
     };
-    let plane = match modes.plane {
-        Plane::Xy => "G17",
-        Plane::Zx => "G18",
-        Plane::Yz => "G19",
-    };
-    need(modes.incremental, "G90".to_owned(), "G91".to_owned());
-    need(modes.arc_absolute, "G91.1".to_owned(), "G90.1".to_owned());
-    need(modes.plane != Plane::Xy, "G17".to_owned(), plane.to_owned());
-    let other = command.first().map(|motion| motion.corner).filter(|corner| *corner != modes.corner);
-    need(other.is_some(), other.map_or_else(String::new, corner_words), corner_words(modes.corner));
-    [enter, leave].map(|words| (!words.is_empty()).then(|| words.join(" ")))
+    let mut blocks = before.clone();
+    (blocks.incremental, blocks.arc_absolute, blocks.plane, blocks.corner) = (false, false, Plane::Xy, corner);
+    [words(before, &blocks), words(&blocks, behind)]
 }

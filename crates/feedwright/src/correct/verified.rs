@@ -32,20 +32,21 @@ pub(super) fn read(text: &str, settings: &Settings, dialect: Dialect) -> Option<
     Some((steps, modes))
 }
 
-/// Whether the motions of two programs have the same frames, one behind the other: a coordinate system with other offsets on the control than here is
-/// no place in the machine.
+/// Whether the motions of two programs have the same frames, one behind the other, up to their printed steps, mm: a coordinate system with other
+/// offsets on the control than here is no place in the machine.
 pub(super) fn same_frames<'a>(
     found: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>,
     wanted: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>,
+    step_mm: f64,
 ) -> bool {
-    let (found, wanted) = (frames(found), frames(wanted));
-    found.len() == wanted.len() && found.iter().zip(&wanted).all(|(found, wanted)| found.same_frame(wanted))
+    let (found, wanted) = (frames(found, step_mm), frames(wanted, step_mm));
+    found.len() == wanted.len() && found.iter().zip(&wanted).all(|(found, wanted)| found.near_frame(wanted, step_mm))
 }
 
-fn frames<'a>(steps: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>) -> Vec<&'a ModesInForce> {
+fn frames<'a>(steps: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>, step_mm: f64) -> Vec<&'a ModesInForce> {
     let mut frames: Vec<&ModesInForce> = Vec::new();
     for (_, modes) in steps.filter(|(step, _)| matches!(step, Canon::Motion(_))) {
-        if frames.last().is_none_or(|last| !last.same_frame(modes)) {
+        if frames.last().is_none_or(|last| !last.near_frame(modes, step_mm)) {
             frames.push(modes);
         }
     }
@@ -102,6 +103,7 @@ fn is_nothing(motion: &Motion, step_mm: f64) -> bool {
 fn same_event(found: &EventKind, wanted: &EventKind) -> bool {
     match (found, wanted) {
         (EventKind::Dwell { seconds: a }, EventKind::Dwell { seconds: b }) => (a - b).abs() < DWELL_S,
+        (EventKind::Message { text: a }, EventKind::Message { text: b }) => a.trim() == b.trim(),
         (a, b) => a == b,
     }
 }

@@ -37,6 +37,15 @@ impl Frame {
         Self { system: 1, system_offset: [0.0; 9], rotation_deg: 0.0, g92: [0.0; 9], tool: [0.0; 9], turn: None }
     }
 
+    /// Whether both have the same system and rotations, and offsets that differ by less than `within_mm`.
+    pub(super) fn is_near(&self, other: &Self, within_mm: f64) -> bool {
+        let near = |a: &Position, b: &Position| a.iter().zip(b).all(|(a, b)| (a - b).abs() < within_mm);
+        (self.system, self.rotation_deg, &self.turn) == (other.system, other.rotation_deg, &other.turn)
+            && near(&self.system_offset, &other.system_offset)
+            && near(&self.g92, &other.g92)
+            && near(&self.tool, &other.tool)
+    }
+
     #[inline]
     pub(crate) fn to_machine(&self, program: &Position) -> Position {
         let mut program = *program;

@@ -45,6 +45,12 @@ impl ModesInForce {
         self.frame == other.frame
     }
 
+    /// The same up to offsets that differ by less than `within_mm`: an offset that a program sets from where the tool is has
+    /// the digits of that place.
+    pub fn near_frame(&self, other: &Self, within_mm: f64) -> bool {
+        self.frame.is_near(&other.frame, within_mm)
+    }
+
     /// Coordinates of the program, in mm, of a place of the machine.
     pub fn to_program(&self, machine_mm: [f64; 3]) -> [f64; 3] {
         let [x, y, z] = machine_mm;
