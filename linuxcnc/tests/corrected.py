@@ -41,7 +41,7 @@ def main():
         run("block", "tnv40", "--axes", 3, "--out", block)
         print(f"{'program':10} {'original, um':>16} {'corrected':>16}  time")
         for part, (rms, most) in (("circle", SMOOTH), ("star", SMOOTH), ("eight", SMOOTH), ("square", CORNERS)):
-            run("correct", programs.PARTS / f"{part}.ngc", "--machine", machine, "--for", "linuxcnc", "--out", out)
+            run("correct", programs.PARTS / f"{part}.ngc", "--machine", machine, "--for", "linuxcnc", "--file-error", 0, "--out", out)
             original = programs.with_rests((programs.PARTS / f"{part}.ngc").read_text())
             cut = lambda text: measure.figures(
                 headless.run("cut", {"program": text, "enable": False}, {"FEEDWRIGHT": {"MACHINE": block, "MODEL": block}}), original)

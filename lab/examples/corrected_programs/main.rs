@@ -14,25 +14,33 @@
 //! those are of one cut of each program by the machine without them.
 //!
 //! With `--drawn SEED` the programs are drawn from that seed (`kinds.rs`), `--count N` of each kind
-//! of `--kinds KIND,...`; `--write FOLDER` writes them there and cuts nothing. With `--wrong` the correction uses a model whose inertia, friction and
-//! speed-loop gain are 20 % off, each up or down. With `--one-wrong` only one of them is off.
+//! of `--kinds KIND,...`; `--write FOLDER` writes them there and cuts nothing. With `--corpus FOLDER`
+//! N programs are drawn from the files of that folder, among those that cut in X, Y or Z alone and
+//! cut for no more than [`LONGEST_S`] at their feedrates. With `--wrong` the correction uses a model
+//! whose inertia, friction and speed-loop gain are 20 % off, each up or down. With `--one-wrong` only
+//! one of them is off.
 
 mod kinds;
 
 use std::path::{Path, PathBuf};
 
 use feedwright::{CorrectJob, ExportedCut, TARGETS, deterministic};
-use feedwright_gcode::{Program, Reader, Settings};
+use feedwright_gcode::{Dialect, Program, Reader, Settings};
 use feedwright_plan::vector::{Vector, norm, sub};
 use feedwright_plan::{Pieces, Step};
 use feedwright_sim::{Axis, Machine, Row, Sink, Squareness};
 
 use kinds::{KINDS, drawn};
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Cuts of each program.
 const CUTS: u64 = 8;
 /// Seed of the noise of the first cut.
 const FIRST_SEED: u64 = 100;
+/// Longest time that a program of a corpus cuts at its feedrates, s.
+const LONGEST_S: f64 = 300.0;
 
 /// Programs of the table that are no files: name, text, and true corners.
 const LETTERS: &str = "G21 G90 G64 F3000\nG0 X0 Y0\nG1 X4 Y14\nX8 Y0\nX6.5 Y5\nX1.5\nG0 X12 Y0\nG1 Y14\nX16\nG2 X16 Y7 J-3.5\nG1 X12\nX16.5\n\
@@ -71,8 +79,9 @@ struct Measured {
     blocks: u64,
 }
 
-fn steps(text: &str) -> Vec<Step> {
-    let reader = Reader::from_text("part.ngc", text, Settings::default()).expect("a program");
+fn steps(text: &str, dialect: Dialect) -> Vec<Step> {
+    let settings = Settings { dialect: Some(dialect), ..Settings::default() };
+    let reader = Reader::from_text("part.ngc", text, settings).expect("a program");
     Pieces::new(reader.map_while(Result::ok)).map_while(Result::ok).collect()
 }
 
@@ -165,7 +174,8 @@ fn line(name: &str, machine: &Machine, text: &str, believed: Option<Machine>) ->
         println!("{:<9} {name:<32} not written: {}", machine.name, outcome.refusal.clone().unwrap_or_default());
         return None;
     };
-    let (original, corrected) = (steps(text), steps(corrected));
+    // What is written out of a Fanuc program need not look like one.
+    let [original, corrected] = [text, corrected].map(|text| steps(text, summary.dialect.0));
     let was = measured(machine, &original, &original, axes);
     let is = measured(machine, &original, &corrected, axes);
     let known = |program: &[Step]| {
@@ -227,17 +237,52 @@ fn value<'a>(arguments: &'a [String], option: &str) -> Option<&'a str> {
     arguments.get(at + 1).map(String::as_str)
 }
 
+/// All files in a folder and below it, in the order of their names.
+fn files_below(folder: &Path) -> Vec<PathBuf> {
+    let mut entries: Vec<PathBuf> =
+        std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
+    entries.sort();
+    entries.into_iter().flat_map(|path| if path.is_dir() { files_below(&path) } else { vec![path] }).collect()
+}
+
+/// Whether a program can be cut: X, Y or Z alone, in a time that is not too long.
+fn is_cut(text: &str) -> bool {
+    let Ok(summary) = Program::from_text("part.ngc", text).check(Settings::default()) else { return false };
+    let time_s = |step: &Step| match step {
+        Step::Piece(piece) if piece.cutting => piece.length_mm / piece.feed_mm_s,
+        _ => 0.0,
+    };
+    summary.feed_mm > 0.0
+        && !summary.moves_others
+        && steps(text, summary.dialect.0).iter().map(time_s).sum::<f64>() <= LONGEST_S
+}
+
+/// A file as a program: group, name and text.
+fn program_of(path: &Path) -> (String, String, String) {
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let text = std::fs::read(path).expect("a file");
+    ("files".to_owned(), name, String::from_utf8_lossy(&text).into_owned())
+}
+
+/// As many programs as that, drawn from the files of a folder.
+fn drawn_files(folder: &Path, seed: u64, count: usize) -> Vec<(String, String, String)> {
+    let programs = files_below(folder).into_iter().map(|path| program_of(&path));
+    let mut fitting: Vec<_> = programs.filter(|(_, _, text)| is_cut(text)).collect();
+    println!("{} programs that can be cut are in {}", fitting.len(), folder.display());
+    fitting.shuffle(&mut Xoshiro256PlusPlus::seed_from_u64(seed));
+    fitting.truncate(count);
+    fitting
+}
+
 /// The programs that are asked for: group, name and text.
 fn programs(arguments: &[String], files: &[String]) -> Vec<(String, String, String)> {
     let parts = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../parts"));
-    let read = |path: &Path| {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let text = std::fs::read(path).expect("a file");
-        ("files".to_owned(), name, String::from_utf8_lossy(&text).into_owned())
-    };
     if let Some(seed) = value(arguments, "--drawn") {
         let seed: u64 = seed.parse().expect("a seed");
         let count: u64 = value(arguments, "--count").map_or(3, |count| count.parse().expect("a count"));
+        if let Some(folder) = value(arguments, "--corpus") {
+            return drawn_files(folder.as_ref(), seed, count as usize);
+        }
         let wanted = value(arguments, "--kinds").map_or_else(|| KINDS.join(","), str::to_owned);
         let of_kind = |kind: &str| -> Vec<(String, String, String)> {
             let one = |number: u64| {
@@ -249,18 +294,19 @@ fn programs(arguments: &[String], files: &[String]) -> Vec<(String, String, Stri
         return wanted.split(',').flat_map(of_kind).collect();
     }
     if !files.is_empty() {
-        return files.iter().map(|path| read(path.as_ref())).collect();
+        return files.iter().map(|path| program_of(path.as_ref())).collect();
     }
     let paths: Vec<PathBuf> =
         ["circle", "ellipse", "eight", "star", "square"].map(|name| parts.join(name).with_extension("ngc")).to_vec();
     let own = OWN.map(|(name, text)| ("files".to_owned(), name.to_owned(), text.to_owned()));
-    paths.iter().map(|path| read(path)).chain(own).collect()
+    paths.iter().map(|path| program_of(path)).chain(own).collect()
 }
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let is_value =
-        |k: usize| k > 0 && ["--drawn", "--count", "--kinds", "--write"].contains(&arguments[k - 1].as_str());
+    let is_value = |k: usize| {
+        k > 0 && ["--drawn", "--count", "--kinds", "--corpus", "--write"].contains(&arguments[k - 1].as_str())
+    };
     let plain = (0..arguments.len()).filter(|&k| !arguments[k].starts_with("--") && !is_value(k));
     let plain: Vec<String> = plain.map(|k| arguments[k].clone()).collect();
     let machines = plain.first().cloned().unwrap_or_else(|| "tnv40,stiff,workshop".to_owned());
