@@ -347,7 +347,7 @@ impl CorrectJob {
         ];
         let text = TextParts { source, parts, commands, rests_s, target: self.target, notes: &notes };
         let wanted = assembled(parts, commands, rests_s);
-        let step_mm = 1.0 / self.target.steps_per_mm();
+        let step_mm = self.target.step_mm(source.largest_unit_mm());
         let checked = |text: String, expanded: bool| {
             let is_own = |line: &str| source.lines.iter().any(|kept| kept == line);
             if text.lines().any(|line| line.len() > self.target.columns && !is_own(line)) {

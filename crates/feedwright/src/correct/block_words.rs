@@ -7,8 +7,9 @@ use feedwright_gcode::{Dialect, ModesInForce};
 
 use super::target::TargetControl;
 
-/// Decimals of a feedrate in units a minute.
-const FEED_DECIMALS: usize = 2;
+/// Decimals of a feedrate in units a minute: of one from 10 on, and of the smallest. A feedrate below 10 has as many digits as one
+/// above, so that it is printed to within 0.05 %.
+const FEED_DECIMALS: [usize; 2] = [2, 6];
 
 /// Writes blocks at one place of a program.
 pub(super) struct BlockWords<'a> {
@@ -37,11 +38,6 @@ impl<'a> BlockWords<'a> {
         self.modes.map_or(1.0, |modes| modes.unit_mm)
     }
 
-    /// An inch is 25 mm: one decimal more, and then the step is smaller than asked for.
-    fn decimals(&self) -> usize {
-        self.target.decimals as usize + usize::from(self.unit_mm() > 1.0)
-    }
-
     fn to_program(&self, machine_mm: [f64; 3]) -> [f64; 3] {
         let program_mm = self.modes.map_or(machine_mm, |modes| modes.to_program(machine_mm));
         program_mm.map(|value| value / self.unit_mm())
@@ -52,7 +48,7 @@ impl<'a> BlockWords<'a> {
         if !motion.others.is_none() {
             return None;
         }
-        let decimals = self.decimals();
+        let decimals = self.target.decimals_of(self.unit_mm());
         let (start, end) = (self.to_program(motion.start_mm), self.to_program(motion.end_mm));
         let print = |value: f64| number(value, decimals);
         let mut in_plane: &[usize] = &[];
@@ -111,7 +107,10 @@ pub(super) const fn plane_word(plane: Plane) -> &'static str {
 
 /// A feedrate in units a minute.
 pub(super) fn feed_number(feed_mm_s: f64, unit_mm: f64) -> String {
-    number(feed_mm_s * 60.0 / unit_mm, FEED_DECIMALS)
+    let feed = feed_mm_s * 60.0 / unit_mm;
+    let [fewest, most] = FEED_DECIMALS;
+    let digits = |decimals: &usize| feed * 10_f64.powi((*decimals - fewest) as i32) >= 10.0;
+    number(feed, (fewest..most).find(digits).unwrap_or(most))
 }
 
 /// A rest of so long.
@@ -147,6 +146,13 @@ mod tests {
         assert_eq!(number(10.0, 5), "10.0");
         assert_eq!(number(-0.000_001, 5), "0.0");
         assert_eq!(number(1.25, 5), "1.25");
+    }
+
+    #[test]
+    fn a_slow_feedrate_in_inches_keeps_its_digits() {
+        assert_eq!(feed_number(25.0, 1.0), "1500.0");
+        assert_eq!(feed_number(0.125, 25.4), "0.2953");
+        assert_eq!(feed_number(0.5, 25.4), "1.181");
     }
 
     #[test]

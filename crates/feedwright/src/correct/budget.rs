@@ -120,6 +120,22 @@ pub(super) fn details_to_give_up(costs: &[StretchCost], other_motions: usize, dw
     given_up
 }
 
+/// Indices of the stretches to give up so that a program takes `more_s` less: those that `may` be given up, with the least gain for
+/// their time first.
+pub(super) fn slow_to_give_up(costs: &[StretchCost], more_s: f64, may: impl Fn(usize) -> bool) -> Vec<usize> {
+    let worth = |k: usize| costs[k].gain_mm2.unwrap_or(0.0) / costs[k].time_s;
+    let mut order: Vec<usize> =
+        (0..costs.len()).filter(|&k| costs[k].gain_mm2.is_some() && costs[k].time_s > 0.0 && may(k)).collect();
+    order.sort_by(|&a, &b| worth(a).total_cmp(&worth(b)));
+    let mut saved_s = 0.0;
+    order.retain(|&k| {
+        let needed = saved_s < more_s;
+        saved_s += costs[k].time_s;
+        needed
+    });
+    order
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -133,6 +149,15 @@ mod tests {
         let larger = StretchBudget { time_s: 1.0, ..detail };
         let costs = [StretchCost { budget: larger, ..cost(1.0) }, cost(1.0)];
         assert_eq!(details_to_give_up(&costs, 0, 0.05), [0; 0]);
+    }
+
+    #[test]
+    fn slow_stretches_are_given_up_until_the_time_is_saved() {
+        let budget = StretchBudget { time_s: 10.0, blocks: 1, lines: 1, loop_s: 0.02 };
+        let cost = |time_s: f64, gain_mm2: f64| StretchCost { budget, blocks: 0.0, time_s, gain_mm2: Some(gain_mm2) };
+        let costs = [cost(1.0, 4.0), cost(2.0, 2.0), cost(1.0, 3.0), cost(-1.0, 1.0), cost(1.0, 0.1)];
+        assert_eq!(slow_to_give_up(&costs, 2.5, |k| k != 4), [1, 2]);
+        assert_eq!(slow_to_give_up(&costs, 0.0, |_| true), [0; 0]);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What came of a correction, and why a program is not to be used.
 
-use crate::report::harm::{harm, listed};
+use crate::report::harm::{MAX_UM, harm, listed};
 use std::fmt;
 
 use feedwright_gcode::Diagnostic;
@@ -14,8 +14,8 @@ use super::file_prior::FileAssumption;
 use super::learned::LearnedOutcome;
 use super::unchanged::UnchangedStretch;
 
-/// A corrected program whose RMS error is not smaller by this share is no better than the uncorrected program. A smaller gain does not
-/// pay for a longer program.
+/// A corrected program is no better than the uncorrected program if its RMS error is not smaller by this share, nor its largest error by
+/// [`MAX_UM`], by which it varies with noise. A smaller gain does not pay for a longer program.
 const LEAST_GAIN: f64 = 0.02;
 
 /// What came of it; serialised, its figures.
@@ -150,17 +150,20 @@ pub(super) fn refusal(
     }
     is_no_better(uncorrected, corrected).then(|| {
         format!(
-            "it is no better than the uncorrected program: RMS {:.2} um for {:.2}, and the gain must be at least {} %",
+            "it is no better than the uncorrected program: RMS {:.2} um for {:.2}, max {:.2} um for {:.2}; the RMS must fall by {} %, or the largest \
+             error by {MAX_UM} um",
             corrected.rms_um,
             uncorrected.rms_um,
-            100.0 * LEAST_GAIN
+            corrected.max_um,
+            uncorrected.max_um,
+            100.0 * LEAST_GAIN,
         )
     })
 }
 
 /// Whether a corrected program gains too little to replace the uncorrected, though it need not be worse.
 fn is_no_better(uncorrected: &ExportedFigures, corrected: &ExportedFigures) -> bool {
-    corrected.rms_um > (1.0 - LEAST_GAIN) * uncorrected.rms_um
+    corrected.rms_um > (1.0 - LEAST_GAIN) * uncorrected.rms_um && corrected.max_um > uncorrected.max_um - MAX_UM
 }
 
 #[cfg(test)]
@@ -195,11 +198,12 @@ mod tests {
     }
 
     #[test]
-    fn a_program_that_gains_less_than_two_percent_is_refused_as_no_better() {
+    fn a_program_that_gains_neither_two_percent_nor_a_micrometer_is_refused_as_no_better() {
         assert_eq!(refused([9.79, 40.0, 2.0]), None);
-        let why =
-            "it is no better than the uncorrected program: RMS 9.81 um for 10.00, and the gain must be at least 2 %";
-        assert_eq!(refused([9.81, 40.0, 2.0]).as_deref(), Some(why));
+        assert_eq!(refused([9.81, 38.9, 2.0]), None);
+        let why = "it is no better than the uncorrected program: RMS 9.81 um for 10.00, max 39.10 um for 40.00; the RMS must fall by 2 %, or the \
+                   largest error by 1 um";
+        assert_eq!(refused([9.81, 39.1, 2.0]).as_deref(), Some(why));
     }
 
     #[test]

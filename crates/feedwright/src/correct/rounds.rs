@@ -13,7 +13,7 @@ use feedwright_sim::{Machine, RunError, StageSteps};
 use serde::{Deserialize, Serialize};
 
 use super::arc_fit::{ArcFit, FitMotion, FitPoint};
-use super::budget::{StretchBudget, StretchCost, details_to_give_up, program_more_s};
+use super::budget::{StretchBudget, StretchCost, details_to_give_up, program_more_s, slow_to_give_up};
 use super::command_update::{UpdateSettings, new_command};
 use super::exported::{CutRow, CutRows, ExportedCut, check_rows};
 use super::file_prior::FileModel;
@@ -179,7 +179,7 @@ pub(super) fn rounds(
     if let Some(file) = file {
         bench.give_up_what_is_uncertain(&mut under_way, file)?;
     }
-    let checks = bench.give_up_what_is_worse(&mut under_way)?;
+    let checks = bench.give_up_what_is_worse(&mut under_way, most_s)?;
     let reasons = under_way.iter().map(|stretch| stretch.best.is_none().then_some(stretch.reason)).collect();
     let commands = under_way.into_iter().map(|stretch| stretch.best).collect();
     Ok(RoundsResult { commands, reasons, rests_s: bench.rests_s(), dwell_s: bench.dwell_s, rounds: round + checks })
@@ -382,17 +382,33 @@ impl RoundsBench<'_> {
         Ok(())
     }
 
-    /// Cuts the best of all together: where the tool does not come to rest between them, they are not what they were each by itself. How often
-    /// it was cut.
-    fn give_up_what_is_worse(&self, under_way: &mut [StretchRounds]) -> Result<u32, RunError> {
+    /// Cuts the best of all together: where the tool does not come to rest between them, they are not what they were each by itself, and they may
+    /// take longer than `most_s`. How often it was cut.
+    fn give_up_what_is_worse(&self, under_way: &mut [StretchRounds], most_s: f64) -> Result<u32, RunError> {
         for check in 1..=CHECKS {
             let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.best.clone()).collect();
-            let (cuts, _) = self.cut(&commands)?;
-            if !give_up_culprits(under_way, &cuts) {
+            let (cuts, rows) = self.cut(&commands)?;
+            let worse = give_up_culprits(under_way, &cuts);
+            let slow = self.give_up_slow(under_way, self.time_s(&rows) - most_s);
+            if !(worse || slow) {
                 return Ok(check);
             }
         }
         Ok(CHECKS)
+    }
+
+    /// Gives up the commands that gain the least for their time, until `more_s` is saved: those of stretches whose largest error is no more than
+    /// what is left in others anyway. Whether any was given up.
+    fn give_up_slow(&self, under_way: &mut [StretchRounds], more_s: f64) -> bool {
+        let own = &mut under_way[self.judged.stretches.clone()];
+        let unchanged = own.iter().filter(|stretch| stretch.best.is_none());
+        let left_mm = unchanged.map(|stretch| stretch.programmed_max_mm).fold(0.0, f64::max);
+        let costs: Vec<StretchCost> = own.iter().map(|stretch| stretch.cost(self.dwell_s)).collect();
+        let given_up = slow_to_give_up(&costs, more_s, |k| own[k].programmed_max_mm <= left_mm);
+        for &k in &given_up {
+            (own[k].best, own[k].reason) = (None, UnchangedReason::Detail);
+        }
+        !given_up.is_empty()
     }
 }
 

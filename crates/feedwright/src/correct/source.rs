@@ -71,6 +71,11 @@ impl SourceProgram {
         self.offset_lines.range(first + 1..).next().is_some_and(|(&step, _)| step <= last)
     }
 
+    /// The largest unit of length that is in force somewhere, mm.
+    pub(super) fn largest_unit_mm(&self) -> f64 {
+        self.modes.iter().map(|modes| modes.unit_mm).fold(1.0, f64::max)
+    }
+
     /// Modes before a step.
     pub(super) fn modes_before(&self, step: usize) -> &ModesInForce {
         step.checked_sub(1).map_or(&self.start, |before| self.modes(before))

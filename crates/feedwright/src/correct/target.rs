@@ -102,6 +102,16 @@ impl TargetControl {
         }
     }
 
+    /// Decimals of a length. Inches have one more: an inch is 25 mm, and then the step is small enough.
+    pub(super) fn decimals_of(&self, unit_mm: f64) -> usize {
+        self.decimals as usize + usize::from(unit_mm > 1.0)
+    }
+
+    /// Printed step of a length in a unit, mm.
+    pub(super) fn step_mm(&self, unit_mm: f64) -> f64 {
+        unit_mm / 10_f64.powi(self.decimals_of(unit_mm) as i32)
+    }
+
     /// Printed steps in a millimetre.
     pub(super) fn steps_per_mm(&self) -> f64 {
         10_f64.powi(self.decimals as i32)

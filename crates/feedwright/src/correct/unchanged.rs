@@ -63,7 +63,7 @@ impl fmt::Display for UnchangedReason {
             ),
             Self::Detail => write!(
                 f,
-                "the stretch is short, and others gain more from the blocks and the time that the program may have; a lower feedrate here would help"
+                "other stretches gain more from the blocks and the time that the program may have; a lower feedrate here would help"
             ),
             Self::Worse => write!(
                 f,
