@@ -1,0 +1,191 @@
+//! The C interface of `hal/` as C calls it: memory that is too small, not aligned or null is refused, models that are none are, and what is made
+//! runs in exactly the bytes it asked for. `just miri` runs it in Miri, which stops at every access beyond them.
+
+#![expect(unreachable_pub, reason = "the sources of a library, of which these tests call a part")]
+
+#[path = "../../hal/src/following.rs"]
+mod following;
+#[path = "../../hal/src/memory.rs"]
+mod memory;
+#[path = "../../hal/src/plant.rs"]
+mod plant;
+#[path = "../../hal/src/servo.rs"]
+mod servo;
+
+#[path = "common/axis.rs"]
+mod axis;
+
+use std::mem::MaybeUninit;
+use std::ptr::null_mut;
+
+use feedwright_control::{IdentifiedAxes, ModelBlock, Trained};
+
+use following::{CJoint, feedwright_min_ferror};
+use plant::{CPlant, feedwright_plant_bytes, feedwright_plant_new, feedwright_plant_step};
+use servo::{CInputs, COutputs, CServo};
+use servo::{FEEDWRIGHT_CUTTING, FEEDWRIGHT_ENABLED, FEEDWRIGHT_JOINT, FEEDWRIGHT_NOT_MADE, FEEDWRIGHT_POWERED};
+use servo::{
+    feedwright_servo_bytes, feedwright_servo_layout, feedwright_servo_new, feedwright_servo_play_out,
+    feedwright_servo_runs_at, feedwright_servo_step,
+};
+
+/// Servo periods: rest until the delay is taken up, and as many in motion.
+const PERIODS: u32 = if cfg!(miri) { 40 } else { 400 };
+const SERVO_S: f64 = 0.001;
+/// Commands, actual positions and offsets of three joints, six settings, and 2 times six channels.
+const NUMBERS: usize = 3 * 3 + 6 + 2 * 6;
+/// Four times three joints, two times six channels, and five more.
+const RESULTS: usize = 4 * 3 + 2 * 6 + 5;
+
+/// `CInputs` as a caller lays it out.
+#[repr(C)]
+struct Inputs {
+    numbers: [f64; NUMBERS],
+    flags: u32,
+    carries: u32,
+}
+
+/// `COutputs` as a caller lays it out.
+#[repr(C)]
+struct Outputs {
+    numbers: [f64; RESULTS],
+    whole: [u32; 10],
+}
+
+fn block<const N: usize>() -> Vec<u8> {
+    let axes = IdentifiedAxes { mechanics_s: 1e-4, axes: [axis::axis(); N] };
+    let mut bytes = Vec::new();
+    let model = ModelBlock { servo_s: SERVO_S, feed_period_s: 0.005, trained: Trained::Axes(axes), geometry: None };
+    model.to_bytes(|more| bytes.extend_from_slice(more));
+    bytes
+}
+
+/// A link in the bytes that it asks for, and the fault that it begins with.
+fn link(joints: u32, bytes: &[u8]) -> (Box<MaybeUninit<CServo>>, u32) {
+    let mut memory = Box::new_uninit();
+    // SAFETY: the memory and the bytes are there.
+    let fault = unsafe {
+        feedwright_servo_new(memory.as_mut_ptr(), feedwright_servo_bytes(), joints, bytes.as_ptr(), bytes.len())
+    };
+    assert_ne!(fault, FEEDWRIGHT_NOT_MADE);
+    (memory, fault)
+}
+
+/// Steps a link that was made; with `fails`, as the caller does once a step has panicked.
+fn steps(memory: &mut MaybeUninit<CServo>, fails: bool) -> Outputs {
+    // SAFETY: `link` made it.
+    let servo = unsafe { memory.assume_init_mut() };
+    let mut outputs = Outputs { numbers: [f64::NAN; RESULTS], whole: [u32::MAX; 10] };
+    let mut drive_mm = [0.0; 3];
+    for n in 0..PERIODS {
+        let mut numbers = [0.0; NUMBERS];
+        let moved = f64::from(n.saturating_sub(PERIODS / 2));
+        numbers[0] = 0.05 * moved;
+        numbers[3..6].copy_from_slice(&drive_mm);
+        numbers[9..15].copy_from_slice(&[0.01, 0.5, 100.0, 500.0, 0.0, 1.0]);
+        // A position that is lost, and what passes through.
+        numbers[4] = if n % 7 == 3 { f64::NAN } else { numbers[4] };
+        numbers[15] = moved;
+        let flags = FEEDWRIGHT_POWERED | FEEDWRIGHT_ENABLED | FEEDWRIGHT_CUTTING;
+        let inputs = Inputs { numbers, flags, carries: FEEDWRIGHT_JOINT | 0xF0 };
+        // SAFETY: the layouts are the same, as the sizes say that the library tells.
+        unsafe {
+            let (inputs, outputs) =
+                (&*(&raw const inputs).cast::<CInputs>(), &mut *(&raw mut outputs).cast::<COutputs>());
+            if fails {
+                feedwright_servo_play_out(servo, inputs, outputs);
+            } else {
+                feedwright_servo_step(servo, inputs, outputs);
+            }
+        }
+        assert!(outputs.numbers.iter().all(|number| number.is_finite()), "{n}: {:?}", outputs.numbers);
+        drive_mm.copy_from_slice(&outputs.numbers[..3]);
+    }
+    outputs
+}
+
+#[test]
+fn a_caller_lays_out_what_the_library_does() {
+    assert_eq!(feedwright_servo_layout(), size_of::<Inputs>() << 16 | size_of::<Outputs>());
+}
+
+#[test]
+fn memory_that_is_none_for_it_is_refused() {
+    let bytes = block::<2>();
+    let (bytes, length) = (bytes.as_ptr(), block::<2>().len());
+    let mut memory = vec![0_u8; feedwright_servo_bytes() + 16];
+    let aligned = memory.as_ptr().align_offset(align_of::<CServo>());
+    let [good, odd] = [aligned, aligned + 1].map(|at| memory[at..].as_mut_ptr().cast::<CServo>());
+    let (needs, plant_needs) = (feedwright_servo_bytes(), feedwright_plant_bytes());
+    // SAFETY: what is no memory for it is not written to; the last one is.
+    unsafe {
+        assert_eq!(feedwright_servo_new(null_mut(), needs, 2, bytes, length), FEEDWRIGHT_NOT_MADE);
+        assert_eq!(feedwright_servo_new(odd, needs, 2, bytes, length), FEEDWRIGHT_NOT_MADE);
+        assert_eq!(feedwright_servo_new(good, needs - 1, 2, bytes, length), FEEDWRIGHT_NOT_MADE);
+        assert!(!feedwright_plant_new(null_mut(), plant_needs, 2, bytes, length, 1));
+        assert!(!feedwright_plant_new(good.cast(), plant_needs - 1, 2, bytes, length, 1));
+        assert_eq!(feedwright_servo_new(good, needs, 2, bytes, length), 0);
+    }
+}
+
+#[test]
+fn a_model_that_is_none_leaves_a_link_that_passes_commands_on() {
+    let whole = block::<2>();
+    let mut limits = [0.0; 3];
+    // SAFETY: a null model is none; the memory is there.
+    unsafe {
+        let mut memory = Box::new_uninit();
+        let fault = feedwright_servo_new(memory.as_mut_ptr(), feedwright_servo_bytes(), 2, null_mut(), 4096);
+        assert_eq!(fault, 1);
+        assert_eq!(steps(&mut memory, false).numbers[6..9], [0.0; 3]);
+        feedwright_min_ferror(null_mut(), 4096, 3, &*[0.0; 9].as_ptr().cast::<[CJoint; 3]>(), &mut limits);
+    }
+    assert_eq!(limits, [0.0; 3]);
+    for length in (0..whole.len()).step_by(if cfg!(miri) { 97 } else { 1 }) {
+        // In memory of its own, beyond which Miri lets nothing be read.
+        let cut: Box<[u8]> = whole[..length].into();
+        let (_, fault) = link(2, &cut);
+        assert!(fault == 1 || fault == 5, "{length}: {fault}");
+    }
+    assert_eq!(link(3, &whole).1, 4);
+}
+
+#[test]
+fn two_and_three_joints_run_in_the_bytes_that_they_ask_for() {
+    for (joints, bytes) in [(2, block::<2>()), (3, block::<3>())] {
+        let (mut memory, fault) = link(joints, &bytes);
+        // SAFETY: `link` made it.
+        let at_another_period = unsafe { feedwright_servo_runs_at(memory.assume_init_mut(), SERVO_S) };
+        assert_eq!((fault, at_another_period), (0, 0));
+        let outputs = steps(&mut memory, false);
+        assert!(outputs.whole[0] >= 2, "it is delayed: {:?}", outputs.whole);
+        assert_eq!(steps(&mut memory, true).whole[1], 14);
+        let mut plant = Box::<CPlant>::new_uninit();
+        let [mut tool_mm, mut measured_mm, mut torque_nm] = [[f64::NAN; 3]; 3];
+        // SAFETY: the memory and the bytes are there, and a machine is made before it is stepped.
+        unsafe {
+            assert!(feedwright_plant_new(
+                plant.as_mut_ptr(),
+                feedwright_plant_bytes(),
+                joints,
+                bytes.as_ptr(),
+                bytes.len(),
+                1
+            ));
+            for n in 0..PERIODS {
+                let command_mm = [0.01 * f64::from(n); 3];
+                feedwright_plant_step(
+                    plant.assume_init_mut(),
+                    &command_mm,
+                    true,
+                    1.0,
+                    &mut tool_mm,
+                    &mut measured_mm,
+                    &mut torque_nm,
+                );
+            }
+        }
+        assert!([tool_mm, measured_mm, torque_nm].as_flattened().iter().all(|number| number.is_finite()));
+        assert!(tool_mm[0] > 0.0, "{tool_mm:?}");
+    }
+}
