@@ -184,6 +184,11 @@ fuzz minutes="5" targets="reader expressions files block logs corrected planner 
             -max_total_time=$(({{ minutes }} * 60)) -max_len=2000 -timeout=60 -rss_limit_mb=3000
     done
 
+# What has unsafe code, in Miri (`rustup toolchain install nightly --component miri,rust-src`): the C interface of the HAL
+# component, but for one test that takes long there. Miri knows no assembler, which `libm` has unless it is told.
+miri:
+    cd linuxcnc && cargo +nightly miri test --locked -p feedwright-servo --features libm/force-soft-floats --test conformance_memory -- --skip two_and_three_joints
+
 # Instructions of one piece of work in the servo thread, counted by callgrind (Debian: valgrind).
 instructions:
     #!/usr/bin/env bash

@@ -126,8 +126,9 @@ fn memory_that_is_none_for_it_is_refused() {
     let block = contour::<2>();
     let (bytes, length) = (block.as_ptr(), block.len());
     let mut memory = vec![0_u8; feedwright_servo_bytes() + 16];
-    let aligned = memory.as_ptr().align_offset(align_of::<CServo>());
-    let [good, odd] = [aligned, aligned + 1].map(|at| memory[at..].as_mut_ptr().cast::<CServo>());
+    let begin = memory.as_mut_ptr();
+    let aligned = begin.align_offset(align_of::<CServo>());
+    let [good, odd] = [aligned, aligned + 1].map(|at| begin.wrapping_add(at).cast::<CServo>());
     let (needs, plant_needs) = (feedwright_servo_bytes(), feedwright_plant_bytes());
     // SAFETY: what is no memory for it is not written to; the last one is.
     unsafe {
