@@ -140,7 +140,7 @@ tick ticks="100000" runs="5":
     cargo build --release --quiet -p feedwright-control --example tick_percentiles
     taskset --cpu-list 1 target/release/examples/tick_percentiles {{ ticks }} {{ runs }}
 
-# The manual as a site, with its links checked: needs cargo's registry once, for mdbook.
+# The manual as a site, with its links checked: needs PyPI once, for mdbook.
 site folder="target/site":
     docs/build {{ folder }}
 
