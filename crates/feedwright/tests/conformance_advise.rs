@@ -1,6 +1,6 @@
 //! The feedrates that are advised hold the tolerance, each way for itself, and are told with what they are cut at.
 
-use feedwright::{Advice, AdviseJob, CONTROLLERS, CorrectJob, CutWay, ErrorPlace, JobError, TARGETS};
+use feedwright::{Advice, AdviseJob, CONTROLLERS, CorrectJob, CutWay, ErrorPlace, JobError, PageUnits, TARGETS};
 use feedwright_gcode::Program;
 use feedwright_sim::Machine;
 
@@ -41,15 +41,24 @@ fn what_is_advised_holds_and_the_page_says_so() {
     let [small, large] = [0, 1].map(|k: usize| &advice.stretches[k]);
     assert_eq!((small.lines, large.lines), ([2, 2], [4, 4]));
     assert!(small.holds_mm_s[0].unwrap() < 0.9 * large.holds_mm_s[0].unwrap(), "{:?}", advice.stretches);
-    let mut page = Vec::new();
-    advice.write_page(&mut page, "part <1>.ngc", "tnv40").unwrap();
-    let page = String::from_utf8(page).unwrap();
+    let page = |units: PageUnits| {
+        let mut page = Vec::new();
+        advice.write_page(&mut page, "part <1>.ngc", "tnv40", units).unwrap();
+        String::from_utf8(page).unwrap()
+    };
+    let (page, inches) = (page(PageUnits::Metric), page(PageUnits::Inch));
     assert!(
         page.contains("part &lt;1&gt;.ngc") && page.contains("Simulated.") && page.ends_with("</html>\n"),
         "{page}"
     );
+    // The programmed feedrate of both circles, 1800 mm/min.
+    assert!(page.contains("<td>1800</td>") && inches.contains("<td>70.9</td>"), "{page}\n{inches}");
+    assert!(inches.contains("stays within 0.394 thou: of"), "{inches}");
+    for metric in ["µm", " mm/min", "[mm"] {
+        assert!(!inches.contains(metric), "{metric}: {inches}");
+    }
     assert!(!page.contains("NaN") && !page.contains("inf") && page.contains("lqg-identified"), "{page}");
-    let svg = advice.figure().to_svg();
+    let svg = advice.figure(PageUnits::Metric).to_svg();
     assert!(svg.starts_with("<svg") && svg.contains("Largest contour error"), "{svg}");
 }
 
@@ -67,7 +76,7 @@ fn what_no_feedrate_holds_is_said_and_a_program_that_cuts_nothing_is_refused() {
     let sentence = nearest.sentence("um", overrun.programmed_mm_s[1]);
     assert!(sentence.contains("where line 3 begins; beside the ends of stretches at"), "{sentence}");
     assert!(nearest.why().contains("a dwell (G4) before line 3 would"), "{}", nearest.why());
-    assert!(overrun.stretches[0].cell(0).starts_with('(') && overrun.ways[1].whole.is_some(), "{overrun:?}");
+    assert!(overrun.stretches[0].cell(0, PageUnits::Metric).starts_with('(') && overrun.ways[1].whole.is_some(), "{overrun:?}");
     assert!(overrun.stretches[0].remark("um").unwrap().ends_with("um, start"), "{overrun:?}");
     let error = advice("G21 G0 X5\nM2\n", 10.0).unwrap_err();
     assert!(error.to_string().ends_with("has no feed motion: there is nothing to cut"), "{error}");
@@ -96,7 +105,7 @@ fn a_machine_file_is_as_uncertain_as_it_is_for_a_correction() {
             corrected.corrected
         );
         let mut page = Vec::new();
-        advice.write_page(&mut page, "part.ngc", "tnv40").unwrap();
+        advice.write_page(&mut page, "part.ngc", "tnv40", PageUnits::Metric).unwrap();
         assert_eq!(String::from_utf8(page).unwrap().contains("kp_1_s is taken as"), is_file);
     }
 }

@@ -74,7 +74,7 @@ pub struct CommonArgs {
     /// auto colours on a terminal, unless NO_COLOR is set or TERM is dumb.
     #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = ColorWhen::Auto, help_heading = EVERYWHERE, hide_short_help = true)]
     pub color: ColorWhen,
-    /// Units of what is printed: metric (mm, um) or inch (in, thousandths of an inch). The report of `run` follows; JSON, figures and the page of `advise` stay metric.
+    /// Units of what is printed: metric (mm, um) or inch (in, thousandths of an inch). The pages of `run` and `advise` follow; JSON and figures stay metric.
     ///
     /// Contour errors are in thousandths with three decimals: drawings state tolerances in thousandths, and the last decimal is a
     /// millionth, about 0.025 um.

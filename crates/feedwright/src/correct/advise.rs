@@ -21,6 +21,7 @@ use super::unchanged::lines_of;
 use crate::compensation::GeometryChoice;
 use crate::controllers::{Choices, Entry, LQG_IDENTIFIED, Make, Setup, identifying};
 use crate::job_error::{JobError, axes_that_move};
+use crate::report::PageUnits;
 pub use feed_cuts::ErrorPlace;
 use feed_cuts::FeedBench;
 use feed_search::{FeedSearch, LARGEST};
@@ -324,12 +325,13 @@ impl NearestCut {
 }
 
 impl StretchAdvice {
-    /// The feedrate that holds in one of [`WAYS`], mm/min: in brackets where it holds beside the ends of the stretch only.
-    pub fn cell(&self, way: usize) -> String {
+    /// The feedrate that holds in one of [`WAYS`], mm/min or in/min: in brackets where it holds beside the ends of the stretch only.
+    pub fn cell(&self, way: usize, units: PageUnits) -> String {
+        let per_minute = |mm_s: f64| units.fixed(60.0 * mm_s, 0);
         let beside_ends = self.nearest[way].and_then(|nearest| nearest.beside_ends_mm_s);
         match (self.holds_mm_s[way], beside_ends) {
-            (Some(mm_s), _) => format!("{:.0}", 60.0 * mm_s),
-            (None, Some(mm_s)) => format!("({:.0})", 60.0 * mm_s),
+            (Some(mm_s), _) => per_minute(mm_s),
+            (None, Some(mm_s)) => format!("({})", per_minute(mm_s)),
             (None, None) => "-".to_owned(),
         }
     }

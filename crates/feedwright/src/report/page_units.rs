@@ -20,7 +20,7 @@ pub enum PageUnits {
 
 impl PageUnits {
     /// By which a value in mm, µm or mm/s is multiplied.
-    pub(super) const fn factor(self) -> f64 {
+    pub(crate) const fn factor(self) -> f64 {
         match self {
             Self::Metric => 1.0,
             Self::Inch => 1.0 / INCH_MM,
@@ -28,7 +28,7 @@ impl PageUnits {
     }
 
     /// Name of the unit of errors.
-    pub(super) const fn error(self) -> &'static str {
+    pub(crate) const fn error(self) -> &'static str {
         match self {
             Self::Metric => "µm",
             Self::Inch => "thou",
@@ -44,7 +44,7 @@ impl PageUnits {
     }
 
     /// Name of the unit of feedrates.
-    pub(super) const fn feed(self) -> &'static str {
+    pub(crate) const fn feed(self) -> &'static str {
         match self {
             Self::Metric => "mm/min",
             Self::Inch => "in/min",
@@ -52,7 +52,7 @@ impl PageUnits {
     }
 
     /// An error in µm, to three digits; a thousandth of an inch has a decimal more, as it is 25.4 µm.
-    pub(super) fn number(self, um: f64) -> String {
+    pub(crate) fn number(self, um: f64) -> String {
         let value = self.factor() * um;
         match self {
             Self::Inch if value.abs() < 0.9995 => fixed(value, 3),
@@ -61,7 +61,7 @@ impl PageUnits {
     }
 
     /// A length in mm, or an error in µm, with so many decimals, and one more in inches.
-    pub(super) fn fixed(self, value: f64, decimals: usize) -> String {
+    pub(crate) fn fixed(self, value: f64, decimals: usize) -> String {
         fixed(self.factor() * value, self.decimals(decimals))
     }
 
@@ -75,7 +75,7 @@ impl PageUnits {
     }
 
     /// A text with metric figures.
-    pub(super) fn text(self, text: &str) -> String {
+    pub(crate) fn text(self, text: &str) -> String {
         match self {
             Self::Metric => text.to_owned(),
             Self::Inch => in_inches(text),

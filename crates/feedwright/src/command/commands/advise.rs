@@ -14,11 +14,12 @@ use crate::command::controls::{check_tolerance, compensation, control, file_erro
 use crate::command::message::{OUT_OF_TOLERANCE, printed, tell_assumed_limits, warn};
 use crate::command::streams::{ProgramInputs, tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn};
-use crate::command::terminal::wrapped;
+use crate::command::terminal::{page_units, wrapped};
 use crate::controllers::{CONTROLLERS, Choices};
 use crate::correct::FileAssumption;
 use crate::correct::advise::{Advice, AdviseJob, FeedCut, STRETCH_LEGEND, WayAdvice};
 use crate::output::OutputFile;
+use crate::report::PageUnits;
 use crate::results_format::{json_text, stamped};
 
 /// Stretches that are listed.
@@ -54,11 +55,11 @@ pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
     let part = args.part.file_name().unwrap_or(args.part.as_os_str()).to_string_lossy();
     let mut complete = Vec::new();
     if let Some(mut file) = report {
-        advice.write_page(&mut file, &part, &job.machine.name).into_diagnostic()?;
+        advice.write_page(&mut file, &part, &job.machine.name, page_units()).into_diagnostic()?;
         complete.push(file);
     }
     if let Some(mut file) = figure {
-        file.write_all(advice.figure().to_svg().as_bytes()).into_diagnostic()?;
+        file.write_all(advice.figure(PageUnits::Metric).to_svg().as_bytes()).into_diagnostic()?;
         complete.push(file);
     }
     if let Some(mut file) = json {
@@ -141,7 +142,7 @@ fn print_stretches(out: &mut dyn Write, advice: &Advice) -> std::io::Result<()> 
     for stretch in &listed {
         let [first, last] = stretch.lines;
         let lines = if first == last { first.to_string() } else { format!("{first} to {last}") };
-        let [a, b, c] = [0, 1, 2].map(|way| stretch.cell(way));
+        let [a, b, c] = [0, 1, 2].map(|way| stretch.cell(way, PageUnits::Metric));
         let remark = stretch.remark("um").unwrap_or_default();
         table.row(vec![lines, format!("{:.0}", 60.0 * stretch.feed_mm_s), a, b, c, remark]);
     }
