@@ -38,14 +38,14 @@ self.onmessage = async ({ data: { id, module, request } }: MessageEvent<ToWorker
       post({ id, kind: "failed", reason: outputText(0) });
       return;
     }
-    const [answer, transfer] = answers[request.task](outputText, output);
+    const [answer, transfer] = await answers[request.task](outputText, output);
     post({ id, kind: "done", answer }, transfer);
   } catch (error) {
     post({ id, kind: "failed", reason: `the engine stopped: ${error}` });
   }
 };
 
-type Read<T> = (text: (k: number) => string, bytes: (k: number) => Uint8Array) => [T, Transferable[]];
+type Read<T> = (text: (k: number) => string, bytes: (k: number) => Uint8Array) => [T, Transferable[]] | Promise<[T, Transferable[]]>;
 
 const answers: { [task in keyof Answers]: Read<Answers[task]> } = { lists, check, correct, run };
 
@@ -63,10 +63,10 @@ function correct(text: (k: number) => string): [Corrected, Transferable[]] {
   return [{ ...JSON.parse(text(0)), program: text(1) }, []];
 }
 
-function run(text: (k: number) => string): [RunAnswer, Transferable[]] {
+async function run(text: (k: number) => string): Promise<[RunAnswer, Transferable[]]> {
   const results = JSON.parse(text(0)), table = JSON.parse(text(3)), page = text(2);
   // The report holds everything that is drawn: the page reads what it reads.
-  const data = JSON.parse(between(page, '<script type="application/json" id="data">', "</script>"));
+  const data = await inflated(between(page, '<script type="text/plain" id="data">', "</script>"));
   const cuts = data.runs.map((columns: Columns, k: number) =>
     cut(columns, data.meta, k, { figures: table.runs[k], worst: results.runs[k].worst }));
   const verdict = between(page, '<p class="verdict">', "</p>").replace(/<[^>]*>/g, "").replace(/&amp;/g, "&");
@@ -74,6 +74,12 @@ function run(text: (k: number) => string): [RunAnswer, Transferable[]] {
     [cut.t_s, cut.error_um, cut.line, cut.cutting, cut.foot_mm, cut.deviation_mm].map((column) => column.buffer));
   const report = new Blob([page], { type: "text/html" });
   return [{ cuts, remarks: table.remarks, verdict, report }, transfer];
+}
+
+/** The data of a report are deflated JSON in base64. */
+async function inflated(base64: string) {
+  const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"))).json();
 }
 
 type Columns = { [name: string]: number[] };

@@ -1,9 +1,14 @@
-// Decodes the data: columns are differences of integers, see crates/feedwright/src/report/embedded_data.rs.
+// Decodes the data: deflated JSON in base64, in which columns are differences of integers, see crates/feedwright/src/report/embedded_data.rs.
 
 const AXIS_NAMES = ["x", "y", "z"];
 
 // Names of the units of errors, lengths and feedrates. Values named _um and _mm are in these units: one of errors is a thousandth of one of lengths.
 let ERROR_UNIT = "\u00b5m", LENGTH_UNIT = "mm", FEED_UNIT = "mm/min";
+
+async function inflated(base64) {
+  const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"))).json();
+}
 
 function decode(differences, unit) {
   const values = new Float64Array(differences.length);

@@ -2,7 +2,12 @@
 
 root.classList.add("js");
 const $ = (id) => document.getElementById(id);
-const model = readModel(JSON.parse($("data").textContent));
+if (!window.DecompressionStream) {
+  $("too-old").hidden = false;
+  document.querySelector(".cockpit").hidden = true;
+  return;
+}
+const model = readModel(await inflated($("data").textContent));
 const options = new URLSearchParams(location.hash.slice(1));
 
 if (model.runs.some((run) => run.n > 1)) start();

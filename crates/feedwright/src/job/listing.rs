@@ -8,7 +8,7 @@ use crate::report::{ProgramLine, ReportedRun};
 /// Largest program that the page lists in full, bytes. Of a larger program it lists the lines of
 /// the drawn points.
 const WHOLE_BYTES: u64 = 128 << 10;
-/// Text that is kept, bytes: a page of a long program is some megabytes anyway.
+/// Text that is kept, bytes: deflated, G-code is a quarter of it in the page.
 const MOST_BYTES: usize = 512 << 10;
 /// Most characters of a listed line; the rest is cut off.
 const MOST_CHARACTERS: usize = 160;

@@ -58,9 +58,9 @@ pub fn write_html_in(out: &mut impl Write, report: &Report, units: PageUnits) ->
     tables::write_worst(out, report, units)?;
     tables::write_notes(out, report, units)?;
     out.write_all(b"</main>\n<footer>Simulated and written by feedwright. Charts: uPlot (MIT).</footer>\n")?;
-    out.write_all(b"<script type=\"application/json\" id=\"data\">")?;
+    out.write_all(b"<script type=\"text/plain\" id=\"data\">")?;
     embedded_data::write(out, report, units)?;
-    write!(out, "</script>\n<script>{UPLOT_JS}</script>\n<script>(() => {{\n\"use strict\";\n")?;
+    write!(out, "</script>\n<script>{UPLOT_JS}</script>\n<script>(async () => {{\n\"use strict\";\n")?;
     for script in SCRIPTS {
         out.write_all(script.as_bytes())?;
     }

@@ -6,7 +6,7 @@
 
 use feedwright_plan::vector::{add_scaled, dot, sub};
 
-/// Most vertices kept. A page holds one outline; this many are some 150 kB of it.
+/// Most vertices kept. A page holds one outline; deflated, this many are some 60 kB of it.
 const MAX_VERTICES: usize = 20_000;
 
 /// Tolerance to begin with, mm: a tenth of the smallest contour error that a drawing shows.

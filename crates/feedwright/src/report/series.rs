@@ -94,7 +94,7 @@ impl Default for Series {
 }
 
 impl Series {
-    /// Most points kept: on a wide screen ten for each pixel, and with two controllers a page of less than 3 MB.
+    /// Most points kept: on a wide screen ten for each pixel, and with two controllers a page of less than 2 MB.
     /// Even, so that a full record merges without a remainder.
     pub const MAX_POINTS: usize = 20_000;
 
