@@ -40,7 +40,7 @@ const CUTS: u64 = 8;
 /// Seed of the noise of the first cut.
 const FIRST_SEED: u64 = 100;
 /// Longest time that a program of a corpus cuts at its feedrates, s.
-const LONGEST_S: f64 = 300.0;
+const LONGEST_S: f64 = 120.0;
 
 /// Programs of the table that are no files: name, text, and true corners.
 const LETTERS: &str = "G21 G90 G64 F3000\nG0 X0 Y0\nG1 X4 Y14\nX8 Y0\nX6.5 Y5\nX1.5\nG0 X12 Y0\nG1 Y14\nX16\nG2 X16 Y7 J-3.5\nG1 X12\nX16.5\n\
