@@ -76,7 +76,10 @@ fn what_no_feedrate_holds_is_said_and_a_program_that_cuts_nothing_is_refused() {
     let sentence = nearest.sentence("um", overrun.programmed_mm_s[1]);
     assert!(sentence.contains("where line 3 begins; beside the ends of stretches at"), "{sentence}");
     assert!(nearest.why().contains("a dwell (G4) before line 3 would"), "{}", nearest.why());
-    assert!(overrun.stretches[0].cell(0, PageUnits::Metric).starts_with('(') && overrun.ways[1].whole.is_some(), "{overrun:?}");
+    assert!(
+        overrun.stretches[0].cell(0, PageUnits::Metric).starts_with('(') && overrun.ways[1].whole.is_some(),
+        "{overrun:?}"
+    );
     assert!(overrun.stretches[0].remark("um").unwrap().ends_with("um, start"), "{overrun:?}");
     let error = advice("G21 G0 X5\nM2\n", 10.0).unwrap_err();
     assert!(error.to_string().ends_with("has no feed motion: there is nothing to cut"), "{error}");
