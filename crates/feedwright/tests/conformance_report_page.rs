@@ -2,38 +2,19 @@
 //! reports give equal bytes, bounded size.
 
 use crate::made_up_report::{HOSTILE, page, report, report_with_log};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use feedwright::{PageUnits, Report, Series, write_html_in};
 use feedwright_sim::Outcome;
 
 /// Largest page for two controllers and three axes at full resolution, bytes.
 const LARGEST_PAGE: usize = 2_000_000;
 
-/// The bytes of a text in base64.
-fn from_base64(text: &str) -> Vec<u8> {
-    let digit = |c: u8| match c {
-        b'A'..=b'Z' => c - b'A',
-        b'a'..=b'z' => c - b'a' + 26,
-        b'0'..=b'9' => c - b'0' + 52,
-        b'+' => 62,
-        b'/' => 63,
-        _ => panic!("{c} is no digit"),
-    };
-    let (mut bytes, mut bits, mut count) = (Vec::new(), 0_u32, 0);
-    for c in text.bytes().filter(|&c| c != b'=') {
-        (bits, count) = (bits << 6 | u32::from(digit(c)), count + 6);
-        if count >= 8 {
-            count -= 8;
-            bytes.push((bits >> count) as u8);
-        }
-    }
-    bytes
-}
-
 /// The data of a page.
 fn embedded_data(page: &str) -> serde_json::Value {
     let start = page.find("id=\"data\">").unwrap() + "id=\"data\">".len();
     let end = start + page[start..].find("</script>").unwrap();
-    let json = miniz_oxide::inflate::decompress_to_vec(&from_base64(&page[start..end])).unwrap();
+    let json = miniz_oxide::inflate::decompress_to_vec(&STANDARD.decode(&page[start..end]).unwrap()).unwrap();
     serde_json::from_slice(&json).unwrap()
 }
 
