@@ -61,9 +61,10 @@ impl<'a> BlockWords<'a> {
                     Plane::Zx => &[0, 2],
                     Plane::Yz => &[1, 2],
                 };
-                let words = (self.plane != *plane).then(|| format!("{} ", plane_word(*plane))).unwrap_or_default();
+                let code = if *turns > 0 { "G3" } else { "G2" };
+                let changes = self.plane != *plane;
                 self.plane = *plane;
-                words + if *turns > 0 { "G3" } else { "G2" }
+                if changes { format!("{} {code}", plane_word(*plane)) } else { code.to_owned() }
             }
             _ => return None,
         };
