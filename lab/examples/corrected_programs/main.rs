@@ -24,6 +24,7 @@ mod kinds;
 
 use std::path::{Path, PathBuf};
 
+use feedwright::command::FilesToCheck;
 use feedwright::{CorrectJob, ExportedCut, TARGETS, deterministic};
 use feedwright_gcode::{Dialect, Program, Reader, Settings};
 use feedwright_plan::vector::{Vector, norm, sub};
@@ -237,14 +238,6 @@ fn value<'a>(arguments: &'a [String], option: &str) -> Option<&'a str> {
     arguments.get(at + 1).map(String::as_str)
 }
 
-/// All files in a folder and below it, in the order of their names.
-fn files_below(folder: &Path) -> Vec<PathBuf> {
-    let mut entries: Vec<PathBuf> =
-        std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
-    entries.sort();
-    entries.into_iter().flat_map(|path| if path.is_dir() { files_below(&path) } else { vec![path] }).collect()
-}
-
 /// Whether a program can be cut: X, Y or Z alone, in a time that is not too long.
 fn is_cut(text: &str) -> bool {
     let Ok(summary) = Program::from_text("part.ngc", text).check(Settings::default()) else { return false };
@@ -266,7 +259,8 @@ fn program_of(path: &Path) -> (String, String, String) {
 
 /// As many programs as that, drawn from the files of a folder.
 fn drawn_files(folder: &Path, seed: u64, count: usize) -> Vec<(String, String, String)> {
-    let programs = files_below(folder).into_iter().map(|path| program_of(&path));
+    let found = FilesToCheck::find(&[folder.to_owned()]);
+    let programs = found.files.iter().map(|path| program_of(path));
     let mut fitting: Vec<_> = programs.filter(|(_, _, text)| is_cut(text)).collect();
     println!("{} programs that can be cut are in {}", fitting.len(), folder.display());
     fitting.shuffle(&mut Xoshiro256PlusPlus::seed_from_u64(seed));

@@ -1,5 +1,6 @@
-//! The C interface of `hal/` as C calls it: memory that is too small, not aligned or null is refused, models that are none are, and what is made
-//! runs in exactly the bytes it asked for. `just miri` runs it in Miri, which stops at every access beyond them.
+//! The C interface of `hal/` as C calls it. It refuses memory that is too small, not aligned or null, and bytes that are no
+//! model. What it makes runs in exactly the bytes that it asked for. `just miri` runs this file in Miri, which stops at every
+//! access beyond them.
 
 #![expect(unreachable_pub, reason = "the sources of a library, of which these tests call a part")]
 
@@ -145,7 +146,7 @@ fn memory_that_is_none_for_it_is_refused() {
 fn a_model_that_is_none_leaves_a_link_that_passes_commands_on() {
     let whole = block::<2>();
     let mut limits = [0.0; 3];
-    // SAFETY: a null model is none; the memory is there.
+    // SAFETY: a null pointer may stand for a missing model, and the memory is there.
     unsafe {
         let mut memory = Box::new_uninit();
         let fault = feedwright_servo_new(memory.as_mut_ptr(), feedwright_servo_bytes(), 2, null_mut(), 4096);

@@ -248,7 +248,7 @@ fn within(mut command: NewMotions, [first, last]: [Option<Seam>; 2]) -> Option<N
     Some(command)
 }
 
-/// Passes the progress of one piece on to that of all.
+/// Adds the progress of a piece to the progress of the whole program.
 struct PieceWatch<'a> {
     of_all: &'a dyn Watch,
     done: AtomicU64,

@@ -21,7 +21,7 @@ pub(super) enum UnchangedReason {
     Blocks,
     /// A better command leaves the path by more than the machine file allows.
     LeavesPath,
-    /// It is short, and the blocks or the time that the program may have are used where they gain more.
+    /// Other stretches gain more from the blocks and the time that the program may have.
     Detail,
     /// Beside the other stretches its command makes an error larger.
     Worse,
