@@ -38,6 +38,8 @@
 //! | `stretch_cut.rs` | errors and time of each stretch in a cut |
 //! | `budget.rs` | how many blocks and how much time a program may have |
 //! | `unchanged.rs` | why stretches stay as they are |
+//! | `stretch_rounds.rs` | a stretch under way |
+//! | `given_up.rs` | commands that are given up behind a cut of all together |
 //! | `rounds.rs` | cut, change, fit, until it gets no better |
 //! | `pieces.rs` | a long program in pieces |
 //! | `block_words.rs` | motions and events as blocks |
@@ -68,6 +70,8 @@ mod command_update;
 mod stretch_cut;
 mod budget;
 mod unchanged;
+mod stretch_rounds;
+mod given_up;
 mod rounds;
 mod pieces;
 mod block_words;
@@ -103,7 +107,7 @@ pub use outcome::CorrectOutcome;
 use outcome::{UnwrittenProgram, WrittenProgram, refusal};
 use pieces::{LongProgram, PIECE_PERIODS, ProgramPiece, pieces, rounds_of_pieces, splits};
 use predicted::{learned_outcome, no_gain};
-use program_text::TextParts;
+use program_text::{TextParts, UnkeptLines};
 use rounds::{RoundsResult, steps_of};
 use source::SourceProgram;
 use stretches::{ProgramPart, assembled, parts};
@@ -215,8 +219,8 @@ impl CorrectJob {
         let parts = parts(&source.steps, &splits(&pieces));
         let workers = self.workers(&source, pieces.len());
         let program = LongProgram { steps: &source.steps, parts: &parts, pieces: &pieces };
-        let found = rounds_of_pieces(&predicted, &program, self.target, file.as_ref(), &workers).map_err(of_run)?;
-        let written = self.written(&source, &parts, &found);
+        let mut found = rounds_of_pieces(&predicted, &program, self.target, file.as_ref(), &workers).map_err(of_run)?;
+        let written = self.written(&source, &parts, &mut found);
         let (written, unwritten) = written.map_or_else(|fault| (None, Some(fault)), |written| (Some(written), None));
         let changed = found.commands.iter().flatten().count();
         let unchanged = unchanged_stretches(&parts, &found.reasons);
@@ -329,13 +333,30 @@ impl CorrectJob {
         learned.map(Some).map_err(|(log, error)| JobError::of_part_log(&log, &self.program, &error))
     }
 
-    /// A text that says what was found, with as many lines of the original as can be.
+    /// A text that says what was found, with as many lines of the original as can be. Where the program cannot be written out, stretches whose lines
+    /// cannot be replaced are given up, as long as others remain.
     fn written(
         &self,
         source: &SourceProgram,
         parts: &[ProgramPart],
-        found: &RoundsResult,
+        found: &mut RoundsResult,
     ) -> Result<WrittenProgram, UnwrittenProgram> {
+        loop {
+            match self.written_as_found(source, parts, found) {
+                Ok(written) => return Ok(written),
+                Err((_, UnkeptLines::Stretches(unkept))) if found.has_other_commands(&unkept) => found.give_up(&unkept),
+                Err((fault, _)) => return Err(fault),
+            }
+        }
+    }
+
+    /// A text with all that was found, or why there is none: when the program is written out, and with the lines of the original.
+    fn written_as_found(
+        &self,
+        source: &SourceProgram,
+        parts: &[ProgramPart],
+        found: &RoundsResult,
+    ) -> Result<WrittenProgram, (UnwrittenProgram, UnkeptLines)> {
         let RoundsResult { commands, rests_s, .. } = found;
         let notes = [
             format!("{CORRECTED_FOR} {}, control {}", self.machine.name, self.target.name),
@@ -361,10 +382,15 @@ impl CorrectJob {
             let same = frames && verified::same(&read, &wanted, step_mm);
             if same { Ok(WrittenProgram { text, steps, expanded }) } else { Err(UnwrittenProgram::ReadOtherwise) }
         };
-        if let Some(Ok(written)) = text.kept().map(|text| checked(text, false)) {
-            return Ok(written);
-        }
-        checked(text.expanded().map_err(UnwrittenProgram::Line)?, true)
+        let unkept = match text.kept() {
+            Ok(text) => match checked(text, false) {
+                Ok(written) => return Ok(written),
+                Err(_) => UnkeptLines::Program,
+            },
+            Err(unkept) => unkept,
+        };
+        let expanded = text.expanded().map_err(UnwrittenProgram::Line);
+        expanded.and_then(|text| checked(text, true)).map_err(|fault| (fault, unkept))
     }
 }
 

@@ -11,8 +11,9 @@
 //! ```
 //!
 //! From each point the fit takes the longest stretch that it finds by doubling and halving. Arcs
-//! lie in the XY plane; along Z they rise evenly (helices). A stretch without motion in the plane
-//! is straight.
+//! lie in the plane of the first two axes; along the third they rise evenly (helices). A stretch
+//! without motion in the plane is straight. Points along the axes of G18 or G19 give arcs of that
+//! plane.
 //!
 //! Source: Bolton (1975), Biarc curves; equal tangent lengths as in Sutcliffe (2005).
 
@@ -40,7 +41,7 @@ const TWO_FOR_ONE: usize = 2;
 /// A point to be passed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FitPoint {
-    /// Where it is, mm.
+    /// Where it is, along the axes of the plane and its normal, mm.
     pub at_mm: Vector,
     /// Direction of travel, of length 1 in the plane; zero where there is no way in the plane.
     pub tangent: [f64; 2],
@@ -48,7 +49,7 @@ pub struct FitPoint {
     pub feed_mm_s: f64,
 }
 
-/// A motion of the fit.
+/// A motion of the fit, along the same axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitMotion {
     pub start_mm: Vector,
@@ -216,7 +217,7 @@ impl<'a> ArcFit<'a> {
             && self.points[from + 1..to].iter().all(passed)
     }
 
-    /// As the reader gives it.
+    /// As the reader gives it in G17.
     fn shape(&self, arc: &FitArc) -> Shape {
         let Some(radius_mm) = arc.radius_mm else { return Shape::Line };
         let [i, j] = [0, 1].map(|k| self.print(arc.center_mm[k] - arc.start_mm[k]));
@@ -230,6 +231,22 @@ impl<'a> ArcFit<'a> {
 
     fn printed(&self, point_mm: Vector) -> Vector {
         point_mm.map(|value| self.print(value))
+    }
+}
+
+impl FitMotion {
+    /// The same along X, Y and Z, of a fit to points along the axes of a plane.
+    pub(super) fn in_plane(self, plane: Plane) -> Self {
+        let along = |of_plane: Vector| {
+            let mut place = [0.0; 3];
+            plane.axes().into_iter().zip(of_plane).for_each(|(axis, value)| place[axis] = value);
+            place
+        };
+        let shape = match self.shape {
+            Shape::Arc { center_mm, turns, .. } => Shape::Arc { plane, center_mm: along(center_mm), turns },
+            shape => shape,
+        };
+        Self { start_mm: along(self.start_mm), end_mm: along(self.end_mm), shape, ..self }
     }
 }
 

@@ -94,8 +94,8 @@ fn changes(rows: &[CutRow], range: Range<usize>, lags: &[LoopLag], settings: &Up
     range.map(|n| change(n - from)).collect()
 }
 
-/// The points of a new command for a stretch that was commanded in the rows of `range`, from one end of the stretch to the other; none where
-/// the command would leave the path by more than it may.
+/// The points of a new command for a stretch that was commanded in the rows of `range`, from one end of the stretch to the other, along the
+/// axes of the stretch's plane; none where the command would leave the path by more than it may.
 pub(super) fn new_command(
     rows: &[CutRow],
     range: Range<usize>,
@@ -134,21 +134,24 @@ pub(super) fn new_command(
 
 /// Points that are not too near to each other, with their tangents.
 fn thinned(wanted: &[Vector], rows: &[CutRow], stretch: &SmoothStretch, least_mm: f64) -> Vec<FitPoint> {
-    let [start_mm, end_mm] = [stretch.start_mm(), stretch.end_mm()];
+    let axes = stretch.plane().axes();
+    let along = |place: Vector| axes.map(|axis| place[axis]);
+    let [start_mm, end_mm] = [stretch.start_mm(), stretch.end_mm()].map(along);
     let point = |at_mm: Vector, feed_mm_s: f64| FitPoint { at_mm, tangent: [0.0; 2], feed_mm_s };
     let mut points = vec![point(start_mm, stretch.motions[0].feed_mm_s)];
     let half = wanted.len() / 2;
-    for (n, (at_mm, row)) in wanted.iter().zip(rows).enumerate() {
-        let near = |other: Vector| distance(other, *at_mm) < least_mm;
+    for (n, (at_mm, row)) in wanted.iter().map(|at_mm| along(*at_mm)).zip(rows).enumerate() {
+        let near = |other: Vector| distance(other, at_mm) < least_mm;
         if near(points[points.len() - 1].at_mm) || n > half && near(end_mm) {
             continue;
         }
-        points.push(point(*at_mm, row.feed_mm_s));
+        points.push(point(at_mm, row.feed_mm_s));
     }
     points.push(point(end_mm, stretch.motions[stretch.motions.len() - 1].feed_mm_s));
-    set_tangents(&mut points, stretch.directions());
+    set_tangents(&mut points, stretch.directions().map(along));
     points
 }
+
 /// Tangents by the neighbours of each point; at the ends those of the program.
 fn set_tangents(points: &mut [FitPoint], directions: [Vector; 2]) {
     let last = points.len() - 1;

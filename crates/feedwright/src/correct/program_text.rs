@@ -13,7 +13,7 @@ use feedwright_gcode::{ModesInForce, visible};
 use super::block_words::{BlockWords, dwell, feed_number, plane_word};
 use super::source::SourceProgram;
 use super::source_line::{PartedLine, has_macros, with_feed, with_word};
-use super::stretches::{ProgramPart, StretchCommand, dwells, stretches};
+use super::stretches::{ProgramPart, SmoothStretch, StretchCommand, dwells, stretches};
 use super::target::TargetControl;
 
 /// What the text is made of.
@@ -31,9 +31,12 @@ pub(super) struct TextParts<'a> {
 /// What happens to lines of the original.
 #[derive(Debug, Default)]
 struct LineEdit {
-    /// Last line that is replaced; before the first where lines are only put in front.
+    /// Last line that it is about; before the first where lines are only put in front.
     to: usize,
     text: Vec<String>,
+    /// Whether the lines stay, behind the text, and what comes behind them.
+    stay: bool,
+    behind: Vec<String>,
 }
 
 /// Words that the next line that moves has to say itself, since a line that said them has been replaced.
@@ -50,30 +53,87 @@ pub(super) fn line_of(step: &Canon) -> usize {
     }
 }
 
+/// Why the lines of the original cannot stay.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum UnkeptLines {
+    /// They are not carried out in their order, the control does not run their macros, or lines between corrected ones cannot stay alone.
+    Program,
+    /// Lines of these stretches, which have another command, cannot be taken apart.
+    Stretches(Vec<usize>),
+}
+
 impl TextParts<'_> {
-    /// The original with new blocks in place of those that have another command; none where its lines are not carried out in their order, the control
-    /// does not run its macros, or a line that is to be replaced cannot be taken apart.
-    pub(super) fn kept(&self) -> Option<String> {
-        let steps = &self.source.steps;
+    /// The original with new blocks in place of those that have another command.
+    ///
+    /// # Errors
+    /// What stands against it.
+    pub(super) fn kept(&self) -> Result<String, UnkeptLines> {
         let runs =
             self.target.runs_macros_of(self.source.dialect) || !self.source.lines.iter().any(|line| has_macros(line));
-        if !runs || !steps.is_sorted_by_key(line_of) {
-            return None;
+        if !runs || !self.source.steps.is_sorted_by_key(line_of) {
+            return Err(UnkeptLines::Program);
         }
         let mut edits: BTreeMap<usize, LineEdit> = BTreeMap::new();
-        for (number, stretch) in stretches(self.parts).enumerate() {
-            let rests = dwells(stretch, self.commands, number, self.rests_s);
-            let from = line_of(&steps[stretch.steps[0]]);
-            if let Some(command) = &self.commands[number] {
-                if let (Some(approach), Some((step, _))) = (&command.approach, &stretch.rapid) {
-                    edits.insert(line_of(&steps[*step]), self.replaced([*step; 2], approach, [None; 2])?);
-                }
-                edits.insert(from, self.replaced(stretch.steps, &command.motions, rests)?);
-            } else if let [Some(seconds), _] = rests {
-                let text = vec![dwell(seconds, self.source.dialect)];
-                edits.insert(from, LineEdit { to: from - 1, text });
+        let all: Vec<&SmoothStretch> = stretches(self.parts).collect();
+        // A stretch as it is programmed has an edit where the command before it needs a rest.
+        let of_command =
+            |number: usize| if self.commands[number].is_some() { number } else { number.saturating_sub(1) };
+        let mut unkept: Vec<usize> = (0..all.len())
+            .filter(|&number| self.edit(all[number], number, &mut edits).is_none())
+            .map(of_command)
+            .collect();
+        unkept.dedup();
+        if !unkept.is_empty() {
+            return Err(UnkeptLines::Stretches(unkept));
+        }
+        self.edited(edits).ok_or(UnkeptLines::Program)
+    }
+
+    /// Adds what happens to the lines of a stretch; none where they cannot be taken apart.
+    fn edit(&self, stretch: &SmoothStretch, number: usize, edits: &mut BTreeMap<usize, LineEdit>) -> Option<()> {
+        let rests = dwells(stretch, self.commands, number, self.rests_s);
+        if let Some(command) = &self.commands[number] {
+            if let (Some(approach), Some((step, _))) = (&command.approach, &stretch.rapid) {
+                edits.insert(self.begins(*step)?, self.replaced([*step; 2], approach, [None; 2])?);
+            }
+            let edit = if command.motions == stretch.motions {
+                let [text, behind] = rests.map(|rest| self.rest(rest));
+                LineEdit { to: line_of(&self.source.steps[stretch.steps[1]]), text, stay: true, behind }
+            } else {
+                self.replaced(stretch.steps, &command.motions, rests)?
+            };
+            edits.insert(self.begins(stretch.steps[0])?, edit);
+        } else if rests[0].is_some() {
+            let from = self.begins(stretch.steps[0])?;
+            edits.insert(from, LineEdit { to: from - 1, text: self.rest(rests[0]), ..LineEdit::default() });
+        }
+        Some(())
+    }
+
+    /// The line of a rest, where there is one.
+    fn rest(&self, seconds: Option<f64>) -> Vec<String> {
+        seconds.map(|seconds| dwell(seconds, self.source.dialect)).into_iter().collect()
+    }
+
+    /// The line with which a step begins: that of its motion, or the first that collects its curve; none where a line in between cannot be taken
+    /// apart.
+    fn begins(&self, step: usize) -> Option<usize> {
+        let steps = &self.source.steps;
+        let ends = line_of(&steps[step]);
+        if !matches!(&steps[step], Canon::Motion(Motion { shape: Shape::Spline(_), .. })) {
+            return Some(ends);
+        }
+        let before = step.checked_sub(1).map_or(0, |before| line_of(&steps[before]));
+        for line in before + 1..=ends {
+            if PartedLine::parse(self.source.lines.get(line - 1)?)?.collects_curve() {
+                return Some(line);
             }
         }
+        Some(ends)
+    }
+
+    /// The lines of the original with their edits.
+    fn edited(&self, edits: BTreeMap<usize, LineEdit>) -> Option<String> {
         let mut text = Vec::new();
         let mut next = 1;
         let mut needs = NeededWords::default();
@@ -84,9 +144,12 @@ impl TextParts<'_> {
             self.copy(next..from, &mut needs, &mut text)?;
             text.extend(edit.text);
             next = edit.to + 1;
-            if edit.to >= from {
+            if edit.stay {
+                self.copy(from..next, &mut needs, &mut text)?;
+            } else if edit.to >= from {
                 needs = NeededWords { code: true, feed: true };
             }
+            text.extend(edit.behind);
         }
         self.copy(next..self.source.lines.len() + 1, &mut needs, &mut text)?;
         self.put_notes(&mut text);
@@ -163,7 +226,7 @@ impl TextParts<'_> {
     /// New blocks for the lines of some steps, with rests before and behind.
     fn replaced(&self, [first, last]: [usize; 2], command: &[Motion], rests: [Option<f64>; 2]) -> Option<LineEdit> {
         let steps = &self.source.steps;
-        let (from, to) = (line_of(&steps[first]), line_of(&steps[last]));
+        let (from, to) = (self.begins(first)?, line_of(&steps[last]));
         let (modes, at_end) = (self.source.modes(first), self.source.modes(last));
         let plain = |modes: &ModesInForce| !modes.changes_coordinates && modes.feed_per_minute;
         let same_places = modes.unit_mm == at_end.unit_mm
@@ -188,10 +251,9 @@ impl TextParts<'_> {
                 _ => return None,
             }
         }
-        let [rests_before, rests_behind] = rests;
-        let rest = |seconds: f64| dwell(seconds, self.source.dialect);
+        let [rest_before, rest_behind] = rests.map(|rest| self.rest(rest));
         let mut text = before;
-        text.extend(rests_before.map(rest));
+        text.extend(rest_before);
         let [enter, leave] = around([modes, at_end], command);
         text.extend(enter);
         let mut words = BlockWords::new(self.target, Some(modes));
@@ -200,10 +262,10 @@ impl TextParts<'_> {
         }
         text.extend(words.plane_back());
         text.extend(leave);
-        text.extend(rests_behind.map(rest));
+        text.extend(rest_behind);
         text.extend(behind);
         text.retain(|line| !line.is_empty());
-        Some(LineEdit { to, text })
+        Some(LineEdit { to, text, ..LineEdit::default() })
     }
 
     /// Notes as comments behind `%` and the program's number.

@@ -3,44 +3,32 @@
 //! Each stretch is judged by itself: the tool rests at its ends, so that it does not see the others. The best command of each is kept, and a
 //! stretch whose command gets no better is left alone. One that is cut within [`GOOD_MM`] from the start stays as it is programmed.
 
-use crate::report::harm;
-use std::iter;
-use std::ops::{Range, RangeInclusive};
+use std::ops::Range;
 
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Shape};
 use feedwright_plan::{PathError, Pieces, Step};
 use feedwright_sim::{Machine, RunError, StageSteps};
 use serde::{Deserialize, Serialize};
 
-use super::arc_fit::{ArcFit, FitMotion, FitPoint};
-use super::budget::{StretchBudget, StretchCost, details_to_give_up, program_more_s, slow_to_give_up};
+use super::arc_fit::FitMotion;
+use super::budget::{StretchBudget, StretchCost, details_to_give_up, program_more_s};
 use super::command_update::{UpdateSettings, new_command};
 use super::exported::{CutRow, CutRows, ExportedCut, check_rows};
 use super::file_prior::FileModel;
+use super::given_up::{give_up_culprits, give_up_losses, give_up_slow};
 use super::loop_lag::{LoopLag, loop_lags};
 use super::nominal::deterministic;
 use super::slow_end::{SlowEnd, slow_approach, slow_end, slow_last};
 use super::stretch_cut::{StretchCut, StretchGain, by_stretch, overshoot_mm, rapid_overshoot_mm};
-use super::stretches::{NewMotions, ProgramPart, SmoothStretch, StretchCommand, assembled, dwells, rest_s, stretches};
+use super::stretch_rounds::StretchRounds;
+use super::stretches::{NewMotions, ProgramPart, SmoothStretch, StretchCommand, assembled, dwells, stretches};
 use super::target::TargetControl;
 use super::unchanged::UnchangedReason;
 
-/// Cuts at the most, and those without a gain after which a stretch is left alone.
+/// Cuts at the most.
 const ROUNDS: u32 = 12;
-const NO_GAIN: u32 = 3;
 /// Cuts at the most in which commands are given up that are worse together.
 const CHECKS: u32 = 4;
-/// Smallest reduction of a stretch's error figure that counts as a gain, as a fraction of it.
-const LEAST_GAIN: f64 = 0.02;
-/// A stretch whose largest error is less stays as it is, mm: what blocks that fit a command miss it by.
-const GOOD_MM: f64 = 1e-3;
-/// Distance of blocks from the command, mm: the finest at which they are few enough, from this part of the RMS error that they are to correct and
-/// no less than this and a printed step, in steps of this factor.
-const FIT_SHARE: f64 = 0.04;
-const FINEST_MM: f64 = 5e-5;
-const COARSER: f64 = 1.25;
-/// Where no such distance is left, mm, and whether blocks may be many.
-const TOLERANCES_MM: [(f64, bool); 4] = [(1e-3, false), (2e-3, false), (1e-3, true), (4e-3, true)];
 /// Standard deviations of the Gaussians over errors and over the command, time constants of the position loop.
 const SMOOTHING: f64 = 0.15;
 const COMMAND_SMOOTHING: f64 = 0.4;
@@ -63,10 +51,6 @@ const MOST_HASTE: [f64; 2] = [0.05, 0.7];
 const LEAST_DWELL_S: f64 = 0.002;
 /// Part of the time that a program may take longer that is for its rests, as long as no command is corrected.
 const FOR_RESTS: f64 = 0.6;
-/// Where a stretch takes too long, the Gaussian over its command gets wider by a factor between these: what the command bends more than the
-/// path slows the control down. It gets wider by so much at the most.
-const WIDER: [f64; 2] = [1.15, 1.6];
-const WIDEST: f64 = 4.0;
 
 /// What the rounds have come to.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -81,6 +65,20 @@ pub(super) struct RoundsResult {
     pub(super) dwell_s: f64,
     /// Cuts that were simulated.
     pub(super) rounds: u32,
+}
+
+impl RoundsResult {
+    /// Whether stretches beside these, which are in order, have another command.
+    pub(super) fn has_other_commands(&self, numbers: &[usize]) -> bool {
+        (0..self.commands.len()).any(|k| self.commands[k].is_some() && numbers.binary_search(&k).is_err())
+    }
+
+    /// Gives up the commands of stretches whose lines cannot be written.
+    pub(super) fn give_up(&mut self, numbers: &[usize]) {
+        for &k in numbers {
+            (self.commands[k], self.reasons[k]) = (None, Some(UnchangedReason::Unwritable));
+        }
+    }
 }
 
 /// The part of a program that is judged; what is before and behind it leads to it, and is corrected for that alone.
@@ -100,30 +98,6 @@ impl JudgedPart {
         let count = stretches(parts).count();
         Self { stretches: 0..count, path_mm: f64::NEG_INFINITY..f64::INFINITY, of_several: count > 1 }
     }
-}
-
-/// A stretch under way.
-struct StretchRounds {
-    current: StretchCommand,
-    best: StretchCommand,
-    /// Figure and time, s, of the best; those of the programmed command first.
-    best_mm: f64,
-    best_s: f64,
-    budget: StretchBudget,
-    programmed_mm: f64,
-    programmed_max_mm: f64,
-    /// Distance of blocks from the command that is small beside what they are to correct, mm.
-    tolerance_mm: f64,
-    /// Sum of the squares of its errors, of the programmed command and of the best, mm2.
-    square_sums_mm2: [f64; 2],
-    since: u32,
-    slow_end: Option<SlowEnd>,
-    slow_rapid: Option<SlowEnd>,
-    /// Width of the Gaussian over the command, in its usual width.
-    width: f64,
-    /// What has last kept it from a better command.
-    reason: UnchangedReason,
-    done: bool,
 }
 
 /// The path of canonical steps.
@@ -246,36 +220,20 @@ impl RoundsBench<'_> {
     /// From the cut of the program as it is.
     fn begun(&self, stretch: &SmoothStretch, cut: &StretchCut, rows: &[CutRow]) -> StretchRounds {
         let servo_s = self.settings.servo_s;
+        let budget = StretchBudget {
+            time_s: f64::from(cut.periods) * servo_s,
+            blocks: stretch.motions.len(),
+            lines: stretch.motions.iter().filter(|motion| motion.shape == Shape::Line).count(),
+            loop_s: 1.0 / self.cut.machine.slowest_kp_1_s(),
+        };
+        let mut begun = StretchRounds::begun(cut, budget, self.target.steps_per_mm());
         let overruns = rapid_overshoot_mm(rows, cut, stretch, servo_s) > OVERSHOOT_MM;
-        let good = cut.max_mm < GOOD_MM;
-        let slow_rapid = overruns.then(|| slow_end(self.cut.machine));
-        let approach = slow_rapid.and_then(|slow| slow_approach(stretch, slow, self.target));
-        let done = good || cut.rows.is_empty();
-        let time_s = f64::from(cut.periods) * servo_s;
-        let finest_mm = (1.0 / self.target.steps_per_mm()).clamp(FINEST_MM, TOLERANCES_MM[0].0);
-        let programmed = NewMotions { motions: stretch.motions.clone(), approach, settles: false };
-        StretchRounds {
-            current: (!done).then_some(programmed),
-            best: None,
-            best_mm: cut.figure_mm(),
-            best_s: time_s,
-            budget: StretchBudget {
-                time_s,
-                blocks: stretch.motions.len(),
-                lines: stretch.motions.iter().filter(|motion| motion.shape == Shape::Line).count(),
-                loop_s: 1.0 / self.cut.machine.slowest_kp_1_s(),
-            },
-            programmed_mm: cut.figure_mm(),
-            programmed_max_mm: cut.max_mm,
-            tolerance_mm: (FIT_SHARE * cut.rms_mm()).clamp(finest_mm, TOLERANCES_MM[0].0),
-            square_sums_mm2: [cut.square_sum_mm2; 2],
-            since: 0,
-            slow_end: None,
-            slow_rapid,
-            width: 1.0,
-            reason: if done { UnchangedReason::Good } else { UnchangedReason::NoGain },
-            done,
+        begun.slow_rapid = overruns.then(|| slow_end(self.cut.machine));
+        if !begun.done {
+            let approach = begun.slow_rapid.and_then(|slow| slow_approach(stretch, slow, self.target));
+            begun.current = Some(NewMotions { motions: stretch.motions.clone(), approach, settles: false });
         }
+        begun
     }
 
     /// Makes a program faster that takes longer than it may by `more_s`: first its dwells get shorter, then its slow ends. The stretches are judged
@@ -303,8 +261,7 @@ impl RoundsBench<'_> {
         for stretch in under_way.iter_mut().filter(|stretch| stretch.reason != UnchangedReason::Good) {
             stretch.slow_end = stretch.slow_end.map(|slow| slow.shorter(part));
             stretch.slow_rapid = stretch.slow_rapid.map(|slow| slow.shorter(part));
-            (stretch.best, stretch.best_mm, stretch.since) = (None, stretch.programmed_mm, 0);
-            stretch.done = stretch.current.is_none();
+            stretch.again();
         }
     }
 
@@ -325,7 +282,7 @@ impl RoundsBench<'_> {
                 state.slow_rapid = Some(state.slow_rapid.map_or(slow_end, slower));
             }
             let points = new_command(rows, cut.rows.clone(), &self.lags, stretch, &settings, state.slow_end);
-            state.reason = if points.is_none() { UnchangedReason::LeavesPath } else { state.reason };
+            let leaves_path = points.is_none();
             let fitted = points.and_then(|points| state.fitted(&points, self.target.steps_per_mm()));
             let fitted: Option<Vec<Motion>> = fitted
                 .map(|motions| motions.into_iter().map(|motion| as_motion(motion, stretch, self.target)).collect())
@@ -335,12 +292,8 @@ impl RoundsBench<'_> {
                     let approach = state.slow_rapid.and_then(|slow| slow_approach(stretch, slow, self.target));
                     state.current = Some(NewMotions { motions, approach, settles: state.slow_end.is_some() });
                 }
-                None => {
-                    if state.reason != UnchangedReason::LeavesPath {
-                        state.reason = UnchangedReason::Blocks;
-                    }
-                    state.finish();
-                }
+                None if leaves_path => state.give_up(UnchangedReason::LeavesPath),
+                None => state.widen(),
             }
         }
     }
@@ -389,48 +342,15 @@ impl RoundsBench<'_> {
             let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.best.clone()).collect();
             let (cuts, rows) = self.cut(&commands)?;
             let worse = give_up_culprits(under_way, &cuts);
-            let slow = self.give_up_slow(under_way, self.time_s(&rows) - most_s);
+            let own = self.judged.stretches.clone();
+            let worse = worse || give_up_losses(&mut under_way[own.clone()], &cuts[own.clone()]);
+            let slow = give_up_slow(&mut under_way[own], self.time_s(&rows) - most_s, self.dwell_s);
             if !(worse || slow) {
                 return Ok(check);
             }
         }
         Ok(CHECKS)
     }
-
-    /// Gives up the commands that gain the least for their time, until `more_s` is saved: those of stretches whose largest error is no more than
-    /// what is left in others anyway. Whether any was given up.
-    fn give_up_slow(&self, under_way: &mut [StretchRounds], more_s: f64) -> bool {
-        let own = &mut under_way[self.judged.stretches.clone()];
-        let unchanged = own.iter().filter(|stretch| stretch.best.is_none());
-        let left_mm = unchanged.map(|stretch| stretch.programmed_max_mm).fold(0.0, f64::max);
-        let costs: Vec<StretchCost> = own.iter().map(|stretch| stretch.cost(self.dwell_s)).collect();
-        let given_up = slow_to_give_up(&costs, more_s, |k| own[k].programmed_max_mm <= left_mm);
-        for &k in &given_up {
-            (own[k].best, own[k].reason) = (None, UnchangedReason::Detail);
-        }
-        !given_up.is_empty()
-    }
-}
-
-/// Gives up the commands that make a stretch of a common cut worse, and returns whether any was given up.
-///
-/// A stretch as it is programmed is worse at its start because of the command of the one before. That command is weighed by the largest error of both.
-fn give_up_culprits(under_way: &mut [StretchRounds], cuts: &[StretchCut]) -> bool {
-    let is_worse = |range: RangeInclusive<usize>| {
-        let programmed_mm =
-            under_way[range.clone()].iter().map(|stretch| stretch.programmed_max_mm).fold(0.0, f64::max);
-        cuts[range].iter().map(|cut| cut.max_mm).fold(0.0, f64::max) > programmed_mm + 1e-3 * harm::MAX_UM
-    };
-    let has_command = |k: usize| under_way[k].best.is_some();
-    let culprit = |k: usize| {
-        let culprit = if has_command(k) { k } else { k.checked_sub(1)? };
-        (has_command(culprit) && is_worse(k..=k) && is_worse(culprit..=k)).then_some(culprit)
-    };
-    let culprits: Vec<usize> = (0..under_way.len()).filter_map(culprit).collect();
-    for &k in &culprits {
-        (under_way[k].best, under_way[k].reason) = (None, UnchangedReason::Worse);
-    }
-    !culprits.is_empty()
 }
 
 fn settings(machine: &Machine) -> UpdateSettings {
@@ -445,66 +365,8 @@ fn settings(machine: &Machine) -> UpdateSettings {
     }
 }
 
-impl StretchRounds {
-    /// What its best command costs and gains.
-    fn cost(&self, dwell_s: f64) -> StretchCost {
-        let Self { best, budget, .. } = self;
-        let Some(best) = best else { return StretchCost { budget: *budget, blocks: 0.0, time_s: 0.0, gain_mm2: None } };
-        StretchCost {
-            budget: *budget,
-            blocks: best.motions.len() as f64 - budget.blocks as f64 + 1.0,
-            time_s: self.best_s - budget.time_s + rest_s(best.settles, dwell_s),
-            gain_mm2: Some(self.square_sums_mm2[0] - self.square_sums_mm2[1]),
-        }
-    }
-
-    /// Takes in how its command was cut.
-    fn judge(&mut self, cut: &StretchCut, servo_s: f64, dwell_s: f64) {
-        if self.done {
-            return;
-        }
-        let (figure_mm, time_s) = (cut.figure_mm(), f64::from(cut.periods) * servo_s);
-        let slow_s = self.slow_end.map_or(0.0, SlowEnd::time_s);
-        let most_s = self.budget.most_s(dwell_s) + slow_s;
-        if time_s >= most_s && self.width < WIDEST {
-            let times = (time_s - self.budget.time_s) / (most_s - self.budget.time_s);
-            self.width *= times.clamp(WIDER[0], WIDER[1]);
-            let [percent, rests] =
-                [time_s - self.budget.time_s, slow_s].map(|more_s| 100.0 * more_s / self.budget.time_s);
-            self.reason = UnchangedReason::TooSlow { percent, rests };
-            return;
-        }
-        let better = figure_mm < self.best_mm && time_s < most_s;
-        self.since = if better && figure_mm < (1.0 - LEAST_GAIN) * self.best_mm { 0 } else { self.since + 1 };
-        if better {
-            (self.best, self.best_mm, self.best_s) = (self.current.clone(), figure_mm, time_s);
-            self.square_sums_mm2[1] = cut.square_sum_mm2;
-        }
-        if self.since >= NO_GAIN {
-            self.finish();
-        }
-    }
-
-    /// Blocks along the points of a command, as fine as they may be; none where they would be too many.
-    fn fitted(&self, points: &[FitPoint], steps_per_mm: f64) -> Option<Vec<FitMotion>> {
-        let fine = iter::successors(Some(self.tolerance_mm), |mm| Some(COARSER * mm));
-        let fine = fine.take_while(|&mm| mm < TOLERANCES_MM[0].0).map(|mm| (mm, self.budget.most_fine_blocks()));
-        let [few, most] = self.budget.most_blocks();
-        let coarse = TOLERANCES_MM.map(|(mm, many)| (mm, if many { most } else { few }));
-        fine.chain(coarse).find_map(|(tolerance_mm, most)| {
-            let motions = ArcFit::new(points, tolerance_mm, steps_per_mm).motions();
-            (!motions.is_empty() && motions.len() as f64 <= most).then_some(motions)
-        })
-    }
-
-    fn finish(&mut self) {
-        self.done = true;
-        self.current.clone_from(&self.best);
-    }
-}
-
 fn as_motion(fitted: FitMotion, stretch: &SmoothStretch, target: &TargetControl) -> Motion {
-    let FitMotion { start_mm, end_mm, shape, feed_mm_s } = fitted;
+    let FitMotion { start_mm, end_mm, shape, feed_mm_s } = fitted.in_plane(stretch.plane());
     let first = &stretch.motions[0];
     let corner = match (target.corner, first.corner) {
         (Some(corner), _) => corner,
@@ -514,67 +376,4 @@ fn as_motion(fitted: FitMotion, stretch: &SmoothStretch, target: &TargetControl)
     let feed_mm_s = if feed_mm_s > 0.0 { feed_mm_s } else { first.feed_mm_s };
     let others = AuxiliaryAxes::default();
     Motion { line: first.line, kind: MotionKind::Feed, start_mm, end_mm, shape, feed_mm_s, corner, others }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Stretches of 10 um of programmed error; those that are listed have another command.
-    fn stretches_with_commands(count: usize, changed: &[usize]) -> Vec<StretchRounds> {
-        let command = || Some(NewMotions { motions: Vec::new(), approach: None, settles: false });
-        let stretch = |k: usize| StretchRounds {
-            current: None,
-            best: changed.contains(&k).then(command).flatten(),
-            best_mm: 0.0,
-            best_s: 1.0,
-            budget: StretchBudget { time_s: 1.0, blocks: 1, lines: 0, loop_s: 0.02 },
-            programmed_mm: 0.0,
-            programmed_max_mm: 0.01,
-            tolerance_mm: FINEST_MM,
-            square_sums_mm2: [1.0; 2],
-            since: 0,
-            slow_end: None,
-            slow_rapid: None,
-            width: 1.0,
-            reason: UnchangedReason::NoGain,
-            done: true,
-        };
-        (0..count).map(stretch).collect()
-    }
-
-    /// Stretches that keep their command behind a cut with these largest errors, mm, and whether one was worse.
-    fn kept(changed: &[usize], max_mm: &[f64]) -> (Vec<usize>, bool) {
-        let mut under_way = stretches_with_commands(max_mm.len(), changed);
-        let cuts: Vec<StretchCut> =
-            max_mm.iter().map(|&max_mm| StretchCut { max_mm, ..StretchCut::default() }).collect();
-        let any = give_up_culprits(&mut under_way, &cuts);
-        ((0..max_mm.len()).filter(|&k| under_way[k].best.is_some()).collect(), any)
-    }
-
-    #[test]
-    fn a_command_that_makes_its_stretch_worse_is_given_up() {
-        assert_eq!(kept(&[0, 1, 2], &[0.001, 0.012, 0.001]), (vec![0, 2], true));
-        // By no more than 1 um it is not worse.
-        assert_eq!(kept(&[0, 1, 2], &[0.001, 0.0109, 0.001]), (vec![0, 1, 2], false));
-    }
-
-    #[test]
-    fn a_stretch_as_programmed_that_is_worse_is_blamed_on_the_command_before_it() {
-        assert_eq!(kept(&[0, 1], &[0.001, 0.001, 0.012]), (vec![0], true));
-        // No command is before the first.
-        assert_eq!(kept(&[1], &[0.012, 0.001]), (vec![1], false));
-    }
-
-    #[test]
-    fn a_command_stays_that_costs_the_next_stretch_less_than_it_gains() {
-        let after = |max_mm: f64| {
-            let mut under_way = stretches_with_commands(2, &[0]);
-            (under_way[0].programmed_max_mm, under_way[1].programmed_max_mm) = (0.03, 0.0001);
-            let cuts = [0.002, max_mm].map(|max_mm| StretchCut { max_mm, ..StretchCut::default() });
-            (give_up_culprits(&mut under_way, &cuts), under_way[0].best.is_some())
-        };
-        assert_eq!(after(0.0022), (false, true));
-        assert_eq!(after(0.0312), (true, false));
-    }
 }

@@ -4,7 +4,7 @@
 //! point, across the direction of travel there. Each command is cut where it crosses that plane. Then the second begins where the first
 //! ends. Where one of the two stays as it is programmed, the other meets it in the programmed point.
 
-use feedwright_gcode::canon::{Motion, Plane, Shape};
+use feedwright_gcode::canon::{Motion, Shape};
 use feedwright_plan::vector::{Vector, add_scaled, distance, dot, sub};
 
 use super::stretches::{ProgramPart, SmoothStretch, StretchCommand, directions, pieces, stretches};
@@ -98,16 +98,17 @@ fn end_at(motion: &mut Motion, end: MotionEnd, at_mm: Vector) {
         MotionEnd::Start => motion.start_mm = at_mm,
         MotionEnd::End => motion.end_mm = at_mm,
     }
-    if let Shape::Arc { plane: Plane::Xy, center_mm, .. } = &mut motion.shape {
-        let chord = sub(motion.end_mm, motion.start_mm);
-        let chord = [chord[0], chord[1], 0.0];
+    if let Shape::Arc { plane, center_mm, .. } = &mut motion.shape {
+        let [.., normal] = plane.axes();
+        let mut chord = sub(motion.end_mm, motion.start_mm);
+        chord[normal] = 0.0;
         let square_mm2 = dot(chord, chord);
         if square_mm2 > 0.0 {
             let middle_mm = add_scaled(motion.start_mm, 0.5, chord);
             let off = dot(sub(middle_mm, *center_mm), chord) / square_mm2;
             *center_mm = add_scaled(*center_mm, off, chord);
         }
-        center_mm[2] = motion.start_mm[2];
+        center_mm[normal] = motion.start_mm[normal];
     }
 }
 
@@ -137,7 +138,7 @@ pub(super) fn meet(commands: &mut [StretchCommand], parts: &[ProgramPart], split
 #[cfg(test)]
 mod tests {
     use super::*;
-    use feedwright_gcode::canon::{AuxiliaryAxes, Corner, MotionKind};
+    use feedwright_gcode::canon::{AuxiliaryAxes, Corner, MotionKind, Plane};
 
     fn motion(start_mm: Vector, end_mm: Vector, shape: Shape) -> Motion {
         let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };

@@ -11,6 +11,11 @@ pub(super) struct PartedLine {
 
 /// Words of a motion.
 const OF_MOTION: &str = "NXYZIJKRF";
+/// Words that are of a motion where a line has no other code: turns of an arc, tangents, weights and the order of a curve.
+const ALONE_OF_MOTION: &str = "PQLD";
+/// Codes of motions that may be replaced, and those of them that collect a curve over lines.
+const MOTIONS: [f64; 9] = [0.0, 1.0, 2.0, 3.0, 5.0, 5.1, 5.2, 5.3, 6.2];
+const COLLECTING: [f64; 2] = [5.2, 6.2];
 
 impl PartedLine {
     /// The words of a line; none where it has more than letters and numbers: expressions, parameters, O-words, a deleted block.
@@ -48,8 +53,7 @@ impl PartedLine {
             !(OF_MOTION.contains(*letter) || *letter == 'G' && Self::is_motion(number))
         };
         let words: Vec<&(char, String)> = self.words.iter().filter(stays).collect();
-        // P alone is the number of turns of an arc.
-        if words.iter().all(|(letter, _)| *letter == 'P') {
+        if words.iter().all(|(letter, _)| ALONE_OF_MOTION.contains(*letter)) {
             return String::new();
         }
         words.iter().map(|(letter, number)| format!("{letter}{number}")).collect::<Vec<_>>().join(" ")
@@ -87,14 +91,21 @@ impl PartedLine {
         (!with_axes.is_empty() || !alone.is_empty()).then(|| all.join(" "))
     }
 
-    fn is_motion(number: &str) -> bool {
-        number.parse::<f64>().is_ok_and(|code| [0.0, 1.0, 2.0, 3.0].contains(&code))
+    /// Whether it begins or goes on with a curve that a later line completes.
+    pub(super) fn collects_curve(&self) -> bool {
+        self.words
+            .iter()
+            .any(|(letter, number)| *letter == 'G' && number.parse().is_ok_and(|code| COLLECTING.contains(&code)))
     }
 
-    /// Codes whose axis words are no motion, and motions other than lines and arcs.
+    fn is_motion(number: &str) -> bool {
+        number.parse::<f64>().is_ok_and(|code| MOTIONS.contains(&code))
+    }
+
+    /// Codes whose axis words are no motion, and motions that may not be replaced.
     fn takes_axes(number: &str) -> bool {
         number.parse::<f64>().is_ok_and(|code| {
-            [5.0, 5.1, 6.2, 10.0, 28.0, 30.0, 33.0, 52.0, 92.0].contains(&code)
+            [10.0, 28.0, 30.0, 33.0, 52.0, 92.0].contains(&code)
                 || (38.0..39.0).contains(&code)
                 || (73.0..90.0).contains(&code)
         })
@@ -178,7 +189,9 @@ mod tests {
         let line = PartedLine::parse("N10 G21G90 G1 x 10.5 Y-3 F500 S800 M3 (start)").unwrap();
         assert_eq!(line.without_motion(), "G21 G90 S800 M3");
         assert_eq!(line.comments, ["(start)"]);
-        assert_eq!(PartedLine::parse("G2 X1 I1 P2").unwrap().without_motion(), "");
+        for gone in ["G2 X1 I1 P2", "G5.2 P1 L4", "X20 Y20 P1", "G5 X1 Y1 I0 J1 P0 Q-1", "G6.2 X1 R1 K0 P4 Q1"] {
+            assert_eq!(PartedLine::parse(gone).unwrap().without_motion(), "", "{gone}");
+        }
         assert!(PartedLine::parse("G28 Z0").unwrap().has_code());
         for refused in ["#1=5", "G1 X[1+2]", "/G1 X1", "o100 call", "G1 X#5", "%"] {
             assert_eq!(PartedLine::parse(refused), None, "{refused}");

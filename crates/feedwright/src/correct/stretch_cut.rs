@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::report::harm;
+use crate::report::harm::MAX_UM;
 
 use feedwright_plan::vector::{angle, dot, norm, sub};
 use feedwright_sim::Commanded;
@@ -43,6 +43,16 @@ impl StretchCut {
     /// One figure of it, mm.
     pub(super) fn figure_mm(&self) -> f64 {
         self.rms_mm() + MAX_WEIGHT * self.max_mm
+    }
+
+    /// Several as one; only its errors mean something.
+    pub(super) fn together<'a>(cuts: impl IntoIterator<Item = &'a Self>) -> Self {
+        cuts.into_iter().fold(Self::default(), |all, cut| Self {
+            square_sum_mm2: all.square_sum_mm2 + cut.square_sum_mm2,
+            max_mm: all.max_mm.max(cut.max_mm),
+            cutting: all.cutting + cut.cutting,
+            ..all
+        })
     }
 }
 
@@ -128,7 +138,7 @@ impl StretchGain {
     /// From the cuts of the programmed and of another command.
     pub(super) fn new(was: &StretchCut, is: &StretchCut) -> Self {
         let square = |cut: &StretchCut| cut.rms_mm() * cut.rms_mm();
-        Self { square_mm2: square(was) - square(is), max_mm: was.max_mm + 1e-3 * harm::MAX_UM - is.max_mm }
+        Self { square_mm2: square(was) - square(is), max_mm: was.max_mm + 1e-3 * MAX_UM - is.max_mm }
     }
 
     pub(super) const fn is_loss(&self) -> bool {

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use feedwright_gcode::canon::{Canon, Corner, Event, EventKind, Motion, MotionKind, Shape};
+use feedwright_gcode::canon::{Canon, Corner, Event, EventKind, Motion, MotionKind, Plane, Shape};
 use feedwright_plan::vector::{Vector, angle};
 use feedwright_plan::{Piece, Pieces, Step};
 use serde::{Deserialize, Serialize};
@@ -148,6 +148,25 @@ impl SmoothStretch {
     /// Directions of travel at both ends.
     pub(super) const fn directions(&self) -> [Vector; 2] {
         self.ends
+    }
+
+    /// The plane in which arcs may replace its motions: that of its arcs and splines, where they share one, and XY otherwise.
+    pub(super) fn plane(&self) -> Plane {
+        let shares = |plane: &Plane| self.motions.iter().all(|motion| has_plane(motion, *plane));
+        let bends = self.motions.iter().any(|motion| motion.shape != Shape::Line);
+        [Plane::Xy, Plane::Zx, Plane::Yz].into_iter().find(|plane| bends && shares(plane)).unwrap_or(Plane::Xy)
+    }
+}
+
+/// Whether a motion is straight, or bends in a plane.
+fn has_plane(motion: &Motion, plane: Plane) -> bool {
+    match &motion.shape {
+        Shape::Line => true,
+        Shape::Arc { plane: own, .. } => *own == plane,
+        Shape::Spline(spline) => {
+            let [.., normal] = plane.axes();
+            spline.control_mm.iter().all(|point_mm| point_mm[normal] == motion.start_mm[normal])
+        }
     }
 }
 

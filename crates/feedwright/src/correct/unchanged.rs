@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use feedwright_gcode::canon::{Canon, Motion, MotionKind, Plane, Shape};
+use feedwright_gcode::canon::{Canon, MotionKind};
 use serde::{Deserialize, Serialize};
 
 use super::stretches::{ProgramPart, SmoothStretch};
@@ -27,8 +27,8 @@ pub(super) enum UnchangedReason {
     Worse,
     /// A machine that the file may describe as well would cut it worse.
     Uncertain,
-    /// An arc outside of the XY plane.
-    OtherPlane,
+    /// Its lines hold what no other lines can take the place of.
+    Unwritable,
     /// It moves axes beside X, Y and Z.
     OtherAxes,
 }
@@ -73,9 +73,10 @@ impl fmt::Display for UnchangedReason {
                 f,
                 "the machine file is not exact enough to be sure of a gain; a log of a cut (--log) would help, or values that are exact"
             ),
-            Self::OtherPlane => write!(
+            Self::Unwritable => write!(
                 f,
-                "it has arcs of G18 or G19, and a better command would take more lines than the control may get; a lower feedrate lowers the error"
+                "its lines have expressions, feeds other than G94, or codes that change coordinates within the cut; plain words, or such codes before \
+                 a rapid, let it be corrected"
             ),
             Self::OtherAxes => write!(f, "it moves axes beside X, Y and Z, which are not corrected"),
         }
@@ -91,21 +92,12 @@ pub struct UnchangedStretch {
     pub reason: String,
 }
 
-/// Whether a motion is an arc outside of the XY plane.
-fn is_in_other_plane(motion: &Motion) -> bool {
-    matches!(&motion.shape, Shape::Arc { plane, .. } if *plane != Plane::Xy)
-}
-
 /// The stretches that stay as they are, in the order of the program; `reasons` has one entry for each stretch.
 pub(super) fn unchanged_stretches(parts: &[ProgramPart], reasons: &[Option<UnchangedReason>]) -> Vec<UnchangedStretch> {
     let mut reasons = reasons.iter();
     let of_part = |part: &ProgramPart| match part {
         ProgramPart::Stretch(stretch) => {
             let reason = reasons.next().copied().flatten()?;
-            let reason = match reason {
-                UnchangedReason::Blocks if stretch.motions.iter().any(is_in_other_plane) => UnchangedReason::OtherPlane,
-                reason => reason,
-            };
             Some(UnchangedStretch { lines: lines_of(stretch), reason: reason.to_string() })
         }
         ProgramPart::Kept(Canon::Motion(motion)) if motion.kind == MotionKind::Feed && !motion.others.is_none() => {
