@@ -69,6 +69,7 @@
 
 #![warn(clippy::disallowed_methods)]
 
+mod parallel;
 mod watch;
 mod number;
 pub mod toml_file;
@@ -95,6 +96,7 @@ pub use machine::{
     MachineError, Noise, Period, Squareness, Transmission, is_machine_path,
 };
 pub use number::{shown, to_four_digits};
+pub use parallel::map_in_parallel;
 pub use pipeline::{PlanCache, Run, RunError, Stages, path_steps};
 pub use plant::{Measurement, Mechanism, Plant};
 pub use reference::{Foot, Reference, Sample};

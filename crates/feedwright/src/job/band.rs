@@ -3,8 +3,7 @@
 //! The plan of the cut and the limits of the machine stay. So does what the recording does not show: the geometry. Each machine has
 //! noise of its own.
 
-use feedwright_sim::{Axis, Machine, Outcome, Row, RunError, Sink, Watch};
-use rayon::prelude::*;
+use feedwright_sim::{Axis, Machine, Outcome, Row, RunError, Sink, Watch, map_in_parallel};
 
 use super::{Job, JobError, PlannedCut};
 use crate::controllers::{Entry, Make};
@@ -38,7 +37,8 @@ impl Job {
             watch.advance(1);
             cut
         };
-        let cuts: Vec<CutOfOne> = self.fitting.par_iter().enumerate().map(cut).collect::<Result<_, _>>()?;
+        let cuts: Vec<CutOfOne> =
+            map_in_parallel(self.fitting.iter().enumerate(), cut).into_iter().collect::<Result<_, _>>()?;
         let tool: Vec<[f64; 2]> = cuts.iter().flatten().map(|(tool, _)| *tool).collect();
         let joints: Option<Vec<[f64; 2]>> = cuts.iter().flatten().map(|(_, joints)| *joints).collect();
         let of = |errors: &[[f64; 2]], i: usize| BandErrors::of(errors.iter().map(|both| both[i]).collect());

@@ -4,8 +4,7 @@
 //! axis that does not move so that they show, nothing is found.
 
 use feedwright_control::IdentifiedAxes;
-use feedwright_sim::{Known, Machine};
-use rayon::prelude::*;
+use feedwright_sim::{Known, Machine, map_in_parallel};
 
 use super::Excitation;
 use super::axis_parameters::{AxisEstimate, DriveSettings, NotIdentified, identify_axis};
@@ -61,8 +60,7 @@ pub fn train_axes<const N: usize>(
     let estimate =
         |i: usize| identify_axis(&recordings.parameters, i, &DriveSettings::of(known.axis(i), &known.period));
     // All, and then the first axis that fails: not the one whose thread is first.
-    let estimates: Vec<_> = (0..N).into_par_iter().map(estimate).collect();
-    let estimates = estimates.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let estimates = map_in_parallel(0..N, estimate).into_iter().collect::<Result<Vec<_>, _>>()?;
     let believed = |of: &Known| {
         of.with_axes(|i, axis| {
             let settings = DriveSettings::of(axis, &of.period);

@@ -1,8 +1,8 @@
 //! Least squares of what a free run leaves of the measured positions, by steps of Gauss and Newton with Levenberg's and Marquardt's damping.
 
 use feedwright_control::TransmissionParameters;
+use feedwright_sim::map_in_parallel;
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 use super::free_run::FreeRun;
 use super::{AxisEstimate, AxisParameters, DriveSettings, NotIdentified, PARAMETERS, RIGID_PARAMETERS};
@@ -179,7 +179,7 @@ impl OutputErrorFit<'_> {
                 pairs.map(|(measured, simulated)| measured - simulated).collect()
             })
         };
-        self.stretches.par_iter().map(left).collect()
+        map_in_parallel(&self.stretches, left)
     }
 
     fn linearised(

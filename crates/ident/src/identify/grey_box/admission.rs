@@ -14,8 +14,8 @@
 
 use std::f64::consts::TAU;
 
+use feedwright_sim::map_in_parallel;
 use nalgebra::{Matrix3, Vector3};
-use rayon::prelude::*;
 
 use super::axis_facts::AxisFacts;
 use super::axis_record::AxisRecord;
@@ -139,13 +139,10 @@ fn begin(
     let valid = OutputErrors { deviation_mm: train.deviation_mm, ..*valid };
     let near = drives.iter().filter(|drive| drive.left_mm < FAR * least.left_mm);
     let near: Vec<(Vec<LawTerm>, TermValues)> = near.flat_map(|drive| variants(record, drive)).collect();
-    let fits: Vec<(Vec<LawTerm>, TermValues, f64)> = near
-        .into_par_iter()
-        .map(|(terms, values)| {
-            let values = train.least(&values, &terms, DRIVE_STEPS, DRIVE_DONE).values;
-            (terms, values, square(&valid.residuals(&values)))
-        })
-        .collect();
+    let fits: Vec<(Vec<LawTerm>, TermValues, f64)> = map_in_parallel(near, |(terms, values)| {
+        let values = train.least(&values, &terms, DRIVE_STEPS, DRIVE_DONE).values;
+        (terms, values, square(&valid.residuals(&values)))
+    });
     // In these units the least square is the number of samples that are independent.
     let independent = fits.iter().map(|fit| fit.2).fold(f64::INFINITY, f64::min);
     let cost = |fit: &(Vec<LawTerm>, TermValues, f64)| fit.2 + fit.0.len() as f64 * libm::log(independent.max(1.0));
@@ -188,7 +185,8 @@ fn drives(record: &AxisRecord<'_>, train: &OutputErrors<'_>, facts: &AxisFacts) 
         let of_drive = starts.iter().filter(|(_, at)| facts.before.is_some() || is_of(at));
         fit_drive(train, facts, has, &of_each_speed_gain(of_drive))
     };
-    let mut fitted: Vec<FittedDrive> = DRIVES.into_par_iter().filter(may_be).filter_map(fit).collect();
+    let fitted = map_in_parallel(DRIVES.into_iter().filter(may_be), fit);
+    let mut fitted: Vec<FittedDrive> = fitted.into_iter().flatten().collect();
     for i in 0..fitted.len() {
         let has = fitted[i].has;
         let less =
@@ -223,11 +221,11 @@ fn fit_drive(
     let is_delay = |term: &LawTerm| matches!(term, LawTerm::RecordDelay | LawTerm::LoopDelay);
     let on_time: Vec<LawTerm> = terms.iter().copied().filter(|term| !is_delay(term)).collect();
     let train = OutputErrors { deviation_mm: ranked.first()?.0.max(f64::MIN_POSITIVE), ..*train };
-    let fitted = ranked.par_iter().take(FOLLOWED_STARTS).map(|(_, at)| {
+    let fitted = map_in_parallel(ranked.iter().take(FOLLOWED_STARTS), |(_, at)| {
         let values = train.least(at, &on_time, START_STEPS, NEARLY_DONE).values;
         (train.rms_mm(&values), values)
     });
-    let (left_mm, values) = fitted.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (left_mm, values) = fitted.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(FittedDrive { has, terms, values, left_mm })
 }
 
@@ -330,20 +328,18 @@ fn best_term(
 ) -> Option<FollowedTerm> {
     let slopes = train.slopes(at, terms);
     let now_mm = train.rms_mm(at);
-    let mut looked: Vec<(f64, TermCandidate, TermValues)> = candidates
-        .into_par_iter()
-        .filter_map(|candidate| {
-            // A start that loses the run is no start.
-            let lost = train.rms_mm(&candidate.start) > LOST * now_mm;
-            let all: Vec<LawTerm> = terms.iter().chain(&candidate.terms).copied().collect();
-            let step = (!lost).then(|| train.one_step(&candidate.start, &all, &slopes))?;
-            Some((step.cost, candidate, step.values))
-        })
-        .collect();
+    let looked = map_in_parallel(candidates, |candidate| {
+        // A start that loses the run is no start.
+        let lost = train.rms_mm(&candidate.start) > LOST * now_mm;
+        let all: Vec<LawTerm> = terms.iter().chain(&candidate.terms).copied().collect();
+        let step = (!lost).then(|| train.one_step(&candidate.start, &all, &slopes))?;
+        Some((step.cost, candidate, step.values))
+    });
+    let mut looked: Vec<(f64, TermCandidate, TermValues)> = looked.into_iter().flatten().collect();
     looked.sort_by(|a, b| a.0.total_cmp(&b.0));
     looked.truncate(FOLLOWED_TERMS);
     let before = valid.residuals(at);
-    let followed = looked.into_par_iter().filter_map(|(_, candidate, start)| {
+    let followed = map_in_parallel(looked, |(_, candidate, start)| {
         let all: Vec<LawTerm> = terms.iter().chain(&candidate.terms).copied().collect();
         let values = train.least(&start, &all, TERM_STEPS, NEARLY_DONE).values;
         let [gain, error] = sum_and_error(&gains(valid, &before, &valid.residuals(&values)));
@@ -353,7 +349,7 @@ fn best_term(
         (gain > LIKELIER * error && is_screw_or_none(&values, train.record.sample_s) && certainty() > QUANTILE)
             .then_some(FollowedTerm { terms: candidate.terms, values, gain })
     });
-    followed.max_by(|a, b| a.gain.total_cmp(&b.gain))
+    followed.into_iter().flatten().max_by(|a, b| a.gain.total_cmp(&b.gain))
 }
 
 /// Gain in twice the log-likelihood from one set of residuals to another, for each block.

@@ -3,7 +3,7 @@
 //! From a sample on nothing of the record is known but the commands. An error of 20, 50, or 100 ms is that at the end of such a run, over
 //! runs from many samples; the whole run is one from the first scored sample of each stretch to its last, over the scored samples.
 
-use rayon::prelude::*;
+use feedwright_sim::map_in_parallel;
 
 use super::axis_record::AxisRecord;
 use super::axis_run::{AxisRun, Commands};
@@ -103,8 +103,7 @@ pub(super) fn score(record: &AxisRecord<'_>, values: &TermValues, fit: &[bool], 
             from_samples.push(start);
         }
     }
-    let missed: Vec<Vec<f64>> =
-        from_samples.into_par_iter().map(|start| run_ahead(record, &run, start, &ahead)).collect();
+    let missed = map_in_parallel(from_samples, |start| run_ahead(record, &run, start, &ahead));
     let at_um = [0, 1, 2].map(|i| 1e3 * rms(missed.iter().filter_map(|missed| missed.get(i).copied())));
     let whole_um = 1e3 * left_rms(record, &simulated_mm, |_| true);
     let one_step_um = 1e3 * rms((0..scored.len()).filter(|&k| scored[k]).map(|k| filtered.innovations_mm[k]));
@@ -179,19 +178,15 @@ fn score_arx(
 ) -> ArxScores {
     let data = ArxData::new(record);
     let error_mm = |k: usize| record.command_mm[k] - record.actual_mm[k];
-    let fits: Vec<LinearArx> = ORDERS.par_iter().filter_map(|order| LinearArx::fit(&data, fit, *order)).collect();
+    let fits = map_in_parallel(ORDERS, |order| LinearArx::fit(&data, fit, order));
     let mut best = (f64::INFINITY, vec![None; scored.len()]);
     let mut scores = vec![];
-    for arx in fits {
-        let missed: Vec<[f64; 4]> = samples
-            .par_iter()
-            .filter(|&&k| k >= arx.reach())
-            .map(|&k| {
-                // A run of n samples from k + 1 on ends at k + n.
-                let run = arx.run_mm(&data, k + 1, ahead[2]);
-                [ahead[0], ahead[1], ahead[2], 1].map(|ahead| run[ahead - 1] - error_mm(k + ahead))
-            })
-            .collect();
+    for arx in fits.into_iter().flatten() {
+        let missed = map_in_parallel(samples.iter().filter(|&&k| k >= arx.reach()), |&k| {
+            // A run of n samples from k + 1 on ends at k + n.
+            let run = arx.run_mm(&data, k + 1, ahead[2]);
+            [ahead[0], ahead[1], ahead[2], 1].map(|ahead| run[ahead - 1] - error_mm(k + ahead))
+        });
         let mut simulated = vec![None; scored.len()];
         for &[first, last] in parts.iter().filter(|part| part[0] >= arx.reach()) {
             let run = arx.run_mm(&data, first, last + 1 - first);

@@ -16,8 +16,8 @@
 //! Source: Levenberg (1944), Marquardt (1963) for the damped step; Geyer (1992), Practical Markov chain Monte Carlo, for the sum of
 //! correlations; the output error as in [`super::super::axis_parameters`].
 
+use feedwright_sim::map_in_parallel;
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 use super::axis_record::AxisRecord;
 use super::axis_run::{AxisRun, Commands};
@@ -124,7 +124,7 @@ impl OutputErrors<'_> {
             [a, b] => self.left_abreast_mm(&[a, b]).into(),
             _ => values.iter().map(|values| self.left_mm(values)).collect::<Vec<_>>(),
         };
-        values.par_chunks(ABREAST).flat_map(abreast).collect()
+        map_in_parallel(values.chunks(ABREAST), abreast).into_iter().flatten().collect()
     }
 
     fn scaled(&self, mut left_mm: Vec<f64>, values: &TermValues) -> Vec<f64> {
@@ -240,8 +240,7 @@ pub(super) fn change(values: &TermValues, term: LawTerm) -> f64 {
 pub(super) fn normal_equations(slopes: &[Vec<f64>], left: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
     let n = slopes.len();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let rows: Vec<Vec<f64>> =
-        (0..n).into_par_iter().map(|i| (0..=i).map(|j| dot(&slopes[i], &slopes[j])).collect()).collect();
+    let rows: Vec<Vec<f64>> = map_in_parallel(0..n, |i| (0..=i).map(|j| dot(&slopes[i], &slopes[j])).collect());
     let curvature = DMatrix::from_fn(n, n, |i, j| rows[i.max(j)][i.min(j)]);
     (curvature, DVector::from_fn(n, |i, _| dot(&slopes[i], left)))
 }

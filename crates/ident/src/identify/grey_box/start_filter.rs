@@ -11,7 +11,7 @@
 //! Source: the alpha-beta filter, Kalata (1984), The tracking index, IEEE Trans. Aerospace and Electronic Systems 20(2), with a load as
 //! the third state.
 
-use rayon::prelude::*;
+use feedwright_sim::map_in_parallel;
 
 use super::axis_record::AxisRecord;
 use super::axis_run::{AxisRun, Commands, RunState};
@@ -44,14 +44,11 @@ impl StartFilter {
         let ahead = ((RUN_S / record.sample_s).round() as usize).max(1);
         let samples = starts(record, counts, ahead, RUNS);
         let all: Vec<Self> = POSITION.iter().flat_map(|&position| LOAD.map(|load| Self { position, load })).collect();
-        let missed: Vec<f64> = all
-            .par_iter()
-            .map(|filter| {
-                let found = filter.along(record, values, &samples);
-                let run = AxisRun::new(values, record.sample_s);
-                rms(found.starts.into_iter().map(|start| run_ahead(record, &run, start, &[ahead])[0]))
-            })
-            .collect();
+        let missed = map_in_parallel(&all, |filter| {
+            let found = filter.along(record, values, &samples);
+            let run = AxisRun::new(values, record.sample_s);
+            rms(found.starts.into_iter().map(|start| run_ahead(record, &run, start, &[ahead])[0]))
+        });
         let best = (0..all.len()).min_by(|&a, &b| missed[a].total_cmp(&missed[b]));
         best.map_or(all[0], |best| all[best])
     }
