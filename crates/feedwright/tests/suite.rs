@@ -54,6 +54,7 @@ mod conformance_measured;
 mod conformance_measured_run;
 mod conformance_models;
 mod conformance_names;
+mod conformance_open;
 mod conformance_outputs;
 mod conformance_plan;
 mod conformance_plan_inputs;

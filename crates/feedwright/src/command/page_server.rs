@@ -17,7 +17,7 @@ use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use feedwright_gcode::input;
 use serde_json::json;
@@ -42,8 +42,10 @@ const CONNECTIONS: usize = 16;
 const REQUEST_BYTES: usize = 16 * 1024;
 /// Most bytes of a file: more does not fit into the memory of the page.
 const FILE_BYTES: u64 = 512 * 1024 * 1024;
-/// A connection that is idle for longer is closed.
+/// A connection that takes no byte of an answer for longer is closed.
 const IDLE: Duration = Duration::from_secs(10);
+/// A request that is not whole after this is none: browsers send theirs at once, and connect anew where they did so ahead of need.
+const REQUEST_TIME: Duration = Duration::from_secs(2);
 
 /// An answer: status, type and body.
 type Answer = (&'static str, &'static str, Vec<u8>);
@@ -99,11 +101,12 @@ impl PageServer {
 impl Site {
     /// Answers one request. A browser that went away needs no answer.
     fn connection(&self, mut stream: TcpStream) {
-        let timed = stream.set_read_timeout(Some(IDLE)).and_then(|()| stream.set_write_timeout(Some(IDLE)));
-        if timed.is_err() {
+        if stream.set_write_timeout(Some(IDLE)).is_err() {
             return;
         }
-        let Ok(request) = read_head(&mut stream) else { return };
+        let Ok(request) = read_head(&mut InTime { stream: &stream, until: Instant::now() + REQUEST_TIME }) else {
+            return;
+        };
         let (status, kind, body) = request.map_or_else(|| told("400 Bad Request"), |request| self.answer(&request));
         let length = body.len();
         let head = format!("HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\n{HEADERS}\r\n");
@@ -170,6 +173,21 @@ fn content(path: &PathBuf) -> io::Result<Vec<u8>> {
 /// An answer that says no more than its status.
 fn told(status: &'static str) -> Answer {
     (status, "text/plain", format!("{status}\n").into_bytes())
+}
+
+/// A stream that is read until a time, however slowly it comes.
+struct InTime<'a> {
+    stream: &'a TcpStream,
+    until: Instant,
+}
+
+impl Read for InTime<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let left = self.until.saturating_duration_since(Instant::now());
+        // Zero is refused: the time is over.
+        self.stream.set_read_timeout(Some(left))?;
+        self.stream.read(buffer)
+    }
 }
 
 /// The lines of a request; none where they are too long or no text.
