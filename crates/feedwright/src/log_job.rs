@@ -231,23 +231,24 @@ impl LogIdentified {
         improvements
     }
 
+    /// The numbers of an axis: name, value, unit, interval of 90 % (empty where it has none), and where it comes from.
+    pub fn rows(&self, axis: usize) -> Vec<[String; 5]> {
+        let numbers = self.machine.axes[axis].numbers().into_iter();
+        let row = numbers.map(|number| {
+            let interval = number.interval.map(|[low, high]| format!("{} to {}", digits(low), digits(high)));
+            let [name, unit, source] = [number.name, number.unit, number.source.word()].map(str::to_owned);
+            [name, digits(number.value), unit, interval.unwrap_or_default(), source]
+        });
+        row.collect()
+    }
+
     /// A table of the numbers, as a terminal shows it.
     pub fn table(&self) -> String {
         let mut text = String::new();
         for (i, axis) in self.machine.axes.iter().enumerate() {
             let _ = writeln!(text, "axis {}: {}", visible(&axis.name), visible(&self.verdict(i)));
-            for number in axis.numbers() {
-                let interval =
-                    number.interval.map_or(String::new(), |[low, high]| format!("{} to {}", digits(low), digits(high)));
-                let _ = writeln!(
-                    text,
-                    "  {:<27} {:>12} {:<10} {:<24} {}",
-                    number.name,
-                    digits(number.value),
-                    number.unit,
-                    interval,
-                    number.source.word()
-                );
+            for [name, value, unit, interval, source] in self.rows(i) {
+                let _ = writeln!(text, "  {name:<27} {value:>12} {unit:<10} {interval:<24} {source}");
             }
         }
         text

@@ -13,6 +13,7 @@
 //! | `run` | results, as `run --json` | rows, as `run --trace` | the page of the report | the table of `run`, as JSON |
 //! | `check` | findings, as JSON | programmed path: x, y, z in mm, as 32-bit floats | line and kind of each point | |
 //! | `correct` | results, as JSON | the corrected program | | |
+//! | `identify` | numbers of the axes, as JSON | the machine file | the page of the identification | |
 //! | `lists` | machines, controllers and controls, as JSON | | | |
 //!
 //! The module imports two functions of the page, `page.progress` and `page.cut`: see `page`. It has
@@ -24,6 +25,7 @@ mod lists;
 mod check;
 mod correct;
 mod cut;
+mod identify;
 
 use std::sync::{Mutex, PoisonError};
 
@@ -85,6 +87,7 @@ fn answer(input: &[u8]) -> miette::Result<Outputs> {
         Task::Run => cut::run(&request),
         Task::Check => check::check(&request),
         Task::Correct => correct::correct(&request),
+        Task::Identify => identify::identify(&request),
         Task::Lists => lists::lists(),
     }
 }

@@ -19,6 +19,8 @@ pub(crate) enum Task {
     Check,
     /// Correct a program for a control without feedback.
     Correct,
+    /// Identify the machine from its log, which stands in the place of a program.
+    Identify,
     /// List machines, controllers and controls.
     Lists,
 }
@@ -32,7 +34,7 @@ pub(crate) struct Request {
     /// What messages call the program.
     #[serde(default)]
     pub(crate) name: String,
-    /// Its text.
+    /// Its text, or that of a log.
     #[serde(default)]
     pub(crate) program: String,
     /// Name of a built-in machine, or the text of a machine file.
