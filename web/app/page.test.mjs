@@ -2,12 +2,16 @@
 //   node page.test.mjs FEEDWRIGHT TABLE [NAME]      TABLE: what `feedwright run parts/star.ngc` prints; NAME: a part of the name of a test
 // Where SCREENSHOTS names a folder, the pictures go there.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
-import { readFile } from "node:fs/promises";
+import { execFileSync, spawn } from "node:child_process";
+import { cp, mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
+import { createServer } from "node:http";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { chromium } from "playwright-core";
 
 const [command, tablePath, part = ""] = process.argv.slice(2);
 const PATIENCE_MS = 60_000;
+const DIST = new URL("../dist/", import.meta.url).pathname;
 const star = new URL("../../parts/star.ngc", import.meta.url).pathname;
 
 /** Starts the command; its address comes first. */
@@ -18,6 +22,24 @@ function open(...files) {
     child.once("exit", (code) => reject(new Error(`feedwright open ended with ${code}`)));
   });
   return { child, address };
+}
+
+/** The page on a server that knows nothing of feedwright. `change` gives other bytes in place of a file's. */
+async function host({ folder = DIST, port = 0, change = (name, bytes) => bytes } = {}) {
+  const types = { html: "text/html", css: "text/css", js: "text/javascript", json: "application/json" };
+  const server = createServer(async ({ url }, answer) => {
+    const name = new URL(url, "http://a").pathname.slice(1) || "index.html";
+    const bytes = await readFile(join(folder, name)).catch(() => undefined);
+    answer.writeHead(bytes ? 200 : 404, { "Content-Type": types[name.split(".").pop()] ?? "application/octet-stream" });
+    answer.end(bytes && change(name, bytes));
+  });
+  await new Promise((listening) => server.listen(port, "127.0.0.1", listening));
+  const end = () => new Promise((ended) => {
+    server.close(ended);
+    server.closeAllConnections();
+  });
+  ({ port } = server.address());
+  return { address: `http://127.0.0.1:${port}/`, port, end };
 }
 
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
@@ -91,6 +113,62 @@ const tests = {
     await page.close();
   },
 
+  async "a cut is kept, and another one is compared with it"() {
+    const page = await visit(`${address}#example=star`);
+    await seen(page, "#figures");
+    const [, before] = await cells(page, "#figures");
+    await page.click("#shown button >> nth=1");
+    await page.click("#keep");
+    assert.equal((await cells(page, "#figures")).length, 2);
+    await page.selectOption("#machine", "stiff");
+    await page.waitForSelector("#run:enabled");
+    await page.click("#run");
+    await seen(page, "#figures");
+    const [, after, kept] = await cells(page, "#figures");
+    assert.deepEqual(kept.slice(1), before.slice(1));
+    assert.notDeepEqual(after.slice(1), before.slice(1));
+    assert.match(kept[0], /before: star\.ngc on workshop$/);
+    assert.equal(await page.locator("#key .kept").count(), 1);
+    await picture(page, "compared");
+    // Its path is drawn, too.
+    const drawn = () => page.evaluate(() => document.querySelector("#view canvas").toDataURL());
+    await page.evaluate(() => feedwright.view.draw());
+    const both = await drawn();
+    await page.click("#keep");
+    await page.evaluate(() => feedwright.view.draw());
+    assert.notEqual(await drawn(), both);
+    assert.equal((await cells(page, "#figures")).length, 2);
+    await page.close();
+  },
+
+  async "a log is identified with the machine file of the command, and its machine is cut on"() {
+    const folder = await mkdtemp(join(tmpdir(), "feedwright-")), log = join(folder, "mine.csv"), file = join(folder, "mine.toml");
+    execFileSync(command, ["run", star, "--controller", "uncorrected", "--quiet", "--trace", log], { stdio: "ignore" });
+    execFileSync(command, ["identify", log, "--out", file], { stdio: "ignore" });
+    const page = await visit(address);
+    await seen(page, "#cards button");
+    await drop(page, "star.ngc", await readFile(star, "utf8"));
+    await page.waitForSelector("#run:enabled");
+    await drop(page, "mine.csv", await readFile(log, "utf8"));
+    await seen(page, "#identified");
+    const [name, machine] = await saved(page, "#machine-file");
+    assert.deepEqual([name, machine], ["mine.toml", await readFile(file, "utf8")]);
+    assert.match((await saved(page, "#identification"))[1], /Identification from mine\.csv/);
+    assert.equal(await page.$eval("#machine", ({ selectedOptions }) => selectedOptions[0].text), "mine.toml");
+    await picture(page, "identified");
+    // A controller with a model takes another identification, of the machine that was found.
+    await page.selectOption("#controller", "feedforward");
+    await page.waitForSelector("#run:enabled");
+    await page.click("#run");
+    await seen(page, "#figures");
+    // What is no log says so.
+    await drop(page, "other.csv", "a,b\n1,2\n");
+    await seen(page, "#message");
+    assert.match(await page.textContent("#message"), /other\.csv/);
+    await page.close();
+    await rm(folder, { recursive: true });
+  },
+
   async "a mistake is told while it is typed, and a corrected line is cut"() {
     // The first text comes while the engine starts.
     const later = () => { let resolve; const promise = new Promise((r) => (resolve = r)); return { promise, resolve }; };
@@ -145,6 +223,156 @@ const tests = {
     assert.ok(await page.isHidden("#figures"));
     assert.ok(await page.isEnabled("#run"));
     await page.close();
+  },
+
+  async "after the first visit the page works without its server, and takes a new version whole"() {
+    const server = await host(), context = await browser.newContext(), page = await context.newPage();
+    page.on("pageerror", (error) => faults.push(error.message));
+    await page.goto(server.address);
+    await seen(page, "#cards button");
+    await page.evaluate(() => navigator.serviceWorker.ready);
+    await server.end();
+    await page.reload();
+    await page.click("[data-example=star]");
+    await seen(page, "#figures");
+    // The server comes back with another version. As long as a page of the old one is open, that is what there is.
+    const folder = await mkdtemp(join(tmpdir(), "feedwright-"));
+    await cp(DIST, folder, { recursive: true });
+    await writeFile(join(folder, "index.html"), (await readFile(join(DIST, "index.html"), "utf8")).replace("</h1>", " II</h1>"));
+    const build = new URL("offline.mjs", import.meta.url).pathname;
+    await writeFile(join(folder, "offline.js"), execFileSync(process.execPath, [build, folder]));
+    const newer = await host({ folder, port: server.port });
+    await page.evaluate(async () => {
+      const registration = await navigator.serviceWorker.ready;
+      await registration.update();
+      while (!registration.waiting) await new Promise((later) => setTimeout(later, 50));
+    });
+    await page.reload();
+    assert.equal(await page.textContent("h1"), "feedwright");
+    await page.close();
+    const next = await context.newPage();
+    for (let visit = 0; (await next.goto(server.address), await next.textContent("h1")) !== "feedwright II"; visit++) {
+      assert.ok(visit < 50, "the new version does not come");
+      await next.goto("about:blank");
+    }
+    const names = await next.evaluate(() => caches.keys());
+    assert.equal(names.length, 1, names.join());
+    await context.close();
+    await newer.end();
+    await rm(folder, { recursive: true });
+  },
+
+  async "files of two versions are not kept, and a full disk is no fault"() {
+    const longer = (name, bytes) => name === "app.css" ? Buffer.concat([bytes, Buffer.from(" ")]) : bytes;
+    for (const [change, quota] of [[longer, undefined], [undefined, 100_000]]) {
+      const server = await host({ change }), context = await browser.newContext(), page = await context.newPage();
+      page.on("pageerror", (error) => faults.push(error.message));
+      const storage = await context.newCDPSession(page);
+      if (quota) await storage.send("Storage.overrideQuotaForOrigin", { origin: new URL(server.address).origin, quotaSize: quota });
+      await page.goto(server.address);
+      await seen(page, "#cards button");
+      const end = await page.evaluate(async () => {
+        const { installing, waiting, active } = await navigator.serviceWorker.register("offline.js"), worker = installing ?? waiting ?? active;
+        while (!["activated", "redundant"].includes(worker.state)) await new Promise((changed) => worker.addEventListener("statechange", changed, { once: true }));
+        return worker.state;
+      });
+      assert.equal(end, "redundant");
+      await page.click("[data-example=star]");
+      await seen(page, "#figures");
+      await context.close();
+      await server.end();
+    }
+  },
+
+  async "a file that no browser can hold is refused"() {
+    const page = await visit(address);
+    await seen(page, "#cards button");
+    await page.evaluate(() => {
+      const data = new DataTransfer(), chunk = new Blob(["G1 X1\n".repeat(2 ** 20)]);
+      data.items.add(new File(Array(160).fill(chunk), "huge.ngc"));
+      dispatchEvent(new DragEvent("drop", { dataTransfer: data, cancelable: true }));
+    });
+    await seen(page, "#message");
+    assert.match(await page.textContent("#message"), /huge\.ngc.*1010 MB.*537 MB/);
+    await drop(page, "part.nc", "G21 G90 F600\nG1 X10\nM2\n");
+    await page.waitForSelector("#run:enabled");
+    assert.ok(await page.isHidden("#message"));
+    await page.close();
+  },
+
+  async "a program that never ends is given up by Esc, or by another one"() {
+    const page = await visit(address), endless = "G21 G90 F600\no1 while [1]\nG1 X1\nG1 X0\no1 endwhile\nM2\n";
+    await seen(page, "#cards button");
+    const reading = () => page.waitForFunction(() => document.querySelector("#amounts").textContent.startsWith("Reading"));
+    await drop(page, "endless.ngc", endless);
+    await reading();
+    await page.keyboard.press("Escape");
+    await page.waitForFunction(() => document.querySelector("#amounts").textContent === "");
+    assert.ok(await page.isDisabled("#run"));
+    await drop(page, "endless.ngc", endless);
+    await reading();
+    await drop(page, "part.nc", "G21 G90 F600\nG1 X10\nM2\n");
+    await page.waitForSelector("#run:enabled");
+    await page.close();
+  },
+
+  async "markup and control characters stay text, on the page and in the report"() {
+    const page = await visit(address), markup = "<img src=x onerror=document.title='taken'><script>document.title='taken'</script>";
+    await seen(page, "#cards button");
+    await drop(page, `${markup}.ngc`, `(${markup})\nG21 G90 F600\nG1 X10 (${markup})\nG1 X10 Y10\nM2\n`);
+    await page.waitForFunction(() => document.querySelector("#name").textContent.includes("<img"));
+    await page.waitForSelector("#run:enabled");
+    await page.click("#run");
+    await seen(page, "#figures");
+    assert.equal(await page.locator("main img, main script").count(), 0);
+    assert.match(await page.title(), /^<img.* · feedwright$/);
+    const [, report] = await saved(page, "#report");
+    await drop(page, `\u202e${markup}.ngc`, `(\u0007 \u202e ${markup})\nG1 ${markup}\n`);
+    await seen(page, "#findings .error");
+    assert.doesNotMatch(await page.textContent("#findings"), /[\u0007\u202e]/);
+    assert.equal(await page.locator("main img, main script").count(), 0);
+    await drop(page, "binary.ngc", `G1 X1 F100 ${markup}\u0000\n`);
+    await seen(page, "#message");
+    assert.equal(await page.locator("main img, main script").count(), 0);
+    // The report is a file of its own, with a policy of its own.
+    const opened = await browser.newPage();
+    opened.on("console", (message) => message.type() === "error" && faults.push(message.text()));
+    opened.on("pageerror", (error) => faults.push(error.message));
+    await opened.route("**/report.html", (route) => route.fulfill({ body: report, contentType: "text/html" }));
+    await opened.goto("http://127.0.0.1/report.html");
+    await opened.waitForFunction(() => document.documentElement.dataset.ready !== undefined);
+    assert.doesNotMatch(await opened.title(), /^taken/);
+    assert.equal(await opened.locator("img[src=x]").count(), 0);
+    await opened.close();
+    await page.close();
+  },
+
+  async "an engine that does not arrive whole is told"() {
+    for (const [name, answer] of Object.entries({
+      cut: async (route) => route.fulfill({ body: (await readFile(join(DIST, "engine.wasm.gz"))).subarray(0, 500_000) }),
+      missing: (route) => route.fulfill({ status: 404 }),
+      other: (route) => route.fulfill({ body: "<html>" }),
+      empty: (route) => route.fulfill({ body: "" }),
+    })) {
+      const page = await visit(address, {}, (page) => page.route("**/engine.wasm.gz", answer));
+      await seen(page, "#message");
+      assert.match(await page.textContent("#message"), /^The engine does not start: .+ Load the page again\.$/, name);
+      assert.ok(await page.isDisabled("#run"));
+      await page.close();
+      // The browser reports the 404 itself.
+      if (name === "missing") faults.splice(0);
+    }
+  },
+
+  async "a page that is closed in mid-run leaves the others alone"() {
+    const [page, other] = [await visit(address), await visit(address)];
+    for (const one of [page, other]) await seen(one, "#cards button");
+    await page.click("[data-example=pocket]");
+    await page.waitForFunction(() => document.querySelector("#bar").value > 0);
+    await page.close();
+    await other.click("[data-example=star]");
+    await seen(other, "#figures");
+    await other.close();
   },
 
   async "the file of the command line is there"() {

@@ -33,7 +33,7 @@ export class Curve {
       cursor: { drag: { x: true, y: false, setScale: false }, points: { show: false } },
       axes: [{ ...axis, size: 28, values: (_, ticks) => ticks.map((t, i) => (i === ticks.length - 1 ? `${t} s` : `${t}`)) },
         { ...axis, size: 52, label: errorUnit(), labelSize: 16, labelFont: "12px system-ui, sans-serif" }],
-      series: [{}, ...cuts.map((cut, k) => ({ label: cut.figures.name, stroke: color(`--run-${k}`), width: 1, points: { show: false } }))],
+      series: [{}, ...cuts.map((cut) => ({ label: cut.figures.name, stroke: color(`--${cut.look}`), width: 1, points: { show: false } }))],
       hooks: {
         setSelect: [(plot) => {
           const { left, width } = plot.select;

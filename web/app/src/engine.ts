@@ -13,17 +13,27 @@ let compiled: Promise<WebAssembly.Module> | undefined;
 
 /** Fetches and compiles the engine, once. */
 export function engineModule(): Promise<WebAssembly.Module> {
-  compiled ??= fetched("engine.wasm.gz").then((bytes) => WebAssembly.compile(bytes));
+  compiled ??= fetchAndCompile("engine.wasm.gz");
   return compiled;
 }
 
-/** A file that was packed with gzip; some servers unpack it themselves. */
-async function fetched(name: string): Promise<ArrayBuffer> {
+/** Compiles while the download comes. */
+async function fetchAndCompile(name: string): Promise<WebAssembly.Module> {
   const response = await fetch(name);
-  if (!response.ok) throw new Error(`${name} is missing: ${response.status}`);
-  const bytes = await response.arrayBuffer(), head = new Uint8Array(bytes, 0, 2);
-  if (head[0] !== 0x1f || head[1] !== 0x8b) return bytes;
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+  if (!response.ok || !response.body) throw new Error(`${name} is missing: ${response.status}`);
+  const reader = response.body.getReader(), first = await reader.read();
+  const bytes = new ReadableStream<BufferSource>({
+    start: (into) => first.value ? into.enqueue(first.value) : into.close(),
+    pull: async (into) => {
+      const { done, value } = await reader.read();
+      if (done) into.close();
+      else into.enqueue(value);
+    },
+  });
+  // Some servers unpack what was packed with gzip themselves.
+  const isPacked = first.value?.[0] === 0x1f && first.value[1] === 0x8b;
+  const module = isPacked ? bytes.pipeThrough(new DecompressionStream("gzip")) : bytes;
+  return WebAssembly.compileStreaming(new Response(module, { headers: { "Content-Type": "application/wasm" } }));
 }
 
 export class Cancelled extends Error {}

@@ -2,17 +2,19 @@
 
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
+import { showCards } from "./cards";
 import { errorColor } from "./colors";
 import { Curve } from "./curve";
+import { $, element, fill, press, save } from "./dom";
+import { listenToDrops } from "./drops";
 import { Editor } from "./editor";
 import { Cancelled, Engine, engineModule } from "./engine";
 import { EXAMPLES } from "./examples";
+import { listenToIdentified, showIdentified } from "./identified";
 import type { Checked, Corrected, Cut, Figures, Finding, Lists, Place, RunAnswer } from "./messages";
 import { Playback } from "./playback";
-import { type Units, errorText, errorUnit, getUnits, lengthText, roundLength, setUnits } from "./units";
+import { type Units, errorText, errorUnit, getUnits, lengthText, roundBytes, roundLength, setUnits } from "./units";
 import { PathView, type Side } from "./view";
-
-const $ = <T extends HTMLElement = HTMLElement>(id: string) => document.getElementById(id) as T;
 
 const view = new PathView($("view"));
 const curve = new Curve($("curve"));
@@ -31,6 +33,8 @@ const state = {
   checked: undefined as Checked | undefined,
   answer: undefined as RunAnswer | undefined,
   corrected: undefined as Corrected | undefined,
+  /** What other cuts are compared with. */
+  kept: undefined as Cut | undefined,
   shown: 0,
 };
 
@@ -66,15 +70,24 @@ function openProgram(name: string, program: string, example = ""): Promise<void>
 
 async function openExample(name: string): Promise<void> {
   const checked = openProgram(`${name}.ngc`, EXAMPLES[name].program, name);
-  await checked;
-  await run();
+  // An example has no mistakes: its cut does not wait for the check.
+  await Promise.all([checked, run()]);
 }
+
+/** Most bytes of a file, as `feedwright open` serves it: a text of more does not fit into the memory of a browser. */
+const FILE_BYTES = 2 ** 29;
 
 async function openFiles(files: Iterable<File>): Promise<void> {
   for (const file of files) {
-    const text = await file.text();
-    if (/\.toml$/i.test(file.name)) openMachine(file.name, text);
-    else await openProgram(file.name, text);
+    try {
+      if (file.size >= FILE_BYTES) throw new Error(`it has ${roundBytes(file.size)}, and a browser holds ${roundBytes(FILE_BYTES)}. Use the command: feedwright run`);
+      const text = await file.text();
+      if (/\.toml$/i.test(file.name)) openMachine(file.name, text);
+      else if (/\.(csv|log|json)$/i.test(file.name)) await identify(file.name, text);
+      else await openProgram(file.name, text);
+    } catch (error) {
+      say(`${file.name} cannot be opened: ${(error as Error).message}`);
+    }
   }
 }
 
@@ -109,13 +122,18 @@ async function check(): Promise<void> {
     showChecked();
     return;
   }
+  const slow = setTimeout(() => ($("amounts").textContent = "Reading the program. If it does not end, change it, or press Esc."), 2000);
   try {
     const checked = await checker.ask({ ...request(), task: "check" });
     if (number !== lastCheck) return;
     state.checked = checked;
     showChecked();
   } catch (error) {
-    if (!(error instanceof Cancelled) && number === lastCheck) say(String((error as Error).message));
+    if (number !== lastCheck) return;
+    $("amounts").textContent = "";
+    if (!(error instanceof Cancelled)) say(String((error as Error).message));
+  } finally {
+    clearTimeout(slow);
   }
 }
 
@@ -144,7 +162,6 @@ async function work(act: (progress: (stage: string, part: number) => void) => Pr
 }
 
 async function run(): Promise<void> {
-  if ($<HTMLButtonElement>("run").disabled) return;
   await work(async (progress) => {
     view.cut(undefined, 1);
     const asked = { ...request(), task: "run" as const, controller: controllerSelect.value, recorded_on: today(), page: true };
@@ -161,7 +178,17 @@ async function correct(): Promise<void> {
   });
 }
 
+/** Finds the machine by its log, and cuts on it from then on. */
+async function identify(name: string, log: string): Promise<void> {
+  await work(async (progress) => {
+    const stem = name.replace(/\.[^.]*$/, ""), identified = await cutter.ask({ task: "identify", name, program: log }, { progress });
+    openMachine(`${stem}.toml`, identified.file);
+    showIdentified(stem, name, identified);
+  });
+}
+
 function cancel(): void {
+  checker.cancel();
   cutter.cancel();
   busy(false);
   if (!state.answer) view.cut(undefined, 1);
@@ -184,12 +211,6 @@ function say(message: string): void {
 }
 
 // ---- What is shown
-
-function element<K extends keyof HTMLElementTagNameMap>(tag: K, text = "", name = ""): HTMLElementTagNameMap[K] {
-  const made = document.createElement(tag);
-  [made.textContent, made.className] = [text, name];
-  return made;
-}
 
 function showChecked(): void {
   const { checked } = state, findings = checked?.findings ?? [];
@@ -217,26 +238,41 @@ function findingRow(finding: Finding): HTMLElement {
 const largest_um = (cuts: Cut[]) => Math.max(...cuts.map(({ figures }) => Number(figures.max_um)).filter(Number.isFinite), 0);
 
 function showAnswer(): void {
-  const { answer } = state, cuts = answer?.cuts ?? [];
-  for (const id of ["figures", "report", "worst-title", "legend"]) $(id).hidden = !answer;
+  const { answer } = state, cuts = answer?.cuts ?? [], all = compared();
+  for (const id of ["figures", "report", "keep", "worst-title", "legend"]) $(id).hidden = !answer;
+  $("keep").setAttribute("aria-pressed", String(!!state.kept));
   // What the correction costs stands in the report.
   $("verdict").textContent = answer?.verdict.split(" Cost:")[0] ?? "Run shows what the machine will cut without a correction and with the controller.";
-  fillFigures($("figures"), cuts.map(({ figures }) => figures), true);
+  fillFigures($("figures"), all.map(({ figures }) => figures), all.map(({ look }) => look));
   $("shown").replaceChildren(...cuts.map(({ figures }, k) => {
     const button = element("button", figures.name);
     button.type = "button";
     button.addEventListener("click", () => showCut(k));
     return button;
   }));
-  curve.show(cuts);
-  $("key").replaceChildren(element("b", "Contour error over time"), ...cuts.map(({ figures }, k) => element("span", figures.name, `run run-${k}`)));
+  curve.show(all);
+  $("key").replaceChildren(element("b", "Contour error over time"), ...all.map(({ figures, look }) => element("span", figures.name, `run ${look}`)));
   showCut(Math.min(state.shown, Math.max(0, cuts.length - 1)));
 }
 
-function fillFigures(table: HTMLElement, rows: Figures[], colored = false): void {
+/** The cuts that are there, and the one that was kept where it is another. */
+function compared(): Cut[] {
+  const { answer, kept } = state;
+  if (!answer || !kept) return answer?.cuts ?? [];
+  return answer.cuts.some(({ t_s }) => t_s === kept.t_s) ? answer.cuts : [...answer.cuts, kept];
+}
+
+/** Keeps the cut that is shown, or drops the one that was kept. */
+function keepCut(): void {
+  const cut = state.answer?.cuts[state.shown], name = `${cut?.figures.name} before: ${state.name} on ${machineSelect.selectedOptions[0].text}`;
+  state.kept = state.kept || !cut ? undefined : { ...cut, look: "kept", figures: { ...cut.figures, name } };
+  showAnswer();
+}
+
+function fillFigures(table: HTMLElement, rows: Figures[], looks: string[] = []): void {
   table.querySelectorAll(".unit").forEach((unit) => (unit.textContent = errorUnit()));
   table.querySelector("tbody")!.replaceChildren(...rows.map((figures, k) => {
-    const row = element("tr"), name = element("th", figures.name, colored ? `run run-${k}` : "");
+    const row = element("tr"), name = element("th", figures.name, looks[k] ? `run ${looks[k]}` : "");
     name.scope = "row";
     row.append(name, ...[figures.time_s, errorText(figures.rms_um), errorText(figures.max_um)].map((text) => element("td", text)));
     return row;
@@ -249,6 +285,7 @@ function showCut(k: number): void {
   const cuts = state.answer?.cuts ?? [], cut = cuts[k];
   [...$("shown").children].forEach((button, i) => button.setAttribute("aria-pressed", String(i === k)));
   view.cut(cut, largest_um(cuts));
+  view.compare(compared()[cuts.length]);
   playback.show(cut);
   $("readout").textContent = "";
   $("largest").textContent = `${errorText(largest_um(cuts))} ${errorUnit()}`;
@@ -309,14 +346,6 @@ function drawLegend(): void {
   }
 }
 
-function save(name: string, content: Blob): void {
-  const link = element("a");
-  link.href = URL.createObjectURL(content);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
-}
-
 const stem = () => state.name.replace(/\.[^.]*$/, "");
 
 // ---- The address keeps what was chosen
@@ -352,10 +381,6 @@ function useUnits(units: Units): void {
   press("[data-units]", (button) => button.dataset.units === units);
 }
 
-function press(selector: string, isPressed: (button: HTMLElement) => boolean): void {
-  document.querySelectorAll<HTMLElement>(selector).forEach((button) => button.setAttribute("aria-pressed", String(isPressed(button))));
-}
-
 // ---- The start
 
 function listen(): void {
@@ -387,20 +412,22 @@ function listen(): void {
     showCorrected();
     keepInUrl();
   });
-  $("run").addEventListener("click", run);
+  $("run").addEventListener("click", () => void run());
   $("correct").addEventListener("click", correct);
   $("cancel").addEventListener("click", cancel);
   document.addEventListener("keydown", (event) => {
-    if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) void run();
-    else if (event.key === "Escape" && !$("work").hidden) cancel();
+    if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) $("run").click();
+    else if (event.key === "Escape") cancel();
   });
   listenToResults();
+  listenToIdentified();
   listenToView();
-  listenToDrops();
+  listenToDrops(openFiles);
 }
 
 function listenToResults(): void {
   $("report").addEventListener("click", () => state.answer && save(`${stem()}.report.html`, state.answer.report));
+  $("keep").addEventListener("click", keepCut);
   const program = () => new Blob([state.corrected!.program], { type: "text/plain" });
   $("download").addEventListener("click", () => state.corrected && save(`${stem()}.corrected.ngc`, program()));
   $("take").addEventListener("click", () => state.corrected && openProgram(`${stem()}.corrected.ngc`, state.corrected.program));
@@ -440,73 +467,14 @@ function listenToView(): void {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
     drawLegend();
     view.redraw();
-    curve.show(state.answer?.cuts ?? []);
+    curve.show(compared());
   });
 }
 
-function listenToDrops(): void {
-  let depth = 0;
-  const over = (now: number) => {
-    depth = Math.max(0, now);
-    $("drop").hidden = depth === 0;
-  };
-  addEventListener("dragenter", (event) => { event.preventDefault(); over(depth + 1); });
-  addEventListener("dragleave", () => over(depth - 1));
-  addEventListener("dragover", (event) => event.preventDefault());
-  addEventListener("drop", (event) => {
-    event.preventDefault();
-    over(0);
-    void openFiles([...(event.dataTransfer?.files ?? [])]);
-  });
-}
-
-function fill(select: HTMLSelectElement, rows: { name: string; about: string }[], chosen: string): void {
-  select.append(...rows.map(({ name, about }) => {
-    const option = new Option(name, name, name === chosen, name === chosen);
-    option.title = about;
-    return option;
-  }));
-}
-
-/** The examples, each with its path. */
-async function showCards(): Promise<void> {
-  const cards = Object.entries(EXAMPLES).map(([name, { about }]) => {
-    const card = element("button"), canvas = element("canvas");
-    card.type = "button";
-    card.dataset.example = name;
-    canvas.setAttribute("aria-hidden", "true");
-    card.append(canvas, element("b", name), element("span", about));
-    card.addEventListener("click", () => openExample(name));
-    return { card, canvas, name };
-  });
-  $("cards").replaceChildren(...cards.map(({ card }) => card));
-  for (const { canvas, name } of cards) {
-    const { points, kinds } = await drawer.ask({ task: "check", name, program: EXAMPLES[name].program });
-    drawCard(canvas, points, kinds);
-  }
-}
-
-function drawCard(canvas: HTMLCanvasElement, points: Float32Array, kinds: Uint32Array): void {
-  const g = canvas.getContext("2d")!, ratio = devicePixelRatio, { clientWidth: w, clientHeight: h } = canvas;
-  [canvas.width, canvas.height] = [w * ratio, h * ratio];
-  const of = (axis: number) => points.filter((_, i) => i % 3 === axis), [xs, ys] = [of(0), of(1)];
-  const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-  const scale = Math.min((w - 8) / (x1 - x0 || 1), (h - 8) / (y1 - y0 || 1));
-  g.setTransform(ratio, 0, 0, ratio, w * ratio / 2, h * ratio / 2);
-  g.strokeStyle = errorColor(0.1);
-  g.lineWidth = 1.5;
-  g.beginPath();
-  xs.forEach((x, i) => {
-    const at: [number, number] = [(x - (x0 + x1) / 2) * scale, -(ys[i] - (y0 + y1) / 2) * scale];
-    if (kinds[i] & 1) g.lineTo(...at);
-    else g.moveTo(...at);
-  });
-  g.stroke();
-}
-
-/** Files that `feedwright open` was given; any other server has none. */
+/** Opens the files that `feedwright open` was given. A server that has none keeps its address: the page then works without it, too. */
 async function servedFiles(): Promise<void> {
-  const names: string[] = await (await fetch("files.json")).json();
+  const names: string[] | null = await (await fetch("files.json")).json();
+  if (!names) return void navigator.serviceWorker?.register("offline.js").catch(() => {});
   const files = names.map(async (name, k) => new File([await (await fetch(`files/${k}`)).blob()], name));
   await openFiles(await Promise.all(files));
 }
@@ -526,10 +494,10 @@ async function start(): Promise<void> {
     const example = takeFromUrl();
     await servedFiles();
     if (example && !editor.value) await openExample(example);
-    else if (!editor.value) await showCards();
+    else if (!editor.value) await showCards(drawer, openExample);
     else await check();
   } catch (error) {
-    say(`The engine does not start: ${(error as Error).message}`);
+    say(`The engine does not start: ${(error as Error).message}. Load the page again.`);
   }
   drawer.cancel();
 }

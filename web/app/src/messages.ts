@@ -2,7 +2,7 @@
 
 /** A request for the engine, as web/engine/src/request.rs has it. */
 export interface EngineRequest {
-  task: "run" | "check" | "correct" | "lists";
+  task: "run" | "check" | "correct" | "identify" | "lists";
   name?: string;
   program?: string;
   machine?: string;
@@ -47,6 +47,8 @@ export interface Place { error_um: number; line: number; text: string; position_
 /** A cut. All columns have a value for each of its points. */
 export interface Cut {
   figures: Figures;
+  /** The color of its curve: "run-0", "run-1", or "kept" for one that later cuts are compared with. */
+  look: string;
   worst: Place[];
   t_s: Float32Array;
   error_um: Float32Array;
@@ -68,7 +70,17 @@ export interface Corrected {
   program: string;
 }
 
-export interface Answers { run: RunAnswer; check: Checked; correct: Corrected; lists: Lists }
+/** `numbers` has name, value, unit, interval and source of each. */
+export interface IdentifiedAxis { name: string; verdict: string; numbers: [string, string, string, string, string][] }
+
+export interface Identified {
+  axes: IdentifiedAxis[];
+  findings: string[]; improvements: string[]; advice: string[];
+  file: string;
+  page: Blob;
+}
+
+export interface Answers { run: RunAnswer; check: Checked; correct: Corrected; identify: Identified; lists: Lists }
 
 export type FromWorker =
   | { id: number; kind: "progress"; stage: string; part: number }

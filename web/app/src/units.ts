@@ -29,3 +29,5 @@ export function lengthText(mm: number): string {
 
 /** A round length without zeros at its end. */
 export const roundLength = (mm: number) => `${Number((units === "mm" ? mm : mm / INCH_MM).toPrecision(3))} ${units}`;
+
+export const roundBytes = (bytes: number) => `${Number((bytes / 1e6).toPrecision(3))} MB`;

@@ -38,6 +38,8 @@ export class PathView {
   #programmed: Strokes | undefined;
   #cut: Cut | undefined;
   #drawn: Strokes | undefined;
+  #kept: Cut | undefined;
+  #keptDrawn: Strokes | undefined;
   #largest_um = 1;
   #live: Float32Array[] = [];
   #tool: Vector | undefined;
@@ -74,6 +76,12 @@ export class PathView {
     this.#largest_um = largest_um || 1;
     this.#live = [];
     this.#tool = undefined;
+    this.regain();
+  }
+
+  /** Draws another cut below the cut, in one color. */
+  compare(kept: Cut | undefined): void {
+    this.#kept = kept;
     this.regain();
   }
 
@@ -166,6 +174,11 @@ export class PathView {
       [g.lineWidth, g.strokeStyle] = [1, color("--path")];
       stroke(this.#programmed, 1, at);
     }
+    if (this.#keptDrawn) {
+      const at = this.#projected(this.#keptDrawn.points);
+      [g.lineWidth, g.strokeStyle] = [1, color("--kept")];
+      stroke(this.#keptDrawn, 0, at);
+    }
     if (this.#drawn) {
       const at = this.#projected(this.#drawn.points);
       // A wide line costs several times as much as one of a pixel.
@@ -181,12 +194,10 @@ export class PathView {
 
   /** Draws the cut again with another gain. */
   regain(): void {
-    const cut = this.#cut;
-    if (cut) {
-      const gain = this.shownGain, points = cut.foot_mm.map((mm, k) => mm + gain * cut.deviation_mm[k]);
-      const shade = (i: number) => (cut.cutting[i] ? Math.min(STEPS - 1, Math.floor((STEPS * Math.abs(cut.error_um[i])) / this.#largest_um)) : -1);
-      this.#drawn = grouped(points, STEPS, shade);
-    } else this.#drawn = undefined;
+    const [cut, kept, gain] = [this.#cut, this.#kept, this.shownGain];
+    const shade = (i: number) => (cut!.cutting[i] ? Math.min(STEPS - 1, Math.floor((STEPS * Math.abs(cut!.error_um[i])) / this.#largest_um)) : -1);
+    this.#drawn = cut && grouped(enlarged(cut, gain), STEPS, shade);
+    this.#keptDrawn = cut && kept && grouped(enlarged(kept, gain), 1, (i) => (kept.cutting[i] ? 0 : -1));
     this.redraw();
   }
 
@@ -362,6 +373,9 @@ export class PathView {
     });
   }
 }
+
+/** The path of a cut with its errors drawn larger. */
+const enlarged = ({ foot_mm, deviation_mm }: Cut, gain: number) => foot_mm.map((mm, k) => mm + gain * deviation_mm[k]);
 
 /** Corners of the box around all points. */
 function box(points: Float32Array): [Vector, Vector] | undefined {

@@ -1,6 +1,6 @@
 // Answers requests with the library, which is WebAssembly. A worker has one thread: it is ended to cancel its work.
 
-import type { Answers, Checked, Corrected, Cut, FromWorker, RunAnswer, ToWorker } from "./messages";
+import type { Answers, Checked, Corrected, Cut, FromWorker, Identified, RunAnswer, ToWorker } from "./messages";
 
 interface Exports {
   memory: WebAssembly.Memory;
@@ -47,7 +47,7 @@ self.onmessage = async ({ data: { id, module, request } }: MessageEvent<ToWorker
 
 type Read<T> = (text: (k: number) => string, bytes: (k: number) => Uint8Array) => [T, Transferable[]] | Promise<[T, Transferable[]]>;
 
-const answers: { [task in keyof Answers]: Read<Answers[task]> } = { lists, check, correct, run };
+const answers: { [task in keyof Answers]: Read<Answers[task]> } = { lists, check, correct, identify, run };
 
 function lists(text: (k: number) => string): [Answers["lists"], Transferable[]] {
   return [JSON.parse(text(0)), []];
@@ -61,6 +61,10 @@ function check(text: (k: number) => string, bytes: (k: number) => Uint8Array): [
 
 function correct(text: (k: number) => string): [Corrected, Transferable[]] {
   return [{ ...JSON.parse(text(0)), program: text(1) }, []];
+}
+
+function identify(text: (k: number) => string): [Identified, Transferable[]] {
+  return [{ ...JSON.parse(text(0)), file: text(1), page: new Blob([text(2)], { type: "text/html" }) }, []];
 }
 
 async function run(text: (k: number) => string): Promise<[RunAnswer, Transferable[]]> {
@@ -99,7 +103,7 @@ function cut(columns: Columns, { units, runs }: Meta, k: number, rest: Pick<Cut,
     decoded(deviation_mm, `d${axis}`, error_mm, a, 3);
   });
   return {
-    ...rest, foot_mm, deviation_mm,
+    ...rest, foot_mm, deviation_mm, look: `run-${k}`,
     t_s: decoded(new Float32Array(n), "t", units.time_s),
     error_um: decoded(new Float32Array(n), "e", 1e3 * error_mm),
     line: decoded(new Uint32Array(n), "line", 1),

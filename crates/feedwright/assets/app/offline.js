@@ -1,0 +1,34 @@
+const VERSION = "cfe41b1d4f45cdf0", FILES = {
+ "./": "sha256-0PEUOxwM/PslmqRH7VkRfrOt2rMm3DCxI+9AdlFDJOw=",
+ "app.css": "sha256-6PNIuC2eQPfstTOS0uYJ3mivDl61LLA97V/8FvTih0A=",
+ "app.js": "sha256-hGu+mpWqeLoaAZBWyR7h8+p0pSEjXCWlDUqi+BtambY=",
+ "engine.js": "sha256-2wEFUFQvYoTGpANGgCcXJGHeBCDm2EpIa0ZxNXm8048=",
+ "engine.wasm.gz": "sha256-odZ4q4M8npLeeC2hNmMuX+PYJCkwNxQnEJ0c+t0U8vM=",
+ "files.json": "sha256-OOC53oF/ZFxL7DfA1KPli67MywQPVxjcBppyxzhaC+0="
+};
+// Keeps the page for visits without its server. FILES has the hash of each file, VERSION that of all: web/app/offline.mjs puts both before
+// this text. A new version waits until no page of the old one is open: no page gets files of both.
+const PREFIX = `feedwright ${registration.scope} `, NAME = PREFIX + VERSION;
+
+addEventListener("install", (event) => event.waitUntil(keep()));
+addEventListener("activate", (event) => event.waitUntil(dropOthers()));
+addEventListener("fetch", (event) => {
+  const { method, url } = event.request;
+  if (method === "GET" && url.startsWith(registration.scope)) event.respondWith(answer(event.request));
+});
+
+/** All files or none: one with another hash is of another version, or broken on its way. */
+async function keep() {
+  const cache = await caches.open(NAME);
+  await cache.addAll(Object.entries(FILES).map(([name, integrity]) => new Request(name, { integrity, cache: "no-cache" })));
+}
+
+async function dropOthers() {
+  const others = (await caches.keys()).filter((name) => name.startsWith(PREFIX) && name !== NAME);
+  await Promise.all(others.map((name) => caches.delete(name)));
+}
+
+async function answer(request) {
+  const cache = await caches.open(NAME), name = request.url.replace(/index\.html(?=[?#]|$)/, "");
+  return (await cache.match(name, { ignoreSearch: true })) ?? fetch(request);
+}
