@@ -495,7 +495,7 @@ async function start(): Promise<void> {
     await servedFiles();
     if (example && !editor.value) await openExample(example);
     else if (!editor.value) await showCards(drawer, openExample);
-    else await check();
+    else if (!state.checked) await check();
   } catch (error) {
     say(`The engine does not start: ${(error as Error).message}. Load the page again.`);
   }

@@ -1,7 +1,7 @@
-const VERSION = "cfe41b1d4f45cdf0", FILES = {
+const VERSION = "f70e03ba458b81b7", FILES = {
  "./": "sha256-0PEUOxwM/PslmqRH7VkRfrOt2rMm3DCxI+9AdlFDJOw=",
  "app.css": "sha256-6PNIuC2eQPfstTOS0uYJ3mivDl61LLA97V/8FvTih0A=",
- "app.js": "sha256-hGu+mpWqeLoaAZBWyR7h8+p0pSEjXCWlDUqi+BtambY=",
+ "app.js": "sha256-ZXoSLSWRUz+aSuggqhFe39+OHqU00CoyKY4wX+aZQqs=",
  "engine.js": "sha256-2wEFUFQvYoTGpANGgCcXJGHeBCDm2EpIa0ZxNXm8048=",
  "engine.wasm.gz": "sha256-odZ4q4M8npLeeC2hNmMuX+PYJCkwNxQnEJ0c+t0U8vM=",
  "files.json": "sha256-OOC53oF/ZFxL7DfA1KPli67MywQPVxjcBppyxzhaC+0="
