@@ -300,6 +300,32 @@ const tests = {
     await page.close();
   },
 
+  async "a long program is shown in parts, with the numbers of its lines"() {
+    const page = await visit(address), lines = Array.from({ length: 150_000 }, (_, k) => `G1 X${k % 2}.0000 Y${k % 7}`);
+    lines[99_999] = "G1 X1 Q";
+    await seen(page, "#cards button");
+    await drop(page, "long.ngc", `G21 G90 F6000\n${lines.join("\n")}\nM2\n`);
+    await page.click("#findings button");
+    const shown = () => page.$eval("#text", ({ value, selectionStart, readOnly }) =>
+      ({ lines: value.split("\n").length, before: value.slice(0, selectionStart), readOnly }));
+    const { lines: count, before, readOnly } = await shown();
+    assert.ok(readOnly && count <= 4001 && before.endsWith("\nG1 X1 Q"), `${count} ${before.slice(-20)}`);
+    assert.equal(await page.textContent("#gutter .error"), "100001");
+    // At the end of the part, the next one follows.
+    const last = () => page.$eval("#gutter", (gutter) => Number(gutter.lastChild.textContent));
+    for (let k = 0; k < 3; k++) {
+      const before = await last();
+      await page.$eval("#text", (text) => (text.scrollTop = text.scrollHeight));
+      await page.waitForFunction((before) => Number(document.querySelector("#gutter").lastChild.textContent) > before, before);
+    }
+    assert.ok((await last()) > 103_000, String(await last()));
+    await drop(page, "part.nc", "G21 G90 F600\nG1 X10\nM2\n");
+    await page.waitForSelector("#run:enabled");
+    assert.equal(await page.inputValue("#text"), "G21 G90 F600\nG1 X10\nM2\n");
+    assert.ok(!(await shown()).readOnly);
+    await page.close();
+  },
+
   async "a program that never ends is given up by Esc, or by another one"() {
     const page = await visit(address), endless = "G21 G90 F600\no1 while [1]\nG1 X1\nG1 X0\no1 endwhile\nM2\n";
     await seen(page, "#cards button");

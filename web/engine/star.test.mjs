@@ -17,10 +17,13 @@ async function answer(request) {
     cut: (at, count) => (told.points += count),
   };
   const { exports } = await WebAssembly.instantiate(module, { page });
-  const text = new TextEncoder().encode(JSON.stringify(request));
-  // Room for the input may make the memory grow, and its buffer is another one then.
-  const at = exports.input(text.length);
-  new Uint8Array(exports.memory.buffer, at, text.length).set(text);
+  const { program = "", ...asked } = request;
+  for (const [text, room] of [[program, exports.program], [JSON.stringify(asked), exports.input]]) {
+    const bytes = new TextEncoder().encode(text);
+    // Room may make the memory grow, and its buffer is another one then.
+    const at = room(bytes.length);
+    new Uint8Array(exports.memory.buffer, at, bytes.length).set(bytes);
+  }
   const began = performance.now();
   const succeeded = exports.run() === 1;
   const seconds = (performance.now() - began) / 1000;

@@ -5,6 +5,7 @@ import type { Answers, Checked, Corrected, Cut, FromWorker, Identified, RunAnswe
 interface Exports {
   memory: WebAssembly.Memory;
   input(bytes: number): number;
+  program(bytes: number): number;
   run(): number;
   at(output: number): number;
   length(output: number): number;
@@ -27,10 +28,14 @@ self.onmessage = async ({ data: { id, module, request } }: MessageEvent<ToWorker
       },
     };
     exports = (await WebAssembly.instantiate(module, { page })).exports as unknown as Exports;
-    const asked = new TextEncoder().encode(JSON.stringify(request));
-    // Room for the request may make the memory grow.
-    const at = exports.input(asked.length);
-    bytes(at, asked.length).set(asked);
+    const { program = "", ...asked } = request;
+    // Room may make the memory grow.
+    const put = (text: string, room: (bytes: number) => number) => {
+      const written = new TextEncoder().encode(text), at = room(written.length);
+      bytes(at, written.length).set(written);
+    };
+    put(program, exports.program);
+    put(JSON.stringify(asked), exports.input);
     const succeeded = exports.run() === 1;
     const output = (k: number) => bytes(exports.at(k), exports.length(k));
     const outputText = (k: number) => new TextDecoder().decode(output(k));

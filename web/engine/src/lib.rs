@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! input(n)    room for a request of n bytes: where it is in the memory of the module
+//! program(n)  room for its program or log, in UTF-8: it takes no room twice, as a text in JSON does
 //! run()       answers the request; 1 where it succeeds, 0 where output 0 is the reason why not
 //! at(k), length(k)   where output k is, and its bytes
 //! ```
@@ -33,10 +34,11 @@ use request::{Outputs, Request, Task};
 
 struct Buffers {
     input: Vec<u8>,
+    program: Vec<u8>,
     outputs: Outputs,
 }
 
-static BUFFERS: Mutex<Buffers> = Mutex::new(Buffers { input: Vec::new(), outputs: Vec::new() });
+static BUFFERS: Mutex<Buffers> = Mutex::new(Buffers { input: Vec::new(), program: Vec::new(), outputs: Vec::new() });
 
 fn with_buffers<T>(act: impl FnOnce(&mut Buffers) -> T) -> T {
     act(&mut BUFFERS.lock().unwrap_or_else(PoisonError::into_inner))
@@ -47,19 +49,29 @@ fn with_buffers<T>(act: impl FnOnce(&mut Buffers) -> T) -> T {
 #[expect(unsafe_code, reason = "the attribute exports the function")]
 #[unsafe(no_mangle)]
 pub extern "C" fn input(bytes: usize) -> usize {
-    with_buffers(|buffers| {
-        buffers.input.clear();
-        buffers.input.resize(bytes, 0);
-        buffers.input.as_mut_ptr() as usize
-    })
+    with_buffers(|buffers| room(&mut buffers.input, bytes))
+}
+
+/// Makes room for the program of the request, which the caller writes before `run`.
+#[expect(unsafe_code, reason = "the attribute exports the function")]
+#[unsafe(no_mangle)]
+pub extern "C" fn program(bytes: usize) -> usize {
+    with_buffers(|buffers| room(&mut buffers.program, bytes))
+}
+
+fn room(buffer: &mut Vec<u8>, bytes: usize) -> usize {
+    buffer.clear();
+    buffer.resize(bytes, 0);
+    buffer.as_mut_ptr() as usize
 }
 
 /// Answers the request that was written. 1 where it succeeds; else 0, and output 0 is the reason.
 #[expect(unsafe_code, reason = "the attribute exports the function")]
 #[unsafe(no_mangle)]
 pub extern "C" fn run() -> u32 {
-    let input = with_buffers(|buffers| std::mem::take(&mut buffers.input));
-    let (outputs, succeeded) = match answer(&input) {
+    let (input, program) =
+        with_buffers(|buffers| (std::mem::take(&mut buffers.input), std::mem::take(&mut buffers.program)));
+    let (outputs, succeeded) = match answer(&input, program) {
         Ok(outputs) => (outputs, 1),
         Err(error) => (vec![told(&error).into_bytes()], 0),
     };
@@ -81,8 +93,9 @@ pub extern "C" fn length(output: usize) -> usize {
     with_buffers(|buffers| buffers.outputs.get(output).map_or(0, Vec::len))
 }
 
-fn answer(input: &[u8]) -> miette::Result<Outputs> {
-    let request: Request = serde_json::from_slice(input).map_err(|error| miette::miette!("{error}"))?;
+fn answer(input: &[u8], program: Vec<u8>) -> miette::Result<Outputs> {
+    let mut request: Request = serde_json::from_slice(input).map_err(|error| miette::miette!("{error}"))?;
+    request.program = String::from_utf8(program).map_err(|error| miette::miette!("{error}"))?;
     match request.task {
         Task::Run => cut::run(&request),
         Task::Check => check::check(&request),

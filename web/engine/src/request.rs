@@ -34,8 +34,8 @@ pub(crate) struct Request {
     /// What messages call the program.
     #[serde(default)]
     pub(crate) name: String,
-    /// Its text, or that of a log.
-    #[serde(default)]
+    /// Its text, or that of a log: what was written into the room of `program`.
+    #[serde(skip)]
     pub(crate) program: String,
     /// Name of a built-in machine, or the text of a machine file.
     #[serde(default)]
