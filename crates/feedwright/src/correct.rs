@@ -82,6 +82,7 @@ mod verified;
 mod predicted;
 mod outcome;
 pub(crate) mod advise;
+#[cfg(feature = "command")]
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -151,9 +152,11 @@ const MOST_MOTIONS: u64 = 2_000_000;
 /// How the note of a corrected program begins; machine and control follow.
 const CORRECTED_FOR: &str = "corrected by feedwright for the machine";
 /// Lines in which the note is looked for.
+#[cfg(feature = "command")]
 const NOTED_WITHIN: usize = 100;
 
 /// The control that a corrected program was made for, as its note says; none where it has no such note or cannot be read.
+#[cfg(feature = "command")]
 pub(crate) fn corrected_for(program: &Program) -> Option<&'static TargetControl> {
     let (text, _) = program.text().ok()?;
     let lines = BufReader::new(text).lines().take(NOTED_WITHIN).map_while(Result::ok);
