@@ -173,7 +173,8 @@ gcode-compare programs="20000" first="1" kind="":
     cargo run --release --quiet -p feedwright-plan --example gcode_compare -- {{ programs }} {{ first }} {{ kind }}
 
 # Every fuzz target for so many minutes, one after the other (`cargo install cargo-fuzz`). What is found is in fuzz/artifacts; as a test it
-# goes to fuzz/seeds. The stable compiler is told to take the flags of the unstable one.
+# goes to fuzz/seeds. The stable compiler is told to take the flags of the unstable one. fuzz/corpus keeps what was reached: the next run
+# goes on from there.
 fuzz minutes="5" targets="reader expressions files block logs corrected planner tick":
     #!/usr/bin/env bash
     set -euo pipefail
@@ -183,6 +184,24 @@ fuzz minutes="5" targets="reader expressions files block logs corrected planner 
         cargo fuzz run --sanitizer none $target fuzz/corpus/$target fuzz/seeds/$target -- \
             -max_total_time=$(({{ minutes }} * 60)) -max_len=2000 -timeout=60 -rss_limit_mb=3000
     done
+
+# Changes the code of a file in many small ways and runs the tests of its crate for each (`cargo install cargo-mutants`): what no test
+# notices is listed in target/mutants.out. `just mutants feedwright-control "crates/control/src/supervisor/*.rs"`; some seconds each. With
+# `--iterate` behind it, goes on where it was interrupted. Survivors that are known are in .cargo/mutants.toml.
+mutants package files *options:
+    env CARGO_PROFILE_TEST_OPT_LEVEL=1 CARGO_PROFILE_TEST_DEBUG=false CARGO_PROFILE_DEV_OPT_LEVEL=1 CARGO_PROFILE_DEV_DEBUG=false \
+        cargo mutants --package {{ package }} --file "{{ files }}" --output target --baseline skip --timeout 60 {{ options }} \
+        -- --lib --test suite -- --skip conformance_panics
+
+# Every change of one byte, and every end, of valid model blocks, on two cores: hours. The suite runs a part.
+damaged-models:
+    #!/usr/bin/env bash
+    set -euo pipefail
+    cargo test --release --quiet --locked -p feedwright-fuzz-targets --no-run
+    for first in 0 650000; do
+        FEEDWRIGHT_FUZZ="damaged $first 650000" cargo test --release --quiet --locked -p feedwright-fuzz-targets changed_byte &
+    done
+    wait -n && wait -n
 
 # What has unsafe code, in Miri (`rustup toolchain install nightly --component miri,rust-src`): the C interface of the HAL
 # component, but for one test that takes long there. Miri knows no assembler, which `libm` has unless it is told.

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use feedwright_control::{
-    AxisKnowledge, ContourIdentifier, DriveParameters, FEED_PERIODS_S, IdentifiedAxes, Identifier, LoopDelays,
-    MAX_WEIGHT, ModelBlock, Parameters, Periods, Trained,
+    AxisErrors, AxisKnowledge, ContourIdentifier, DriveParameters, ErrorTable, FEED_PERIODS_S, IdentifiedAxes,
+    Identifier, KnownGeometry, LoopDelays, MAX_WEIGHT, ModelBlock, Parameters, Periods, Trained,
 };
 
 use crate::draw::Draw;
@@ -14,6 +14,9 @@ pub(crate) const SERVO_S: f64 = 0.001;
 /// Servo and mechanics periods of blocks, s.
 const PERIODS_S: &[[f64; 2]] =
     &[[1e-3, 1e-4], [1e-3, 1e-3], [2e-3, 1e-4], [1e-3, 1e-5], [1e-5, 1e-5], [0.1, 0.1], [0.1, 1e-4], [1e-3, 1e-7]];
+
+/// Length of the checksum at the end of a block.
+pub(crate) const CHECKSUM_BYTES: usize = 4;
 
 /// Axes with the numbers of the machine of Lee, Cho and Jeon (2005), with delays and an integral of the speed loop.
 pub(crate) fn known_axes<const N: usize>() -> IdentifiedAxes<N> {
@@ -90,6 +93,47 @@ pub(crate) fn with_checksum(draw: &mut Draw) -> Vec<u8> {
         content.extend_from_slice(&whole.to_le_bytes());
     }
     content.extend_from_slice(&draw.rest()[..8 * numbers as usize]);
+    sealed(content)
+}
+
+/// A block that is accepted: axes with a geometry, or an identifier of the contour error.
+pub(crate) fn valid<const N: usize>(is_contour: bool) -> Vec<u8> {
+    let mut block = ModelBlock {
+        servo_s: SERVO_S,
+        feed_period_s: 0.005,
+        trained: Trained::Axes(known_axes::<N>()),
+        geometry: None,
+    };
+    if is_contour {
+        let mut identifier = ContourIdentifier::<N>::NULL;
+        identifier.weights(&mut |_, group| {
+            group.iter_mut().zip(0..).for_each(|(weight, k)| *weight = 0.1 * (f64::from(k % 7) - 3.0));
+        });
+        block.trained = Trained::Contour(identifier);
+    } else {
+        let (scale, pitch_mm, pitch_rad_per_mm) = (1e-5, 0.002, 0.6);
+        let axis = AxisErrors { scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad: 1.0, backlash_mm: 0.0 };
+        let geometry = KnownGeometry::new([axis; N], [2e-5, -1e-5, 1e-5]);
+        let table = ErrorTable::new([[-10.0, 0.001], [0.0, 0.0], [30.0, -0.002]]);
+        block.geometry = table.ok().map(|table| geometry.with_table(0, 1, table));
+    }
+    written(&block)
+}
+
+/// A [`valid`] block of which one byte is another, or that ends early, with the checksum that fits.
+pub(crate) fn damaged<const N: usize>(draw: &mut Draw) -> Vec<u8> {
+    let mut content = valid::<N>(draw.below(2) == 1);
+    content.truncate(content.len() - CHECKSUM_BYTES);
+    let at = usize::from(u16::from_le_bytes([draw.byte(), draw.byte()])) % content.len();
+    match draw.byte() {
+        0 => content.truncate(at),
+        change => content[at] ^= change,
+    }
+    sealed(content)
+}
+
+/// A block with the checksum behind its content.
+fn sealed(mut content: Vec<u8>) -> Vec<u8> {
     let checksum = crc_32(&content);
     content.extend_from_slice(&checksum.to_le_bytes());
     content

@@ -9,7 +9,7 @@
 //! | [`logs`] | CSV and MAT: what is accepted is finite and complete |
 //! | [`corrected`] | a corrected program is read again without mistakes, ends where the original ends and stays near it |
 //! | [`planner`] | phases join; velocity, acceleration and jerk of every axis and the tolerance of the path hold |
-//! | [`tick`] | any accepted model, plant and pins: commands are finite and near the path |
+//! | [`tick`] | any accepted model, plant and pins: commands and feedback are finite, commands near the path |
 //!
 //! `just fuzz MINUTES` runs all of them. `tests/suite.rs` replays the seeds and what the fuzzer found.
 
@@ -113,9 +113,12 @@ pub fn planner(data: &[u8]) {
 
 /// The servo thread.
 pub fn tick(data: &[u8]) {
-    match data.split_first() {
-        Some((first, rest)) if first % 2 == 1 => tick::run::<3>(rest),
-        Some((_, rest)) => tick::run::<2>(rest),
-        None => {}
-    }
+    let Some((first, rest)) = data.split_first() else { return };
+    let _ = if first % 2 == 1 { tick::run::<3>(rest) } else { tick::run::<2>(rest) };
+}
+
+/// The beginnings of inputs of [`tick`] that together run every change of one byte, and every end, of valid blocks. The bytes behind
+/// are the plant and the pins.
+pub fn damaged_blocks() -> impl Iterator<Item = [u8; 6]> {
+    tick::damaged_blocks::<2>().chain(tick::damaged_blocks::<3>())
 }

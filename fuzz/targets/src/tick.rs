@@ -1,58 +1,105 @@
 //! The servo thread with any model that is accepted, a plant that does as it likes, and pins with any number on them.
 
+use feedwright_servo::compensation::{Compensation, MachinePlace};
 use feedwright_servo::limits::LinkLimits;
-use feedwright_servo::machine::model_of;
-use feedwright_servo::servo::{LinkInputs, LinkOutputs, Servo};
+use feedwright_servo::machine::{geometry_of, model_of};
+use feedwright_servo::plant::SimulatedMachine;
+use feedwright_servo::servo::{LinkFault, LinkInputs, LinkOutputs, Servo};
 use feedwright_servo::through::Through;
 
 use crate::blocks;
 use crate::draw::Draw;
 
-/// Servo periods of a run: three times the longest delay, and the time in which the supervisor judges.
+/// Servo periods of rest at the beginning: a geometry comes into force, and behind it the link takes its delay up.
+const REST: usize = 400;
+/// Servo periods behind it: three times the longest delay, and the time in which the supervisor judges.
 const PERIODS: usize = 400;
+/// Number of the choice of a damaged block.
+const DAMAGED: u8 = 3;
+/// Those of a model that is refused: commands are passed on.
+const REFUSED_PERIODS: usize = 40;
 /// Farthest that a correction may be from the path, mm: the largest deviation that can be set.
 const DEVIATION_MM: f64 = 10.0;
 /// Relative rounding of a sum of a position and a correction.
 const ROUNDING: f64 = 1e-9;
 
-/// Runs the link of a machine with `N` axes.
-pub(crate) fn run<const N: usize>(data: &[u8]) {
+/// Runs the link of a machine with `N` axes. Returns the servo periods with a correction.
+pub(crate) fn run<const N: usize>(data: &[u8]) -> usize {
     let mut draw = Draw::new(data);
     let bytes = match draw.below(8) {
         0 => blocks::with_checksum(&mut Draw::new(data)),
         1 | 2 => blocks::contour::<N>(&mut draw),
+        DAMAGED => blocks::damaged::<N>(&mut draw),
         _ => blocks::absurd::<N>(&mut draw),
     };
+    blocks::read::<N>(&bytes);
     let model = model_of::<N>(&bytes);
     let servo_s = model.as_ref().map_or(blocks::SERVO_S, |model| model.servo_s());
+    let mut compensation = Compensation::new(if model.is_ok() { geometry_of(&bytes) } else { None });
+    compensation.runs_at(servo_s);
+    let first = if model.is_ok() { 0 } else { REST + PERIODS - REFUSED_PERIODS };
     let mut servo = Servo::new(model);
-    let _ = servo.runs_at(servo_s);
-    let mut world = World { limits: LinkLimits::DEFAULT, drive_mm: [0.0; N], command_mm: [0.0; N], largest_mm: 0.0 };
-    for n in 0..PERIODS {
-        let inputs = world.inputs(&mut draw, n, servo_s);
+    if servo.runs_at(servo_s) != LinkFault::None {
+        compensation.refuse();
+    }
+    let mut world = World {
+        limits: LinkLimits::DEFAULT,
+        place: MachinePlace { zero_mm: [0.0; N], is_known: true, is_wanted: true },
+        plant: SimulatedMachine::new(&blocks::known_axes(), 1),
+        command_mm: [0.0; N],
+        largest_mm: 0.0,
+        spoils_from: draw.pick(&[REST, 0, REST + PERIODS / 2, REST + PERIODS]),
+    };
+    let mut corrected = 0;
+    for n in first..REST + PERIODS {
+        let inputs = compensation.joints(&world.inputs(&mut draw, n, servo_s), &world.place, &world.limits);
+        world.hear(&inputs);
         let outputs = servo.step(&inputs, &world.limits);
         world.check(n, &outputs);
-        world.drive_mm = outputs.drive_mm;
+        let (tool_mm, _) = compensation.tool(outputs.feedback_mm, outputs.through, &inputs.through.carries);
+        assert!(tool_mm.iter().all(|mm| mm.is_finite()), "{n}: feedback {tool_mm:?}");
+        world.plant.step(outputs.drive_mm, inputs.powered, 1.0);
+        corrected += usize::from(outputs.correction_mm != [0.0; N]);
     }
+    corrected
+}
+
+/// Inputs of [`crate::tick`] that run a block which [`blocks::damaged`] makes: each byte of each kind changed in each way, and each end.
+pub(crate) fn damaged_blocks<const N: usize>() -> impl Iterator<Item = [u8; 6]> {
+    [0, 1].into_iter().flat_map(|kind| {
+        let valid = blocks::valid::<N>(kind == 1);
+        assert!(model_of::<N>(&valid).is_ok(), "the block that is damaged is valid");
+        let places = 0..(valid.len() - blocks::CHECKSUM_BYTES) as u16;
+        places.flat_map(move |at| {
+            let [low, high] = at.to_le_bytes();
+            (0..=u8::MAX).map(move |change| [N as u8, DAMAGED, kind, low, high, change])
+        })
+    })
 }
 
 /// What is around the link.
 struct World<const N: usize> {
     limits: LinkLimits,
-    drive_mm: [f64; N],
+    place: MachinePlace<N>,
+    /// The machine of [`blocks::valid`].
+    plant: SimulatedMachine<N>,
     command_mm: [f64; N],
+    /// Servo period from which on the bytes spoil what the link gets.
+    spoils_from: usize,
     /// Largest coordinate of a command or an actual position that was heard, mm.
     largest_mm: f64,
 }
 
 impl<const N: usize> World<N> {
     fn inputs(&mut self, draw: &mut Draw, n: usize, servo_s: f64) -> LinkInputs<N> {
-        let spoils = !draw.is_empty() && draw.below(4) == 0;
-        let angle = n as f64 * servo_s * 5.0;
+        let spoils = n >= self.spoils_from && !draw.is_empty() && draw.below(4) == 0;
+        // From rest, up to 50 mm/s on a circle.
+        let moving = n.saturating_sub(REST) as f64;
+        let angle = 5.0 * servo_s * moving * moving / (moving + 50.0);
         for (k, mm) in self.command_mm.iter_mut().enumerate() {
-            *mm = 10.0 * (angle + k as f64).sin();
+            *mm = 10.0 * ((angle + k as f64).sin() - (k as f64).sin());
         }
-        let (mut command_mm, mut actual_mm) = (self.command_mm, self.drive_mm);
+        let (mut command_mm, mut actual_mm) = (self.command_mm, self.plant.measured_mm());
         let mut flags = 0b1_0011;
         if spoils {
             let axis = usize::from(draw.below(N as u8));
@@ -64,12 +111,6 @@ impl<const N: usize> World<N> {
                 4 => command_mm[axis] += draw.number(5.0),
                 5 => flags = draw.byte(),
                 _ => self.set(draw),
-            }
-        }
-        for mm in [command_mm, actual_mm] {
-            // A place whose distance overflows is not heard.
-            if mm.iter().map(|mm| mm * mm).sum::<f64>().is_finite() {
-                self.largest_mm = mm.iter().fold(self.largest_mm, |largest, mm| largest.max(mm.abs()));
             }
         }
         let is = |bit: u8| flags & (1 << bit) != 0;
@@ -86,16 +127,28 @@ impl<const N: usize> World<N> {
         }
     }
 
+    /// Notes the largest coordinate of what the link gets.
+    fn hear(&mut self, inputs: &LinkInputs<N>) {
+        for mm in [inputs.command_mm, inputs.actual_mm] {
+            // A place whose distance overflows is not heard.
+            if mm.iter().map(|mm| mm * mm).sum::<f64>().is_finite() {
+                self.largest_mm = mm.iter().fold(self.largest_mm, |largest, mm| largest.max(mm.abs()));
+            }
+        }
+    }
+
     /// Sets a pin to anything.
     fn set(&mut self, draw: &mut Draw) {
         let value = if draw.below(2) == 0 { draw.double() } else { draw.number(400.0).abs() };
-        match draw.below(7) {
+        match draw.below(9) {
             0 => self.limits.delay_s = value,
             1 => self.limits.deviation_mm = value,
             2 => self.limits.speed_mm_s = value,
             3 => self.limits.correction_mm_s2 = value,
             4 => self.limits.engaged_mm_s2 = value,
             5 => self.limits.adaptive_scale = value,
+            6 => self.place.zero_mm[0] = value,
+            7 => self.place.is_wanted = !self.place.is_wanted,
             _ => self.limits.speed_alone = !self.limits.speed_alone,
         }
     }
@@ -110,5 +163,19 @@ impl<const N: usize> World<N> {
         let farthest = drive_mm.iter().fold(0.0_f64, |farthest, mm| farthest.max(mm.abs()));
         assert!(farthest <= self.largest_mm + DEVIATION_MM + rounding_mm, "{n}: {farthest} mm: {outputs:?}");
         assert!((0.0..=1.0).contains(adaptive_feed), "{n}: {adaptive_feed}");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_kinds_of_models_correct_while_nothing_is_spoilt() {
+        for kind in [0, 1] {
+            // The last bit of the first weight, or of the mechanics period; nothing is spoilt from where the bytes end.
+            let [two, three] = [run::<2>(&[DAMAGED, kind, 40, 0, 1]), run::<3>(&[DAMAGED, kind, 40, 0, 1])];
+            assert!(two > PERIODS / 2 && three > PERIODS / 2, "{kind}: corrected in {two} and {three} periods");
+        }
     }
 }
