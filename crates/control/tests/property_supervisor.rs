@@ -58,6 +58,11 @@ impl<C: Fn(u32) -> Command<2>, M: Fn(u32) -> f64> Controller<2> for Script<C, M>
         self.decision = 0;
     }
 
+    fn observe(&mut self, _: &Window<'_, 2>, measured: Option<&Measured<2>>) {
+        let is_place = measured.is_none_or(|measured| norm(measured.position_mm).is_finite());
+        assert!(is_place, "a position that was lost is not handed over");
+    }
+
     fn prediction_error_mm(&self) -> f64 {
         (self.prediction_error_mm)(self.decision)
     }
@@ -305,9 +310,15 @@ impl Controller<2> for Wild {
 
     fn command(&mut self, _: &Window<'_, 2>, _: &Measured<2>) -> Command<2> {
         self.period += 1;
+        Command::straight(1.0, self.swing_mm())
+    }
+}
+
+impl Wild {
+    /// The offset of the last decision.
+    fn swing_mm(&self) -> [f64; 2] {
         let t_s = SERVO_S * f64::from(self.period);
-        let swing = |i: usize| self.amplitude_mm[i] * (std::f64::consts::TAU * self.hz[i] * t_s).sin();
-        Command::straight(1.0, [swing(0), swing(1)])
+        std::array::from_fn(|i| self.amplitude_mm[i] * (std::f64::consts::TAU * self.hz[i] * t_s).sin())
     }
 }
 
@@ -360,8 +371,10 @@ proptest! {
     fn an_offset_keeps_the_acceleration_of_the_owner(
         amplitude_mm in prop::array::uniform2(-0.1..0.1_f64),
         hz in prop::array::uniform2(0.2..25.0_f64),
-        engaged_mm_s2 in 50.0..1e5_f64,
+        // As often below what the offset needs as above.
+        magnitude in 1.0..5.0_f64,
     ) {
+        let engaged_mm_s2 = 10.0_f64.powf(magnitude);
         let mut controller = Wild { amplitude_mm, hz, moved_mm: [0.0; 2], period: 0 };
         let mut tick = Tick::new(SERVO_S, controller.schedule(), Bounds { engaged_mm_s2, ..BOUNDS });
         let (mut tool_mm, mut offsets) = ([0.0; 2], Vec::new());
@@ -382,5 +395,132 @@ proptest! {
             }
         }
         prop_assert!(offsets.iter().any(|offset| norm(*offset) > 0.0));
+    }
+}
+
+/// A straight path along x.
+struct Line;
+
+impl KnotSource<2> for Line {
+    fn knot(&mut self, tau_s: f64) -> Knot<2> {
+        Knot { position_mm: [FEED_MM_S * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: FEED_MM_S, cutting: true }
+    }
+}
+
+/// An offset along the path is none from it, as far as the path is known: 200 knots.
+#[test]
+fn an_offset_along_the_path_is_kept_however_long_it_is() {
+    const LEAD_MM: f64 = 8.0;
+    for lead_mm in [LEAD_MM, -LEAD_MM] {
+        let mut tick = Tick::new(SERVO_S, Schedule { servo_periods: SERVO_PERIODS, preview: 40 }, BOUNDS);
+        let mut controller = Script {
+            command: |k| Command::straight(1.0, [(0.5 * f64::from(k)).min(1.0) * lead_mm, 0.0]),
+            prediction_error_mm: |_| 0.0,
+            decision: 0,
+        };
+        let mut tool_mm = [0.0; 2];
+        for _ in 0..1000 {
+            let setpoint = tick.step(&mut Line, &mut controller, tool_mm);
+            tool_mm = setpoint.command_mm;
+        }
+        assert_eq!(tick.state(), State::Engaged);
+        let setpoint = tick.step(&mut Line, &mut controller, tool_mm);
+        let offset_mm = sub(setpoint.command_mm, setpoint.path.position_mm);
+        assert!(norm(sub(offset_mm, [lead_mm, 0.0])) < 1e-9, "{offset_mm:?}");
+    }
+}
+
+/// The offset of a controller that acts at once is there in the servo period of the decision; behind a fault it comes back gently.
+#[test]
+fn what_acts_at_once_is_there_at_once_and_comes_back_gently() {
+    const LOST: std::ops::Range<u32> = 1500..1510;
+    let mut controller = Wild { amplitude_mm: [0.002, 0.003], hz: [0.3, 0.2], moved_mm: [0.0; 2], period: 0 };
+    let mut tick = Tick::new(SERVO_S, controller.schedule(), BOUNDS);
+    let (mut tool_mm, mut back) = ([0.0; 2], 0);
+    for n in 0..4000 {
+        let seen_mm = if LOST.contains(&n) { [f64::NAN; 2] } else { tool_mm };
+        let setpoint = tick.step(&mut Circle, &mut controller, seen_mm);
+        let offset_mm = sub(setpoint.command_mm, setpoint.path.position_mm);
+        let off_mm = norm(sub(offset_mm, controller.swing_mm()));
+        if (1000..LOST.start).contains(&n) || n > 3500 {
+            assert!(off_mm < 1e-12, "{n}: {offset_mm:?}");
+        }
+        if n > LOST.end && tick.state() == State::Engaged {
+            back += 1;
+            assert!(back > 5 || norm(offset_mm) < 0.3 * norm(controller.swing_mm()), "{n}: {offset_mm:?}");
+        }
+        for axis in 0..2 {
+            tool_mm[axis] += SERVO_S / LAG_S * (setpoint.command_mm[axis] - tool_mm[axis]);
+        }
+    }
+    assert!(back > 500, "{back}");
+}
+
+/// Keeps the largest size of what it is told to have overdone.
+struct Told(f64);
+
+impl Controller<2> for Told {
+    fn schedule(&self) -> Schedule {
+        Schedule { servo_periods: SERVO_PERIODS, preview: 10 }
+    }
+
+    fn reset(&mut self) {}
+
+    fn judged(&mut self, overdone: f64) {
+        self.0 = self.0.max(overdone.abs());
+    }
+
+    fn command(&mut self, _: &Window<'_, 2>, _: &Measured<2>) -> Command<2> {
+        Command::AS_PLANNED
+    }
+}
+
+#[test]
+fn a_controller_that_corrects_nothing_has_overdone_nothing() {
+    let mut tick = Tick::new(SERVO_S, Told(0.0).schedule(), BOUNDS);
+    let (mut controller, mut tool_mm) = (Told(0.0), [0.0; 2]);
+    for _ in 0..500 {
+        let setpoint = tick.step(&mut Circle, &mut controller, tool_mm);
+        tool_mm = setpoint.command_mm;
+    }
+    assert!(controller.0 < 1e-3, "{}", controller.0);
+    assert!((tick.without_mm() - norm(tick.contour().vector_mm)).abs() < 1e-9, "{}", tick.without_mm());
+    let before_s = tick.step(&mut Circle, &mut controller, tool_mm).tau_s;
+    tick.skip(1000);
+    let skipped_s = tick.step(&mut Circle, &mut controller, tool_mm).tau_s - before_s;
+    assert!((skipped_s - 1001.0 * SERVO_S).abs() < 1e-9, "{skipped_s}");
+}
+
+proptest! {
+    /// The rate of each feed period from the table of `supervisor/bounds.rs`, brute force.
+    #[test]
+    fn the_rate_is_the_one_asked_for_within_its_bounds(
+        asked in prop::collection::vec(-1.0..5.0_f64, 60),
+        acceleration_mm_s2 in 500.0..5000.0_f64,
+        fastest in 1.5..3.0_f64,
+    ) {
+        let mut controller = Script {
+            command: |k| Command::straight(asked[k as usize % asked.len()], [0.0; 2]),
+            prediction_error_mm: |_| 0.0,
+            decision: 0,
+        };
+        let mut tick = Tick::new(SERVO_S, controller.schedule(), Bounds { acceleration_mm_s2, fastest, ..BOUNDS });
+        let (mut tool_mm, mut tau_s) = ([0.0; 2], Vec::new());
+        for _ in 0..asked.len() as u32 * SERVO_PERIODS {
+            let setpoint = tick.step(&mut Circle, &mut controller, tool_mm);
+            tool_mm = setpoint.command_mm;
+            if setpoint.decided {
+                tau_s.push(setpoint.tau_s);
+            }
+        }
+        prop_assert_eq!(tick.state(), State::Engaged);
+        let step = acceleration_mm_s2 * FEED_PERIOD_S / FEED_MM_S;
+        let mut last = 1.0_f64;
+        for (k, pair) in tau_s.windows(2).enumerate() {
+            let wanted = asked[(k + 1) % asked.len()].max(0.1).min(fastest);
+            last = wanted.max(last - step).min(last + step);
+            let found = (pair[1] - pair[0]) / FEED_PERIOD_S;
+            prop_assert!((found - last).abs() < 1e-9, "{k}: {found}, not {last}");
+        }
     }
 }

@@ -131,6 +131,11 @@ mod tests {
     }
 
     #[test]
+    fn a_free_run_takes_thirty_milliseconds() {
+        assert_eq!([1e-3, 4e-4, 0.1].map(run_periods), [30, 75, 1]);
+    }
+
+    #[test]
     fn what_noise_and_torque_do_not_explain_is_not_as_the_law_said() {
         for (missed_mm, expected_mm, pushed_mm, as_said) in [
             (0.00009, 0.0, 0.0, true),
