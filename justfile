@@ -186,10 +186,11 @@ fuzz minutes="5" targets="reader expressions files block logs corrected planner 
     done
 
 # Changes the code of a file in many small ways and runs the tests of its crate for each (`cargo install cargo-mutants`): what no test
-# notices is listed in target/mutants.out. `just mutants feedwright-control "crates/control/src/supervisor/*.rs"`; some seconds each. With
-# `--iterate` behind it, goes on where it was interrupted. Survivors that are known are in .cargo/mutants.toml.
+# notices is listed in target/mutants.out. `just mutants feedwright-control "crates/control/src/supervisor/*.rs"`; ten seconds each. With
+# `--iterate` behind it, goes on where it was interrupted. Survivors that are known are in .cargo/mutants.toml. Built increments that an
+# interrupt leaves behind do not link: without increments.
 mutants package files *options:
-    env CARGO_PROFILE_TEST_OPT_LEVEL=1 CARGO_PROFILE_TEST_DEBUG=false CARGO_PROFILE_DEV_OPT_LEVEL=1 CARGO_PROFILE_DEV_DEBUG=false \
+    env CARGO_INCREMENTAL=0 CARGO_PROFILE_TEST_OPT_LEVEL=1 CARGO_PROFILE_TEST_DEBUG=false CARGO_PROFILE_DEV_OPT_LEVEL=1 CARGO_PROFILE_DEV_DEBUG=false \
         cargo mutants --package {{ package }} --file "{{ files }}" --output target --baseline skip --timeout 60 {{ options }} \
         -- --lib --test suite -- --skip conformance_panics
 

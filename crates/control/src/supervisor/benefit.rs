@@ -140,10 +140,16 @@ mod tests {
 
     /// A second in which the tool is at `error_mm` beside the path, and the offset has moved it by `moved_mm`.
     fn after_a_second(error_mm: f64, moved_mm: f64) -> (Benefit<2>, bool) {
+        after(1000, |_| [error_mm, moved_mm])
+    }
+
+    /// Servo periods in each of which the tool is so far beside the path, and the offset has moved it by so much, mm.
+    fn after(periods: u32, place_mm: impl Fn(u32) -> [f64; 2]) -> (Benefit<2>, bool) {
         let (mut register, mut preview) = (Register::default(), Preview::new(SERVO_S));
         let mut benefit = Benefit::NONE;
         let mut harm = false;
-        for n in 0..1000_u32 {
+        for n in 0..periods {
+            let [error_mm, moved_mm] = place_mm(n);
             let tau_s = f64::from(n) * SERVO_S;
             register.push(Line.knot(tau_s));
             preview.fill(&mut Line, tau_s, 0.01);
@@ -178,5 +184,18 @@ mod tests {
         assert!(after_a_second(0.05, 0.05).1);
         assert!(!after_a_second(0.0, -0.05).1);
         assert!(!after_a_second(0.01, 0.001).1);
+    }
+
+    #[test]
+    fn a_large_error_without_the_correction_excuses_no_later_one() {
+        // 0.2 mm for 0.3 s without, 2 s nothing, and then 0.045 mm with it.
+        let place_mm = |gap: u32| {
+            move |n| match n {
+                0..300 => [0.2, 0.0],
+                _ if n >= 300 + gap => [0.045, 0.045],
+                _ => [0.0; 2],
+            }
+        };
+        assert!(!after(403, place_mm(100)).1 && after(2303, place_mm(2000)).1);
     }
 }
