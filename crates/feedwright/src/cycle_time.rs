@@ -5,7 +5,7 @@
 
 pub(crate) mod along;
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 
 use feedwright_gcode::ReadError;
@@ -175,7 +175,7 @@ pub fn cycle_time_by<'p>(
     let mut plan =
         Plan::new((stages.blend.make)(steps()?, constraints), constraints, stages.planner, Plc::from(machine))?;
     let mut sampler = Sampler::new(constraints, stages.planner);
-    sampler.lines = options.lines.then(BTreeMap::new);
+    sampler.lines = options.lines.then(Vec::new);
     let mut progress = (options.length_mm > 0.0).then(|| StageSteps::begin(watch, "planning"));
     for planned in plan.by_ref() {
         watch.check()?;
@@ -266,8 +266,8 @@ struct Sampler<'a> {
     selected: u32,
     /// Time in which each limit binds, in the order of [`limit_names`].
     bound_s: [f64; LIMITS],
-    /// Time of each line, where it is kept.
-    lines: Option<BTreeMap<u32, LineTime>>,
+    /// Time of each line by its number, where it is kept; number 0 where a line has no time.
+    lines: Option<Vec<LineTime>>,
     /// Cutting time below [`SLOW`] of the programmed feedrate, s.
     slow_s: f64,
     /// The sample under way.
@@ -424,7 +424,12 @@ impl<'a> Sampler<'a> {
 
     fn line_takes(&mut self, line: u32, time_s: f64, waiting_s: f64) {
         if let Some(lines) = &mut self.lines {
-            let of_line = lines.entry(line).or_insert(LineTime { line, time_s: 0.0, waiting_s: 0.0 });
+            let index = line as usize;
+            if lines.len() <= index {
+                lines.resize(index + 1, LineTime { line: 0, time_s: 0.0, waiting_s: 0.0 });
+            }
+            let of_line = &mut lines[index];
+            of_line.line = line;
             of_line.time_s += time_s;
             of_line.waiting_s += waiting_s;
         }
@@ -506,7 +511,8 @@ impl<'a> Sampler<'a> {
         result.binding.sort_by(|a, b| b.share.total_cmp(&a.share));
         result.tools.retain(|tool| tool.time_s > 0.0);
         result.slow_share = self.slow_s / result.cutting_s.max(f64::MIN_POSITIVE);
-        result.lines = self.lines.unwrap_or_default().into_values().collect();
+        result.lines = self.lines.unwrap_or_default();
+        result.lines.retain(|line| line.line > 0);
         result
     }
 }

@@ -1,5 +1,7 @@
 //! What each JSON result says of itself: the format, and the version that wrote it.
 
+use std::io::{self, BufWriter, Write};
+
 use feedwright_gcode::is_hidden;
 use serde::Serialize;
 use serde_json::Value;
@@ -15,9 +17,27 @@ pub(crate) fn stamped(mut result: Value) -> Value {
     result
 }
 
-/// A value as JSON text, in which what [`is_hidden`] is spelled out: a terminal shows it, and a program reads it unchanged.
-pub(crate) fn json_text(value: &impl Serialize) -> serde_json::Result<String> {
-    serde_json::to_string_pretty(value).map(|text| spelled_out(&text))
+/// Writes a value as JSON, in which what [`is_hidden`] is spelled out: a terminal shows it, and a program reads it unchanged.
+pub(crate) fn write_json(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
+    let mut spelled = SpelledOut(BufWriter::new(out));
+    serde_json::to_writer_pretty(&mut spelled, value)?;
+    writeln!(spelled)?;
+    spelled.flush()
+}
+
+/// Writes JSON text with [`spelled_out`]. The serializer writes whole strings, so no character is divided.
+struct SpelledOut<W>(W);
+
+impl<W: Write> Write for SpelledOut<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let text = std::str::from_utf8(bytes).map_err(io::Error::other)?;
+        self.0.write_all(spelled_out(text).as_bytes())?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
 }
 
 /// JSON text with its hidden characters as escapes; line ends stand between values and stay.

@@ -11,7 +11,7 @@ use super::{Job, JobOutcome};
 use crate::correct::CorrectOutcome;
 use crate::report::harm::Harm;
 use crate::report::{Assumptions, Band, CompensatedGeometry, RunSummary};
-use crate::results_format::{RESULTS_FORMAT, json_text};
+use crate::results_format::{RESULTS_FORMAT, write_json};
 
 /// All results: `runs` and what they were made with.
 #[derive(Serialize)]
@@ -64,6 +64,6 @@ impl JobOutcome {
             band: report.band.as_ref(),
             exported: self.exported.as_ref(),
         };
-        writeln!(out, "{}", json_text(&results)?)
+        write_json(out, &results)
     }
 }

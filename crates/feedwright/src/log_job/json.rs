@@ -6,7 +6,7 @@ use feedwright_ident::{FoundAxis, FreeRunErrors, HORIZONS, NumberSource};
 use serde_json::{Map, Value, json};
 
 use super::LogIdentified;
-use crate::results_format::{json_text, stamped};
+use crate::results_format::{stamped, write_json};
 
 /// Writes it.
 ///
@@ -40,7 +40,7 @@ pub fn write(out: &mut impl io::Write, identified: &LogIdentified) -> io::Result
         "contour": contour,
         "axes": axes,
     });
-    writeln!(out, "{}", json_text(&stamped(value))?)
+    write_json(out, &stamped(value))
 }
 
 fn axis(identified: &LogIdentified, i: usize, found: &FoundAxis) -> Value {

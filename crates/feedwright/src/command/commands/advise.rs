@@ -20,7 +20,7 @@ use crate::correct::FileAssumption;
 use crate::correct::advise::{Advice, AdviseJob, FeedCut, STRETCH_LEGEND, WayAdvice};
 use crate::output::OutputFile;
 use crate::report::PageUnits;
-use crate::results_format::{json_text, stamped};
+use crate::results_format::{stamped, write_json};
 
 /// Stretches that are listed.
 const LISTED: usize = 12;
@@ -66,7 +66,7 @@ pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
         let mut value = serde_json::to_value(&advice).into_diagnostic()?;
         value["part"] = json!(args.part.display().to_string());
         value["machine"] = json!(job.machine.name);
-        writeln!(file, "{}", json_text(&stamped(value)).into_diagnostic()?).into_diagnostic()?;
+        write_json(&mut file, &stamped(value)).into_diagnostic()?;
         complete.push(file);
     }
     OutputFile::commit_all(complete, &bar)?;

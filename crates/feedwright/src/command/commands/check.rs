@@ -25,7 +25,7 @@ use crate::command::folded::folded;
 use crate::command::message::{ERROR, MISTAKES, printed, tell, warn};
 use crate::command::progress::Bar;
 use crate::command::streams::check_inputs;
-use crate::results_format::{json_text, stamped};
+use crate::results_format::{stamped, write_json};
 
 /// What came of one file, best first: the worst of all files is the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -163,8 +163,8 @@ impl CheckOutput {
     fn end(&self, out: &mut impl Write) -> io::Result<()> {
         match self.format {
             Format::Text | Format::Github => Ok(()),
-            Format::Json => writeln!(out, "{}", json_text(&stamped(json!({ "files": self.files })))?),
-            Format::Sarif => writeln!(out, "{}", json_text(&sarif(&self.findings))?),
+            Format::Json => write_json(out, &stamped(json!({ "files": self.files }))),
+            Format::Sarif => write_json(out, &sarif(&self.findings)),
         }
     }
 

@@ -21,7 +21,7 @@ use crate::correct::exported::ExportedFigures;
 use crate::correct::{CorrectJob, CorrectOutcome, CutProgram, LearnedOutcome, LearnedValue, PredictedCut};
 use crate::measured::MeasuredLog;
 use crate::output::{OutputFile, is_standard_output};
-use crate::results_format::{json_text, stamped};
+use crate::results_format::{stamped, write_json};
 
 pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let target = control(&args.target)?;
@@ -64,7 +64,7 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     complete.extend(out);
     if let Some(mut file) = json {
         let results = results(args, &job, &outcome, within).into_diagnostic()?;
-        writeln!(file, "{}", json_text(&results).into_diagnostic()?).into_diagnostic()?;
+        write_json(&mut file, &results).into_diagnostic()?;
         complete.push(file);
     }
     OutputFile::commit_all(complete, &bar)?;

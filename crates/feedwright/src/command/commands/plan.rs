@@ -2,6 +2,7 @@
 
 mod bound;
 
+use std::collections::BTreeMap;
 use std::io::{BufRead, Write};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -11,6 +12,7 @@ use feedwright_gcode::{Program, visible};
 use feedwright_plan::{Constraints, FEED_PLANNERS, MOST_OVERRIDE, feed_planner};
 use feedwright_sim::{Machine, Stages, path_steps, shown};
 use miette::{IntoDiagnostic, Result, miette};
+use serde::Serialize;
 use serde_json::json;
 
 use crate::command::args::plan::PlanArgs;
@@ -27,7 +29,7 @@ use crate::job::{Job, JobError};
 use crate::output::OutputFile;
 use crate::override_time::{HoldStop, OperatorRequest, OverrideTime, override_time};
 use crate::recorded_model::BUILT_IN_SEED;
-use crate::results_format::{json_text, stamped};
+use crate::results_format::{stamped, write_json};
 use bound::{Bound, MOST_BOUND_S, bound};
 
 pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
@@ -72,8 +74,7 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     let outcome = PlanOutcome { found, bound, operated, path_um, planned_um, took_s };
     let mut complete = Vec::new();
     if let Some(mut file) = json {
-        let text = json_text(&outcome.results(args, &machine)?).into_diagnostic()?;
-        writeln!(file, "{text}").into_diagnostic()?;
+        outcome.write_results(&mut file, args, &machine)?;
         complete.push(file);
     }
     if let Some(mut file) = lines {
@@ -94,6 +95,14 @@ struct PlanOutcome {
     /// Tolerance that the path was planned with, um.
     planned_um: Option<f64>,
     took_s: f64,
+}
+
+/// An entry of the results. Of many millions of lines, each would take a kilobyte as a value.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum PlanEntry<'a> {
+    Value(&'a serde_json::Value),
+    Lines(&'a [LineTime]),
 }
 
 /// The time of each line with its text.
@@ -269,8 +278,8 @@ fn request(args: &PlanArgs, stages: Stages) -> Result<Option<OperatorRequest>> {
 const MOST_HOLD_S: f64 = 3.2e7;
 
 impl PlanOutcome {
-    /// All results.
-    fn results(&self, args: &PlanArgs, machine: &Machine) -> Result<serde_json::Value> {
+    /// Writes all results as JSON.
+    fn write_results(&self, out: &mut impl Write, args: &PlanArgs, machine: &Machine) -> Result<()> {
         let Self { found, operated, planned_um, took_s, .. } = self;
         let mut value = serde_json::to_value(found).into_diagnostic()?;
         value["part"] = json!(args.part.display().to_string());
@@ -281,10 +290,14 @@ impl PlanOutcome {
             value["override"] = json!(operated);
         }
         value["along"] = along(found);
+        let value = stamped(value);
+        let values = value.as_object().into_iter().flatten();
+        let mut entries: BTreeMap<&str, PlanEntry> =
+            values.map(|(name, value)| (name.as_str(), PlanEntry::Value(value))).collect();
         if !found.lines.is_empty() {
-            value["lines"] = json!(found.lines);
+            entries.insert("lines", PlanEntry::Lines(&found.lines));
         }
-        Ok(stamped(value))
+        write_json(out, &entries).into_diagnostic()
     }
 
     fn print(&self, args: &PlanArgs) -> std::io::Result<()> {

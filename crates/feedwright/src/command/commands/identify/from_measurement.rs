@@ -17,7 +17,7 @@ use crate::command::message::printed;
 use crate::command::streams::{check_inputs, tables, tell_written};
 use crate::command::terminal::wrapped;
 use crate::output::{OutputError, OutputFile, OutputFiles};
-use crate::results_format::{json_text, stamped};
+use crate::results_format::{stamped, write_json};
 
 pub(super) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     let measured = &args.of_geometry.geometry;
@@ -31,9 +31,11 @@ pub(super) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     // Whatever was found, the file is one that reads back.
     let text = found.file.text();
     GeometryFile::parse(&out.display().to_string(), &text)?;
-    let mut texts = vec![(out, text)];
+    let mut texts = vec![(out, text.into_bytes())];
     if let Some(path) = &args.of_log.json {
-        texts.push((path, json_text(&stamped(found.json())).into_diagnostic()? + "\n"));
+        let mut text = Vec::new();
+        write_json(&mut text, &stamped(found.json())).into_diagnostic()?;
+        texts.push((path, text));
     }
     for AxisFile { axis, path } in &args.of_geometry.comp_file {
         let axis = axis.ok_or_else(|| {
@@ -47,12 +49,12 @@ pub(super) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
                 path.display()
             )
         })?;
-        texts.push((path, comp_file(&table, args.of_geometry.comp_type)));
+        texts.push((path, comp_file(&table, args.of_geometry.comp_type).into_bytes()));
     }
     let mut files = OutputFiles::new(inputs.iter().map(PathBuf::as_path));
-    let written = |(path, text): &(&Path, String)| -> Result<OutputFile, OutputError> {
+    let written = |(path, text): &(&Path, Vec<u8>)| -> Result<OutputFile, OutputError> {
         let mut file = files.start(path)?;
-        file.write_all(text.as_bytes()).map_err(|error| OutputError::from_io(error, path))?;
+        file.write_all(text).map_err(|error| OutputError::from_io(error, path))?;
         Ok(file)
     };
     let all: Vec<OutputFile> = texts.iter().map(written).collect::<Result<_, _>>()?;
