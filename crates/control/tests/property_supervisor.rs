@@ -407,7 +407,7 @@ impl KnotSource<2> for Line {
     }
 }
 
-/// An offset along the path is none from it, as far as the path is known: 200 knots.
+/// An offset along the path does not leave it, as far as the path is known (200 knots).
 #[test]
 fn an_offset_along_the_path_is_kept_however_long_it_is() {
     const LEAD_MM: f64 = 8.0;

@@ -353,7 +353,7 @@ impl CorrectJob {
         }
     }
 
-    /// A text with all that was found, or why there is none: when the program is written out, and with the lines of the original.
+    /// A text with all that was found. The error says why the program cannot be written out, and why the original lines cannot stay.
     fn written_as_found(
         &self,
         source: &SourceProgram,

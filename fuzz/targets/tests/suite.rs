@@ -72,7 +72,7 @@ fn every_target_holds_on_drawn_bytes() {
     }
 }
 
-/// Every so many of the damaged blocks, a prime: all bytes and changes come up.
+/// The suite tries one of so many damaged blocks. The number is prime, so that all bytes and changes come up.
 const DAMAGED_STRIDE: u64 = 2003;
 
 /// Every end, and a part of the changes; with `FEEDWRIGHT_FUZZ="damaged FIRST COUNT"`, all of a stretch of them.

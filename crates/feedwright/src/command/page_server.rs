@@ -44,7 +44,7 @@ const REQUEST_BYTES: usize = 16 * 1024;
 const FILE_BYTES: u64 = 512 * 1024 * 1024;
 /// A connection that takes no byte of an answer for longer is closed.
 const IDLE: Duration = Duration::from_secs(10);
-/// A request that is not whole after this is none: browsers send theirs at once, and connect anew where they did so ahead of need.
+/// A request must be complete within this time. Browsers send theirs at once, and connect again if an early connection was closed.
 const REQUEST_TIME: Duration = Duration::from_secs(2);
 
 /// An answer: status, type and body.

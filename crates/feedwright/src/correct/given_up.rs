@@ -23,12 +23,12 @@ pub(super) fn give_up_culprits(under_way: &mut [StretchRounds], cuts: &[StretchC
     };
     let culprits: Vec<usize> = (0..under_way.len()).filter_map(culprit).collect();
     for &k in &culprits {
-        (under_way[k].best, under_way[k].reason) = (None, UnchangedReason::Worse);
+        under_way[k].take_back(UnchangedReason::Worse);
     }
     !culprits.is_empty()
 }
 
-/// Gives up the commands that add the most to the square sum of a common cut, until its RMS error is no worse than that of the uncorrected program.
+/// Gives up commands until the RMS error of a common cut is no worse than that of the uncorrected program. Those that add the most error go first.
 /// Returns whether any was given up.
 pub(super) fn give_up_losses(under_way: &mut [StretchRounds], cuts: &[StretchCut]) -> bool {
     let programmed = StretchCut::together(under_way.iter().map(|stretch| &stretch.programmed));
@@ -44,7 +44,7 @@ pub(super) fn give_up_losses(under_way: &mut [StretchRounds], cuts: &[StretchCut
         }
         left.square_sum_mm2 -= loss_mm2;
         left.cutting = left.cutting + under_way[k].programmed.cutting - cuts[k].cutting;
-        (under_way[k].best, under_way[k].reason) = (None, UnchangedReason::Worse);
+        under_way[k].take_back(UnchangedReason::Worse);
         any = true;
     }
     any
@@ -58,7 +58,7 @@ pub(super) fn give_up_slow(own: &mut [StretchRounds], more_s: f64, dwell_s: f64)
     let costs: Vec<StretchCost> = own.iter().map(|stretch| stretch.cost(dwell_s)).collect();
     let given_up = slow_to_give_up(&costs, more_s, |k| own[k].programmed.max_mm <= left_mm);
     for &k in &given_up {
-        (own[k].best, own[k].reason) = (None, UnchangedReason::Detail);
+        own[k].take_back(UnchangedReason::Detail);
     }
     !given_up.is_empty()
 }

@@ -115,8 +115,7 @@ impl TextParts<'_> {
         seconds.map(|seconds| dwell(seconds, self.source.dialect)).into_iter().collect()
     }
 
-    /// The line with which a step begins: that of its motion, or the first that collects its curve; none where a line in between cannot be taken
-    /// apart.
+    /// The line on which a step begins: the line of its motion, or the first line of its curve. None if a line of the curve cannot be taken apart.
     fn begins(&self, step: usize) -> Option<usize> {
         let steps = &self.source.steps;
         let ends = line_of(&steps[step]);

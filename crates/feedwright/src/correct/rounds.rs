@@ -282,10 +282,12 @@ impl RoundsBench<'_> {
                 state.slow_rapid = Some(state.slow_rapid.map_or(slow_end, slower));
             }
             let points = new_command(rows, cut.rows.clone(), &self.lags, stretch, &settings, state.slow_end);
-            let leaves_path = points.is_none();
+            let (leaves_path, plane) = (points.is_none(), stretch.plane());
             let fitted = points.and_then(|points| state.fitted(&points, self.target.steps_per_mm()));
             let fitted: Option<Vec<Motion>> = fitted
-                .map(|motions| motions.into_iter().map(|motion| as_motion(motion, stretch, self.target)).collect())
+                .map(|motions| {
+                    motions.into_iter().map(|motion| as_motion(motion.in_plane(plane), stretch, self.target)).collect()
+                })
                 .or_else(|| slow_last(&stretch.motions, state.slow_end?, self.target));
             match fitted {
                 Some(motions) => {
@@ -310,7 +312,7 @@ impl RoundsBench<'_> {
         });
         for k in details_to_give_up(&costs, others.count(), dwell_s) {
             let k = own.start + k;
-            (under_way[k].best, under_way[k].reason) = (None, UnchangedReason::Detail);
+            under_way[k].take_back(UnchangedReason::Detail);
         }
     }
 
@@ -329,7 +331,7 @@ impl RoundsBench<'_> {
         for (k, stretch) in under_way.iter_mut().enumerate().filter(|(_, stretch)| stretch.best.is_some()) {
             let gains: Vec<StretchGain> = plausible.iter().map(|gains| gains[k]).collect();
             if !StretchGain::is_certain(&gains) || mistaken.iter().any(|gains| gains[k].is_loss()) {
-                (stretch.best, stretch.reason) = (None, UnchangedReason::Uncertain);
+                stretch.take_back(UnchangedReason::Uncertain);
             }
         }
         Ok(())
@@ -366,7 +368,7 @@ fn settings(machine: &Machine) -> UpdateSettings {
 }
 
 fn as_motion(fitted: FitMotion, stretch: &SmoothStretch, target: &TargetControl) -> Motion {
-    let FitMotion { start_mm, end_mm, shape, feed_mm_s } = fitted.in_plane(stretch.plane());
+    let FitMotion { start_mm, end_mm, shape, feed_mm_s } = fitted;
     let first = &stretch.motions[0];
     let corner = match (target.corner, first.corner) {
         (Some(corner), _) => corner,

@@ -159,6 +159,11 @@ impl StretchRounds {
         }
     }
 
+    /// Goes back to the programmed command, for this reason.
+    pub(super) fn take_back(&mut self, reason: UnchangedReason) {
+        (self.best, self.reason) = (None, reason);
+    }
+
     /// Stays with its best command, for this reason where that is the programmed one.
     pub(super) fn give_up(&mut self, reason: UnchangedReason) {
         self.reason = reason;

@@ -150,7 +150,7 @@ impl SmoothStretch {
         self.ends
     }
 
-    /// The plane in which arcs may replace its motions: that of its arcs and splines, where they share one, and XY otherwise.
+    /// The plane of the arcs that may replace its motions: the one that its arcs and splines share, or XY if they share none.
     pub(super) fn plane(&self) -> Plane {
         let shares = |plane: &Plane| self.motions.iter().all(|motion| has_plane(motion, *plane));
         let bends = self.motions.iter().any(|motion| motion.shape != Shape::Line);
