@@ -1,5 +1,6 @@
 //! Licenses and sources of everything that is built are those that deny.toml allows, and the HAL component links next to nothing.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -90,4 +91,44 @@ fn a_servo_thread_links_our_crates_and_the_functions_of_libm() {
         }
         assert!(!manifest.contains_key("build-dependencies"));
     }
+}
+
+/// What a lock file says that a package of ours needs, without versions.
+fn locked<'a>(lock: &'a toml::Table, name: &str) -> Option<BTreeSet<&'a str>> {
+    let package = lock["package"].as_array().unwrap().iter().find(|package| package["name"].as_str() == Some(name))?;
+    let needed = package.get("dependencies").and_then(toml::Value::as_array).into_iter().flatten();
+    Some(needed.map(|text| text.as_str().unwrap().split(' ').next().unwrap()).collect())
+}
+
+/// What a manifest says that its package needs on any platform: always, and with all features.
+fn needed(manifest: &toml::Table) -> [BTreeSet<&str>; 2] {
+    let platforms = manifest.get("target").and_then(toml::Value::as_table).into_iter().flat_map(|table| table.values());
+    let tables = std::iter::once(&manifest["dependencies"]).chain(platforms.map(|platform| &platform["dependencies"]));
+    let all: Vec<(&String, &toml::Value)> = tables.flat_map(|table| table.as_table().unwrap()).collect();
+    let is_optional = |value: &toml::Value| value.get("optional").and_then(toml::Value::as_bool) == Some(true);
+    let always = all.iter().filter(|(_, value)| !is_optional(value));
+    [always.map(|(name, _)| name.as_str()).collect(), all.iter().map(|(name, _)| name.as_str()).collect()]
+}
+
+/// No command of this workspace reads the lock files of the other two, so that only their own builds would find them out of date.
+#[test]
+fn every_lock_file_knows_what_our_crates_need() {
+    let mut compared = 0;
+    for folder in std::fs::read_dir(root().join("crates")).unwrap() {
+        let manifest = table(&folder.unwrap().path().join("Cargo.toml"));
+        let name = manifest["package"]["name"].as_str().unwrap();
+        let [always, all] = needed(&manifest);
+        for workspace in ["linuxcnc", "fuzz"] {
+            let lock = table(&root().join(workspace).join("Cargo.lock"));
+            if let Some(locked) = locked(&lock, name) {
+                assert!(
+                    always.is_subset(&locked) && locked.is_subset(&all),
+                    "{workspace}/Cargo.lock says that {name} needs {locked:?}, its manifest {all:?}; \
+                     `cargo metadata --offline` in {workspace} mends it"
+                );
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared >= 7, "{compared} packages");
 }
