@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use feedwright_gcode::canon::{Canon, Motion, MotionKind, Shape};
-use feedwright_plan::vector::angle;
+use feedwright_plan::{Pieces, Step, vector::angle};
 use feedwright_sim::{Machine, RunError, Watch};
 
 use super::exported::{ExportedCut, length_mm};
@@ -77,7 +77,8 @@ pub(super) fn pieces(cut: &ExportedCut<'_>, program: &[Canon], periods: u64) -> 
         Canon::Motion(motion) => Canon::Motion(Motion { line: step as u32, ..motion.clone() }),
         Canon::Event(event) => Canon::Event(event.clone()),
     });
-    let until = cut.periods(&steps_of(&numbered.collect::<Vec<_>>())?, program.len())?;
+    let numbered: Vec<Step> = Pieces::new(numbered).collect::<Result<_, _>>()?;
+    let until = cut.periods(&numbered, program.len())?;
     if until.last().is_none_or(|&all| all <= whole) {
         return Ok(vec![ProgramPiece::whole(program.len())]);
     }
