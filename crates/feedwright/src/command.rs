@@ -21,12 +21,13 @@ mod controls;
 mod page_server;
 mod commands;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use miette::Result;
 
 use crate::controllers::CONTROLLERS;
-use args::{Cli, CommandArgs, MachinesArgs};
+use args::{Cli, CommandArgs, MachinesArgs, parse_from};
 
 pub use args::quantity::feed_mm_s;
 pub use args::reader::ReaderArgs;
@@ -45,7 +46,12 @@ pub use terminal::wrapped;
 
 /// Runs the command of this process.
 pub fn main() -> ExitCode {
-    let cli: Cli = parse();
+    main_of(&std::env::args_os().collect::<Vec<_>>())
+}
+
+/// Runs a command line, whose first argument is the name of the command; help, version and mistakes of it end the process.
+pub fn main_of(arguments: &[OsString]) -> ExitCode {
+    let cli: Cli = parse_from(arguments);
     let writes_files = cli.command.writes_files();
     with_console(cli.common.quiet, writes_files, |console| run(cli.command, console))
 }

@@ -152,7 +152,7 @@ pub use measured::{MeasuredError, MeasuredLog, measured};
 #[cfg(feature = "files")]
 pub use output::{FileOperation, OutputError, OutputFile, OutputFiles};
 pub use recorded_model::{
-    MOST_FITTING, RecordedModel, RecordedModelError, built_in_lines, fitting_machines, recorded_machine, recorded_model,
+    MOST_FITTING, RecordedModelError, built_in_lines, fitting_machines, recorded_machine, take_recorded_model,
 };
 pub use report::figure::{
     COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline, figure_parts, write_figure_page, write_figure_part,

@@ -11,6 +11,7 @@ mod built_in;
 
 use std::path::Path;
 
+use feedwright_control::IdentifierKind;
 use feedwright_gcode::Program;
 use feedwright_ident::{
     AxisFacts, Columns, ExciteOptions, LawVerdict, Log, Model, SERVO_MECHANICS, excitation_program, recorded_log,
@@ -23,6 +24,7 @@ use thiserror::Error;
 
 use crate::controllers::{Choices, Entry, Setup, identifying};
 use crate::identifier_cache::{keep_text, kept_text};
+use crate::job::Job;
 use crate::log_job::{LogIdentified, LogJob, LogJobError, machine_text};
 
 /// Machines that are drawn with a log at the most: their files stay with that of the machine.
@@ -40,11 +42,11 @@ pub(crate) const BUILT_IN_SEED: u64 = 1;
 
 /// A model that was identified from a log of a simulated machine.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RecordedModel {
+struct RecordedModel {
     /// The model.
-    pub model: Model,
+    model: Model,
     /// Axes that the log does not tell well enough, in words.
-    pub doubts: Vec<String>,
+    doubts: Vec<String>,
 }
 
 /// Why there is none.
@@ -115,12 +117,33 @@ impl Told {
     }
 }
 
+/// Gives the controller of a job the model that a log of its machine tells, where it goes by one and has none: what `run` does by default.
+/// `machine` is as its file has it, whatever limits the job plans with; `date` becomes the date in the model file. Returns the axes that
+/// the log does not tell well enough, in words; `None` where the job takes no such model.
+///
+/// # Errors
+/// A log that does not tell the law of an axis, or an end from outside.
+pub fn take_recorded_model(
+    job: &mut Job,
+    machine: &Machine,
+    axes: usize,
+    date: String,
+    watch: &dyn Watch,
+) -> Result<Option<Vec<String>>, RecordedModelError> {
+    if job.model.is_some() || job.controller.identifier != Some(IdentifierKind::Axes) {
+        return Ok(None);
+    }
+    let RecordedModel { model, doubts } = recorded_model(machine, axes, (job.controller, &job.choices), date, watch)?;
+    job.model = Some(model);
+    Ok(Some(doubts))
+}
+
 /// The model of the first axes of a machine, two or three, for a controller that goes by one: the machine cuts the program of `excite`
 /// uncorrected, and its log tells the rest. `date` becomes the date in the model file.
 ///
 /// # Errors
 /// A log that tells no model, or an end from outside.
-pub fn recorded_model(
+fn recorded_model(
     machine: &Machine,
     axes: usize,
     (entry, choices): (&Entry, &Choices),

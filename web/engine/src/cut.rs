@@ -1,8 +1,7 @@
 //! A cut without a correction and one with a controller.
 
-use feedwright::control::IdentifierKind;
 use feedwright::sim::{Sink, TraceWriter};
-use feedwright::{CONTROLLERS, Choices, Job, ReportedRun, recorded_model, write_html};
+use feedwright::{CONTROLLERS, Choices, Job, ReportedRun, take_recorded_model, write_html};
 use miette::IntoDiagnostic;
 use serde_json::{Value, json};
 
@@ -58,10 +57,8 @@ fn as_in_the_command(
     let recorded = [job.controller, job.against].into_iter();
     let recorded = recorded.filter_map(|entry| Some((entry, CONTROLLERS.recorded(&job.machine, entry)?)));
     job.choices.take_recorded(recorded.collect::<Vec<_>>().into_iter());
-    if job.controller.identifier == Some(IdentifierKind::Axes) {
-        let made = recorded_model(&job.machine, axes, (job.controller, &job.choices), day.to_owned(), watch)?;
-        job.model = Some(made.model);
-    }
+    let machine = job.machine.clone();
+    take_recorded_model(job, &machine, axes, day.to_owned(), watch)?;
     Ok(())
 }
 

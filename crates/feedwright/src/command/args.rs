@@ -174,26 +174,32 @@ impl CommandArgs {
     }
 }
 
-/// Reads a command line; help, version and mistakes of it end the process.
+/// Reads the command line of this process; help, version and mistakes of it end the process.
 pub fn parse<T: Parser>() -> T {
-    let color = color_said(std::env::args_os());
+    parse_from(&std::env::args_os().collect::<Vec<_>>())
+}
+
+/// Reads a command line, whose first argument is the name of the command; help, version and mistakes of it end the process.
+pub(crate) fn parse_from<T: Parser>(arguments: &[OsString]) -> T {
+    let color = color_said(arguments);
     set_color(color);
-    let matches = command::<T>(color).try_get_matches().unwrap_or_else(|error| leave::<T>(color, error));
+    let command = command::<T>(color, arguments);
+    let matches = command.try_get_matches_from(arguments).unwrap_or_else(|error| leave::<T>(color, arguments, error));
     if let Ok(Some(units)) = matches.try_get_one::<LengthUnits>("units") {
         set_units(*units);
     }
-    T::from_arg_matches(&matches).unwrap_or_else(|error| leave::<T>(color, error))
+    T::from_arg_matches(&matches).unwrap_or_else(|error| leave::<T>(color, arguments, error))
 }
 
 /// Ends the process with help, or with what is wrong with the command line: that of the same command line without what is hidden
 /// in it, because clap quotes its words.
-fn leave<T: CommandFactory>(color: ColorWhen, error: clap::Error) -> ! {
-    let arguments = std::env::args_os().map(|argument| visible(&argument.to_string_lossy()).into_owned());
-    command::<T>(color).try_get_matches_from(arguments).err().unwrap_or(error).exit()
+fn leave<T: CommandFactory>(color: ColorWhen, arguments: &[OsString], error: clap::Error) -> ! {
+    let shown = arguments.iter().map(|argument| visible(&argument.to_string_lossy()).into_owned());
+    command::<T>(color, arguments).try_get_matches_from(shown).err().unwrap_or(error).exit()
 }
 
 /// The command with its help as the terminal shows it.
-fn command<T: CommandFactory>(color: ColorWhen) -> Command {
+fn command<T: CommandFactory>(color: ColorWhen, arguments: &[OsString]) -> Command {
     let color = match color {
         ColorWhen::Always => ColorChoice::Always,
         ColorWhen::Never => ColorChoice::Never,
@@ -201,14 +207,14 @@ fn command<T: CommandFactory>(color: ColorWhen) -> Command {
         ColorWhen::Auto => ColorChoice::Auto,
     };
     let wants_all =
-        std::env::args_os().skip(1).take_while(|argument| argument != "--").any(|argument| argument == "--help-all");
+        arguments.iter().skip(1).take_while(|argument| *argument != "--").any(|argument| argument == "--help-all");
     let command = shown_options(grouped(T::command()), wants_all).color(color);
     if io::stdout().is_terminal() { command } else { command.term_width(columns().min(COLUMNS)) }
 }
 
 /// What `--color` says, before the command line is read: its mistakes are coloured, too.
-fn color_said(arguments: impl Iterator<Item = OsString>) -> ColorWhen {
-    let arguments: Vec<String> = arguments.map(|argument| argument.to_string_lossy().into_owned()).collect();
+fn color_said(arguments: &[OsString]) -> ColorWhen {
+    let arguments: Vec<String> = arguments.iter().map(|argument| argument.to_string_lossy().into_owned()).collect();
     let of_option = |(at, argument): (usize, &String)| match argument.as_str() {
         "--color" => arguments.get(at + 1).cloned(),
         argument => argument.strip_prefix("--color=").map(str::to_owned),
@@ -228,7 +234,7 @@ mod tests {
 
     #[test]
     fn color_is_known_before_the_rest_is_read() {
-        let said = |words: &str| color_said(words.split(' ').map(OsString::from));
+        let said = |words: &str| color_said(&words.split(' ').map(OsString::from).collect::<Vec<_>>());
         assert_eq!(said("feedwright run --color always x"), ColorWhen::Always);
         assert_eq!(said("feedwright --color=never"), ColorWhen::Never);
         assert_eq!([said("feedwright -- --color=never"), said("feedwright --color pink")], [ColorWhen::Auto; 2]);

@@ -3,7 +3,6 @@
 use std::ffi::OsStr;
 use std::io::{self, Write};
 
-use feedwright_control::IdentifierKind;
 use feedwright_gcode::input;
 use feedwright_gcode::suggestion::nearest;
 use feedwright_sim::{GeometryFile, Machine, is_machine_path};
@@ -16,7 +15,7 @@ use crate::command::terminal::wrapped;
 use crate::compensation::{GeometryChoice, NamedGeometry};
 use crate::correct::{CorrectJob, CorrectOutcome, FileAssumption, TARGETS, TargetControl, UnchangedStretch};
 use crate::job::Job;
-use crate::recorded_model::{RecordedModel, fitting_machines, recorded_model};
+use crate::recorded_model::{fitting_machines, take_recorded_model};
 
 /// Largest tolerance that is no slip of the unit, um.
 const MAX_TOLERANCE_UM: f64 = 1e6;
@@ -104,20 +103,10 @@ pub(crate) fn print_correction(out: &mut dyn Write, outcome: &CorrectOutcome) ->
     }
 }
 
-/// Gives the controller the model that a log of the machine tells, where it goes by one and has none, and the job `band` machines that fit
-/// the log as well; returns what is to be said of the model. The machine is as its file has it, whatever limits the job plans with.
-pub(crate) fn take_recorded_model(
-    job: &mut Job,
-    machine: &Machine,
-    axes: usize,
-    band: usize,
-    bar: &Bar,
-) -> Result<Vec<String>> {
-    if job.model.is_some() || job.controller.identifier != Some(IdentifierKind::Axes) {
-        return Ok(vec![]);
-    }
-    let RecordedModel { model, doubts } = recorded_model(machine, axes, (job.controller, &job.choices), today()?, bar)?;
-    job.model = Some(model);
+/// Gives the controller of a job its [recorded model](crate::take_recorded_model), and the job `band` machines that fit the log as well;
+/// returns what is to be said of the model. The machine is as its file has it, whatever limits the job plans with.
+pub(crate) fn take_model(job: &mut Job, machine: &Machine, axes: usize, band: usize, bar: &Bar) -> Result<Vec<String>> {
+    let Some(doubts) = take_recorded_model(job, machine, axes, today()?, bar)? else { return Ok(vec![]) };
     if band > 0 {
         job.fitting = fitting_machines(machine, axes, job.choices.seed, band, bar)?;
     }

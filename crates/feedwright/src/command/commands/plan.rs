@@ -17,7 +17,7 @@ use serde_json::json;
 
 use crate::command::args::plan::PlanArgs;
 use crate::command::console::Console;
-use crate::command::controls::{compensation, control, take_recorded_model};
+use crate::command::controls::{compensation, control, take_model};
 use crate::command::message::{printed, remark, tell_assumed_limits, warn};
 use crate::command::progress::Bar;
 use crate::command::streams::{ProgramInputs, tables, tell_written};
@@ -207,7 +207,7 @@ fn within_tolerance(
     job.choices = Choices { seed: BUILT_IN_SEED, tries: true, ..Choices::default() };
     (job.tolerance_um, job.reader) = (Some(tolerance_um), settings.clone());
     let axes = job.check()?.axes();
-    take_recorded_model(&mut job, &Machine::load(&args.machine)?, axes, 0, bar)?;
+    take_model(&mut job, &Machine::load(&args.machine)?, axes, 0, bar)?;
     let found = job.check()?.tolerance_plan(bar)?;
     bar.clear();
     if let Some(plan) = found {

@@ -17,7 +17,7 @@ use miette::{Result, miette};
 use crate::command::args::run::RunArgs;
 use crate::command::console::Console;
 use crate::command::controllers::{find, settings};
-use crate::command::controls::{compensation, control, take_recorded_model};
+use crate::command::controls::{compensation, control, take_model};
 use crate::command::date::today;
 use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell, tell_assumed_limits, warn};
 use crate::command::progress::Bar;
@@ -53,7 +53,7 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
     let (axes, summary) = (read.axes(), read.into_summary());
     let mut files = Files::create(&outputs, inputs.iter().map(PathBuf::as_path), axes)?;
     let of_machine = job.machine.clone();
-    let doubts = if exact_settings { vec![] } else { take_recorded_model(&mut job, &of_machine, axes, band, &bar)? };
+    let doubts = if exact_settings { vec![] } else { take_model(&mut job, &of_machine, axes, band, &bar)? };
     let checked = job.check_read(summary)?;
     let outcome = match checked.run(&mut [&mut files], &bar) {
         Ok(outcome) => outcome,

@@ -1,0 +1,50 @@
+//! feedwright as a module of Python: `feedwright._feedwright`, which the package `feedwright` wraps.
+//!
+//! | File | What |
+//! |---|---|
+//! | `fault.rs` | errors as exceptions, with line and column |
+//! | `watched.rs` | a job on a thread of its own, with progress and Ctrl-C |
+//! | `files.rs` | programs and machines |
+//! | `columns.rs` | rows of a cut as arrays |
+//! | `jobs.rs` | run, correct, advise, plan, identify |
+//!
+//! Figures leave as JSON, as the command writes them; rows leave as arrays of numpy that own their memory, so that
+//! nothing is copied.
+
+mod fault;
+mod watched;
+mod files;
+mod columns;
+mod jobs;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use pyo3::prelude::*;
+
+/// The module.
+#[pymodule]
+mod _feedwright {
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use super::fault::FeedwrightError;
+    #[pymodule_export]
+    use super::files::{MotionOfProgram, MotionsOfProgram, PythonMachine, PythonProgram, check, lists};
+    #[pymodule_export]
+    use super::jobs::{advise, correct, identify, plan, run};
+    #[pymodule_export]
+    use super::main;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}
+
+/// Runs the command `feedwright` and returns its exit code.
+#[pyfunction]
+fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+    let code = py.detach(|| feedwright::command::main_of(&arguments));
+    (0..=u8::MAX).find(|&number| ExitCode::from(number) == code).unwrap_or(u8::MAX)
+}

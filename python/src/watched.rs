@@ -1,0 +1,97 @@
+//! A job on a thread of its own, while the thread of the caller tells of its progress and hears Ctrl-C.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use feedwright::sim::Watch;
+use miette::Report;
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+
+use crate::fault::exception;
+
+/// How often signals are looked for and progress is told.
+const EVERY: Duration = Duration::from_millis(40);
+
+/// What a job has come to.
+struct Progress {
+    stage: Mutex<(String, u64)>,
+    done: AtomicU64,
+    cancelled: AtomicBool,
+    begun: Instant,
+}
+
+impl Watch for Progress {
+    fn begin(&self, stage: &str, steps: u64) {
+        *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = (stage.to_owned(), steps);
+        self.done.store(0, Ordering::Relaxed);
+    }
+
+    fn advance(&self, steps: u64) {
+        self.done.fetch_add(steps, Ordering::Relaxed);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+
+    fn clock(&self) -> Duration {
+        self.begun.elapsed()
+    }
+}
+
+impl Progress {
+    /// Calls `told(stage, done, steps)`, and raises what it or a signal raises.
+    fn tell(&self, told: Option<&Py<PyAny>>) -> PyResult<()> {
+        Python::attach(|py| {
+            py.check_signals()?;
+            let Some(told) = told else { return Ok(()) };
+            let (stage, steps) = self.stage.lock().unwrap_or_else(PoisonError::into_inner).clone();
+            let done = self.done.load(Ordering::Relaxed).min(steps);
+            told.call1(py, (stage, done, steps)).map(|_| ())
+        })
+    }
+}
+
+/// Does a job without the lock of the interpreter. `told(stage, done, steps)` is called while it runs; where it raises, and at
+/// Ctrl-C, the job is cancelled.
+pub(crate) fn watched<T: Send>(
+    py: Python<'_>,
+    told: Option<&Py<PyAny>>,
+    job: impl FnOnce(&dyn Watch) -> Result<T, Report> + Send,
+) -> PyResult<T> {
+    let progress = Progress {
+        stage: Mutex::new((String::new(), 0)),
+        done: AtomicU64::new(0),
+        cancelled: AtomicBool::new(false),
+        begun: Instant::now(),
+    };
+    let wait = || {
+        thread::scope(|scope| {
+            let (send, done) = channel();
+            let progress = &progress;
+            scope.spawn(move || {
+                // Where nobody waits any more, nobody asks for the result.
+                let _ = send.send(job(progress));
+            });
+            let mut raised = None;
+            loop {
+                match done.recv_timeout(EVERY) {
+                    Ok(result) => return raised.map_or_else(|| result.map_err(|error| exception(&error)), Err),
+                    Err(RecvTimeoutError::Timeout) if raised.is_some() => {}
+                    Err(RecvTimeoutError::Timeout) => {
+                        raised = progress.tell(told).err();
+                        progress.cancelled.store(raised.is_some(), Ordering::Relaxed);
+                    }
+                    Err(RecvTimeoutError::Disconnected) => {
+                        return Err(PyRuntimeError::new_err("feedwright has a fault: its work ended without a result"));
+                    }
+                }
+            }
+        })
+    };
+    py.detach(wait)
+}
