@@ -10,8 +10,11 @@ use pyo3::types::PyDict;
 /// Names of the axes.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
+/// What a column has of a row.
+type ColumnOf<T> = (&'static str, fn(&Row) -> T);
+
 /// Vectors of a row that have a column for each axis.
-const VECTORS: [(&str, fn(&Row) -> [f64; 3]); 5] = [
+const VECTORS: [ColumnOf<[f64; 3]>; 5] = [
     ("path_{}_mm", |row| row.path_mm),
     ("cmd_{}_mm", |row| row.cmd_mm),
     ("act_{}_mm", |row| row.act_mm),
@@ -20,7 +23,7 @@ const VECTORS: [(&str, fn(&Row) -> [f64; 3]); 5] = [
 ];
 
 /// Numbers of a row.
-const NUMBERS: [(&str, fn(&Row) -> f64); 4] = [
+const NUMBERS: [ColumnOf<f64>; 4] = [
     ("t_s", |row| row.t_s),
     ("s_mm", |row| row.s_mm),
     ("feed_plan_mm_s", |row| row.feed_plan_mm_s),

@@ -1,6 +1,6 @@
 //! The jobs: run, correct, advise, plan, identify.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use feedwright::command::{find, settings, today};
@@ -62,13 +62,13 @@ impl RunOptions {
         job.tolerance_um = self.tolerance_um;
         job.with_limits = true;
         job.reader = program.settings.clone();
-        job.log = self.log.as_ref().map(|path| measured(path, None, watch)).transpose()?;
+        job.log = self.log.as_deref().map(|path| measured(path, None, watch)).transpose()?;
         Ok(job)
     }
 }
 
 /// A log of a cut.
-fn measured(path: &PathBuf, columns: Option<&str>, watch: &dyn Watch) -> Result<MeasuredLog> {
+fn measured(path: &Path, columns: Option<&str>, watch: &dyn Watch) -> Result<MeasuredLog> {
     let columns = columns.map(Columns::from_str).transpose()?.unwrap_or_default();
     Ok(MeasuredLog { name: input::name(path), log: Log::read_watched(path, &columns, watch)? })
 }
@@ -173,7 +173,7 @@ pub(crate) fn correct<'py>(
         let mut job = CorrectJob::new(program.program.clone(), machine.machine.clone(), target(&options.control)?);
         job.reader = program.settings.clone();
         job.file_error = machine.file_error(options.file_error);
-        let measured = |path| measured(path, options.columns.as_deref(), watch);
+        let measured = |path: &PathBuf| measured(path, options.columns.as_deref(), watch);
         job.logs = options.logs.iter().map(measured).collect::<Result<_>>()?;
         let outcome = job.run(watch)?;
         let mut results = serde_json::to_value(&outcome).into_diagnostic()?;

@@ -145,7 +145,7 @@ pub(super) fn rounds(
         if round <= HASTY_ROUNDS {
             bench.hurry(&mut under_way, more_s);
         }
-        bench.update(&mut under_way, &cuts, &rows);
+        bench.update(&mut under_way, &cuts, &rows)?;
         round += 1;
         progress.reach(f64::from(round) / f64::from(ROUNDS + CHECKS));
     }
@@ -265,14 +265,15 @@ impl RoundsBench<'_> {
         }
     }
 
-    /// New commands for those that are not done.
-    fn update(&self, under_way: &mut [StretchRounds], cuts: &[StretchCut], rows: &[CutRow]) {
+    /// New commands for those that are not done; an end from outside is an error.
+    fn update(&self, under_way: &mut [StretchRounds], cuts: &[StretchCut], rows: &[CutRow]) -> Result<(), RunError> {
         let slow_end = slow_end(self.cut.machine).shorter(self.haste.0[1]);
         let slower = |slow: SlowEnd| if slow.length_mm < SLOWEST * slow_end.length_mm { slow } else { slow.slower() };
         for ((state, stretch), cut) in under_way.iter_mut().zip(stretches(self.parts)).zip(cuts) {
             if state.done {
                 continue;
             }
+            self.cut.watch.check()?;
             let mut settings = self.settings;
             settings.command_smoothing_s *= state.width;
             if overshoot_mm(rows, cut, stretch, settings.servo_s) > OVERSHOOT_MM {
@@ -298,6 +299,7 @@ impl RoundsBench<'_> {
                 None => state.widen(),
             }
         }
+        Ok(())
     }
 
     /// Takes details back to what they were until the program has few enough blocks and is fast enough.

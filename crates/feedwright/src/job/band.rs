@@ -65,6 +65,8 @@ impl Job {
     where
         Entry: Make<N>,
     {
+        // The design of a controller does not end early.
+        watch.check()?;
         let mut controller = self.own_controller::<N>()?;
         let cancels = CancelsOnly(watch);
         let mut beginning = Beginning { statistics: Statistics::new(), until_s: first_s.unwrap_or(f64::INFINITY) };
