@@ -91,7 +91,7 @@ impl MotionOfProgram {
 }
 
 /// The motions of a program in its order, read as they are asked for.
-#[pyclass(name = "Motions", module = "feedwright", unsendable)]
+#[pyclass(name = "Motions", module = "feedwright")]
 pub(crate) struct MotionsOfProgram {
     reader: Reader,
 }

@@ -215,7 +215,7 @@ pub fn fitting_machines(
 /// them by default. `date` becomes the date in the model.
 ///
 /// # Errors
-/// As [`recorded_model`].
+/// As [`take_recorded_model`].
 pub fn built_in_lines(
     machine: &Machine,
     axes: usize,
