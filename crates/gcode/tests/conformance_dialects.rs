@@ -128,8 +128,16 @@ fn a_do_behind_a_break_is_read_as_written_with_a_warning() {
     const BROKEN: &str = "o1 while [1]\no1 break\no1 endwhile\n";
     const DO: &str = "#2=0\no3 do\n#2=[#2+1]\nG0 Y#2\no3 while [#2 lt 3]\n";
     assert_eq!(ends(&format!("{BROKEN}{DO}M2\n"), None).len(), 3);
-    let says = "LinuxCNC 2.9 ends this loop here, because `break` in line 2 has left a while before";
+    let says = "LinuxCNC 2.9 ends this loop here: it still obeys `break` in line 2, which belongs to another loop or was stepped over";
     assert_eq!(warned(&format!("{BROKEN}{DO}M2\n")), [(8, says.to_owned())]);
+    // A break that is passed over, because the while has ended or in a do behind `continue`.
+    let counted = "#1=0\no1 while [#1 lt 2]\n#1=[#1+1]\no2 if [#1 gt 5]\no1 break\no2 endif\no1 endwhile\n";
+    assert_eq!(warned(&format!("{counted}{DO}M2\n")).len(), 1);
+    let continued = "#1=0\no1 do\n#1=[#1+1]\nG0 X#1\no1 continue\no1 break\no1 while [#1 lt 2]\nM2\n";
+    assert_eq!(warned(continued)[0].0, 7);
+    assert_eq!(ends(continued, None).len(), 2);
+    // The end of a do that it left: LinuxCNC forgets the break.
+    assert!(warned(&format!("o1 do\no1 break\no1 break\no1 while [1]\n{DO}M2\n")).is_empty());
     // A condition that ends the do anyway, or the next do: LinuxCNC has forgotten the break.
     assert!(warned(&format!("{BROKEN}o4 do\nG0 X1\no4 while [0]\n{DO}M2\n")).is_empty());
     assert!(warned(&format!("{DO}G0 X1\nM2\n")).is_empty());

@@ -62,6 +62,15 @@ fn examples() -> Vec<(&'static str, String)> {
             "#2 = 0\no1 while [1]\no1 break\no1 endwhile\no3 do\n#2 = [#2 + 1]\nG1 Y#2\no3 while [#2 lt 3]\nG1 Z1\n",
         ),
         (
+            "a do behind a while that was left by break",
+            "#1 = 0\no1 while [#1 lt 2]\n#1 = [#1 + 1]\no2 if [#1 gt 5]\no1 break\no2 endif\no1 endwhile\n#2 = 0\no3 do\n\
+             #2 = [#2 + 1]\nG1 Y#2\no3 while [#2 lt 3]\nG1 Z1\n",
+        ),
+        (
+            "a later round of a do behind a break",
+            "#2 = 0\no3 do\n#2 = [#2 + 1]\nG3 X18 Y-18 R30\no1 while [1]\no1 break\no1 endwhile\no3 while [#2 lt 2]\nG1 Z1\n",
+        ),
+        (
             "a repeat behind a do that was continued",
             "#7 = 0\no1 do\n#7 = [#7 + 1]\no2 if [#7 lt 2]\no1 continue\no2 endif\no1 while [#7 lt 3]\nG91\n\
              o3 repeat [2]\nG1 X1\no3 endrepeat\nG1 Y1\n",

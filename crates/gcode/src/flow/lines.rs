@@ -46,9 +46,10 @@ impl Flow {
             | (Purpose::Definition, Keyword::EndSub) => {
                 self.skip = None;
             }
-            (Purpose::EndOfLoop, Keyword::EndWhile | Keyword::While | Keyword::EndRepeat) => {
-                self.skip = None;
-            }
+            (Purpose::EndOfLoop, Keyword::EndWhile | Keyword::EndRepeat) => self.skip = None,
+            // The end of a do: LinuxCNC forgets its `break`.
+            (Purpose::EndOfLoop, Keyword::While) => (self.skip, self.broke) = (None, None),
+            (Purpose::EndOfLoop | Purpose::NextRound, Keyword::Break) => self.broke = Some(line),
             (Purpose::NextRound, Keyword::EndWhile | Keyword::While | Keyword::EndRepeat) => {
                 self.skip = None;
                 return self.carry_out(&head, arguments, line);

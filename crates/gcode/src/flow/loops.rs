@@ -53,7 +53,7 @@ impl Flow {
             Keyword::Break => {
                 let kind = self.find_loop(head)?.kind;
                 self.leaves(head, kind);
-                self.broke = (kind == Keyword::While).then_some(line);
+                self.broke = (kind != Keyword::Repeat).then_some(line);
                 self.loops.pop();
                 self.pass(head, Purpose::EndOfLoop, line);
             }
@@ -235,7 +235,9 @@ impl Flow {
 /// LinuxCNC carries out another number of rounds.
 #[cold]
 fn ends_early(head: &Head, line: u32) -> Box<LineFault> {
-    let message = format!("LinuxCNC 2.9 ends this loop here, because `break` in line {line} has left a while before");
+    let message = format!(
+        "LinuxCNC 2.9 ends this loop here: it still obeys `break` in line {line}, which belongs to another loop or was stepped over"
+    );
     LineFault::new("gcode::o_word", head.at.clone(), message)
         .hint("write this loop with while and endwhile, or the other one without break")
 }

@@ -103,7 +103,8 @@ pub(super) struct Flow {
     pub(super) frames: Vec<Call>,
     pub(super) loops: Vec<Loop>,
     pub(super) skip: Option<Skip>,
-    /// The line of a `break` that has left a `while`: LinuxCNC 2.9 ends the next do at its `while`, whatever its condition says.
+    /// The line of the last `break`, obeyed or passed over: LinuxCNC 2.9 ends the next do at its `while`, whatever its condition
+    /// says.
     pub(super) broke: Option<u32>,
     /// What deserves a look in the line under way.
     pub(super) warning: Option<Box<LineFault>>,

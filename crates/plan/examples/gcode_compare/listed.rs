@@ -221,6 +221,7 @@ const ROWS: &[Row] = &[
         |case| has_flow(case, " BREAK") && has_flow(case, " DO"),
         "a do behind a while that was left by break",
     ),
+    row(WE, "line", in_do_behind_break, "a later round of a do behind a break"),
     row(
         MOTION,
         "theirs",
@@ -277,6 +278,15 @@ const ROWS: &[Row] = &[
 /// Whether an O-word with this keyword is anywhere: the line of the motion may be in a subroutine before it.
 fn has_flow(case: &Case, keyword: &str) -> bool {
     case.lines.iter().any(|line| line.starts_with('O') && line.contains(keyword))
+}
+
+/// Whether the line is in a do that LinuxCNC may have left: a break stands before its end.
+fn in_do_behind_break(case: &Case) -> bool {
+    let ends_behind = |label: &str| {
+        let end = case.lines[case.at..].iter().position(|line| line.starts_with(&format!("{label} WHILE")));
+        end.is_some_and(|end| case.lines[..case.at + end].iter().any(|line| line.contains(" BREAK")))
+    };
+    case.lines[..case.at].iter().any(|line| line.split_once(" DO").is_some_and(|(label, _)| ends_behind(label)))
 }
 
 /// Whether the first motion of a profile does not go down from where its cycle with D starts: it has no word of that axis.
