@@ -130,10 +130,12 @@ impl<'a> TextRows<'a> {
             cut_off_line: None,
             announced_rows: None,
         };
-        let mut kept = super::roles::needed(&table, columns);
-        if dialect.names_in_rows {
-            kept.iter_mut().step_by(2).for_each(|kept| *kept = false);
-        }
+        // Fields that are names are no columns to `--columns`: what it needs is not known before they are gone.
+        let kept = if dialect.names_in_rows {
+            table.columns.iter().map(|column| !column.name.is_empty()).collect()
+        } else {
+            super::roles::needed(&table, columns)
+        };
         let samples = channels.iter().zip(&kept).filter(|(_, kept)| **kept).filter_map(|(channel, _)| channel.samples);
         table.announced_rows = samples.min();
         table.sample_time_s = table.sample_time_s.or_else(|| {
