@@ -71,9 +71,14 @@ fn examples() -> Vec<(&'static str, String)> {
             "#2 = 0\no3 do\n#2 = [#2 + 1]\nG3 X18 Y-18 R30\no1 while [1]\no1 break\no1 endwhile\no3 while [#2 lt 2]\nG1 Z1\n",
         ),
         (
-            "a repeat behind a do that was continued",
+            "a repeat or a break behind a do that was continued",
             "#7 = 0\no1 do\n#7 = [#7 + 1]\no2 if [#7 lt 2]\no1 continue\no2 endif\no1 while [#7 lt 3]\nG91\n\
              o3 repeat [2]\nG1 X1\no3 endrepeat\nG1 Y1\n",
+        ),
+        (
+            "a repeat or a break behind a do that was continued",
+            "#7 = 0\no1 do\n#7 = [#7 + 1]\no1 continue\no1 while [#7 lt 3]\n#2 = 0\no3 while [#2 lt 4]\n#2 = [#2 + 1]\nG1 Y#2\n\
+             o3 break\no3 endwhile\n",
         ),
         ("G50 without words", "G50\nG0 X1\n"),
         ("an O-word without its keyword in a subroutine", "o1 sub\nG0 X1\no1\no1 endsub\no1 call\n"),

@@ -218,16 +218,19 @@ const ROWS: &[Row] = &[
     row(
         MOTION,
         "theirs",
+        |case| {
+            let loops = [" REPEAT", " BREAK"];
+            has_flow(case, " CONTINUE") && has_flow(case, " DO") && loops.iter().any(|word| has_flow(case, word))
+        },
+        "a repeat or a break behind a do that was continued",
+    ),
+    row(
+        MOTION,
+        "theirs",
         |case| has_flow(case, " BREAK") && has_flow(case, " DO"),
         "a do behind a while that was left by break",
     ),
     row(WE, "line", in_do_behind_break, "a later round of a do behind a break"),
-    row(
-        MOTION,
-        "theirs",
-        |case| has_flow(case, " CONTINUE") && has_flow(case, " DO") && has_flow(case, " REPEAT"),
-        "a repeat behind a do that was continued",
-    ),
     row(THEY, "Unknown g code used", |case| case.has(&["G50"]), "G50 without words"),
     row(
         THEY,

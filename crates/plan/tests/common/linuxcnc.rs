@@ -418,7 +418,10 @@ pub(crate) fn compare(text: &str, ours: &[Ours], theirs: &Theirs, totals: &mut T
         }
         returns = value[0] == "tap";
     }
-    moves.next().map(|value| format!("they move on: {value}"))
+    let moves_on = |value: &serde_json::Value| {
+        format!("motion {}, line {}: we have no more; theirs {value}", ours.len(), value[1])
+    };
+    moves.next().map(moves_on)
 }
 
 /// What is different about LinuxCNC's arc.
