@@ -248,3 +248,54 @@ impl<'a> TimeScaling<'a> {
         landing(self.plan, &self.limits, &next, 1.0, most)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Of a central difference, s, and what it may be off: the square of it times higher derivatives below 1000.
+    const H_S: f64 = 1e-3;
+    const OFF: f64 = 1e-3;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn a_time_and_another_are_both_together(
+            (rate, slope_1_s, bend_1_s2) in (0.0..2.0_f64, -3.0..3.0_f64, -9.0..9.0_f64),
+            (a_s, b_s) in (0.0..1.0_f64, 0.0..1.0_f64),
+        ) {
+            let from = ScaledTime { tau_s: 0.3, rate, slope_1_s };
+            let at_once = from.after(a_s + b_s, bend_1_s2);
+            let in_turn = from.after(a_s, bend_1_s2).after(b_s, bend_1_s2);
+            let parts = |time: ScaledTime| [time.tau_s, time.rate, time.slope_1_s];
+            for (one, other) in parts(at_once).into_iter().zip(parts(in_turn)) {
+                prop_assert!((one - other).abs() < 1e-12, "{at_once:?} and {in_turn:?}");
+            }
+        }
+
+        #[test]
+        fn axes_do_what_the_derivatives_of_their_position_by_time_say(
+            (rate, slope_1_s, bend_1_s2) in (0.2..1.5_f64, -2.0..2.0_f64, -5.0..5.0_f64),
+            (v, a, j) in (-2.0..2.0_f64, -2.0..2.0_f64, -2.0..2.0_f64),
+        ) {
+            let [velocity_mm_s, accel_mm_s2, jerk_mm_s3] = [v, a, j].map(|number| [number, -number, 0.5 * number]);
+            let planned = AxisMotion { position_mm: [1.0, 2.0, 3.0], velocity_mm_s, accel_mm_s2, jerk_mm_s3 };
+            let from = ScaledTime { tau_s: 0.0, rate, slope_1_s };
+            let moved = from.motion(&planned, bend_1_s2);
+            for k in 0..3 {
+                let p = |n: f64| planned.after(from.after(n * H_S, bend_1_s2).tau_s).position_mm[k];
+                let derivatives = [
+                    (moved.velocity_mm_s[k], (p(1.0) - p(-1.0)) / (2.0 * H_S)),
+                    (moved.accel_mm_s2[k], (p(1.0) - 2.0 * p(0.0) + p(-1.0)) / H_S.powi(2)),
+                    (moved.jerk_mm_s3[k], (p(2.0) - 2.0 * p(1.0) + 2.0 * p(-1.0) - p(-2.0)) / (2.0 * H_S.powi(3))),
+                ];
+                for (is, should) in derivatives {
+                    prop_assert!((is - should).abs() < OFF, "{is} in place of {should}: {moved:?}");
+                }
+            }
+        }
+    }
+}

@@ -187,3 +187,76 @@ impl SectionPlanner for Trapezoid {
         self.ready.pop_front()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const ACCEL_MM_S2: f64 = 10.0;
+    /// Points of a section in the plan by brute force, and the part by which its time may differ.
+    const POINTS: usize = 2000;
+    const SAME_TIME: f64 = 2e-3;
+
+    /// Least time by brute force, s: the square of the speed between points of the bounds, forward and backward.
+    fn least_s(sections: &[Section]) -> f64 {
+        let mut caps = vec![0.0];
+        for (k, section) in sections.iter().enumerate() {
+            let cap = |i: usize| section.start_cap + (section.end_cap - section.start_cap) * i as f64 / POINTS as f64;
+            let next = sections.get(k + 1).map_or(0.0, |next| next.joint_cap.min(next.start_cap));
+            caps.extend((1..POINTS).map(cap).chain([section.end_cap.min(next)]));
+        }
+        let lengths: Vec<f64> =
+            sections.iter().flat_map(|section| [section.length_mm / POINTS as f64; POINTS]).collect();
+        for i in 0..lengths.len() {
+            caps[i + 1] = caps[i + 1].min(caps[i] + 2.0 * ACCEL_MM_S2 * lengths[i]);
+        }
+        for i in (0..lengths.len()).rev() {
+            caps[i] = caps[i].min(caps[i + 1] + 2.0 * ACCEL_MM_S2 * lengths[i]);
+        }
+        caps.windows(2).zip(&lengths).map(|(ends, length_mm)| 2.0 * length_mm / (ends[0].sqrt() + ends[1].sqrt())).sum()
+    }
+
+    fn section() -> impl Strategy<Value = Section> {
+        (0.1..3.0_f64, 1.0..60.0_f64, 1.0..60.0_f64, 1.0..90.0_f64).prop_map(
+            |(length_mm, start_cap, end_cap, joint_cap)| Section {
+                piece: 0,
+                from_mm: 0.0,
+                length_mm,
+                joint_cap,
+                start_cap,
+                end_cap,
+            },
+        )
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn sloping_bounds_are_kept_in_the_least_time(mut sections in prop::collection::vec(section(), 1..6)) {
+            (0..).zip(&mut sections).for_each(|(piece, section)| section.piece = piece);
+            let mut planner = Trapezoid::new(ACCEL_MM_S2);
+            sections.iter().for_each(|section| planner.push(*section));
+            planner.finish();
+            let mut time_s = 0.0;
+            while let Some(span) = planner.pop() {
+                let section = &sections[span.piece as usize];
+                for part in [0.0, 0.5, 1.0] {
+                    let t = part * span.duration_s;
+                    let (speed, s_mm) = (
+                        span.speed_mm_s + t * span.accel_mm_s2,
+                        span.from_mm + t * (span.speed_mm_s + 0.5 * t * span.accel_mm_s2),
+                    );
+                    let slope = (section.end_cap - section.start_cap) / section.length_mm;
+                    let bound = section.start_cap + slope * s_mm;
+                    prop_assert!(speed * speed <= bound + 1e-9, "{} beyond {bound} at {s_mm} of {section:?}", speed * speed);
+                }
+                time_s += span.duration_s;
+            }
+            let least_s = least_s(&sections);
+            prop_assert!((time_s / least_s - 1.0).abs() < SAME_TIME, "{time_s} s in place of {least_s} s");
+        }
+    }
+}

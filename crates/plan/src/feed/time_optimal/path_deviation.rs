@@ -216,3 +216,90 @@ pub(super) fn tightened(
     }
     (next, parts)
 }
+
+#[cfg(test)]
+mod tests {
+    use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Shape};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::constraints::AxisLimits;
+    use crate::path::Step;
+    use crate::path::pieces::Pieces;
+
+    const TOLERANCE_MM: f64 = 0.8;
+    const FEED_MM_S: f64 = 1.5;
+
+    /// A track of lines through these points.
+    fn track(points: &[[f64; 3]]) -> Track {
+        let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
+        let line = |ends: &[[f64; 3]]| {
+            let (start_mm, end_mm, others) = (ends[0], ends[1], AuxiliaryAxes::default());
+            let (kind, shape) = (MotionKind::Feed, Shape::Line);
+            Canon::Motion(Motion { line: 1, kind, start_mm, end_mm, shape, feed_mm_s: FEED_MM_S, corner, others })
+        };
+        let mut track = Track::new(None);
+        for step in Pieces::new(points.windows(2).map(line)) {
+            if let Ok(Step::Piece(piece)) = step {
+                track.push(0, &piece, FEED_MM_S, TOLERANCE_MM);
+            }
+        }
+        track
+    }
+
+    /// Distance of a point from a line between two others.
+    fn from_line(point: [f64; 3], from: [f64; 3], to: [f64; 3]) -> f64 {
+        let way = sub(to, from);
+        let part = dot(sub(point, from), way) / dot(way, way);
+        distance(add_scaled(from, part.clamp(0.0, 1.0), way), point)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn a_straight_step_is_as_far_from_a_path_as_the_furthest_of_either(
+            joints in prop::array::uniform6(prop::array::uniform3(-1.0..1.0_f64)),
+        ) {
+            let track = track(&joints);
+            let length_mm: f64 = joints.windows(2).map(|ends| distance(ends[0], ends[1])).sum();
+            let (start, end) = (joints[0], joints[5]);
+            let motion = AxisMotion { position_mm: start, velocity_mm_s: sub(end, start), ..AxisMotion::REST };
+            let steps = [PlannedStep { from_mm: 0.0, to_mm: length_mm, duration_s: 1.0, motion }];
+            let furthest = joints[1..5].iter().map(|joint| from_line(*joint, start, end)).fold(0.0, f64::max);
+            let left_out = furthest - TOLERANCE_MM;
+            prop_assert!((left_out_mm(&track, &steps, 0) - left_out).abs() < 1e-9);
+            let to_path = |m: u32| {
+                let point = motion.after(f64::from(m) / f64::from(MOMENTS)).position_mm;
+                joints.windows(2).map(|ends| from_line(point, ends[0], ends[1])).fold(f64::INFINITY, f64::min)
+            };
+            let furthest = (0..=MOMENTS).map(to_path).fold(0.0, f64::max);
+            let away = furthest - TOLERANCE_MM;
+            prop_assert!((away_mm(&track, &steps, 0) - away).abs() < 1e-9);
+            // Either alone is told, and so is a speed above the feedrate; of steps that are not soon, the speed alone.
+            let caps = AxisCaps { axes: [AxisLimits::NONE; 3] };
+            let too_fast = distance(start, end) > FEED_MM_S;
+            for (first, tube_mm) in [(1, left_out.max(away).max(0.0)), (0, 0.0)] {
+                let found = excesses(&track, &caps, &steps, first);
+                prop_assert_eq!(found.len(), usize::from(tube_mm > OVER_MM || too_fast));
+                let Some(excess) = found.first() else { continue };
+                prop_assert!((excess.tube_mm - tube_mm).abs() < 1e-9);
+                prop_assert!((excess.feed_part - (FEED_MM_S / distance(start, end)).min(1.0)).abs() < 1e-9);
+            }
+        }
+
+        #[test]
+        fn no_moment_of_a_step_is_faster_than_its_fastest(
+            velocity_mm_s in prop::array::uniform3(-1.0..1.0_f64),
+            accel_mm_s2 in prop::array::uniform3(-9.0..9.0_f64),
+            jerk_mm_s3 in prop::array::uniform3(-50.0..50.0_f64),
+        ) {
+            let motion = AxisMotion { position_mm: [0.0; 3], velocity_mm_s, accel_mm_s2, jerk_mm_s3 };
+            let step = PlannedStep { from_mm: 0.0, to_mm: 1.0, duration_s: 0.5, motion };
+            let speeds = (0..=5000_u32).map(|m| norm(motion.after(1e-4 * f64::from(m)).velocity_mm_s));
+            let (fastest, sampled) = (fastest_mm_s(&step), speeds.fold(0.0, f64::max));
+            // Between two samples the speed changes by less than half their distance times the acceleration there.
+            prop_assert!(fastest >= sampled * (1.0 - 1e-9) && fastest <= sampled + 0.5e-4 * 100.0);
+        }
+    }
+}

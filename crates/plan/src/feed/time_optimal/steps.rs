@@ -100,3 +100,39 @@ pub(super) fn time_of_place(powers: &PlacePowers, place_mm: f64, duration_s: f64
     }
     t
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn places_rise_from_one_end_of_a_step_to_the_other_and_each_has_its_time(
+            (from_mm, way_mm, duration_s) in (0.0..100.0_f64, 0.01..2.0_f64, 1e-3..0.1_f64),
+            (first, last) in (-1.0..4.0_f64, -1.0..4.0_f64),
+            part in 0.0..1.0_f64,
+        ) {
+            // Straight along X, with these parts of the mean speed at its ends.
+            let mean_mm_s = way_mm / duration_s;
+            let along = |part: f64| [part * mean_mm_s, 0.0, 0.0];
+            let accel_mm_s2 = along((last - first) / duration_s);
+            let motion = AxisMotion { velocity_mm_s: along(first), accel_mm_s2, ..AxisMotion::REST };
+            let step = PlannedStep { from_mm, to_mm: from_mm + way_mm, duration_s, motion };
+            let powers = place_powers(&step, [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
+            let places: Vec<f64> = (0..=50).map(|n| place_after(&powers, duration_s * f64::from(n) / 50.0)).collect();
+            prop_assert!((places[0] - from_mm).abs() < 1e-9 && (places[50] - step.to_mm).abs() < 1e-9, "{places:?}");
+            prop_assert!(places.windows(2).all(|pair| pair[1] >= pair[0] - 1e-9), "{places:?}");
+            if (0.0..=3.0).contains(&first) && (0.0..=3.0).contains(&last) {
+                let end = powers[1] + duration_s * (2.0 * powers[2] + 3.0 * duration_s * powers[3]);
+                prop_assert!((powers[1] / mean_mm_s - first).abs() < 1e-9 && (end / mean_mm_s - last).abs() < 1e-9);
+            }
+            let place_mm = from_mm + part * way_mm;
+            let found_mm = place_after(&powers, time_of_place(&powers, place_mm, duration_s));
+            prop_assert!((found_mm - place_mm).abs() < 1e-9, "{found_mm} in place of {place_mm}");
+        }
+    }
+}
