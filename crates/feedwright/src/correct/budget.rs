@@ -161,6 +161,11 @@ mod tests {
     }
 
     #[test]
+    fn a_program_may_take_its_share_longer_and_twice_that_with_several_stretches() {
+        assert_eq!([false, true].map(|several| program_more_s(200.0, several)), [9.0, 18.0]);
+    }
+
+    #[test]
     fn a_stretch_may_take_its_share_and_three_dwells_longer() {
         let stretch = StretchBudget { time_s: 2.0, blocks: 1, lines: 1, loop_s: 0.02 };
         // 2.13 s and 0.12 s.

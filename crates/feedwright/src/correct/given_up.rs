@@ -104,6 +104,8 @@ mod tests {
     #[test]
     fn a_stretch_as_programmed_that_is_worse_is_blamed_on_the_command_before_it() {
         assert_eq!(kept(&[0, 1], &[0.001, 0.001, 0.012]), (vec![0], true));
+        // The one before it has none, and nobody is to blame.
+        assert_eq!(kept(&[0], &[0.001, 0.001, 0.012]), (vec![0], false));
         // No command is before the first.
         assert_eq!(kept(&[1], &[0.012, 0.001]), (vec![1], false));
     }
@@ -135,5 +137,6 @@ mod tests {
         assert_eq!(left([1.3, 0.2, 0.9]), (vec![0, 1, 2], false));
         assert_eq!(left([1.2, 1.5, 0.9]), (vec![0, 2], true));
         assert_eq!(left([2.0, 3.0, 0.9]), (vec![2], true));
+        assert_eq!(left([1.5, 3.0, 0.9]), (vec![2], true));
     }
 }

@@ -94,3 +94,61 @@ impl SlowEnd {
         Some([Motion { end_mm: middle_mm, ..motion.clone() }, last])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use feedwright_gcode::canon::{AuxiliaryAxes, Corner};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::TARGETS;
+
+    #[test]
+    fn a_slow_end_brakes_in_a_quarter_of_the_time_constant_of_the_loop_and_takes_two() {
+        let machine = Machine::load("tnv40".as_ref()).unwrap();
+        let (slow, loop_s) = (slow_end(&machine), 1.0 / machine.slowest_kp_1_s());
+        assert!((slow.time_s() / loop_s - 2.0).abs() < 1e-12, "{slow:?}");
+        assert!((slow.speed_mm_s / machine.limits.tangential_accel_mm_s2 / loop_s - 0.25).abs() < 1e-12, "{slow:?}");
+        assert!((slow.slower().time_s() - slow.time_s()).abs() < 1e-12);
+        assert!((slow.shorter(0.3).time_s() - 0.3 * slow.time_s()).abs() < 1e-12);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+        #[test]
+        fn a_motion_that_is_parted_goes_the_same_way_and_the_last_of_it_slowly(
+            start_mm in prop::array::uniform3(-3.0..3.0_f64),
+            end_mm in prop::array::uniform3(-3.0..3.0_f64),
+            slow_mm in 0.1..2.0_f64,
+            feed_mm_s in 1.0..9.0_f64,
+            is_feed: bool,
+        ) {
+            let slow = SlowEnd { speed_mm_s: 2.0, length_mm: slow_mm };
+            let kind = if is_feed { MotionKind::Feed } else { MotionKind::Rapid };
+            let (corner, others) = (Corner::ExactStop, AuxiliaryAxes::default());
+            let motion = Motion { line: 7, kind, start_mm, end_mm, shape: Shape::Line, feed_mm_s, corner, others };
+            let found = slow_last(std::slice::from_ref(&motion), slow, &TARGETS[0]);
+            let length_mm = distance(start_mm, end_mm);
+            prop_assert_eq!(found.is_some(), length_mm >= LEAST_WAY * slow_mm);
+            let Some([first, last]) = found.as_deref() else { return Ok(()) };
+            prop_assert!((first.start_mm, last.end_mm) == (start_mm, end_mm) && first.end_mm == last.start_mm);
+            prop_assert!((first.kind, first.feed_mm_s, last.kind) == (kind, feed_mm_s, MotionKind::Feed));
+            let step_mm = 1.0 / TARGETS[0].steps_per_mm();
+            prop_assert!((distance(last.start_mm, end_mm) - slow_mm).abs() <= step_mm);
+            let around_mm = distance(start_mm, first.end_mm) + distance(first.end_mm, end_mm) - length_mm;
+            prop_assert!(around_mm <= step_mm, "{around_mm} mm");
+            prop_assert_eq!(last.feed_mm_s, if is_feed { feed_mm_s.min(2.0) } else { 2.0 });
+        }
+    }
+
+    #[test]
+    fn points_are_slowed_down_over_the_length_and_no_further() {
+        let point = |n: u32| FitPoint { at_mm: [f64::from(n), 0.0, 0.0], tangent: [1.0, 0.0], feed_mm_s: 5.0 };
+        let mut points: Vec<FitPoint> = (0..10).map(point).collect();
+        SlowEnd { speed_mm_s: 2.0, length_mm: 2.5 }.slow_down(&mut points);
+        let feeds: Vec<f64> = points.iter().map(|point| point.feed_mm_s).collect();
+        assert_eq!(feeds, [5.0, 5.0, 5.0, 5.0, 5.0, 5.0, 2.0, 2.0, 2.0, 2.0]);
+        SlowEnd { speed_mm_s: 9.0, length_mm: 2.5 }.slow_down(&mut points);
+        assert_eq!(points.last().map(|point| point.feed_mm_s), Some(2.0));
+    }
+}

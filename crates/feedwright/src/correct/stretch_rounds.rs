@@ -205,6 +205,19 @@ mod tests {
     }
 
     #[test]
+    fn what_a_command_costs_and_gains_is_beside_what_is_programmed() {
+        let mut stretch = begun(10.0);
+        stretch.programmed.square_sum_mm2 = 5e-4;
+        let cost = stretch.cost(0.05);
+        assert!((cost.blocks, cost.time_s) == (0.0, 0.0) && cost.gain_mm2.is_none());
+        stretch.current = Some(NewMotions { motions: Vec::new(), approach: None, settles: true });
+        stretch.judge(&StretchCut { periods: 1010, square_sum_mm2: 1e-4, ..cut(2.0) }, 1e-3, 0.05);
+        let cost = stretch.cost(0.05);
+        assert!((cost.time_s - 0.01 - rest_s(true, 0.05)).abs() < 1e-12, "{}", cost.time_s);
+        assert!(cost.blocks == 0.0 && cost.gain_mm2.is_some_and(|gain_mm2| (gain_mm2 - 4e-4).abs() < 1e-12));
+    }
+
+    #[test]
     fn a_stretch_that_was_good_is_taken_up_where_a_rest_spoils_it() {
         let mut stretch = begun(0.5);
         stretch.judge(&cut(0.9), 1e-3, 0.05);

@@ -144,6 +144,18 @@ impl UnchangedStretch {
 mod tests {
     use super::*;
 
+    #[cfg(feature = "command")]
+    #[test]
+    fn each_reason_has_a_sentence_with_its_first_lines() {
+        let stretch = |lines: [u32; 2], reason: &str| UnchangedStretch { lines, reason: reason.to_owned() };
+        let all = [stretch([3, 3], "a"), stretch([5, 9], "b"), stretch([12, 13], "a")];
+        assert_eq!(
+            UnchangedStretch::sentences(&all, 2),
+            ["unchanged, lines 3, 12 to 13: a", "unchanged, lines 5 to 9: b"]
+        );
+        assert_eq!(UnchangedStretch::sentences(&all[..], 1)[0], "unchanged, lines 3 and 1 more: a");
+    }
+
     #[test]
     fn what_takes_the_time_of_a_better_command_is_named() {
         let said = |rests: f64| UnchangedReason::TooSlow { percent: 20.0, rests }.to_string();

@@ -135,3 +135,91 @@ fn same_shape(found: &Motion, wanted: &Motion, step_mm: f64) -> bool {
         _ => false,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEP_MM: f64 = 0.001;
+    const PROGRAM: &str = "G21 G90 G17 G64 F600\nM3 S500\nG0 X5 Y5\nG1 X10\nG4 P0.5\nG2 X20 Y5 I5 J0\n(MSG, look)\n\
+                           G5 X30 Y5 I2 J3 P-2 Q3\nM8\nM64 P1\nG1 Z-1\nG1 A10\nM2\n";
+
+    fn read_again(text: &str) -> (Vec<Canon>, Vec<Arc<ModesInForce>>) {
+        read(text, &Settings::default(), Dialect::LinuxCnc).unwrap_or_else(|| panic!("{text}"))
+    }
+
+    /// Whether the program says the same with something in place of a part of it.
+    fn is_same(part: &str, other: &str) -> bool {
+        assert!(PROGRAM.contains(part), "{part}");
+        let [wanted, found] = [PROGRAM.to_owned(), PROGRAM.replacen(part, other, 1)].map(|text| read_again(&text).0);
+        let is_same = same(&found, &wanted, STEP_MM);
+        assert_eq!(is_same, same(&wanted, &found, STEP_MM), "{part:?} and {other:?}");
+        is_same
+    }
+
+    #[test]
+    fn what_digits_and_the_order_of_events_change_is_the_same() {
+        for (part, other) in [
+            ("X10\n", "X10.0015\n"),
+            ("F600", "F600.3"),
+            ("P0.5\n", "P0.5004\n"),
+            ("M3 S500\n", "S500\nM3\n"),
+            ("M8\nM64 P1\n", "M64 P1\nM8\n"),
+            ("X10\n", "X10\nX10.0005\n"),
+            ("(MSG, look)", "(MSG,look )"),
+            ("M2\n", "M30\n"),
+            ("G64 F600\nM3 S500\nG0 X5 Y5\n", "G61 F600\nM3 S500\nG0 X5 Y5\nG64\n"),
+            ("I5 J0", "R5.001"),
+        ] {
+            assert!(is_same(part, other), "{part:?} and {other:?}");
+        }
+    }
+
+    #[test]
+    fn another_motion_or_event_is_not_the_same() {
+        for (part, other) in [
+            ("X10\n", "X10.0025\n"),
+            ("F600", "F601"),
+            ("P0.5\n", "P0.502\n"),
+            ("P0.5\n", "P0.498\n"),
+            ("M3 S500\n", "M4 S500\n"),
+            ("M8\n", ""),
+            ("M8\nM64 P1\nG1 Z-1\n", "G1 Z-1\nM8\nM64 P1\n"),
+            ("M64 P1", "M64 P2"),
+            ("look", "look out"),
+            ("G0 X5", "G1 X5"),
+            ("G64", "G61"),
+            ("G1 A10\n", ""),
+            ("G1 A10\n", "G1 A10\nA20\n"),
+            ("A10", "A11"),
+            ("Z-1", "Z-2"),
+            ("G2 X20 Y5 I5 J0", "G3 X20 Y5 I5 J0"),
+            ("G2 X20 Y5 I5 J0", "G2 X20 Y5 I5 J0 P2"),
+            ("G2 X20 Y5 I5 J0", "G1 X20 Y5"),
+            ("G2 X20 Y5 I5 J0", "G18 G2 X20 Z0 I5 K0\nG17"),
+            ("I5 J0", "R5.1"),
+            ("P-2 Q3", "P-2 Q4"),
+        ] {
+            assert!(!is_same(part, other), "{part:?} and {other:?}");
+        }
+        assert!(is_same(PROGRAM, PROGRAM));
+    }
+
+    #[test]
+    fn frames_are_the_same_in_their_order_up_to_printed_steps() {
+        let are_same = |found: &str, wanted: &str| {
+            let [found, wanted] = [found, wanted].map(|text| read_again(&format!("G21 G90 F600\n{text}M2\n")));
+            let steps = |(steps, modes): &'static (Vec<Canon>, Vec<Arc<ModesInForce>>)| {
+                steps.iter().zip(modes.iter().map(|modes| &**modes))
+            };
+            let [found, wanted] = [found, wanted].map(|read| steps(Box::leak(Box::new(read))));
+            same_frames(found, wanted, STEP_MM)
+        };
+        let two = "G54 G1 X1\nG10 L2 P2 X5 Y2\nG55 X1\n";
+        assert!(are_same(two, two));
+        assert!(are_same("G54 G1 X1\nX2\nG10 L2 P2 X5.0004 Y2\nG55 X1\nX3\n", two));
+        assert!(!are_same("G54 G1 X1\nG10 L2 P2 X5.01 Y2\nG55 X1\n", two));
+        assert!(!are_same("G54 G1 X1\n", two) && !are_same(two, "G54 G1 X1\n"));
+        assert!(!are_same("G10 L2 P2 X5 Y2\nG55 G1 X1\nG54 X1\n", two));
+    }
+}

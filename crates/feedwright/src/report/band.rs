@@ -85,6 +85,31 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_sentence_says_what_the_encoders_see_and_which_loops_are_unstable_where_there_is_something_to_say() {
+        let [small, large] = [1.0, 4.0].map(|median| BandErrors { median, p90: 2.0 * median });
+        let band = Band {
+            machines: 9,
+            diverged: 0,
+            first_s: None,
+            rms_um: small,
+            max_um: large,
+            joint_rms_um: Some(small),
+            joint_max_um: Some(large),
+        };
+        let tool = "RMS 1.00 um in the median and 2.00 um at 90 %, largest error 4.00 and 8.00 um";
+        assert_eq!(band.sentence(), format!("band of 9 machines that fit the recording as well: {tool}"));
+        let all = Band { diverged: 2, first_s: Some(5.0), joint_rms_um: Some(large), ..band };
+        assert_eq!(
+            all.sentence(),
+            format!(
+                "band of 9 machines that fit the recording as well, the first 5 s of the cut: {tool}; by the encoders: \
+                 RMS 4.00 um in the median and 8.00 um at 90 %, largest error 4.00 and 8.00 um; 2 more fit the recording, and their \
+                 servo loops are unstable"
+            )
+        );
+    }
+
+    #[test]
     fn one_in_ten_is_beyond_the_band_where_there_are_nine_machines_and_more() {
         let of = |n: usize| BandErrors::of((1..=n).rev().map(|error| error as f64).collect());
         assert_eq!(of(0), None);

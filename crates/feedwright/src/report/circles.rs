@@ -293,6 +293,20 @@ mod tests {
     }
 
     #[test]
+    fn least_squares_have_no_rest_along_any_of_their_columns() {
+        // A part of a circle: no two columns are orthogonal. What is left of the values is, to all of them.
+        let at = |k: u32| [1.0, libm::cos(0.1 * f64::from(k)), libm::sin(0.1 * f64::from(k))];
+        let places: Vec<([f64; 3], f64)> = (0..30).map(|k| (at(k), libm::sin(f64::from(k * k)))).collect();
+        let found = least_squares(&places).unwrap();
+        for i in 0..3 {
+            let along = |(at, value): &([f64; 3], f64)| at[i] * (value - (0..3).map(|k| at[k] * found[k]).sum::<f64>());
+            let rest: f64 = places.iter().map(along).sum();
+            assert!(rest.abs() < 1e-9, "{rest} along column {i} of {found:?}");
+        }
+        assert_eq!(least_squares(&places[..1]), None);
+    }
+
+    #[test]
     fn a_circle_that_was_hardly_cut_has_none() {
         let circles = circles_of("G0 X0 Y0\nG2 X0 Y0 I10 J0 F3000\nM2\n");
         assert_eq!(RadialDeviations::of(&circles).roundness(), [None]);
