@@ -215,7 +215,13 @@ fn the_report_scrolls_on_a_phone() {
     assert_eq!(browser.faults(), [""; 0]);
 }
 
-/// A comparison of made-up numbers.
+/// A comparison of made-up numbers, and its page.
+fn comparison_html() -> String {
+    let mut html = Vec::new();
+    comparison_page::write(&mut html, &comparison()).unwrap();
+    String::from_utf8(html).unwrap()
+}
+
 fn comparison() -> Comparison {
     let mut rows = Vec::new();
     for contour in ["circle", "star", "square"] {
@@ -238,9 +244,7 @@ fn comparison() -> Comparison {
 /// Cells are folded and a link opens them, tables are sorted, and a phone has them within its screen.
 #[test]
 fn a_comparison_folds_and_sorts() {
-    let mut html = Vec::new();
-    comparison_page::write(&mut html, &comparison()).unwrap();
-    let (_folder, path) = file(&String::from_utf8(html).unwrap());
+    let (_folder, path) = file(&comparison_html());
     let Some(mut browser) = Browser::start() else { return };
     for (width, phone) in [(1400, false), (390, true)] {
         browser.screen(width, 900, phone);
@@ -297,4 +301,32 @@ fn figures_have_contents_and_a_dark_side() {
     assert_eq!(browser.value("document.querySelectorAll('.contents li a').length"), 2);
     dark(&mut browser);
     assert_eq!(browser.faults(), [""; 0]);
+}
+
+/// What gets into a page in spite of everything does not run: a script, the handler of an element, an address, a style. Each is reported
+/// as a violation of the policy. The page itself violates nothing, as the other tests see, and goes on.
+#[test]
+fn what_is_injected_into_a_page_does_not_run() {
+    const INJECTED: &str = "<script>window.injected = 1</script><p id=\"handler\" onclick=\"window.injected = 2\">x</p>\
+        <a id=\"address\" href=\"javascript:window.injected = 3\">x</a><i id=\"styled\" style=\"color: red\">x</i></main>";
+    let report = crate::made_up_report::page(&crate::made_up_report::report(2, 3000));
+    for (html, button) in [(report, "#play"), (comparison_html(), "#theme")] {
+        let (_folder, path) = file(&html.replacen("</main>", INJECTED, 1));
+        let Some(mut browser) = Browser::start() else { return };
+        browser.open(&path, "");
+        ready(&mut browser);
+        for selector in ["#handler", "#address"] {
+            browser.click(selector);
+        }
+        assert_eq!(browser.value("'injected' in window"), false);
+        assert_ne!(browser.value("getComputedStyle(document.querySelector('#styled')).color"), "rgb(255, 0, 0)");
+        let before = text(&mut browser, button);
+        browser.click(button);
+        assert_ne!(text(&mut browser, button), before);
+        let faults = browser.faults();
+        assert!(
+            faults.len() == 4 && faults.iter().all(|fault| fault.contains("Content Security Policy")),
+            "{faults:#?}"
+        );
+    }
 }

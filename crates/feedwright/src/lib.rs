@@ -163,6 +163,6 @@ pub use report::text::{escaped, number};
 pub use report::{
     Assumptions, Band, BandErrors, CompensatedGeometry, DrawnLimits, ErrorSpectrum, FullCircle, Histogram,
     LawKnowledge, LimitBand, PageUnits, ProgramLine, Report, ReportedRun, Roundness, RunFacts, RunSummary, Series,
-    SeriesPoint, SpectrumBand, Statistics, TimelineEvent, WorstPlace, write_html, write_html_in,
+    SeriesPoint, SpectrumBand, Statistics, TimelineEvent, WorstPlace, write_html, write_html_data, write_html_in,
 };
 pub use results_format::RESULTS_FORMAT;

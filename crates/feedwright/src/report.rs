@@ -8,6 +8,7 @@
 
 pub(crate) mod text;
 mod page_units;
+mod page_frame;
 pub(crate) mod plain_page;
 pub(crate) mod figure;
 mod outline;
@@ -34,7 +35,7 @@ pub(crate) use circles::{RadialDeviations, full_circles};
 pub use compensated::CompensatedGeometry;
 pub use error_spectrum::{ErrorSpectrum, SpectrumBand};
 pub use histogram::Histogram;
-pub use html::{write_html, write_html_in};
+pub use html::{write_html, write_html_data, write_html_in};
 pub use limit_band::LimitBand;
 pub use page_units::PageUnits;
 pub use series::{Series, SeriesPoint};

@@ -63,7 +63,7 @@ fn ratios_are_those_of_the_standard() {
 
 #[test]
 fn text_and_curves_of_the_report_are_told_from_their_background() {
-    let css = asset("page.css");
+    let css = asset("colors.css");
     check(&css, &["ink", "ink-2", "ink-3", "tolerance", "accent"], &["bg", "panel", "hover"], TEXT);
     let curves = ["path", "rapid", "run-0", "run-1", "run-2", "run-3", "run-4", "run-5"];
     check(&css, &curves, &["bg", "panel"], GRAPHICS);
@@ -72,7 +72,7 @@ fn text_and_curves_of_the_report_are_told_from_their_background() {
 /// The scale of the error, from its first colour on.
 #[test]
 fn every_colour_of_the_error_is_told_from_the_panel() {
-    let (css, script) = (asset("page.css"), asset("theme.js"));
+    let (css, script) = (asset("colors.css"), asset("theme.js"));
     for (name, k) in [("ON_LIGHT", 0), ("ON_DARK", 1)] {
         let list = script.split_once(&format!("const {name} = [[")).unwrap().1.split_once("]];").unwrap().0;
         let stops: Vec<Vec<f64>> =

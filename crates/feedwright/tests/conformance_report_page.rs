@@ -39,7 +39,7 @@ fn program_text_never_becomes_markup() {
 fn nothing_is_fetched() {
     let page = page(&report(2, 500));
     assert!(page.contains("default-src 'none'"));
-    for reference in [" src=\"", "@import", "url(", "href=\"http", "fetch(", "XMLHttpRequest"] {
+    for reference in [" src=\"", "@import", "url(", "href=\"http", "fetch(", "XMLHttpRequest", "unsafe-", " style=\""] {
         assert!(!page.contains(reference), "{reference}");
     }
 }

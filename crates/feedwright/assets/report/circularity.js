@@ -65,7 +65,7 @@ function polarPlot(circle, run, largest_um) {
   svg.append(svgElement("text", { x: middle + 4, y: middle - reach - 2 }, `${second}+`));
   svg.append(svgElement("text", { x: middle, y: middle - 6, "text-anchor": "middle" }, `${+step_um.toPrecision(2)} ${ERROR_UNIT}`));
   svg.append(svgElement("text", { x: middle, y: middle + 14, "text-anchor": "middle" }, "a division"));
-  svg.append(svgElement("path", { d: polarPath(radial_um, middle, scale), class: "trace", style: `stroke: var(--run-${run.index % 6})` }));
+  svg.append(svgElement("path", { d: polarPath(radial_um, middle, scale), class: `trace run-${run.index % 6}` }));
   const caption = figure.appendChild(document.createElement("figcaption"));
   caption.append(swatch(run.index), `${run.name}: G ${formatNumber(g_um)} ${ERROR_UNIT}`);
   return figure;

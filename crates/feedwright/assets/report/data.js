@@ -10,7 +10,7 @@ async function inflated(base64) {
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"))).json();
 }
 
-function decode(differences, unit) {
+export function decode(differences, unit) {
   const values = new Float64Array(differences.length);
   let sum = 0;
   for (let i = 0; i < differences.length; i++) {

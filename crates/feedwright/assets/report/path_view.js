@@ -151,8 +151,7 @@ function isFolded(run, i, gain) {
 
 function swatch(i) {
   const span = document.createElement("span");
-  span.className = "swatch";
-  span.style.setProperty("--run", `var(--run-${i % 6})`);
+  span.className = `swatch run-${i % 6}`;
   return span;
 }
 

@@ -6,14 +6,14 @@ probe.hidden = true;
 document.body.append(probe);
 
 // Colour of a custom property as it is now; getPropertyValue would not resolve light-dark().
-function color(name) {
+export function color(name) {
   probe.style.color = `var(${name})`;
   return getComputedStyle(probe).color;
 }
 
 const runColor = (i) => color(`--run-${i % 6}`);
 
-function isDark() {
+export function isDark() {
   const chosen = root.dataset.theme;
   return chosen ? chosen === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
 }
@@ -23,7 +23,7 @@ function isDark() {
 const ON_LIGHT = [[104, 148, 205], [127, 143, 208], [138, 104, 186], [141, 63, 159], [124, 18, 119], [62, 0, 66]];
 const ON_DARK = [[74, 110, 184], [44, 128, 160], [38, 158, 140], [74, 190, 110], [160, 218, 57], [253, 231, 37]];
 
-function errorColor(fraction) {
+export function errorColor(fraction) {
   const f = Math.min(1, Math.max(0, fraction));
   const map = isDark() ? ON_DARK : ON_LIGHT, place = f * (map.length - 1);
   const i = Math.min(map.length - 2, Math.floor(place)), w = place - i;

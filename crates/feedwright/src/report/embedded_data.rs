@@ -30,7 +30,7 @@ mod units {
     pub(super) const ACCEL_MM_S2: f64 = 1.0;
 }
 
-/// Writes the object.
+/// Writes the object, deflated and in base64.
 pub(super) fn write(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
     let mut json = Vec::new();
     write_json(&mut json, report, units)?;
@@ -38,7 +38,8 @@ pub(super) fn write(out: &mut impl Write, report: &Report, units: PageUnits) -> 
     write!(out, "{}", Base64Display::new(&deflated, &STANDARD))
 }
 
-fn write_json(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
+/// Writes the object as it is.
+pub(super) fn write_json(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
     write!(out, "{{\"meta\":{},\"outline\":", meta(report, units))?;
     match report.runs.first() {
         Some(run) => write_outline(out, run)?,

@@ -57,6 +57,11 @@ impl fmt::Display for Headline {
 }
 
 impl Report {
+    /// What came out of the runs and what it costs, in words.
+    pub fn verdict(&self) -> String {
+        headline(self).to_string()
+    }
+
     /// The run that is judged: the last.
     fn judged(&self) -> Option<&RunSummary> {
         self.runs.last().map(|run| &run.summary)

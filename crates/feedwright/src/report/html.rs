@@ -1,13 +1,13 @@
 //! The page: one HTML file, readable without a network and without scripts.
 //!
 //! Headings, verdict and tables are written here, so that the numbers are there before any script runs; the drawings
-//! are made in the browser by `assets/report/*.js` from the data that [`embedded_data`] writes. A content security policy in
-//! the page forbids every request.
+//! are made in the browser by `assets/report/*.js` from the data that [`embedded_data`] writes.
 
 use std::io::{self, Write};
 
 use super::embedded_data;
 use super::limit_band;
+use super::page_frame::{PageFrame, in_one_scope};
 use super::text::escaped;
 use super::{Assumptions, PageUnits, Report};
 
@@ -15,6 +15,7 @@ mod tables;
 mod circularity;
 mod verdict;
 
+const COLORS_CSS: &str = include_str!("../../assets/report/colors.css");
 const PAGE_CSS: &str = include_str!("../../assets/report/page.css");
 const UPLOT_CSS: &str = include_str!("../../assets/vendor/uplot/uPlot.min.css");
 const UPLOT_JS: &str = include_str!("../../assets/vendor/uplot/uPlot.iife.min.js");
@@ -47,7 +48,8 @@ pub fn write_html(out: &mut impl Write, report: &Report) -> io::Result<()> {
 /// # Errors
 /// Where `out` takes no more.
 pub fn write_html_in(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
-    write_head(out, report)?;
+    let frame = PageFrame::new(&[UPLOT_CSS, COLORS_CSS, PAGE_CSS], vec![UPLOT_JS.to_owned(), in_one_scope(&SCRIPTS)]);
+    frame.write_head(out, &report.title)?;
     out.write_all(b"<body>\n")?;
     write_header(out, report, units)?;
     out.write_all(b"<main>\n")?;
@@ -60,33 +62,16 @@ pub fn write_html_in(out: &mut impl Write, report: &Report, units: PageUnits) ->
     out.write_all(b"</main>\n<footer>Simulated and written by feedwright. Charts: uPlot (MIT).</footer>\n")?;
     out.write_all(b"<script type=\"text/plain\" id=\"data\">")?;
     embedded_data::write(out, report, units)?;
-    write!(out, "</script>\n<script>{UPLOT_JS}</script>\n<script>(async () => {{\n\"use strict\";\n")?;
-    for script in SCRIPTS {
-        out.write_all(script.as_bytes())?;
-    }
-    out.write_all(b"})();\n</script>\n</body>\n</html>\n")
+    out.write_all(b"</script>\n")?;
+    frame.write_end(out)
 }
 
-fn write_head(out: &mut impl Write, report: &Report) -> io::Result<()> {
-    write!(
-        out,
-        r#"<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<meta name="generator" content="feedwright {version}">
-<link rel="icon" href="data:,">
-<title>{title}</title>
-<style>{UPLOT_CSS}
-{PAGE_CSS}</style>
-</head>
-"#,
-        version = env!("CARGO_PKG_VERSION"),
-        title = escaped(&report.title),
-    )
+/// Writes the data that the scripts of the page draw, as JSON.
+///
+/// # Errors
+/// Where `out` takes no more.
+pub fn write_html_data(out: &mut impl Write, report: &Report) -> io::Result<()> {
+    embedded_data::write_json(out, report, PageUnits::Metric)
 }
 
 fn write_header(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {

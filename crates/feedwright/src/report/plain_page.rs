@@ -1,8 +1,9 @@
-//! Pages of tables and figures: head, table of contents, parts that fold, foot. One file without references to anything outside it; without
-//! scripts everything is there, but nothing is sorted.
+//! Pages of tables and figures: head, table of contents, parts that fold, foot. Without scripts everything is there, but nothing is
+//! sorted.
 
 use std::io::{self, Write};
 
+use super::page_frame::{PageFrame, in_one_scope};
 use super::text::escaped;
 
 const PAGE_CSS: &str = include_str!("../../assets/report/pages.css");
@@ -57,16 +58,10 @@ pub fn write_head(
     introduction: &str,
     parts: &[PagePart],
 ) -> io::Result<()> {
-    let (title, introduction) = (escaped(title), escaped(introduction));
-    write!(
-        out,
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n\
-         <link rel=\"icon\" href=\"data:,\">\n<title>{title}</title>\n<style>\n{PAGE_CSS}</style>\n</head>\n<body class=\"{class}\">\n<div class=\"page\">\n"
-    )?;
+    frame().write_head(out, title)?;
+    write!(out, "<body class=\"{class}\">\n<div class=\"page\">\n")?;
     write_contents(out, parts)?;
-    writeln!(out, "<main>\n<h1>{title}</h1>\n<p>{introduction}</p>")
+    writeln!(out, "<main>\n<h1>{}</h1>\n<p>{}</p>", escaped(title), escaped(introduction))
 }
 
 fn write_contents(out: &mut impl Write, parts: &[PagePart]) -> io::Result<()> {
@@ -91,7 +86,12 @@ fn write_contents(out: &mut impl Write, parts: &[PagePart]) -> io::Result<()> {
 
 /// The end of such a page.
 pub fn write_foot(out: &mut impl Write) -> io::Result<()> {
-    write!(out, "</main>\n</div>\n<script>(() => {{\n\"use strict\";\n{PAGE_JS}}})();\n</script>\n</body>\n</html>\n")
+    out.write_all(b"</main>\n</div>\n")?;
+    frame().write_end(out)
+}
+
+fn frame() -> PageFrame {
+    PageFrame::new(&[PAGE_CSS], vec![in_one_scope(&[PAGE_JS])])
 }
 
 /// The beginning of a table, up to its first row.

@@ -21,7 +21,7 @@ pub(super) fn write_circularity(out: &mut impl Write, report: &Report, units: Pa
     write!(
         out,
         "<section aria-labelledby=\"h-circles\">\n<h2 id=\"h-circles\">Circularity</h2>\n<div class=\"circles\">\n\
-         <div id=\"circularity\" class=\"needs-script\"></div>\n<div class=\"scroll\"><table class=\"circularity\"><thead><tr>\
+         <div id=\"circularity\" class=\"needs-script\"></div>\n<div class=\"scroll\" tabindex=\"0\"><table class=\"circularity\"><thead><tr>\
          <th scope=\"col\">Circle</th><th scope=\"col\" class=\"run\">Controller</th>\
          <th scope=\"col\">Circular deviation G<i>{unit}</i></th><th scope=\"col\">Fmax<i>{unit}</i></th><th scope=\"col\">Fmin<i>{unit}</i></th>\
          </tr></thead>\n<tbody>\n"

@@ -98,7 +98,7 @@ fn write_summary_row(
 }
 
 pub(super) fn swatch(index: usize) -> String {
-    format!("<span class=\"swatch\" style=\"--run: var(--run-{})\"></span>", index % 6)
+    format!("<span class=\"swatch run-{}\"></span>", index % 6)
 }
 
 /// Behind this part of the machining time only the end of the program comes.
@@ -171,13 +171,14 @@ fn write_rows(out: &mut impl Write, run: &ReportedRun, percent: impl Fn(f64) -> 
         let events = || run.events.iter().filter(|event| event.row == row);
         let total_s: f64 = events().map(|event| event.duration_s).sum();
         let took = if total_s > 0.0 { duration(total_s) } else { String::new() };
-        write!(out, "<span class=\"row\"><b>{}</b><span class=\"strip\">", escaped(row))?;
+        write!(out, "<span class=\"row\"><b>{}</b><svg class=\"strip\">", escaped(row))?;
         for event in events().take(SHOWN_EVENTS) {
-            let (left, width) = (percent(event.t_s), percent(event.duration_s));
+            // A rectangle without a width is not drawn, nor is its stroke.
+            let (left, width) = (percent(event.t_s), percent(event.duration_s).max(1e-3));
             let hint = escaped(&event_text(event));
-            write!(out, "<i style=\"left:min({left:.3}%,100% - 3px);width:{width:.3}%\" title=\"{hint}\"></i>")?;
+            write!(out, "<rect x=\"{left:.3}%\" width=\"{width:.3}%\" height=\"100%\"><title>{hint}</title></rect>")?;
         }
-        write!(out, "</span><span class=\"num\">{took}</span></span>")?;
+        write!(out, "</svg><span class=\"num\">{took}</span></span>")?;
     }
     out.write_all(b"</span>")
 }
