@@ -1,5 +1,9 @@
 """What is done with LinuxCNC in a run: each function is one, and gets the machine of headless.py."""
+import json
 import random
+import subprocess
+import threading
+import urllib.request
 
 
 # A program may take so long, s.
@@ -281,3 +285,47 @@ def cuts(machine, programs, enable):
         machine.end_record()
         learned.append("".join(axis for i, axis in enumerate("xyz") if machine.hal("getp", f"feedwright.learned-{i}") == "TRUE"))
     return {"learned": learned}
+
+
+def settings_of(machine):
+    """The pins that a user sets."""
+    lines = [line.split() for line in machine.hal("-s", "show", "pin", "feedwright.").splitlines()]
+    return {words[4]: words[3] for words in lines if len(words) == 5 and words[2] == "IN"}
+
+
+def live(machine, program, command):
+    """A program, and what the page of `feedwright open --hal` gets meanwhile."""
+    machine.on()
+    machine.home()
+    machine.hal("setp", "feedwright.enable", 1)
+    page = subprocess.Popen([command, "open", "--hal", "--no-browser", "--quiet"], stdout=subprocess.PIPE, text=True)
+    address, rows, ended = page.stdout.readline().strip(), [], threading.Event()
+
+    def ask(begin):
+        with urllib.request.urlopen(f"{address}hal/{begin}", timeout=5) as answer:
+            return json.load(answer)
+
+    def watch():
+        begin = 0
+        while not ended.wait(0.2):
+            answer = ask(begin)
+            begin = answer["next"]
+            rows.extend(answer["rows"])
+
+    watching = threading.Thread(target=watch)
+    watching.start()
+    try:
+        pins = [settings_of(machine)]
+        machine.open(program)
+        machine.record()
+        machine.begin()
+        machine.finish()
+        pins.append(settings_of(machine))
+        machine.end_record()
+        ended.set()
+        watching.join()
+        return {"rows": rows, "pins": pins}
+    finally:
+        ended.set()
+        page.terminate()
+        page.wait()

@@ -3,7 +3,7 @@
 // Where SCREENSHOTS names a folder, the pictures go there.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
-import { cp, mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
+import { cp, mkdir, mkdtemp, readFile, rename, rm, writeFile } from "node:fs/promises";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -15,8 +15,9 @@ const DIST = new URL("../dist/", import.meta.url).pathname;
 const star = new URL("../../parts/star.ngc", import.meta.url).pathname;
 
 /** Starts the command; its address comes first. */
-function open(...files) {
-  const child = spawn(command, ["open", "--no-browser", "--quiet", ...files], { stdio: ["ignore", "pipe", "inherit"] });
+function open(given = [], environment = {}) {
+  const options = { stdio: ["ignore", "pipe", "inherit"], env: { ...process.env, ...environment } };
+  const child = spawn(command, ["open", "--no-browser", "--quiet", ...given], options);
   const address = new Promise((resolve, reject) => {
     child.stdout.once("data", (text) => resolve(String(text).trim()));
     child.once("exit", (code) => reject(new Error(`feedwright open ended with ${code}`)));
@@ -43,7 +44,7 @@ async function host({ folder = DIST, port = 0, change = (name, bytes) => bytes }
 }
 
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
-const served = [open(), open(star)];
+const served = [open(), open([star])];
 const [address, withFile] = await Promise.all(served.map((one) => one.address));
 const faults = [];
 
@@ -409,6 +410,84 @@ const tests = {
     assert.equal(await page.textContent("#name"), "star.ngc");
     assert.equal(await page.inputValue("#text"), await readFile(star, "utf8"));
     await page.close();
+  },
+
+  async "a part beside the page is opened by its address"() {
+    const folder = await mkdtemp(join(tmpdir(), "feedwright-"));
+    await cp(DIST, folder, { recursive: true });
+    await mkdir(join(folder, "parts"));
+    await cp(new URL("../../parts/eight.ngc", import.meta.url).pathname, join(folder, "parts/eight.ngc"));
+    const server = await host({ folder }), page = await visit(`${server.address}#part=eight.ngc&machine=stiff`);
+    await seen(page, "#figures");
+    assert.deepEqual([await page.textContent("#name"), await page.inputValue("#machine")], ["eight.ngc", "stiff"]);
+    assert.match(page.url(), /#part=eight\.ngc&machine=stiff$/);
+    // What is changed is no longer that part.
+    await page.fill("#text", "G21 G90 F600\nG1 X10\nM2\n");
+    await page.waitForURL(/#machine=stiff$/);
+    await page.close();
+    const other = await visit(`${server.address}#part=none.ngc`);
+    await seen(other, "#message");
+    assert.equal(await other.textContent("#message"), "parts/none.ngc is not there.");
+    // The browser reports the 404 itself.
+    faults.splice(0);
+    await other.close();
+    await server.end();
+    await rm(folder, { recursive: true });
+  },
+
+  async "the machine of LinuxCNC is shown with its path and its errors, and a cut beside it"() {
+    const folder = await mkdtemp(join(tmpdir(), "feedwright-")), began = Date.now();
+    // In place of LinuxCNC's program: shows the pins of a file, and keeps what it was asked.
+    const halcmd = 'while read -r command; do echo "$command" >> "$PINS/asked"; grep -F "${command##* }" "$PINS/pins"; echo; done';
+    await writeFile(join(folder, "halcmd"), `#!/bin/sh\n${halcmd}\n`, { mode: 0o755 });
+    await writeFile(join(folder, "pins"), "");
+    const { child, address } = open(["--hal"], { PATH: `${folder}:${process.env.PATH}`, PINS: folder });
+    const page = await visit(await address), state = (text) => page.waitForFunction((text) => document.querySelector("#live-state").textContent.startsWith(text), text);
+    await state("LinuxCNC does not run on this computer.");
+    // A circle of 10 mm in four seconds.
+    const turn = async () => {
+      const angle = (Date.now() - began) / 640, pins = {
+        "actual-0": 10 * Math.cos(angle), "actual-1": 10 * Math.sin(angle), "contour-error": 0.0003, "contour-error-without": 0.0123, "correction-0": 0.04,
+        "deviation-limit": 0.5, enable: "TRUE", fault: "FALSE", cause: 0, state: 4,
+      };
+      await writeFile(join(folder, "new"), Object.entries(pins).map(([name, value]) => `feedwright float OUT ${value} feedwright.${name}\n`).join(""));
+      await rename(join(folder, "new"), join(folder, "pins"));
+    };
+    let turning = true;
+    const turns = (async () => { for (; turning; await new Promise((later) => setTimeout(later, 20))) await turn(); })();
+    await state("Correcting");
+    await page.waitForFunction(() => document.querySelector("#live-figures tbody td"));
+    assert.deepEqual(await cells(page, "#live-figures"), [["without correction", "12.30", "12.30"], ["measured", "0.30", "0.30"]]);
+    assert.equal(await page.textContent("#live-correction"), "Correction X 40.00  Y 0.00  Z 0.00 of 500.00 µm");
+    assert.equal(await page.textContent("#largest"), "0.30 µm");
+    // The tool moves, and leaves its path behind.
+    const drawn = () => page.$$eval("#view canvas", (canvases) => canvases.map((canvas) => canvas.toDataURL()));
+    const before = await drawn();
+    await page.waitForTimeout(1500);
+    (await drawn()).forEach((picture, k) => assert.notEqual(picture, before[k], `canvas ${k}`));
+    await page.waitForTimeout(process.env.SCREENSHOTS ? 3000 : 0);
+    await picture(page, "live");
+    await page.click("[data-units=in]");
+    await page.waitForFunction(() => document.querySelector("#live-figures tbody td").textContent === "0.484");
+    await page.click("[data-units=mm]");
+    // A simulated cut takes the drawing, until the machine is wanted again.
+    await drop(page, "part.nc", "G21 G90 F600\nG1 X10\nM2\n");
+    await page.waitForSelector("#run:enabled");
+    await page.click("#run");
+    await seen(page, "#figures");
+    await page.click("#live-show");
+    await page.waitForSelector("#figures", { state: "hidden" });
+    await page.waitForFunction(() => document.querySelector("#largest").textContent === "0.30 µm");
+    await page.setViewportSize({ width: 390, height: 844 });
+    assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 390);
+    await picture(page, "live-phone");
+    turning = false;
+    await turns;
+    await page.close();
+    child.kill();
+    const asked = new Set((await readFile(join(folder, "asked"), "utf8")).trim().split("\n"));
+    assert.deepEqual([...asked].sort(), ["show pin feedwright.", "show pin motion."]);
+    await rm(folder, { recursive: true });
   },
 
   async "everything can be done by keyboard"() {

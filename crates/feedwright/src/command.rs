@@ -18,6 +18,7 @@ mod files_to_check;
 mod findings;
 mod controllers;
 mod controls;
+mod hal_watch;
 mod page_server;
 mod commands;
 

@@ -4,7 +4,9 @@ use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::process::{Child, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
 
 use crate::command::Folder;
 
@@ -15,7 +17,7 @@ struct Open {
     child: Child,
     host: String,
     secret: String,
-    _folder: Folder,
+    folder: Folder,
 }
 
 impl Open {
@@ -23,14 +25,20 @@ impl Open {
         let folder = Folder::new();
         folder.file("part.ngc", PROGRAM);
         folder.file("private.txt", "private");
+        Self::start_in(folder, &["part.ngc"])
+    }
+
+    /// Starts it in a folder, where programs are looked for, too.
+    fn start_in(folder: Folder, arguments: &[&str]) -> Self {
         let mut command = folder.command();
-        command.args(["open", "--no-browser", "--quiet", "part.ngc"]).stdout(Stdio::piped());
+        let path = format!("{}:{}", folder.path().display(), std::env::var("PATH").unwrap());
+        command.args(["open", "--no-browser", "--quiet"]).args(arguments).env("PATH", path).stdout(Stdio::piped());
         let mut child = command.spawn().unwrap();
         let mut address = String::new();
         BufReader::new(child.stdout.take().unwrap()).read_line(&mut address).unwrap();
         let (host, secret) = address.trim().strip_prefix("http://").unwrap().split_once('/').unwrap();
         let (host, secret) = (host.to_owned(), secret.trim_end_matches('/').to_owned());
-        Self { child, host, secret, _folder: folder }
+        Self { child, host, secret, folder }
     }
 
     /// Sends a request as it is, and returns the whole answer.
@@ -123,4 +131,84 @@ fn a_thousand_connections_that_say_nothing_keep_the_page_for_a_short_time_only()
         open.ask(page.as_bytes()).is_ok_and(|answer| answer.contains("<title>feedwright</title>"))
     });
     assert!(served, "the page is not served any more");
+}
+
+/// In place of LinuxCNC's `halcmd`: shows the pins of a file, and keeps what it was asked.
+#[cfg(unix)]
+const HALCMD: &str = "#!/bin/sh
+while read -r command; do
+    echo \"$command\" >> asked
+    grep -F \"${command##* }\" pins
+    echo
+done
+";
+
+#[cfg(unix)]
+const PINS: &str = "feedwright float IN 10 feedwright.actual-0 <== x-actual
+feedwright float IN -2.5 feedwright.actual-1 <== y-actual
+feedwright float IN 0 feedwright.actual-2
+feedwright float OUT 0.0003 feedwright.contour-error
+feedwright float OUT 0.0123 feedwright.contour-error-without
+feedwright float OUT 0.04 feedwright.correction-0
+feedwright float IN 0.5 feedwright.deviation-limit
+feedwright bit   IN TRUE feedwright.enable
+feedwright bit   OUT FALSE feedwright.fault
+feedwright u32   OUT 0 feedwright.cause
+feedwright u32   OUT 4 feedwright.state
+";
+
+/// The page gets what the pins say, and a reason where they say nothing. They are shown and never written.
+#[cfg(unix)]
+#[test]
+fn the_machine_is_read_and_not_written() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let folder = Folder::new();
+    folder.file("halcmd", HALCMD);
+    std::fs::set_permissions(folder.path().join("halcmd"), std::fs::Permissions::from_mode(0o755)).unwrap();
+    folder.file("pins", "");
+    let open = Open::start_in(folder, &["--hal=inch"]);
+    let path = format!("/{}/hal/0", open.secret);
+    let said = |is_so: &dyn Fn(&Value) -> bool| {
+        let (began, mut now) = (Instant::now(), Value::Null);
+        while began.elapsed() < Duration::from_secs(30) {
+            let answer = open.get(&path, "");
+            assert!(answer.starts_with("HTTP/1.1 200 ") && answer.contains("no-store"), "{answer}");
+            now = serde_json::from_str(answer.split_once("\r\n\r\n").unwrap().1).unwrap();
+            if is_so(&now) {
+                return now;
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        panic!("{now}");
+    };
+    let trouble =
+        |words: &'static str| move |now: &Value| now["trouble"].as_str().is_some_and(|why| why.contains(words));
+    said(&trouble("LinuxCNC does not run"));
+    open.folder.file("pins", "motion u32 OUT 0 motion.motion-type\n");
+    said(&trouble("without the component feedwright"));
+    open.folder.file("pins", PINS);
+    let now = said(&|now| now["rows"].as_array().unwrap().len() > 2);
+    let row: Vec<f64> =
+        now["rows"][0].as_array().unwrap().iter().skip(1).map(|number| number.as_f64().unwrap()).collect();
+    for (number, wanted) in row.iter().zip([254.0, -63.5, 0.0, 0.3, 12.3, 4.0]) {
+        assert!((number - wanted).abs() < 1e-9, "{row:?}");
+    }
+    assert_eq!(now["now"]["limit_um"], 500.0);
+    assert!(now["trouble"].is_null() && now["now"]["cause"].is_null() && now["now"]["enable"] == true, "{now}");
+    // LinuxCNC ends.
+    open.folder.file("pins", "");
+    said(&trouble("LinuxCNC does not run"));
+    let asked = open.folder.text("asked");
+    assert!(asked.lines().all(|line| line == "show pin feedwright." || line == "show pin motion."), "{asked}");
+    // It is for the page itself, as everything is.
+    assert!(open.get("/hal/0", "").starts_with("HTTP/1.1 403 "));
+    assert!(open.get(&path, "Origin: https://other.example\r\n").starts_with("HTTP/1.1 403 "));
+}
+
+#[test]
+fn without_linuxcnc_there_is_no_machine_to_show() {
+    let folder = Folder::new();
+    let ran = folder.command().args(["open", "--no-browser", "--hal"]).env("PATH", folder.path()).output().unwrap();
+    let told = String::from_utf8_lossy(&ran.stderr);
+    assert!(ran.status.code() == Some(2) && told.contains("there is no halcmd") && told.contains("hint: "), "{told}");
 }

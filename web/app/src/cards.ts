@@ -1,6 +1,6 @@
 // The examples that a first visit shows.
 
-import { errorColor } from "./colors";
+import { errorColor } from "../../../crates/feedwright/assets/report/theme.js";
 import { $, element } from "./dom";
 import type { Engine } from "./engine";
 import { EXAMPLES } from "./examples";

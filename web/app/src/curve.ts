@@ -1,7 +1,7 @@
 // The contour error of all cuts over time.
 
 import uPlot from "uplot";
-import { color } from "./colors";
+import { color } from "../../../crates/feedwright/assets/report/theme.js";
 import type { Cut } from "./messages";
 import { error, errorUnit } from "./units";
 

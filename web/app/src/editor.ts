@@ -33,6 +33,9 @@ export class Editor {
     new ResizeObserver(() => this.#draw()).observe(text);
   }
 
+  /** Whether the program is too long to be edited. */
+  get isLong(): boolean { return !!this.#long; }
+
   get value(): string { return this.#long?.program ?? this.#text.value; }
   set value(program: string) {
     const isLong = program.length > LONGEST;

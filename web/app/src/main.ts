@@ -1,9 +1,11 @@
 // The page: what is asked for, what the engine answers, and where it is shown.
 
 import "uplot/dist/uPlot.min.css";
+import "../../../crates/feedwright/assets/report/colors.css";
 import "./style.css";
+import { FROM_FILE, keepInUrl, takeFromUrl } from "./address";
 import { showCards } from "./cards";
-import { errorColor } from "./colors";
+import { errorColor } from "../../../crates/feedwright/assets/report/theme.js";
 import { Curve } from "./curve";
 import { $, element, fill, press, save } from "./dom";
 import { listenToDrops } from "./drops";
@@ -11,14 +13,17 @@ import { Editor } from "./editor";
 import { Cancelled, Engine, engineModule } from "./engine";
 import { EXAMPLES } from "./examples";
 import { listenToIdentified, showIdentified } from "./identified";
-import type { Checked, Corrected, Cut, Figures, Finding, Lists, Place, RunAnswer } from "./messages";
+import type { Checked, Corrected, Cut, Lists, RunAnswer } from "./messages";
+import { Live } from "./live";
 import { Playback } from "./playback";
+import { fillTable, findingRow, numbersOf, worstRow } from "./rows";
 import { type Units, errorText, errorUnit, getUnits, lengthText, roundBytes, roundLength, setUnits } from "./units";
 import { PathView, type Side } from "./view";
 
 const view = new PathView($("view"));
 const curve = new Curve($("curve"));
 const editor = new Editor($("text"), $("gutter"));
+const live = new Live();
 const playback = new Playback($("play"), $("time"), $("speed"));
 // What is typed is checked while a program is cut; the start has an engine of its own.
 const [checker, cutter, drawer] = [new Engine(), new Engine(), new Engine()];
@@ -28,7 +33,10 @@ const exampleSelect = $<HTMLSelectElement>("example"), controlSelect = $<HTMLSel
 
 const state = {
   name: "program.ngc",
+  /** Its name in the folder `parts`, where it comes from there. */
+  part: "",
   lists: undefined as Lists | undefined,
+  file: undefined as Blob | undefined,
   machineFile: undefined as { name: string; text: string } | undefined,
   checked: undefined as Checked | undefined,
   answer: undefined as RunAnswer | undefined,
@@ -38,15 +46,14 @@ const state = {
   shown: 0,
 };
 
-const FROM_FILE = "file";
-
 // ---- What is asked for
 
 function request() {
   const isFile = machineSelect.value === FROM_FILE && state.machineFile;
   return {
     name: state.name,
-    program: editor.value,
+    // What is too long to be edited is what the file holds.
+    program: (editor.isLong && state.file) || editor.value,
     machine: isFile ? `${state.machineFile!.text}\n` : machineSelect.value,
     machine_name: isFile ? state.machineFile!.name : undefined,
   };
@@ -54,9 +61,9 @@ function request() {
 
 const today = () => new Date().toISOString().slice(0, 10);
 
-/** Opens a program; `example` is its name where it is one. */
-function openProgram(name: string, program: string, example = ""): Promise<void> {
-  state.name = name;
+/** Opens a program: one of the user, an example, or a part that stands beside the page. */
+function openProgram(name: string, program: string, { example = "", part = "", file = undefined as Blob | undefined } = {}): Promise<void> {
+  [state.name, state.part, state.file] = [name, part, file];
   editor.value = program;
   exampleSelect.value = example;
   $("name").textContent = name;
@@ -64,15 +71,24 @@ function openProgram(name: string, program: string, example = ""): Promise<void>
   $("welcome").hidden = true;
   view.fit();
   forget();
-  keepInUrl();
+  keep();
   return check();
 }
 
-async function openExample(name: string): Promise<void> {
-  const checked = openProgram(`${name}.ngc`, EXAMPLES[name].program, name);
-  // An example has no mistakes: its cut does not wait for the check.
-  await Promise.all([checked, run()]);
+/** Opens what has no mistakes: its cut does not wait for the check. */
+async function openAndRun(...program: Parameters<typeof openProgram>): Promise<void> {
+  await Promise.all([openProgram(...program), run()]);
 }
+
+const openExample = (name: string) => openAndRun(`${name}.ngc`, EXAMPLES[name].program, { example: name });
+
+async function openPart(part: string): Promise<void> {
+  const answer = await fetch(`parts/${part}`);
+  if (answer.ok) await openAndRun(part, await answer.text(), { part });
+  else say(`parts/${part} is not there.`);
+}
+
+const keep = () => state.lists && keepInUrl(state.lists, state.part);
 
 /** Most bytes of a file, as `feedwright open` serves it: a text of more does not fit into the memory of a browser. */
 const FILE_BYTES = 2 ** 29;
@@ -81,10 +97,9 @@ async function openFiles(files: Iterable<File>): Promise<void> {
   for (const file of files) {
     try {
       if (file.size >= FILE_BYTES) throw new Error(`it has ${roundBytes(file.size)}, and a browser holds ${roundBytes(FILE_BYTES)}. Use the command: feedwright run`);
-      const text = await file.text();
-      if (/\.toml$/i.test(file.name)) openMachine(file.name, text);
-      else if (/\.(csv|log|json)$/i.test(file.name)) await identify(file.name, text);
-      else await openProgram(file.name, text);
+      if (/\.toml$/i.test(file.name)) openMachine(file.name, await file.text());
+      else if (/\.(csv|log|json)$/i.test(file.name)) await identify(file.name, file);
+      else await openProgram(file.name, await file.text(), { file });
     } catch (error) {
       say(`${file.name} cannot be opened: ${(error as Error).message}`);
     }
@@ -179,7 +194,7 @@ async function correct(): Promise<void> {
 }
 
 /** Finds the machine by its log, and cuts on it from then on. */
-async function identify(name: string, log: string): Promise<void> {
+async function identify(name: string, log: Blob): Promise<void> {
   await work(async (progress) => {
     const stem = name.replace(/\.[^.]*$/, ""), identified = await cutter.ask({ task: "identify", name, program: log }, { progress });
     openMachine(`${stem}.toml`, identified.file);
@@ -216,7 +231,7 @@ function showChecked(): void {
   const { checked } = state, findings = checked?.findings ?? [];
   if (checked) view.program(checked);
   editor.mark(findings);
-  $("findings").replaceChildren(...findings.slice(0, 200).map(findingRow));
+  $("findings").replaceChildren(...findings.slice(0, 200).map((finding) => findingRow(finding, () => editor.go(finding))));
   const amounts = checked?.amounts;
   const errors = findings.filter(({ severity }) => severity === "error").length;
   $("amounts").textContent = amounts
@@ -225,25 +240,15 @@ function showChecked(): void {
   enable();
 }
 
-function findingRow(finding: Finding): HTMLElement {
-  const row = element("li", "", finding.severity), button = element("button");
-  button.type = "button";
-  button.append(element("b", `${finding.line}:${finding.column} ${finding.severity}`), ` ${finding.message}`);
-  if (finding.hint) button.append(element("small", `hint: ${finding.hint}`));
-  button.addEventListener("click", () => editor.go(finding));
-  row.append(button);
-  return row;
-}
-
 const largest_um = (cuts: Cut[]) => Math.max(...cuts.map(({ figures }) => Number(figures.max_um)).filter(Number.isFinite), 0);
 
 function showAnswer(): void {
   const { answer } = state, cuts = answer?.cuts ?? [], all = compared();
-  for (const id of ["figures", "report", "keep", "worst-title", "legend"]) $(id).hidden = !answer;
+  for (const id of ["figures", "report", "keep", "worst-title", "live-show"]) $(id).hidden = !answer;
   $("keep").setAttribute("aria-pressed", String(!!state.kept));
   // What the correction costs stands in the report.
   $("verdict").textContent = answer?.verdict.split(" Cost:")[0] ?? "Run shows what the machine will cut without a correction and with the controller.";
-  fillFigures($("figures"), all.map(({ figures }) => figures), all.map(({ look }) => look));
+  fillTable($("figures"), all.map(({ figures, look }) => ({ ...numbersOf(figures), look })));
   $("shown").replaceChildren(...cuts.map(({ figures }, k) => {
     const button = element("button", figures.name);
     button.type = "button";
@@ -269,16 +274,6 @@ function keepCut(): void {
   showAnswer();
 }
 
-function fillFigures(table: HTMLElement, rows: Figures[], looks: string[] = []): void {
-  table.querySelectorAll(".unit").forEach((unit) => (unit.textContent = errorUnit()));
-  table.querySelector("tbody")!.replaceChildren(...rows.map((figures, k) => {
-    const row = element("tr"), name = element("th", figures.name, looks[k] ? `run ${looks[k]}` : "");
-    name.scope = "row";
-    row.append(name, ...[figures.time_s, errorText(figures.rms_um), errorText(figures.max_um)].map((text) => element("td", text)));
-    return row;
-  }));
-}
-
 /** Shows one of the cuts: its path, its worst places, its playback. */
 function showCut(k: number): void {
   state.shown = k;
@@ -288,26 +283,20 @@ function showCut(k: number): void {
   view.compare(compared()[cuts.length]);
   playback.show(cut);
   $("readout").textContent = "";
-  $("largest").textContent = `${errorText(largest_um(cuts))} ${errorUnit()}`;
-  $("worst").replaceChildren(...(cut?.worst ?? []).map((place) => worstRow(place)));
-  showGain();
+  $("worst").replaceChildren(...(cut?.worst ?? []).map((place) => worstRow(place, () => {
+    view.zoomTo(place.position_mm);
+    playback.time(place.t_s);
+  })));
+  showLegend(largest_um(cuts));
   view.describe(cut
     ? `Path of ${state.name}, ${cut.figures.name}: largest contour error ${errorText(cut.figures.max_um)} ${errorUnit()}. Arrow keys move, + and − zoom, 0 fits.`
     : `Path of ${state.name}`);
 }
 
-function worstRow(place: Place): HTMLElement {
-  const row = element("li"), button = element("button");
-  button.type = "button";
-  button.append(element("b", `${errorText(Math.abs(place.error_um))} ${errorUnit()}`), element("span", `line ${place.line}`), element("code", place.text));
-  button.addEventListener("click", () => {
-    view.zoomTo(place.position_mm);
-    playback.time(place.t_s);
-    row.parentElement!.querySelectorAll("[aria-current]").forEach((old) => old.removeAttribute("aria-current"));
-    button.setAttribute("aria-current", "true");
-  });
-  row.append(button);
-  return row;
+function showLegend(largest_um: number): void {
+  $("legend").hidden = !largest_um;
+  $("largest").textContent = `${errorText(largest_um)} ${errorUnit()}`;
+  showGain();
 }
 
 function showGain(): void {
@@ -319,7 +308,7 @@ function showCorrected(): void {
   const { corrected } = state;
   $("corrected").hidden = !corrected;
   if (!corrected) return;
-  fillFigures($("corrected"), corrected.figures);
+  fillTable($("corrected"), corrected.figures.map(numbersOf));
   const { refusal, hint, stretches, stretches_changed, rounds } = corrected;
   $("correction").textContent = refusal
     ? `No corrected program: ${refusal}.${hint ? ` Hint: ${hint}.` : ""}`
@@ -348,34 +337,6 @@ function drawLegend(): void {
 
 const stem = () => state.name.replace(/\.[^.]*$/, "");
 
-// ---- The address keeps what was chosen
-
-function keepInUrl(): void {
-  const { lists } = state;
-  if (!lists) return;
-  const chosen = new URLSearchParams();
-  if (exampleSelect.value) chosen.set("example", exampleSelect.value);
-  if (machineSelect.value !== FROM_FILE && machineSelect.value !== lists.machine) chosen.set("machine", machineSelect.value);
-  if (controllerSelect.value !== lists.controller) chosen.set("controller", controllerSelect.value);
-  if (controlSelect.value !== lists.control) chosen.set("control", controlSelect.value);
-  if (getUnits() !== "mm") chosen.set("units", getUnits());
-  history.replaceState(null, "", chosen.size ? `#${chosen}` : location.pathname);
-}
-
-function takeFromUrl(): string {
-  const chosen = new URLSearchParams(location.hash.slice(1));
-  const choose = (select: HTMLSelectElement, name: string) => {
-    const value = chosen.get(name);
-    if (value && [...select.options].some((option) => option.value === value)) select.value = value;
-  };
-  choose(machineSelect, "machine");
-  choose(controllerSelect, "controller");
-  choose(controlSelect, "control");
-  if (chosen.get("units") === "in") useUnits("in");
-  const example = chosen.get("example") ?? "";
-  return Object.hasOwn(EXAMPLES, example) ? example : "";
-}
-
 function useUnits(units: Units): void {
   setUnits(units);
   press("[data-units]", (button) => button.dataset.units === units);
@@ -392,25 +353,25 @@ function listen(): void {
   exampleSelect.addEventListener("change", () => exampleSelect.value && openExample(exampleSelect.value));
   let waiting = 0;
   editor.onChange = () => {
-    exampleSelect.value = "";
+    exampleSelect.value = state.part = "";
     $("welcome").hidden = true;
     clearTimeout(waiting);
     waiting = setTimeout(() => {
       forget();
-      keepInUrl();
+      keep();
       void check();
     }, 200);
   };
   for (const select of [machineSelect, controllerSelect])
     select.addEventListener("change", () => {
       forget();
-      keepInUrl();
+      keep();
       void check();
     });
   controlSelect.addEventListener("change", () => {
     state.corrected = undefined;
     showCorrected();
-    keepInUrl();
+    keep();
   });
   $("run").addEventListener("click", () => void run());
   $("correct").addEventListener("click", correct);
@@ -436,7 +397,7 @@ function listenToResults(): void {
 function listenToView(): void {
   document.querySelectorAll<HTMLElement>("[data-units]").forEach((button) => button.addEventListener("click", () => {
     useUnits(button.dataset.units as Units);
-    keepInUrl();
+    keep();
     showChecked();
     showAnswer();
     showCorrected();
@@ -453,7 +414,7 @@ function listenToView(): void {
   });
   view.onGrid = (apart_mm, side) => {
     const axes = { top: "X right, Y up", front: "X right, Z up", right: "Y right, Z up", iso: "from the front left, above" }[side];
-    $("scale").textContent = state.checked ? `grid ${roundLength(apart_mm)} · ${axes}` : "";
+    $("scale").textContent = state.checked || !$("live").hidden ? `grid ${roundLength(apart_mm)} · ${axes}` : "";
   };
   view.onPick = (index) => {
     playback.stop();
@@ -471,11 +432,30 @@ function listenToView(): void {
   });
 }
 
+/** Shows the machine itself, as long as nothing simulated is shown. */
+function watchMachine(): void {
+  $("welcome").hidden = true;
+  $("live-show").addEventListener("click", forget);
+  live.onRows = (path, errors) => {
+    if (state.answer || !$("work").hidden) return;
+    const largest = largest_um([path]);
+    if (!state.checked) view.program({ points: path.foot_mm, kinds: new Uint32Array(path.line.length) });
+    view.cut(path, largest);
+    view.tool(path.line.length - 1);
+    curve.show(errors);
+    showLegend(largest);
+    // Only of the simulated cut it is known where the error points.
+    $("gain-now").textContent = "";
+  };
+  void live.start();
+}
+
 /** Opens the files that `feedwright open` was given. A server that has none keeps its address: the page then works without it, too. */
 async function servedFiles(): Promise<void> {
-  const names: string[] | null = await (await fetch("files.json")).json();
-  if (!names) return void navigator.serviceWorker?.register("offline.js").catch(() => {});
-  const files = names.map(async (name, k) => new File([await (await fetch(`files/${k}`)).blob()], name));
+  const served: { files: string[]; hal: boolean } | null = await (await fetch("files.json")).json();
+  if (!served) return void navigator.serviceWorker?.register("offline.js").catch(() => {});
+  if (served.hal) watchMachine();
+  const files = served.files.map(async (name, k) => new File([await (await fetch(`files/${k}`)).blob()], name));
   await openFiles(await Promise.all(files));
 }
 
@@ -491,10 +471,12 @@ async function start(): Promise<void> {
     fill(controllerSelect, lists.controllers, lists.controller);
     fill(controlSelect, lists.controls, lists.control);
     $("version").textContent = `feedwright ${lists.version}.`;
-    const example = takeFromUrl();
+    const { example, part, units } = takeFromUrl();
+    useUnits(units);
     await servedFiles();
-    if (example && !editor.value) await openExample(example);
-    else if (!editor.value) await showCards(drawer, openExample);
+    if (Object.hasOwn(EXAMPLES, example) && !editor.value) await openExample(example);
+    else if (part && !editor.value) await openPart(part);
+    else if (!editor.value && !$("welcome").hidden) await showCards(drawer, openExample);
     else if (!state.checked) await check();
   } catch (error) {
     say(`The engine does not start: ${(error as Error).message}. Load the page again.`);

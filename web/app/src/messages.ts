@@ -4,7 +4,8 @@
 export interface EngineRequest {
   task: "run" | "check" | "correct" | "identify" | "lists";
   name?: string;
-  program?: string;
+  /** A text, or a file, which the worker reads: a long program is not copied from one to the other. */
+  program?: string | Blob;
   machine?: string;
   machine_name?: string;
   controller?: string;

@@ -1,6 +1,6 @@
 // The path: programmed in grey, the cut in the color of its contour error, the tool on top.
 
-import { STEPS, color, errorColor } from "./colors";
+import { color, errorColor } from "../../../crates/feedwright/assets/report/theme.js";
 import type { Checked, Cut } from "./messages";
 import { type Strokes, grouped, trace } from "./strokes";
 
@@ -15,6 +15,9 @@ const SIDES: Record<Side, [Vector, Vector]> = {
   right: [[0, 1, 0], [0, 0, 1]],
   iso: [[Math.SQRT1_2, Math.SQRT1_2, 0], [-0.408248, 0.408248, 0.816497]],
 };
+
+/** Steps of the scale of errors. */
+const STEPS = 24;
 
 const MARGIN = 28;
 
@@ -63,7 +66,7 @@ export class PathView {
 
   describe(text: string): void { this.#top.setAttribute("aria-label", text); }
 
-  program({ points, kinds }: Checked): void {
+  program({ points, kinds }: Pick<Checked, "points" | "kinds">): void {
     this.#programmed = grouped(points, 2, (end) => kinds[end] & 1);
     this.#box = box(points);
     if (this.#isFitted) this.fit();

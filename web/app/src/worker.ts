@@ -1,5 +1,6 @@
 // Answers requests with the library, which is WebAssembly. A worker has one thread: it is ended to cancel its work.
 
+import { decode } from "../../../crates/feedwright/assets/report/data.js";
 import type { Answers, Checked, Corrected, Cut, FromWorker, Identified, RunAnswer, ToWorker } from "./messages";
 
 interface Exports {
@@ -30,12 +31,18 @@ self.onmessage = async ({ data: { id, module, request } }: MessageEvent<ToWorker
     exports = (await WebAssembly.instantiate(module, { page })).exports as unknown as Exports;
     const { program = "", ...asked } = request;
     // Room may make the memory grow.
-    const put = (text: string, room: (bytes: number) => number) => {
-      const written = new TextEncoder().encode(text), at = room(written.length);
-      bytes(at, written.length).set(written);
+    const put = async (content: Blob, room: (bytes: number) => number) => {
+      let at = room(content.size);
+      for (const reader = content.stream().getReader(); ; ) {
+        const { done, value } = await reader.read();
+        if (done) return;
+        bytes(at, value.length).set(value);
+        at += value.length;
+      }
     };
-    put(program, exports.program);
-    put(JSON.stringify(asked), exports.input);
+    const isRead = await put(new Blob([program]), exports.program).then(() => true, () => false);
+    if (!isRead) return post({ id, kind: "failed", reason: `${asked.name} was changed or moved since it was opened. Open it again` });
+    await put(new Blob([JSON.stringify(asked)]), exports.input);
     const succeeded = exports.run() === 1;
     const output = (k: number) => bytes(exports.at(k), exports.length(k));
     const outputText = (k: number) => new TextDecoder().decode(output(k));
@@ -43,14 +50,14 @@ self.onmessage = async ({ data: { id, module, request } }: MessageEvent<ToWorker
       post({ id, kind: "failed", reason: outputText(0) });
       return;
     }
-    const [answer, transfer] = await answers[request.task](outputText, output);
+    const [answer, transfer] = answers[request.task](outputText, output);
     post({ id, kind: "done", answer }, transfer);
   } catch (error) {
     post({ id, kind: "failed", reason: `the engine stopped: ${error}` });
   }
 };
 
-type Read<T> = (text: (k: number) => string, bytes: (k: number) => Uint8Array) => [T, Transferable[]] | Promise<[T, Transferable[]]>;
+type Read<T> = (text: (k: number) => string, bytes: (k: number) => Uint8Array<ArrayBuffer>) => [T, Transferable[]];
 
 const answers: { [task in keyof Answers]: Read<Answers[task]> } = { lists, check, correct, identify, run };
 
@@ -58,7 +65,7 @@ function lists(text: (k: number) => string): [Answers["lists"], Transferable[]] 
   return [JSON.parse(text(0)), []];
 }
 
-function check(text: (k: number) => string, bytes: (k: number) => Uint8Array): [Checked, Transferable[]] {
+function check(text: (k: number) => string, bytes: (k: number) => Uint8Array<ArrayBuffer>): [Checked, Transferable[]] {
   const { findings, amounts_to, is_whole, machine } = JSON.parse(text(0));
   const points = new Float32Array(bytes(1).slice().buffer), kinds = new Uint32Array(bytes(2).slice().buffer);
   return [{ findings, amounts: amounts_to, isWhole: is_whole, machine, points, kinds }, [points.buffer, kinds.buffer]];
@@ -68,56 +75,36 @@ function correct(text: (k: number) => string): [Corrected, Transferable[]] {
   return [{ ...JSON.parse(text(0)), program: text(1) }, []];
 }
 
-function identify(text: (k: number) => string): [Identified, Transferable[]] {
-  return [{ ...JSON.parse(text(0)), file: text(1), page: new Blob([text(2)], { type: "text/html" }) }, []];
+function identify(text: (k: number) => string, bytes: (k: number) => Uint8Array<ArrayBuffer>): [Identified, Transferable[]] {
+  return [{ ...JSON.parse(text(0)), file: text(1), page: new Blob([bytes(2)], { type: "text/html" }) }, []];
 }
 
-async function run(text: (k: number) => string): Promise<[RunAnswer, Transferable[]]> {
-  const results = JSON.parse(text(0)), table = JSON.parse(text(3)), page = text(2);
-  // The report holds everything that is drawn: the page reads what it reads.
-  const data = await inflated(between(page, '<script type="text/plain" id="data">', "</script>"));
+function run(text: (k: number) => string, bytes: (k: number) => Uint8Array<ArrayBuffer>): [RunAnswer, Transferable[]] {
+  const results = JSON.parse(text(0)), { runs, remarks, verdict } = JSON.parse(text(3)), data = JSON.parse(text(4));
   const cuts = data.runs.map((columns: Columns, k: number) =>
-    cut(columns, data.meta, k, { figures: table.runs[k], worst: results.runs[k].worst }));
-  const verdict = between(page, '<p class="verdict">', "</p>").replace(/<[^>]*>/g, "").replace(/&amp;/g, "&");
+    cut(columns, data.meta, k, { figures: runs[k], worst: results.runs[k].worst }));
   const transfer = cuts.flatMap((cut: Cut) =>
     [cut.t_s, cut.error_um, cut.line, cut.cutting, cut.foot_mm, cut.deviation_mm].map((column) => column.buffer));
-  const report = new Blob([page], { type: "text/html" });
-  return [{ cuts, remarks: table.remarks, verdict, report }, transfer];
-}
-
-/** The data of a report are deflated JSON in base64. */
-async function inflated(base64: string) {
-  const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"))).json();
+  return [{ cuts, remarks, verdict, report: new Blob([bytes(2)], { type: "text/html" }) }, transfer];
 }
 
 type Columns = { [name: string]: number[] };
 interface Meta { units: { time_s: number; point_mm: number }; runs: { error_mm: number }[] }
 
-/** A run of the report: its columns are differences of integers, see crates/feedwright/src/report/embedded_data.rs. */
+/** A run of what is drawn, see crates/feedwright/src/report/embedded_data.rs. */
 function cut(columns: Columns, { units, runs }: Meta, k: number, rest: Pick<Cut, "figures" | "worst">): Cut {
   const n = columns.t.length, error_mm = runs[k].error_mm;
-  const decoded = <T extends Float32Array | Uint32Array | Uint8Array>(into: T, name: string, unit: number, first = 0, step = 1) => {
-    let sum = 0;
-    columns[name]?.forEach((difference, i) => { sum += difference; into[first + step * i] = sum * unit; });
-    return into;
+  // Three columns beside each other.
+  const vectors = (prefix: string, unit: number) => {
+    const all = new Float32Array(3 * n);
+    ["x", "y", "z"].forEach((axis, a) => decode(columns[prefix + axis] ?? [], unit).forEach((mm, i) => (all[3 * i + a] = mm)));
+    return all;
   };
-  const [foot_mm, deviation_mm] = [new Float32Array(3 * n), new Float32Array(3 * n)];
-  ["x", "y", "z"].forEach((axis, a) => {
-    decoded(foot_mm, `f${axis}`, units.point_mm, a, 3);
-    decoded(deviation_mm, `d${axis}`, error_mm, a, 3);
-  });
   return {
-    ...rest, foot_mm, deviation_mm, look: `run-${k}`,
-    t_s: decoded(new Float32Array(n), "t", units.time_s),
-    error_um: decoded(new Float32Array(n), "e", 1e3 * error_mm),
-    line: decoded(new Uint32Array(n), "line", 1),
-    cutting: decoded(new Uint8Array(n), "cutting", 1),
+    ...rest, look: `run-${k}`, foot_mm: vectors("f", units.point_mm), deviation_mm: vectors("d", error_mm),
+    t_s: new Float32Array(decode(columns.t, units.time_s)),
+    error_um: new Float32Array(decode(columns.e, 1e3 * error_mm)),
+    line: new Uint32Array(decode(columns.line, 1)),
+    cutting: new Uint8Array(decode(columns.cutting, 1)),
   };
-}
-
-function between(text: string, before: string, after: string): string {
-  const from = text.indexOf(before);
-  if (from < 0) return "";
-  return text.slice(from + before.length, text.indexOf(after, from + before.length));
 }

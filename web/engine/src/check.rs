@@ -14,8 +14,8 @@ const TURN: f64 = 0.08;
 /// Most points of a piece.
 const MOST_OF_PIECE: f64 = 256.0;
 
-pub(crate) fn check(request: &Request) -> miette::Result<Outputs> {
-    let program = request.program();
+pub(crate) fn check(request: &mut Request) -> miette::Result<Outputs> {
+    let program = request.take_program();
     let mut answer = match program.check(Settings::default()) {
         Ok(summary) => json!({ "findings": findings(&summary.warnings), "amounts_to": amounts_to(&summary) }),
         Err(CheckError::Read(error)) => return Err(error.into()),

@@ -6,12 +6,12 @@ use serde_json::{Value, json};
 use crate::page::PageWatch;
 use crate::request::{Outputs, Request, figure, json};
 
-pub(crate) fn correct(request: &Request) -> miette::Result<Outputs> {
+pub(crate) fn correct(request: &mut Request) -> miette::Result<Outputs> {
     let target = match &request.target {
         None => &TARGETS[0],
         Some(name) => TargetControl::find(name).ok_or_else(|| miette::miette!("no control is called '{name}'"))?,
     };
-    let mut job = CorrectJob::new(request.program(), request.machine()?, target);
+    let mut job = CorrectJob::new(request.take_program(), request.machine()?, target);
     job.file_error = CorrectJob::usual_file_error(request.is_machine_text());
     let outcome = job.run(&PageWatch::default())?;
     let program = outcome.program().unwrap_or_default().as_bytes().to_vec();

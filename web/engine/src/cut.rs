@@ -1,7 +1,7 @@
 //! A cut without a correction and one with a controller.
 
 use feedwright::sim::{Sink, TraceWriter};
-use feedwright::{CONTROLLERS, Choices, Job, ReportedRun, take_recorded_model, write_html};
+use feedwright::{CONTROLLERS, Choices, Job, ReportedRun, take_recorded_model, write_html, write_html_data};
 use miette::IntoDiagnostic;
 use serde_json::{Value, json};
 
@@ -11,8 +11,8 @@ use crate::request::{Outputs, Request, figure, json};
 /// Points of a cut on the diagonal of its box: on a large screen some two pixels apart.
 const POINTS_ON_DIAGONAL: f64 = 1500.0;
 
-pub(crate) fn run(request: &Request) -> miette::Result<Outputs> {
-    let mut job = Job::new(request.program(), request.machine()?);
+pub(crate) fn run(request: &mut Request) -> miette::Result<Outputs> {
+    let mut job = Job::new(request.take_program(), request.machine()?);
     job.tolerance_um = request.tolerance_um;
     job.choices.seed = request.seed;
     job.controller = request.controller()?.unwrap_or(job.controller);
@@ -33,14 +33,21 @@ pub(crate) fn run(request: &Request) -> miette::Result<Outputs> {
     let mut results = Vec::new();
     outcome.write_json(&job, &mut results).into_diagnostic()?;
     let rows = trace.map(TraceWriter::finish).transpose().into_diagnostic()?.unwrap_or_default();
-    let mut page = Vec::new();
+    let [mut page, mut drawings] = [const { Vec::new() }; 2];
     if request.page {
         write_html(&mut page, &outcome.report).into_diagnostic()?;
+        write_html_data(&mut drawings, &outcome.report).into_diagnostic()?;
     }
     let table: Vec<_> = outcome.report.runs.iter().map(figures).collect();
     let remarks = outcome.without_identification.iter().map(ToString::to_string);
     let remarks = outcome.warnings.iter().map(ToString::to_string).chain(remarks).collect::<Vec<_>>();
-    Ok(vec![results, rows, page, json(&json!({ "runs": table, "remarks": remarks, "is_of_use": outcome.is_of_use }))])
+    let told = json!({
+        "runs": table,
+        "remarks": remarks,
+        "is_of_use": outcome.is_of_use,
+        "verdict": outcome.report.verdict(),
+    });
+    Ok(vec![results, rows, page, json(&told), drawings])
 }
 
 /// The settings and the model that the command takes by default: from a log of the machine, where the controller goes by one.

@@ -12,7 +12,7 @@ use crate::page::PageWatch;
 use crate::request::{Outputs, Request, json};
 
 pub(crate) fn identify(request: &Request) -> miette::Result<Outputs> {
-    let (watch, name, bytes) = (PageWatch::default(), Path::new(&request.name), request.program.as_bytes());
+    let (watch, name, bytes) = (PageWatch::default(), Path::new(&request.name), request.program.as_slice());
     let log = Log::from_reader(name, bytes, bytes.len() as u64, &Columns::default(), &watch)?;
     let findings: Vec<String> = log.findings.iter().map(ToString::to_string).collect();
     let identified = LogJob { name: request.name.clone(), ..LogJob::default() }.run(log, &watch)?;

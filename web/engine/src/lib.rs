@@ -2,20 +2,20 @@
 //!
 //! ```text
 //! input(n)    room for a request of n bytes: where it is in the memory of the module
-//! program(n)  room for its program or log, in UTF-8: it takes no room twice, as a text in JSON does
+//! program(n)  room for its program or log: it takes no room twice, as a text in JSON does
 //! run()       answers the request; 1 where it succeeds, 0 where output 0 is the reason why not
 //! at(k), length(k)   where output k is, and its bytes
 //! ```
 //!
 //! The outputs of a request follow from its `task`:
 //!
-//! | `task` | output 0 | output 1 | output 2 | output 3 |
-//! |---|---|---|---|---|
-//! | `run` | results, as `run --json` | rows, as `run --trace` | the page of the report | the table of `run`, as JSON |
-//! | `check` | findings, as JSON | programmed path: x, y, z in mm, as 32-bit floats | line and kind of each point | |
-//! | `correct` | results, as JSON | the corrected program | | |
-//! | `identify` | numbers of the axes, as JSON | the machine file | the page of the identification | |
-//! | `lists` | machines, controllers and controls, as JSON | | | |
+//! | `task` | output 0 | output 1 | output 2 | output 3 | output 4 |
+//! |---|---|---|---|---|---|
+//! | `run` | results, as `run --json` | rows, as `run --trace` | the page of the report | the table of `run` and the verdict, as JSON | what is drawn, as JSON |
+//! | `check` | findings, as JSON | programmed path: x, y, z in mm, as 32-bit floats | line and kind of each point | | |
+//! | `correct` | results, as JSON | the corrected program | | | |
+//! | `identify` | numbers of the axes, as JSON | the machine file | the page of the identification | | |
+//! | `lists` | machines, controllers and controls, as JSON | | | | |
 //!
 //! The module imports two functions of the page, `page.progress` and `page.cut`: see `page`. It has
 //! no files, no clock and no threads.
@@ -95,11 +95,11 @@ pub extern "C" fn length(output: usize) -> usize {
 
 fn answer(input: &[u8], program: Vec<u8>) -> miette::Result<Outputs> {
     let mut request: Request = serde_json::from_slice(input).map_err(|error| miette::miette!("{error}"))?;
-    request.program = String::from_utf8(program).map_err(|error| miette::miette!("{error}"))?;
+    request.program = program;
     match request.task {
-        Task::Run => cut::run(&request),
-        Task::Check => check::check(&request),
-        Task::Correct => correct::correct(&request),
+        Task::Run => cut::run(&mut request),
+        Task::Check => check::check(&mut request),
+        Task::Correct => correct::correct(&mut request),
         Task::Identify => identify::identify(&request),
         Task::Lists => lists::lists(),
     }

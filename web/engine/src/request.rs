@@ -34,9 +34,9 @@ pub(crate) struct Request {
     /// What messages call the program.
     #[serde(default)]
     pub(crate) name: String,
-    /// Its text, or that of a log: what was written into the room of `program`.
+    /// Its bytes, or those of a log: what was written into the room of `program`.
     #[serde(skip)]
-    pub(crate) program: String,
+    pub(crate) program: Vec<u8>,
     /// Name of a built-in machine, or the text of a machine file.
     #[serde(default)]
     pub(crate) machine: String,
@@ -72,9 +72,9 @@ fn machine_name() -> String {
 }
 
 impl Request {
-    /// The program.
-    pub(crate) fn program(&self) -> Program {
-        Program::from_text(self.name.clone(), &self.program)
+    /// Takes the program: it may be half of the memory.
+    pub(crate) fn take_program(&mut self) -> Program {
+        Program::from_text(self.name.clone(), std::mem::take(&mut self.program))
     }
 
     /// Whether the machine is a text, not a name.

@@ -1,9 +1,9 @@
-const VERSION = "0df38914709298c9", FILES = {
- "./": "sha256-0PEUOxwM/PslmqRH7VkRfrOt2rMm3DCxI+9AdlFDJOw=",
- "app.css": "sha256-6PNIuC2eQPfstTOS0uYJ3mivDl61LLA97V/8FvTih0A=",
- "app.js": "sha256-ZXoSLSWRUz+aSuggqhFe39+OHqU00CoyKY4wX+aZQqs=",
- "engine.js": "sha256-ebysSO/QqUORqchfQufaEJ3UY7Q91YswPeo5hyOzF9o=",
- "engine.wasm.gz": "sha256-lGnVvNQfxGqqOCUuiElMS9aj3UeKsuCR0umawYu+FB0=",
+const VERSION = "02819ac837c56996", FILES = {
+ "./": "sha256-YGb0VZj84EYhQ6U9NTWrNwzpwMwsZKXszA9rkk11fPs=",
+ "app.css": "sha256-5/Q3YF9MbV4yehHIdteyB/ds4b8RqINXmXzUbd6lDe8=",
+ "app.js": "sha256-026jk9d7nIdBybZ8sTvJPYgB5PxbD0Cq7cTyLQYvrnE=",
+ "engine.js": "sha256-h5YioToWyVEKGHFX9P3UN9PIheYJFDcaZhENbtYoyuQ=",
+ "engine.wasm.gz": "sha256-vmS1OhRba9oSRYr2pljiwooOw+NhEQLamxdH6WYtAMk=",
  "files.json": "sha256-OOC53oF/ZFxL7DfA1KPli67MywQPVxjcBppyxzhaC+0="
 };
 // Keeps the page for visits without its server. FILES has the hash of each file, VERSION that of all: web/app/offline.mjs puts both before

@@ -2,8 +2,9 @@
 //!
 //! ```text
 //! http://127.0.0.1:PORT/SECRET/            the page and its files, which are parts of this command
-//! http://127.0.0.1:PORT/SECRET/files.json  names of the user's files
+//! http://127.0.0.1:PORT/SECRET/files.json  names of the user's files, and whether there is a machine
 //! http://127.0.0.1:PORT/SECRET/files/0     the first of them
+//! http://127.0.0.1:PORT/SECRET/hal/0       what the machine does, from reading 0 on
 //! ```
 //!
 //! No request names a place in the file system. A page of another site can send requests here, but it neither knows the secret nor has the
@@ -21,6 +22,8 @@ use std::time::{Duration, Instant};
 
 use feedwright_gcode::input;
 use serde_json::json;
+
+use super::hal_watch::HalWatch;
 
 /// Name, type and bytes of each file of the page.
 const PAGE: [(&str, &str, &[u8]); 5] = [
@@ -63,6 +66,7 @@ struct Site {
     port: u16,
     secret: String,
     files: Vec<PathBuf>,
+    hal: Option<Arc<HalWatch>>,
 }
 
 impl PageServer {
@@ -70,13 +74,13 @@ impl PageServer {
     ///
     /// # Errors
     /// What the operating system says.
-    pub(crate) fn bind(files: Vec<PathBuf>) -> io::Result<Self> {
+    pub(crate) fn bind(files: Vec<PathBuf>, hal: Option<Arc<HalWatch>>) -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))?;
         let port = listener.local_addr()?.port();
         // Keyed with random numbers of the operating system; the key stays in here.
         let key = RandomState::new();
         let secret = format!("{:016x}{:016x}", key.hash_one(0), key.hash_one(1));
-        Ok(Self { listener, site: Arc::new(Site { port, secret, files }) })
+        Ok(Self { listener, site: Arc::new(Site { port, secret, files, hal }) })
     }
 
     /// Where the page is.
@@ -149,10 +153,16 @@ impl Site {
         if path == "files.json" {
             let names: Vec<_> = self.files.iter().map(|file| file.file_name().unwrap_or_default()).collect();
             let names: Vec<_> = names.iter().map(|name| name.to_string_lossy()).collect();
-            return ("200 OK", "application/json", json!(names).to_string().into_bytes());
+            let served = json!({ "files": names, "hal": self.hal.is_some() });
+            return ("200 OK", "application/json", served.to_string().into_bytes());
         }
-        let file = path.strip_prefix("files/").and_then(|number| number.parse::<usize>().ok());
-        let Some(file) = file.and_then(|number| self.files.get(number)) else { return told("404 Not Found") };
+        let number = |folder: &str| path.strip_prefix(folder).and_then(|number| number.parse::<u32>().ok());
+        if let (Some(hal), Some(from)) = (&self.hal, number("hal/")) {
+            return ("200 OK", "application/json", hal.since(from.into()).to_string().into_bytes());
+        }
+        let Some(file) = number("files/").and_then(|number| self.files.get(number as usize)) else {
+            return told("404 Not Found");
+        };
         match content(file) {
             Ok(bytes) => ("200 OK", "application/octet-stream", bytes),
             Err(_) => told("404 Not Found"),
@@ -218,7 +228,7 @@ mod tests {
         let file = tempfile::Builder::new().suffix(".ngc").tempfile().unwrap();
         std::fs::write(file.path(), "G1\n").unwrap();
         let (_, path) = file.keep().unwrap();
-        Site { port: 99, secret: "abc".to_owned(), files: vec![path] }
+        Site { port: 99, secret: "abc".to_owned(), files: vec![path], hal: None }
     }
 
     fn status(request: &str) -> String {
@@ -246,9 +256,16 @@ mod tests {
     fn no_path_leads_out_of_the_listed_files() {
         let get = |path: &str| status(&format!("GET /abc/{path} HTTP/1.1\nHost: 127.0.0.1:99"));
         assert_eq!([get("files.json"), get("files/0")], ["200", "200"]);
-        for path in
-            ["files/1", "files/-1", "files/", "files/../../etc/passwd", "../etc/passwd", "/etc/passwd", "%2e%2e/x"]
-        {
+        for path in [
+            "hal/0",
+            "files/1",
+            "files/-1",
+            "files/",
+            "files/../../etc/passwd",
+            "../etc/passwd",
+            "/etc/passwd",
+            "%2e%2e/x",
+        ] {
             assert_eq!(get(path), "404", "{path}");
         }
     }
@@ -265,7 +282,7 @@ mod tests {
 
     #[test]
     fn secrets_differ() {
-        let address = || PageServer::bind(vec![]).unwrap().address();
+        let address = || PageServer::bind(vec![], None).unwrap().address();
         let (one, other) = (address(), address());
         assert_ne!(one.rsplit('/').nth(1), other.rsplit('/').nth(1));
         assert_eq!(one.rsplit('/').nth(1).unwrap().len(), 32);

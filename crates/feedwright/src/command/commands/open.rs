@@ -1,15 +1,16 @@
 //! `feedwright open`: the page in a browser.
 
 use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
 
 use feedwright_gcode::input::{self, is_standard_input};
-use miette::{IntoDiagnostic, Result, miette};
+use miette::{IntoDiagnostic, Report, Result, miette};
 
 use crate::command::args::open::OpenArgs;
 use crate::command::console::Console;
+use crate::command::hal_watch::HalWatch;
 use crate::command::message::{printed, remark};
 use crate::command::page_server::PageServer;
 use crate::command::streams::check_inputs;
@@ -23,7 +24,8 @@ pub(crate) fn run(args: OpenArgs, console: &Console) -> Result<ExitCode> {
             return Err(miette!(help = "give the programs in it", "{} is a folder", input::name(file)));
         }
     }
-    let server = PageServer::bind(args.files).into_diagnostic()?;
+    let hal = args.hal.map(|units| HalWatch::start(units.mm()).map_err(no_halcmd)).transpose()?;
+    let server = PageServer::bind(args.files, hal).into_diagnostic()?;
     let address = server.address();
     let mut out = io::stdout();
     let told = writeln!(out, "{address}").and_then(|()| out.flush());
@@ -35,6 +37,14 @@ pub(crate) fn run(args: OpenArgs, console: &Console) -> Result<ExitCode> {
     }
     server.serve();
     printed(told, ExitCode::SUCCESS)
+}
+
+fn no_halcmd(error: io::Error) -> Report {
+    if error.kind() == ErrorKind::NotFound {
+        let help = "run this on the computer of the machine, where LinuxCNC is installed";
+        return miette!(help = help, "there is no halcmd, which reads the pins of LinuxCNC");
+    }
+    miette!("halcmd does not start: {error}")
 }
 
 /// Asks the desktop to show an address; false if it cannot.
