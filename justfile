@@ -144,6 +144,10 @@ tick ticks="100000" runs="5":
 site folder="target/site":
     docs/build {{ folder }}
 
+# Eight parts on three machines, before and after: a folder for any web server.
+gallery folder="target/gallery":
+    docs/gallery {{ folder }}
+
 # The picture of README.md: the report of the star, in a browser (Debian: chromium, npm).
 readme-picture:
     #!/usr/bin/env bash
