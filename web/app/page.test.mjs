@@ -329,6 +329,21 @@ const tests = {
     await page.close();
   },
 
+  async "a long program that changes on the disk is to be opened again"() {
+    const page = await visit(address), folder = await mkdtemp(join(tmpdir(), "feedwright-")), file = join(folder, "long.ngc");
+    const program = `G21 G90 F6000\n${"G1 X1.0000 Y2.0000\nG1 X0.0000 Y0.0000\n".repeat(60_000)}M2\n`;
+    await writeFile(file, program);
+    await seen(page, "#cards button");
+    await page.setInputFiles("#file", file);
+    await page.waitForSelector("#run:enabled");
+    await writeFile(file, `${program}\n`);
+    await page.click("#run");
+    await seen(page, "#message");
+    assert.equal(await page.textContent("#message"), "long.ngc was changed or moved since it was opened. Open it again");
+    await page.close();
+    await rm(folder, { recursive: true });
+  },
+
   async "a program that never ends is given up by Esc, or by another one"() {
     const page = await visit(address), endless = "G21 G90 F600\no1 while [1]\nG1 X1\nG1 X0\no1 endwhile\nM2\n";
     await seen(page, "#cards button");

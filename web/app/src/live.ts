@@ -12,8 +12,8 @@ const DELAYED = 2;
 const ASK_MS = 200;
 /** The curve shows the last minute, s. */
 const SHOWN_S = 60;
-/** Points of the path: a quarter of an hour. */
-const MOST = 22_500;
+/** Points of the path: five minutes. */
+const MOST = 7500;
 
 /** A reading of the pins, see crates/feedwright/src/command/hal_watch.rs: time, position, errors with and without the correction, state. */
 type Row = [t_s: number, x: number, y: number, z: number, with_um: number, without_um: number, state: number];
@@ -55,7 +55,7 @@ export class Live {
     put("live-state", state);
     put("live-cause", now?.cause ? `${now.fault ? "Fault" : "Last fault"}: ${now.cause}` : "");
     $("live-cause").classList.toggle("alarm", !!now?.fault);
-    const axes = now?.correction_um.map((um, axis) => `${"XYZ"[axis]} ${errorText(um)}`).join("  ");
+    const axes = now?.correction_um.map((um, axis) => `${"XYZ"[axis]} ${errorText(um).replace("-", "−")}`).join("  ");
     put("live-correction", now ? `Correction ${axes} of ${errorText(now.limit_um)} ${errorUnit()}` : "");
   }
 }

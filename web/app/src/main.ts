@@ -442,6 +442,7 @@ function watchMachine(): void {
     if (!state.checked) view.program({ points: path.foot_mm, kinds: new Uint32Array(path.line.length) });
     view.cut(path, largest);
     view.tool(path.line.length - 1);
+    view.describe("Path of the machine. Arrow keys move, + and − zoom, 0 fits.");
     curve.show(errors);
     showLegend(largest);
     // Only of the simulated cut it is known where the error points.

@@ -1,9 +1,9 @@
-const VERSION = "02819ac837c56996", FILES = {
- "./": "sha256-YGb0VZj84EYhQ6U9NTWrNwzpwMwsZKXszA9rkk11fPs=",
+const VERSION = "3f24558fe9410c36", FILES = {
+ "./": "sha256-NtRVq2Qz3KXcb6i0Qvy++TKVR0OjfX8iGHq6fAzL574=",
  "app.css": "sha256-5/Q3YF9MbV4yehHIdteyB/ds4b8RqINXmXzUbd6lDe8=",
- "app.js": "sha256-026jk9d7nIdBybZ8sTvJPYgB5PxbD0Cq7cTyLQYvrnE=",
+ "app.js": "sha256-vYMaK03YaLWby6bwktutTt1tmF5EFOJlfw30Pkixvjo=",
  "engine.js": "sha256-h5YioToWyVEKGHFX9P3UN9PIheYJFDcaZhENbtYoyuQ=",
- "engine.wasm.gz": "sha256-vmS1OhRba9oSRYr2pljiwooOw+NhEQLamxdH6WYtAMk=",
+ "engine.wasm.gz": "sha256-mCgntRIa74R2Dp+RqHvyPBjwvpsPHARJbnIsmWOIik4=",
  "files.json": "sha256-OOC53oF/ZFxL7DfA1KPli67MywQPVxjcBppyxzhaC+0="
 };
 // Keeps the page for visits without its server. FILES has the hash of each file, VERSION that of all: web/app/offline.mjs puts both before
