@@ -1,9 +1,9 @@
-const VERSION = "3f24558fe9410c36", FILES = {
+const VERSION = "f709a4ae302cd003", FILES = {
  "./": "sha256-NtRVq2Qz3KXcb6i0Qvy++TKVR0OjfX8iGHq6fAzL574=",
  "app.css": "sha256-5/Q3YF9MbV4yehHIdteyB/ds4b8RqINXmXzUbd6lDe8=",
  "app.js": "sha256-vYMaK03YaLWby6bwktutTt1tmF5EFOJlfw30Pkixvjo=",
  "engine.js": "sha256-h5YioToWyVEKGHFX9P3UN9PIheYJFDcaZhENbtYoyuQ=",
- "engine.wasm.gz": "sha256-mCgntRIa74R2Dp+RqHvyPBjwvpsPHARJbnIsmWOIik4=",
+ "engine.wasm.gz": "sha256-y+MUaEreGRXlY+1hzbloQex/yzVKvy9eSdwv0KARm4E=",
  "files.json": "sha256-OOC53oF/ZFxL7DfA1KPli67MywQPVxjcBppyxzhaC+0="
 };
 // Keeps the page for visits without its server. FILES has the hash of each file, VERSION that of all: web/app/offline.mjs puts both before
