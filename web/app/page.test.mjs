@@ -170,6 +170,45 @@ const tests = {
     await rm(folder, { recursive: true });
   },
 
+  async "six questions make a machine that lags as it was told, in millimetres and in inches"() {
+    const folder = await mkdtemp(join(tmpdir(), "feedwright-")), file = join(folder, "mine.toml"), trace = join(folder, "line.csv"), line = join(folder, "line.ngc");
+    await writeFile(line, "G21 G90 F6000\nG1 X60 Y60\nM2\n");
+    const page = await visit(address);
+    await seen(page, "#cards button");
+    await drop(page, "star.ngc", await readFile(star, "utf8"));
+    await page.focus("#describe");
+    await page.keyboard.press("Enter");
+    await page.fill("[name=feed]", "0");
+    await page.click("#questions .primary");
+    assert.ok(await page.isVisible("#questions"), "a feed of 0 is no machine");
+    const answers = { feed: 6000, rapid: 8000, accel: 800, lead: 5, lag: 0.5, servo: 1 };
+    for (const [name, value] of Object.entries(answers)) await page.fill(`[name=${name}]`, String(value));
+    await picture(page, "questions");
+    const [name, text] = await saved(page, "#described");
+    assert.equal(name, "mine.toml");
+    await page.keyboard.press("Escape");
+    await seen(page, "#describe");
+    await writeFile(file, text);
+    const report = join(folder, "line.html");
+    execFileSync(command, ["run", line, "--machine", file, "--controller", "uncorrected", "--quiet", "--trace", trace, "--report", report], { stdio: "ignore" });
+    const rows = (await readFile(trace, "utf8")).trim().split("\n").filter((row) => !row.startsWith("#")).map((row) => row.split(","));
+    const [cmd, act] = ["cmd_x_mm", "act_x_mm"].map((column) => rows[0].indexOf(column)), middle = Math.floor(rows.length / 2);
+    // Along the diagonal, each axis has 1 / sqrt 2 of the feed and of the lag. A row has the command at its beginning, and the tool at its end.
+    const lag_mm = Math.SQRT2 * (rows[middle][cmd] - rows[middle - 1][act]);
+    assert.ok(Math.abs(lag_mm / answers.lag - 1) < 0.02, `${lag_mm}`);
+    // In inches the same machine.
+    await page.click("[data-units=in]");
+    await page.click("#describe");
+    for (const [name, value] of Object.entries(answers)) await page.fill(`[name=${name}]`, String(name === "servo" ? value : value / 25.4));
+    assert.equal((await saved(page, "#described"))[1], text);
+    await page.click("#questions .primary");
+    assert.equal(await page.$eval("#machine", ({ selectedOptions }) => selectedOptions[0].text), "mine.toml");
+    await page.waitForSelector("#run:enabled");
+    assert.ok(await page.isHidden("#message"), await page.textContent("#message"));
+    await page.close();
+    await rm(folder, { recursive: true });
+  },
+
   async "a mistake is told while it is typed, and a corrected line is cut"() {
     // The first text comes while the engine starts.
     const later = () => { let resolve; const promise = new Promise((r) => (resolve = r)); return { promise, resolve }; };

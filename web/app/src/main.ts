@@ -17,6 +17,7 @@ import type { Checked, Corrected, Cut, Lists, RunAnswer } from "./messages";
 import { Live } from "./live";
 import { Playback } from "./playback";
 import { fillTable, findingRow, numbersOf, worstRow } from "./rows";
+import { NAME as MACHINE_NAME, listenToQuestions } from "./questions";
 import { type Units, errorText, errorUnit, getUnits, lengthText, roundBytes, roundLength, setUnits } from "./units";
 import { PathView, type Side } from "./view";
 
@@ -384,6 +385,7 @@ function listen(): void {
   listenToIdentified();
   listenToView();
   listenToDrops(openFiles);
+  listenToQuestions((text) => openMachine(MACHINE_NAME, text));
 }
 
 function listenToResults(): void {

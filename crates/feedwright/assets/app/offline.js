@@ -1,7 +1,7 @@
-const VERSION = "f709a4ae302cd003", FILES = {
- "./": "sha256-NtRVq2Qz3KXcb6i0Qvy++TKVR0OjfX8iGHq6fAzL574=",
- "app.css": "sha256-5/Q3YF9MbV4yehHIdteyB/ds4b8RqINXmXzUbd6lDe8=",
- "app.js": "sha256-vYMaK03YaLWby6bwktutTt1tmF5EFOJlfw30Pkixvjo=",
+const VERSION = "06ca42f58c1ea570", FILES = {
+ "./": "sha256-09UuFGYXvShQTDouyNyIJQRHMwge79fPDbE/W7Y2Zuk=",
+ "app.css": "sha256-7ukPasqdxziyTGoN/13FmGu4d7JJX1jHisSrH4gs3F0=",
+ "app.js": "sha256-zxqDzXxoD/NO2vPjt+4k7FZ1i/AIsdUNos/VRfHnXbQ=",
  "engine.js": "sha256-h5YioToWyVEKGHFX9P3UN9PIheYJFDcaZhENbtYoyuQ=",
  "engine.wasm.gz": "sha256-y+MUaEreGRXlY+1hzbloQex/yzVKvy9eSdwv0KARm4E=",
  "files.json": "sha256-OOC53oF/ZFxL7DfA1KPli67MywQPVxjcBppyxzhaC+0="
