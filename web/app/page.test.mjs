@@ -170,6 +170,44 @@ const tests = {
     await rm(folder, { recursive: true });
   },
 
+  async "the record of the supervisor and the slowest lines are those of the command"() {
+    const folder = await mkdtemp(join(tmpdir(), "feedwright-")), [json, trace, report] = ["json", "csv", "html"].map((ending) => join(folder, `bore.${ending}`));
+    const bore = new URL("examples/bore.ngc", import.meta.url).pathname;
+    try {
+      execFileSync(command, ["run", bore, "--machine", "stiff", "--quiet", "--json", json, "--trace", trace, "--report", report], { stdio: "ignore" });
+    } catch (error) {
+      // Out of tolerance, or worse than without.
+      assert.equal(error.status, 1);
+    }
+    const page = await visit(`${address}#machine=stiff`);
+    await seen(page, "#cards button");
+    await drop(page, "bore.ngc", await readFile(bore, "utf8"));
+    await page.waitForSelector("#run:enabled");
+    await page.click("#run");
+    await seen(page, "#figures");
+    await page.click("#shown button >> nth=-1");
+    const rows = (list) => page.$$eval(`#${list} li`, (items) => items.map((item) => [...item.firstChild.children].map((part) => part.textContent)));
+    const { transitions } = JSON.parse(await readFile(json, "utf8")).runs.at(-1), record = await rows("record");
+    assert.ok(transitions.length > 0, "a case without a transition shows nothing");
+    assert.deepEqual(record.map(([time, line]) => [time, line]), transitions.map(({ at_s, line }) => [`${at_s.toFixed(3)} s`, `line ${line}`]));
+    assert.match(record[0][2], /because .* um where .* are allowed/);
+    const [columns, ...periods] = (await readFile(trace, "utf8")).trim().split("\n").filter((row) => !row.startsWith("#")).map((row) => row.split(","));
+    const [t, of] = ["t_s", "line"].map((column) => columns.indexOf(column)), times = {};
+    for (const row of periods) times[row[of]] = (times[row[of]] ?? 0) + (periods[1][t] - periods[0][t]);
+    const slowest = await rows("slow");
+    assert.equal(slowest.length, 5);
+    for (const [time, line, text] of slowest) {
+      const takes_s = times[line.replace("line ", "")];
+      assert.ok(Math.abs(parseFloat(time) - takes_s) < 0.01 + 0.01 * takes_s, `${line}: ${time}, not ${takes_s}`);
+      assert.ok((await readFile(bore, "utf8")).includes(text));
+    }
+    await page.click("#slow button >> nth=0");
+    assert.match(await page.textContent("#readout"), new RegExp(`${slowest[0][1]} `));
+    await picture(page, "record");
+    await page.close();
+    await rm(folder, { recursive: true });
+  },
+
   async "six questions make a machine that lags as it was told, in millimetres and in inches"() {
     const folder = await mkdtemp(join(tmpdir(), "feedwright-")), file = join(folder, "mine.toml"), trace = join(folder, "line.csv"), line = join(folder, "line.ngc");
     await writeFile(line, "G21 G90 F6000\nG1 X60 Y60\nM2\n");

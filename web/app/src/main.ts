@@ -16,7 +16,7 @@ import { listenToIdentified, showIdentified } from "./identified";
 import type { Checked, Corrected, Cut, Lists, RunAnswer } from "./messages";
 import { Live } from "./live";
 import { Playback } from "./playback";
-import { fillTable, findingRow, numbersOf, worstRow } from "./rows";
+import { fillTable, findingRow, numbersOf, placeRow, slowestLines } from "./rows";
 import { NAME as MACHINE_NAME, listenToQuestions } from "./questions";
 import { type Units, errorText, errorUnit, getUnits, lengthText, roundBytes, roundLength, setUnits } from "./units";
 import { PathView, type Side } from "./view";
@@ -31,6 +31,9 @@ const [checker, cutter, drawer] = [new Engine(), new Engine(), new Engine()];
 
 const machineSelect = $<HTMLSelectElement>("machine"), controllerSelect = $<HTMLSelectElement>("controller");
 const exampleSelect = $<HTMLSelectElement>("example"), controlSelect = $<HTMLSelectElement>("control");
+
+/** Lines that take longest, of which so many are listed. */
+const LISTED = 5;
 
 const state = {
   name: "program.ngc",
@@ -245,7 +248,7 @@ const largest_um = (cuts: Cut[]) => Math.max(...cuts.map(({ figures }) => Number
 
 function showAnswer(): void {
   const { answer } = state, cuts = answer?.cuts ?? [], all = compared();
-  for (const id of ["figures", "report", "keep", "worst-title", "live-show"]) $(id).hidden = !answer;
+  for (const id of ["figures", "report", "keep", "live-show"]) $(id).hidden = !answer;
   $("keep").setAttribute("aria-pressed", String(!!state.kept));
   // What the correction costs stands in the report.
   $("verdict").textContent = answer?.verdict.split(" Cost:")[0] ?? "Run shows what the machine will cut without a correction and with the controller.";
@@ -284,14 +287,27 @@ function showCut(k: number): void {
   view.compare(compared()[cuts.length]);
   playback.show(cut);
   $("readout").textContent = "";
-  $("worst").replaceChildren(...(cut?.worst ?? []).map((place) => worstRow(place, () => {
-    view.zoomTo(place.position_mm);
-    playback.time(place.t_s);
-  })));
+  showPlaces(cut);
   showLegend(largest_um(cuts));
   view.describe(cut
     ? `Path of ${state.name}, ${cut.figures.name}: largest contour error ${errorText(cut.figures.max_um)} ${errorUnit()}. Arrow keys move, + and − zoom, 0 fits.`
     : `Path of ${state.name}`);
+}
+
+/** Lists worst places, what the supervisor did, and the lines that take longest. */
+function showPlaces(cut: Cut | undefined): void {
+  const list = (id: string, rows: HTMLElement[]) => {
+    $(id).replaceChildren(...rows);
+    $(`${id}-title`).hidden = !rows.length;
+  };
+  list("worst", (cut?.worst ?? []).map(({ error_um, line, text, position_mm, t_s }) =>
+    placeRow(`${errorText(Math.abs(error_um))} ${errorUnit()}`, line, text, () => {
+      view.zoomTo(position_mm);
+      playback.time(t_s);
+    })));
+  list("record", (cut?.figures.record ?? []).map(({ t_s, line, text }) => placeRow(`${t_s.toFixed(3)} s`, line, text, () => playback.time(t_s))));
+  const texts = editor.isLong ? [] : editor.value.split("\n"), slowest = cut ? slowestLines(cut, LISTED) : [];
+  list("slow", slowest.map(({ line, time_s, t_s }) => placeRow(`${time_s.toFixed(3)} s`, line, texts[line - 1]?.trim() ?? "", () => playback.time(t_s))));
 }
 
 function showLegend(largest_um: number): void {

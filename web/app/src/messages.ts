@@ -41,7 +41,10 @@ export interface Checked {
 }
 
 /** A row of a table, with the digits of the command. */
-export interface Figures { name: string; time_s: string; rms_um: string; max_um: string; uncut_um?: string; blocks?: number }
+export interface Figures { name: string; time_s: string; rms_um: string; max_um: string; uncut_um?: string; blocks?: number; record?: Recorded[] }
+
+/** The controller leaves the loop, or returns, or learns. */
+export interface Recorded { t_s: number; line: number; text: string }
 
 export interface Place { error_um: number; line: number; text: string; position_mm: number[]; t_s: number }
 

@@ -1,7 +1,7 @@
 // Rows of the lists and tables of the page.
 
 import { element } from "./dom";
-import type { Figures, Finding, Place } from "./messages";
+import type { Cut, Figures, Finding } from "./messages";
 import { errorText, errorUnit } from "./units";
 
 /** A mistake or a warning; a click calls `go`. */
@@ -12,15 +12,26 @@ export function findingRow(finding: Finding, go: () => void): HTMLElement {
   return row;
 }
 
-/** A worst place; a click marks it and calls `go`. */
-export function worstRow(place: Place, go: () => void): HTMLElement {
+/** A place of a cut; a click marks it and calls `go`. */
+export function placeRow(value: string, line: number, text: string, go: () => void): HTMLElement {
   const row = element("li"), button = buttonOf(row, () => {
     go();
     row.parentElement!.querySelectorAll("[aria-current]").forEach((old) => old.removeAttribute("aria-current"));
     button.setAttribute("aria-current", "true");
   });
-  button.append(element("b", `${errorText(Math.abs(place.error_um))} ${errorUnit()}`), element("span", `line ${place.line}`), element("code", place.text));
+  button.append(element("b", value), element("span", `line ${line}`), element("code", text));
   return row;
+}
+
+/** Lines that take longest, with the time of each in all of its turns, and when the first turn begins. */
+export function slowestLines({ t_s, line }: Cut, most: number): { line: number; time_s: number; t_s: number }[] {
+  const found = new Map<number, { line: number; time_s: number; t_s: number }>();
+  for (let k = 0; k + 1 < t_s.length; k++) {
+    const of = found.get(line[k]) ?? { line: line[k], time_s: 0, t_s: t_s[k] };
+    of.time_s += t_s[k + 1] - t_s[k];
+    found.set(line[k], of);
+  }
+  return [...found.values()].sort((a, b) => b.time_s - a.time_s).slice(0, most);
 }
 
 function buttonOf(row: HTMLElement, click: () => void): HTMLButtonElement {

@@ -1,6 +1,6 @@
 //! A cut without a correction and one with a controller.
 
-use feedwright::sim::{Sink, TraceWriter};
+use feedwright::sim::{Sink, TraceWriter, Transition};
 use feedwright::{CONTROLLERS, Choices, Job, ReportedRun, take_recorded_model, write_html, write_html_data};
 use miette::IntoDiagnostic;
 use serde_json::{Value, json};
@@ -72,11 +72,13 @@ fn as_in_the_command(
 /// A row of the table of `run`.
 fn figures(run: &ReportedRun) -> Value {
     let now = &run.summary;
+    let record = |transition: &Transition| json!({ "t_s": transition.at_s, "line": transition.line, "text": transition.words() });
     json!({
         "name": now.controller,
         "time_s": figure(now.time_s, 3),
         "rms_um": figure(now.rms_um, 2),
         "max_um": figure(now.max_um, 2),
         "uncut_um": figure(now.uncut_um, 2),
+        "record": now.transitions.iter().map(record).collect::<Vec<_>>(),
     })
 }

@@ -1,9 +1,9 @@
-const VERSION = "06ca42f58c1ea570", FILES = {
- "./": "sha256-09UuFGYXvShQTDouyNyIJQRHMwge79fPDbE/W7Y2Zuk=",
- "app.css": "sha256-7ukPasqdxziyTGoN/13FmGu4d7JJX1jHisSrH4gs3F0=",
- "app.js": "sha256-zxqDzXxoD/NO2vPjt+4k7FZ1i/AIsdUNos/VRfHnXbQ=",
+const VERSION = "955a90c748705274", FILES = {
+ "./": "sha256-Rd5yeiHvOOo4IDLulx3x0O85FerpShB8gcHspmy8adw=",
+ "app.css": "sha256-1M8CTdqQ4GSD7BJH8vqN2bnstEVWNjaRtXiVaFv7EKc=",
+ "app.js": "sha256-44ctzyQZ+Owpp2IzcJcrFfFOL6e2dwuHSnIZ57jyvFE=",
  "engine.js": "sha256-h5YioToWyVEKGHFX9P3UN9PIheYJFDcaZhENbtYoyuQ=",
- "engine.wasm.gz": "sha256-y+MUaEreGRXlY+1hzbloQex/yzVKvy9eSdwv0KARm4E=",
+ "engine.wasm.gz": "sha256-WTvipwGRKftPjWQ2qIQffEaIMuUkyvOXROCPBZH1Wso=",
  "files.json": "sha256-OOC53oF/ZFxL7DfA1KPli67MywQPVxjcBppyxzhaC+0="
 };
 // Keeps the page for visits without its server. FILES has the hash of each file, VERSION that of all: web/app/offline.mjs puts both before
