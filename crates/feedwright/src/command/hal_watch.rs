@@ -57,7 +57,7 @@ impl HalWatch {
     /// # Errors
     /// Where there is no `halcmd`.
     pub(crate) fn start(unit_mm: f64) -> io::Result<Arc<Self>> {
-        drop(Halcmd::start()?);
+        let halcmd = Halcmd::start()?;
         let now = Instant::now();
         let recent = RecentPins {
             began: now,
@@ -70,7 +70,7 @@ impl HalWatch {
         };
         let watch = Arc::new(Self { unit_mm, fault_words: fault_words(), recent: Mutex::new(recent) });
         let reader = Arc::clone(&watch);
-        thread::Builder::new().spawn(move || reader.read_on())?;
+        thread::Builder::new().spawn(move || reader.read_on(Some(halcmd)))?;
         Ok(watch)
     }
 
@@ -88,8 +88,7 @@ impl HalWatch {
         self.recent.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn read_on(&self) {
-        let mut halcmd = None;
+    fn read_on(&self, mut halcmd: Option<Halcmd>) {
         loop {
             let is_asked = {
                 let mut recent = self.recent();
