@@ -1,5 +1,6 @@
 //! The package in Python: its examples, its tests and those of its manual, with the module that cargo has just built.
 
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -32,7 +33,7 @@ fn interpreter(target: &Path) -> Option<PathBuf> {
 fn the_package_does_what_its_examples_and_tests_say() {
     // Beside the executable of this test.
     let built = std::env::current_exe().unwrap();
-    let built = built.parent().unwrap().join("libfeedwright_python.so");
+    let built = built.parent().unwrap().join(format!("{DLL_PREFIX}feedwright_python{DLL_SUFFIX}"));
     let target = built.ancestors().nth(3).unwrap();
     let Some(python) = interpreter(target) else {
         assert!(std::env::var_os("CI").is_none(), "no Python 3.11 with venv, or PyPI is out of reach");
@@ -48,7 +49,7 @@ fn the_package_does_what_its_examples_and_tests_say() {
             std::fs::copy(&file, package.join(file.file_name().unwrap())).unwrap();
         }
     }
-    std::os::unix::fs::symlink(&built, package.join("_feedwright.abi3.so")).unwrap();
+    std::fs::copy(&built, package.join("_feedwright.abi3.so")).unwrap();
     let ran = Command::new(python)
         .arg(root().join("python/tests/test_package.py"))
         .env("PYTHONPATH", place.path())
