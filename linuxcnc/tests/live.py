@@ -7,6 +7,7 @@ Exit code 1 where path, errors or state are not those of the machine, or where a
 """
 import argparse
 import math
+import pathlib
 import sys
 
 import headless
@@ -26,7 +27,7 @@ def expect(what, is_so):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--machine", required=True)
-    machine = parser.parse_args().machine
+    machine = str(pathlib.Path(parser.parse_args().machine).resolve())
     run = headless.run("live", {"program": CIRCLE, "command": headless.FEEDWRIGHT}, {"FEEDWRIGHT": {"MACHINE": machine, "MODEL": machine}})
     rows, pins = run.result["rows"], run.result["pins"]
     cut = [row for row in rows if row[6] == CORRECTING]
