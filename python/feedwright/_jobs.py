@@ -128,8 +128,8 @@ def run(
     `controller` is by default one that identifies the machine from its log first; `exact_settings` gives it the settings
     of the drives from the machine file instead, and `model` a file that `feedwright identify` wrote. `settings` are those
     of `--set`. `log` is a log of the same cut on a real machine, which is compared. Without `rows` the cut keeps no rows.
-    `band` cuts it on so many machines that fit the same log as well, and tells how far the errors of those spread; the
-    command takes 8.
+    With a `band` of 8, as in the command, eight more machines that fit the same log cut the program too, and
+    `results["band"]` has the spread of their errors.
 
     `progress` is True for a bar of tqdm, or a function that is called with the stage, the steps done and all steps.
 

@@ -1,5 +1,6 @@
 //! The jobs: run, correct, advise, plan, identify.
 
+use std::io;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -73,6 +74,15 @@ fn measured(path: &Path, columns: Option<&str>, watch: &dyn Watch) -> Result<Mea
     Ok(MeasuredLog { name: input::name(path), log: Log::read_watched(path, &columns, watch)? })
 }
 
+/// A page as bytes, made without the lock of the interpreter.
+fn written(py: Python<'_>, write: impl FnOnce(&mut Vec<u8>) -> io::Result<()> + Send) -> PyResult<Vec<u8>> {
+    let page = || {
+        let mut page = Vec::new();
+        write(&mut page).into_diagnostic().map(|()| page)
+    };
+    py.detach(page).map_err(|error| exception(&error))
+}
+
 /// A cut without a correction and one with a controller.
 #[pyclass(frozen, module = "feedwright")]
 pub(crate) struct CutOutcome {
@@ -83,11 +93,7 @@ pub(crate) struct CutOutcome {
 impl CutOutcome {
     /// The report, one page of HTML that needs no other file.
     fn html(&self, py: Python<'_>) -> PyResult<Vec<u8>> {
-        let page = || {
-            let mut page = Vec::new();
-            write_html(&mut page, &self.outcome.report).into_diagnostic().map(|()| page)
-        };
-        py.detach(page).map_err(|error| exception(&error))
+        written(py, |page| write_html(page, &self.outcome.report))
     }
 }
 
@@ -260,11 +266,7 @@ pub(crate) struct IdentifiedMachine {
 impl IdentifiedMachine {
     /// The page of the identification, which needs no other file.
     fn html(&self, py: Python<'_>) -> PyResult<Vec<u8>> {
-        let page = || {
-            let mut page = Vec::new();
-            write_page(&mut page, &self.identified).into_diagnostic().map(|()| page)
-        };
-        py.detach(page).map_err(|error| exception(&error))
+        written(py, |page| write_page(page, &self.identified))
     }
 }
 

@@ -165,7 +165,7 @@ fn both_forms_of_halscope_are_read() {
         let log = read(text.as_bytes(), "").unwrap();
         assert_is(&log, LogFormat::Halscope, &data);
         assert_eq!(log.axes[0].name, "joint0");
-        // Columns by their numbers, of which names in the rows are none.
+        // By number: the names in the rows are not counted as columns.
         assert_is(&read(text.as_bytes(), "x.cmd=0,x.act=1").unwrap(), LogFormat::Halscope, &data);
     }
 }

@@ -1,9 +1,8 @@
 // Six questions for a machine, where there is no machine file yet: all else is as on a machine that is built in.
 
 import { $, element, save } from "./dom";
-import { type Units, getUnits } from "./units";
+import { INCH_MM, type Units, getUnits } from "./units";
 
-const INCH_MM = 25.4;
 export const NAME = "mine.toml";
 
 type Unit = (length: Units) => string;

@@ -2,7 +2,7 @@
 
 export type Units = "mm" | "in";
 
-const INCH_MM = 25.4;
+export const INCH_MM = 25.4;
 
 let units: Units = "mm";
 export const setUnits = (now: Units) => { units = now; };

@@ -1,7 +1,7 @@
-const VERSION = "955a90c748705274", FILES = {
+const VERSION = "0ab5d4d457c54080", FILES = {
  "./": "sha256-Rd5yeiHvOOo4IDLulx3x0O85FerpShB8gcHspmy8adw=",
  "app.css": "sha256-1M8CTdqQ4GSD7BJH8vqN2bnstEVWNjaRtXiVaFv7EKc=",
- "app.js": "sha256-44ctzyQZ+Owpp2IzcJcrFfFOL6e2dwuHSnIZ57jyvFE=",
+ "app.js": "sha256-Hdn3JUHbttzrAeRiMYBEJRwt6A4RtdRz5iBi58Ug270=",
  "engine.js": "sha256-h5YioToWyVEKGHFX9P3UN9PIheYJFDcaZhENbtYoyuQ=",
  "engine.wasm.gz": "sha256-WTvipwGRKftPjWQ2qIQffEaIMuUkyvOXROCPBZH1Wso=",
  "files.json": "sha256-OOC53oF/ZFxL7DfA1KPli67MywQPVxjcBppyxzhaC+0="

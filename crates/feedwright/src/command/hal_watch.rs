@@ -145,7 +145,7 @@ impl HalWatch {
 /// Values of the pins of the component, by their names in it. Of a bit, on is 1.
 type Pins = HashMap<String, f64>;
 
-/// A reading, or why there is none. Starts `halcmd` where it does not run.
+/// Reads the pins once. Starts `halcmd` if it is not running.
 fn read(halcmd: &mut Option<Halcmd>) -> Result<Pins, String> {
     let started = match halcmd.take() {
         Some(halcmd) => halcmd,
