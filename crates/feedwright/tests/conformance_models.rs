@@ -281,6 +281,7 @@ fn a_block_is_of_a_model_or_of_a_machine_and_nothing_is_written_where_neither_is
     let told = folder.run(&["block", "m.model.toml", "--out", "found.fwmodel"]).succeeded().stdout;
     assert!(told.contains("the model of kind 'axes', 2 axes: 660 bytes"), "{told}");
     geometry_of_a_block(&folder);
+    axes_that_no_command_follows(&folder);
     let before = folder.content();
     for (arguments, texts) in [
         (["workshop", "--machine", "tnv40"], ["--machine goes with a model file", "leave --machine out"]),
@@ -294,6 +295,21 @@ fn a_block_is_of_a_model_or_of_a_machine_and_nothing_is_written_where_neither_is
     ] {
         folder.run(&[&["block"], &arguments[..], &["--out", "more.fwmodel"]].concat()).refused(&texts);
         assert_eq!(folder.content(), before, "{arguments:?}");
+    }
+}
+
+/// Acceleration that is fed forward without the speed is told, axis by axis.
+fn axes_that_no_command_follows(folder: &Folder) {
+    for (parts, axes) in [([0.0, 0.0], vec![]), ([0.0, 0.5], vec!["x"]), ([1.0, 0.5], vec![])] {
+        let [speed, acceleration] = parts;
+        let text = format!(
+            "base = \"tnv40\"\nname = \"fed\"\n[axis.x]\nvelocity_feedforward = {speed}\nacceleration_feedforward = {acceleration}\n"
+        );
+        folder.file("fed.toml", text);
+        let said = folder.run(&["block", "fed.toml", "--out", "fed.fwmodel"]).succeeded().stdout;
+        let told: Vec<&str> = said.lines().filter_map(|line| line.strip_prefix("axis ")?.get(..1)).collect();
+        assert_eq!(told, axes, "{parts:?}: {said}");
+        assert_eq!(said.contains("with cause 11"), !axes.is_empty(), "{said}");
     }
 }
 

@@ -117,6 +117,12 @@ impl AxisKnowledge {
         Number { format: 3, ..Number::newer("command_delay_s", "s", 0.02, |axis| &mut axis.delays.command_s) },
     ];
 
+    /// Whether a command can follow the drive. Where its damping is below 0.3, the acceleration feedforward makes of an offset one that rings, and takes all
+    /// the torque: random machines with 0.7 of it and no velocity feedforward came to 2 mm where 6 um were left uncorrected.
+    pub fn is_followed(&self) -> bool {
+        self.command_damping() >= LEAST_DAMPING
+    }
+
     /// Damping ratio of the command that asks the drive for a given speed:
     ///
     /// ```text
@@ -124,7 +130,7 @@ impl AxisKnowledge {
     /// ```
     ///
     /// with the position gain kp, the velocity feedforward F and the acceleration feedforward A. Infinite without A. Where it is low, the command rings.
-    pub fn command_damping(&self) -> f64 {
+    fn command_damping(&self) -> f64 {
         let Self { parameters, drive, .. } = self;
         let added_s = parameters.inertia_kg_m2 * drive.acceleration_feedforward / parameters.kv_nm_s_per_rad;
         if added_s > 0.0 {
@@ -139,6 +145,9 @@ impl AxisKnowledge {
         Self::NUMBERS.iter().all(|number| number.holds(*(number.of)(&mut self)))
     }
 }
+
+/// Damping of a command that follows a drive, at the least.
+const LEAST_DAMPING: f64 = 0.3;
 
 /// A number of an axis.
 #[derive(Debug, Clone, Copy)]
@@ -193,9 +202,13 @@ mod tests {
         (axis.parameters.kp_1_s, axis.parameters.kv_nm_s_per_rad) = (50.0, 2.0);
         axis.parameters.inertia_kg_m2 = 0.02;
         assert_eq!(axis.command_damping(), f64::INFINITY);
+        assert!(axis.is_followed());
         axis.drive.acceleration_feedforward = 0.5;
         assert_eq!(axis.command_damping(), 0.0);
-        axis.drive.velocity_feedforward = 1.0;
+        for (velocity_feedforward, followed) in [(0.29, false), (0.31, true), (1.0, true)] {
+            axis.drive.velocity_feedforward = velocity_feedforward;
+            assert_eq!(axis.is_followed(), followed, "{velocity_feedforward}");
+        }
         assert_eq!(axis.command_damping(), 1.0);
     }
 }

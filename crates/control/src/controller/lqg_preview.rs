@@ -71,9 +71,6 @@ const DIFFERENCES: f64 = 3.0;
 /// An offset that differs by less from what was asked for is that, mm.
 const FOLLOWED_MM: f64 = 1e-4;
 
-/// A drive whose command is damped by less is not corrected: its acceleration feedforward makes of an offset one that rings, and takes all the torque. Random
-/// machines with 0.7 of it and no velocity feedforward came to 2 mm where 6 um were left uncorrected.
-const LEAST_DAMPING: f64 = 0.3;
 /// For so long a lost position is taken to be as the law says, s: a free run of it. Where it is there again and further from that, mm, everything begins anew.
 const FORESEEN_S: f64 = 0.03;
 const FORESEEN_MM: f64 = 0.05;
@@ -259,8 +256,8 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
 
     /// Infinite where the law is wrong, or no command follows it.
     fn prediction_error_mm(&self) -> f64 {
-        let is_damped = self.axes.iter().all(|axis| axis.known().command_damping() >= LEAST_DAMPING);
-        if self.validity.as_ref().is_some_and(|validity| validity.is_wrong() || !is_damped) {
+        let is_followed = self.axes.iter().all(|axis| axis.known().is_followed());
+        if self.validity.as_ref().is_some_and(|validity| validity.is_wrong() || !is_followed) {
             return f64::INFINITY;
         }
         self.missed_mm()

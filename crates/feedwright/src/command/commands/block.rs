@@ -3,9 +3,9 @@ use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
-use feedwright_control::KnownGeometry;
+use feedwright_control::{KnownGeometry, ModelBlock, Trained};
 use feedwright_ident::{Model, exact_block, identifier_name};
-use feedwright_sim::{Machine, is_machine_path};
+use feedwright_sim::{AXIS_NAMES, Machine, is_machine_path};
 use miette::{Result, miette};
 
 use crate::command::args::block::BlockArgs;
@@ -54,7 +54,27 @@ pub(crate) fn run(args: &BlockArgs, console: &Console) -> Result<ExitCode> {
     let mut out = tables([place]);
     let told = writeln!(out, "{what}, {axes} axes: {} bytes", bytes.len());
     let told = told.and_then(|()| writeln!(out, "{}", wrapped(&geometry.told, 2)));
+    let ringing = if axes == 2 { ringing::<2>(&bytes) } else { ringing::<3>(&bytes) };
+    let told = told.and_then(|()| ringing.iter().try_for_each(|axis| writeln!(out, "{}", wrapped(&rings(axis), 2))));
     printed(told.and_then(|()| tell_written(&mut *out, [place])), ExitCode::SUCCESS)
+}
+
+/// Axes whose drives no command can follow.
+fn ringing<const N: usize>(block: &[u8]) -> Vec<&'static str> {
+    let Ok(ModelBlock { trained: Trained::Axes(known), .. }) = ModelBlock::<N>::from_bytes(block) else {
+        return vec![];
+    };
+    let axes = known.axes.into_iter().zip(AXIS_NAMES);
+    axes.filter(|(axis, _)| !axis.is_followed()).map(|(_, name)| name).collect()
+}
+
+/// What is told of such an axis.
+fn rings(axis: &str) -> String {
+    format!(
+        "axis {axis}: by this model its drive feeds the acceleration forward and hardly the speed. A command that follows it rings: the component will \
+         correct no axis, with cause 11. Tune the velocity feedforward of the drive and identify again; if the drive has no acceleration feedforward, say \
+         so: --acceleration-feedforward 0"
+    )
 }
 
 /// The geometry of a block, and what is told of it.

@@ -412,6 +412,8 @@ fn candidates(record: &AxisRecord<'_>, facts: &AxisFacts, terms: &[LawTerm], at:
         // Without an integral the two parts of the damping are the same to the position.
         let is_told = match term {
             LawTerm::Viscous => terms.contains(&LawTerm::Integral) && at.get(term) == 0.0,
+            // Alone it has the drive ring with commands that ask for a speed, which no tuned drive does.
+            LawTerm::AccelerationFeedforward => at.get(LawTerm::VelocityFeedforward) > 0.0,
             // What swings faster than a fifth of the rate does not show, and what swings below 20 Hz is no screw of a machine tool.
             LawTerm::Resonance => sample_s < SLOWEST_FOR_RESONANCE_S,
             // Backlash shows at the motor's encoder only where the screw is compliant.
@@ -436,4 +438,23 @@ fn candidates(record: &AxisRecord<'_>, facts: &AxisFacts, terms: &[LawTerm], at:
         }
     }
     candidates
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn acceleration_is_fed_forward_beside_the_speed_alone() {
+        let command_mm: Vec<f64> = (0..200).map(|k| libm::sin(0.05 * f64::from(k))).collect();
+        let stretches = std::slice::from_ref(&(0..200));
+        let (actual_mm, sample_s) = (&command_mm[..], 0.001);
+        let record = AxisRecord { name: "x", stretches, command_mm: &command_mm, actual_mm, sample_s, step_mm: 1e-6 };
+        let is_offered = |speed: f64| {
+            let at = TermValues([0.0; TERMS]).with(LawTerm::VelocityFeedforward, speed);
+            let offered = candidates(&record, &AxisFacts::default(), &[], &at);
+            offered.iter().any(|candidate| candidate.terms[0] == LawTerm::AccelerationFeedforward)
+        };
+        assert_eq!([0.0, 0.9].map(is_offered), [false, true]);
+    }
 }

@@ -113,7 +113,10 @@ fn without_doubtful(
             LawTerm::Resonance => !is_screw_or_none(&at, errors.record.sample_s),
             _ => false,
         };
-        let is_open = |i: usize| facts.known(terms[i]).is_none();
+        // A feedforward of the acceleration goes before that of the speed does.
+        let is_last =
+            |i: usize| terms[i] != LawTerm::VelocityFeedforward || !terms.contains(&LawTerm::AccelerationFeedforward);
+        let is_open = |i: usize| facts.known(terms[i]).is_none() && is_last(i);
         let is_shape = |i: usize| matches!(terms[i], LawTerm::StribeckSpeed | LawTerm::TableShare);
         let mut doubtful: Vec<usize> = (0..terms.len())
             .filter(|&i| terms[i] > LawTerm::RecordDelay && is_open(i) && !is_shape(i) && size(i) < DOUBTFUL)
