@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What the tests of the package import.
-const NEEDED: [&str; 2] = ["numpy==2.4.6", "pyarrow==26.0.1"];
+const NEEDED: [&str; 3] = ["matplotlib==3.11.2", "numpy==2.4.6", "pyarrow==26.0.1"];
 
 fn root() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
@@ -16,7 +16,7 @@ fn interpreter(target: &Path) -> Option<PathBuf> {
     let folder = target.join("python-tests");
     let python = folder.join("bin/python");
     let has = |code: &str| Command::new(&python).args(["-c", code]).output().is_ok_and(|ran| ran.status.success());
-    if has("import numpy, pyarrow") {
+    if has("import matplotlib, numpy, pyarrow") {
         return Some(python);
     }
     let run = |program: &Path, arguments: &[&str]| {

@@ -186,5 +186,27 @@ class Threads(unittest.TestCase):
         self.assertIn("KeyboardInterrupt", told)
 
 
+#: Runs the cells of a notebook as they stand.
+RUN = """import json, sys
+cells = json.load(open(sys.argv[1], encoding="utf-8"))["cells"]
+names = {"__name__": "__main__"}
+for number, cell in enumerate(cells):
+    if cell["cell_type"] == "code":
+        exec(compile("".join(cell["source"]), f"{sys.argv[1]}, cell {number}", "exec"), names)
+"""
+
+
+class Notebooks(unittest.TestCase):
+    def test_every_notebook_runs_from_top_to_bottom(self) -> None:
+        folder = DOCS.parent / "python" / "notebooks"
+        notebooks = sorted(folder.glob("*.ipynb"))
+        self.assertGreaterEqual(len(notebooks), 3)
+        for notebook in notebooks:
+            environment = dict(os.environ, MPLBACKEND="Agg")
+            line = [sys.executable, "-c", RUN, notebook.name]
+            ran = subprocess.run(line, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+            self.assertEqual(ran.returncode, 0, f"{notebook.name}: {ran.stderr[-2000:]}")
+
+
 if __name__ == "__main__":
     unittest.main()

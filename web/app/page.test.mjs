@@ -170,7 +170,7 @@ const tests = {
     await rm(folder, { recursive: true });
   },
 
-  async "the record of the supervisor and the slowest lines are those of the command"() {
+  async "the record of the supervisor, the slowest lines and the limits are those of the command"() {
     const folder = await mkdtemp(join(tmpdir(), "feedwright-")), [json, trace, report] = ["json", "csv", "html"].map((ending) => join(folder, `bore.${ending}`));
     const bore = new URL("examples/bore.ngc", import.meta.url).pathname;
     try {
@@ -203,6 +203,12 @@ const tests = {
     }
     await page.click("#slow button >> nth=0");
     assert.match(await page.textContent("#readout"), new RegExp(`${slowest[0][1]} `));
+    const limits = await rows("limits"), drawn = (await readFile(report, "utf8")).matchAll(/text-anchor="end">([a-z ]+) (\d+) %<\/text>/g);
+    const shares = Object.fromEntries([...drawn].map(([, name, part]) => [name, `${part} %`]));
+    assert.ok(limits.length > 2, "several limits bind on this part");
+    assert.deepEqual(Object.fromEntries(limits.map(([part, , name]) => [name, part])), shares);
+    await page.click("#limits button >> nth=0");
+    assert.match(await page.textContent("#readout"), new RegExp(`${limits[0][1]} `));
     await picture(page, "record");
     await page.close();
     await rm(folder, { recursive: true });

@@ -294,7 +294,7 @@ function showCut(k: number): void {
     : `Path of ${state.name}`);
 }
 
-/** Lists worst places, what the supervisor did, and the lines that take longest. */
+/** Lists worst places, what the supervisor did, the lines that take longest, and what binds. */
 function showPlaces(cut: Cut | undefined): void {
   const list = (id: string, rows: HTMLElement[]) => {
     $(id).replaceChildren(...rows);
@@ -308,6 +308,7 @@ function showPlaces(cut: Cut | undefined): void {
   list("record", (cut?.figures.record ?? []).map(({ t_s, line, text }) => placeRow(`${t_s.toFixed(3)} s`, line, text, () => playback.time(t_s))));
   const texts = editor.isLong ? [] : editor.value.split("\n"), slowest = cut ? slowestLines(cut, LISTED) : [];
   list("slow", slowest.map(({ line, time_s, t_s }) => placeRow(`${time_s.toFixed(3)} s`, line, texts[line - 1]?.trim() ?? "", () => playback.time(t_s))));
+  list("limits", (cut?.limits ?? []).map(([name, part, line]) => placeRow(`${Math.round(100 * part)} %`, line, name, () => playback.time(cut!.t_s[cut!.line.indexOf(line)]))));
 }
 
 function showLegend(largest_um: number): void {

@@ -80,9 +80,9 @@ function identify(text: (k: number) => string, bytes: (k: number) => Uint8Array<
 }
 
 function run(text: (k: number) => string, bytes: (k: number) => Uint8Array<ArrayBuffer>): [RunAnswer, Transferable[]] {
-  const results = JSON.parse(text(0)), { runs, remarks, verdict } = JSON.parse(text(3)), data = JSON.parse(text(4));
+  const results = JSON.parse(text(0)), { runs, remarks, verdict, limits } = JSON.parse(text(3)), data = JSON.parse(text(4));
   const cuts = data.runs.map((columns: Columns, k: number) =>
-    cut(columns, data.meta, k, { figures: runs[k], worst: results.runs[k].worst }));
+    cut(columns, data.meta, k, { figures: runs[k], worst: results.runs[k].worst, limits }));
   const transfer = cuts.flatMap((cut: Cut) =>
     [cut.t_s, cut.error_um, cut.line, cut.cutting, cut.foot_mm, cut.deviation_mm].map((column) => column.buffer));
   return [{ cuts, remarks, verdict, report: new Blob([bytes(2)], { type: "text/html" }) }, transfer];
@@ -92,7 +92,7 @@ type Columns = { [name: string]: number[] };
 interface Meta { units: { time_s: number; point_mm: number }; runs: { error_mm: number }[] }
 
 /** A run of what is drawn, see crates/feedwright/src/report/embedded_data.rs. */
-function cut(columns: Columns, { units, runs }: Meta, k: number, rest: Pick<Cut, "figures" | "worst">): Cut {
+function cut(columns: Columns, { units, runs }: Meta, k: number, rest: Pick<Cut, "figures" | "worst" | "limits">): Cut {
   const n = columns.t.length, error_mm = runs[k].error_mm;
   // Three columns beside each other.
   const vectors = (prefix: string, unit: number) => {

@@ -1,7 +1,7 @@
 //! A cut without a correction and one with a controller.
 
 use feedwright::sim::{Sink, TraceWriter, Transition};
-use feedwright::{CONTROLLERS, Choices, Job, ReportedRun, take_recorded_model, write_html, write_html_data};
+use feedwright::{CONTROLLERS, Choices, Job, LimitBand, ReportedRun, take_recorded_model, write_html, write_html_data};
 use miette::IntoDiagnostic;
 use serde_json::{Value, json};
 
@@ -46,6 +46,7 @@ pub(crate) fn run(request: &mut Request) -> miette::Result<Outputs> {
         "remarks": remarks,
         "is_of_use": outcome.is_of_use,
         "verdict": outcome.report.verdict(),
+        "limits": outcome.report.limits.as_ref().map_or_else(Vec::new, LimitBand::shares),
     });
     Ok(vec![results, rows, page, json(&told), drawings])
 }

@@ -35,6 +35,27 @@ pub struct LimitBand {
     pub along: BindingAlong,
 }
 
+impl LimitBand {
+    /// Each limit that binds: its name, its part of the time, and the line of the stretch in which it binds longest. Largest parts first.
+    pub fn shares(&self) -> Vec<(&str, f64, u32)> {
+        let stretches = self.along.stretches();
+        let mut shares: Vec<_> = self.names.iter().enumerate().map(|(limit, name)| {
+            let longest = stretches.iter().max_by(|a, b| a.bound_s[limit].total_cmp(&b.bound_s[limit]));
+            (name.as_str(), share(stretches, limit), longest.map_or(0, |stretch| stretch.lines[0]))
+        }).filter(|(_, share, _)| *share > 0.0).collect();
+        shares.sort_by(|a, b| b.1.total_cmp(&a.1));
+        shares
+    }
+}
+
+/// Part of the time in which a limit binds.
+fn share(stretches: &[BindingStretch], limit: usize) -> f64 {
+    let [bound_s, total_s] = stretches.iter().fold([0.0, 0.0], |[bound_s, total_s], stretch| {
+        [bound_s + stretch.bound_s[limit], total_s + stretch.duration_s]
+    });
+    bound_s / total_s.max(f64::MIN_POSITIVE)
+}
+
 /// Colour of a limit by its kind, of those that stay apart for the colour-blind.
 fn color(name: &str) -> &'static str {
     match name {
@@ -104,8 +125,6 @@ fn write_feed(svg: &mut String, stretches: &[BindingStretch], scale: f64) {
 /// A row of one limit, with its name and its part of the time.
 fn write_row(svg: &mut String, band: &LimitBand, stretches: &[BindingStretch], [row, limit]: [usize; 2], scale: f64) {
     let name = band.names.get(limit).map_or("", String::as_str);
-    let total_s: f64 = stretches.iter().map(|stretch| stretch.duration_s).sum();
-    let bound_s: f64 = stretches.iter().map(|stretch| stretch.bound_s[limit]).sum();
     let y = ABOVE + FEED + 8.0 + ROW * row as f64;
     let _ = writeln!(
         svg,
@@ -113,7 +132,7 @@ fn write_row(svg: &mut String, band: &LimitBand, stretches: &[BindingStretch], [
         LEFT - 8.0,
         y + 11.0,
         escaped(name),
-        100.0 * bound_s / total_s.max(f64::MIN_POSITIVE)
+        100.0 * share(stretches, limit)
     );
     let _ =
         writeln!(svg, "<g fill=\"{}\" shape-rendering=\"crispEdges\" transform=\"translate(0 {y:.0})\">", color(name));
@@ -173,6 +192,20 @@ fn write_times(svg: &mut String, total_s: f64, scale: f64, height: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn limits_have_their_part_of_the_time_and_the_line_where_they_bind_longest() {
+        let mut along = BindingAlong::default();
+        for (line, bound_s) in [(1, [0.5, 0.0, 0.2]), (2, [0.0, 0.0, 0.5]), (3, [0.5, 0.0, 0.3])] {
+            let mut stretch = BindingStretch { duration_s: 1.0, lines: [line; 2], ..BindingStretch::default() };
+            stretch.bound_s[..3].copy_from_slice(&bound_s);
+            along.push(&stretch);
+        }
+        let band = LimitBand { names: ["a", "b", "c"].map(str::to_owned).to_vec(), along };
+        let third = 1.0 / 3.0;
+        assert_eq!(band.shares(), [("a", third, 3), ("c", third, 2)]);
+        assert!(LimitBand { along: BindingAlong::default(), ..band }.shares().is_empty());
+    }
 
     #[test]
     fn neighbours_of_one_colour_are_one_bar_with_its_place() {
