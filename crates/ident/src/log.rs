@@ -241,6 +241,7 @@ fn read_table(
 
 /// The log in a table.
 fn of_table(path: &Path, mut table: LogTable, columns: &Columns) -> Result<Log, LogError> {
+    table.make_visible();
     let mut findings: Vec<LogFinding> =
         table.cut_off_line.map(|line| LogFinding::CutOff { line }).into_iter().collect();
     if let Some(announced) = table.announced_rows.filter(|announced| *announced > table.rows()) {

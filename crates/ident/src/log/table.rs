@@ -1,5 +1,7 @@
 //! The columns of a file, before anything is known of them.
 
+use feedwright_gcode::visible;
+
 use super::LogFormat;
 
 /// Columns of numbers, whatever the file.
@@ -41,6 +43,15 @@ pub(crate) struct LogColumn {
 }
 
 impl LogTable {
+    /// What the file says of its columns goes into messages.
+    pub(super) fn make_visible(&mut self) {
+        let of_columns = self
+            .columns
+            .iter_mut()
+            .flat_map(|column| [&mut column.name, &mut column.unit].into_iter().chain(&mut column.axis));
+        of_columns.chain(&mut self.position_unit).for_each(|text| *text = visible(text).into_owned());
+    }
+
     /// What a column is called in messages: its name, or its number from 0.
     pub(crate) fn label(&self, column: usize) -> String {
         let name = self.columns.get(column).map_or("", |column| column.name.as_str());
