@@ -71,7 +71,7 @@ function cut(rows: Row[], name: string, column: number, look: string): Cut {
   const cutting = new Uint8Array(rows.map((row) => Number(row[6] >= DELAYED)));
   const max_um = Math.max(...error_um.map((um, i) => (cutting[i] ? um : 0))).toFixed(2), figures: Figures = { name, time_s: "", rms_um: "", max_um };
   return {
-    figures, look, error_um, cutting, worst: [],
+    figures, look, error_um, cutting, worst: [], limits: [],
     t_s: new Float32Array(rows.map(([t_s]) => t_s - begin_s)),
     line: new Uint32Array(rows.length),
     foot_mm: new Float32Array(rows.flatMap(([, x, y, z]) => [x, y, z])),

@@ -1,9 +1,9 @@
-const VERSION = "0ab5d4d457c54080", FILES = {
- "./": "sha256-Rd5yeiHvOOo4IDLulx3x0O85FerpShB8gcHspmy8adw=",
+const VERSION = "35f4a5df08bb2b02", FILES = {
+ "./": "sha256-Qs4ATTAQOK96Cxh1kcxTFGVGCjquH4Zw5AoGVUgo5PE=",
  "app.css": "sha256-1M8CTdqQ4GSD7BJH8vqN2bnstEVWNjaRtXiVaFv7EKc=",
- "app.js": "sha256-Hdn3JUHbttzrAeRiMYBEJRwt6A4RtdRz5iBi58Ug270=",
- "engine.js": "sha256-h5YioToWyVEKGHFX9P3UN9PIheYJFDcaZhENbtYoyuQ=",
- "engine.wasm.gz": "sha256-WTvipwGRKftPjWQ2qIQffEaIMuUkyvOXROCPBZH1Wso=",
+ "app.js": "sha256-ntqre/GjDzsE5c5j3/FMOMvOL9Gr13njUEWNjWIgy9g=",
+ "engine.js": "sha256-K8qjmxxT3rXArIlHN9f5AA5f7RjIKvdLrCkkecq5qCM=",
+ "engine.wasm.gz": "sha256-J45RAkxgEWx3amedX7bv4QvIgUSyj9aqy6d1DBVDgJw=",
  "files.json": "sha256-OOC53oF/ZFxL7DfA1KPli67MywQPVxjcBppyxzhaC+0="
 };
 // Keeps the page for visits without its server. FILES has the hash of each file, VERSION that of all: web/app/offline.mjs puts both before

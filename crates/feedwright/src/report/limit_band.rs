@@ -39,10 +39,16 @@ impl LimitBand {
     /// Each limit that binds: its name, its part of the time, and the line of the stretch in which it binds longest. Largest parts first.
     pub fn shares(&self) -> Vec<(&str, f64, u32)> {
         let stretches = self.along.stretches();
-        let mut shares: Vec<_> = self.names.iter().enumerate().map(|(limit, name)| {
-            let longest = stretches.iter().max_by(|a, b| a.bound_s[limit].total_cmp(&b.bound_s[limit]));
-            (name.as_str(), share(stretches, limit), longest.map_or(0, |stretch| stretch.lines[0]))
-        }).filter(|(_, share, _)| *share > 0.0).collect();
+        let mut shares: Vec<_> = self
+            .names
+            .iter()
+            .enumerate()
+            .map(|(limit, name)| {
+                let longest = stretches.iter().max_by(|a, b| a.bound_s[limit].total_cmp(&b.bound_s[limit]));
+                (name.as_str(), share(stretches, limit), longest.map_or(0, |stretch| stretch.lines[0]))
+            })
+            .filter(|(_, share, _)| *share > 0.0)
+            .collect();
         shares.sort_by(|a, b| b.1.total_cmp(&a.1));
         shares
     }
