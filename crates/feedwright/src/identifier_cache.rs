@@ -2,12 +2,14 @@
 //! anew each time, which takes a fraction of the training, so that no change of machine, plant or planner finds old weights.
 //! Identified axes are found by the program that identified them alone.
 //!
-//! What cannot be read, is damaged or does not hold an identifier is trained anew. Without the feature `files` nothing is kept.
+//! What cannot be read, is damaged or does not hold an identifier is trained anew. Without the feature `files` nothing is kept but what
+//! logs of machines tell, by [`keep_in`].
 
 #[cfg(feature = "files")]
 pub(crate) mod files;
 #[cfg(not(feature = "files"))]
 mod no_files;
+mod kept_texts;
 
 use feedwright_control::{ContourIdentifier, HIDDEN, INPUTS, IdentifiedAxes};
 use feedwright_ident::{
@@ -18,6 +20,7 @@ use feedwright_sim::{Known, Machine};
 use serde::{Deserialize, Serialize};
 
 use crate::checked_json::{checked, with_check};
+pub use kept_texts::{KeptTexts, keep_in};
 #[cfg(not(feature = "files"))]
 use no_files as files;
 
@@ -97,19 +100,19 @@ pub(crate) fn identified_axes<const N: usize>(
 
 /// What this program kept of a content; `None` where it kept nothing, or that is damaged.
 pub(crate) fn kept_text(content: &str) -> Option<String> {
-    checked(&files::read(&name_of(content)?)?)
+    checked(&kept_texts::read(&name_of(content)?)?)
 }
 
 /// Keeps a JSON object by the content that it follows from.
 pub(crate) fn keep_text(content: &str, object: &str) {
     if let Some(name) = name_of(content) {
-        files::write(&name, &with_check(object));
+        kept_texts::write(&name, &with_check(object));
     }
 }
 
 /// The name of a file of this program, where there is a cache.
 fn name_of(content: &str) -> Option<String> {
-    let program = files::program()?;
+    let program = kept_texts::program()?;
     Some(format!("{}.json", key_of(&[program.as_bytes(), content.as_bytes()])))
 }
 

@@ -140,7 +140,7 @@ pub use cycle_time::{CycleTime, CycleTimeOptions, LineTime, cycle_time, cycle_ti
 pub use fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within};
 #[cfg(feature = "files")]
 pub use identifier_cache::files::folder as cache_folder;
-pub use identifier_cache::{identified, key_of, trained};
+pub use identifier_cache::{KeptTexts, identified, keep_in, key_of, trained};
 pub use job::{CheckedJob, Job, JobError, JobOutcome, MEASURED};
 #[cfg(feature = "files")]
 pub use linuxcnc_setup::{HALLIB, LinuxcncSetup, LinuxcncSetupError, LinuxcncWiring};

@@ -9,7 +9,7 @@ export interface Listener {
 
 interface Waiting { resolve(answer: unknown): void; reject(error: Error): void; listener: Listener }
 
-let compiled: Promise<WebAssembly.Module> | undefined;
+let compiled: Promise<WebAssembly.Module> | undefined, digest = "";
 
 /** Fetches and compiles the engine, once. */
 export function engineModule(): Promise<WebAssembly.Module> {
@@ -21,6 +21,8 @@ export function engineModule(): Promise<WebAssembly.Module> {
 async function fetchAndCompile(name: string): Promise<WebAssembly.Module> {
   const response = await fetch(name);
   if (!response.ok || !response.body) throw new Error(`${name} is missing: ${response.status}`);
+  // Only pages from this computer or by https have it.
+  const hash = crypto.subtle && response.clone().arrayBuffer().then((all) => crypto.subtle.digest("SHA-256", all));
   const reader = response.body.getReader(), first = await reader.read();
   const bytes = new ReadableStream<BufferSource>({
     start: (into) => first.value ? into.enqueue(first.value) : into.close(),
@@ -33,7 +35,9 @@ async function fetchAndCompile(name: string): Promise<WebAssembly.Module> {
   // Some servers unpack what was packed with gzip themselves.
   const isPacked = first.value?.[0] === 0x1f && first.value[1] === 0x8b;
   const module = isPacked ? bytes.pipeThrough(new DecompressionStream("gzip")) : bytes;
-  return WebAssembly.compileStreaming(new Response(module, { headers: { "Content-Type": "application/wasm" } }));
+  const engine = await WebAssembly.compileStreaming(new Response(module, { headers: { "Content-Type": "application/wasm" } }));
+  if (hash) digest = [...new Uint8Array(await hash)].map((byte) => byte.toString(16)).join("-");
+  return engine;
 }
 
 export class Cancelled extends Error {}
@@ -49,7 +53,7 @@ export class Engine {
     const worker = (this.#worker ??= this.#start()), id = ++this.#last;
     return new Promise((resolve, reject) => {
       this.#waiting.set(id, { resolve: resolve as (answer: unknown) => void, reject, listener });
-      worker.postMessage({ id, module, request } satisfies ToWorker);
+      worker.postMessage({ id, module, engine: digest, request } satisfies ToWorker);
     });
   }
 

@@ -94,4 +94,5 @@ export type FromWorker =
   | { id: number; kind: "done"; answer: Answers[keyof Answers] }
   | { id: number; kind: "failed"; reason: string };
 
-export interface ToWorker { id: number; module: WebAssembly.Module; request: EngineRequest }
+/** `engine` tells builds of the engine apart; empty where it is not known. */
+export interface ToWorker { id: number; module: WebAssembly.Module; engine: string; request: EngineRequest }

@@ -12,12 +12,48 @@ interface Exports {
   length(output: number): number;
 }
 
+/** Models that logs told, by the names that the engine gives them: for later requests, and for later visits where there is room. */
+interface Models { texts: Map<string, string>; store?: Cache }
+
+/** Beginning of the name of a store; the hash of the engine is behind it. */
+const MODELS = "feedwright models ";
+let models: Promise<Models> | undefined;
+
+async function keptModels(engine: string): Promise<Models> {
+  const kept: Models = { texts: new Map() };
+  try {
+    const name = MODELS + engine;
+    if (engine) kept.store = await caches.open(name);
+    // Another engine may come to other models.
+    for (const other of await caches.keys()) if (other.startsWith(MODELS) && other !== name) await caches.delete(other);
+    for (const key of await kept.store?.keys() ?? []) {
+      kept.texts.set(key.url.split("/").pop()!, await (await kept.store!.match(key))!.text());
+    }
+  } catch {
+    // A browser that keeps nothing.
+  }
+  return kept;
+}
+
+/** About 0.2 MB each. */
+const MOST_MODELS = 50;
+
+function keep({ texts, store }: Models, name: string, text: string): void {
+  texts.set(name, text);
+  const given_up = texts.size > MOST_MODELS ? [...texts.keys()][0] : undefined;
+  if (given_up) texts.delete(given_up);
+  const written = store?.put(`kept/${name}`, new Response(text)).then(() => given_up ? store.delete(`kept/${given_up}`) : true);
+  // Where there is no room they are kept as long as the worker lives.
+  written?.catch(() => undefined);
+}
+
 const post = (message: FromWorker, transfer: Transferable[] = []) => self.postMessage(message, { transfer });
 
-self.onmessage = async ({ data: { id, module, request } }: MessageEvent<ToWorker>) => {
+self.onmessage = async ({ data: { id, module, engine, request } }: MessageEvent<ToWorker>) => {
   try {
     // The memory of an instance only grows: each request has its own.
-    let exports: Exports;
+    let exports: Exports, found = new Uint8Array();
+    const kept = await (models ??= keptModels(engine));
     const bytes = (at: number, length: number) => new Uint8Array(exports.memory.buffer, at, length);
     const text = (at: number, length: number) => new TextDecoder().decode(bytes(at, length));
     const page = {
@@ -27,6 +63,13 @@ self.onmessage = async ({ data: { id, module, request } }: MessageEvent<ToWorker
         const points = new Float32Array(exports.memory.buffer, at, 4 * count).slice();
         post({ id, kind: "points", points }, [points.buffer]);
       },
+      find: (at: number, length: number) => {
+        const of = kept.texts.get(text(at, length));
+        found = new TextEncoder().encode(of);
+        return of === undefined ? -1 : found.length;
+      },
+      take: (at: number) => bytes(at, found.length).set(found),
+      keep: (name: number, nameLength: number, at: number, length: number) => keep(kept, text(name, nameLength), text(at, length)),
     };
     exports = (await WebAssembly.instantiate(module, { page })).exports as unknown as Exports;
     const { program = "", ...asked } = request;

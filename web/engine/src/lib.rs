@@ -17,7 +17,7 @@
 //! | `identify` | numbers of the axes, as JSON | the machine file | the page of the identification | | |
 //! | `lists` | machines, controllers and controls, as JSON | | | | |
 //!
-//! The module imports two functions of the page, `page.progress` and `page.cut`: see `page`. It has
+//! The module imports functions of the page, such as `page.progress` and `page.cut`: see `page`. It has
 //! no files, no clock and no threads.
 
 mod page;
@@ -96,6 +96,7 @@ pub extern "C" fn length(output: usize) -> usize {
 fn answer(input: &[u8], program: Vec<u8>) -> miette::Result<Outputs> {
     let mut request: Request = serde_json::from_slice(input).map_err(|error| miette::miette!("{error}"))?;
     request.program = program;
+    feedwright::keep_in(&page::PageTexts);
     match request.task {
         Task::Run => cut::run(&mut request),
         Task::Check => check::check(&mut request),

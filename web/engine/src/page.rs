@@ -1,8 +1,9 @@
-//! What the page is told while a request is answered, through two functions that the module imports.
+//! What the page is told while a request is answered, and what it keeps for the next one, through functions that the module imports.
 
 use std::io;
 use std::sync::{Mutex, PoisonError};
 
+use feedwright::KeptTexts;
 use feedwright::sim::{Row, Sink, Watch};
 
 #[cfg(target_arch = "wasm32")]
@@ -14,6 +15,12 @@ mod imports {
         pub(super) safe fn progress(stage: usize, bytes: usize, thousandths: u32);
         /// So many points were cut: x, y, z in mm and the contour error in um, as 32-bit floats.
         pub(super) safe fn cut(points: usize, count: usize);
+        /// Looks for a text with this name. Its bytes, or a number below 0 where there is none.
+        pub(super) safe fn find(name: usize, bytes: usize) -> i32;
+        /// Writes the text that was found.
+        pub(super) safe fn take(into: usize);
+        /// Keeps a text with this name.
+        pub(super) safe fn keep(name: usize, name_bytes: usize, text: usize, bytes: usize);
     }
 }
 
@@ -21,6 +28,11 @@ mod imports {
 mod imports {
     pub(super) fn progress(_stage: usize, _bytes: usize, _thousandths: u32) {}
     pub(super) fn cut(_points: usize, _count: usize) {}
+    pub(super) fn find(_name: usize, _bytes: usize) -> i32 {
+        -1
+    }
+    pub(super) fn take(_into: usize) {}
+    pub(super) fn keep(_name: usize, _name_bytes: usize, _text: usize, _bytes: usize) {}
 }
 
 /// Thousandths of a stage between two reports of its progress.
@@ -53,6 +65,21 @@ impl Watch for PageWatch {
             now.told = thousandths;
             imports::progress(now.name.as_ptr() as usize, now.name.len(), thousandths as u32);
         }
+    }
+}
+
+/// The models that the page keeps for later requests.
+pub(crate) struct PageTexts;
+
+impl KeptTexts for PageTexts {
+    fn read(&self, name: &str) -> Option<String> {
+        let mut text = vec![0; usize::try_from(imports::find(name.as_ptr() as usize, name.len())).ok()?];
+        imports::take(text.as_mut_ptr() as usize);
+        String::from_utf8(text).ok()
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        imports::keep(name.as_ptr() as usize, name.len(), text.as_ptr() as usize, text.len());
     }
 }
 

@@ -1,9 +1,9 @@
-const VERSION = "35f4a5df08bb2b02", FILES = {
+const VERSION = "0cb60b67160af706", FILES = {
  "./": "sha256-Qs4ATTAQOK96Cxh1kcxTFGVGCjquH4Zw5AoGVUgo5PE=",
  "app.css": "sha256-1M8CTdqQ4GSD7BJH8vqN2bnstEVWNjaRtXiVaFv7EKc=",
- "app.js": "sha256-ntqre/GjDzsE5c5j3/FMOMvOL9Gr13njUEWNjWIgy9g=",
- "engine.js": "sha256-K8qjmxxT3rXArIlHN9f5AA5f7RjIKvdLrCkkecq5qCM=",
- "engine.wasm.gz": "sha256-J45RAkxgEWx3amedX7bv4QvIgUSyj9aqy6d1DBVDgJw=",
+ "app.js": "sha256-1NfqXirwDIi9L90mFt1OEzJPeWvG0lEQaCI2VqDX4Iw=",
+ "engine.js": "sha256-2aC9DkFfRCPTBX11G0SQrK38iVMPSIQMMfpDRD53VJI=",
+ "engine.wasm.gz": "sha256-CLHo65mIe6ndxhVwrM17BWg2DYknvAuJFxM8bVJSIqU=",
  "files.json": "sha256-OOC53oF/ZFxL7DfA1KPli67MywQPVxjcBppyxzhaC+0="
 };
 // Keeps the page for visits without its server. FILES has the hash of each file, VERSION that of all: web/app/offline.mjs puts both before
