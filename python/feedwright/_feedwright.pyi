@@ -101,3 +101,77 @@ def plan(
 def identify(
     logs: Sequence[str | PathLike[str]], columns: str | None, name: str, progress: _Told
 ) -> tuple[dict[str, Any], Machine, IdentifiedMachine]: ...
+
+class Measurement:
+    """What is measured at the start of a feed period. Arrays have a number for each axis and are read-only."""
+
+    @property
+    def position_mm(self) -> Any:
+        """Where the tool is, mm."""
+    @property
+    def contour_error_mm(self) -> Any:
+        """From the tool to the nearest point of the path, mm."""
+    @property
+    def tangent(self) -> Any:
+        """Direction of travel at that point."""
+    @property
+    def behind(self) -> int:
+        """How many servo periods that point is behind the current one."""
+
+class Window:
+    """What a controller sees at the start of a feed period.
+
+    The rows of `path_mm`, `tangent`, `feed_mm_s` and `cutting` are the path now and in the next feed periods at the planned
+    feed. Arrays are copies, and read-only.
+    """
+
+    @property
+    def plan_s(self) -> float:
+        """Time in the feed plan, s."""
+    @property
+    def servo_s(self) -> float:
+        """Servo period, s."""
+    @property
+    def feed_period_s(self) -> float:
+        """Feed period, s."""
+    @property
+    def path_mm(self) -> Any:
+        """The programmed path, mm; a column for each axis."""
+    @property
+    def tangent(self) -> Any:
+        """Its direction of travel; a column for each axis."""
+    @property
+    def feed_mm_s(self) -> Any:
+        """Its planned feedrate, mm/s."""
+    @property
+    def cutting(self) -> Any:
+        """Whether it cuts."""
+    @property
+    def offset_mm(self) -> Any:
+        """Offset of the command from the path now, mm."""
+    @property
+    def offset_mm_s(self) -> Any:
+        """Speed of that offset, mm/s."""
+    @property
+    def axes(self) -> tuple[Mapping[str, float], ...]:
+        """What is known of each axis: gains, inertia, friction, delays."""
+    @property
+    def measured(self) -> Measurement | None:
+        """What is measured; none where the position was lost."""
+
+class Episode:
+    """A run that waits for its actions."""
+
+    def __init__(
+        self, program: Program, machine: Machine, servo_periods: int, preview: int, options: dict[str, Any]
+    ) -> None: ...
+    @property
+    def axes(self) -> int: ...
+    def advance(
+        self, action: tuple[float, Sequence[float]] | None = None
+    ) -> tuple[Window | None, tuple[int, float, float], dict[str, Any] | None]: ...
+    def close(self) -> None: ...
+
+def run_with(
+    program: Program, machine: Machine, controller: object, options: dict[str, Any], progress: _Told
+) -> tuple[dict[str, Any], dict[str, Any] | None, CutOutcome]: ...

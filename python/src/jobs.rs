@@ -86,7 +86,7 @@ fn written(py: Python<'_>, write: impl FnOnce(&mut Vec<u8>) -> io::Result<()> + 
 /// A cut without a correction and one with a controller.
 #[pyclass(frozen, module = "feedwright")]
 pub(crate) struct CutOutcome {
-    outcome: JobOutcome,
+    pub(crate) outcome: JobOutcome,
 }
 
 #[pymethods]
@@ -98,7 +98,7 @@ impl CutOutcome {
 }
 
 /// Results, rows and outcome.
-type Ran<'py> = (Bound<'py, PyAny>, Option<Bound<'py, PyDict>>, CutOutcome);
+pub(crate) type Ran<'py> = (Bound<'py, PyAny>, Option<Bound<'py, PyDict>>, CutOutcome);
 
 /// Cuts a program without a correction and with a controller, in a simulation.
 #[pyfunction]

@@ -7,6 +7,7 @@
 //! | `files.rs` | programs and machines |
 //! | `columns.rs` | rows of a cut as arrays |
 //! | `jobs.rs` | run, correct, advise, plan, identify |
+//! | `lab.rs` | controllers and terms of the plant in Python |
 //!
 //! Figures leave as JSON, as the command writes them; rows leave as arrays of numpy that own their memory, so that
 //! nothing is copied.
@@ -16,6 +17,7 @@ mod watched;
 mod files;
 mod columns;
 mod jobs;
+mod lab;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -33,6 +35,8 @@ mod _feedwright {
     use super::files::{MotionOfProgram, MotionsOfProgram, PythonMachine, PythonProgram, check, lists};
     #[pymodule_export]
     use super::jobs::{advise, correct, identify, plan, run};
+    #[pymodule_export]
+    use super::lab::{Measurement, PythonWindow, episode::Episode, run_with};
     #[pymodule_export]
     use super::main;
 

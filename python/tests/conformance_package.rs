@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What the tests of the package import.
-const NEEDED: [&str; 3] = ["matplotlib==3.11.2", "numpy==2.4.6", "pyarrow==26.0.1"];
+const NEEDED: [&str; 4] = ["gymnasium==1.4.0", "matplotlib==3.11.2", "numpy==2.4.6", "pyarrow==26.0.1"];
 
 fn root() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
@@ -16,7 +16,7 @@ fn interpreter(target: &Path) -> Option<PathBuf> {
     let folder = target.join("python-tests");
     let python = folder.join("bin/python");
     let has = |code: &str| Command::new(&python).args(["-c", code]).output().is_ok_and(|ran| ran.status.success());
-    if has("import matplotlib, numpy, pyarrow") {
+    if has("import gymnasium, matplotlib, numpy, pyarrow") {
         return Some(python);
     }
     let run = |program: &Path, arguments: &[&str]| {
@@ -51,7 +51,8 @@ fn the_package_does_what_its_examples_and_tests_say() {
     }
     std::fs::copy(&built, package.join("_feedwright.abi3.so")).unwrap();
     let ran = Command::new(python)
-        .arg(root().join("python/tests/test_package.py"))
+        .args(["-m", "unittest", "discover", "--start-directory"])
+        .arg(root().join("python/tests"))
         .env("PYTHONPATH", place.path())
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .env("FEEDWRIGHT_DOCS", root().join("docs"))

@@ -5,6 +5,7 @@
 //!
 //! | File | What |
 //! |---|---|
+//! | `job/guests.rs` | what takes part in a run and was made elsewhere |
 //! | `job/assumed.rs` | what it assumes of its machine |
 //! | `job/values.rs` | which values it takes |
 //! | `job/record.rs` | what it keeps of the rows of a run |
@@ -15,6 +16,7 @@
 //! | `job/results.rs` | its figures as JSON |
 //! | `job/stored.rs` | how it is serialised |
 
+mod guests;
 mod assumed;
 mod values;
 mod record;
@@ -48,6 +50,8 @@ use crate::job_error::axes_that_move;
 use crate::measured::{MeasuredLog, MeasuredRun, measured};
 use crate::report::harm::Harm;
 use crate::report::{CompensatedGeometry, FullCircle, Report, ReportedRun, full_circles};
+pub use guests::Guests;
+use guests::SharedPlantMaker;
 use record::{RunRecord, Timeline};
 
 /// A program, a machine, two controllers, and what is wanted of the cuts.
@@ -243,9 +247,22 @@ impl CheckedJob<'_> {
     /// # Errors
     /// A cut that does not come to its end, a sink that takes no more, or an end from outside.
     pub fn run(&self, rows: &mut [&mut dyn Sink], watch: &dyn Watch) -> Result<JobOutcome, JobError> {
+        self.run_with(Guests::default(), rows, watch)
+    }
+
+    /// As [`CheckedJob::run`], with what was made elsewhere.
+    ///
+    /// # Errors
+    /// See there.
+    pub fn run_with(
+        &self,
+        guests: Guests<'_>,
+        rows: &mut [&mut dyn Sink],
+        watch: &dyn Watch,
+    ) -> Result<JobOutcome, JobError> {
         match self.axes {
-            2 => self.job.cut::<2>(&self.summary, rows, watch),
-            _ => self.job.cut::<3>(&self.summary, rows, watch),
+            2 => self.job.cut::<2>(&self.summary, (guests.plane, guests.plant), rows, watch),
+            _ => self.job.cut::<3>(&self.summary, (guests.space, guests.plant), rows, watch),
         }
     }
 }
@@ -254,6 +271,7 @@ impl Job {
     fn cut<const N: usize>(
         &self,
         summary: &Summary,
+        (guest, plant): (Option<&dyn Make<N>>, Option<SharedPlantMaker<'_>>),
         rows: &mut [&mut dyn Sink],
         watch: &dyn Watch,
     ) -> Result<JobOutcome, JobError>
@@ -272,6 +290,7 @@ impl Job {
         let plan = PlannedCut {
             kept: &kept,
             machine,
+            plant,
             path_um: planned.and_then(|machine| machine.limits.path_tolerance_um),
             caps: fastest.as_ref().map(|plan| &plan.caps),
             aligned: aligned.as_ref(),
@@ -279,7 +298,7 @@ impl Job {
             looked_at: looked_at.as_ref().map(|cycle| cycle as &dyn PlanSink),
         };
         let Cuts { mut runs, without_identification, learned, geometry } =
-            self.cut_with_each::<N>(summary, plan, rows, watch)?;
+            self.cut_with_each::<N>(summary, guest, plan, rows, watch)?;
         let band = runs.last().map_or(Ok(None), |run| self.band::<N>(plan, &run.summary, watch))?;
         let completed = runs.last().is_some_and(|run| run.summary.outcome == Outcome::Completed);
         let cycle = looked_at.filter(|_| completed).map(CycleTimeOfCut::finish);
@@ -393,6 +412,7 @@ impl Job {
     fn cut_with_each<const N: usize>(
         &self,
         summary: &Summary,
+        guest: Option<&dyn Make<N>>,
         plan: PlannedCut<'_>,
         rows: &mut [&mut dyn Sink],
         watch: &dyn Watch,
@@ -408,9 +428,10 @@ impl Job {
             let mut steps = (entry.identifier.is_some() && model.is_none()).then(|| identifying(&self.machine, watch));
             let mut progress = |part: f64| steps.iter_mut().for_each(|steps| steps.reach(part));
             let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
-            let mut controller = match model {
-                Some(model) => entry.make_with::<N>(setup, model)?,
-                None => {
+            let mut controller = match (guest.filter(|_| judged), model) {
+                (Some(guest), _) => guest.make(&mut setup),
+                (None, Some(model)) => entry.make_with::<N>(setup, model)?,
+                (None, None) => {
                     let controller = Make::<N>::make(entry, &mut setup);
                     cuts.without_identification.extend(setup.remark(entry));
                     controller
@@ -466,7 +487,7 @@ impl Job {
     /// Cuts the program on the machine of a plan.
     fn cut_planned<const N: usize>(
         &self,
-        PlannedCut { machine, path_um, caps, kept, aligned, looked_at, .. }: PlannedCut<'_>,
+        PlannedCut { machine, plant, path_um, caps, kept, aligned, looked_at, .. }: PlannedCut<'_>,
         entry: &Entry,
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
@@ -482,6 +503,7 @@ impl Job {
         let run = self
             .planned_as
             .map_or_else(|| Run::on(machine), |control| Run::on(machine).stages(control.stages(machine)));
+        let run = plant.map_or(run, |plant| run.plant(plant));
         let run = run.capped(caps).laps(entry.laps).sharing(kept).watched(watch).planned_to(looked_at);
         match aligned {
             Some(aligned) => run.cut_aligned(aligned, controller, sinks),
@@ -554,6 +576,8 @@ struct Cuts {
 struct PlannedCut<'a> {
     /// The machine of the job, perhaps with another tolerance of the path.
     machine: &'a Machine,
+    /// What moves in place of its axes.
+    plant: Option<SharedPlantMaker<'a>>,
     /// Tolerance of the path in place of the program's, um.
     path_um: Option<f64>,
     /// Bounds on the speed along the path.

@@ -141,7 +141,7 @@ pub use fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within
 #[cfg(feature = "files")]
 pub use identifier_cache::files::folder as cache_folder;
 pub use identifier_cache::{KeptTexts, identified, keep_in, key_of, trained};
-pub use job::{CheckedJob, Job, JobError, JobOutcome, MEASURED};
+pub use job::{CheckedJob, Guests, Job, JobError, JobOutcome, MEASURED};
 #[cfg(feature = "files")]
 pub use linuxcnc_setup::{HALLIB, LinuxcncSetup, LinuxcncSetupError, LinuxcncWiring};
 pub use log_job::{

@@ -100,6 +100,8 @@ pub struct Plant<const N: usize> {
     disturbance_rad_s: [f64; N],
     /// cos and sin of the angle by which the disturbance turns in one mechanics period.
     disturbance_turn: [[f64; 2]; N],
+    /// Torque beside all that the machine file names, N m at the motor shaft.
+    added_nm: [f64; N],
     /// The motors.
     states: [AxisState; N],
     /// What a rigid axis with an ideal drive and encoder does not have; none where no axis has any of it.
@@ -132,6 +134,7 @@ impl<const N: usize> Plant<N> {
             disturbance_nm: each(|a| a.disturbance_nm),
             disturbance_rad_s,
             disturbance_turn: disturbance_rad_s.map(|w| cos_sin(w * periods.mechanics_s)),
+            added_nm: [0.0; N],
             states,
             nonideal: nonideal.then(|| {
                 Box::new(std::array::from_fn(|i| NonidealAxis::new(machine, i, &laws[i], states[i].angle_rad, seed)))
@@ -146,7 +149,7 @@ impl<const N: usize> Plant<N> {
     pub fn change_to(&mut self, machine: &Machine) {
         let before = std::mem::replace(self, Self::with_seed(machine, self.joint_mm(), self.seed));
         self.period = before.period;
-        self.states = before.states;
+        (self.states, self.added_nm) = (before.states, before.added_nm);
         let Some(nonideal) = &mut self.nonideal else { return };
         for (i, axis) in nonideal.iter_mut().enumerate() {
             axis.take_over(before.nonideal.as_ref().map(|nonideal| &nonideal[i]), &before.states[i]);
@@ -160,6 +163,20 @@ impl<const N: usize> Plant<N> {
             if !pushed {
                 self.states[i].speed_rad_s += impulse_nm_s / self.laws[i].parameters.inertia_kg_m2;
             }
+        }
+    }
+
+    /// Adds a torque from now on, N m at the motor shaft, in place of the one that was added before: a positive one pushes the axis in its
+    /// positive direction. It acts where loads do, on the table where the screw gives.
+    pub fn add_torque(&mut self, added_nm: [f64; N]) {
+        self.added_nm = added_nm;
+    }
+
+    /// How fast the joints move, mm/s.
+    pub fn joint_mm_s(&self) -> [f64; N] {
+        match &self.nonideal {
+            Some(nonideal) => self.in_mm(std::array::from_fn(|i| nonideal[i].table_rad_s())),
+            None => self.in_mm(self.states.map(|state| state.speed_rad_s)),
         }
     }
 
@@ -230,7 +247,8 @@ impl<const N: usize> Plant<N> {
             let sign = friction_signs(&self.laws, self.states.map(|state| state.speed_rad_s));
             for (i, (law, state)) in self.laws.iter().zip(&mut self.states).enumerate() {
                 torque_nm[i] = law.torque_nm(reference_rad_s[i], state.speed_rad_s);
-                let load = law.friction_nm(state.speed_rad_s, sign[i]) + self.disturbance_nm[i] * disturbance[i][1];
+                let outer_nm = self.disturbance_nm[i] * disturbance[i][1] - self.added_nm[i];
+                let load = law.friction_nm(state.speed_rad_s, sign[i]) + outer_nm;
                 law.accelerate(torque_nm[i] - load, state);
                 disturbance[i] = turned(disturbance[i], self.disturbance_turn[i]);
             }
@@ -256,7 +274,7 @@ impl<const N: usize> Plant<N> {
         for substep in 0..self.periods.mechanics_per_servo {
             let moment = Moment { substep, counter: counter + u64::from(substep) };
             for (i, axis) in nonideal.iter_mut().enumerate() {
-                let load_nm = self.disturbance_nm[i] * disturbance[i][1];
+                let load_nm = self.disturbance_nm[i] * disturbance[i][1] - self.added_nm[i];
                 torque_nm[i] = axis.advance(&self.laws[i], &mut self.states[i], moment, load_nm);
                 disturbance[i] = turned(disturbance[i], disturbance_turn[i]);
             }

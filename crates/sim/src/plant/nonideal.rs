@@ -138,6 +138,11 @@ impl NonidealAxis {
         self.masses.table.angle_rad
     }
 
+    /// Speed of the table, rad/s at the motor shaft.
+    pub(super) fn table_rad_s(&self) -> f64 {
+        self.masses.table.speed_rad_s
+    }
+
     /// What the encoder shows.
     #[inline]
     fn shown_rad(&self, motor: &AxisState, counter: u64) -> f64 {

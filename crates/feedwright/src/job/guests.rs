@@ -1,0 +1,21 @@
+//! What takes part in a run and was made elsewhere.
+
+use feedwright_sim::Mechanism;
+
+use crate::controllers::Make;
+
+/// A [`feedwright_sim::PlantMaker`] for cuts on several threads.
+pub(super) type SharedPlantMaker<'a> = &'a (dyn Fn([f64; 3], u64) -> Box<dyn Mechanism> + Sync);
+
+/// What takes part in the cuts of a job in place of its own parts. None of it leaves the part of the job.
+///
+/// The search for a plan that holds a tolerance, and the band of other machines, take the job's own controller.
+#[derive(Clone, Copy, Default)]
+pub struct Guests<'a> {
+    /// Makes the controller that is asked for where two axes are controlled.
+    pub plane: Option<&'a dyn Make<2>>,
+    /// The same where three axes are.
+    pub space: Option<&'a dyn Make<3>>,
+    /// Makes the plant of every cut.
+    pub plant: Option<SharedPlantMaker<'a>>,
+}

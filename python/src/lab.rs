@@ -1,0 +1,100 @@
+//! The gym: controllers and terms of the plant in Python take part in a run.
+//!
+//! | File | What |
+//! |---|---|
+//! | `lab/seen.rs` | what a controller sees, as copies |
+//! | `lab/raised.rs` | what code of the caller raised ends the run |
+//! | `lab/guest.rs` | a controller and a term of the plant that are objects of Python |
+//! | `lab/task.rs` | what is cut, and what is known of the machine |
+//! | `lab/episode.rs` | a run that waits for its actions |
+
+mod seen;
+mod raised;
+mod guest;
+mod task;
+pub(crate) mod episode;
+
+use feedwright::Guests;
+use feedwright::sim::{Sink, Watch};
+use miette::{Result, miette};
+use pyo3::prelude::*;
+
+pub(crate) use seen::{Measurement, PythonWindow};
+
+use crate::columns::RowColumns;
+use crate::fault::from_json;
+use crate::files::{PythonMachine, PythonProgram};
+use crate::jobs::{CutOutcome, Ran};
+use crate::watched::watched;
+use guest::{PlantTerm, PythonController};
+use raised::{Guarded, Raised};
+use task::{LabOptions, Task, told};
+
+/// A cut with a controller of Python.
+struct GuestRun<'a> {
+    task: &'a Task,
+    /// None where it is one of the library.
+    controller: Option<&'a Py<PyAny>>,
+    term: Option<PlantTerm>,
+    rows: bool,
+    raised: Raised,
+}
+
+impl GuestRun<'_> {
+    fn cut(&self, watch: &dyn Watch) -> Result<(String, Option<RowColumns>, CutOutcome)> {
+        let watch = Guarded { watch, raised: self.raised.clone() };
+        watch.begin("reading the program", 1);
+        let job = &self.task.job;
+        let checked = job.check()?;
+        let axes = checked.axes();
+        let known = self.task.known(axes)?;
+        let made = |controller: &Py<PyAny>| {
+            let made = self.raised.call(|py| {
+                let told = told(py, &known, axes)?;
+                PythonController::new(controller.bind(py), &told, known.period.servo_s, self.raised.clone())
+            });
+            made.ok_or_else(|| miette!("the controller could not be made"))
+        };
+        let (controller, informed) = (self.controller.map(made).transpose()?, self.task.informed(&known));
+        let plant = self.term.as_ref().map(|term| {
+            move |start_mm: [f64; 3], seed: u64| term.plant(&job.machine, axes, start_mm, seed)
+        });
+        let plant = plant.as_ref().map(|plant| plant as _);
+        let guests = match &controller {
+            Some(controller) => Guests { plane: Some(controller), space: Some(controller), plant },
+            None => Guests { plane: Some(&informed), space: Some(&informed), plant },
+        };
+        let (mut columns, mut end) = (RowColumns::new(axes), self.raised.clone());
+        let mut sinks: Vec<&mut dyn Sink> = vec![&mut end];
+        if self.rows {
+            sinks.push(&mut columns);
+        }
+        let outcome = checked.run_with(guests, &mut sinks, &watch)?;
+        Ok((self.task.results(&outcome)?, self.rows.then_some(columns), CutOutcome { outcome }))
+    }
+}
+
+/// Cuts a program without a correction and with a controller of Python, in a simulation.
+#[pyfunction]
+pub(crate) fn run_with<'py>(
+    py: Python<'py>,
+    program: &PythonProgram,
+    machine: &PythonMachine,
+    controller: Py<PyAny>,
+    options: LabOptions,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Ran<'py>> {
+    let task = Task::new(program, machine, &options).map_err(|error| crate::fault::exception(&error))?;
+    let raised = Raised::default();
+    let (term, rows) = (options.plant_term(py, &raised), options.rows);
+    let controller = (!options.of_library).then_some(&controller);
+    let run = GuestRun { task: &task, controller, term, rows, raised: raised.clone() };
+    // The thread keeps its state of the interpreter from call to call.
+    let done = watched(py, progress.as_ref(), |watch| Python::attach(|py| py.detach(|| run.cut(watch))));
+    if let Some(error) = raised.take() {
+        return Err(error);
+    }
+    let (results, columns, outcome) = done?;
+    let columns = columns.map(|columns| columns.into_arrays(py)).transpose()?;
+    Ok((from_json(py, &results)?, columns, outcome))
+}

@@ -1,0 +1,255 @@
+//! A run that waits for its actions: on a thread of its own, which does not touch the interpreter while it waits.
+//!
+//! ```text
+//! caller --- action ---> run          channel; its end ends the run
+//! caller <-- window ---- run          channel; behind the last one stand the figures
+//! ```
+
+use std::cell::{Cell, RefCell};
+use std::io;
+use std::rc::Rc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use feedwright::control::{Command, Controller, Measured, Schedule, Window};
+use feedwright::sim::{Known, Row, Sink, Watch};
+use feedwright::{Guests, Make, Setup};
+use miette::{Report, miette};
+use pyo3::prelude::*;
+
+use super::guest::{numbers, schedule};
+use super::raised::{Guarded, Raised};
+use super::seen::{PythonWindow, Seen, of_three};
+use super::task::{LabOptions, Task};
+use crate::fault::{exception, from_json};
+use crate::files::{PythonMachine, PythonProgram};
+
+/// How often signals are looked for.
+const EVERY: Duration = Duration::from_millis(40);
+
+/// The contour error since the last decision.
+#[derive(Clone, Copy, Default)]
+struct Errors {
+    rows: u32,
+    sum_um2: f64,
+    max_um: f64,
+}
+
+/// What the run tells.
+enum Told {
+    /// What is known, before the first window.
+    Known(Box<Known>, usize),
+    Window(Seen, Errors),
+    End(Result<String, Report>, Errors),
+}
+
+/// Adds up the errors of the rows that cut.
+struct ErrorSink(Rc<Cell<Errors>>);
+
+impl Sink for ErrorSink {
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        if row.cutting {
+            let Errors { rows, sum_um2, max_um } = self.0.get();
+            let error_um = 1e3 * row.contour_error_mm.abs();
+            self.0.set(Errors { rows: rows + 1, sum_um2: sum_um2 + error_um * error_um, max_um: max_um.max(error_um) });
+        }
+        Ok(())
+    }
+}
+
+/// A multiple of the planned feedrate, and the offset, mm.
+type Action = (f64, [f64; 3]);
+
+/// Shows windows and does what the actions say.
+struct Waiting {
+    schedule: Schedule,
+    shown: Sender<Told>,
+    actions: Receiver<Action>,
+    errors: Rc<Cell<Errors>>,
+    raised: Raised,
+}
+
+impl<const N: usize> Controller<N> for Waiting {
+    fn schedule(&self) -> Schedule {
+        self.schedule
+    }
+
+    fn reset(&mut self) {}
+
+    fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
+        if self.raised.is_over() {
+            return Command::AS_PLANNED;
+        }
+        let seen = Seen::of(window, Some(measured), self.schedule.preview);
+        let sent = self.shown.send(Told::Window(seen, self.errors.take())).is_ok();
+        match self.actions.recv() {
+            Ok((rate, offset_mm)) if sent => Command::straight(rate, of_three(offset_mm)),
+            _ => {
+                self.raised.end();
+                Command::AS_PLANNED
+            }
+        }
+    }
+}
+
+/// Hands the controller over: there is one cut.
+struct Once(RefCell<Option<Waiting>>);
+
+impl<const N: usize> Make<N> for Once {
+    fn make(&self, _: &mut Setup<'_>) -> Box<dyn Controller<N>> {
+        match self.0.take() {
+            Some(waiting) => Box::new(waiting),
+            None => Box::new(feedwright::control::Uncorrected),
+        }
+    }
+}
+
+/// The run on its thread.
+struct Work {
+    task: Task,
+    schedule: Schedule,
+    term: Option<super::guest::PlantTerm>,
+    raised: Raised,
+}
+
+impl Work {
+    fn cut(&self, shown: &Sender<Told>, actions: Receiver<Action>, errors: &Rc<Cell<Errors>>) -> Result<String, Report> {
+        let job = &self.task.job;
+        let watch = Guarded { watch: &(), raised: self.raised.clone() };
+        let checked = job.check()?;
+        let axes = checked.axes();
+        // Where nobody waits any more, the first window ends the run.
+        let _ = shown.send(Told::Known(Box::new(self.task.known(axes)?), axes));
+        let (schedule, raised) = (self.schedule, self.raised.clone());
+        let waiting = Waiting { schedule, shown: shown.clone(), actions, errors: errors.clone(), raised };
+        let once = Once(RefCell::new(Some(waiting)));
+        let plant = self.term.as_ref().map(|term| {
+            move |start_mm: [f64; 3], seed: u64| term.plant(&job.machine, axes, start_mm, seed)
+        });
+        let guests = Guests { plane: Some(&once), space: Some(&once), plant: plant.as_ref().map(|plant| plant as _) };
+        let (mut sink, mut end) = (ErrorSink(errors.clone()), self.raised.clone());
+        watch.check()?;
+        let outcome = checked.run_with(guests, &mut [&mut sink, &mut end], &watch)?;
+        self.task.results(&outcome)
+    }
+}
+
+/// What `advance` returns: the window, then rows, mean square and largest error since the last one, then the figures at the end.
+type Advanced<'py> = (Option<Bound<'py, PythonWindow>>, (u32, f64, f64), Option<Bound<'py, PyAny>>);
+
+/// A run that waits for its actions.
+#[pyclass(module = "feedwright.lab")]
+pub(crate) struct Episode {
+    told: Mutex<Receiver<Told>>,
+    actions: Option<Sender<Action>>,
+    thread: Option<JoinHandle<()>>,
+    raised: Raised,
+    axes: usize,
+    known: Option<Py<pyo3::types::PyTuple>>,
+}
+
+#[pymethods]
+impl Episode {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        program: &PythonProgram,
+        machine: &PythonMachine,
+        servo_periods: u32,
+        preview: u32,
+        options: LabOptions,
+    ) -> PyResult<Self> {
+        let schedule = schedule(servo_periods, preview)?;
+        let task = Task::new(program, machine, &options).map_err(|error| exception(&error))?;
+        let raised = Raised::default();
+        let work = Work { task, schedule, term: options.plant_term(py, &raised), raised: raised.clone() };
+        let (shown, told) = channel();
+        let (actions, asked) = channel();
+        let thread = thread::Builder::new().name("feedwright episode".to_owned()).spawn(move || {
+            let errors = Rc::new(Cell::new(Errors::default()));
+            let end = work.cut(&shown, asked, &errors);
+            // Where nobody waits any more, nobody asks for the figures.
+            let _ = shown.send(Told::End(end, errors.take()));
+        })?;
+        let mut episode = Self {
+            told: Mutex::new(told),
+            actions: Some(actions),
+            thread: Some(thread),
+            raised,
+            axes: 0,
+            known: None,
+        };
+        if let Told::Known(known, axes) = episode.wait(py)? {
+            episode.axes = axes;
+            episode.known = Some(super::task::told(py, &known, axes)?.unbind());
+            return Ok(episode);
+        }
+        Err(exception(&miette!("the program has nothing to cut")))
+    }
+
+    /// Axes that are controlled.
+    #[getter]
+    fn axes(&self) -> usize {
+        self.axes
+    }
+
+    /// Does what an action says, a multiple of the planned feedrate and an offset, until the next decision. Without one it goes to the first.
+    #[pyo3(signature = (action=None))]
+    fn advance<'py>(&mut self, py: Python<'py>, action: Option<(f64, Bound<'py, PyAny>)>) -> PyResult<Advanced<'py>> {
+        let Some(actions) = &self.actions else { return Err(exception(&miette!("the episode is over: reset it"))) };
+        if let Some((rate, offset)) = action {
+            // Where the run has ended, its end is what is told.
+            let _ = actions.send((rate, numbers(&offset, self.axes, "the offset of an action")?));
+        }
+        let mean = |errors: Errors| (errors.rows, errors.sum_um2 / f64::from(errors.rows.max(1)), errors.max_um);
+        match self.wait(py)? {
+            Told::Window(seen, errors) => {
+                let Some(axes) = &self.known else { return Err(exception(&miette!("the episode has not begun"))) };
+                let window = Bound::new(py, PythonWindow { seen, axes: axes.clone_ref(py) })?;
+                Ok((Some(window), mean(errors), None))
+            }
+            Told::End(Ok(results), errors) => {
+                self.close(py);
+                Ok((None, mean(errors), Some(from_json(py, &results)?)))
+            }
+            Told::End(Err(error), _) => Err(exception(&error)),
+            Told::Known(..) => Err(exception(&miette!("the episode begins twice"))),
+        }
+    }
+
+    /// Ends the run and waits for its end.
+    fn close(&mut self, py: Python<'_>) {
+        self.actions = None;
+        self.raised.end();
+        if let Some(thread) = self.thread.take() {
+            // A panic was told already, on its thread.
+            py.detach(|| drop(thread.join()));
+        }
+    }
+}
+
+impl Episode {
+    /// What the run tells next; raises what a signal or the code of the caller raises.
+    fn wait(&self, py: Python<'_>) -> PyResult<Told> {
+        loop {
+            let told = py.detach(|| self.told.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(EVERY));
+            match told {
+                Ok(Told::End(end, errors)) => return self.raised.take().map_or(Ok(Told::End(end, errors)), Err),
+                Ok(told) => return Ok(told),
+                Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(exception(&miette!("the episode is over: reset it")));
+                }
+            }
+        }
+    }
+}
+
+/// Nobody waits for the thread here: it may want the interpreter, which the caller holds.
+impl Drop for Episode {
+    fn drop(&mut self) {
+        self.raised.end();
+    }
+}

@@ -1,0 +1,78 @@
+//! What code of the caller raised in a run: it ends the run, and is what the caller gets.
+
+use std::io;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use feedwright::sim::{Row, Sink, Watch};
+use pyo3::prelude::*;
+
+/// Shared by all that takes part in a run.
+#[derive(Clone, Default)]
+pub(super) struct Raised(Arc<(AtomicBool, Mutex<Option<PyErr>>)>);
+
+impl Raised {
+    /// Ends the run.
+    pub(super) fn end(&self) {
+        self.0.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Ends the run with what was raised; the first counts.
+    pub(super) fn raise(&self, error: PyErr) {
+        self.0.1.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+        self.end();
+    }
+
+    pub(super) fn is_over(&self) -> bool {
+        self.0.0.load(Ordering::Relaxed)
+    }
+
+    /// What was raised, if anything.
+    pub(super) fn take(&self) -> Option<PyErr> {
+        self.0.1.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    /// Calls code of the caller; none where it raised, or the interpreter is gone. Nothing is called any more then.
+    pub(super) fn call<T>(&self, call: impl FnOnce(Python<'_>) -> PyResult<T>) -> Option<T> {
+        if self.is_over() {
+            return None;
+        }
+        let Some(result) = Python::try_attach(call) else {
+            self.end();
+            return None;
+        };
+        result.map_err(|error| self.raise(error)).ok()
+    }
+}
+
+/// Ends a cut in the servo period in which something was raised.
+impl Sink for Raised {
+    fn row(&mut self, _: &Row) -> io::Result<()> {
+        if self.is_over() { Err(io::Error::other("the code of the caller ended the run")) } else { Ok(()) }
+    }
+}
+
+/// Ends all else, too.
+pub(super) struct Guarded<'a> {
+    pub(super) watch: &'a dyn Watch,
+    pub(super) raised: Raised,
+}
+
+impl Watch for Guarded<'_> {
+    fn begin(&self, stage: &str, steps: u64) {
+        self.watch.begin(stage, steps);
+    }
+
+    fn advance(&self, steps: u64) {
+        self.watch.advance(steps);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.raised.is_over() || self.watch.is_cancelled()
+    }
+
+    fn clock(&self) -> Duration {
+        self.watch.clock()
+    }
+}

@@ -1,0 +1,155 @@
+//! What is cut: a job, what is known of its machine, and how it ends.
+
+use std::sync::{Mutex, PoisonError};
+
+use feedwright::command::{find, settings};
+use feedwright::control::{AxisKnowledge, AxisStatistics, Controller};
+use feedwright::sim::{Known, Machine};
+use feedwright::{CONTROLLERS, Choices, Entry, Job, JobOutcome, Knows, Make, Setup, UNCORRECTED};
+use miette::{IntoDiagnostic, Result, miette};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use super::guest::PlantTerm;
+use super::raised::Raised;
+use crate::files::{PythonMachine, PythonProgram};
+
+/// Inertia and friction that are believed where the knowledge is wrong, as parts of the true ones: opposite, so that the two errors of the
+/// torque do not cancel each other where an axis speeds up.
+const BELIEVED: [f64; 2] = [0.8, 1.2];
+
+/// What a run is asked for beside program, machine and controller.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct LabOptions {
+    /// What the controller is called.
+    name: String,
+    /// Whether it is one of the library.
+    pub(super) of_library: bool,
+    settings: Vec<String>,
+    against: Option<String>,
+    knowledge: String,
+    seed: Option<u64>,
+    feed_mm_s: Option<f64>,
+    plant_term: Option<Py<PyAny>>,
+    pub(super) rows: bool,
+}
+
+/// The row of a controller that the caller brings. A name stays for the life of the process, once.
+fn entry(name: &str, knows: Knows) -> &'static Entry {
+    static ENTRIES: Mutex<Vec<&'static Entry>> = Mutex::new(Vec::new());
+    let taken = CONTROLLERS.find(name).is_some();
+    let name = if taken { format!("{name} in Python") } else { name.to_owned() };
+    let mut entries = ENTRIES.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(entry) = entries.iter().find(|entry| entry.name == name && entry.knows == knows) {
+        return entry;
+    }
+    let entry: &'static Entry = Box::leak(Box::new(Entry {
+        name: name.leak(),
+        summary: "a controller in Python",
+        source: "its author",
+        knows,
+        identifier: None,
+        laps: 1,
+        parameters: &[],
+        plane: UNCORRECTED.plane,
+        space: UNCORRECTED.space,
+    }));
+    entries.push(entry);
+    entry
+}
+
+/// Makes a controller of the library from what is known of a machine.
+pub(super) struct Informed {
+    entry: &'static Entry,
+    known: Known,
+}
+
+impl<const N: usize> Make<N> for Informed
+where
+    Entry: Make<N>,
+{
+    fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<N>> {
+        setup.known.clone_from(&self.known);
+        self.entry.make(setup)
+    }
+}
+
+/// Something to cut.
+pub(super) struct Task {
+    pub(super) job: Job,
+    /// With the noise seed of its file.
+    machine: Machine,
+    knowledge: String,
+    seed: u64,
+}
+
+impl Task {
+    pub(super) fn new(program: &PythonProgram, machine: &PythonMachine, options: &LabOptions) -> Result<Self> {
+        let knows = match options.knowledge.as_str() {
+            "exact" | "wrong" => Knows::ExactModel,
+            "identified" => Knows::Identified,
+            other => return Err(miette!("knowledge is '{other}'; there are exact, identified, wrong")),
+        };
+        let noisy = options.seed.map_or_else(|| machine.machine.clone(), |seed| machine.machine.with_noise_seed(seed));
+        let seed = options.seed.unwrap_or(1);
+        let mut job = Job::new(program.program.clone(), noisy);
+        job.machine_file.clone_from(&machine.file);
+        job.controller = if options.of_library { find(&options.name, CONTROLLERS)? } else { entry(&options.name, knows) };
+        job.against = options.against.as_deref().map_or(Ok(job.controller), |name| find(name, CONTROLLERS))?;
+        job.feed_mm_s = options.feed_mm_s;
+        let both = [job.controller, job.against];
+        let set = settings(&options.settings, CONTROLLERS, Some(job.controller), &both)?;
+        job.choices = Choices { seed, set, ..Choices::default() };
+        let recorded = both.into_iter().filter_map(|entry| Some((entry, CONTROLLERS.recorded(&machine.machine, entry)?)));
+        job.choices.take_recorded(recorded.collect::<Vec<_>>().into_iter());
+        job.reader = program.settings.clone();
+        Ok(Self { job, machine: machine.machine.clone(), knowledge: options.knowledge.clone(), seed })
+    }
+
+    /// What is known of the machine where so many axes are controlled.
+    pub(super) fn known(&self, axes: usize) -> Result<Known> {
+        let choices = Choices { seed: self.seed, ..Choices::default() };
+        let mut setup = Setup::new(&self.machine, &choices);
+        match self.knowledge.as_str() {
+            "wrong" => setup.known = setup.known.misjudged(BELIEVED[0], BELIEVED[1]),
+            "identified" if axes == 2 => setup.identify_parameters::<2>().into_diagnostic()?,
+            "identified" => setup.identify_parameters::<3>().into_diagnostic()?,
+            _ => {}
+        }
+        Ok(setup.known)
+    }
+
+    /// The controller of the library that is asked for, with what is known.
+    pub(super) fn informed(&self, known: &Known) -> Informed {
+        Informed { entry: self.job.controller, known: known.clone() }
+    }
+
+    /// The figures of a run.
+    pub(super) fn results(&self, outcome: &JobOutcome) -> Result<String> {
+        let mut results = Vec::new();
+        outcome.write_json(&self.job, &mut results).into_diagnostic()?;
+        String::from_utf8(results).into_diagnostic()
+    }
+}
+
+impl LabOptions {
+    pub(super) fn plant_term(&self, py: Python<'_>, raised: &Raised) -> Option<PlantTerm> {
+        let function = self.plant_term.as_ref()?.clone_ref(py).into();
+        Some(PlantTerm { function, raised: raised.clone() })
+    }
+}
+
+/// What is known of each axis, by name: a mapping that cannot be changed.
+pub(super) fn told<'py>(py: Python<'py>, known: &Known, axes: usize) -> PyResult<Bound<'py, PyTuple>> {
+    let read_only = py.import("types")?.getattr("MappingProxyType")?;
+    let axis = |i: usize| {
+        let mut axis = known.axis(i).with_statistics(known.period.periods(), AxisStatistics::NOTHING);
+        let numbers = PyDict::new(py);
+        for number in AxisKnowledge::NUMBERS {
+            numbers.set_item(number.name, *(number.of)(&mut axis))?;
+        }
+        read_only.call1((numbers,))
+    };
+    PyTuple::new(py, (0..axes).map(axis).collect::<PyResult<Vec<_>>>()?)
+}
