@@ -158,6 +158,17 @@ readme-picture:
     web/page tools
     node web/app/readme-picture.mjs "$folder/star.report.html" docs
 
+# What other controllers come to in the public round of the gym: a file of the package, docs/lab.md.
+gym-peers python="target/python-tests/bin/python":
+    #!/usr/bin/env bash
+    set -euo pipefail
+    cargo build --locked --profile dist -p feedwright-python --features peers --target-dir target/gym-peers
+    mkdir -p target/gym-peers/module
+    cp -r python/feedwright target/gym-peers/module/
+    cp target/gym-peers/dist/libfeedwright_python.so target/gym-peers/module/feedwright/_feedwright.abi3.so
+    PYTHONPATH=target/gym-peers/module {{ python }} python/gym_peers.py > target/gym-peers/_peers.json
+    mv target/gym-peers/_peers.json python/feedwright/_peers.json
+
 # Regenerate the tables and the figures of docs/results.md and of examples/.
 tables: paper compare held-out-table imperfections
     cp target/paper/figure_*.svg target/paper/paper.json examples/01_paper_circle/

@@ -19,13 +19,31 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
 from . import _feedwright
+from ._bench import PUBLIC_SECRET, Benchmark, Round, benchmark, commitment, leaderboard, new_secret, verify
 from ._env import Env, Observe, Reward
 from ._feedwright import Measurement, Window
 from ._jobs import Cut, MachineOrPath, ProgramOrPath, _machine, _program
 from ._progress import Progress, told
 from ._table import Table
 
-__all__ = ["Controller", "Env", "Measurement", "Observe", "PlantTerm", "Reward", "Window", "run"]
+__all__ = [
+    "Benchmark",
+    "Controller",
+    "Env",
+    "Measurement",
+    "Observe",
+    "PUBLIC_SECRET",
+    "PlantTerm",
+    "Reward",
+    "Round",
+    "Window",
+    "benchmark",
+    "commitment",
+    "leaderboard",
+    "new_secret",
+    "run",
+    "verify",
+]
 
 #: Called with the positions, mm, and speeds, mm/s, of the joints and the time, s: an added torque for each axis, N m.
 PlantTerm = Callable[[Any, Any, float], Sequence[float]]
@@ -74,7 +92,7 @@ def run(
 
     `knowledge` says what the controller is given of the axes: `exact` values; what is `identified` from a recording, that
     is inertia and friction; or `wrong` ones, with inertia 20 % too low and friction 20 % too high. What drives are set to is
-    always right. `seed` is that of the noise and of the recording; without one the noise is that of the machine file.
+    always right. `seed` is that of the noise; without one it is that of the machine file, as it is in the recording.
     `plant_term` adds a torque to the machine in both cuts.
 
     What the controller or the term raises ends the run and is raised here. The supervisor of the library bounds what the

@@ -7,19 +7,21 @@
 //! | `lab/guest.rs` | a controller and a term of the plant that are objects of Python |
 //! | `lab/task.rs` | what is cut, and what is known of the machine |
 //! | `lab/episode.rs` | a run that waits for its actions |
+//! | `lab/held_out.rs` | held-out work by seeds, and a page of tables |
 
 mod seen;
 mod raised;
 mod guest;
 mod task;
 pub(crate) mod episode;
+pub(crate) mod held_out;
 
 use feedwright::Guests;
 use feedwright::sim::{Sink, Watch};
 use miette::{Result, miette};
 use pyo3::prelude::*;
 
-pub(crate) use seen::{Measurement, PythonWindow};
+pub(crate) use seen::{MeasuredTool, PythonWindow};
 
 use crate::columns::RowColumns;
 use crate::fault::from_json;
@@ -27,12 +29,12 @@ use crate::files::{PythonMachine, PythonProgram};
 use crate::jobs::{CutOutcome, Ran};
 use crate::watched::watched;
 use guest::{PlantTerm, PythonController};
-use raised::{Guarded, Raised};
-use task::{LabOptions, Task, told};
+use raised::{GuardedWatch, Raised};
+use task::{LabOptions, LabTask, told};
 
 /// A cut with a controller of Python.
 struct GuestRun<'a> {
-    task: &'a Task,
+    task: &'a LabTask,
     /// None where it is one of the library.
     controller: Option<&'a Py<PyAny>>,
     term: Option<PlantTerm>,
@@ -42,7 +44,7 @@ struct GuestRun<'a> {
 
 impl GuestRun<'_> {
     fn cut(&self, watch: &dyn Watch) -> Result<(String, Option<RowColumns>, CutOutcome)> {
-        let watch = Guarded { watch, raised: self.raised.clone() };
+        let watch = GuardedWatch { watch, raised: self.raised.clone() };
         watch.begin("reading the program", 1);
         let job = &self.task.job;
         let checked = job.check()?;
@@ -56,9 +58,10 @@ impl GuestRun<'_> {
             made.ok_or_else(|| miette!("the controller could not be made"))
         };
         let (controller, informed) = (self.controller.map(made).transpose()?, self.task.informed(&known));
-        let plant = self.term.as_ref().map(|term| {
-            move |start_mm: [f64; 3], seed: u64| term.plant(&job.machine, axes, start_mm, seed)
-        });
+        let plant = self
+            .term
+            .as_ref()
+            .map(|term| move |start_mm: [f64; 3], seed: u64| term.plant(&job.machine, axes, start_mm, seed));
         let plant = plant.as_ref().map(|plant| plant as _);
         let guests = match &controller {
             Some(controller) => Guests { plane: Some(controller), space: Some(controller), plant },
@@ -84,7 +87,7 @@ pub(crate) fn run_with<'py>(
     options: LabOptions,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Ran<'py>> {
-    let task = Task::new(program, machine, &options).map_err(|error| crate::fault::exception(&error))?;
+    let task = LabTask::new(program, machine, &options).map_err(|error| crate::fault::exception(&error))?;
     let raised = Raised::default();
     let (term, rows) = (options.plant_term(py, &raised), options.rows);
     let controller = (!options.of_library).then_some(&controller);

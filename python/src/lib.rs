@@ -36,7 +36,9 @@ mod _feedwright {
     #[pymodule_export]
     use super::jobs::{advise, correct, identify, plan, run};
     #[pymodule_export]
-    use super::lab::{Measurement, PythonWindow, episode::Episode, run_with};
+    use super::lab::held_out::{held_out_machine, held_out_program, tables_page};
+    #[pymodule_export]
+    use super::lab::{MeasuredTool, PythonWindow, episode::Episode, run_with};
     #[pymodule_export]
     use super::main;
 

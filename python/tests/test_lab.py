@@ -2,6 +2,7 @@
 
 import doctest
 import gc
+import hashlib
 import importlib.util
 import os
 import subprocess
@@ -259,6 +260,84 @@ class Guests(unittest.TestCase):
         self.assertIn("KeyboardInterrupt", told)
 
 
+class Rounds(unittest.TestCase):
+    ROUND = lab.Round("a test", programs=2, machines=2)
+
+    def test_a_secret_draws_work_and_another_secret_other_work(self) -> None:
+        work = self.ROUND.work()
+        self.assertEqual(len(work), 4)
+        told = [(program.name, machine.text, seed) for program, machine, seed in work]
+        self.assertEqual(told, [(program.name, machine.text, seed) for program, machine, seed in self.ROUND.work()])
+        self.assertEqual(len({seed for _, _, seed in work}), 4)
+        other = lab.Round("another test", programs=2, machines=2).work()
+        self.assertFalse({machine.name for _, machine, _ in work} & {machine.name for _, machine, _ in other})
+        self.assertNotEqual(lab.new_secret(), lab.new_secret())
+
+    def test_a_result_is_verified_bit_by_bit(self) -> None:
+        found = lab.benchmark(Straight(), round=self.ROUND, knowledge=["wrong"])
+        self.assertEqual(found.scores["wrong"]["error_ratio"], 1.0)
+        self.assertEqual(len(found.results["rows"]), 4)
+        own = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
+        self.assertEqual(found.results["controller"], {"name": "Straight", "source_sha256": own})
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "straight.json")
+            found.save(path)
+            self.assertEqual(lab.verify(path, Straight()), [])
+            differences = lab.verify(path, VelocityFeedforward())
+            self.assertEqual(sum("rms_um is" in difference for difference in differences), 4, differences)
+            damaged = path.read_text().replace('"completed": true', '"completed": false', 1)
+            path.write_text(damaged)
+            with self.assertRaisesRegex(ValueError, "checksum"):
+                lab.verify(path, Straight())
+            for text in ("", "[]", "{}", '{"sha256": ""}'):
+                path.write_text(text)
+                with self.assertRaisesRegex(ValueError, "no result file"):
+                    lab.leaderboard([path])
+
+    def test_the_manual_has_every_key_of_a_result_file_and_no_other(self) -> None:
+        def keys(value: Any, place: str = "") -> set[str]:
+            if isinstance(value, list):
+                return set().union(*(keys(part, f"{place}[]") for part in value))
+            if isinstance(value, dict):
+                free = place in ("versions", "scores")
+                return set().union(*(keys(part, f"{place}.{'*' if free else key}".lstrip(".")) for key, part in value.items()))
+            return {place}
+
+        found = lab.benchmark(Straight(), round=lab.Round("keys", 1, 1), knowledge=["exact"])
+        section = (DOCS / "json.md").read_text(encoding="utf-8").split("## Result files of the gym")[1].split("## ")[0]
+        documented = {line.split("`")[1] for line in section.splitlines() if line.startswith("| `")}
+        self.assertEqual(documented, keys(found.results))
+
+    def test_a_leaderboard_has_the_files_of_one_round_the_best_first(self) -> None:
+        class Drifts(Straight):
+            preview = 10
+            name = "<b>drifts"
+
+            def command(self, window: lab.Window) -> tuple[float, Any]:
+                return 1.0, window.offset_mm + [0.001, 0.0]
+
+        with tempfile.TemporaryDirectory() as folder:
+            paths = [Path(folder, f"{k}.json") for k in range(3)]
+            lab.benchmark(Drifts(), round=self.ROUND, knowledge=["exact"]).save(paths[0])
+            lab.benchmark(Straight(), round=self.ROUND, knowledge=["exact"]).save(paths[1])
+            page = lab.leaderboard(paths[:2])
+            self.assertLess(page.index("<td>1</td><td>Straight</td>"), page.index("<td>2</td><td>&lt;b&gt;drifts</td>"))
+            self.assertIn("Content-Security-Policy", page)
+            self.assertIn(lab.commitment("a test"), page)
+            self.assertNotIn("http://", page)
+            lab.benchmark(Straight(), round=lab.Round("b", 1, 1), knowledge=["exact"]).save(paths[2])
+            with self.assertRaisesRegex(ValueError, "different rounds"):
+                lab.leaderboard(paths)
+
+    def test_the_package_has_figures_of_others_in_the_public_round(self) -> None:
+        found = lab.benchmark("uncorrected", knowledge=["exact"])
+        beside = {result["controller"]["name"]: result for result in found.beside()[1:]}
+        self.assertGreater(len(beside), 15)
+        self.assertEqual(beside["uncorrected"]["scores"]["exact"], found.scores["exact"])
+        self.assertLess(beside["feedforward"]["scores"]["exact"]["error_ratio"], 1.0)
+        self.assertIn("lqg-identified", repr(found))
+
+
 def episodes() -> int:
     """Threads of this process that a run waits in."""
     names = Path("/proc/self/task").glob("*/comm")
@@ -275,6 +354,16 @@ class Environments(unittest.TestCase):
             # Its advice on the bounds of spaces: lengths have none.
             warnings.simplefilter("ignore")
             check_env(lab.Env(STAR, "workshop"))
+
+    def test_without_gymnasium_spaces_are_bounds(self) -> None:
+        text = (
+            "import sys\nsys.modules['gymnasium'] = None\nfrom feedwright import lab\n"
+            "env = lab.Env(sys.argv[1], 'tnv40', preview=3, largest_offset_mm=0.25)\n"
+            "seen, info = env.reset(seed=1)\n"
+            "print([bound.tolist() for bound in env.action_space], env.observation_space[0].shape, seen.shape, info)\n"
+        )
+        ran = subprocess.run([sys.executable, "-c", text, str(STAR)], capture_output=True, text=True, timeout=30)
+        self.assertEqual(ran.stdout, "[[0.0, -0.25, -0.25], [1.2, 0.25, 0.25]] (15,) (15,) {}\n", ran.stderr)
 
     def test_an_episode_is_the_run_of_a_controller_that_does_the_same(self) -> None:
         actions = [numpy.array([1.0 - 0.001 * (k % 7), 0.001 * (k % 5), -0.002 * (k % 3)]) for k in range(2000)]

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use feedwright::{BEST, CONTROLLERS, Choices, Job, JobError, Make, Setting, Setup, TARGETS};
+use feedwright::{BEST, CONTROLLERS, Choices, Guests, Job, JobError, Make, Setting, Setup, TARGETS};
 use feedwright_gcode::{Dialect, Increment, Program, Settings};
-use feedwright_sim::{BUILT_IN_MACHINES, Machine, Row, Run, Watch, path_steps};
+use feedwright_sim::{BUILT_IN_MACHINES, Machine, Mechanism, Plant, Row, Run, Watch, path_steps};
 
 fn part() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../parts/circle.ngc")
@@ -143,6 +143,31 @@ fn a_text_is_cut_as_the_file_is() {
         (String::from_utf8(json).unwrap(), rows)
     };
     assert_eq!(json(&of_file), json(&of_text));
+}
+
+#[test]
+fn guests_take_the_place_of_the_controller_that_is_asked_for_and_of_the_plant_of_every_cut() {
+    let rows = |job: &Job, guests: Guests<'_>| {
+        let mut rows = Vec::<Row>::new();
+        let outcome = job.check().unwrap().run_with(guests, &mut [&mut rows], &()).unwrap();
+        let runs: Vec<_> = outcome.report.runs.iter().map(|run| (run.summary.controller.clone(), run.summary.rms_um)).collect();
+        (rows, runs)
+    };
+    let (asked, feedforward) = (job("tnv40", BEST), job("tnv40", "feedforward"));
+    let (theirs, of_theirs) = rows(&feedforward, Guests::default());
+    let guests = Guests { plane: Some(feedforward.controller), ..Guests::default() };
+    let (ours, of_ours) = rows(&asked, guests);
+    assert!(ours == theirs && of_ours[0] == of_theirs[0]);
+    assert_eq!((&*of_ours[1].0, of_ours[1].1), (BEST, of_theirs[1].1));
+    let cut_on = |machine: &Machine| {
+        let plant = |start_mm: [f64; 3], seed: u64| -> Box<dyn Mechanism> {
+            Box::new(Plant::<2>::with_seed(machine, [start_mm[0], start_mm[1]], seed))
+        };
+        rows(&feedforward, Guests { plant: Some(&plant), ..Guests::default() })
+    };
+    assert_eq!(cut_on(&feedforward.machine), (theirs, of_theirs.clone()));
+    let (_, of_heavy) = cut_on(&Machine::load("heavy".as_ref()).unwrap());
+    assert!((0..2).all(|run| of_heavy[run].1 != of_theirs[run].1), "{of_heavy:?}");
 }
 
 #[test]

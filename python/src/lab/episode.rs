@@ -20,9 +20,9 @@ use miette::{Report, miette};
 use pyo3::prelude::*;
 
 use super::guest::{numbers, schedule};
-use super::raised::{Guarded, Raised};
-use super::seen::{PythonWindow, Seen, of_three};
-use super::task::{LabOptions, Task};
+use super::raised::{GuardedWatch, Raised};
+use super::seen::{PythonWindow, SeenWindow, of_three};
+use super::task::{LabOptions, LabTask};
 use crate::fault::{exception, from_json};
 use crate::files::{PythonMachine, PythonProgram};
 
@@ -31,29 +31,33 @@ const EVERY: Duration = Duration::from_millis(40);
 
 /// The contour error since the last decision.
 #[derive(Clone, Copy, Default)]
-struct Errors {
+struct ErrorSums {
     rows: u32,
     sum_um2: f64,
     max_um: f64,
 }
 
 /// What the run tells.
-enum Told {
+enum EpisodeMessage {
     /// What is known, before the first window.
     Known(Box<Known>, usize),
-    Window(Seen, Errors),
-    End(Result<String, Report>, Errors),
+    Window(Box<SeenWindow>, ErrorSums),
+    End(Result<String, Report>, ErrorSums),
 }
 
 /// Adds up the errors of the rows that cut.
-struct ErrorSink(Rc<Cell<Errors>>);
+struct ErrorSink(Rc<Cell<ErrorSums>>);
 
 impl Sink for ErrorSink {
     fn row(&mut self, row: &Row) -> io::Result<()> {
         if row.cutting {
-            let Errors { rows, sum_um2, max_um } = self.0.get();
+            let ErrorSums { rows, sum_um2, max_um } = self.0.get();
             let error_um = 1e3 * row.contour_error_mm.abs();
-            self.0.set(Errors { rows: rows + 1, sum_um2: sum_um2 + error_um * error_um, max_um: max_um.max(error_um) });
+            self.0.set(ErrorSums {
+                rows: rows + 1,
+                sum_um2: sum_um2 + error_um * error_um,
+                max_um: max_um.max(error_um),
+            });
         }
         Ok(())
     }
@@ -65,9 +69,9 @@ type Action = (f64, [f64; 3]);
 /// Shows windows and does what the actions say.
 struct Waiting {
     schedule: Schedule,
-    shown: Sender<Told>,
+    shown: Sender<EpisodeMessage>,
     actions: Receiver<Action>,
-    errors: Rc<Cell<Errors>>,
+    errors: Rc<Cell<ErrorSums>>,
     raised: Raised,
 }
 
@@ -82,8 +86,8 @@ impl<const N: usize> Controller<N> for Waiting {
         if self.raised.is_over() {
             return Command::AS_PLANNED;
         }
-        let seen = Seen::of(window, Some(measured), self.schedule.preview);
-        let sent = self.shown.send(Told::Window(seen, self.errors.take())).is_ok();
+        let seen = Box::new(SeenWindow::of(window, Some(measured), self.schedule.preview));
+        let sent = self.shown.send(EpisodeMessage::Window(seen, self.errors.take())).is_ok();
         match self.actions.recv() {
             Ok((rate, offset_mm)) if sent => Command::straight(rate, of_three(offset_mm)),
             _ => {
@@ -107,27 +111,33 @@ impl<const N: usize> Make<N> for Once {
 }
 
 /// The run on its thread.
-struct Work {
-    task: Task,
+struct EpisodeWork {
+    task: LabTask,
     schedule: Schedule,
     term: Option<super::guest::PlantTerm>,
     raised: Raised,
 }
 
-impl Work {
-    fn cut(&self, shown: &Sender<Told>, actions: Receiver<Action>, errors: &Rc<Cell<Errors>>) -> Result<String, Report> {
+impl EpisodeWork {
+    fn cut(
+        &self,
+        shown: &Sender<EpisodeMessage>,
+        actions: Receiver<Action>,
+        errors: &Rc<Cell<ErrorSums>>,
+    ) -> Result<String, Report> {
         let job = &self.task.job;
-        let watch = Guarded { watch: &(), raised: self.raised.clone() };
+        let watch = GuardedWatch { watch: &(), raised: self.raised.clone() };
         let checked = job.check()?;
         let axes = checked.axes();
         // Where nobody waits any more, the first window ends the run.
-        let _ = shown.send(Told::Known(Box::new(self.task.known(axes)?), axes));
+        let _ = shown.send(EpisodeMessage::Known(Box::new(self.task.known(axes)?), axes));
         let (schedule, raised) = (self.schedule, self.raised.clone());
         let waiting = Waiting { schedule, shown: shown.clone(), actions, errors: errors.clone(), raised };
         let once = Once(RefCell::new(Some(waiting)));
-        let plant = self.term.as_ref().map(|term| {
-            move |start_mm: [f64; 3], seed: u64| term.plant(&job.machine, axes, start_mm, seed)
-        });
+        let plant = self
+            .term
+            .as_ref()
+            .map(|term| move |start_mm: [f64; 3], seed: u64| term.plant(&job.machine, axes, start_mm, seed));
         let guests = Guests { plane: Some(&once), space: Some(&once), plant: plant.as_ref().map(|plant| plant as _) };
         let (mut sink, mut end) = (ErrorSink(errors.clone()), self.raised.clone());
         watch.check()?;
@@ -142,7 +152,7 @@ type Advanced<'py> = (Option<Bound<'py, PythonWindow>>, (u32, f64, f64), Option<
 /// A run that waits for its actions.
 #[pyclass(module = "feedwright.lab")]
 pub(crate) struct Episode {
-    told: Mutex<Receiver<Told>>,
+    told: Mutex<Receiver<EpisodeMessage>>,
     actions: Option<Sender<Action>>,
     thread: Option<JoinHandle<()>>,
     raised: Raised,
@@ -162,26 +172,20 @@ impl Episode {
         options: LabOptions,
     ) -> PyResult<Self> {
         let schedule = schedule(servo_periods, preview)?;
-        let task = Task::new(program, machine, &options).map_err(|error| exception(&error))?;
+        let task = LabTask::new(program, machine, &options).map_err(|error| exception(&error))?;
         let raised = Raised::default();
-        let work = Work { task, schedule, term: options.plant_term(py, &raised), raised: raised.clone() };
+        let work = EpisodeWork { task, schedule, term: options.plant_term(py, &raised), raised: raised.clone() };
         let (shown, told) = channel();
         let (actions, asked) = channel();
         let thread = thread::Builder::new().name("feedwright episode".to_owned()).spawn(move || {
-            let errors = Rc::new(Cell::new(Errors::default()));
+            let errors = Rc::new(Cell::new(ErrorSums::default()));
             let end = work.cut(&shown, asked, &errors);
             // Where nobody waits any more, nobody asks for the figures.
-            let _ = shown.send(Told::End(end, errors.take()));
+            let _ = shown.send(EpisodeMessage::End(end, errors.take()));
         })?;
-        let mut episode = Self {
-            told: Mutex::new(told),
-            actions: Some(actions),
-            thread: Some(thread),
-            raised,
-            axes: 0,
-            known: None,
-        };
-        if let Told::Known(known, axes) = episode.wait(py)? {
+        let mut episode =
+            Self { told: Mutex::new(told), actions: Some(actions), thread: Some(thread), raised, axes: 0, known: None };
+        if let EpisodeMessage::Known(known, axes) = episode.wait(py)? {
             episode.axes = axes;
             episode.known = Some(super::task::told(py, &known, axes)?.unbind());
             return Ok(episode);
@@ -203,19 +207,19 @@ impl Episode {
             // Where the run has ended, its end is what is told.
             let _ = actions.send((rate, numbers(&offset, self.axes, "the offset of an action")?));
         }
-        let mean = |errors: Errors| (errors.rows, errors.sum_um2 / f64::from(errors.rows.max(1)), errors.max_um);
+        let mean = |errors: ErrorSums| (errors.rows, errors.sum_um2 / f64::from(errors.rows.max(1)), errors.max_um);
         match self.wait(py)? {
-            Told::Window(seen, errors) => {
+            EpisodeMessage::Window(seen, errors) => {
                 let Some(axes) = &self.known else { return Err(exception(&miette!("the episode has not begun"))) };
-                let window = Bound::new(py, PythonWindow { seen, axes: axes.clone_ref(py) })?;
+                let window = Bound::new(py, PythonWindow { seen: *seen, axes: axes.clone_ref(py) })?;
                 Ok((Some(window), mean(errors), None))
             }
-            Told::End(Ok(results), errors) => {
+            EpisodeMessage::End(Ok(results), errors) => {
                 self.close(py);
                 Ok((None, mean(errors), Some(from_json(py, &results)?)))
             }
-            Told::End(Err(error), _) => Err(exception(&error)),
-            Told::Known(..) => Err(exception(&miette!("the episode begins twice"))),
+            EpisodeMessage::End(Err(error), _) => Err(exception(&error)),
+            EpisodeMessage::Known(..) => Err(exception(&miette!("the episode begins twice"))),
         }
     }
 
@@ -232,11 +236,13 @@ impl Episode {
 
 impl Episode {
     /// What the run tells next; raises what a signal or the code of the caller raises.
-    fn wait(&self, py: Python<'_>) -> PyResult<Told> {
+    fn wait(&self, py: Python<'_>) -> PyResult<EpisodeMessage> {
         loop {
             let told = py.detach(|| self.told.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(EVERY));
             match told {
-                Ok(Told::End(end, errors)) => return self.raised.take().map_or(Ok(Told::End(end, errors)), Err),
+                Ok(EpisodeMessage::End(end, errors)) => {
+                    return self.raised.take().map_or(Ok(EpisodeMessage::End(end, errors)), Err);
+                }
                 Ok(told) => return Ok(told),
                 Err(RecvTimeoutError::Timeout) => py.check_signals()?,
                 Err(RecvTimeoutError::Disconnected) => {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use feedwright::control::{Command, Controller, Measured, PREVIEW_KNOTS, Schedule, Window};
-use feedwright::sim::{Machine, Measurement as Moved, Mechanism, Plant};
+use feedwright::sim::{Machine, Measurement, Mechanism, Plant};
 use feedwright::{Make, Setup};
 use miette::miette;
 use numpy::{PyReadonlyArray1, PyUntypedArrayMethods};
@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use super::raised::Raised;
-use super::seen::{PythonWindow, Seen, of_three, vector};
+use super::seen::{PythonWindow, SeenWindow, of_three, vector};
 use crate::fault::exception;
 
 /// A number for each axis.
@@ -51,7 +51,12 @@ pub(super) struct PythonController {
 
 impl PythonController {
     /// Of an object, which is told what is known of the axes before it says how far it wants to see.
-    pub(super) fn new(object: &Bound<'_, PyAny>, axes: &Bound<'_, PyTuple>, servo_s: f64, raised: Raised) -> PyResult<Self> {
+    pub(super) fn new(
+        object: &Bound<'_, PyAny>,
+        axes: &Bound<'_, PyTuple>,
+        servo_s: f64,
+        raised: Raised,
+    ) -> PyResult<Self> {
         if let Some(prepare) = object.getattr_opt("prepare")? {
             prepare.call1((axes, servo_s))?;
         }
@@ -73,7 +78,7 @@ impl PythonController {
         window: &Window<'_, N>,
         measured: Option<&Measured<N>>,
     ) -> PyResult<Bound<'py, PythonWindow>> {
-        let seen = Seen::of(window, measured, self.schedule.preview);
+        let seen = SeenWindow::of(window, measured, self.schedule.preview);
         Bound::new(py, PythonWindow { seen, axes: self.axes.clone_ref(py) })
     }
 }
@@ -167,7 +172,7 @@ impl<const N: usize> PlantWithTerm<N> {
 }
 
 impl<const N: usize> Mechanism for PlantWithTerm<N> {
-    fn step(&mut self, command_mm: [f64; 3]) -> Moved<3> {
+    fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3> {
         let t_s = self.periods as f64 * self.servo_s;
         self.plant.add_torque(self.term.torque_nm(self.joint_mm, self.plant.joint_mm_s(), t_s));
         self.periods += 1;

@@ -54,12 +54,12 @@ impl Sink for Raised {
 }
 
 /// Ends all else, too.
-pub(super) struct Guarded<'a> {
+pub(super) struct GuardedWatch<'a> {
     pub(super) watch: &'a dyn Watch,
     pub(super) raised: Raised,
 }
 
-impl Watch for Guarded<'_> {
+impl Watch for GuardedWatch<'_> {
     fn begin(&self, stage: &str, steps: u64) {
         self.watch.begin(stage, steps);
     }

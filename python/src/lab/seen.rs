@@ -24,9 +24,9 @@ pub(super) fn vector<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArray
 }
 
 /// What is measured at the start of a feed period.
-#[pyclass(frozen, module = "feedwright.lab")]
+#[pyclass(frozen, name = "Measurement", module = "feedwright.lab")]
 #[derive(Clone, Copy)]
-pub(crate) struct Measurement {
+pub(crate) struct MeasuredTool {
     axes: usize,
     position_mm: [f64; 3],
     error_mm: [f64; 3],
@@ -34,7 +34,7 @@ pub(crate) struct Measurement {
     behind: u32,
 }
 
-impl Measurement {
+impl MeasuredTool {
     pub(super) fn of<const N: usize>(measured: &Measured<N>) -> Self {
         Self {
             axes: N,
@@ -47,7 +47,7 @@ impl Measurement {
 }
 
 #[pymethods]
-impl Measurement {
+impl MeasuredTool {
     /// Where the tool is, mm.
     #[getter]
     fn position_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
@@ -75,7 +75,7 @@ impl Measurement {
 
 /// Copies of what a window shows; the rows are the current point and those of the preview.
 #[derive(Clone)]
-pub(crate) struct Seen {
+pub(crate) struct SeenWindow {
     axes: usize,
     plan_s: f64,
     servo_s: f64,
@@ -86,10 +86,10 @@ pub(crate) struct Seen {
     cutting: Vec<bool>,
     offset_mm: [f64; 3],
     offset_mm_s: [f64; 3],
-    measured: Option<Measurement>,
+    measured: Option<MeasuredTool>,
 }
 
-impl Seen {
+impl SeenWindow {
     /// Of a window with so many feed periods of preview.
     pub(super) fn of<const N: usize>(window: &Window<'_, N>, measured: Option<&Measured<N>>, preview: u32) -> Self {
         let knots: Vec<Knot<N>> =
@@ -105,7 +105,7 @@ impl Seen {
             cutting: knots.iter().map(|knot| knot.cutting).collect(),
             offset_mm: in_three(window.offset_mm),
             offset_mm_s: in_three(window.offset_mm_s),
-            measured: measured.map(Measurement::of),
+            measured: measured.map(MeasuredTool::of),
         }
     }
 }
@@ -113,7 +113,7 @@ impl Seen {
 /// What a controller sees at the start of a feed period.
 #[pyclass(frozen, name = "Window", module = "feedwright.lab")]
 pub(crate) struct PythonWindow {
-    pub(super) seen: Seen,
+    pub(super) seen: SeenWindow,
     pub(super) axes: Py<PyTuple>,
 }
 
@@ -188,7 +188,7 @@ impl PythonWindow {
 
     /// What is measured; none where the position was lost.
     #[getter]
-    fn measured(&self) -> Option<Measurement> {
+    fn measured(&self) -> Option<MeasuredTool> {
         self.seen.measured
     }
 }

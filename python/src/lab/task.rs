@@ -1,11 +1,12 @@
 //! What is cut: a job, what is known of its machine, and how it ends.
 
+use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 
 use feedwright::command::{find, settings};
 use feedwright::control::{AxisKnowledge, AxisStatistics, Controller};
 use feedwright::sim::{Known, Machine};
-use feedwright::{CONTROLLERS, Choices, Entry, Job, JobOutcome, Knows, Make, Setup, UNCORRECTED};
+use feedwright::{Choices, Controllers, Entry, Job, JobOutcome, Knows, Make, Setup, UNCORRECTED};
 use miette::{IntoDiagnostic, Result, miette};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -14,9 +15,16 @@ use super::guest::PlantTerm;
 use super::raised::Raised;
 use crate::files::{PythonMachine, PythonProgram};
 
+/// The controllers that have a name.
+const TABLE: Controllers = if cfg!(feature = "peers") { feedwright_lab::CONTROLLERS } else { feedwright::CONTROLLERS };
 /// Inertia and friction that are believed where the knowledge is wrong, as parts of the true ones: opposite, so that the two errors of the
 /// torque do not cancel each other where an axis speeds up.
 const BELIEVED: [f64; 2] = [0.8, 1.2];
+
+/// Seed of recordings and trainings: a machine is identified once, whatever the noise of the cut.
+const RECORDING_SEED: u64 = 1;
+/// Identified machines that are kept.
+const KEPT_MACHINES: usize = 64;
 
 /// What a run is asked for beside program, machine and controller.
 #[derive(FromPyObject)]
@@ -38,7 +46,7 @@ pub(crate) struct LabOptions {
 /// The row of a controller that the caller brings. A name stays for the life of the process, once.
 fn entry(name: &str, knows: Knows) -> &'static Entry {
     static ENTRIES: Mutex<Vec<&'static Entry>> = Mutex::new(Vec::new());
-    let taken = CONTROLLERS.find(name).is_some();
+    let taken = TABLE.find(name).is_some();
     let name = if taken { format!("{name} in Python") } else { name.to_owned() };
     let mut entries = ENTRIES.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(entry) = entries.iter().find(|entry| entry.name == name && entry.knows == knows) {
@@ -60,31 +68,52 @@ fn entry(name: &str, knows: Knows) -> &'static Entry {
 }
 
 /// Makes a controller of the library from what is known of a machine.
-pub(super) struct Informed {
-    entry: &'static Entry,
+pub(super) struct Informed<'a> {
+    task: &'a LabTask,
     known: Known,
 }
 
-impl<const N: usize> Make<N> for Informed
+impl<const N: usize> Make<N> for Informed<'_>
 where
     Entry: Make<N>,
 {
+    /// What it records has the noise of the machine file, as `identified` does.
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<N>> {
-        setup.known.clone_from(&self.known);
-        self.entry.make(setup)
+        let mut told = Setup::new(&self.task.machine, setup.choices);
+        told.known.clone_from(&self.known);
+        self.task.job.controller.make(&mut told)
     }
 }
 
+/// What a recording of a machine tells, made once: with the noise of its file, whatever the noise of the cut.
+fn identified(machine: &Machine, axes: usize) -> Result<Known> {
+    static FOUND: Mutex<VecDeque<(String, Known)>> = Mutex::new(VecDeque::new());
+    let kept = || FOUND.lock().unwrap_or_else(PoisonError::into_inner);
+    let key = format!("{axes} axes of {}, noise {}", machine.fingerprint(), machine.noise.seed);
+    if let Some((_, known)) = kept().iter().find(|(of, _)| *of == key) {
+        return Ok(known.clone());
+    }
+    let choices = Choices { seed: RECORDING_SEED, ..Choices::default() };
+    let mut setup = Setup::new(machine, &choices);
+    match axes {
+        2 => setup.identify_parameters::<2>().into_diagnostic()?,
+        _ => setup.identify_parameters::<3>().into_diagnostic()?,
+    }
+    let mut found = kept();
+    found.truncate(KEPT_MACHINES - 1);
+    found.push_front((key, setup.known.clone()));
+    Ok(setup.known)
+}
+
 /// Something to cut.
-pub(super) struct Task {
+pub(super) struct LabTask {
     pub(super) job: Job,
     /// With the noise seed of its file.
     machine: Machine,
     knowledge: String,
-    seed: u64,
 }
 
-impl Task {
+impl LabTask {
     pub(super) fn new(program: &PythonProgram, machine: &PythonMachine, options: &LabOptions) -> Result<Self> {
         let knows = match options.knowledge.as_str() {
             "exact" | "wrong" => Knows::ExactModel,
@@ -92,37 +121,32 @@ impl Task {
             other => return Err(miette!("knowledge is '{other}'; there are exact, identified, wrong")),
         };
         let noisy = options.seed.map_or_else(|| machine.machine.clone(), |seed| machine.machine.with_noise_seed(seed));
-        let seed = options.seed.unwrap_or(1);
         let mut job = Job::new(program.program.clone(), noisy);
         job.machine_file.clone_from(&machine.file);
-        job.controller = if options.of_library { find(&options.name, CONTROLLERS)? } else { entry(&options.name, knows) };
-        job.against = options.against.as_deref().map_or(Ok(job.controller), |name| find(name, CONTROLLERS))?;
+        job.controller = if options.of_library { find(&options.name, TABLE)? } else { entry(&options.name, knows) };
+        job.against = options.against.as_deref().map_or(Ok(job.controller), |name| find(name, TABLE))?;
         job.feed_mm_s = options.feed_mm_s;
         let both = [job.controller, job.against];
-        let set = settings(&options.settings, CONTROLLERS, Some(job.controller), &both)?;
-        job.choices = Choices { seed, set, ..Choices::default() };
-        let recorded = both.into_iter().filter_map(|entry| Some((entry, CONTROLLERS.recorded(&machine.machine, entry)?)));
+        let set = settings(&options.settings, TABLE, Some(job.controller), &both)?;
+        job.choices = Choices { seed: RECORDING_SEED, set, ..Choices::default() };
+        let recorded = both.into_iter().filter_map(|entry| Some((entry, TABLE.recorded(&machine.machine, entry)?)));
         job.choices.take_recorded(recorded.collect::<Vec<_>>().into_iter());
         job.reader = program.settings.clone();
-        Ok(Self { job, machine: machine.machine.clone(), knowledge: options.knowledge.clone(), seed })
+        Ok(Self { job, machine: machine.machine.clone(), knowledge: options.knowledge.clone() })
     }
 
     /// What is known of the machine where so many axes are controlled.
     pub(super) fn known(&self, axes: usize) -> Result<Known> {
-        let choices = Choices { seed: self.seed, ..Choices::default() };
-        let mut setup = Setup::new(&self.machine, &choices);
         match self.knowledge.as_str() {
-            "wrong" => setup.known = setup.known.misjudged(BELIEVED[0], BELIEVED[1]),
-            "identified" if axes == 2 => setup.identify_parameters::<2>().into_diagnostic()?,
-            "identified" => setup.identify_parameters::<3>().into_diagnostic()?,
-            _ => {}
+            "wrong" => Ok(self.machine.known().misjudged(BELIEVED[0], BELIEVED[1])),
+            "identified" => identified(&self.machine, axes),
+            _ => Ok(self.machine.known()),
         }
-        Ok(setup.known)
     }
 
     /// The controller of the library that is asked for, with what is known.
-    pub(super) fn informed(&self, known: &Known) -> Informed {
-        Informed { entry: self.job.controller, known: known.clone() }
+    pub(super) fn informed(&self, known: &Known) -> Informed<'_> {
+        Informed { task: self, known: known.clone() }
     }
 
     /// The figures of a run.

@@ -1,0 +1,58 @@
+//! Held-out work by seeds, and a page of tables.
+
+use feedwright::gcode::{Program, Settings};
+use feedwright::{JobError, PagePart, escaped, write_foot, write_head, write_table_end, write_table_head};
+use feedwright_lab::Class;
+use feedwright_lab::held_out::{machines, programs};
+use miette::{IntoDiagnostic, Result};
+use pyo3::prelude::*;
+
+use crate::fault::exception;
+use crate::files::{PythonMachine, PythonProgram};
+
+/// The program of a seed, where that stays in the plane.
+fn plane_program(seed: u64) -> Result<Option<PythonProgram>> {
+    let drawn = programs::program(seed);
+    let program = Program::from_text(format!("{}.ngc", drawn.name), drawn.text);
+    let settings = Settings::default();
+    let moves = program.check(settings.clone()).map_err(JobError::from)?.moves;
+    Ok((!moves[2]).then_some(PythonProgram { program, settings }))
+}
+
+/// The program of a seed; none where it leaves the plane.
+#[pyfunction]
+pub(crate) fn held_out_program(seed: u64) -> PyResult<Option<PythonProgram>> {
+    plane_program(seed).map_err(|error| exception(&error))
+}
+
+/// The machine of a seed; none where it has no noise.
+#[pyfunction]
+pub(crate) fn held_out_machine(seed: u64) -> PyResult<Option<PythonMachine>> {
+    let drawn = machines::machine(seed, Class::Realistic);
+    let machine = PythonMachine::parsed(&format!("{}.toml", drawn.name), &drawn.text());
+    let machine = machine.map_err(|error| exception(&error.into()))?;
+    Ok(machine.machine.is_noisy().then_some(machine))
+}
+
+/// A part of a page: what a link leads to, heading, heads of its table, rows.
+type TablePart = (String, String, Vec<String>, Vec<Vec<String>>);
+
+/// A page of tables, which needs no other file.
+#[pyfunction]
+pub(crate) fn tables_page(title: &str, introduction: &str, parts: Vec<TablePart>) -> PyResult<String> {
+    let pages: Vec<PagePart> = parts.iter().map(|(id, title, ..)| PagePart::new(id, title.as_str())).collect();
+    let mut page = Vec::new();
+    write_head(&mut page, "tables", title, introduction, &pages)?;
+    for (part, (_, _, heads, rows)) in pages.iter().zip(&parts) {
+        part.begin(&mut page)?;
+        write_table_head(&mut page, heads.iter().map(String::as_str))?;
+        for row in rows {
+            let cells: Vec<String> = row.iter().map(|cell| format!("<td>{}</td>", escaped(cell))).collect();
+            page.extend_from_slice(format!("<tr>{}</tr>\n", cells.concat()).as_bytes());
+        }
+        write_table_end(&mut page)?;
+        PagePart::end(&mut page)?;
+    }
+    write_foot(&mut page)?;
+    String::from_utf8(page).into_diagnostic().map_err(|error| exception(&error))
+}
