@@ -119,7 +119,9 @@ def _scores(rows: Sequence[dict[str, Any]]) -> dict[str, dict[str, Any]]:
         times = [row["time_s"] / row["uncorrected_time_s"] for row in ended]
         scores[knowledge] = {
             "failures": len(mine) - len(ended),
-            "error_ratio": math.exp(math.fsum(math.log(max(ratio, 1e-12)) for ratio in errors) / len(errors)) if errors else None,
+            "error_ratio": math.exp(math.fsum(math.log(max(ratio, 1e-12)) for ratio in errors) / len(errors))
+            if errors
+            else None,
             "worst_error_ratio": max(errors, default=None),
             "time_ratio": math.fsum(times) / len(times) if times else None,
         }
@@ -139,7 +141,9 @@ def _order(result: dict[str, Any], knowledge: str) -> tuple[int, float]:
 
 def _cells(result: dict[str, Any], knowledge: str) -> list[str]:
     score = result["scores"][knowledge]
-    shown = ("-" if score[key] is None else f"{score[key]:.3f}" for key in ("error_ratio", "worst_error_ratio", "time_ratio"))
+    shown = (
+        "-" if score[key] is None else f"{score[key]:.3f}" for key in ("error_ratio", "worst_error_ratio", "time_ratio")
+    )
     return [result["controller"]["name"], *shown, str(score["failures"])]
 
 
@@ -173,7 +177,9 @@ class Benchmark:
             rows = [_cells(result, knowledge) for result in sorted(there, key=lambda result: _order(result, knowledge))]
             widths = [max(map(len, column)) for column in zip(HEADS, *rows)]
             lines += ["", f"knowledge: {knowledge}"]
-            lines += ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in [HEADS, *rows]]
+            lines += [
+                "  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in [HEADS, *rows]
+            ]
         return "\n".join(lines[1:])
 
 
@@ -220,7 +226,9 @@ def _read(path: str | os.PathLike[str]) -> dict[str, Any]:
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise ValueError(f"{path} is no result file of format {FORMAT}: {error!r}") from error
     if not valid:
-        raise ValueError(f"{path}: the content does not fit its checksum, scores or commitment. Take the file as it was written")
+        raise ValueError(
+            f"{path}: the content does not fit its checksum, scores or commitment. Take the file as it was written"
+        )
     return {**results, "sha256": claimed}
 
 
@@ -253,15 +261,24 @@ def leaderboard(paths: Iterable[str | os.PathLike[str]], title: str = "Leaderboa
     results += [peer for peer in peers() if peer["round"] == round]
     parts = []
     for knowledge in KNOWLEDGE:
-        there = sorted((result for result in results if knowledge in result["scores"]), key=lambda r: _order(r, knowledge))
+        there = sorted(
+            (result for result in results if knowledge in result["scores"]), key=lambda r: _order(r, knowledge)
+        )
         rows = [[str(place), *_cells(result, knowledge)] for place, result in enumerate(there, 1)]
         if rows:
             parts.append((knowledge, f"Knowledge: {knowledge}", ["place", *HEADS], rows))
     files = [
-        [result["controller"]["name"], result["controller"]["source_sha256"] or "-", result["sha256"], result["versions"]["feedwright"]]
+        [
+            result["controller"]["name"],
+            result["controller"]["source_sha256"] or "-",
+            result["sha256"],
+            result["versions"]["feedwright"],
+        ]
         for result in results
     ]
-    parts.append(("files", "Result files", ["controller", "SHA-256 of its source", "SHA-256 of the result", "feedwright"], files))
+    parts.append(
+        ("files", "Result files", ["controller", "SHA-256 of its source", "SHA-256 of the result", "feedwright"], files)
+    )
     introduction = (
         f"{round['programs']} programs on {round['machines']} machines with noise. Ratios are to the uncorrected cut; a lower "
         f"one is better. Secret of the round: {round['secret']}. Its SHA-256, published before: {round['commitment']}."

@@ -153,13 +153,22 @@ class Guests(unittest.TestCase):
     def test_what_is_no_number_or_beyond_all_bounds_is_held_to_the_bounds(self) -> None:
         bound_mm = feedwright.Machine("tnv40").values["limits"]["max_deviation_mm"]
         nan, inf = float("nan"), float("inf")
-        for answer in ((nan, [0, 0]), (1.0, [nan, nan]), (inf, [0, 0]), (1.0, [inf, 0]), (1.0, [1e9, -1e9]), (-5, [0, 0])):
+        for answer in (
+            (nan, [0, 0]),
+            (1.0, [nan, nan]),
+            (inf, [0, 0]),
+            (1.0, [inf, 0]),
+            (1.0, [1e9, -1e9]),
+            (-5, [0, 0]),
+        ):
             controller = Straight()
             controller.preview = 20
             controller.command = lambda window, answer=answer: answer  # type: ignore[method-assign]
             cut = lab.run(STAR, "tnv40", controller)
             self.assertEqual(cut.corrected["outcome"]["kind"], "completed", answer)
-            path, command = (numpy.column_stack([cut.rows[f"{of}_{axis}_mm"] for axis in "xy"]) for of in ("path", "cmd"))
+            path, command = (
+                numpy.column_stack([cut.rows[f"{of}_{axis}_mm"] for axis in "xy"]) for of in ("path", "cmd")
+            )
             off_mm = [numpy.hypot(*(path - point).T).min() for point in command[::10]]
             self.assertLessEqual(max(off_mm), bound_mm + 0.01, answer)
             if not all(numpy.isfinite([answer[0], *answer[1]])):
@@ -300,7 +309,9 @@ class Rounds(unittest.TestCase):
                 return set().union(*(keys(part, f"{place}[]") for part in value))
             if isinstance(value, dict):
                 free = place in ("versions", "scores")
-                return set().union(*(keys(part, f"{place}.{'*' if free else key}".lstrip(".")) for key, part in value.items()))
+                return set().union(
+                    *(keys(part, f"{place}.{'*' if free else key}".lstrip(".")) for key, part in value.items())
+                )
             return {place}
 
         found = lab.benchmark(Straight(), round=lab.Round("keys", 1, 1), knowledge=["exact"])
