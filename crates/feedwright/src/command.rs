@@ -16,8 +16,10 @@ mod streams;
 mod table;
 mod files_to_check;
 mod findings;
+mod faults;
 mod controllers;
 mod controls;
+mod sweep;
 mod hal_watch;
 mod page_server;
 mod commands;
@@ -39,9 +41,15 @@ pub use commands::run::run as run_part;
 pub use console::Console;
 pub use controllers::{find, settings};
 pub use date::today;
+pub use faults::{fault_findings, fault_text, mistake_json};
 pub use files_to_check::FilesToCheck;
 pub use message::{OUT_OF_TOLERANCE, printed, remark};
 pub use streams::{make_folder, tables, tell_written};
+pub use sweep::job_list::JobList;
+pub use sweep::job_spec::{JobSpec, ListedJob};
+pub use sweep::result_store::ResultStore;
+pub use sweep::result_table::{RESULT_COLUMNS, ResultColumn, ResultTable};
+pub use sweep::{JobDone, do_job};
 pub use table::{ConsoleTable, TableColumn};
 pub use terminal::wrapped;
 
@@ -72,6 +80,8 @@ pub fn with_console(quiet: bool, writes_files: bool, command: impl FnOnce(&Conso
 
 fn run(command: CommandArgs, console: &Console) -> Result<ExitCode> {
     match command {
+        CommandArgs::Sweep(args) => commands::sweep::run(&args, console),
+        CommandArgs::Merge(args) => commands::merge::run(&args, console),
         CommandArgs::Run(args) => commands::run::run(*args, CONTROLLERS, console),
         CommandArgs::Correct(args) => commands::correct::run(&args, console),
         CommandArgs::Advise(args) => commands::advise::run(&args, console),

@@ -3,7 +3,7 @@
 //! An [`OutputFile`] is written to a temporary file beside its target and renamed by [`OutputFile::commit_all`]. Dropped before
 //! that (an error, a panic, an end from outside), it leaves nothing; what a process leaves that was killed, the next one removes. What
 //! goes to the standard output (`-`), to a pipe or to a device waits in a file without a name until all is complete. The data is not
-//! forced to the disk: it survives the end of the process, not of the power.
+//! forced to the disk: it survives the end of the process, not of the power. [`OutputFile::sync`] forces it.
 
 mod error;
 mod part_files;
@@ -98,6 +98,16 @@ impl OutputFile {
     /// Where the file will stand, as it was given.
     pub fn path(&self) -> &Path {
         &self.shown
+    }
+
+    /// Forces the data to the disk: after a power failure, too, the file is there whole or not at all.
+    ///
+    /// # Errors
+    /// What the operating system says, such as a full disk.
+    pub fn sync(&mut self) -> Result<(), OutputError> {
+        self.out.flush().map_err(|error| OutputError::from_io(error, &self.shown))?;
+        let Named { file, shown, folder } = self.out.get_mut();
+        file.sync_data().map_err(|error| OutputError::io(FileOperation::Write, shown, folder, error))
     }
 
     /// All files of a run are complete: they take their places. The last bytes of all are written before the first moves,

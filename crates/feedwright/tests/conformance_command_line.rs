@@ -7,12 +7,14 @@ use std::process::{Command, Stdio};
 use crate::command::{Folder, Ran, skipped};
 
 /// All commands.
-const COMMANDS: [&str; 17] = [
+const COMMANDS: [&str; 19] = [
     "run",
     "correct",
     "advise",
     "plan",
     "diff",
+    "sweep",
+    "merge",
     "check",
     "open",
     "identify",

@@ -63,6 +63,7 @@ mod conformance_report_page;
 mod conformance_results;
 mod conformance_style;
 mod conformance_supply_chain;
+mod conformance_sweep;
 mod golden_gcode_mistakes;
 mod golden_help;
 mod golden_linuxcnc_setup;

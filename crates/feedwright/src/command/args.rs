@@ -8,6 +8,7 @@ pub(crate) mod correct;
 pub(crate) mod advise;
 pub(crate) mod run;
 pub(crate) mod plan;
+pub(crate) mod sweep;
 pub(crate) mod identify;
 pub(crate) mod lab;
 pub(crate) mod excite;
@@ -43,6 +44,7 @@ use man::ManArgs;
 use open::OpenArgs;
 use plan::PlanArgs;
 use run::RunArgs;
+use sweep::{MergeArgs, SweepJobsArgs};
 
 use crate::command::terminal::{ColorWhen, LengthUnits, columns, is_dumb, set_color, set_units};
 use help::{grouped, shown_options};
@@ -111,6 +113,8 @@ pub(crate) enum CommandArgs {
     Advise(AdviseArgs),
     Plan(PlanArgs),
     Diff(DiffArgs),
+    Sweep(SweepJobsArgs),
+    Merge(MergeArgs),
     Check(CheckArgs),
     Open(OpenArgs),
     Identify(Box<IdentifyArgs>),

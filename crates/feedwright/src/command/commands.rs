@@ -14,6 +14,8 @@ pub(crate) mod lab;
 pub(crate) mod linuxcnc;
 pub(crate) mod list;
 pub(crate) mod man;
+pub(crate) mod merge;
 pub(crate) mod open;
 pub(crate) mod plan;
 pub(crate) mod run;
+pub(crate) mod sweep;

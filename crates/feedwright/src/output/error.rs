@@ -79,7 +79,7 @@ impl std::fmt::Display for FileOperation {
 
 impl OutputError {
     /// An error of the operating system, with the remedy that fits it.
-    pub(super) fn io(step: FileOperation, path: &Path, folder: &Path, source: io::Error) -> Self {
+    pub(crate) fn io(step: FileOperation, path: &Path, folder: &Path, source: io::Error) -> Self {
         let (mut free_bytes, mut hint) = (None, None);
         match source.kind() {
             // Some folders exist and take no files.

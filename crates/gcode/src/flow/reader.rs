@@ -148,6 +148,11 @@ impl Reader {
         self.flow.source().name.clone()
     }
 
+    /// The files of subroutines that were opened so far, in the order in which they were called first.
+    pub fn subroutine_files(&self) -> impl Iterator<Item = &Path> {
+        self.flow.files.iter().filter_map(|file| file.path.as_deref())
+    }
+
     /// Lines carried out so far; those of loops and subroutines count each time.
     pub const fn lines(&self) -> u64 {
         self.lines

@@ -8,8 +8,9 @@ use clap::{Arg, Command};
 const MOST_OPTIONS: usize = 15;
 
 /// The commands by what they are for. A command that is in no group is listed in the last.
-const GROUPS: [(&str, &[&str]); 4] = [
+const GROUPS: [(&str, &[&str]); 5] = [
     ("Program", &["run", "correct", "advise", "plan", "open", "diff", "check", "canon"]),
+    ("Many programs", &["sweep", "merge"]),
     ("Machine", &["identify", "excite", "machines", "controllers"]),
     ("LinuxCNC", &["linuxcnc", "block"]),
     ("feedwright itself", &[]),

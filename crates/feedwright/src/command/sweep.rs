@@ -1,0 +1,48 @@
+//! Sweeps: many jobs of `run`, each result a file of its own.
+//!
+//! A job's result is stored under the hash of everything that it follows from. Any number of processes on any number of computers
+//! may therefore work on one folder: what is there is not computed again, and no process waits for another.
+//!
+//! | File | What |
+//! |---|---|
+//! | `sweep/job_spec.rs` | one job: its keys, its address, its cut |
+//! | `sweep/job_list.rs` | the list of jobs, JOBS.toml, and shards |
+//! | `sweep/result_store.rs` | the folder of results |
+//! | `sweep/result_table.rs` | the results as rows of a table |
+
+pub(crate) mod job_spec;
+pub(crate) mod job_list;
+pub(crate) mod result_store;
+pub(crate) mod result_table;
+
+use feedwright_sim::Watch;
+use miette::Result;
+
+use job_spec::ListedJob;
+use result_store::ResultStore;
+
+/// A job whose result is in the store.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct JobDone {
+    /// Address of the result.
+    pub address: String,
+    /// Whether the result was there before.
+    pub found: bool,
+    /// The message of the error that is the result, if it is one.
+    pub error: Option<String>,
+}
+
+/// Does a job, unless its result is in the store.
+///
+/// # Errors
+/// A file that cannot be read, a result that cannot be written, or an end from outside: nothing is stored, and the job may be done
+/// again. The mistakes of a program, a machine or a model are a result.
+pub fn do_job(store: &ResultStore, job: &ListedJob, watch: &dyn Watch) -> Result<JobDone> {
+    let address = job.address()?;
+    if let Some(result) = store.get(&address) {
+        return Ok(JobDone { address, found: true, error: job_spec::error_of(&result) });
+    }
+    let result = job.result(&address, watch)?;
+    store.put(&address, &result)?;
+    Ok(JobDone { address, found: false, error: job_spec::error_of(&result) })
+}

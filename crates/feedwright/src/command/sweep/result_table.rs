@@ -1,0 +1,179 @@
+//! Results of a sweep as a table: one row for each job, its keys, its figures, and those that it is compared with.
+
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use feedwright_sim::Watch;
+use miette::{Result, miette};
+use serde_json::{Map, Value};
+
+use super::job_spec::error_of;
+use super::result_store::{ResultStore, read};
+use crate::results_format::spelled_out;
+
+/// Where a column comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum ColumnSource {
+    /// The result.
+    Result,
+    /// The keys of the job.
+    Job,
+    /// The message of the error.
+    Error,
+    /// The run of the controller.
+    Run,
+    /// The run that it is compared with.
+    Against,
+}
+
+/// A column of the table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ResultColumn {
+    /// Name.
+    pub name: &'static str,
+    /// Whether it has numbers.
+    pub is_number: bool,
+    source: ColumnSource,
+    pointer: &'static str,
+}
+
+const fn column(name: &'static str, is_number: bool, source: ColumnSource, pointer: &'static str) -> ResultColumn {
+    ResultColumn { name, is_number, source, pointer }
+}
+
+/// The columns, in the order in which rows are sorted and written.
+pub const RESULT_COLUMNS: [ResultColumn; 27] = {
+    use ColumnSource::{Against, Error, Job, Result, Run};
+    [
+        column("program", false, Job, "/program"),
+        column("machine", false, Job, "/machine"),
+        column("controller", false, Job, "/controller"),
+        column("against", false, Job, "/against"),
+        column("tolerance_um", true, Job, "/tolerance_um"),
+        column("feed_mm_s", true, Job, "/feed_mm_s"),
+        column("settings", false, Job, "/settings"),
+        column("model", false, Job, "/model"),
+        column("seed", true, Job, "/seed"),
+        column("error", false, Error, ""),
+        column("within_tolerance", false, Result, "/within_tolerance"),
+        column("outcome", false, Run, "/outcome/kind"),
+        column("time_s", true, Run, "/time_s"),
+        column("rms_um", true, Run, "/rms_um"),
+        column("max_um", true, Run, "/max_um"),
+        column("uncut_um", true, Run, "/uncut_um"),
+        column("max_deviation_um", true, Run, "/max_deviation_um"),
+        column("max_command_accel_mm_s2", true, Run, "/max_command_accel_mm_s2"),
+        column("engaged_share", true, Run, "/engaged_share"),
+        column("cutting_length_mm", true, Run, "/cutting_length_mm"),
+        column("against_time_s", true, Against, "/time_s"),
+        column("against_rms_um", true, Against, "/rms_um"),
+        column("against_max_um", true, Against, "/max_um"),
+        column("against_uncut_um", true, Against, "/uncut_um"),
+        column("band_max_um_p90", true, Result, "/band/max_um/p90"),
+        column("version", false, Result, "/version"),
+        column("address", false, Result, "/address"),
+    ]
+};
+
+impl ResultColumn {
+    fn of(&self, result: &Value) -> Value {
+        let runs = result["runs"].as_array().map_or(&[][..], Vec::as_slice);
+        let within = match self.source {
+            ColumnSource::Result => Some(result),
+            ColumnSource::Job => result.get("job"),
+            ColumnSource::Error => return error_of(result).map_or(Value::Null, Value::from),
+            ColumnSource::Run => runs.last(),
+            ColumnSource::Against => runs.first().filter(|_| runs.len() > 1),
+        };
+        match within.and_then(|value| value.pointer(self.pointer)) {
+            // A list or an object is its text: a cell holds one value.
+            Some(value @ (Value::Array(_) | Value::Object(_))) => spelled_out(&value.to_string()).into(),
+            Some(value) => value.clone(),
+            None => Value::Null,
+        }
+    }
+}
+
+/// The rows of results, sorted by program, machine, controller and the other keys.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ResultTable {
+    /// A cell for each of [`RESULT_COLUMNS`].
+    pub rows: Vec<Vec<Value>>,
+}
+
+impl ResultTable {
+    /// The results of all stores; one that several have is one row.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or an end from outside.
+    pub fn of(stores: &[ResultStore], watch: &dyn Watch) -> Result<Self> {
+        let mut files: BTreeMap<_, PathBuf> = BTreeMap::new();
+        for store in stores {
+            files.extend(store.files()?.into_iter().filter_map(|path| Some((path.file_name()?.to_owned(), path))));
+        }
+        watch.begin("reading the results", files.len() as u64);
+        let mut rows = Vec::with_capacity(files.len());
+        for path in files.values() {
+            watch.check()?;
+            let result = read(path).map_err(|error| {
+                miette!(
+                    help = "remove the file and sweep again: the job is done anew",
+                    "a result is damaged: {error:#}"
+                )
+            })?;
+            rows.push(RESULT_COLUMNS.iter().map(|column| column.of(&result)).collect());
+            watch.advance(1);
+        }
+        rows.sort_by(by_cells);
+        Ok(Self { rows })
+    }
+
+    /// Writes a line of names, and a line for each row, separated by commas. A missing value is empty.
+    ///
+    /// # Errors
+    /// What the writer says.
+    pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
+        writeln!(out, "{}", RESULT_COLUMNS.map(|column| column.name).join(","))?;
+        for row in &self.rows {
+            writeln!(out, "{}", row.iter().map(csv_cell).collect::<Vec<_>>().join(","))?;
+        }
+        Ok(())
+    }
+
+    /// Writes an object for each row, one a line. A missing value is null.
+    ///
+    /// # Errors
+    /// What the writer says.
+    pub fn write_json_lines(&self, out: &mut impl Write) -> io::Result<()> {
+        for row in &self.rows {
+            let cells = RESULT_COLUMNS.iter().map(|column| column.name.to_owned()).zip(row.iter().cloned());
+            writeln!(out, "{}", spelled_out(&Value::from(cells.collect::<Map<_, _>>()).to_string()))?;
+        }
+        Ok(())
+    }
+}
+
+/// A cell of RFC 4180; line ends in a text are spaces, so that each line is a row.
+fn csv_cell(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => {
+            let text = text.replace(['\r', '\n'], " ");
+            if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
+        }
+        value => value.to_string(),
+    }
+}
+
+/// Rows by their cells from the first on: numbers by value, texts by their letters.
+fn by_cells(a: &Vec<Value>, b: &Vec<Value>) -> Ordering {
+    let by_cell = |(a, b): (&Value, &Value)| match (a, b) {
+        (Value::Number(a), Value::Number(b)) => {
+            a.as_f64().unwrap_or_default().total_cmp(&b.as_f64().unwrap_or_default())
+        }
+        (a, b) => a.as_str().cmp(&b.as_str()),
+    };
+    a.iter().zip(b).map(by_cell).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+}
