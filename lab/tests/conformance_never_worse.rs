@@ -27,6 +27,31 @@ fn uncorrected_is_never_worse_than_uncorrected() {
 }
 
 #[test]
+fn three_shards_merge_to_the_bytes_of_one_run() {
+    let folder = Folder::new();
+    folder.file("teeth.ngc", "G21 G91 F1500\nG1 X1\nY0.5\nX1\nY-0.5\nX1\nY0.5\nM2\n");
+    let with = |more: &[&str]| {
+        let cut = ["never-worse", "--controller", "feedforward", ".", "--machine", "tnv40", "--machine", "coarse"];
+        folder.run(&[&cut, more].concat())
+    };
+    // The last line has the time that it took.
+    let table =
+        |told: &str| told.lines().filter(|line| !line.contains(" h of machining")).collect::<Vec<_>>().join("\n");
+    let whole = with(&["--json", "whole.json", "--journal", "whole.jsonl"]);
+    for shard in ["1/3", "2/3", "3/3"] {
+        let journal = format!("{}.jsonl", &shard[..1]);
+        with(&["--shard", shard, "--journal", &journal]);
+        assert!((1..=2).contains(&folder.text(&journal).lines().count()), "{shard}");
+    }
+    let merged = with(&["--merge", "1.jsonl,2.jsonl,3.jsonl", "--json", "merged.json", "--journal", "none.jsonl"]);
+    assert!(merged.stdout.contains("cuts that were in the journal: 4"), "{}", merged.stdout);
+    assert_eq!((merged.code, table(&merged.stdout)), (whole.code, table(&whole.stdout)));
+    assert_eq!(folder.read("merged.json"), folder.read("whole.json"));
+    with(&["--shard", "1/3"]).refused(&["--journal"]);
+    with(&["--merge", "missing.jsonl"]).refused(&["missing.jsonl"]);
+}
+
+#[test]
 fn a_sample_is_the_same_for_the_same_seed() {
     let folder = Folder::new();
     let sample = |seed: &str| {

@@ -12,6 +12,7 @@ use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
 
 use crate::command::args::sweep::SweepArgs;
+use crate::compare::Shard;
 use crate::journal::Journal;
 use crate::never_worse::cut::{Figures, SweepRow};
 use crate::never_worse::summary::{Judged, Quantiles, SweepSummary, UNCORRECTED_UM};
@@ -22,6 +23,7 @@ use crate::peers::CONTROLLERS;
 pub(super) struct Sweep {
     pub(crate) options: SweepOptions,
     journal: Journal<SweepRow>,
+    shard: Shard,
     json: Option<OutputFile>,
     json_to: Option<PathBuf>,
 }
@@ -37,18 +39,23 @@ impl Sweep {
         let options = SweepOptions { controllers, set, recorded: false, seed: args.seed, threads };
         let mut files = OutputFiles::new(inputs.iter().copied());
         let json = args.json.as_ref().map(|path| files.start(path)).transpose()?;
-        let journal = journal(args.journal.as_deref())?;
+        let mut journal = journal(args.journal.as_deref())?;
+        for path in &args.merge {
+            let of_shard = Journal::read(path).into_diagnostic().wrap_err_with(|| path.display().to_string())?;
+            journal.take_over(of_shard);
+        }
         if journal.damaged() > 0 {
             remark(&format!("lines of the journal that are damaged, and cut anew: {}", journal.damaged()));
         }
-        Ok(Self { options, journal, json, json_to: args.json.clone() })
+        Ok(Self { options, journal, shard: args.shard.unwrap_or(Shard::ALL), json, json_to: args.json.clone() })
     }
 
-    /// Cuts all jobs.
-    pub(crate) fn run(&self, jobs: &[SweepJob], console: &Console) -> Result<Done> {
+    /// Cuts the jobs of the shard.
+    pub(crate) fn run(&self, jobs: Vec<SweepJob>, console: &Console) -> Result<Done> {
+        let jobs = self.shard.of(jobs);
         let bar = console.bar(0);
         let began = Instant::now();
-        let swept = sweep(jobs, &self.options, &self.journal, &bar);
+        let swept = sweep(&jobs, &self.options, &self.journal, &bar);
         bar.clear();
         let Swept { rows, known } = swept?;
         let SweepOptions { controllers, threads, .. } = &self.options;

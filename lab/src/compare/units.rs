@@ -56,7 +56,7 @@ impl Shard {
     /// All of them.
     pub const ALL: Self = Self { index: 0, count: 1 };
 
-    fn of<T>(self, units: Vec<T>) -> Vec<T> {
+    pub(crate) fn of<T>(self, units: Vec<T>) -> Vec<T> {
         units.into_iter().skip(self.index).step_by(self.count).collect()
     }
 }

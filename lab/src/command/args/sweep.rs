@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::compare::Shard;
+
 /// A number of cuts.
 pub(super) fn at_least_one(text: &str) -> Result<usize, String> {
     match text.parse() {
@@ -35,6 +37,12 @@ pub(crate) struct SweepArgs {
     /// Where finished cuts are kept, so that an interrupted run goes on [default: in the cache, by version].
     #[arg(long, value_name = "FILE.jsonl")]
     pub(crate) journal: Option<PathBuf>,
+    /// Cut the i-th of n parts of the cuts alone. Give each part a --journal; the same command with --merge makes the table of all.
+    #[arg(long, value_name = "I/N", requires = "journal")]
+    pub(crate) shard: Option<Shard>,
+    /// Journals of shards, or of other runs of the same version: what they have is not cut again.
+    #[arg(long, value_name = "FILE.jsonl,...", value_delimiter = ',')]
+    pub(crate) merge: Vec<PathBuf>,
     /// Write all cuts.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) json: Option<PathBuf>,

@@ -32,7 +32,7 @@ pub(crate) fn run(args: &HeldOutArgs, console: &Console) -> Result<ExitCode> {
     eprintln!("{} cuts drawn by seed {}, {} programs for each machine", args.count, args.drawn_by, args.programs);
     let jobs: Vec<SweepJob> = generated.iter().map(|made| made.job.clone()).collect();
     let options = sweep.options.clone();
-    let mut done = sweep.run(&jobs, console)?;
+    let mut done = sweep.run(jobs, console)?;
     let summary = SweepSummary::of(std::mem::take(&mut done.rows));
     let printing = sweep.write(&summary, console).map(|mut out| done.print(&summary, &mut out))?;
     if let Some(folder) = &args.failures {

@@ -66,7 +66,7 @@ pub(crate) fn run(args: &MismatchArgs, console: &Console) -> Result<ExitCode> {
         return run_sudden(&all, ours, sweep, console);
     }
     eprintln!("{} cuts by models of {} machines with {} controllers", all.len(), bases.len(), names.len());
-    let mut done = sweep.run(&all, console)?;
+    let mut done = sweep.run(all, console)?;
     let summary = MismatchSummary::of(std::mem::take(&mut done.rows), ours);
     let mut out = sweep.write(&StampedResult::of(&summary), console)?;
     let printing = done.print(&summary.ours, &mut out).and_then(|()| print(&summary, &mut out));
