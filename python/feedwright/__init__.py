@@ -31,6 +31,7 @@ from ._jobs import (
     plan,
     run,
 )
+from ._sweep import Job, SweepError, Swept, merge, sweep
 from ._table import Table
 
 __all__ = [
@@ -41,9 +42,12 @@ __all__ = [
     "CycleTime",
     "FeedwrightError",
     "Identified",
+    "Job",
     "Machine",
     "Motion",
     "Program",
+    "SweepError",
+    "Swept",
     "Table",
     "__version__",
     "advise",

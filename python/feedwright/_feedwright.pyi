@@ -36,6 +36,7 @@ class Program:
     @property
     def name(self) -> str:
         """What messages call it."""
+    def _job(self) -> str: ...
 
 class Motion:
     """A motion of a program."""
@@ -74,6 +75,7 @@ class Machine:
     @property
     def values(self) -> dict[str, Any]:
         """The keys and values of its file, as nested dicts."""
+    def _job(self) -> tuple[str, str | None]: ...
     def with_values(self, values: Mapping[str, float | int | str | bool]) -> Machine:
         """A machine with other values, by the keys of the file: `{"axis.x.kp_1_s": 80}`."""
 
@@ -82,6 +84,11 @@ class CutOutcome:
 
 class IdentifiedMachine:
     def html(self) -> bytes: ...
+
+class JobList(Sequence[str]):
+    def __init__(self, path: str | PathLike[str]) -> None: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, number: int) -> str: ...  # type: ignore[override]
 
 _Told = Callable[[str, int, int], Any] | None
 
@@ -180,3 +187,8 @@ def held_out_machine(seed: int) -> Machine | None: ...
 def tables_page(
     title: str, introduction: str, parts: Sequence[tuple[str, str, Sequence[str], Sequence[Sequence[str]]]]
 ) -> str: ...
+def job_address(spec: str, folder: str | PathLike[str]) -> str: ...
+def do_job(
+    spec: str, folder: str | PathLike[str], out: str | PathLike[str]
+) -> tuple[str | None, bool, str | None]: ...
+def merge(folders: Sequence[str | PathLike[str]]) -> dict[str, Any]: ...

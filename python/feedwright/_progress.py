@@ -24,8 +24,8 @@ class Bar:
     def __call__(self, stage: str, done: int, steps: int) -> None:
         if self._bar is None or stage != self._stage:
             self.close()
-            self._stage, self._bar = stage, self._tqdm(total=steps, desc=stage, leave=False)
-        self._bar.total = steps
+            self._stage, self._bar = stage, self._tqdm(total=steps or None, desc=stage, leave=False)
+        self._bar.total = steps or None
         self._bar.update(done - self._bar.n)
 
     def close(self) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -38,6 +39,12 @@ class Table(Mapping[str, Any]):
         import pyarrow
 
         return pyarrow.table({name: pyarrow.array(column) for name, column in self._columns.items()})
+
+    def to_parquet(self, path: str | os.PathLike[str]) -> None:
+        """Writes a Parquet file, by pyarrow."""
+        from pyarrow import parquet
+
+        parquet.write_table(self.to_arrow(), path)
 
     def to_pandas(self) -> Any:
         """As a data frame of pandas."""

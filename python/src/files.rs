@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use feedwright::command::{JobSpec, mistake_json};
 use feedwright::gcode::canon::{Canon, MotionKind, Shape};
 use feedwright::gcode::{AUTO, CheckError, Dialect, INCH_MM, Program, Reader, Settings, ToolTable};
 use feedwright::sim::{BUILT_IN_MACHINES, Machine, MachineError};
@@ -12,13 +13,15 @@ use pyo3::types::PyDict;
 use serde_json::json;
 use toml_edit::{DocumentMut, Item, Table, Value};
 
-use crate::fault::{exception, finding, from_json};
+use crate::fault::{exception, from_json};
 
 /// A G-code program in a file or a text, and how it is read.
 #[pyclass(frozen, name = "Program", module = "feedwright")]
 pub(crate) struct PythonProgram {
     pub(crate) program: Program,
     pub(crate) settings: Settings,
+    /// The keys of a job that say the same.
+    spec: JobSpec,
 }
 
 #[pymethods]
@@ -34,9 +37,22 @@ impl PythonProgram {
         inch_tools: bool,
         subroutines: Vec<PathBuf>,
     ) -> PyResult<Self> {
+        let spec = JobSpec {
+            program: path
+                .as_ref()
+                .map(|path| path.display().to_string())
+                .or_else(|| name.clone())
+                .unwrap_or_else(unnamed),
+            program_text: text.clone(),
+            dialect: dialect.to_owned(),
+            tool_table: tool_table.clone(),
+            inch_tools,
+            subroutines: subroutines.clone(),
+            ..JobSpec::default()
+        };
         let program = match (path, text) {
             (Some(path), None) => Ok(Program::in_file(path)),
-            (None, Some(text)) => Ok(Program::from_text(name.unwrap_or_else(|| "program.ngc".to_owned()), text)),
+            (None, Some(text)) => Ok(Program::from_text(name.unwrap_or_else(unnamed), text)),
             _ => Err(miette!(
                 help = "Program(\"part.ngc\") or Program(text=\"G1 X1 F100\\nM2\")",
                 "a program needs a path or a text"
@@ -54,7 +70,12 @@ impl PythonProgram {
             })
         };
         let settings = settings().map_err(|error: Report| exception(&error))?;
-        Ok(Self { program: program.map_err(|error| exception(&error))?, settings })
+        Ok(Self { program: program.map_err(|error| exception(&error))?, settings, spec })
+    }
+
+    /// A job of a sweep with this program, as JSON.
+    fn _job(&self) -> PyResult<String> {
+        job_text(&self.spec)
     }
 
     /// What messages call it.
@@ -66,6 +87,15 @@ impl PythonProgram {
     fn __repr__(&self) -> String {
         format!("<feedwright.Program {}>", self.program.name())
     }
+}
+
+fn unnamed() -> String {
+    "program.ngc".to_owned()
+}
+
+/// A job of a sweep as JSON.
+pub(crate) fn job_text(spec: &JobSpec) -> PyResult<String> {
+    serde_json::to_string(spec).into_diagnostic().map_err(|error| exception(&error))
 }
 
 /// A motion of a program.
@@ -141,7 +171,7 @@ pub(crate) fn check<'py>(py: Python<'py>, program: &PythonProgram) -> PyResult<B
         Ok(summary) => {
             let (dialect, reason) = summary.dialect;
             json!({
-                "findings": summary.warnings.iter().map(finding).collect::<Vec<_>>(),
+                "findings": summary.warnings.iter().map(mistake_json).collect::<Vec<_>>(),
                 "lines": summary.lines,
                 "motions": summary.motions,
                 "feed_mm": summary.feed_mm,
@@ -152,7 +182,7 @@ pub(crate) fn check<'py>(py: Python<'py>, program: &PythonProgram) -> PyResult<B
             })
         }
         Err(CheckError::Read(error)) => return Err(exception(&error.into())),
-        Err(CheckError::Faults(faults)) => json!({ "findings": faults.iter().map(finding).collect::<Vec<_>>() }),
+        Err(CheckError::Faults(faults)) => json!({ "findings": faults.iter().map(mistake_json).collect::<Vec<_>>() }),
     };
     from_json(py, &answer.to_string())
 }
@@ -193,6 +223,14 @@ impl PythonMachine {
             )),
         };
         found.map_err(|error| exception(&error))
+    }
+
+    /// Name and text by which a job of a sweep has it; a machine that is built in needs no text.
+    fn _job(&self) -> (String, Option<String>) {
+        match &self.file {
+            Some(file) => (file.clone(), Some(self.machine.text())),
+            None => (self.machine.name.clone(), None),
+        }
     }
 
     /// Its name.

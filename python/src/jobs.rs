@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use feedwright::command::{find, settings, today};
+use feedwright::command::{find, mistake_json, settings, today};
 use feedwright::gcode::input;
 use feedwright::ident::{Columns, Log, Model};
 use feedwright::plan::Constraints;
@@ -21,7 +21,7 @@ use pyo3::types::PyDict;
 use serde_json::{Value, json};
 
 use crate::columns::RowColumns;
-use crate::fault::{exception, finding, from_json};
+use crate::fault::{exception, from_json};
 use crate::files::{PythonMachine, PythonProgram};
 use crate::watched::watched;
 
@@ -183,7 +183,7 @@ pub(crate) fn correct<'py>(
         job.logs = options.logs.iter().map(measured).collect::<Result<_>>()?;
         let outcome = job.run(watch)?;
         let mut results = serde_json::to_value(&outcome).into_diagnostic()?;
-        results["warnings"] = outcome.warnings.iter().map(finding).collect::<Vec<_>>().into();
+        results["warnings"] = outcome.warnings.iter().map(mistake_json).collect::<Vec<_>>().into();
         Ok((results, outcome.program().map(str::to_owned)))
     };
     let (results, program) = watched(py, progress.as_ref(), work)?;

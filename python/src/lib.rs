@@ -8,6 +8,7 @@
 //! | `columns.rs` | rows of a cut as arrays |
 //! | `jobs.rs` | run, correct, advise, plan, identify |
 //! | `lab.rs` | controllers and terms of the plant in Python |
+//! | `sweeps.rs` | jobs of sweeps, tables of their results |
 //!
 //! Figures leave as JSON, as the command writes them; rows leave as arrays of numpy that own their memory, so that
 //! nothing is copied.
@@ -18,6 +19,7 @@ mod files;
 mod columns;
 mod jobs;
 mod lab;
+mod sweeps;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -41,6 +43,8 @@ mod _feedwright {
     use super::lab::{MeasuredTool, PythonWindow, episode::Episode, run_with};
     #[pymodule_export]
     use super::main;
+    #[pymodule_export]
+    use super::sweeps::{PythonJobList, do_python_job, job_address, merge};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

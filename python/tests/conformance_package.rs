@@ -3,9 +3,13 @@
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::OnceLock;
 
+/// The interpreter of all tests.
+static PYTHON: OnceLock<Option<PathBuf>> = OnceLock::new();
 /// What the tests of the package import.
-const NEEDED: [&str; 4] = ["gymnasium==1.4.0", "matplotlib==3.11.2", "numpy==2.4.6", "pyarrow==26.0.1"];
+const NEEDED: [&str; 5] =
+    ["distributed==2026.8.0", "gymnasium==1.4.0", "matplotlib==3.11.2", "numpy==2.4.6", "pyarrow==26.0.1"];
 
 fn root() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
@@ -16,7 +20,7 @@ fn interpreter(target: &Path) -> Option<PathBuf> {
     let folder = target.join("python-tests");
     let python = folder.join("bin/python");
     let has = |code: &str| Command::new(&python).args(["-c", code]).output().is_ok_and(|ran| ran.status.success());
-    if has("import gymnasium, matplotlib, numpy, pyarrow") {
+    if has("import distributed, gymnasium, matplotlib, numpy, pyarrow") {
         return Some(python);
     }
     let run = |program: &Path, arguments: &[&str]| {
@@ -31,11 +35,26 @@ fn interpreter(target: &Path) -> Option<PathBuf> {
 
 #[test]
 fn the_package_does_what_its_examples_and_tests_say() {
+    runs("test_package.py");
+}
+
+#[test]
+fn the_gym_does_what_its_examples_and_tests_say() {
+    runs("test_lab.py");
+}
+
+#[test]
+fn a_sweep_loses_nothing_whoever_is_killed() {
+    runs("test_sweep.py");
+}
+
+/// Runs a file of tests with the package.
+fn runs(tests: &str) {
     // Beside the executable of this test.
     let built = std::env::current_exe().unwrap();
     let built = built.parent().unwrap().join(format!("{DLL_PREFIX}feedwright_python{DLL_SUFFIX}"));
     let target = built.ancestors().nth(3).unwrap();
-    let Some(python) = interpreter(target) else {
+    let Some(python) = PYTHON.get_or_init(|| interpreter(target)) else {
         assert!(std::env::var_os("CI").is_none(), "no Python 3.11 with venv, or PyPI is out of reach");
         eprintln!("NOT TESTED: the package of Python, for want of Python 3.11 with venv, or of PyPI");
         return;
@@ -51,8 +70,7 @@ fn the_package_does_what_its_examples_and_tests_say() {
     }
     std::fs::copy(&built, package.join("_feedwright.abi3.so")).unwrap();
     let ran = Command::new(python)
-        .args(["-m", "unittest", "discover", "--start-directory"])
-        .arg(root().join("python/tests"))
+        .arg(root().join("python/tests").join(tests))
         .env("PYTHONPATH", place.path())
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .env("FEEDWRIGHT_DOCS", root().join("docs"))

@@ -42,7 +42,8 @@ def load_tests(loader: unittest.TestLoader, tests: unittest.TestSuite, pattern: 
         if module.name not in ("feedwright.__main__", "feedwright._feedwright"):
             tests.addTests(doctest.DocTestSuite(importlib.import_module(module.name)))
     tests.addTests(doctest.DocTestSuite(feedwright))
-    tests.addTests(doctest.DocFileSuite(str(DOCS / "python.md"), module_relative=False))
+    for page in ("python.md", "sweeps.md"):
+        tests.addTests(doctest.DocFileSuite(str(DOCS / page), module_relative=False))
     return tests
 
 

@@ -1,0 +1,109 @@
+//! Jobs of sweeps, and tables of their results.
+
+use std::path::PathBuf;
+
+use feedwright::OutputError;
+use feedwright::command::{JobList, JobSpec, ListedJob, RESULT_COLUMNS, ResultStore, ResultTable, do_job};
+use miette::{IntoDiagnostic, Report, WrapErr};
+use numpy::PyArray1;
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use serde_json::Value;
+
+use crate::fault::exception;
+use crate::files::job_text;
+use crate::watched::watched;
+
+/// The jobs of JOBS.toml, each made when it is asked for.
+#[pyclass(frozen, name = "JobList", module = "feedwright")]
+pub(crate) struct PythonJobList {
+    list: JobList,
+}
+
+#[pymethods]
+impl PythonJobList {
+    #[new]
+    fn new(path: PathBuf) -> PyResult<Self> {
+        Ok(Self { list: JobList::read(&path).map_err(|error| exception(&error))? })
+    }
+
+    fn __len__(&self) -> usize {
+        self.list.len()
+    }
+
+    fn __getitem__(&self, number: usize) -> PyResult<String> {
+        match self.list.job(number).map_err(|error| exception(&error))? {
+            Some(job) => job_text(&job.spec),
+            None => Err(PyIndexError::new_err(number)),
+        }
+    }
+}
+
+fn listed(spec: &str, folder: PathBuf) -> Result<ListedJob, Report> {
+    let spec: JobSpec = serde_json::from_str(spec).into_diagnostic().wrap_err("no job")?;
+    spec.check_names()?;
+    Ok(ListedJob { spec, folder })
+}
+
+/// The address of the result of a job.
+#[pyfunction]
+pub(crate) fn job_address(py: Python<'_>, spec: &str, folder: PathBuf) -> PyResult<String> {
+    py.detach(|| listed(spec, folder)?.address()).map_err(|error| exception(&error))
+}
+
+/// Does a job, unless its result is in the store: its address, whether it was there, and the error that it is. No address if a file
+/// cannot be read.
+///
+/// # Errors
+/// A result that cannot be written, and an end from outside.
+#[pyfunction(name = "do_job")]
+pub(crate) fn do_python_job(
+    py: Python<'_>,
+    spec: &str,
+    folder: PathBuf,
+    out: PathBuf,
+) -> PyResult<(Option<String>, bool, Option<String>)> {
+    let done = watched(py, None, |watch| {
+        let store = ResultStore::create(&out)?;
+        match do_job(&store, &listed(spec, folder)?, watch) {
+            Ok(done) => Ok((Some(done.address), done.found, done.error)),
+            Err(error) if error.downcast_ref::<OutputError>().is_some() => Err(error),
+            Err(error) => {
+                watch.check()?;
+                Ok((None, false, Some(feedwright::command::fault_text(&error))))
+            }
+        }
+    });
+    done
+}
+
+/// The columns of the results in folders.
+#[pyfunction]
+pub(crate) fn merge<'py>(py: Python<'py>, folders: Vec<PathBuf>) -> PyResult<Bound<'py, PyDict>> {
+    let table = watched(py, None, |watch| {
+        let stores = folders.iter().map(|folder| ResultStore::open(folder)).collect::<Result<Vec<_>, _>>()?;
+        ResultTable::of(&stores, watch)
+    })?;
+    let columns = PyDict::new(py);
+    for (at, column) in RESULT_COLUMNS.iter().enumerate() {
+        let cells = table.rows.iter().map(|row| &row[at]);
+        if column.is_number {
+            let numbers = cells.map(|cell| cell.as_f64().unwrap_or(f64::NAN)).collect();
+            columns.set_item(column.name, PyArray1::from_vec(py, numbers))?;
+        } else {
+            let objects = cells.map(|cell| object(py, cell)).collect::<PyResult<Vec<_>>>()?;
+            columns.set_item(column.name, PyList::new(py, objects)?)?;
+        }
+    }
+    Ok(columns)
+}
+
+/// A text, a truth, or nothing.
+fn object<'py>(py: Python<'py>, cell: &Value) -> PyResult<Bound<'py, PyAny>> {
+    Ok(match cell {
+        Value::String(text) => text.into_pyobject(py)?.into_any(),
+        Value::Bool(truth) => truth.into_pyobject(py)?.to_owned().into_any(),
+        _ => py.None().into_bound(py),
+    })
+}
