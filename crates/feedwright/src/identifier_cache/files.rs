@@ -12,10 +12,10 @@ use crate::output::{OutputFile, OutputFiles};
 /// Bytes that the cache has at most. A model of a machine with those that fit its log has 0.1 to 0.2 MB: room for some hundred machines.
 pub(crate) const MOST_BYTES: u64 = 64 << 20;
 
-/// A hash of this program.
+/// A hash of this program, and its version: in Python the program is the interpreter, which stays when feedwright changes.
 static PROGRAM: LazyLock<Option<String>> = LazyLock::new(|| {
     let program = std::env::current_exe().and_then(std::fs::read).ok()?;
-    Some(blake3::hash(&program).to_hex().to_string())
+    Some(format!("{} {}", env!("CARGO_PKG_VERSION"), blake3::hash(&program).to_hex()))
 });
 
 /// The folder of the cache, where there is one.
