@@ -58,6 +58,14 @@ fn figures(mut result: Value) -> Value {
             run.as_object_mut().unwrap().remove(key).unwrap();
         }
     }
+    // The day on which the model was identified.
+    for told in ["/assumed/law_from", "/settings/Model"] {
+        if let Some(Value::String(text)) = result.pointer_mut(told)
+            && let Some((before, "0")) = text.rsplit_once(", 2").map(|(before, date)| (before, &date[..1]))
+        {
+            *text = before.to_owned();
+        }
+    }
     for key in ["job", "address"] {
         result.as_object_mut().unwrap().remove(key);
     }
@@ -86,24 +94,10 @@ fn a_job_has_the_figures_of_run_and_a_mistake_stops_no_other() {
             continue;
         }
         let (program, machine, controller) = (job("program"), job("machine"), job("controller"));
-        let mut line = vec![
-            "run",
-            &program,
-            "--machine",
-            &machine,
-            "--controller",
-            &controller,
-            "--band",
-            "0",
-            "--json",
-            "run.json",
-        ];
-        if controller != "lqg-identified" {
-            line.extend(["--tolerance", "10"]);
-        }
+        let cut = ["run", &program, "--machine", &machine, "--controller", &controller];
+        let line = [&cut[..], &["--tolerance", "10", "--band", "0", "--json", "run.json"]].concat();
         folder.run(&line);
         let of_run = value(&folder.read("run.json"));
-        json_keys::hold("run", &of_run);
         assert_eq!(figures(result), figures(of_run), "{line:?}");
     }
     let again = swept(&folder, &["--out", "all"]);

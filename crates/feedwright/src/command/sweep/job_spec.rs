@@ -271,8 +271,24 @@ impl ListedJob {
         let outcome = job.check_read(summary)?.run(&mut [], watch)?;
         let mut text = Vec::new();
         outcome.write_json(&job, &mut text).into_diagnostic()?;
-        serde_json::from_slice(&text).into_diagnostic().wrap_err("a result of feedwright is no JSON")
+        let result = serde_json::from_slice(&text).into_diagnostic().wrap_err("a result of feedwright is no JSON")?;
+        Ok(match &job.model {
+            Some(model) if spec.model.is_none() => undated(result, &model.about().date),
+            _ => result,
+        })
     }
+}
+
+/// A result without the day on which its model was identified: that follows from the cache, not from the job.
+fn undated(mut result: Value, date: &str) -> Value {
+    for told in ["/assumed/law_from", "/settings/Model"] {
+        if let Some(Value::String(text)) = result.pointer_mut(told)
+            && let Some(before) = text.strip_suffix(&format!(", {date}"))
+        {
+            *text = before.to_owned();
+        }
+    }
+    result
 }
 
 /// The message of the error that a result is, if it is one.
