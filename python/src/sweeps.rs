@@ -64,7 +64,7 @@ pub(crate) fn do_python_job(
     folder: PathBuf,
     out: PathBuf,
 ) -> PyResult<(Option<String>, bool, Option<String>)> {
-    let done = watched(py, None, |watch| {
+    watched(py, None, |watch| {
         let store = ResultStore::create(&out)?;
         match do_job(&store, &listed(spec, folder)?, watch) {
             Ok(done) => Ok((Some(done.address), done.found, done.error)),
@@ -74,8 +74,7 @@ pub(crate) fn do_python_job(
                 Ok((None, false, Some(feedwright::command::fault_text(&error))))
             }
         }
-    });
-    done
+    })
 }
 
 /// The columns of the results in folders.

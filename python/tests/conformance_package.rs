@@ -1,5 +1,7 @@
 //! The package in Python: its examples, its tests and those of its manual, with the module that cargo has just built.
 
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -118,7 +118,7 @@ fn shards_and_workers_change_nothing_and_a_changed_list_moves_no_job() {
     };
     let parts = [1, 2, 3].map(|number| shard(number, &format!("part{number}")));
     assert_eq!(parts.iter().map(BTreeMap::len).sum::<usize>(), one.len());
-    assert_eq!(parts.iter().cloned().flatten().collect::<BTreeMap<_, _>>(), one);
+    assert_eq!(parts.clone().into_iter().flatten().collect::<BTreeMap<_, _>>(), one);
     for (out, folders) in [("one.csv", &["one"][..]), ("parts.csv", &["part1", "part2", "part3", "one"])] {
         folder.run(&[&["merge"], folders, &["--out", out]].concat()).succeeded();
     }

@@ -126,7 +126,7 @@ impl ResultTable {
             rows.push(RESULT_COLUMNS.iter().map(|column| column.of(&result)).collect());
             watch.advance(1);
         }
-        rows.sort_by(by_cells);
+        rows.sort_by(|a: &Vec<Value>, b| by_cells(a, b));
         Ok(Self { rows })
     }
 
@@ -168,7 +168,7 @@ fn csv_cell(value: &Value) -> String {
 }
 
 /// Rows by their cells from the first on: numbers by value, texts by their letters.
-fn by_cells(a: &Vec<Value>, b: &Vec<Value>) -> Ordering {
+fn by_cells(a: &[Value], b: &[Value]) -> Ordering {
     let by_cell = |(a, b): (&Value, &Value)| match (a, b) {
         (Value::Number(a), Value::Number(b)) => {
             a.as_f64().unwrap_or_default().total_cmp(&b.as_f64().unwrap_or_default())
