@@ -8,7 +8,7 @@ import os
 import queue
 import time
 from collections import deque
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
@@ -285,7 +285,7 @@ class _Cluster:
 
     def places(self) -> int:
         if time.monotonic() - self._counted_s > COUNTED_EACH_S:
-            self._threads = sum(self._client.nthreads().values())
+            self._threads = sum(self._asked(self._client.nthreads).values())
             self._counted_s = time.monotonic()
         return UNDER_WAY * max(1, self._threads) - len(self._running)
 
@@ -315,7 +315,7 @@ class _Cluster:
                     raise self._gone() from None
         _, batch = self._running.pop(future.key)
         if future.status == "finished":
-            return future.result()
+            return self._asked(future.result)
         if future.status != "error":
             raise self._gone()
         from distributed import KilledWorker
@@ -324,6 +324,15 @@ class _Cluster:
         if isinstance(error, KilledWorker):
             return _lost(batch)
         raise error
+
+    def _asked(self, ask: Callable[[], Any]) -> Any:
+        """What the scheduler answers."""
+        from distributed.comm import CommClosedError
+
+        try:
+            return ask()
+        except CommClosedError:
+            raise self._gone() from None
 
     def _gone(self) -> ConnectionError:
         return ConnectionError("the scheduler of the cluster is gone; what is written stays, and another sweep goes on from it")
