@@ -150,7 +150,8 @@ fn guests_take_the_place_of_the_controller_that_is_asked_for_and_of_the_plant_of
     let rows = |job: &Job, guests: Guests<'_>| {
         let mut rows = Vec::<Row>::new();
         let outcome = job.check().unwrap().run_with(guests, &mut [&mut rows], &()).unwrap();
-        let runs: Vec<_> = outcome.report.runs.iter().map(|run| (run.summary.controller.clone(), run.summary.rms_um)).collect();
+        let runs: Vec<_> =
+            outcome.report.runs.iter().map(|run| (run.summary.controller.clone(), run.summary.rms_um)).collect();
         (rows, runs)
     };
     let (asked, feedforward) = (job("tnv40", BEST), job("tnv40", "feedforward"));

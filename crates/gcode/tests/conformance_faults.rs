@@ -48,6 +48,7 @@ const TABLE: &[(&str, u32, u32, u32, &str)] = &[
     ("F1 G2 X1 I.5 K1", 1, 14, 2, "K lies outside the arc's plane G17"),
     ("F1 G2 X1", 1, 1, 8, "neither a radius R nor a centre"),
     ("F1 G2 X0 R1", 1, 10, 2, "elsewhere than it starts"),
+    ("G0 X.3 Y1\nF1 G2 X[.1+.2] Y1 R5", 2, 19, 2, "elsewhere than it starts"),
     ("F1 G90.1 G2 X1 I.5", 1, 1, 18, "J is missing"),
     ("F1 G2 X1 I.5 P0", 1, 14, 2, "P0 is out of range"),
     ("F1 G2 X1 I.5 P1.5", 1, 14, 4, "not an integer"),

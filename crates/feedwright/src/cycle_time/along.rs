@@ -76,7 +76,7 @@ impl BindingAlong {
     }
 
     /// Adds a sample behind those before.
-    pub(super) fn push(&mut self, sample: &BindingStretch) {
+    pub(crate) fn push(&mut self, sample: &BindingStretch) {
         match self.stretches.last_mut() {
             Some(last) if last.duration_s + 0.5 * sample.duration_s < self.stretch_s => *last = last.merged(sample),
             _ => {

@@ -218,7 +218,9 @@ impl Interpreter {
         }
         let chord = [target[first] - self.at[first], target[second] - self.at[second]];
         let length = libm::hypot(chord[0], chord[1]);
-        if length == 0.0 {
+        let largest = [first, second].iter().fold(0.0, |most: f64, &axis| most.max(self.at[axis].abs()));
+        // Ends that differ by the rounding of a sum or of a polar word give the centre any direction.
+        if length <= ROUNDINGS * f64::EPSILON * largest {
             return Err(LineFault::new("gcode::arc_radius", at, "an arc with R must end elsewhere than it starts")
                 .hint("write a full circle with I J K"));
         }
@@ -245,6 +247,9 @@ impl Interpreter {
         if self.modal.unit_mm == 1.0 { in_mm } else { in_inch * INCH_MM }
     }
 }
+
+/// Roundings that two ways to calculate the same place may differ by.
+const ROUNDINGS: f64 = 8.0;
 
 /// Angle of a Bezier piece, rad: of a quarter of a circle one piece is 2.7e-4 of the radius off, with the sixth power of the angle; of
 /// this, 3e-10.

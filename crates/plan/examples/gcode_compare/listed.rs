@@ -244,6 +244,12 @@ const ROWS: &[Row] = &[
         |case| !case.is_active(PLANES, &["G17"]) && case.is_active(MOTIONS, &["G74", "G84"]),
         "G84 and G74 outside G17",
     ),
+    row(
+        WE,
+        "must end elsewhere than it starts",
+        |case| case.has_word('R') && case.has_word('@'),
+        "an arc with R to the place where it is, but for the rounding of polar words",
+    ),
     row(MOTION, "another", of_multiple, "MOD of a multiple, by rounding"),
     row(MOTION, "another", value_of_definition, "the value of a subroutine that is only defined"),
     row(MOTION, "another", turned_under_g92, "rotation of the active system under G92"),
