@@ -24,6 +24,13 @@ pub(crate) struct PythonProgram {
     spec: JobSpec,
 }
 
+impl PythonProgram {
+    /// A program of the default dialect with this name.
+    pub(crate) fn named(name: String, text: String) -> PyResult<Self> {
+        Self::new(None, Some(text), Some(name), AUTO, None, false, vec![])
+    }
+}
+
 #[pymethods]
 impl PythonProgram {
     #[new]

@@ -1,28 +1,22 @@
 //! Held-out work by seeds, and a page of tables.
 
-use feedwright::gcode::{Program, Settings};
 use feedwright::{JobError, PagePart, escaped, write_foot, write_head, write_table_end, write_table_head};
 use feedwright_lab::Class;
 use feedwright_lab::held_out::{machines, programs};
-use miette::{IntoDiagnostic, Result};
+use miette::IntoDiagnostic;
 use pyo3::prelude::*;
 
 use crate::fault::exception;
 use crate::files::{PythonMachine, PythonProgram};
 
-/// The program of a seed, where that stays in the plane.
-fn plane_program(seed: u64) -> Result<Option<PythonProgram>> {
-    let drawn = programs::program(seed);
-    let program = Program::from_text(format!("{}.ngc", drawn.name), drawn.text);
-    let settings = Settings::default();
-    let moves = program.check(settings.clone()).map_err(JobError::from)?.moves;
-    Ok((!moves[2]).then_some(PythonProgram { program, settings }))
-}
-
 /// The program of a seed; none where it leaves the plane.
 #[pyfunction]
 pub(crate) fn held_out_program(seed: u64) -> PyResult<Option<PythonProgram>> {
-    plane_program(seed).map_err(|error| exception(&error))
+    let drawn = programs::program(seed);
+    let program = PythonProgram::named(format!("{}.ngc", drawn.name), drawn.text)?;
+    let read = program.program.check(program.settings.clone()).map_err(JobError::from);
+    let read = read.map_err(|error| exception(&error.into()))?;
+    Ok((!read.moves[2]).then_some(program))
 }
 
 /// The machine of a seed; none where it has no noise.
