@@ -1,9 +1,9 @@
-const VERSION = "56654896a57351f9", FILES = {
+const VERSION = "904202d0a0a1d455", FILES = {
  "./": "sha256-Qs4ATTAQOK96Cxh1kcxTFGVGCjquH4Zw5AoGVUgo5PE=",
  "app.css": "sha256-1M8CTdqQ4GSD7BJH8vqN2bnstEVWNjaRtXiVaFv7EKc=",
  "app.js": "sha256-1NfqXirwDIi9L90mFt1OEzJPeWvG0lEQaCI2VqDX4Iw=",
  "engine.js": "sha256-2aC9DkFfRCPTBX11G0SQrK38iVMPSIQMMfpDRD53VJI=",
- "engine.wasm.gz": "sha256-tKlqmum8uMaaWA8ZnxC9YuqPhfLwg9jZmthLFQQfPEo=",
+ "engine.wasm.gz": "sha256-I1xhixH99c+QqiWlIOCFAVwfB6J6NPvX7AiI21xWOA4=",
  "files.json": "sha256-OOC53oF/ZFxL7DfA1KPli67MywQPVxjcBppyxzhaC+0="
 };
 // Keeps the page for visits without its server. FILES has the hash of each file, VERSION that of all: web/app/offline.mjs puts both before
