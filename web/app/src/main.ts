@@ -308,7 +308,7 @@ function showPlaces(cut: Cut | undefined): void {
   list("record", (cut?.figures.record ?? []).map(({ t_s, line, text }) => placeRow(`${t_s.toFixed(3)} s`, line, text, () => playback.time(t_s))));
   const texts = editor.isLong ? [] : editor.value.split("\n"), slowest = cut ? slowestLines(cut, LISTED) : [];
   list("slow", slowest.map(({ line, time_s, t_s }) => placeRow(`${time_s.toFixed(3)} s`, line, texts[line - 1]?.trim() ?? "", () => playback.time(t_s))));
-  list("limits", (cut?.limits ?? []).map(([name, part, line]) => placeRow(`${Math.round(100 * part)} %`, line, name, () => playback.time(cut!.t_s[cut!.line.indexOf(line)]))));
+  list("limits", (cut?.limits ?? []).map(([name, percent, line]) => placeRow(`${Math.round(percent)} %`, line, name, () => playback.time(cut!.t_s[cut!.line.indexOf(line)]))));
 }
 
 function showLegend(largest_um: number): void {

@@ -54,7 +54,7 @@ export interface Cut {
   /** The color of its curve: "run-0", "run-1", or "kept" for one that later cuts are compared with. */
   look: string;
   worst: Place[];
-  /** Limits that bind its plan: name, part of the time, line where it binds longest. */
+  /** Limits that bind its plan: name, part of the time in percent, line where it binds longest. */
   limits: [string, number, number][];
   t_s: Float32Array;
   error_um: Float32Array;

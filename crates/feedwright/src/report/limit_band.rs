@@ -36,7 +36,7 @@ pub struct LimitBand {
 }
 
 impl LimitBand {
-    /// Each limit that binds: its name, its part of the time, and the line of the stretch in which it binds longest. Largest parts first.
+    /// Each limit that binds: its name, its part of the time in percent, and the line of the stretch in which it binds longest. Largest parts first.
     pub fn shares(&self) -> Vec<(&str, f64, u32)> {
         let stretches = self.along.stretches();
         let mut shares: Vec<_> = self
@@ -45,21 +45,21 @@ impl LimitBand {
             .enumerate()
             .map(|(limit, name)| {
                 let longest = stretches.iter().max_by(|a, b| a.bound_s[limit].total_cmp(&b.bound_s[limit]));
-                (name.as_str(), share(stretches, limit), longest.map_or(0, |stretch| stretch.lines[0]))
+                (name.as_str(), percent(stretches, limit), longest.map_or(0, |stretch| stretch.lines[0]))
             })
-            .filter(|(_, share, _)| *share > 0.0)
+            .filter(|(_, percent, _)| *percent > 0.0)
             .collect();
         shares.sort_by(|a, b| b.1.total_cmp(&a.1));
         shares
     }
 }
 
-/// Part of the time in which a limit binds.
-fn share(stretches: &[BindingStretch], limit: usize) -> f64 {
+/// Part of the time in which a limit binds, percent.
+fn percent(stretches: &[BindingStretch], limit: usize) -> f64 {
     let [bound_s, total_s] = stretches.iter().fold([0.0, 0.0], |[bound_s, total_s], stretch| {
         [bound_s + stretch.bound_s[limit], total_s + stretch.duration_s]
     });
-    bound_s / total_s.max(f64::MIN_POSITIVE)
+    100.0 * bound_s / total_s.max(f64::MIN_POSITIVE)
 }
 
 /// Colour of a limit by its kind, of those that stay apart for the colour-blind.
@@ -138,7 +138,7 @@ fn write_row(svg: &mut String, band: &LimitBand, stretches: &[BindingStretch], [
         LEFT - 8.0,
         y + 11.0,
         escaped(name),
-        100.0 * share(stretches, limit)
+        percent(stretches, limit)
     );
     let _ =
         writeln!(svg, "<g fill=\"{}\" shape-rendering=\"crispEdges\" transform=\"translate(0 {y:.0})\">", color(name));
@@ -208,7 +208,7 @@ mod tests {
             along.push(&stretch);
         }
         let band = LimitBand { names: ["a", "b", "c"].map(str::to_owned).to_vec(), along };
-        let third = 1.0 / 3.0;
+        let third = 100.0 / 3.0;
         assert_eq!(band.shares(), [("a", third, 3), ("c", third, 2)]);
         assert!(LimitBand { along: BindingAlong::default(), ..band }.shares().is_empty());
     }
