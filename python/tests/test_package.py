@@ -2,6 +2,7 @@
 
 import doctest
 import importlib
+import importlib.util
 import json
 import os
 import pkgutil
@@ -197,6 +198,7 @@ for number, cell in enumerate(cells):
 """
 
 
+@unittest.skipUnless(importlib.util.find_spec("matplotlib"), "there is no matplotlib")
 class Notebooks(unittest.TestCase):
     def test_every_notebook_runs_from_top_to_bottom(self) -> None:
         folder = DOCS.parent / "python" / "notebooks"

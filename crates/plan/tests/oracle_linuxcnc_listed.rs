@@ -30,6 +30,7 @@ fn examples() -> Vec<(&'static str, String)> {
             "G0 X-40 Y2.6581\nG41.1 D20 G1 X0 Y0\nG1 X14.1655 Y1.8756\nG3 X28.3631 Y16.2315 I-1.5901 J15.7710\n\
              G40 G1 X-3.2320 Y40.7620\n",
         ),
+        ("an arc with R to the place where it is, but for rounding", "G0 X.3 Y1\nG3 X[.1+.2] Y1 R5\n"),
         ("MOD of a multiple, by rounding", "#20 = [asin[0.5] mod 0.1]\nG1 X[#20 + 1]\n"),
         ("G76 outside G18", "G0 X20 Z5\nG76 P1.5 Z-20 I-2 J0.4 K1.2\n"),
         ("a curve begun by G5.2 and left without G5.3", "G5.2 X1 Y2 P1 L3\nX3 Y-4 P1\nX5 Y6 P1\nX7 Y8 P2\n"),

@@ -247,8 +247,8 @@ const ROWS: &[Row] = &[
     row(
         WE,
         "must end elsewhere than it starts",
-        |case| case.has_word('R') && case.has_word('@'),
-        "an arc with R to the place where it is, but for the rounding of polar words",
+        |case| case.has_word('R'),
+        "an arc with R to the place where it is, but for rounding",
     ),
     row(MOTION, "another", of_multiple, "MOD of a multiple, by rounding"),
     row(MOTION, "another", value_of_definition, "the value of a subroutine that is only defined"),
