@@ -367,8 +367,9 @@ const tests = {
       await next.goto("about:blank");
       await next.waitForTimeout(1000);
     }
-    const names = await next.evaluate(() => caches.keys());
-    assert.equal(names.length, 1, names.join());
+    // Of the page and of the models that one engine came to there is one each.
+    const names = await next.evaluate(() => caches.keys()), ofModels = names.filter((name) => name.startsWith("feedwright models "));
+    assert.ok(names.length - ofModels.length === 1 && ofModels.length <= 1, names.join());
     await context.close();
     await newer.end();
     await rm(folder, { recursive: true });
