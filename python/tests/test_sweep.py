@@ -1,6 +1,7 @@
 """Sweeps as users have them: on processes of this machine, and on a cluster of Dask whose parts are killed."""
 
 import contextlib
+import importlib.util
 import itertools
 import multiprocessing
 import os
@@ -188,6 +189,7 @@ class Local(OfFolder):
         self.assertEqual((caught.exception.swept.computed, caught.exception.swept.missing), (1, 1))
 
 
+@unittest.skipUnless(importlib.util.find_spec("distributed"), "there is no distributed")
 class Cluster(OfFolder):
     """Scheduler, workers and client are processes, which are killed one after the other."""
 
