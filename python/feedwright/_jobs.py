@@ -106,6 +106,16 @@ class Cut:
         return (svg(self.rows) if len(self.rows) else "") + table
 
 
+def words_of(settings: Mapping[str, Any] | None) -> list[str]:
+    """Settings as `--set` has them."""
+    return [f"{name}={value}" for name, value in (settings or {}).items()]
+
+
+def made_of(results: dict[str, Any], columns: dict[str, Any] | None, outcome: Any) -> Cut:
+    """A cut of what the module returns."""
+    return Cut(results, Table(columns or {}), outcome)
+
+
 def run(
     program: ProgramOrPath,
     machine: MachineOrPath = "workshop",
@@ -145,19 +155,15 @@ def run(
         "tolerance_um": tolerance_um,
         "feed_mm_s": feed_mm_s,
         "seed": seed,
-        "settings": [f"{name}={value}" for name, value in (settings or {}).items()],
+        "settings": words_of(settings),
         "model": model,
         "exact_settings": exact_settings,
         "log": log,
         "rows": rows,
         "band": band,
     }
-    tell, end = told(progress)
-    try:
-        results, columns, outcome = _feedwright.run(_program(program), _machine(machine), options, tell)
-    finally:
-        end()
-    return Cut(results, Table(columns or {}), outcome)
+    with told(progress) as tell:
+        return made_of(*_feedwright.run(_program(program), _machine(machine), options, tell))
 
 
 @dataclass(frozen=True, repr=False)
@@ -208,11 +214,8 @@ def correct(
     True
     """
     options = {"control": control, "logs": _paths(logs), "columns": columns, "file_error": file_error}
-    tell, end = told(progress)
-    try:
+    with told(progress) as tell:
         return Corrected(*_feedwright.correct(_program(program), _machine(machine), options, tell))
-    finally:
-        end()
 
 
 @dataclass(frozen=True, repr=False)
@@ -249,11 +252,8 @@ def advise(
         "controller": controller,
         "file_error": file_error,
     }
-    tell, end = told(progress)
-    try:
+    with told(progress) as tell:
         return Advice(_feedwright.advise(_program(program), _machine(machine), options, tell))
-    finally:
-        end()
 
 
 @dataclass(frozen=True, repr=False)
@@ -289,11 +289,8 @@ def plan(
     >>> found.time_s > 1.5 and abs(float(found.lines["time_s"].sum()) - found.time_s) < 1e-9
     True
     """
-    tell, end = told(progress)
-    try:
+    with told(progress) as tell:
         results, lines = _feedwright.plan(_program(program), _machine(machine), control, tell)
-    finally:
-        end()
     return CycleTime(results, Table(lines))
 
 
@@ -358,9 +355,6 @@ def identify(
     progress: Progress = None,
 ) -> Identified:
     """Identifies a machine from logs of its motion: the command `feedwright identify`."""
-    tell, end = told(progress)
-    try:
+    with told(progress) as tell:
         results, machine, identified = _feedwright.identify(_paths(logs), columns, name, tell)
-    finally:
-        end()
     return Identified(machine, results, identified)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 #: Called with the stage, the steps that are done and all steps of the stage, some 25 times a second.
@@ -34,9 +35,14 @@ class Bar:
             self._bar.close()
 
 
-def told(progress: Progress) -> tuple[Told | None, Callable[[], None]]:
-    """The function that a job calls, and the one that ends it."""
-    if progress is True:
-        bar = Bar()
-        return bar, bar.close
-    return progress or None, lambda: None
+@contextmanager
+def told(progress: Progress) -> Iterator[Told | None]:
+    """The function that a job calls; a bar is removed at the end."""
+    if progress is not True:
+        yield progress or None
+        return
+    bar = Bar()
+    try:
+        yield bar
+    finally:
+        bar.close()

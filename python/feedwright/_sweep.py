@@ -11,6 +11,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing
 from dataclasses import dataclass, field
 from multiprocessing import get_context
 from pathlib import Path
@@ -138,16 +139,12 @@ def sweep(
     os.makedirs(folder, exist_ok=True)
     tasks, total = _tasks(jobs)
     swept = Swept()
-    tell, end = told(progress)
     pool: _Processes | _Cluster = _Processes(workers) if client is None else _Cluster(client)
-    try:
+    with told(progress) as tell, closing(pool):
         for done in _each(pool, _batches(tasks, batch), folder):
             swept._add(done)
             if tell is not None:
                 tell("jobs", swept.computed + swept.found + swept.missing, total)
-    finally:
-        pool.close()
-        end()
     if swept.missing:
         raise SweepError(swept)
     return swept

@@ -22,9 +22,8 @@ from . import _feedwright
 from ._bench import PUBLIC_SECRET, Benchmark, Round, benchmark, commitment, leaderboard, new_secret, verify
 from ._env import Env, Observe, Reward
 from ._feedwright import Measurement, Window
-from ._jobs import Cut, MachineOrPath, ProgramOrPath, _machine, _program
+from ._jobs import Cut, MachineOrPath, ProgramOrPath, _machine, _program, made_of, words_of
 from ._progress import Progress, told
-from ._table import Table
 
 __all__ = [
     "Benchmark",
@@ -101,7 +100,7 @@ def run(
     options = {
         "name": _name(controller),
         "of_library": isinstance(controller, str),
-        "settings": [f"{name}={value}" for name, value in (settings or {}).items()],
+        "settings": words_of(settings),
         "against": against,
         "knowledge": knowledge,
         "seed": seed,
@@ -109,11 +108,6 @@ def run(
         "plant_term": plant_term,
         "rows": rows,
     }
-    tell, end = told(progress)
-    try:
-        results, columns, outcome = _feedwright.run_with(
-            _program(program), _machine(machine), controller, options, tell
-        )
-    finally:
-        end()
-    return Cut(results, Table(columns or {}), outcome)
+    with told(progress) as tell:
+        ran = _feedwright.run_with(_program(program), _machine(machine), controller, options, tell)
+    return made_of(*ran)

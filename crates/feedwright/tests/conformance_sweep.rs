@@ -171,7 +171,7 @@ fn the_address_follows_from_all_content_and_from_nothing_else() {
         ));
         assert!(computed() && !computed(), "{key}");
     }
-    // A damaged result is none.
+    // A damaged result counts as missing.
     for file in
         folder.content().into_keys().filter(|path| path.is_file() && path.starts_with(folder.path().join("all")))
     {

@@ -134,14 +134,11 @@ impl<const N: usize> World<N> {
 
     /// Notes what the link gets.
     fn hear(&mut self, inputs: &LinkInputs<N>) {
-        if inputs.command_mm.iter().map(|mm| mm * mm).sum::<f64>().is_finite() {
-            self.path_mm.push(inputs.command_mm);
-        }
-        for mm in [inputs.command_mm, inputs.actual_mm] {
-            // A place whose distance overflows is not heard.
-            if mm.iter().map(|mm| mm * mm).sum::<f64>().is_finite() {
-                self.largest_mm = mm.iter().fold(self.largest_mm, |largest, mm| largest.max(mm.abs()));
-            }
+        // A place whose distance overflows is not heard.
+        let is_heard = |mm: &[f64; N]| mm.iter().map(|mm| mm * mm).sum::<f64>().is_finite();
+        self.path_mm.extend(Some(inputs.command_mm).filter(is_heard));
+        for mm in [inputs.command_mm, inputs.actual_mm].iter().filter(|mm| is_heard(mm)) {
+            self.largest_mm = mm.iter().fold(self.largest_mm, |largest, mm| largest.max(mm.abs()));
         }
     }
 

@@ -71,7 +71,7 @@ fn ringing<const N: usize>(block: &[u8]) -> Vec<&'static str> {
 /// What is told of such an axis.
 fn rings(axis: &str) -> String {
     format!(
-        "axis {axis}: by this model its drive feeds the acceleration forward and hardly the speed. A command that follows it rings: the component will \
+        "axis {axis}: its drive has acceleration feedforward and hardly any velocity feedforward, by this model. A command that follows it rings: the component will \
          correct no axis, with cause 11. Tune the velocity feedforward of the drive and identify again; if the drive has no acceleration feedforward, say \
          so: --acceleration-feedforward 0"
     )

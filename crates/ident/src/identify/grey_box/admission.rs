@@ -412,7 +412,7 @@ fn candidates(record: &AxisRecord<'_>, facts: &AxisFacts, terms: &[LawTerm], at:
         // Without an integral the two parts of the damping are the same to the position.
         let is_told = match term {
             LawTerm::Viscous => terms.contains(&LawTerm::Integral) && at.get(term) == 0.0,
-            // Alone it has the drive ring with commands that ask for a speed, which no tuned drive does.
+            // Without velocity feedforward a command that follows the drive rings: no drive is tuned so.
             LawTerm::AccelerationFeedforward => at.get(LawTerm::VelocityFeedforward) > 0.0,
             // What swings faster than a fifth of the rate does not show, and what swings below 20 Hz is no screw of a machine tool.
             LawTerm::Resonance => sample_s < SLOWEST_FOR_RESONANCE_S,
@@ -445,7 +445,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn acceleration_is_fed_forward_beside_the_speed_alone() {
+    fn acceleration_feedforward_needs_velocity_feedforward() {
         let command_mm: Vec<f64> = (0..200).map(|k| libm::sin(0.05 * f64::from(k))).collect();
         let stretches = std::slice::from_ref(&(0..200));
         let (actual_mm, sample_s) = (&command_mm[..], 0.001);

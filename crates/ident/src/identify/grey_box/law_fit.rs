@@ -113,7 +113,7 @@ fn without_doubtful(
             LawTerm::Resonance => !is_screw_or_none(&at, errors.record.sample_s),
             _ => false,
         };
-        // A feedforward of the acceleration goes before that of the speed does.
+        // The acceleration feedforward is dropped before the velocity feedforward.
         let is_last =
             |i: usize| terms[i] != LawTerm::VelocityFeedforward || !terms.contains(&LawTerm::AccelerationFeedforward);
         let is_open = |i: usize| facts.known(terms[i]).is_none() && is_last(i);
