@@ -117,6 +117,14 @@ fn a_clock_that_runs_backward_or_stands_still_is_refused() {
     time[1500] = time[1499];
     let found = refusal("t,x.cmd,x.act", &[&time, &command, &actual]);
     assert_refused(&found, RefusalReason::Backward, "stands still at line 1502");
+    let last = time.len() - 1;
+    (time[0], time[1500], time[last]) = (-1e308, 1.5, 1e308);
+    let found = refusal("t,x.cmd,x.act", &[&time, &command, &actual]);
+    assert_refused(
+        &found,
+        RefusalReason::NotANumber,
+        &format!("the time is beyond every clock at line {}: 1e308", last + 2),
+    );
 }
 
 #[test]

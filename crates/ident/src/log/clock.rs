@@ -56,6 +56,14 @@ pub(super) fn of_table(
     if let Some(row) = (1..values.len()).find(|&row| values[row] <= values[row - 1]) {
         return Err(backward(path, table, row, [values[row - 1], values[row]]));
     }
+    if let (Some(first), Some(last)) = (values.first(), values.last())
+        && !(last - first).is_finite()
+    {
+        let row = values.iter().position(|value| !value.is_finite()).unwrap_or(values.len() - 1);
+        let message = format!("the time is beyond every clock at {}: {:e}", table.place(row), values[row]);
+        let hint = "take the line out, or name another column of the time with --columns t=COLUMN";
+        return Err(LogError::refused(path, Refusal::new(RefusalReason::NotANumber, message, hint)));
+    }
     let step = median_step(&values);
     let unit = unit(time, columns, table, step, findings);
     let sample_s = match unit {
