@@ -9,6 +9,7 @@
 //! | `job/assumed.rs` | what it assumes of its machine |
 //! | `job/values.rs` | which values it takes |
 //! | `job/record.rs` | what it keeps of the rows of a run |
+//! | `job/cuts.rs` | its cuts: one for each controller, on one plan |
 //! | `job/band.rs` | cuts on other machines that fit the recording of the model |
 //! | `job/exported.rs` | the corrected program for a control without feedback |
 //! | `job/report.rs` | what the page shows |
@@ -20,6 +21,7 @@ mod guests;
 mod assumed;
 mod values;
 mod record;
+mod cuts;
 mod band;
 mod exported;
 mod report;
@@ -28,31 +30,28 @@ mod results;
 mod stored;
 
 use std::borrow::Cow;
-use std::sync::Arc;
 
-use feedwright_control::{Controller, IdentifiedAxes};
+use feedwright_control::Controller;
 use feedwright_gcode::canon::{Canon, MotionKind};
 use feedwright_gcode::{self, Program, ReadError, Summary};
-use feedwright_ident::{LogFinding, Model, Origin};
-use feedwright_plan::{AlignedPaths, Constraints, PlanSink, SpeedCaps, Step, Steps};
-use feedwright_sim::{
-    Machine, Outcome, PlanCache, Row, Run, RunError, RunResult, Sink, StageSteps, Stages, Watch, path_steps,
-};
+use feedwright_ident::{LogFinding, Model};
+use feedwright_plan::{AlignedPaths, Constraints, PlanSink, Step, Steps};
+use feedwright_sim::{Machine, Outcome, PlanCache, RunError, Sink, Stages, Watch, path_steps};
 use serde::{Deserialize, Serialize};
 
 use crate::compensation::GeometryChoice;
-use crate::controllers::{Choices, CutsUncorrected, Entry, LQG_IDENTIFIED, Make, Setup, UNCORRECTED, identifying};
+use crate::controllers::{Choices, CutsUncorrected, Entry, LQG_IDENTIFIED, Make, Setup, UNCORRECTED};
 use crate::correct::{CorrectOutcome, TargetControl};
 use crate::cycle_time::CycleTimeOfCut;
-use crate::fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within, with_tolerance};
+use crate::fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within};
 pub use crate::job_error::JobError;
 use crate::job_error::axes_that_move;
 use crate::measured::{MeasuredLog, MeasuredRun, measured};
 use crate::report::harm::Harm;
-use crate::report::{CompensatedGeometry, FullCircle, Report, ReportedRun, full_circles};
+use crate::report::{FullCircle, Report, ReportedRun, full_circles};
+use cuts::{Cuts, PlannedCut};
 pub use guests::Guests;
-use guests::SharedPlantMaker;
-use record::{RunRecord, Timeline};
+use record::RunRecord;
 
 /// A program, a machine, two controllers, and what is wanted of the cuts.
 ///
@@ -261,8 +260,8 @@ impl CheckedJob<'_> {
         watch: &dyn Watch,
     ) -> Result<JobOutcome, JobError> {
         match self.axes {
-            2 => self.job.cut::<2>(&self.summary, (guests.plane, guests.plant), rows, watch),
-            _ => self.job.cut::<3>(&self.summary, (guests.space, guests.plant), rows, watch),
+            2 => self.job.cut::<2>(&self.summary, guests.plane, guests, rows, watch),
+            _ => self.job.cut::<3>(&self.summary, guests.space, guests, rows, watch),
         }
     }
 }
@@ -271,7 +270,8 @@ impl Job {
     fn cut<const N: usize>(
         &self,
         summary: &Summary,
-        (guest, plant): (Option<&dyn Make<N>>, Option<SharedPlantMaker<'_>>),
+        guest: Option<&dyn Make<N>>,
+        Guests { plant, feeds_mm_s, .. }: Guests<'_>,
         rows: &mut [&mut dyn Sink],
         watch: &dyn Watch,
     ) -> Result<JobOutcome, JobError>
@@ -291,6 +291,7 @@ impl Job {
             kept: &kept,
             machine,
             plant,
+            feeds_mm_s,
             path_um: planned.and_then(|machine| machine.limits.path_tolerance_um),
             caps: fastest.as_ref().map(|plan| &plan.caps),
             aligned: aligned.as_ref(),
@@ -408,109 +409,6 @@ impl Job {
         }
     }
 
-    /// One run for each controller.
-    fn cut_with_each<const N: usize>(
-        &self,
-        summary: &Summary,
-        guest: Option<&dyn Make<N>>,
-        plan: PlannedCut<'_>,
-        rows: &mut [&mut dyn Sink],
-        watch: &dyn Watch,
-    ) -> Result<Cuts, JobError>
-    where
-        Entry: Make<N>,
-    {
-        let mut cuts = Cuts::default();
-        for entry in self.controllers() {
-            watch.check()?;
-            let judged = entry.name == self.controller.name;
-            let model = self.model.as_ref().filter(|_| judged);
-            let mut steps = (entry.identifier.is_some() && model.is_none()).then(|| identifying(&self.machine, watch));
-            let mut progress = |part: f64| steps.iter_mut().for_each(|steps| steps.reach(part));
-            let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
-            let mut controller = match (guest.filter(|_| judged), model) {
-                (Some(guest), _) => guest.make(&mut setup),
-                (None, Some(model)) => entry.make_with::<N>(setup, model)?,
-                (None, None) => {
-                    let controller = Make::<N>::make(entry, &mut setup);
-                    cuts.without_identification.extend(setup.remark(entry));
-                    controller
-                }
-            };
-            let mut spread = self.compensation.spread_meter();
-            let mut sinks: Vec<&mut dyn Sink> = vec![&mut spread];
-            if judged {
-                sinks.extend(rows.iter_mut().map(|sink| &mut **sink as &mut dyn Sink));
-            }
-            let plan = PlannedCut { looked_at: plan.looked_at.filter(|_| judged), ..plan };
-            cuts.runs.push(self.cut_once(summary, entry, &mut *controller, plan, &mut sinks, watch)?);
-            cuts.geometry = self.compensation.reported(&self.machine, &spread);
-            if let (Some(model), Some(date)) = (self.model.as_ref().filter(|_| judged), &self.learned_on) {
-                cuts.learned = self.learned(model, &*controller, date);
-            }
-        }
-        Ok(cuts)
-    }
-
-    /// A model with the axes as a controller knows them now; `None` of one that does not learn.
-    fn learned<const N: usize>(&self, model: &Model, controller: &dyn Controller<N>, date: &str) -> Option<Model> {
-        let axes = IdentifiedAxes { mechanics_s: self.machine.period.mechanics_s, axes: controller.known()? };
-        let (given, part) = (&model.about().source, self.program.file_name());
-        let source = format!("{given}; learned while {} cut {part}", self.machine.name);
-        model.with_axes(axes, Origin { source, date: date.to_owned() })
-    }
-
-    fn cut_once<const N: usize>(
-        &self,
-        summary: &Summary,
-        entry: &Entry,
-        controller: &mut dyn Controller<N>,
-        plan: PlannedCut<'_>,
-        rows: &mut [&mut dyn Sink],
-        watch: &dyn Watch,
-    ) -> Result<ReportedRun, JobError> {
-        let mut record = RunRecord::new(N, self.machine.period.servo_s, plan.circles);
-        let mut timeline = Timeline::new(&self.machine.plc_events);
-        let steps = StageSteps::begin(watch, &format!("cutting, {}", entry.name));
-        let mut cut = CutProgress { steps, length_mm: summary.feed_mm + summary.rapid_mm, rows: 0 };
-        let others: [&mut dyn Sink; 2] = [&mut timeline, &mut cut];
-        let mut sinks: Vec<&mut dyn Sink> = record.sinks().into_iter().chain(others).collect();
-        for sink in rows {
-            sinks.push(&mut **sink);
-        }
-        let run = self.cut_planned(plan, entry, controller, &mut sinks, watch);
-        let run = run.map_err(|error| JobError::of_run(&self.program, error))?;
-        drop(sinks);
-        Ok(ReportedRun { events: timeline.events, ..self.reported(record, entry.name, run)? })
-    }
-
-    /// Cuts the program on the machine of a plan.
-    fn cut_planned<const N: usize>(
-        &self,
-        PlannedCut { machine, plant, path_um, caps, kept, aligned, looked_at, .. }: PlannedCut<'_>,
-        entry: &Entry,
-        controller: &mut dyn Controller<N>,
-        sinks: &mut [&mut dyn Sink],
-        watch: &dyn Watch,
-    ) -> Result<RunResult, RunError> {
-        let steps = || {
-            let steps = path_steps(self.steps()?);
-            Ok(match path_um {
-                Some(path_um) => with_tolerance(steps, 1e-3 * path_um),
-                None => steps,
-            })
-        };
-        let run = self
-            .planned_as
-            .map_or_else(|| Run::on(machine), |control| Run::on(machine).stages(control.stages(machine)));
-        let run = plant.map_or(run, |plant| run.plant(plant));
-        let run = run.capped(caps).laps(entry.laps).sharing(kept).watched(watch).planned_to(looked_at);
-        match aligned {
-            Some(aligned) => run.cut_aligned(aligned, controller, sinks),
-            None => run.cut(steps, controller, sinks),
-        }
-    }
-
     /// The full circles of the program that errors are measured to.
     fn circles(&self) -> Result<Vec<FullCircle>, JobError> {
         Ok(match &self.reference {
@@ -558,54 +456,5 @@ impl Job {
             }
             step
         }))
-    }
-}
-
-/// What the cuts of all controllers came to.
-#[derive(Default)]
-struct Cuts {
-    runs: Vec<ReportedRun>,
-    /// For which controllers nothing was identified.
-    without_identification: Vec<CutsUncorrected>,
-    learned: Option<Model>,
-    geometry: Option<CompensatedGeometry>,
-}
-
-/// What a cut is made by, besides the controller.
-#[derive(Clone, Copy)]
-struct PlannedCut<'a> {
-    /// The machine of the job, perhaps with another tolerance of the path.
-    machine: &'a Machine,
-    /// What moves in place of its axes.
-    plant: Option<SharedPlantMaker<'a>>,
-    /// Tolerance of the path in place of the program's, um.
-    path_um: Option<f64>,
-    /// Bounds on the speed along the path.
-    caps: Option<&'a Arc<SpeedCaps>>,
-    /// The plan, for all controllers.
-    kept: &'a PlanCache,
-    aligned: Option<&'a AlignedPaths>,
-    circles: &'a [FullCircle],
-    /// Who is told of the plan.
-    looked_at: Option<&'a dyn PlanSink>,
-}
-/// Tells the progress of a cut by its arc length.
-struct CutProgress<'a> {
-    steps: StageSteps<'a>,
-    length_mm: f64,
-    rows: u32,
-}
-
-/// Rows between two steps at the least: a tenth of a second of machining.
-const ROWS_BETWEEN: u32 = 100;
-
-impl Sink for CutProgress<'_> {
-    fn row(&mut self, row: &Row) -> std::io::Result<()> {
-        self.rows += 1;
-        if self.rows == ROWS_BETWEEN {
-            self.rows = 0;
-            self.steps.reach(row.s_mm / self.length_mm);
-        }
-        Ok(())
     }
 }

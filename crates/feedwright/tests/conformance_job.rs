@@ -169,6 +169,9 @@ fn guests_take_the_place_of_the_controller_that_is_asked_for_and_of_the_plant_of
     assert_eq!(cut_on(&feedforward.machine), (theirs, of_theirs.clone()));
     let (_, of_heavy) = cut_on(&Machine::load("heavy".as_ref()).unwrap());
     assert!((0..2).all(|run| of_heavy[run].1 != of_theirs[run].1), "{of_heavy:?}");
+    let (slow, of_slow) = rows(&feedforward, Guests { feeds_mm_s: Some(&[10.0]), ..Guests::default() });
+    assert!(slow.iter().filter(|row| row.cutting).all(|row| row.feed_plan_mm_s <= 10.0 * (1.0 + 1e-9)));
+    assert_eq!(of_slow[0], of_theirs[0], "the cut beside it is as programmed");
 }
 
 #[test]

@@ -5,7 +5,8 @@
 
 use feedwright_sim::{Axis, Machine, Outcome, Row, RunError, Sink, Watch, map_in_parallel};
 
-use super::{Job, JobError, PlannedCut};
+use super::cuts::PlannedCut;
+use super::{Job, JobError};
 use crate::controllers::{Entry, Make};
 use crate::report::{Band, BandErrors, RunSummary, Statistics};
 

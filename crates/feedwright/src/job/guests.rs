@@ -16,6 +16,9 @@ pub struct Guests<'a> {
     pub plane: Option<&'a dyn Make<2>>,
     /// The same where three axes are.
     pub space: Option<&'a dyn Make<3>>,
+    /// Feedrates of the motions of the program in its order, mm/s, in the cut of the controller that is asked for: a planner's. Those of rapids
+    /// are not used. A motion that has none keeps its own. The limits of the machine hold as always.
+    pub feeds_mm_s: Option<&'a [f64]>,
     /// Makes the plant of every cut.
     pub plant: Option<SharedPlantMaker<'a>>,
 }

@@ -1,0 +1,194 @@
+//! The cuts of a job: one for each controller, on one plan.
+
+use std::sync::Arc;
+
+use feedwright_control::{Controller, IdentifiedAxes};
+use feedwright_gcode::Summary;
+use feedwright_gcode::canon::{Canon, MotionKind};
+use feedwright_ident::{Model, Origin};
+use feedwright_plan::{AlignedPaths, PlanSink, SpeedCaps};
+use feedwright_sim::{Machine, PlanCache, Row, Run, RunError, RunResult, Sink, StageSteps, Watch, path_steps};
+
+use super::guests::SharedPlantMaker;
+use super::record::{RunRecord, Timeline};
+use super::{Job, JobError};
+use crate::controllers::{CutsUncorrected, Entry, Make, Setup, identifying};
+use crate::fastest::with_tolerance;
+use crate::report::{CompensatedGeometry, FullCircle, ReportedRun};
+
+/// What the cuts of all controllers came to.
+#[derive(Default)]
+pub(super) struct Cuts {
+    pub(super) runs: Vec<ReportedRun>,
+    /// For which controllers nothing was identified.
+    pub(super) without_identification: Vec<CutsUncorrected>,
+    pub(super) learned: Option<Model>,
+    pub(super) geometry: Option<CompensatedGeometry>,
+}
+
+/// What a cut is made by, besides the controller.
+#[derive(Clone, Copy)]
+pub(super) struct PlannedCut<'a> {
+    /// The machine of the job, perhaps with another tolerance of the path.
+    pub(super) machine: &'a Machine,
+    /// What moves in place of its axes.
+    pub(super) plant: Option<SharedPlantMaker<'a>>,
+    /// Feedrates of the motions in place of the program's, mm/s.
+    pub(super) feeds_mm_s: Option<&'a [f64]>,
+    /// Tolerance of the path in place of the program's, um.
+    pub(super) path_um: Option<f64>,
+    /// Bounds on the speed along the path.
+    pub(super) caps: Option<&'a Arc<SpeedCaps>>,
+    /// The plan, for all controllers.
+    pub(super) kept: &'a PlanCache,
+    pub(super) aligned: Option<&'a AlignedPaths>,
+    pub(super) circles: &'a [FullCircle],
+    /// Who is told of the plan.
+    pub(super) looked_at: Option<&'a dyn PlanSink>,
+}
+
+/// The steps of a program with other feedrates of its motions.
+fn with_feeds<'a>(
+    steps: impl Iterator<Item = Canon> + Send + 'a,
+    feeds_mm_s: Option<&'a [f64]>,
+) -> impl Iterator<Item = Canon> + Send + 'a {
+    let mut feeds = feeds_mm_s.unwrap_or_default().iter();
+    steps.map(move |mut step| {
+        if let Canon::Motion(motion) = &mut step
+            && let Some(&feed_mm_s) = feeds.next()
+            && motion.kind == MotionKind::Feed
+        {
+            motion.feed_mm_s = feed_mm_s;
+        }
+        step
+    })
+}
+
+/// Tells the progress of a cut by its arc length.
+struct CutProgress<'a> {
+    steps: StageSteps<'a>,
+    length_mm: f64,
+    rows: u32,
+}
+
+/// Rows between two steps at the least: a tenth of a second of machining.
+const ROWS_BETWEEN: u32 = 100;
+
+impl Sink for CutProgress<'_> {
+    fn row(&mut self, row: &Row) -> std::io::Result<()> {
+        self.rows += 1;
+        if self.rows == ROWS_BETWEEN {
+            self.rows = 0;
+            self.steps.reach(row.s_mm / self.length_mm);
+        }
+        Ok(())
+    }
+}
+
+impl Job {
+    /// One run for each controller.
+    pub(super) fn cut_with_each<const N: usize>(
+        &self,
+        summary: &Summary,
+        guest: Option<&dyn Make<N>>,
+        plan: PlannedCut<'_>,
+        rows: &mut [&mut dyn Sink],
+        watch: &dyn Watch,
+    ) -> Result<Cuts, JobError>
+    where
+        Entry: Make<N>,
+    {
+        let mut cuts = Cuts::default();
+        for entry in self.controllers() {
+            watch.check()?;
+            let judged = entry.name == self.controller.name;
+            let model = self.model.as_ref().filter(|_| judged);
+            let mut steps = (entry.identifier.is_some() && model.is_none()).then(|| identifying(&self.machine, watch));
+            let mut progress = |part: f64| steps.iter_mut().for_each(|steps| steps.reach(part));
+            let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
+            let mut controller = match (guest.filter(|_| judged), model) {
+                (Some(guest), _) => guest.make(&mut setup),
+                (None, Some(model)) => entry.make_with::<N>(setup, model)?,
+                (None, None) => {
+                    let controller = Make::<N>::make(entry, &mut setup);
+                    cuts.without_identification.extend(setup.remark(entry));
+                    controller
+                }
+            };
+            let mut spread = self.compensation.spread_meter();
+            let mut sinks: Vec<&mut dyn Sink> = vec![&mut spread];
+            if judged {
+                sinks.extend(rows.iter_mut().map(|sink| &mut **sink as &mut dyn Sink));
+            }
+            // Another plan than that of the cut beside it.
+            let (own, feeds_mm_s) = (PlanCache::default(), plan.feeds_mm_s.filter(|_| judged));
+            let kept = if feeds_mm_s.is_some() { &own } else { plan.kept };
+            let plan = PlannedCut { looked_at: plan.looked_at.filter(|_| judged), feeds_mm_s, kept, ..plan };
+            cuts.runs.push(self.cut_once(summary, entry, &mut *controller, plan, &mut sinks, watch)?);
+            cuts.geometry = self.compensation.reported(&self.machine, &spread);
+            if let (Some(model), Some(date)) = (self.model.as_ref().filter(|_| judged), &self.learned_on) {
+                cuts.learned = self.learned(model, &*controller, date);
+            }
+        }
+        Ok(cuts)
+    }
+
+    /// A model with the axes as a controller knows them now; `None` of one that does not learn.
+    fn learned<const N: usize>(&self, model: &Model, controller: &dyn Controller<N>, date: &str) -> Option<Model> {
+        let axes = IdentifiedAxes { mechanics_s: self.machine.period.mechanics_s, axes: controller.known()? };
+        let (given, part) = (&model.about().source, self.program.file_name());
+        let source = format!("{given}; learned while {} cut {part}", self.machine.name);
+        model.with_axes(axes, Origin { source, date: date.to_owned() })
+    }
+
+    fn cut_once<const N: usize>(
+        &self,
+        summary: &Summary,
+        entry: &Entry,
+        controller: &mut dyn Controller<N>,
+        plan: PlannedCut<'_>,
+        rows: &mut [&mut dyn Sink],
+        watch: &dyn Watch,
+    ) -> Result<ReportedRun, JobError> {
+        let mut record = RunRecord::new(N, self.machine.period.servo_s, plan.circles);
+        let mut timeline = Timeline::new(&self.machine.plc_events);
+        let steps = StageSteps::begin(watch, &format!("cutting, {}", entry.name));
+        let mut cut = CutProgress { steps, length_mm: summary.feed_mm + summary.rapid_mm, rows: 0 };
+        let others: [&mut dyn Sink; 2] = [&mut timeline, &mut cut];
+        let mut sinks: Vec<&mut dyn Sink> = record.sinks().into_iter().chain(others).collect();
+        for sink in rows {
+            sinks.push(&mut **sink);
+        }
+        let run = self.cut_planned(plan, entry, controller, &mut sinks, watch);
+        let run = run.map_err(|error| JobError::of_run(&self.program, error))?;
+        drop(sinks);
+        Ok(ReportedRun { events: timeline.events, ..self.reported(record, entry.name, run)? })
+    }
+
+    /// Cuts the program on the machine of a plan.
+    pub(super) fn cut_planned<const N: usize>(
+        &self,
+        PlannedCut { machine, plant, feeds_mm_s, path_um, caps, kept, aligned, looked_at, .. }: PlannedCut<'_>,
+        entry: &Entry,
+        controller: &mut dyn Controller<N>,
+        sinks: &mut [&mut dyn Sink],
+        watch: &dyn Watch,
+    ) -> Result<RunResult, RunError> {
+        let steps = || {
+            let steps = path_steps(with_feeds(self.steps()?, feeds_mm_s));
+            Ok(match path_um {
+                Some(path_um) => with_tolerance(steps, 1e-3 * path_um),
+                None => steps,
+            })
+        };
+        let run = self
+            .planned_as
+            .map_or_else(|| Run::on(machine), |control| Run::on(machine).stages(control.stages(machine)));
+        let run = plant.map_or(run, |plant| run.plant(plant));
+        let run = run.capped(caps).laps(entry.laps).sharing(kept).watched(watch).planned_to(looked_at);
+        match aligned {
+            Some(aligned) => run.cut_aligned(aligned, controller, sinks),
+            None => run.cut(steps, controller, sinks),
+        }
+    }
+}
