@@ -9,15 +9,18 @@ import math
 import os
 import platform
 import secrets
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy
 
 from . import _feedwright
 from ._feedwright import Machine, Program, __version__
+
+if TYPE_CHECKING:
+    from .lab import Planner
 
 #: The secret of the round that everyone may look at; the package has figures of other controllers for it.
 PUBLIC_SECRET = "feedwright public round 1"
@@ -78,12 +81,23 @@ def _sha256(content: Any) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def source_sha256(controller: object) -> str | None:
-    """SHA-256 of the file that the class of a controller stands in; none of one of the library, and where there is no file."""
-    if isinstance(controller, str):
+def _name(controller: object, planner: object = None) -> str:
+    """What a controller is called; with a planner both, and the planner alone where nothing is corrected."""
+    called = controller if isinstance(controller, str) else getattr(controller, "name", type(controller).__name__)
+    if planner is None:
+        return called
+    of_planner = getattr(planner, "__name__", type(planner).__name__)
+    return of_planner if called == "uncorrected" else f"{called}, planned by {of_planner}"
+
+
+def source_sha256(written: object) -> str | None:
+    """SHA-256 of the file that a function or the class of an object stands in; none of a controller of the library, and where there is no
+    file.
+    """
+    if isinstance(written, str):
         return None
     try:
-        file = inspect.getsourcefile(type(controller))
+        file = inspect.getsourcefile(written if inspect.isroutine(written) else type(written))
         return hashlib.sha256(Path(file or "").read_bytes()).hexdigest()
     except (OSError, TypeError):
         return None
@@ -188,27 +202,39 @@ def benchmark(
     *,
     round: Round | None = None,
     knowledge: Iterable[str] = KNOWLEDGE,
+    settings: Callable[[Machine], Mapping[str, Any]] | None = None,
+    planner: Planner | None = None,
     name: str | None = None,
 ) -> Benchmark:
     """Cuts the programs of a round on its machines with a controller, once for each kind of knowledge.
 
-    Without a `round` it is the public one. A controller by its name is one of the library.
+    Without a `round` it is the public one. A controller by its name is one of the library, and `settings` are what its
+    parameters are set to on a machine; the result file has them. A planner is scored with "uncorrected" as the controller.
     """
-    from .lab import _name, run
+    from .lab import run
 
     round = round or Round()
     work = round.work()
-    rows = [
-        _row(run(program, machine, controller, knowledge=kind, seed=seed, rows=False), program, machine, kind, seed)
-        for kind in knowledge
-        for program, machine, seed in work
-    ]
+    set_to = {machine.name: dict(settings(machine)) for _, machine, _ in work[: round.machines]} if settings else {}
+    set_there = {"settings": set_to} if settings else {}
+
+    def row(program: Program, machine: Machine, kind: str, seed: int) -> dict[str, Any]:
+        options = {"settings": set_to.get(machine.name), "planner": planner, "knowledge": kind, "seed": seed}
+        return _row(run(program, machine, controller, rows=False, **options), program, machine, kind, seed)
+
+    rows = [row(program, machine, kind, seed) for kind in knowledge for program, machine, seed in work]
+    of_planner = {"planner_source_sha256": source_sha256(planner)} if planner else {}
     content = {
         "format": FORMAT,
         "versions": {"feedwright": __version__, "python": platform.python_version(), "numpy": numpy.__version__},
         "platform": f"{platform.system()} {platform.machine()}",
         "round": round.facts(),
-        "controller": {"name": name or _name(controller), "source_sha256": source_sha256(controller)},
+        "controller": {
+            "name": name or _name(controller, planner),
+            "source_sha256": source_sha256(controller),
+            **of_planner,
+            **set_there,
+        },
         "scores": _scores(rows),
         "rows": rows,
     }
@@ -232,15 +258,20 @@ def _read(path: str | os.PathLike[str]) -> dict[str, Any]:
     return {**results, "sha256": claimed}
 
 
-def verify(path: str | os.PathLike[str], controller: Any) -> list[str]:
+def verify(path: str | os.PathLike[str], controller: Any, planner: Planner | None = None) -> list[str]:
     """Runs a result file again, and says what differs, bit by bit: an empty list where nothing does."""
     claimed = _read(path)
     facts = claimed["round"]
     round = Round(facts["secret"], facts["programs"], facts["machines"])
-    found = benchmark(controller, round=round, knowledge=list(claimed["scores"])).results
-    differences = []
-    if found["controller"]["source_sha256"] != claimed["controller"]["source_sha256"]:
-        differences.append("the source of the controller is another one")
+    set_to = claimed["controller"].get("settings")
+    settings = None if set_to is None else lambda machine: set_to.get(machine.name, {})
+    options = {"knowledge": list(claimed["scores"]), "settings": settings, "planner": planner}
+    found = benchmark(controller, round=round, **options).results
+    differences = [
+        f"the source of the {what} is another one"
+        for what, key in (("controller", "source_sha256"), ("planner", "planner_source_sha256"))
+        if found["controller"].get(key) != claimed["controller"].get(key)
+    ]
     for was, now in zip(claimed["rows"], found["rows"]):
         keys = [key for key in {**was, **now} if was.get(key) != now.get(key)]
         place = f"{now['program']} on {now['machine']}, {now['knowledge']}"

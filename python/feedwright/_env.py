@@ -75,7 +75,8 @@ class Env(_Base):  # type: ignore[misc,valid-type]
         self._schedule = (servo_periods, preview)
         self._options = {
             "name": "Env",
-            "of_library": False,
+            "of_library": None,
+            "feeds_mm_s": None,
             "settings": [],
             "against": None,
             "knowledge": knowledge,

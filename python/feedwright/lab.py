@@ -1,4 +1,4 @@
-"""The gym: a controller, a term of the plant or an agent in Python takes part in a run.
+"""The gym: a controller, a planner, a term of the plant or an agent in Python takes part in a run.
 
 >>> from feedwright import lab, Program
 >>> class Straight:
@@ -18,10 +18,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
+import numpy
+
 from . import _feedwright
-from ._bench import PUBLIC_SECRET, Benchmark, Round, benchmark, commitment, leaderboard, new_secret, verify
+from ._bench import PUBLIC_SECRET, Benchmark, Round, _name, benchmark, commitment, leaderboard, new_secret, verify
 from ._env import Env, Observe, Reward
-from ._feedwright import Measurement, Window
+from ._feedwright import Machine, Measurement, Motion, Program, Window
 from ._jobs import Cut, MachineOrPath, ProgramOrPath, _machine, _program, made_of, words_of
 from ._progress import Progress, told
 
@@ -32,6 +34,7 @@ __all__ = [
     "Measurement",
     "Observe",
     "PUBLIC_SECRET",
+    "Planner",
     "PlantTerm",
     "Reward",
     "Round",
@@ -46,6 +49,9 @@ __all__ = [
 
 #: Called with the positions, mm, and speeds, mm/s, of the joints and the time, s: an added torque for each axis, N m.
 PlantTerm = Callable[[Any, Any, float], Sequence[float]]
+
+#: Called with the motions of the program and the machine: a feedrate for each motion, mm/s. Those of rapids are not used.
+Planner = Callable[[Sequence[Motion], Machine], Sequence[float]]
 
 
 class Controller(Protocol):
@@ -66,8 +72,18 @@ class Controller(Protocol):
         path at its end, mm for each axis."""
 
 
-def _name(controller: object) -> str:
-    return controller if isinstance(controller, str) else getattr(controller, "name", type(controller).__name__)
+def _feeds(planner: Planner | None, program: Program, machine: Machine) -> list[float] | None:
+    """What a planner says to a program on a machine."""
+    if planner is None:
+        return None
+    motions = list(_feedwright.Motions(program))
+    feeds = numpy.asarray(planner(motions, machine), dtype=float)
+    if feeds.shape != (len(motions),):
+        raise ValueError(f"the planner returned {feeds.size} feedrates for {len(motions)} motions: one for each, mm/s")
+    for motion, feed in zip(motions, feeds):
+        if not (motion.rapid or 0 < feed < numpy.inf):
+            raise ValueError(f"line {motion.line}: the planner's feedrate is {feed} mm/s; it must be above 0")
+    return feeds.tolist()
 
 
 def run(
@@ -80,6 +96,7 @@ def run(
     knowledge: str = "exact",
     seed: int | None = None,
     feed_mm_s: float | None = None,
+    planner: Planner | None = None,
     plant_term: PlantTerm | None = None,
     rows: bool = True,
     progress: Progress = None,
@@ -92,14 +109,17 @@ def run(
     `knowledge` says what the controller is given of the axes: `exact` values; what is `identified` from a recording, that
     is inertia and friction; or `wrong` ones, with inertia 20 % too low and friction 20 % too high. What drives are set to is
     always right. `seed` is that of the noise; without one it is that of the machine file, as it is in the recording.
-    `plant_term` adds a torque to the machine in both cuts.
+    `planner` sets the feedrate of each motion in the cut of the controller; the planner of the library holds the limits of the
+    machine in any case. `plant_term` adds a torque to the machine in both cuts.
 
-    What the controller or the term raises ends the run and is raised here. The supervisor of the library bounds what the
+    What the controller, the planner or the term raises ends the run and is raised here. The supervisor of the library bounds what the
     controller asks for, and takes it out of the loop where it does harm.
     """
+    program, machine = _program(program), _machine(machine)
     options = {
-        "name": _name(controller),
-        "of_library": isinstance(controller, str),
+        "name": _name(controller, planner),
+        "of_library": controller if isinstance(controller, str) else None,
+        "feeds_mm_s": _feeds(planner, program, machine),
         "settings": words_of(settings),
         "against": against,
         "knowledge": knowledge,
@@ -109,5 +129,5 @@ def run(
         "rows": rows,
     }
     with told(progress) as tell:
-        ran = _feedwright.run_with(_program(program), _machine(machine), controller, options, tell)
+        ran = _feedwright.run_with(program, machine, controller, options, tell)
     return made_of(*ran)

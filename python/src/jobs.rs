@@ -104,12 +104,13 @@ pub(crate) type Ran<'py> = (Bound<'py, PyAny>, Option<Bound<'py, PyDict>>, CutOu
 #[pyfunction]
 pub(crate) fn run<'py>(
     py: Python<'py>,
-    program: &PythonProgram,
-    machine: &PythonMachine,
+    program: Py<PythonProgram>,
+    machine: Py<PythonMachine>,
     options: RunOptions,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Ran<'py>> {
-    let cut = |watch: &dyn Watch| {
+    let cut = move |watch: &dyn Watch| {
+        let (program, machine) = (program.get(), machine.get());
         watch.begin("reading the program", 1);
         let mut job = options.job(program, machine, watch)?;
         let read = job.check()?;
@@ -170,12 +171,13 @@ pub(crate) struct CorrectOptions {
 #[pyfunction]
 pub(crate) fn correct<'py>(
     py: Python<'py>,
-    program: &PythonProgram,
-    machine: &PythonMachine,
+    program: Py<PythonProgram>,
+    machine: Py<PythonMachine>,
     options: CorrectOptions,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Bound<'py, PyAny>, Option<String>)> {
-    let work = |watch: &dyn Watch| {
+    let work = move |watch: &dyn Watch| {
+        let (program, machine) = (program.get(), machine.get());
         let mut job = CorrectJob::new(program.program.clone(), machine.machine.clone(), target(&options.control)?);
         job.reader = program.settings.clone();
         job.file_error = machine.file_error(options.file_error);
@@ -204,12 +206,13 @@ pub(crate) struct AdviseOptions {
 #[pyfunction]
 pub(crate) fn advise<'py>(
     py: Python<'py>,
-    program: &PythonProgram,
-    machine: &PythonMachine,
+    program: Py<PythonProgram>,
+    machine: Py<PythonMachine>,
     options: AdviseOptions,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let work = |watch: &dyn Watch| {
+    let work = move |watch: &dyn Watch| {
+        let (program, machine) = (program.get(), machine.get());
         let AdviseOptions { tolerance_um, control, controller, .. } = &options;
         check_tolerance(*tolerance_um)?;
         let machine_of = machine.machine.clone();
@@ -230,14 +233,14 @@ pub(crate) fn advise<'py>(
 #[pyfunction]
 pub(crate) fn plan<'py>(
     py: Python<'py>,
-    program: &PythonProgram,
-    machine: &PythonMachine,
-    control: Option<&str>,
+    program: Py<PythonProgram>,
+    machine: Py<PythonMachine>,
+    control: Option<String>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyDict>)> {
-    let work = |watch: &dyn Watch| {
-        let machine: &Machine = &machine.machine;
-        let stages = match control {
+    let work = move |watch: &dyn Watch| {
+        let (program, machine): (_, &Machine) = (program.get(), &machine.get().machine);
+        let stages = match &control {
             Some(name) => target(name)?.stages(machine),
             None => Stages::of(machine),
         };
@@ -275,18 +278,18 @@ impl IdentifiedMachine {
 pub(crate) fn identify<'py>(
     py: Python<'py>,
     logs: Vec<PathBuf>,
-    columns: Option<&str>,
-    name: &str,
+    columns: Option<String>,
+    name: String,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Bound<'py, PyAny>, PythonMachine, IdentifiedMachine)> {
-    let work = |watch: &dyn Watch| {
-        let columns = columns.map(Columns::from_str).transpose()?.unwrap_or_default();
+    let work = move |watch: &dyn Watch| {
+        let columns = columns.as_deref().map(Columns::from_str).transpose()?.unwrap_or_default();
         let read = |path: &PathBuf| Ok((path.clone(), Log::read_watched(path, &columns, watch)?));
         let log = Log::joined(logs.iter().map(read).collect::<Result<Vec<_>, Report>>()?)?;
         let findings: Vec<String> = log.findings.iter().map(ToString::to_string).collect();
         let named = logs.iter().map(|path| input::name(path)).collect::<Vec<_>>().join(", ");
         let identified = LogJob { name: named, ..LogJob::default() }.run(log, watch)?;
-        let machine = PythonMachine::parsed(&format!("{name}.toml"), &machine_text(&identified, name))?;
+        let machine = PythonMachine::parsed(&format!("{name}.toml"), &machine_text(&identified, &name))?;
         let mut results = Vec::new();
         write_json(&mut results, &identified).into_diagnostic()?;
         let mut results: Value = serde_json::from_slice(&results).into_diagnostic()?;

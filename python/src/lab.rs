@@ -16,6 +16,8 @@ mod task;
 pub(crate) mod episode;
 pub(crate) mod held_out;
 
+use std::sync::mpsc::channel;
+
 use feedwright::Guests;
 use feedwright::sim::{Sink, Watch};
 use miette::{Result, miette};
@@ -33,16 +35,16 @@ use raised::{GuardedWatch, Raised};
 use task::{LabOptions, LabTask, told};
 
 /// A cut with a controller of Python.
-struct GuestRun<'a> {
-    task: &'a LabTask,
+struct GuestRun {
+    task: LabTask,
     /// None where it is one of the library.
-    controller: Option<&'a Py<PyAny>>,
+    controller: Option<Py<PyAny>>,
     term: Option<PlantTerm>,
     rows: bool,
     raised: Raised,
 }
 
-impl GuestRun<'_> {
+impl GuestRun {
     fn cut(&self, watch: &dyn Watch) -> Result<(String, Option<RowColumns>, CutOutcome)> {
         let watch = GuardedWatch { watch, raised: self.raised.clone() };
         watch.begin("reading the program", 1);
@@ -57,15 +59,16 @@ impl GuestRun<'_> {
             });
             made.ok_or_else(|| miette!("the controller could not be made"))
         };
-        let (controller, informed) = (self.controller.map(made).transpose()?, self.task.informed(&known));
+        let (controller, informed) = (self.controller.as_ref().map(made).transpose()?, self.task.informed(&known));
         let plant = self
             .term
             .as_ref()
             .map(|term| move |start_mm: [f64; 3], seed: u64| term.plant(&job.machine, axes, start_mm, seed));
         let plant = plant.as_ref().map(|plant| plant as _);
+        let feeds_mm_s = self.task.feeds_mm_s.as_deref();
         let guests = match &controller {
-            Some(controller) => Guests { plane: Some(controller), space: Some(controller), plant },
-            None => Guests { plane: Some(&informed), space: Some(&informed), plant },
+            Some(controller) => Guests { plane: Some(controller), space: Some(controller), feeds_mm_s, plant },
+            None => Guests { plane: Some(&informed), space: Some(&informed), feeds_mm_s, plant },
         };
         let (mut columns, mut end) = (RowColumns::new(axes), self.raised.clone());
         let mut sinks: Vec<&mut dyn Sink> = vec![&mut end];
@@ -90,10 +93,20 @@ pub(crate) fn run_with<'py>(
     let task = LabTask::new(program, machine, &options).map_err(|error| crate::fault::exception(&error))?;
     let raised = Raised::default();
     let (term, rows) = (options.plant_term(py, &raised), options.rows);
-    let controller = (!options.of_library).then_some(&controller);
-    let run = GuestRun { task: &task, controller, term, rows, raised: raised.clone() };
-    // The thread keeps its state of the interpreter from call to call.
-    let done = watched(py, progress.as_ref(), |watch| Python::attach(|py| py.detach(|| run.cut(watch))));
+    let controller = options.of_library.is_none().then_some(controller);
+    let calls = controller.is_some() || term.is_some();
+    let run = GuestRun { task, controller, term, rows, raised: raised.clone() };
+    let (running, ended) = channel::<()>();
+    let done = watched(py, progress.as_ref(), move |watch| {
+        let _running = running;
+        // A thread that calls code of the caller keeps its state of the interpreter from call to call.
+        if calls { Python::attach(|py| py.detach(|| run.cut(watch))) } else { run.cut(watch) }
+    });
+    if done.is_err() && calls {
+        // Nothing of the caller is called behind its back.
+        raised.end();
+        let _ = py.detach(move || ended.recv());
+    }
     if let Some(error) = raised.take() {
         return Err(error);
     }

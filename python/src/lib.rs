@@ -37,6 +37,9 @@ mod _feedwright {
     use super::files::{MotionOfProgram, MotionsOfProgram, PythonMachine, PythonProgram, check, lists};
     #[pymodule_export]
     use super::jobs::{advise, correct, identify, plan, run};
+    #[cfg(feature = "peers")]
+    #[pymodule_export]
+    use super::lab::held_out::searched_settings;
     #[pymodule_export]
     use super::lab::held_out::{held_out_machine, held_out_program, tables_page};
     #[pymodule_export]

@@ -60,13 +60,13 @@ pub(crate) fn job_address(py: Python<'_>, spec: &str, folder: PathBuf) -> PyResu
 #[pyfunction(name = "do_job")]
 pub(crate) fn do_python_job(
     py: Python<'_>,
-    spec: &str,
+    spec: String,
     folder: PathBuf,
     out: PathBuf,
 ) -> PyResult<(Option<String>, bool, Option<String>)> {
-    watched(py, None, |watch| {
+    watched(py, None, move |watch| {
         let store = ResultStore::create(&out)?;
-        match do_job(&store, &listed(spec, folder)?, watch) {
+        match do_job(&store, &listed(&spec, folder)?, watch) {
             Ok(done) => Ok((Some(done.address), done.found, done.error)),
             Err(error) if error.downcast_ref::<OutputError>().is_some() => Err(error),
             Err(error) => {
@@ -80,7 +80,7 @@ pub(crate) fn do_python_job(
 /// The columns of the results in folders.
 #[pyfunction]
 pub(crate) fn merge<'py>(py: Python<'py>, folders: Vec<PathBuf>) -> PyResult<Bound<'py, PyDict>> {
-    let table = watched(py, None, |watch| {
+    let table = watched(py, None, move |watch| {
         let stores = folders.iter().map(|folder| ResultStore::open(folder)).collect::<Result<Vec<_>, _>>()?;
         ResultTable::of(&stores, watch)
     })?;

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -56,42 +56,36 @@ impl Progress {
     }
 }
 
-/// Does a job without the lock of the interpreter. `told(stage, done, steps)` is called while it runs; where it raises, and at
-/// Ctrl-C, the job is cancelled.
-pub(crate) fn watched<T: Send>(
+/// Does a job on a thread of its own, without the lock of the interpreter. `told(stage, done, steps)` is called while it runs. Where it
+/// raises, and at Ctrl-C, the job is cancelled, and nobody waits until it has heard of it: what it comes to is dropped.
+pub(crate) fn watched<T: Send + 'static>(
     py: Python<'_>,
     told: Option<&Py<PyAny>>,
-    job: impl FnOnce(&dyn Watch) -> Result<T, Report> + Send,
+    job: impl FnOnce(&dyn Watch) -> Result<T, Report> + Send + 'static,
 ) -> PyResult<T> {
-    let progress = Progress {
+    let progress = Arc::new(Progress {
         stage: Mutex::new((String::new(), 0)),
         done: AtomicU64::new(0),
         cancelled: AtomicBool::new(false),
         begun: Instant::now(),
-    };
-    let wait = || {
-        thread::scope(|scope| {
-            let (send, done) = channel();
-            let progress = &progress;
-            scope.spawn(move || {
-                // Where nobody waits any more, nobody asks for the result.
-                let _ = send.send(job(progress));
-            });
-            let mut raised = None;
-            loop {
-                match done.recv_timeout(EVERY) {
-                    Ok(result) => return raised.map_or_else(|| result.map_err(|error| exception(&error)), Err),
-                    Err(RecvTimeoutError::Timeout) if raised.is_some() => {}
-                    Err(RecvTimeoutError::Timeout) => {
-                        raised = progress.tell(told).err();
-                        progress.cancelled.store(raised.is_some(), Ordering::Relaxed);
-                    }
-                    Err(RecvTimeoutError::Disconnected) => {
-                        return Err(PyRuntimeError::new_err("feedwright has a fault: its work ended without a result"));
-                    }
+    });
+    let (send, done) = channel();
+    let of_job = Arc::clone(&progress);
+    thread::Builder::new().name("feedwright job".to_owned()).spawn(move || {
+        // Where nobody waits any more, nobody asks for the result.
+        let _ = send.send(job(&*of_job));
+    })?;
+    py.detach(move || {
+        loop {
+            match done.recv_timeout(EVERY) {
+                Ok(result) => return result.map_err(|error| exception(&error)),
+                Err(RecvTimeoutError::Timeout) => {
+                    progress.tell(told).inspect_err(|_| progress.cancelled.store(true, Ordering::Relaxed))?;
+                }
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(PyRuntimeError::new_err("feedwright has a fault: its work ended without a result"));
                 }
             }
-        })
-    };
-    py.detach(wait)
+        }
+    })
 }

@@ -12,13 +12,14 @@ import threading
 import time
 import unittest
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy
 
 import feedwright
-from feedwright import lab
+from feedwright import Machine, Motion, lab
 
 STAR = Path(os.environ["FEEDWRIGHT_PARTS"]) / "star.ngc"
 DOCS = Path(os.environ["FEEDWRIGHT_DOCS"])
@@ -254,7 +255,9 @@ class Guests(unittest.TestCase):
 
     def test_an_interrupt_ends_a_run(self) -> None:
         text = (
-            "import sys\nfrom feedwright import lab\nclass C:\n servo_periods, preview = 1, 0\n def reset(self): pass\n"
+            # A shell that starts a job in the background has it ignore Ctrl-C.
+            "import signal, sys\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
+            "from feedwright import lab\nclass C:\n servo_periods, preview = 1, 0\n def reset(self): pass\n"
             " def command(self, window):\n  import time; time.sleep(0.01); return 1.0, [0.0, 0.0]\n"
             "print('begun', flush=True)\nlab.run(sys.argv[1], 'tnv40', C())\n"
         )
@@ -267,6 +270,79 @@ class Guests(unittest.TestCase):
         job.send_signal(2)
         _, told = job.communicate(timeout=30)
         self.assertIn("KeyboardInterrupt", told)
+
+
+def half_the_feed(motions: Sequence[Motion], machine: Machine) -> list[float]:
+    return [motion.feed_mm_s / 2 for motion in motions]
+
+
+class Planners(unittest.TestCase):
+    def test_a_planner_sets_the_feedrates_of_its_cut_alone(self) -> None:
+        as_programmed = lab.run(STAR, "tnv40", "uncorrected")
+        half = lab.run(STAR, "tnv40", "uncorrected", planner=half_the_feed)
+        self.assertEqual(half.corrected["controller"], "half_the_feed")
+        for key in ("time_s", "rms_um", "max_um"):
+            self.assertEqual(half.uncorrected[key], as_programmed.uncorrected[key])
+        # The arcs of the star are slower than programmed already.
+        self.assertGreater(half.corrected["time_s"], 1.1 * half.uncorrected["time_s"])
+        self.assertLess(half.corrected["rms_um"], 0.8 * half.uncorrected["rms_um"])
+
+    def test_the_feedrates_of_the_program_change_no_bit(self) -> None:
+        for controller in ("uncorrected", "feedforward", Straight()):
+            same = lab.run(STAR, "workshop", controller, planner=lambda motions, _: [m.feed_mm_s or 1.0 for m in motions])
+            plain = lab.run(STAR, "workshop", controller)
+            for key in ("time_s", "rms_um", "max_um", "engaged_share"):
+                self.assertEqual(same.corrected[key], plain.corrected[key])
+
+    def test_a_controller_of_the_library_and_a_planner_take_part_together(self) -> None:
+        half = {"velocity_gain": 0.5, "acceleration_gain": 0, "friction_gain": 0}
+        both = lab.run(STAR, "tnv40", "feedforward", settings=half, planner=half_the_feed)
+        self.assertEqual(both.corrected["controller"], "feedforward, planned by half_the_feed")
+        alone = lab.run(STAR, "tnv40", "uncorrected", planner=half_the_feed)
+        self.assertLess(both.corrected["rms_um"], alone.corrected["rms_um"])
+
+    def test_a_machine_holds_its_limits_whatever_a_planner_says(self) -> None:
+        fast = lab.run(STAR, "tnv40", "uncorrected", planner=lambda motions, _: [1e6] * len(motions))
+        values = feedwright.Machine("tnv40").values
+        most_mm_s = values["limits"]["max_feed_mm_s"]
+        self.assertLessEqual(fast.rows["feed_plan_mm_s"].max(), most_mm_s * (1 + 1e-9))
+
+    def test_wrong_plans_are_said(self) -> None:
+        def raises(motions: object, machine: object) -> list[float]:
+            raise KeyError("in the planner")
+
+        for planner, told in (
+            (lambda motions, _: [], "0 feedrates for"),
+            (lambda motions, _: [-1.0] * len(motions), "is -1.0 mm/s"),
+            (lambda motions, _: [float("nan")] * len(motions), "is nan mm/s"),
+            (lambda motions, _: "fast", "could not convert"),
+        ):
+            with self.assertRaisesRegex(ValueError, told):
+                lab.run(STAR, "tnv40", "uncorrected", planner=planner)
+        with self.assertRaisesRegex(KeyError, "in the planner"):
+            lab.run(STAR, "tnv40", "uncorrected", planner=raises)
+
+    def test_a_planner_is_scored_and_verified(self) -> None:
+        round = lab.Round("a planner", programs=1, machines=1)
+        found = lab.benchmark("uncorrected", planner=half_the_feed, round=round, knowledge=["exact"])
+        self.assertGreater(found.scores["exact"]["time_ratio"], 1.2)
+        self.assertEqual(found.results["controller"]["name"], "half_the_feed")
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "half.json")
+            found.save(path)
+            self.assertEqual(lab.verify(path, "uncorrected", half_the_feed), [])
+            self.assertIn("the source of the planner is another one", lab.verify(path, "uncorrected"))
+
+
+def set_feedforward(gain: float) -> lab.Benchmark:
+    round = lab.Round("keys", programs=1, machines=1)
+    return lab.benchmark(
+        "feedforward",
+        round=round,
+        knowledge=["exact"],
+        settings=lambda machine: {"velocity_gain": gain},
+        planner=half_the_feed,
+    )
 
 
 class Rounds(unittest.TestCase):
@@ -303,18 +379,27 @@ class Rounds(unittest.TestCase):
                 with self.assertRaisesRegex(ValueError, "no result file"):
                     lab.leaderboard([path])
 
+    def test_what_a_controller_is_set_to_is_verified_with_it(self) -> None:
+        half, other = set_feedforward(0.5), set_feedforward(0.25)
+        self.assertEqual(list(half.results["controller"]["settings"].values()), [{"velocity_gain": 0.5}])
+        self.assertNotEqual(half.scores, other.scores)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "half.json")
+            half.save(path)
+            self.assertEqual(lab.verify(path, "feedforward", half_the_feed), [])
+
     def test_the_manual_has_every_key_of_a_result_file_and_no_other(self) -> None:
         def keys(value: Any, place: str = "") -> set[str]:
             if isinstance(value, list):
                 return set().union(*(keys(part, f"{place}[]") for part in value))
             if isinstance(value, dict):
-                free = place in ("versions", "scores")
+                free = place in ("versions", "scores") or place.startswith("controller.settings")
                 return set().union(
                     *(keys(part, f"{place}.{'*' if free else key}".lstrip(".")) for key, part in value.items())
                 )
             return {place}
 
-        found = lab.benchmark(Straight(), round=lab.Round("keys", 1, 1), knowledge=["exact"])
+        found = set_feedforward(0.5)
         section = (DOCS / "json.md").read_text(encoding="utf-8").split("## Result files of the gym")[1].split("## ")[0]
         documented = {line.split("`")[1] for line in section.splitlines() if line.startswith("| `")}
         self.assertEqual(documented, keys(found.results))

@@ -138,7 +138,8 @@ impl EpisodeWork {
             .term
             .as_ref()
             .map(|term| move |start_mm: [f64; 3], seed: u64| term.plant(&job.machine, axes, start_mm, seed));
-        let guests = Guests { plane: Some(&once), space: Some(&once), plant: plant.as_ref().map(|plant| plant as _) };
+        let plant = plant.as_ref().map(|plant| plant as _);
+        let guests = Guests { plane: Some(&once), space: Some(&once), plant, ..Guests::default() };
         let (mut sink, mut end) = (ErrorSink(errors.clone()), self.raised.clone());
         watch.check()?;
         let outcome = checked.run_with(guests, &mut [&mut sink, &mut end], &watch)?;

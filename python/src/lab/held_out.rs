@@ -28,6 +28,23 @@ pub(crate) fn held_out_machine(seed: u64) -> PyResult<Option<PythonMachine>> {
     Ok(machine.machine.is_noisy().then_some(machine))
 }
 
+/// What the search of the laboratory sets the parameters of a controller to on a machine, which it knows. Seconds to minutes.
+#[cfg(feature = "peers")]
+#[pyfunction]
+pub(crate) fn searched_settings(
+    py: Python<'_>,
+    controller: String,
+    machine: Py<PythonMachine>,
+) -> PyResult<std::collections::BTreeMap<String, f64>> {
+    crate::watched::watched(py, None, move |watch| {
+        let entry = feedwright::command::find(&controller, feedwright_lab::CONTROLLERS)?;
+        let tuned =
+            feedwright_lab::compare::tuning::search(entry, &machine.get().machine, super::task::RECORDING_SEED, watch);
+        let settings = tuned.into_diagnostic()?.settings(entry);
+        Ok(settings.iter().map(|setting| (setting.name.to_owned(), setting.value)).collect())
+    })
+}
+
 /// A part of a page: what a link leads to, heading, heads of its table, rows.
 type TablePart = (String, String, Vec<String>, Vec<Vec<String>>);
 

@@ -22,7 +22,7 @@ const TABLE: Controllers = if cfg!(feature = "peers") { feedwright_lab::CONTROLL
 const BELIEVED: [f64; 2] = [0.8, 1.2];
 
 /// Seed of recordings and trainings: a machine is identified once, whatever the noise of the cut.
-const RECORDING_SEED: u64 = 1;
+pub(super) const RECORDING_SEED: u64 = 1;
 /// Identified machines that are kept.
 const KEPT_MACHINES: usize = 64;
 
@@ -32,8 +32,10 @@ const KEPT_MACHINES: usize = 64;
 pub(crate) struct LabOptions {
     /// What the controller is called.
     name: String,
-    /// Whether it is one of the library.
-    pub(super) of_library: bool,
+    /// The controller of the library that takes its place.
+    pub(super) of_library: Option<String>,
+    /// What a planner says: a feedrate for each motion, mm/s.
+    feeds_mm_s: Option<Vec<f64>>,
     settings: Vec<String>,
     against: Option<String>,
     knowledge: String,
@@ -44,12 +46,12 @@ pub(crate) struct LabOptions {
 }
 
 /// The row of a controller that the caller brings. A name stays for the life of the process, once.
-fn entry(name: &str, knows: Knows) -> &'static Entry {
+fn entry(name: &str, knows: Knows, laps: u32) -> &'static Entry {
     static ENTRIES: Mutex<Vec<&'static Entry>> = Mutex::new(Vec::new());
     let taken = TABLE.find(name).is_some();
     let name = if taken { format!("{name} in Python") } else { name.to_owned() };
     let mut entries = ENTRIES.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(entry) = entries.iter().find(|entry| entry.name == name && entry.knows == knows) {
+    if let Some(entry) = entries.iter().find(|entry| (entry.name, entry.knows, entry.laps) == (&name, knows, laps)) {
         return entry;
     }
     let entry: &'static Entry = Box::leak(Box::new(Entry {
@@ -58,7 +60,7 @@ fn entry(name: &str, knows: Knows) -> &'static Entry {
         source: "its author",
         knows,
         identifier: None,
-        laps: 1,
+        laps,
         parameters: &[],
         plane: UNCORRECTED.plane,
         space: UNCORRECTED.space,
@@ -81,7 +83,7 @@ where
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<N>> {
         let mut told = Setup::new(&self.task.machine, setup.choices);
         told.known.clone_from(&self.known);
-        self.task.job.controller.make(&mut told)
+        self.task.made.make(&mut told)
     }
 }
 
@@ -108,6 +110,9 @@ fn identified(machine: &Machine, axes: usize) -> Result<Known> {
 /// Something to cut.
 pub(super) struct LabTask {
     pub(super) job: Job,
+    /// The controller of the library that is made for it.
+    made: &'static Entry,
+    pub(super) feeds_mm_s: Option<Vec<f64>>,
     /// With the noise seed of its file.
     machine: Machine,
     knowledge: String,
@@ -123,16 +128,22 @@ impl LabTask {
         let noisy = options.seed.map_or_else(|| machine.machine.clone(), |seed| machine.machine.with_noise_seed(seed));
         let mut job = Job::new(program.program.clone(), noisy);
         job.machine_file.clone_from(&machine.file);
-        job.controller = if options.of_library { find(&options.name, TABLE)? } else { entry(&options.name, knows) };
+        let made = options.of_library.as_deref().map(|name| find(name, TABLE)).transpose()?;
+        // With a planner it is another one than that of the cut beside it.
+        let as_it_is = made.filter(|_| options.feeds_mm_s.is_none());
+        let laps = made.map_or(1, |made| made.laps);
+        job.controller = as_it_is.unwrap_or_else(|| entry(&options.name, knows, laps));
         job.against = options.against.as_deref().map_or(Ok(job.controller), |name| find(name, TABLE))?;
         job.feed_mm_s = options.feed_mm_s;
-        let both = [job.controller, job.against];
-        let set = settings(&options.settings, TABLE, Some(job.controller), &both)?;
+        let made = made.unwrap_or(job.controller);
+        let both = [made, job.against];
+        let set = settings(&options.settings, TABLE, Some(made), &both)?;
         job.choices = Choices { seed: RECORDING_SEED, set, ..Choices::default() };
         let recorded = both.into_iter().filter_map(|entry| Some((entry, TABLE.recorded(&machine.machine, entry)?)));
         job.choices.take_recorded(recorded.collect::<Vec<_>>().into_iter());
         job.reader = program.settings.clone();
-        Ok(Self { job, machine: machine.machine.clone(), knowledge: options.knowledge.clone() })
+        let (feeds_mm_s, knowledge) = (options.feeds_mm_s.clone(), options.knowledge.clone());
+        Ok(Self { job, made, feeds_mm_s, machine: machine.machine.clone(), knowledge })
     }
 
     /// What is known of the machine where so many axes are controlled.
