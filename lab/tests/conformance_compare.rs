@@ -51,10 +51,11 @@ fn json(comparison: &Comparison) -> String {
     serde_json::to_string(comparison).unwrap()
 }
 
-/// Those of one machine.
+/// Those of one machine, without a log of it, which takes the longest.
 fn few_options() -> ComparisonOptions {
     let mut options = options();
     options.machines.truncate(1);
+    options.knowledge.retain(|&knowledge| knowledge != Knowledge::Log);
     options
 }
 
@@ -156,7 +157,7 @@ fn identified_parameters_are_worth_as_much_as_exact_ones_on_workshop_and_more_th
         workpieces: Workpiece::contours().into_iter().filter(|workpiece| workpiece.name == "circle").collect(),
         machines: vec![workshop],
         controllers: [BASELINE, "feedforward"].map(|name| CONTROLLERS.find(name).unwrap()).to_vec(),
-        ..options()
+        ..few_options()
     };
     let comparison = with_threads(2, &options, &Journal::none());
     let [exact, identified, off] = ["", "+identified", "+20%off"].map(|given| {
