@@ -42,30 +42,40 @@ fn damaged(text: &str, damage: &Damage) -> String {
     }
 }
 
+fn are_told_about(name: &str, file: usize, damages: &[Damage]) -> Result<(), TestCaseError> {
+    let folder = copied(name);
+    let is_read = |name: &String| name.ends_with(".hal") || name.ends_with(".ini");
+    let files: Vec<String> = crate::golden_linuxcnc_setup::files(folder.path()).into_keys().filter(is_read).collect();
+    let file = &files[file % files.len()];
+    let text = damages.iter().fold(folder.text(file), |text, damage| damaged(&text, damage));
+    folder.file(file, text);
+    for simulate in [None, Some("tnv40".to_owned())] {
+        let setup = LinuxcncSetup {
+            ini: folder.path().join("my.ini"),
+            hallib: Path::new("/nowhere").to_owned(),
+            simulate,
+            raise_ferror: true,
+            replace: true,
+        };
+        match setup.wire(&()) {
+            Ok(wiring) => prop_assert!(wiring.is_wired() != wiring.written.is_empty()),
+            Err(error) => prop_assert!(error.to_string().len() > 10),
+        }
+    }
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn damaged_configurations_are_told_about(name in 0..NAMES.len(), file in 0..3_usize, damages in prop::collection::vec(damage(), 1..4)) {
-        let folder = copied(NAMES[name]);
-        let is_read = |name: &String| name.ends_with(".hal") || name.ends_with(".ini");
-        let files: Vec<String> =
-            crate::golden_linuxcnc_setup::files(folder.path()).into_keys().filter(is_read).collect();
-        let file = &files[file % files.len()];
-        let text = damages.iter().fold(folder.text(file), |text, damage| damaged(&text, damage));
-        folder.file(file, text);
-        for simulate in [None, Some("tnv40".to_owned())] {
-            let setup = LinuxcncSetup {
-                ini: folder.path().join("my.ini"),
-                hallib: Path::new("/nowhere").to_owned(),
-                simulate,
-                raise_ferror: true,
-                replace: true,
-            };
-            match setup.wire(&()) {
-                Ok(wiring) => prop_assert!(wiring.is_wired() != wiring.written.is_empty()),
-                Err(error) => prop_assert!(error.to_string().len() > 10),
-            }
-        }
+        are_told_about(NAMES[name], file, &damages)?;
     }
+}
+
+/// A quotation mark without another, in front of a pin that is moved.
+#[test]
+fn damage_that_was_found_is_told_about() {
+    are_told_about("rotary", 2, &[Damage::Insert { at: 2670, sign: 0 }]).unwrap();
 }

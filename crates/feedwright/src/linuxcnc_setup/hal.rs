@@ -298,7 +298,10 @@ fn spans(text: &str) -> Vec<(Range<usize>, bool)> {
                     spans.push((start..end, true));
                     while signs.next_if(|&(at, _)| at < end).is_some() {}
                 }
-                None => spans.push((start..text.len(), false)),
+                None => {
+                    spans.push((start..text.len(), false));
+                    break;
+                }
             },
             _ => {
                 let mut quote = None;

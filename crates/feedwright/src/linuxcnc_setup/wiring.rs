@@ -13,7 +13,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
-use std::ops::Range;
 
 use super::error::LinuxcncSetupError;
 use super::hal::{HalLine, HalPlace, HalScript, NamedBy};
@@ -172,8 +171,8 @@ fn loads(joints: &SetupJoints, simulates: bool) -> Vec<String> {
 /// Changes of one line.
 #[derive(Debug, Default)]
 struct HalLineEdit {
-    /// Words that are replaced, or taken out where there is nothing in their place.
-    words: Vec<(Range<usize>, Option<String>)>,
+    /// Words by their number that are replaced, or taken out where there is nothing in their place.
+    words: BTreeMap<usize, Option<String>>,
     /// Lines behind it.
     after: Vec<String>,
 }
@@ -199,11 +198,10 @@ impl HalEdits<'_> {
                 continue;
             }
             let first = if line.word(0) == "net" { 2 } else { 1 };
-            for word in line.words.iter().skip(first).filter(|word| word.text == pin) {
+            let words = line.words.iter().enumerate().skip(first);
+            for (number, _) in words.filter(|(_, word)| word.text == pin) {
                 let edit = self.lines.entry(place).or_default();
-                if !edit.words.iter().any(|(span, _)| *span == word.span) {
-                    edit.words.push((word.span.clone(), by.map(str::to_owned)));
-                }
+                edit.words.entry(number).or_insert_with(|| by.map(str::to_owned));
             }
         }
     }
@@ -234,10 +232,8 @@ impl HalEdits<'_> {
         let later = self.netlist.functions.iter().skip_while(|other| other.place != function.place).skip(1);
         for other in later.filter(|other| other.thread == function.thread) {
             let Some(position) = other.position.filter(|position| *position > first) else { continue };
-            if let Some(word) = self.script.line(other.place).words.get(3) {
-                let moved = (position + names.len() as i32).to_string();
-                self.lines.entry(other.place).or_default().words.push((word.span.clone(), Some(moved)));
-            }
+            let moved = (position + names.len() as i32).to_string();
+            self.lines.entry(other.place).or_default().words.insert(3, Some(moved));
         }
     }
 
@@ -276,23 +272,23 @@ impl HalEdits<'_> {
             return name.to_owned();
         };
         let line = self.script.line(found.place);
-        let argument = |key: &str| line.words.iter().find(|word| word.text.starts_with(key));
+        let argument = |key: &str| line.words.iter().position(|word| word.text.starts_with(key));
         let edit = self.lines.entry(found.place).or_default();
-        if let Some(word) = argument("names=") {
-            let before = edit.words.iter().position(|(span, _)| *span == word.span).map(|at| edit.words.remove(at));
-            let text = before.and_then(|(_, text)| text).unwrap_or_else(|| word.text.clone());
-            edit.words.push((word.span.clone(), Some(format!("{text},{name}"))));
+        let mut taken =
+            |number: usize| edit.words.remove(&number).flatten().unwrap_or_else(|| line.word(number).to_owned());
+        if let Some(number) = argument("names=") {
+            let names = format!("{},{name}", taken(number));
+            edit.words.insert(number, Some(names));
             return name.to_owned();
         }
-        let word = argument("count=").or_else(|| line.words.get(1));
-        let before = word.and_then(|word| edit.words.iter().position(|(span, _)| *span == word.span));
-        let before = before.map(|at| edit.words.remove(at)).and_then(|(_, text)| text);
-        let text = before.or_else(|| word.map(|word| word.text.clone())).unwrap_or_default();
-        let count = text.rsplit_once("count=").and_then(|(_, count)| count.parse::<usize>().ok()).unwrap_or(1);
-        if let Some(word) = word {
-            let start = if word.text.starts_with("count=") { String::new() } else { format!("{} ", word.text) };
-            edit.words.push((word.span.clone(), Some(format!("{start}count={}", count + 1))));
-        }
+        // A component without arguments is loaded once: its count goes behind its name.
+        let number = argument("count=").unwrap_or(1);
+        let text = taken(number);
+        let (before, count) = text.rsplit_once("count=").unwrap_or((&text, ""));
+        let count = count.parse::<usize>().unwrap_or(1);
+        let before = before.trim_end();
+        let space = if before.is_empty() { "" } else { " " };
+        edit.words.insert(number, Some(format!("{before}{space}count={}", count + 1)));
         format!("{module}.{count}")
     }
 
@@ -437,10 +433,7 @@ impl HalEdits<'_> {
             match by {
                 NamedBy::Entry(number) => renamed.push((*number, name.clone())),
                 NamedBy::Source(place) => {
-                    if let Some(word) = self.script.line(*place).words.get(1) {
-                        let edit = self.lines.entry(*place).or_default();
-                        edit.words.push((word.span.clone(), Some(name.clone())));
-                    }
+                    self.lines.entry(*place).or_default().words.insert(1, Some(name.clone()));
                 }
             }
         }
@@ -465,24 +458,29 @@ impl HalEdits<'_> {
 }
 
 /// A line with other words. A `net` that has no pin left becomes a comment.
-fn edited(line: &HalLine, words: &[(Range<usize>, Option<String>)]) -> String {
-    let taken = |span: &Range<usize>| words.iter().any(|(other, by)| other == span && by.is_none());
-    let has_pins = line.words.iter().skip(2).any(|word| !ARROWS.contains(&word.text.as_str()) && !taken(&word.span));
-    let takes_out = words.iter().any(|(_, by)| by.is_none());
+fn edited(line: &HalLine, words: &BTreeMap<usize, Option<String>>) -> String {
+    let is_arrow = |number: usize| ARROWS.contains(&line.word(number));
+    let mut changes = words.clone();
+    let is_taken = |number: &usize| words.get(number) == Some(&None);
+    let has_pins = (2..line.words.len()).any(|number| !is_arrow(number) && !is_taken(&number));
+    let takes_out = words.values().any(Option::is_none);
     if takes_out && (line.word(0) != "net" || !has_pins) {
         return format!("# {}", line.text.replace('\n', "\n# "));
     }
-    let mut changes = words.to_vec();
     // An arrow in front of a word that is taken out goes with it.
-    for pair in line.words.windows(2) {
-        if taken(&pair[1].span) && ARROWS.contains(&pair[0].text.as_str()) {
-            changes.push((pair[0].span.clone(), None));
-        }
-    }
-    changes.sort_by_key(|(span, _)| std::cmp::Reverse(span.start));
+    changes.extend(
+        (1..line.words.len()).filter(is_taken).map(|number| number - 1).filter(|&n| is_arrow(n)).map(|n| (n, None)),
+    );
     let mut text = line.text.clone();
-    for (span, by) in changes {
-        text.replace_range(span, by.as_deref().unwrap_or(""));
+    let mut end = line.words.len();
+    // Words of one value of the INI file stand in one place.
+    for place in line.words.chunk_by(|a, b| a.span == b.span).rev() {
+        let numbers = end - place.len()..end;
+        end = numbers.start;
+        if changes.range(numbers.clone()).next().is_some() {
+            let left = numbers.filter_map(|n| changes.get(&n).map_or(Some(line.word(n)), Option::as_deref));
+            text.replace_range(place[0].span.clone(), &left.collect::<Vec<_>>().join(" "));
+        }
     }
     text
 }
