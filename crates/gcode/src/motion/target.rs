@@ -67,7 +67,7 @@ impl Interpreter {
     fn check_range(&self, block: &Block, target: &Position) -> Read<()> {
         let limit = self.settings.coordinate_limit_mm;
         for axis in [0, 1, 2, 6, 7, 8] {
-            if target[axis].abs() > limit {
+            if target[axis].is_nan() || target[axis].abs() > limit {
                 return Err(self.too_far(block, AXIS_LETTERS[axis], target[axis]));
             }
         }

@@ -39,7 +39,7 @@ impl Interpreter {
             0 if self.modal.diameter => 0.5 * value * self.modal.unit_mm,
             _ => value * self.modal.unit_mm,
         };
-        if scaled.abs() > self.settings.coordinate_limit_mm {
+        if scaled.is_nan() || scaled.abs() > self.settings.coordinate_limit_mm {
             return Err(self.too_far(block, letter, scaled));
         }
         Ok(scaled)
