@@ -32,7 +32,7 @@ mod stored;
 use std::borrow::Cow;
 
 use feedwright_control::Controller;
-use feedwright_gcode::canon::{Canon, MotionKind};
+use feedwright_gcode::canon::Canon;
 use feedwright_gcode::{self, Program, ReadError, Summary};
 use feedwright_ident::{LogFinding, Model};
 use feedwright_plan::{AlignedPaths, Constraints, PlanSink, Step, Steps};
@@ -49,7 +49,7 @@ use crate::job_error::axes_that_move;
 use crate::measured::{MeasuredLog, MeasuredRun, measured};
 use crate::report::harm::Harm;
 use crate::report::{FullCircle, Report, ReportedRun, full_circles};
-use cuts::{Cuts, PlannedCut};
+use cuts::{Cuts, PlannedCut, with_feeds};
 pub use guests::Guests;
 use record::RunRecord;
 
@@ -445,16 +445,8 @@ impl Job {
 
     /// The canonical steps of the program, with the feedrate replaced where that was asked for.
     fn steps(&self) -> Result<impl Iterator<Item = Canon> + Send + use<>, ReadError> {
-        let feed_mm_s = self.feed_mm_s;
         // The program was checked from end to end before: a mistake here means that the file changed, and ends it.
         let steps = self.program.reader(self.reader.clone())?.map_while(Result::ok);
-        Ok(steps.map(move |mut step| {
-            if let (Canon::Motion(motion), Some(feed_mm_s)) = (&mut step, feed_mm_s)
-                && motion.kind == MotionKind::Feed
-            {
-                motion.feed_mm_s = feed_mm_s;
-            }
-            step
-        }))
+        Ok(with_feeds(steps, self.feed_mm_s.into_iter().cycle()))
     }
 }

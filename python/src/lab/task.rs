@@ -129,7 +129,7 @@ impl LabTask {
         let mut job = Job::new(program.program.clone(), noisy);
         job.machine_file.clone_from(&machine.file);
         let made = options.of_library.as_deref().map(|name| find(name, TABLE)).transpose()?;
-        // With a planner it is another one than that of the cut beside it.
+        // A planner's cut needs a name of its own, also where the cut beside it has the same controller.
         let as_it_is = made.filter(|_| options.feeds_mm_s.is_none());
         let laps = made.map_or(1, |made| made.laps);
         job.controller = as_it_is.unwrap_or_else(|| entry(&options.name, knows, laps));

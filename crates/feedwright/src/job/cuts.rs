@@ -47,15 +47,14 @@ pub(super) struct PlannedCut<'a> {
     pub(super) looked_at: Option<&'a dyn PlanSink>,
 }
 
-/// The steps of a program with other feedrates of its motions.
-fn with_feeds<'a>(
-    steps: impl Iterator<Item = Canon> + Send + 'a,
-    feeds_mm_s: Option<&'a [f64]>,
-) -> impl Iterator<Item = Canon> + Send + 'a {
-    let mut feeds = feeds_mm_s.unwrap_or_default().iter();
+/// The steps of a program with other feedrates of its motions, in its order, mm/s. Rapids and motions that have none keep their own.
+pub(super) fn with_feeds(
+    steps: impl Iterator<Item = Canon> + Send,
+    mut feeds_mm_s: impl Iterator<Item = f64> + Send,
+) -> impl Iterator<Item = Canon> + Send {
     steps.map(move |mut step| {
         if let Canon::Motion(motion) = &mut step
-            && let Some(&feed_mm_s) = feeds.next()
+            && let Some(feed_mm_s) = feeds_mm_s.next()
             && motion.kind == MotionKind::Feed
         {
             motion.feed_mm_s = feed_mm_s;
@@ -120,7 +119,7 @@ impl Job {
             if judged {
                 sinks.extend(rows.iter_mut().map(|sink| &mut **sink as &mut dyn Sink));
             }
-            // Another plan than that of the cut beside it.
+            // A cut with the feedrates of a planner has its own plan.
             let (own, feeds_mm_s) = (PlanCache::default(), plan.feeds_mm_s.filter(|_| judged));
             let kept = if feeds_mm_s.is_some() { &own } else { plan.kept };
             let plan = PlannedCut { looked_at: plan.looked_at.filter(|_| judged), feeds_mm_s, kept, ..plan };
@@ -175,7 +174,7 @@ impl Job {
         watch: &dyn Watch,
     ) -> Result<RunResult, RunError> {
         let steps = || {
-            let steps = path_steps(with_feeds(self.steps()?, feeds_mm_s));
+            let steps = path_steps(with_feeds(self.steps()?, feeds_mm_s.unwrap_or_default().iter().copied()));
             Ok(match path_um {
                 Some(path_um) => with_tolerance(steps, 1e-3 * path_um),
                 None => steps,

@@ -460,13 +460,13 @@ impl HalEdits<'_> {
 /// A line with other words. A `net` that has no pin left becomes a comment.
 fn edited(line: &HalLine, words: &BTreeMap<usize, Option<String>>) -> String {
     let is_arrow = |number: usize| ARROWS.contains(&line.word(number));
-    let mut changes = words.clone();
     let is_taken = |number: &usize| words.get(number) == Some(&None);
     let has_pins = (2..line.words.len()).any(|number| !is_arrow(number) && !is_taken(&number));
     let takes_out = words.values().any(Option::is_none);
     if takes_out && (line.word(0) != "net" || !has_pins) {
         return format!("# {}", line.text.replace('\n', "\n# "));
     }
+    let mut changes = words.clone();
     // An arrow in front of a word that is taken out goes with it.
     changes.extend(
         (1..line.words.len()).filter(is_taken).map(|number| number - 1).filter(|&n| is_arrow(n)).map(|n| (n, None)),

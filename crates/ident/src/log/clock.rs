@@ -48,9 +48,7 @@ pub(super) fn of_table(
     };
     let column = &mut table.columns[time.column];
     if let Some((row, text)) = column.not_a_number.clone() {
-        let message = format!("the time is no number at {}: '{text}'", table.place(row));
-        let hint = "take the line out, or name another column of the time with --columns t=COLUMN";
-        return Err(LogError::refused(path, Refusal::new(RefusalReason::NotANumber, message, hint)));
+        return Err(no_number(path, format!("the time is no number at {}: '{text}'", table.place(row))));
     }
     let mut values = std::mem::take(&mut column.values);
     if let Some(row) = (1..values.len()).find(|&row| values[row] <= values[row - 1]) {
@@ -60,9 +58,8 @@ pub(super) fn of_table(
         && !(last - first).is_finite()
     {
         let row = values.iter().position(|value| !value.is_finite()).unwrap_or(values.len() - 1);
-        let message = format!("the time is beyond every clock at {}: {:e}", table.place(row), values[row]);
-        let hint = "take the line out, or name another column of the time with --columns t=COLUMN";
-        return Err(LogError::refused(path, Refusal::new(RefusalReason::NotANumber, message, hint)));
+        let place = table.place(row);
+        return Err(no_number(path, format!("the time is beyond every clock at {place}: {:e}", values[row])));
     }
     let step = median_step(&values);
     let unit = unit(time, columns, table, step, findings);
@@ -74,6 +71,11 @@ pub(super) fn of_table(
     let first = if unit == TimeUnit::Sample { values.first().copied().unwrap_or(0.0) } else { 0.0 };
     values.iter_mut().for_each(|value| *value = (*value - first) * scale);
     Ok(stretches(values, step * scale, &table.breaks, findings))
+}
+
+fn no_number(path: &Path, message: String) -> LogError {
+    let hint = "take the line out, or name another column of the time with --columns t=COLUMN";
+    LogError::refused(path, Refusal::new(RefusalReason::NotANumber, message, hint))
 }
 
 fn backward(path: &Path, table: &LogTable, row: usize, values: [f64; 2]) -> LogError {
