@@ -1,9 +1,9 @@
-const VERSION = "a41911ef2673e5d7", FILES = {
+const VERSION = "43a5ca7ef3a6eb6c", FILES = {
  "./": "sha256-Qs4ATTAQOK96Cxh1kcxTFGVGCjquH4Zw5AoGVUgo5PE=",
  "app.css": "sha256-1M8CTdqQ4GSD7BJH8vqN2bnstEVWNjaRtXiVaFv7EKc=",
  "app.js": "sha256-tXzJjEfURM5Cf6r+VApujGQqOg22/BR8FaPKGxTayyk=",
  "engine.js": "sha256-2aC9DkFfRCPTBX11G0SQrK38iVMPSIQMMfpDRD53VJI=",
- "engine.wasm.gz": "sha256-5xFOK4bfNWC+M0UI/S0tnuRMMi7rRGnc6Cm//tS4GdI=",
+ "engine.wasm.gz": "sha256-yvn4FUcw8X3LoP4+kSVic4gQzX1xnz8JITrpUZI+VUk=",
  "files.json": "sha256-OOC53oF/ZFxL7DfA1KPli67MywQPVxjcBppyxzhaC+0="
 };
 // Keeps the page for visits without its server. FILES has the hash of each file, VERSION that of all: web/app/offline.mjs puts both before
