@@ -62,12 +62,6 @@ pub trait Controller<const N: usize> {
     fn moved_mm(&self) -> Option<[f64; N]> {
         None
     }
-    /// Called after every decision with the over-correction factor that was measured lately. The
-    /// factor is 0 where neither more nor less correction would have been better, and 1 where no
-    /// correction would have been as good. It is negative where more would have been better.
-    fn judged(&mut self, overdone: f64) {
-        let _ = overdone;
-    }
     /// Whether it means to make the contour error smaller. One that excites the machine to identify it does not, and is
     /// not taken out of the loop for making it larger.
     fn corrects(&self) -> bool {

@@ -1,26 +1,22 @@
-//! The family of identifiers: small networks, 5N inputs, 12 hidden nodes, N outputs, that know the machine from its data.
+//! The family of identifiers: what knows the machine from its data. A network has 5N inputs, 12 hidden nodes and N outputs.
 //!
 //! | Kind | What it predicts | Contract | Used by |
 //! |---|---|---|---|
 //! | contour | the contour error, as the paper does | [`ContourModel`] | [`crate::inversion`] |
-//! | servo | how the following error grows; the contour error is left to geometry | [`ServoModel`] | the receding horizon of the laboratory |
 //! | axes | the motion of each axis, by its law | [`crate::axis::knowledge::AxisKnowledge`] | [`crate::controller::lqg_preview`] |
 //!
 //! All see the same inputs of each axis, from a shift register ([`Delays`]): F(k), F(k-1), F(k-2) and two delays of the error,
-//! where F(k) is the feedrate from knot k to knot k + 1. A controller takes any identifier of its kind; [`contour`] and [`servo`]
-//! hold the members there are. The null member of each, [`Identifier::NULL`], predicts nothing.
+//! where F(k) is the feedrate from knot k to knot k + 1. A controller takes any identifier of its kind; [`contour`]
+//! holds the only member. Its null member, [`Identifier::NULL`], predicts nothing.
 //!
 //! An identifier does not see the place on the machine: errors that repeat with the place are not part of its prediction.
 
 pub(crate) mod contour;
-pub(crate) mod servo;
 
 /// Hidden nodes.
 pub const HIDDEN: usize = 12;
 /// Inputs of each axis.
 pub const INPUTS: usize = 5;
-/// What adaptation changes of an axis: its part of the linear connection, and the factor on its hidden nodes less 1.
-pub const UNKNOWNS: usize = INPUTS + 1;
 /// The feedrate that the network sees as 1: the paper's reference feedrate.
 pub const FEED_SCALE_MM_S: f64 = 50.0;
 /// The contour error that the network sees as 1. Much larger, and the error drowns in the rounding of the weights; much
@@ -37,8 +33,6 @@ pub type Inputs<const N: usize> = [[f64; INPUTS]; N];
 pub enum IdentifierKind {
     /// The contour error.
     Contour,
-    /// The growth of the following error.
-    Servo,
     /// Where each axis goes, from its law and the statistics of its noise (`knowledge`).
     Axes,
 }
@@ -72,26 +66,6 @@ pub trait ContourModel<const N: usize>: Identifier<N> {
     /// Learns that these inputs led to this error, scaled, in a step of this size; 0 is frozen. Returns half the square of what it
     /// missed before.
     fn learn(&mut self, inputs: &Inputs<N>, error: [f64; N], step: f64) -> f64;
-}
-
-/// An identifier that predicts the growth of the following error of each axis over one knot, mm.
-/// The prediction is the sum of a linear part and a nonlinear rest.
-pub trait ServoModel<const N: usize>: Identifier<N> {
-    /// How far the tool is behind the command at constant feedrate, s.
-    fn lag_s(&self) -> f64;
-    /// The linear part, mm.
-    fn predict_linear(&self, inputs: &Inputs<N>) -> [f64; N];
-    /// The rest, mm.
-    fn predict_rest(&self, inputs: &Inputs<N>) -> [f64; N];
-    /// Their sum, mm.
-    fn predict(&self, inputs: &Inputs<N>) -> [f64; N];
-    /// Their sum, mm, and its derivative in each axis to the inputs of that axis, mm for an input of 1.
-    fn predict_with_slopes(&self, inputs: &Inputs<N>) -> ([f64; N], Inputs<N>);
-    /// The linear part of an axis, of its own inputs, mm for an input of 1.
-    fn own_linear(&self, axis: usize) -> &[f64; INPUTS];
-    /// Becomes in an axis what was trained, changed by this: the linear part of the axis itself, and a factor on its hidden
-    /// nodes less 1.
-    fn change(&mut self, trained: &Self, axis: usize, change: &[f64; UNKNOWNS]);
 }
 
 /// A feedrate as the network sees it.

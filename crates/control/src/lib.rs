@@ -47,7 +47,7 @@
 //! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`LqgPreview`] |
 //! | Supervisor | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`FaultEvidence`] |
 //! | Model of an axis | [`AxisLaw`], [`AxisState`], [`Parameters`], [`AxisKnowledge`], [`AxisInverse`] |
-//! | Trained models | [`ContourIdentifier`], [`ServoIdentifier`], [`IdentifiedAxes`], [`ModelBlock`] |
+//! | Trained models | [`ContourIdentifier`], [`IdentifiedAxes`], [`ModelBlock`] |
 //!
 //! [`ModelBlock::from_bytes`] reads a trained model from bytes, so that a servo thread needs no
 //! file.
@@ -97,7 +97,7 @@ pub use axis::delays::{CommandQueue, LoopDelays, MAX_COMMAND_PERIODS};
 pub use axis::drive::{DriveLaw, DriveParameters, DriveReference, DriveState};
 pub use axis::friction::{FrictionLaw, FrictionParameters};
 pub use axis::inverse::{AxisInverse, Gains};
-pub use axis::knowledge::{AxisKnowledge, Number};
+pub use axis::knowledge::{AxisKnowledge, Number, position_gains_1_s};
 pub use axis::mechanics::{MechanicsLaw, MechanicsState};
 pub use axis::statistics::AxisStatistics;
 pub use axis::transmission::{TableState, TransmissionLaw, TransmissionParameters};
@@ -113,17 +113,16 @@ pub use controller::uncorrected::Uncorrected;
 pub use controller::{Controller, Schedule};
 pub use geometry::{AxisErrors, ErrorTable, GeometryFault, KnownGeometry, MOST_SLOPE, TABLE_POINTS};
 pub use identifier::contour::ContourIdentifier;
-pub use identifier::servo::{FOLLOWING_SCALE_MM, ServoIdentifier, Spread};
 pub use identifier::{
     ContourModel, Delays, ERROR_SCALE_MM, FEED_PERIODS_S, FEED_SCALE_MM_S, HIDDEN, INPUTS, Identifier, IdentifierKind,
-    Inputs, ServoModel, UNKNOWNS, seen_feed,
+    Inputs, seen_feed,
 };
 pub use inversion::{Gradient, InversionSettings, TimeTerm};
 pub use model::{
-    BLOCK_FORMAT, BlockError, IdentifiedAxes, MAX_MECHANICS_PER_SERVO, MAX_SPREAD, MAX_WEIGHT, MECHANICS_PERIODS_S,
-    ModelBlock, SERVO_PERIODS_S, Trained,
+    BLOCK_FORMAT, BlockError, IdentifiedAxes, MAX_MECHANICS_PER_SERVO, MAX_WEIGHT, MECHANICS_PERIODS_S, ModelBlock,
+    SERVO_PERIODS_S, Trained,
 };
 pub use sine::sin;
-pub use supervisor::{Bounds, Cause, Fade, State, fade_acceleration};
+pub use supervisor::{Bounds, Cause, FORGIVEN_S, Fade, State, fade_acceleration};
 pub use tick::{Setpoint, Tick};
 pub use window::{Knot, KnotSource, PREVIEW_KNOTS, Preview, REGISTER_KNOTS, Register, Window};

@@ -5,7 +5,7 @@
 //! |---|---|---|
 //! | 0 | 8 | `FWMODEL` and a zero byte |
 //! | 8 | 4 | format: 2, or 3 with a number that format 2 lacks, or 4 with a geometry |
-//! | 12 | 4 | kind of the identifier: 1 contour, 2 servo, 3 axes |
+//! | 12 | 4 | kind of the identifier: 1 contour, 3 axes; 2 was the servo identifier, and is refused |
 //! | 16 | 4 | N, number of axes |
 //! | 20 | 4 | n, number of numbers that follow the periods, those of a geometry included |
 //! | 24 | 8 | servo period, s |
@@ -14,9 +14,8 @@
 //! | 40 + 8 n | 4 | CRC-32 of all bytes before it: IEEE 802.3, reflected, polynomial 0x04C11DB7 |
 //!
 //! The numbers of a contour identifier are its weights, group by group in the order of
-//! [`Identifier::weights`]. A servo identifier has its spread after the weights, axis by axis and
-//! row by row. Axes have the mechanics period, s, and then [`AxisKnowledge::NUMBERS`], axis by
-//! axis. [`Number::format`] is the first format that has a number; in an earlier block the number is
+//! [`Identifier::weights`]. Axes have the mechanics period, s, and then [`AxisKnowledge::NUMBERS`],
+//! axis by axis. [`Number::format`] is the first format that has a number; in an earlier block the number is
 //! missing and zero. Behind the model, a block of format 4 has the geometry that the control
 //! compensates: of each axis its scale, the amplitude of its pitch error (mm), its phase for a travel
 //! (rad/mm) and at position 0 (rad); the three angles of squareness, rad; and row by row the tables of
@@ -32,9 +31,7 @@ use core::{fmt, slice};
 use crate::axis::Periods;
 use crate::axis::knowledge::{AxisKnowledge, Number};
 use crate::geometry::KnownGeometry;
-use crate::identifier::UNKNOWNS;
 use crate::identifier::contour::ContourIdentifier;
-use crate::identifier::servo::{ServoIdentifier, Spread};
 use crate::identifier::{FEED_PERIODS_S, Identifier, IdentifierKind};
 
 /// What a block begins with.
@@ -57,10 +54,6 @@ pub const MAX_MECHANICS_PER_SERVO: f64 = 1_000.0;
 const WHOLE_RATIO_TOLERANCE: f64 = 1e-9;
 /// Largest size of a weight. A hidden node that turns its sign within 0.25 mm/s has weights of 400.
 pub const MAX_WEIGHT: f64 = 1e6;
-/// Largest size of an entry of the spread: the square of what a linear weight may differ by.
-pub const MAX_SPREAD: f64 = 1e6;
-/// An entry of the spread may be beyond what its diagonal allows by this part: rounding.
-const SPREAD_ROUNDING: f64 = 1e-9;
 
 /// A trained identifier and the periods that it was trained for.
 #[derive(Debug, Clone, PartialEq)]
@@ -127,8 +120,6 @@ impl<const N: usize> IdentifiedAxes<N> {
 pub enum Trained<const N: usize> {
     /// An identifier of the contour error.
     Contour(ContourIdentifier<N>),
-    /// An identifier of the servo, and how others of its kind differ.
-    Servo(ServoIdentifier<N>, Spread<N>),
     /// The axes.
     Axes(IdentifiedAxes<N>),
 }
@@ -150,8 +141,7 @@ pub enum BlockError {
     Checksum,
     /// The number with this index is NaN or out of bounds; index 0 is the servo period. Index 2
     /// also stands for a mechanics period that does not divide the servo period into 1 to
-    /// [`MAX_MECHANICS_PER_SERVO`] whole parts. The index after the last number stands for an
-    /// invalid spread.
+    /// [`MAX_MECHANICS_PER_SERVO`] whole parts.
     Number(usize),
     /// The geometry cannot be compensated: see [`KnownGeometry::check`].
     Geometry,
@@ -164,6 +154,9 @@ impl fmt::Display for BlockError {
             Self::Format(format) => {
                 write!(f, "the model is of format {format}, and formats {EARLIEST_FORMAT} to {BLOCK_FORMAT} are read")
             }
+            Self::Kind(SERVO) => f.write_str(
+                "the model is a servo identifier, a kind that is no longer used; identify the machine again with 'feedwright identify'",
+            ),
             Self::Kind(kind) => write!(f, "no identifier is of kind {kind}"),
             Self::Axes(axes) => write!(f, "the model is for {axes} axes"),
             Self::Length => f.write_str("the model is cut off, or has something behind it"),
@@ -193,7 +186,6 @@ impl<const N: usize> ModelBlock<N> {
         }
         let mut trained = match kind {
             CONTOUR => Trained::Contour(ContourIdentifier::NULL),
-            SERVO => Trained::Servo(ServoIdentifier::NULL, [[[0.0; UNKNOWNS]; UNKNOWNS]; N]),
             AXES => Trained::Axes(IdentifiedAxes::NULL),
             kind => return Err(BlockError::Kind(kind)),
         };
@@ -224,9 +216,6 @@ impl<const N: usize> ModelBlock<N> {
             }
         });
         fault.map_or(Ok(()), Err)?;
-        if !trained.has_a_spread() {
-            return Err(BlockError::Number(rest.number));
-        }
         if let Trained::Axes(axes) = &mut trained {
             // The mechanics period is the first number behind the two others.
             *axes = axes.with_periods(servo_s).ok_or(BlockError::Number(2))?;
@@ -252,7 +241,6 @@ impl<const N: usize> ModelBlock<N> {
         trained.numbers_of(format, &mut |_, group| numbers += group.len() as u32);
         let kind = match self.trained.kind() {
             IdentifierKind::Contour => CONTOUR,
-            IdentifierKind::Servo => SERVO,
             IdentifierKind::Axes => AXES,
         };
         let mut crc = CRC_START;
@@ -280,6 +268,7 @@ impl<const N: usize> ModelBlock<N> {
 
 /// The kinds in a block.
 const CONTOUR: u32 = 1;
+/// Kind of the servo identifier of earlier versions. A block of it is refused.
 const SERVO: u32 = 2;
 const AXES: u32 = 3;
 
@@ -288,7 +277,6 @@ impl<const N: usize> Trained<N> {
     pub fn kind(&self) -> IdentifierKind {
         match self {
             Self::Contour(_) => IdentifierKind::Contour,
-            Self::Servo(..) => IdentifierKind::Servo,
             Self::Axes(_) => IdentifierKind::Axes,
         }
     }
@@ -298,10 +286,6 @@ impl<const N: usize> Trained<N> {
         let weight = NumberBounds::Within(-MAX_WEIGHT, MAX_WEIGHT);
         match self {
             Self::Contour(net) => net.weights(&mut |_, group| each(&weight, group)),
-            Self::Servo(net, spread) => {
-                net.weights(&mut |_, group| each(&weight, group));
-                each(&NumberBounds::Within(-MAX_SPREAD, MAX_SPREAD), spread.as_flattened_mut().as_flattened_mut());
-            }
             Self::Axes(axes) => axes.numbers(each),
         }
     }
@@ -313,17 +297,6 @@ impl<const N: usize> Trained<N> {
                 each(bounds, group);
             }
         });
-    }
-
-    /// Whether its spread, where it has one, can be mean squares and products: no product is beyond what its squares allow.
-    fn has_a_spread(&self) -> bool {
-        let Self::Servo(_, spread) = self else { return true };
-        spread.iter().all(|products| {
-            let square = |i: usize| products.get(i).and_then(|row| row.get(i)).copied().unwrap_or(0.0);
-            let entries = products.iter().enumerate().flat_map(|(i, row)| row.iter().enumerate().map(move |e| (i, e)));
-            (0..UNKNOWNS).all(|i| square(i) >= 0.0)
-                && entries.into_iter().all(|(i, (j, p))| p * p <= (1.0 + SPREAD_ROUNDING) * square(i) * square(j))
-        })
     }
 }
 
@@ -414,15 +387,6 @@ mod tests {
     use crate::geometry::{AxisErrors, ErrorTable};
     use crate::identifier::contour::tests::sequence;
 
-    fn servo<const N: usize>() -> ModelBlock<N> {
-        let mut next = sequence();
-        let mut net = ServoIdentifier::NULL;
-        net.weights(&mut |_, group| group.iter_mut().for_each(|weight| *weight = next()));
-        let factors: [f64; UNKNOWNS] = core::array::from_fn(|_| next());
-        let spread = [core::array::from_fn(|i| core::array::from_fn(|j| 0.1 * factors[i] * factors[j])); N];
-        ModelBlock { servo_s: 0.001, feed_period_s: 0.003, trained: Trained::Servo(net, spread), geometry: None }
-    }
-
     fn contour<const N: usize>() -> ModelBlock<N> {
         let mut next = sequence();
         let mut net = ContourIdentifier::NULL;
@@ -471,8 +435,6 @@ mod tests {
 
     #[test]
     fn a_model_comes_back_to_the_bit() {
-        assert_eq!(ModelBlock::from_bytes(&block(&servo::<2>())), Ok(servo::<2>()));
-        assert_eq!(ModelBlock::from_bytes(&block(&servo::<3>())), Ok(servo::<3>()));
         assert_eq!(ModelBlock::from_bytes(&block(&contour::<2>())), Ok(contour::<2>()));
         assert_eq!(ModelBlock::from_bytes(&block(&contour::<3>())), Ok(contour::<3>()));
         assert_eq!(ModelBlock::from_bytes(&block(&axes::<2>())), Ok(axes::<2>()));
@@ -481,15 +443,17 @@ mod tests {
 
     #[test]
     fn the_layout_is_what_the_table_says() {
-        let bytes = block(&servo::<2>());
-        assert_eq!(bytes[..24], *b"FWMODEL\0\x02\0\0\0\x02\0\0\0\x02\0\0\0\xec\0\0\0");
+        let bytes = block(&contour::<2>());
+        assert_eq!(bytes[..24], *b"FWMODEL\0\x02\0\0\0\x01\0\0\0\x02\0\0\0\x90\0\0\0");
         assert_eq!(bytes[24..32], 0.001_f64.to_le_bytes());
-        assert_eq!(bytes[32..40], 0.003_f64.to_le_bytes());
-        let Trained::Servo(net, spread) = servo::<2>().trained else { panic!("a servo") };
-        assert_eq!(bytes[40..48], net.linear[0][0][0].to_le_bytes());
-        let n = 2 * (2 * 5 + 5 * 12 + 12) + 2 * 6 * 6;
-        assert_eq!(bytes[40 + 8 * (n - 1)..][..8], spread[1][5][5].to_le_bytes());
-        assert_eq!((n, bytes.len()), (0xec, 40 + 8 * n + 4));
+        assert_eq!(bytes[32..40], 0.01_f64.to_le_bytes());
+        let Trained::Contour(mut net) = contour::<2>().trained else { panic!("a contour") };
+        let mut weights = Vec::new();
+        net.weights(&mut |_, group| weights.extend_from_slice(group));
+        let n = 2 * (5 * 12 + 12);
+        assert_eq!(bytes[40..48], weights[0].to_le_bytes());
+        assert_eq!(bytes[40 + 8 * (n - 1)..][..8], weights[n - 1].to_le_bytes());
+        assert_eq!((n, bytes.len()), (0x90, 40 + 8 * n + 4));
         let bytes = block(&axes::<3>());
         let Trained::Axes(identified) = axes::<3>().trained else { panic!("axes") };
         let at = |index: usize| f64::from_le_bytes(bytes[40 + 8 * index..][..8].try_into().unwrap());
@@ -556,7 +520,7 @@ mod tests {
 
     #[test]
     fn any_changed_byte_is_refused() {
-        for bytes in [block(&servo::<2>()), block(&axes::<2>()), block(&with_geometry(axes::<2>()))] {
+        for bytes in [block(&contour::<2>()), block(&axes::<2>()), block(&with_geometry(axes::<2>()))] {
             for at in 0..bytes.len() {
                 for change in [0x01, 0x80, 0xff] {
                     let mut changed = bytes.clone();
@@ -591,22 +555,25 @@ mod tests {
     #[test]
     fn what_is_no_model_is_told_by_what_is_wrong() {
         let with_whole = |at: usize, whole: u32| {
-            let mut bytes = block(&servo::<2>());
+            let mut bytes = block(&contour::<2>());
             bytes[at..at + 4].copy_from_slice(&whole.to_le_bytes());
             ModelBlock::<2>::from_bytes(&sealed(bytes))
         };
         assert_eq!(with_whole(8, 1), Err(BlockError::Format(1)));
         assert_eq!(with_whole(12, 4), Err(BlockError::Kind(4)));
+        let of_another_time = std::format!("{}", with_whole(12, SERVO).unwrap_err());
+        assert!(of_another_time.contains("servo identifier"), "{of_another_time}");
+        assert!(of_another_time.contains("'feedwright identify'"), "{of_another_time}");
         assert_eq!(with_whole(12, 3), Err(BlockError::Length));
         assert_eq!(with_whole(16, 3), Err(BlockError::Axes(3)));
         assert_eq!(with_whole(20, u32::MAX), Err(BlockError::Length));
-        assert_eq!(ModelBlock::<3>::from_bytes(&block(&servo::<2>())), Err(BlockError::Axes(2)));
+        assert_eq!(ModelBlock::<3>::from_bytes(&block(&contour::<2>())), Err(BlockError::Axes(2)));
         assert_eq!(ModelBlock::<2>::from_bytes(&[0; 4096]), Err(BlockError::NoModel));
     }
 
     #[test]
     fn every_number_has_bounds() {
-        let bytes = block(&servo::<2>());
+        let bytes = block(&contour::<2>());
         let numbers = (bytes.len() - 28) / 8;
         for index in 0..numbers {
             for number in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e7, -1e7] {
@@ -616,8 +583,6 @@ mod tests {
         }
         let refused = |index, number| ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), index, number)).is_err();
         assert!(refused(0, 0.0) && refused(1, 0.0) && refused(1, 2.0));
-        // A mean square below zero, and a product beyond what the squares allow.
-        assert!(refused(numbers - 1, -1e-3) && refused(numbers - 2, 0.9));
     }
 
     #[test]

@@ -10,12 +10,13 @@
 //! | the law of the controller is wrong | free runs by it miss more than there is to correct, twice in a row or once by twice as much | out at once |
 //! | predictions are wrong | four in a row miss by a fifth of the largest deviation | out at once |
 //! | harm | the error is beyond 1.5 times that without the correction, and 5 um (mean square over 0.25 s) or 30 um (a single error) | out at once |
-//! | [`Bounds::engaged_mm_s2`] keeps the offset from what is asked for | by more than 5 um | out at once |
+//! | [`Bounds::engaged_mm_s2`] keeps the offset from what is asked for | | less of it is commanded |
 //! | servo periods do not go as the law says | innovations, over 5 ms | it asks for less |
 //! | the command was held to a bound | | it asks for less |
-//! | nothing of this, for a while | 0.1 s, and twice as long out as the last time | back in, within 40 ms or more |
+//! | nothing of this, for a while | 0.1 s of motion, and twice as long out as the last time | back in, within 40 ms or more |
 //!
-//! Out is a fade within [`Bounds::fade_mm_s2`]. While a controller is out it goes on learning.
+//! Out is a fade within [`Bounds::fade_mm_s2`]: less and less of what is asked for now, or the way back of an offset of which nothing is known any
+//! more. While a controller is out it goes on learning.
 //!
 //! Each wrong prediction of a law counts only beyond four standard deviations of noise, and twice; a learned law is taken for better than a right one
 //! in one of a thousand trials (`controller/lqg_preview/learning.rs`).
@@ -34,6 +35,7 @@
 //! | `supervisor/benefit.rs` | the contour error with and without the correction |
 //! | `supervisor/bounds.rs` | what every command is held to |
 //! | `supervisor/fade.rs` | the way of the offset back to the path |
+//! | `supervisor/dose.rs` | how much of an offset is commanded |
 //! | `supervisor/engagement.rs` | the states: shadow, engaged, fading |
 
 pub(crate) mod feedback;
@@ -44,23 +46,21 @@ pub(crate) mod validity;
 mod benefit;
 mod bounds;
 mod fade;
+mod dose;
 pub(crate) mod engagement;
 
 use crate::command::{Command, FaultEvidence, Measured};
-use crate::vector::{bounded, norm, scale, smooth_step, sub};
+use crate::vector::{add_scaled, sub};
 use crate::window::Window;
 use benefit::Benefit;
 pub use bounds::Bounds;
-pub use engagement::{Cause, Fade, State};
+use dose::Dose;
+pub use engagement::{Cause, FORGIVEN_S, Fade, State};
 use engagement::{DecisionInputs, Engagement};
 pub use fade::fade_acceleration;
 
-/// A correction that acts at once takes at least this long to come back, s: twice the time constant of a usual position loop.
-const LEAST_BACK_S: f64 = 0.04;
 /// Decisions in a row with a wrong prediction. One is a shock, which no model foresees.
 const WRONG_DECISIONS: u32 = 4;
-/// The owner's acceleration may keep the offset so far from what is asked for, mm: what is harm in the mean (`supervisor/benefit.rs`).
-const MOST_BEHIND_MM: f64 = 0.005;
 /// A prediction is wrong where it misses by this part of the largest deviation.
 const WRONG_SHARE: f64 = 0.2;
 /// A prediction that misses by less than this is not worth a word, mm, however small the largest deviation is.
@@ -79,6 +79,8 @@ pub(crate) struct SelfReport<const N: usize> {
     pub(crate) corrects: bool,
     /// Whether its offset is there at once.
     pub(crate) acts_at_once: bool,
+    /// Which axes it corrects by what it learned.
+    pub(crate) learned: [bool; N],
 }
 
 /// The supervisor and its state between decisions.
@@ -89,14 +91,11 @@ pub(crate) struct Supervisor<const N: usize> {
     wrong: u32,
     benefit: Benefit<N>,
     engagement: Engagement,
-    /// Time in which a correction comes back, s.
-    take_up_s: f64,
+    /// How much of an offset that acts at once is commanded.
+    dose: Dose<N>,
     /// Whether a correction is wanted at all.
     allowed: bool,
     held: bool,
-    /// What was asked for last by a controller in the loop that acts at once, mm, and how far the owner's acceleration has kept the offset from it, mm.
-    asked_mm: [f64; N],
-    behind_mm: f64,
 }
 
 impl<const N: usize> Supervisor<N> {
@@ -108,11 +107,9 @@ impl<const N: usize> Supervisor<N> {
             wrong: 0,
             benefit: Benefit::NONE,
             engagement: Engagement::START,
-            take_up_s: LEAST_BACK_S,
+            dose: Dose::ALL,
             allowed: true,
             held: false,
-            asked_mm: [0.0; N],
-            behind_mm: 0.0,
         }
     }
 
@@ -151,11 +148,6 @@ impl<const N: usize> Supervisor<N> {
         self.benefit.open_mm()
     }
 
-    /// By how much the correction was overdone lately.
-    pub(crate) fn overdone(&self) -> f64 {
-        self.benefit.overdone()
-    }
-
     /// The command of the next feed period: what the controller wanted, within the bounds, or the way back to the path. It wanted nothing where the
     /// position was lost.
     #[inline]
@@ -170,49 +162,59 @@ impl<const N: usize> Supervisor<N> {
             Some(wanted) => self.judge(window, measured, wanted, told),
             None => Some((Cause::LostFeedback, None)),
         };
+        let is_known = !matches!(bad, Some((Cause::NotANumber | Cause::LostFeedback, _)));
         let wanted = wanted.unwrap_or(Command::AS_PLANNED);
+        let before = self.engagement.state();
         let state = self.engagement.go_on(&DecisionInputs {
             allowed: self.allowed,
             bad,
             good: told.prediction_error_mm < GOOD_SHARE * self.wrong_mm(),
             over: fade::is_over(window.offset_mm, window.offset_mm_s),
+            moves: window.now().feed_mm_s > 0.0,
             period_s: window.feed_period_s,
         });
         let asked = match state {
-            State::Engaged if told.acts_at_once => {
-                let asked = self.taken_up(wanted, window.feed_period_s);
-                self.accelerated(window, asked)
+            _ if told.acts_at_once => {
+                if state != before && state != State::Shadow {
+                    self.dose.turn(if is_known { wanted.offset_mm } else { window.offset_mm }, self.bounds.fade_mm_s2);
+                }
+                self.dose.learn(told.learned);
+                self.at_once(window, &wanted, state, is_known)
             }
             State::Engaged => wanted,
             State::Shadow => Command::AS_PLANNED,
-            State::Fading => self.faded(window, told.acts_at_once),
+            State::Fading => self.faded(window),
         };
         let command = self.bounds.hold(window, asked, self.rate, told.acts_at_once);
-        self.held = state == State::Engaged && (command != asked || self.behind_mm > 0.0);
+        self.held = state == State::Engaged && (command != asked || self.dose.is_reduced());
         self.rate = command.rate;
-        if state != State::Engaged {
-            (self.asked_mm, self.behind_mm) = (command.offset_mm, 0.0);
-        }
         command
     }
 
-    /// A controller that acts at once comes back as gently as it left: in the time in which an offset of this size is taken up from rest to rest within
-    /// the acceleration of a fade. The largest of `o s(t / T)`, s = 3 x^2 - 2 x^3, is 6 o / T^2.
-    fn taken_up(&mut self, wanted: Command<N>, period_s: f64) -> Command<N> {
-        let Some(back_for_s) = self.engagement.back_for_s() else { return wanted };
-        if back_for_s <= period_s {
-            self.take_up_s = libm::sqrt(6.0 * norm(wanted.offset_mm) / self.bounds.fade_mm_s2).max(LEAST_BACK_S);
-        }
-        let part = bounded(back_for_s / self.take_up_s, 0.0, 1.0);
-        if part < 1.0 { Command::straight(wanted.rate, scale(smooth_step(part), wanted.offset_mm)) } else { wanted }
-    }
-
-    /// What was asked for, within the owner's acceleration.
-    fn accelerated(&mut self, window: &Window<'_, N>, asked: Command<N>) -> Command<N> {
-        let last_mm = core::mem::replace(&mut self.asked_mm, asked.offset_mm);
-        let offset_mm = self.bounds.accelerated_mm(window, asked.offset_mm, last_mm);
-        self.behind_mm = norm(sub(asked.offset_mm, offset_mm));
-        Command { offset_mm, ..asked }
+    /// The command of a controller that acts at once: the part of its offset that is due, within the owner's acceleration. Where nothing `is_known` of what
+    /// it asks for, the offset goes back from where it is.
+    fn at_once(&mut self, window: &Window<'_, N>, wanted: &Command<N>, state: State, is_known: bool) -> Command<N> {
+        let period_s = window.feed_period_s;
+        let is_in = state == State::Engaged;
+        let due_mm = match state {
+            State::Shadow => {
+                self.dose.none();
+                [0.0; N]
+            }
+            State::Engaged => self.dose.of(wanted.offset_mm, true, period_s),
+            State::Fading => {
+                let faded_mm = self.faded_mm(window);
+                let due_mm = self.dose.of(wanted.offset_mm, false, period_s);
+                if is_known && self.bounds.engaged_mm_s2 < f64::INFINITY {
+                    core::array::from_fn(|axis| nearer(due_mm[axis], faded_mm[axis]))
+                } else {
+                    faded_mm
+                }
+            }
+        };
+        let offset_mm = self.bounds.accelerated_mm(window, due_mm);
+        self.dose.take_in(sub(due_mm, offset_mm), period_s);
+        Command { offset_mm, ..if is_in { *wanted } else { Command::AS_PLANNED } }
     }
 
     /// Why a controller must not be followed, and what that rests on.
@@ -242,8 +244,6 @@ impl<const N: usize> Supervisor<N> {
             // An infinite error is the controller's own judgment: nothing was measured.
             let measured = Some(missed).filter(|missed| missed.found_mm < f64::INFINITY);
             Some((Cause::WrongPredictions, told.doubt.or(measured)))
-        } else if self.behind_mm > MOST_BEHIND_MM {
-            Some((Cause::TooQuick, Some(FaultEvidence { found_mm: self.behind_mm, limit_mm: MOST_BEHIND_MM })))
         } else {
             harm.filter(|_| told.corrects).map(|harm| (Cause::Harmful, Some(harm)))
         }
@@ -255,16 +255,35 @@ impl<const N: usize> Supervisor<N> {
     }
 
     /// The next step of the way back to the path, at the feed of the plan.
-    fn faded(&self, window: &Window<'_, N>, at_once: bool) -> Command<N> {
-        let most_mm_s2 = self.bounds.fade_mm_s2;
-        let (mut speed_mm_s, mut acceleration_mm_s2) = (window.offset_mm_s, [0.0; N]);
-        let axes = speed_mm_s.iter_mut().zip(&mut acceleration_mm_s2).zip(window.offset_mm);
-        for ((speed_mm_s, acceleration_mm_s2), offset_mm) in axes {
-            if at_once {
-                *speed_mm_s = fade::begins_mm_s(offset_mm, *speed_mm_s, most_mm_s2);
-            }
-            *acceleration_mm_s2 = fade_acceleration(offset_mm, *speed_mm_s, window.feed_period_s, most_mm_s2);
-        }
-        Command::accelerated(window, speed_mm_s, acceleration_mm_s2)
+    fn faded(&self, window: &Window<'_, N>) -> Command<N> {
+        let acceleration_mm_s2 = self.fade_mm_s2(window, window.offset_mm_s);
+        Command::accelerated(window, window.offset_mm_s, acceleration_mm_s2)
     }
+
+    /// Where an offset that is there at once is a period further on its way back, mm. What is there in one step has no speed that it has to go on with
+    /// where no acceleration is asked of it.
+    fn faded_mm(&self, window: &Window<'_, N>) -> [f64; N] {
+        let mut speed_mm_s = window.offset_mm_s;
+        if self.bounds.engaged_mm_s2 == f64::INFINITY {
+            let axes = speed_mm_s.iter_mut().zip(window.offset_mm);
+            axes.for_each(|(speed, offset_mm)| *speed = fade::begins_mm_s(offset_mm, *speed, self.bounds.fade_mm_s2));
+        }
+        let speed_mm_s = add_scaled(speed_mm_s, window.feed_period_s, self.fade_mm_s2(window, speed_mm_s));
+        add_scaled(window.offset_mm, window.feed_period_s, speed_mm_s)
+    }
+
+    /// The acceleration of an offset on its way back that has this speed, mm/s2.
+    fn fade_mm_s2(&self, window: &Window<'_, N>, speed_mm_s: [f64; N]) -> [f64; N] {
+        let mut acceleration_mm_s2 = speed_mm_s;
+        let axes = acceleration_mm_s2.iter_mut().zip(window.offset_mm);
+        axes.for_each(|(of, offset_mm)| {
+            *of = fade_acceleration(offset_mm, *of, window.feed_period_s, self.bounds.fade_mm_s2);
+        });
+        acceleration_mm_s2
+    }
+}
+
+/// What is due of an offset that fades, but no more than its way back has, mm.
+fn nearer(due_mm: f64, faded_mm: f64) -> f64 {
+    if due_mm * faded_mm > 0.0 && due_mm.abs() < faded_mm.abs() { due_mm } else { faded_mm }
 }

@@ -186,11 +186,9 @@ impl<const N: usize> Tick<N> {
             moved_mm: controller.moved_mm(),
             corrects: controller.corrects(),
             acts_at_once: controller.acts_at_once(),
+            learned: controller.learned(),
         };
         self.command = self.supervisor.decide(&window, &measured, wanted, &told);
-        if !lost {
-            controller.judged(self.supervisor.overdone());
-        }
     }
 
     fn feed_period_s(&self) -> f64 {

@@ -456,34 +456,15 @@ fn what_acts_at_once_is_there_at_once_and_comes_back_gently() {
     assert!(back > 500, "{back}");
 }
 
-/// Keeps the largest size of what it is told to have overdone.
-struct Told(f64);
-
-impl Controller<2> for Told {
-    fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: SERVO_PERIODS, preview: 10 }
-    }
-
-    fn reset(&mut self) {}
-
-    fn judged(&mut self, overdone: f64) {
-        self.0 = self.0.max(overdone.abs());
-    }
-
-    fn command(&mut self, _: &Window<'_, 2>, _: &Measured<2>) -> Command<2> {
-        Command::AS_PLANNED
-    }
-}
-
 #[test]
-fn a_controller_that_corrects_nothing_has_overdone_nothing() {
-    let mut tick = Tick::new(SERVO_S, Told(0.0).schedule(), BOUNDS);
-    let (mut controller, mut tool_mm) = (Told(0.0), [0.0; 2]);
+fn without_an_offset_the_error_without_a_correction_is_the_error_and_skipped_time_is_exact() {
+    let mut controller = Script { command: |_| Command::AS_PLANNED, prediction_error_mm: |_| 0.0, decision: 0 };
+    let mut tick = Tick::new(SERVO_S, controller.schedule(), BOUNDS);
+    let mut tool_mm = [0.0; 2];
     for _ in 0..500 {
         let setpoint = tick.step(&mut Circle, &mut controller, tool_mm);
         tool_mm = setpoint.command_mm;
     }
-    assert!(controller.0 < 1e-3, "{}", controller.0);
     assert!((tick.without_mm() - norm(tick.contour().vector_mm)).abs() < 1e-9, "{}", tick.without_mm());
     let before_s = tick.step(&mut Circle, &mut controller, tool_mm).tau_s;
     tick.skip(1000);

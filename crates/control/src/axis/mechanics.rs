@@ -2,6 +2,8 @@
 //!
 //! What simulates a machine, what estimates one and what runs freely to identify one step their masses by this and nothing else.
 
+use core::array::from_fn;
+
 use super::friction::{FrictionLaw, FrictionParameters};
 use super::transmission::{TableState, TransmissionLaw, TransmissionParameters};
 use super::{AxisLaw, AxisState, friction_signs};
@@ -62,35 +64,79 @@ impl MechanicsLaw {
     /// One mechanics period under a torque of the motor and a load on the table, N m.
     #[inline]
     pub fn advance(&self, state: &mut MechanicsState, motor_nm: f64, load_nm: f64) {
-        let dt_s = self.law.periods.mechanics_s;
-        let MechanicsState { motor, table, presliding_nm } = state;
-        let Some(screw) = &self.transmission else {
-            match &self.friction {
-                Some(friction) => {
-                    let forces_nm = motor_nm - load_nm;
-                    motor.speed_rad_s =
-                        friction.speed_after_rad_s(forces_nm, self.inverse_inertia, motor.speed_rad_s, presliding_nm);
-                    motor.angle_rad += dt_s * motor.speed_rad_s;
-                }
-                None => self.law.accelerate(motor_nm - (self.friction_nm(motor.speed_rad_s) + load_nm), motor),
-            }
-            *table = TableState { angle_rad: motor.angle_rad, speed_rad_s: motor.speed_rad_s };
-            return;
-        };
-        let through_nm = screw.torque_nm(motor.angle_rad - table.angle_rad, motor.speed_rad_s - table.speed_rad_s);
-        motor.speed_rad_s += dt_s * screw.inverse_motor_inertia * (motor_nm - through_nm);
         match &self.friction {
             Some(friction) => {
-                let (forces_nm, inverse) = (through_nm - load_nm, screw.inverse_table_inertia);
-                table.speed_rad_s = friction.speed_after_rad_s(forces_nm, inverse, table.speed_rad_s, presliding_nm);
+                let [forces_nm, inverse, speed_rad_s] = self.push(state, motor_nm, load_nm);
+                let after = friction.speed_after_rad_s(forces_nm, inverse, speed_rad_s, &mut state.presliding_nm);
+                self.go_on(state, after);
             }
-            None => {
-                let load_nm = self.friction_nm(table.speed_rad_s) + load_nm;
-                table.speed_rad_s += dt_s * screw.inverse_table_inertia * (through_nm - load_nm);
-            }
+            None => self.advance_smoothly(state, motor_nm, load_nm),
         }
-        motor.angle_rad += dt_s * motor.speed_rad_s;
-        table.angle_rad += dt_s * table.speed_rad_s;
+    }
+
+    /// The same of several axes without a load, in about the time of one: the processor works on the others while the friction of one is computed.
+    #[inline]
+    pub fn advance_abreast<const L: usize>(
+        laws: &[&Self; L],
+        mut states: [&mut MechanicsState; L],
+        motor_nm: [f64; L],
+    ) {
+        let all_slide = laws.iter().all(|law| law.friction.is_some());
+        let Some(first) = laws.first().and_then(|law| law.friction.as_ref()).filter(|_| all_slide) else {
+            (0..L).for_each(|i| laws[i].advance(states[i], motor_nm[i], 0.0));
+            return;
+        };
+        let pushed: [[f64; 3]; L] = from_fn(|i| laws[i].push(states[i], motor_nm[i], 0.0));
+        let mut presliding_nm: [f64; L] = from_fn(|i| states[i].presliding_nm);
+        let frictions = laws.map(|law| law.friction.as_ref().unwrap_or(first));
+        let [forces_nm, inverse, speeds] = from_fn(|k| pushed.map(|pushed| pushed[k]));
+        let after = FrictionLaw::speeds_after_rad_s(&frictions, forces_nm, inverse, speeds, &mut presliding_nm);
+        for i in 0..L {
+            states[i].presliding_nm = presliding_nm[i];
+            laws[i].go_on(states[i], after[i]);
+        }
+    }
+
+    /// What pushes the mass that slides, N m, one over its inertia and its speed: the table, and the motor where the screw is rigid.
+    #[inline]
+    fn push(&self, state: &mut MechanicsState, motor_nm: f64, load_nm: f64) -> [f64; 3] {
+        let MechanicsState { motor, table, .. } = state;
+        let Some(screw) = &self.transmission else {
+            return [motor_nm - load_nm, self.inverse_inertia, motor.speed_rad_s];
+        };
+        let through_nm = screw.torque_nm(motor.angle_rad - table.angle_rad, motor.speed_rad_s - table.speed_rad_s);
+        motor.speed_rad_s += self.law.periods.mechanics_s * screw.inverse_motor_inertia * (motor_nm - through_nm);
+        [through_nm - load_nm, screw.inverse_table_inertia, table.speed_rad_s]
+    }
+
+    /// The way of a mechanics period, at the end of which what slides has a speed.
+    #[inline]
+    fn go_on(&self, state: &mut MechanicsState, after_rad_s: f64) {
+        let dt_s = self.law.periods.mechanics_s;
+        let MechanicsState { motor, table, .. } = state;
+        if self.transmission.is_none() {
+            motor.speed_rad_s = after_rad_s;
+            motor.angle_rad += dt_s * after_rad_s;
+            *table = TableState { angle_rad: motor.angle_rad, speed_rad_s: motor.speed_rad_s };
+        } else {
+            table.speed_rad_s = after_rad_s;
+            motor.angle_rad += dt_s * motor.speed_rad_s;
+            table.angle_rad += dt_s * table.speed_rad_s;
+        }
+    }
+
+    /// A mechanics period with smoothed Coulomb friction alone.
+    #[inline]
+    fn advance_smoothly(&self, state: &mut MechanicsState, motor_nm: f64, load_nm: f64) {
+        if self.transmission.is_none() {
+            let motor = &mut state.motor;
+            self.law.accelerate(motor_nm - (self.friction_nm(motor.speed_rad_s) + load_nm), motor);
+            state.table = TableState { angle_rad: motor.angle_rad, speed_rad_s: motor.speed_rad_s };
+            return;
+        }
+        let [pushed_nm, inverse, speed_rad_s] = self.push(state, motor_nm, 0.0);
+        let load_nm = self.friction_nm(speed_rad_s) + load_nm;
+        self.go_on(state, speed_rad_s + self.law.periods.mechanics_s * inverse * (pushed_nm - load_nm));
     }
 
     /// Viscous and Coulomb friction alone, N m.
@@ -130,6 +176,26 @@ mod tests {
         let mut state = MechanicsState::at_rest(0.0);
         (0..10_000).for_each(|_| mechanics.advance(&mut state, 1.0, 0.3));
         state
+    }
+
+    #[test]
+    fn several_axes_at_once_are_each_as_it_is_alone() {
+        let dahl = FrictionParameters { presliding_rad: 0.001, ..FrictionParameters::default() };
+        let of = |friction, transmission| MechanicsLaw::new(&law(0.2), friction, transmission);
+        let none = FrictionParameters::default();
+        for laws in [
+            [of(dahl, screw(300.0)), of(dahl, TransmissionParameters::RIGID)],
+            [of(dahl, screw(300.0)), of(none, screw(200.0))],
+        ] {
+            let mut alone = [MechanicsState::at_rest(0.0); 2];
+            let mut abreast = alone;
+            for step in 0..5000_u32 {
+                let torques_nm = [0.5, 0.9].map(|nm| nm * libm::sin(0.003 * f64::from(step)));
+                (0..2).for_each(|i| laws[i].advance(&mut alone[i], torques_nm[i], 0.0));
+                MechanicsLaw::advance_abreast(&laws.each_ref(), abreast.each_mut(), torques_nm);
+                assert_eq!(abreast, alone, "{step}");
+            }
+        }
     }
 
     #[test]

@@ -44,9 +44,6 @@ pub struct InvertingSettings {
     pub tangential_leak: f64,
     /// Slowest and fastest the controller may run, as a multiple of the planned feedrate.
     pub rate_range: [f64; 2],
-    /// If present, it has to show on the measured errors that it helps before it is followed, on axes whose speed loops respond within
-    /// this time, s; see `controller/trial.rs`.
-    pub tried_response_s: Option<f64>,
     /// Whether another planner is told the rate and goes by it later: the path ahead is then what will be commanded, and the rate is no
     /// part of this feed period.
     pub is_planned_elsewhere: bool,
@@ -68,7 +65,6 @@ impl InvertingSettings {
         tangential_leak: TANGENTIAL_LEAK,
         learning_step: 0.003,
         rate_range: [0.5, 1.2],
-        tried_response_s: None,
         is_planned_elsewhere: false,
     };
 }
@@ -104,20 +100,23 @@ pub struct Inverting<const N: usize, I, D = ContourIdentifier<N>> {
     last: Option<Inputs<N>>,
     prediction_error_mm: f64,
     trial: Option<CorrectionTrial<N>>,
+    /// Response time of the speed loops, s, if the correction has to pass a trial.
+    tried_response_s: Option<f64>,
     settings: InvertingSettings,
     how: PhantomData<I>,
 }
 
 impl<const N: usize, I, D: ContourModel<N>> Inverting<N, I, D> {
-    /// With an identifier that is trained on the machine.
-    pub fn new(trained: D, settings: InvertingSettings) -> Self {
+    /// Creates a controller with an identifier that is trained on the machine. Each member of the family has its own public constructors.
+    pub(super) fn new(trained: D, settings: InvertingSettings, tried_response_s: Option<f64>) -> Self {
         Self {
             net: trained.clone(),
             trained,
             delays: Delays::REST,
             last: None,
             prediction_error_mm: 0.0,
-            trial: settings.tried_response_s.map(CorrectionTrial::new),
+            trial: tried_response_s.map(CorrectionTrial::new),
+            tried_response_s,
             settings,
             how: PhantomData,
         }
@@ -140,7 +139,7 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
         self.delays = Delays::REST;
         self.last = None;
         self.prediction_error_mm = 0.0;
-        self.trial = self.settings.tried_response_s.map(CorrectionTrial::new);
+        self.trial = self.tried_response_s.map(CorrectionTrial::new);
     }
 
     /// One step of back-propagation on the last command and its outcome, then both move into the delays.
@@ -229,7 +228,7 @@ mod tests {
     fn commands(knots: usize, gradient: Gradient) -> [Command<2>; 20] {
         let mut settings = InvertingSettings { knots, ..InvertingSettings::DEFAULT };
         settings.inversion.gradient = gradient;
-        let mut controller = TwoDimensional::new(sample().0, settings);
+        let mut controller = TwoDimensional::untried(sample().0, settings);
         let (mut register, mut preview) = (Register::default(), Preview::new(0.001));
         let mut offset_mm = [0.0; 2];
         core::array::from_fn(|k| {
@@ -266,9 +265,12 @@ mod tests {
     #[test]
     fn asks_for_the_preview_of_its_knots_and_for_none_beyond_what_there_is() {
         let schedule = |servo_periods, knots| {
-            TwoDimensional::new(sample().0, InvertingSettings { servo_periods, knots, ..InvertingSettings::DEFAULT })
-                .schedule()
-                .preview
+            TwoDimensional::untried(
+                sample().0,
+                InvertingSettings { servo_periods, knots, ..InvertingSettings::DEFAULT },
+            )
+            .schedule()
+            .preview
         };
         assert_eq!([schedule(10, 1), schedule(10, 5), schedule(10, 99)], [1, 5, 20]);
         assert_eq!([schedule(100, 20), schedule(10, 0), schedule(0, 3)], [2, 1, 3]);

@@ -24,6 +24,7 @@
 //! | `lqg_preview/control_weight.rs` | control weight and bounds of the offset |
 //! | `lqg_preview/riccati.rs` | the gains |
 //! | `lqg_preview/linear.rs` | the linear part of an axis and of what acts on it |
+//! | `lqg_preview/command_weight.rs` | a regulator whose command is quiet |
 //! | `lqg_preview/screw.rs` | where the motor has to be behind a ball screw that gives |
 //! | `lqg_preview/approach.rs` | the way back of a tool that is far off, with no more than there is for it |
 //! | `lqg_preview/feasible.rs` | whether there is torque for the reference ahead |
@@ -41,6 +42,7 @@
 mod control_weight;
 mod riccati;
 mod linear;
+mod command_weight;
 mod screw;
 mod approach;
 mod feasible;

@@ -7,16 +7,6 @@
 //! g is the controller's own, from its model; of one without a model, the offset behind a lag of first order with the time by
 //! which the tool is behind. Both errors are taken as mean squares and as largest values over the last [`MEMORY_S`]. The model
 //! may be wrong by some per cent, so that g is no better than that: harm counts where it is beyond doubt.
-//!
-//! Long before it is harm, a correction may be more than it should. Of a part alpha of it eps_open + alpha c would be left, with
-//! c = eps - eps_open what it changed, so that
-//!
-//! ```text
-//! overdone = 2 <eps, c> / <c, c>
-//! ```
-//!
-//! over the last [`OVERDONE_S`] is 0 where neither more nor less would have been better, 1 where nothing would have been as
-//! good, and negative where more would have been better.
 
 use crate::command::FaultEvidence;
 use crate::contour_error::{ContourError, locate};
@@ -31,11 +21,6 @@ const MIN_MM2: f64 = 2.5e-5;
 /// Harm in a single error: beyond this many times the largest without, and this much, mm.
 const CERTAIN_PEAK: f64 = 1.5;
 const MIN_PEAK_MM: f64 = 0.03;
-/// Time over which it is found that a correction is overdone, s.
-const OVERDONE_S: f64 = 0.1;
-/// Mean square of what a correction changes from which on that says something, mm^2 (3 um): below, what the model misses looks
-/// like it.
-const CHANGED_MM2: f64 = 1e-5;
 /// Part by which g may be wrong.
 const DOUBT: f64 = 0.1;
 /// As those, for a g that is only a guess.
@@ -52,8 +37,6 @@ pub(super) struct Benefit<const N: usize> {
     open_peak_mm: f64,
     /// Without the correction, at the last decision, mm.
     open_mm: f64,
-    /// Means of 2 <eps, c> and <c, c>, mm^2.
-    overdone_mm2: [f64; 2],
 }
 
 impl<const N: usize> Benefit<N> {
@@ -64,18 +47,11 @@ impl<const N: usize> Benefit<N> {
         open_square_mm2: 0.0,
         open_peak_mm: 0.0,
         open_mm: 0.0,
-        overdone_mm2: [0.0; 2],
     };
 
     /// Contour error that there would be without the correction, mm.
     pub(super) fn open_mm(&self) -> f64 {
         self.open_mm
-    }
-
-    /// By how much the correction was overdone lately: see above.
-    pub(super) fn overdone(&self) -> f64 {
-        let [overdone_mm2, changed_mm2] = self.overdone_mm2;
-        overdone_mm2 / (changed_mm2 + CHANGED_MM2)
     }
 
     /// Takes in the error at a decision; `moved_mm` is g, where the controller knows it. What is harm, if anything is: the root mean square, or a
@@ -94,10 +70,6 @@ impl<const N: usize> Benefit<N> {
         let part = (window.feed_period_s / MEMORY_S).min(1.0);
         // On a rapid nothing is cut, and nothing is harm.
         let vector_mm = if window.knot(contour.index).cutting { contour.vector_mm } else { [0.0; N] };
-        let changed_mm = sub(vector_mm, open.vector_mm);
-        let quick = (window.feed_period_s / OVERDONE_S).min(1.0);
-        let lately = [2.0 * dot(vector_mm, changed_mm), dot(changed_mm, changed_mm)];
-        self.overdone_mm2 = add_scaled(self.overdone_mm2, quick, sub(lately, self.overdone_mm2));
         let square = dot(vector_mm, vector_mm);
         self.open_mm = norm(open.vector_mm);
         let open_peak_mm = self.open_mm + DOUBT * norm(g_mm);
@@ -138,13 +110,13 @@ mod tests {
     const SERVO_S: f64 = 0.001;
     const PERIOD_S: f64 = 0.003;
 
-    /// A second in which the tool is at `error_mm` beside the path, and the offset has moved it by `moved_mm`.
-    fn after_a_second(error_mm: f64, moved_mm: f64) -> (Benefit<2>, bool) {
+    /// Harm after a second in which the tool is at `error_mm` beside the path, and the offset has moved it by `moved_mm`.
+    fn after_a_second(error_mm: f64, moved_mm: f64) -> bool {
         after(1000, |_| [error_mm, moved_mm])
     }
 
-    /// Servo periods in each of which the tool is so far beside the path, and the offset has moved it by so much, mm.
-    fn after(periods: u32, place_mm: impl Fn(u32) -> [f64; 2]) -> (Benefit<2>, bool) {
+    /// Harm after so many servo periods; in each the tool is `place_mm[0]` beside the path, and the offset has moved it by `place_mm[1]`, mm.
+    fn after(periods: u32, place_mm: impl Fn(u32) -> [f64; 2]) -> bool {
         let (mut register, mut preview) = (Register::default(), Preview::new(SERVO_S));
         let mut benefit = Benefit::NONE;
         let mut harm = false;
@@ -162,28 +134,15 @@ mod tests {
                 harm = benefit.harm(&window, tool_mm, &contour, Some([0.0, moved_mm])).is_some();
             }
         }
-        (benefit, harm)
-    }
-
-    #[test]
-    fn overdone_is_zero_where_all_is_undone_and_one_where_nothing_would_be_as_good() {
-        // The part that is lost where little changes.
-        let known = |changed_mm: f64| changed_mm * changed_mm / (changed_mm * changed_mm + CHANGED_MM2);
-        for (error_mm, moved_mm, overdone) in
-            [(0.0, 0.02, 0.0), (0.01, 0.02, 1.0), (-0.01, 0.01, -2.0), (0.02, 0.02, 2.0)]
-        {
-            let (benefit, _) = after_a_second(error_mm, moved_mm);
-            let expected = overdone * known(moved_mm);
-            assert!((benefit.overdone() - expected).abs() < 0.01, "{error_mm} {moved_mm}: {}", benefit.overdone());
-        }
+        harm
     }
 
     #[test]
     fn harm_is_an_error_that_is_clearly_larger_than_without_the_correction() {
         // 0.05 mm with it, nothing without; then the other way round; then hardly different.
-        assert!(after_a_second(0.05, 0.05).1);
-        assert!(!after_a_second(0.0, -0.05).1);
-        assert!(!after_a_second(0.01, 0.001).1);
+        assert!(after_a_second(0.05, 0.05));
+        assert!(!after_a_second(0.0, -0.05));
+        assert!(!after_a_second(0.01, 0.001));
     }
 
     #[test]
@@ -196,6 +155,6 @@ mod tests {
                 _ => [0.0; 2],
             }
         };
-        assert!(!after(403, place_mm(100)).1 && after(2303, place_mm(2000)).1);
+        assert!(!after(403, place_mm(100)) && after(2303, place_mm(2000)));
     }
 }

@@ -65,25 +65,19 @@ impl Bounds {
         }
     }
 
-    /// The next step towards an offset that is asked for, and was at `last_mm` a period ago, within the owner's acceleration: near it with its speed, further
-    /// away so that it can be braked there. What takes no more than that is followed to the bit.
-    pub(super) fn accelerated_mm<const N: usize>(
-        &self,
-        window: &Window<'_, N>,
-        asked_mm: [f64; N],
-        last_mm: [f64; N],
-    ) -> [f64; N] {
+    /// The next step towards an offset that is due, within the owner's acceleration: as fast as it can be braked there. What takes no more than that is
+    /// followed to the bit.
+    pub(super) fn accelerated_mm<const N: usize>(&self, window: &Window<'_, N>, due_mm: [f64; N]) -> [f64; N] {
         let period_s = window.feed_period_s;
         let most_mm_s = self.engaged_mm_s2 * period_s;
-        let mut offset_mm = asked_mm;
-        let from = window.offset_mm.into_iter().zip(window.offset_mm_s).zip(last_mm);
-        for (offset_mm, ((from_mm, from_mm_s), last_mm)) in offset_mm.iter_mut().zip(from) {
+        let mut offset_mm = due_mm;
+        let from = window.offset_mm.into_iter().zip(window.offset_mm_s);
+        for (offset_mm, (from_mm, from_mm_s)) in offset_mm.iter_mut().zip(from) {
             let way_mm = *offset_mm - from_mm;
             if (way_mm / period_s - from_mm_s).abs() > most_mm_s {
                 let closing_mm_s = libm::sqrt(BRAKES * self.engaged_mm_s2 * way_mm.abs()).min(way_mm.abs() / period_s);
-                let wanted_mm_s = (*offset_mm - last_mm) / period_s + libm::copysign(closing_mm_s, way_mm);
-                let change_mm_s = bounded(wanted_mm_s - from_mm_s, -most_mm_s, most_mm_s);
-                *offset_mm = from_mm + period_s * (from_mm_s + change_mm_s);
+                let change_mm_s = libm::copysign(closing_mm_s, way_mm) - from_mm_s;
+                *offset_mm = from_mm + period_s * (from_mm_s + bounded(change_mm_s, -most_mm_s, most_mm_s));
             }
         }
         offset_mm

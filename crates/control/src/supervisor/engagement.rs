@@ -8,16 +8,19 @@
 //! it. *Good* is a position that is there, predictions that hold with a margin (hysteresis), and a correction that would do no
 //! harm, for `GOOD_S` in a row. The first wait after a fault is `FIRST_WAIT_S`; each further one of the same making takes
 //! twice as long, and a correction that has held for `FORGIVEN_S` begins anew.
+//!
+//! `GOOD_S` and `FORGIVEN_S` count only while the commanded path moves: a machine at rest confirms every model. Bad evidence counts at
+//! any time. A controller that was switched off without bad evidence comes back without new good evidence.
 
 use crate::command::FaultEvidence;
 
-/// Predictions that hold for so long in a row are good, s.
+/// Predictions that hold for so long in a row are good, s of motion.
 const GOOD_S: f64 = 0.1;
 /// The least time out of the loop, s, at first and at the most.
 const FIRST_WAIT_S: f64 = 0.2;
 const LONGEST_WAIT_S: f64 = 3.2;
-/// A correction that was in the loop for so long without a fault is trusted as at first, s.
-const FORGIVEN_S: f64 = 5.0;
+/// Motion in the loop without a fault, s, after which earlier faults no longer count. Below, the next fault adds to them.
+pub const FORGIVEN_S: f64 = 5.0;
 
 /// Where a correction is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,8 +44,6 @@ pub enum Cause {
     WrongPredictions,
     /// It made the contour error larger than it would have been without.
     Harmful,
-    /// It takes more acceleration than the owner allows.
-    TooQuick,
 }
 
 impl Cause {
@@ -53,7 +54,6 @@ impl Cause {
             Self::LostFeedback => "the measured position was lost",
             Self::WrongPredictions => "its predictions were wrong",
             Self::Harmful => "it made the contour error larger",
-            Self::TooQuick => "it takes more acceleration than correction_accel_mm_s2",
         }
     }
 }
@@ -81,6 +81,8 @@ pub(super) struct DecisionInputs {
     /// Whether it may be followed again, and whether its offset has come to rest.
     pub(super) good: bool,
     pub(super) over: bool,
+    /// Whether the commanded path moves.
+    pub(super) moves: bool,
     /// Time since the last decision, s.
     pub(super) period_s: f64,
 }
@@ -90,11 +92,11 @@ pub(super) struct DecisionInputs {
 pub(super) struct Engagement {
     state: State,
     decisions: u64,
-    /// The last fade, and whether there was one for whatever reason.
+    /// The last fade.
     fade: Option<Fade>,
-    has_left: bool,
-    /// Time in the loop, or out of it, and how long everything has been good, s.
+    /// Time in the loop, or out of it, s; motion in the loop, and motion in which everything has been good, s.
     for_s: f64,
+    held_s: f64,
     good_s: f64,
     wait_s: f64,
 }
@@ -105,9 +107,9 @@ impl Engagement {
         state: State::Engaged,
         decisions: 0,
         fade: None,
-        has_left: false,
         for_s: 0.0,
-        good_s: 0.0,
+        held_s: 0.0,
+        good_s: GOOD_S,
         wait_s: FIRST_WAIT_S,
     };
 
@@ -119,20 +121,17 @@ impl Engagement {
         self.fade
     }
 
-    /// For how long it has been back in the loop, s; none of one that never left it.
-    pub(super) fn back_for_s(&self) -> Option<f64> {
-        self.has_left.then_some(self.for_s)
-    }
-
     /// Goes on by a decision.
     pub(super) fn go_on(&mut self, seen: &DecisionInputs) -> State {
-        let DecisionInputs { allowed, bad, good, over, period_s } = *seen;
+        let DecisionInputs { allowed, bad, good, over, moves, period_s } = *seen;
+        let moved_s = if moves { period_s } else { 0.0 };
         self.for_s += period_s;
-        self.good_s = if good && bad.is_none() { self.good_s + period_s } else { 0.0 };
+        self.held_s = if self.state == State::Engaged { self.held_s + moved_s } else { 0.0 };
+        self.good_s = if good && bad.is_none() { self.good_s + moved_s } else { 0.0 };
         match (self.state, bad) {
             (State::Engaged, Some((cause, evidence))) => self.fail(cause, evidence),
             (State::Engaged, None) if !allowed => self.leave(),
-            (State::Engaged, None) if self.for_s > FORGIVEN_S => self.wait_s = FIRST_WAIT_S,
+            (State::Engaged, None) if self.held_s > FORGIVEN_S => self.wait_s = FIRST_WAIT_S,
             (State::Engaged, None) => {}
             _ if allowed && self.for_s >= self.wait_s && self.good_s >= GOOD_S => {
                 (self.state, self.for_s) = (State::Engaged, 0.0);
@@ -156,7 +155,7 @@ impl Engagement {
     }
 
     fn leave(&mut self) {
-        (self.state, self.for_s, self.has_left) = (State::Fading, 0.0, true);
+        (self.state, self.for_s) = (State::Fading, 0.0);
     }
 }
 
@@ -166,10 +165,23 @@ mod tests {
 
     const PERIOD_S: f64 = 0.003;
 
-    /// A decision with this fault of a controller whose offset has come to rest.
+    /// A decision in motion with this fault of a controller whose offset has come to rest.
     fn goes_on(engagement: &mut Engagement, cause: Option<Cause>, good: bool, over: bool) -> State {
         let bad = cause.map(|cause| (cause, None));
-        engagement.go_on(&DecisionInputs { allowed: true, bad, good, over, period_s: PERIOD_S })
+        engagement.go_on(&DecisionInputs { allowed: true, bad, good, over, moves: true, period_s: PERIOD_S })
+    }
+
+    /// A decision at rest with this fault.
+    fn rests(engagement: &mut Engagement, cause: Option<Cause>) -> State {
+        let bad = cause.map(|cause| (cause, None));
+        engagement.go_on(&DecisionInputs {
+            allowed: true,
+            bad,
+            good: true,
+            over: true,
+            moves: false,
+            period_s: PERIOD_S,
+        })
     }
 
     /// Decisions until a controller that is good from now on is back.
@@ -206,6 +218,26 @@ mod tests {
     }
 
     #[test]
+    fn at_rest_it_leaves_at_once_and_comes_back_in_motion() {
+        let mut engagement = Engagement::START;
+        assert_eq!(rests(&mut engagement, Some(Cause::WrongPredictions)), State::Fading);
+        assert!((0..10_000).all(|_| rests(&mut engagement, None) == State::Shadow));
+        assert!(f64::from(until_back(&mut engagement)) * PERIOD_S < GOOD_S + 2.0 * PERIOD_S);
+    }
+
+    #[test]
+    fn at_rest_no_fault_is_forgiven() {
+        let mut engagement = Engagement::START;
+        let mut waits = [0; 3];
+        for wait in &mut waits {
+            goes_on(&mut engagement, Some(Cause::Harmful), false, true);
+            *wait = until_back(&mut engagement);
+            (0..10_000).for_each(|_| assert_eq!(rests(&mut engagement, None), State::Engaged));
+        }
+        assert!(waits[1] > waits[0] && waits[2] > waits[1], "{waits:?}");
+    }
+
+    #[test]
     fn what_is_good_only_now_and_then_stays_out() {
         let mut engagement = Engagement::START;
         goes_on(&mut engagement, Some(Cause::WrongPredictions), false, true);
@@ -218,12 +250,13 @@ mod tests {
     fn what_is_not_wanted_leaves_without_a_fault_and_comes_back_when_it_is() {
         let mut engagement = Engagement::START;
         let mut asked = |allowed| {
-            engagement.go_on(&DecisionInputs { allowed, bad: None, good: true, over: true, period_s: PERIOD_S })
+            let inputs =
+                DecisionInputs { allowed, bad: None, good: true, over: true, moves: false, period_s: PERIOD_S };
+            engagement.go_on(&inputs)
         };
         assert_eq!([true, false, false].map(&mut asked), [State::Engaged, State::Fading, State::Shadow]);
         assert!((0..1000).all(|_| asked(false) == State::Shadow));
         assert_eq!(asked(true), State::Engaged);
         assert_eq!(engagement.fade(), None);
-        assert_eq!(engagement.back_for_s(), Some(0.0));
     }
 }

@@ -12,6 +12,8 @@
 //! harm in each corner anew. On a circle, where c is the same all the time, time is the proof: T is 60 ms at first, and four times as long each time that the
 //! law was wrong again, up to 1 s. With 1 s from the beginning a law by which friction is twice as large leaves 15.5 um on a circle in place of 0.9, since the
 //! first 60 ms of a motion miss a larger part of the following error than all that follows. A shock on a straight line needs no more than the time.
+//!
+//! These times count only while the path moves: at rest every model holds.
 
 use crate::vector::{add_scaled, norm, sub};
 
@@ -40,7 +42,7 @@ struct ProofTrial {
 impl ProofTrial {
     const BEGUN: Self = Self { calm: false, since_s: None, at_as_much_s: 0.0 };
 
-    /// One servo period with a c, by a law that was wrong at c0: whether that is enough.
+    /// Takes in a servo period of motion with a c, of a model that was wrong at c0. Returns whether the model has held for long enough.
     fn holds_through(&mut self, change_mm_s: f64, wrong_mm_s: f64, needs_s: f64, servo_s: f64) -> bool {
         let as_much = change_mm_s >= AS_MUCH * wrong_mm_s;
         self.calm |= change_mm_s < LITTLE * wrong_mm_s;
@@ -78,8 +80,8 @@ impl<const N: usize> Proof<N> {
         trial: ProofTrial::BEGUN,
     };
 
-    /// A servo period in which the law is wrong, or holds.
-    pub(super) fn take_in(&mut self, path_mm: [f64; N], wrong: bool, servo_s: f64) {
+    /// Takes in a servo period in which the model is wrong, or holds; at rest it shows nothing that it holds.
+    pub(super) fn take_in(&mut self, path_mm: [f64; N], moves: bool, wrong: bool, servo_s: f64) {
         let part = (servo_s / MEAN_S).min(1.0);
         let mut change_mm_s = 0.0;
         if let Some(last_mm) = self.path_mm.replace(path_mm) {
@@ -94,6 +96,8 @@ impl<const N: usize> Proof<N> {
         if wrong {
             (self.needed, self.trial) = (true, ProofTrial::BEGUN);
             self.wrong_mm_s = self.wrong_mm_s.max(self.lately_mm_s);
+        } else if self.needed && !moves {
+            self.trial.calm |= change_mm_s < LITTLE * self.wrong_mm_s;
         } else if self.needed && self.trial.holds_through(change_mm_s, self.wrong_mm_s, self.needs_s, servo_s) {
             (self.needed, self.wrong_mm_s) = (false, 0.0);
             self.needs_s = (AGAIN * self.needs_s).min(MOST_S);
@@ -118,7 +122,7 @@ mod tests {
         let mut x_mm = 0.0;
         for n in 0..400 * corners {
             x_mm += 50.0 * SERVO_S * ((n % 400) as f64 / 25.0).min(1.0);
-            proof.take_in([x_mm], wrong(n), SERVO_S);
+            proof.take_in([x_mm], true, wrong(n), SERVO_S);
         }
         proof
     }
@@ -140,7 +144,7 @@ mod tests {
             for n in 0_u32.. {
                 let t_s = f64::from(periods) * SERVO_S;
                 periods += 1;
-                proof.take_in([50.0 * t_s * t_s], n < 200, SERVO_S);
+                proof.take_in([50.0 * t_s * t_s], true, n < 200, SERVO_S);
                 if !proof.is_needed() {
                     break;
                 }
@@ -157,7 +161,7 @@ mod tests {
     #[test]
     fn one_that_begins_in_motion_has_changed_nothing() {
         let mut proof = Proof::NOT_NEEDED;
-        (0..100_u32).for_each(|n| proof.take_in([0.05 * f64::from(n)], n < 20, SERVO_S));
+        (0..100_u32).for_each(|n| proof.take_in([0.05 * f64::from(n)], true, n < 20, SERVO_S));
         assert!(!proof.is_needed(), "a straight line is proof enough");
     }
 
@@ -167,9 +171,18 @@ mod tests {
     }
 
     #[test]
+    fn at_rest_no_model_holds_through_anything() {
+        let mut proof = Proof::<1>::NOT_NEEDED;
+        (0..10_000).for_each(|n| proof.take_in([0.0], false, n < 20, SERVO_S));
+        assert!(proof.is_needed());
+        (0..70_u32).for_each(|n| proof.take_in([0.05 * f64::from(n)], true, false, SERVO_S));
+        assert!(!proof.is_needed());
+    }
+
+    #[test]
     fn what_is_not_a_number_is_no_proof() {
         let mut proof = goes(1, |n| (10..40).contains(&n));
-        proof.take_in([f64::NAN], false, SERVO_S);
+        proof.take_in([f64::NAN], true, false, SERVO_S);
         assert!(proof.is_needed());
     }
 }

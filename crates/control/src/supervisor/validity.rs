@@ -150,7 +150,7 @@ impl<const N: usize> Validity<N> {
             (self.for_s, self.beyond) = (0.0, [false, self.beyond[0]]);
         }
         self.beyond[0] |= self.is_beyond(1.0);
-        self.proof.take_in(path_mm, self.misses(), servo_s);
+        self.proof.take_in(path_mm, moves, self.misses(), servo_s);
         let holds = followed && self.course.is_as_said() && !self.misses();
         let change = if holds { servo_s / self.course.trust_time_s() } else { -servo_s / TO_DOUBT_S };
         self.near = bounded(self.near + change, 0.0, 1.0);

@@ -1,7 +1,7 @@
 //! The way back to a reference that is far off, with no more than there is for it.
 //!
 //! ```text
-//! u_k = G_k x                        G_k by the price 4^k p, k = 0 to 11
+//! u_k = G_k x                        G_k by the prices 4^k p and 4^k q, k = 0 to 11
 //! U_k = min(U, R 3 2^k sqrt(p))
 //! u   = u_k of the first k with |u_k| <= U_k, and no less than U_k-1
 //! ```
@@ -21,7 +21,8 @@
 
 use crate::supervisor::validity::Trusted;
 
-use super::linear::{self, STATES};
+use super::command_weight::REGULATED;
+use super::linear;
 use super::riccati::inner;
 
 /// Part of the torque that is left that is relied on: the loops answer late.
@@ -55,33 +56,33 @@ pub(super) struct Room {
     pub(super) change_rad_s2: f64,
 }
 
-/// Gains of the regulator by price, from the lowest on.
+/// Gains of the regulator by price, from the lowest on: [`RATIO`]^2 times as high from one to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct WeightedGains {
     /// sqrt(p), s.
     time_s: f64,
-    gains: [[f64; STATES]; PRICES],
+    gains: [[f64; REGULATED]; PRICES],
 }
 
 impl WeightedGains {
-    /// By the lowest price, s^2, of a regulator whose gains are known for any.
-    pub(super) fn new(lowest_s2: f64, gains: impl Fn(f64) -> [f64; STATES]) -> Self {
-        let mut control_weight_s2 = lowest_s2 / (RATIO * RATIO);
+    /// By the lowest prices, s^2 and of the second difference of the command, of a regulator whose gains are known for any.
+    pub(super) fn new([lowest_s2, command]: [f64; 2], gains: impl Fn([f64; 2]) -> [f64; REGULATED]) -> Self {
+        let mut times = 1.0 / (RATIO * RATIO);
         let gains = core::array::from_fn(|_| {
-            control_weight_s2 *= RATIO * RATIO;
-            gains(control_weight_s2)
+            times *= RATIO * RATIO;
+            gains([times * lowest_s2, times * command])
         });
         Self { time_s: libm::sqrt(lowest_s2), gains }
     }
 
     /// Near the reference.
-    pub(super) fn near(&self) -> [f64; STATES] {
+    pub(super) fn near(&self) -> [f64; REGULATED] {
         let [near, ..] = self.gains;
         near
     }
 
     /// By how much less reference speed is asked for where the axis is so far off, rad/s, by a law that is `trusted` so far.
-    pub(super) fn asked_rad_s(&self, off: &[f64; STATES], room: Room, trusted: Trusted) -> f64 {
+    pub(super) fn asked_rad_s(&self, off: &[f64; REGULATED], room: Room, trusted: Trusted) -> f64 {
         let [error, loads] = linear::error_and_loads(off);
         let loads_rad_s = trusted.loads * inner(&self.near(), &loads);
         // A float that is not a number saturates to zero here.
@@ -94,7 +95,7 @@ impl WeightedGains {
     }
 
     /// u, from a price on.
-    fn closing_rad_s(&self, error: &[f64; STATES], Room { most_rad_s, change_rad_s2 }: Room, lowest: usize) -> f64 {
+    fn closing_rad_s(&self, error: &[f64; REGULATED], Room { most_rad_s, change_rad_s2 }: Room, lowest: usize) -> f64 {
         let (mut time_s, mut least_rad_s, mut closing_rad_s) = (self.time_s * libm::exp2(lowest as f64), 0.0, 0.0);
         for gains in self.gains.iter().skip(lowest) {
             let asked_rad_s = inner(gains, error);
@@ -115,7 +116,7 @@ mod tests {
     use super::*;
 
     /// Of a double integrator that is closed in the time of the price, critically damped.
-    fn of_double_integrator(control_weight_s2: f64) -> [f64; STATES] {
+    fn of_double_integrator([control_weight_s2, _]: [f64; 2]) -> [f64; REGULATED] {
         let time_s = libm::sqrt(control_weight_s2);
         core::array::from_fn(|state| match state {
             0 => 1.0 / (time_s * time_s),
@@ -124,7 +125,7 @@ mod tests {
         })
     }
 
-    fn off(error_rad: f64, error_rad_s: f64) -> [f64; STATES] {
+    fn off(error_rad: f64, error_rad_s: f64) -> [f64; REGULATED] {
         core::array::from_fn(|state| match state {
             0 => error_rad,
             1 => error_rad_s,
@@ -134,7 +135,7 @@ mod tests {
 
     #[test]
     fn what_is_asked_for_is_continuous_and_never_more_than_there_is() {
-        let gains = WeightedGains::new(1e-6, of_double_integrator);
+        let gains = WeightedGains::new([1e-6, 0.0], of_double_integrator);
         let room = Room { most_rad_s: 100.0, change_rad_s2: 5000.0 };
         let asked = |error_rad: f64| gains.asked_rad_s(&off(error_rad, 0.0), room, Trusted::FULLY);
         assert_eq!(asked(1e-6), 1.0, "near the reference the lowest price counts in full");
@@ -151,8 +152,8 @@ mod tests {
 
     #[test]
     fn loads_are_taken_up_however_little_there_is_for_the_error() {
-        let gains = WeightedGains::new(1e-6, |_| [1.0; STATES]);
-        let mut off = [0.0; STATES];
+        let gains = WeightedGains::new([1e-6, 0.0], |_| [1.0; REGULATED]);
+        let mut off = [0.0; REGULATED];
         (off[0], off[7]) = (1.0, 30.0);
         assert_eq!(
             gains.asked_rad_s(&off, Room { most_rad_s: 0.1, change_rad_s2: f64::INFINITY }, Trusted::FULLY),
@@ -176,7 +177,7 @@ mod tests {
 
     #[test]
     fn within_bounds_that_a_linear_law_swings_at_the_way_back_is_short_and_still() {
-        let gains = WeightedGains::new(1.6e-5, of_double_integrator);
+        let gains = WeightedGains::new([1.6e-5, 0.0], of_double_integrator);
         let bounds = [100.0, 2e4];
         let room = Room { most_rad_s: 100.0, change_rad_s2: 2e4 };
         for from_rad in [1e-4, 1e-3, 0.01, 0.1, 1.0] {

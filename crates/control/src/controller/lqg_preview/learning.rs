@@ -39,6 +39,9 @@
 //! looked at: a run that proves the learned law by itself is not waited for. l counts up to 13.8 (Page), so that a change is noticed. A learned law that is
 //! certainly worse is begun anew. A nominal law that misses no more than noise explains stays as it is to the bit.
 //!
+//! Differences 2, 3 and 6 are learned only within [`EVEN_S`] of an acceleration of the path. At constant speed nothing tells of them, and what the
+//! law does not have, such as cogging, passes for them: on a plate in inches an inertia that is right is then taken for half of it.
+//!
 //! What was tried: innovations in place of free runs took laws for wrong that were right, since steps of an encoder are not white noise. One
 //! filter with the nominal law whose innovations would have been is no judge: its own first order says that they are large. Least squares on
 //! the innovations of the nominal filter go astray where those are bounded as outliers. Where both laws miss alike, by a load that neither
@@ -67,6 +70,10 @@ const BOUNDS: [[f64; 2]; DIFFERENCES] =
     [[-0.5, 1.0], [-0.3, 0.3], [-2.0, 3.0], [-0.7, 2.0], [-0.9, 3.0], [-1e3, 1e3], [-1.0, 1.0]];
 /// The constant load among them.
 const LOAD: usize = 5;
+/// Those that show while the path accelerates; what counts as that, mm/s^2, and for how long after it they still do, s.
+const OF_ACCELERATION: [usize; 3] = [2, 3, 6];
+const ACCELERATED_MM_S2: f64 = 100.0;
+const EVEN_S: f64 = 0.1;
 /// Time over which what was measured is forgotten, s.
 const DRIFT_S: f64 = 100.0;
 /// Factor on the variance of the residual, which is not white.
@@ -184,11 +191,15 @@ pub(super) struct Learning {
     commanded_rad_s: [f64; KEPT_PERIODS],
     error_rad: [f64; KEPT_PERIODS],
     command_rad: Option<f64>,
+    /// The last two angles of the path, rad, the newest first, and for how long it has not accelerated, s.
+    path_rad: Option<[f64; 2]>,
+    even_s: f64,
 }
 
 impl Learner {
     /// Of an axis by its model.
-    pub(super) fn new(nominal: AxisKnowledge, linear: &LinearAxis) -> Self {
+    /// `least_inertia` is the least difference of the inertia that may be learned.
+    pub(super) fn new(nominal: AxisKnowledge, linear: &LinearAxis, least_inertia: f64) -> Self {
         let (states, ..) = linear.sampled();
         let mut priors = PRIORS;
         if nominal.drive.acceleration_feedforward == 0.0 {
@@ -196,7 +207,8 @@ impl Learner {
         }
         priors[LOAD] = nominal.parameters.coulomb_friction_nm.max(1e-3 * nominal.parameters.torque_limit_nm);
         let mut bounds = BOUNDS;
-        let [_, velocity, delay, .., acceleration] = &mut bounds;
+        let [_, velocity, delay, inertia, .., acceleration] = &mut bounds;
+        inertia[0] = inertia[0].max(least_inertia);
         // No feedforward and no delay is negative.
         velocity[0] = -nominal.drive.velocity_feedforward;
         delay[0] = -nominal.delays.drive_s / nominal.periods.servo_s;
@@ -226,7 +238,19 @@ impl Learner {
             commanded_rad_s: [0.0; KEPT_PERIODS],
             error_rad: [0.0; KEPT_PERIODS],
             command_rad: None,
+            path_rad: None,
+            even_s: f64::INFINITY,
         }
+    }
+
+    /// Where the path was while a command was sent, rad.
+    pub(super) fn along(&self, learning: &mut Learning, path_rad: f64) {
+        let servo_s = self.nominal.periods.servo_s;
+        let [last_rad, earlier_rad] = learning.path_rad.unwrap_or([path_rad; 2]);
+        learning.path_rad = Some([path_rad, last_rad]);
+        let acceleration_rad_s2 = (path_rad - 2.0 * last_rad + earlier_rad) / (servo_s * servo_s);
+        let is_even = acceleration_rad_s2.abs() <= ACCELERATED_MM_S2 * self.nominal.parameters.rad_per_mm;
+        learning.even_s = if is_even { learning.even_s + servo_s } else { 0.0 };
     }
 
     /// The machine is another one from now on: what is known of the differences is no better than at first.
@@ -313,7 +337,10 @@ impl Learner {
     /// A step of recursive least squares.
     fn learn(&self, learning: &mut Learning, told: &Innovation) {
         let servo_s = self.nominal.periods.servo_s;
-        let shows: Differences = learning.sensitivities.map(|[angle, ..]| angle);
+        let mut shows: Differences = learning.sensitivities.map(|[angle, ..]| angle);
+        if learning.even_s > EVEN_S {
+            OF_ACCELERATION.into_iter().for_each(|i| shows[i] = 0.0);
+        }
         let of_nominal_rad = told.missed_rad + dot(&shows, &learning.applied);
         let left_rad = of_nominal_rad - dot(&shows, &learning.found);
         let spreads: Differences = learning.covariance.map(|row| dot(&row, &shows));
@@ -400,8 +427,8 @@ impl Learner {
         let turns = was_followed != learning.is_followed;
         let begins_anew = was_followed && turns || learning.runs.learned <= -CERTAIN;
         if begins_anew {
-            let Learning { commanded_rad_s, error_rad, command_rad, .. } = *learning;
-            *learning = Learning { commanded_rad_s, error_rad, command_rad, ..self.begin() };
+            let Learning { commanded_rad_s, error_rad, command_rad, path_rad, even_s, .. } = *learning;
+            *learning = Learning { commanded_rad_s, error_rad, command_rad, path_rad, even_s, ..self.begin() };
         }
         LawChoice { turns, begins_anew }
     }

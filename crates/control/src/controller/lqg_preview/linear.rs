@@ -198,9 +198,10 @@ pub(super) fn measured_rad2(statistics: &AxisStatistics) -> f64 {
 }
 
 /// Of states, those of the axis, and the loads.
-pub(super) fn error_and_loads(states: &[f64; STATES]) -> [[f64; STATES]; 2] {
-    let [x, w, i, y, n, p, q, d, xt, wt] = *states;
-    [[x, w, i, y, 0.0, 0.0, 0.0, 0.0, xt, wt], [0.0, 0.0, 0.0, 0.0, n, p, q, d, 0.0, 0.0]]
+pub(super) fn error_and_loads<const S: usize>(states: &[f64; S]) -> [[f64; S]; 2] {
+    let of =
+        |loads: bool| core::array::from_fn(|i| if (BROADBAND..=DRIFT).contains(&i) == loads { states[i] } else { 0.0 });
+    [of(false), of(true)]
 }
 
 fn unit(j: usize) -> [f64; STATES] {

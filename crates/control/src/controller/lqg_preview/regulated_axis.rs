@@ -1,7 +1,7 @@
 //! An axis: its filter, its regulator and its inverse, and the command that asks its drive for what they want.
 
 use crate::axis::delays::CommandQueue;
-use crate::axis::drive::{DriveParameters, DriveReference, DriveState};
+use crate::axis::drive::{DriveReference, DriveState};
 use crate::axis::inverse::AxisInverse;
 use crate::axis::knowledge::AxisKnowledge;
 use crate::axis::mechanics::MechanicsState;
@@ -10,11 +10,11 @@ use crate::supervisor::one_step::{OneStep, run_periods};
 use crate::supervisor::validity::Trusted;
 
 use super::approach::{self, Room, WeightedGains};
+use super::command_weight::{self, CommandHistory, CommandLaw, REGULATED};
 use super::control_weight::{LqgSettings, OffsetBounds};
 use super::estimate::{AxisModel, Estimate, Innovation, KEPT_PERIODS, LawTrial, Learnt, Sent};
 use super::learning::{LawChoice, Learner, Learning};
-use super::linear::{self, LinearAxis};
-use super::riccati;
+use super::linear;
 use super::screw::{ScrewTwist, TwistCourse};
 
 /// Stationary gains of an axis: by state, as in `lqg_preview/linear.rs`.
@@ -33,6 +33,7 @@ pub(super) struct AxisLqg {
     inverse: AxisInverse,
     twist: Option<ScrewTwist>,
     regulator: WeightedGains,
+    command_law: CommandLaw,
     bounds: OffsetBounds,
     known: AxisKnowledge,
     /// What finds where the law is wrong, of a law that may be.
@@ -54,6 +55,7 @@ struct Running {
     open: Tracked,
     /// Where the path was at the last decision, mm; the command was an offset beside it.
     path_mm: Option<f64>,
+    commands: CommandHistory,
     /// What was measured beyond what was expected, rad.
     missed_rad: f64,
     /// How the last servo period went, and what its innovation makes of a free run, if it is noise, rad^2.
@@ -72,6 +74,7 @@ impl Running {
             beside: LawRun::from(moving),
             open: moving,
             path_mm: None,
+            commands: CommandHistory::IDEAL,
             missed_rad: 0.0,
             step: OneStep::NONE,
             by_noise_rad2: 0.0,
@@ -173,23 +176,22 @@ impl LawRun {
 impl AxisLqg {
     /// Of an axis of which this is known.
     pub(super) fn new(known: AxisKnowledge, settings: LqgSettings) -> Self {
-        let AxisKnowledge { drive, friction, transmission, delays, statistics, .. } = known;
+        let AxisKnowledge { drive, friction, transmission, delays, .. } = known;
         let law = known.law();
         let model = AxisModel::new(&known, settings.learns);
-        let screw = model.mechanics.transmission();
-        let without_integral = DriveParameters { speed_window_s: drive.speed_window_s, ..DriveParameters::default() };
-        let regulated = LinearAxis::new(&law, &without_integral, screw, &statistics);
-        let lowest_s2 = settings.lowest_control_weight_s2(&transmission);
-        let (states, input, _) = regulated.sampled();
+        let regulated = command_weight::regulated_axis(&known);
+        let command_law = CommandLaw::new(&law, &drive);
+        let lowest = [settings.lowest_control_weight_s2(&transmission), settings.command_weight];
+        let regulator = WeightedGains::new(lowest, command_weight::gains(&regulated, &command_law));
+        let least_inertia = || command_weight::least_inertia(&known, &regulator.near());
         Self {
             inverse: AxisInverse::new(law, drive, friction, delays),
-            twist: screw.map(|screw| ScrewTwist::new(&law, screw)),
-            regulator: WeightedGains::new(lowest_s2, |control_weight_s2| {
-                riccati::regulator(&states, &input, &regulated.cost(control_weight_s2))
-            }),
+            twist: model.mechanics.transmission().map(|screw| ScrewTwist::new(&law, screw)),
             bounds: settings.bounds,
             known,
-            learner: settings.learns.then(|| Learner::new(known, &model.linear)),
+            learner: settings.learns.then(|| Learner::new(known, &model.linear, least_inertia())),
+            regulator,
+            command_law,
             other: model.clone(),
             other_known: known,
             may_learn: true,
@@ -214,7 +216,8 @@ impl AxisLqg {
 
     /// Near the reference.
     pub(super) fn gains(&self) -> LqgGains {
-        LqgGains { filter: self.model.gains_as_given(), regulator: self.regulator.near() }
+        let near = self.regulator.near();
+        LqgGains { filter: self.model.gains_as_given(), regulator: core::array::from_fn(|state| near[state]) }
     }
 
     /// How far ahead the inverse looks, s.
@@ -304,6 +307,10 @@ impl AxisLqg {
         };
         let command_rad = (path_mm + offset_mm) * rad_per_mm;
         let from_rad = running.real.tracked.measured_rad;
+        running.commands.sent(command_rad);
+        if let (Some(learner), Some(learning)) = (&self.learner, &mut running.learning) {
+            learner.along(learning, path_mm * rad_per_mm);
+        }
         let told = running.real.go_on(&self.model, command_rad, measured_rad);
         running.step = told.step(1.0 / rad_per_mm);
         running.by_noise_rad2 = self.model.by_noise_rad2(&told, &running.real.learnt);
@@ -366,8 +373,9 @@ impl AxisLqg {
     pub(super) fn foresee(&mut self, offset_mm: f64, here_mm: f64) {
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
         let Some(running) = &mut self.state else { return };
-        let Running { real, beside, open, path_mm, missed_rad, step, .. } = running;
+        let Running { real, beside, open, path_mm, commands, missed_rad, step, .. } = running;
         let before_mm = path_mm.replace(here_mm).unwrap_or(here_mm);
+        commands.sent((before_mm + offset_mm) * rad_per_mm);
         real.foresee(&self.model, (before_mm + offset_mm) * rad_per_mm);
         beside.foresee(&self.other, (before_mm + offset_mm) * rad_per_mm);
         open.estimate.acting_nm = real.tracked.estimate.acting_nm;
@@ -455,8 +463,14 @@ impl AxisLqg {
         let Parameters { kv_nm_s_per_rad, .. } = self.model.law.parameters;
         let [_, off_rad_s, ..] = off;
         let reference_nm = kv_nm_s_per_rad * (reference_rad_s - (ahead.masses.motor.speed_rad_s - off_rad_s));
+        let commands_off = self.state.as_ref().map_or([0.0; 2], |running| running.commands.off_rad());
+        let off = command_weight::with_commands(&off, commands_off);
         let asked_rad_s = self.asked_rad_s(reference_nm, &off, trusted);
-        self.solved_mm(&tracked, here_mm, reference_rad_s - asked_rad_s)
+        let offset_mm = self.solved_mm(&tracked, here_mm, reference_rad_s - asked_rad_s);
+        if let Some(Running { commands, .. }) = &mut self.state {
+            commands.decide(&self.command_law, &off, asked_rad_s, (here_mm + offset_mm) * rad_per_mm);
+        }
+        offset_mm
     }
 
     /// The reference speed of the axis by itself, without any offset, and by how much the axis is off it.
@@ -476,7 +490,7 @@ impl AxisLqg {
     }
 
     /// By how much the regulator asks for less speed than the reference has, which takes this torque.
-    fn asked_rad_s(&self, reference_nm: f64, off: &[f64; linear::STATES], trusted: Trusted) -> f64 {
+    fn asked_rad_s(&self, reference_nm: f64, off: &[f64; REGULATED], trusted: Trusted) -> f64 {
         let Parameters { torque_limit_nm, kp_1_s, kv_nm_s_per_rad, rad_per_mm, .. } = self.model.law.parameters;
         let by_torque_rad_s = approach::left_nm(torque_limit_nm, reference_nm) / kv_nm_s_per_rad;
         let of_offset = kp_1_s * rad_per_mm;
