@@ -2,15 +2,12 @@
 //!
 //! What a machine showed is a [`recording`]. A simulated machine cuts an identification excitation for it: laps of circles at
 //! random feeds, two thirds of them with random offsets of the command from the path, so that the data tell the effect of the
-//! feedrate from that of the path. [`contour`] trains the paper's network on it, [`servo`] the servo identifier; [`cache`]
-//! keeps what was trained. [`axis_parameters`] finds what an axis is, inertia and friction, where its drive's settings are known.
+//! feedrate from that of the path. [`contour`] trains the paper's network on it. [`axis_parameters`] finds what an axis is, inertia and friction, where its drive's settings are known.
 //! None of them sees the machine.
 
 pub(crate) mod recording;
 mod excitation;
 pub(crate) mod contour;
-mod spread;
-pub(crate) mod servo;
 pub(crate) mod axis_parameters;
 pub(crate) mod axis_statistics;
 pub(crate) mod grey_box;
@@ -27,13 +24,14 @@ use recording::Recording;
 /// The generator behind everything random here: the same seed gives the same bits on every platform.
 pub type Rng = Xoshiro256PlusPlus;
 
-/// Feed period of the servo identifier, s. Shorter foresees friction better, longer resonances: 2 ms is worse on a soft ball screw,
-/// 5 ms at every reversal.
-pub const SERVO_FEED_PERIOD_S: f64 = 0.003;
-
 /// Laps that parameters of an axis are found from: six of each radius, a third of them without offsets. On workshop the standard errors
 /// are then below 0.1 % of the inertia and 2 % of the friction; all 60 would take more than twice the time.
 const AXIS_PARAMETER_LAPS: u32 = 24;
+
+/// Time between random offsets of the command for the parameters of an axis, s, and time in which the command goes to one.
+/// A product, since the result of rounding to servo periods must not change: 6 and 1 times 3 ms.
+const RENEWAL_S: f64 = 6.0 * 0.003;
+const RAMP_S: f64 = 0.003;
 
 /// What the machine cuts to be identified.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -93,29 +91,18 @@ impl Excitation {
         Self { radii_mm: vec![3.0, 6.0, 12.0, 24.0], ..Self::paper() }
     }
 
-    /// For the servo identifier, whose dynamics do not depend on the path: both senses, a wider range of feeds, knots
-    /// nearer to each other.
-    pub fn servo() -> Self {
+    /// For the parameters of an axis, whose motion does not depend on the path: circles in both senses, over a wider range of
+    /// feeds, with a knot in every servo period, since the model of an axis is stepped through all of them.
+    pub fn axis_parameters(machine: &Machine) -> Self {
+        let servo_periods = |time_s: f64| (time_s / machine.period.servo_s).round().max(1.0) as u32;
         Self {
             turns: vec![-1, 1, 1],
             feed_mm_s: [10.0, 70.0],
-            feed_period_s: SERVO_FEED_PERIOD_S,
-            renewal_periods: 6,
-            ..Self::general()
-        }
-    }
-
-    /// For the parameters of an axis: as for the servo identifier, with a knot in every servo period of a machine, since the law of
-    /// an axis is stepped through all of them.
-    pub fn axis_parameters(machine: &Machine) -> Self {
-        let servo = Self::servo();
-        let servo_periods = |time_s: f64| (time_s / machine.period.servo_s).round().max(1.0) as u32;
-        Self {
             feed_period_s: machine.period.servo_s,
-            renewal_periods: servo_periods(f64::from(servo.renewal_periods) * servo.feed_period_s),
-            ramp_periods: servo_periods(f64::from(servo.ramp_periods) * servo.feed_period_s),
+            renewal_periods: servo_periods(RENEWAL_S),
+            ramp_periods: servo_periods(RAMP_S),
             laps: AXIS_PARAMETER_LAPS,
-            ..servo
+            ..Self::general()
         }
     }
 

@@ -34,10 +34,10 @@
 //! |---|---|
 //! | Program to cut, and its log on a simulated machine | [`excitation_program`], [`recorded_log`], [`ExciteOptions`], [`ExciteError`] |
 //! | Logs | [`Log`], [`LogAxis`], [`LogFormat`], [`Columns`], [`LogFinding`], [`LogError`], [`Fitness`] |
-//! | Real machine, from a log | [`identify_machine`], [`GreyBoxOptions`], [`FoundMachine`], [`FoundAxis`], [`LawVerdict`] |
+//! | Real machine, from a log | [`identify_machine`], [`GreyBoxOptions`], [`FoundMachine`], [`FoundAxis`], [`LawVerdict`], [`SearchBound`] |
 //! | Simulated machine | [`Excitation`], [`Recording`], [`RecordedKnot`], [`Rng`] |
 //! | Axis with known drive settings | [`identify_axis`], [`DriveSettings`], [`AxisParameters`], [`AxisEstimate`], [`NotIdentified`] |
-//! | Models for controllers | [`train_axes`], [`train_servo`], [`train_contour`], [`axis_statistics`] |
+//! | Models for controllers | [`train_axes`], [`train_contour`], [`axis_statistics`] |
 //! | Model files | [`Model`], [`Origin`], [`exact_block`] |
 //! | Geometry from measurements | [`GeometryInput`], [`fit_geometry`], [`FoundGeometry`], [`Circularity`], [`comp_file`] |
 //! | Geometry: programs, simulated bar | [`BallBarProgram`], [`GridProgram`], [`SimulatedBallBar`] |
@@ -99,6 +99,7 @@ pub use identify::grey_box::axis_record::AxisRecord;
 pub use identify::grey_box::found_axis::{FoundAxis, NumberSource};
 pub use identify::grey_box::free_run_scores::{FreeRunErrors, HORIZONS};
 pub use identify::grey_box::known_value::KnownValue;
+pub use identify::grey_box::search_bound::SearchBound;
 pub use identify::grey_box::terms::{LawTerm, TermValues};
 pub use identify::grey_box::unseen_motion::UnseenMotion;
 pub use identify::grey_box::verdict::LawVerdict;
@@ -106,8 +107,7 @@ pub use identify::grey_box::{
     FoundMachine, GreyBoxOptions, NotFound, SERVO_MECHANICS, identify_machine, servo_period_s,
 };
 pub use identify::recording::{RecordedKnot, Recording};
-pub use identify::servo::{TrainedServo, train_servo};
-pub use identify::{Excitation, Rng, SERVO_FEED_PERIOD_S};
+pub use identify::{Excitation, Rng};
 pub use log::columns::{Columns, ColumnsError};
 pub use log::error::{Refusal, RefusalReason};
 pub use log::{Fitness, Log, LogAxis, LogError, LogFinding, LogFormat, MAX_AXES, TorqueUnit};

@@ -15,7 +15,7 @@ use std::path::Path;
 
 use feedwright_control::{
     AxisKnowledge, ContourIdentifier, IdentifiedAxes, Identifier, IdentifierKind, KnownGeometry, ModelBlock, Number,
-    ServoIdentifier, Spread, Trained, UNKNOWNS,
+    Trained,
 };
 use feedwright_gcode::input;
 use feedwright_sim::toml_file::key::write;
@@ -23,7 +23,7 @@ use feedwright_sim::toml_file::{self, FileError, read_text};
 use serde::Serialize;
 
 use crate::identify::recording::Recording;
-use crate::identify::{axes, contour, servo};
+use crate::identify::{axes, contour};
 
 /// The format that is read and written. It is raised whenever a file of before would be read otherwise.
 pub(crate) const FORMAT: u64 = 1;
@@ -87,10 +87,8 @@ pub struct Fit {
 /// The numbers, row by row.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub(crate) struct Weights {
-    pub(crate) linear: Vec<f64>,
     pub(crate) hidden: Vec<f64>,
     pub(crate) output: Vec<f64>,
-    pub(crate) spread: Vec<f64>,
     pub(crate) mechanics_s: f64,
     /// Each of [`AxisKnowledge::NUMBERS`], axis by axis; one that is optional and zero on all axes is empty.
     pub(crate) axes: Vec<Vec<f64>>,
@@ -100,14 +98,13 @@ impl Weights {
     /// Those of a group of [`Identifier::weights`].
     fn group(&mut self, name: &str) -> &mut Vec<f64> {
         match name {
-            "linear" => &mut self.linear,
             "hidden" => &mut self.hidden,
             _ => &mut self.output,
         }
     }
 
-    fn of<const N: usize>(mut net: impl Identifier<N>, spread: &[f64]) -> Self {
-        let mut weights = Self { spread: spread.to_vec(), ..Self::default() };
+    fn of<const N: usize>(mut net: impl Identifier<N>) -> Self {
+        let mut weights = Self::default();
         net.weights(&mut |name, group| *weights.group(name) = group.to_vec());
         weights
     }
@@ -144,7 +141,6 @@ impl Weights {
 pub fn identifier_name(kind: IdentifierKind) -> &'static str {
     match kind {
         IdentifierKind::Contour => "contour",
-        IdentifierKind::Servo => "servo",
         IdentifierKind::Axes => "axes",
     }
 }
@@ -153,13 +149,14 @@ pub fn identifier_name(kind: IdentifierKind) -> &'static str {
 pub fn an_identifier(kind: IdentifierKind) -> &'static str {
     match kind {
         IdentifierKind::Contour => "a contour identifier",
-        IdentifierKind::Servo => "a servo identifier",
         IdentifierKind::Axes => "an axes identifier",
     }
 }
 
 /// All kinds.
-pub(crate) const KINDS: [IdentifierKind; 3] = [IdentifierKind::Contour, IdentifierKind::Servo, IdentifierKind::Axes];
+pub(crate) const KINDS: [IdentifierKind; 2] = [IdentifierKind::Contour, IdentifierKind::Axes];
+/// Kind of the servo identifier, which earlier versions wrote.
+pub(crate) const SERVO: &str = "servo";
 
 /// The kind of a name.
 pub(crate) fn kind_named(name_of_kind: &str) -> Option<IdentifierKind> {
@@ -176,17 +173,6 @@ pub struct Origin {
 }
 
 impl Model {
-    /// Of a servo identifier that was trained on a recording.
-    pub fn of_servo<const N: usize>(
-        recording: &Recording<N>,
-        trained: &servo::TrainedServo<N>,
-        origin: Origin,
-    ) -> Self {
-        let fit = Fit { fit_um: trained.fit_um, samples: trained.samples as u64 };
-        let spread = trained.spread.as_flattened().as_flattened();
-        Self::sealed(IdentifierKind::Servo, recording, fit, Weights::of(trained.net.clone(), spread), origin)
-    }
-
     /// Of an identifier of the contour error that was trained on a recording.
     pub fn of_contour<const N: usize>(
         recording: &Recording<N>,
@@ -194,7 +180,7 @@ impl Model {
         origin: Origin,
     ) -> Self {
         let fit = Fit { fit_um: trained.fit_um, samples: trained.samples as u64 };
-        Self::sealed(IdentifierKind::Contour, recording, fit, Weights::of(trained.net.clone(), &[]), origin)
+        Self::sealed(IdentifierKind::Contour, recording, fit, Weights::of(trained.net.clone()), origin)
     }
 
     /// Of axes that were identified from a recording.
@@ -298,15 +284,6 @@ impl Model {
         self.fit
     }
 
-    /// The servo identifier that it holds, and how others of its kind differ; none where it holds another, or for another number
-    /// of axes.
-    pub fn servo<const N: usize>(&self) -> Option<(ServoIdentifier<N>, Spread<N>)> {
-        let (rows, []) = self.weights.spread.as_chunks::<UNKNOWNS>() else { return None };
-        let (axes, []) = rows.as_chunks::<UNKNOWNS>() else { return None };
-        let spread = Spread::<N>::try_from(axes).ok()?;
-        Some((self.weights.fill().filter(|_| self.is(IdentifierKind::Servo, N))?, spread))
-    }
-
     /// The identifier of the contour error that it holds; none where it holds another, or for another number of axes.
     pub fn contour<const N: usize>(&self) -> Option<ContourIdentifier<N>> {
         self.weights.fill().filter(|_| self.is(IdentifierKind::Contour, N))
@@ -332,7 +309,6 @@ impl Model {
     pub fn control<const N: usize>(&self) -> Option<ModelBlock<N>> {
         let trained = match self.kind() {
             IdentifierKind::Contour => Trained::Contour(self.contour()?),
-            IdentifierKind::Servo => self.servo().map(|(net, spread)| Trained::Servo(net, spread))?,
             IdentifierKind::Axes => Trained::Axes(self.identified_axes()?),
         };
         let ModelPeriods { servo_s, feed_period_s } = self.period;

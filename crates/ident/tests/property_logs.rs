@@ -22,9 +22,13 @@ fn check(log: &Log) {
 
 /// Lines as logs have them, and as they should not have them.
 fn line() -> impl Strategy<Value = String> {
+    let number = (-9999..10_000_i32, 0..=6_usize, any::<u32>());
+    let letters = prop::collection::vec(prop::sample::select(&b"abcdefghijklmnopqrstuvwxyz."[..]), 0..6);
     let field = prop_oneof![
-        4 => "-?[0-9]{1,4}(\\.[0-9]{1,6})?",
-        1 => "[a-z.]{0,5}",
+        4 => number.prop_map(|(whole, digits, part)| {
+            if digits == 0 { whole.to_string() } else { format!("{whole}.{:0digits$}", part % 10_u32.pow(digits as u32)) }
+        }),
+        1 => letters.prop_map(|letters| letters.into_iter().map(char::from).collect()),
         1 => Just("nan".to_owned()),
         1 => Just("1e400".to_owned()),
     ];

@@ -50,6 +50,7 @@ use feedwright_control::{
     DriveParameters, FrictionParameters, LoopDelays, Parameters, Periods, TransmissionParameters,
 };
 use feedwright_sim::{KnownAxis, Period};
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::recording::Recording;
@@ -105,7 +106,8 @@ impl DriveSettings {
 }
 
 /// What an axis is, at the motor shaft.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(into = "[f64; PARAMETERS]", from = "[f64; PARAMETERS]")]
 pub struct AxisParameters {
     /// Inertia, kg m2.
     pub inertia_kg_m2: f64,
@@ -130,16 +132,16 @@ const PARAMETERS: usize = 9;
 /// Those of an axis with a rigid screw.
 const RIGID_PARAMETERS: usize = 5;
 
-impl AxisParameters {
-    fn array(self) -> [f64; PARAMETERS] {
-        let Self {
+impl From<AxisParameters> for [f64; PARAMETERS] {
+    fn from(parameters: AxisParameters) -> Self {
+        let AxisParameters {
             inertia_kg_m2,
             viscous_friction_nm_s,
             coulomb_friction_nm,
             coulomb_asymmetry_nm,
             presliding_rad,
             transmission: TransmissionParameters { table_share, resonance_rad_s, damping_ratio, backlash_rad },
-        } = self;
+        } = parameters;
         [
             inertia_kg_m2,
             viscous_friction_nm_s,
@@ -152,8 +154,10 @@ impl AxisParameters {
             backlash_rad,
         ]
     }
+}
 
-    fn of(values: [f64; PARAMETERS]) -> Self {
+impl From<[f64; PARAMETERS]> for AxisParameters {
+    fn from(values: [f64; PARAMETERS]) -> Self {
         let [
             inertia_kg_m2,
             viscous_friction_nm_s,
@@ -174,7 +178,9 @@ impl AxisParameters {
             transmission: TransmissionParameters { table_share, resonance_rad_s, damping_ratio, backlash_rad },
         }
     }
+}
 
+impl AxisParameters {
     /// Whether anything shows of a ball screw that gives.
     pub fn has_screw(&self) -> bool {
         self.transmission != TransmissionParameters::RIGID
@@ -222,7 +228,7 @@ impl AxisParameters {
 }
 
 /// What was found of an axis.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AxisEstimate {
     /// The parameters.
     pub parameters: AxisParameters,

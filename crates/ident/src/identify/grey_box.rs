@@ -20,6 +20,7 @@
 //! | `grey_box/linear_arx.rs`, `grey_box/start_filter.rs`, `grey_box/free_run_scores.rs` | how far predictions miss |
 //! | `grey_box/residual_noise.rs` | what free runs leave, as a load |
 //! | `grey_box/gain_changes.rs` | what other gains would bring |
+//! | `grey_box/search_bound.rs` | values that end where their search ends |
 //! | `grey_box/found_axis.rs`, `grey_box/verdict.rs` | what was found, and what to say of it |
 
 pub(crate) mod axis_record;
@@ -39,6 +40,7 @@ mod start_filter;
 pub(crate) mod free_run_scores;
 pub(crate) mod residual_noise;
 pub(crate) mod gain_changes;
+pub(crate) mod search_bound;
 pub(crate) mod found_axis;
 mod command_delay;
 mod law_fit;
@@ -180,6 +182,7 @@ pub fn identify_machine(
         if left(&delayed) < left(&axes) {
             let told = axes.iter().map(|axis| axis.facts).collect::<Vec<_>>();
             axes = delayed.into_iter().zip(told).map(|(axis, facts)| FoundAxis { facts, ..axis }).collect();
+            axes.iter_mut().for_each(|axis| axis.at_bounds.extend(command_delay::at_bound(axis, first.sample_s)));
         }
     }
     let contour = ContourScores::of(records, &axes, &split.score);

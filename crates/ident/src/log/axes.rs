@@ -10,7 +10,7 @@ use super::error::{LogError, Refusal, RefusalReason};
 use super::finding::LogFinding;
 use super::roles::{AxisRoles, Roles};
 use super::table::LogTable;
-use super::units::PositionUnit;
+use super::units::{PositionUnit, is_unstated};
 use super::{Fitness, LogAxis};
 
 /// The axes of a table.
@@ -23,7 +23,7 @@ pub(super) fn of_table(
     findings: &mut Vec<LogFinding>,
 ) -> Result<Vec<LogAxis>, LogError> {
     for axis in &roles.axes {
-        let lag = axis.lag.as_ref().map(|(column, _)| ("following error", *column));
+        let lag = axis.lag.map(|column| ("following error", column));
         for (what, column) in [("command", axis.command), ("actual position", axis.actual)].into_iter().chain(lag) {
             if let Some((row, text)) = &table.columns[column].not_a_number {
                 let shown = if text.is_empty() { "nothing" } else { text };
@@ -33,8 +33,7 @@ pub(super) fn of_table(
             }
         }
     }
-    let unit = unit(path, table, roles, columns, clock, findings)?;
-    let scale = unit.in_mm();
+    let units = units(path, table, roles, columns, clock, findings)?;
     let uses = |column: usize| roles.axes.iter().flat_map(AxisRoles::columns).filter(|&used| used == column).count();
     let shared: Vec<bool> = (0..table.columns.len()).map(|column| uses(column) > 1).collect();
     let mut take = |column: usize, scale: f64| {
@@ -45,26 +44,32 @@ pub(super) fn of_table(
         }
         values
     };
-    let mut command = |axis: &AxisRoles| {
-        let mut command_mm = take(axis.command, scale);
-        if let Some((lag, unit)) = &axis.lag {
-            let scale =
-                columns.position_unit.or_else(|| PositionUnit::from_name(unit)).map_or(scale, PositionUnit::in_mm);
-            command_mm.iter_mut().zip(take(*lag, scale)).for_each(|(command, lag)| *command += lag);
+    let mut command = |(axis, units): (&AxisRoles, &AxisUnits)| {
+        let mut command_mm = take(axis.command, units.command.in_mm());
+        if let Some(lag) = axis.lag {
+            command_mm.iter_mut().zip(take(lag, units.lag.in_mm())).for_each(|(command, lag)| *command += lag);
         }
         command_mm
     };
-    let commands: Vec<Vec<f64>> = roles.axes.iter().map(&mut command).collect();
-    let axes = roles.axes.iter().zip(commands).map(|(axis, command_mm)| LogAxis {
+    let commands: Vec<Vec<f64>> = roles.axes.iter().zip(&units).map(&mut command).collect();
+    let axes = roles.axes.iter().zip(&units).zip(commands).map(|((axis, units), command_mm)| LogAxis {
         name: axis.name.clone(),
         command_mm,
-        actual_mm: take(axis.actual, scale),
-        torque: axis.torque.map(|column| take(column, 1.0)),
+        actual_mm: take(axis.actual, units.actual.in_mm()),
+        torque: axis.torque.map(|column| take(column, axis.torque_scale)),
         torque_unit: axis.torque_unit,
         step_mm: 0.0,
         verdict: Fitness::ForControl,
     });
     Ok(axes.collect())
+}
+
+/// Units of the positions of an axis.
+#[derive(Debug, Clone, Copy)]
+struct AxisUnits {
+    command: PositionUnit,
+    actual: PositionUnit,
+    lag: PositionUnit,
 }
 
 /// Range and highest speed of a command, in its unit and s.
@@ -77,37 +82,106 @@ fn way(values: &[f64], clock: &Clock) -> (f64, f64) {
     (high - low, step / clock.sample_time_s)
 }
 
-/// The unit of the positions: as said, as the file says, or by their size. Fails where two of them differ.
-fn unit(
+/// Units of the positions of each axis: as said, as the file says, or by their size. Fails where two statements differ, and where a
+/// unit is not known.
+fn units(
     path: &Path,
     table: &LogTable,
     roles: &Roles,
     columns: &Columns,
     clock: &Clock,
     findings: &mut Vec<LogFinding>,
-) -> Result<PositionUnit, LogError> {
-    let stated = table.position_unit.as_deref().and_then(PositionUnit::from_name);
-    match (columns.position_unit, stated) {
+) -> Result<Vec<AxisUnits>, LogError> {
+    let everywhere = of_file(path, table, columns)?;
+    if let Some(unit) = columns.position_unit {
+        return Ok(vec![AxisUnits { command: unit, actual: unit, lag: unit }; roles.axes.len()]);
+    }
+    let mut written = vec![];
+    for axis in &roles.axes {
+        let [command, actual] =
+            [of_column(path, table, roles, axis.command)?, of_column(path, table, roles, axis.actual)?];
+        let lag = axis.lag.map_or(Ok(None), |lag| of_column(path, table, roles, lag))?;
+        // The unit of one column of an axis is that of the other, where that has none.
+        written.push([command.or(actual), actual.or(command), lag]);
+    }
+    let positions = || written.iter().flat_map(|[command, actual, _]| [command, actual].into_iter().copied().flatten());
+    if let (Some(stated), Some(other)) = (everywhere, positions().find(|unit| Some(*unit) != everywhere)) {
+        let message =
+            format!("a line of the file says that positions are in {stated}, and a column that it is in {other}");
+        let hint = "correct one of the two, or say which is right with --columns unit=...";
+        return Err(LogError::columns(path, message, hint));
+    }
+    let mut found: Vec<PositionUnit> = vec![];
+    positions().for_each(|unit| {
+        if !found.contains(&unit) {
+            found.push(unit);
+        }
+    });
+    let mut tell = |unit: PositionUnit, because: &str| {
+        findings.push(LogFinding::PositionUnit { unit, because: because.to_owned() });
+    };
+    let otherwise = match (everywhere, &found[..]) {
+        (Some(unit), _) => {
+            tell(unit, "a line of the file says so");
+            unit
+        }
+        (None, [unit]) => {
+            tell(*unit, "the column says so");
+            *unit
+        }
+        (None, [first, ..]) => {
+            found.iter().for_each(|unit| tell(*unit, "some columns say so"));
+            *first
+        }
+        (None, []) => by_size(table, roles, clock, findings),
+    };
+    let of_axis = |[command, actual, lag]: [Option<PositionUnit>; 3]| {
+        let [command, actual] = [command, actual].map(|unit| unit.unwrap_or(otherwise));
+        AxisUnits { command, actual, lag: lag.unwrap_or(actual) }
+    };
+    Ok(written.into_iter().map(of_axis).collect())
+}
+
+/// The unit that a line of the file states for all positions.
+fn of_file(path: &Path, table: &LogTable, columns: &Columns) -> Result<Option<PositionUnit>, LogError> {
+    let Some((line, text)) = &table.position_unit else { return Ok(None) };
+    match (columns.position_unit, PositionUnit::from_name(text)) {
         (Some(said), Some(stated)) if said != stated => {
             let message =
                 format!("--columns says that positions are in {said}, and the file that they are in {stated}");
-            return Err(LogError::columns(
-                path,
-                message,
-                "leave unit= out, or correct the line '# unit = ...' of the file",
-            ));
+            let hint = "leave unit= out, or correct the line '# unit = ...' of the file";
+            Err(LogError::columns(path, message, hint))
         }
-        (Some(said), _) => return Ok(said),
-        (None, Some(unit)) => {
-            findings.push(LogFinding::PositionUnit { unit, because: "a line of the file says so".to_owned() });
-            return Ok(unit);
+        (None, None) => {
+            let message =
+                format!("positions are in '{text}', a unit of length that is not known: {}", PositionUnit::KNOWN);
+            Err(LogError::format(path, Some(*line), message, UNKNOWN_UNIT))
         }
-        (None, None) => {}
+        (_, stated) => Ok(stated),
     }
-    if let Some(unit) = roles.axes.iter().find_map(|axis| PositionUnit::from_name(&axis.unit)) {
-        findings.push(LogFinding::PositionUnit { unit, because: "the column says so".to_owned() });
-        return Ok(unit);
+}
+
+/// What to do about a unit of length that is not known.
+const UNKNOWN_UNIT: &str =
+    "convert the positions to one of these; or, if they are in one of them, say which: --columns unit=mm";
+
+/// The unit that is written above a column; none where nothing is.
+fn of_column(path: &Path, table: &LogTable, roles: &Roles, column: usize) -> Result<Option<PositionUnit>, LogError> {
+    let text = roles.units.get(column).map_or("", String::as_str);
+    let unit = PositionUnit::from_name(text);
+    if unit.is_none() && !is_unstated(text) {
+        let message = format!(
+            "the positions in column {} are in '{text}', a unit of length that is not known: {}",
+            table.label(column),
+            PositionUnit::KNOWN
+        );
+        return Err(LogError::columns(path, message, UNKNOWN_UNIT));
     }
+    Ok(unit)
+}
+
+/// The unit of positions by their size.
+fn by_size(table: &LogTable, roles: &Roles, clock: &Clock, findings: &mut Vec<LogFinding>) -> PositionUnit {
     // Range and highest speed of each command; the axis in the middle counts, as one may be a spindle that turns and turns.
     let mut ways: Vec<(f64, f64)> = roles
         .axes
@@ -128,5 +202,5 @@ fn unit(
         "guessed, as the command goes over {range} at up to {speed} a second; hint: --columns unit=mm or m, um, inch says it"
     );
     findings.push(LogFinding::PositionUnit { unit, because });
-    Ok(unit)
+    unit
 }

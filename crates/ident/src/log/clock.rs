@@ -10,7 +10,7 @@ use super::error::{LogError, Refusal, RefusalReason};
 use super::finding::LogFinding;
 use super::roles::{AxisRoles, Roles, TimeColumn};
 use super::table::LogTable;
-use super::units::TimeUnit;
+use super::units::{PositionUnit, TimeUnit, is_unstated, speed_unit};
 use crate::average::middle_of;
 
 /// When the samples were taken.
@@ -62,7 +62,7 @@ pub(super) fn of_table(
         return Err(no_number(path, format!("the time is beyond every clock at {place}: {:e}", values[row])));
     }
     let step = median_step(&values);
-    let unit = unit(time, columns, table, step, findings);
+    let unit = unit(path, time, columns, table, step, findings)?;
     let sample_s = match unit {
         TimeUnit::Sample => counted(table, roles, columns, step, findings),
         _ => 1.0,
@@ -99,20 +99,35 @@ fn median_step(values: &[f64]) -> f64 {
     middle_of(&mut steps)
 }
 
-/// The unit of the time column.
-fn unit(time: &TimeColumn, columns: &Columns, table: &LogTable, step: f64, findings: &mut Vec<LogFinding>) -> TimeUnit {
+/// The unit of the time column. Fails where the file has one that is not known.
+fn unit(
+    path: &Path,
+    time: &TimeColumn,
+    columns: &Columns,
+    table: &LogTable,
+    step: f64,
+    findings: &mut Vec<LogFinding>,
+) -> Result<TimeUnit, LogError> {
     let mut tell = |unit: TimeUnit, because: String| {
         findings.push(LogFinding::TimeUnit { unit, because });
-        unit
+        Ok(unit)
     };
     if let Some(unit) = columns.time_unit {
-        return unit;
+        return Ok(unit);
     }
-    if time.counts || columns.sample_time_s.is_some() {
+    let stated = TimeUnit::from_name(&time.unit).filter(|unit| !(time.counts && *unit == TimeUnit::Sample));
+    if (time.counts && stated.is_none()) || columns.sample_time_s.is_some() {
         return tell(TimeUnit::Sample, format!("column {} counts them", table.label(time.column)));
     }
-    if let Some(unit) = TimeUnit::from_name(&time.unit) {
+    if let Some(unit) = stated {
         return tell(unit, "the column says so".to_owned());
+    }
+    if !is_unstated(&time.unit) {
+        let (label, known) = (table.label(time.column), TimeUnit::KNOWN);
+        let message =
+            format!("the time in column {label} is in '{}', a unit of time that is not known: {known}", time.unit);
+        let hint = "convert the time to one of these; or, if it is in one of them, say which: --columns time=ms";
+        return Err(LogError::columns(path, message, hint));
     }
     let unit = match step {
         // 2 Hz and more, in seconds; 17 Hz and more, in the others.
@@ -130,7 +145,7 @@ fn counted(table: &LogTable, roles: &Roles, columns: &Columns, step: f64, findin
     if let Some(sample_time_s) = columns.sample_time_s.or(table.sample_time_s) {
         return sample_time_s;
     }
-    if let Some((axis, sample_s)) = roles.axes.iter().find_map(|axis| Some((axis, from_speed(table, axis)?))) {
+    if let Some((axis, sample_s)) = roles.axes.iter().find_map(|axis| Some((axis, from_speed(table, roles, axis)?))) {
         let because = format!("the speed of {} fits the change of its position so", axis.name);
         findings.push(LogFinding::SampleTime { sample_time_s: sample_s, because });
         return sample_s / step;
@@ -141,10 +156,12 @@ fn counted(table: &LogTable, roles: &Roles, columns: &Columns, step: f64, findin
 }
 
 /// The time between samples that makes a recorded speed the change of the position:
-/// `sum of dp v / sum of v^2`, v the mean speed between two samples. None where the two do not belong together.
-fn from_speed(table: &LogTable, axis: &AxisRoles) -> Option<f64> {
-    let position = &table.columns[axis.actual].values;
-    let speed = &table.columns[axis.velocity?].values;
+/// `sum of dp v / sum of v^2`, v the mean speed between two samples. None where the two do not belong together, and where the unit of
+/// the speed is not known.
+fn from_speed(table: &LogTable, roles: &Roles, axis: &AxisRoles) -> Option<f64> {
+    let velocity = axis.velocity?;
+    let [position, speed] = [axis.actual, velocity].map(|column| &table.columns[column].values);
+    let scale = speed_scale([axis.actual, velocity].map(|column| roles.units.get(column).map_or("", String::as_str)))?;
     let (mut products, mut speeds, mut changes) = (0.0, 0.0, 0.0);
     for k in 1..position.len().min(speed.len()) {
         let change = position[k] - position[k - 1];
@@ -158,7 +175,18 @@ fn from_speed(table: &LogTable, axis: &AxisRoles) -> Option<f64> {
     let correlation = products / (speeds * changes).sqrt();
     // To two digits: the positions are in steps, the speeds filtered.
     let two_digits = |value: f64| format!("{value:.1e}").parse::<f64>().ok();
-    if correlation > 0.9 { two_digits(products / speeds) } else { None }
+    if correlation > 0.9 { two_digits(products / speeds * scale) } else { None }
+}
+
+/// Time in which a number of a speed column moves the axis by a number of its position column, s, by their units. A speed without one is
+/// in positions a second.
+fn speed_scale([position, speed]: [&str; 2]) -> Option<f64> {
+    if is_unstated(speed) {
+        return Some(1.0);
+    }
+    let (length, per_s) = speed_unit(speed)?;
+    let position = PositionUnit::from_name(position).unwrap_or(length);
+    Some(position.in_mm() / (length.in_mm() * per_s))
 }
 
 /// Evenly, where there is no column of the time.
@@ -172,7 +200,7 @@ fn without_column(
     let known = columns.sample_time_s.or(table.sample_time_s);
     let from_speed = || {
         roles.axes.iter().find_map(|axis| {
-            let sample_time_s = from_speed(table, axis)?;
+            let sample_time_s = from_speed(table, roles, axis)?;
             let because = format!("the speed of {} fits the change of its position so", axis.name);
             Some(LogFinding::SampleTime { sample_time_s, because })
         })

@@ -107,14 +107,13 @@ impl Columns {
             "t" => set(&mut self.time, column()).ok_or_else(twice),
             "unit" => {
                 let unit = PositionUnit::from_name(value).ok_or_else(|| {
-                    fault(format!("no unit of length is called '{value}'"), "mm, um, m or inch".to_owned())
+                    fault(format!("no unit of length is called '{value}'"), PositionUnit::KNOWN.to_owned())
                 })?;
                 set(&mut self.position_unit, unit).ok_or_else(twice)
             }
             "time" => {
-                let unit = TimeUnit::from_name(value).ok_or_else(|| {
-                    fault(format!("no unit of time is called '{value}'"), "s, ms, us, ns or samples".to_owned())
-                })?;
+                let unit = TimeUnit::from_name(value)
+                    .ok_or_else(|| fault(format!("no unit of time is called '{value}'"), TimeUnit::KNOWN.to_owned()))?;
                 set(&mut self.time_unit, unit).ok_or_else(twice)
             }
             "period_s" => match value.parse::<f64>() {

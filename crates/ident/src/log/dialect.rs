@@ -1,5 +1,8 @@
 //! How a text table is written: what stands between its columns, which sign its decimal point is, what its columns are called.
 
+use std::cmp::Ordering;
+
+use super::names::{Quantity, is_known_unit, understand};
 use super::scopes::{ScopeChannel, ScopeHeader};
 use super::{LogFormat, decimal};
 
@@ -20,8 +23,8 @@ pub(super) struct TableDialect {
     pub(super) first_line: u64,
     /// Time between rows, s, where a line before them says so.
     pub(super) sample_time_s: Option<f64>,
-    /// Unit of the positions, where a line before the rows says so.
-    pub(super) position_unit: Option<String>,
+    /// Line before the rows that states the unit of the positions, from 1, and the unit.
+    pub(super) position_unit: Option<(u64, String)>,
     /// Whether the rows are names and numbers by turns, as `halscope` wrote them before LinuxCNC 2.9.
     pub(super) names_in_rows: bool,
     /// The scope that wrote the table, and what its header says of each column; none of any other table.
@@ -141,8 +144,9 @@ impl TableDialect {
             names = labels;
         }
         let sample_time_s = before.iter().find_map(|line| sample_time_s(&String::from_utf8_lossy(line)));
-        let position_unit =
-            before.iter().find_map(|line| stated(&String::from_utf8_lossy(line), &["unit", "position_unit"]));
+        let position_unit = before.iter().zip(1..).find_map(|(line, number)| {
+            Some((number, stated(&String::from_utf8_lossy(line), &["unit", "position_unit"])?))
+        });
         let first_line = first as u64 + 1;
         let dialect = Self {
             delimiter,
@@ -243,17 +247,26 @@ fn header(before: &[&[u8]], delimiter: u8, columns: usize) -> (Vec<String>, Vec<
         is_header.then_some(words)
     });
     let (last, above) = (found.next().unwrap_or_default(), found.next());
-    // Units stand below names, and are short.
     match above {
-        Some(names) if last.iter().all(|word| is_unit(word)) => (names, last),
+        Some(names) if are_units(&last, &names) => (names, last),
         _ => (last, Vec::new()),
     }
 }
 
-/// Whether a word can be a unit: short, or in brackets.
-fn is_unit(word: &str) -> bool {
-    let bare = word.trim_matches(['[', ']', '(', ')', ' ']);
-    bare.is_empty() || bare.chars().count() <= 4 || bare.len() < word.len()
+/// Whether words below others are their units: they say less of what the columns are, and are short, in brackets, or known.
+fn are_units(words: &[String], above: &[String]) -> bool {
+    let bare = |word: &str| word.trim_matches(['[', ']', '(', ')', ' ']).to_owned();
+    let is_short = |word: &String| bare(word).chars().count() <= 4 || bare(word).len() < word.len();
+    let (is_known, are_short) = (words.iter().any(|word| is_known_unit(&bare(word))), words.iter().all(is_short));
+    let says = |words: &[String]| {
+        let is_role = |word: &&String| !matches!(understand(word).quantity, Quantity::Other | Quantity::Velocity);
+        words.iter().filter(is_role).count()
+    };
+    match says(words).cmp(&says(above)) {
+        Ordering::Less => is_known || are_short,
+        Ordering::Equal => is_known && are_short,
+        Ordering::Greater => false,
+    }
 }
 
 #[cfg(test)]
@@ -296,7 +309,7 @@ mod tests {
         assert_eq!(with_units.units, ["[s]", "[mm]", "[mm]"]);
         let pins = dialect("# unit = inch\n# joint.0.motor-pos-cmd joint.0.motor-pos-fb\n7 1 2\n8 2 3\n");
         assert_eq!(pins.names, ["n", "joint.0.motor-pos-cmd", "joint.0.motor-pos-fb"]);
-        assert_eq!(pins.position_unit.as_deref(), Some("inch"));
+        assert_eq!(pins.position_unit, Some((1, "inch".to_owned())));
         let commented = dialect("# sample_time_s = 0.001\n# n x.cmd x.act\n0 1 2\n1 2 3\n");
         assert_eq!(commented.names, ["n", "x.cmd", "x.act"]);
         assert_eq!(commented.sample_time_s, Some(0.001));

@@ -1,5 +1,8 @@
 //! What the name of a column says: which quantity of which axis, in which unit.
 
+use super::TorqueUnit;
+use super::units::{PositionUnit, TimeUnit};
+
 /// What a column holds, by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
@@ -113,6 +116,8 @@ pub(super) const SERVO_GUIDE_SIGNALS: [(&str, Quantity); 6] = [
 ];
 /// Letters of axes.
 const LETTERS: &str = "xyzabcuvw";
+/// Words before the letter or the number of an axis.
+const AXIS_WORDS: [&str; 6] = ["joint", "axis", "motor", "drive", "pid", "ax"];
 
 /// What a name says.
 pub(super) fn understand(name: &str) -> Meaning {
@@ -120,8 +125,23 @@ pub(super) fn understand(name: &str) -> Meaning {
         return meaning;
     }
     let (bare, unit) = split_unit(name);
-    let words = words(bare);
-    let axis = Some(axis(&words)).filter(|axis| !axis.is_empty()).unwrap_or_else(|| remainder(&words));
+    let words = words(&bare);
+    let meaning = of_words(&words, &unit);
+    let is_unit = |word: &String| UNIT_WORDS.split(' ').any(|unit| unit == word);
+    match words.split_last() {
+        // A word that makes the quantity, as in `index_count`, is no unit; and a counter, as `sample_count`, has none.
+        Some((last, rest))
+            if unit.is_empty() && !rest.is_empty() && is_unit(last) && meaning.quantity != Quantity::Counter =>
+        {
+            Some(of_words(rest, last)).filter(|found| found.quantity == meaning.quantity).unwrap_or(meaning)
+        }
+        _ => meaning,
+    }
+}
+
+/// What the words of a name say.
+fn of_words(words: &[String], unit: &str) -> Meaning {
+    let axis = Some(axis(words)).filter(|axis| !axis.is_empty()).unwrap_or_else(|| remainder(words));
     let has = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()) || without_axis(word, list));
     let (quantity, fit) = if is_spindle(&axis) {
         (Quantity::Other, 0)
@@ -192,7 +212,7 @@ fn of_scope(name: &str) -> Option<Meaning> {
     };
     let axis = axis.concat().to_lowercase();
     let quantity = if is_spindle(&axis) { Quantity::Other } else { quantity };
-    Some(Meaning { quantity, axis, unit: unit.to_owned(), fit: 2 })
+    Some(Meaning { quantity, axis, unit, fit: 2 })
 }
 
 /// Whether an axis is a spindle by its name.
@@ -207,21 +227,50 @@ fn remainder(words: &[String]) -> String {
     unknown.map(String::as_str).collect::<Vec<_>>().concat()
 }
 
-/// A name without the unit in brackets behind it, and the unit; or without `_mm` and the like.
-fn split_unit(name: &str) -> (&str, &str) {
-    for (open, close) in [('[', ']'), ('(', ')')] {
-        if let Some((bare, rest)) = name.rsplit_once(open)
-            && let Some(unit) = rest.trim_end().strip_suffix(close)
-            && unit.contains(|c: char| !c.is_ascii_digit())
+/// Units that end a name, as in `x act mm`: those that are converted, and those that are refused.
+const UNIT_WORDS: &str = "mm um micron microns inch inches ms us ns nm deg degrees rad cm dm km ft feet mil mils thou furlong furlongs \
+                         cnt cnts count counts incs increments pulses steps ticks turns revs mrad urad arcmin arcsec px lsb";
+/// Units that are too short to end a name behind any other sign than `_`.
+const ENDINGS: [&str; 4] = ["m", "in", "s", "%"];
+
+/// A name without its unit, and the unit: in brackets, or behind `_`. What else stands in brackets, such as an axis or a number, belongs
+/// to the name.
+fn split_unit(name: &str) -> (String, String) {
+    let mut at = name.len();
+    while let Some(open) = name[..at].rfind(['[', '(']) {
+        let close = if name[open..].starts_with('[') { ']' } else { ')' };
+        if let Some((unit, behind)) = name[open + 1..].split_once(close)
+            && (is_known_unit(unit.trim()) || !is_part_of_name(unit))
         {
-            return (bare, unit.trim());
+            return (format!("{}{behind}", &name[..open]), unit.trim().to_owned());
         }
+        at = open;
     }
-    const ENDINGS: [&str; 10] = ["mm", "um", "m", "inch", "in", "s", "ms", "us", "ns", "nm"];
     match name.rsplit_once('_') {
-        Some((bare, unit)) if ENDINGS.contains(&unit.to_lowercase().as_str()) && !bare.is_empty() => (bare, unit),
-        _ => (name, ""),
+        Some((bare, unit)) if ENDINGS.contains(&unit.to_lowercase().as_str()) && !bare.is_empty() => {
+            (bare.to_owned(), unit.to_owned())
+        }
+        _ => (name.to_owned(), String::new()),
     }
+}
+
+/// Whether a text is a unit of length, time or torque.
+pub(super) fn is_known_unit(text: &str) -> bool {
+    PositionUnit::from_name(text).is_some()
+        || TimeUnit::from_name(text).is_some()
+        || TorqueUnit::from_name(text).is_some()
+}
+
+/// Whether a text in brackets is an axis, a number or a quantity.
+fn is_part_of_name(text: &str) -> bool {
+    let lists: [&[&str]; 7] = [&COMMANDS, &TARGETS, &ACTUALS, &TORQUES, &POSITIONS, &SPEEDS, &OTHERS];
+    let is_number = |word: &str| word.chars().all(|c| c.is_ascii_digit());
+    let is_axis =
+        |word: &str| word.len() == 1 && LETTERS.contains(word) || AXIS_WORDS.contains(&word) || is_spindle(word);
+    let words = words(text);
+    let is_part =
+        |word: &String| is_number(word) || is_axis(word) || lists.iter().any(|list| list.contains(&word.as_str()));
+    !words.is_empty() && words.iter().all(is_part)
 }
 
 /// The words of a name: separated by signs, by changes from letters to digits, and by capitals.
@@ -259,9 +308,7 @@ fn without_axis(word: &str, list: &[&str]) -> bool {
 /// The axis of a name: a letter, a joint's number, or a letter joined to a word that is known.
 fn axis(words: &[String]) -> String {
     let letter = |word: &str| word.len() == 1 && LETTERS.contains(word);
-    if let Some(at) =
-        words.iter().position(|word| ["joint", "axis", "motor", "drive", "pid", "ax"].contains(&word.as_str()))
-    {
+    if let Some(at) = words.iter().position(|word| AXIS_WORDS.contains(&word.as_str())) {
         match words.get(at + 1) {
             Some(name) if letter(name) => return name.clone(),
             Some(number) if number.chars().all(|c| c.is_ascii_digit()) => return format!("{}{number}", words[at]),
@@ -346,7 +393,35 @@ mod tests {
         assert_eq!(understand("Time [s]").unit, "s");
         assert_eq!(understand("time_ms").unit, "ms");
         assert_eq!(understand("torque (N m)").unit, "N m");
-        assert_eq!(understand("x(1)").unit, "");
+    }
+
+    #[test]
+    fn units_are_told_from_what_else_names_have_in_brackets_or_at_their_end() {
+        for (name, unit) in [
+            ("x(1)", ""),
+            ("Position (X)", ""),
+            ("pos[joint 1]", ""),
+            ("POSF(X)", ""),
+            ("x_act (encoder)", ""),
+            ("x.cmd [inch]", "inch"),
+            ("p1 [mm] (X)", "mm"),
+            ("p1(X) [mil]", "mil"),
+            ("x.act (cnt)", "cnt"),
+            ("x_act_mm", "mm"),
+            ("x act um", "um"),
+            ("p1_counts", "counts"),
+            ("encoder.0.count", "count"),
+            ("ActPosCnt", "cnt"),
+            ("sample_count", ""),
+            ("x_in", "in"),
+            ("x_torque [N m]", "N m"),
+            ("x_act [\u{b5}m]", "\u{b5}m"),
+        ] {
+            assert_eq!(understand(name).unit, unit, "{name}");
+        }
+        let count = understand("sample_count");
+        assert_eq!(count.quantity, Quantity::Counter);
+        assert_eq!((understand("Position (X)").axis.as_str(), understand("p1 [mm] (X)").axis.as_str()), ("x", "x"));
     }
 
     #[test]

@@ -11,6 +11,7 @@ use super::finding::LogFinding;
 use super::names::{Meaning, Quantity, is_spindle, understand};
 use super::pairs;
 use super::table::LogTable;
+use super::units::is_unstated;
 use super::{LogFormat, MAX_AXES, TorqueUnit};
 
 /// Which column is what.
@@ -18,6 +19,8 @@ use super::{LogFormat, MAX_AXES, TorqueUnit};
 pub(super) struct Roles {
     pub(super) time: Option<TimeColumn>,
     pub(super) axes: Vec<AxisRoles>,
+    /// Unit of each column, as the file has it.
+    pub(super) units: Vec<String>,
 }
 
 /// The column of the time.
@@ -37,33 +40,31 @@ pub(super) struct AxisRoles {
     /// The command; the actual position too, where `lag` is to be added to it.
     pub(super) command: usize,
     pub(super) actual: usize,
-    /// Command minus actual position, and its unit, where the file has no command.
-    pub(super) lag: Option<(usize, String)>,
+    /// Command minus actual position, where the file has no command.
+    pub(super) lag: Option<usize>,
     pub(super) torque: Option<usize>,
     pub(super) torque_unit: TorqueUnit,
+    /// Torque for a number of its column, in that unit.
+    pub(super) torque_scale: f64,
     /// Measured speed, from which the time between samples can be told.
     pub(super) velocity: Option<usize>,
-    /// Unit of the positions, as the file has it.
-    pub(super) unit: String,
 }
 
 impl AxisRoles {
     /// What the axis takes from a column, if it takes anything.
     fn role_of(&self, column: usize) -> Option<&'static str> {
-        let lag = self.lag.as_ref().map(|(column, _)| *column);
-        let command = Some(self.command).filter(|_| lag.is_none());
+        let command = Some(self.command).filter(|_| self.lag.is_none());
         let roles = [
             ("command", command),
             ("actual position", Some(self.actual)),
-            ("following error", lag),
+            ("following error", self.lag),
             ("torque", self.torque),
         ];
         roles.into_iter().find_map(|(role, of)| (of == Some(column)).then_some(role))
     }
 
     pub(super) fn columns(&self) -> impl Iterator<Item = usize> {
-        let lag = self.lag.as_ref().map(|(column, _)| *column);
-        [Some(self.command), Some(self.actual), lag, self.torque, self.velocity].into_iter().flatten()
+        [Some(self.command), Some(self.actual), self.lag, self.torque, self.velocity].into_iter().flatten()
     }
 }
 
@@ -110,14 +111,15 @@ pub(super) fn find(
     }
     if axes.is_empty() {
         by_data = true;
-        time = time.or_else(|| clock_like(table));
+        time = time.or_else(|| clock_like(table, &meanings));
         axes = by_likeness(table, time.as_ref());
     }
     if axes.is_empty() {
         return Err(fault("no two columns are the command and the actual position of an axis".to_owned()));
     }
     axes.retain(|axis| {
-        let is_rotary = !by_data && columns.axes.is_empty() && is_rotary(axis);
+        let by_name = !by_data && is_rotary_name(&axis.name);
+        let is_rotary = columns.axes.is_empty() && (by_name || is_angle(&meanings, axis));
         if is_rotary {
             incomplete.push(LogFinding::Rotary { axis: axis.name.clone() });
         }
@@ -128,6 +130,7 @@ pub(super) fn find(
     }
     axes.truncate(MAX_AXES);
     at_one_rate(path, table, &axes)?;
+    torques_are_known(path, table, &meanings, &axes)?;
     findings.extend(axes.iter().map(|axis| columns_of(table, axis, by_data)));
     findings.append(&mut incomplete);
     if by_data {
@@ -139,7 +142,24 @@ pub(super) fn find(
             findings.push(LogFinding::Unused { columns: unused });
         }
     }
-    Ok(Roles { time, axes })
+    let units = meanings.into_iter().map(|meaning| meaning.unit).collect();
+    Ok(Roles { time, axes, units })
+}
+
+/// Refuses a torque in a unit that is not known.
+fn torques_are_known(path: &Path, table: &LogTable, meanings: &[Meaning], axes: &[AxisRoles]) -> Result<(), LogError> {
+    let mut torques = axes.iter().filter_map(|axis| axis.torque);
+    let unknown =
+        torques.find(|&at| !is_unstated(&meanings[at].unit) && TorqueUnit::from_name(&meanings[at].unit).is_none());
+    let Some(at) = unknown else { return Ok(()) };
+    let message = format!(
+        "the torque in column {} is in '{}', a unit that is not known: {}",
+        table.label(at),
+        meanings[at].unit,
+        TorqueUnit::KNOWN
+    );
+    let hint = "write one of these units above the column, or none and give --torque-gain; or leave the torque out with --columns x.cmd=COLUMN,x.act=COLUMN";
+    Err(LogError::columns(path, message, hint))
 }
 
 /// Which columns an axis is.
@@ -147,8 +167,8 @@ fn columns_of(table: &LogTable, axis: &AxisRoles, by_data: bool) -> LogFinding {
     let command = table.label(axis.command);
     LogFinding::AxisColumns {
         axis: axis.name.clone(),
-        command: match &axis.lag {
-            Some((lag, _)) => format!("{command} + {}", table.label(*lag)),
+        command: match axis.lag {
+            Some(lag) => format!("{command} + {}", table.label(lag)),
             None => command,
         },
         actual: table.label(axis.actual),
@@ -168,8 +188,7 @@ fn lacking(path: &Path, table: &LogTable, incomplete: &[LogFinding], hint: &str)
 
 /// Refuses positions that are sampled at different rates.
 fn at_one_rate(path: &Path, table: &LogTable, axes: &[AxisRoles]) -> Result<(), LogError> {
-    let positions =
-        axes.iter().flat_map(|axis| [axis.command, axis.actual].into_iter().chain(axis.lag.as_ref().map(|lag| lag.0)));
+    let positions = axes.iter().flat_map(|axis| [axis.command, axis.actual].into_iter().chain(axis.lag));
     let mut rates = positions.filter_map(|at| Some((at, table.columns.get(at)?.sample_time_s?)));
     let Some((first, first_s)) = rates.next() else { return Ok(()) };
     match rates.find(|(_, sample_s)| (sample_s / first_s - 1.0).abs() > SAME_RATE) {
@@ -198,11 +217,18 @@ fn not_the_time(path: &Path, table: &LogTable, time: Option<&TimeColumn>, axes: 
     Err(LogError::columns(path, message, hint))
 }
 
-/// Whether the name of an axis, or its unit, says that it turns.
-fn is_rotary(axis: &AxisRoles) -> bool {
-    let letter = axis.name.trim_end_matches(|c: char| c.is_ascii_digit());
-    ["a", "b", "c"].contains(&letter)
-        || ["deg", "degree", "degrees", "\u{b0}", "rad"].contains(&axis.unit.to_lowercase().as_str())
+/// Whether the name of an axis says that it turns.
+fn is_rotary_name(name: &str) -> bool {
+    ["a", "b", "c"].contains(&name.trim_end_matches(|c: char| c.is_ascii_digit()))
+}
+
+/// Whether the positions of an axis are angles by their unit.
+fn is_angle(meanings: &[Meaning], axis: &AxisRoles) -> bool {
+    let is_angle = |at: usize| {
+        let unit = meanings[at].unit.to_lowercase();
+        ["deg", "degree", "degrees", "\u{b0}", "rad"].contains(&unit.as_str())
+    };
+    is_angle(axis.command) || is_angle(axis.actual)
 }
 
 /// What columns there are, and how to say which is which.
@@ -262,27 +288,20 @@ fn chosen(table: &LogTable, columns: &Columns) -> Result<Vec<AxisRoles>, String>
             return Err(format!("axis {} needs act, and cmd or err", choice.name));
         };
         let torque = column(&choice.torque)?;
-        let torque_unit = torque.map_or(TorqueUnit::Unknown, |at| torque_unit(table, &meanings, at));
-        let unit = unit_of(&meanings, command, actual);
-        let lag = lag.map(|at| (at, meanings[at].unit.clone()));
-        Ok(AxisRoles { name: choice.name.clone(), command, actual, lag, torque, torque_unit, velocity: None, unit })
+        let (torque_unit, torque_scale) = torque_unit(table, &meanings, torque);
+        let name = choice.name.clone();
+        Ok(AxisRoles { name, command, actual, lag, torque, torque_unit, torque_scale, velocity: None })
     };
     columns.axes.iter().map(axis).collect()
 }
 
-fn unit_of(meanings: &[Meaning], command: usize, actual: usize) -> String {
-    let units = [command, actual].map(|at| meanings.get(at).map_or("", |meaning| meaning.unit.as_str()));
-    units.into_iter().find(|unit| !unit.is_empty()).unwrap_or("").to_owned()
-}
-
-fn torque_unit(table: &LogTable, meanings: &[Meaning], at: usize) -> TorqueUnit {
-    let unit = TorqueUnit::from_name(meanings.get(at).map_or("", |meaning| meaning.unit.as_str()));
+/// Unit of a torque column, and the torque for a number of it.
+fn torque_unit(table: &LogTable, meanings: &[Meaning], column: Option<usize>) -> (TorqueUnit, f64) {
+    let Some(at) = column else { return (TorqueUnit::Unknown, 1.0) };
     let name = table.columns.get(at).map_or("", |column| column.name.as_str()).to_lowercase();
-    match unit {
-        // The signal of a drive amplifier is a voltage.
-        TorqueUnit::Unknown if name == "vir" => TorqueUnit::Volt,
-        unit => unit,
-    }
+    // The signal of a drive amplifier is a voltage.
+    let otherwise = if name == "vir" { TorqueUnit::Volt } else { TorqueUnit::Unknown };
+    TorqueUnit::from_name(meanings.get(at).map_or("", |meaning| meaning.unit.as_str())).unwrap_or((otherwise, 1.0))
 }
 
 /// The column of the time: as said, or by its name.
@@ -338,22 +357,23 @@ fn named(table: &LogTable, meanings: &[Meaning], findings: &mut Vec<LogFinding>)
         };
         let Some((command, actual)) = both else { continue };
         let torque = best(Quantity::Torque);
+        let (torque_unit, torque_scale) = torque_unit(table, meanings, torque);
         axes.push(AxisRoles {
             name: shown.to_owned(),
             command,
             actual,
-            lag: lag.map(|at| (at, meanings[at].unit.clone())),
+            lag,
             torque,
-            torque_unit: torque.map_or(TorqueUnit::Unknown, |at| torque_unit(table, meanings, at)),
+            torque_unit,
+            torque_scale,
             velocity: best(Quantity::Velocity),
-            unit: unit_of(meanings, command, actual),
         });
     }
     axes
 }
 
 /// The first column that grows evenly.
-fn clock_like(table: &LogTable) -> Option<TimeColumn> {
+fn clock_like(table: &LogTable, meanings: &[Meaning]) -> Option<TimeColumn> {
     let column = table.columns.iter().position(|column| {
         let rises = column.values.windows(2).filter(|pair| pair[1] > pair[0]).count();
         let steps = column.values.len().saturating_sub(1);
@@ -364,7 +384,7 @@ fn clock_like(table: &LogTable) -> Option<TimeColumn> {
     let values = &table.columns[column].values;
     let counts = table.format == LogFormat::Halsampler
         && values.windows(2).take(1000).all(|pair| (pair[1] - pair[0]).fract() == 0.0);
-    Some(TimeColumn { column, counts, unit: String::new() })
+    Some(TimeColumn { column, counts, unit: meanings[column].unit.clone() })
 }
 
 /// Whether most steps of a column are alike: within a half of the median.
@@ -399,8 +419,8 @@ fn by_likeness(table: &LogTable, time: Option<&TimeColumn>) -> Vec<AxisRoles> {
             lag: None,
             torque: None,
             torque_unit: TorqueUnit::Unknown,
+            torque_scale: 1.0,
             velocity: None,
-            unit: String::new(),
         })
         .collect()
 }

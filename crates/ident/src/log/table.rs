@@ -17,8 +17,8 @@ pub(crate) struct LogTable {
     pub lines: LineNumbers,
     /// Time between rows, s, where the file says so.
     pub sample_time_s: Option<f64>,
-    /// Unit of the positions, where the file says so.
-    pub position_unit: Option<String>,
+    /// Line that states the unit of the positions, from 1, and the unit.
+    pub position_unit: Option<(u64, String)>,
     /// A last line that is cut off.
     pub cut_off_line: Option<u64>,
     /// Rows that the header of the file announces.
@@ -49,7 +49,9 @@ impl LogTable {
             .columns
             .iter_mut()
             .flat_map(|column| [&mut column.name, &mut column.unit].into_iter().chain(&mut column.axis));
-        of_columns.chain(&mut self.position_unit).for_each(|text| *text = visible(text).into_owned());
+        of_columns
+            .chain(self.position_unit.as_mut().map(|stated| &mut stated.1))
+            .for_each(|text| *text = visible(text).into_owned());
     }
 
     /// What a column is called in messages: its name, or its number from 0.

@@ -1,7 +1,7 @@
 //! The keys of a model file: name, unit, range, and the field that each fills; see [`feedwright_sim::toml_file::key`].
 
 use feedwright_control::{
-    AxisKnowledge, FEED_PERIODS_S, IdentifierKind, MAX_SPREAD, MAX_WEIGHT, MECHANICS_PERIODS_S, SERVO_PERIODS_S,
+    AxisKnowledge, FEED_PERIODS_S, IdentifierKind, MAX_WEIGHT, MECHANICS_PERIODS_S, SERVO_PERIODS_S,
 };
 use feedwright_sim::toml_file::Key;
 use feedwright_sim::toml_file::key::{Value, key};
@@ -38,20 +38,12 @@ pub(crate) const FIT: &[Key<Fit>] = &[key!(fit_um, "um", 0.0, MAX_FIT_UM), key!(
 pub(crate) const fn weights(kind: IdentifierKind) -> &'static [Key<Weights>] {
     match kind {
         IdentifierKind::Contour => CONTOUR,
-        IdentifierKind::Servo => SERVO,
         IdentifierKind::Axes => AXES,
     }
 }
 
 const CONTOUR: &[Key<Weights>] =
     &[key!(numbers hidden, "", -MAX_WEIGHT, MAX_WEIGHT), key!(numbers output, "", -MAX_WEIGHT, MAX_WEIGHT)];
-
-const SERVO: &[Key<Weights>] = &[
-    key!(numbers linear, "", -MAX_WEIGHT, MAX_WEIGHT),
-    key!(numbers hidden, "", -MAX_WEIGHT, MAX_WEIGHT),
-    key!(numbers output, "", -MAX_WEIGHT, MAX_WEIGHT),
-    key!(numbers spread, "", -MAX_SPREAD, MAX_SPREAD),
-];
 
 /// The mechanics period, then one key for each parameter of an axis. Each of these keys holds one
 /// value per axis.

@@ -1,18 +1,20 @@
 //! The layout of a model file: its tables, and what holds between their values.
 
 use feedwright_control::{
-    AxisKnowledge, HIDDEN, INPUTS, IdentifierKind, MAX_MECHANICS_PER_SERVO, ModelBlock, UNKNOWNS,
+    AxisKnowledge, HIDDEN, INPUTS, IdentifierKind, MAX_MECHANICS_PER_SERVO, ModelBlock, position_gains_1_s,
 };
 use feedwright_gcode::suggestion::nearest;
+use feedwright_sim::to_four_digits;
 use feedwright_sim::toml_file::key::{read, read_all};
 use feedwright_sim::toml_file::{Document, Fault, Table};
 
-use super::{About, FORMAT, KINDS, Model, Weights, an_identifier, identifier_name, keys, kind_named, version};
+use super::{About, FORMAT, KINDS, Model, SERVO, Weights, an_identifier, identifier_name, keys, kind_named, version};
 
 /// The model that a file holds, or every fault in it.
 pub(super) fn model(document: &Document<'_>) -> Result<Model, Vec<Fault>> {
     let mut faults = Vec::new();
     of_this_format(document).map_err(|fault| vec![fault])?;
+    of_a_kind_in_use(document).map_err(|fault| vec![fault])?;
     let mut root = Table::root(document, None);
     let about: About = read(keys::ABOUT, &mut root, &mut faults);
     let kind = kind(&about, &root, &mut faults);
@@ -82,6 +84,21 @@ fn of_this_format(document: &Document<'_>) -> Result<(), Fault> {
     })
 }
 
+/// A servo identifier has keys of its own: nothing but its kind is reported.
+fn of_a_kind_in_use(document: &Document<'_>) -> Result<(), Fault> {
+    match document.get_ref().get("kind") {
+        Some(kind) if kind.get_ref().as_str() == Some(SERVO) => Err(Fault {
+            at: kind.span(),
+            label: "no longer used",
+            message: "the model is a servo identifier, a kind that no controller uses any more".to_owned(),
+            hint: Some(
+                "identify the machine again: 'feedwright identify' writes a model for lqg-identified".to_owned(),
+            ),
+        }),
+        _ => Ok(()),
+    }
+}
+
 fn kind(about: &About, root: &Table<'_, '_>, faults: &mut Vec<Fault>) -> Option<IdentifierKind> {
     let found = kind_named(&about.kind);
     if found.is_none() && !about.kind.is_empty() {
@@ -104,14 +121,9 @@ fn weights(kind: IdentifierKind, axes: u64, table: &mut Table<'_, '_>, faults: &
         return weights;
     }
     let n = axes as usize;
-    let of = |kinds: &[IdentifierKind], number: usize| if kinds.contains(&kind) { number } else { 0 };
-    let (servo, nets) = ([IdentifierKind::Servo], [IdentifierKind::Servo, IdentifierKind::Contour]);
-    let expected = [
-        ("linear", &weights.linear, of(&servo, n * n * INPUTS)),
-        ("hidden", &weights.hidden, of(&nets, n * INPUTS * HIDDEN)),
-        ("output", &weights.output, of(&nets, n * HIDDEN)),
-        ("spread", &weights.spread, of(&servo, n * UNKNOWNS * UNKNOWNS)),
-    ];
+    let of_a_net = |number: usize| if kind == IdentifierKind::Contour { number } else { 0 };
+    let expected =
+        [("hidden", &weights.hidden, of_a_net(n * INPUTS * HIDDEN)), ("output", &weights.output, of_a_net(n * HIDDEN))];
     // A number for each axis.
     let of_axes = keys::weights(IdentifierKind::Axes).iter().filter(|key| key.name != "mechanics_s");
     let of_axes = of_axes.zip(&weights.axes).filter(|(key, found)| !(key.optional && found.is_empty()));
@@ -151,15 +163,25 @@ fn refused_axes(model: &Model) -> Option<String> {
     if model.block(None).is_empty() {
         return Some(format!("servo_s is no whole multiple of mechanics_s, 1 to {MAX_MECHANICS_PER_SERVO} times"));
     }
+    let servo_s = model.period.servo_s;
     AxisKnowledge::NUMBERS.iter().zip(&model.weights.axes).find_map(|(number, values)| {
+        let (name, unit) = (number.name, number.unit);
+        if name == "kp_1_s" {
+            let [least, most] = position_gains_1_s(servo_s);
+            let at = values.iter().position(|value| !(least..=most).contains(value))?;
+            let value = values[at];
+            return Some(format!(
+                "{name}, number {} is {value} {unit}; with servo_s of {servo_s} s a position loop has {least} to {} {unit}",
+                at + 1,
+                to_four_digits(most)
+            ));
+        }
         let at = values.iter().position(|value| !number.holds(*value))?;
         let [least, most] = number.range;
         Some(format!(
-            "{}, number {} is {:e} {unit}; it must be 0 or lie between {least:e} and {most:e} {unit}",
-            number.name,
+            "{name}, number {} is {:e} {unit}; it must be 0 or lie between {least:e} and {most:e} {unit}",
             at + 1,
-            values[at],
-            unit = number.unit
+            values[at]
         ))
     })
 }

@@ -28,14 +28,8 @@ fn origin() -> Origin {
     Origin { source: "a \"bench\", seed 1".to_owned(), date: "2026-05-17".to_owned() }
 }
 
-fn servo<const N: usize>() -> Model {
-    let products = std::array::from_fn(|i| std::array::from_fn(|j| 1e-4 / 3.0 / ((1 + i) * (1 + j)) as f64));
-    let trained = servo::TrainedServo { net: filled(), fit_um: 0.1 + 0.2, samples: 12_345, spread: [products; N] };
-    Model::of_servo::<N>(&recording(), &trained, origin())
-}
-
 fn contour<const N: usize>() -> Model {
-    let trained = contour::TrainedContour { net: filled(), fit_um: 4.0, samples: 99 };
+    let trained = contour::TrainedContour { net: filled(), fit_um: 0.1 + 0.2, samples: 12_345 };
     Model::of_contour::<N>(&recording(), &trained, origin())
 }
 
@@ -49,6 +43,7 @@ fn axes<const N: usize>() -> Model {
             number = libm::sin(7.0 * number + 0.3);
             *(of.of)(axis) = least + (0.2 + 0.1 * number / 3.0) * (most.min(1.0) - least);
         }
+        axis.parameters.kp_1_s *= 100.0;
     }
     let trained = axes::TrainedAxes { axes: identified, estimates: Vec::new(), fit_um: 0.1 + 0.2, samples: 12_345 };
     let recording = Recording { feed_period_s: 0.001, ..recording() };
@@ -70,30 +65,27 @@ fn told(text: &str) -> Vec<String> {
     problems(text).iter().map(told).collect()
 }
 
-/// What is told of a servo model of two axes once `from` is replaced by `to`.
+/// What is told of a contour model of two axes once `from` is replaced by `to`.
 fn told_after(from: &str, to: &str) -> Vec<String> {
-    let text = servo::<2>().text();
+    let text = contour::<2>().text();
     assert!(text.contains(from), "the file has no '{from}'");
     told(&text.replacen(from, to, 1))
 }
 
 #[test]
 fn what_is_written_reads_back_to_the_bit() {
-    for model in [servo::<2>(), servo::<3>(), contour::<2>(), contour::<3>(), axes::<2>(), axes::<3>()] {
+    for model in [contour::<2>(), contour::<3>(), axes::<2>(), axes::<3>()] {
         let read = Model::parse("written.model.toml", &model.text()).unwrap();
         assert_eq!(read, model);
         assert_eq!(read.block(None), model.block(None));
         assert_eq!(read.text(), model.text());
     }
-    let (net, _) = Model::parse("m", &servo::<3>().text()).unwrap().servo::<3>().unwrap();
-    assert_eq!(net, filled::<3, ServoIdentifier<3>>());
-    assert_eq!(contour::<2>().contour::<2>(), Some(filled::<2, ContourIdentifier<2>>()));
+    let net = Model::parse("m", &contour::<3>().text()).unwrap().contour::<3>();
+    assert_eq!(net, Some(filled::<3, ContourIdentifier<3>>()));
 }
 
 #[test]
 fn the_block_is_what_control_takes() {
-    let taken = ModelBlock::<2>::from_bytes(&servo::<2>().block(None)).unwrap();
-    assert_eq!(Some(taken), servo::<2>().control::<2>());
     let taken = ModelBlock::<3>::from_bytes(&contour::<3>().block(None)).unwrap();
     assert_eq!(Some(taken), contour::<3>().control::<3>());
     let taken = ModelBlock::<3>::from_bytes(&axes::<3>().block(None)).unwrap();
@@ -102,32 +94,30 @@ fn the_block_is_what_control_takes() {
 
 #[test]
 fn a_model_gives_nothing_but_what_it_holds() {
-    assert!(servo::<2>().servo::<3>().is_none() && servo::<2>().contour::<2>().is_none());
-    assert!(contour::<3>().contour::<2>().is_none() && contour::<3>().servo::<3>().is_none());
+    assert!(contour::<3>().contour::<2>().is_none() && contour::<2>().contour::<3>().is_none());
     assert!(axes::<2>().identified_axes::<3>().is_none() && axes::<3>().identified_axes::<2>().is_none());
-    assert!(axes::<2>().servo::<2>().is_none() && axes::<2>().contour::<2>().is_none());
-    assert!(servo::<2>().identified_axes::<2>().is_none() && contour::<2>().identified_axes::<2>().is_none());
+    assert!(axes::<2>().contour::<2>().is_none() && contour::<2>().identified_axes::<2>().is_none());
     assert!(axes::<2>().identified_axes::<2>().is_some() && axes::<3>().identified_axes::<3>().is_some());
 }
 
 #[test]
 fn line_ends_comments_and_the_order_of_keys_change_nothing() {
-    let text = servo::<2>().text();
+    let text = contour::<2>().text();
     for other in [text.replace('\n', "\r\n"), format!("# mine\n{text}"), text.replace(",\n", ",\n\n")] {
-        assert_eq!(Model::parse("other", &other).unwrap(), servo::<2>());
+        assert_eq!(Model::parse("other", &other).unwrap(), contour::<2>());
     }
     let (about, tables) = text.split_once("\n[period]").unwrap();
     let mut lines: Vec<&str> = about.lines().collect();
     lines.reverse();
-    assert_eq!(Model::parse("other", &format!("{}\n[period]{tables}", lines.join("\n"))).unwrap(), servo::<2>());
+    assert_eq!(Model::parse("other", &format!("{}\n[period]{tables}", lines.join("\n"))).unwrap(), contour::<2>());
 }
 
 #[test]
 fn the_date_is_no_part_of_the_content_and_everything_else_is() {
-    let text = servo::<2>().text();
+    let text = contour::<2>().text();
     let dated = Model::parse("m", &text.replace("2026-05-17", "2030-01-01")).unwrap();
-    assert_eq!((dated.about.checksum, dated.weights), (servo::<2>().about.checksum, servo::<2>().weights));
-    let weight = format!("{:?}", servo::<2>().weights.hidden[7]);
+    assert_eq!((dated.about.checksum, dated.weights), (contour::<2>().about.checksum, contour::<2>().weights));
+    let weight = format!("{:?}", contour::<2>().weights.hidden[7]);
     for (from, to) in [
         ("seed 1", "seed 2"),
         ("feed_period_s = 0.003", "feed_period_s = 0.004"),
@@ -144,7 +134,7 @@ fn the_date_is_no_part_of_the_content_and_everything_else_is() {
 
 #[test]
 fn every_fault_is_told_at_its_place_with_a_remedy() {
-    let text = servo::<2>()
+    let text = contour::<2>()
         .text()
         .replace("axes = 2", "axis = 2")
         .replace("servo_s = 0.001", "servo_s = 1")
@@ -165,7 +155,7 @@ fn every_fault_is_told_at_its_place_with_a_remedy() {
 
 #[test]
 fn numbers_of_an_array_have_places_and_bounds() {
-    let weight = format!("{:?}", servo::<2>().weights.linear[1]);
+    let weight = format!("{:?}", contour::<2>().weights.hidden[1]);
     for (to, what) in [
         ("nan", "is NaN; it must lie between -1e6 and 1e6 / write a finite number"),
         ("-inf", "is -inf; it must lie between -1e6 and 1e6 / write a finite number"),
@@ -175,14 +165,17 @@ fn numbers_of_an_array_have_places_and_bounds() {
     ] {
         let told = told_after(&weight, to);
         assert_eq!(told.len(), 1, "{told:?}");
-        assert!(told[0].contains(&format!("linear, number 2 {what}")), "{told:?}");
+        assert!(told[0].contains(&format!("hidden, number 2 {what}")), "{told:?}");
         assert!(told[0].starts_with("20:"), "{told:?}");
     }
     assert_eq!(told_after(&weight, "1,5").len(), 1, "a decimal comma makes two numbers of one");
     let short = told_after(&format!(" {weight},"), "");
     assert_eq!(short.len(), 1);
-    assert!(short[0].ends_with("linear has 19 numbers; a servo identifier of 2 axes has 20 / no hint"), "{short:?}");
-    let mut wild = servo::<2>();
+    assert!(
+        short[0].ends_with("hidden has 119 numbers; a contour identifier of 2 axes has 120 / no hint"),
+        "{short:?}"
+    );
+    let mut wild = contour::<2>();
     wild.weights.hidden.fill(f64::NAN);
     let told = told(&wild.text().replace("NaN", "nan"));
     assert_eq!(told.len(), 3, "{told:?}");
@@ -191,16 +184,13 @@ fn numbers_of_an_array_have_places_and_bounds() {
 
 #[test]
 fn kinds_have_their_own_weights() {
-    let told = told_after("kind = \"servo\"", "kind = \"contour\"");
-    assert!(told.iter().any(|told| told.contains("unknown key 'linear' in [weights]")), "{told:?}");
-    let told = told_after("kind = \"servo\"", "kind = \"servos\"");
-    assert_eq!(
-        told,
-        ["3:8: no identifier is of kind 'servos'; there are contour, servo, axes / did you mean 'servo'?"]
-    );
+    let told = told_after("kind = \"contour\"", "kind = \"axes\"");
+    assert!(told.iter().any(|told| told.contains("unknown key 'hidden' in [weights]")), "{told:?}");
+    let told = told_after("kind = \"contour\"", "kind = \"contours\"");
+    assert_eq!(told, ["3:8: no identifier is of kind 'contours'; there are contour, axes / did you mean 'contour'?"]);
     let told = told_after("axes = 2", "axes = 3");
     assert!(
-        told.len() == 4 && told[0].contains("linear has 20 numbers; a servo identifier of 3 axes has 45"),
+        told.len() == 2 && told[0].contains("hidden has 120 numbers; a contour identifier of 3 axes has 180"),
         "{told:?}"
     );
 }
@@ -238,7 +228,13 @@ fn axes_that_cannot_be_computed_with_are_refused() {
     let mut divides = axes::<2>();
     let presliding = AxisKnowledge::NUMBERS.iter().position(|number| number.name == "presliding_rad").unwrap();
     divides.weights.axes[presliding][1] = 1e-300;
+    let gain = AxisKnowledge::NUMBERS.iter().position(|number| number.name == "kp_1_s").unwrap();
+    let [mut slow, mut diverging] = [axes::<2>(), axes::<2>()];
+    slow.weights.axes[gain][0] = 0.0036;
+    diverging.weights.axes[gain][1] = 5500.0;
     for (model, said) in [
+        (slow, "kp_1_s, number 1 is 0.0036 1/s; with servo_s of 0.001 s a position loop has 0.5 to 5000 1/s"),
+        (diverging, "kp_1_s, number 2 is 5500 1/s; with servo_s of 0.001 s a position loop has 0.5 to 5000 1/s"),
         (uneven, "servo_s is no whole multiple of mechanics_s, 1 to 1000 times"),
         (divides, "presliding_rad, number 2 is 1e-300 rad; it must be 0 or lie between 1e-12 and 1e4 rad"),
     ] {
@@ -247,14 +243,17 @@ fn axes_that_cannot_be_computed_with_are_refused() {
     }
 }
 
+/// Earlier versions wrote servo identifiers, with more keys.
 #[test]
-fn a_spread_that_is_none_is_refused() {
-    let mut model = servo::<2>();
-    model.weights.spread[0] = -1.0;
-    model.about.checksum = model.checksum();
-    let told = told(&model.text());
-    assert_eq!(told.len(), 1);
-    assert!(told[0].contains("no training gives these weights: number"), "{told:?}");
+fn a_servo_identifier_is_refused_by_its_kind_alone() {
+    let told = told_after("kind = \"contour\"", "kind = \"servo\"\nlinear = [0.5]");
+    assert_eq!(
+        told,
+        [
+            "3:8: the model is a servo identifier, a kind that no controller uses any more / identify the machine again: \
+          'feedwright identify' writes a model for lqg-identified"
+        ]
+    );
 }
 
 #[test]
@@ -286,7 +285,7 @@ fn other_files_are_told_apart() {
         program.len() == 5 && program[4].ends_with("95 more places are not TOML: was another file meant?"),
         "{program:?}"
     );
-    let text = servo::<2>().text();
+    let text = contour::<2>().text();
     for length in (0..text.len()).step_by(97) {
         assert!(Model::parse("cut", &text[..length]).is_err(), "{length}");
     }
@@ -305,7 +304,7 @@ fn a_file_that_cannot_be_read_is_told_of_as_a_model_file() {
     assert!(message.starts_with("cannot read model file") && hint.contains("identify --out"), "{message} {hint}");
     let (message, hint) = tell("huge", Some(&vec![b' '; 2 << 20]));
     assert!(message.ends_with("this is no model file") && hint.contains("pages of TOML"), "{message} {hint}");
-    let (message, hint) = tell("block", Some(&servo::<2>().block(None)));
+    let (message, hint) = tell("block", Some(&contour::<2>().block(None)));
     assert!(message.contains("is not text") && hint.contains("a model file is TOML text"), "{message} {hint}");
 }
 

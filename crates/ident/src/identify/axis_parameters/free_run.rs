@@ -44,7 +44,7 @@ impl FreeRun {
         for command_mm in commands_mm {
             running.iter_mut().for_each(|axis| axis.command(*command_mm));
             for _ in 0..axes[0].law.periods.mechanics_per_servo {
-                running.iter_mut().for_each(FreeAxis::step);
+                FreeAxis::step(&mut running);
             }
         }
         running.map(|axis| axis.measured_mm)
@@ -95,15 +95,22 @@ impl<'a> FreeAxis<'a> {
         self.sent.push(drive.position_loop(law, command_mm * scale, measured_rad, motor, &mut self.drive));
     }
 
-    /// A mechanics period.
+    /// A mechanics period of several.
     #[inline]
-    fn step(&mut self) {
-        let FreeRun { law, drive, mechanics, late: [drive_late, _] } = self.axis;
+    fn step<const M: usize>(running: &mut [Self; M]) {
+        let laws = running.each_ref().map(|running| &running.axis.mechanics);
+        let torques_nm = running.each_mut().map(Self::torque_nm);
+        MechanicsLaw::advance_abreast(&laws, running.each_mut().map(|running| &mut running.masses), torques_nm);
+        running.iter_mut().for_each(|running| running.course_rad.push(running.masses.motor.angle_rad));
+    }
+
+    /// Torque of the motor, N m.
+    #[inline]
+    fn torque_nm(&mut self) -> f64 {
+        let FreeRun { law, drive, late: [drive_late, _], .. } = self.axis;
         let per_servo = law.periods.mechanics_per_servo as usize;
         let arrived = self.moment(*drive_late).map(|then| self.sent[then / per_servo]);
         let speed_rad_s = self.masses.motor.speed_rad_s;
-        let torque_nm = drive.torque_nm(law, arrived.unwrap_or_default(), speed_rad_s, &mut self.drive);
-        mechanics.advance(&mut self.masses, torque_nm, 0.0);
-        self.course_rad.push(self.masses.motor.angle_rad);
+        drive.torque_nm(law, arrived.unwrap_or_default(), speed_rad_s, &mut self.drive)
     }
 }

@@ -2,9 +2,10 @@
 //!
 //! Every axis begins with the four products, the delay of the record, and one of six drives. Each drive is fitted from several
 //! starts, and from the fits of drives that have less. The delay stays where it starts until the gains are near: far from the
-//! minimum the two trade places. Then each is fitted with friction that slides at once, with friction that slides after a
-//! deflection, and with a limit of the speed where the command is faster than the axis. The one is taken that makes held-out samples
-//! likeliest, less the cost of its terms (Schwarz), where as many samples as the residual is correlated over count as one.
+//! minimum the two trade places. It starts at zero, or at what the lag is more than the slowest position loop makes. Then each is
+//! fitted with friction that slides at once, with friction that slides after a deflection, and with a limit of the speed where the
+//! command is faster than the axis. The one is taken that makes held-out samples likeliest, less the cost of its terms (Schwarz),
+//! where as many samples as the residual is correlated over count as one.
 //!
 //! Each further term is tried with one step of all numbers. Those that promise most are fitted. One is admitted that is above zero
 //! by its standard error, and makes held-out samples likelier by more than it costs (Schwarz).
@@ -162,7 +163,8 @@ struct FittedDrive {
 /// Each drive that may be there, from its best starts and from the drives that have less. What an earlier record told stands but for the
 /// loops, which may be others.
 fn drives(record: &AxisRecord<'_>, train: &OutputErrors<'_>, facts: &AxisFacts) -> Vec<FittedDrive> {
-    let mut starts = starts(record, train.counts);
+    let late = facts.record_delay_s.map_or_else(|| record.late_samples(train.counts), |_| 0);
+    let mut starts = starts(record, train.counts, late);
     if let Some(before) = facts.before {
         let loops = |at: TermValues| {
             [LawTerm::LoopGain, LawTerm::Damping].into_iter().fold(before, |kept, term| kept.with(term, at.get(term)))
@@ -174,7 +176,11 @@ fn drives(record: &AxisRecord<'_>, train: &OutputErrors<'_>, facts: &AxisFacts) 
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
         ranked
     };
-    let starts = ranked(starts.into_iter().map(|at| facts.start(at)).collect());
+    let begin = |at: TermValues| {
+        let at = facts.start(at);
+        facts.record_delay_s.map_or(at.with(LawTerm::RecordDelay, late as f64 * record.sample_s), |_| at)
+    };
+    let starts = ranked(starts.into_iter().map(begin).collect());
     // A part that is known to be there is there, and one that is known to be zero is not.
     let may_be = |drive: &&[LawTerm]| {
         let is = |term| facts.known(term).is_none_or(|known| drive.contains(&term) == (known.value != 0.0));
@@ -277,15 +283,15 @@ pub(super) const OPTIONAL: [LawTerm; 3] =
     [LawTerm::Integral, LawTerm::VelocityFeedforward, LawTerm::AccelerationFeedforward];
 
 /// Values before anything is known: gains on a grid, and with the lag that the following error has by the speed; friction by what it has by
-/// the direction.
-fn starts(record: &AxisRecord<'_>, counts: &[bool]) -> Vec<TermValues> {
+/// the direction. The record is so many samples late.
+fn starts(record: &AxisRecord<'_>, counts: &[bool], late: usize) -> Vec<TermValues> {
     let speed_mm_s = record.command_speed_mm_s();
     let (mut squares, mut products) = (Matrix3::zeros(), Vector3::zeros());
-    for k in (0..speed_mm_s.len()).filter(|&k| counts[k]) {
-        let v = speed_mm_s[k];
+    for k in (late..speed_mm_s.len()).filter(|&k| counts[k]) {
+        let v = speed_mm_s[k - late];
         let row = Vector3::new(v, if v == 0.0 { 0.0 } else { v.signum() }, 1.0);
         squares += row * row.transpose();
-        products += row * (record.command_mm[k] - record.actual_mm[k]);
+        products += row * (record.command_mm[k - late] - record.actual_mm[k]);
     }
     let [lag_s, sign_mm] = squares.cholesky().map_or([0.0; 2], |squares| {
         let found = squares.solve(&products);

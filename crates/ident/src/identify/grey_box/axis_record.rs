@@ -25,6 +25,15 @@ pub struct AxisRecord<'a> {
 const SPEED_REACH: usize = 3;
 const ACCELERATION_REACH: usize = 6;
 
+/// Latest record that is looked for, s: a recorder on a network is late by tenths. A record that is later hardly follows its command.
+pub(super) const LATEST_S: f64 = 1.0;
+/// Lag of the slowest position loops, s: they have gains from 10 1/s on.
+const SLOWEST_LOOP_S: f64 = 0.1;
+/// Times the least squares that a lag leaves which is as good.
+const NEARLY: f64 = 4.0;
+/// Samples that a lag is found from at the most.
+const COMPARED: usize = 20_000;
+
 impl AxisRecord<'_> {
     /// Speed of the command at each sample, mm/s.
     pub(super) fn command_speed_mm_s(&self) -> Vec<f64> {
@@ -70,6 +79,36 @@ impl AxisRecord<'_> {
         }
         let slope = 12.0 * moment / (n * (n * n - 1.0));
         [mean - slope * middle, slope / self.sample_s]
+    }
+
+    /// Samples by which actual positions are later than the slowest position loop makes them: the rest of the lag that has the least
+    /// squares over samples that count.
+    pub(super) fn late_samples(&self, counts: &[bool]) -> usize {
+        let longest = self.stretches.iter().map(ExactSizeIterator::len).max().unwrap_or(0);
+        let most = ((LATEST_S / self.sample_s) as usize).min(longest / 2);
+        let compared = |k: &usize| {
+            counts[*k] && self.stretches.iter().any(|stretch| stretch.contains(k) && k - most >= stretch.start)
+        };
+        let samples: Vec<usize> = (most..self.actual_mm.len()).filter(compared).collect();
+        let apart = samples.len().div_ceil(COMPARED).max(1);
+        let square_mm2 = |lag: usize| -> f64 {
+            let errors = samples.iter().step_by(apart).map(|&k| self.actual_mm[k] - self.command_mm[k - lag]);
+            errors.map(|error| error * error).sum()
+        };
+        let squares_mm2: Vec<f64> = (0..=most).map(square_mm2).collect();
+        let least_mm2 = squares_mm2.iter().copied().fold(f64::INFINITY, f64::min);
+        // A motion that comes again is as near a period later.
+        let lag = squares_mm2.iter().position(|square_mm2| *square_mm2 <= NEARLY * least_mm2).unwrap_or(0);
+        lag.saturating_sub((SLOWEST_LOOP_S / self.sample_s).ceil() as usize)
+    }
+
+    /// Samples at the beginning of a stretch that depend on commands before it, beside the time in which an axis settles: none but in a
+    /// late record.
+    pub(super) fn without_command(&self, counts: &[bool]) -> usize {
+        match self.late_samples(counts) {
+            0 => 0,
+            late => late + (2.0 * SLOWEST_LOOP_S / self.sample_s).ceil() as usize,
+        }
     }
 
     /// RMS of the following error over samples that count, mm.

@@ -23,6 +23,7 @@ use super::axis_run::periods;
 use super::found_axis::FoundAxis;
 use super::output_error::{Fitted, NEARLY_DONE, OutputErrors, square};
 use super::priors::Prior;
+use super::search_bound::SearchBound;
 use super::terms::{LawTerm, TermValues};
 
 /// Most servo periods that are looked for: a bus takes one to three.
@@ -74,6 +75,13 @@ pub(super) fn shown(records: &[AxisRecord<'_>], axes: &[FoundAxis], fit: &[bool]
         ..axis.facts
     };
     (without - least > libm::log(without.max(1.0)) + STRONG).then(|| axes.iter().zip(&best).map(delayed).collect())
+}
+
+/// The delay of an axis whose commands are as late as is looked for.
+pub(super) fn at_bound(axis: &FoundAxis, sample_s: f64) -> Option<SearchBound> {
+    let (term, bound) = (LawTerm::CommandDelay, f64::from(MOST_PERIODS) * periods(sample_s).0.servo_s);
+    let value = axis.values.get(term);
+    (value > 0.999 * bound).then_some(SearchBound { term, value, bound })
 }
 
 /// The fit with commands one servo period later.

@@ -7,6 +7,7 @@ use super::axis_record::AxisRecord;
 use super::free_run_scores::AxisScores;
 use super::gain_changes::GainChange;
 use super::residual_noise::ResidualNoise;
+use super::search_bound::SearchBound;
 use super::standard_errors::HALF_INTERVAL;
 use super::terms::{LawTerm, TermValues};
 use super::torque_column::{DriveColumn, TorqueColumn};
@@ -67,7 +68,9 @@ pub struct FoundAxis {
     pub values: TermValues,
     /// Terms that were fitted.
     pub terms: Vec<LawTerm>,
-    /// Half of the interval of 90 % of each, in the same order.
+    /// Values that end where their search ends: with one, the law does not hold.
+    pub at_bounds: Vec<SearchBound>,
+    /// Half of the interval of 90 % of each term, in the order of [`Self::terms`].
     pub half_intervals: Vec<f64>,
     /// Lower triangle of a root of their covariance, in their units, row by row; `None` where the fit leaves a term open.
     pub uncertain: Option<Vec<Vec<f64>>>,

@@ -12,6 +12,7 @@ use super::output_error::{DONE, NEARLY_DONE, OutputErrors, square};
 use super::priors::Prior;
 use super::residual_noise::ResidualNoise;
 use super::sample_split::SampleSplit;
+use super::search_bound::SearchBound;
 use super::standard_errors::{HALF_INTERVAL, StandardErrors};
 use super::terms::{LawTerm, TermValues};
 use super::torque_column::{DriveColumn, TorqueColumn};
@@ -51,11 +52,11 @@ pub(super) fn find(
     let priors = Prior::all(&facts);
     let admitted =
         admit(&thinned, [&train, &valid], &facts, &priors, |part| tell(PARTS[0] * part)).ok_or(NotFound::Ended)?;
-    let errors =
-        OutputErrors { record, counts: &split.fit, deviation_mm: record.following_mm(&split.fit), priors: &priors };
+    let deviation_mm = record.following_mm(&split.fit);
+    let errors = OutputErrors { record, counts: &split.fit, deviation_mm, priors: &priors };
     let admitted = admit_more(&errors, &facts, admitted);
     let errors = errors.scaled_by(&admitted.values);
-    let (terms, values) = without_doubtful(&errors, &facts, &admitted.values, admitted.terms);
+    let Doubtless { terms, values, early } = without_doubtful(&errors, &facts, &admitted.values, admitted.terms);
     let errors = errors.weighed_by(&values);
     let values = errors.least(&values, &terms, STEPS, DONE).values;
     let certain = StandardErrors::of(&errors, &values, &terms);
@@ -68,30 +69,56 @@ pub(super) fn find(
         None => torque.and_then(|torque| resolve(&errors, torque, &values, &terms, &facts, rms_mm)),
     };
     go_on(tell(0.5 * (PARTS[1] + 1.0)))?;
+    let at_bounds = early.into_iter().chain(at_bounds(&errors, &values, &terms, &facts, resolved.as_ref())).collect();
     let scores = score(record, &values, &split.fit, &split.score);
-    let noise_um = noise_um(record);
-    let most = FoundAxis::most(record);
-    let unseen = UnseenMotion::of(&errors, &values, &terms, rms_mm, most);
-    let residual = residual(record, &values, &scores, noise_um);
-    let gain_changes = GainChange::find(record, &values, &split.score);
-    go_on(tell(1.0))?;
-    Ok(FoundAxis {
+    let (noise_um, most) = (noise_um(record), FoundAxis::most(record));
+    let found = FoundAxis {
         name: record.name.to_owned(),
-        values,
-        terms,
+        at_bounds,
         half_intervals,
         uncertain: certain.root(),
         resolved,
         facts,
         fit_um: 1e3 * rms_mm,
+        unseen: UnseenMotion::of(&errors, &values, &terms, rms_mm, most),
+        residual: residual(record, &values, &scores, noise_um),
+        gain_changes: GainChange::find(record, &values, &split.score),
         scores,
-        unseen,
-        residual,
-        gain_changes,
         noise_um,
         step_um: 1e3 * record.step_mm,
         most,
-    })
+        values,
+        terms,
+    };
+    go_on(tell(1.0))?;
+    Ok(found)
+}
+
+/// Values that end where their search ends, of the law by positions and of the one with the window of the speed. Where the record is said
+/// to be on time, the delay of the loop may be below zero in place of it.
+fn at_bounds(
+    errors: &OutputErrors<'_>,
+    values: &TermValues,
+    terms: &[LawTerm],
+    facts: &AxisFacts,
+    resolved: Option<&ResolvedLaw>,
+) -> Vec<SearchBound> {
+    let late = (facts.record_delay_s.is_some() && !terms.contains(&LawTerm::LoopDelay)).then_some(LawTerm::LoopDelay);
+    let tested: Vec<LawTerm> = terms.iter().copied().chain(late).collect();
+    let mut bounds = SearchBound::of_fitted(values, terms.iter().copied());
+    bounds.extend(SearchBound::below_zero(errors, values, &tested));
+    if let Some(law) = resolved {
+        bounds.extend(SearchBound::of_fitted(&law.values, law.half_intervals.iter().map(|(term, _)| *term)));
+    }
+    bounds
+}
+
+/// Terms that stay, and a fit of them.
+struct Doubtless {
+    terms: Vec<LawTerm>,
+    values: TermValues,
+    /// The delay of the record, where it is none although the record wants it below zero.
+    early: Option<SearchBound>,
 }
 
 /// Terms that stay, and a fit of them. Dropped one after the other are terms that do not differ from zero by their standard error, and
@@ -101,8 +128,9 @@ fn without_doubtful(
     facts: &AxisFacts,
     start: &TermValues,
     mut terms: Vec<LawTerm>,
-) -> (Vec<LawTerm>, TermValues) {
+) -> Doubtless {
     let mut at = *start;
+    let mut early = None;
     loop {
         at = errors.least(&at, &terms, STEPS, NEARLY_DONE).values;
         let certain = StandardErrors::of(errors, &at, &terms);
@@ -131,8 +159,13 @@ fn without_doubtful(
             .find(stands_for_another)
             .or_else(|| doubtful.into_iter().find(is_needless))
             .or_else(|| (0..terms.len()).filter(of_drive).find(|&i| self::is_needless(errors, &at, &terms, i)));
-        let Some(i) = dropped else { return (terms, at) };
+        let Some(i) = dropped else { return Doubtless { terms, values: at, early } };
         let term = terms[i];
+        if term == LawTerm::RecordDelay && at.get(term) + DOUBTFUL * certain.errors[i] < -EARLY * errors.record.sample_s
+        {
+            let is_told = !self::is_needless(&independent, &at, &terms, i);
+            early = is_told.then_some(SearchBound { term, value: at.get(term), bound: 0.0 });
+        }
         at = at.with(term, 0.0);
         terms.retain(|other| {
             *other != term
@@ -155,6 +188,8 @@ fn is_needless(errors: &OutputErrors<'_>, at: &TermValues, terms: &[LawTerm], i:
 const WITHOUT_STEPS: usize = 8;
 /// Times its cost that a term gains by its standard error which is not tried without.
 const SURE: f64 = 10.0;
+/// Samples by which actual positions come before their commands in a record whose columns are a sample apart, or more.
+const EARLY: f64 = 0.5;
 /// Standard errors below which a term is as well zero: the two-sided test at one in twenty.
 const DOUBTFUL: f64 = 1.96;
 
@@ -298,12 +333,12 @@ fn windows(record: &AxisRecord<'_>, fit: &[bool]) -> Vec<std::ops::Range<usize>>
     windows
 }
 
-/// Without the beginnings of windows, and without what is in none.
+/// Without the beginnings of windows, and without what is in none. A record that is late does not have the commands of a beginning.
 fn behind_starts(record: &AxisRecord<'_>, counts: &[bool], is_thinned: bool) -> Vec<bool> {
     if !is_thinned {
         return counts.to_vec();
     }
-    let beginning = (SETTLING_S / record.sample_s).ceil() as usize;
+    let beginning = (SETTLING_S / record.sample_s).ceil() as usize + record.without_command(counts);
     let mut behind = vec![false; counts.len()];
     for window in record.stretches {
         let from = (window.start + beginning).min(window.end);

@@ -113,9 +113,11 @@ pub(super) fn motion(record: &AxisRecord<'_>) -> Vec<i8> {
 fn settled(records: &[AxisRecord<'_>]) -> Vec<bool> {
     let Some(record) = records.first() else { return vec![] };
     let mut settled = vec![false; record.command_mm.len()];
+    let all = vec![true; settled.len()];
+    let late = records.iter().map(|record| record.without_command(&all)).max().unwrap_or(0);
     for stretch in record.stretches {
         let most = SETTLING_PART * stretch.len() as f64;
-        let beginning = (SETTLING_S / record.sample_s).min(most).ceil() as usize;
+        let beginning = (SETTLING_S / record.sample_s).min(most).ceil() as usize + late;
         settled[(stretch.start + beginning).min(stretch.end)..stretch.end].fill(true);
     }
     settled

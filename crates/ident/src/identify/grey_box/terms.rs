@@ -27,6 +27,8 @@
 use feedwright_control::{DriveParameters, FrictionParameters, Parameters};
 use feedwright_sim::{Axis, Transmission};
 
+use super::axis_record::LATEST_S;
+
 /// A number of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LawTerm {
@@ -146,6 +148,17 @@ impl LawTerm {
         }
     }
 
+    /// Ends of the search for its value. B is part of Kv + B.
+    pub(super) fn range(self, values: &TermValues) -> [f64; 2] {
+        let [least, most] = self.row().range;
+        [least, if self == Self::Viscous { (1.0 - LEAST_SPEED_GAIN) * values.get(Self::Damping) } else { most }]
+    }
+
+    /// Whether it is a delay that begins at zero.
+    pub(super) fn is_delay(self) -> bool {
+        matches!(self, Self::LoopDelay | Self::CommandDelay)
+    }
+
     pub(super) fn row(self) -> TermRow {
         let row = |name, unit, range, change| TermRow { name, unit, range, change };
         match self {
@@ -153,7 +166,7 @@ impl LawTerm {
             Self::Damping => row("(Kv + B) / J", "1/s", [0.1, 1e5], [0.01, 0.0]),
             Self::Coulomb => row("Fc / J", "mm/s2", [0.0, 1e6], [0.02, 1.0]),
             Self::Offset => row("offset / J", "mm/s2", [-1e6, 1e6], [0.0, 1.0]),
-            Self::RecordDelay => row("delay of the record", "s", [-0.05, 0.1], [0.0, 5e-5]),
+            Self::RecordDelay => row("delay of the record", "s", [-0.05, LATEST_S], [0.0, 5e-5]),
             Self::LoopDelay => row("delay within the loop", "s", [0.0, 0.02], [0.0, 1e-4]),
             Self::VelocityFeedforward => row("velocity feedforward", "", [0.0, 2.0], [0.0, 0.01]),
             Self::AccelerationFeedforward => row("acceleration feedforward", "", [0.0, 2.0], [0.0, 0.02]),
@@ -228,7 +241,7 @@ impl TermValues {
     pub fn speed_gain_1_s(&self) -> f64 {
         let damping = self.get(LawTerm::Damping);
         // Below, the speed loop would drive.
-        (damping - self.get(LawTerm::Viscous)).max(1e-3 * damping)
+        (damping - self.get(LawTerm::Viscous)).max(LEAST_SPEED_GAIN * damping)
     }
 
     /// How late the position loop has the commands of the record, s.
@@ -303,6 +316,9 @@ impl TermValues {
         }
     }
 }
+
+/// Least part of the damping that the gain of the speed loop is.
+const LEAST_SPEED_GAIN: f64 = 1e-3;
 
 /// Damping of a screw that nobody has measured: of the size that machine tools have.
 pub(crate) const ASSUMED_DAMPING_RATIO: f64 = 0.02;

@@ -2,6 +2,7 @@
 
 use super::found_axis::FoundAxis;
 use super::free_run_scores::FreeRunErrors;
+use super::search_bound::SearchBound;
 use super::unseen_motion::UnseenMotion;
 
 /// What an identification came to.
@@ -17,6 +18,8 @@ pub enum LawVerdict {
     TooMuchLeft,
     /// The record leaves open what other motion would show.
     Open,
+    /// A value ends where its search ends: the others make up for it.
+    AtBound,
 }
 
 /// A linear model that leaves no more than this of what the law leaves does as well.
@@ -40,7 +43,9 @@ impl LawVerdict {
         let apart = ratio(|errors| errors.at_um[2]).max(ratio(|errors| errors.whole_um));
         let best = scores.best_arx();
         let signs_help = best.whole_um < SIGNS_HELP * linear.whole_um || best.at_um[2] < SIGNS_HELP * linear.at_um[2];
-        if grey_box.whole_um > TOO_MUCH * scores.following_um {
+        if !axis.at_bounds.is_empty() {
+            Self::AtBound
+        } else if grey_box.whole_um > TOO_MUCH * scores.following_um {
             Self::TooMuchLeft
         } else if axis.unseen.is_open() {
             Self::Open
@@ -75,9 +80,17 @@ impl LawVerdict {
                 "a linear model is better: {missed}; {against}. Something moves this axis that the law does not have"
             ),
             Self::TooMuchLeft => format!("not good enough for control: {missed}; {against}"),
+            Self::AtBound => format!("not known: {}; {missed}; {against}", at_bounds(&axis.at_bounds)),
             Self::Open => format!("open: {}; {missed}; {against}", open(&axis.unseen)),
         }
     }
+}
+
+/// Names the values that end where their search ends, and what to do.
+fn at_bounds(bounds: &[SearchBound]) -> String {
+    let facts: Vec<String> = bounds.iter().map(SearchBound::words).collect();
+    let remedy = bounds.first().map_or("", SearchBound::remedy);
+    format!("{}. All values of the axis may be wrong. {remedy}", facts.join("; "))
 }
 
 /// Names the parameters that the record leaves open, and the uncertainty that follows.
