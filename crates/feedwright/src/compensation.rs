@@ -19,8 +19,10 @@ pub enum GeometryChoice {
     /// together 0.53, 0.58, 0.69 and 1.35.
     #[default]
     Machine,
-    /// What a geometry file states, whatever the machine file says.
+    /// What a geometry file states, whatever the machine file says: the simulated machine has it.
     File(Box<NamedGeometry>),
+    /// The simulated machine has what a geometry file states, and its control compensates nothing: the program does.
+    InProgram(Box<NamedGeometry>),
 }
 
 /// A geometry file and its name.
@@ -49,13 +51,23 @@ mod text {
 }
 
 impl GeometryChoice {
-    /// The machine with a control that compensates it, for a part with these least and greatest positions, mm.
+    /// The same for a program that compensates it itself. What the machine file states is off then.
+    #[must_use]
+    pub fn in_program(self) -> Self {
+        match self {
+            Self::File(file) | Self::InProgram(file) => Self::InProgram(file),
+            Self::Off | Self::Machine => Self::Off,
+        }
+    }
+
+    /// The machine with a control that compensates it, for a part with these least and greatest positions, mm. With a geometry file, it is where the
+    /// tool of the machine is, too.
     ///
     /// # Errors
     /// As [`Self::on_any_part`], and a geometry that was not measured where the part is.
     pub fn on(&self, machine: &Machine, box_mm: [[f64; 3]; 2]) -> Result<Machine, JobError> {
         let compensating = self.on_any_part(machine)?;
-        if let Self::File(file) = self {
+        if let Self::File(file) | Self::InProgram(file) = self {
             file.geometry.covers(machine.axis_count(), box_mm)?;
         }
         Ok(compensating)
@@ -69,10 +81,12 @@ impl GeometryChoice {
         Ok(match self {
             Self::Off => Machine { compensated: None, ..machine.clone() },
             Self::Machine => machine.compensating_own()?,
-            Self::File(file) => {
+            Self::File(file) | Self::InProgram(file) => {
                 file.geometry.check()?;
                 file.geometry.suits(machine)?;
-                machine.compensating(file.geometry.known()?)?
+                let known = file.geometry.known()?;
+                let compensating = machine.compensating(known.clone())?.with_tool(known);
+                if matches!(self, Self::File(_)) { compensating } else { Machine { compensated: None, ..compensating } }
             }
         })
     }
@@ -81,7 +95,7 @@ impl GeometryChoice {
     pub(crate) fn reported(&self, machine: &Machine, spread: &SpreadMeter<'_>) -> Option<CompensatedGeometry> {
         let compensated = machine.compensated.as_ref()?;
         let from = match self {
-            Self::Off => return None,
+            Self::Off | Self::InProgram(_) => return None,
             Self::Machine => None,
             Self::File(file) => Some(file.name.clone()),
         };
@@ -97,7 +111,7 @@ impl GeometryChoice {
             terms.iter().filter(|(_, there)| *there).map(|(term, _)| *term).collect()
         };
         match (self, machine) {
-            (Self::Off, _) | (Self::Machine, None) => Vec::new(),
+            (Self::Off | Self::InProgram(_), _) | (Self::Machine, None) => Vec::new(),
             (Self::Machine, Some(machine)) if machine.has_hidden_backlash() => Vec::new(),
             (Self::Machine, Some(machine)) => {
                 let square = machine.geometry != feedwright_sim::Squareness::default();

@@ -47,6 +47,7 @@
 //! | `program_text.rs` | the text |
 //! | `expanded_text.rs` | the text of a program with loops, subroutines and jumps written out |
 //! | `verified.rs` | what the text says when it is read again |
+//! | `feed_overrides.rs` | at which feed overrides a program is better, and at which worse |
 //! | `predicted.rs` | what logs predict of the next cut |
 //! | `outcome.rs` | the result, and why a corrected program is refused |
 //! | `advise.rs` | the feedrates at which a tolerance is held |
@@ -79,6 +80,7 @@ mod source_line;
 mod program_text;
 mod expanded_text;
 mod verified;
+pub(crate) mod feed_overrides;
 mod predicted;
 mod outcome;
 pub(crate) mod advise;
@@ -88,7 +90,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use feedwright_gcode::canon::Canon;
-use feedwright_gcode::{Program, Settings, Summary};
+use feedwright_gcode::{Dialect, Program, Settings, Summary};
 use feedwright_plan::Step;
 use feedwright_sim::{Machine, RunError, Watch};
 
@@ -96,6 +98,8 @@ use crate::compensation::GeometryChoice;
 use crate::job_error::{JobError, axes_that_move};
 use crate::measured::MeasuredLog;
 use exported::ExportedCut;
+use feed_overrides::override_note;
+pub use feed_overrides::{OverrideFigures, OverrideVerdict};
 pub use file_prior::{AssumedValue, FileAssumption};
 use file_prior::{FILE_ERROR, FileModel};
 use kept_work::{Workers, forget, hash_of, keeps_parts};
@@ -112,9 +116,10 @@ use program_text::{TextParts, UnkeptLines};
 use rounds::{RoundsResult, steps_of};
 use source::SourceProgram;
 use stretches::{ProgramPart, assembled, parts};
-pub use target::{MacroLanguage, TARGETS, TargetControl};
+pub use target::{TARGETS, TargetControl};
 pub use unchanged::UnchangedStretch;
 use unchanged::unchanged_stretches;
+use verified::{TextComparison, TextFault};
 
 /// A program, a machine, and a control that the corrected program is for.
 #[derive(Debug, Clone)]
@@ -151,6 +156,8 @@ const MOST_MOTIONS: u64 = 2_000_000;
 
 /// How the note of a corrected program begins; machine and control follow.
 const CORRECTED_FOR: &str = "corrected by feedwright for the machine";
+/// The note of feed overrides before they are cut.
+const NO_OVERRIDES: &str = "feed override: not simulated";
 /// Lines in which the note is looked for.
 #[cfg(feature = "command")]
 const NOTED_WITHIN: usize = 100;
@@ -165,6 +172,35 @@ pub(crate) fn corrected_for(program: &Program) -> Option<&'static TargetControl>
         TargetControl::find(control.trim_end().trim_end_matches(')'))
     });
     controls.next()
+}
+
+/// The machines of a correction.
+struct JobMachines {
+    /// The machine of the job with what its control compensates.
+    of_job: Machine,
+    /// The machine as logs show it.
+    learned: Option<LearnedMachine>,
+    /// The machines that an uncertain file may describe.
+    file: Option<FileModel>,
+    /// The machine that the command is computed for.
+    nominal: Machine,
+}
+
+impl JobMachines {
+    /// The machine that programs are judged on.
+    fn machine(&self) -> &Machine {
+        let learned = self.learned.as_ref().map(|learned| &learned.machine);
+        learned.or(self.file.as_ref().map(|file| &file.machine)).unwrap_or(&self.of_job)
+    }
+}
+
+/// Commands of all stretches, and their text.
+struct FoundProgram {
+    rounds: RoundsResult,
+    unchanged: Vec<UnchangedStretch>,
+    written: Option<WrittenProgram>,
+    unwritten: Option<UnwrittenProgram>,
+    pieces: usize,
 }
 
 /// Pieces that are corrected at the same time, each with its rows in memory.
@@ -208,61 +244,92 @@ impl CorrectJob {
         let path_error = |fault| JobError::Path { part: self.program.name(), fault };
         let original = steps_of(&source.steps).map_err(path_error)?;
         let stages = self.target.stages(&self.machine);
-        let learned = self.learned(&original, axes, watch)?;
-        let file = learned.is_none().then(|| self.uncertain_file(axes)).flatten();
-        let machine = learned.as_ref().map(|learned| &learned.machine);
-        let machine = machine.or(file.as_ref().map(|file| &file.machine)).unwrap_or(&self.machine);
-        let nominal = deterministic(self.believed.as_ref().unwrap_or(machine));
-        let compensated = self.compensation.on(&self.machine, summary.box_mm)?.compensated;
-        let error = learned.as_ref().map(|learned| &learned.error);
-        let on = |machine| ExportedCut { machine, tool: None, error, stages, original: &original, axes, watch };
+        let machines = self.machines(&original, axes, summary.box_mm, watch)?;
+        let (machine, learned) = (machines.machine(), machines.learned.as_ref());
+        let error = learned.map(|learned| &learned.error);
+        let on = |machine| ExportedCut { machine, error, stages, original: &original, axes, watch };
         let of_run = |error| JobError::of_run(&self.program, error);
-        let predicted = ExportedCut { tool: compensated.as_ref(), ..on(&nominal) };
-        let pieces = self.pieces(&predicted, &source.steps).map_err(of_run)?;
-        let parts = parts(&source.steps, &splits(&pieces));
-        let workers = self.workers(&source, pieces.len());
-        let program = LongProgram { steps: &source.steps, parts: &parts, pieces: &pieces };
-        let mut found = rounds_of_pieces(&predicted, &program, self.target, file.as_ref(), &workers).map_err(of_run)?;
-        let written = self.written(&source, &parts, &mut found);
-        let (written, unwritten) = written.map_or_else(|fault| (None, Some(fault)), |written| (Some(written), None));
-        let changed = found.commands.iter().flatten().count();
-        let unchanged = unchanged_stretches(&parts, &found.reasons);
-        drop((source, parts)); // The cuts need the room.
+        let (mut found, workers) =
+            self.found(source, &on(&machines.nominal), machines.file.as_ref()).map_err(of_run)?;
         let figures = |program: &[Step], stage: &str| on(machine).figures_by(program, stage, &workers).map_err(of_run);
         let uncorrected = figures(&original, "cutting the uncorrected program")?;
-        let corrected = written.as_ref().map(|written| figures(&written.steps, "cutting as exported")).transpose()?;
-        let steps = written.as_ref().map(|written| written.steps.as_slice());
+        let corrected =
+            found.written.as_ref().map(|written| figures(&written.steps, "cutting as exported")).transpose()?;
+        let steps = found.written.as_ref().map(|written| written.steps.as_slice());
         let predict = |learned: &LearnedMachine| learned_outcome(learned, &on(machine), steps).map_err(of_run);
-        let learned = learned.as_ref().map(predict).transpose()?;
+        let learned = learned.map(predict).transpose()?;
         let no_gain = learned.as_ref().and_then(|learned| no_gain(learned, &uncorrected));
+        let changed = found.rounds.commands.iter().flatten().count();
+        let refusal = refusal(&uncorrected, corrected.as_ref(), changed, found.unwritten.as_ref()).or(no_gain);
+        let mut feed_overrides = Vec::new();
+        if let (Some(written), Some(corrected), None) = (&mut found.written, corrected, &refusal) {
+            let programs = [original.as_slice(), written.steps.as_slice()];
+            feed_overrides = on(machine).at_overrides(programs, [uncorrected, corrected], &workers).map_err(of_run)?;
+            written.text = written.text.replacen(NO_OVERRIDES, &override_note(&feed_overrides), 1);
+        }
         Ok(CorrectOutcome {
             control: self.target.name,
             planner: stages.planner.name,
-            refusal: refusal(&uncorrected, corrected.as_ref(), changed, unwritten.as_ref()).or(no_gain),
-            hint: unwritten.and_then(|fault| fault.hint()),
+            refusal,
+            hint: found.unwritten.and_then(|fault| fault.hint()),
             uncorrected,
             corrected: corrected.unwrap_or(uncorrected),
-            stretches: found.commands.len(),
+            feed_overrides,
+            stretches: found.rounds.commands.len(),
             stretches_changed: changed,
-            unchanged,
-            expanded: written.as_ref().is_some_and(|written| written.expanded),
-            rounds: found.rounds,
-            pieces: pieces.len(),
+            unchanged: found.unchanged,
+            expanded: found.written.as_ref().is_some_and(|written| written.expanded),
+            rounds: found.rounds.rounds,
+            pieces: found.pieces,
             kept_fault: workers.fault().map(|fault| fault.to_string()),
-            dwell_s: found.dwell_s,
+            dwell_s: found.rounds.dwell_s,
             warnings: summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect(),
-            written,
+            written: found.written,
             learned,
             machine: machine.clone(),
-            assumed: file.map(|file| file.assumption),
+            assumed: machines.file.map(|file| file.assumption),
             original_steps: original,
             axes,
         })
     }
 
-    /// The machines that an uncertain file may describe.
-    fn uncertain_file(&self, axes: usize) -> Option<FileModel> {
-        self.believed.is_none().then(|| FileModel::uncertain(&self.machine, axes, self.file_error)).flatten()
+    /// The machines of the correction.
+    fn machines(
+        &self,
+        original: &[Step],
+        axes: usize,
+        box_mm: [[f64; 3]; 2],
+        watch: &dyn Watch,
+    ) -> Result<JobMachines, JobError> {
+        let of_job = self.compensation.on(&self.machine, box_mm)?;
+        let learned = self.learned(&of_job, original, axes, watch)?;
+        let is_uncertain = learned.is_none() && self.believed.is_none();
+        let file = is_uncertain.then(|| FileModel::uncertain(&of_job, axes, self.file_error)).flatten();
+        let believed = self.believed.as_ref();
+        let compensated = of_job.compensated.clone();
+        let believed = believed.map(|machine| Machine { compensated, ..machine.clone() });
+        let mut machines = JobMachines { nominal: of_job.clone(), of_job, learned, file };
+        machines.nominal = deterministic(believed.as_ref().unwrap_or(machines.machine()));
+        Ok(machines)
+    }
+
+    /// Finds the commands of all stretches and writes the text.
+    fn found(
+        &self,
+        source: SourceProgram,
+        cut: &ExportedCut<'_>,
+        file: Option<&FileModel>,
+    ) -> Result<(FoundProgram, Workers), RunError> {
+        let pieces = self.pieces(cut, &source.steps)?;
+        let parts = parts(&source.steps, &splits(&pieces));
+        let workers = self.workers(&source, pieces.len());
+        let target = self.target.printed(source.largest_unit_mm());
+        let program = LongProgram { steps: &source.steps, parts: &parts, pieces: &pieces };
+        let mut rounds = rounds_of_pieces(cut, &program, target, file, &workers)?;
+        let written = self.written(&source, &parts, &mut rounds);
+        let (written, unwritten) = written.map_or_else(|fault| (None, Some(fault)), |written| (Some(written), None));
+        let unchanged = unchanged_stretches(&parts, &rounds.reasons);
+        Ok((FoundProgram { rounds, unchanged, written, unwritten, pieces: pieces.len() }, workers))
     }
 
     /// Refuses a program that does not fit in memory, before it is read into it.
@@ -325,13 +392,18 @@ impl CorrectJob {
     }
 
     /// What the logs tell, where there are any.
-    fn learned(&self, original: &[Step], axes: usize, watch: &dyn Watch) -> Result<Option<LearnedMachine>, JobError> {
+    fn learned(
+        &self,
+        machine: &Machine,
+        original: &[Step],
+        axes: usize,
+        watch: &dyn Watch,
+    ) -> Result<Option<LearnedMachine>, JobError> {
         if self.logs.is_empty() {
             return Ok(None);
         }
         watch.begin("learning from the logs", 1);
-        let program =
-            LoggedProgram { machine: &self.machine, stages: self.target.stages(&self.machine), original, axes, watch };
+        let program = LoggedProgram { machine, stages: self.target.stages(machine), original, axes, watch };
         let learned = program.learned(&self.logs);
         learned.map(Some).map_err(|(log, error)| JobError::of_part_log(&log, &self.program, &error))
     }
@@ -368,22 +440,17 @@ impl CorrectJob {
                 commands.iter().flatten().count(),
                 commands.len()
             ),
+            NO_OVERRIDES.to_owned(),
         ];
         let text = TextParts { source, parts, commands, rests_s, target: self.target, notes: &notes };
         let wanted = assembled(parts, commands, rests_s);
-        let step_mm = self.target.step_mm(source.largest_unit_mm());
+        let verify = |text: &str| self.verified(text, source, &wanted);
         let checked = |text: String, expanded: bool| {
             let is_own = |line: &str| source.lines.iter().any(|kept| kept == line);
             if text.lines().any(|line| line.len() > self.target.columns && !is_own(line)) {
                 return Err(UnwrittenProgram::Columns(self.target.columns));
             }
-            let (read, modes) =
-                verified::read(&text, &self.reader, source.dialect).ok_or(UnwrittenProgram::ReadOtherwise)?;
-            let steps = steps_of(&read).map_err(|_| UnwrittenProgram::ReadOtherwise)?;
-            let found = read.iter().zip(modes.iter().map(Arc::as_ref));
-            let frames = verified::same_frames(found, source.steps_and_modes(), step_mm);
-            let same = frames && verified::same(&read, &wanted, step_mm);
-            if same { Ok(WrittenProgram { text, steps, expanded }) } else { Err(UnwrittenProgram::ReadOtherwise) }
+            verify(&text).map(|steps| WrittenProgram { text, steps, expanded }).map_err(UnwrittenProgram::Text)
         };
         let unkept = match text.kept() {
             Ok(text) => match checked(text, false) {
@@ -394,6 +461,17 @@ impl CorrectJob {
         };
         let expanded = text.expanded().map_err(UnwrittenProgram::Line);
         expanded.and_then(|text| checked(text, true)).map_err(|fault| (fault, unkept))
+    }
+
+    /// The path of a text as the control reads it, where that is what is wanted.
+    fn verified(&self, text: &str, source: &SourceProgram, wanted: &[Canon]) -> Result<Vec<Step>, TextFault> {
+        let dialect = self.target.reads_as(source.dialect);
+        let step_mm = self.target.step_mm(source.largest_unit_mm());
+        let comparison = TextComparison { step_mm, of_linuxcnc: dialect == Dialect::LinuxCnc };
+        let (read, modes) = verified::read(text, &self.reader, dialect)?;
+        comparison.frames(read.iter().zip(modes.iter().map(Arc::as_ref)), source.steps_and_modes())?;
+        comparison.steps(&read, wanted)?;
+        steps_of(&read).map_err(|fault| TextFault::Unreadable { text: self.program.name(), fault: fault.to_string() })
     }
 }
 

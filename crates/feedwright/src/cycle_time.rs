@@ -172,8 +172,7 @@ pub fn cycle_time_by<'p>(
     mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
     watch: &dyn Watch,
 ) -> Result<CycleTime, RunError> {
-    let mut plan =
-        Plan::new((stages.blend.make)(steps()?, constraints), constraints, stages.planner, Plc::from(machine))?;
+    let mut plan = Plan::new(steps()?, constraints, stages.planner, Plc::from(machine))?;
     let mut sampler = Sampler::new(constraints, stages.planner);
     sampler.lines = options.lines.then(Vec::new);
     let mut progress = (options.length_mm > 0.0).then(|| StageSteps::begin(watch, "planning"));
@@ -209,8 +208,7 @@ pub(crate) fn bound_of_motion<'p>(
     mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
     mut moves: impl FnMut(&Phase) -> Result<(), Cancelled>,
 ) -> Result<(), RunError> {
-    let blended = (Stages::default().blend.make)(steps()?, constraints);
-    for planned in Plan::new(blended, constraints, &WHOLE_PROGRAM, Plc::default())? {
+    for planned in Plan::new(steps()?, constraints, &WHOLE_PROGRAM, Plc::default())? {
         if let Planned::Phase(phase @ Phase { rest: None, .. }) = &planned {
             moves(phase)?;
         }

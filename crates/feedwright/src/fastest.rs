@@ -215,7 +215,7 @@ impl<'a> Search<'a> {
         let planned = self.planned(share);
         let mut places = CutPlaces::new(self.grid.spacing_mm, self.grid.len());
         let path_mm = 1e-3 * share * self.tolerance_um;
-        let run = Run::on(&planned).capped(Some(&self.caps)).laps(laps).watched(watch).cut(
+        let run = Run::on(&planned).within_drives().capped(Some(&self.caps)).laps(laps).watched(watch).cut(
             || Ok(with_tolerance(steps()?, path_mm)),
             controller,
             &mut [&mut places],

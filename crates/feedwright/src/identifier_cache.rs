@@ -11,10 +11,10 @@ pub(crate) mod files;
 mod no_files;
 mod kept_texts;
 
-use feedwright_control::{ContourIdentifier, HIDDEN, INPUTS, IdentifiedAxes};
+use feedwright_control::{ContourIdentifier, HIDDEN, INPUTS};
 use feedwright_ident::{
-    AxisRecordings, Excitation, Model, NotIdentified, Origin, Recording, Rng, TrainedContour, Training, train_axes,
-    train_contour,
+    AxisEstimate, AxisRecordings, Excitation, Model, NotIdentified, Origin, Recording, Rng, TrainedAxes,
+    TrainedContour, Training, train_axes, train_contour,
 };
 use feedwright_sim::{Known, Machine};
 use serde::{Deserialize, Serialize};
@@ -35,10 +35,11 @@ struct StoredWeights {
     samples: usize,
 }
 
-/// The text of a model file.
+/// Identified axes: the text of a model file, and what it leaves out.
 #[derive(Serialize, Deserialize)]
-struct StoredModel {
+struct StoredAxes {
     model: String,
+    estimates: Vec<AxisEstimate>,
 }
 
 /// The identifier of a machine, from the cache where it is there.
@@ -79,23 +80,26 @@ pub(crate) fn identified_axes<const N: usize>(
     recordings: &AxisRecordings<N>,
     known: &Known,
     used_on: &Known,
-) -> Result<IdentifiedAxes<N>, NotIdentified> {
+) -> Result<TrainedAxes<N>, NotIdentified> {
     let recording = recordings.joined();
     let content = || format!("axes {} {known:?}{used_on:?}", recording.hash());
     let kept = kept_text(&content()).and_then(|text| {
-        let StoredModel { model } = serde_json::from_str(&text).ok()?;
-        Model::parse("cache", &model).ok()?.identified_axes()
+        let StoredAxes { model, estimates } = serde_json::from_str(&text).ok()?;
+        let model = Model::parse("cache", &model).ok()?;
+        let fit = model.fit();
+        let samples = usize::try_from(fit.samples).ok()?;
+        Some(TrainedAxes { axes: model.identified_axes()?, estimates, fit_um: fit.fit_um, samples })
     });
-    if let Some(axes) = kept {
-        return Ok(axes);
+    if let Some(trained) = kept {
+        return Ok(trained);
     }
     let trained = train_axes(recordings, known, used_on)?;
     let origin = Origin { source: "a simulated excitation".to_owned(), date: "1970-01-01".to_owned() };
-    let model = StoredModel { model: Model::of_axes(&recording, &trained, origin).text() };
-    if let Ok(text) = serde_json::to_string(&model) {
+    let model = Model::of_axes(&recording, &trained, origin).text();
+    if let Ok(text) = serde_json::to_string(&StoredAxes { model, estimates: trained.estimates.clone() }) {
         keep_text(&content(), &text);
     }
-    Ok(trained.axes)
+    Ok(trained)
 }
 
 /// What this program kept of a content; `None` where it kept nothing, or that is damaged.

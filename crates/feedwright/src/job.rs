@@ -136,7 +136,7 @@ pub struct JobOutcome {
     pub path_um: Option<f64>,
     /// In what the correction is worse than uncorrected; nothing where it is compared with something else.
     pub harm: Vec<Harm>,
-    /// Whether the command of the controller may be used: it was cut to its end, and does no harm.
+    /// Whether the command of the controller may be used: it was cut to its end, does no harm, and asks no drive for twice its limit.
     pub is_of_use: bool,
     /// Whether the last run was cut to its end and within the tolerance, where one was asked for, and a program that was asked for is better
     /// than the original.
@@ -212,7 +212,7 @@ impl Job {
             self.controller.suits(model, &self.machine.known(), axes, &self.choices)?;
         }
         let machine = self.compensation.on(&self.machine, summary.box_mm)?;
-        let as_it_is = machine.compensated.is_none() && self.machine.compensated.is_none();
+        let as_it_is = machine.tool.is_none() && machine.compensated.is_none() && self.machine.compensated.is_none();
         let job = if as_it_is { Cow::Borrowed(self) } else { Cow::Owned(Self { machine, ..self.clone() }) };
         Ok(CheckedJob { job, summary, axes })
     }

@@ -133,8 +133,8 @@ pub use correct::arc_fit::{ArcFit, FitPoint};
 pub use correct::exported::{ExportedCut, ExportedFigures};
 pub use correct::{
     AssumedValue, CorrectJob, CorrectOutcome, CutProgram, FileAssumption, LearnError, LearnedLog, LearnedOutcome,
-    LearnedValue, MacroLanguage, ModelValue, PlaceError, PredictedCut, TARGETS, TargetControl, UnchangedStretch,
-    deterministic,
+    LearnedValue, ModelValue, OverrideFigures, OverrideVerdict, PlaceError, PredictedCut, TARGETS, TargetControl,
+    UnchangedStretch, deterministic,
 };
 pub use cycle_time::{CycleTime, CycleTimeOptions, LineTime, cycle_time, cycle_time_by, cycle_time_within};
 pub use fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within};
@@ -151,9 +151,7 @@ pub use log_job::{
 pub use measured::{MeasuredError, MeasuredLog, measured};
 #[cfg(feature = "files")]
 pub use output::{FileOperation, OutputError, OutputFile, OutputFiles};
-pub use recorded_model::{
-    MOST_FITTING, RecordedModelError, built_in_lines, fitting_machines, recorded_machine, take_recorded_model,
-};
+pub use recorded_model::{RecordedModelError, built_in_lines, fitting_machines, recorded_machine, take_recorded_model};
 pub use report::figure::{
     COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline, figure_parts, write_figure_page, write_figure_part,
 };
@@ -161,8 +159,9 @@ pub use report::harm::{CutErrors, ErrorChange, Harm, MAX_UM, RMS_UM, UNCUT_UM, h
 pub use report::plain_page::{PagePart, write_foot, write_head, write_table_end, write_table_head};
 pub use report::text::{escaped, number};
 pub use report::{
-    Assumptions, Band, BandErrors, CompensatedGeometry, DrawnLimits, ErrorSpectrum, FullCircle, Histogram,
-    LawKnowledge, LimitBand, PageUnits, ProgramLine, Report, ReportedRun, Roundness, RunFacts, RunSummary, Series,
-    SeriesPoint, SpectrumBand, Statistics, TimelineEvent, WorstPlace, write_html, write_html_data, write_html_in,
+    Assumptions, Band, BandErrors, CommandShare, CommandShares, CompensatedGeometry, DrawnLimits, DriveLimits,
+    ErrorSpectrum, FullCircle, Histogram, LawKnowledge, LimitBand, PageUnits, ProgramLine, Report, ReportedRun,
+    Roundness, RunFacts, RunSummary, Series, SeriesPoint, SpectrumBand, Statistics, TimelineEvent, WorstPlace,
+    write_html, write_html_data, write_html_in,
 };
 pub use results_format::RESULTS_FORMAT;

@@ -13,11 +13,14 @@ pub(crate) mod error;
 pub(crate) mod ini;
 pub(crate) mod hal;
 pub(crate) mod netlist;
+mod components;
 mod drives;
+mod disconnect;
 mod joints;
 mod limits;
 mod names;
 mod steps;
+mod line_edit;
 mod wiring;
 mod ini_copy;
 mod machine_guess;
@@ -40,6 +43,9 @@ use netlist::Netlist;
 /// Where Debian keeps the HAL files that several configurations share.
 pub const HALLIB: &str = "/usr/share/linuxcnc/hallib";
 
+/// What the pin `acceleration-limit` takes, mm/s2.
+const LIVE_ACCELERATIONS_MM_S2: [f64; 2] = [1.0, 1e6];
+
 /// What to wire.
 #[derive(Debug, Clone)]
 pub struct LinuxcncSetup {
@@ -49,8 +55,9 @@ pub struct LinuxcncSetup {
     pub hallib: PathBuf,
     /// Built-in machine or machine file that stands in for drives that are simulated.
     pub simulate: Option<String>,
-    /// Writes the following errors that the delay needs into the copy.
-    pub raise_ferror: bool,
+    /// Following error that the copy allows, in the unit of the configuration: FERROR and MIN_FERROR of linear joints that are below it are
+    /// raised to it. Without it, the copy has those of the original.
+    pub raise_ferror: Option<f64>,
     /// Replaces copies of an earlier setup that were changed by hand.
     pub replace: bool,
 }
@@ -62,6 +69,8 @@ pub struct LinuxcncWiring {
     pub findings: Vec<String>,
     /// Why the configuration is not wired, each with its remedy; empty if it is.
     pub refusals: Vec<String>,
+    /// Pins of hardware that the copy disconnects, because a simulated machine stands in for it.
+    pub disconnected: Vec<String>,
     /// What has to change in the configuration before the correction is enabled.
     pub changes: Vec<String>,
     /// What to do next, with the exact commands.
@@ -91,6 +100,7 @@ impl LinuxcncWiring {
         };
         part("Found:", &self.findings);
         part("Not wired, because:", &self.refusals);
+        part("Disconnected in the copy, as setup does not know what moves there:", &self.disconnected);
         part("Change before the correction is enabled:", &self.changes);
         part("Next:", &self.steps);
         text
@@ -164,11 +174,16 @@ impl LinuxcncSetup {
         let mut refusals = script.refusals.clone();
         refusals.extend(joints.refusals(simulated.is_some()));
         refusals.extend(wiring::refusals(ini, netlist));
+        let cut = if simulated.is_some() { disconnect::cut_pins(netlist) } else { Vec::new() };
+        if simulated.is_some() {
+            refusals.extend(disconnect::refusals(ini, script, &cut));
+        }
         let wired = refusals.is_empty();
         let names = SetupNames::of(&self.ini);
         let changes = if wired { limits::changes(joints, simulated, self.raise_ferror) } else { Vec::new() };
         let steps = if wired { steps::steps(&names, joints.wired().count(), simulated.is_some()) } else { Vec::new() };
-        LinuxcncWiring { findings, refusals, changes, steps, written: Vec::new() }
+        let disconnected = if wired { disconnect::cut_words(&cut) } else { Vec::new() };
+        LinuxcncWiring { findings, refusals, disconnected, changes, steps, written: Vec::new() }
     }
 
     fn files(
@@ -190,8 +205,10 @@ impl LinuxcncSetup {
             files.push(SetupFile { path: names.path(&names.plant), bytes });
         }
         // The INI file comes last: whoever finds it finds the others.
-        let values = limits::written(joints, simulated, self.raise_ferror);
-        files.push(text(&names.ini, ini_copy::ini_copy(ini, &wired.renamed, names, simulated.is_some(), &values)));
+        let values = limits::written(joints, simulated.is_some(), self.raise_ferror);
+        let accel_mm_s2 = joints.least_mm("MAX_ACCELERATION", LIVE_ACCELERATIONS_MM_S2).map(|least| least.value);
+        let copy = ini_copy::ini_copy(ini, &wired.renamed, names, simulated.is_some(), &values, accel_mm_s2);
+        files.push(text(&names.ini, copy));
         Ok(files)
     }
 }

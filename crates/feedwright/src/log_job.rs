@@ -183,6 +183,13 @@ impl LogIdentified {
         let mut advice = vec![];
         for axis in &self.machine.axes {
             let name = &axis.name;
+            if let Some(bound) = axis.at_bounds.first() {
+                advice.push(format!(
+                    "axis {name}: {}. All values of the axis may be wrong. {}",
+                    bound.words(),
+                    bound.remedy()
+                ));
+            }
             if axis.unseen.is_open() {
                 advice.push(format!("axis {name}: the log leaves open what other motion would show. Record the program that --excite-next writes, or the one of feedwright excite: both directions, creeping, reversals, short strokes"));
             }
@@ -257,13 +264,19 @@ impl LogIdentified {
 
 /// With four digits, whatever its size.
 pub(crate) fn digits(value: f64) -> String {
+    significant(value, 4, 5)
+}
+
+/// With so many digits. A number of more than `most` + 1 places before the point, or with zeros behind it, has an exponent.
+pub(crate) fn significant(value: f64, digits: i32, most: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
     let before_the_point = libm::log10(value.abs()).floor() as i32;
-    match before_the_point {
-        -4..=5 => format!("{value:.*}", (3 - before_the_point).max(0) as usize),
-        _ => format!("{value:.3e}"),
+    if (-4..=most).contains(&before_the_point) {
+        format!("{value:.*}", (digits - 1 - before_the_point).max(0) as usize)
+    } else {
+        format!("{value:.*e}", (digits - 1) as usize)
     }
 }
 

@@ -70,8 +70,7 @@ pub(crate) fn override_time(
     watch: &dyn Watch,
 ) -> Result<Option<OverrideTime>, RunError> {
     let constraints = Constraints::from(machine);
-    let blended = (stages.blend.make)(steps, &constraints);
-    let mut plan = Plan::new(blended, &constraints, stages.planner, Plc::from(machine))?;
+    let mut plan = Plan::new(steps, &constraints, stages.planner, Plc::from(machine))?;
     let mut published = PublishedPlan::new();
     // Whether each piece that phases may still be of is no rapid, and the number of the first.
     let (mut cutting, mut first) = (VecDeque::new(), 0);

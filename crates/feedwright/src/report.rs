@@ -40,7 +40,7 @@ pub use limit_band::LimitBand;
 pub use page_units::PageUnits;
 pub use series::{Series, SeriesPoint};
 pub use statistics::Statistics;
-pub use summary::{RunFacts, RunSummary};
+pub use summary::{CommandShare, CommandShares, DriveLimits, RunFacts, RunSummary};
 pub use worst::WorstPlace;
 
 #[cfg(feature = "command")]

@@ -316,8 +316,8 @@ fn arguments_that_are_none() {
             &["no controller is called 'cross-coupled'", "feedwright lab controllers"],
         ),
         (
-            &["run", "circle.ngc", "--controller", "receding-horizon"],
-            &["no controller is called 'receding-horizon'", "feedwright lab controllers"],
+            &["run", "circle.ngc", "--controller", "model-predictive"],
+            &["no controller is called 'model-predictive'", "feedwright lab controllers"],
         ),
         (&["check", "missing.ngc"], &["missing.ngc", "No such file"]),
         (&["canon", "missing.ngc"], &["missing.ngc", "No such file"]),
@@ -359,14 +359,14 @@ fn names_that_are_no_text_work() {
     }
 }
 
-/// A gain a thousand times too high and a drive that gives all it asks for: a result, not an error.
+/// A gain ninety times too high and a drive that gives all it asks for: a result, not an error.
 #[test]
 fn a_machine_that_diverges_is_a_result() {
     let folder = Folder::new();
     machine(
         &folder,
         "wild.toml",
-        &[("kp_1_s = 50", "kp_1_s = 1e5"), ("torque_limit_nm = 30", "torque_limit_nm = 1e6")],
+        &[("kp_1_s = 50", "kp_1_s = 4500"), ("torque_limit_nm = 30", "torque_limit_nm = 1e6")],
     );
     for controller in ["uncorrected", "magnitude-only", "two-dimensional"] {
         let outputs = ["--json", "r.json", "--trace", "t.csv", "--out", "s.csv", "--report", "r.html"];
@@ -374,7 +374,7 @@ fn a_machine_that_diverges_is_a_result() {
             &[&["run", "circle.ngc", "--machine", "wild.toml", "--controller", controller], &outputs[..]].concat(),
         );
         assert_eq!(ran.code, Some(1), "{ran:?}");
-        assert!(ran.stdout.contains("diverged at 0.0") && ran.stdout.contains("unstable"), "{ran:?}");
+        assert!(ran.stdout.contains("diverged at 0.") && ran.stdout.contains("unstable"), "{ran:?}");
         assert!(!ran.stdout.contains("NaN") && !ran.stdout.contains("inf"), "{ran:?}");
         assert!(!ran.stdout.contains("RMS contour error"), "{ran:?}");
         let results: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
@@ -399,7 +399,7 @@ fn a_correction_of_a_machine_that_diverges_has_no_figures() {
     machine(
         &folder,
         "wild.toml",
-        &[("kp_1_s = 50", "kp_1_s = 1e5"), ("torque_limit_nm = 30", "torque_limit_nm = 1e6")],
+        &[("kp_1_s = 50", "kp_1_s = 4500"), ("torque_limit_nm = 30", "torque_limit_nm = 1e6")],
     );
     let arguments = ["correct", "circle.ngc", "--machine", "wild.toml", "--json", "c.json", "--tolerance", "1e6"];
     let ran = folder.run(&arguments);

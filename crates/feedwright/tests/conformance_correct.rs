@@ -1,7 +1,7 @@
 //! A corrected program delivers what is told of it: its text keeps the lines of the original, and is better as the control cuts it.
 
-use feedwright::{CorrectJob, CorrectOutcome, TARGETS, TargetControl};
-use feedwright_gcode::canon::{Canon, MotionKind};
+use feedwright::{CorrectJob, CorrectOutcome, OverrideVerdict, TARGETS, TargetControl};
+use feedwright_gcode::canon::{Canon, Event, EventKind, MotionKind};
 use feedwright_gcode::{Dialect, Program, Reader, Settings};
 use feedwright_sim::Machine;
 
@@ -336,4 +336,72 @@ fn another_feedrate_stands_in_the_text_in_the_unit_of_its_place() {
             assert!((motion.feed_mm_s - 40.0).abs() < 0.01, "{motion:?}");
         }
     }
+}
+
+/// Times of the dwells of a text as the control of a dialect reads it, s.
+fn dwells(text: &str, dialect: Dialect) -> Vec<f64> {
+    let settings = Settings { dialect: Some(dialect), ..Settings::default() };
+    let steps = Reader::from_text("part.ngc", text, settings).unwrap().map(Result::unwrap);
+    let seconds = |step: Canon| match step {
+        Canon::Event(Event { kind: EventKind::Dwell { seconds }, .. }) => Some(seconds),
+        _ => None,
+    };
+    steps.filter_map(seconds).collect()
+}
+
+#[test]
+fn dwells_are_in_the_unit_of_the_control_that_the_program_is_for() {
+    let circle = "G2 X0. Y0. I6. J0. F2400.\n";
+    let plain = format!("G21 G90 G64\nG0 X0. Y0.\nG4 P2.5\n{circle}G4 P0.25 (chips)\nG1 X30.\nM2\n");
+    let tape = format!("%\nO1234 (PART)\nG21 G90 G17 G94\nG0 X0. Y0.\nG4 X2.5\n{circle}G4 P250\nG1 X30.\nM30\n%\n");
+    let printer = plain.replace("G4 P2.5", "G4 S2.5").replace("P0.25", "P250");
+    for (text, dialect) in [(&plain, "linuxcnc"), (&tape, "fanuc"), (&printer, "klipper")] {
+        for target in TARGETS.iter().filter(|target| target.dialect.is_some()) {
+            let mut job = job(text, target);
+            (job.reader.dialect, job.file_error) = (Dialect::named(dialect).unwrap(), 0.0);
+            let outcome = job.run(&()).unwrap();
+            let program = outcome.program().unwrap_or_else(|| panic!("{dialect}: {outcome:?}"));
+            let found = dwells(program, target.dialect.unwrap());
+            // The program's own, and the rest behind the circle.
+            let about = |a: f64, b: f64| (a - b).abs() < 1e-9;
+            assert!(about(found[0], 2.5) && found.iter().any(|&s| about(s, 0.25)), "{found:?}\n{program}");
+            assert!(found.iter().sum::<f64>() < 3.0, "{found:?}\n{program}");
+            // By its note, it is known for what it is.
+            let own = Reader::from_text("part.ngc", program, Settings::default()).unwrap().dialect().0;
+            assert_eq!(dwells(program, own), found, "{own:?}");
+        }
+    }
+}
+
+/// The lag of `tnv40` grows with the speed: a program that compensates it at full speed does harm at half of it.
+#[test]
+fn a_program_says_at_which_feed_override_it_is_better_and_at_which_worse() {
+    let circle = "G21 G90 G64\nG2 X0 Y0 I6 J0 F2400\nM2\n";
+    let square = "G21 G90 G64\nG1 X8 F2400\nG3 X10 Y2 I0 J2\nG1 Y8\nG3 X8 Y10 I-2 J0\nG1 X0\nM2\n";
+    for (text, target) in [(circle, "grbl"), (square, "generic"), (circle, "linuxcnc")] {
+        let mut job = job(text, TargetControl::find(target).unwrap());
+        job.file_error = 0.0;
+        let outcome = job.run(&()).unwrap();
+        let at = |percent: u32| outcome.feed_overrides.iter().find(|cut| cut.percent == percent).unwrap();
+        let (half, whole) = (at(50), at(100));
+        assert_eq!(whole.verdict, OverrideVerdict::Better, "{outcome:?}");
+        assert_eq!([whole.uncorrected, whole.as_exported], [outcome.uncorrected, outcome.corrected]);
+        assert!(half.as_exported.time_s > whole.as_exported.time_s, "{half:?}");
+        let is_worse = half.as_exported.rms_um > half.uncorrected.rms_um + 0.05;
+        assert_eq!(half.verdict == OverrideVerdict::Worse, is_worse, "{half:?}");
+        let program = outcome.program().unwrap();
+        let note = program.lines().find(|line| line.starts_with("(feed override: better at")).unwrap();
+        assert_eq!(note.contains("worse at 50"), is_worse, "{note}");
+        assert!(!program.contains("not simulated"), "{program}");
+    }
+}
+
+/// No operator turns the feed up to where the machine does not follow.
+#[test]
+fn overrides_that_the_machine_does_not_allow_are_not_cut() {
+    let mut job = job("G21 G90 G64\nG2 X0 Y0 I6 J0 F2400\nM2\n", &TARGETS[0]);
+    (job.machine.limits.max_feed_mm_s, job.file_error) = (44.5, 0.0);
+    let outcome = job.run(&()).unwrap();
+    let overrides: Vec<u32> = outcome.feed_overrides.iter().map(|cut| cut.percent).collect();
+    assert_eq!(overrides, [50, 75, 90, 100, 110]);
 }

@@ -9,7 +9,7 @@ const FOLDERS: [&str; 7] = [
     "",
     "docs",
     "examples/01_paper_circle",
-    "examples/02_horizon",
+    "examples/02_contours",
     "examples/03_realism",
     "examples/04_planner",
     "examples/05_noise",

@@ -102,7 +102,7 @@ fn every_sample_of_debian_is_wired_or_told_why_not() {
             ini: ini.clone(),
             hallib: HALLIB.into(),
             simulate: None,
-            raise_ferror: false,
+            raise_ferror: None,
             replace: false,
         };
         let plain = setup.survey();

@@ -100,8 +100,8 @@ fn a_run_that_was_ended_goes_on_with_the_same_result_on_any_number_of_threads() 
     let path = folder.path().join("corrected.ngc.pieces");
     let (whole, lines) = kept(&path, 1, u64::MAX);
     let whole = whole.unwrap();
-    // A head, the pieces, and the four cuts of the original and of the corrected program.
-    assert_eq!(lines, 1 + whole.pieces + 8);
+    // A head, the pieces, and the cuts of the original and of the corrected program: four for the verdict, five feed overrides.
+    assert_eq!(lines, 1 + whole.pieces + 2 * (4 + 5));
     for (threads, most) in [(1, 1500), (2, 2500), (2, 1000 * whole.pieces as u64 + 450)] {
         let (ended, before) = kept(&path, threads, most);
         assert!(ended.is_none() && before > 1 && before < lines, "{before} lines");

@@ -131,7 +131,7 @@ fn limits_that_are_none_are_refused_by_name() {
                     Reader::from_text("program", "G1 F600 X1\nM2\n", Settings::default())?.map_while(Result::ok),
                 ))
             };
-            let stages = Stages { planner: feed_planner("time-optimal").unwrap(), ..Stages::default() };
+            let stages = Stages { planner: feed_planner("time-optimal").unwrap() };
             let constraints = Constraints::from(&machine);
             let refused = cycle_time_by(stages, &machine, &constraints, CycleTimeOptions::default(), steps, &())
                 .unwrap_err()

@@ -10,10 +10,10 @@ use crate::command::Folder;
 /// A configuration, whether it is wired, and options.
 const CASES: [(&str, u8, &[&str]); 15] = [
     ("mesa-servo-inch", 0, &[]),
-    ("analog-servo", 0, &["--raise-ferror"]),
+    ("analog-servo", 0, &["--raise-ferror", "4"]),
     ("stepper-with-encoders", 0, &[]),
     ("ethercat", 0, &[]),
-    ("simulated", 0, &["--simulate", "tnv40", "--raise-ferror"]),
+    ("simulated", 0, &["--simulate", "tnv40", "--raise-ferror", "6"]),
     ("mesa-servo-inch", 1, &["--simulate", "tnv40"]),
     ("mesa-stepper", 1, &[]),
     ("gantry", 0, &[]),

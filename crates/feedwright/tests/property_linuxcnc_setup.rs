@@ -54,7 +54,7 @@ fn are_told_about(name: &str, file: usize, damages: &[Damage]) -> Result<(), Tes
             ini: folder.path().join("my.ini"),
             hallib: Path::new("/nowhere").to_owned(),
             simulate,
-            raise_ferror: true,
+            raise_ferror: Some(5.0),
             replace: true,
         };
         match setup.wire(&()) {

@@ -1,9 +1,9 @@
-const VERSION = "43a5ca7ef3a6eb6c", FILES = {
+const VERSION = "bbf0b9d03b15d549", FILES = {
  "./": "sha256-Qs4ATTAQOK96Cxh1kcxTFGVGCjquH4Zw5AoGVUgo5PE=",
  "app.css": "sha256-1M8CTdqQ4GSD7BJH8vqN2bnstEVWNjaRtXiVaFv7EKc=",
  "app.js": "sha256-tXzJjEfURM5Cf6r+VApujGQqOg22/BR8FaPKGxTayyk=",
  "engine.js": "sha256-2aC9DkFfRCPTBX11G0SQrK38iVMPSIQMMfpDRD53VJI=",
- "engine.wasm.gz": "sha256-yvn4FUcw8X3LoP4+kSVic4gQzX1xnz8JITrpUZI+VUk=",
+ "engine.wasm.gz": "sha256-rPTjtNx/oTzOtddOgedhgANAPKnpGuve9Z06BR29uM4=",
  "files.json": "sha256-OOC53oF/ZFxL7DfA1KPli67MywQPVxjcBppyxzhaC+0="
 };
 // Keeps the page for visits without its server. FILES has the hash of each file, VERSION that of all: web/app/offline.mjs puts both before

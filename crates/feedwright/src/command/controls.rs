@@ -13,6 +13,7 @@ use crate::command::date::today;
 use crate::command::progress::Bar;
 use crate::command::terminal::wrapped;
 use crate::compensation::{GeometryChoice, NamedGeometry};
+use crate::correct::feed_overrides::override_sentence;
 use crate::correct::{CorrectJob, CorrectOutcome, FileAssumption, TARGETS, TargetControl, UnchangedStretch};
 use crate::job::Job;
 use crate::recorded_model::{fitting_machines, take_recorded_model};
@@ -88,6 +89,9 @@ pub(crate) fn print_correction(out: &mut dyn Write, outcome: &CorrectOutcome) ->
         writeln!(out, "{}", wrapped(&assumed, 2))?;
     }
     for sentence in UnchangedStretch::sentences(&outcome.unchanged, LISTED) {
+        writeln!(out, "{}", wrapped(&sentence, 2))?;
+    }
+    if let Some(sentence) = override_sentence(&outcome.feed_overrides) {
         writeln!(out, "{}", wrapped(&sentence, 2))?;
     }
     if outcome.expanded {

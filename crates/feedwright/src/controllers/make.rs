@@ -1,7 +1,7 @@
 //! How each controller of the table is made from what is known of a machine, and from a model: one function for each row.
 
 use feedwright_control::{
-    Controller, Feedforward, Gains, Gradient, InvertingSettings, LqgPreview, LqgSettings, MagnitudeOnly, OffsetBounds,
+    Controller, Feedforward, Gains, InvertingSettings, LqgPreview, LqgSettings, MagnitudeOnly, OffsetBounds,
     TwoDimensional, Uncorrected,
 };
 use feedwright_sim::{Known, KnownAxis};
@@ -25,16 +25,19 @@ pub(super) fn lqg_identified<const N: usize>(setup: &mut Setup<'_>, values: &Val
 }
 
 pub(super) fn magnitude_only<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let mut settings = inverting(setup, values);
-    settings.inversion.gradient = Gradient::Exact;
-    Box::new(MagnitudeOnly::new(setup.contour(values.number("feed_period_s")), settings))
+    let settings = inverting(setup, values);
+    Box::new(MagnitudeOnly::exact(setup.contour(values.number("feed_period_s")), settings))
 }
 
 pub(super) fn two_dimensional<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let response_s = setup.known.axes::<N>().map(|axis| response_s(&axis)).into_iter().fold(0.0, f64::max);
-    let settings =
-        InvertingSettings { tried_response_s: setup.choices.tries.then_some(response_s), ..inverting(setup, values) };
-    Box::new(TwoDimensional::new(setup.contour(values.number("feed_period_s")), settings))
+    let settings = inverting(setup, values);
+    let identifier = setup.contour(values.number("feed_period_s"));
+    Box::new(if setup.choices.tries {
+        TwoDimensional::on_trial(identifier, settings, response_s)
+    } else {
+        TwoDimensional::untried(identifier, settings)
+    })
 }
 
 /// What the supervisor holds an offset to.

@@ -33,8 +33,6 @@ pub enum ParameterKind {
     Number,
     /// Whole numbers.
     Whole,
-    /// 0 for off, 1 for on.
-    Switch,
 }
 
 impl Parameter {
@@ -54,12 +52,6 @@ impl Parameter {
         Self { name, default: default as f64, allowed, searched: None, kind: ParameterKind::Whole, reason, unit: None }
     }
 
-    /// A parameter that is on or off.
-    pub const fn switch(name: &'static str, default: bool, reason: &'static str) -> Self {
-        let default = if default { 1.0 } else { 0.0 };
-        Self { name, default, allowed: [0.0, 1.0], searched: None, kind: ParameterKind::Switch, reason, unit: None }
-    }
-
     /// The parameter with a unit of its values.
     pub const fn of_unit(self, unit: &'static str) -> Self {
         Self { unit: Some(unit), ..self }
@@ -71,7 +63,6 @@ impl Parameter {
         match self.kind {
             ParameterKind::Number => format!("{least} to {most}"),
             ParameterKind::Whole => format!("{least} to {most}, whole"),
-            ParameterKind::Switch => "0 (off) or 1 (on)".to_owned(),
         }
     }
 
@@ -195,28 +186,11 @@ impl Values {
     pub fn whole(&self, name: &str) -> usize {
         self.number(name) as usize
     }
-
-    /// A value that is on or off.
-    pub fn is_on(&self, name: &str) -> bool {
-        self.number(name) != 0.0
-    }
 }
 
 #[cfg(test)]
 mod tests {
-    use feedwright_control::Uncorrected;
-
     use super::*;
-
-    static SWITCHED: Entry = crate::controller!(
-        "switched",
-        "has a switch",
-        "this test",
-        Nothing,
-        laps: 1,
-        [Parameter::switch("on", false, "for the test")],
-        |_setup, _values| Box::new(Uncorrected)
-    );
 
     fn told(text: &str) -> String {
         let error = Setting::parse(text, CONTROLLERS.find("two-dimensional"), CONTROLLERS).unwrap_err();
@@ -246,8 +220,6 @@ mod tests {
         for value in ["21", "0", "2.5", "nan", "-1", "1e400"] {
             assert!(told(&format!("knots={value}")).contains("knots is 1 to 20, whole; its default is 1"), "{value}");
         }
-        let error = Setting::parse("on=2", Some(&SWITCHED), CONTROLLERS).unwrap_err();
-        assert!(error.to_string().contains("0 (off) or 1 (on)"), "{error}");
         let error = Setting::parse("kp=3", None, CONTROLLERS).unwrap_err();
         assert!(error.hint.contains("--set CONTROLLER.kp=3"));
     }

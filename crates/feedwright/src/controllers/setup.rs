@@ -2,10 +2,10 @@
 //!
 //! The machine itself stays in here: what makes a controller gets no hold of it, and cannot tell it what only the simulation
 //! knows. A training sees a recording of it.
-use feedwright_control::{AxisKnowledge, ContourIdentifier, IdentifiedAxes, IdentifierKind, ServoIdentifier, Spread};
+use feedwright_control::{AxisKnowledge, ContourIdentifier, IdentifiedAxes, IdentifierKind};
 use feedwright_ident::{
     AxisEstimate, AxisRecordings, DriveSettings, Excitation, Model, NotIdentified, Origin, TrainedAxes, Training,
-    an_identifier, identify_axis, train_axes, train_servo,
+    an_identifier, identify_axis,
 };
 use feedwright_sim::{Known, KnownAxis, Machine};
 use miette::Diagnostic;
@@ -255,15 +255,6 @@ impl<'a> Setup<'a> {
         Ok(())
     }
 
-    /// A servo identifier for decisions each `feed_period_s`, and how others of its kind differ.
-    pub fn servo<const N: usize>(&mut self, feed_period_s: f64) -> (ServoIdentifier<N>, Spread<N>) {
-        self.model.and_then(Model::servo).unwrap_or_else(|| {
-            let excitation = Excitation { feed_period_s, ..Excitation::servo() };
-            let trained = train_servo(&excitation.record(self.machine, self.choices.seed).0);
-            (trained.net, trained.spread)
-        })
-    }
-
     /// Takes inertia and friction of the first N axes from a recording of the machine, in place of those of its data sheets; what its
     /// drives are set to stays known.
     ///
@@ -288,14 +279,14 @@ impl<'a> Setup<'a> {
             let recordings = AxisRecordings::of(self.machine, self.choices.seed);
             let axes = identified_axes(&recordings, &self.machine.known(), &self.known);
             self.found = axes.as_ref().err().map(|cause| Err(*cause));
-            axes.ok()?.with_periods(self.known.period.servo_s)
+            axes.ok()?.axes.with_periods(self.known.period.servo_s)
         })
     }
 
-    /// Records the machine and identifies its axes.
+    /// Records the machine and identifies its axes, or finds them kept.
     fn train_axes<const N: usize>(&mut self) -> Result<(AxisRecordings<N>, TrainedAxes<N>), NotIdentified> {
         let recordings = AxisRecordings::of(self.machine, self.choices.seed);
-        let trained = train_axes(&recordings, &self.machine.known(), &self.known);
+        let trained = identified_axes(&recordings, &self.machine.known(), &self.known);
         self.found = Some(trained.as_ref().map(|trained| trained.estimates.clone()).map_err(|cause| *cause));
         Ok((recordings, trained?))
     }
@@ -331,11 +322,6 @@ impl<'a> Setup<'a> {
         let source = format!("simulated excitation of {}, seed {seed}", self.machine.name);
         let origin = Origin { source, date };
         Ok(match kind {
-            IdentifierKind::Servo => {
-                let excitation = Excitation { feed_period_s, ..Excitation::servo() };
-                let (recording, _) = excitation.record::<N>(self.machine, seed);
-                Model::of_servo(&recording, &train_servo(&recording), origin)
-            }
             IdentifierKind::Axes => {
                 let not_identified = |cause| ModelMisfit::NotIdentified { machine: self.machine.name.clone(), cause };
                 let (recordings, trained) = self.train_axes::<N>().map_err(not_identified)?;

@@ -225,6 +225,7 @@ impl AdviseJob {
             machine: &self.machine,
             file,
             target: self.target,
+            unit_mm: source.largest_unit_mm(),
             laps: self.controller.laps,
             parts: &parts,
             controller,

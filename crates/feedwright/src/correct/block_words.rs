@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use feedwright_gcode::canon::{EventKind, Motion, MotionKind, Plane, Shape};
+use feedwright_gcode::canon::{Corner, EventKind, Motion, MotionKind, Plane, Shape};
 use feedwright_gcode::{Dialect, ModesInForce};
 
 use super::target::TargetControl;
@@ -10,6 +10,9 @@ use super::target::TargetControl;
 /// Decimals of a feedrate in units a minute: of one from 10 on, and of the smallest. A feedrate below 10 has as many digits as one
 /// above, so that it is printed to within 0.05 %.
 const FEED_DECIMALS: [usize; 2] = [2, 6];
+
+/// Printed steps of a tolerance in its unit: in inches, they are some nanometers.
+const TOLERANCE_STEPS: f64 = 1e7;
 
 /// Writes blocks at one place of a program.
 pub(super) struct BlockWords<'a> {
@@ -103,6 +106,21 @@ pub(super) const fn plane_word(plane: Plane) -> &'static str {
         Plane::Xy => "G17",
         Plane::Zx => "G18",
         Plane::Yz => "G19",
+    }
+}
+
+/// Words that take corners in this way, in a unit of length and in the words of a dialect. Only LinuxCNC takes tolerances, and grbl has no words for it.
+pub(super) fn corner_words(corner: Corner, unit_mm: f64, dialect: Dialect) -> String {
+    let length = |mm: f64| (mm / unit_mm * TOLERANCE_STEPS).round() / TOLERANCE_STEPS;
+    match (corner, dialect) {
+        (Corner::ExactStop, _) => "G61.1".to_owned(),
+        (Corner::ExactPath, _) => "G61".to_owned(),
+        (_, Dialect::Grbl) => String::new(),
+        (Corner::Continuous { tolerance_mm: Some(tolerance_mm), merge_mm }, Dialect::LinuxCnc) => {
+            let merge = merge_mm.map_or_else(String::new, |merge_mm| format!(" Q{}", length(merge_mm)));
+            format!("G64 P{}{merge}", length(tolerance_mm))
+        }
+        (Corner::Continuous { .. }, _) => "G64".to_owned(),
     }
 }
 

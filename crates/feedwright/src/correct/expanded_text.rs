@@ -5,8 +5,8 @@
 
 use feedwright_gcode::canon::{Canon, Corner, EventKind, Motion, MotionKind, Shape};
 
-use super::block_words::{BlockWords, dwell, event};
-use super::program_text::{TextParts, corner_words, is_head, joined, line_of};
+use super::block_words::{BlockWords, corner_words, dwell, event};
+use super::program_text::{TextParts, is_head, joined, line_of};
 use super::source_line::PartedLine;
 use super::stretches::{ProgramPart, dwells};
 
@@ -58,7 +58,7 @@ impl TextParts<'_> {
             match part {
                 ProgramPart::Kept(Canon::Event(kind)) => {
                     let fault = if kind.kind == EventKind::Probe { PROBING } else { SYNCHRONIZED };
-                    let words = event(&kind.kind, self.source.dialect);
+                    let words = event(&kind.kind, self.dialect());
                     text.lines.push(words.ok_or_else(|| self.unwritable(step, fault))?);
                     ends |= kind.kind == EventKind::ProgramEnd;
                     step += 1;
@@ -73,7 +73,7 @@ impl TextParts<'_> {
                     }
                     let motions = self.commands[number].as_ref().map_or(&stretch.motions, |command| &command.motions);
                     let [before, behind] = dwells(stretch, self.commands, number, self.rests_s);
-                    let rest = |seconds: f64| dwell(seconds, self.source.dialect);
+                    let rest = |seconds: f64| dwell(seconds, self.dialect());
                     self.put_approach(step, number, &mut text)?;
                     text.lines.extend(before.map(rest));
                     self.put_motions(step, motions, &mut text)?;
@@ -93,7 +93,7 @@ impl TextParts<'_> {
 
     /// `%` and the number of a program for Fanuc: by these it is known for one.
     fn tape_head(&self) -> Vec<String> {
-        let head = self.source.lines.iter().take_while(|line| self.source.dialect.is_fanuc() && is_head(line));
+        let head = self.source.lines.iter().take_while(|line| self.dialect().is_fanuc() && is_head(line));
         head.filter(|line| !line.trim().is_empty()).cloned().collect()
     }
 
@@ -117,7 +117,7 @@ impl TextParts<'_> {
         let mut words = BlockWords::new(self.target, Some(self.source.modes(step)));
         for motion in motions {
             if motion.kind == MotionKind::Feed && text.corner != Some(motion.corner) {
-                text.lines.push(corner_words(motion.corner));
+                text.lines.push(corner_words(motion.corner, text.unit_mm, self.dialect()));
                 text.corner = Some(motion.corner);
             }
             let fault = match &motion.shape {

@@ -3,9 +3,8 @@
 //! What disturbs has another phase, and noise other random numbers, each time a part is cut. So it is cut several times, with a rest before the start
 //! that is another part of a period of the disturbance, and with other seeds.
 use std::ops::Range;
-use std::sync::Arc;
 
-use feedwright_control::{KnownGeometry, Uncorrected};
+use feedwright_control::Uncorrected;
 use feedwright_gcode::canon::{Event, EventKind};
 use feedwright_plan::vector::{Vector, add_scaled, sub};
 use feedwright_plan::{AlignedPaths, Step};
@@ -18,10 +17,14 @@ use serde::{Deserialize, Serialize};
 use super::kept_work::Workers;
 use super::learned::{PathTrack, PlaceError};
 use crate::report::Statistics;
-use crate::report::harm::CutErrors;
+use crate::report::harm::{CutErrors, MAX_UM};
 
 /// Cuts of a machine that disturbs or has noise.
 const CUTS: u32 = 4;
+
+/// A corrected program is no better than the uncorrected program if its RMS error is not smaller by this share, nor its largest error by
+/// [`MAX_UM`], by which it varies with noise. A smaller gain does not pay for a longer program.
+pub(super) const LEAST_GAIN: f64 = 0.02;
 
 /// What a program comes to, cut without feedback. Errors and time of a cut that diverged are not a number, null in JSON.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -50,6 +53,11 @@ impl ExportedFigures {
             (self.rms_um, self.max_um, self.uncut_um, self.time_s) = (f64::NAN, f64::NAN, f64::NAN, f64::NAN);
         }
         self
+    }
+
+    /// Whether this program gains too little to replace the uncorrected one, though it need not be worse.
+    pub(super) fn is_no_better_than(&self, uncorrected: &Self) -> bool {
+        self.rms_um > (1.0 - LEAST_GAIN) * uncorrected.rms_um && self.max_um > uncorrected.max_um - MAX_UM
     }
 
     /// The errors that decide whether one program is worse than another.
@@ -190,33 +198,10 @@ fn path_steps(program: &[Step]) -> u64 {
     program.iter().filter(|step| matches!(step, Step::Piece(_))).count() as u64
 }
 
-/// A machine whose tool is where a geometry puts it.
-struct ToolOf {
-    plant: Box<dyn Mechanism>,
-    known: Arc<KnownGeometry<3>>,
-}
-
-impl Mechanism for ToolOf {
-    fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3> {
-        let measurement = self.plant.step(command_mm);
-        Measurement { position_mm: self.known.tool_mm(measurement.joint_mm), ..measurement }
-    }
-
-    fn skip(&mut self, periods: u64) {
-        self.plant.skip(periods);
-    }
-
-    fn has_geometry(&self) -> bool {
-        true
-    }
-}
-
 /// A program beside the original.
 pub struct ExportedCut<'a> {
     /// The machine that cuts it.
     pub machine: &'a Machine,
-    /// Where its tool is, in place of what the machine file says of it.
-    pub tool: Option<&'a Arc<KnownGeometry<3>>>,
     /// What its joints have beside, as logs of the part show.
     pub error: Option<&'a PlaceError>,
     /// How the control plans.
@@ -347,19 +332,11 @@ impl ExportedCut<'_> {
             Some(error) => error.along(&self.track(aligned, &plan)?),
             None => Vec::new(),
         };
-        let plant = |start_mm: [f64; 3], seed: u64| -> Box<dyn Mechanism> {
+        let beside = |start_mm: [f64; 3], seed: u64| -> Box<dyn Mechanism> {
             let plant = Plant::<3>::with_seed(self.machine, start_mm, seed);
-            let plant: Box<dyn Mechanism> = match self.error {
-                Some(_) => Box::new(BesideModel { plant, error_mm: error_mm.clone(), period: 0 }),
-                None => Box::new(plant),
-            };
-            match self.tool {
-                Some(known) => Box::new(ToolOf { plant, known: Arc::clone(known) }),
-                None => plant,
-            }
+            Box::new(BesideModel { plant, error_mm: error_mm.clone(), period: 0 })
         };
-        let is_own = self.tool.is_none() && self.error.is_none();
-        let plant: Option<PlantMaker<'_>> = if is_own { None } else { Some(&plant) };
+        let plant: Option<PlantMaker<'_>> = if self.error.is_some() { Some(&beside) } else { None };
         self.run(aligned, &plan, plant, sinks)
     }
 

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use crate::checked_json::{checked, with_check};
 
 /// Raised whenever the same work has another result.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 const ABOUT: &str =
     "finished parts of a feedwright correct that has not ended; the same command goes on with them; may be deleted";
 

@@ -46,10 +46,10 @@ pub(super) fn loop_lags<const N: usize>(machine: &Machine) -> [LoopLag; N] {
     for n in 0..=looks[1] {
         let t_s = n as f64 * servo_s;
         // A row has the command at its start and the tool at its end.
-        let position_mm = plant.step([0.5 * TEST_MM_S2 * t_s * t_s; N]).position_mm;
+        let joint_mm = plant.step([0.5 * TEST_MM_S2 * t_s * t_s; N]).joint_mm;
         for (look, at) in looks.iter().zip(&mut seen) {
             if *look == n {
-                *at = position_mm;
+                *at = joint_mm;
             }
         }
     }

@@ -29,6 +29,7 @@ pub fn deterministic(machine: &Machine) -> Machine {
     Machine {
         axes: machine.axes.iter().map(axis).collect(),
         geometry: Squareness::default(),
+        tool: machine.compensated.clone(),
         noise: Noise::default(),
         ..machine.clone()
     }

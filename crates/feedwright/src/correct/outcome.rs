@@ -9,14 +9,12 @@ use feedwright_sim::Machine;
 use serde::Serialize;
 
 use super::expanded_text::UnwritableLine;
-use super::exported::ExportedFigures;
+use super::exported::{ExportedFigures, LEAST_GAIN};
+use super::feed_overrides::OverrideFigures;
 use super::file_prior::FileAssumption;
 use super::learned::LearnedOutcome;
 use super::unchanged::UnchangedStretch;
-
-/// A corrected program is no better than the uncorrected program if its RMS error is not smaller by this share, nor its largest error by
-/// [`MAX_UM`], by which it varies with noise. A smaller gain does not pay for a longer program.
-const LEAST_GAIN: f64 = 0.02;
+use super::verified::TextFault;
 
 /// What came of it; serialised, its figures.
 #[derive(Debug, Clone, Serialize)]
@@ -35,6 +33,8 @@ pub struct CorrectOutcome {
     /// The corrected program as the control cuts it, read from its own text.
     #[serde(rename = "as_exported")]
     pub corrected: ExportedFigures,
+    /// Both programs at feed overrides; none where no program is written.
+    pub feed_overrides: Vec<OverrideFigures>,
     /// Stretches without a corner.
     pub stretches: usize,
     /// Those that have another command.
@@ -90,8 +90,8 @@ pub(super) enum UnwrittenProgram {
     Line(UnwritableLine),
     /// Longer lines than the control takes.
     Columns(usize),
-    /// What was written does not mean the same when it is read again.
-    ReadOtherwise,
+    /// The control does not read what was meant.
+    Text(TextFault),
 }
 
 impl UnwrittenProgram {
@@ -99,7 +99,7 @@ impl UnwrittenProgram {
     pub(super) fn hint(&self) -> Option<String> {
         match self {
             Self::Line(UnwritableLine { hint, .. }) => Some((*hint).to_owned()),
-            Self::Columns(_) | Self::ReadOtherwise => None,
+            Self::Columns(_) | Self::Text(_) => None,
         }
     }
 }
@@ -111,11 +111,7 @@ impl fmt::Display for UnwrittenProgram {
                 write!(f, "line {line} has {what}, which a program without loops and subroutines cannot say here")
             }
             Self::Columns(columns) => write!(f, "blocks of it are longer than {columns} characters"),
-            Self::ReadOtherwise => write!(
-                f,
-                "what was written does not mean the same when it is read again: lathe modes, cutter compensation or feeds other than G94 between the \
-                 corrected motions"
-            ),
+            Self::Text(fault) => fault.fmt(f),
         }
     }
 }
@@ -148,7 +144,7 @@ pub(super) fn refusal(
     if !worse.is_empty() {
         return Some(format!("it is worse than the uncorrected program ({})", listed(&worse)));
     }
-    is_no_better(uncorrected, corrected).then(|| {
+    corrected.is_no_better_than(uncorrected).then(|| {
         format!(
             "it is no better than the uncorrected program: RMS {:.2} um for {:.2}, max {:.2} um for {:.2}; the RMS must fall by {} %, or the largest \
              error by {MAX_UM} um",
@@ -159,11 +155,6 @@ pub(super) fn refusal(
             100.0 * LEAST_GAIN,
         )
     })
-}
-
-/// Whether a corrected program gains too little to replace the uncorrected, though it need not be worse.
-fn is_no_better(uncorrected: &ExportedFigures, corrected: &ExportedFigures) -> bool {
-    corrected.rms_um > (1.0 - LEAST_GAIN) * uncorrected.rms_um && corrected.max_um > uncorrected.max_um - MAX_UM
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ use super::kept_work::Workers;
 use super::rounds::{JudgedPart, RoundsResult, rounds, steps_of};
 use super::seams::{Seam, is_parted, meet};
 use super::stretches::{NewMotions, ProgramPart, directions, parts, stretches};
-use super::target::TargetControl;
+use super::target::PrintedTarget;
 use super::unchanged::UnchangedReason;
 
 /// Servo periods of a piece: their rows take some 100 MB. A program of up to [`WHOLE_PIECES`]
@@ -153,7 +153,7 @@ fn fitness(program: &[Canon], corner: &[bool], step: usize) -> f64 {
 pub(super) fn rounds_of_pieces(
     cut: &ExportedCut<'_>,
     program: &LongProgram<'_>,
-    target: &TargetControl,
+    target: PrintedTarget<'_>,
     file: Option<&FileModel>,
     workers: &Workers,
 ) -> Result<RoundsResult, RunError> {
@@ -195,7 +195,7 @@ impl LongProgram<'_> {
         &self,
         number: usize,
         cut: &ExportedCut<'_>,
-        target: &TargetControl,
+        target: PrintedTarget<'_>,
         file: Option<&FileModel>,
     ) -> Result<RoundsResult, RunError> {
         let piece = &self.pieces[number];

@@ -22,6 +22,7 @@ fn as_encoders_see(machine: &Machine) -> Machine {
         axes: machine.axes.iter().map(axis).collect(),
         geometry: Squareness::default(),
         compensated: None,
+        tool: None,
         ..machine.clone()
     }
 }
@@ -48,7 +49,7 @@ fn predicted_cut(learned: &LearnedMachine, cut: &ExportedCut<'_>, program: &[Ste
     let seen = as_encoders_see(&learned.machine);
     let ExportedFigures { max_um, .. } = ExportedCut { machine: &seen, ..*cut }.figures(program)?;
     let square_um2 = |machine: &Machine| -> Result<f64, RunError> {
-        let machine = deterministic(machine);
+        let machine = deterministic(&as_encoders_see(machine));
         Ok(ExportedCut { machine: &machine, ..*cut }.once(program, 0.0, &mut [])?.rms_um.powi(2))
     };
     let best = square_um2(&learned.machine)?;

@@ -7,12 +7,12 @@
 
 use std::collections::BTreeMap;
 
-use feedwright_gcode::canon::{Canon, Corner, Motion, MotionKind, Plane, Shape};
-use feedwright_gcode::{ModesInForce, visible};
+use feedwright_gcode::canon::{Canon, Event, EventKind, Motion, MotionKind, Plane, Shape};
+use feedwright_gcode::{Dialect, ModesInForce, visible};
 
-use super::block_words::{BlockWords, dwell, feed_number, plane_word};
+use super::block_words::{BlockWords, corner_words, dwell, feed_number, plane_word};
 use super::source::SourceProgram;
-use super::source_line::{PartedLine, has_macros, with_feed, with_word};
+use super::source_line::{PartedLine, has_macros, with_dwell, with_feed, with_word};
 use super::stretches::{ProgramPart, SmoothStretch, StretchCommand, dwells, stretches};
 use super::target::TargetControl;
 
@@ -63,6 +63,11 @@ pub(super) enum UnkeptLines {
 }
 
 impl TextParts<'_> {
+    /// The dialect of the text: the control reads it.
+    pub(super) fn dialect(&self) -> Dialect {
+        self.target.reads_as(self.source.dialect)
+    }
+
     /// The original with new blocks in place of those that have another command.
     ///
     /// # Errors
@@ -112,7 +117,7 @@ impl TextParts<'_> {
 
     /// The line of a rest, where there is one.
     fn rest(&self, seconds: Option<f64>) -> Vec<String> {
-        seconds.map(|seconds| dwell(seconds, self.source.dialect)).into_iter().collect()
+        seconds.map(|seconds| dwell(seconds, self.dialect())).into_iter().collect()
     }
 
     /// The line on which a step begins: the line of its motion, or the first line of its curve. None if a line of the curve cannot be taken apart.
@@ -162,6 +167,9 @@ impl TextParts<'_> {
             if let Some(feed_mm_s) = self.source.feed_mm_s {
                 copied = with_feed(&copied, &self.feed(feed_mm_s, number));
             }
+            if let Some(seconds) = self.dwell_of(number) {
+                copied = with_dwell(&copied, &dwell(seconds, self.dialect()));
+            }
             if needs.code
                 && let Some(parsed) = PartedLine::parse(&copied)
             {
@@ -187,12 +195,28 @@ impl TextParts<'_> {
         Some(())
     }
 
-    /// Feedrate of the feed motion that a line makes.
-    fn feed_of(&self, line: usize) -> Option<f64> {
+    /// Steps that a line makes, in the order of the program.
+    fn steps_of(&self, line: usize) -> impl Iterator<Item = &Canon> {
         let steps = &self.source.steps;
         let of_line = &steps[steps.partition_point(|step| line_of(step) < line)..];
-        of_line.iter().take_while(|step| line_of(step) == line).find_map(|step| match step {
+        of_line.iter().take_while(move |step| line_of(step) == line)
+    }
+
+    /// Feedrate of the feed motion that a line makes.
+    fn feed_of(&self, line: usize) -> Option<f64> {
+        self.steps_of(line).find_map(|step| match step {
             Canon::Motion(motion) if motion.kind == MotionKind::Feed => Some(motion.feed_mm_s),
+            _ => None,
+        })
+    }
+
+    /// Time of the dwell of a line that the control would read otherwise, s.
+    fn dwell_of(&self, line: usize) -> Option<f64> {
+        if self.dialect() == self.source.dialect {
+            return None;
+        }
+        self.steps_of(line).find_map(|step| match step {
+            Canon::Event(Event { kind: EventKind::Dwell { seconds }, .. }) => Some(*seconds),
             _ => None,
         })
     }
@@ -253,7 +277,7 @@ impl TextParts<'_> {
         let [rest_before, rest_behind] = rests.map(|rest| self.rest(rest));
         let mut text = before;
         text.extend(rest_before);
-        let [enter, leave] = around([modes, at_end], command);
+        let [enter, leave] = self.around([modes, at_end], command);
         text.extend(enter);
         let mut words = BlockWords::new(self.target, Some(modes));
         for motion in command {
@@ -285,34 +309,24 @@ pub(super) fn joined(lines: &[String]) -> String {
     lines.iter().map(|line| format!("{line}\n")).collect()
 }
 
-pub(super) fn corner_words(corner: Corner) -> String {
-    match corner {
-        Corner::ExactStop => "G61.1".to_owned(),
-        Corner::ExactPath => "G61".to_owned(),
-        Corner::Continuous { tolerance_mm: None, .. } => "G64".to_owned(),
-        Corner::Continuous { tolerance_mm: Some(tolerance_mm), merge_mm: None } => format!("G64 P{tolerance_mm}"),
-        Corner::Continuous { tolerance_mm: Some(tolerance_mm), merge_mm: Some(merge_mm) } => {
-            format!("G64 P{tolerance_mm} Q{merge_mm}")
-        }
+impl TextParts<'_> {
+    /// Codes that put the modes in force that blocks need, and those that put in force what the program has behind them.
+    fn around(&self, [before, behind]: [&ModesInForce; 2], command: &[Motion]) -> [Option<String>; 2] {
+        let corner = command.first().map_or(before.corner, |motion| motion.corner);
+        let words = |now: &ModesInForce, wanted: &ModesInForce| {
+            let distance = if wanted.incremental { "G91" } else { "G90" };
+            let center = if wanted.arc_absolute { "G90.1" } else { "G91.1" };
+            let words = [
+                (now.incremental != wanted.incremental).then(|| distance.to_owned()),
+                (now.arc_absolute != wanted.arc_absolute).then(|| center.to_owned()),
+                (now.plane != wanted.plane).then(|| plane_word(wanted.plane).to_owned()),
+                (now.corner != wanted.corner).then(|| corner_words(wanted.corner, wanted.unit_mm, self.dialect())),
+            ];
+            let words: Vec<String> = words.into_iter().flatten().filter(|word| !word.is_empty()).collect();
+            (!words.is_empty()).then(|| words.join(" "))
+        };
+        let mut blocks = before.clone();
+        (blocks.incremental, blocks.arc_absolute, blocks.plane, blocks.corner) = (false, false, Plane::Xy, corner);
+        [words(before, &blocks), words(&blocks, behind)]
     }
-}
-
-/// Codes that put the modes in force that blocks need, and those that put in force what the program has behind them.
-fn around([before, behind]: [&ModesInForce; 2], command: &[Motion]) -> [Option<String>; 2] {
-    let corner = command.first().map_or(before.corner, |motion| motion.corner);
-    let words = |now: &ModesInForce, wanted: &ModesInForce| {
-        let distance = if wanted.incremental { "G91" } else { "G90" };
-        let center = if wanted.arc_absolute { "G90.1" } else { "G91.1" };
-        let words = [
-            (now.incremental != wanted.incremental).then(|| distance.to_owned()),
-            (now.arc_absolute != wanted.arc_absolute).then(|| center.to_owned()),
-            (now.plane != wanted.plane).then(|| plane_word(wanted.plane).to_owned()),
-            (now.corner != wanted.corner).then(|| corner_words(wanted.corner)),
-        ];
-        let words: Vec<String> = words.into_iter().flatten().collect();
-        (!words.is_empty()).then(|| words.join(" "))
-    };
-    let mut blocks = before.clone();
-    (blocks.incremental, blocks.arc_absolute, blocks.plane, blocks.corner) = (false, false, Plane::Xy, corner);
-    [words(before, &blocks), words(&blocks, behind)]
 }

@@ -22,7 +22,7 @@ use super::slow_end::{SlowEnd, slow_approach, slow_end, slow_last};
 use super::stretch_cut::{StretchCut, StretchGain, by_stretch, overshoot_mm, rapid_overshoot_mm};
 use super::stretch_rounds::StretchRounds;
 use super::stretches::{NewMotions, ProgramPart, SmoothStretch, StretchCommand, assembled, dwells, stretches};
-use super::target::TargetControl;
+use super::target::PrintedTarget;
 use super::unchanged::UnchangedReason;
 
 /// Cuts at the most.
@@ -109,7 +109,7 @@ pub(super) fn steps_of(program: &[Canon]) -> Result<Vec<Step>, PathError> {
 pub(super) fn rounds(
     cut: &ExportedCut<'_>,
     parts: &[ProgramPart],
-    target: &TargetControl,
+    target: PrintedTarget<'_>,
     file: Option<&FileModel>,
     judged: &JudgedPart,
 ) -> Result<RoundsResult, RunError> {
@@ -180,7 +180,7 @@ impl Haste {
 struct RoundsBench<'a> {
     cut: &'a ExportedCut<'a>,
     parts: &'a [ProgramPart],
-    target: &'a TargetControl,
+    target: PrintedTarget<'a>,
     lags: Vec<LoopLag>,
     settings: UpdateSettings,
     /// In which the tool settles, s.
@@ -226,7 +226,7 @@ impl RoundsBench<'_> {
             lines: stretch.motions.iter().filter(|motion| motion.shape == Shape::Line).count(),
             loop_s: 1.0 / self.cut.machine.slowest_kp_1_s(),
         };
-        let mut begun = StretchRounds::begun(cut, budget, self.target.steps_per_mm());
+        let mut begun = StretchRounds::begun(cut, budget, self.target.steps_per_mm);
         let overruns = rapid_overshoot_mm(rows, cut, stretch, servo_s) > OVERSHOOT_MM;
         begun.slow_rapid = overruns.then(|| slow_end(self.cut.machine));
         if !begun.done {
@@ -284,7 +284,7 @@ impl RoundsBench<'_> {
             }
             let points = new_command(rows, cut.rows.clone(), &self.lags, stretch, &settings, state.slow_end);
             let (leaves_path, plane) = (points.is_none(), stretch.plane());
-            let fitted = points.and_then(|points| state.fitted(&points, self.target.steps_per_mm()));
+            let fitted = points.and_then(|points| state.fitted(&points, self.target.steps_per_mm));
             let fitted: Option<Vec<Motion>> = fitted
                 .map(|motions| {
                     motions.into_iter().map(|motion| as_motion(motion.in_plane(plane), stretch, self.target)).collect()
@@ -369,10 +369,10 @@ fn settings(machine: &Machine) -> UpdateSettings {
     }
 }
 
-fn as_motion(fitted: FitMotion, stretch: &SmoothStretch, target: &TargetControl) -> Motion {
+fn as_motion(fitted: FitMotion, stretch: &SmoothStretch, target: PrintedTarget<'_>) -> Motion {
     let FitMotion { start_mm, end_mm, shape, feed_mm_s } = fitted;
     let first = &stretch.motions[0];
-    let corner = match (target.corner, first.corner) {
+    let corner = match (target.control.corner, first.corner) {
         (Some(corner), _) => corner,
         (None, Corner::Continuous { .. }) => first.corner,
         (None, Corner::ExactStop | Corner::ExactPath) => Corner::Continuous { tolerance_mm: None, merge_mm: None },

@@ -9,7 +9,7 @@ use feedwright_sim::Machine;
 
 use super::arc_fit::FitPoint;
 use super::stretches::SmoothStretch;
-use super::target::TargetControl;
+use super::target::PrintedTarget;
 
 /// A straight motion is slowed down before its end where it is longer than what is slow by this factor.
 const LEAST_WAY: f64 = 4.0;
@@ -66,26 +66,26 @@ pub(super) fn slow_end(machine: &Machine) -> SlowEnd {
 }
 
 /// The rapid to a stretch, the last of it at the slow end's speed; none where it is not much longer.
-pub(super) fn slow_approach(stretch: &SmoothStretch, slow: SlowEnd, target: &TargetControl) -> Option<[Motion; 2]> {
+pub(super) fn slow_approach(stretch: &SmoothStretch, slow: SlowEnd, target: PrintedTarget<'_>) -> Option<[Motion; 2]> {
     let (_, rapid) = stretch.rapid.as_ref()?;
     slow.parted(rapid, target)
 }
 
 /// Programmed motions, the last of them slow at its end; none where that is no straight line, or not much longer.
-pub(super) fn slow_last(motions: &[Motion], slow: SlowEnd, target: &TargetControl) -> Option<Vec<Motion>> {
+pub(super) fn slow_last(motions: &[Motion], slow: SlowEnd, target: PrintedTarget<'_>) -> Option<Vec<Motion>> {
     let (last, others) = motions.split_last().filter(|(last, _)| matches!(last.shape, Shape::Line))?;
     Some(others.iter().cloned().chain(slow.parted(last, target)?).collect())
 }
 
 impl SlowEnd {
     /// A straight motion in two, the second of them slow.
-    fn parted(self, motion: &Motion, target: &TargetControl) -> Option<[Motion; 2]> {
+    fn parted(self, motion: &Motion, target: PrintedTarget<'_>) -> Option<[Motion; 2]> {
         let way = sub(motion.end_mm, motion.start_mm);
         let length_mm = norm(way);
         if length_mm < LEAST_WAY * self.length_mm {
             return None;
         }
-        let steps_per_mm = target.steps_per_mm();
+        let steps_per_mm = target.steps_per_mm;
         let printed = |value: f64| (value * steps_per_mm).round() / steps_per_mm;
         let middle_mm = add_scaled(motion.end_mm, -self.length_mm / length_mm, way).map(printed);
         let feed_mm_s =
@@ -127,13 +127,14 @@ mod tests {
             let kind = if is_feed { MotionKind::Feed } else { MotionKind::Rapid };
             let (corner, others) = (Corner::ExactStop, AuxiliaryAxes::default());
             let motion = Motion { line: 7, kind, start_mm, end_mm, shape: Shape::Line, feed_mm_s, corner, others };
-            let found = slow_last(std::slice::from_ref(&motion), slow, &TARGETS[0]);
+            let target = TARGETS[0].printed(1.0);
+            let found = slow_last(std::slice::from_ref(&motion), slow, target);
             let length_mm = distance(start_mm, end_mm);
             prop_assert_eq!(found.is_some(), length_mm >= LEAST_WAY * slow_mm);
             let Some([first, last]) = found.as_deref() else { return Ok(()) };
             prop_assert!((first.start_mm, last.end_mm) == (start_mm, end_mm) && first.end_mm == last.start_mm);
             prop_assert!((first.kind, first.feed_mm_s, last.kind) == (kind, feed_mm_s, MotionKind::Feed));
-            let step_mm = 1.0 / TARGETS[0].steps_per_mm();
+            let step_mm = 1.0 / target.steps_per_mm;
             prop_assert!((distance(last.start_mm, end_mm) - slow_mm).abs() <= step_mm);
             let around_mm = distance(start_mm, first.end_mm) + distance(first.end_mm, end_mm) - length_mm;
             prop_assert!(around_mm <= step_mm, "{around_mm} mm");

@@ -153,6 +153,25 @@ pub(super) fn with_word(line: &str, word: &str) -> String {
     format!("{} {word}{gap}{behind}", before.trim_end())
 }
 
+/// A line with other words of its dwell in place of `G4` and its time; a line that has more than letters and numbers, or no `G4`, stays as it is.
+pub(super) fn with_dwell(line: &str, dwell: &str) -> String {
+    let Some(parsed) = PartedLine::parse(line) else { return line.to_owned() };
+    let is_code =
+        |(letter, number): &(char, String)| *letter == 'G' && number.parse::<f64>().is_ok_and(|code| code == 4.0);
+    let Some(at) = parsed.words.iter().position(is_code) else { return line.to_owned() };
+    let is_time = |letter: char| "PXU".contains(letter) || letter == 'S' && !parsed.has("PXU");
+    let mut words = Vec::new();
+    for (n, (letter, number)) in parsed.words.iter().enumerate() {
+        if n == at {
+            words.push(dwell.to_owned());
+        } else if !is_time(*letter) {
+            words.push(format!("{letter}{number}"));
+        }
+    }
+    words.extend(parsed.comments);
+    words.join(" ")
+}
+
 /// A line with another F word in place of each; comments stay.
 pub(super) fn with_feed(line: &str, feed: &str) -> String {
     let (mut text, mut rest) = (String::new(), line);
@@ -222,6 +241,9 @@ mod tests {
         assert_eq!(with_feed("N1 G1 X1 F 300.5 (F3) Y2 ; F1", "50.0"), "N1 G1 X1 F50.0 (F3) Y2 ; F1");
         assert_eq!(with_feed("g1x1f300", "50.0"), "g1x1F50.0");
         assert_eq!(with_feed("G1 F#1", "50.0"), "G1 F#1");
+        assert_eq!(with_dwell("N5 G04 X2.5 M8 (chips)", "G4 P2.5"), "N5 G4 P2.5 M8 (chips)");
+        assert_eq!(with_dwell("G4 S2", "G4 P2.0"), "G4 P2.0");
+        assert_eq!(with_dwell("G4 P[1+1]", "G4 P2.0"), "G4 P[1+1]");
         assert_eq!(with_word("G1 X1 (to)", "F50.0"), "G1 X1 F50.0 (to)");
         assert_eq!(with_word("X1", "F50.0"), "X1 F50.0");
         let frame = |line: &str| PartedLine::parse(line).unwrap().frame_words();

@@ -23,21 +23,8 @@ pub struct TargetControl {
     pub columns: usize,
     /// Decimals of a coordinate in mm.
     pub decimals: u32,
-    /// Loops, subroutines and parameters that it runs.
-    pub macros: MacroLanguage,
-}
-
-/// In which words a control takes loops, subroutines and parameters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MacroLanguage {
-    /// In those of the program: it is the control that the program was written for.
-    OfProgram,
-    /// O-words, as LinuxCNC.
-    OWords,
-    /// Custom macro B, M98 and M99.
-    Fanuc,
-    /// In none.
-    None,
+    /// Dialect that it reads; none is the dialect of the program: it is the control that the program was written for.
+    pub dialect: Option<Dialect>,
 }
 
 /// All target controls; the first is the default.
@@ -49,7 +36,7 @@ pub const TARGETS: &[TargetControl] = &[
         corner: None,
         columns: 120,
         decimals: 5,
-        macros: MacroLanguage::OfProgram,
+        dialect: None,
     },
     TargetControl {
         name: "linuxcnc",
@@ -58,7 +45,7 @@ pub const TARGETS: &[TargetControl] = &[
         corner: Some(Corner::Continuous { tolerance_mm: Some(0.001), merge_mm: Some(0.0) }),
         columns: 120,
         decimals: 5,
-        macros: MacroLanguage::OWords,
+        dialect: Some(Dialect::LinuxCnc),
     },
     TargetControl {
         name: "grbl",
@@ -67,7 +54,7 @@ pub const TARGETS: &[TargetControl] = &[
         corner: None,
         columns: 80,
         decimals: 4,
-        macros: MacroLanguage::None,
+        dialect: Some(Dialect::Grbl),
     },
     TargetControl {
         name: "fanuc",
@@ -76,7 +63,7 @@ pub const TARGETS: &[TargetControl] = &[
         corner: None,
         columns: 120,
         decimals: 3,
-        macros: MacroLanguage::Fanuc,
+        dialect: Some(Dialect::FanucMill),
     },
 ];
 
@@ -89,16 +76,23 @@ impl TargetControl {
     /// How it plans on a machine.
     pub fn stages(&self, machine: &Machine) -> Stages {
         let own = Stages::of(machine);
-        Stages { planner: feed_planner(self.planner).unwrap_or(own.planner), ..own }
+        Stages { planner: feed_planner(self.planner).unwrap_or(own.planner) }
+    }
+
+    /// The dialect in which it reads a program that was written in another. A control of Fanuc reads those of its relatives.
+    pub(super) fn reads_as(&self, dialect: Dialect) -> Dialect {
+        match self.dialect {
+            Some(Dialect::FanucMill) if dialect.is_fanuc() => dialect,
+            Some(own) => own,
+            None => dialect,
+        }
     }
 
     /// Whether it runs loops, subroutines and parameters as a program of a dialect has them.
-    pub(super) const fn runs_macros_of(&self, dialect: Dialect) -> bool {
-        match self.macros {
-            MacroLanguage::OfProgram => true,
-            MacroLanguage::OWords => !dialect.is_fanuc(),
-            MacroLanguage::Fanuc => dialect.is_fanuc(),
-            MacroLanguage::None => false,
+    pub(super) fn runs_macros_of(&self, dialect: Dialect) -> bool {
+        match self.reads_as(dialect) {
+            Dialect::Grbl => self.dialect.is_none(),
+            own => own.is_fanuc() == dialect.is_fanuc(),
         }
     }
 
@@ -112,8 +106,16 @@ impl TargetControl {
         unit_mm / 10_f64.powi(self.decimals_of(unit_mm) as i32)
     }
 
-    /// Printed steps in a millimetre.
-    pub(super) fn steps_per_mm(&self) -> f64 {
-        10_f64.powi(self.decimals as i32)
+    /// The control with the steps in which a program prints lengths whose largest unit is this, mm.
+    pub(super) fn printed(&self, unit_mm: f64) -> PrintedTarget<'_> {
+        PrintedTarget { control: self, steps_per_mm: 10_f64.powi(self.decimals_of(unit_mm) as i32) / unit_mm }
     }
+}
+
+/// A control, and the steps in which its program is printed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PrintedTarget<'a> {
+    pub(super) control: &'a TargetControl,
+    /// Printed steps in a millimetre.
+    pub(super) steps_per_mm: f64,
 }

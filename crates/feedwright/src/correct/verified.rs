@@ -1,9 +1,10 @@
 //! Whether a text says what it is meant to say: it is read again and compared, step by step.
 
 use std::f64::consts::PI;
+use std::fmt;
 use std::sync::Arc;
 
-use feedwright_gcode::canon::{Canon, EventKind, Motion, MotionKind, Shape};
+use feedwright_gcode::canon::{Canon, Corner, EventKind, Motion, MotionKind, Shape};
 use feedwright_gcode::{Dialect, ModesInForce, Reader, Settings};
 use feedwright_plan::vector::distance;
 
@@ -18,86 +19,195 @@ const DWELL_S: f64 = 1e-3;
 const CENTER_STEPS: f64 = 100.0;
 const CENTER_PART: f64 = 1e-3;
 
-/// The steps of a text, and the modes behind each; none where it has a mistake. Steps with the same modes share them.
-pub(super) fn read(text: &str, settings: &Settings, dialect: Dialect) -> Option<(Vec<Canon>, Vec<Arc<ModesInForce>>)> {
+/// Tolerances of `G64` may differ by this, mm: their printed digits in inches.
+const TOLERANCE_MM: f64 = 1e-6;
+
+/// The steps of a text, and the modes behind each. Steps with the same modes share them.
+type ReadSteps = (Vec<Canon>, Vec<Arc<ModesInForce>>);
+
+/// Difference between a text and what it is meant to say.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum TextFault {
+    /// The control does not take a line of it.
+    Unreadable {
+        /// The line.
+        text: String,
+        /// Its fault.
+        fault: String,
+    },
+    /// It says something else.
+    Otherwise {
+        /// Line of the original; 0 behind the last motion.
+        line: u32,
+        /// The difference.
+        what: &'static str,
+    },
+}
+
+impl fmt::Display for TextFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable { text, fault } => write!(f, "the control does not take '{}': {fault}", text.trim()),
+            Self::Otherwise { line: 0, what } => write!(f, "at its end the control reads {what}"),
+            Self::Otherwise { line, what } => write!(f, "in place of line {line} the control reads {what}"),
+        }
+    }
+}
+
+/// Reads a text as a control of a dialect does.
+///
+/// # Errors
+/// The first mistake of it.
+pub(super) fn read(text: &str, settings: &Settings, dialect: Dialect) -> Result<ReadSteps, TextFault> {
     let settings = Settings { dialect: Some(dialect), ..settings.clone() };
-    let mut reader = Reader::from_text("corrected.ngc", text, settings).ok()?;
+    let unreadable = |text: String, fault: String| TextFault::Unreadable { text, fault };
+    let mut reader = Reader::from_text("corrected.ngc", text, settings)
+        .map_err(|fault| unreadable("corrected.ngc".to_owned(), fault.to_string()))?;
     let (mut steps, mut modes) = (Vec::new(), Vec::<Arc<ModesInForce>>::new());
     while let Some(step) = reader.next() {
-        steps.push(step.ok()?);
+        steps.push(step.map_err(|fault| unreadable(fault.text.clone(), fault.to_string()))?);
         let now = reader.modes();
         let last = modes.last().filter(|last| ***last == now);
         modes.push(last.map_or_else(|| Arc::new(now), Arc::clone));
     }
-    Some((steps, modes))
+    Ok((steps, modes))
 }
 
-/// Whether the motions of two programs have the same frames, one behind the other, up to their printed steps, mm: a coordinate system with other
-/// offsets on the control than here is no place in the machine.
-pub(super) fn same_frames<'a>(
-    found: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>,
-    wanted: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>,
+/// Compares what two programs say.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TextComparison {
+    /// Printed step, mm.
+    pub(super) step_mm: f64,
+    /// Whether the control knows tolerances of corners and messages. Those that it does not know are its own, and comments.
+    pub(super) of_linuxcnc: bool,
+}
+
+impl TextComparison {
+    /// The first difference between the frames of the motions of two programs, one behind the other, up to their printed steps: a coordinate system
+    /// with other offsets on the control than here is no place in the machine.
+    pub(super) fn frames<'a>(
+        self,
+        found: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>,
+        wanted: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>,
+    ) -> Result<(), TextFault> {
+        let (found, wanted) = (frames(found, self.step_mm), frames(wanted, self.step_mm));
+        let is_near = |k: usize| found.get(k).is_some_and(|found| found.1.near_frame(wanted[k].1, self.step_mm));
+        match (0..wanted.len()).find(|&k| !is_near(k)) {
+            Some(k) => Err(TextFault::Otherwise { line: wanted[k].0, what: "another coordinate system" }),
+            None if found.len() == wanted.len() => Ok(()),
+            None => Err(TextFault::Otherwise { line: 0, what: "another coordinate system" }),
+        }
+    }
+
+    /// The first difference between what two programs ask for, up to their printed steps; events between two motions may have another order.
+    pub(super) fn steps(self, found: &[Canon], wanted: &[Canon]) -> Result<(), TextFault> {
+        let (found, wanted) = (self.legs(found), self.legs(wanted));
+        for (k, leg) in wanted.iter().enumerate() {
+            let line = leg.1.map_or(0, |motion| motion.line);
+            let otherwise = |what| Err(TextFault::Otherwise { line, what });
+            match found.get(k) {
+                None => return otherwise("no more motions"),
+                Some(found) => self.leg(found, leg).or_else(otherwise)?,
+            }
+        }
+        if found.len() > wanted.len() {
+            return Err(TextFault::Otherwise { line: 0, what: "more motions" });
+        }
+        Ok(())
+    }
+
+    fn legs(self, program: &[Canon]) -> Vec<Leg<'_>> {
+        let mut legs: Vec<Leg<'_>> = vec![(Vec::new(), None)];
+        for step in program {
+            match step {
+                Canon::Motion(motion) if is_nothing(motion, self.step_mm) => {}
+                Canon::Motion(motion) => {
+                    if let Some(leg) = legs.last_mut() {
+                        leg.1 = Some(motion);
+                    }
+                    legs.push((Vec::new(), None));
+                }
+                Canon::Event(event) => match &event.kind {
+                    EventKind::ProgramEnd | EventKind::MCode { code: 2 | 30, .. } => {}
+                    EventKind::Message { .. } if !self.of_linuxcnc => {}
+                    kind => legs.last_mut().into_iter().for_each(|leg| leg.0.push(kind)),
+                },
+            }
+        }
+        for leg in &mut legs {
+            leg.0.sort_by_key(|kind| format!("{kind:?}"));
+        }
+        legs
+    }
+
+    fn leg(self, found: &Leg<'_>, wanted: &Leg<'_>) -> Result<(), &'static str> {
+        if found.0.len() != wanted.0.len()
+            || found.0.iter().zip(&wanted.0).any(|(found, wanted)| !same_event(found, wanted))
+        {
+            return Err("another M-code, speed, tool, dwell or message");
+        }
+        match (found.1, wanted.1) {
+            (None, None) => Ok(()),
+            (Some(found), Some(wanted)) => self.motion(found, wanted),
+            (None, Some(_)) => Err("no more motions"),
+            (Some(_), None) => Err("more motions"),
+        }
+    }
+
+    fn motion(self, found: &Motion, wanted: &Motion) -> Result<(), &'static str> {
+        let feed_mm_s = FEED_PART * wanted.feed_mm_s + 1e-6;
+        let same = [
+            (found.kind == wanted.kind, "a rapid for a feed motion, or a feed motion for a rapid"),
+            (distance(found.end_mm, wanted.end_mm) < 2.0 * self.step_mm, "another end"),
+            (found.others == wanted.others, "other positions of axes beside X, Y and Z"),
+            ((found.feed_mm_s - wanted.feed_mm_s).abs() <= feed_mm_s, "another feedrate"),
+            (
+                found.kind == MotionKind::Rapid || self.corner(found.corner, wanted.corner),
+                "another way of taking corners",
+            ),
+            (same_shape(found, wanted, self.step_mm), "another curve"),
+        ];
+        same.iter().find(|(same, _)| !same).map_or(Ok(()), |(_, what)| Err(what))
+    }
+
+    fn corner(self, found: Corner, wanted: Corner) -> bool {
+        let near = |found: Option<f64>, wanted: Option<f64>| match (found, wanted) {
+            (Some(found), Some(wanted)) => (found - wanted).abs() <= TOLERANCE_MM,
+            (found, wanted) => found == wanted,
+        };
+        match (found, wanted) {
+            (
+                Corner::Continuous { tolerance_mm, merge_mm },
+                Corner::Continuous { tolerance_mm: wanted_mm, merge_mm: wanted_merge_mm },
+            ) => !self.of_linuxcnc || near(tolerance_mm, wanted_mm) && near(merge_mm, wanted_merge_mm),
+            (found, wanted) => found == wanted,
+        }
+    }
+}
+
+/// The frames of a program's motions, each with the line of the first motion in it.
+fn frames<'a>(
+    steps: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>,
     step_mm: f64,
-) -> bool {
-    let (found, wanted) = (frames(found, step_mm), frames(wanted, step_mm));
-    found.len() == wanted.len() && found.iter().zip(&wanted).all(|(found, wanted)| found.near_frame(wanted, step_mm))
-}
-
-fn frames<'a>(steps: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>, step_mm: f64) -> Vec<&'a ModesInForce> {
-    let mut frames: Vec<&ModesInForce> = Vec::new();
-    for (_, modes) in steps.filter(|(step, _)| matches!(step, Canon::Motion(_))) {
-        if frames.last().is_none_or(|last| !last.near_frame(modes, step_mm)) {
-            frames.push(modes);
+) -> Vec<(u32, &'a ModesInForce)> {
+    let mut frames: Vec<(u32, &ModesInForce)> = Vec::new();
+    for (step, modes) in steps {
+        if let Canon::Motion(motion) = step
+            && frames.last().is_none_or(|last| !last.1.near_frame(modes, step_mm))
+        {
+            frames.push((motion.line, modes));
         }
     }
     frames
 }
 
-/// Whether two programs ask for the same, up to their printed steps, mm; events between two motions may have another order.
-pub(super) fn same(found: &[Canon], wanted: &[Canon], step_mm: f64) -> bool {
-    let (found, wanted) = (legs(found, step_mm), legs(wanted, step_mm));
-    found.len() == wanted.len() && found.iter().zip(&wanted).all(|(found, wanted)| same_leg(found, wanted, step_mm))
-}
-
 /// A motion, none behind the last, and the events before it in an order of their own.
 type Leg<'a> = (Vec<&'a EventKind>, Option<&'a Motion>);
 
-fn legs(program: &[Canon], step_mm: f64) -> Vec<Leg<'_>> {
-    let mut legs: Vec<Leg<'_>> = vec![(Vec::new(), None)];
-    for step in program {
-        match step {
-            Canon::Motion(motion) if is_nothing(motion, step_mm) => {}
-            Canon::Motion(motion) => {
-                if let Some(leg) = legs.last_mut() {
-                    leg.1 = Some(motion);
-                }
-                legs.push((Vec::new(), None));
-            }
-            Canon::Event(event) => match &event.kind {
-                EventKind::ProgramEnd | EventKind::MCode { code: 2 | 30, .. } => {}
-                kind => legs.last_mut().into_iter().for_each(|leg| leg.0.push(kind)),
-            },
-        }
-    }
-    for leg in &mut legs {
-        leg.0.sort_by_key(|kind| format!("{kind:?}"));
-    }
-    legs
-}
-
-fn same_leg(found: &Leg<'_>, wanted: &Leg<'_>, step_mm: f64) -> bool {
-    let events = found.0.len() == wanted.0.len()
-        && found.0.iter().zip(&wanted.0).all(|(found, wanted)| same_event(found, wanted));
-    events
-        && match (found.1, wanted.1) {
-            (None, None) => true,
-            (Some(found), Some(wanted)) => same_motion(found, wanted, step_mm),
-            _ => false,
-        }
-}
-
+/// Whether a line has less than half a printed step: printed, it has none or at least one.
 fn is_nothing(motion: &Motion, step_mm: f64) -> bool {
-    matches!(motion.shape, Shape::Line) && motion.others.is_none() && distance(motion.start_mm, motion.end_mm) < step_mm
+    let is_short = distance(motion.start_mm, motion.end_mm) < 0.5 * step_mm;
+    is_short && matches!(motion.shape, Shape::Line) && motion.others.is_none()
 }
 
 fn same_event(found: &EventKind, wanted: &EventKind) -> bool {
@@ -106,15 +216,6 @@ fn same_event(found: &EventKind, wanted: &EventKind) -> bool {
         (EventKind::Message { text: a }, EventKind::Message { text: b }) => a.trim() == b.trim(),
         (a, b) => a == b,
     }
-}
-
-fn same_motion(found: &Motion, wanted: &Motion, step_mm: f64) -> bool {
-    found.kind == wanted.kind
-        && (found.corner == wanted.corner || found.kind == MotionKind::Rapid)
-        && found.others == wanted.others
-        && distance(found.end_mm, wanted.end_mm) < 2.0 * step_mm
-        && (found.feed_mm_s - wanted.feed_mm_s).abs() <= FEED_PART * wanted.feed_mm_s + 1e-6
-        && same_shape(found, wanted, step_mm)
 }
 
 fn same_shape(found: &Motion, wanted: &Motion, step_mm: f64) -> bool {
@@ -140,20 +241,20 @@ fn same_shape(found: &Motion, wanted: &Motion, step_mm: f64) -> bool {
 mod tests {
     use super::*;
 
-    const STEP_MM: f64 = 0.001;
+    const COMPARISON: TextComparison = TextComparison { step_mm: 0.001, of_linuxcnc: true };
     const PROGRAM: &str = "G21 G90 G17 G64 F600\nM3 S500\nG0 X5 Y5\nG1 X10\nG4 P0.5\nG2 X20 Y5 I5 J0\n(MSG, look)\n\
                            G5 X30 Y5 I2 J3 P-2 Q3\nM8\nM64 P1\nG1 Z-1\nG1 A10\nM2\n";
 
     fn read_again(text: &str) -> (Vec<Canon>, Vec<Arc<ModesInForce>>) {
-        read(text, &Settings::default(), Dialect::LinuxCnc).unwrap_or_else(|| panic!("{text}"))
+        read(text, &Settings::default(), Dialect::LinuxCnc).unwrap_or_else(|fault| panic!("{fault}\n{text}"))
     }
 
     /// Whether the program says the same with something in place of a part of it.
     fn is_same(part: &str, other: &str) -> bool {
         assert!(PROGRAM.contains(part), "{part}");
         let [wanted, found] = [PROGRAM.to_owned(), PROGRAM.replacen(part, other, 1)].map(|text| read_again(&text).0);
-        let is_same = same(&found, &wanted, STEP_MM);
-        assert_eq!(is_same, same(&wanted, &found, STEP_MM), "{part:?} and {other:?}");
+        let is_same = COMPARISON.steps(&found, &wanted).is_ok();
+        assert_eq!(is_same, COMPARISON.steps(&wanted, &found).is_ok(), "{part:?} and {other:?}");
         is_same
     }
 
@@ -165,7 +266,7 @@ mod tests {
             ("P0.5\n", "P0.5004\n"),
             ("M3 S500\n", "S500\nM3\n"),
             ("M8\nM64 P1\n", "M64 P1\nM8\n"),
-            ("X10\n", "X10\nX10.0005\n"),
+            ("X10\n", "X10\nX10.0004\n"),
             ("(MSG, look)", "(MSG,look )"),
             ("M2\n", "M30\n"),
             ("G64 F600\nM3 S500\nG0 X5 Y5\n", "G61 F600\nM3 S500\nG0 X5 Y5\nG64\n"),
@@ -213,7 +314,7 @@ mod tests {
                 steps.iter().zip(modes.iter().map(|modes| &**modes))
             };
             let [found, wanted] = [found, wanted].map(|read| steps(Box::leak(Box::new(read))));
-            same_frames(found, wanted, STEP_MM)
+            COMPARISON.frames(found, wanted).is_ok()
         };
         let two = "G54 G1 X1\nG10 L2 P2 X5 Y2\nG55 X1\n";
         assert!(are_same(two, two));

@@ -184,7 +184,7 @@ impl Job {
             .planned_as
             .map_or_else(|| Run::on(machine), |control| Run::on(machine).stages(control.stages(machine)));
         let run = plant.map_or(run, |plant| run.plant(plant));
-        let run = run.capped(caps).laps(entry.laps).sharing(kept).watched(watch).planned_to(looked_at);
+        let run = run.within_drives().capped(caps).laps(entry.laps).sharing(kept).watched(watch).planned_to(looked_at);
         match aligned {
             Some(aligned) => run.cut_aligned(aligned, controller, sinks),
             None => run.cut(steps, controller, sinks),

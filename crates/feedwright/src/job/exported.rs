@@ -43,7 +43,6 @@ impl Job {
         let stages = target.stages(&self.machine);
         let cut = ExportedCut {
             machine: &outcome.machine,
-            tool: None,
             error: None,
             stages,
             original: &outcome.original_steps,

@@ -7,7 +7,7 @@ use feedwright_sim::{Row, RunResult, Sink};
 
 use super::{Job, JobError, MEASURED};
 use crate::report::{
-    ErrorSpectrum, FullCircle, RadialDeviations, ReportedRun, RunFacts, Series, Statistics, TimelineEvent,
+    DriveLimits, ErrorSpectrum, FullCircle, RadialDeviations, ReportedRun, RunFacts, Series, Statistics, TimelineEvent,
 };
 
 /// Everything that is drawn or counted of a run, while its rows come.
@@ -92,6 +92,7 @@ impl Job {
             part: self.program.file_name(),
             axes: record.axes,
             measured: name == MEASURED,
+            drives: Some(DriveLimits::of(&self.machine)),
             run,
         };
         let summary = record.statistics.summary(facts, text);

@@ -9,7 +9,7 @@ use super::{Job, JobError};
 use crate::controllers::CutsUncorrected;
 use crate::cycle_time::{self, CycleTime, CycleTimeOfCut, cycle_time};
 use crate::fastest::FastestPlan;
-use crate::report::{DrawnLimits, FullCircle, LimitBand, Outcome, Report, ReportedRun, WorstPlace};
+use crate::report::{DrawnLimits, FullCircle, LimitBand, Outcome, Report, ReportedRun, RunSummary, WorstPlace};
 
 /// What the machine allows each axis.
 fn drawn_limits(machine: &Machine) -> Vec<DrawnLimits> {
@@ -92,11 +92,12 @@ impl Job {
         })
     }
 
-    /// Whether the command of the controller that is asked for may be used: it was cut to its end, and is not worse than uncorrected.
+    /// Whether the command of the controller that is asked for may be used: it was cut to its end, is not worse than uncorrected, and a drive may
+    /// get it.
     pub(super) fn is_of_use(&self, report: &Report) -> bool {
         let mut runs = report.runs.iter().map(|run| &run.summary);
-        let cut = runs.any(|run| run.controller == self.controller.name && run.outcome == Outcome::Completed);
-        cut && report.harm().is_empty()
+        let of_use = |run: &RunSummary| run.outcome == Outcome::Completed && run.beyond_drives().is_none();
+        runs.any(|run| run.controller == self.controller.name && of_use(run)) && report.harm().is_empty()
     }
 
     /// Whether to find what binds along the path: on machines that are planned axis by axis.

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::netlist::{ARROWS, Netlist, instance_of, last_part};
+use super::components::{PinSide, hardware_behind, inputs_beside, is_planner, side, writer};
+use super::netlist::{Netlist, instance_of, last_part};
 
 /// Components between a joint and its hardware that are followed, at most.
 const MOST_BETWEEN: usize = 40;
@@ -18,8 +19,10 @@ pub(crate) enum DriveKind {
     Stepgen { stepgen: String },
     /// A drive on EtherCAT.
     EtherCat { pin: String },
-    /// Something else.
+    /// Hardware that setup does not know.
     Other { pin: String },
+    /// Components that only compute.
+    Computed,
     /// Nothing.
     Nothing,
 }
@@ -47,10 +50,6 @@ pub(crate) enum FeedbackKind {
 const SENSORS: [&str; 8] = ["encoder", "enc-", "enc.", "resolver", "biss", "ssi.", "fanuc", "fabs"];
 /// Drivers of cards whose positions are those of encoders.
 const CARDS: [&str; 9] = ["stg.", "vti.", "pluto-servo", "motenc", "ppmc", "gm.", "mv.", "8i20", "opto"];
-/// Last parts of pins that a component reads.
-const INPUTS: [&str; 8] =
-    ["feedback", "command", "position-cmd", "pos-cmd", "motor-pos-fb", "value", "enable", "command-deriv"];
-
 /// What takes the position command of a joint.
 pub(crate) fn drive_of(netlist: &Netlist, command_pin: &str) -> DriveKind {
     let sinks: Vec<&str> = netlist.beside(command_pin).filter(|pin| last_part(pin) != "motor-pos-fb").collect();
@@ -58,7 +57,7 @@ pub(crate) fn drive_of(netlist: &Netlist, command_pin: &str) -> DriveKind {
         let pid = instance_of(pid).to_owned();
         let output_pin = format!("{pid}.output");
         let outputs: Vec<&str> = netlist.beside(&output_pin).collect();
-        if let Some(stepgen) = outputs.iter().find(|pin| pin.contains("stepgen")) {
+        if let Some(stepgen) = outputs.iter().find(|pin| pin.contains("stepgen") && last_part(pin) == "velocity-cmd") {
             return DriveKind::PidStepgen { pid, stepgen: instance_of(stepgen).to_owned() };
         }
         let output = outputs.first().map_or_else(|| output_pin.clone(), |pin| (*pin).to_owned());
@@ -70,9 +69,10 @@ pub(crate) fn drive_of(netlist: &Netlist, command_pin: &str) -> DriveKind {
     if let Some(pin) = sinks.iter().find(|pin| is_ethercat(pin)) {
         return DriveKind::EtherCat { pin: (*pin).to_owned() };
     }
-    match sinks.first() {
-        Some(pin) => DriveKind::Other { pin: (*pin).to_owned() },
-        None => DriveKind::Nothing,
+    match hardware_behind(netlist, command_pin) {
+        Some(pin) => DriveKind::Other { pin },
+        None if sinks.is_empty() => DriveKind::Nothing,
+        None => DriveKind::Computed,
     }
 }
 
@@ -97,16 +97,20 @@ pub(crate) fn feedback_of(netlist: &Netlist, command_pin: &str, feedback_pin: &s
     }
     let mut trace = FeedbackTrace { netlist, command, seen: BTreeSet::new(), sources: Vec::new(), is_simulated: false };
     trace.follow(feedback);
-    let measured = trace.sources.iter().find(|kind| !matches!(kind, FeedbackKind::OwnSteps { .. }));
-    if let Some(kind) = measured.or(trace.sources.first()) {
+    let rank = |kind: &&FeedbackKind| match kind {
+        FeedbackKind::OwnSteps { .. } => 1,
+        FeedbackKind::Unknown { .. } => 2,
+        _ => 0,
+    };
+    if let Some(kind) = trace.sources.iter().min_by_key(rank) {
         return kind.clone();
     }
-    let other = netlist.pins(feedback).find(|pin| is_output(pin)).or_else(|| netlist.beside(feedback_pin).next());
+    let other = writer(netlist, feedback).or_else(|| netlist.beside(feedback_pin).next());
     let pin = other.unwrap_or(feedback).to_owned();
     if trace.is_simulated { FeedbackKind::Simulated { pin } } else { FeedbackKind::Unknown { pin } }
 }
 
-/// Follows the feedback of a joint back to what makes it.
+/// Follows the feedback of a joint back to what makes it, through components that compute.
 struct FeedbackTrace<'a> {
     netlist: &'a Netlist,
     /// The signal of the command.
@@ -126,41 +130,27 @@ impl FeedbackTrace<'_> {
         if self.seen.len() > MOST_BETWEEN || !self.seen.insert(signal.to_owned()) {
             return;
         }
-        let sources: Vec<&str> = self.netlist.pins(signal).filter(|pin| is_output(pin)).collect();
-        if let Some(kind) = sources.iter().find_map(|pin| source(pin)) {
-            self.sources.push(kind);
+        let netlist = self.netlist;
+        let unknown = || netlist.pins(signal).filter(|pin| side(netlist, pin) == PinSide::Hardware);
+        let Some(output) = writer(netlist, signal) else {
+            let unknown_source = || Some(FeedbackKind::Unknown { pin: unknown().next()?.to_owned() });
+            self.sources.extend(unknown().find_map(source).or_else(unknown_source));
             return;
-        }
-        let mut behind: Vec<String> = Vec::new();
-        for instance in sources.iter().map(|pin| instance_of(pin)).filter(|instance| !is_planner(instance)) {
-            let inputs = self.netlist.pins_of(instance).filter(|pin| !sources.contains(pin));
-            behind.extend(inputs.filter_map(|pin| self.netlist.signal_of(pin)).map(str::to_owned));
-        }
-        for signal in behind {
-            self.follow(&signal);
+        };
+        if let Some(kind) = source(output) {
+            self.sources.push(kind);
+        } else if !is_planner(output) {
+            for signal in inputs_beside(netlist, output).filter_map(|pin| netlist.signal_of(pin)) {
+                self.follow(signal);
+            }
         }
     }
-}
-
-/// Whether LinuxCNC itself has the pins of this instance.
-fn is_planner(instance: &str) -> bool {
-    ["joint.", "axis.", "motion", "spindle.", "halui", "iocontrol"].iter().any(|name| instance.starts_with(name))
-}
-
-/// Whether a pin can be the source of a position.
-fn is_output(pin: &str) -> bool {
-    let last = last_part(pin);
-    let is_input = last.starts_with("in") || last.starts_with("pin") || INPUTS.contains(&last) || ARROWS.contains(&pin);
-    !is_input && (!is_planner(pin) || last == "motor-pos-cmd")
 }
 
 /// What a pin says of a position, if its name tells.
 fn source(pin: &str) -> Option<FeedbackKind> {
     let (lower, last) = (pin.to_lowercase(), last_part(pin));
     let owned = pin.to_owned();
-    if lower.contains("sim-encoder") || lower.contains("sim_encoder") || lower.contains("feedwright-plant") {
-        return Some(FeedbackKind::Simulated { pin: owned });
-    }
     if lower.contains("stepgen") {
         return Some(FeedbackKind::OwnSteps { pin: owned });
     }

@@ -11,13 +11,14 @@ const CORRECTION_MM_S2: f64 = 400.0;
 /// Largest distance of the drive's command from the path at the start, mm.
 const DEVIATION_MM: f64 = 0.05;
 
-/// The text of the copy. `renamed` are entries, by their number, that name another HAL file.
+/// The text of the copy. `renamed` are entries, by their number, that name another HAL file; `accel_mm_s2` is what every joint can.
 pub(crate) fn ini_copy(
     ini: &IniFile,
     renamed: &[(usize, String)],
     names: &SetupNames,
     simulates: bool,
     values: &[IniValue],
+    accel_mm_s2: Option<f64>,
 ) -> String {
     let mut lines: Vec<Option<String>> = ini.lines.iter().cloned().map(Some).collect();
     let mut set = |entry: &IniEntry, value: &str| {
@@ -59,11 +60,12 @@ pub(crate) fn ini_copy(
         text.push_str(&line);
         text.push('\n');
     }
-    text.push_str(&section(names, simulates));
+    text.push_str(&section(names, simulates, accel_mm_s2));
     text
 }
 
-fn section(names: &SetupNames, simulates: bool) -> String {
+fn section(names: &SetupNames, simulates: bool, accel_mm_s2: Option<f64>) -> String {
+    let accel_mm_s2 = accel_mm_s2.unwrap_or(0.0);
     let machine = if simulates {
         format!("# The simulated machine that stands in for the drives.\nMACHINE = {}\n", names.plant)
     } else {
@@ -78,6 +80,8 @@ fn section(names: &SetupNames, simulates: bool) -> String {
          DELAY = 0.010\n\
          # Acceleration with which the correction fades, mm/s2.\n\
          CORRECTION_ACCELERATION = {CORRECTION_MM_S2}\n\
+         # Acceleration of the correction while it is in the loop, mm/s2; 0 is without limit. It comes on top of what LinuxCNC plans.\n\
+         ACCELERATION_LIMIT = {accel_mm_s2}\n\
          # Largest distance of the drive's command from the path, mm. Raise it as far as the clearances allow.\n\
          DEVIATION_LIMIT = {DEVIATION_MM}\n\
          # 1 corrects from the start.\n\

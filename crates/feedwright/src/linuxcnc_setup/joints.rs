@@ -159,6 +159,13 @@ impl SetupJoints {
         found.map(|JointValue { value, place }| JointValue { value: value * self.unit_mm, place })
     }
 
+    /// The smallest of all joints that a program moves, within a range, in mm.
+    pub(crate) fn least_mm(&self, key: &str, [low, high]: [f64; 2]) -> Option<JointValue> {
+        let values = self.wired().filter_map(|joint| self.program_mm(joint, key));
+        let least = values.min_by(|a, b| a.value.total_cmp(&b.value))?;
+        Some(JointValue { value: least.value.clamp(low, high), place: least.place })
+    }
+
     /// A number of a joint's section, a length, a speed or an acceleration, in mm.
     pub(crate) fn length_mm(&self, joint: &SetupJoint, key: &str) -> Option<JointValue> {
         let JointValue { value, place } = self.value(joint, key)?;
@@ -225,20 +232,20 @@ impl SetupJoints {
         if !refusals.is_empty() {
             return refusals;
         }
-        let simulated = |joint: &SetupJoint| joint.is_simulated();
-        if !simulates && self.wired().any(simulated) {
+        if !simulates && self.wired().any(SetupJoint::is_simulated) {
             refusals.push(
-                "the drives are simulated, and follow their command without error: there is nothing to correct. To try the correction, let a \
-                 simulated machine stand in for the drives: --simulate tnv40"
+                "no position is measured: it is the command itself, or computed from it, so there is nothing to correct. To try the correction, \
+                 let a simulated machine stand in for the drives: --simulate tnv40"
                     .to_owned(),
             );
         }
-        if simulates && !self.wired().all(simulated) {
+        let passing = || self.passing().map(|(joint, _)| joint);
+        if simulates && !self.wired().chain(passing()).all(SetupJoint::is_replaced) {
             refusals
                 .push("--simulate is for a configuration without drives: leave it out, this one has drives".to_owned());
         }
-        refusals.extend(self.wired().filter_map(SetupJoint::refusal));
-        refusals.extend(self.passing().filter_map(|(joint, _)| joint.unconnected()));
+        refusals.extend(self.wired().filter_map(|joint| joint.refusal(simulates)));
+        refusals.extend(passing().filter_map(SetupJoint::unconnected));
         refusals
     }
 
@@ -279,7 +286,7 @@ impl SetupJoint {
         let (command, feedback) = (format!("joint.{number}.motor-pos-cmd"), format!("joint.{number}.motor-pos-fb"));
         let drive = drive_of(netlist, &command);
         let feedback = feedback_of(netlist, &command, &feedback);
-        let value = |name: String| number_of(netlist, &name);
+        let value = |name: String| netlist.number(&name);
         let gains = match &drive {
             DriveKind::PidAnalog { pid, .. } | DriveKind::PidStepgen { pid, .. } => Some(PidGains {
                 p: value(format!("{pid}.Pgain")),
@@ -305,6 +312,17 @@ impl SetupJoint {
         matches!(self.feedback, FeedbackKind::Loopback | FeedbackKind::Simulated { .. })
     }
 
+    /// Whether the output of its `pid` is a speed in the unit of the configuration, so that P is in 1/s and FF1 a part of 1. A step generator
+    /// takes a speed by its own definition. What an amplifier makes of a value, such as volts, no file states.
+    pub(crate) fn commands_speed(&self) -> bool {
+        matches!(self.drive, DriveKind::PidStepgen { .. })
+    }
+
+    /// Whether a simulated machine can stand in for what is behind the joint.
+    fn is_replaced(&self) -> bool {
+        self.is_simulated() || matches!(self.feedback, FeedbackKind::Unknown { .. } | FeedbackKind::Nothing)
+    }
+
     fn drive_words(&self) -> String {
         match &self.drive {
             DriveKind::PidAnalog { pid, output } => format!("{pid}{} drives {output}", self.gain_words()),
@@ -313,8 +331,8 @@ impl SetupJoint {
             }
             DriveKind::Stepgen { stepgen } => format!("the step generator {stepgen} takes positions"),
             DriveKind::EtherCat { pin } => format!("an EtherCAT drive takes positions at {pin}"),
-            DriveKind::Other { .. } if self.is_simulated() => "no drive".to_owned(),
             DriveKind::Other { pin } => format!("{pin} takes the position"),
+            DriveKind::Computed => "no drive".to_owned(),
             DriveKind::Nothing => "no drive is connected".to_owned(),
         }
     }
@@ -360,15 +378,16 @@ impl SetupJoint {
     }
 
     /// Why the joint cannot be corrected, and what to do.
-    fn refusal(&self) -> Option<String> {
+    fn refusal(&self, simulates: bool) -> Option<String> {
         let number = self.number;
         match &self.feedback {
             FeedbackKind::OwnSteps { pin } => Some(format!(
                 "joint {number}: {pin} reports the steps that were sent, not where the machine is. A correction by it would correct nothing \
                  real. Connect an encoder of motor or table to joint.{number}.motor-pos-fb"
             )),
-            FeedbackKind::Unknown { pin } => Some(format!(
-                "joint {number}: setup does not know whether {pin} is a measured position. If it is, wire by hand as docs/linuxcnc.md says"
+            FeedbackKind::Unknown { pin } if !simulates => Some(format!(
+                "joint {number}: setup does not know whether {pin} is a measured position. If it is, wire by hand as docs/linuxcnc.md says. To \
+                 try the correction without the drives, let a simulated machine stand in for them: --simulate tnv40"
             )),
             _ => self.unconnected(),
         }
@@ -384,8 +403,4 @@ impl SetupJoint {
             )
         })
     }
-}
-
-fn number_of(netlist: &Netlist, name: &str) -> Option<f64> {
-    netlist.value(name).and_then(number)
 }

@@ -15,6 +15,7 @@
 
 use std::collections::BTreeMap;
 
+use feedwright_control::position_gains_1_s;
 use feedwright_sim::{Machine, to_four_digits};
 
 use super::drives::DriveKind;
@@ -37,29 +38,33 @@ const SPEEDS: f64 = 1.4;
 
 /// Following errors that a joint needs, in the unit of the configuration.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct NeededFerror {
-    pub(crate) joint: usize,
-    pub(crate) ferror: f64,
-    pub(crate) min_ferror: f64,
+struct NeededFerror {
+    joint: usize,
+    ferror: f64,
+    min_ferror: f64,
     /// FERROR and MIN_FERROR as they are.
     given: [Option<f64>; 2],
     unit: &'static str,
 }
 
 /// What the joints need, as far as their lag is known: from their `pid`, or of the machine that stands in
-/// for them.
-pub(crate) fn needed(joints: &SetupJoints, simulated: Option<&Machine>) -> Vec<NeededFerror> {
+/// for them. `raised` is the following error that the copy allows.
+fn needed(joints: &SetupJoints, simulated: Option<&Machine>, raised: Option<f64>) -> Vec<NeededFerror> {
     let of = |(joint, axis): (&SetupJoint, Option<&feedwright_sim::Axis>)| {
-        let lag_s = lag_s(joint, axis)?;
+        let lag_s = lag_s(joints, joint, axis)?;
         let [(_, speed), (_, acceleration)] =
             [joints.planned(joint, "MAX_VELOCITY")?, joints.planned(joint, "MAX_ACCELERATION")?];
-        let given = ["FERROR", "MIN_FERROR"].map(|key| joints.value(joint, key).map(|found| found.value));
+        let raised = raised.filter(|_| !joint.is_rotary);
+        let given = ["FERROR", "MIN_FERROR"].map(|key| {
+            let given = joints.value(joint, key).map(|found| found.value);
+            raised.map(|raised| given.map_or(raised, |given| given.max(raised))).or(given)
+        });
         // Rounded up to a hundredth of a millimetre, and a thousandth of an inch.
         let digit = if joints.unit_mm == 1.0 { 100.0 } else { 1000.0 };
         let up = |value: f64| (digit * value).ceil() / digit;
         let (lag, behind) = (speed * lag_s, MARGIN * acceleration * lag_s * (lag_s + DELAY_S));
-        let ferror = up((2.0 * lag).max(lag + behind).max(given[0].unwrap_or(0.0)));
-        let min_ferror = up(behind / (1.0 - lag / ferror));
+        let ferror = up((2.0 * lag).max(lag + behind)).max(given[0].unwrap_or(0.0));
+        let min_ferror = up(behind / (1.0 - lag / ferror)).max(given[1].unwrap_or(0.0));
         let unit = if joint.is_rotary { "degrees" } else { joints.unit_name() };
         Some(NeededFerror { joint: joint.number, ferror, min_ferror, given, unit })
     };
@@ -76,12 +81,6 @@ impl NeededFerror {
         let [ferror, min_ferror] = self.given;
         ferror.is_none_or(|given| given < self.ferror) || min_ferror.is_none_or(|given| given < self.min_ferror)
     }
-
-    /// The values to write: no limit is made smaller.
-    pub(crate) fn values(&self) -> [(&'static str, f64); 2] {
-        let [ferror, min_ferror] = self.given.map(|given| given.unwrap_or(0.0));
-        [("FERROR", ferror.max(self.ferror)), ("MIN_FERROR", min_ferror.max(self.min_ferror))]
-    }
 }
 
 /// A value of the copy.
@@ -92,17 +91,24 @@ pub(crate) struct IniValue {
     pub(crate) value: f64,
 }
 
-/// The values that the copy has in place of those of the original.
-pub(crate) fn written(joints: &SetupJoints, simulated: Option<&Machine>, raise_ferror: bool) -> Vec<IniValue> {
-    let ferror = if raise_ferror { needed(joints, simulated) } else { Vec::new() };
-    let value = |(section, key, value): (String, &'static str, f64)| IniValue { section, key, value };
-    let raised =
-        ferror.iter().flat_map(|need| need.values().map(|(key, value)| (format!("JOINT_{}", need.joint), key, value)));
-    let mut values: Vec<IniValue> = raised.map(value).collect();
-    if simulated.is_some() {
+/// The values that the copy has in place of those of the original. `raised` is the following error that the user names.
+pub(crate) fn written(joints: &SetupJoints, simulates: bool, raised: Option<f64>) -> Vec<IniValue> {
+    let mut values: Vec<IniValue> = raised.map(|value| ferrors(joints, value)).unwrap_or_default();
+    if simulates {
         values.extend(travels(joints));
     }
     values
+}
+
+/// FERROR and MIN_FERROR of linear joints that go through the component, where they are below a value.
+fn ferrors(joints: &SetupJoints, value: f64) -> Vec<IniValue> {
+    let through = joints.wired().chain(joints.passing().map(|(joint, _)| joint)).filter(|joint| !joint.is_rotary);
+    let of = |joint: &SetupJoint| {
+        let [section, _] = joints.sections(joint);
+        ["FERROR", "MIN_FERROR"].map(|key| IniValue { section: section.clone(), key, value })
+    };
+    let is_lower = |new: &IniValue| joints.number(new.section.clone(), new.key).is_none_or(|given| given.value < value);
+    through.flat_map(of).filter(is_lower).collect()
 }
 
 /// Limits of travel that the copy moves, of corrected joints and of second motors.
@@ -146,36 +152,39 @@ fn travel(joints: &SetupJoints, joint: &SetupJoint) -> Vec<IniValue> {
     joints.sections(joint).into_iter().flat_map(of).collect()
 }
 
-/// The lag of a drive, s, if it is known.
-fn lag_s(joint: &SetupJoint, simulated: Option<&feedwright_sim::Axis>) -> Option<f64> {
+/// The lag of a drive, s, if it is known: by the machine that stands in for it, or by a `pid` whose output is a speed.
+fn lag_s(joints: &SetupJoints, joint: &SetupJoint, simulated: Option<&feedwright_sim::Axis>) -> Option<f64> {
     let [p, ff1] = match (simulated, &joint.gains) {
         (Some(axis), _) => [axis.kp_1_s, axis.velocity_feedforward],
-        (None, Some(gains)) => [gains.p?, gains.feedforward[1].unwrap_or(0.0)],
-        (None, None) => return None,
+        (None, Some(gains)) if joint.commands_speed() => [gains.p?, gains.feedforward[1].unwrap_or(0.0)],
+        _ => return None,
     };
-    (p > 0.0).then(|| ((1.0 - ff1) / p).max(LEAST_LAG_S))
+    let [least, most] = position_gains_1_s(joints.servo_s);
+    (least..=most).contains(&p).then(|| ((1.0 - ff1) / p).max(LEAST_LAG_S))
 }
 
-/// What must change, in plain words. `raised` are following errors that the copy has already.
-pub(crate) fn changes(joints: &SetupJoints, simulated: Option<&Machine>, raised: bool) -> Vec<String> {
+/// What must change, in plain words. `raised` is the following error that the copy allows already.
+pub(crate) fn changes(joints: &SetupJoints, simulated: Option<&Machine>, raised: Option<f64>) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for need in needed(joints, simulated) {
-        let [(_, ferror), (_, min_ferror)] = need.values();
-        let (joint, unit) = (need.joint, need.unit);
-        let now = need.given.map(|given| given.map_or("LinuxCNC's default".to_owned(), to_four_digits_of));
-        let how = if raised { "the copy has" } else { "set" };
+    for NeededFerror { joint, ferror, min_ferror, given, unit } in needed(joints, simulated, raised) {
+        let now = given.map(|given| given.map_or("LinuxCNC's default".to_owned(), to_four_digits));
         lines.push(format!(
-            "[JOINT_{joint}] {how} FERROR = {ferror} and MIN_FERROR = {min_ferror} {unit} (now {} and {}): the delayed drive is farther behind",
+            "[JOINT_{joint}] set FERROR = {ferror} and MIN_FERROR = {min_ferror} {unit} (now {} and {}): the delayed drive is farther behind",
             now[0], now[1]
         ));
     }
-    if !raised && !lines.is_empty() {
-        lines.push("'feedwright linuxcnc setup --raise-ferror' writes these values into the copy".to_owned());
+    match raised {
+        Some(value) => lines.extend(raised_words(joints, value)),
+        None if !lines.is_empty() => lines.push(
+            "--raise-ferror VALUE writes a value of yours for both into the copy. A drive that fails moves so far before LinuxCNC stops it"
+                .to_owned(),
+        ),
+        None => {}
     }
     if simulated.is_some() {
         lines.extend(travel_words(joints));
     }
-    if joints.wired().any(|joint| lag_s(joint, None).is_none()) && simulated.is_none() {
+    if joints.wired().any(|joint| lag_s(joints, joint, None).is_none()) && simulated.is_none() {
         lines.push(
             "FERROR and MIN_FERROR: how far these drives are behind is not known before they are identified. When LinuxCNC starts with the model, \
              the component names the MIN_FERROR that is needed"
@@ -192,6 +201,20 @@ pub(crate) fn changes(joints: &SetupJoints, simulated: Option<&Machine>, raised:
         );
     }
     lines
+}
+
+/// Where the copy allows the following error that the user names.
+fn raised_words(joints: &SetupJoints, value: f64) -> Option<String> {
+    let mut sections: Vec<String> =
+        ferrors(joints, value).into_iter().map(|IniValue { section, .. }| format!("[{section}]")).collect();
+    sections.dedup();
+    let unit = joints.unit_name();
+    (!sections.is_empty()).then(|| {
+        format!(
+            "the copy allows a following error of {value} {unit} in {}: --raise-ferror raises FERROR and MIN_FERROR to it",
+            sections.join(", ")
+        )
+    })
 }
 
 fn of_stepgen(joints: &SetupJoints, joint: &SetupJoint) -> Option<String> {
@@ -217,8 +240,4 @@ fn of_stepgen(joints: &SetupJoints, joint: &SetupJoint) -> Option<String> {
     (!words.is_empty()).then(|| {
         format!("{stepgen} needs {}: the correction moves its command faster than LinuxCNC does", words.join(" and "))
     })
-}
-
-fn to_four_digits_of(value: f64) -> String {
-    to_four_digits(value).to_string()
 }

@@ -4,6 +4,7 @@
 
 use std::fmt::Write as _;
 
+use feedwright_control::position_gains_1_s;
 use feedwright_sim::toml_file::quoted;
 use feedwright_sim::{MACHINE_FORMAT, to_four_digits};
 
@@ -11,8 +12,6 @@ use super::ini::IniFile;
 use super::joints::{JointValue, SetupJoint, SetupJoints};
 use super::names::SetupNames;
 
-/// Gain below and above which no position loop is, 1/s: such a P is of another unit.
-const GAINS_1_S: [f64; 2] = [0.5, 2000.0];
 /// Largest encoder step that a machine file has, um.
 const MOST_STEP_UM: f64 = 1000.0;
 /// Speeds and accelerations that a machine file can have, mm and s.
@@ -54,11 +53,6 @@ pub(crate) fn machine_file(joints: &SetupJoints, ini: &IniFile, names: &SetupNam
 
 /// The limits of all axes: the smallest of each, so that a program keeps those of every joint.
 fn limits(text: &mut String, joints: &SetupJoints) {
-    let least = |key: &str, [low, high]: [f64; 2]| {
-        let values = joints.wired().filter_map(|joint| joints.program_mm(joint, key));
-        let least = values.min_by(|a, b| a.value.total_cmp(&b.value))?;
-        Some(JointValue { value: least.value.clamp(low, high), place: least.place })
-    };
     let _ = writeln!(text, "\n[limits]");
     let mut line = |key: &str, from: &str, found: Option<&JointValue>| {
         let _ = match found {
@@ -68,10 +62,10 @@ fn limits(text: &mut String, joints: &SetupJoints) {
             None => writeln!(text, "# {key} is unknown: no joint has {from}"),
         };
     };
-    let speed = least("MAX_VELOCITY", SPEEDS_MM_S);
+    let speed = joints.least_mm("MAX_VELOCITY", SPEEDS_MM_S);
     line("rapid_mm_s", "MAX_VELOCITY", speed.as_ref());
     line("max_feed_mm_s", "MAX_VELOCITY", speed.as_ref());
-    let acceleration = least("MAX_ACCELERATION", ACCELERATIONS_MM_S2);
+    let acceleration = joints.least_mm("MAX_ACCELERATION", ACCELERATIONS_MM_S2);
     line("tangential_accel_mm_s2", "MAX_ACCELERATION", acceleration.as_ref());
     line("normal_accel_mm_s2", "MAX_ACCELERATION", acceleration.as_ref());
     let _ =
@@ -122,10 +116,17 @@ fn gains(text: &mut String, joints: &SetupJoints, joint: &SetupJoint) {
         return;
     };
     let place = |key: &str| joints.value(joint, key).map_or_else(|| "the HAL file".to_owned(), |found| found.place);
-    let [low, high] = GAINS_1_S;
+    if !joint.commands_speed() {
+        let _ = writeln!(
+            text,
+            "# unknown: kp_1_s, velocity_feedforward; the output of the pid may be in volts, so P and FF1 are no gain in 1/s and no part of 1"
+        );
+        return;
+    }
+    let [low, high] = position_gains_1_s(joints.servo_s);
     match gains.p {
         Some(p) if (low..=high).contains(&p) => {
-            let _ = writeln!(text, "kp_1_s = {p:?} # P, {}: if the output of the pid is a speed", place("P"));
+            let _ = writeln!(text, "kp_1_s = {p:?} # P, {}", place("P"));
         }
         Some(p) => {
             let _ = writeln!(text, "# P = {p:?}, {}, is no position gain in 1/s: kp_1_s is unknown", place("P"));

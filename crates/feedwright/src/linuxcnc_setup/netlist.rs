@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::hal::{HalLine, HalPlace, HalScript};
+use super::ini::number;
 
 /// A `loadrt` line.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -12,6 +13,19 @@ pub(crate) struct HalLoad {
     pub(crate) module: String,
     pub(crate) arguments: Vec<String>,
     pub(crate) place: HalPlace,
+}
+
+impl HalLoad {
+    /// Names of its instances, where the line states them.
+    fn names(&self) -> impl Iterator<Item = &str> {
+        let lists = self.arguments.iter().filter_map(|argument| argument.strip_prefix("names="));
+        lists.flat_map(|names| names.split(',')).filter(|name| !name.is_empty())
+    }
+
+    /// Beginning of its pins' names where the line states no names.
+    fn prefix(&self) -> String {
+        if self.module == "mux_generic" { "mux-gen".to_owned() } else { self.module.replace('_', "-") }
+    }
 }
 
 /// An `addf` line.
@@ -100,7 +114,8 @@ impl Netlist {
         }
     }
 
-    fn pin(&self, name: &str) -> String {
+    /// The pin that a name means: its own, or the one that it is another name of.
+    pub(crate) fn pin(&self, name: &str) -> String {
         self.aliases.get(name).cloned().unwrap_or_else(|| name.to_owned())
     }
 
@@ -125,6 +140,11 @@ impl Netlist {
         self.of_pin.get(pin).map(String::as_str)
     }
 
+    /// All signals.
+    pub(crate) fn signals(&self) -> impl Iterator<Item = &str> {
+        self.signals.keys().map(String::as_str)
+    }
+
     /// The pins of a signal.
     pub(crate) fn pins(&self, signal: &str) -> impl Iterator<Item = &str> {
         self.signals.get(signal).into_iter().flatten().map(String::as_str)
@@ -144,6 +164,30 @@ impl Netlist {
     /// What a pin or signal was set to.
     pub(crate) fn value(&self, name: &str) -> Option<&str> {
         self.values.get(name).map(String::as_str)
+    }
+
+    /// What a pin or signal was set to, as a number.
+    pub(crate) fn number(&self, name: &str) -> Option<f64> {
+        match self.value(name)? {
+            "TRUE" | "True" | "true" => Some(1.0),
+            "FALSE" | "False" | "false" => Some(0.0),
+            value => number(value),
+        }
+    }
+
+    /// The pins of an instance that were set.
+    pub(crate) fn set_of<'a>(&'a self, instance: &'a str) -> impl Iterator<Item = &'a str> {
+        self.values.keys().map(String::as_str).filter(move |pin| instance_of(pin) == instance)
+    }
+
+    /// The component that has a pin, by the names of its instances, or by its own name where it is loaded without names.
+    pub(crate) fn module_of(&self, pin: &str) -> Option<&str> {
+        let has = |name: &str| pin.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'));
+        let is_named = |load: &&HalLoad| load.names().any(has);
+        let is_counted = |load: &&HalLoad| load.names().next().is_none() && has(&load.prefix());
+        let mut loads = self.loads.iter();
+        let load = loads.find(is_named).or_else(|| self.loads.iter().find(is_counted))?;
+        Some(&load.module)
     }
 
     /// The line that loads a component.

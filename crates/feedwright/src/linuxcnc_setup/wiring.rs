@@ -14,12 +14,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
+use super::disconnect::{self, CutPin};
 use super::error::LinuxcncSetupError;
-use super::hal::{HalLine, HalPlace, HalScript, NamedBy};
+use super::hal::{HalLine, HalPlace, HalScript, HalWord, NamedBy};
 use super::ini::IniFile;
 use super::joints::{SetupJoint, SetupJoints};
+use super::line_edit::{HalLineEdit, edited};
 use super::names::SetupNames;
-use super::netlist::{ARROWS, HalFunction, Netlist, last_part};
+use super::netlist::{HalFunction, Netlist, last_part};
 use super::steps::SAMPLED;
 
 /// What is written of the HAL files.
@@ -88,6 +90,9 @@ pub(crate) fn wire(
     let mut edits =
         HalEdits { script, netlist, load, lines: BTreeMap::new(), new: BTreeMap::new(), added: String::new() };
     let passages = passages(joints);
+    if simulates {
+        disconnect::cut_pins(netlist).iter().for_each(|cut| edits.disconnect(cut));
+    }
     for passage in &passages {
         edits.joint(passage, simulates);
     }
@@ -117,6 +122,12 @@ impl Passage<'_> {
     /// Whether the component corrects the joint.
     fn is_corrected(&self) -> bool {
         self.prefix.is_empty()
+    }
+
+    /// Whether the joint keeps its feedback where the drives are simulated. A simulated machine stands in for the drives of corrected joints, and
+    /// the command itself for unknown ones that pass through.
+    fn keeps_feedback(&self) -> bool {
+        !self.is_corrected() && self.joint.is_simulated()
     }
 
     /// A pin of the component: `command`, `drive`, `actual` or `feedback`.
@@ -168,15 +179,6 @@ fn loads(joints: &SetupJoints, simulates: bool) -> Vec<String> {
     lines
 }
 
-/// Changes of one line.
-#[derive(Debug, Default)]
-struct HalLineEdit {
-    /// Words by their number that are replaced, or taken out where there is nothing in their place.
-    words: BTreeMap<usize, Option<String>>,
-    /// Lines behind it.
-    after: Vec<String>,
-}
-
 /// All changes of the HAL files.
 struct HalEdits<'a> {
     script: &'a HalScript,
@@ -199,7 +201,7 @@ impl HalEdits<'_> {
             }
             let first = if line.word(0) == "net" { 2 } else { 1 };
             let words = line.words.iter().enumerate().skip(first);
-            for (number, _) in words.filter(|(_, word)| word.text == pin) {
+            for (number, _) in words.filter(|(_, word)| self.netlist.pin(&word.text) == pin) {
                 let edit = self.lines.entry(place).or_default();
                 edit.words.entry(number).or_insert_with(|| by.map(str::to_owned));
             }
@@ -210,11 +212,23 @@ impl HalEdits<'_> {
         self.lines.entry(place).or_default().after.extend_from_slice(lines);
     }
 
+    /// Takes a pin of hardware off its signal, and sets it to the value that it has while the machine is off.
+    fn disconnect(&mut self, CutPin { pin, at_rest, .. }: &CutPin) {
+        let connects = |(place, line): (HalPlace, &HalLine)| {
+            let is_pin = |word: &HalWord| self.netlist.pin(&word.text) == *pin;
+            (line.word(0) != "setp" && line.words.iter().skip(1).any(is_pin)).then_some(place)
+        };
+        let place = self.script.lines().filter_map(connects).last();
+        self.replace(pin, None);
+        if let (Some(place), Some(value)) = (place, at_rest.filter(|value| *value != 0.0)) {
+            self.after(place, &[format!("setp {pin} {value}")]);
+        }
+    }
+
     fn joint(&mut self, passage: &Passage<'_>, simulates: bool) {
         self.replace(&passage.joint_pin("motor-pos-cmd"), Some(&passage.pin("drive")));
         let actual = passage.pin("actual");
-        // A simulated machine stands in for the drives of corrected joints.
-        let by = Some(actual.as_str()).filter(|_| !simulates || !passage.is_corrected());
+        let by = Some(actual.as_str()).filter(|_| !simulates || passage.keeps_feedback());
         self.replace(&passage.joint_pin("motor-pos-fb"), by);
     }
 
@@ -338,6 +352,7 @@ impl HalEdits<'_> {
             "\n# Settings.\n\
              setp feedwright.delay [FEEDWRIGHT]DELAY\n\
              setp feedwright.correction-acceleration [FEEDWRIGHT]CORRECTION_ACCELERATION\n\
+             setp feedwright.acceleration-limit [FEEDWRIGHT]ACCELERATION_LIMIT\n\
              setp feedwright.deviation-limit [FEEDWRIGHT]DEVIATION_LIMIT\n\
              setp feedwright.enable [FEEDWRIGHT]ENABLE\n\
              setp sampler.0.enable 0"
@@ -370,6 +385,8 @@ impl HalEdits<'_> {
                 self.netlist.signal_of(&feedback).unwrap_or("").to_owned()
             };
             let _ = writeln!(self.added, "net {actual} => {}", sample(2));
+        } else if simulates && !passage.keeps_feedback() {
+            let _ = writeln!(self.added, "net {command} => {}", passage.pin("actual"));
         }
         let _ = writeln!(self.added, "net feedwright-feedback-{net} {} => {feedback}", passage.pin("feedback"));
         for (name, pin) in [("offset", "motor-offset"), ("homed", "homed")].into_iter().filter(|_| is_corrected) {
@@ -455,32 +472,4 @@ impl HalEdits<'_> {
         }
         text
     }
-}
-
-/// A line with other words. A `net` that has no pin left becomes a comment.
-fn edited(line: &HalLine, words: &BTreeMap<usize, Option<String>>) -> String {
-    let is_arrow = |number: usize| ARROWS.contains(&line.word(number));
-    let is_taken = |number: &usize| words.get(number) == Some(&None);
-    let has_pins = (2..line.words.len()).any(|number| !is_arrow(number) && !is_taken(&number));
-    let takes_out = words.values().any(Option::is_none);
-    if takes_out && (line.word(0) != "net" || !has_pins) {
-        return format!("# {}", line.text.replace('\n', "\n# "));
-    }
-    let mut changes = words.clone();
-    // An arrow in front of a word that is taken out goes with it.
-    changes.extend(
-        (1..line.words.len()).filter(is_taken).map(|number| number - 1).filter(|&n| is_arrow(n)).map(|n| (n, None)),
-    );
-    let mut text = line.text.clone();
-    let mut end = line.words.len();
-    // Words of one value of the INI file stand in one place.
-    for place in line.words.chunk_by(|a, b| a.span == b.span).rev() {
-        let numbers = end - place.len()..end;
-        end = numbers.start;
-        if changes.range(numbers.clone()).next().is_some() {
-            let left = numbers.filter_map(|n| changes.get(&n).map_or(Some(line.word(n)), Option::as_deref));
-            text.replace_range(place[0].span.clone(), &left.collect::<Vec<_>>().join(" "));
-        }
-    }
-    text
 }

@@ -10,6 +10,8 @@ use super::digits;
 const MOST_ASYMMETRY: f64 = 0.99;
 /// Torque limit where the log never came to one, times what its motions took.
 const SPARE: f64 = 10.0;
+/// Most that a machine file has of the delay of a drive, s.
+const MOST_DRIVE_DELAY_S: f64 = 0.02;
 /// Least friction and smoothing that a machine file has.
 const LEAST_SMOOTHING_RAD_S: f64 = 1e-6;
 
@@ -135,7 +137,8 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
     if late_s > 0.0 {
         keys.push(told("command_delay_s", late_s, "commands reach the position loop late, by whole servo periods"));
     }
-    let whole = (get(LawTerm::LoopDelay) / mechanics_s).round() * mechanics_s;
+    let periods = (get(LawTerm::LoopDelay) / mechanics_s).round().min((MOST_DRIVE_DELAY_S / mechanics_s).floor());
+    let whole = periods * mechanics_s;
     optional(keys, found, "drive_delay_s", LawTerm::LoopDelay, whole, 1.0);
     let integral = get(LawTerm::Integral);
     if integral > 0.0 {

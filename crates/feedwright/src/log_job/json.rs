@@ -85,6 +85,7 @@ fn axis(identified: &LogIdentified, i: usize, found: &FoundAxis) -> Value {
             "open": found.unseen.is_open(),
             "parameters": found.unseen.terms.iter().map(|term| term.key()).collect::<Vec<_>>(),
         },
+        "at_bounds": found.at_bounds.iter().map(|at| json!({ "parameter": at.term.key(), "value": at.value, "bound": at.bound })).collect::<Vec<_>>(),
         "next_motion": identified
             .next_motion_of(i)
             .map(|motion| motion.parts.iter().map(|part| part.word()).collect::<Vec<_>>())

@@ -1,7 +1,8 @@
 //! What the logs of the built-in machines tell, and the models by that, shipped with the program: their first cut waits for no identification.
 //!
 //! `just built-in-logs` writes the file, for each machine and number of axes a line of the log and one of the model for the default controller. A line is found by a hash of what it follows
-//! from: a machine with another value, or another seed, is identified anew. A test compares a line with a new identification.
+//! from: a machine with another value, or another seed, is identified anew. One test finds all lines, another compares a line with a new
+//! identification.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +24,11 @@ struct BuiltInLog {
     fitting: Vec<Vec<(usize, String)>>,
 }
 
+/// All lines.
+pub(super) fn lines() -> impl Iterator<Item = &'static str> {
+    BUILT_IN.lines()
+}
+
 /// How the line of a content begins.
 fn beginning(content: &str) -> String {
     format!("{{\"content\":\"{}\"", key_of(&[content.as_bytes()]))
@@ -32,7 +38,7 @@ fn beginning(content: &str) -> String {
 pub(super) fn told(content: &str) -> Option<Told> {
     let beginning = beginning(content);
     let BuiltInLog { text, doubts, fitting, .. } =
-        serde_json::from_str(BUILT_IN.lines().find(|line| line.starts_with(&beginning))?).ok()?;
+        serde_json::from_str(lines().find(|line| line.starts_with(&beginning))?).ok()?;
     let with = |changes: &Vec<(usize, String)>| {
         let mut lines: Vec<&str> = text.split('\n').collect();
         changes.iter().try_for_each(|(number, line)| lines.get_mut(*number).map(|old| *old = line.as_str()))?;

@@ -6,7 +6,7 @@ use std::fmt;
 
 use super::harm::{CutErrors, Harm, harm, listed};
 use super::text::{change, duration, fixed, number};
-use super::{AS_EXPORTED, Outcome, Report, RunSummary};
+use super::{AS_EXPORTED, CommandShare, CommandShares, Outcome, Report, RunSummary};
 use crate::controllers::BASELINE;
 
 pub(crate) const AXES: [&str; 3] = ["X", "Y", "Z"];
@@ -154,6 +154,7 @@ impl Headline {
     fn completed(&mut self, report: &Report, judged: &RunSummary) {
         let compared = report.compared();
         let runs = [compared, Some(judged)];
+        self.beyond_drives(judged);
         self.text("Simulated, ");
         self.name(&judged.controller);
         if let Some(compared) = compared {
@@ -173,6 +174,16 @@ impl Headline {
         self.cost(runs, judged);
         self.faded(judged);
         self.measured(report);
+    }
+
+    /// That no drive may get this command.
+    fn beyond_drives(&mut self, judged: &RunSummary) {
+        if let Some(CommandShare { axis, share }) = judged.beyond_drives() {
+            self.text(&format!(
+                "Do not use this command: it asks {axis} for {} times the acceleration limit of the machine file. ",
+                number(share)
+            ));
+        }
     }
 
     /// That a run has no figures.
@@ -207,6 +218,10 @@ impl Headline {
         self.value(&what, runs, torque_nm, |nm| format!("{} N m", number(nm)));
         self.value(", command beside the program by up to ", [None, runs[1]], |run| run.max_deviation_um, um);
         self.value(", its largest acceleration ", runs, accel_m_s2, |accel| format!("{} m/s²", number(accel)));
+        if let Some(CommandShares { acceleration, torque }) = judged.command_share {
+            let of_limit = |of: CommandShare| format!("{} % of the limit of {}", number(100.0 * of.share), of.axis);
+            self.text(&format!(", {}; largest torque {}", of_limit(acceleration), of_limit(torque)));
+        }
         self.text(".");
     }
 

@@ -6,6 +6,7 @@
 //! - Largest acceleration of the command: the largest |c(k) - 2 c(k-1) + c(k-2)| / dt^2 over rows
 //!   at equal intervals. It does not count across the part of a rest that was left out.
 //! - Peak torque: the largest |torque| of each axis over all rows.
+//! - Shares of the limits: the largest acceleration of the command and torque of each axis, by its limit; the largest of the axes.
 //! - Feedrate: the way of the tool from row to row by its time, beside the programmed feedrate at its foot, over the rows that cut.
 //! - Cutting length and time: the sum of the steps in arc length and time to the rows that cut.
 //!
@@ -65,6 +66,8 @@ pub struct Statistics {
     max_mm: f64,
     max_deviation_mm: f64,
     max_command_accel_mm_s2: f64,
+    /// Of each axis.
+    axis_accel_mm_s2: [f64; 3],
     acceleration: CommandAcceleration,
     peak_torque_nm: [f64; 3],
     cutting_length_mm: f64,
@@ -91,6 +94,7 @@ impl Statistics {
             max_mm: 0.0,
             max_deviation_mm: 0.0,
             max_command_accel_mm_s2: 0.0,
+            axis_accel_mm_s2: [0.0; 3],
             acceleration: CommandAcceleration::default(),
             peak_torque_nm: [0.0; 3],
             cutting_length_mm: 0.0,
@@ -127,6 +131,10 @@ impl Statistics {
             uncut_um: of_whole(facts.run.uncut_mm * 1e3),
             max_deviation_um: self.max_deviation_mm * 1e3,
             max_command_accel_mm_s2: self.max_command_accel_mm_s2,
+            command_share: facts
+                .drives
+                .filter(|_| !facts.measured)
+                .map(|drives| drives.shares(facts.axes, self.axis_accel_mm_s2, self.peak_torque_nm)),
             peak_torque_nm: (!facts.measured).then_some(self.peak_torque_nm),
             feed: self.feed.shares(),
             cutting_length_mm: self.cutting_length_mm,
@@ -198,6 +206,7 @@ impl Sink for Statistics {
         if let Some(accel) = self.acceleration.push(row.t_s, row.cmd_mm) {
             let accel_mm_s2 = libm::hypot(libm::hypot(accel[0], accel[1]), accel[2]);
             self.max_command_accel_mm_s2 = self.max_command_accel_mm_s2.max(accel_mm_s2);
+            self.axis_accel_mm_s2.iter_mut().zip(accel).for_each(|(most, accel)| *most = most.max(accel.abs()));
         }
         if row.cutting {
             self.cut(row);

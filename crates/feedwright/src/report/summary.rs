@@ -1,8 +1,9 @@
 //! The numbers of one run, as the page's tables and `--json` give them.
 
-use feedwright_sim::{FadedOut, Outcome, RunResult, Transition};
+use feedwright_sim::{FadedOut, Machine, Outcome, RunResult, Transition};
 use serde::Serialize;
 
+use super::headline::AXES;
 use super::histogram::Histogram;
 use super::worst::WorstPlace;
 
@@ -19,9 +20,62 @@ pub struct RunFacts {
     pub axes: usize,
     /// Whether the rows are those of a log, not of a simulation.
     pub measured: bool,
+    /// What the drives can, where that is known.
+    pub drives: Option<DriveLimits>,
     /// What the loop says about the run.
     pub run: RunResult,
 }
+
+/// What the drive of each axis can.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DriveLimits {
+    /// Acceleration that a command may have, mm/s2.
+    pub accel_mm_s2: [f64; 3],
+    /// Torque, N m.
+    pub torque_nm: [f64; 3],
+}
+
+impl DriveLimits {
+    /// Of a machine.
+    pub fn of(machine: &Machine) -> Self {
+        Self {
+            accel_mm_s2: std::array::from_fn(|i| machine.accel_limit_mm_s2(i)),
+            torque_nm: std::array::from_fn(|i| machine.axis(i).torque_limit_nm),
+        }
+    }
+
+    /// What of them is used by the axis that uses most.
+    pub(super) fn shares(&self, axes: usize, accel_mm_s2: [f64; 3], torque_nm: [f64; 3]) -> CommandShares {
+        let share = |used: [f64; 3], limits: [f64; 3]| {
+            let shares = used.into_iter().zip(limits).map(|(used, limit)| used / limit).take(axes.clamp(1, 3));
+            let (axis, share) = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0));
+            CommandShare { axis: AXES[axis], share }
+        };
+        CommandShares { acceleration: share(accel_mm_s2, self.accel_mm_s2), torque: share(torque_nm, self.torque_nm) }
+    }
+}
+
+/// What of the limits of its drives a cut takes, at the moment and on the axis that take most.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CommandShares {
+    /// Acceleration of the command.
+    pub acceleration: CommandShare,
+    /// Torque.
+    pub torque: CommandShare,
+}
+
+/// A share of the limit of an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CommandShare {
+    /// X, Y or Z.
+    pub axis: &'static str,
+    /// 1 is the limit.
+    pub share: f64,
+}
+
+/// A command that asks for more than this of an acceleration limit must not go to a drive, in percent as the user reads them: the plan may ask for
+/// all of it, and the correction for as much.
+const MOST_PERCENT: f64 = 200.0;
 
 /// How the speed of the tool leaves the programmed feedrate F, over the time that it cuts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -38,6 +92,13 @@ impl RunSummary {
     /// Whether most of the part was cut without the correction, or its end.
     pub fn is_mostly_uncorrected(&self) -> bool {
         self.faded_out.is_some() && (self.engaged_share < LEAST_SHARE || !self.engaged_at_end)
+    }
+
+    /// The share of the acceleration limit that its command asks for, where that is more than any drive may get.
+    pub fn beyond_drives(&self) -> Option<CommandShare> {
+        self.command_share
+            .map(|shares| shares.acceleration)
+            .filter(|asked| (100.0 * asked.share).round() > MOST_PERCENT)
     }
 }
 
@@ -88,6 +149,9 @@ pub struct RunSummary {
     pub max_deviation_um: f64,
     /// Largest acceleration of the command from one servo period to the next, mm/s2.
     pub max_command_accel_mm_s2: f64,
+    /// What it takes of the limits of the drives; none of a log.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub command_share: Option<CommandShares>,
     /// Largest torque of each axis, N m; none of a log: torques of logs are not read.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub peak_torque_nm: Option<[f64; 3]>,

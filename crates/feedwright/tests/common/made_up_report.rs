@@ -51,6 +51,7 @@ fn made_up_run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> Repo
         part: HOSTILE.to_owned(),
         axes,
         measured: controller == MEASURED,
+        drives: None,
         run: feedwright_sim::RunResult { time_s: rows as f64 * 1e-3, ..Default::default() },
     };
     let radial_um: Vec<_> = (0..720).map(|k| Some(1e3 * size_mm * f64::from(k % 90) / 90.0)).collect();

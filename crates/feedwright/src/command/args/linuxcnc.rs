@@ -29,7 +29,7 @@ pub(crate) enum LinuxcncCommand {
 #[command(after_long_help = "\
 Examples:
   feedwright linuxcnc setup my.ini
-  feedwright linuxcnc setup axis.ini --simulate tnv40 --raise-ferror
+  feedwright linuxcnc setup axis.ini --simulate tnv40 --raise-ferror 0.2
   feedwright linuxcnc setup my.ini --undo
 
 Exit codes: 0 wired; 1 the configuration cannot be wired, and nothing was written; 2 a file that cannot be read or written.")]
@@ -40,10 +40,12 @@ pub(crate) struct LinuxcncSetupArgs {
     /// Say what would be done, and write nothing.
     #[arg(long, conflicts_with = "undo")]
     pub(crate) dry_run: bool,
-    /// Write FERROR and MIN_FERROR that the delay needs into the copy.
-    #[arg(long, conflicts_with = "undo")]
-    pub(crate) raise_ferror: bool,
-    /// Machine that stands in for the drives of a simulated configuration: one that is built in, or a machine file (.toml).
+    /// Following error that the copy allows, in the unit of the configuration. FERROR and MIN_FERROR that are below it are raised to it. A
+    /// drive that fails moves so far before LinuxCNC stops it.
+    #[arg(long, value_name = "VALUE", value_parser = following_error, conflicts_with = "undo")]
+    pub(crate) raise_ferror: Option<f64>,
+    /// Machine that stands in for the drives: one that is built in, or a machine file (.toml). In the copy nothing commands or enables
+    /// hardware that setup does not know.
     #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "undo")]
     pub(crate) simulate: Option<String>,
     /// Replace files of an earlier setup that were changed by hand.
@@ -55,4 +57,12 @@ pub(crate) struct LinuxcncSetupArgs {
     /// Folder of the HAL files that configurations share.
     #[arg(long, value_name = "FOLDER", default_value = crate::linuxcnc_setup::HALLIB)]
     pub(crate) hallib: PathBuf,
+}
+
+/// A length above zero.
+fn following_error(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("a following error is a number above 0, in the unit of the configuration".to_owned()),
+    }
 }

@@ -88,7 +88,7 @@ impl BlockGeometry {
     fn of(choice: &GeometryChoice, machine: Option<&Machine>) -> Result<Self> {
         let known = match (choice, machine) {
             (_, Some(machine)) => choice.on_any_part(machine)?.compensated.as_deref().cloned(),
-            (GeometryChoice::File(file), None) => {
+            (GeometryChoice::File(file) | GeometryChoice::InProgram(file), None) => {
                 file.geometry.check()?;
                 Some(file.geometry.known()?)
             }

@@ -19,6 +19,7 @@ use crate::command::message::printed;
 use crate::command::streams::{tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn};
 use crate::controllers::{CONTROLLERS, Choices, Setup, identifying};
+use crate::log_job::significant;
 use crate::output::{OutputError, OutputFile, OutputFiles};
 
 pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
@@ -94,14 +95,7 @@ fn print_axes(out: &mut dyn Write, found: &[AxisEstimate], machine: &Machine) ->
 
 /// With three digits, whatever its size.
 fn three_digits(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let before_the_point = libm::log10(value.abs()).floor() as i32;
-    match before_the_point {
-        -4..=2 => format!("{value:.*}", (2 - before_the_point) as usize),
-        _ => format!("{value:.2e}"),
-    }
+    significant(value, 3, 2)
 }
 
 #[cfg(test)]

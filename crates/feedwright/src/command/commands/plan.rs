@@ -245,7 +245,7 @@ fn stages(args: &PlanArgs, machine: &Machine) -> Result<Stages> {
             names.join(", ")
         )
     })?;
-    Ok(Stages { planner, ..stages })
+    Ok(Stages { planner })
 }
 
 /// What the operator does, by the arguments.

@@ -22,7 +22,6 @@ use crate::command::date::today;
 use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell, tell_assumed_limits, warn};
 use crate::command::progress::Bar;
 use crate::command::streams::{check_inputs, tables};
-use crate::compensation::GeometryChoice;
 use crate::controllers::{BEST, Choices, Controllers};
 use crate::correct::{TARGETS, TargetControl, corrected_for};
 use crate::fastest::FastestError;
@@ -135,9 +134,8 @@ fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
     job.target = outputs.is_program()?.then_some(target);
     job.reference = args.reference.as_ref().map(Program::in_file);
     job.planned_as = job.reference.as_ref().and_then(|_| corrected_for(&job.program));
-    if job.planned_as.is_some() && args.geometry.geometry.is_none() {
-        // The program compensates the geometry itself.
-        job.compensation = GeometryChoice::Off;
+    if job.planned_as.is_some() {
+        job.compensation = job.compensation.in_program();
     }
     job.fastest = args.fastest;
     job.with_limits = true;

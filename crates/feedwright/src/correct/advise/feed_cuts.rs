@@ -21,6 +21,8 @@ pub(super) struct FeedBench<'a, const N: usize> {
     /// Machines that an uncertain file may describe: the corrected program is to be good on all of them.
     pub(super) file: Option<&'a FileModel>,
     pub(super) target: &'a TargetControl,
+    /// Largest unit of length of the program, mm.
+    pub(super) unit_mm: f64,
     pub(super) laps: u32,
     pub(super) parts: &'a [ProgramPart],
     pub(super) controller: Box<dyn Controller<N>>,
@@ -86,22 +88,13 @@ impl<const N: usize> FeedBench<'_, N> {
         let silent = Silent(self.watch);
         let stages = self.target.stages(self.machine);
         let nominal = deterministic(self.machine);
-        let on = |machine| ExportedCut {
-            machine,
-            tool: None,
-            error: None,
-            stages,
-            original: &original,
-            axes: N,
-            watch: &silent,
-        };
+        let on = |machine| ExportedCut { machine, error: None, stages, original: &original, axes: N, watch: &silent };
         let program = match way {
             CutWay::Corrected => {
-                let tool = self.machine.compensated.as_ref();
                 let found = rounds(
-                    &ExportedCut { tool, ..on(&nominal) },
+                    &on(&nominal),
                     &parts,
-                    self.target,
+                    self.target.printed(self.unit_mm),
                     self.file,
                     &JudgedPart::whole(&parts),
                 )?;
@@ -135,7 +128,7 @@ impl<const N: usize> FeedBench<'_, N> {
         watch: &dyn Watch,
     ) -> Result<RunResult, RunError> {
         let steps = || Ok(Box::new(program.iter().cloned().map(Ok)) as _);
-        Run::on(machine).laps(self.laps).watched(watch).cut(steps, &mut *self.controller, &mut [kept])
+        Run::on(machine).within_drives().laps(self.laps).watched(watch).cut(steps, &mut *self.controller, &mut [kept])
     }
 }
 

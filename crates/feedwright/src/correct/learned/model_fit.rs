@@ -166,7 +166,7 @@ pub(super) fn followed(machine: &Machine, record: &PartRecord, samples: usize, s
     positions.extend((0..periods).map(|n| {
         let command_mm = if is_same { command[n] } else { at(command, n as f64 * ratio) };
         let measurement = plant.step(command_mm);
-        if seed.is_some() { measurement.measured_mm } else { measurement.position_mm }
+        if seed.is_some() { measurement.measured_mm } else { measurement.joint_mm }
     }));
     positions
 }

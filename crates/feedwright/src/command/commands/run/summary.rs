@@ -199,10 +199,13 @@ fn print_written(out: &mut dyn Write, outputs: &Outputs, outcome: &JobOutcome) -
     match (outputs.out.as_deref(), &outcome.exported) {
         // Why there is no program is told above.
         (Some(path), None) if !is_good => {
-            let why = if outcome.harm.is_empty() {
-                "the cut did not come to its end"
-            } else {
+            let is_beyond = outcome.report.runs.last().is_some_and(|run| run.summary.beyond_drives().is_some());
+            let why = if !outcome.harm.is_empty() {
                 "the uncorrected cut is better"
+            } else if is_beyond {
+                "no drive may get this command"
+            } else {
+                "the cut did not come to its end"
             };
             writeln!(out, "{}", wrapped(&format!("{} was not written: {why}", path.display()), 2))
         }
