@@ -15,6 +15,7 @@ use std::time::Instant;
 
 use feedwright::{CycleTimeOptions, cycle_time, cycle_time_by};
 use feedwright_gcode::{Reader, Settings};
+use feedwright_lab::limited_machine;
 use feedwright_plan::{Constraints, FeedPlanner, Piece, PlanCounts, Step, Steps, TimeOptimal, feed_planner};
 use feedwright_sim::{Machine, Stages, path_steps};
 
@@ -28,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             programs.extend(programs_in(Path::new(folder)));
         }
     }
-    let machine = machine()?;
+    let machine = limited_machine(10.0);
     println!(
         "| Program | blocks | bound s | whole s | time s | / bound | / whole | largest use of a limit | deviation um | LinuxCNC s | blocks/s \
          | x real time | latest | MiB | windows | failed |"
@@ -38,19 +39,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         row(&program, &machine)?;
     }
     Ok(())
-}
-
-fn machine() -> Result<Machine, Box<dyn std::error::Error>> {
-    let mut machine = Machine::load("tnv40".as_ref())?;
-    machine.limits.rapid_mm_s = 200.0;
-    machine.limits.max_feed_mm_s = 200.0;
-    machine.limits.path_tolerance_um = Some(10.0);
-    for axis in &mut machine.axes {
-        axis.max_velocity_mm_s = Some(200.0);
-        axis.max_accel_mm_s2 = Some(2000.0);
-        axis.max_jerk_mm_s3 = Some(50_000.0);
-    }
-    Ok(machine)
 }
 
 fn row(program: &Path, machine: &Machine) -> Result<(), Box<dyn std::error::Error>> {
@@ -64,7 +52,7 @@ fn row(program: &Path, machine: &Machine) -> Result<(), Box<dyn std::error::Erro
     }
     let steps = || Ok(Box::new(read.iter().cloned().map(Ok)) as Steps<'_>);
     let found = cycle_time(machine, true, steps, &())?;
-    let stages = Stages { planner: feed_planner("linuxcnc").ok_or("no linuxcnc")?, ..Stages::of(machine) };
+    let stages = Stages { planner: feed_planner("linuxcnc").ok_or("no linuxcnc")? };
     let linuxcnc = cycle_time_by(stages, machine, &constraints, CycleTimeOptions::default(), steps, &())?;
     let whole_s = planned(&mut TimeOptimal::whole_within(&constraints), &read);
     let alone = Alone::of(&constraints, &read);

@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if let Some(seed) = seed {
         let drawn = draw(seed, count, 1, Class::Any)?;
-        programs.extend(drawn.into_iter().map(|made| (made.job.program.name.clone(), made.case.text())));
+        programs.extend(drawn.into_iter().map(|made| (made.job.program.name.clone(), made.text)));
     }
     let machine = machine.planned_by_axes(tolerance_um);
     println!(
@@ -123,10 +123,7 @@ impl Row {
         let constraints = Constraints::from(machine);
         let motions = shortened(&mut canon, &constraints)?;
         let path = WantedPath::of(&canon)?;
-        let steps = || {
-            let all = canon.clone().into_iter();
-            (Stages::of(machine).blend.make)(path_steps(all), &constraints)
-        };
+        let steps = || path_steps(canon.clone());
         let begun = Instant::now();
         let planner = Stages::of(machine).planner;
         let phases: Vec<Phase> =
@@ -195,8 +192,7 @@ fn bound_s(canon: Vec<Canon>, machine: &Machine) -> f64 {
     let machine = machine.clone();
     std::thread::spawn(move || {
         let constraints = Constraints::from(&machine);
-        let steps = (Stages::of(&machine).blend.make)(path_steps(canon), &constraints);
-        let plan = Plan::new(steps, &constraints, &WHOLE_PROGRAM, Plc::default());
+        let plan = Plan::new(path_steps(canon), &constraints, &WHOLE_PROGRAM, Plc::default());
         let time_s = plan.map(|plan| plan.filter_map(|planned| moving(&planned)).map(|phase| phase.duration_s).sum());
         // The other end is gone where the time was over.
         let _ = sender.send(time_s.unwrap_or(f64::NAN));

@@ -4,9 +4,9 @@
 
 use feedwright::{COLORS, Figure, LineStyle, Panel, Polyline};
 use feedwright_gcode::canon::Corner;
-use feedwright_lab::contour;
+use feedwright_lab::{contour, limited_machine};
 use feedwright_plan::{AxisMotion, Constraints, Plan, Planned, Plc};
-use feedwright_sim::{Machine, Stages};
+use feedwright_sim::Stages;
 
 /// Time between two points, s, and how much is shown before and behind the corner.
 const SAMPLE_S: f64 = 1e-4;
@@ -34,20 +34,13 @@ fn speed_mm_s(motion: &AxisMotion) -> f64 {
 
 /// What the axes do every 0.1 ms on the square of 20 mm at 200 mm/s.
 fn samples() -> Result<Vec<(f64, AxisMotion)>, Failure> {
-    let mut machine = Machine::load("tnv40".as_ref())?;
-    machine.limits.max_feed_mm_s = 200.0;
-    machine.limits.path_tolerance_um = Some(10.0);
-    for axis in &mut machine.axes {
-        axis.max_velocity_mm_s = Some(200.0);
-        axis.max_accel_mm_s2 = Some(2000.0);
-        axis.max_jerk_mm_s3 = Some(50_000.0);
-    }
+    let machine = limited_machine(10.0);
     let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
     let steps = contour("square").ok_or("there is no square")?.steps(200.0, corner)?;
     let (constraints, stages) = (Constraints::from(&machine), Stages::of(&machine));
-    let blended = (stages.blend.make)(Box::new(steps.into_iter().map(Ok)), &constraints);
+    let steps = Box::new(steps.into_iter().map(Ok));
     let mut found = Vec::new();
-    for planned in Plan::new(blended, &constraints, stages.planner, Plc::default())? {
+    for planned in Plan::new(steps, &constraints, stages.planner, Plc::default())? {
         let Planned::Phase(phase) = planned else { continue };
         let Some(motion) = phase.motion else { continue };
         let mut t_s = 0.0;

@@ -15,15 +15,12 @@ use copp::solver::topp2_ra::{ReachSet2OptionsBuilder, Topp2ProblemBuilder, topp2
 use copp::solver::topp3_socp::{ClarabelOptionsBuilder, Topp3ProblemBuilder, s_to_t_topp3, t_to_s_topp3, topp3_socp};
 use feedwright::cycle_time_within;
 use feedwright_gcode::canon::Corner;
-use feedwright_lab::contour;
+use feedwright_lab::{AXIS_LIMITS as LIMITS, contour, limited_machine};
 use feedwright_plan::{Constraints, Curve, Step, Steps};
-use feedwright_sim::Machine;
 
 /// Contours of one smooth curve. Of the butterfly, with its tips between stations, the peer makes a motion that leaps there.
 const CONTOURS: [&str; 4] = ["circle", "ellipse", "eight", "star"];
 
-/// Limits of each axis: mm/s, mm/s2, mm/s3.
-const LIMITS: [f64; 3] = [200.0, 2000.0, 50_000.0];
 const STATIONS: usize = 1001;
 const ROUNDS: u32 = 3;
 
@@ -76,12 +73,7 @@ fn main() -> Result<(), Failure> {
 
 /// Time and what it took to plan, s.
 fn ours(name: &str, tolerance_um: f64) -> Result<(f64, f64), Failure> {
-    let mut machine = Machine::load("tnv40".as_ref())?;
-    [machine.limits.rapid_mm_s, machine.limits.max_feed_mm_s] = [LIMITS[0]; 2];
-    machine.limits.path_tolerance_um = Some(tolerance_um);
-    for axis in &mut machine.axes {
-        [axis.max_velocity_mm_s, axis.max_accel_mm_s2, axis.max_jerk_mm_s3] = LIMITS.map(Some);
-    }
+    let machine = limited_machine(tolerance_um);
     let steps = contour_steps(name)?;
     let begun = Instant::now();
     let all = || Ok(Box::new(steps.iter().cloned().map(Ok)) as Steps<'_>);

@@ -113,7 +113,7 @@ fn errors(machine: &Machine, net: &ContourIdentifier<2>, gradient: Gradient) -> 
     let mut settings = InvertingSettings::DEFAULT;
     settings.inversion.gradient = gradient;
     let mut statistics = Statistics::new();
-    cut(machine, &mut TwoDimensional::new(net.clone(), settings), &mut [&mut statistics]);
+    cut(machine, &mut TwoDimensional::untried(net.clone(), settings), &mut [&mut statistics]);
     format!("{:.1} / {:.1}", statistics.rms_um(), statistics.max_um())
 }
 

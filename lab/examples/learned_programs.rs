@@ -3,10 +3,9 @@
 //!
 //! The machine that cuts is one of [`MACHINES`], with disturbance, noise and encoder steps. Its geometry has no errors: all errors are
 //! those that encoders see. In the machine file, position gain, speed-loop gain, inertia, friction, integral time and feedforward of
-//! each axis are up to 20 % off, drawn by the seed. With `--machine` the file is right and the machine is drawn. With `--unknown` the
-//! machine also has effects that its file does not have: cogging, ripple and more friction at rest. With `--friction` only the friction of
-//! the file is wrong, by up to a factor of two, and with `--mistyped` one value is, by a factor of two. `--without-logs` leaves the last
-//! two rows out, and `--exact` corrects by files that count as exact. Each program is planned for
+//! each axis are up to 20 % off, drawn by the seed. With `--unknown` the machine also has effects that its file does not have: cogging,
+//! ripple and more friction at rest. With `--mistyped` one value of the file is wrong, by a factor of two. `--without-logs` leaves the
+//! last two rows out, and `--exact` corrects by files that count as exact. Each program is planned for
 //! `generic`.
 //!
 //! | Row | Program |
@@ -110,19 +109,6 @@ fn drawn(file: &Machine, seed: u64) -> Machine {
     Machine { axes: file.axes.iter().map(&mut axis).collect(), ..file.clone() }
 }
 
-/// A file whose friction alone is wrong: times 0.5 to 2.
-fn with_friction(file: &Machine, seed: u64) -> Machine {
-    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let mut machine = file.clone();
-    for axis in &mut machine.axes {
-        let factor = 2.0_f64.powf(random.random_range(-1.0..=1.0));
-        axis.coulomb_friction_nm *= factor;
-        axis.viscous_friction_nm_s *= factor;
-        axis.stribeck_nm *= factor;
-    }
-    machine
-}
-
 /// A file with one wrong value in one axis: twice or half of it.
 fn mistyped(file: &Machine, seed: u64) -> Machine {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
@@ -162,9 +148,7 @@ fn with_unknown(machine: &Machine) -> Machine {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Off {
     File,
-    Machine,
     Unknown,
-    Friction,
     Mistyped,
 }
 
@@ -222,7 +206,7 @@ struct Errors {
 fn errors(machine: &Machine, original: &[Step], program: &[Step]) -> Errors {
     let once = |machine: &Machine, number: u64| {
         let stages = TARGETS[0].stages(machine);
-        let cut = ExportedCut { machine, tool: None, error: None, stages, original, axes: 2, watch: &() };
+        let cut = ExportedCut { machine, error: None, stages, original, axes: 2, watch: &() };
         cut.once(program, wait_s(machine, number), &mut []).expect("a cut")
     };
     let noisy = |number: u64| once(&machine.with_noise_seed(100 + number), number);
@@ -267,8 +251,6 @@ fn case(
     let other = drawn(&built_in, seed);
     let (file, machine) = match off {
         Off::File => (other, built_in),
-        Off::Machine => (built_in, other),
-        Off::Friction => (with_friction(&built_in, seed), built_in),
         Off::Mistyped => (mistyped(&built_in, seed), built_in),
         Off::Unknown => (other, with_unknown(&built_in)),
     };
@@ -375,12 +357,7 @@ fn summary(cases: &[&Case], name: &str) {
 fn main() -> Result<(), Box<dyn Error>> {
     let (options, arguments): (Vec<String>, Vec<String>) = std::env::args().skip(1).partition(|a| a.starts_with("--"));
     let given = |wanted: &str| options.iter().any(|option| option == wanted);
-    let kinds = [
-        ("--machine", Off::Machine),
-        ("--unknown", Off::Unknown),
-        ("--friction", Off::Friction),
-        ("--mistyped", Off::Mistyped),
-    ];
+    let kinds = [("--unknown", Off::Unknown), ("--mistyped", Off::Mistyped)];
     let off = kinds.into_iter().find(|(option, _)| given(option)).map_or(Off::File, |(_, off)| off);
     let logs = !given("--without-logs");
     let exact = given("--exact");

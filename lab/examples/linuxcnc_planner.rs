@@ -8,7 +8,7 @@
 use std::io::Write;
 
 use feedwright_gcode::{Reader, Settings};
-use feedwright_plan::{AxisLimits, AxisMotion, BLENDS, Constraints, PathLimits, Plan, Planned, Plc, feed_planner};
+use feedwright_plan::{AxisLimits, AxisMotion, Constraints, PathLimits, Plan, Planned, Plc, feed_planner};
 use feedwright_sim::path_steps;
 
 const PERIOD_S: f64 = 1e-3;
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let constraints = Constraints { axes, path_tolerance_mm: Some(0.01), ..Constraints::from(&path) };
     let reader = Reader::open(part.as_ref(), Settings::default())?;
-    let steps = (BLENDS[0].make)(path_steps(reader.map_while(Result::ok)), &constraints);
+    let steps = path_steps(reader.map_while(Result::ok));
     let member = feed_planner("linuxcnc").ok_or("no such planner")?;
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
     let (mut rows, mut end_s, mut last) = (0_u32, 0.0, AxisMotion::REST);

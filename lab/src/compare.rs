@@ -2,7 +2,7 @@
 //!
 //! The unit of work is a machine and a controller: each controller is tuned on each machine by the same search, under the machine's
 //! noise ([`tuning`]), made from what it may know of that machine ([`Knowledge`]), and cut on all workpieces with several noise seeds.
-//! A table is the same bit by bit for the same options, whatever the number of threads and of shards.
+//! A table is the same bit by bit for the same options, whatever the number of threads.
 //!
 //! | File | What |
 //! |---|---|
@@ -19,9 +19,8 @@
 //! | `compare/tolerance.rs` | the machining time at which a tolerance just holds |
 //! | `compare/verdict.rs` | what is claimed, row by row |
 //! | `compare/overview.rs` | what tables over many rows are made of |
-//! | `compare/units.rs` | the work in units, done or read from journals |
-//! | `compare/rows_file.rs` | files of rows that the user names |
-//! | `compare/page.rs` | the page |
+//! | `compare/units.rs` | the work in units |
+//! | `compare/results_file.rs` | the file of the results |
 
 mod noise;
 pub mod work;
@@ -37,27 +36,25 @@ pub mod tolerance;
 pub mod verdict;
 pub mod overview;
 mod units;
-pub mod rows_file;
-pub mod page;
-
-use std::path::{Path, PathBuf};
+mod results_file;
 
 pub use competitor::{Competitor, Knowledge};
 use feedwright_sim::{RunError, Watch};
 pub use noise::MAX_SEEDS;
-pub use options::{ComparisonOptions, RowsStamp, Tuning};
-use serde::{Deserialize, Serialize};
-pub use units::{Finished, MissingUnits, Shard, UnitResults, merged, tune_alone, work_on};
+pub use options::{ComparisonOptions, Tuning};
+use overview::Claimed;
+pub use units::tune_alone;
+use units::work_on;
 pub use work::{FEED_MM_S, PartError, Workpiece};
 
-use crate::journal::Journal;
+use crate::kept::Kept;
 use table::ComparisonRow;
 use tolerance::AtTolerance;
 use tuned::Tuned;
 use verdict::Verdict;
 
 /// A finished comparison.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     /// Name of the nominal machine.
     pub nominal: String,
@@ -71,37 +68,29 @@ pub struct Comparison {
     pub rows: Vec<ComparisonRow>,
     /// What is claimed, row by row.
     pub verdicts: Vec<Verdict>,
+    /// The same by claim.
+    pub claims: Vec<Claimed>,
     /// Machining times at equal tolerance, where they were asked for.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub at_tolerance: Vec<AtTolerance>,
 }
 
 impl Comparison {
     /// Of all that was cut.
-    pub fn new(options: &ComparisonOptions, results: UnitResults) -> Self {
+    fn new(options: &ComparisonOptions, results: units::UnitResults) -> Self {
         let rows = table::in_order(&results.rows, options);
         let nominal = options.nominal.name.clone();
         let verdicts = verdict::verdicts(&rows, options);
         let at_tolerance = tolerance::against_baseline(results.at_tolerance);
         let (seed, noise_seeds) = (options.seed, options.noise_seeds);
-        Self { nominal, seed, noise_seeds, tuned: results.tuned, rows, verdicts, at_tolerance }
+        let claims = Claimed::all(&verdicts);
+        Self { nominal, seed, noise_seeds, tuned: results.tuned, rows, verdicts, claims, at_tolerance }
     }
 }
 
-/// Returns the path of the journal of a comparison in `folder`. `key` identifies the options and
-/// the executable.
-pub fn journal_path(folder: &Path, key: &str) -> PathBuf {
-    folder.join(format!("compare-{key}.jsonl"))
-}
-
-/// Compares. What the journal holds is not done again.
+/// Compares. Stored work is not done again.
 ///
 /// # Errors
 /// Where a machine has no sensible limits, or where it is ended from outside.
-pub fn compare(
-    options: &ComparisonOptions,
-    journal: &Journal<Finished>,
-    watch: &dyn Watch,
-) -> Result<Comparison, RunError> {
-    Ok(Comparison::new(options, work_on(options, Shard::ALL, journal, watch)?))
+pub fn compare(options: &ComparisonOptions, kept: &Kept, watch: &dyn Watch) -> Result<Comparison, RunError> {
+    Ok(Comparison::new(options, work_on(options, kept, watch)?))
 }

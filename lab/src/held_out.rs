@@ -9,7 +9,6 @@
 //! | `held_out/contours.rs` | contours turned and scaled at random |
 //! | `held_out/program_writer.rs` | writes a program |
 //! | `held_out/programs.rs` | programs drawn at random, by families |
-//! | `held_out/shrink.rs` | makes a failing case smaller |
 
 pub mod variant;
 pub(crate) mod random;
@@ -17,7 +16,5 @@ pub mod machines;
 pub mod contours;
 mod program_writer;
 pub mod programs;
-pub mod shrink;
 
-pub use shrink::{Case, shrink};
-pub use variant::{Change, Variant};
+pub use variant::Variant;

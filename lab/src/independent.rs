@@ -37,20 +37,20 @@ use crate::never_worse::program::{Length, SweepProgram};
 use crate::never_worse::verdict::Failure;
 
 /// Programs that are cut where none is named.
-pub const PROGRAMS: [(&str, &str); 4] = [
+pub(crate) const PROGRAMS: [(&str, &str); 4] = [
     ("star", include_str!("../../parts/star.ngc")),
     ("circle", include_str!("../../parts/circle.ngc")),
     ("square", include_str!("../../parts/square.ngc")),
     ("slot", include_str!("../../parts/slot.ngc")),
 ];
 /// Controllers that cut where none is named.
-pub const DEFAULT_CONTROLLERS: [&str; 4] = [BEST, "feedforward", "cross-coupled", "disturbance-observer"];
+pub(crate) const DEFAULT_CONTROLLERS: [&str; 4] = [BEST, "feedforward", "cross-coupled", "disturbance-observer"];
 /// Longest excitation that is recorded, s.
 const EXCITATION_S: f64 = 600.0;
 
 /// How machines are identified and cut on.
 #[derive(Debug, Clone)]
-pub struct IndependentOptions {
+pub(crate) struct IndependentOptions {
     /// Program that is recorded: name and text; none is the one that `feedwright excite` writes.
     pub excitation: Option<(String, String)>,
     /// What the identification is told of the delay of the record, s; none leaves it open.
@@ -63,7 +63,7 @@ pub struct IndependentOptions {
 
 /// What was found of an axis beside what it is.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct IdentifiedAxis {
+pub(crate) struct IdentifiedAxis {
     /// Its name.
     pub name: String,
     /// The verdict, in words.
@@ -88,7 +88,7 @@ struct Identified {
 
 /// A cut of a program by the independent plant.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct IndependentCut {
+pub(crate) struct IndependentCut {
     /// Controller, and errors at the tool, uncorrected and with it.
     #[serde(flatten)]
     pub row: SweepRow,
@@ -103,7 +103,7 @@ pub struct IndependentCut {
 
 /// All about a machine.
 #[derive(Debug, Clone, Serialize)]
-pub struct IndependentResult {
+pub(crate) struct IndependentResult {
     /// The plant.
     pub machine: IndependentMachine,
     /// What was identified; nothing where that was refused.
@@ -117,7 +117,7 @@ pub struct IndependentResult {
 
 /// Why a machine was not identified.
 #[derive(Debug, Error, Diagnostic)]
-pub enum IndependentError {
+pub(crate) enum IndependentError {
     /// Its data sheet or its machine file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
@@ -401,7 +401,7 @@ fn cut_once<const N: usize>(
 ///
 /// # Errors
 /// An end from outside.
-pub fn independent(
+pub(crate) fn independent(
     machines: &[IndependentMachine],
     programs: impl Fn(&Machine) -> Result<Vec<SweepProgram>, IndependentError>,
     options: &IndependentOptions,

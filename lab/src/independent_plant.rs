@@ -10,7 +10,6 @@
 //! | `independent_plant/mechanics.rs` | winding, motor, table; trapezoidal rule | current, back electromotive force, mass by position |
 //! | `independent_plant/position_sensor.rs` | encoder or scale | phase by homing; late by drive periods |
 //! | `independent_plant/cascade.rs` | the drive | position, speed and current loop sampled each for itself; delay of the bus |
-//! | `independent_plant/tool_errors.rs` | errors of the tool | roll, pitch, yaw and an Abbe arm; growth by heat; none on the three machines |
 //! | `independent_plant/linearization.rs` | gains and delays for small motions | |
 //! | `independent_plant/machines.rs` | three machines, and others drawn around them | |
 //!
@@ -22,7 +21,6 @@ pub mod ball_screw;
 pub mod mechanics;
 pub mod position_sensor;
 pub mod cascade;
-pub mod tool_errors;
 pub mod linearization;
 pub mod machines;
 
@@ -34,7 +32,6 @@ use serde::Serialize;
 use cascade::{CascadeState, DriveCascade, DriveInput};
 use mechanics::{FeedAxis, FeedState};
 use position_sensor::{Late, PositionSensor};
-use tool_errors::ToolErrors;
 
 /// Integration steps in a period of the current loop.
 const STEPS: u32 = 2;
@@ -72,28 +69,12 @@ struct RunningAxis {
 #[derive(Debug, Clone)]
 pub struct IndependentPlant {
     axes: [RunningAxis; 3],
-    errors: ToolErrors,
-    /// Servo periods since the cold start.
-    periods: u64,
 }
 
 impl IndependentPlant {
     /// At rest with the encoders at `start_mm`.
     pub fn new(axes: &[IndependentAxis; 3], start_mm: [f64; 3]) -> Self {
-        let axes = std::array::from_fn(|i| RunningAxis::new(axes[i], start_mm[i]));
-        Self { axes, errors: ToolErrors::default(), periods: 0 }
-    }
-
-    /// The same with errors of the tool, `warm_s` after a cold start.
-    #[must_use]
-    pub fn with_errors(mut self, errors: ToolErrors, warm_s: f64) -> Self {
-        // A float that is not a number saturates to zero here.
-        (self.errors, self.periods) = (errors, (warm_s / self.servo_s()).round() as u64);
-        self
-    }
-
-    fn servo_s(&self) -> f64 {
-        self.axes[0].axis.cascade.servo_s()
+        Self { axes: std::array::from_fn(|i| RunningAxis::new(axes[i], start_mm[i])) }
     }
 
     /// State of an axis.
@@ -105,11 +86,9 @@ impl IndependentPlant {
 impl Mechanism for IndependentPlant {
     fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3> {
         self.axes.iter_mut().zip(command_mm).for_each(|(axis, command_mm)| axis.servo_period(command_mm));
-        self.periods += 1;
-        let time_s = self.periods as f64 * self.servo_s();
         let each = |value: fn(&RunningAxis) -> f64| [0, 1, 2].map(|i| value(&self.axes[i]));
         Measurement {
-            position_mm: self.errors.tool_mm(each(RunningAxis::tool_mm), time_s),
+            position_mm: each(RunningAxis::tool_mm),
             joint_mm: each(|axis| axis.axis.places_mm(&axis.state)[0]),
             measured_mm: each(|axis| axis.seen_mm[0]),
             torque_nm: each(|axis| axis.axis.feed.motor.torque_nm(&axis.state)),
@@ -118,7 +97,6 @@ impl Mechanism for IndependentPlant {
 
     /// Friction creeps and integrals go on in a rest: it is simulated as a whole.
     fn skip(&mut self, periods: u64) {
-        self.periods += periods;
         for _ in 0..periods {
             self.axes.iter_mut().for_each(|axis| axis.servo_period(axis.command_mm));
         }

@@ -5,49 +5,40 @@
 
 #![warn(clippy::disallowed_methods)]
 
-pub mod peers;
-pub mod butterfly;
-pub mod contour;
-pub mod contour_program;
-pub mod journal;
+mod peers;
+mod butterfly;
+mod contour;
+mod contour_program;
+mod limited;
+mod kept;
 pub mod held_out;
-pub mod paper;
+mod paper;
 pub mod independent_plant;
 pub mod compare;
-pub mod never_worse;
+mod never_worse;
 pub mod mismatch;
-pub mod independent;
+mod independent;
 pub mod command;
 
 pub use compare::held_out_work::HeldOutSeeds;
 pub use compare::overview::Claimed;
 pub use compare::table::{ComparisonRow, each_once};
 pub use compare::verdict::{LIMIT, Verdict};
-pub use compare::{
-    Comparison, ComparisonOptions, Finished, Knowledge, RowsStamp, Shard, Tuning, Workpiece, compare, journal_path,
-    merged, page, work_on,
-};
+pub use compare::{Comparison, ComparisonOptions, Knowledge, Tuning, Workpiece, compare};
 pub use contour::{CONTOURS, contour};
 pub use contour_program::contour_program;
 pub use held_out::Variant;
 pub use held_out::machines::Class;
-pub use journal::Journal;
+pub use kept::Kept;
+pub use limited::{AXIS_LIMITS, LIMITED_FEED_MM_S, limited_machine, linear_machine};
 pub use never_worse::SweepOptions;
 pub use never_worse::cut::{Cutter, SweepRow};
-pub use never_worse::generated::{Generated, draw, smallest};
+pub use never_worse::generated::{Generated, draw};
 pub use never_worse::program::{Length, SweepProgram};
 pub use paper::{Numbers, Paper, experiment};
-pub use peers::contour_compensation::ContourCompensation;
-pub use peers::cross_coupled::CrossCoupled;
-pub use peers::cross_coupled_feedrate::CrossCoupledFeedrate;
-pub use peers::disturbance_rejection::{DisturbanceRejection, ObservedAxis, ObservedDrive};
-pub use peers::fuzzy_feedrate::FuzzyFeedrate;
-pub use peers::input_shaping::InputShaping;
-pub use peers::kalman_disturbance::AxisNoise;
-pub use peers::receding_horizon::{
-    Accelerations, CommandedPeriod, CorrectionLimits, END_WEIGHT, GaussNewton, HorizonProblem, HorizonSettings,
-    MAX_KNOTS, Predictor, RecedingHorizon, RecedingHorizonSettings, Sensitivity, Solver,
+pub use peers::CONTROLLERS;
+pub use peers::model_predictive::horizon::gauss_newton::GaussNewton;
+pub use peers::model_predictive::horizon::problem::{END_WEIGHT, HorizonProblem};
+pub use peers::model_predictive::horizon::{
+    Accelerations, CommandedPeriod, CorrectionLimits, HorizonSettings, MAX_KNOTS, Predictor, Sensitivity,
 };
-pub use peers::sum::Sum;
-pub use peers::zero_phase::{Filter, SampledAxis, ZeroPhase};
-pub use peers::{CONTROLLERS, HORIZON};

@@ -6,12 +6,8 @@
 //! | File | What |
 //! |---|---|
 //! | `mismatch/table.rs` | what the cuts came to, by machine and controller |
-//! | `mismatch/recovery.rs` | how long a controller takes to be back when the machine has changed in mid-cut |
-//! | `mismatch/sudden.rs` | machines that change in mid-cut |
 
 pub mod table;
-mod recovery;
-pub mod sudden;
 
 use feedwright_sim::{Axis, Machine};
 

@@ -3,25 +3,24 @@
 //! A cut is worse where its RMS or its largest contour error, or the uncut path, is worse than the uncorrected cut's by the rule
 //! of [`feedwright::harm`], or where the controller is not in the loop any more at the end. Each controller is made for the
 //! machine that it cuts on, or for another one (`mismatch.rs`). Cuts depend on nothing but program, machines and seed: the rows are the
-//! same for any number of threads, and those that a [`Journal`] holds are not cut again.
+//! same for any number of threads, and those that are [`Kept`] are not cut again.
 //!
 //! | File | What |
 //! |---|---|
 //! | `never_worse/program.rs` | a program as it is cut, long ones shortened |
 //! | `never_worse/machines.rs` | the machines of the sweep |
 //! | `never_worse/cut.rs` | one program on one machine, uncorrected and with each controller |
-//! | `never_worse/generated.rs` | random programs on random machines, and the smallest case of a failure |
+//! | `never_worse/generated.rs` | random programs on random machines |
 //! | `never_worse/verdict.rs` | in what a cut is worse |
 //! | `never_worse/summary.rs` | totals, quantiles, failures by severity |
 
-pub mod program;
-pub mod cut;
-pub mod verdict;
-pub mod generated;
-pub mod machines;
-pub mod summary;
+pub(crate) mod program;
+pub(crate) mod cut;
+pub(crate) mod verdict;
+pub(crate) mod generated;
+pub(crate) mod machines;
+pub(crate) mod summary;
 
-use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -32,7 +31,7 @@ use rand::seq::SliceRandom;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::compare::recorded;
-use crate::journal::Journal;
+use crate::kept::Kept;
 use cut::{Cutter, SweepRow};
 use program::SweepProgram;
 
@@ -86,7 +85,7 @@ impl SweepOptions {
 
 /// Every program on every machine: by machine, so that each is identified once for a thread, and the longest program
 /// first, so that no thread is left alone with it.
-pub fn jobs(programs: Vec<SweepProgram>, machines: Vec<Machine>) -> Vec<SweepJob> {
+pub(crate) fn jobs(programs: Vec<SweepProgram>, machines: Vec<Machine>) -> Vec<SweepJob> {
     let mut programs: Vec<Arc<SweepProgram>> = programs.into_iter().map(Arc::new).collect();
     programs.sort_by(|a, b| b.machining_s.total_cmp(&a.machining_s).then_with(|| a.name.cmp(&b.name)));
     let on = |machine: Machine| {
@@ -101,7 +100,7 @@ pub fn jobs(programs: Vec<SweepProgram>, machines: Vec<Machine>) -> Vec<SweepJob
 }
 
 /// `count` of the jobs, drawn by the seed, in their order.
-pub fn sample(jobs: Vec<SweepJob>, count: usize, seed: u64) -> Vec<SweepJob> {
+pub(crate) fn sample(jobs: Vec<SweepJob>, count: usize, seed: u64) -> Vec<SweepJob> {
     let mut drawn: Vec<usize> = (0..jobs.len()).collect();
     drawn.shuffle(&mut Xoshiro256PlusPlus::seed_from_u64(seed));
     drawn.truncate(count);
@@ -133,17 +132,12 @@ fn named(row: &SweepRow, job: &SweepJob) -> SweepRow {
     SweepRow { program: job.program.name.clone(), machine: job.machine.name.clone(), model, ..row.clone() }
 }
 
-/// The journal of a version in a folder.
-pub fn journal_path(folder: &Path, version: &str) -> PathBuf {
-    folder.join(format!("never-worse-{version}.jsonl"))
-}
-
 /// What a sweep came to.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Swept {
+pub(crate) struct Swept {
     /// In the order of the jobs, and for each in that of the controllers.
     pub rows: Vec<SweepRow>,
-    /// How many of them the journal had.
+    /// Number of rows that were in the store.
     pub known: usize,
 }
 
@@ -154,64 +148,50 @@ impl SweepJob {
     }
 }
 
-/// Does `work` for each job on all threads; the results are in the order of the jobs. The controllers of a thread serve all jobs by the
-/// same model that follow each other.
+/// Cuts all jobs on all threads, uncorrected and with each controller. The controllers of a thread serve all jobs by the same
+/// model that follow each other.
 ///
 /// # Errors
-/// An end from outside.
-pub(crate) fn each<T: Clone + Send>(
+/// An end from outside; what was cut is in the store.
+pub(crate) fn sweep(
     jobs: &[SweepJob],
     options: &SweepOptions,
+    kept: &Kept,
     watch: &dyn Watch,
-    work: impl Fn(&SweepJob, &mut Cutter) -> Result<T, Cancelled> + Sync,
-) -> Result<Vec<T>, Cancelled> {
+) -> Result<Swept, Cancelled> {
     watch.begin(&format!("{} cuts", jobs.len()), jobs.iter().map(SweepJob::steps).sum());
-    let next = AtomicUsize::new(0);
-    let results = Mutex::new(vec![None; jobs.len()]);
+    let (next, known) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let results = Mutex::new(vec![Vec::new(); jobs.len()]);
     let thread = || {
         let mut cutter: Option<Cutter> = None;
         loop {
             let i = next.fetch_add(1, Ordering::Relaxed);
             let Some(job) = jobs.get(i) else { break };
-            let cutter = match &mut cutter {
-                Some(cutter) if cutter.is_for(&job.model) => cutter,
-                other => other.insert(Cutter::new(&job.model, options)),
+            let keys: Vec<String> = options.controllers.iter().map(|entry| key(job, options, entry)).collect();
+            let found: Option<Vec<SweepRow>> = keys.iter().map(|key| kept.get(key)).collect();
+            let rows = match found {
+                Some(rows) => {
+                    known.fetch_add(rows.len(), Ordering::Relaxed);
+                    rows
+                }
+                None => {
+                    let cutter = match &mut cutter {
+                        Some(cutter) if cutter.is_for(&job.model) => cutter,
+                        other => other.insert(Cutter::new(&job.model, options)),
+                    };
+                    let Ok(rows) = cutter.rows(&job.program, &job.machine, watch) else { break };
+                    keys.iter().zip(&rows).for_each(|(key, row)| kept.put(key, row));
+                    rows
+                }
             };
-            let Ok(result) = work(job, cutter) else { break };
-            results.lock().unwrap_or_else(PoisonError::into_inner)[i] = Some(result);
+            let rows = rows.iter().map(|row| named(row, job)).collect();
+            results.lock().unwrap_or_else(PoisonError::into_inner)[i] = rows;
             watch.advance(job.steps());
         }
     };
     std::thread::scope(|scope| (0..options.threads.max(1)).for_each(|_| drop(scope.spawn(thread))));
     watch.check()?;
-    Ok(results.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().flatten().collect())
-}
-
-/// Cuts all jobs, uncorrected and with each controller.
-///
-/// # Errors
-/// An end from outside; what was cut is in the journal.
-pub fn sweep(
-    jobs: &[SweepJob],
-    options: &SweepOptions,
-    journal: &Journal<SweepRow>,
-    watch: &dyn Watch,
-) -> Result<Swept, Cancelled> {
-    let known = AtomicUsize::new(0);
-    let work = |job: &SweepJob, cutter: &mut Cutter| {
-        let keys: Vec<String> = options.controllers.iter().map(|entry| key(job, options, entry)).collect();
-        let found: Option<Vec<SweepRow>> = keys.iter().map(|key| journal.get(key).map(|row| named(row, job))).collect();
-        if let Some(rows) = found {
-            known.fetch_add(rows.len(), Ordering::Relaxed);
-            return Ok(rows);
-        }
-        let rows = cutter.rows(&job.program, &job.machine, watch)?;
-        let rows: Vec<SweepRow> = rows.iter().map(|row| named(row, job)).collect();
-        keys.iter().zip(&rows).for_each(|(key, row)| journal.add(key, row));
-        Ok(rows)
-    };
-    let rows = each(jobs, options, watch, work)?.concat();
-    Ok(Swept { rows, known: known.into_inner() })
+    Ok(Swept { rows: results.into_inner().unwrap_or_else(PoisonError::into_inner).concat(), known: known.into_inner() })
 }
 
 #[cfg(test)]
@@ -222,9 +202,8 @@ mod tests {
     use feedwright::UNCORRECTED;
 
     #[test]
-    fn what_was_cut_is_not_cut_again_and_half_a_line_does_no_harm() {
+    fn what_was_cut_is_not_cut_again_and_half_a_file_does_no_harm() {
         let folder = tempfile::tempdir().expect("a folder");
-        let path = journal_path(folder.path(), "version");
         let machine = Machine::load("tnv40".as_ref()).expect("built in");
         let length = Length { machine: &machine, limit_s: 10.0 };
         let programs = ["G21 F1200\nG1 X5\nG1 Y5\nM2\n", "G21 F1200\nG1 X-5\nM2\n"]
@@ -232,13 +211,12 @@ mod tests {
         let jobs = jobs(programs.to_vec(), vec![machine.clone()]);
         let options = SweepOptions { threads: 2, ..SweepOptions::of(vec![&UNCORRECTED]) };
         let swept = |jobs: &[SweepJob]| {
-            sweep(jobs, &options, &Journal::open(&path).expect("a journal"), &()).expect("nobody ends it")
+            let kept = Kept::open(Some(folder.path()), "").expect("a folder");
+            sweep(jobs, &options, &kept, &()).expect("nobody ends it")
         };
         let first = swept(&jobs);
-        let mut text = std::fs::read_to_string(&path).expect("it was written");
-        let second_line = text.find('\n').expect("two lines") + 1;
-        text.truncate(second_line + 40);
-        std::fs::write(&path, text).expect("it can be written");
+        let mut files = glob::glob(&format!("{}/*/*.json", folder.path().display())).expect("a pattern");
+        std::fs::write(files.next().expect("two files").expect("it can be read"), "{").expect("it can be written");
         let again = swept(&jobs);
         assert_eq!((first.known, again.known), (0, 1));
         assert_eq!(first.rows, again.rows);

@@ -4,9 +4,8 @@
 //! with the magnitude only: once at the rho that gives it the same machining time, once at the same rho.
 
 mod curves;
-pub mod departures;
-pub mod figures;
-pub mod page;
+pub(crate) mod departures;
+pub(crate) mod figures;
 
 use feedwright::{Statistics, identified};
 use feedwright_control::{
@@ -152,7 +151,7 @@ impl Bench<'_> {
         net: &ContourIdentifier<2>,
         settings: InvertingSettings,
     ) -> Result<Numbers, RunError> {
-        self.cut(&mut TwoDimensional::new(net.clone(), settings), &mut [], settings.inversion.rho)
+        self.cut(&mut TwoDimensional::untried(net.clone(), settings), &mut [], settings.inversion.rho)
     }
 
     fn cut_magnitude_only(&self, net: &ContourIdentifier<2>, rho: f64) -> Result<Numbers, RunError> {
@@ -200,9 +199,9 @@ impl Bench<'_> {
     }
 }
 
-/// The baseline gets the true gradient: with the printed sign it would speed up where the error is large.
+/// Returns the baseline.
 fn magnitude_only(net: &ContourIdentifier<2>, rho: f64) -> MagnitudeOnly<2> {
-    MagnitudeOnly::new(net.clone(), with_gradient(with_rho(InvertingSettings::DEFAULT, rho), Gradient::Exact))
+    MagnitudeOnly::exact(net.clone(), with_rho(InvertingSettings::DEFAULT, rho))
 }
 
 fn with_rho(mut settings: InvertingSettings, rho: f64) -> InvertingSettings {

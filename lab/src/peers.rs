@@ -5,25 +5,24 @@
 //! | `peers/rows.rs` | the parameters of the rows |
 //! | `peers/closed_loop.rs` | the closed loop of an axis, for the filter that inverts it |
 //! | `peers/make.rs` | how each row is made from what is known of a machine |
-//! | `peers/receding_horizon/` | the horizon, its solver, and the identifier that it adapts |
 //! | `peers/model_predictive.rs`, `peers/iterative_learning.rs` | those that are not fit for a servo thread |
+//! | `peers/model_predictive/` | the horizon of the first, its solver, and what its model misses |
 
-pub mod cross_coupled;
-pub mod contour_compensation;
-pub mod corner_contour;
-pub mod constrained_feedrate;
-pub mod fuzzy_feedrate;
-pub mod cross_coupled_feedrate;
-pub mod input_shaping;
-pub mod zero_phase;
-pub mod sum;
-pub mod disturbance_rejection;
-pub mod disturbance_observer;
-pub mod kalman_disturbance;
-pub mod h_infinity;
-pub mod iterative_learning;
-pub mod receding_horizon;
-pub mod model_predictive;
+mod cross_coupled;
+mod contour_compensation;
+mod corner_contour;
+mod constrained_feedrate;
+mod fuzzy_feedrate;
+mod cross_coupled_feedrate;
+mod input_shaping;
+mod zero_phase;
+mod sum;
+mod disturbance_rejection;
+mod disturbance_observer;
+mod kalman_disturbance;
+mod h_infinity;
+mod iterative_learning;
+pub(crate) mod model_predictive;
 #[cfg(test)]
 mod fixture;
 mod closed_loop;
@@ -35,15 +34,14 @@ use feedwright::{
     TWO_DIMENSIONAL, UNCORRECTED, VELOCITY_GAIN, controller,
 };
 use rows::{
-    ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CHANGE_WEIGHT, CONSTRAINED_ALLOWED,
-    CONTROL_WEIGHT, CORNER_REACH, CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT, FORESEEN_MM,
-    FUZZY_CHANGE, FUZZY_ERROR, FUZZY_SLOWEST, GAMMA_RATIO, INERTIA_SCALE, INNOVATION_SCALE_MM, KNOTS, LAG_SCALE,
-    LAST_WEIGHT, ON_RAPIDS, PLAN_PERIOD_S, RATE_WEIGHT, SHAPED_DAMPING, SHAPED_FREQUENCY, SHAPER_IMPULSES,
-    SOLVER_STEPS, TANGENTIAL_WEIGHT, TORQUE_NOISE,
+    ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CONSTRAINED_ALLOWED, CONTROL_WEIGHT,
+    CORNER_REACH, CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT, FUZZY_CHANGE, FUZZY_ERROR,
+    FUZZY_SLOWEST, GAMMA_RATIO, INERTIA_SCALE, KNOTS, LAG_SCALE, PLAN_PERIOD_S, RATE_WEIGHT, SHAPED_DAMPING,
+    SHAPED_FREQUENCY, SHAPER_IMPULSES, TORQUE_NOISE,
 };
 
 /// PID control of the contour error, added to the command across the path.
-pub static CROSS_COUPLED: Entry = controller!(
+pub(crate) static CROSS_COUPLED: Entry = controller!(
     "cross-coupled",
     "PID control of the contour error, added to the command across the path",
     "Koren (1980); Srinivasan and Kulkarni (1990)",
@@ -54,7 +52,7 @@ pub static CROSS_COUPLED: Entry = controller!(
 );
 
 /// The reference moved by the estimated contour error.
-pub static CONTOUR_COMPENSATION: Entry = controller!(
+pub(crate) static CONTOUR_COMPENSATION: Entry = controller!(
     "contour-compensation",
     "the reference moved by the estimated contour error",
     "Lee and Jeon (1999)",
@@ -80,7 +78,7 @@ pub static CONTOUR_COMPENSATION: Entry = controller!(
 );
 
 /// Fuzzy rules on the contour error and its change, speed along the path only.
-pub static FUZZY_FEEDRATE: Entry = controller!(
+pub(crate) static FUZZY_FEEDRATE: Entry = controller!(
     "fuzzy-feedrate",
     "fuzzy rules on the contour error and its change, speed along the path only",
     "Tsai and others (1995), the feedrate alone",
@@ -91,7 +89,7 @@ pub static FUZZY_FEEDRATE: Entry = controller!(
 );
 
 /// H-infinity control of each axis, and fuzzy rules on the contour error for the feedrate.
-pub static FUZZY_H_INFINITY: Entry = controller!(
+pub(crate) static FUZZY_H_INFINITY: Entry = controller!(
     "fuzzy-h-infinity",
     "H-infinity control of each axis, and fuzzy rules on the contour error for the feedrate",
     "Tsai and others (1995); Shaked and Theodor (1992)",
@@ -102,7 +100,7 @@ pub static FUZZY_H_INFINITY: Entry = controller!(
 );
 
 /// PID control of the contour error, and a feedrate that keeps it within what is allowed.
-pub static CROSS_COUPLED_FEEDRATE: Entry = controller!(
+pub(crate) static CROSS_COUPLED_FEEDRATE: Entry = controller!(
     "cross-coupled-feedrate",
     "PID control of the contour error, and a feedrate that keeps it within what is allowed",
     "Chuang and Liu (1996)",
@@ -113,7 +111,7 @@ pub static CROSS_COUPLED_FEEDRATE: Entry = controller!(
 );
 
 /// An additional reference contour at corners, from linear models of the axes.
-pub static CORNER_CONTOUR: Entry = controller!(
+pub(crate) static CORNER_CONTOUR: Entry = controller!(
     "corner-contour",
     "an additional reference contour at corners, from linear models of the axes",
     "Yang (1993)",
@@ -124,7 +122,7 @@ pub static CORNER_CONTOUR: Entry = controller!(
 );
 
 /// The feedrate of least time with a bounded contour error, by nonlinear programming on linear models of the axes.
-pub static CONSTRAINED_FEEDRATE: Entry = controller!(
+pub(crate) static CONSTRAINED_FEEDRATE: Entry = controller!(
     "constrained-feedrate",
     "the feedrate of least time with a bounded contour error, by nonlinear programming on linear models of the axes",
     "Imamura and Kaufman (1989)",
@@ -135,7 +133,7 @@ pub static CONSTRAINED_FEEDRATE: Entry = controller!(
 );
 
 /// Velocity and acceleration feedforward as controls are delivered, set to each axis; nothing of friction.
-pub static FEEDFORWARD_AS_DELIVERED: Entry = controller!(
+pub(crate) static FEEDFORWARD_AS_DELIVERED: Entry = controller!(
     "feedforward-as-delivered",
     "velocity and acceleration feedforward as controls are delivered, set to each axis; nothing of friction",
     "Masory (1986); FF1 and FF2 of LinuxCNC",
@@ -146,7 +144,7 @@ pub static FEEDFORWARD_AS_DELIVERED: Entry = controller!(
 );
 
 /// Velocity, acceleration and friction feedforward, and PID control of the contour error behind it.
-pub static FEEDFORWARD_CROSS_COUPLED: Entry = controller!(
+pub(crate) static FEEDFORWARD_CROSS_COUPLED: Entry = controller!(
     "feedforward-cross-coupled",
     "velocity, acceleration and friction feedforward, and PID control of the contour error behind it",
     "Masory (1986); Koren (1980); Koren and Lo (1992)",
@@ -157,7 +155,7 @@ pub static FEEDFORWARD_CROSS_COUPLED: Entry = controller!(
 );
 
 /// The path shaped so that a resonance is not excited, and feedforward of it with the exact model.
-pub static INPUT_SHAPING: Entry = controller!(
+pub(crate) static INPUT_SHAPING: Entry = controller!(
     "input-shaping",
     "the path shaped so that a resonance is not excited, and feedforward of it with the exact model",
     "Singer and Seering (1990)",
@@ -168,7 +166,7 @@ pub static INPUT_SHAPING: Entry = controller!(
 );
 
 /// Zero phase error tracking control with the linear model of the machine.
-pub static ZERO_PHASE: Entry = controller!(
+pub(crate) static ZERO_PHASE: Entry = controller!(
     "zero-phase",
     "zero phase error tracking control with the linear model of the machine",
     "Tomizuka (1987)",
@@ -179,7 +177,7 @@ pub static ZERO_PHASE: Entry = controller!(
 );
 
 /// Zero phase error tracking control, and feedforward of the Coulomb friction.
-pub static ZERO_PHASE_FRICTION: Entry = controller!(
+pub(crate) static ZERO_PHASE_FRICTION: Entry = controller!(
     "zero-phase-friction",
     "zero phase error tracking control, and feedforward of the Coulomb friction",
     "Tomizuka (1987); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
@@ -190,7 +188,7 @@ pub static ZERO_PHASE_FRICTION: Entry = controller!(
 );
 
 /// Velocity and acceleration feedforward, and an observer of friction and cutting force.
-pub static DISTURBANCE_OBSERVER: Entry = controller!(
+pub(crate) static DISTURBANCE_OBSERVER: Entry = controller!(
     "disturbance-observer",
     "velocity and acceleration feedforward, and an observer of friction and cutting force",
     "Ohnishi (1987)",
@@ -208,7 +206,7 @@ pub static DISTURBANCE_OBSERVER: Entry = controller!(
 );
 
 /// Velocity, acceleration and friction feedforward, and a Kalman filter whose disturbance is taken out.
-pub static KALMAN_DISTURBANCE: Entry = controller!(
+pub(crate) static KALMAN_DISTURBANCE: Entry = controller!(
     "kalman-disturbance",
     "velocity, acceleration and friction feedforward, and a Kalman filter whose disturbance is taken out",
     "Erkorkmaz and Altintas (2001)",
@@ -218,30 +216,8 @@ pub static KALMAN_DISTURBANCE: Entry = controller!(
     |setup, values| make::kalman_disturbance(setup, values)
 );
 
-/// Geometry planned over 20 knots ahead through an identified servo, speed as planned.
-pub static RECEDING_HORIZON: Entry = controller!(
-    "receding-horizon",
-    "geometry planned over 20 knots ahead through an identified servo, speed as planned",
-    "Lee, Cho and Jeon (2005), eq. 7 over a horizon; Gauss-Newton",
-    Identified(Servo),
-    laps: 1,
-    [
-        KNOTS,
-        PLAN_PERIOD_S,
-        RATE_WEIGHT,
-        CHANGE_WEIGHT,
-        TANGENTIAL_WEIGHT,
-        LAST_WEIGHT,
-        INNOVATION_SCALE_MM,
-        FORESEEN_MM,
-        SOLVER_STEPS,
-        ON_RAPIDS
-    ],
-    |setup, values| make::receding_horizon(setup, values)
-);
-
 /// Contouring over 20 knots ahead with the exact model of the machine, solved to convergence.
-pub static MODEL_PREDICTIVE: Entry = controller!(
+pub(crate) static MODEL_PREDICTIVE: Entry = controller!(
     "model-predictive",
     "contouring over 20 knots ahead with the exact model of the machine, solved to convergence",
     "Lam, Manzie and Good (2010)",
@@ -252,7 +228,7 @@ pub static MODEL_PREDICTIVE: Entry = controller!(
 );
 
 /// The limit: Kalman filter and linear-quadratic regulator with preview, by everything that can be known of the machine.
-pub static LQG_PREVIEW: Entry = controller!(
+pub(crate) static LQG_PREVIEW: Entry = controller!(
     "lqg-preview",
     "the limit: Kalman filter and linear-quadratic regulator with preview, by everything that can be known of the machine",
     "Anderson and Moore (1990)",
@@ -263,7 +239,7 @@ pub static LQG_PREVIEW: Entry = controller!(
 );
 
 /// Offsets learned from the contour error of the same part, 1 lap of practice.
-pub static ITERATIVE_LEARNING_1: Entry = controller!(
+pub(crate) static ITERATIVE_LEARNING_1: Entry = controller!(
     "iterative-learning-1",
     "offsets learned from the contour error of the same part, 1 lap of practice",
     "Arimoto, Kawamura and Miyazaki (1984)",
@@ -274,7 +250,7 @@ pub static ITERATIVE_LEARNING_1: Entry = controller!(
 );
 
 /// Offsets learned from the contour error of the same part, 3 laps of practice.
-pub static ITERATIVE_LEARNING_3: Entry = controller!(
+pub(crate) static ITERATIVE_LEARNING_3: Entry = controller!(
     "iterative-learning-3",
     "offsets learned from the contour error of the same part, 3 laps of practice",
     "Arimoto, Kawamura and Miyazaki (1984)",
@@ -285,7 +261,7 @@ pub static ITERATIVE_LEARNING_3: Entry = controller!(
 );
 
 /// Offsets learned from the contour error of the same part, 10 laps of practice.
-pub static ITERATIVE_LEARNING_10: Entry = controller!(
+pub(crate) static ITERATIVE_LEARNING_10: Entry = controller!(
     "iterative-learning-10",
     "offsets learned from the contour error of the same part, 10 laps of practice",
     "Arimoto, Kawamura and Miyazaki (1984)",
@@ -295,16 +271,13 @@ pub static ITERATIVE_LEARNING_10: Entry = controller!(
     |setup, values| make::iterative_learning(setup, values)
 );
 
-/// Needs nothing but a recording, and adapts while cutting.
-pub const HORIZON: &str = "receding-horizon";
-
 /// All controllers: those that a machine runs, and the peers.
 pub const CONTROLLERS: Controllers = Controllers::new(&ROWS, RECORDED);
 
 /// What searches of the laboratory came to, a value of `RecordedSearch` on each line.
 pub(crate) const RECORDED: &str = include_str!("compare/recorded.jsonl");
 
-static ROWS: [&Entry; 25] = [
+static ROWS: [&Entry; 24] = [
     &UNCORRECTED,
     &CROSS_COUPLED,
     &CONTOUR_COMPENSATION,
@@ -328,6 +301,5 @@ static ROWS: [&Entry; 25] = [
     &ITERATIVE_LEARNING_10,
     &MAGNITUDE_ONLY,
     &TWO_DIMENSIONAL,
-    &RECEDING_HORIZON,
     &LQG_IDENTIFIED,
 ];

@@ -3,10 +3,9 @@
 use std::sync::LazyLock;
 
 use feedwright::{BASELINE, BEST};
-use feedwright_lab::compare::{page, recorded, rows_file, tuning};
+use feedwright_lab::compare::{recorded, tuning};
 use feedwright_lab::{
-    CONTROLLERS, Comparison, ComparisonOptions, Finished, Journal, Knowledge, RowsStamp, Shard, Tuning, Verdict,
-    Workpiece, compare, journal_path, merged, work_on,
+    CONTROLLERS, Comparison, ComparisonOptions, ComparisonRow, Kept, Knowledge, Tuning, Verdict, Workpiece, compare,
 };
 use feedwright_sim::Machine;
 
@@ -36,19 +35,15 @@ fn options() -> ComparisonOptions {
     }
 }
 
-fn with_threads(threads: usize, options: &ComparisonOptions, journal: &Journal<Finished>) -> Comparison {
+fn with_threads(threads: usize, options: &ComparisonOptions, kept: &Kept) -> Comparison {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| compare(options, journal, &())).unwrap()
+    pool.install(|| compare(options, kept, &())).unwrap()
 }
 
 /// The comparison of these options by two threads, once for all tests.
 fn compared() -> &'static Comparison {
-    static COMPARED: LazyLock<Comparison> = LazyLock::new(|| with_threads(2, &options(), &Journal::none()));
+    static COMPARED: LazyLock<Comparison> = LazyLock::new(|| with_threads(2, &options(), &Kept::none()));
     &COMPARED
-}
-
-fn json(comparison: &Comparison) -> String {
-    serde_json::to_string(comparison).unwrap()
 }
 
 /// Those of one machine, without a log of it, which takes the longest.
@@ -62,53 +57,52 @@ fn few_options() -> ComparisonOptions {
 #[test]
 fn the_table_is_the_same_for_any_number_of_threads_and_after_an_interruption() {
     let options = few_options();
-    let two = with_threads(2, &options, &Journal::none());
-    assert_eq!(json(&two), json(&with_threads(1, &options, &Journal::none())));
+    let two = with_threads(2, &options, &Kept::none());
+    assert_eq!(two, with_threads(1, &options, &Kept::none()));
 
     let folder = tempfile::tempdir().unwrap();
-    let journal = Journal::open(&journal_path(folder.path(), "key")).unwrap();
-    with_threads(2, &options, &journal);
-    drop(journal);
-    let file = std::fs::read_dir(folder.path()).unwrap().next().unwrap().unwrap().path();
-    let text = std::fs::read_to_string(&file).unwrap();
-    // Killed in the middle of a line.
-    std::fs::write(&file, &text[..text.len() * 2 / 3]).unwrap();
-    let journal = Journal::open(&journal_path(folder.path(), "key")).unwrap();
-    let known = journal.rows().filter(|finished| matches!(finished, Finished::Row(_))).count();
-    assert!(known > 0 && known < two.rows.len(), "{known} of {}", two.rows.len());
-    assert_eq!(json(&two), json(&with_threads(2, &options, &journal)));
-    journal.remove();
-    assert!(!file.exists());
+    let kept = || Kept::open(Some(folder.path()), &options.fingerprint()).unwrap();
+    with_threads(2, &options, &kept());
+    let files: Vec<_> = glob::glob(&format!("{}/*/*.json", folder.path().display())).unwrap().collect();
+    assert_eq!(files.len(), two.rows.len());
+    // Killed when two thirds were there, the last of them not as a whole.
+    let left = files.len() * 2 / 3;
+    for (i, file) in files.into_iter().enumerate().skip(left - 1) {
+        let file = file.unwrap();
+        if i < left { std::fs::write(file, "{").unwrap() } else { std::fs::remove_file(file).unwrap() }
+    }
+    let again = kept();
+    assert_eq!(two, with_threads(2, &options, &again));
+    assert_eq!(again.found(), left - 1);
 }
 
 #[test]
 #[ignore = "a sweep, minutes: just sweep"]
 fn the_whole_table_is_the_same_for_any_number_of_threads() {
     for threads in [1, 3] {
-        assert_eq!(json(compared()), json(&with_threads(threads, &options(), &Journal::none())));
+        assert_eq!(*compared(), with_threads(threads, &options(), &Kept::none()));
     }
 }
 
 #[test]
-fn shards_merge_to_the_bytes_of_the_undivided_run_and_missing_rows_are_named() {
-    let options = ComparisonOptions { at_tolerance: true, ..few_options() };
-    let whole = with_threads(2, &options, &Journal::none());
-    assert!(!whole.at_tolerance.is_empty());
-    let folder = tempfile::tempdir().unwrap();
-    let stamp = RowsStamp { options: options.fingerprint(), program: "this".to_owned() };
-    let files: Vec<_> = (1..=3).map(|i| folder.path().join(format!("{i}.jsonl"))).collect();
-    for (file, shard) in files.iter().zip(["1/3", "2/3", "3/3"]) {
-        let journal = rows_file::open(file, &stamp).unwrap();
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
-        pool.install(|| work_on(&options, shard.parse().unwrap(), &journal, &())).unwrap();
-    }
-    let results = merged(&options, &rows_file::read_all(&files, &stamp).unwrap()).unwrap();
-    assert_eq!(json(&whole), json(&Comparison::new(&options, results)));
-    let missing = merged(&options, &rows_file::read_all(&files[..2], &stamp).unwrap()).unwrap_err();
-    let third = "feedforward on tnv40: 2 of 2 workpieces".to_owned();
-    assert!(missing.units.contains(&third), "{missing:?}");
-    for wrong in ["0/3", "4/3", "1", "a/b", "1/0"] {
-        assert!(wrong.parse::<Shard>().is_err(), "{wrong}");
+fn the_file_of_a_comparison_has_its_rows() {
+    let comparison = compared();
+    let read = Comparison::read(&comparison.text()).unwrap();
+    assert_eq!(read.text(), comparison.text());
+    assert_eq!(
+        (&read.tuned, &read.claims, read.rows.len()),
+        (&comparison.tuned, &comparison.claims, comparison.rows.len())
+    );
+    for (was, is) in comparison.rows.iter().zip(&read.rows) {
+        assert_eq!((&was.contour, &was.machine, &was.controller), (&is.contour, &is.machine, &is.controller));
+        for number in [
+            |row: &ComparisonRow| [row.time_s, row.rms_um, row.max_um],
+            |row: &ComparisonRow| [row.time_ratio, row.rms_ratio, row.max_ratio],
+            |row: &ComparisonRow| [row.controlled_rms_um(), row.controlled_max_um(), f64::from(row.lost)],
+        ] {
+            assert_eq!(number(was), number(is), "{was:?}");
+        }
+        assert_eq!(was.completed, is.completed);
     }
 }
 
@@ -137,13 +131,6 @@ fn rows_are_complete_and_ratios_are_against_uncorrected() {
     let [exact, identified, off] = ["", "+identified", "+20%off"].map(|given| rms_um(&format!("feedforward{given}")));
     assert!(exact < off && identified < off && identified != exact, "{exact} {identified} {off}");
     assert!(rms_um(BEST) != rms_um(&format!("{BEST}+unseen")) && rms_um(BEST) != rms_um(&format!("{BEST}+log")));
-    let mut html = Vec::new();
-    page::write(&mut html, comparison).unwrap();
-    let html = String::from_utf8(html).unwrap();
-    for entry in &options.controllers {
-        assert!(html.contains(entry.name), "{}", entry.name);
-    }
-    assert!(!html.contains("NaN") && !html.contains("src=\"http") && html.ends_with("</html>\n"));
 }
 
 /// Allowed relative difference of the RMS contour error between identified and exact parameters.
@@ -159,20 +146,15 @@ fn identified_parameters_are_worth_as_much_as_exact_ones_on_workshop_and_more_th
         controllers: [BASELINE, "feedforward"].map(|name| CONTROLLERS.find(name).unwrap()).to_vec(),
         ..few_options()
     };
-    let comparison = with_threads(2, &options, &Journal::none());
+    let comparison = with_threads(2, &options, &Kept::none());
     let [exact, identified, off] = ["", "+identified", "+20%off"].map(|given| {
         let row = comparison.row("circle", "workshop", &format!("feedforward{given}")).unwrap();
         row.joint_rms_um.unwrap()
     });
     assert!((identified / exact - 1.0).abs() < AS_EXACT && exact != identified, "{exact} {identified} {off}");
     assert!(identified < (1.0 - AS_EXACT) * off, "{exact} {identified} {off}");
-    // The first table of the page has what the encoders see, and says so.
     assert_eq!(comparison.controlled_rms_over_contours_um("workshop", "feedforward"), Some(exact));
     assert!(comparison.rms_over_contours_um("workshop", "feedforward").unwrap() > 1.2 * exact);
-    let mut html = Vec::new();
-    page::write(&mut html, &comparison).unwrap();
-    let html = String::from_utf8(html).unwrap();
-    assert!(html.contains("By the encoders on workshop") && html.contains("largest whole contour error"), "{html}");
 }
 
 #[test]

@@ -20,8 +20,6 @@ const BEND_MM: f64 = 400.0 * 0.012 * 0.012 / 8.0;
 /// Parameters that change nothing of one lap of a circle in one cut: there are no rapids and no corners, nothing is known from a lap before, the
 /// printed gradient corrects each knot for itself, and of a tool that moves as no servo does the predictions miss as much as is of account.
 const SILENT_HERE: &[(&str, &str)] = &[
-    ("receding-horizon", "on_rapids"),
-    ("receding-horizon", "foreseen_mm"),
     ("two-dimensional", "knots"),
     ("corner-contour", "reach_s"),
     ("corner-contour", "velocity_gain"),

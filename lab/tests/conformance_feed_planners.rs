@@ -3,7 +3,7 @@
 use crate::programs::{BLEND, LIMITS, Random};
 use feedwright_lab::CONTOURS;
 use feedwright_plan::{
-    AxisLimits, BLENDS, Constraints, FEED_PLANNERS, FeedMember, FeedPlanner, Piece, Plan, Planned, Plc, Section,
+    AxisLimits, Constraints, FEED_PLANNERS, FeedMember, FeedPlanner, Piece, Plan, Planned, Plc, Section,
     SectionPlanner, Span, Step, Trapezoid, Unlimited,
 };
 use feedwright_sim::Reference;
@@ -154,8 +154,7 @@ fn how_calls_are_spread_over_sections_changes_nothing() {
 fn plan(contour: usize, member: &FeedMember) -> Plan<'static> {
     let steps = CONTOURS[contour].steps(50.0, BLEND).unwrap();
     let constraints = constraints(member);
-    let blended = (BLENDS[0].make)(Box::new(steps.into_iter().map(Ok)), &constraints);
-    Plan::new(blended, &constraints, member, Plc::default()).unwrap()
+    Plan::new(Box::new(steps.into_iter().map(Ok)), &constraints, member, Plc::default()).unwrap()
 }
 
 #[test]

@@ -12,7 +12,7 @@ fn arguments<'a>(more: &[&'a str]) -> Vec<&'a str> {
 #[test]
 fn uncorrected_is_never_worse_than_uncorrected() {
     let folder = Folder::new();
-    let more = ["circle.ngc", "--machine", "tnv40", "--machine", "coarse", "--json", "n.json", "--journal", "j.jsonl"];
+    let more = ["circle.ngc", "--machine", "tnv40", "--machine", "coarse", "--json", "n.json", "--results", "kept"];
     let first = folder.run(&arguments(&more)).succeeded();
     assert!(first.stdout.contains("0 of 2 cuts worse than uncorrected"), "{}", first.stdout);
     let results: Value = serde_json::from_slice(&folder.read("n.json")).unwrap();
@@ -22,40 +22,15 @@ fn uncorrected_is_never_worse_than_uncorrected() {
         assert_eq!(row["rigid"].as_bool(), Some(row["machine"] == "tnv40"));
     }
     let again = folder.run(&arguments(&more)).succeeded();
-    assert!(again.stdout.contains("cuts that were in the journal: 2"), "{}", again.stdout);
+    assert!(again.stdout.contains("cuts that were there: 2"), "{}", again.stdout);
     assert_eq!(serde_json::from_slice::<Value>(&folder.read("n.json")).unwrap(), results);
-}
-
-#[test]
-fn three_shards_merge_to_the_bytes_of_one_run() {
-    let folder = Folder::new();
-    folder.file("teeth.ngc", "G21 G91 F1500\nG1 X1\nY0.5\nX1\nY-0.5\nX1\nY0.5\nM2\n");
-    let with = |more: &[&str]| {
-        let cut = ["never-worse", "--controller", "feedforward", ".", "--machine", "tnv40", "--machine", "coarse"];
-        folder.run(&[&cut, more].concat())
-    };
-    // The last line has the time that it took.
-    let table =
-        |told: &str| told.lines().filter(|line| !line.contains(" h of machining")).collect::<Vec<_>>().join("\n");
-    let whole = with(&["--json", "whole.json", "--journal", "whole.jsonl"]);
-    for shard in ["1/3", "2/3", "3/3"] {
-        let journal = format!("{}.jsonl", &shard[..1]);
-        with(&["--shard", shard, "--journal", &journal]);
-        assert!((1..=2).contains(&folder.text(&journal).lines().count()), "{shard}");
-    }
-    let merged = with(&["--merge", "1.jsonl,2.jsonl,3.jsonl", "--json", "merged.json", "--journal", "none.jsonl"]);
-    assert!(merged.stdout.contains("cuts that were in the journal: 4"), "{}", merged.stdout);
-    assert_eq!((merged.code, table(&merged.stdout)), (whole.code, table(&whole.stdout)));
-    assert_eq!(folder.read("merged.json"), folder.read("whole.json"));
-    with(&["--shard", "1/3"]).refused(&["--journal"]);
-    with(&["--merge", "missing.jsonl"]).refused(&["missing.jsonl"]);
 }
 
 #[test]
 fn a_sample_is_the_same_for_the_same_seed() {
     let folder = Folder::new();
     let sample = |seed: &str| {
-        let more = [".", "--sample", "3", "--seed", seed, "--json", "n.json", "--journal", "j.jsonl"];
+        let more = [".", "--sample", "3", "--seed", seed, "--json", "n.json", "--results", "kept"];
         folder.run(&arguments(&more)).succeeded();
         let results: Value = serde_json::from_slice(&folder.read("n.json")).unwrap();
         let machines: Vec<String> =
@@ -85,7 +60,7 @@ fn realistic_machines_are_others_and_the_rest_stays_as_it_was() {
     let folder = Folder::new();
     let draw = |more: &[&str]| {
         let held_out = ["held-out", "5", "2", "--programs", "1", "--controller", "uncorrected", "--json", "n.json"];
-        folder.run(&[&held_out[..], &["--journal", "j.jsonl"], more].concat()).succeeded();
+        folder.run(&[&held_out[..], &["--results", "kept"], more].concat()).succeeded();
         let results: Value = serde_json::from_slice(&folder.read("n.json")).unwrap();
         results["rows"].as_array().unwrap().clone()
     };

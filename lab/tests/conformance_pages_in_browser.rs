@@ -1,10 +1,13 @@
 //! The pages in a browser: no fault in the console, and what a reader does with mouse, keys and fingers has its effect.
 
+use std::io::Write;
 use std::path::PathBuf;
 
 use crate::browser::Browser;
-use feedwright::{COLORS, CaptionedFigure, Figure, Panel, Polyline, write_figure_page};
-use feedwright_lab::{Comparison, page as comparison_page};
+use feedwright::{
+    COLORS, CaptionedFigure, Figure, PagePart, Panel, Polyline, write_figure_page, write_foot, write_head,
+    write_table_end, write_table_head,
+};
 use serde_json::json;
 
 /// A page as a file in a folder that lives as long.
@@ -215,36 +218,30 @@ fn the_report_scrolls_on_a_phone() {
     assert_eq!(browser.faults(), [""; 0]);
 }
 
-/// A comparison of made-up numbers, and its page.
-fn comparison_html() -> String {
+/// A page with six tables of made-up numbers, the first two unfolded.
+fn tables_html() -> String {
+    let part = |i: usize| PagePart { folded: i > 1, ..PagePart::new(&format!("cell-{i}"), "circle on tnv40") };
+    let parts: Vec<PagePart> = (0..6).map(part).collect();
     let mut html = Vec::new();
-    comparison_page::write(&mut html, &comparison()).unwrap();
+    write_head(&mut html, "tables", "Tables", "Made up.", &parts).unwrap();
+    for part in &parts {
+        part.begin(&mut html).unwrap();
+        write_table_head(&mut html, ["", "time s", "RMS um", "largest error um", "uncut um", "torque N m"]).unwrap();
+        for (controller, rms_um) in [("uncorrected", "16"), ("cross-coupled", "2"), ("lqg-identified", "0.1")] {
+            writeln!(html, "<tr><td>{controller}</td><td>1.7</td>{}</tr>", format!("<td>{rms_um}</td>").repeat(4))
+                .unwrap();
+        }
+        write_table_end(&mut html).unwrap();
+        PagePart::end(&mut html).unwrap();
+    }
+    write_foot(&mut html).unwrap();
     String::from_utf8(html).unwrap()
 }
 
-fn comparison() -> Comparison {
-    let mut rows = Vec::new();
-    for contour in ["circle", "star", "square"] {
-        for machine in ["tnv40", "soft"] {
-            for (controller, rms_um) in [("uncorrected", 16.0), ("cross-coupled", 2.0), ("lqg-identified", 0.1)] {
-                rows.push(json!({
-                    "contour": contour, "machine": machine, "controller": controller, "time_s": 1.7, "rms_um": rms_um,
-                    "rms_spread_um": [rms_um, rms_um], "max_um": 2.0 * rms_um, "max_spread_um": [rms_um, 2.0 * rms_um],
-                    "uncut_um": rms_um, "max_deviation_um": 3.0, "accel_mm_s2": 500.0, "peak_torque_nm": 2.0,
-                    "time_ratio": 1.0, "rms_ratio": rms_um / 16.0, "max_ratio": rms_um / 16.0, "seeds": 1, "lost": 0,
-                    "completed": true, "error_um": [0.0, rms_um, -rms_um],
-                }));
-            }
-        }
-    }
-    let all = json!({"nominal": "tnv40", "seed": 1, "noise_seeds": 1, "tuned": [], "rows": rows, "verdicts": []});
-    serde_json::from_value(all).unwrap()
-}
-
-/// Cells are folded and a link opens them, tables are sorted, and a phone has them within its screen.
+/// Parts are folded and a link opens them, tables are sorted, and a phone has them within its screen.
 #[test]
-fn a_comparison_folds_and_sorts() {
-    let (_folder, path) = file(&comparison_html());
+fn tables_fold_and_sort() {
+    let (_folder, path) = file(&tables_html());
     let Some(mut browser) = Browser::start() else { return };
     for (width, phone) in [(1400, false), (390, true)] {
         browser.screen(width, 900, phone);
@@ -266,7 +263,6 @@ fn a_comparison_folds_and_sorts() {
         browser.click("#unfold");
         assert_eq!(browser.value("document.querySelectorAll('details.part:not([open])').length"), 0);
     }
-    dark(&mut browser);
     assert_eq!(browser.faults(), [""; 0]);
 }
 
@@ -310,7 +306,7 @@ fn what_is_injected_into_a_page_does_not_run() {
     const INJECTED: &str = "<script>window.injected = 1</script><p id=\"handler\" onclick=\"window.injected = 2\">x</p>\
         <a id=\"address\" href=\"javascript:window.injected = 3\">x</a><i id=\"styled\" style=\"color: red\">x</i></main>";
     let report = crate::made_up_report::page(&crate::made_up_report::report(2, 3000));
-    for (html, button) in [(report, "#play"), (comparison_html(), "#theme")] {
+    for (html, button) in [(report, "#play"), (tables_html(), "#theme")] {
         let (_folder, path) = file(&html.replacen("</main>", INJECTED, 1));
         let Some(mut browser) = Browser::start() else { return };
         browser.open(&path, "");

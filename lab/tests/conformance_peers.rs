@@ -62,7 +62,6 @@ const HELD: &[Held] = &[
     held("magnitude-only", 1.05, [0.9, 0.98]),
     Held { name: "magnitude-only", contour: "circle", set: &[LARGEST_STEPS], rms: 0.93, time: [1.001, 1.03] },
     held("two-dimensional", 0.15, [0.9, 0.98]),
-    held("receding-horizon", 0.006, PLANNED),
     held("lqg-identified", 0.003, PLANNED),
 ];
 

@@ -5,10 +5,10 @@
 
 use std::path::PathBuf;
 
-use crate::levels::{BASE, KINDS, LEVELS};
+use crate::golden_tables::{is_made_anew, of_kept};
+use crate::levels::{KINDS, LEVELS};
 use feedwright::BASELINE;
-use feedwright_lab::{CONTROLLERS, Comparison, ComparisonOptions, Journal, Knowledge, Tuning, Workpiece, compare};
-use feedwright_sim::Machine;
+use feedwright_lab::{Comparison, Knowledge, Workpiece};
 
 fn text(file: &str) -> String {
     let study = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/05_noise"));
@@ -16,7 +16,7 @@ fn text(file: &str) -> String {
 }
 
 fn kept() -> Comparison {
-    serde_json::from_str(&text(crate::show::COMPARISON)).unwrap()
+    Comparison::read(&text(crate::show::COMPARISON)).unwrap()
 }
 
 #[test]
@@ -50,30 +50,11 @@ fn every_controller_was_cut_at_the_ends_of_every_kind() {
 
 #[test]
 fn the_kept_comparison_is_what_the_program_makes() {
-    let kept = kept();
     let machines = vec![KINDS[0].machine(KINDS[0].levels[0]).unwrap(), KINDS[3].machine(KINDS[3].levels[0]).unwrap()];
     let mut workpieces = Workpiece::contours();
     workpieces.retain(|workpiece| workpiece.name == "square");
     let controllers = [BASELINE, "feedforward-cross-coupled", "kalman-disturbance"];
-    let options = ComparisonOptions {
-        workpieces,
-        nominal: Machine::load(BASE.as_ref()).unwrap(),
-        machines,
-        controllers: controllers.iter().map(|name| CONTROLLERS.find(name).unwrap()).collect(),
-        knowledge: vec![Knowledge::Own],
-        seed: kept.seed,
-        noise_seeds: kept.noise_seeds,
-        tuning: Tuning::Known(kept.tuned.clone()),
-        set: Vec::new(),
-        at_tolerance: false,
-    };
+    let options = of_kept(&kept(), workpieces, &[Knowledge::Own], machines, &controllers);
     assert!(options.to_search().is_empty(), "{:?}", options.to_search());
-    let made = compare(&options, &Journal::none(), &()).unwrap();
-    assert_eq!(made.rows.len(), 6);
-    for row in &made.rows {
-        let was = kept.row(&row.contour, &row.machine, &row.controller).unwrap();
-        for (was, is) in [(was.rms_um, row.rms_um), (was.max_um, row.max_um), (was.time_s, row.time_s)] {
-            assert_eq!(was, is, "hint: `just noise-levels`\n{row:?}");
-        }
-    }
+    is_made_anew(&kept(), &options);
 }

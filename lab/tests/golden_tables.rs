@@ -4,8 +4,7 @@
 
 use crate::table::{Place, root};
 use feedwright_lab::{
-    CONTROLLERS, Comparison, ComparisonOptions, ComparisonRow, HeldOutSeeds, Journal, Knowledge, Tuning, Workpiece,
-    compare,
+    CONTROLLERS, Comparison, ComparisonOptions, HeldOutSeeds, Kept, Knowledge, Tuning, Workpiece, compare,
 };
 use feedwright_sim::Machine;
 
@@ -52,13 +51,18 @@ fn the_tables_of_results_are_those_of_the_kept_comparison() {
     }
 }
 
-/// Whether these rows of a kept comparison are what the program makes.
-fn cut_anew(file: &str, workpieces: Vec<Workpiece>, knowledge: &[Knowledge], machines: &[&str], controllers: &[&str]) {
-    let kept: Comparison = crate::table::comparison(file).unwrap();
-    let options = ComparisonOptions {
+/// These machines and controllers of a kept comparison, with its values.
+pub(crate) fn of_kept(
+    kept: &Comparison,
+    workpieces: Vec<Workpiece>,
+    knowledge: &[Knowledge],
+    machines: Vec<Machine>,
+    controllers: &[&str],
+) -> ComparisonOptions {
+    ComparisonOptions {
         workpieces,
         nominal: Machine::load(kept.nominal.as_ref()).unwrap(),
-        machines: machines.iter().map(|name| Machine::load(name.as_ref()).unwrap()).collect(),
+        machines,
         controllers: controllers.iter().map(|name| CONTROLLERS.find(name).unwrap()).collect(),
         knowledge: knowledge.to_vec(),
         seed: kept.seed,
@@ -66,18 +70,25 @@ fn cut_anew(file: &str, workpieces: Vec<Workpiece>, knowledge: &[Knowledge], mac
         tuning: Tuning::Known(kept.tuned.clone()),
         set: Vec::new(),
         at_tolerance: false,
-    };
-    let made = compare(&options, &Journal::none(), &()).unwrap();
-    assert!(!made.rows.is_empty());
+    }
+}
+
+/// Whether the rows of a kept comparison are what the program makes.
+pub(crate) fn is_made_anew(kept: &Comparison, options: &ComparisonOptions) {
+    let made = compare(options, &Kept::none(), &()).unwrap();
+    assert!(made.rows.len() >= options.workpieces.len() * options.machines.len() * options.controllers.len());
     for row in &made.rows {
-        let place = |other: &&ComparisonRow| {
-            (&other.contour, &other.machine, &other.controller) == (&row.contour, &row.machine, &row.controller)
-        };
-        let was = kept.rows.iter().find(place).unwrap();
+        let was = kept.row(&row.contour, &row.machine, &row.controller).unwrap();
         for (was, is) in [(was.rms_um, row.rms_um), (was.max_um, row.max_um), (was.time_s, row.time_s)] {
-            assert_eq!(was, is, "hint: `just tables`\n{row:?}");
+            assert_eq!(was, is, "hint: `just tables`, or `just noise-levels`\n{row:?}");
         }
     }
+}
+
+fn cut_anew(file: &str, workpieces: Vec<Workpiece>, knowledge: &[Knowledge], machines: &[&str], controllers: &[&str]) {
+    let kept: Comparison = crate::table::comparison(file).unwrap();
+    let machines = machines.iter().map(|name| Machine::load(name.as_ref()).unwrap()).collect();
+    is_made_anew(&kept, &of_kept(&kept, workpieces, knowledge, machines, controllers));
 }
 
 /// The whole takes minutes.
@@ -85,7 +96,7 @@ fn cut_anew(file: &str, workpieces: Vec<Workpiece>, knowledge: &[Knowledge], mac
 fn the_kept_comparison_is_what_the_program_makes() {
     let mut contours = Workpiece::contours();
     contours.retain(|workpiece| ["ellipse", "square"].contains(&workpiece.name.as_str()));
-    let controllers = ["uncorrected", "cross-coupled", "feedforward", "two-dimensional", "receding-horizon"];
+    let controllers = ["uncorrected", "cross-coupled", "feedforward", "model-predictive", "two-dimensional"];
     let knowledge = [Knowledge::Own, Knowledge::Unseen];
     cut_anew(crate::table::COMPARISON, contours, &knowledge, &["tnv40", "rough", "soft"], &controllers);
 }
@@ -96,7 +107,7 @@ fn the_kept_held_out_work_is_what_the_program_makes() {
     let mut held_out = HeldOutSeeds::recorded().workpieces();
     let drawn: Vec<Workpiece> = [held_out.remove(0), held_out.pop().unwrap()].into();
     let knowledge = [Knowledge::Own, Knowledge::TwentyPercentOff];
-    let controllers = ["uncorrected", "feedforward-cross-coupled", "kalman-disturbance", "receding-horizon"];
+    let controllers = ["uncorrected", "feedforward-cross-coupled", "kalman-disturbance"];
     cut_anew(crate::table::HELD_OUT, drawn, &knowledge, &["workshop"], &controllers);
 }
 

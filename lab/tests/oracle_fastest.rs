@@ -6,26 +6,8 @@
 use feedwright::{FastestPlan, fastest};
 use feedwright_control::Uncorrected;
 use feedwright_gcode::canon::Corner;
-use feedwright_lab::contour;
+use feedwright_lab::{contour, linear_machine};
 use feedwright_plan::Steps;
-use feedwright_sim::Machine;
-
-fn linear() -> Machine {
-    let mut machine = Machine::load("tnv40".as_ref()).unwrap();
-    machine.period.servo_s = 1e-4;
-    machine.period.mechanics_s = 1e-4;
-    machine.period.mechanics_per_servo = 1;
-    machine.limits.rapid_mm_s = 200.0;
-    machine.limits.path_tolerance_um = Some(10.0);
-    for axis in &mut machine.axes {
-        (axis.viscous_friction_nm_s, axis.coulomb_friction_nm, axis.disturbance_nm) = (0.0, 0.0, 0.0);
-        axis.torque_limit_nm = 1e3;
-        axis.max_velocity_mm_s = Some(200.0);
-        axis.max_accel_mm_s2 = Some(2000.0);
-        axis.max_jerk_mm_s3 = Some(50_000.0);
-    }
-    machine
-}
 
 /// Least times of the nonlinear program, s; of the butterfly the best that was found.
 const LEAST_S: [(&str, f64); 4] = [("circle", 1.921), ("star", 4.385), ("eight", 2.599), ("butterfly", 9.957)];
@@ -34,7 +16,7 @@ fn planned(name: &str, tolerance_um: f64) -> FastestPlan {
     let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
     let steps = contour(name).unwrap().steps(200.0, corner).unwrap();
     let all = || Ok(Box::new(steps.iter().cloned().map(Ok)) as Steps<'_>);
-    let plan = fastest::<2>(&linear(), tolerance_um, all, &mut Uncorrected, 1, &()).unwrap();
+    let plan = fastest::<2>(&linear_machine(10.0), tolerance_um, all, &mut Uncorrected, 1, &()).unwrap();
     assert!(plan.largest_um <= tolerance_um, "{name}: {} um", plan.largest_um);
     plan
 }
@@ -65,7 +47,7 @@ fn contours_are_cut_in_the_least_time_of_uncorrected() {
 #[test]
 fn a_circle_takes_as_long_as_at_the_speed_of_its_error() {
     let tolerance_um = 100.0;
-    let machine = linear();
+    let machine = linear_machine(10.0);
     let turn_s = machine.axes.iter().take(2).map(|axis| {
         let (k, a) = (axis.kp_1_s, axis.kv_nm_s_per_rad / axis.inertia_kg_m2);
         let missed_um = |w: f64| 1e4 * (1.0 - 1.0 / (1.0 - w * w / (a * k)).hypot(w / k));
@@ -89,10 +71,10 @@ fn a_missing_jerk_is_the_one_that_reaches_the_acceleration_in_40_ms() {
     let steps =
         contour("circle").unwrap().steps(200.0, Corner::Continuous { tolerance_mm: None, merge_mm: None }).unwrap();
     let all = || Ok(Box::new(steps.iter().cloned().map(Ok)) as Steps<'_>);
-    let mut bare = linear();
+    let mut bare = linear_machine(10.0);
     let jerk_mm_s3 = bare.axes[1].max_jerk_mm_s3.take().unwrap();
     assert_eq!(jerk_mm_s3, bare.axes[1].max_accel_mm_s2.unwrap() / 0.04);
-    let [found, known] =
-        [bare, linear()].map(|machine| fastest::<2>(&machine, 10.0, all, &mut Uncorrected, 1, &()).unwrap());
+    let [found, known] = [bare, linear_machine(10.0)]
+        .map(|machine| fastest::<2>(&machine, 10.0, all, &mut Uncorrected, 1, &()).unwrap());
     assert_eq!(found.cycle, known.cycle);
 }

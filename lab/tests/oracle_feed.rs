@@ -4,7 +4,7 @@ use crate::programs::{BLEND, LIMITS, arc, line, polyline};
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Event, EventKind, Motion, MotionKind, Shape};
 use feedwright_gcode::{Reader, Settings};
 use feedwright_lab::contour;
-use feedwright_plan::{BLENDS, Constraints, Durations, FEED_PLANNERS, PathLimits, Plan, Plc};
+use feedwright_plan::{Constraints, Durations, FEED_PLANNERS, PathLimits, Plan, Plc};
 use feedwright_sim::{Reference, path_steps};
 use std::f64::consts::PI;
 
@@ -184,8 +184,7 @@ fn program_s(text: &str, rotary_deg_s: f64) -> f64 {
     let plc = Plc::new(Durations { rotary_deg_s, ..Durations::default() });
     let rotary_deg_s = if rotary_deg_s > 0.0 { rotary_deg_s } else { f64::INFINITY };
     let constraints = Constraints { rotary_deg_s, ..Constraints::from(&LIMITS) };
-    let blended = (BLENDS[0].make)(path_steps(canon), &constraints);
-    let plan = Plan::new(blended, &constraints, &FEED_PLANNERS[0], plc).expect("limits are sound");
+    let plan = Plan::new(path_steps(canon), &constraints, &FEED_PLANNERS[0], plc).expect("limits are sound");
     let mut reference = Reference::new(plan);
     let end_s = reference.read_to_end_s();
     assert_eq!(reference.fault(), None);

@@ -8,7 +8,6 @@ use feedwright_lab::independent_plant::linearization::LinearPart;
 use feedwright_lab::independent_plant::lugre::LuGre;
 use feedwright_lab::independent_plant::machines::{INDEPENDENT_MACHINES, IndependentMachine};
 use feedwright_lab::independent_plant::mechanics::{FeedAxis, FeedState, GuidedTable, WoundMotor};
-use feedwright_lab::independent_plant::tool_errors::ToolErrors;
 use feedwright_sim::Mechanism;
 
 const STEP_S: f64 = 31.25e-6;
@@ -244,45 +243,4 @@ fn at_rest_every_axis_stays_where_it_was_and_a_rest_that_is_skipped_is_one_that_
             assert!((after_mm - before_mm).abs() < 1e-3, "{name}: {before_mm} {after_mm}");
         }
     }
-}
-
-/// A pitch of 10 urad at a quarter of the period moves a tool that is 200 mm below the scales by 2 um along the axis; a yaw of
-/// 10 urad moves a tool that is 300 mm out by 3 um across.
-#[test]
-fn angular_errors_move_the_tool_by_the_angle_times_the_abbe_arm() {
-    let errors = ToolErrors {
-        angular_rad: [[0.0, 1e-5, 0.0], [0.0; 3], [0.0; 3]],
-        period_mm: [400.0; 3],
-        arm_mm: [0.0, 0.0, -200.0],
-        ..ToolErrors::default()
-    };
-    let near = |found: [f64; 3], wanted: [f64; 3]| (0..3).all(|i| (found[i] - wanted[i]).abs() < 1e-12);
-    assert!(near(errors.tool_mm([100.0, 50.0, 0.0], 0.0), [100.0 - 0.002, 50.0, 0.0]));
-    assert!(near(errors.tool_mm([0.0, 50.0, 0.0], 0.0), [0.0, 50.0, 0.0]));
-    let yaw = ToolErrors { angular_rad: [[0.0; 3], [0.0, 0.0, 1e-5], [0.0; 3]], arm_mm: [300.0, 0.0, 0.0], ..errors };
-    assert!(near(yaw.tool_mm([7.0, -100.0, 0.0], 0.0), [7.0, -100.0 - 0.003, 0.0]));
-    let roll = ToolErrors { angular_rad: [[1e-5, 0.0, 0.0], [0.0; 3], [0.0; 3]], ..errors };
-    assert!(near(roll.tool_mm([100.0, 0.0, 0.0], 0.0), [100.0, 0.002, 0.0]));
-}
-
-/// 10 um/m of growth: after one time constant 1 - 1 / e of it, and the plant's own clock counts rests that are skipped.
-#[test]
-fn a_machine_that_warms_up_grows_by_a_first_order_law() {
-    let errors = ToolErrors { growth: [1e-5, 0.0, -1e-5], warms_s: 600.0, ..ToolErrors::default() };
-    let grown = errors.tool_mm([1000.0, 1000.0, 1000.0], 600.0);
-    let part = 0.01 * (1.0 - libm::exp(-1.0));
-    for (found, wanted) in grown.into_iter().zip([1000.0 + part, 1000.0, 1000.0 - part]) {
-        assert!((found - wanted).abs() < 1e-12, "{grown:?}");
-    }
-    let machine = IndependentMachine::named("machining-center").unwrap();
-    let (start_mm, errors) = ([200.0, 0.0, 0.0], ToolErrors { warms_s: 0.2, ..errors });
-    let plants = [true, false].map(|has_errors| {
-        let plant = IndependentPlant::new(&machine.axes, start_mm);
-        let mut plant = if has_errors { plant.with_errors(errors, 0.1) } else { plant };
-        plant.skip(99);
-        plant.step(start_mm).position_mm[0]
-    });
-    let servo_s = machine.axes[0].cascade.servo_s();
-    let wanted_mm = plants[1] * 1e-5 * (1.0 - libm::exp(-(0.1 + 100.0 * servo_s) / 0.2));
-    assert!((plants[0] - plants[1] - wanted_mm).abs() < 1e-9, "{plants:?} {wanted_mm}");
 }

@@ -16,12 +16,16 @@ base = 'tnv40'
 name = 'noisy'
 description = 'tnv40 with noise'
 source = 'made up'
+[axis.z]
+correction_accel_mm_s2 = 1e6
 [axis.x]
+correction_accel_mm_s2 = 1e6
 encoder_noise_um = 0.5
 torque_noise_nm = 0.1
 torque_noise_s = 0.005
 DISTURBANCE
 [axis.y]
+correction_accel_mm_s2 = 1e6
 encoder_noise_um = 0.2
 torque_noise_nm = 0.05
 torque_noise_s = 0.002

@@ -10,8 +10,8 @@ use std::process::{Command, Output};
 use crate::cut::cut;
 use crate::python::python;
 use crate::sweep::part_or_whole;
-use feedwright::{BASELINE, Entry};
-use feedwright_lab::{CONTROLLERS, HORIZON};
+use feedwright::{BASELINE, BEST, Entry};
+use feedwright_lab::CONTROLLERS;
 
 /// Lines of the pocket that are cut: tool change, dwell, rapids, the first helix and the first passes of a level.
 const POCKET_LINES: usize = 30;
@@ -61,7 +61,7 @@ fn part(name: &str) -> PathBuf {
 
 /// The controllers that stand for all where all would take long: the script knows of none, it reads what they command.
 fn two() -> [&'static Entry; 2] {
-    [BASELINE, HORIZON].map(|name| CONTROLLERS.find(name).unwrap())
+    [BASELINE, BEST].map(|name| CONTROLLERS.find(name).unwrap())
 }
 
 /// A finer step for those two alone. Others drive the rapids of the pocket into the torque limit, where the closed form of
@@ -126,7 +126,7 @@ fn so_they_do_with_every_controller() {
 /// With backlash a finer step has the flanks strike at other times, and what a quick command makes of that the closed form does not
 /// know: by the same step it is the same to the last digit.
 fn steps(machine: &str, entry: &Entry) -> &'static [u32] {
-    if machine == "soft" && entry.name == HORIZON { &[1] } else { finer(entry) }
+    if machine == "soft" && entry.name == BEST { &[1] } else { finer(entry) }
 }
 
 /// The machine that the project does not have, in a folder.
@@ -176,7 +176,7 @@ fn so_they_do_in_space() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().unwrap();
     let pocket = short_pocket(folder.path());
-    agrees(python, &pocket, &machine_file("tnv40"), CONTROLLERS.find(HORIZON).unwrap(), &[1]);
+    agrees(python, &pocket, &machine_file("tnv40"), CONTROLLERS.find(BEST).unwrap(), &[1]);
     agrees(python, &pocket, &machine_file("soft"), &feedwright::UNCORRECTED, BOTH);
 }
 

@@ -2,17 +2,14 @@
 //! with it, not even the derivative of the tool to the accelerations. Within limits,
 //! against a slow descent along one acceleration after the other.
 
-#[path = "../benches/solvers"]
-mod solvers {
-    pub(crate) mod material;
-    pub(crate) mod model;
-    pub(crate) mod riccati;
-}
+mod material;
+mod model;
+mod riccati;
 
 use feedwright_control::vector::{add_scaled, dot, sub};
-use feedwright_lab::{Accelerations, END_WEIGHT, GaussNewton, HorizonProblem, HorizonSettings};
-use solvers::material::{Material, difference};
-use solvers::riccati::{AGREEMENT, apart_from_gauss_newton};
+use feedwright_lab::{Accelerations, END_WEIGHT, HorizonProblem, HorizonSettings};
+use material::{Material, difference};
+use riccati::{AGREEMENT, apart_from_gauss_newton};
 
 /// What J, here some 0.4 mm^2, may be above its minimum, mm^2: a tenth of a micrometre in one knot. Where the solver does not
 /// come to its own tolerance within its iterations, it is beyond it by a little; one iteration more would be enough here.
@@ -50,8 +47,8 @@ fn cost<const N: usize>(material: &Material<N>, problem: &HorizonProblem<N>, pla
 fn riccati_and_gauss_newton_agree<const N: usize>() {
     for knots in [1, 2, 3, 10, 20] {
         let material = Material::<N>::new(knots);
-        let (problem, _) = material.roll_out(true);
-        let exact = material.improved(&mut GaussNewton::default(), &problem);
+        let (problem, _) = material.roll_out();
+        let exact = material.improved(&problem);
         let apart = apart_from_gauss_newton(&material);
         assert!(apart < AGREEMENT, "{N} axes, {knots} knots: {apart:e}");
         assert!(difference(&exact, &material.plan) > 0.1, "the solution is not what it started from");
@@ -67,8 +64,8 @@ fn riccati_and_gauss_newton_agree_in_two_and_three_axes() {
 #[test]
 fn nothing_beside_the_solution_costs_less() {
     let material = Material::<3>::new(20);
-    let (problem, _) = material.roll_out(true);
-    let exact = material.improved(&mut GaussNewton::default(), &problem);
+    let (problem, _) = material.roll_out();
+    let exact = material.improved(&problem);
     let least = cost(&material, &problem, &exact);
     for knot in 0..problem.knots {
         for axis in 0..3 {
@@ -132,8 +129,8 @@ impl KnotSource {
 
 fn the_plan_within_limits_is_the_best<const N: usize>(most_mm_s2: f64) {
     let material = Material::<N>::within(20, most_mm_s2);
-    let (problem, _) = material.roll_out(true);
-    let plan = material.improved(&mut GaussNewton::default(), &problem);
+    let (problem, _) = material.roll_out();
+    let plan = material.improved(&problem);
     let reference = KnotSource::new(&material, &problem);
     let case = format!("{N} axes, {most_mm_s2} mm/s^2");
 

@@ -14,7 +14,7 @@
 //! those are of one cut of each program by the machine without them.
 //!
 //! With `--drawn SEED` the programs are drawn from that seed (`kinds.rs`), `--count N` of each kind
-//! of `--kinds KIND,...`; `--write FOLDER` writes them there and cuts nothing. With `--corpus FOLDER`
+//! that there is. With `--corpus FOLDER`
 //! N programs are drawn from the files of that folder, among those that cut in X, Y or Z alone and
 //! cut for no more than [`LONGEST_S`] at their feedrates. With `--wrong` the correction uses a model
 //! whose inertia, friction and speed-loop gain are 20 % off, each up or down. With `--one-wrong` only
@@ -96,7 +96,7 @@ fn measured(machine: &Machine, original: &[Step], program: &[Step], axes: usize)
         let phase_s = cut as f64 / CUTS as f64 / machine.axes[0].disturbance_hz.max(1.0);
         let periods = (phase_s / servo_s).round();
         let stages = TARGETS[0].stages(&machine);
-        let exported = ExportedCut { machine: &machine, tool: None, error: None, stages, original, axes, watch: &() };
+        let exported = ExportedCut { machine: &machine, error: None, stages, original, axes, watch: &() };
         let mut errors = Errors { skipped: periods as usize, rows: Vec::new() };
         let now = exported.once(program, periods * servo_s, &mut [&mut errors]).expect("a cut");
         (measured.time_s, measured.blocks) = (now.time_s, now.blocks);
@@ -182,8 +182,7 @@ fn line(name: &str, machine: &Machine, text: &str, believed: Option<Machine>) ->
     let known = |program: &[Step]| {
         let machine = deterministic(machine);
         let stages = TARGETS[0].stages(&machine);
-        let cut =
-            ExportedCut { machine: &machine, tool: None, error: None, stages, original: &original, axes, watch: &() };
+        let cut = ExportedCut { machine: &machine, error: None, stages, original: &original, axes, watch: &() };
         cut.once(program, 0.0, &mut []).expect("a cut")
     };
     let (known_was, known_is) = (known(&original), known(&corrected));
@@ -277,7 +276,6 @@ fn programs(arguments: &[String], files: &[String]) -> Vec<(String, String, Stri
         if let Some(folder) = value(arguments, "--corpus") {
             return drawn_files(folder.as_ref(), seed, count as usize);
         }
-        let wanted = value(arguments, "--kinds").map_or_else(|| KINDS.join(","), str::to_owned);
         let of_kind = |kind: &str| -> Vec<(String, String, String)> {
             let one = |number: u64| {
                 let (text, what) = drawn(kind, 100 * seed + number);
@@ -285,7 +283,7 @@ fn programs(arguments: &[String], files: &[String]) -> Vec<(String, String, Stri
             };
             (0..count).map(one).collect()
         };
-        return wanted.split(',').flat_map(of_kind).collect();
+        return KINDS.into_iter().flat_map(of_kind).collect();
     }
     if !files.is_empty() {
         return files.iter().map(|path| program_of(path.as_ref())).collect();
@@ -298,20 +296,12 @@ fn programs(arguments: &[String], files: &[String]) -> Vec<(String, String, Stri
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let is_value = |k: usize| {
-        k > 0 && ["--drawn", "--count", "--kinds", "--corpus", "--write"].contains(&arguments[k - 1].as_str())
-    };
+    let is_value = |k: usize| k > 0 && ["--drawn", "--count", "--corpus"].contains(&arguments[k - 1].as_str());
     let plain = (0..arguments.len()).filter(|&k| !arguments[k].starts_with("--") && !is_value(k));
     let plain: Vec<String> = plain.map(|k| arguments[k].clone()).collect();
     let machines = plain.first().cloned().unwrap_or_else(|| "tnv40,stiff,workshop".to_owned());
     let given = |wanted: &str| arguments.iter().any(|argument| argument == wanted);
     let programs = programs(&arguments, &plain[1.min(plain.len())..]);
-    if let Some(folder) = value(&arguments, "--write") {
-        for (number, (group, _, text)) in programs.iter().enumerate() {
-            std::fs::write(Path::new(folder).join(format!("{group}_{number}.ngc")), text).expect("a file");
-        }
-        return;
-    }
     println!(
         "what repeats of RMS and largest error, original and corrected in um, and their ratio; RMS of the rest and uncut path, corrected; time of \
          the original in s, and ratio; blocks; stretches changed"

@@ -13,14 +13,14 @@ mod levels;
 mod show;
 
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::process::ExitCode;
 
-use feedwright::{Entry, cache_folder, key_of};
-use feedwright_lab::{
-    CONTROLLERS, Comparison, ComparisonOptions, Finished, Journal, Knowledge, Tuning, Workpiece, compare, journal_path,
-};
-use feedwright_sim::{Machine, Watch};
+use feedwright::Entry;
+use feedwright::command::{Console, with_console};
+use feedwright_lab::{CONTROLLERS, Comparison, ComparisonOptions, Kept, Knowledge, Tuning, Workpiece, compare};
+use feedwright_sim::Machine;
 use levels::{BASE, KINDS, LEVELS};
+use miette::miette;
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -32,7 +32,12 @@ const SEED: u64 = 1;
 const NOISE_SEEDS: u32 = 3;
 const USAGE: &str = "usage: noise_levels FOLDER [LEVELS [defaults]], with 1 to 5 levels of each kind";
 
-fn main() -> Result<(), Failure> {
+fn main() -> ExitCode {
+    let code = |(): ()| ExitCode::SUCCESS;
+    with_console(false, true, |console| run(console).map(code).map_err(|error| miette!("{error}")))
+}
+
+fn run(console: &Console) -> Result<(), Failure> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (folder, levels, tuning) = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         [folder] => (folder, LEVELS, Tuning::Search),
@@ -41,26 +46,19 @@ fn main() -> Result<(), Failure> {
         _ => return Err(USAGE.into()),
     };
     let options = options(levels, tuning)?;
-    let (journal, progress) = (journal(&options), Progress::default());
-    let mut comparison = compare(&options, &journal, &progress)?;
-    eprintln!();
-    comparison.verdicts.clear();
-    comparison.rows.iter_mut().for_each(|row| row.error_um.clear());
+    let kept = Kept::open(None, &options.fingerprint())?;
+    let bar = console.bar(0);
+    let comparison = compare(&options, &kept, &bar);
+    bar.clear();
+    // It claims nothing.
+    let comparison = Comparison { claims: vec![], ..comparison? };
     write(Path::new(folder), &comparison)?;
-    journal.remove();
+    kept.complete();
     Ok(())
 }
 
 fn count(levels: &str) -> Result<usize, Failure> {
     Ok(levels.parse().ok().filter(|levels| (1..=LEVELS).contains(levels)).ok_or(USAGE)?)
-}
-
-/// The journal of these options and this program; none where there is no place for it.
-fn journal(options: &ComparisonOptions) -> Journal<Finished> {
-    let program = std::env::current_exe().and_then(std::fs::read).unwrap_or_default();
-    let key = key_of(&[options.fingerprint().as_bytes(), &program]);
-    let path = cache_folder().map(|folder| journal_path(&folder, &key));
-    path.and_then(|path| Journal::open(&path).ok()).unwrap_or_else(Journal::none)
 }
 
 /// Every controller on every machine.
@@ -110,7 +108,7 @@ fn write(folder: &Path, comparison: &Comparison) -> Result<(), Failure> {
         Err(_) => None,
     };
     std::fs::create_dir_all(folder)?;
-    std::fs::write(folder.join(show::COMPARISON), serde_json::to_string_pretty(comparison)? + "\n")?;
+    std::fs::write(folder.join(show::COMPARISON), comparison.text())?;
     for (name, drawing) in show::figures(comparison) {
         std::fs::write(folder.join(name), drawing)?;
     }
@@ -119,36 +117,4 @@ fn write(folder: &Path, comparison: &Comparison) -> Result<(), Failure> {
     }
     print!("{table}");
     Ok(())
-}
-
-/// Progress on stderr, in per cent.
-#[derive(Default)]
-struct Progress {
-    stage: std::sync::Mutex<String>,
-    steps: AtomicU64,
-    done: AtomicU64,
-}
-
-impl Progress {
-    fn show(&self, done: u64) {
-        if let Ok(stage) = self.stage.lock() {
-            eprint!("\r{stage}: {done} of {}   ", self.steps.load(Ordering::Relaxed));
-        }
-    }
-}
-
-impl Watch for Progress {
-    fn begin(&self, stage: &str, steps: u64) {
-        if let Ok(mut name) = self.stage.lock() {
-            stage.clone_into(&mut name);
-        }
-        self.steps.store(steps, Ordering::Relaxed);
-        self.done.store(0, Ordering::Relaxed);
-        eprintln!();
-        self.show(0);
-    }
-
-    fn advance(&self, steps: u64) {
-        self.show(self.done.fetch_add(steps, Ordering::Relaxed) + steps);
-    }
 }

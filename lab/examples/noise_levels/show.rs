@@ -8,9 +8,9 @@ use feedwright_lab::{Comparison, LIMIT};
 
 use crate::levels::{BASE, KINDS, NoiseKind};
 
-/// Uncorrected, two peers, what is ours, and the limit.
-pub(crate) const CONTROLLERS: [&str; 6] =
-    [BASELINE, "feedforward-cross-coupled", "kalman-disturbance", "receding-horizon", "lqg-identified", LIMIT];
+/// Uncorrected, two peers, the default, and the limit.
+pub(crate) const CONTROLLERS: [&str; 5] =
+    [BASELINE, "feedforward-cross-coupled", "kalman-disturbance", "lqg-identified", LIMIT];
 /// The comparison as it is kept, without plots and claims.
 pub(crate) const COMPARISON: &str = "noise.json";
 /// The document of the table.

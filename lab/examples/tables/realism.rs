@@ -23,7 +23,6 @@ const SHOWN: &[&str] = &[
     "feedforward-cross-coupled",
     "feedforward-cross-coupled+identified",
     "feedforward-cross-coupled+20%off",
-    "receding-horizon",
     "feedforward-cross-coupled+log",
     "lqg-identified",
     "lqg-identified+log",

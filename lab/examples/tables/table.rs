@@ -8,9 +8,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use feedwright::{BASELINE, Knows};
-use feedwright_lab::{
-    CONTROLLERS, Claimed, Comparison, ComparisonRow, HORIZON, Knowledge, Numbers, each_once, experiment,
-};
+use feedwright_lab::{CONTROLLERS, Claimed, Comparison, ComparisonRow, Numbers, each_once, experiment};
 use feedwright_sim::Machine;
 
 /// The machine of the paper.
@@ -18,7 +16,7 @@ const MACHINE: &str = "tnv40";
 /// Seeds of the paper's experiment: the default of the command line.
 const SEEDS: u64 = 10;
 /// The comparison on machines without noise.
-pub(crate) const COMPARISON: &str = "examples/02_horizon/compare.json";
+pub(crate) const COMPARISON: &str = "examples/02_contours/compare.json";
 /// The comparison on machines with noise, on held-out work.
 pub(crate) const HELD_OUT: &str = "examples/03_realism/held_out.json";
 /// The comparison on machines with one imperfection each.
@@ -46,7 +44,7 @@ pub(crate) fn root() -> PathBuf {
 
 /// A comparison as it is kept.
 pub(crate) fn comparison(file: &str) -> Result<Comparison> {
-    Ok(serde_json::from_slice(&std::fs::read(root().join(file))?)?)
+    Ok(Comparison::read(&std::fs::read_to_string(root().join(file))?)?)
 }
 
 impl Place {
@@ -56,7 +54,7 @@ impl Place {
             [comparison(COMPARISON)?, comparison(HELD_OUT)?, comparison(IMPERFECTIONS)?];
         let results = |name, table| Self { file: "docs/results.md", name, table };
         let realism = |name, table| Self { file: "examples/03_realism/README.md", name, table };
-        let study = |name, table| Self { file: "examples/02_horizon/README.md", name, table };
+        let study = |name, table| Self { file: "examples/02_contours/README.md", name, table };
         Ok(vec![
             results("contours", contours(&comparison, SHOWN)?),
             results("held-out work", realism::held_out(&held_out)?),
@@ -100,7 +98,6 @@ const SHOWN: &[&str] = &[
     "feedforward",
     "feedforward-cross-coupled",
     "model-predictive",
-    "receding-horizon",
     "lqg-identified",
 ];
 
@@ -148,21 +145,19 @@ fn machines(comparison: &Comparison) -> Result<String> {
         let rms_um = comparison.rms_over_contours_um(machine, controller);
         rms_um.ok_or_else(|| format!("{COMPARISON} has not every contour of {controller} on {machine}"))
     };
-    let unseen = format!("{HORIZON}{}", Knowledge::Unseen.suffix());
     let mut table = String::new();
-    let columns = ["uncorrected", "best of those without model", HORIZON, "the same, identified on tnv40"];
+    let columns = ["uncorrected", "best of those without model"];
     heading(&mut table, "RMS over all contours, \u{b5}m", &columns)?;
     for machine in comparison.machines() {
         let mut peers = Vec::new();
         for entry in CONTROLLERS {
-            if matches!(entry.knows, Knows::Nothing | Knows::Identified) && ![HORIZON, BASELINE].contains(&entry.name) {
+            if matches!(entry.knows, Knows::Nothing | Knows::Identified) && entry.name != BASELINE {
                 peers.push((over_all(machine, entry.name)?, entry.name));
             }
         }
         let (rms_um, name) = peers.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).ok_or("there are no peers")?;
-        let (open, ours) = (over_all(machine, BASELINE)?, over_all(machine, HORIZON)?);
-        let unseen = if machine == comparison.nominal { ours } else { over_all(machine, &unseen)? };
-        writeln!(table, "| {machine} | {open:.2} | {rms_um:.2} ({name}) | {ours:.2} | {unseen:.2} |")?;
+        let open = over_all(machine, BASELINE)?;
+        writeln!(table, "| {machine} | {open:.2} | {rms_um:.2} ({name}) |")?;
     }
     Ok(table)
 }
@@ -186,22 +181,14 @@ const NAMED: usize = 6;
 /// One line for each claim: on how many contours and machines it holds, and where it does not.
 fn claims(comparison: &Comparison) -> Result<String> {
     let mut table = String::from("| claim | limit | holds | worst | falls short on |\n|---|--:|--:|--:|---|\n");
-    for Claimed { claim, limit, unit, held, worst, verdicts } in comparison.claims() {
+    for Claimed { claim, limit, unit, held, of, worst, short } in &comparison.claims {
         let unit = unit.replace("um", "\u{b5}m");
-        let falling = || verdicts.iter().filter(|verdict| !verdict.holds);
-        let mut short: Vec<String> = falling()
-            .take(NAMED)
-            .map(|verdict| format!("{} on {} ({:.2})", verdict.contour, verdict.machine, verdict.value))
-            .collect();
-        if let more @ 1.. = falling().count().saturating_sub(NAMED) {
-            short.push(format!("and {more} more"));
+        let place = |(contour, machine, value): &(String, String, f64)| format!("{contour} on {machine} ({value:.2})");
+        let mut places: Vec<String> = short.iter().take(NAMED).map(place).collect();
+        if let more @ 1.. = short.len().saturating_sub(NAMED) {
+            places.push(format!("and {more} more"));
         }
-        writeln!(
-            table,
-            "| {claim} | {limit} {unit} | {held} of {} | {worst:.3} | {} |",
-            verdicts.len(),
-            short.join(", ")
-        )?;
+        writeln!(table, "| {claim} | {limit} {unit} | {held} of {of} | {worst:.3} | {} |", places.join(", "))?;
     }
     Ok(table)
 }

@@ -1,29 +1,25 @@
-//! What the commands share that compare controllers with the uncorrected cut on many cuts: the journal, the bar, the table.
+//! What the commands share that compare controllers with the uncorrected cut on many cuts: the store, the bar, the table.
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use feedwright::command::{
-    Console, ConsoleTable, OUT_OF_TOLERANCE, TableColumn, find, remark, settings, tables, wrapped,
-};
-use feedwright::{OutputFile, OutputFiles, cache_folder, key_of};
+use feedwright::command::{Console, ConsoleTable, OUT_OF_TOLERANCE, TableColumn, find, settings, tables, wrapped};
+use feedwright::{OutputFile, OutputFiles};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
 
 use crate::command::args::sweep::SweepArgs;
-use crate::compare::Shard;
-use crate::journal::Journal;
+use crate::kept::Kept;
 use crate::never_worse::cut::{Figures, SweepRow};
 use crate::never_worse::summary::{Judged, Quantiles, SweepSummary, UNCORRECTED_UM};
-use crate::never_worse::{SweepJob, SweepOptions, Swept, journal_path, sweep};
+use crate::never_worse::{SweepJob, SweepOptions, Swept, sweep};
 use crate::peers::CONTROLLERS;
 
 /// A sweep that is about to begin: everything that can be refused has been.
 pub(super) struct Sweep {
     pub(crate) options: SweepOptions,
-    journal: Journal<SweepRow>,
-    shard: Shard,
+    kept: Kept,
     json: Option<OutputFile>,
     json_to: Option<PathBuf>,
 }
@@ -39,23 +35,15 @@ impl Sweep {
         let options = SweepOptions { controllers, set, recorded: false, seed: args.seed, threads };
         let mut files = OutputFiles::new(inputs.iter().copied());
         let json = args.json.as_ref().map(|path| files.start(path)).transpose()?;
-        let mut journal = journal(args.journal.as_deref())?;
-        for path in &args.merge {
-            let of_shard = Journal::read(path).into_diagnostic().wrap_err_with(|| path.display().to_string())?;
-            journal.take_over(of_shard);
-        }
-        if journal.damaged() > 0 {
-            remark(&format!("lines of the journal that are damaged, and cut anew: {}", journal.damaged()));
-        }
-        Ok(Self { options, journal, shard: args.shard.unwrap_or(Shard::ALL), json, json_to: args.json.clone() })
+        let kept = Kept::open(args.results.as_deref(), "cuts")?;
+        Ok(Self { options, kept, json, json_to: args.json.clone() })
     }
 
-    /// Cuts the jobs of the shard.
-    pub(crate) fn run(&self, jobs: Vec<SweepJob>, console: &Console) -> Result<Done> {
-        let jobs = self.shard.of(jobs);
+    /// Cuts the jobs.
+    pub(crate) fn run(&self, jobs: &[SweepJob], console: &Console) -> Result<Done> {
         let bar = console.bar(0);
         let began = Instant::now();
-        let swept = sweep(&jobs, &self.options, &self.journal, &bar);
+        let swept = sweep(jobs, &self.options, &self.kept, &bar);
         bar.clear();
         let Swept { rows, known } = swept?;
         let SweepOptions { controllers, threads, .. } = &self.options;
@@ -70,20 +58,9 @@ impl Sweep {
             file.write_all(b"\n").into_diagnostic()?;
             OutputFile::commit_all(vec![file], &console.bar(0))?;
         }
+        self.kept.complete();
         Ok(tables([self.json_to.as_deref()]))
     }
-}
-
-/// The journal: where it is asked for, or in the cache; none where there is no place for it.
-fn journal(file: Option<&Path>) -> Result<Journal<SweepRow>> {
-    if let Some(file) = file {
-        return Journal::open(file)
-            .into_diagnostic()
-            .wrap_err_with(|| format!("{}: no journal can be kept there", file.display()));
-    }
-    let program = std::env::current_exe().and_then(std::fs::read).unwrap_or_default();
-    let path = cache_folder().map(|folder| journal_path(&folder, &key_of(&[&program])));
-    Ok(path.and_then(|path| Journal::open(&path).ok()).unwrap_or_else(Journal::none))
 }
 
 /// 1 where any cut is worse.
@@ -152,7 +129,7 @@ impl Done {
             writeln!(out, "share of the time with the controller in the loop: median {share:.3}")?;
         }
         let Self { known, times, threads, took_s, .. } = self;
-        let known = if *known > 0 { format!("; cuts that were in the journal: {known}") } else { String::new() };
+        let known = if *known > 0 { format!("; cuts that were there: {known}") } else { String::new() };
         writeln!(
             out,
             "{:.2} h of machining, cut {times} times, in {took_s:.0} s on {threads} threads{known}",

@@ -2,7 +2,7 @@
 
 use feedwright::Statistics;
 use feedwright_control::Controller;
-use feedwright_sim::{Machine, Outcome, PlanCache, Row, Run, RunError, RunResult, Sink, Watch};
+use feedwright_sim::{Machine, Outcome, PlanCache, Run, RunError, RunResult, Watch};
 
 use super::competitor::Competitor;
 use super::noise;
@@ -29,16 +29,9 @@ impl Cut {
 }
 
 /// Cuts a workpiece, after as many laps of practice as the controller needs.
-pub(super) fn cut(
-    workpiece: &Workpiece,
-    controller: &mut dyn Controller<2>,
-    run: Run<'_>,
-    sinks: &mut [&mut dyn Sink],
-) -> Result<Cut, RunError> {
+pub(super) fn cut(workpiece: &Workpiece, controller: &mut dyn Controller<2>, run: Run<'_>) -> Result<Cut, RunError> {
     let mut statistics = Statistics::new();
-    let mut all: Vec<&mut dyn Sink> = vec![&mut statistics];
-    all.extend(sinks.iter_mut().map(|sink| &mut **sink as &mut dyn Sink));
-    let run = run.cut_steps(&workpiece.steps, controller, &mut all)?;
+    let run = run.cut_steps(&workpiece.steps, controller, &mut [&mut statistics])?;
     Ok(Cut { statistics, run })
 }
 
@@ -60,7 +53,7 @@ impl CutNumbers {
 }
 
 /// Cuts a workpiece once for each noise seed in `seeds` and returns the row. Its ratios are not yet
-/// computed. The error plot shows the cut with the first seed.
+/// computed.
 pub(super) fn row(
     workpiece: &Workpiece,
     machine: &Machine,
@@ -70,43 +63,16 @@ pub(super) fn row(
     plan: &PlanCache,
     watch: &dyn Watch,
 ) -> Result<ComparisonRow, RunError> {
-    let mut errors = Errors::default();
     let mut measured = Vec::with_capacity(seeds.len());
-    for (k, &seed) in seeds.iter().enumerate() {
+    for &seed in seeds {
         let machine = machine.with_noise_seed(seed);
         let run = Run::on(&machine).laps(competitor.entry.laps).sharing(plan).watched(watch);
-        let plotted: &mut [&mut dyn Sink] = if k == 0 { &mut [&mut errors] } else { &mut [] };
-        let cut = cut(workpiece, controller, run, plotted)?;
-        measured.push(CutNumbers::of(&cut));
+        measured.push(CutNumbers::of(&cut(workpiece, controller, run)?));
     }
-    Ok(ComparisonRow::new(workpiece, machine, competitor, &measured, errors.thinned()))
+    Ok(ComparisonRow::new(workpiece, machine, competitor, &measured))
 }
 
 /// The noise seeds of a machine.
 pub(super) fn seeds(machine: &Machine, options: &ComparisonOptions) -> Vec<u64> {
     noise::reported(machine, options.seed, options.noise_seeds)
-}
-
-/// Points of an error plot.
-const PLOT_POINTS: usize = 160;
-
-/// The contour error of every row, thinned out to what a plot can show.
-#[derive(Default)]
-struct Errors(Vec<f32>);
-
-impl Sink for Errors {
-    fn row(&mut self, row: &Row) -> std::io::Result<()> {
-        self.0.push((row.contour_error_mm * 1e3) as f32);
-        Ok(())
-    }
-}
-
-impl Errors {
-    /// The largest of each stretch, with its sign: peaks stay.
-    fn thinned(&self) -> Vec<f32> {
-        let stretch = self.0.len().div_ceil(PLOT_POINTS).max(1);
-        let largest_of =
-            |part: &[f32]| part.iter().copied().fold(0.0, |a: f32, b| if b.abs() > a.abs() { b } else { a });
-        self.0.chunks(stretch).map(largest_of).collect()
-    }
 }

@@ -2,7 +2,7 @@
 
 use feedwright::{Entry, Setting};
 use feedwright_sim::Machine;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use super::competitor::{Competitor, Knowledge};
 use super::tuned::Tuned;
@@ -83,7 +83,7 @@ impl ComparisonOptions {
         self.machines.iter().flat_map(on).collect()
     }
 
-    /// What the result depends on, apart from the program: the key of the journal.
+    /// What the result depends on, apart from the program.
     pub fn fingerprint(&self) -> String {
         let workpieces: Vec<_> = self.workpieces.iter().map(|w| (&w.name, format!("{:?}", w.steps))).collect();
         let machine = |machine: &Machine| (machine.name.clone(), machine.fingerprint());
@@ -109,13 +109,4 @@ impl ComparisonOptions {
         ]);
         blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
     }
-}
-
-/// What rows depend on.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RowsStamp {
-    /// [`ComparisonOptions::fingerprint`].
-    pub options: String,
-    /// Hash of the program.
-    pub program: String,
 }

@@ -2,6 +2,7 @@
 //! all that it was made of.
 
 use feedwright_ident::quadratic_mean;
+use serde::{Deserialize, Serialize};
 
 use super::Comparison;
 use super::table::{ComparisonRow, each_once};
@@ -9,20 +10,45 @@ use super::tolerance::AtTolerance;
 use super::verdict::Verdict;
 
 /// One claim, and what became of it everywhere.
-#[derive(Debug)]
-pub struct Claimed<'a> {
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Claimed {
     /// What is claimed.
-    pub claim: &'a str,
+    pub claim: String,
     /// What the value may be.
     pub limit: f64,
     /// Its unit; empty for a ratio.
-    pub unit: &'a str,
-    /// On how many it holds.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub unit: String,
+    /// Number of contours and machines on which it holds.
     pub held: usize,
+    /// Number of contours and machines.
+    pub of: usize,
     /// The largest value.
     pub worst: f64,
-    /// All of them.
-    pub verdicts: Vec<&'a Verdict>,
+    /// Contour, machine and value where it falls short.
+    pub short: Vec<(String, String, f64)>,
+}
+
+impl Claimed {
+    /// The claims, in the order of the verdicts.
+    pub(super) fn all(verdicts: &[Verdict]) -> Vec<Self> {
+        let of_claim = |claim: &str| {
+            let its: Vec<&Verdict> = verdicts.iter().filter(|verdict| verdict.claim == claim).collect();
+            let place = |verdict: &&Verdict| (verdict.contour.clone(), verdict.machine.clone(), verdict.value);
+            let short: Vec<_> =
+                its.iter().copied().filter(|verdict| !verdict.holds).map(|verdict| place(&verdict)).collect();
+            Self {
+                claim: claim.to_owned(),
+                limit: its[0].limit,
+                unit: its[0].unit.clone(),
+                held: its.len() - short.len(),
+                of: its.len(),
+                worst: its.iter().map(|verdict| verdict.value).fold(f64::NEG_INFINITY, f64::max),
+                short,
+            }
+        };
+        each_once(verdicts.iter().map(|verdict| &verdict.claim)).into_iter().map(of_claim).collect()
+    }
 }
 
 impl Comparison {
@@ -34,11 +60,6 @@ impl Comparison {
     /// Machines, in the order of the rows.
     pub fn machines(&self) -> Vec<&str> {
         each_once(self.rows.iter().map(|row| &row.machine))
-    }
-
-    /// Controllers, in the order of the rows.
-    pub fn controllers(&self) -> Vec<&str> {
-        each_once(self.rows.iter().map(|row| &row.controller))
     }
 
     /// The row of a cut; none where it was not asked for.
@@ -60,22 +81,6 @@ impl Comparison {
     /// As [`Self::rms_over_contours_um`], without the geometry that no encoder sees where the machine has any.
     pub fn controlled_rms_over_contours_um(&self, machine: &str, controller: &str) -> Option<f64> {
         self.on_contours(machine, controller, ComparisonRow::controlled_rms_um).map(quadratic_mean)
-    }
-
-    /// Whether a machine has geometry that no encoder sees.
-    pub fn has_geometry(&self, machine: &str) -> bool {
-        self.rows.iter().any(|row| row.machine == machine && row.joint_rms_um.is_some())
-    }
-
-    /// The claims, in the order of the verdicts.
-    pub fn claims(&self) -> Vec<Claimed<'_>> {
-        let of_claim = |claim| {
-            let verdicts: Vec<&Verdict> = self.verdicts.iter().filter(|verdict| verdict.claim == claim).collect();
-            let held = verdicts.iter().filter(|verdict| verdict.holds).count();
-            let worst = verdicts.iter().map(|verdict| verdict.value).fold(f64::NEG_INFINITY, f64::max);
-            Claimed { claim, limit: verdicts[0].limit, unit: &verdicts[0].unit, held, worst, verdicts }
-        };
-        each_once(self.verdicts.iter().map(|verdict| &verdict.claim)).into_iter().map(of_claim).collect()
     }
 
     /// The feedrate at which a controller just holds the tolerance, mm/s, and its time there against uncorrected; none where it

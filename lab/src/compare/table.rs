@@ -26,7 +26,7 @@ pub(super) struct CutNumbers {
 }
 
 /// One row. Errors and times are medians over the noise seeds.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ComparisonRow {
     /// Contour or part.
     pub contour: String,
@@ -73,9 +73,6 @@ pub struct ComparisonRow {
     /// Why the supervisor took the controller out of the loop, where it did, with the first of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub faded_out: Option<String>,
-    /// Contour error along the cut with the first seed, um, for plots.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub error_um: Vec<f32>,
 }
 
 impl ComparisonRow {
@@ -85,7 +82,6 @@ impl ComparisonRow {
         machine: &Machine,
         competitor: &Competitor,
         measured: &[CutNumbers],
-        error_um: Vec<f32>,
     ) -> Self {
         let spread = |number: fn(&CutNumbers) -> f64| median_and_spread(measured.iter().map(number));
         let worst = |number: fn(&CutNumbers) -> f64| measured.iter().map(number).fold(0.0, f64::max);
@@ -116,7 +112,6 @@ impl ComparisonRow {
             lost: measured.iter().filter(|cut| !cut.completed || cut.faded_out.is_some()).count() as u32,
             completed: measured.iter().all(|cut| cut.completed),
             faded_out: measured.iter().find_map(|cut| cut.faded_out).map(str::to_owned),
-            error_um,
         }
     }
 
@@ -154,7 +149,7 @@ pub(super) fn in_order(cuts: &[ComparisonRow], options: &ComparisonOptions) -> V
     rows
 }
 
-fn against(mut row: ComparisonRow, base: Option<&ComparisonRow>) -> ComparisonRow {
+pub(super) fn against(mut row: ComparisonRow, base: Option<&ComparisonRow>) -> ComparisonRow {
     if let Some(base) = base {
         row.time_ratio = row.time_s / base.time_s;
         row.rms_ratio = row.rms_um / base.rms_um;
@@ -192,7 +187,7 @@ mod tests {
         let workpiece = &Workpiece::contours()[0];
         let machine = Machine::load("tnv40".as_ref()).unwrap();
         let competitor = Competitor::own(CONTROLLERS.find(BASELINE).unwrap());
-        let row = |measured: &[CutNumbers]| ComparisonRow::new(workpiece, &machine, &competitor, measured, Vec::new());
+        let row = |measured: &[CutNumbers]| ComparisonRow::new(workpiece, &machine, &competitor, measured);
         let sound = row(&measured);
         assert_eq!((sound.rms_um, sound.rms_spread_um, sound.uncut_um), (2.0, [1.0, 3.0], 9.0));
         assert_eq!((sound.seeds, sound.lost, sound.completed, sound.note()), (3, 0, true, None));

@@ -89,7 +89,7 @@ fn fastest(
     let mut holding = |feed_mm_s: f64| -> Result<Option<Holding>, RunError> {
         let steps = contour.steps(feed_mm_s, CORNER).expect("the feedrate is one");
         let workpiece = Workpiece { name: contour.name.to_owned(), smooth: true, held_out: false, steps };
-        let cut = cut(&workpiece, controller, run, &mut [])?;
+        let cut = cut(&workpiece, controller, run)?;
         let holds = cut.run.outcome == Outcome::Completed && cut.statistics.max_um() <= TOLERANCE_UM;
         Ok(holds.then_some(Holding { feed_mm_s, time_s: cut.run.time_s }))
     };

@@ -136,7 +136,7 @@ impl Trial<'_> {
         let run = Run::on(self.machine).laps(self.entry.laps).watched(self.watch);
         let (mut each_um, mut time_s, mut sound) = (Vec::with_capacity(self.workpieces.len()), 0.0, true);
         for (workpiece, plan) in self.workpieces.iter().zip(self.plans) {
-            let cut = cut(workpiece, &mut *controller, run.sharing(plan), &mut [])?;
+            let cut = cut(workpiece, &mut *controller, run.sharing(plan))?;
             each_um.push(cut.joint_rms_um());
             time_s += cut.run.time_s;
             sound &= cut.is_sound();

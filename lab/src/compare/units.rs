@@ -1,84 +1,33 @@
 //! The work of a comparison in units: the cuts of a competitor on a machine, or the raising of the feed of a controller on a contour.
-//! A shard is every n-th unit. What a journal holds is not done again, and a comparison can be put together from journals alone.
+//! Stored work is not done again.
 
 use std::collections::HashMap;
-use std::str::FromStr;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use feedwright::Entry;
 use feedwright_sim::{Machine, PlanCache, RunError, Watch};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 use super::competitor::{Competitor, Knowledge};
 use super::cut;
-use super::options::{ComparisonOptions, RowsStamp};
+use super::options::ComparisonOptions;
 use super::table::ComparisonRow;
 use super::tolerance::{self, AtTolerance};
 use super::tuned::Tuned;
 use super::tuning;
 use super::work::Workpiece;
 use crate::contour::Contour;
-use crate::journal::Journal;
-
-/// What a journal holds of a comparison.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub enum Finished {
-    /// Of which comparison it is, and by which program.
-    Stamp(RowsStamp),
-    /// The values of a controller on a machine.
-    Tuned(Tuned),
-    /// A row.
-    Row(ComparisonRow),
-    /// The feed at which a tolerance just holds.
-    AtTolerance(AtTolerance),
-}
+use crate::kept::Kept;
 
 /// All that was worked out, ratios still open.
 #[derive(Debug, Default)]
-pub struct UnitResults {
+pub(super) struct UnitResults {
     /// The values that the controllers ran with.
-    pub tuned: Vec<Tuned>,
+    pub(super) tuned: Vec<Tuned>,
     /// Rows by machine, competitor and workpiece.
-    pub rows: Vec<ComparisonRow>,
+    pub(super) rows: Vec<ComparisonRow>,
     /// By contour and controller.
-    pub at_tolerance: Vec<AtTolerance>,
-}
-
-/// A part of the units: those whose number, counted from 0, leaves `index` when divided by `count`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Shard {
-    index: usize,
-    count: usize,
-}
-
-impl Shard {
-    /// All of them.
-    pub const ALL: Self = Self { index: 0, count: 1 };
-
-    pub(crate) fn of<T>(self, units: Vec<T>) -> Vec<T> {
-        units.into_iter().skip(self.index).step_by(self.count).collect()
-    }
-}
-
-impl FromStr for Shard {
-    type Err = String;
-
-    /// `i/n`, i from 1 to n.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let numbers = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
-        match numbers {
-            Some((index, count)) if (1..=count).contains(&index) => Ok(Self { index: index - 1, count }),
-            _ => Err("a shard is i/n with i from 1 to n, such as 2/3".to_owned()),
-        }
-    }
-}
-
-/// What no journal holds.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct MissingUnits {
-    /// In words, in the order of the work.
-    pub units: Vec<String>,
+    pub(super) at_tolerance: Vec<AtTolerance>,
 }
 
 /// A unit of work.
@@ -120,10 +69,6 @@ fn key(parts: [&str; 4]) -> String {
     serde_json::json!(parts).to_string()
 }
 
-fn tuned_key(machine: &Machine, entry: &Entry) -> String {
-    key(["tuned", &machine.name, entry.name, ""])
-}
-
 fn row_key(workpiece: &Workpiece, machine: &Machine, competitor: &Competitor) -> String {
     key(["row", &workpiece.name, &machine.name, &competitor.name()])
 }
@@ -132,18 +77,13 @@ fn tolerance_key(machine: &Machine, contour: &Contour, entry: &Entry) -> String 
     key(["at tolerance", contour.name, &machine.name, entry.name])
 }
 
-/// Tunes and cuts what belongs to a shard; what the journal holds is not done again.
+/// Tunes and cuts everything.
 ///
 /// # Errors
 /// Where a machine has no sensible limits, or where it is ended from outside.
-pub fn work_on(
-    options: &ComparisonOptions,
-    shard: Shard,
-    journal: &Journal<Finished>,
-    watch: &dyn Watch,
-) -> Result<UnitResults, RunError> {
-    let units = shard.of(WorkUnit::all(options));
-    let tuned = tune(options, &units, journal, watch)?;
+pub(super) fn work_on(options: &ComparisonOptions, kept: &Kept, watch: &dyn Watch) -> Result<UnitResults, RunError> {
+    let units = WorkUnit::all(options);
+    let tuned = tune_alone(options, kept, watch)?;
     watch.begin("cutting", units.iter().map(|unit| unit.steps(options) as u64).sum());
     let plans = Plans::default();
     let parts: Result<Vec<UnitResults>, RunError> = units
@@ -152,69 +92,14 @@ pub fn work_on(
             let (on, entry) = unit.tuned_on(options);
             let values = tuned.iter().find(|tuned| tuned.machine == on.name && tuned.controller == entry.name);
             match unit {
-                WorkUnit::Cuts(machine, competitor) => {
-                    cuts(options, machine, competitor, values, journal, &plans, watch)
-                }
+                WorkUnit::Cuts(machine, competitor) => cuts(options, machine, competitor, values, kept, &plans, watch),
                 WorkUnit::Tolerance(machine, contour, entry) => {
-                    raised(options, machine, contour, entry, values, journal, watch)
+                    raised(options, machine, contour, entry, values, kept, watch)
                 }
             }
         })
         .collect();
     Ok(UnitResults::of(tuned, parts?))
-}
-
-/// Tunes what belongs to a shard, and cuts nothing.
-///
-/// # Errors
-/// As [`work_on`].
-pub fn tune_alone(
-    options: &ComparisonOptions,
-    shard: Shard,
-    journal: &Journal<Finished>,
-    watch: &dyn Watch,
-) -> Result<Vec<Tuned>, RunError> {
-    tune(options, &shard.of(WorkUnit::all(options)), journal, watch)
-}
-
-/// The comparison as journals have it.
-///
-/// # Errors
-/// What none of them has.
-pub fn merged(options: &ComparisonOptions, journal: &Journal<Finished>) -> Result<UnitResults, MissingUnits> {
-    let units = WorkUnit::all(options);
-    let (mut results, mut missing) = (UnitResults::default(), Vec::new());
-    for (machine, entry) in tuned_on(options, &units) {
-        match known(options, machine, entry, journal) {
-            Some(tuned) => results.tuned.push(tuned),
-            None => missing.push(format!("the values of {} on {}", entry.name, machine.name)),
-        }
-    }
-    for unit in &units {
-        match unit {
-            WorkUnit::Cuts(machine, competitor) => {
-                let before = results.rows.len();
-                results.rows.extend(options.workpieces.iter().filter_map(|workpiece| {
-                    match journal.get(&row_key(workpiece, machine, competitor)) {
-                        Some(Finished::Row(row)) => Some(row.clone()),
-                        _ => None,
-                    }
-                }));
-                let open = options.workpieces.len() - (results.rows.len() - before);
-                if open > 0 {
-                    let (name, of) = (competitor.name(), options.workpieces.len());
-                    missing.push(format!("{name} on {}: {open} of {of} workpieces", machine.name));
-                }
-            }
-            WorkUnit::Tolerance(machine, contour, entry) => {
-                match journal.get(&tolerance_key(machine, contour, entry)) {
-                    Some(Finished::AtTolerance(row)) => results.at_tolerance.push(row.clone()),
-                    _ => missing.push(format!("the tolerance of {} on {}", entry.name, contour.name)),
-                }
-            }
-        }
-    }
-    if missing.is_empty() { Ok(results) } else { Err(MissingUnits { units: missing }) }
 }
 
 impl UnitResults {
@@ -242,43 +127,25 @@ fn tuned_on<'a>(options: &'a ComparisonOptions, units: &[WorkUnit<'a>]) -> Vec<(
         .collect()
 }
 
-/// Values that are given, or that a journal holds.
-fn known(
-    options: &ComparisonOptions,
-    machine: &Machine,
-    entry: &'static Entry,
-    journal: &Journal<Finished>,
-) -> Option<Tuned> {
-    options.given(machine, entry).or_else(|| match journal.get(&tuned_key(machine, entry)) {
-        Some(Finished::Tuned(tuned)) => Some(tuned.clone()),
-        _ => None,
-    })
-}
-
-/// The values that the units need.
-fn tune(
-    options: &ComparisonOptions,
-    units: &[WorkUnit<'_>],
-    journal: &Journal<Finished>,
-    watch: &dyn Watch,
-) -> Result<Vec<Tuned>, RunError> {
-    let pairs = tuned_on(options, units);
+/// Tunes the controllers, and cuts nothing.
+///
+/// # Errors
+/// Where a machine has no sensible limits, or where it is ended from outside.
+pub fn tune_alone(options: &ComparisonOptions, kept: &Kept, watch: &dyn Watch) -> Result<Vec<Tuned>, RunError> {
+    let pairs = tuned_on(options, &WorkUnit::all(options));
     watch.begin("tuning every controller alike", pairs.len() as u64);
-    pairs
-        .par_iter()
-        .map(|(machine, entry)| {
-            let tuned = match known(options, machine, entry, journal) {
-                Some(tuned) => tuned,
-                None => {
-                    let tuned = tuning::search(entry, machine, options.seed, watch)?;
-                    journal.add(&tuned_key(machine, entry), &Finished::Tuned(tuned.clone()));
-                    tuned
-                }
-            };
-            watch.advance(1);
-            Ok(tuned)
-        })
-        .collect()
+    let tune = |(machine, entry): &(&Machine, &'static Entry)| {
+        let tuned = match options.given(machine, entry) {
+            Some(given) => given,
+            None => {
+                let key = key(["tuned", &machine.name, entry.name, ""]);
+                kept.once(&key, || tuning::search(entry, machine, options.seed, watch))?
+            }
+        };
+        watch.advance(1);
+        Ok(tuned)
+    };
+    pairs.par_iter().map(tune).collect()
 }
 
 /// The plan of each workpiece on each machine, for all controllers that cut it there.
@@ -298,7 +165,7 @@ fn cuts(
     machine: &Machine,
     competitor: &Competitor,
     tuned: Option<&Tuned>,
-    journal: &Journal<Finished>,
+    kept: &Kept,
     plans: &Plans,
     watch: &dyn Watch,
 ) -> Result<UnitResults, RunError> {
@@ -306,18 +173,12 @@ fn cuts(
     // Made once and where it is needed: what it has identified serves all workpieces and seeds.
     let mut controller = None;
     let mut row = |workpiece: &Workpiece| {
-        let key = row_key(workpiece, machine, competitor);
-        let row = match journal.get(&key) {
-            Some(Finished::Row(row)) => row.clone(),
-            _ => {
-                let controller =
-                    controller.get_or_insert_with(|| competitor.make(machine, &options.nominal, options.seed, tuned));
-                let plan = plans.of(workpiece, machine);
-                let row = cut::row(workpiece, machine, competitor, &mut **controller, &seeds, &plan, watch)?;
-                journal.add(&key, &Finished::Row(row.clone()));
-                row
-            }
-        };
+        let row = kept.once(&row_key(workpiece, machine, competitor), || {
+            let controller =
+                controller.get_or_insert_with(|| competitor.make(machine, &options.nominal, options.seed, tuned));
+            let plan = plans.of(workpiece, machine);
+            cut::row(workpiece, machine, competitor, &mut **controller, &seeds, &plan, watch)
+        })?;
         watch.advance(1);
         Ok(row)
     };
@@ -332,20 +193,14 @@ fn raised(
     contour: &'static Contour,
     entry: &'static Entry,
     tuned: Option<&Tuned>,
-    journal: &Journal<Finished>,
+    kept: &Kept,
     watch: &dyn Watch,
 ) -> Result<UnitResults, RunError> {
-    let key = tolerance_key(machine, contour, entry);
-    let row = match journal.get(&key) {
-        Some(Finished::AtTolerance(row)) => row.clone(),
-        _ => {
-            let competitor = Competitor::own(entry);
-            let mut controller = competitor.make(machine, &options.nominal, options.seed, tuned);
-            let row = tolerance::raised(contour, machine, &competitor, &mut *controller, options, watch)?;
-            journal.add(&key, &Finished::AtTolerance(row.clone()));
-            row
-        }
-    };
+    let row = kept.once(&tolerance_key(machine, contour, entry), || {
+        let competitor = Competitor::own(entry);
+        let mut controller = competitor.make(machine, &options.nominal, options.seed, tuned);
+        tolerance::raised(contour, machine, &competitor, &mut *controller, options, watch)
+    })?;
     watch.advance(1);
     Ok(UnitResults { at_tolerance: vec![row], ..UnitResults::default() })
 }

@@ -21,7 +21,6 @@ use serde::{Deserialize, Serialize};
 use super::competitor::{Competitor, Knowledge};
 use super::options::ComparisonOptions;
 use super::table::{ComparisonRow, each_once, knows};
-use crate::peers::HORIZON;
 
 /// One claim on one workpiece of one machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,8 +50,6 @@ pub const ALL_WORK: &str = "all work";
 pub const DELIVERED: &str = "feedforward-as-delivered";
 /// The peer that knows all that can be known, statistics of the noise included: a bound on what can be reached, not a competitor.
 pub const LIMIT: &str = "lqg-preview";
-/// No peers of each other: the default, and the one that adapts.
-const OURS: [&str; 2] = [BEST, HORIZON];
 /// The same where there is no noise: it has the exact model and unlimited computing time.
 const NOISELESS_LIMIT: &str = "model-predictive";
 /// The best of the peers that controls could have tomorrow.
@@ -224,11 +221,11 @@ impl<'a> RowsHere<'a> {
     }
 
     /// Returns the completed rows of peers whose kind of knowledge is in `known` and concerns their
-    /// own machine. The limit and the controllers in [`OURS`] are no peers.
+    /// own machine. The limit and the default are no peers.
     fn peers(&self, known: &[Knows]) -> impl Iterator<Item = &'a ComparisonRow> {
         self.rows.iter().copied().filter(|row| {
             let own = Competitor::find(&row.controller).is_some_and(|peer| peer.knowledge == Knowledge::Own);
-            let is_other = own && !OURS.contains(&row.controller.as_str()) && row.controller != LIMIT;
+            let is_other = own && row.controller != BEST && row.controller != LIMIT;
             is_other && row.completed && knows(row).is_some_and(|knows| known.contains(&knows))
         })
     }

@@ -1,7 +1,6 @@
 //! Writes a program line by line: where the tool is, how fast it cuts, and about how long that takes.
 //!
-//! Places are absolute and every line says all that it needs but modes, so that most lines can be left out and what stays is
-//! still a program.
+//! Places are absolute and every line says all that it needs but modes.
 
 use feedwright_plan::vector::distance;
 

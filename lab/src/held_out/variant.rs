@@ -1,6 +1,6 @@
 //! A machine as what differs from a built-in one: a list of changes, and the machine file that they make.
 //!
-//! The list is what can be drawn at random, and taken back change by change to find out which of them matters.
+//! The list is what can be drawn at random.
 
 use std::fmt::Write;
 

@@ -257,6 +257,7 @@ impl IndependentMachine {
             geometry: Default::default(),
             noise: Default::default(),
             compensated: None,
+            tool: None,
         })
     }
 }

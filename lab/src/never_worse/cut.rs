@@ -91,7 +91,7 @@ pub struct SweepRow {
 
 /// Whether no axis has a compliant transmission, an encoder step, command delay or drive delay. Encoder noise
 /// and measurement delay are not checked.
-pub fn is_rigid(machine: &Machine) -> bool {
+pub(crate) fn is_rigid(machine: &Machine) -> bool {
     machine.axes.iter().all(|axis| {
         axis.transmission.is_none() && axis.encoder_step_um == 0.0 && axis.drive_delay_s + axis.command_delay_s == 0.0
     })
@@ -125,27 +125,6 @@ impl Sink for LaterError {
     }
 }
 
-/// A cut that is about to be made.
-#[derive(Clone, Copy)]
-pub(crate) struct ProgramCut<'a> {
-    pub(crate) program: &'a SweepProgram,
-    /// How it is run: machine, plan, and who watches it.
-    pub(crate) run: Run<'a>,
-    pub(crate) servo_s: f64,
-}
-
-impl<'a> ProgramCut<'a> {
-    /// On a machine, by the plan of other cuts of the same program.
-    pub(crate) fn on(
-        machine: &'a Machine,
-        program: &'a SweepProgram,
-        plan: &'a PlanCache,
-        watch: &'a dyn Watch,
-    ) -> Self {
-        Self { program, run: Run::on(machine).sharing(plan).watched(watch), servo_s: machine.period.servo_s }
-    }
-}
-
 /// Controllers of a number of axes, each made where it is needed.
 type Made<const N: usize> = Vec<Option<Box<dyn Controller<N>>>>;
 
@@ -173,32 +152,14 @@ impl Cutter {
         Arc::ptr_eq(&self.model, model)
     }
 
-    /// Number of ways to cut: uncorrected, and one for each controller.
-    pub(crate) const fn ways(&self) -> usize {
-        self.entries.len()
-    }
-
-    /// Name of the controller of a way.
-    pub(crate) fn name(&self, way: usize) -> &'static str {
-        self.entries[way].name
-    }
-
     /// Cuts a program once, uncorrected (way 0) or with one of the controllers.
-    ///
-    /// # Errors
-    /// An end from outside.
-    pub(crate) fn cut(
-        &mut self,
-        way: usize,
-        cut: &ProgramCut<'_>,
-        sinks: &mut [&mut dyn Sink],
-    ) -> Result<Figures, Cancelled> {
+    fn cut(&mut self, way: usize, program: &SweepProgram, run: Run<'_>, servo_s: f64) -> Result<Figures, Cancelled> {
         let Self { model, choices, entries, plane, space } = self;
-        let entry = entries[way];
-        match cut.program.axes {
-            2 => once(&mut plane[way], entry, &mut Setup::new(model, choices), cut, sinks),
+        let mut setup = Setup::new(model, choices);
+        match program.axes {
+            2 => once(&mut plane[way], entries[way], &mut setup, program, (run, servo_s)),
             _ if model.axis_count() < 3 => Ok(Figures::failed("the machine has no Z")),
-            _ => once(&mut space[way], entry, &mut Setup::new(model, choices), cut, sinks),
+            _ => once(&mut space[way], entries[way], &mut setup, program, (run, servo_s)),
         }
     }
 
@@ -213,13 +174,14 @@ impl Cutter {
         watch: &dyn Watch,
     ) -> Result<Vec<SweepRow>, Cancelled> {
         let plan = PlanCache::default();
-        let cut = ProgramCut::on(machine, program, &plan, watch);
-        let mut uncorrected = self.cut(0, &cut, &mut [])?;
+        let run = Run::on(machine).sharing(&plan).watched(watch);
+        let servo_s = machine.period.servo_s;
+        let mut uncorrected = self.cut(0, program, run, servo_s)?;
         if uncorrected.lost.as_deref() == Some(PANICKED) {
             // It is judged: so are the others, which panic too.
             uncorrected = Figures::default();
         }
-        let ways = 1..self.ways();
+        let ways = 1..self.entries.len();
         let row = |way: usize| {
             Ok(SweepRow {
                 program: program.name.clone(),
@@ -228,7 +190,7 @@ impl Cutter {
                 controller: self.entries[way].name.to_owned(),
                 rigid: is_rigid(machine),
                 uncorrected: uncorrected.clone(),
-                corrected: self.cut(way, &cut, &mut [])?,
+                corrected: self.cut(way, program, run, servo_s)?,
             })
         };
         ways.map(row).collect()
@@ -240,19 +202,17 @@ fn once<const N: usize>(
     made: &mut Option<Box<dyn Controller<N>>>,
     entry: &Entry,
     setup: &mut Setup<'_>,
-    cut: &ProgramCut<'_>,
-    sinks: &mut [&mut dyn Sink],
+    program: &SweepProgram,
+    (run, servo_s): (Run<'_>, f64),
 ) -> Result<Figures, Cancelled>
 where
     Entry: Make<N>,
 {
     let done = catch_unwind(AssertUnwindSafe(|| {
         let controller = made.get_or_insert_with(|| Make::make(entry, setup));
-        let (mut statistics, mut later) =
-            (Statistics::new(), LaterError { servo_s: cut.servo_s, ..Default::default() });
-        let mut all: Vec<&mut dyn Sink> = vec![&mut statistics, &mut later];
-        all.extend(sinks.iter_mut().map(|sink| &mut **sink as &mut dyn Sink));
-        match cut.run.laps(entry.laps).cut_steps(&cut.program.steps, &mut **controller, &mut all) {
+        let (mut statistics, mut later) = (Statistics::new(), LaterError { servo_s, ..Default::default() });
+        let sinks: &mut [&mut dyn Sink] = &mut [&mut statistics, &mut later];
+        match run.laps(entry.laps).cut_steps(&program.steps, &mut **controller, sinks) {
             Ok(run) => Ok(Figures { later_rms_um: later.rms_um(), ..Figures::of(&run, &statistics, entry) }),
             Err(RunError::Cancelled(cancelled)) => Err(cancelled),
             Err(error) => Ok(Figures::failed(&error.to_string())),

@@ -24,7 +24,7 @@ const UNLIKE: f64 = 1.5;
 ///
 /// # Errors
 /// None as long as the changes are within the ranges of a machine file, which a test holds.
-pub fn machines() -> Result<Vec<Machine>, MachineError> {
+pub(crate) fn machines() -> Result<Vec<Machine>, MachineError> {
     let built_in = BUILT_IN_MACHINES.map(|name| Machine::load(name.as_ref()));
     built_in.into_iter().chain(variants().iter().map(Variant::machine)).collect()
 }

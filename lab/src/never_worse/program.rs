@@ -7,9 +7,7 @@ use std::sync::mpsc;
 
 use feedwright::JobError;
 use feedwright_gcode::{ReadError, Reader, Settings, summarize};
-use feedwright_plan::{
-    BLENDS, Constraints, FEED_PLANNERS, LimitsError, PathError, Pieces, Plan, Planned, Plc, Step, Steps,
-};
+use feedwright_plan::{Constraints, FEED_PLANNERS, LimitsError, PathError, Pieces, Plan, Planned, Plc, Step, Steps};
 use feedwright_sim::Machine;
 
 /// A program, ready to be cut on any machine.
@@ -90,8 +88,7 @@ fn planned(steps: Steps<'_>, length: Length<'_>) -> Result<Part, LimitsError> {
         }
     });
     let constraints = Constraints::from(length.machine);
-    let blended = (BLENDS[0].make)(Box::new(read), &constraints);
-    let mut plan = Plan::new(blended, &constraints, &FEED_PLANNERS[0], Plc::from(length.machine))?;
+    let mut plan = Plan::new(Box::new(read), &constraints, &FEED_PLANNERS[0], Plc::from(length.machine))?;
     let (mut time_s, mut last) = (0.0, None);
     for planned in &mut plan {
         if let Planned::Phase(phase) = planned {

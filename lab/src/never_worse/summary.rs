@@ -6,7 +6,7 @@ use super::cut::SweepRow;
 use super::verdict::Failure;
 
 /// Ratios to the uncorrected cut mean something above this uncorrected RMS error, um.
-pub const UNCORRECTED_UM: f64 = 1.0;
+pub(crate) const UNCORRECTED_UM: f64 = 1.0;
 
 /// Quantiles of a number over many cuts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -91,7 +91,7 @@ const DEPARTURES: [Departure; 7] = [
 
 /// What a departure comes to, over all seeds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DepartureResult {
+pub(crate) struct DepartureResult {
     /// What the paper prints; what this row was cut with.
     pub printed: String,
     /// What is taken in all other rows.
@@ -110,7 +110,11 @@ pub struct DepartureResult {
 ///
 /// # Errors
 /// As [`experiment`](super::experiment).
-pub fn departures(machine: &Machine, seeds: &[u64], watch: &dyn Watch) -> Result<Vec<DepartureResult>, RunError> {
+pub(crate) fn departures(
+    machine: &Machine,
+    seeds: &[u64],
+    watch: &dyn Watch,
+) -> Result<Vec<DepartureResult>, RunError> {
     watch.begin("cutting as printed", DEPARTURES.len() as u64 + 3);
     let taken = || PaperCase {
         machine: machine.clone(),
@@ -161,7 +165,7 @@ fn over_seeds(case: &PaperCase, seeds: &[u64], watch: &dyn Watch) -> Result<(Num
 
 /// A draw of what the paper leaves open, and what came of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Draw {
+pub(crate) struct Draw {
     /// Seed of the draw and of the training.
     pub seed: u64,
     /// Step size.
@@ -188,7 +192,7 @@ pub struct Draw {
 ///
 /// # Errors
 /// As [`experiment`](super::experiment).
-pub fn draws(machine: &Machine, count: u64, watch: &dyn Watch) -> Result<Vec<Draw>, RunError> {
+pub(crate) fn draws(machine: &Machine, count: u64, watch: &dyn Watch) -> Result<Vec<Draw>, RunError> {
     watch.begin("drawing what the paper leaves open", count);
     let seeds: Vec<u64> = (1..=count).collect();
     let one = |&seed: &u64| {
@@ -231,7 +235,7 @@ fn drawn(machine: &Machine, seed: u64, watch: &dyn Watch) -> Result<Draw, RunErr
 }
 
 /// The value below which a part of all values lies: that of rank `ceil(part n)`.
-pub fn quantile(draws: &[Draw], of: fn(&Draw) -> f64, part: f64) -> f64 {
+pub(crate) fn quantile(draws: &[Draw], of: fn(&Draw) -> f64, part: f64) -> f64 {
     let mut values: Vec<f64> = draws.iter().map(of).collect();
     values.sort_by(f64::total_cmp);
     let rank = (part * values.len() as f64).ceil() as usize;

@@ -23,7 +23,7 @@ struct Drawn {
 ///
 /// # Errors
 /// As [`experiment`](super::experiment).
-pub fn figures(machine: &Machine, seed: u64, watch: &dyn Watch) -> Result<Vec<CaptionedFigure>, RunError> {
+pub(crate) fn figures(machine: &Machine, seed: u64, watch: &dyn Watch) -> Result<Vec<CaptionedFigure>, RunError> {
     watch.begin("drawing", 1);
     let bench = Bench { machine, watch };
     let net = bench.train(seed).net;
@@ -35,7 +35,7 @@ pub fn figures(machine: &Machine, seed: u64, watch: &dyn Watch) -> Result<Vec<Ca
         Ok::<_, RunError>(Drawn { curves, numbers })
     };
     let open = draw(&mut Uncorrected, 0.0)?;
-    let both = draw(&mut TwoDimensional::new(net.clone(), settings), rho)?;
+    let both = draw(&mut TwoDimensional::untried(net.clone(), settings), rho)?;
     let same_time = bench.rho_for_time(&net, both.numbers.time_s)?;
     let magnitude = draw(&mut magnitude_only(&net, same_time), same_time)?;
     let magnitude_same_rho = draw(&mut magnitude_only(&net, rho), rho)?;
@@ -43,7 +43,7 @@ pub fn figures(machine: &Machine, seed: u64, watch: &dyn Watch) -> Result<Vec<Ca
         .iter()
         .map(|&rho| {
             let settings = with_gradient(with_rho(settings, rho), Gradient::Absent);
-            draw(&mut TwoDimensional::new(net.clone(), settings), rho)
+            draw(&mut TwoDimensional::untried(net.clone(), settings), rho)
         })
         .collect();
     Ok(vec![

@@ -27,7 +27,7 @@ use feedwright_control::vector::{add_scaled, bounded, dot, norm, scale, sub};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
 /// Plan time of a line, s: at 50 mm/s on a circle of 10 mm the path is 0.8 um beside the middle of such a line, in 10 ms 3 um.
-pub const LINE_S: f64 = 0.005;
+pub(super) const LINE_S: f64 = 0.005;
 /// Longest program that is divided, s; the rest is cut as planned.
 const LONGEST_S: f64 = 120.0;
 /// Lines after which a line no longer acts on the tool: 0.16 s, eight time constants of a position loop of 50 1/s.
@@ -45,7 +45,7 @@ const LEAST_MM: f64 = 1e-9;
 
 /// A linear axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LaggingAxis {
+pub(super) struct LaggingAxis {
     /// Gain of the position loop, 1/s.
     pub kp_1_s: f64,
     /// b: bandwidth of the speed loop, 1/s.
@@ -79,7 +79,7 @@ impl LaggingAxis {
 
 /// Settings of the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub(super) struct Settings {
     /// Servo periods of a line; at least 1.
     pub servo_periods: u32,
     /// Contour error that is allowed, mm; above 0.
@@ -92,12 +92,13 @@ pub struct Settings {
 
 impl Settings {
     /// Half of the error that the linear part of tnv40 makes on a circle of 10 mm at 50 mm/s.
-    pub const DEFAULT: Self = Self { servo_periods: 5, allowed_mm: 0.006, slowest: 0.4, acceleration_mm_s2: 100.0 };
+    pub(super) const DEFAULT: Self =
+        Self { servo_periods: 5, allowed_mm: 0.006, slowest: 0.4, acceleration_mm_s2: 100.0 };
 }
 
 /// The lines, and the rates at which they are cut.
 #[derive(Debug, Clone)]
-pub struct ConstrainedFeedrate<const N: usize> {
+pub(super) struct ConstrainedFeedrate<const N: usize> {
     settings: Settings,
     axes: [LaggingAxis; N],
     period_s: f64,
@@ -108,7 +109,7 @@ pub struct ConstrainedFeedrate<const N: usize> {
 
 impl<const N: usize> ConstrainedFeedrate<N> {
     /// Before the lap that records the path; all memory of a tick is taken here.
-    pub fn new(settings: Settings, axes: [LaggingAxis; N], servo_s: f64) -> Self {
+    pub(super) fn new(settings: Settings, axes: [LaggingAxis; N], servo_s: f64) -> Self {
         let period_s = f64::from(settings.servo_periods.max(1)) * servo_s;
         let lines = (LONGEST_S / period_s) as usize;
         Self { settings, axes, period_s, ends_mm: Vec::with_capacity(lines), rates: Vec::new() }

@@ -23,7 +23,7 @@ use feedwright_control::{Command, Controller, Measured, Schedule};
 
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub(super) struct Settings {
     /// Rate g at which the error goes over into the compensation, 1/s; 1 to 300.
     pub rate_1_s: f64,
     /// Time constant Tf of the filter of the estimate, s; 0 (none) to 0.1.
@@ -32,12 +32,12 @@ pub struct Settings {
 
 impl Settings {
     /// Just below the 50 1/s of a position loop, a filter of one servo period: found by hand on the circle.
-    pub const DEFAULT: Self = Self { rate_1_s: 40.0, filter_s: 0.001 };
+    pub(super) const DEFAULT: Self = Self { rate_1_s: 40.0, filter_s: 0.001 };
 }
 
 /// Real-time contour error compensation.
 #[derive(Debug, Clone)]
-pub struct ContourCompensation<const N: usize> {
+pub(super) struct ContourCompensation<const N: usize> {
     settings: Settings,
     filtered_mm: [f64; N],
     tangent: Option<[f64; N]>,
@@ -45,7 +45,7 @@ pub struct ContourCompensation<const N: usize> {
 
 impl<const N: usize> ContourCompensation<N> {
     /// With these settings.
-    pub fn new(settings: Settings) -> Self {
+    pub(super) fn new(settings: Settings) -> Self {
         Self { settings, filtered_mm: [0.0; N], tangent: None }
     }
 }

@@ -24,7 +24,7 @@ const CORNER_COSINE: f64 = 0.995;
 
 /// The additional contour.
 #[derive(Debug, Clone)]
-pub struct CornerContour<const N: usize> {
+pub(super) struct CornerContour<const N: usize> {
     inverse: Feedforward<N>,
     reach_s: f64,
     servo_s: f64,
@@ -34,7 +34,7 @@ pub struct CornerContour<const N: usize> {
 
 impl<const N: usize> CornerContour<N> {
     /// From the inverse of the linear axes, with its whole weight within `reach_s` of a corner.
-    pub fn new(inverse: Feedforward<N>, reach_s: f64, servo_s: f64) -> Self {
+    pub(super) fn new(inverse: Feedforward<N>, reach_s: f64, servo_s: f64) -> Self {
         Self { inverse, reach_s, servo_s, whole_mm: [0.0; N] }
     }
 

@@ -37,7 +37,7 @@ const HELD_BACK_MM: f64 = 1e-9;
 
 /// Gains of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub(super) struct Settings {
     /// Proportional, mm of offset a mm of error; 0 to 8.
     pub kp: f64,
     /// Integral, 1/s; 0 to 400.
@@ -49,12 +49,12 @@ pub struct Settings {
 impl Settings {
     /// Ki / Kp cancels the pole of a position loop of 50 1/s. Kp / Kd cancels the pole of a speed
     /// loop of 200 1/s.
-    pub const DEFAULT: Self = Self { kp: 4.0, ki_1_s: 200.0, kd_s: 0.02 };
+    pub(super) const DEFAULT: Self = Self { kp: 4.0, ki_1_s: 200.0, kd_s: 0.02 };
 }
 
 /// Cross-coupled control.
 #[derive(Debug, Clone)]
-pub struct CrossCoupled<const N: usize> {
+pub(super) struct CrossCoupled<const N: usize> {
     settings: Settings,
     integral_mm_s: [f64; N],
     derivative_mm_s: [f64; N],
@@ -70,7 +70,7 @@ struct LastError<const N: usize> {
 
 impl<const N: usize> CrossCoupled<N> {
     /// With these gains.
-    pub fn new(settings: Settings) -> Self {
+    pub(super) fn new(settings: Settings) -> Self {
         Self { settings, integral_mm_s: [0.0; N], derivative_mm_s: [0.0; N], last: None }
     }
 }

@@ -24,7 +24,7 @@ use super::fuzzy_feedrate::eased;
 
 /// Settings of the adaptation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub(super) struct Settings {
     /// Contour error that is allowed, mm; above 0.
     pub allowed_mm: f64,
     /// Time constant Tf of the estimate, s.
@@ -38,12 +38,13 @@ pub struct Settings {
 impl Settings {
     /// About what cross-coupled control alone leaves of a circle of 10 mm at 50 mm/s on tnv40, so that it slows down in sharper curves;
     /// two time constants of a position loop of 50 1/s.
-    pub const DEFAULT: Self = Self { allowed_mm: 0.5e-3, filter_s: 0.04, slowest: 0.4, acceleration_mm_s2: 100.0 };
+    pub(super) const DEFAULT: Self =
+        Self { allowed_mm: 0.5e-3, filter_s: 0.04, slowest: 0.4, acceleration_mm_s2: 100.0 };
 }
 
 /// Cross-coupled control with an adaptive feedrate.
 #[derive(Debug, Clone)]
-pub struct CrossCoupledFeedrate<const N: usize> {
+pub(super) struct CrossCoupledFeedrate<const N: usize> {
     settings: Settings,
     cross_coupled: CrossCoupled<N>,
     /// theta: contour error at the planned feed, mm.
@@ -53,7 +54,7 @@ pub struct CrossCoupledFeedrate<const N: usize> {
 
 impl<const N: usize> CrossCoupledFeedrate<N> {
     /// With these settings, on top of cross-coupled control.
-    pub fn new(settings: Settings, cross_coupled: CrossCoupled<N>) -> Self {
+    pub(super) fn new(settings: Settings, cross_coupled: CrossCoupled<N>) -> Self {
         Self { settings, cross_coupled, at_full_feed_mm: 0.0, rate: 1.0 }
     }
 }

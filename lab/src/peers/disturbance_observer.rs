@@ -16,10 +16,10 @@ use super::zero_phase::SampledAxis;
 
 /// Bandwidth, Hz: above, encoder noise gets into the command, and the delay of a servo period makes the loop swing; below,
 /// friction lasts longer at every reversal (circle of 10 mm at 50 mm/s on tnv40, um RMS: 10 Hz 1.8, 25 Hz 1.1, 40 Hz 0.8).
-pub const BANDWIDTH_HZ: f64 = 40.0;
+pub(super) const BANDWIDTH_HZ: f64 = 40.0;
 
 /// Gains of the observer of an axis, for a bandwidth and a servo period of `servo_s`.
-pub fn gains(axis: &SampledAxis, bandwidth_hz: f64, servo_s: f64) -> [f64; 3] {
+pub(super) fn gains(axis: &SampledAxis, bandwidth_hz: f64, servo_s: f64) -> [f64; 3] {
     let SampledAxis { alpha, beta, gamma_s, delta_s, .. } = *axis;
     let r = 1.0 - libm::exp(-core::f64::consts::TAU * bandwidth_hz * servo_s);
     let a = 1.0 - alpha;

@@ -40,7 +40,7 @@ const KEPT_PERIODS: usize = 48;
 
 /// What a drive has beside a P speed loop; all zero is nothing.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct ObservedDrive {
+pub(super) struct ObservedDrive {
     /// Part of the command's speed that it feeds forward.
     pub velocity_feedforward: f64,
     /// Reference speed that is worth the torque which it feeds forward for a second difference of the command, 1/s.
@@ -55,7 +55,7 @@ pub struct ObservedDrive {
 
 /// What the observer of one axis is made from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ObservedAxis {
+pub(super) struct ObservedAxis {
     /// Its law between two servo periods.
     pub axis: SampledAxis,
     /// What its drive has beside.
@@ -190,7 +190,7 @@ impl AxisObserver {
 
 /// Feedforward, less what an observer finds.
 #[derive(Debug, Clone)]
-pub struct DisturbanceRejection<const N: usize> {
+pub(super) struct DisturbanceRejection<const N: usize> {
     feedforward: Feedforward<N>,
     observers: [AxisObserver; N],
     started: bool,
@@ -198,7 +198,7 @@ pub struct DisturbanceRejection<const N: usize> {
 
 impl<const N: usize> DisturbanceRejection<N> {
     /// Behind a feedforward, for these axes.
-    pub fn new(feedforward: Feedforward<N>, axes: [ObservedAxis; N], servo_s: f64) -> Self {
+    pub(super) fn new(feedforward: Feedforward<N>, axes: [ObservedAxis; N], servo_s: f64) -> Self {
         Self { feedforward, observers: axes.map(|axis| AxisObserver::new(axis, servo_s)), started: false }
     }
 

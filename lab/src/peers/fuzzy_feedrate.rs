@@ -24,13 +24,13 @@ use feedwright_control::vector::{bounded, norm};
 use feedwright_control::{Command, Controller, Measured, Schedule};
 
 /// Period in which the rules are asked, s: an interpolator's, not a servo's.
-pub const FEED_PERIOD_S: f64 = 0.01;
+pub(super) const FEED_PERIOD_S: f64 = 0.01;
 /// The consequents: error small, medium, large; within it falling, steady, rising.
 const RULES: [[f64; 3]; 3] = [[0.0, 0.0, 0.25], [0.25, 0.5, 0.75], [0.75, 1.0, 1.0]];
 
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub(super) struct Settings {
     /// Servo periods between two decisions; 1 to 100.
     pub servo_periods: u32,
     /// Contour error that is large, mm; above 0.
@@ -45,11 +45,11 @@ pub struct Settings {
 
 impl Settings {
     /// Large is what a machine of the class shows at full feed in a circle of 10 mm radius.
-    pub const DEFAULT: Self =
+    pub(super) const DEFAULT: Self =
         Self { servo_periods: 10, error_mm: 0.02, change_mm_s: 1.0, slowest: 0.4, acceleration_mm_s2: 100.0 };
 
     /// The rate that the rules give for an error and its change.
-    pub fn rate(&self, error_mm: f64, change_mm_s: f64) -> f64 {
+    pub(super) fn rate(&self, error_mm: f64, change_mm_s: f64) -> f64 {
         let error = memberships(2.0 * error_mm / self.error_mm - 1.0);
         let change = memberships(change_mm_s / self.change_mm_s);
         let mut slow_down = 0.0;
@@ -77,7 +77,7 @@ pub(super) fn eased<const N: usize>(rate: f64, wanted: f64, acceleration_mm_s2: 
 
 /// Fuzzy adaptive feedrate.
 #[derive(Debug, Clone)]
-pub struct FuzzyFeedrate {
+pub(super) struct FuzzyFeedrate {
     settings: Settings,
     error_mm: Option<f64>,
     rate: f64,
@@ -85,7 +85,7 @@ pub struct FuzzyFeedrate {
 
 impl FuzzyFeedrate {
     /// With these settings.
-    pub fn new(settings: Settings) -> Self {
+    pub(super) fn new(settings: Settings) -> Self {
         Self { settings, error_mm: None, rate: 1.0 }
     }
 }

@@ -31,10 +31,10 @@ const ITERATIONS: u32 = 4_000;
 const HALVINGS: u32 = 30;
 const GAMMAS: [f64; 2] = [1e-3, 1e6];
 /// Gamma as a multiple of the least.
-pub const GAMMA_RATIO: f64 = 1.5;
+pub(super) const GAMMA_RATIO: f64 = 1.5;
 
 /// Gains of the filter in its steady state, at a multiple of the least gamma; above 1.
-pub fn gains(axis: &SampledAxis, noise: &AxisNoise, gamma_ratio: f64) -> [f64; 3] {
+pub(super) fn gains(axis: &SampledAxis, noise: &AxisNoise, gamma_ratio: f64) -> [f64; 3] {
     let [mut low, mut high] = GAMMAS.map(libm::log);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
@@ -69,7 +69,7 @@ fn gains_at(axis: &SampledAxis, noise: &AxisNoise, gamma: f64) -> Option<[f64; 3
 
 /// H-infinity axis control with a fuzzy adaptive feedrate.
 #[derive(Debug, Clone)]
-pub struct FuzzyHInfinity<const N: usize> {
+pub(super) struct FuzzyHInfinity<const N: usize> {
     axes: DisturbanceRejection<N>,
     fuzzy: FuzzyFeedrate,
     /// Servo periods until the rules are asked again, and what they said last.
@@ -79,7 +79,7 @@ pub struct FuzzyHInfinity<const N: usize> {
 
 impl<const N: usize> FuzzyHInfinity<N> {
     /// Of the two parts.
-    pub fn new(axes: DisturbanceRejection<N>, fuzzy: FuzzyFeedrate) -> Self {
+    pub(super) fn new(axes: DisturbanceRejection<N>, fuzzy: FuzzyFeedrate) -> Self {
         Self { axes, fuzzy, wait: 0, rate: 1.0 }
     }
 }

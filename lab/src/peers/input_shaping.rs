@@ -27,7 +27,7 @@ use feedwright_control::{Command, Controller, Feedforward, MAX_PREVIEW, Measured
 
 /// Settings of the shaper.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub(super) struct Settings {
     /// Frequency of the resonance, Hz; 5 to 500.
     pub frequency_hz: f64,
     /// Its damping ratio; 0 to 0.9.
@@ -38,7 +38,7 @@ pub struct Settings {
 
 impl Settings {
     /// Between the 60 Hz of a table on a soft ball screw whose motor is held and the 85 Hz at which both swing freely.
-    pub const DEFAULT: Self = Self { frequency_hz: 70.0, damping_ratio: 0.02, impulses: 2 };
+    pub(super) const DEFAULT: Self = Self { frequency_hz: 70.0, damping_ratio: 0.02, impulses: 2 };
 }
 
 /// An impulse of the shaper.
@@ -83,7 +83,7 @@ impl Shaper {
 
 /// Input shaping in front of feedforward.
 #[derive(Debug, Clone)]
-pub struct InputShaping<const N: usize> {
+pub(super) struct InputShaping<const N: usize> {
     feedforward: Feedforward<N>,
     shaper: Shaper,
     preview: u32,
@@ -91,7 +91,7 @@ pub struct InputShaping<const N: usize> {
 
 impl<const N: usize> InputShaping<N> {
     /// In front of a feedforward, for a servo period of `servo_s`.
-    pub fn new(feedforward: Feedforward<N>, settings: &Settings, servo_s: f64) -> Self {
+    pub(super) fn new(feedforward: Feedforward<N>, settings: &Settings, servo_s: f64) -> Self {
         let shaper = Shaper::new(settings);
         let Schedule { preview, .. } = feedforward.schedule();
         let ahead = libm::ceil(f64::from(preview) + shaper.ahead_s() / servo_s).min(MAX_PREVIEW);

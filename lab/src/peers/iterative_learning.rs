@@ -49,7 +49,7 @@ const CUT_OFF_HZ: Parameter = Parameter::number(
     "frequency above which nothing is learned: beyond the bandwidth of the loop, learning grows noise",
 );
 /// Of every row, whatever its laps.
-pub const PARAMETERS: [Parameter; 3] = [GAIN, LEAD_S, CUT_OFF_HZ];
+pub(super) const PARAMETERS: [Parameter; 3] = [GAIN, LEAD_S, CUT_OFF_HZ];
 
 /// The end of a program is followed until the tool has arrived; its errors are learned for as long, s.
 const ARRIVAL_S: f64 = 0.25;
@@ -62,7 +62,7 @@ const HIGHEST_CUT_OFF: f64 = 0.49;
 
 /// Settings of the learning.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub(super) struct Settings {
     /// Servo periods in a feed period, at least 1.
     pub servo_periods: u32,
     /// L: part of the error that a lap takes up; 0 (none) to 2.
@@ -76,12 +76,12 @@ pub struct Settings {
 impl Settings {
     /// For a loop of 50 1/s: the lead is its time constant, and Q ends below the bandwidth of a speed loop of 200 1/s.
     /// Of the settings tried on circle, star, square and figure-eight the one with the smallest RMS errors on most.
-    pub const DEFAULT: Self = Self { servo_periods: 1, gain: 1.0, lead_s: 0.02, cut_off_hz: 30.0 };
+    pub(super) const DEFAULT: Self = Self { servo_periods: 1, gain: 1.0, lead_s: 0.02, cut_off_hz: 30.0 };
 }
 
 /// The learning controller: table of offsets, and the errors of the lap under way.
 #[derive(Debug, Clone)]
-pub struct IterativeLearning<const N: usize> {
+pub(super) struct IterativeLearning<const N: usize> {
     settings: Settings,
     servo_s: f64,
     /// Offset at each decision, mm.
@@ -92,7 +92,7 @@ pub struct IterativeLearning<const N: usize> {
 
 impl<const N: usize> IterativeLearning<N> {
     /// Before the first lap, at a servo period of `servo_s`; all memory is taken here.
-    pub fn new(settings: Settings, servo_s: f64) -> Self {
+    pub(super) fn new(settings: Settings, servo_s: f64) -> Self {
         let settings = Settings { servo_periods: settings.servo_periods.max(1), ..settings };
         let period_s = f64::from(settings.servo_periods) * servo_s;
         let decisions = ((LONGEST_S + ARRIVAL_S) / period_s).ceil() as usize;

@@ -28,7 +28,7 @@ const ITERATIONS: u32 = 20_000;
 
 /// What is taken to be unknown of an axis, as standard deviations for each servo period.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AxisNoise {
+pub(super) struct AxisNoise {
     /// Change of the disturbance, as reference speed, mm/s; above 0.
     pub drift_mm_s: f64,
     /// White part of the torque, mm/s of reference speed.
@@ -41,11 +41,11 @@ impl AxisNoise {
     /// An encoder of 1 um, whose error is spread evenly over its step, a drift with which a reversal is found in a few servo periods,
     /// and next to no white torque: circle of 10 mm at 50 mm/s, um RMS by the drift, on tnv40 0.05 0.35, 0.2 0.24, 1 0.17, 5 0.12,
     /// with encoder steps and a late drive (`coarse`) 0.2 0.33, 1 0.28.
-    pub const DEFAULT: Self = Self { drift_mm_s: 1.0, torque_mm_s: 0.01, encoder_mm: 0.29e-3 };
+    pub(super) const DEFAULT: Self = Self { drift_mm_s: 1.0, torque_mm_s: 0.01, encoder_mm: 0.29e-3 };
 }
 
 /// Gains of the filter in its steady state.
-pub fn gains(axis: &SampledAxis, noise: &AxisNoise) -> [f64; 3] {
+pub(super) fn gains(axis: &SampledAxis, noise: &AxisNoise) -> [f64; 3] {
     let encoder = noise.encoder_mm * noise.encoder_mm;
     let drift = noise.drift_mm_s * noise.drift_mm_s;
     // From any positive covariance the same is reached.

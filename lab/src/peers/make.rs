@@ -21,8 +21,8 @@ use super::h_infinity::{self, FuzzyHInfinity};
 use super::input_shaping::{self, InputShaping};
 use super::iterative_learning::{self, IterativeLearning};
 use super::kalman_disturbance::{self, AxisNoise};
+use super::model_predictive::horizon::{CorrectionLimits, HorizonSettings};
 use super::model_predictive::{self, ModelPredictive};
-use super::receding_horizon::{CorrectionLimits, HorizonSettings, RecedingHorizon, RecedingHorizonSettings};
 use super::sum::Sum;
 use super::zero_phase::{Filter, SampledAxis, ZeroPhase};
 
@@ -236,28 +236,8 @@ pub(super) fn sampled(axis: &Parameters, period: &Period) -> SampledAxis {
     SampledAxis { alpha, beta, gamma_s, delta_s, kp_1_s: axis.kp_1_s, kd: axis.kd }
 }
 
-pub(super) fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let (net, spread) = setup.servo(values.number("feed_period_s"));
-    let mut settings = RecedingHorizonSettings::<N>::DEFAULT;
-    settings.servo_periods = setup.known.period.servo_periods(values.number("feed_period_s"));
-    (settings.steps, settings.innovation_scale_mm, settings.foreseen_mm) =
-        (values.whole("steps"), values.number("innovation_scale_mm"), values.number("foreseen_mm"));
-    settings.horizon = HorizonSettings {
-        knots: values.whole("knots"),
-        rate_weight: values.number("rate_weight_s2"),
-        change_weight: values.number("change_weight_s2"),
-        tangential_weight: values.number("tangential_weight"),
-        last_weight: values.number("last_weight"),
-        on_rapids: values.is_on("on_rapids"),
-        limits: CorrectionLimits::of(&setup.known),
-        ..settings.horizon
-    };
-    let controller: RecedingHorizon<N> = RecedingHorizon::new(net, &spread, settings);
-    Box::new(controller)
-}
-
 pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let RecedingHorizonSettings::<N> { mut horizon, .. } = RecedingHorizonSettings::DEFAULT;
+    let mut horizon = HorizonSettings::<N>::DEFAULT;
     (horizon.knots, horizon.rate_weight) = (values.whole("knots"), values.number("rate_weight_s2"));
     horizon.limits = CorrectionLimits::of(&setup.known);
     let servo_periods = setup.known.period.servo_periods(values.number("feed_period_s"));

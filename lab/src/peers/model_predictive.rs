@@ -1,6 +1,6 @@
 //! Model-predictive contouring with the exact model of the machine, solved to convergence.
 //!
-//! The horizon of `receding_horizon` over a model that is the machine itself: its servo law, inertia, friction,
+//! A [`horizon`] over a model that is the machine itself: its servo law, inertia, friction,
 //! period by period, with its drive, its delays and its friction. The model is as late as the encoder: its position is what is
 //! measured, and a reference acts on it both delays after it was sent. What is not known of a machine it does not know: the disturbance
 //! is predicted from what the model missed, as everywhere. It is what an identified model could reach if it were perfect and the control had all the time of
@@ -9,6 +9,10 @@
 //! Source: Lam, Manzie and Good (2010), "Model predictive contouring control", for the contour error over a horizon; the
 //! progress along the path stays as planned here, since a time bought with error is not compared.
 
+mod least_squares;
+mod residual;
+pub(crate) mod horizon;
+
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{
     AxisLaw, AxisState, Command, CommandQueue, Controller, DriveLaw, DriveParameters, DriveReference, DriveState,
@@ -16,10 +20,8 @@ use feedwright_control::{
 };
 use feedwright_sim::{Known, KnownAxis};
 
-use super::receding_horizon::{
-    CommandedPeriod, DisturbanceForecast, HorizonSettings, MAX_KNOTS, OffsetPlan, Predictor, Residual,
-    ResidualSettings, Sensitivity,
-};
+use horizon::{CommandedPeriod, HorizonSettings, MAX_KNOTS, OffsetPlan, Predictor, Sensitivity};
+use residual::{DisturbanceForecast, Residual, ResidualSettings};
 
 /// Steps of Gauss and Newton, at most.
 const MAX_STEPS: usize = 20;
@@ -28,7 +30,7 @@ const CONVERGED_MM_S2: f64 = 0.05;
 
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings<const N: usize> {
+pub(crate) struct Settings<const N: usize> {
     /// Servo periods in a feed period.
     pub servo_periods: u32,
     /// The inversion.
@@ -37,7 +39,7 @@ pub struct Settings<const N: usize> {
 
 /// Model-predictive contouring.
 #[derive(Debug, Clone)]
-pub struct ModelPredictive<const N: usize> {
+pub(crate) struct ModelPredictive<const N: usize> {
     settings: Settings<N>,
     /// The model at rest at the origin.
     rest: Exact<N>,
@@ -51,7 +53,7 @@ pub struct ModelPredictive<const N: usize> {
 
 impl<const N: usize> ModelPredictive<N> {
     /// With the nominal law of a machine.
-    pub fn new(known: &Known, settings: Settings<N>) -> Self {
+    pub(crate) fn new(known: &Known, settings: Settings<N>) -> Self {
         let rest = Exact::new(known, settings.servo_periods);
         Self {
             settings,
@@ -122,7 +124,7 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
         let settings = &self.settings.horizon;
         let mut model = self.model.clone();
         model.residual = self.residuals.each_ref().map(Residual::forecast);
-        self.plan.shift(1, settings);
+        self.plan.shift(settings);
         let mut step = self.plan.improve(&model, window, settings);
         for _ in 1..MAX_STEPS {
             if step.change_mm_s2 <= CONVERGED_MM_S2 {
@@ -130,7 +132,7 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
             }
             step = self.plan.improve(&model, window, settings);
         }
-        let mut stretch = CommandedPeriod::now(window, 1);
+        let mut stretch = CommandedPeriod::now(window);
         stretch.go_on(window, step.acceleration_mm_s2);
         let expected_mm = model.advance(window, &stretch, &mut [[0.0; N]; MAX_KNOTS]);
         for (own, foreseen) in self.model.axes.iter_mut().zip(&model.axes) {
@@ -203,12 +205,12 @@ impl<const N: usize> Predictor<N> for Exact<N> {
             let offset_mm = offset.offset_after_mm(part, stretch.offset_mm[0]);
             let moved_s2 = std::array::from_fn(|knot| stretch.moved_s2(knot, part));
             for (i, axis) in self.axes.iter_mut().enumerate() {
-                axis.advance(path_mm[i] + offset_mm[i], &moved_s2, stretch.knot());
+                axis.advance(path_mm[i] + offset_mm[i], &moved_s2, stretch.period);
             }
         }
         for i in 0..N {
             self.prediction_error_mm[i] += self.residual[i].next_mm();
-            for knot in 0..=stretch.knot() {
+            for knot in 0..=stretch.period {
                 sensitivity[knot][i] =
                     self.axes[i].slopes[knot].motor.angle_rad / self.axes[i].law.parameters.rad_per_mm;
             }

@@ -2,10 +2,9 @@
 
 use feedwright::Parameter;
 use feedwright_control::LqgSettings;
-use feedwright_ident::SERVO_FEED_PERIOD_S;
 
 use super::kalman_disturbance::AxisNoise;
-use super::receding_horizon::{MAX_KNOTS, RecedingHorizonSettings};
+use super::model_predictive::horizon::{HorizonSettings, MAX_KNOTS};
 use super::{constrained_feedrate, cross_coupled, cross_coupled_feedrate, fuzzy_feedrate, h_infinity, input_shaping};
 
 // Of the limit.
@@ -152,70 +151,24 @@ pub(super) const SHAPER_IMPULSES: Parameter = Parameter::whole(
     [2.0, 3.0],
     "2 hit the frequency (ZV), 3 also what is near it (ZVD) and round the path by more",
 );
-// Of those that plan over a horizon.
+// Of the one that plans over a horizon.
 pub(super) const RATE_WEIGHT: Parameter = Parameter::number(
     "rate_weight_s2",
-    RecedingHorizonSettings::<2>::DEFAULT.horizon.rate_weight,
+    HorizonSettings::<2>::DEFAULT.rate_weight,
     [0.0, 0.01],
     None,
     "weight of the speed of the offset: below 1e-10 the plan rings from knot to knot, above 1e-4 nothing is corrected",
 );
 pub(super) const KNOTS: Parameter = Parameter::whole(
     "knots",
-    RecedingHorizonSettings::<2>::DEFAULT.horizon.knots,
+    HorizonSettings::<2>::DEFAULT.knots,
     [1.0, MAX_KNOTS as f64],
     "knots of the horizon: fewer take less time in a tick, and see less of a corner ahead",
 );
 pub(super) const PLAN_PERIOD_S: Parameter = Parameter::number(
     "feed_period_s",
-    SERVO_FEED_PERIOD_S,
+    0.003,
     [1e-3, 0.012],
     None,
     "time between decisions: 2 ms is worse on a soft ball screw, 5 ms at every reversal",
-);
-pub(super) const CHANGE_WEIGHT: Parameter = Parameter::number(
-    "change_weight_s2",
-    RecedingHorizonSettings::<2>::DEFAULT.horizon.change_weight,
-    [0.0, 0.01],
-    None,
-    "weight of the change of that speed from knot to knot: more is smoother, and blunter at corners",
-);
-pub(super) const TANGENTIAL_WEIGHT: Parameter = Parameter::number(
-    "tangential_weight",
-    RecedingHorizonSettings::<2>::DEFAULT.horizon.tangential_weight,
-    [0.0, 1.0],
-    None,
-    "weight of an error along the path: small leaves room at a corner, large keeps the tool from staying behind",
-);
-pub(super) const LAST_WEIGHT: Parameter = Parameter::number(
-    "last_weight",
-    RecedingHorizonSettings::<2>::DEFAULT.horizon.last_weight,
-    [0.0, 1.0],
-    None,
-    "the same at the end of the horizon, at the least: where it is small, the tool swings about turns that are not seen yet",
-);
-pub(super) const INNOVATION_SCALE_MM: Parameter = Parameter::number(
-    "innovation_scale_mm",
-    RecedingHorizonSettings::<2>::DEFAULT.innovation_scale_mm,
-    [1e-6, 1.0],
-    None,
-    "innovations of this size make the plan half as sharp: small is gentle, large builds on predictions that miss",
-);
-pub(super) const FORESEEN_MM: Parameter = Parameter::number(
-    "foreseen_mm",
-    RecedingHorizonSettings::<2>::DEFAULT.foreseen_mm,
-    [1e-4, 10.0],
-    None,
-    "a miss by this some knots ahead makes the offset count as much as an error: large trusts a model that is wrong",
-);
-pub(super) const SOLVER_STEPS: Parameter = Parameter::whole(
-    "steps",
-    RecedingHorizonSettings::<2>::DEFAULT.steps,
-    [1.0, 20.0],
-    "steps of the solver in a tick: further ones hardly change anything",
-);
-pub(super) const ON_RAPIDS: Parameter = Parameter::switch(
-    "on_rapids",
-    RecedingHorizonSettings::<2>::DEFAULT.horizon.on_rapids,
-    "whether rapids are corrected as cuts are",
 );

@@ -28,7 +28,7 @@ use feedwright_control::{Command, Controller, Measured, Schedule};
 
 /// Two controllers that decide in every servo period at the planned feed; the second may not bend its offset.
 #[derive(Debug, Clone)]
-pub struct Sum<A, B, const N: usize> {
+pub(super) struct Sum<A, B, const N: usize> {
     first: A,
     second: B,
     /// What each asked for last, mm.
@@ -37,7 +37,7 @@ pub struct Sum<A, B, const N: usize> {
 
 impl<A: Controller<N>, B: Controller<N>, const N: usize> Sum<A, B, N> {
     /// Of these two.
-    pub fn new(first: A, second: B) -> Self {
+    pub(super) fn new(first: A, second: B) -> Self {
         Self { first, second, asked_mm: [[0.0; N]; 2] }
     }
 }

@@ -38,7 +38,7 @@ use feedwright_control::{Command, Controller, MAX_PREVIEW, Measured, Schedule, p
 
 /// One axis between two servo periods: the effect of its speed and of the reference speed that is held.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SampledAxis {
+pub(super) struct SampledAxis {
     /// Speed left of a unit of speed.
     pub alpha: f64,
     /// Speed taken up from a unit of reference speed.
@@ -54,13 +54,13 @@ pub struct SampledAxis {
 }
 
 /// Most weights of the reference: 40 periods of delay, and the order of a loop and of its mirrored zeros.
-pub const MAX_WEIGHTS: usize = 64;
+pub(super) const MAX_WEIGHTS: usize = 64;
 /// Most zeros that are cancelled: three of a sampled drive with integral and filter, one of a part of a period of delay, two of feedforward.
-pub const MAX_CANCELLED: usize = 6;
+pub(super) const MAX_CANCELLED: usize = 6;
 
 /// The filter of one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Filter {
+pub(super) struct Filter {
     /// Weights of the reference at k + ahead, and of as many before as `taps` says; their sum is 1.
     weights: [f64; MAX_WEIGHTS],
     ahead: u32,
@@ -72,7 +72,7 @@ pub struct Filter {
 
 impl Filter {
     /// For an axis with a P speed loop and nothing beside, with a servo period of `servo_s`.
-    pub fn new(axis: &SampledAxis, servo_s: f64) -> Self {
+    pub(super) fn new(axis: &SampledAxis, servo_s: f64) -> Self {
         let SampledAxis { alpha, beta, gamma_s, delta_s: d, kp_1_s, kd } = *axis;
         let e = gamma_s * beta - alpha * d;
         let gain = kp_1_s + kd / servo_s;
@@ -93,7 +93,7 @@ impl Filter {
     ///
     /// Returns `None` if there are too many coefficients, if one is not finite, if `of_reference`
     /// sums to zero, or if `cancelled` is empty.
-    pub fn of_loop(of_reference: &[f64], ahead: u32, cancelled: &[f64]) -> Option<Self> {
+    pub(super) fn of_loop(of_reference: &[f64], ahead: u32, cancelled: &[f64]) -> Option<Self> {
         let (_, before) = cancelled.split_first()?;
         let (sum, direct): (f64, f64) = (of_reference.iter().sum(), cancelled.iter().sum());
         let finite = sum.abs() > 0.0 && of_reference.iter().chain(cancelled).all(|value| (value / sum).is_finite());
@@ -107,7 +107,7 @@ impl Filter {
     }
 
     /// Weights of the reference, the first one the furthest ahead.
-    pub fn weights(&self) -> &[f64] {
+    pub(super) fn weights(&self) -> &[f64] {
         self.weights.get(..self.taps).unwrap_or_default()
     }
 
@@ -127,7 +127,7 @@ impl Filter {
 
 /// Zero phase error tracking control; remembers the commands of the last periods.
 #[derive(Debug, Clone)]
-pub struct ZeroPhase<const N: usize> {
+pub(super) struct ZeroPhase<const N: usize> {
     filters: [Filter; N],
     preview: u32,
     /// The last commands, the newest first, mm; none at the start.
@@ -136,7 +136,7 @@ pub struct ZeroPhase<const N: usize> {
 
 impl<const N: usize> ZeroPhase<N> {
     /// Of these filters, for loops that lag by up to `lag_s`.
-    pub fn new(filters: [Filter; N], lag_s: f64, servo_s: f64) -> Self {
+    pub(super) fn new(filters: [Filter; N], lag_s: f64, servo_s: f64) -> Self {
         // The plain filter looks two periods ahead, which is within the differences that every preview has.
         let more = filters.iter().map(|filter| filter.ahead).fold(2, u32::max) - 2;
         let preview = (preview(lag_s, servo_s) + more).min(MAX_PREVIEW as u32);
@@ -146,7 +146,7 @@ impl<const N: usize> ZeroPhase<N> {
 
 impl SampledAxis {
     /// The lags of the position loop and of the speed loop, s; the second is J / (kv + B).
-    pub fn lag_s(&self) -> f64 {
+    pub(super) fn lag_s(&self) -> f64 {
         1.0 / self.kp_1_s + self.gamma_s / (1.0 - self.alpha)
     }
 }

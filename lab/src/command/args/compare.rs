@@ -7,7 +7,7 @@ use feedwright::command::ReaderArgs;
 use feedwright_sim::{GeometryFile, Machine, Squareness};
 use miette::Result;
 
-use crate::compare::{Knowledge, MAX_SEEDS, Shard};
+use crate::compare::{Knowledge, MAX_SEEDS};
 
 /// Compare all controllers on contours and machines
 ///
@@ -15,7 +15,7 @@ use crate::compare::{Knowledge, MAX_SEEDS, Shard};
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Examples:
-  feedwright-lab compare --only workshop --html compare.html
+  feedwright-lab compare --only workshop --json compare.json
   feedwright-lab compare --only circle,star,tnv40,uncorrected,lqg-identified")]
 pub(crate) struct CompareArgs {
     /// Only these contours, machines and controllers; what is not named in its kind is left out.
@@ -38,11 +38,8 @@ pub(crate) struct CompareArgs {
     /// if none is stored), a search for each controller and machine (an hour and more), or the defaults.
     #[arg(long, value_name = "SOURCE", value_enum, default_value_t = TuningSource::Recorded)]
     tuning: TuningSource,
-    /// As --tuning defaults.
-    #[arg(long, conflicts_with = "tuning")]
-    no_tuning: bool,
     /// Search, and keep the values in this file beside those that it has; cut nothing. The program keeps lab/src/compare/recorded.jsonl.
-    #[arg(long, value_name = "FILE.jsonl", conflicts_with_all = ["json", "html", "merge", "at_tolerance"])]
+    #[arg(long, value_name = "FILE.jsonl", conflicts_with_all = ["json", "at_tolerance"])]
     pub(crate) record: Option<PathBuf>,
     /// What is cut.
     #[arg(long, value_name = "WORK", value_enum, default_value_t = Work::Contours)]
@@ -57,27 +54,18 @@ pub(crate) struct CompareArgs {
     /// with wrong signs), or a geometry file (.toml).
     #[arg(long, value_name = "GEOMETRY", default_value = "none")]
     pub(crate) geometry: Compensated,
-    /// Do only the i-th of n parts of the work; --merge puts the parts together.
-    #[arg(long, value_name = "I/N", conflicts_with_all = ["json", "html", "merge"])]
-    pub(crate) shard: Option<Shard>,
-    /// Keep rows in this file as they are made, and go on with those that it has.
-    #[arg(long, value_name = "FILE.jsonl", conflicts_with = "merge")]
-    pub(crate) rows: Option<PathBuf>,
-    /// Cut nothing: make the table of the rows in these files, with the same options as for them.
-    #[arg(long, value_name = "FILE.jsonl,...", value_delimiter = ',')]
-    pub(crate) merge: Vec<PathBuf>,
+    /// Folder of finished work, so that an interrupted run continues [default: in the cache, until the run is complete].
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) results: Option<PathBuf>,
     /// Also find, for each smooth contour, the feedrate at which each controller just holds 10 um.
     #[arg(long)]
     pub(crate) at_tolerance: bool,
     /// Threads; all cores where it is left out. The table does not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
-    /// Write all rows.
+    /// Write errors, times, tuned values and claims.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) json: Option<PathBuf>,
-    /// Write a page with the table and plots of the errors.
-    #[arg(long, value_name = "FILE.html")]
-    pub(crate) html: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) reader: ReaderArgs,
 }
@@ -186,10 +174,6 @@ impl From<Given> for Knowledge {
 
 impl CompareArgs {
     pub(crate) fn tuning(&self) -> TuningSource {
-        match (&self.record, self.no_tuning) {
-            (Some(_), _) => TuningSource::Search,
-            (None, true) => TuningSource::Defaults,
-            (None, false) => self.tuning,
-        }
+        if self.record.is_some() { TuningSource::Search } else { self.tuning }
     }
 }

@@ -8,7 +8,7 @@ use super::sweep::{OneController, SweepArgs, at_least_one};
 
 /// Look for such harm with random programs on random machines
 ///
-/// With --failures the smallest case of what fails is written.
+/// With --failures what fails is written.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Example:
@@ -28,12 +28,9 @@ pub(crate) struct HeldOutArgs {
     /// Machines that also have what real axes have: ball screws, backlash, friction, cogging, feedforward, noise, other servo periods.
     #[arg(long, conflicts_with = "rigid")]
     pub(crate) realistic: bool,
-    /// Make the worst failures smaller and write each as DIR/N.ngc and DIR/N.toml.
+    /// Write each failure as DIR/N.ngc and DIR/N.toml, the worst first.
     #[arg(long, value_name = "DIR")]
     pub(crate) failures: Option<PathBuf>,
-    /// Failures that are made smaller.
-    #[arg(long, value_name = "N", default_value_t = 10, requires = "failures")]
-    pub(crate) smallest: usize,
     #[command(flatten)]
     pub(crate) one: OneController,
     #[command(flatten)]

@@ -18,14 +18,9 @@ Our controller is lqg-identified, or the first one where that is not named. Colu
 uncorrected one; worse: cuts with a worse error than uncorrected; out: cuts that end without the controller in the loop; later: median of \
 the error from the third second of motion on, over that of the same controller without a difference.
 
-Columns of --sudden: back: cuts that are back within 1 s, of those that are long enough; median and largest time until they are back, s; \
-level: median of the error later than 1 s after the change, over that of the cut without the change; worse: cuts whose largest error is \
-worse than uncorrected; by: largest such excess, um, negative where there is none; out as above.
-
 Examples:
   feedwright-lab mismatch parts --machine workshop --drawn 4 --seed 7
   feedwright-lab mismatch parts --controller lqg-identified --controller feedforward
-  feedwright-lab mismatch parts --sudden
 
 Exit codes: 0 no cut of our controller is worse; 1 one is; 2 an error.")]
 pub(crate) struct MismatchArgs {
@@ -44,14 +39,6 @@ pub(crate) struct MismatchArgs {
     /// Variants in which everything differs, drawn by the seed, for each of 10 and 20 %.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) drawn: u32,
-    /// Change the machine in mid-cut: twice the inertia, twice the friction, or a blow.
-    ///
-    /// The change comes at half of the cutting time. A blow is a torque impulse that moves each axis by 35 um, uncorrected. Each cut is
-    /// made with and without the change. Within 1 s after it, the RMS error of the last 0.2 s has to be back: at most 1.5 times what it is
-    /// at the same moment without the change, plus 0.5 um. Where the change raises the uncorrected error at that moment, it may be higher
-    /// by the same ratio. The largest error from the change on may exceed the uncorrected one by 1 um. No journal is kept.
-    #[arg(long, conflicts_with_all = ["gross", "drawn", "journal"])]
-    pub(crate) sudden: bool,
     /// Cut no more of a program than this time of machining on the machine of the model, s.
     #[arg(long, value_name = "S", default_value_t = 60.0)]
     pub(crate) limit_s: f64,

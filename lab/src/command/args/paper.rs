@@ -14,7 +14,7 @@ Example:
   feedwright-lab paper --out paper
   feedwright-lab paper --out paper --as-printed --draws 100")]
 pub(crate) struct PaperArgs {
-    /// Folder for the figures, the page and paper.json; made where it is missing.
+    /// Folder for the figures and paper.json; made where it is missing.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).

@@ -4,8 +4,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::compare::Shard;
-
 /// A number of cuts.
 pub(super) fn at_least_one(text: &str) -> Result<usize, String> {
     match text.parse() {
@@ -34,15 +32,9 @@ pub(crate) struct SweepArgs {
     /// Threads; all cores where it is left out. The result does not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
-    /// Where finished cuts are kept, so that an interrupted run goes on [default: in the cache, by version].
-    #[arg(long, value_name = "FILE.jsonl")]
-    pub(crate) journal: Option<PathBuf>,
-    /// Cut the i-th of n parts of the cuts alone. Give each part a --journal; the same command with --merge makes the table of all.
-    #[arg(long, value_name = "I/N", requires = "journal")]
-    pub(crate) shard: Option<Shard>,
-    /// Journals of shards, or of other runs of the same version: what they have is not cut again.
-    #[arg(long, value_name = "FILE.jsonl,...", value_delimiter = ',')]
-    pub(crate) merge: Vec<PathBuf>,
+    /// Folder of finished cuts, so that an interrupted run continues [default: in the cache, until the run is complete].
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) results: Option<PathBuf>,
     /// Write all cuts.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) json: Option<PathBuf>,

@@ -13,7 +13,6 @@ use serde::Serialize;
 use super::never_worse::{checked, found, read};
 use crate::command::args::mismatch::MismatchArgs;
 use crate::command::sweep::{Sweep, code};
-use crate::mismatch::sudden::{SuddenRow, SuddenSummary, sudden};
 use crate::mismatch::table::{MismatchSummary, MismatchVerdict};
 use crate::mismatch::{Variants, variants};
 use crate::never_worse::summary::Quantiles;
@@ -59,14 +58,12 @@ pub(crate) fn run(args: &MismatchArgs, console: &Console) -> Result<ExitCode> {
     for base in &bases {
         let programs = read(&files, &args.reader.settings()?, base, args.limit_s, console)?;
         let model = Arc::new(base.clone());
-        let machines = if args.sudden { vec![base.clone()] } else { variants(base, which) };
-        all.extend(jobs(programs, machines).into_iter().map(|job| SweepJob { model: model.clone(), ..job }));
-    }
-    if args.sudden {
-        return run_sudden(&all, ours, sweep, console);
+        all.extend(
+            jobs(programs, variants(base, which)).into_iter().map(|job| SweepJob { model: model.clone(), ..job }),
+        );
     }
     eprintln!("{} cuts by models of {} machines with {} controllers", all.len(), bases.len(), names.len());
-    let mut done = sweep.run(all, console)?;
+    let mut done = sweep.run(&all, console)?;
     let summary = MismatchSummary::of(std::mem::take(&mut done.rows), ours);
     let mut out = sweep.write(&StampedResult::of(&summary), console)?;
     let printing = done.print(&summary.ours, &mut out).and_then(|()| print(&summary, &mut out));
@@ -95,65 +92,6 @@ fn print(summary: &MismatchSummary, out: &mut dyn Write) -> io::Result<()> {
         if let (Some(peer), Some(peer_median), Some(ratio)) = (peer, peer_median, ratio) {
             writeln!(out, "{model}: best peer {peer} {peer_median:.3}, {ours} {median:.3}, which is {ratio:.2} of it")?;
         }
-    }
-    Ok(())
-}
-
-/// Cuts on machines that change in mid-cut.
-fn run_sudden(jobs: &[SweepJob], ours: &str, sweep: Sweep, console: &Console) -> Result<ExitCode> {
-    eprintln!("{} programs on machines that change in mid-cut", jobs.len());
-    let bar = console.bar(0);
-    let summary = sudden(jobs, &sweep.options, &bar);
-    bar.clear();
-    let summary = summary?;
-    let failures: Vec<&SuddenRow> =
-        summary.rows.iter().filter(|row| row.controller == ours && !row.faults.is_empty()).collect();
-    let mut out = sweep.write(&StampedResult::of(&summary), console)?;
-    let printing = print_failures(&failures, &mut out).and_then(|()| print_sudden(&summary, &mut out));
-    printed(printing, code(failures.len()))
-}
-
-/// Cuts of our controller that have a fault.
-fn print_failures(failures: &[&SuddenRow], out: &mut dyn Write) -> io::Result<()> {
-    if failures.is_empty() {
-        return Ok(());
-    }
-    let columns = ["after a change", "machine", "change", "back s", "max um", "uncorrected", "fault"];
-    let mut table = ConsoleTable::new(columns.into_iter().map(TableColumn::new).collect());
-    for row in failures {
-        let back = row.back_s.map_or("-".to_owned(), |back_s| format!("{back_s:.2}"));
-        let [open_um, own_um] = row.max_um.map(|um| format!("{um:.1}"));
-        let faults: Vec<&str> = row.faults.iter().map(|fault| fault.name()).collect();
-        let names = [row.program.clone(), row.machine.clone(), row.change.name().to_owned()];
-        table.row([names.to_vec(), vec![back, own_um, open_um, faults.join(", ")]].concat());
-        if let Some(why) = &row.lost {
-            table.remark(why.clone());
-        }
-    }
-    table.print(out)
-}
-
-/// A row for each machine, change and controller; the help explains the columns.
-fn print_sudden(summary: &SuddenSummary, out: &mut dyn Write) -> io::Result<()> {
-    let columns = ["change", "cuts", "back", "median s", "largest", "level", "worse", "by um", "out"];
-    let mut table = ConsoleTable::new(columns.into_iter().map(TableColumn::new).collect());
-    let mut last = None;
-    for group in &summary.groups {
-        if last.replace((&group.machine, group.change)) != Some((&group.machine, group.change)) {
-            table.section(format!("{}, {}", group.machine, group.change.name()));
-        }
-        let [late, max, lost] = group.faults;
-        let back = group.back_s.map_or("-".to_owned(), |s| format!("{} of {}", s.cuts - late, s.cuts));
-        let seconds = [|s: Quantiles| s.median, |s: Quantiles| s.largest]
-            .map(|of| group.back_s.map_or("-".to_owned(), |s| format!("{:.2}", of(s))));
-        let level = group.level.map_or("-".to_owned(), |level| format!("{level:.2}"));
-        let rest = [level, max.to_string(), format!("{:.1}", group.max_more_um), lost.to_string()];
-        let name = [group.controller.clone(), group.cuts.to_string(), back];
-        table.row([&name[..], &seconds, &rest].concat());
-    }
-    table.print(out)?;
-    if summary.not_judged > 0 {
-        writeln!(out, "not judged, because the uncorrected cut itself is lost: {}", summary.not_judged)?;
     }
     Ok(())
 }

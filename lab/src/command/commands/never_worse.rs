@@ -35,7 +35,7 @@ pub(crate) fn run(args: &NeverWorseArgs, console: &Console) -> Result<ExitCode> 
         None => jobs,
     };
     announce(&jobs);
-    let mut done = sweep.run(jobs, console)?;
+    let mut done = sweep.run(&jobs, console)?;
     let summary = SweepSummary::of(std::mem::take(&mut done.rows));
     let mut out = sweep.write(&summary, console)?;
     printed(done.print(&summary, &mut out), code(summary.worse))

@@ -11,7 +11,7 @@ use miette::{IntoDiagnostic, Result};
 use crate::command::args::paper::PaperArgs;
 use crate::paper::departures::{DepartureResult, Draw, departures, draws, quantile};
 use crate::paper::figures::figures;
-use crate::paper::{self, Paper, page};
+use crate::paper::{self, Paper};
 
 pub(crate) fn run(args: &PaperArgs, console: &Console) -> Result<ExitCode> {
     let machine = Machine::load(&args.machine)?;
@@ -92,7 +92,6 @@ fn write(folder: &Path, paper: &Paper, figures: &[CaptionedFigure], extra: &Extr
         let name = figure.number.to_lowercase().replace(' ', "_") + ".svg";
         start(&name, &|file| file.write_all(figure.figure.to_svg().as_bytes()))?;
     }
-    start("paper.html", &|file| page::write(file, paper, figures))?;
     OutputFile::commit_all(complete, watch)?;
     Ok(())
 }
@@ -113,5 +112,5 @@ fn print(folder: &Path, paper: &Paper) -> std::io::Result<()> {
         paper.worst_rms_ratio, paper.worst_max_ratio, paper.worst_time_ratio
     );
     writeln!(out, "{}", wrapped(&text, 2))?;
-    writeln!(out, "wrote {}", folder.join("paper.html").display())
+    writeln!(out, "wrote {}", folder.join("paper.json").display())
 }

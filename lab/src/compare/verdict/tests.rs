@@ -32,7 +32,6 @@ fn row(contour: &str, machine: &str, controller: &str, [rms_um, max_um]: [f64; 2
         lost: 0,
         completed: true,
         faded_out: None,
-        error_um: Vec::new(),
     }
 }
 

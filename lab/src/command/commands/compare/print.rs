@@ -14,7 +14,7 @@ use crate::compare::verdict::Verdict;
 use crate::command::args::compare::CompareArgs;
 
 pub(super) fn print(args: &CompareArgs, comparison: &Comparison) -> std::io::Result<()> {
-    let files = || [args.json.as_deref(), args.html.as_deref()];
+    let files = || [args.json.as_deref()];
     let out = &mut *tables(files());
     out.write_all(tuned(&comparison.tuned).as_bytes())?;
     rows(&comparison.rows).print(out)?;

@@ -18,8 +18,8 @@
 //! Source: Rao, Wright and Rawlings (1998), "Application of interior-point methods to model
 //! predictive control", section 3.
 
-use feedwright_control::{FEED_SCALE_MM_S, FOLLOWING_SCALE_MM, INPUTS};
-use feedwright_lab::{Accelerations, END_WEIGHT, GaussNewton, HorizonProblem, MAX_KNOTS};
+use feedwright_control::{FEED_SCALE_MM_S, INPUTS};
+use feedwright_lab::{Accelerations, END_WEIGHT, HorizonProblem, MAX_KNOTS};
 
 use super::material::{Material, difference};
 use super::model::Slopes;
@@ -43,9 +43,9 @@ pub(crate) const AGREEMENT: f64 = 3e-9;
 
 /// How far the recursion and Gauss-Newton are apart, as a share of the largest acceleration.
 pub(crate) fn apart_from_gauss_newton<const N: usize>(material: &Material<N>) -> f64 {
-    let (problem, slopes) = material.roll_out(true);
+    let (problem, slopes) = material.roll_out();
     let recursion = material.after(&Riccati::default().solve(&problem, &slopes, &material.plan));
-    difference(&material.improved(&mut GaussNewton::default(), &problem), &recursion)
+    difference(&material.improved(&problem), &recursion)
 }
 
 /// What the recursion keeps from the way back for the way forth: da = K x + k.
@@ -206,7 +206,7 @@ impl<const N: usize> PlanStep<N> {
     fn new(slopes: &[[f64; INPUTS]; N], period_s: f64) -> Self {
         let of = slopes.map(|[f0, f1, f2, e0, e1]| {
             let [f0, f1, f2] = [f0, f1, f2].map(|slope| slope / FEED_SCALE_MM_S);
-            [f0, f1, f2, 1.0 + e0 / FOLLOWING_SCALE_MM, e1 / FOLLOWING_SCALE_MM]
+            [f0, f1, f2, 1.0 + e0, e1]
         });
         Self { of, period_s }
     }

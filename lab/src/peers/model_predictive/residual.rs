@@ -1,4 +1,4 @@
-//! What the identifier misses, predicted from what it missed before: friction of today, cutting force, a vibration.
+//! What the model misses, predicted from what it missed before: friction of today, cutting force, a vibration.
 //!
 //! ```text
 //! r(k) = sum_j a_j r(k-1-j) + innovation        j = 0 .. P-1, each axis for itself
@@ -16,7 +16,7 @@ use feedwright_control::vector::bounded;
 use super::least_squares::LeastSquares;
 
 /// P: lags.
-pub(super) const LAGS: usize = 6;
+const LAGS: usize = 6;
 /// Innovations beyond this many times the usual count less.
 const USUAL: f64 = 3.0;
 /// Part by which the usual size follows each innovation.
@@ -24,23 +24,23 @@ const USUAL_GAIN: f64 = 0.02;
 
 /// Settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ResidualSettings {
+pub(super) struct ResidualSettings {
     /// Gain of the exponential smoothing that is the prior; 0 (takes in nothing) to 1.
-    pub gain: f64,
+    gain: f64,
     /// Part of the past that still counts one knot later; 0.9 to 1.
-    pub forgetting: f64,
+    forgetting: f64,
     /// Residuals of this size carry no pattern worth learning, mm.
-    pub noise_mm: f64,
+    noise_mm: f64,
 }
 
 impl ResidualSettings {
     /// Values that serve.
-    pub const DEFAULT: Self = Self { gain: 0.3, forgetting: 0.99, noise_mm: 2e-5 };
+    pub(super) const DEFAULT: Self = Self { gain: 0.3, forgetting: 0.99, noise_mm: 2e-5 };
 }
 
 /// The residuals to come of one axis, as far as the past foretells them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DisturbanceForecast {
+pub(super) struct DisturbanceForecast {
     /// The last residuals, newest first, mm.
     past_mm: [f64; LAGS],
     coefficients: [f64; LAGS],
@@ -56,7 +56,7 @@ impl DisturbanceForecast {
 
     /// The next residual, mm; each call goes on by one knot.
     #[inline]
-    pub fn next_mm(&mut self) -> f64 {
+    pub(super) fn next_mm(&mut self) -> f64 {
         let next_mm = self.expected_mm();
         self.shift(next_mm);
         next_mm
@@ -70,7 +70,7 @@ impl DisturbanceForecast {
 
 /// Residuals of one axis and the model of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Residual {
+pub(super) struct Residual {
     forecast: DisturbanceForecast,
     sums: LeastSquares<LAGS>,
     prior: [f64; LAGS],
@@ -80,7 +80,7 @@ pub struct Residual {
 
 impl Residual {
     /// Nothing missed yet.
-    pub fn new(settings: ResidualSettings) -> Self {
+    pub(super) fn new(settings: ResidualSettings) -> Self {
         let prior = smoothing(settings.gain);
         Self {
             forecast: DisturbanceForecast { past_mm: [0.0; LAGS], coefficients: prior, largest_mm: 0.0 },
@@ -91,27 +91,21 @@ impl Residual {
         }
     }
 
-    /// The coefficients a.
-    #[inline]
-    pub fn coefficients(&self) -> &[f64; LAGS] {
-        &self.forecast.coefficients
-    }
-
     /// What is expected next, mm.
     #[inline]
-    pub fn expected_mm(&self) -> f64 {
+    pub(super) fn expected_mm(&self) -> f64 {
         self.forecast.expected_mm()
     }
 
     /// What is expected from here on.
     #[inline]
-    pub fn forecast(&self) -> DisturbanceForecast {
+    pub(super) fn forecast(&self) -> DisturbanceForecast {
         self.forecast
     }
 
-    /// Takes in the residual of a knot, mm; returns the weight from 0 to 1 that it deserves.
+    /// Takes in the residual of a knot, mm.
     #[inline]
-    pub fn push(&mut self, residual_mm: f64) -> f64 {
+    pub(super) fn push(&mut self, residual_mm: f64) {
         let ResidualSettings { forgetting, noise_mm, .. } = self.settings;
         let past_mm = self.forecast.past_mm;
         let innovation_mm = (residual_mm - self.expected_mm()).abs();
@@ -125,7 +119,6 @@ impl Residual {
         self.forecast.coefficients = core::array::from_fn(|j| self.prior[j] + change[j]);
         self.forecast.shift(residual_mm);
         self.forecast.largest_mm = (forgetting * self.forecast.largest_mm).max(residual_mm.abs());
-        weight
     }
 }
 

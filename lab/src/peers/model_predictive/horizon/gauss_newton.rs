@@ -11,7 +11,7 @@ use feedwright_control::vector::add_scaled;
 use super::super::least_squares::BLOCK;
 use super::interior_point::Quadratic;
 use super::problem::{GradientRow, HorizonProblem};
-use super::{Accelerations, MAX_KNOTS, MAX_UNKNOWNS, Solver};
+use super::{Accelerations, MAX_KNOTS, MAX_UNKNOWNS};
 
 /// The normal equations of a tick. Kept between ticks so that none has to clear what it does not use.
 #[derive(Debug, Clone, Default)]
@@ -19,8 +19,9 @@ pub struct GaussNewton {
     quadratic: Quadratic,
 }
 
-impl<const N: usize> Solver<N> for GaussNewton {
-    fn improve(&mut self, problem: &HorizonProblem<N>, accelerations_mm_s2: &mut Accelerations<N>) {
+impl GaussNewton {
+    /// Changes the accelerations of a plan whose problem is this, within the limits. They are within them before.
+    pub fn improve<const N: usize>(&mut self, problem: &HorizonProblem<N>, accelerations_mm_s2: &mut Accelerations<N>) {
         let unknowns = problem.unknowns();
         self.quadratic.clear(unknowns);
         self.add_errors(problem);
@@ -37,9 +38,7 @@ impl<const N: usize> Solver<N> for GaussNewton {
             *now += change;
         }
     }
-}
 
-impl GaussNewton {
     /// G'G and G'r, a block of rows of G at a time.
     fn add_errors<const N: usize>(&mut self, problem: &HorizonProblem<N>) {
         let mut rows: [GradientRow; BLOCK] = [[0.0; MAX_UNKNOWNS]; BLOCK];
@@ -120,7 +119,7 @@ impl GaussNewton {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::peers::receding_horizon::horizon::{
+    use crate::peers::model_predictive::horizon::{
         CommandedPeriod, CorrectionLimits, HorizonSettings, Predictor, Sensitivity,
     };
     use feedwright_control::{Knot, KnotSource, Preview, Register, Window};
@@ -170,8 +169,8 @@ mod tests {
     }
 
     /// q/2 sum |o|^2 + d/2 sum |T a|^2 of a plan, rolled out.
-    fn cost(window: &Window<'_, 2>, accelerations: &Accelerations<2>, periods: usize) -> f64 {
-        let problem = HorizonProblem::new(&Deaf, window, accelerations, periods, &SETTINGS);
+    fn cost(window: &Window<'_, 2>, accelerations: &Accelerations<2>) -> f64 {
+        let problem = HorizonProblem::new(&Deaf, window, accelerations, &SETTINGS);
         let squares = |all: &mut dyn Iterator<Item = f64>| all.map(|x| x * x).sum::<f64>();
         let offsets = squares(&mut problem.ends[..KNOTS].iter().flat_map(|end| end.offset_mm));
         let changes = squares(&mut accelerations[..KNOTS].as_flattened().iter().map(|a| a * problem.knot_s));
@@ -179,23 +178,21 @@ mod tests {
     }
 
     #[test]
-    fn a_step_finds_the_least_price_of_the_offsets_whatever_the_length_of_a_knot() {
+    fn a_step_finds_the_least_cost_of_the_offsets() {
         let (mut register, mut preview) = (Register::default(), Preview::new(0.001));
         register.push(Line.knot(0.0));
         preview.fill(&mut Line, 0.0, 0.1);
         let window = window(&register, &preview);
-        for periods in 1..=3 {
-            let mut accelerations = [[0.0; 2]; MAX_KNOTS];
-            let problem = HorizonProblem::new(&Deaf, &window, &accelerations, periods, &SETTINGS);
-            GaussNewton::default().improve(&problem, &mut accelerations);
-            let least = cost(&window, &accelerations, periods);
-            for knot in 0..KNOTS {
-                for axis in 0..2 {
-                    for step in [-1.0, 1.0] {
-                        let mut other = accelerations;
-                        other[knot][axis] += step;
-                        assert!(cost(&window, &other, periods) > least, "{periods} {knot} {axis}");
-                    }
+        let mut accelerations = [[0.0; 2]; MAX_KNOTS];
+        let problem = HorizonProblem::new(&Deaf, &window, &accelerations, &SETTINGS);
+        GaussNewton::default().improve(&problem, &mut accelerations);
+        let least = cost(&window, &accelerations);
+        for knot in 0..KNOTS {
+            for axis in 0..2 {
+                for step in [-1.0, 1.0] {
+                    let mut other = accelerations;
+                    other[knot][axis] += step;
+                    assert!(cost(&window, &other) > least, "{knot} {axis}");
                 }
             }
         }

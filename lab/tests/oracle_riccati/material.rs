@@ -3,16 +3,13 @@
 use std::cell::RefCell;
 
 use feedwright_control::vector::add_scaled;
-use feedwright_control::{Knot, KnotSource, Preview, Register, ServoIdentifier, Window};
-use feedwright_ident::SERVO_FEED_PERIOD_S;
-use feedwright_lab::{
-    Accelerations, CorrectionLimits, HorizonProblem, HorizonSettings, MAX_KNOTS, RecedingHorizonSettings, Solver,
-};
+use feedwright_control::{Knot, KnotSource, Preview, Register, Window};
+use feedwright_lab::{Accelerations, CorrectionLimits, GaussNewton, HorizonProblem, HorizonSettings, MAX_KNOTS};
 
-use super::model::{Servo, Slopes, servo};
+use super::model::{Servo, Slopes};
 
 /// Feed period, s, and servo period, s.
-const FEED_PERIOD_S: f64 = SERVO_FEED_PERIOD_S;
+const FEED_PERIOD_S: f64 = 0.003;
 const SERVO_S: f64 = 0.001;
 /// Largest acceleration of the plan of the tick before, mm/s^2.
 const PLANNED_MM_S2: f64 = 100.0;
@@ -38,7 +35,6 @@ impl<const N: usize> KnotSource<N> for Helix {
 
 /// What a tick starts from.
 pub(crate) struct Material<const N: usize> {
-    net: ServoIdentifier<N>,
     slopes: RefCell<Slopes<N>>,
     register: Register<N>,
     preview: Preview<N>,
@@ -63,18 +59,17 @@ impl<const N: usize> Material<N> {
         let mut preview = Preview::new(SERVO_S);
         preview.fill(&mut Helix, 0.299, 0.15);
         let limits = CorrectionLimits { acceleration_mm_s2: [most_mm_s2; N], ..CorrectionLimits::NONE };
-        let settings = HorizonSettings { knots, limits, ..RecedingHorizonSettings::DEFAULT.horizon };
+        let settings = HorizonSettings { knots, limits, ..HorizonSettings::DEFAULT };
         let planned_mm_s2 = PLANNED_MM_S2.min(most_mm_s2);
         let plan = std::array::from_fn(|knot| {
             let planned = |axis| if knot < knots { planned_mm_s2 * ((3 * knot + 5 * axis) as f64).sin() } else { 0.0 };
             std::array::from_fn(planned)
         });
-        Self { net: servo(), slopes: RefCell::new([[[0.0; 5]; N]; MAX_KNOTS]), register, preview, settings, plan }
+        Self { slopes: RefCell::new([[[0.0; 5]; N]; MAX_KNOTS]), register, preview, settings, plan }
     }
 
-    /// Rolls the plan out and returns the problem and the slopes of each knot. With `sensitivity`,
-    /// the problem includes the derivative with respect to all accelerations.
-    pub(crate) fn roll_out(&self, sensitivity: bool) -> (HorizonProblem<N>, Slopes<N>) {
+    /// Rolls the plan out and returns the problem and the slopes of each knot.
+    pub(crate) fn roll_out(&self) -> (HorizonProblem<N>, Slopes<N>) {
         let window = Window {
             register: &self.register,
             preview: &self.preview,
@@ -83,8 +78,8 @@ impl<const N: usize> Material<N> {
             offset_mm: [0.01; N],
             offset_mm_s: [0.0; N],
         };
-        let model = Servo::new(&self.net, &self.slopes, sensitivity);
-        let problem = HorizonProblem::new(&model, &window, &self.plan, 1, &self.settings);
+        let model = Servo::new(&self.slopes);
+        let problem = HorizonProblem::new(&model, &window, &self.plan, &self.settings);
         (problem, *self.slopes.borrow())
     }
 
@@ -93,10 +88,10 @@ impl<const N: usize> Material<N> {
         std::array::from_fn(|knot| add_scaled(self.plan[knot], 1.0, change[knot]))
     }
 
-    /// The plan after one call of a solver.
-    pub(crate) fn improved(&self, solver: &mut impl Solver<N>, problem: &HorizonProblem<N>) -> Accelerations<N> {
+    /// The plan after one step of the solver.
+    pub(crate) fn improved(&self, problem: &HorizonProblem<N>) -> Accelerations<N> {
         let mut plan = self.plan;
-        solver.improve(problem, &mut plan);
+        GaussNewton::default().improve(problem, &mut plan);
         plan
     }
 }

@@ -1,7 +1,7 @@
-//! The receding-horizon inversion: one Gauss-Newton step on the accelerations of the offset in all knots of the horizon.
+//! The horizon: the accelerations of the offset in all its knots, improved by one Gauss-Newton step after another.
 //!
 //! The command is the path and an offset o from it. With the accelerations a_j of the offset in each knot as the unknowns, in
-//! all axes, the plan is rolled out through a [`Predictor`] of the machine (the servo identifier). Each predicted tool position p_i
+//! all axes, the plan is rolled out through a [`Predictor`] of the machine. Each predicted tool position p_i
 //! is referred to the point of the path of *its own plan time less the lag of the machine*,
 //!
 //! ```text
@@ -12,16 +12,14 @@
 //! v_j = v_0 + T sum_{m<=j} a_m     |a_j| <= A in each axis
 //! ```
 //!
-//! and J is made smaller by a [`Solver`], from last tick's plan, shifted. Where the tool lags behind its time, or leads, nothing
+//! and J is made smaller by [`GaussNewton`], from last tick's plan, shifted. Where the tool lags behind its time, or leads, nothing
 //! is cut wrong, and theta counts little (h is small); but it counts, so that no tool stays on a stretch of the path that is
 //! over: a nearest point would let it.
 //!
 //! What holds the plan back from doing harm:
 //!
 //! - q, the weight of the offset itself, where it cannot undo all that is wrong, at the start, where drives are at their limit
-//!   ([`restraint`]), and where the model is not to be trusted ([`missed`]): then the plan asks for a part of it.
-//! - Where much is left across the path, and about points where the path turns back, a tool that is further from its time than
-//!   without the offset ([`restraint`], [`problem`]).
+//!   ([`restraint`]): then the plan asks for a part of it.
 //! - e, at the end of the horizon: behind it nothing is foreseen, and the offset is to be on its way back.
 //!
 //! The limits of the plan are those of the machine file: what the plan asks for is carried out as it is. Speed and deviation of
@@ -29,16 +27,13 @@
 //!
 //! On a rapid motion nothing is cut: there the offset is to move the tool as little as the cuts about it allow.
 //!
-//! A knot of the plan is one feed period long, or several on a machine that lags far behind: the horizon has to reach
-//! beyond the lag, whatever the machine, and takes no more unknowns for it.
+//! A knot of the plan is one feed period long.
 //!
 //! Source: the performance index is Lee, Cho and Jeon (2005), eq. 7, summed over a horizon; receding horizon as in Richalet
-//! et al. (1978), contour and lag error with weights of their own as in Lam, Manzie and Good (2010), knots of several periods
-//! as in move blocking (Cagienard et al. 2007).
+//! et al. (1978), contour and lag error with weights of their own as in Lam, Manzie and Good (2010).
 //!
 //! Everything is of fixed size: at most [`MAX_KNOTS`] knots, N unknowns each.
 
-pub(crate) mod missed;
 pub(crate) mod restraint;
 pub(crate) mod problem;
 pub(crate) mod interior_point;
@@ -54,8 +49,6 @@ use restraint::Restraint;
 
 /// Most knots of a horizon.
 pub const MAX_KNOTS: usize = 20;
-/// Most feed periods of a knot.
-pub(crate) const MAX_PERIODS: usize = 4;
 /// Most axes; fewer than two have no path to leave. [`HorizonProblem::new`] does not compile for others: the normals of the path are those
 /// of a plane or of space, and there is no room for more unknowns.
 pub(crate) const MAX_AXES: usize = 3;
@@ -95,8 +88,6 @@ pub struct HorizonSettings<const N: usize> {
     pub last_weight: f64,
     /// Weight of a tool that is further from its time than without the offset; about points where the path turns back, more.
     pub late_weight: f64,
-    /// Whether rapid motions are corrected as cuts are.
-    pub on_rapids: bool,
     /// What the plan keeps to.
     pub limits: CorrectionLimits<N>,
 }
@@ -159,19 +150,13 @@ pub trait Predictor<const N: usize>: Clone {
         stretch: &CommandedPeriod<N>,
         sensitivity: &mut Sensitivity<N>,
     ) -> [f64; N];
-    /// Displacement of that tool position by the past and the planned offset, mm; 0 by default.
-    fn moved_mm(&self) -> [f64; N] {
-        [0.0; N]
-    }
 }
 
 /// What is commanded in a feed period of the horizon.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CommandedPeriod<const N: usize> {
-    /// Its number, from 0.
+    /// Its number, from 0: that of its knot.
     pub period: usize,
-    /// Feed periods of a knot.
-    pub periods_per_knot: usize,
     /// Its length, s.
     pub period_s: f64,
     /// Command at its start and end, mm.
@@ -184,10 +169,9 @@ pub struct CommandedPeriod<const N: usize> {
 
 impl<const N: usize> CommandedPeriod<N> {
     /// Before the first feed period: where the command is now.
-    pub fn now(window: &Window<'_, N>, periods_per_knot: usize) -> Self {
+    pub fn now(window: &Window<'_, N>) -> Self {
         Self {
             period: usize::MAX,
-            periods_per_knot,
             period_s: window.feed_period_s,
             command_mm: [add_scaled(window.now().position_mm, 1.0, window.offset_mm); 2],
             offset_mm: [window.offset_mm; 2],
@@ -216,121 +200,67 @@ impl<const N: usize> CommandedPeriod<N> {
         scale(0.5 * self.period_s, sub(self.offset_mm_s[1], self.offset_mm_s[0]))
     }
 
-    /// The knot that this feed period is in.
-    #[inline]
-    pub fn knot(&self) -> usize {
-        self.period / self.periods_per_knot
-    }
-
-    /// How fast an acceleration of 1 mm/s^2 in a knot makes the offset on the mean of the feed period `back` before this one,
-    /// s.
-    #[inline]
-    pub fn gained_s(&self, knot: usize, back: usize) -> f64 {
-        let before = knot * self.periods_per_knot + back;
-        if self.period < before {
-            return 0.0;
-        }
-        let elapsed = self.period - before;
-        if elapsed < self.periods_per_knot {
-            (elapsed as f64 + 0.5) * self.period_s
-        } else {
-            self.periods_per_knot as f64 * self.period_s
-        }
-    }
-
     /// How far an acceleration of 1 mm/s^2 in a knot has moved the offset after `part` of this feed period, s^2.
     #[inline]
     pub fn moved_s2(&self, knot: usize, part: f64) -> f64 {
-        let since = self.period as f64 + part - (knot * self.periods_per_knot) as f64;
-        let within = bounded(since, 0.0, self.periods_per_knot as f64);
+        let since = self.period as f64 + part - knot as f64;
+        let within = bounded(since, 0.0, 1.0);
         within * (since.max(0.0) - 0.5 * within) * self.period_s * self.period_s
     }
 }
 
-/// What makes J smaller. It keeps nothing from tick to tick that the next depends on.
-pub trait Solver<const N: usize>: Default {
-    /// Changes the accelerations of a plan whose problem is this, within the limits. They are within them before.
-    fn improve(&mut self, problem: &HorizonProblem<N>, accelerations_mm_s2: &mut Accelerations<N>);
-}
-
 /// A plan: the acceleration of the offset in each knot of the horizon, mm/s^2.
 #[derive(Debug, Clone)]
-pub struct OffsetPlan<const N: usize, S = GaussNewton> {
+pub(crate) struct OffsetPlan<const N: usize> {
     accelerations_mm_s2: Accelerations<N>,
-    periods: usize,
     restraint: Restraint,
-    solver: S,
+    solver: GaussNewton,
 }
 
 /// The first step of a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlanStep<const N: usize> {
+pub(crate) struct PlanStep<const N: usize> {
     /// Acceleration of the offset in the next feed period, mm/s^2.
     pub acceleration_mm_s2: [f64; N],
     /// Largest change of an acceleration by the solver, mm/s^2.
     pub change_mm_s2: f64,
-    /// Mean squares of the contour error over the first half of the horizon, mm^2: of the plan
-    /// before this step, and without any offset.
-    pub contour_mm2: [f64; 2],
-    /// Largest contour error over the horizon without any offset, mm.
-    pub open_error_mm: f64,
-    /// Where the tool would be without the offset [`missed::AHEAD_KNOTS`] knots from now, mm.
-    pub open_mm: [f64; N],
 }
 
-impl<const N: usize, S: Solver<N>> Default for OffsetPlan<N, S> {
+impl<const N: usize> Default for OffsetPlan<N> {
     fn default() -> Self {
-        Self {
-            accelerations_mm_s2: [[0.0; N]; MAX_KNOTS],
-            periods: 1,
-            restraint: Restraint::START,
-            solver: S::default(),
-        }
+        Self { accelerations_mm_s2: [[0.0; N]; MAX_KNOTS], restraint: Restraint::START, solver: GaussNewton::default() }
     }
 }
 
-impl<const N: usize, S: Solver<N>> OffsetPlan<N, S> {
+impl<const N: usize> OffsetPlan<N> {
     /// Forgets the plan.
-    pub fn reset(&mut self) {
+    pub(crate) fn reset(&mut self) {
         self.accelerations_mm_s2 = [[0.0; N]; MAX_KNOTS];
-        self.periods = 1;
         self.restraint = Restraint::START;
     }
 
-    /// Goes over to the next tick: what was planned for it comes first. From here on a knot has `periods` feed periods, 1
-    /// to `MAX_PERIODS`.
-    pub fn shift(&mut self, periods: usize, settings: &HorizonSettings<N>) {
+    /// Goes over to the next tick: what was planned for it comes first, and nothing is planned for the last knot.
+    pub(crate) fn shift(&mut self, settings: &HorizonSettings<N>) {
         let knots = settings.knots();
         let planned = self.accelerations_mm_s2;
-        let last = self.periods.max(1);
-        self.periods = periods.clamp(1, MAX_PERIODS);
+        let limits = &settings.limits.acceleration_mm_s2;
         for (knot, acceleration) in self.accelerations_mm_s2.iter_mut().enumerate() {
-            // The mean of what was planned for its feed periods; beyond the horizon nothing was.
-            let mut sum = [0.0; N];
-            for period in knot * self.periods..(knot + 1) * self.periods {
-                let before = (period + 1) / last;
-                if before < knots {
-                    sum = add_scaled(sum, 1.0 / self.periods as f64, planned[before]);
-                }
-            }
-            let limits = &settings.limits.acceleration_mm_s2;
-            *acceleration = core::array::from_fn(|axis| bounded(sum[axis], -limits[axis], limits[axis]));
+            let next = if knot + 1 < knots { planned[knot + 1] } else { [0.0; N] };
+            *acceleration = core::array::from_fn(|axis| bounded(next[axis], -limits[axis], limits[axis]));
         }
     }
 
     /// Improves the plan by one step of the solver and returns what comes first.
-    pub fn improve<M: Predictor<N>>(
+    pub(crate) fn improve<M: Predictor<N>>(
         &mut self,
         model: &M,
         window: &Window<'_, N>,
         settings: &HorizonSettings<N>,
     ) -> PlanStep<N> {
-        let horizon_s = (settings.knots() * self.periods) as f64 * window.feed_period_s;
+        let horizon_s = settings.knots() as f64 * window.feed_period_s;
         let settings = self.restraint.on(settings, model.response_s().max(horizon_s / LAGS_AHEAD));
-        let problem = HorizonProblem::new(model, window, &self.accelerations_mm_s2, self.periods, &settings);
-        let [need_mm, open_error_mm] = problem.open_errors_mm();
-        let contour_mm2 = problem.contour_mm2();
-        self.restraint.take_in(need_mm, contour_mm2, problem.open_drive_share());
+        let problem = HorizonProblem::new(model, window, &self.accelerations_mm_s2, &settings);
+        self.restraint.take_in(problem.need_mm(), problem.contour_mm2(), problem.drive_share());
         let before = self.accelerations_mm_s2;
         self.solver.improve(&problem, &mut self.accelerations_mm_s2);
         let mut change_mm_s2 = 0.0_f64;
@@ -343,17 +273,23 @@ impl<const N: usize, S: Solver<N>> OffsetPlan<N, S> {
                 change_mm_s2 = change_mm_s2.max(change.abs());
             }
         }
-        PlanStep {
-            acceleration_mm_s2: self.accelerations_mm_s2[0],
-            change_mm_s2,
-            contour_mm2,
-            open_error_mm,
-            open_mm: problem.open_mm(missed::AHEAD_KNOTS - 1),
-        }
+        PlanStep { acceleration_mm_s2: self.accelerations_mm_s2[0], change_mm_s2 }
     }
 }
 
 impl<const N: usize> HorizonSettings<N> {
+    /// Values that serve every shape and machine tried.
+    pub const DEFAULT: Self = Self {
+        knots: 20,
+        rate_weight: 3e-10,
+        change_weight: 1e-10,
+        offset_weight: 0.0,
+        tangential_weight: 0.006,
+        last_weight: 0.05,
+        late_weight: 0.0,
+        limits: CorrectionLimits::NONE,
+    };
+
     /// For tests.
     #[cfg(test)]
     pub(crate) const EXAMPLE: Self = Self {
@@ -364,7 +300,6 @@ impl<const N: usize> HorizonSettings<N> {
         tangential_weight: 0.1,
         last_weight: 0.3,
         late_weight: 0.0,
-        on_rapids: false,
         limits: CorrectionLimits::NONE,
     };
 
@@ -402,37 +337,18 @@ mod tests {
     #[test]
     fn a_shifted_plan_begins_with_its_second_knot() {
         let mut plan = plan([1.0, 2.0, 3.0, 4.0]);
-        plan.shift(1, &HorizonSettings::EXAMPLE);
+        plan.shift(&HorizonSettings::EXAMPLE);
         assert_eq!(accelerations(&plan), [2.0, 3.0, 4.0, 0.0]);
     }
 
     #[test]
-    fn longer_knots_take_the_mean_of_what_was_planned_for_them_and_go_on_by_a_part() {
-        let mut plan = plan([1.0, 2.0, 3.0, 4.0]);
-        plan.shift(2, &HorizonSettings::EXAMPLE);
-        assert_eq!(accelerations(&plan), [2.5, 2.0, 0.0, 0.0]);
-        plan.shift(2, &HorizonSettings::EXAMPLE);
-        assert_eq!(accelerations(&plan), [2.25, 1.0, 0.0, 0.0]);
-        plan.shift(1, &HorizonSettings::EXAMPLE);
-        assert_eq!(accelerations(&plan), [2.25, 1.0, 1.0, 0.0]);
-    }
-
-    #[test]
     fn an_acceleration_moves_the_offset_by_its_closed_form() {
-        let stretch = CommandedPeriod::<1> {
-            period: 5,
-            periods_per_knot: 2,
-            period_s: 0.003,
-            command_mm: [[0.0]; 2],
-            offset_mm: [[0.0]; 2],
-            offset_mm_s: [[0.0]; 2],
-        };
-        // In the second knot, from 6 ms to 12 ms; now it is 16.5 ms.
-        let moved = 0.006 * (0.006 / 2.0 + 0.0045);
-        assert!((stretch.moved_s2(1, 0.5) - moved).abs() < 1e-15);
-        assert!((stretch.gained_s(1, 0) - 0.006).abs() < 1e-15);
-        assert!((stretch.gained_s(2, 0) - 0.0045).abs() < 1e-15);
-        assert!((stretch.gained_s(2, 1) - 0.0015).abs() < 1e-15);
-        assert_eq!((stretch.gained_s(2, 2), stretch.moved_s2(3, 0.5)), (0.0, 0.0));
+        let (offset_mm, offset_mm_s) = ([[0.0]; 2], [[0.0]; 2]);
+        let stretch =
+            CommandedPeriod::<1> { period: 5, period_s: 0.003, command_mm: [[0.0]; 2], offset_mm, offset_mm_s };
+        // In the third knot, from 6 ms to 9 ms; now it is 16.5 ms.
+        let moved = 0.003 * (0.003 / 2.0 + 0.0075);
+        assert!((stretch.moved_s2(2, 0.5) - moved).abs() < 1e-15);
+        assert_eq!(stretch.moved_s2(6, 0.5), 0.0);
     }
 }

@@ -8,11 +8,9 @@
 //!             + d/2 sum_j |v_j - v_{j-1}|^2
 //! ```
 //!
-//! A knot has N rows: the errors of the tool across the path and along it, or on a rapid the
-//! displacement of the tool by the offset in each axis. Each exceeded limit adds one row with the
-//! excess. One more row acts where the tool is further from its time than without the offset. It is
-//! used near points where the path turns back, and wherever the plan leaves much of the contour
-//! error. N more rows bring the offset back after the last knot.
+//! A knot that counts has N rows: the errors of the tool across the path and along it. On a rapid, the rows hold the tool
+//! where it is, in each axis. Each exceeded limit adds one row with the excess. N more rows bring the offset back after the
+//! last knot.
 
 use feedwright_control::vector::{bounded, dot, norm, reject, scale, sub};
 use feedwright_control::{PREVIEW_KNOTS, Window};
@@ -21,8 +19,8 @@ use super::{
     Accelerations, CommandedPeriod, HorizonSettings, MAX_AXES, MAX_KNOTS, MAX_UNKNOWNS, Predictor, Sensitivity,
 };
 
-/// Weight of what the offset moves the tool by on a rapid: less than an error of a cut, so that it is in place when the next
-/// one begins.
+/// Weight of what a change of the plan moves the tool by on a rapid: less than an error of a cut, so that it is in place when
+/// the next one begins.
 const RAPID_WEIGHT: f64 = 0.2;
 /// Least h in the knots before and behind a point where the path turns straight back.
 const TURN_WEIGHT: f64 = 0.2;
@@ -79,10 +77,8 @@ pub struct End<const N: usize> {
     pub offset_mm: [f64; N],
     /// See above.
     pub offset_mm_s: [f64; N],
-    /// Predicted position of the tool, and its displacement by the offset, mm.
+    /// Predicted position of the tool, mm.
     pub tool_mm: [f64; N],
-    /// See above.
-    pub moved_mm: [f64; N],
 }
 
 impl<const N: usize> End<N> {
@@ -97,13 +93,7 @@ impl<const N: usize> End<N> {
         offset_mm: [0.0; N],
         offset_mm_s: [0.0; N],
         tool_mm: [0.0; N],
-        moved_mm: [0.0; N],
     };
-
-    /// An error of the tool as it would be without the offset, mm.
-    fn open_off_mm(&self, direction: usize) -> f64 {
-        self.off_mm[direction] - dot(self.directions[direction], self.moved_mm)
-    }
 }
 
 /// The derivative of an error to all accelerations.
@@ -115,7 +105,6 @@ impl<const N: usize> HorizonProblem<N> {
         model: &M,
         window: &Window<'_, N>,
         accelerations_mm_s2: &Accelerations<N>,
-        periods: usize,
         settings: &HorizonSettings<N>,
     ) -> Self {
         const { assert!(N >= 2 && N <= MAX_AXES, "a plan is made in the plane or in space") };
@@ -123,7 +112,7 @@ impl<const N: usize> HorizonProblem<N> {
         let lag_s = bounded(model.lag_s(), 0.0, PREVIEW_KNOTS as f64 * window.servo_s());
         let mut problem = Self {
             knots,
-            knot_s: periods as f64 * window.feed_period_s,
+            knot_s: window.feed_period_s,
             lag_s,
             ends: [End::NONE; MAX_KNOTS],
             sensitivity: [[[0.0; N]; MAX_KNOTS]; MAX_KNOTS],
@@ -131,13 +120,10 @@ impl<const N: usize> HorizonProblem<N> {
             settings: *settings,
         };
         let mut model = model.clone();
-        let mut stretch = CommandedPeriod::now(window, periods);
+        let mut stretch = CommandedPeriod::now(window);
         for knot in 0..knots {
-            let mut tool_mm = [0.0; N];
-            for _ in 0..periods {
-                stretch.go_on(window, accelerations_mm_s2[knot]);
-                tool_mm = model.advance(window, &stretch, &mut problem.sensitivity[knot]);
-            }
+            stretch.go_on(window, accelerations_mm_s2[knot]);
+            let tool_mm = model.advance(window, &stretch, &mut problem.sensitivity[knot]);
             let end_s = (stretch.period + 1) as f64 * window.feed_period_s;
             let own = window.at(end_s - lag_s);
             // What leads up to a cut decides where the tool is when it begins.
@@ -149,14 +135,13 @@ impl<const N: usize> HorizonProblem<N> {
                 off_mm: directions.map(|direction| dot(direction, off_mm)),
                 directions,
                 feed_mm_s: own.feed_mm_s,
-                counts: own.cutting || settings.on_rapids || soon() || lately(),
+                counts: own.cutting || soon() || lately(),
                 corner: 0.0,
                 turn: 0.0,
                 near_turn: 0.0,
                 offset_mm: stretch.offset_mm[1],
                 offset_mm_s: stretch.offset_mm_s[1],
                 tool_mm,
-                moved_mm: model.moved_mm(),
             };
         }
         for (knot, moved_s2) in problem.moved_s2.iter_mut().enumerate().take(knots) {
@@ -190,50 +175,41 @@ impl<const N: usize> HorizonProblem<N> {
         }
     }
 
-    /// Where the tool would be at the end of a knot without the offset, mm.
-    pub fn open_mm(&self, knot: usize) -> [f64; N] {
-        let end = &self.ends[knot.min(self.last_knot())];
-        sub(end.tool_mm, end.moved_mm)
-    }
-
-    /// How far the tool would be without the offset, each in the worst of the knots that count: from its own point, along the
-    /// path only as far as it turns back near it, and from the path, mm.
-    pub fn open_errors_mm(&self) -> [f64; 2] {
-        let mut most = [0.0_f64; 2];
+    /// How far the tool is from its own point in the worst of the knots that count, along the path only as far as it turns
+    /// back near it, mm.
+    pub fn need_mm(&self) -> f64 {
+        let mut most = 0.0_f64;
         for end in self.ends.iter().take(self.knots).filter(|end| end.counts) {
-            let open_mm: [f64; N] = core::array::from_fn(|d| end.open_off_mm(d));
-            let across: f64 = open_mm[..N - 1].iter().map(|off_mm| off_mm * off_mm).sum();
-            let along_mm = end.near_turn * open_mm[N - 1];
-            most = [most[0].max(across + along_mm * along_mm), most[1].max(across)];
+            let across: f64 = end.off_mm[..N - 1].iter().map(|off_mm| off_mm * off_mm).sum();
+            let along_mm = end.near_turn * end.off_mm[N - 1];
+            most = most.max(across + along_mm * along_mm);
         }
-        most.map(libm::sqrt)
+        libm::sqrt(most)
     }
 
-    /// The largest acceleration of the tool without any offset, in parts of what the drive of its axis can.
-    pub fn open_drive_share(&self) -> f64 {
+    /// The largest acceleration of the tool, in parts of what the drive of its axis can.
+    pub fn drive_share(&self) -> f64 {
         let mut most = 0.0_f64;
         for knot in 0..self.knots {
             for axis in 0..N {
-                let acceleration =
-                    self.acceleration_mm_s2(knot, axis, |end| sub(end.tool_mm, end.moved_mm)).unwrap_or(0.0);
+                let acceleration = self.acceleration_mm_s2(knot, axis).unwrap_or(0.0);
                 most = most.max(acceleration.abs() / self.settings.limits.drive_mm_s2[axis]);
             }
         }
         most
     }
 
-    /// Mean squares of the contour error over the knots that count, mm^2: of the plan, and without any offset. Of the first half
-    /// of the horizon: the second is still to be planned.
-    pub fn contour_mm2(&self) -> [f64; 2] {
-        let (mut sums, mut number) = ([0.0; 2], 0.0);
+    /// Mean square of the contour error over the knots that count, mm^2. Of the first half of the horizon: the second is still
+    /// to be planned.
+    pub fn contour_mm2(&self) -> f64 {
+        let (mut sum, mut number) = (0.0, 0.0);
         for end in self.ends.iter().take(self.knots.div_ceil(2)).filter(|end| end.counts) {
-            for d in 0..N - 1 {
-                let (off_mm, open_mm) = (end.off_mm[d], end.open_off_mm(d));
-                sums = [sums[0] + off_mm * off_mm, sums[1] + open_mm * open_mm];
+            for off_mm in &end.off_mm[..N - 1] {
+                sum += off_mm * off_mm;
             }
             number += 1.0;
         }
-        if number > 0.0 { sums.map(|sum| sum / number) } else { sums }
+        if number > 0.0 { sum / number } else { sum }
     }
 
     /// The last knot of the horizon.
@@ -271,16 +247,7 @@ impl<const N: usize> HorizonProblem<N> {
                 } else {
                     let mut direction = [0.0; N];
                     direction[d] = RAPID_WEIGHT;
-                    take(knot, dot(direction, end.moved_mm), &|row| self.tool_row(knot, direction, row));
-                }
-            }
-            let weight = end.near_turn.max(self.settings.late_weight);
-            if end.counts && weight > 0.0 {
-                let (late_mm, open_mm) = (end.off_mm[N - 1], end.open_off_mm(N - 1).abs());
-                let beyond_mm = late_mm - bounded(late_mm, -open_mm, open_mm);
-                if beyond_mm != 0.0 {
-                    let direction = scale(weight, end.directions[N - 1]);
-                    take(knot, weight * beyond_mm, &|row| self.tool_row(knot, direction, row));
+                    take(knot, 0.0, &|row| self.tool_row(knot, direction, row));
                 }
             }
             self.limit_rows(knot, end, &mut take);
@@ -320,7 +287,7 @@ impl<const N: usize> HorizonProblem<N> {
                 take(knot, SPEED_WEIGHT_S * beyond, &|row| self.speed_row(knot, axis, row));
             }
             let most = limits.drive_mm_s2[axis];
-            let Some(acceleration) = self.acceleration_mm_s2(knot, axis, |end| end.tool_mm) else { continue };
+            let Some(acceleration) = self.acceleration_mm_s2(knot, axis) else { continue };
             let beyond = acceleration - bounded(acceleration, -most, most);
             if beyond != 0.0 {
                 take(knot, DRIVE_WEIGHT_S2 * beyond, &|row| self.drive_row(knot, axis, row));
@@ -328,11 +295,11 @@ impl<const N: usize> HorizonProblem<N> {
         }
     }
 
-    /// Acceleration in an axis, of what moves with the knots, about the knot before this one, mm/s^2; none at the first two.
+    /// Acceleration of the tool in an axis about the knot before this one, mm/s^2; none at the first two.
     #[inline]
-    fn acceleration_mm_s2(&self, knot: usize, axis: usize, place_mm: impl Fn(&End<N>) -> [f64; N]) -> Option<f64> {
+    fn acceleration_mm_s2(&self, knot: usize, axis: usize) -> Option<f64> {
         let [now, before, first] = [0, 1, 2].map(|back: usize| knot.checked_sub(back));
-        let at = |knot: Option<usize>| self.ends.get(knot?).and_then(|end| place_mm(end).get(axis).copied());
+        let at = |knot: Option<usize>| self.ends.get(knot?).and_then(|end| end.tool_mm.get(axis).copied());
         Some((at(now)? - 2.0 * at(before)? + at(first)?) / (self.knot_s * self.knot_s))
     }
 

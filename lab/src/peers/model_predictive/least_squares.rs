@@ -43,23 +43,11 @@ impl<const P: usize> LeastSquares<P> {
     /// The estimate that fits best and lies near `mean`, where `weight` (above zero) says how much the prior counts.
     #[inline]
     pub(crate) fn estimate(&self, weight: f64, mean: &[f64; P]) -> [f64; P] {
-        let mut prior = [[0.0; P]; P];
-        for r in 0..P {
-            prior[r][r] = weight;
-        }
-        self.estimate_held(&prior, mean)
-    }
-
-    /// As [`Self::estimate`], with a weight for every direction: a symmetric positive matrix.
-    #[inline]
-    pub(crate) fn estimate_held(&self, prior: &[[f64; P]; P], mean: &[f64; P]) -> [f64; P] {
         let mut a = self.information;
         let mut b = self.right;
         for r in 0..P {
-            for c in 0..P {
-                a[r][c] += prior[r][c];
-                b[r] += prior[r][c] * mean[c];
-            }
+            a[r][r] += weight;
+            b[r] += weight * mean[r];
         }
         cholesky(&mut a, &mut b, P);
         b
@@ -144,17 +132,6 @@ fn back<const P: usize>(a: &[[f64; P]; P], b: &mut [f64; P], n: usize) {
             *entry -= solved[0] * factor;
         }
     }
-}
-
-/// The inverse of a symmetric positive matrix, `factor` times.
-pub(crate) fn inverse<const P: usize>(matrix: &[[f64; P]; P], factor: f64) -> [[f64; P]; P] {
-    // Symmetric: its columns are its rows.
-    core::array::from_fn(|axis| {
-        let (mut factors, mut column) = (*matrix, [0.0; P]);
-        column[axis] = factor;
-        cholesky(&mut factors, &mut column, P);
-        column
-    })
 }
 
 #[cfg(test)]

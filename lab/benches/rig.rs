@@ -1,0 +1,173 @@
+//! What the benches and the instruction count share: a circle as the path, a lagging tool, and a network.
+
+use feedwright_control::{
+    AxisKnowledge, Bounds, ContourError, ContourIdentifier, Controller, Estimator, IDENTIFIED_WEIGHT, Inputs,
+    InvertingSettings, Knot, KnotSource, LqgPreview, LqgSettings, Measured, OffsetBounds, Parameters, Periods, Preview,
+    Register, Setpoint, Tick, TransmissionParameters, TwoDimensional, Window,
+};
+
+/// The circle of eq. 11 at 50 mm/s.
+pub(crate) struct Circle;
+
+impl<const N: usize> KnotSource<N> for Circle {
+    fn knot(&mut self, tau_s: f64) -> Knot<N> {
+        let (sin, cos) = (5.0 * tau_s).sin_cos();
+        let mut knot = Knot { feed_mm_s: 50.0, ..Knot::REST };
+        (knot.position_mm[0], knot.position_mm[1]) = (10.0 * (1.0 - cos), 10.0 * sin);
+        (knot.tangent[0], knot.tangent[1]) = (sin, cos);
+        knot
+    }
+}
+
+/// Weights and inputs of the order that training gives, without symmetry.
+pub(crate) fn network<const N: usize>() -> (ContourIdentifier<N>, Inputs<N>) {
+    let mut state = 1_u32;
+    let mut next = move || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(state) / f64::from(u32::MAX) - 0.5
+    };
+    let hidden = std::array::from_fn(|_| std::array::from_fn(|_| std::array::from_fn(|_| next())));
+    let output = std::array::from_fn(|_| std::array::from_fn(|_| next()));
+    let inputs = std::array::from_fn(|_| std::array::from_fn(|_| 2.0 * next()));
+    (ContourIdentifier { hidden, output }, inputs)
+}
+
+/// The paper's controller with an untrained network: the work does not depend on the weights.
+pub(crate) fn paper<const N: usize>() -> TwoDimensional<N> {
+    TwoDimensional::untried(network().0, InvertingSettings::DEFAULT)
+}
+
+/// The regulator of axes like those of tnv40 with quick speed loops, as the tool of a [`Rig`] follows, each with noise, a disturbance and, where
+/// `gives`, a ball screw with backlash: it decides in every servo period.
+pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgPreview<N> {
+    let mut axis = AxisKnowledge::NOTHING;
+    axis.periods = Periods { servo_s: 0.001, mechanics_s: 1e-4, mechanics_per_servo: 10 };
+    axis.parameters = Parameters {
+        rad_per_mm: 0.628,
+        kp_1_s: 1.0 / LAG_S,
+        kd: 0.0,
+        kv_nm_s_per_rad: 2.0,
+        torque_limit_nm: 30.0,
+        inertia_kg_m2: 0.002,
+        viscous_friction_nm_s: 0.0,
+        coulomb_friction_nm: 0.0,
+        coulomb_smoothing_rad_s: 0.05,
+    };
+    axis.friction.presliding_rad = 1e-4;
+    (axis.statistics.encoder_noise_rad, axis.statistics.torque_noise_nm) = (1e-4, 0.1);
+    (axis.statistics.disturbance_nm, axis.statistics.disturbance_rad_s) = (0.01, 150.0);
+    if gives {
+        axis.transmission = TransmissionParameters {
+            table_share: 0.4,
+            resonance_rad_s: 600.0,
+            damping_ratio: 0.05,
+            backlash_rad: 0.002,
+        };
+    }
+    let bounds = OffsetBounds { largest_mm: 0.5, fastest_mm_s: 400.0 };
+    let settings = LqgSettings::identified(IDENTIFIED_WEIGHT, 1e-3, bounds);
+    LqgPreview::new([axis; N], settings)
+}
+
+/// What the tool of a [`Rig`] does; it is behind by 20 ms in either case.
+#[derive(Clone, Copy)]
+pub(crate) enum Tool {
+    /// It stays on the path whatever is commanded, so that an untrained controller can do no harm.
+    OnThePath,
+    /// It follows the command with a lag of first order.
+    Follows,
+}
+
+/// The lag of the tool, s, and the part of the way to the command that it then goes in a servo period.
+const LAG_S: f64 = 0.02;
+const FOLLOWED: f64 = 0.001 / LAG_S;
+
+/// The whole run by hand: reference, contour error, controller under the supervisor, and a tool.
+pub(crate) struct Rig<const N: usize, C> {
+    tick: Tick<N>,
+    controller: C,
+    tool: Tool,
+    tool_mm: [f64; N],
+}
+
+impl<const N: usize, C: Controller<N>> Rig<N, C> {
+    /// Warmed up by nearly a lap.
+    pub(crate) fn new(controller: C, tool: Tool) -> Self {
+        let tick = Tick::new(0.001, controller.schedule(), Bounds::new(0.5, 400.0, 400.0));
+        let mut rig = Self { tick, controller, tool, tool_mm: [0.0; N] };
+        for _ in 0..1000 {
+            rig.servo_period();
+        }
+        rig
+    }
+
+    /// One servo period.
+    pub(crate) fn servo_period(&mut self) -> Setpoint<N> {
+        let setpoint = self.tick.step(&mut Circle, &mut self.controller, self.tool_mm);
+        match self.tool {
+            Tool::OnThePath => self.tool_mm = Circle.knot(setpoint.tau_s + 0.001 - LAG_S).position_mm,
+            Tool::Follows => {
+                for axis in 0..N {
+                    self.tool_mm[axis] += FOLLOWED * (setpoint.command_mm[axis] - self.tool_mm[axis]);
+                }
+            }
+        }
+        setpoint
+    }
+
+    /// Stops the measurement where the supervisor has taken the controller out: its work would be missing.
+    pub(crate) fn expect_in_the_loop(&self) {
+        assert!(self.tick.fade().is_none(), "the supervisor took the controller out: {:?}", self.tick.fade());
+    }
+}
+
+/// A register filled by the circle, its preview, and the tool that lags behind by 20 ms and is 20 um inside.
+pub(crate) struct Surroundings<const N: usize> {
+    register: Register<N>,
+    preview: Preview<N>,
+    /// Where the tool is.
+    pub(crate) tool_mm: [f64; N],
+}
+
+impl<const N: usize> Surroundings<N> {
+    /// After 0.3 s.
+    pub(crate) fn new() -> Self {
+        let mut register = Register::default();
+        for i in 0..300 {
+            register.push(Circle.knot(f64::from(i) * 0.001));
+        }
+        let mut preview = Preview::new(0.001);
+        preview.fill(&mut Circle, 0.299, 0.15);
+        let mut tool: Knot<N> = Circle.knot(0.279);
+        tool.position_mm[0] += 0.02 * tool.tangent[1];
+        Self { register, preview, tool_mm: tool.position_mm }
+    }
+
+    /// What the controller sees.
+    pub(crate) fn window(&self) -> Window<'_, N> {
+        Window {
+            register: &self.register,
+            preview: &self.preview,
+            tau_s: 0.299,
+            feed_period_s: 0.01,
+            offset_mm: [0.0; N],
+            offset_mm_s: [0.0; N],
+        }
+    }
+
+    /// What is measured.
+    pub(crate) fn measured(&self) -> Measured<N> {
+        let contour: ContourError<N> = Estimator::default().estimate(&self.window(), self.tool_mm);
+        Measured { position_mm: self.tool_mm, contour }
+    }
+}
+
+/// One decision: observe, command.
+pub(crate) fn decide<const N: usize>(
+    controller: &mut impl Controller<N>,
+    window: &Window<'_, N>,
+    measured: &Measured<N>,
+) -> [f64; N] {
+    controller.observe(window, Some(measured));
+    controller.command(window, measured).offset_mm
+}
