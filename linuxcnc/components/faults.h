@@ -25,14 +25,13 @@ static inline const char *feedwright_fault(uint32_t fault)
         "the correction made the contour error larger",
         "the command was not a number",
         "the component failed inside: it plays out its delay and passes commands on",
-        "the correction takes more acceleration than acceleration-limit",
+        "acceleration-limit is not 0, or within 1 and 1,000,000 mm/s^2: the last good one stays",
         "delay is not within 0.008 and 0.015 s: the last good one stays",
         "deviation-limit is not within 0 and 10 mm: the last good one stays",
         "speed-limit is not within 1 and 10,000 mm/s: the last good one stays",
         "correction-acceleration is not 0, or within 1 and 1,000,000 mm/s^2: the last good one stays",
         "adaptive-scale is not within 0.1 and 1: the last good one stays",
         "a motion that probes or follows a spindle is delayed: connect feed-inhibit and spindle-at-speed",
-        "acceleration-limit is not 0, or within 1 and 1,000,000 mm/s^2: the last good one stays",
         "the geometry of the model cannot be compensated: its errors grow by more than 5 % of the travel, or its numbers are none",
     };
     return fault < sizeof words / sizeof words[0] ? words[fault] : "unknown";

@@ -26,9 +26,10 @@ After the amplifiers were off, a model of axes first has to show that it is of t
 before a cut. What the model gets wrong (gains, feedforward, delay, inertia, friction) is then learned while the machine moves; \\fBlearned-0\\fR to
 \\fBlearned-2\\fR tell which joints go by that.
 
-A correction that fails is faded out, and comes back when its predictions have held for a while: the machine then cuts as without it. \\fBtimes-out\\fR counts
-that, and \\fBfound\\fR and \\fBallowed\\fR tell what was measured and from where on it is too much. \\fBenable\\fR fades the correction in and out in
-motion as well, within \\fBcorrection-acceleration\\fR.
+A correction that fails is faded out, and comes back when its predictions have held for a while in motion: until then the machine cuts as without it.
+Where the same cause takes it out again, \\fBlatched\\fR comes on and it stays out, until \\fBenable\\fR goes from 0 to 1 or the amplifiers were off.
+A lost position does not latch. \\fBtimes-out\\fR counts how often it was taken out, and \\fBfound\\fR and \\fBallowed\\fR tell what was
+measured and from where on it is too much. \\fBenable\\fR fades the correction in and out in motion as well, within \\fBcorrection-acceleration\\fR.
 
 The model may state the geometry of the machine: scale, pitch, tables and squareness, which no encoder sees. Where all of \\fBhomed-N\\fR are on and
 \\fBgeometry\\fR is on, the joints go where the tool is then at LinuxCNC's command, while it jogs and probes, too, and \\fBfeedback-N\\fR tells where the
@@ -90,7 +91,7 @@ pin in float delay = 0.010 "Delay of the command, 0.008 to 0.015 s; taken over w
 pin in float deviation-limit = 0.5 "Largest distance of the drive's command from the path, 0 to 10 mm; a change takes effect within 0.2 s, also in the cut";
 pin in float speed-limit = 400 "Highest speed of the machine, 1 to 10,000 mm/s: actual positions that leap by more are no positions";
 pin in float correction-acceleration = 400 "Acceleration with which an offset fades, 1 to 1,000,000 mm/s^2; 0 is without limit";
-pin in float acceleration-limit = 0 "Acceleration of the correction in the loop, of each joint, 1 to 1,000,000 mm/s^2; one that needs more leaves the loop; 0 is without limit";
+pin in float acceleration-limit = 0 "Acceleration of the correction in the loop, of each joint, 1 to 1,000,000 mm/s^2; of one that needs more, less is commanded; 0 is without limit";
 
 pin out float contour-error "Distance of the actual position from the path, mm";
 pin out float contour-error-without "What it would be without the correction, by a model of axes, mm";
@@ -100,9 +101,10 @@ param rw float adaptive-scale = 1 "0.1 to 1: 0.5 where the feed override stands 
 pin out bit saturated "A limit holds the correction";
 pin out u32 state "0 amplifiers off, 1 without delay, 2 delayed, without correction, 3 the correction fades, 4 it is in the loop";
 pin out bit fault "There is no correction, or a setting is refused, for the reason in \\fBcause\\fR; it clears itself";
-pin out u32 cause """What was wrong last: 1 to 7 and 23 model file, 8 servo period, 9 the correction was not a number, 10 actual position
-lost, 11 predictions wrong, 12 contour error larger, 13 command not a number, 14 failed inside, 15 the correction takes more acceleration than acceleration-limit; out of range, so that the last good value stays in force and the correction goes on:
-16 delay, 17 deviation-limit, 18 speed-limit, 19 correction-acceleration, 20 adaptive-scale, 22 acceleration-limit; 21 a motion that probes or follows a spindle is delayed""";
+pin out u32 cause """What was wrong last: 1 to 7 and 22 model file, 8 servo period, 9 the correction was not a number, 10 actual position
+lost, 11 predictions wrong, 12 contour error larger, 13 command not a number, 14 failed inside; out of range, so that the last good value stays in force and the correction goes on:
+15 acceleration-limit, 16 delay, 17 deviation-limit, 18 speed-limit, 19 correction-acceleration, 20 adaptive-scale; 21 a motion that probes or follows a spindle is delayed""";
+pin out bit latched "The same \\fBcause\\fR took the correction out twice, and it stays out: set \\fBenable\\fR to 0 and to 1 again, or switch the amplifiers off";
 pin out u32 faults "How often there was a fault";
 pin out u32 times-out "How often the correction was taken out of the loop since the delay was taken up";
 pin out float found "What was measured when it was taken out last: contour error or wrong prediction, mm; 0 where nothing is compared";
@@ -344,6 +346,7 @@ FUNCTION(_)
     *c->times_out = out.times_out;
     *c->found = out.found_mm;
     *c->allowed = out.limit_mm;
+    *c->latched = out.latched != 0;
     *c->compensates = out.compensates != 0;
     *c->delay_periods = out.delay_periods;
     *c->heartbeat = !*c->heartbeat;

@@ -124,8 +124,8 @@ typedef struct {
     uint32_t learned;
     // Whether the geometry is compensated, and nothing of it fades.
     uint32_t compensates;
-    // Zero.
-    uint32_t reserved;
+    // Whether the correction stays out until it is reset.
+    uint32_t latched;
 } feedwright_outputs;
 
 // What the control allows a joint.

@@ -80,6 +80,10 @@ class Failed(Exception):
     """LinuxCNC or the scenario did not come to its end."""
 
 
+# The simulated drives have no limit.
+UNLIMITED = 0
+
+
 def run(scenario, settings=None, ini=None, hal="", limit_s=270, keep=None, change=None):
     """Runs a scenario of scenarios.py. `settings` go to it; `ini` are values of the INI file, as {"SECTION": {"KEY": value}}, and `hal` are
     lines of HAL beside those of the configuration; `change` gets the folder of the configuration before LinuxCNC starts. Recordings
@@ -92,7 +96,8 @@ def run(scenario, settings=None, ini=None, hal="", limit_s=270, keep=None, chang
         home = folder / "home"
         home.mkdir()
         text = (folder / "workshop-sim.ini").read_text()
-        changes = {"DISPLAY": {"DISPLAY": str(pathlib.Path(__file__).resolve()), "CYCLE_TIME": 0.05, "INTRO_GRAPHIC": ""}}
+        changes = {"DISPLAY": {"DISPLAY": str(pathlib.Path(__file__).resolve()), "CYCLE_TIME": 0.05, "INTRO_GRAPHIC": ""},
+                   "FEEDWRIGHT": {"ACCELERATION_LIMIT": UNLIMITED}}
         for section, values in (ini or {}).items():
             changes.setdefault(section, {}).update(values)
         text = changed(text, changes)

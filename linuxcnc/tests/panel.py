@@ -100,7 +100,7 @@ class Looks:
 
 def check(looks, hal, home):
     panel, text = looks.panel, lambda widget: widget["text"]
-    looks.expect("every cause has words", len(panel.words) >= 23 and "deviation-limit" in panel.words[17])
+    looks.expect("every cause has words", len(panel.words) >= 22 and "deviation-limit" in panel.words[17])
     looks.expect_state("Amplifiers are off")
     hal.set_p("feedwright.powered", "1")
     looks.expect_state("Delayed, not corrected")

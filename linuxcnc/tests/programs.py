@@ -27,7 +27,8 @@ def part(name, mode):
 
 
 def helix(mode):
-    return f"G21 G17 G90 G94 {mode}\nG0 X0 Y0 Z0\nG4 P0.3\n" + "".join(
+    # The first motion shows whether the model is of this machine: it is a rapid here, as in the other programs.
+    return f"G21 G17 G90 G94 {mode}\nG0 X-10 Y0 Z0\nG0 X0\nG4 P0.3\n" + "".join(
         f"G3 X0 Y0 Z{-2 * (k + 1)} I-10 J0 F3000\n" for k in range(2)) + "G4 P0.2\nM2\n"
 
 

@@ -55,6 +55,39 @@ def in_mid_cut(machine, at_s, changes, again_s=None, restore=None, params=None, 
     return {"ended_by": ended_by, "alive": machine.status.task_state}
 
 
+# Sides of a square with a rest behind each, for as long as a cause needs to come back.
+SIDES = "G21 G17 G90 G61 F3000\nG4 P0.3\n" + "".join(f"G1 X{x} Y{y}\nG4 P0.4\n" for _ in range(6) for x, y in ((20, 0), (20, 20), (0, 20), (0, 0))) + "M2\n"
+
+
+def comes_back(machine, inertia):
+    """A machine that gets heavy in the cut; then the correction is switched off and on, the machine repaired, the power taken away, and the program
+    cut again."""
+    pins = lambda *names: [machine.hal("getp", f"feedwright.{name}") for name in names]
+    machine.on()
+    machine.home()
+    machine.hal("setp", "feedwright.enable", 1)
+    machine.open(SIDES)
+    machine.record()
+    machine.begin()
+    machine.wait(1.5)
+    machine.hal("setp", "feedwright-plant.inertia", inertia)
+    machine.finish(60)
+    told = {"latched": pins("latched", "fault", "cause", "state")}
+    machine.hal("setp", "feedwright.enable", 0)
+    machine.wait(0.1)
+    machine.hal("setp", "feedwright.enable", 1)
+    machine.wait(0.1)
+    told["reset"] = pins("latched", "fault")
+    machine.hal("setp", "feedwright-plant.inertia", 1)
+    machine.command.state(machine.linuxcnc.STATE_ESTOP)
+    machine.wait(0.4)
+    machine.on()
+    machine.open(SIDES)
+    machine.begin()
+    machine.finish(60)
+    return {**told, "repaired": pins("latched", "fault", "state")}
+
+
 def hold(machine, at_s=0.9):
     """Feed hold on the way round a corner, on again, override from 0 to 200 %."""
     machine.on()

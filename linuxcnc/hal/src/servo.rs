@@ -110,8 +110,8 @@ pub struct COutputs {
     learned: u32,
     /// Whether the geometry is compensated, and nothing of it fades.
     compensates: u32,
-    /// Zero.
-    reserved: u32,
+    /// Whether the correction stays out until it is reset.
+    latched: u32,
 }
 
 /// The link between command and drives.
@@ -284,9 +284,9 @@ impl<const N: usize> Guarded<N> {
             holds_feed: u32::from(outputs.holds_feed),
             is_settled: u32::from(outputs.is_settled),
             times_out: outputs.left.map_or(0, |left| left.count),
+            latched: u32::from(outputs.latched),
             learned: outputs.learned.iter().rev().fold(0, |bits, learned| 2 * bits + u32::from(*learned)),
             compensates: u32::from(self.compensation.compensates()),
-            reserved: 0,
         }
     }
 
@@ -323,7 +323,7 @@ impl<const N: usize> Guarded<N> {
             times_out: 0,
             learned: 0,
             compensates: u32::from(self.compensation.compensates()),
-            reserved: 0,
+            latched: 0,
         }
     }
 }
@@ -351,7 +351,7 @@ fn number(fault: LinkFault) -> u32 {
             BlockError::Length => 5,
             BlockError::Checksum => 6,
             BlockError::Number(_) => 7,
-            BlockError::Geometry => 23,
+            BlockError::Geometry => 22,
         },
         LinkFault::Model(Refused::Kind) => 3,
         LinkFault::Model(Refused::Period) => 8,
@@ -359,14 +359,13 @@ fn number(fault: LinkFault) -> u32 {
         LinkFault::Faded(Cause::LostFeedback) => 10,
         LinkFault::Faded(Cause::WrongPredictions) => 11,
         LinkFault::Faded(Cause::Harmful) => 12,
-        LinkFault::Faded(Cause::TooQuick) => 15,
         LinkFault::Command => 13,
         LinkFault::Setting(Setting::Delay) => 16,
         LinkFault::Setting(Setting::Deviation) => 17,
         LinkFault::Setting(Setting::Speed) => 18,
         LinkFault::Setting(Setting::CorrectionAcceleration) => 19,
         LinkFault::Setting(Setting::AdaptiveScale) => 20,
-        LinkFault::Setting(Setting::Acceleration) => 22,
+        LinkFault::Setting(Setting::Acceleration) => 15,
         LinkFault::NotHeld => 21,
     }
 }

@@ -13,6 +13,7 @@ pub mod following;
 pub mod live_controller;
 pub mod fading;
 pub mod limits;
+mod latch;
 pub mod servo;
 pub mod play_out;
 pub mod compensation;

@@ -31,7 +31,7 @@ pub struct LinkLimits {
     pub speed_mm_s: f64,
     /// Acceleration with which an offset fades, mm/s2; 0 is without limit.
     pub correction_mm_s2: f64,
-    /// Acceleration of an offset in the loop, of each axis, mm/s2; 0 is without limit. A correction that needs more leaves the loop.
+    /// Acceleration of an offset in the loop, of each axis, mm/s2; 0 is without limit. Of a correction that needs more, less is commanded.
     pub engaged_mm_s2: f64,
     /// Multiple of the feedrate of now that a request of 1 stands for.
     pub adaptive_scale: f64,

@@ -57,7 +57,6 @@ pub fn model_of<const N: usize>(bytes: &[u8]) -> Result<LinkModel<N>, Refused> {
     match trained {
         Trained::Axes(axes) => Ok(LinkModel::Axes(axes)),
         Trained::Contour(identifier) => Ok(LinkModel::Contour(TrainedContour { identifier, servo_s, feed_period_s })),
-        Trained::Servo(..) => Err(Refused::Kind),
     }
 }
 

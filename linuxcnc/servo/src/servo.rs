@@ -17,6 +17,9 @@
 //! behind it until the delay is taken up. A motion that follows a spindle takes no hold: it has to
 //! wait for [`LinkOutputs::is_settled`].
 //!
+//! Once the same cause has taken the correction out of the loop twice, it stays out until it is switched off and on again, or the
+//! amplifiers were off: `latch.rs`.
+//!
 //! | Link | Drive gets |
 //! |---|---|
 //! | [`Link::Off`] | the actual position |
@@ -28,6 +31,7 @@ use feedwright_control::{Bounds, Cause, Controller, Fade, Schedule, State, Tick}
 
 use crate::fading::Fading;
 use crate::history::{Delayed, History, NEWER};
+use crate::latch::Latch;
 use crate::limits::{LinkLimits, Setting};
 use crate::live_controller::LiveController;
 use crate::machine::{self, LinkModel, Refused};
@@ -133,6 +137,8 @@ pub struct LinkOutputs<const N: usize> {
     pub fault: LinkFault,
     /// When, why and how often the supervisor has taken the correction out of the loop since the delay was taken up.
     pub left: Option<Fade>,
+    /// Whether the correction stays out until it is reset: the same cause took it out twice.
+    pub latched: bool,
     /// Which axes are corrected by what was learned while they moved.
     pub learned: [bool; N],
     /// Servo periods of delay.
@@ -177,6 +183,7 @@ pub struct Servo<const N: usize> {
     heard: bool,
     /// Servo periods since the command leapt.
     since_leap: u64,
+    latch: Latch<N>,
 }
 
 impl<const N: usize> Servo<N> {
@@ -206,6 +213,7 @@ impl<const N: usize> Servo<N> {
             unasked: 0,
             heard: false,
             since_leap: u64::MAX,
+            latch: Latch::OPEN,
         }
     }
 
@@ -237,6 +245,14 @@ impl<const N: usize> Servo<N> {
         }
         let mut outputs = if inputs.powered && self.heard { self.on(inputs, told) } else { self.off(told) };
         outputs.adaptive_feed = bounded(self.limits.adaptive_scale * outputs.rate, 0.0, 1.0);
+        if !inputs.enabled {
+            self.latch.reset();
+        }
+        let latched = self.latch.latched();
+        outputs.latched = latched.is_some();
+        if let (LinkFault::None, Some(cause)) = (outputs.fault, latched) {
+            outputs.fault = LinkFault::Faded(cause);
+        }
         // What takes the correction away is told first.
         if let (LinkFault::None, Some(setting)) = (outputs.fault, refused) {
             outputs.fault = LinkFault::Setting(setting);
@@ -310,6 +326,8 @@ impl<const N: usize> Servo<N> {
         self.history.clear();
         self.residual = Fading::NONE;
         (self.follows, self.yielded, self.not_held) = (false, false, 0);
+        self.latch.take_in(None, [false; N], 0.0);
+        self.latch.reset();
         if let Ok(controller) = &mut self.controller {
             controller.forget_machine();
         }
@@ -392,6 +410,7 @@ impl<const N: usize> Servo<N> {
             saturated: false,
             fault: LinkFault::None,
             left: None,
+            latched: false,
             learned: [false; N],
             delay_periods: 0,
             holds_feed: false,
@@ -401,6 +420,7 @@ impl<const N: usize> Servo<N> {
 
     fn direct(&mut self) -> LinkOutputs<N> {
         let fault = self.refused();
+        self.latch.take_in(None, [false; N], 0.0);
         if let Ok(controller) = &mut self.controller {
             controller.reset();
         }
@@ -421,7 +441,7 @@ impl<const N: usize> Servo<N> {
         let Ok(controller) = &mut self.controller else { return self.direct() };
         controller.hold_to(&bounds);
         self.tick.hold_to(bounds);
-        self.tick.allow(inputs.enabled);
+        self.tick.allow(inputs.enabled && self.latch.latched().is_none());
         // Until no part of it is ahead any more: what no machine can follow says nothing of the law.
         if self.since_leap <= u64::from(self.delay) {
             controller.reset();
@@ -432,6 +452,8 @@ impl<const N: usize> Servo<N> {
         let offset_mm = sub(setpoint.command_mm, path_mm);
         self.offset_mm = norm(offset_mm);
         let (state, left) = (self.tick.state(), self.tick.fade());
+        let holds = state == State::Engaged && setpoint.path.feed_mm_s > 0.0;
+        self.latch.take_in(left, controller.learned(), if holds { self.servo_s } else { 0.0 });
         let correction_mm = add_scaled(offset_mm, 1.0, self.residual.value_mm());
         let before = self.history.through(self.history.newest().saturating_sub(u64::from(self.delay)));
         let is_out = inputs.enabled && state != State::Engaged;
@@ -450,6 +472,7 @@ impl<const N: usize> Servo<N> {
             saturated: self.tick.held(),
             fault: cause.map_or(LinkFault::None, LinkFault::Faded),
             left,
+            latched: false,
             learned: controller.learned(),
             delay_periods: self.delay,
             holds_feed: false,

@@ -16,6 +16,8 @@ const REST: usize = 100;
 const TURN: usize = 1257;
 /// What rounding leaves of the part of a feedrate across the path, mm.
 const ROUNDING_MM: f64 = 1e-12;
+/// An uncorrected cut may be exceeded by this, um: RMS and largest.
+const NO_WORSE_UM: [f64; 2] = [0.05, 1.0];
 /// Slowest and fastest that a controller may ask for.
 const RATES: [f64; 2] = [0.5, 1.2];
 
@@ -77,6 +79,43 @@ fn whatever_was_learnt_feedrate_and_geometry_keep_their_bounds() {
             assert_eq!(periods[periods.len() - 1].rate, 1.0, "{seed} {size}: at rest");
         }
     }
+}
+
+/// RMS and largest contour error of the actual position, um.
+fn error_um(periods: &[LinkOutputs<2>]) -> [f64; 2] {
+    let errors_um = periods.iter().map(|period| 1e3 * period.contour_error_mm);
+    let [squares, largest] = errors_um.fold([0.0_f64; 2], |[sum, most], um| [sum + um * um, most.max(um)]);
+    [(squares / periods.len() as f64).sqrt(), largest]
+}
+
+#[test]
+fn whatever_was_learnt_the_cut_is_no_worse_than_without_correction() {
+    let off_um = error_um(&turn(drawn(0, 0.0), &LIMITS, |_, inputs| inputs.enabled = false));
+    for seed in 0..20 {
+        for size in [0.1, 1.0, 100.0] {
+            let on_um = error_um(&turn(drawn(seed, size), &LIMITS, |_, _| {}));
+            println!("{seed:2} {size:5} {on_um:6.2?} of {off_um:6.2?} um");
+            for i in 0..2 {
+                assert!(on_um[i] <= off_um[i] + NO_WORSE_UM[i], "{seed} {size}: {on_um:?} um, {off_um:?} without");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_feedrate_falls_where_the_identifier_predicts_an_error_that_grows_with_it() {
+    let mut identifier = ContourIdentifier::<2>::NULL;
+    for axis in 0..2 {
+        // One hidden node an axis, and the feedrate of now is the first of its inputs.
+        identifier.hidden[axis][0][axis] = 1.0;
+        identifier.output[axis][axis] = 1.0;
+    }
+    let model = LinkModel::Contour(TrainedContour { identifier, servo_s: SERVO_S, feed_period_s: FEED_PERIOD_S });
+    // It predicts more than the axes do: a wide limit keeps it in the loop.
+    let periods = turn(model, &LinkLimits { speed_alone: true, deviation_mm: 5.0, ..LIMITS }, |_, _| {});
+    let cut = &periods[REST + TURN / 4..REST + 3 * TURN / 4];
+    let fastest = cut.iter().map(|period| period.rate).fold(0.0, f64::max);
+    assert!(fastest < 1.0, "{fastest} of the feedrate was requested");
 }
 
 #[test]

@@ -15,7 +15,7 @@ use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkOutputs, Servo};
 
 use common::{LIMITS, SERVO_S, cutting};
-use turning::{Period, SETTLE, TURN, machine, turn, turn_on};
+use turning::{Period, SETTLE, TURN, command_mm, machine, turn, turn_on};
 
 /// Of the contour error without the correction: as a sweep in a real control has it.
 const LEFT: f64 = 0.05;
@@ -26,6 +26,9 @@ fn rms_mm(periods: &[Period]) -> f64 {
     let off = |period: &Period| ((period.tool_mm[0] - 10.0).hypot(period.tool_mm[1]) - 10.0).powi(2);
     (cut.iter().map(off).sum::<f64>() / cut.len() as f64).sqrt()
 }
+
+/// What is no worse, mm RMS: a drive that is 3 ms late costs 0.4 um until the correction is out.
+const NO_WORSE_MM: f64 = 5e-4;
 
 #[test]
 fn the_correction_takes_the_contour_error_away() {
@@ -48,7 +51,7 @@ fn by_a_model_that_is_wrong_nothing_is_worse_and_it_is_told() {
         println!("{late_s}: {} {without}", rms_mm(&periods));
         let told = |outputs: &LinkOutputs<2>| outputs.learned != [false; 2] || outputs.left.is_some();
         assert!(periods.iter().any(|period| told(&period.outputs)), "{late_s}: nothing was told");
-        assert!(rms_mm(&periods) <= without, "{late_s}: {} {without}", rms_mm(&periods));
+        assert!(rms_mm(&periods) <= without + NO_WORSE_MM, "{late_s}: {} {without}", rms_mm(&periods));
     }
 }
 
@@ -88,6 +91,9 @@ fn the_delay_comes_and_goes_at_rest_alone_and_nothing_leaps() {
     assert!(periods.iter().any(|period| period.outputs.link == Link::Delayed));
 }
 
+/// Servo periods from the beginning of a turn to that of the next, some rest behind it.
+const AGAIN: usize = 1_600;
+
 #[test]
 fn what_is_not_a_number_goes_no_further() {
     // Behind the last there is time for two ways back: one that has just begun may do harm once.
@@ -95,6 +101,10 @@ fn what_is_not_a_number_goes_no_further() {
         let spoilt = [f64::NAN, f64::INFINITY];
         for which in 0..4 {
             let periods = turn(Ok(machine()), &LIMITS, |n, inputs| {
+                // It comes back in motion alone, so the turn begins again.
+                if n >= SETTLE + AGAIN {
+                    inputs.command_mm = command_mm(n - AGAIN);
+                }
                 if (from..from + 30).contains(&n) {
                     let into = if which < 2 { &mut inputs.command_mm } else { &mut inputs.actual_mm };
                     into[n % 2] = spoilt[which % 2];

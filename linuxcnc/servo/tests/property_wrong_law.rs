@@ -5,8 +5,9 @@
 mod axis;
 #[path = "common/inputs.rs"]
 mod common;
-
-use std::f64::consts::TAU;
+#[path = "common/paths.rs"]
+#[expect(dead_code, reason = "other tests need the rest")]
+mod paths;
 
 use feedwright_control::{AxisKnowledge, IdentifiedAxes};
 use feedwright_servo::machine::LinkModel;
@@ -15,17 +16,11 @@ use feedwright_servo::servo::{LinkFault, LinkInputs, Servo};
 
 use axis::axis;
 use common::{LIMITS, SERVO_S, cutting};
+use paths::{REST, circle, commands, eight, error_mm, star};
 
-/// Feedrate and acceleration of the programs.
-const FEED_MM_S: f64 = 50.0;
-const ACCELERATION_MM_S2: f64 = 2000.0;
-/// Servo periods of rest before and behind.
-const REST: usize = 300;
-/// Points of a path.
-const POINTS: usize = 4000;
 /// What is no worse, um: RMS and largest; and what is left by the right law, of both.
 const NO_WORSE_UM: [f64; 2] = [0.05, 1.0];
-const LEFT: [f64; 2] = [0.05, 0.15];
+const LEFT: [f64; 2] = [0.05, 0.2];
 /// A drive that is asked for so much of its 30 N m is spent, N m; and how many times as large its largest error may be then.
 const SPENT_NM: f64 = 27.0;
 const SPENT: f64 = 1.2;
@@ -43,67 +38,6 @@ fn changed(change: Change) -> Machine {
     let mut machine = machine();
     machine.axes.iter_mut().for_each(change);
     machine
-}
-
-/// A curve of a parameter from 0 to 1, as points.
-fn curve(at: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
-    (0..=POINTS).map(|k| at(k as f64 / POINTS as f64)).collect()
-}
-
-fn circle() -> Vec<[f64; 2]> {
-    curve(|t| [10.0 - 10.0 * (TAU * t).cos(), 10.0 * (TAU * t).sin()])
-}
-
-fn eight() -> Vec<[f64; 2]> {
-    curve(|t| [20.0 * (TAU * t).sin(), 10.0 * (2.0 * TAU * t).sin()])
-}
-
-fn star() -> Vec<[f64; 2]> {
-    curve(|t| {
-        let radius = 12.0 + 4.0 * (5.0 * TAU * t).cos();
-        [radius * (TAU * t).cos() - 16.0, radius * (TAU * t).sin()]
-    })
-}
-
-/// Lengths along points, mm.
-fn lengths(points: &[[f64; 2]]) -> Vec<f64> {
-    let mut length_mm = 0.0;
-    let step = |pair: &[[f64; 2]]| {
-        length_mm += distance(pair[0], pair[1]);
-        length_mm
-    };
-    std::iter::once(0.0).chain(points.windows(2).map(step)).collect()
-}
-
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
-}
-
-/// The way of a motion from rest to rest at the feedrate, mm.
-fn way_mm(t_s: f64, length_mm: f64) -> f64 {
-    let (ramp_s, whole_s) = (FEED_MM_S / ACCELERATION_MM_S2, length_mm / FEED_MM_S + FEED_MM_S / ACCELERATION_MM_S2);
-    let t_s = t_s.clamp(0.0, whole_s);
-    if t_s < ramp_s {
-        0.5 * ACCELERATION_MM_S2 * t_s * t_s
-    } else if t_s > whole_s - ramp_s {
-        length_mm - 0.5 * ACCELERATION_MM_S2 * (whole_s - t_s).powi(2)
-    } else {
-        FEED_MM_S * (t_s - 0.5 * ramp_s)
-    }
-}
-
-/// Commands of a program along points, with rest before and behind.
-fn commands(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let lengths = lengths(points);
-    let whole_mm = lengths[lengths.len() - 1];
-    let periods = ((whole_mm / FEED_MM_S + FEED_MM_S / ACCELERATION_MM_S2) / SERVO_S).ceil() as usize;
-    let at = |n: usize| {
-        let way_mm = way_mm((n as f64 - REST as f64) * SERVO_S, whole_mm);
-        let k = lengths.partition_point(|length| *length <= way_mm).clamp(1, points.len() - 1);
-        let part = (way_mm - lengths[k - 1]) / (lengths[k] - lengths[k - 1]);
-        std::array::from_fn(|i| points[k - 1][i] + part * (points[k][i] - points[k - 1][i]))
-    };
-    (0..periods + 2 * REST).map(at).collect()
 }
 
 /// RMS and largest contour error, um, and what was told.
@@ -135,20 +69,6 @@ fn cut(real: &Machine, inertia: f64, points: &[[f64; 2]], enabled: bool) -> Cut 
     }
     let rms_um = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
     Cut { error_um: [rms_um, largest], largest_nm, told }
-}
-
-/// Distance of a tool from the path about the point that was nearest before.
-fn error_mm(points: &[[f64; 2]], near: &mut usize, tool_mm: [f64; 2]) -> f64 {
-    let about = near.saturating_sub(20)..(*near + 40).min(points.len());
-    *near = about.min_by(|a, b| distance(points[*a], tool_mm).total_cmp(&distance(points[*b], tool_mm))).unwrap_or(0);
-    let pieces = near.saturating_sub(1)..(*near + 1).min(points.len() - 1);
-    pieces.map(|k| to_piece_mm(points[k], points[k + 1], tool_mm)).fold(f64::INFINITY, f64::min)
-}
-
-fn to_piece_mm(a: [f64; 2], b: [f64; 2], p: [f64; 2]) -> f64 {
-    let (d, square) = ([b[0] - a[0], b[1] - a[1]], distance(a, b).powi(2));
-    let t = (((p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1]) / square).clamp(0.0, 1.0);
-    distance([a[0] + t * d[0], a[1] + t * d[1]], p)
 }
 
 /// Programs that bend late, early and all the time.
