@@ -26,7 +26,6 @@ PEERS = (
     "zero-phase-friction",
     "disturbance-observer",
     "kalman-disturbance",
-    "receding-horizon",
 )
 
 results = []
