@@ -1,5 +1,4 @@
-//! Plans how fast a machine tool moves along a program: path, blend, feedrate, and events on a
-//! clock.
+//! Plans how fast a machine tool moves along a program: path, feedrate, and events on a clock.
 //!
 //! A [`Plan`] is an iterator. It reads the motions of a program, builds exact curves by arc length,
 //! and returns [`Phase`]s of constant jerk, with the events between them.
@@ -7,7 +6,7 @@
 //! ```
 //! use feedwright_gcode::{Reader, Settings};
 //! use feedwright_plan::{
-//!     BLENDS, Constraints, FEED_PLANNERS, PathLimits, Pieces, Plan, Planned, Plc,
+//!     Constraints, FEED_PLANNERS, PathLimits, Pieces, Plan, Planned, Plc,
 //! };
 //!
 //! let constraints = Constraints::from(&PathLimits {
@@ -20,7 +19,7 @@
 //! let program = "G21 G90 F3000\nG1 X100\nM2\n";
 //! let canon = Reader::from_text("line.ngc", program, Settings::default())?
 //!     .collect::<Result<Vec<_>, _>>()?;
-//! let steps = (BLENDS[0].make)(Box::new(Pieces::new(canon.into_iter())), &constraints);
+//! let steps = Box::new(Pieces::new(canon.into_iter()));
 //!
 //! let mut time_s = 0.0;
 //! for planned in Plan::new(steps, &constraints, &FEED_PLANNERS[0], Plc::default())? {
@@ -38,15 +37,15 @@
 //! | Topic | Names |
 //! |---|---|
 //! | Path | [`Pieces`], [`Piece`], [`Curve`], [`Steps`], [`Step`], [`PathError`] |
-//! | Blend | [`BLENDS`], [`BlendMember`], [`BlendedStep`], [`PlannedPiece`], [`AlignedPaths`] |
+//! | Planned path beside the programmed one | [`PairedStep`], [`PlannedPiece`], [`AlignedPaths`] |
 //! | Limits | [`Constraints`], [`PathLimits`], [`AxisLimits`], [`SpeedCaps`], [`LimitsError`] |
 //! | Feed planners | [`FEED_PLANNERS`], [`FeedPlanner`], [`FeedMember`], [`feed_planner`], [`TimeOptimal`], [`Trapezoid`] |
 //! | Plan | [`Plan`], [`Planned`], [`Phase`], [`Span`], [`AxisMotion`], [`PlanSink`] |
 //! | Events | [`Plc`], [`Durations`], [`PlcEvent`], [`TimedEvent`] |
 //! | Feed override | [`TimeScaling`], [`ScalingLimits`], [`PublishedPlan`], [`shortest_stop_mm`] |
 //!
-//! Two tables list what can be chosen: [`BLENDS`] from the programmed path to the planned one, and
-//! [`FEED_PLANNERS`] for the speed along it. The first row of each is the default.
+//! The table [`FEED_PLANNERS`] lists what can be chosen for the speed along the path. Its first row is
+//! the default.
 //!
 //! # Units
 //!
@@ -65,7 +64,7 @@
 //!
 //! The `mod` lines stand in the order in which data flows; each module uses only those above it.
 //! `plc` says how long events take, `constraints` what the machine allows, `path` makes curves of
-//! motions, `blend` makes the planned path of the programmed one, and `feed` plans the speed.
+//! motions, `paired` has the planned path beside the programmed one, and `feed` plans the speed.
 
 #![warn(clippy::disallowed_methods)]
 
@@ -73,11 +72,9 @@ pub mod vector;
 mod plc;
 mod constraints;
 mod path;
-mod blend;
+mod paired;
 mod feed;
 
-pub use blend::aligned::AlignedPaths;
-pub use blend::{BLENDS, BlendMember, BlendedStep, BlendedSteps, PlannedPiece, ProgrammedPart};
 pub use constraints::speed_caps::SpeedCaps;
 pub use constraints::{AxisLimits, Constraints, LimitsError, PathLimits};
 pub use feed::feed_override::{
@@ -91,8 +88,10 @@ pub use feed::unlimited::Unlimited;
 pub use feed::{
     AxisMotion, FEED_PLANNERS, FeedMember, FeedPlanner, Phase, Span, TimedEvent, WHOLE_PROGRAM, feed_mm_s, feed_planner,
 };
+pub use paired::aligned::AlignedPaths;
+pub use paired::{PairedStep, PairedSteps, PlannedPiece, ProgrammedPart};
 pub use path::arc::Arc;
-pub use path::pieces::{ArcLength, Pieces};
+pub use path::pieces::Pieces;
 pub use path::smooth::{Jet, Parametric, Smooth};
 pub use path::{Curve, MIN_FEED_MM_S, PathError, Piece, Point, Rest, Step, Steps, signed_distance_mm};
 pub use plc::{Durations, EventName, Plc, PlcEvent, named};

@@ -83,6 +83,9 @@ impl From<GeometryFault> for CompensationError {
 impl Machine {
     /// Errors of the first N axes that no encoder sees; none where there are none.
     pub fn errors_of_geometry<const N: usize>(&self) -> Option<KnownGeometry<N>> {
+        if let Some(tool) = &self.tool {
+            return Some(tool.of_first()).filter(|tool| !tool.is_exact());
+        }
         let axes = std::array::from_fn(|i| {
             let axis = self.axis(i);
             AxisErrors {
@@ -125,6 +128,20 @@ impl Machine {
             Some(known) => self.compensating(known),
             None => Ok(Self { compensated: None, ..self.clone() }),
         }
+    }
+
+    /// The same machine with the tool where a geometry puts it, whatever its file states. A screw gets the backlash that the geometry states; where
+    /// that is none, it keeps its own.
+    #[must_use]
+    pub fn with_tool(mut self, known: KnownGeometry<3>) -> Self {
+        for (axis, backlash_mm) in self.axes.iter_mut().zip(known.backlash_mm()) {
+            let is_hidden = axis.hidden_screw().is_some();
+            if let Some(screw) = axis.transmission.as_mut().filter(|_| is_hidden && backlash_mm != 0.0) {
+                screw.backlash_um = 1e3 * backlash_mm;
+            }
+        }
+        self.tool = Some(Arc::new(known));
+        self
     }
 
     /// Whether an axis has backlash that its encoder does not see.

@@ -78,6 +78,9 @@ pub struct Machine {
     /// The geometry that its control compensates, by [`Machine::compensating`]; no key of the file.
     #[serde(skip)]
     pub compensated: Option<Arc<KnownGeometry<3>>>,
+    /// Geometry that the tool has in place of what the axes and `geometry` state, by [`Machine::with_tool`]; no key of the file.
+    #[serde(skip)]
+    pub tool: Option<Arc<KnownGeometry<3>>>,
 }
 
 /// How far from square the axes are: table `[geometry]`, all zero without it. Positive where the angle between the positive
@@ -306,6 +309,25 @@ impl Machine {
             .or(axis.fade_accel_mm_s2)
             .or(planned_mm_s2)
             .unwrap_or(self.limits.normal_accel_mm_s2)
+    }
+
+    /// Acceleration of the i-th axis that its command may have, mm/s2: the one that is stated, or the largest that its plan takes.
+    pub fn accel_limit_mm_s2(&self, i: usize) -> f64 {
+        let limits = &self.limits;
+        let corner_mm_s2 = limits.corner_jump_mm_s / self.period.servo_s;
+        let planned_mm_s2 = limits.tangential_accel_mm_s2.max(limits.normal_accel_mm_s2).max(corner_mm_s2);
+        self.axis(i).max_accel_mm_s2.unwrap_or(planned_mm_s2)
+    }
+
+    /// Acceleration that the owner allows the offset of a correction in the loop, mm/s2; infinite where nothing is stated.
+    pub(crate) fn owners_accel_mm_s2(&self) -> f64 {
+        self.axes.iter().filter_map(|axis| axis.correction_accel_mm_s2).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Acceleration that the offset of a correction in the loop may have in every axis, mm/s2.
+    pub fn engaged_accel_mm_s2(&self) -> f64 {
+        let of_axis = |i| self.axis(i).correction_accel_mm_s2.unwrap_or_else(|| self.accel_limit_mm_s2(i));
+        (0..self.axis_count()).map(of_axis).fold(f64::INFINITY, f64::min)
     }
 
     /// Content of the machine as a hexadecimal key for caches: equal for machines whose axes move equally, whatever

@@ -1,7 +1,7 @@
 //! One run: from the steps of a program to the rows of its cut, in the order in which data flows.
 //!
 //! ```text
-//! pieces -> blend -> plan -> reference -> loop of controller and plant -> rows
+//! pieces -> plan -> reference -> loop of controller and plant -> rows
 //! ```
 //!
 //! Whatever cuts goes through [`Run`]: the main job, the comparison, the experiments of the paper, the excitation of an
@@ -13,8 +13,8 @@ use feedwright_control::Controller;
 use feedwright_gcode::ReadError;
 use feedwright_gcode::canon::Canon;
 use feedwright_plan::{
-    AlignedPaths, BLENDS, BlendMember, BlendedSteps, Constraints, FEED_PLANNERS, FeedMember, KeptPlan, LimitsError,
-    PathError, Pieces, Plan, PlanSink, Plc, SpeedCaps, Step, Steps,
+    AlignedPaths, Constraints, FEED_PLANNERS, FeedMember, KeptPlan, LimitsError, PairedSteps, PathError, Pieces, Plan,
+    PlanSink, Plc, SpeedCaps, Step, Steps,
 };
 use thiserror::Error;
 
@@ -24,27 +24,25 @@ use crate::simulate::{LapSetup, PlantMaker, RunResult, Stopped, simulate};
 use crate::trace::Sink;
 use crate::watch::{Cancelled, Watch};
 
-/// The members of the families that make a plan of a path.
+/// What makes a plan of a path.
 #[derive(Debug, Clone, Copy)]
 pub struct Stages {
-    /// From the programmed path to the planned one.
-    pub blend: &'static BlendMember,
     /// Speed over the planned path.
     pub planner: &'static FeedMember,
 }
 
 impl Default for Stages {
-    /// The first of each family.
+    /// The first feed planner.
     fn default() -> Self {
-        Self { blend: &BLENDS[0], planner: &FEED_PLANNERS[0] }
+        Self { planner: &FEED_PLANNERS[0] }
     }
 }
 
 impl Stages {
-    /// Those that suit a machine: where each axis has limits of its own, the planner that keeps them; otherwise the first of each family.
+    /// Those that suit a machine: where each axis has limits of its own, the planner that keeps them; otherwise the first.
     pub fn of(machine: &Machine) -> Self {
         let planner = FEED_PLANNERS.iter().find(|member| member.needs_axes == machine.has_axis_limits());
-        Self { planner: planner.unwrap_or(&FEED_PLANNERS[0]), ..Self::default() }
+        Self { planner: planner.unwrap_or(&FEED_PLANNERS[0]) }
     }
 
     /// Reference of the steps of a program on a machine.
@@ -65,22 +63,7 @@ impl Stages {
         machine: &Machine,
         constraints: &Constraints,
     ) -> Result<Reference<'p>, LimitsError> {
-        Ok(Reference::new(self.plan_of(self.blended(steps, constraints), machine, constraints)?))
-    }
-
-    /// The planned path beside the programmed one.
-    fn blended<'p>(self, steps: Steps<'p>, constraints: &Constraints) -> BlendedSteps<'p> {
-        (self.blend.make)(steps, constraints)
-    }
-
-    /// The plan of two paths that are there already.
-    fn plan_of<'p>(
-        self,
-        blended: BlendedSteps<'p>,
-        machine: &Machine,
-        constraints: &Constraints,
-    ) -> Result<Plan<'p>, LimitsError> {
-        Plan::new(blended, constraints, self.planner, Plc::from(machine))
+        Ok(Reference::new(Plan::new(steps, constraints, self.planner, Plc::from(machine))?))
     }
 }
 
@@ -100,6 +83,7 @@ pub struct Run<'a> {
     machine: &'a Machine,
     plant: Option<PlantMaker<'a>>,
     compensates: bool,
+    within_drives: bool,
     caps: Option<&'a Arc<SpeedCaps>>,
     stages: Stages,
     laps: u32,
@@ -166,6 +150,14 @@ impl From<Stopped> for RunError {
     }
 }
 
+/// What a lap cuts along.
+enum LapPaths<'p> {
+    /// The programmed path.
+    One(Steps<'p>),
+    /// Another path, with errors to the programmed one.
+    Paired(PairedSteps<'p>),
+}
+
 impl<'a> Run<'a> {
     /// One lap on a machine, by the stages that suit it.
     pub fn on(machine: &'a Machine) -> Self {
@@ -174,6 +166,7 @@ impl<'a> Run<'a> {
             machine,
             plant: None,
             compensates: true,
+            within_drives: false,
             caps: None,
             stages,
             laps: 1,
@@ -196,13 +189,19 @@ impl<'a> Run<'a> {
         Self { laps, ..self }
     }
 
+    /// Holds the offset of a controller in the loop within the acceleration that the axes can have beside the plan.
+    #[must_use]
+    pub const fn within_drives(self) -> Self {
+        Self { within_drives: true, ..self }
+    }
+
     /// With bounds on the speed, place by place.
     #[must_use]
     pub const fn capped(self, caps: Option<&'a Arc<SpeedCaps>>) -> Self {
         Self { caps, ..self }
     }
 
-    /// With other members of the families.
+    /// With another feed planner.
     #[must_use]
     pub const fn stages(self, stages: Stages) -> Self {
         Self { stages, ..self }
@@ -255,13 +254,13 @@ impl<'a> Run<'a> {
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
-        self.laps_of(|run| Ok(run.blended(steps()?)), controller, sinks)
+        self.laps_of(|| steps().map(LapPaths::One), controller, sinks)
     }
 
     /// All laps, each along paths of its own.
     fn laps_of<'p, const N: usize>(
         &self,
-        mut blended: impl FnMut(&Run<'_>) -> Result<BlendedSteps<'p>, ReadError>,
+        mut paths: impl FnMut() -> Result<LapPaths<'p>, ReadError>,
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
@@ -273,10 +272,10 @@ impl<'a> Run<'a> {
             let seed = self.machine.noise.seed.wrapping_add(u64::from(lap) << LAP_SEED_SHIFT);
             let practice = self.machine.with_noise_seed(seed);
             let practising = Run { machine: &practice, plan_sink: None, memory, ..*self };
-            practising.lap(&mut blended, controller, &mut [])?;
+            practising.lap(&mut paths, controller, &mut [])?;
             controller.next_lap();
         }
-        Run { memory, ..*self }.lap(&mut blended, controller, sinks)
+        Run { memory, ..*self }.lap(&mut paths, controller, sinks)
     }
 
     /// As [`Run::cut`], along the path of another program, with errors to the programmed one.
@@ -289,7 +288,7 @@ impl<'a> Run<'a> {
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
-        let mut result = self.laps_of(|_| Ok(aligned.steps()), controller, sinks)?;
+        let mut result = self.laps_of(|| Ok(LapPaths::Paired(aligned.steps())), controller, sinks)?;
         result.uncut_mm = result.uncut_mm.max(aligned.left_out_mm);
         Ok(result)
     }
@@ -298,27 +297,36 @@ impl<'a> Run<'a> {
         Constraints { speed_caps: self.caps.cloned(), ..Constraints::from(self.machine) }
     }
 
-    fn blended<'p>(&self, steps: Steps<'p>) -> BlendedSteps<'p> {
-        self.stages.blended(steps, &self.constraints())
+    fn plan_of<'p>(&self, paths: LapPaths<'p>) -> Result<Plan<'p>, LimitsError> {
+        let (constraints, planner, plc) = (self.constraints(), self.stages.planner, Plc::from(self.machine));
+        match paths {
+            LapPaths::One(steps) => Plan::new(steps, &constraints, planner, plc),
+            LapPaths::Paired(steps) => Plan::of_paired(steps, &constraints, planner, plc),
+        }
     }
 
     fn lap<'p, const N: usize>(
         &self,
-        blended: &mut impl FnMut(&Run<'_>) -> Result<BlendedSteps<'p>, ReadError>,
+        paths: &mut impl FnMut() -> Result<LapPaths<'p>, ReadError>,
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
         let plan = match self.memory.and_then(PlanCache::get) {
             Some(kept) => Plan::again(&kept),
             None => {
-                let plan = self.stages.plan_of(blended(self)?, self.machine, &self.constraints())?;
+                let plan = self.plan_of(paths()?)?;
                 if self.memory.is_some() { plan.keeping() } else { plan }
             }
         };
         let mut reference = Reference::new(plan.told_to(self.plan_sink));
         let known = self.machine.compensated.as_ref().filter(|_| self.compensates);
         let known = known.map(|known| Box::new(known.of_first::<N>()));
-        let setup = LapSetup { machine: self.machine, plant: self.plant, known: known.as_deref() };
+        let setup = LapSetup {
+            machine: self.machine,
+            plant: self.plant,
+            known: known.as_deref(),
+            within_drives: self.within_drives,
+        };
         let result = simulate(setup, &mut reference, controller, sinks, self.watch)?;
         if let Some(fault) = reference.fault() {
             return Err(fault.clone().into());

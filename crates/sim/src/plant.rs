@@ -13,6 +13,7 @@
 //! | `plant/torque.rs` | ripple and cogging of the motor, broadband torque, a disturbance whose frequency wanders |
 //! | `plant/noise.rs` | the random numbers of all of these |
 //! | `plant/nonideal.rs` | an axis with all of it |
+//! | `plant/gap.rs` | backlash that a geometry states of an axis without a screw |
 //!
 //! What a controller may have to predict of a drive and of friction stands in [`feedwright_control::axis`], the geometry that no encoder
 //! sees in [`feedwright_control::KnownGeometry`].
@@ -25,6 +26,7 @@ mod drive;
 mod encoder;
 mod torque;
 mod nonideal;
+mod gap;
 use std::f64::consts::TAU;
 
 use feedwright_control::{AxisLaw, AxisState, KnownGeometry, Periods, friction_signs};
@@ -32,6 +34,7 @@ use feedwright_control::{AxisLaw, AxisState, KnownGeometry, Periods, friction_si
 use crate::kinematics::{joints_of, tool_of};
 use crate::machine::{Axis, Machine};
 use encoder::Moment;
+use gap::TableGap;
 use nonideal::NonidealAxis;
 
 /// What the machine did in one servo period.
@@ -108,6 +111,8 @@ pub struct Plant<const N: usize> {
     nonideal: Option<Box<[NonidealAxis; N]>>,
     /// Geometry that no encoder sees; none where there is no error in it.
     geometry: Option<Box<KnownGeometry<N>>>,
+    /// Gaps between joints and tables; none where there is none.
+    gap: Option<Box<TableGap<N>>>,
 }
 
 impl<const N: usize> Plant<N> {
@@ -127,6 +132,7 @@ impl<const N: usize> Plant<N> {
             ..AxisState::default()
         });
         let nonideal = (0..N).any(|i| !NonidealAxis::is_ideal(machine.axis(i)));
+        let geometry = machine.errors_of_geometry().map(Box::new);
         Self {
             laws,
             periods,
@@ -139,7 +145,8 @@ impl<const N: usize> Plant<N> {
             nonideal: nonideal.then(|| {
                 Box::new(std::array::from_fn(|i| NonidealAxis::new(machine, i, &laws[i], states[i].angle_rad, seed)))
             }),
-            geometry: machine.errors_of_geometry().map(Box::new),
+            gap: geometry.as_ref().and_then(|known| TableGap::new(machine, known, start_mm)).map(Box::new),
+            geometry,
             seed,
         }
     }
@@ -150,6 +157,9 @@ impl<const N: usize> Plant<N> {
         let before = std::mem::replace(self, Self::with_seed(machine, self.joint_mm(), self.seed));
         self.period = before.period;
         (self.states, self.added_nm) = (before.states, before.added_nm);
+        if let (Some(gap), Some(before)) = (&mut self.gap, &before.gap) {
+            gap.take_over(before);
+        }
         let Some(nonideal) = &mut self.nonideal else { return };
         for (i, axis) in nonideal.iter_mut().enumerate() {
             axis.take_over(before.nonideal.as_ref().map(|nonideal| &nonideal[i]), &before.states[i]);
@@ -199,7 +209,8 @@ impl<const N: usize> Plant<N> {
     }
 
     fn tool_mm(&self, joint_mm: [f64; N]) -> [f64; N] {
-        self.geometry.as_ref().map_or(joint_mm, |geometry| geometry.tool_mm(joint_mm))
+        let table_mm = self.gap.as_ref().map_or(joint_mm, |gap| gap.table_mm());
+        self.geometry.as_ref().map_or(joint_mm, |geometry| geometry.tool_mm(table_mm))
     }
 
     /// Travel of the table for angles at the motor shafts, mm.
@@ -229,6 +240,7 @@ impl<const N: usize> Plant<N> {
         };
         self.period += 1;
         let joint_mm = self.joint_mm();
+        self.gap.iter_mut().for_each(|gap| gap.follow(joint_mm));
         let measured_mm = self.in_mm(self.measured_rad());
         Measurement { position_mm: self.tool_mm(joint_mm), joint_mm, measured_mm, torque_nm }
     }

@@ -14,8 +14,8 @@ mod kept;
 use feedwright_gcode::canon::Canon;
 use feedwright_plan::vector::sub;
 use feedwright_plan::{
-    BLENDS, Constraints, FEED_PLANNERS, KeptPlan, LimitsError, PathError, Phase, Piece, Pieces, Plan, Planned, Plc,
-    Step, Steps, TimedEvent, signed_distance_mm,
+    Constraints, FEED_PLANNERS, KeptPlan, LimitsError, PathError, Phase, Piece, Pieces, Plan, Planned, Plc, Step,
+    Steps, TimedEvent, signed_distance_mm,
 };
 use kept::KeptPath;
 use std::collections::VecDeque;
@@ -89,8 +89,7 @@ impl<'p> Reference<'p> {
         self.plan.into_kept()
     }
 
-    /// Reference of a program, without a PLC, from the first member of [`BLENDS`] and of
-    /// [`FEED_PLANNERS`].
+    /// Reference of a program, without a PLC, by the first of [`FEED_PLANNERS`].
     ///
     /// # Errors
     /// Fails if a limit is outside its allowed range. An error in the program does not fail here:
@@ -114,8 +113,7 @@ impl<'p> Reference<'p> {
     }
 
     fn planned(steps: Steps<'p>, constraints: &Constraints) -> Result<Self, LimitsError> {
-        let blended = (BLENDS[0].make)(steps, constraints);
-        Ok(Self::new(Plan::new(blended, constraints, &FEED_PLANNERS[0], Plc::default())?))
+        Ok(Self::new(Plan::new(steps, constraints, &FEED_PLANNERS[0], Plc::default())?))
     }
 
     /// Where the reference is at `tau_s`; before the start (or what has been forgotten) at the first point, behind the end

@@ -113,6 +113,8 @@ pub(crate) struct LapSetup<'a, const N: usize> {
     pub(crate) plant: Option<PlantMaker<'a>>,
     /// The geometry that the control compensates.
     pub(crate) known: Option<&'a KnownGeometry<N>>,
+    /// Whether the offset keeps the acceleration of the axes where the owner states none.
+    pub(crate) within_drives: bool,
 }
 
 /// Cuts the whole reference, one lap; every row goes to every sink. The controller is as the caller has it: at its beginning, or
@@ -170,7 +172,7 @@ struct ClosedLoop<'a, const N: usize> {
 impl<'a, const N: usize> ClosedLoop<'a, N> {
     /// At rest at the start of the path.
     fn new(setup: LapSetup<'a, N>, reference: &mut Reference<'_>, controller: &dyn Controller<N>) -> Self {
-        let LapSetup { machine, plant, known } = setup;
+        let LapSetup { machine, plant, known, within_drives } = setup;
         let joints = Joints { known };
         let servo_s = machine.period.servo_s;
         let slowest_s = 1.0 / machine.slowest_kp_1_s();
@@ -180,8 +182,8 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         let accel_mm_s2 = std::array::from_fn(|i| machine.correction_accel_mm_s2(i));
         let limits = &machine.limits;
         let bounds = Bounds::new(limits.max_deviation_mm, limits.rapid_mm_s, fade_mm_s2);
-        let owners_mm_s2 = (0..N).filter_map(|i| machine.axis(i).correction_accel_mm_s2).fold(f64::INFINITY, f64::min);
-        let bounds = Bounds { engaged_mm_s2: owners_mm_s2, ..bounds.feed_rise(limits.max_feed_rise_percent) };
+        let engaged_mm_s2 = if within_drives { machine.engaged_accel_mm_s2() } else { machine.owners_accel_mm_s2() };
+        let bounds = Bounds { engaged_mm_s2, ..bounds.feed_rise(limits.max_feed_rise_percent) };
         let plant: Box<dyn Mechanism> = match plant {
             Some(make) => make(tool_of(start_mm), machine.noise.seed),
             None => Box::new(Plant::<N>::new(machine, start_mm)),

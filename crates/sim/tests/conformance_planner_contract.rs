@@ -1,13 +1,10 @@
-//! What the contract of blends and planners carries beyond the members of today: jerk, derivatives by arc length, and a planned path
-//! beside the programmed one. A planner of constant jerk and a blend that rounds corners are made here and run through the chain.
+//! What the contract of planners carries beyond the members of today: jerk, and derivatives by arc length. A planner of
+//! constant jerk is made here and run through the chain. And a planned path beside the programmed one: a rounded corner.
 
 use crate::programs::{BLEND, polyline};
 use feedwright_control::{Controller, Uncorrected};
 use feedwright_gcode::canon::{Canon, Motion, Plane, Shape};
-use feedwright_plan::{
-    BlendMember, BlendedStep, BlendedSteps, Constraints, FEED_PLANNERS, FeedMember, FeedPlanner, Piece, PlannedPiece,
-    ProgrammedPart, Rest, Span, Step, Steps,
-};
+use feedwright_plan::{AlignedPaths, Constraints, FeedMember, FeedPlanner, Piece, Span, Step, Steps};
 use feedwright_sim::{Machine, Row, Run, Stages, path_steps};
 use std::collections::VecDeque;
 use std::f64::consts::{PI, SQRT_2};
@@ -68,44 +65,6 @@ const REST_TO_REST: FeedMember = FeedMember {
     },
 };
 
-/// Rounds every right angle to the left between two lines by an arc of [`RADIUS_MM`]; the arc stands for the corner.
-fn rounded<'p>(steps: Steps<'p>, _: &Constraints) -> BlendedSteps<'p> {
-    let programmed: Vec<Piece> =
-        steps.map(|step| if let Ok(Step::Piece(piece)) = step { piece } else { panic!("lines only") }).collect();
-    let mut blended: Vec<BlendedStep> = programmed.iter().cloned().map(BlendedStep::Programmed).collect();
-    let last = programmed.len() - 1;
-    let mut here_mm = programmed[0].start_mm;
-    for (i, piece) in programmed.iter().enumerate() {
-        let to_mm = piece.length_mm - if i < last { RADIUS_MM } else { 0.0 };
-        let from_mm = if i > 0 { RADIUS_MM } else { 0.0 };
-        let end_mm = piece.curve.at(to_mm).position_mm;
-        let Canon::Motion(line) = &polyline(&[here_mm, end_mm], piece.feed_mm_s, BLEND)[0] else { panic!() };
-        let mut plan = |motion: &Motion, from_mm: f64, to_mm: f64| {
-            for step in path_steps([Canon::Motion(motion.clone())]) {
-                let Ok(Step::Piece(planned)) = step else { panic!("a line or an arc") };
-                let origin = ProgrammedPart::Part { from_mm, to_mm };
-                blended.push(BlendedStep::Planned(PlannedPiece { piece: planned, origin }));
-            }
-        };
-        plan(line, piece.s_mm + from_mm, piece.s_mm + to_mm);
-        here_mm = end_mm;
-        if i < last {
-            let [x, y, _] = piece.curve.at(0.0).tangent;
-            let after = &programmed[i + 1];
-            let arc_end_mm = after.curve.at(RADIUS_MM).position_mm;
-            let center_mm = [end_mm[0] - y * RADIUS_MM, end_mm[1] + x * RADIUS_MM, 0.0];
-            let shape = Shape::Arc { plane: Plane::Xy, center_mm, turns: 1 };
-            let arc = Motion { start_mm: end_mm, end_mm: arc_end_mm, shape, ..line.clone() };
-            plan(&arc, piece.s_mm + to_mm, after.s_mm + RADIUS_MM);
-            here_mm = arc_end_mm;
-        }
-    }
-    blended.push(BlendedStep::Rest(Rest { line: 9, seconds: 0.1, turn_deg: 0.0, further_mm: 0.0 }));
-    Box::new(blended.into_iter().map(Ok))
-}
-
-const ROUNDED: BlendMember = BlendMember { name: "rounded", about: "right angles to the left by arcs", make: rounded };
-
 fn machine() -> Machine {
     let mut machine = Machine::load("tnv40".as_ref()).unwrap();
     machine.axes.iter_mut().for_each(|axis| axis.max_jerk_mm_s3 = Some(2000.0));
@@ -116,6 +75,17 @@ fn machine() -> Machine {
 fn corner() -> Vec<Step> {
     let canon = polyline(&[[0.0; 3], [SIDE_MM, 0.0, 0.0], [SIDE_MM, SIDE_MM, 0.0]], 20.0, BLEND);
     path_steps(canon).map(|step| step.unwrap()).collect()
+}
+
+/// The same with the corner rounded by an arc of [`RADIUS_MM`].
+fn rounded() -> Vec<Step> {
+    let before = polyline(&[[0.0; 3], [SIDE_MM - RADIUS_MM, 0.0, 0.0]], 20.0, BLEND);
+    let after = polyline(&[[SIDE_MM, RADIUS_MM, 0.0], [SIDE_MM, SIDE_MM, 0.0]], 20.0, BLEND);
+    let Canon::Motion(line) = &before[0] else { panic!("a line") };
+    let center_mm = [SIDE_MM - RADIUS_MM, RADIUS_MM, 0.0];
+    let shape = Shape::Arc { plane: Plane::Xy, center_mm, turns: 1 };
+    let arc = Motion { start_mm: line.end_mm, end_mm: [SIDE_MM, RADIUS_MM, 0.0], shape, ..line.clone() };
+    path_steps([before.clone(), vec![Canon::Motion(arc)], after].concat()).map(|step| step.unwrap()).collect()
 }
 
 fn boxed(steps: &[Step]) -> Steps<'_> {
@@ -131,7 +101,7 @@ fn from_path_mm([x, y, _]: [f64; 3]) -> f64 {
 #[test]
 fn a_plan_of_constant_jerk_comes_out_as_its_closed_form() {
     let steps = corner();
-    let stages = Stages { planner: &REST_TO_REST, ..Stages::default() };
+    let stages = Stages { planner: &REST_TO_REST };
     let mut reference = stages.reference(boxed(&steps), &machine()).unwrap();
     let part_s = (SIDE_MM / 4000.0_f64).cbrt();
     assert!((reference.read_to_end_s() - 8.0 * part_s).abs() < 1e-12);
@@ -158,32 +128,13 @@ fn a_plan_of_constant_jerk_comes_out_as_its_closed_form() {
 }
 
 #[test]
-fn arc_length_line_and_foot_of_a_rounded_corner_are_those_of_the_program() {
-    let steps = corner();
-    let stages = Stages { blend: &ROUNDED, planner: &FEED_PLANNERS[1] };
-    let mut reference = stages.reference(boxed(&steps), &machine()).unwrap();
-    let end_s = reference.read_to_end_s();
-    let mut furthest_mm: f64 = 0.0;
-    for i in 0..=20_000 {
-        let sample = reference.at(end_s * f64::from(i) / 20_000.0);
-        assert!(from_path_mm(sample.programmed_mm) < 1e-9, "{sample:?}");
-        let foot = reference.at_length(sample.programmed_mm, sample.s_mm);
-        assert!(foot.distance_mm < 1e-9 && (foot.s_mm - sample.s_mm).abs() < 1e-9, "{sample:?} {foot:?}");
-        furthest_mm = furthest_mm.max(from_path_mm(sample.position_mm));
-    }
-    // The middle of the arc, from either side.
-    assert!((furthest_mm - RADIUS_MM * (1.0 - 0.5 * SQRT_2)).abs() < 1e-3, "{furthest_mm}");
-    assert!((reference.at(end_s).s_mm - 2.0 * SIDE_MM).abs() < 1e-9);
-}
-
-#[test]
 fn the_tool_follows_the_planned_path_and_is_measured_to_the_programmed_one() {
     let steps = corner();
-    let stages = Stages { blend: &ROUNDED, ..Stages::default() };
     let mut rows = Vec::<Row>::new();
     let machine = machine();
     let controller: &mut dyn Controller<2> = &mut Uncorrected;
-    Run::on(&machine).stages(stages).cut_steps(&steps, controller, &mut [&mut rows]).unwrap();
+    let aligned = AlignedPaths::new(&steps, &rounded());
+    Run::on(&machine).stages(Stages::default()).cut_aligned(&aligned, controller, &mut [&mut rows]).unwrap();
     let mut largest_mm: f64 = 0.0;
     for row in &rows {
         assert!(from_path_mm(row.path_mm) < 1e-9, "{row:?}");

@@ -7,9 +7,7 @@
 use std::path::{Path, PathBuf};
 
 use feedwright_gcode::{Reader, Settings};
-use feedwright_plan::{
-    AxisLimits, AxisMotion, BLENDS, Constraints, FeedMember, PathLimits, Plan, Planned, Plc, feed_planner,
-};
+use feedwright_plan::{AxisLimits, AxisMotion, Constraints, FeedMember, PathLimits, Plan, Planned, Plc, feed_planner};
 use feedwright_sim::path_steps;
 
 const PERIOD_S: f64 = 1e-3;
@@ -36,7 +34,7 @@ fn constraints() -> Constraints {
 fn commands(program: &Path, member: &FeedMember) -> Vec<[f64; 3]> {
     let constraints = constraints();
     let reader = Reader::open(program, Settings::default()).unwrap();
-    let steps = (BLENDS[0].make)(path_steps(reader.map(Result::unwrap)), &constraints);
+    let steps = path_steps(reader.map(Result::unwrap));
     let (mut rows, mut last) = (Vec::new(), AxisMotion::REST);
     for planned in Plan::new(steps, &constraints, member, Plc::default()).unwrap() {
         let Planned::Phase(phase) = planned else { continue };

@@ -1,5 +1,6 @@
 //! Whatever a machine file may say: a second of it is simulated without a panic. What is tuned badly diverges; that is a result.
 
+use feedwright_control::position_gains_1_s;
 use feedwright_sim::machine_keys as keys;
 use feedwright_sim::toml_file::Key;
 use feedwright_sim::toml_file::key::Value;
@@ -50,6 +51,8 @@ fn machine(choices: &[(u8, f64)], per_servo: u32, has_screw: bool, is_sound: boo
                 }
             }
         }
+        let [least_1_s, most_1_s] = position_gains_1_s(servo_s);
+        axis.kp_1_s = axis.kp_1_s.clamp(least_1_s, most_1_s);
         let most_nm = axis.coulomb_friction_nm;
         axis.coulomb_asymmetry_nm = axis.coulomb_asymmetry_nm.max(-most_nm).min(most_nm);
         (axis.jitter_s, axis.drive_delay_s) = (axis.jitter_s.min(servo_s), axis.drive_delay_s.min(50.0 * servo_s));

@@ -247,6 +247,10 @@ fn sign_of(text: &str) -> Option<(Dialect, &'static str)> {
     if first == b'(' && text.to_ascii_lowercase().contains("grbl") {
         return Some((Dialect::Grbl, "a comment names grbl"));
     }
+    // The note of a corrected program.
+    if text.starts_with("(corrected by feedwright") && text.trim_end_matches(')').ends_with("control fanuc") {
+        return Some((Dialect::Fanuc, "a comment says that it is for fanuc"));
+    }
     if text.bytes().all(|byte| GRBL_COMMANDS.contains(&byte)) {
         return Some((Dialect::Grbl, "a line of grbl's own commands"));
     }
@@ -305,6 +309,8 @@ mod tests {
         assert_eq!(dialect("$H\nG0 X1"), Dialect::Grbl);
         assert_eq!(dialect("(Post Processor: grbl_post)\nG0 X1"), Dialect::Grbl);
         assert_eq!(dialect("?\nG0 X1\n~"), Dialect::Grbl);
+        assert_eq!(dialect("(corrected by feedwright for the machine a, control fanuc)\nG4 P35"), Dialect::FanucMill);
+        assert_eq!(dialect("(corrected by feedwright for the machine a, control generic)\nG4 P35"), Dialect::LinuxCnc);
     }
 
     #[test]

@@ -3,10 +3,11 @@
 use feedwright_gcode::canon::{Event, EventKind};
 
 use super::{FeedMember, FeedPlanner, Phase, Span, TimedEvent};
-use crate::blend::{BlendedStep, BlendedSteps, PlannedPiece};
 use crate::constraints::{Constraints, LimitsError};
+use crate::paired::unchanged::UnchangedSteps;
+use crate::paired::{PairedStep, PairedSteps, PlannedPiece};
 use crate::path::pieces::ArcLength;
-use crate::path::{MAX_REST_S, PathError, Piece, Rest};
+use crate::path::{MAX_REST_S, PathError, Piece, Rest, Steps};
 use crate::plc::Plc;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -58,7 +59,7 @@ enum PlanSource<'p> {
 
 /// A plan that is being made.
 struct PlanInMaking<'p> {
-    steps: BlendedSteps<'p>,
+    steps: PairedSteps<'p>,
     rapid_mm_s: f64,
     plc: Plc,
     planner: Box<dyn FeedPlanner>,
@@ -95,7 +96,20 @@ impl<'p> Plan<'p> {
     /// If a limit is outside its allowed range. With a planner that needs axis limits, also if one
     /// of them or the path tolerance is missing.
     pub fn new(
-        steps: BlendedSteps<'p>,
+        steps: Steps<'p>,
+        constraints: &Constraints,
+        planner: &FeedMember,
+        plc: Plc,
+    ) -> Result<Self, LimitsError> {
+        Self::of_paired(Box::new(UnchangedSteps::new(steps)), constraints, planner, plc)
+    }
+
+    /// As [`Plan::new`], along a planned path beside the programmed one.
+    ///
+    /// # Errors
+    /// See there.
+    pub fn of_paired(
+        steps: PairedSteps<'p>,
         constraints: &Constraints,
         planner: &FeedMember,
         plc: Plc,
@@ -157,10 +171,10 @@ impl<'p> Plan<'p> {
 impl PlanInMaking<'_> {
     fn read_step(&mut self) {
         match self.steps.next() {
-            Some(Ok(BlendedStep::Programmed(piece))) => self.ready.push_back(Planned::Programmed(piece)),
-            Some(Ok(BlendedStep::Planned(piece))) => self.piece(piece),
-            Some(Ok(BlendedStep::Event(event))) => self.event(event),
-            Some(Ok(BlendedStep::Rest(rest))) => self.rest(rest),
+            Some(Ok(PairedStep::Programmed(piece))) => self.ready.push_back(Planned::Programmed(piece)),
+            Some(Ok(PairedStep::Planned(piece))) => self.piece(piece),
+            Some(Ok(PairedStep::Event(event))) => self.event(event),
+            Some(Ok(PairedStep::Rest(rest))) => self.rest(rest),
             Some(Err(error)) => {
                 self.fault = Some(error);
                 self.finish();

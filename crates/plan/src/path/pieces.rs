@@ -205,7 +205,7 @@ fn check_event(event: &Event) -> Result<(), PathError> {
 /// Running sum of lengths, with the rounding of each addition carried along (Kahan), so that millions of pieces do not
 /// drift.
 #[derive(Debug, Clone, Default)]
-pub struct ArcLength {
+pub(crate) struct ArcLength {
     sum: f64,
     carry: f64,
 }

@@ -218,7 +218,7 @@ impl Axis {
     }
 
     /// The screw, where the encoder is at the motor.
-    fn hidden_screw(&self) -> Option<Transmission> {
+    pub(crate) fn hidden_screw(&self) -> Option<Transmission> {
         self.transmission.filter(|screw| !screw.scale_on_table)
     }
 

@@ -2,7 +2,7 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use feedwright_control::{MAX_COMMAND_PERIODS, MAX_MECHANICS_PER_SERVO};
+use feedwright_control::{MAX_COMMAND_PERIODS, MAX_MECHANICS_PER_SERVO, position_gains_1_s};
 use feedwright_plan::{Durations, PlcEvent};
 
 use super::{AXIS_NAMES, Axis, MACHINE_FORMAT, Machine, Noise, Period, Squareness, Transmission, keys};
@@ -84,6 +84,7 @@ pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> R
             .optional_table("noise", &mut faults)
             .map_or(Noise::default(), |table| read_all(keys::NOISE, table, &mut faults)),
         compensated: None,
+        tool: None,
     };
     tolerance_with_axes(&machine, in_limits, &mut faults);
     root.finish(&mut faults);
@@ -220,6 +221,7 @@ fn axis(mut table: Table<'_, '_>, period: Period, faults: &mut Vec<Fault>) -> Ax
     let mut axis: Axis = read(keys::AXIS, &mut table, faults);
     axis.transmission = transmission.map(|table| self::transmission(table, period.mechanics_s, faults));
     friction_within_step(&axis, period.mechanics_s, &table, faults);
+    position_gain(axis.kp_1_s, period.servo_s, &table, faults);
     between_keys(&axis, &period, &table, faults);
     table.finish(faults);
     axis
@@ -250,6 +252,26 @@ fn friction_within_step(axis: &Axis, mechanics_s: f64, table: &Table<'_, '_>, fa
                 to_four_digits(MAX_FRICTION_STEP * fades_s),
                 to_four_digits(most_nm_s)
             )),
+        });
+    }
+}
+
+/// Refuses a position gain that no position loop with this servo period has. A value with a fault of its own is NaN here.
+fn position_gain(kp_1_s: f64, servo_s: f64, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
+    let [least, most] = position_gains_1_s(servo_s);
+    if kp_1_s < least || kp_1_s > most {
+        faults.push(Fault {
+            at: table.place("kp_1_s"),
+            label: "no gain of a position loop",
+            message: format!(
+                "kp_1_s is {kp_1_s} 1/s; with servo_s of {servo_s} s a position loop has {least} to {} 1/s",
+                to_four_digits(most)
+            ),
+            hint: Some(
+                "a gain in 1/ms times 1000 is in 1/s; the P of a controller whose output is in volts is no position gain; if it was identified, \
+                 check columns and units of the log"
+                    .to_owned(),
+            ),
         });
     }
 }

@@ -91,6 +91,30 @@ fn values_out_of_range_name_place_value_limit_and_unit() {
 }
 
 #[test]
+fn a_position_gain_is_one_of_a_loop_with_this_servo_period() {
+    for (kp, servo, limits) in [
+        ("0.0036", "0.001", "with servo_s of 0.001 s a position loop has 0.5 to 5000 1/s"),
+        ("0.05", "0.001", "with servo_s of 0.001 s a position loop has 0.5 to 5000 1/s"),
+        ("5500", "0.001", "with servo_s of 0.001 s a position loop has 0.5 to 5000 1/s"),
+        ("1300", "0.004", "with servo_s of 0.004 s a position loop has 0.5 to 1250 1/s"),
+    ] {
+        let text = TNV40.replacen("kp_1_s = 50", &format!("kp_1_s = {kp}"), 1).replacen(
+            "servo_s = 0.001",
+            &format!("servo_s = {servo}"),
+            1,
+        );
+        let Err(MachineError::File(FileError::Invalid { problems, .. })) = Machine::parse("broken.toml", &text) else {
+            panic!("{kp} 1/s was taken");
+        };
+        assert_eq!(placed(&problems[0]), format!("31:10: kp_1_s is {kp} 1/s; {limits}"));
+        assert!(problems[0].hint.as_deref().is_some_and(|hint| hint.contains("1/ms times 1000")));
+    }
+    for kp in ["0.5", "5000"] {
+        assert!(Machine::parse("mine.toml", &TNV40.replacen("kp_1_s = 50", &format!("kp_1_s = {kp}"), 1)).is_ok());
+    }
+}
+
+#[test]
 fn missing_unknown_and_mistyped_keys_are_reported() {
     assert_eq!(
         faults_after("kp_1_s = 50", "kp_l_s = 50").iter().map(placed).collect::<Vec<_>>(),

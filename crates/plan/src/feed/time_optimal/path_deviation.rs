@@ -90,27 +90,39 @@ fn axis_use(caps: &AxisCaps, step: &PlannedStep) -> (f64, f64) {
     (most, axes_mm_s)
 }
 
-/// The largest speed along the path within a step. The velocity is a quadratic, so its square has at most two maxima within: each is
-/// between two moments and is found by halving what its derivative `v a` changes its sign in.
+/// The largest speed along the path within a step. The square of the speed has the derivative `2 v a`, a cubic in time: between moments and
+/// its own extremes, the roots of a quadratic, it changes its sign once at most, and halving finds where.
 fn fastest_mm_s(step: &PlannedStep) -> f64 {
+    let AxisMotion { velocity_mm_s: v, accel_mm_s2: a, jerk_mm_s3: j, .. } = step.motion;
     let h = step.duration_s;
     let speed = |t: f64| norm(step.motion.after(t).velocity_mm_s);
     let rises = |t: f64| {
         let motion = step.motion.after(t);
         dot(motion.velocity_mm_s, motion.accel_mm_s2) > 0.0
     };
+    let (middle_s, half_s) = extremes_of_rise_s(dot(a, a) + dot(v, j), dot(a, j), dot(j, j));
     let mut most = speed(0.0).max(speed(h));
     for m in 0..MOMENTS {
-        let [mut lo, mut hi] = [m, m + 1].map(|m| h * f64::from(m) / f64::from(MOMENTS));
-        if rises(lo) && !rises(hi) {
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (lo + hi);
-                if rises(middle) { lo = middle } else { hi = middle }
+        let [from, to] = [m, m + 1].map(|m| h * f64::from(m) / f64::from(MOMENTS));
+        let [first, second] = [middle_s - half_s, middle_s + half_s].map(|t| t.clamp(from, to));
+        for [mut lo, mut hi] in [[from, first], [first, second], [second, to]] {
+            if rises(lo) && !rises(hi) {
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (lo + hi);
+                    if rises(middle) { lo = middle } else { hi = middle }
+                }
+                most = most.max(speed(lo));
             }
-            most = most.max(speed(lo));
         }
     }
     most
+}
+
+/// Middle and half distance of the roots of `rise + 3 bend t + 3/2 jerk t^2`, the derivative of `v a`; far away or together where it has none.
+fn extremes_of_rise_s(rise: f64, bend: f64, jerk: f64) -> (f64, f64) {
+    let middle_s = -bend / jerk;
+    let square_s2 = middle_s * middle_s - rise / (1.5 * jerk);
+    if square_s2.is_finite() { (middle_s, square_s2.max(0.0).sqrt()) } else { (0.0, 0.0) }
 }
 
 /// How far the motion of a step leaves the tube, mm.
@@ -301,5 +313,16 @@ mod tests {
             // Between two samples the speed changes by less than half their distance times the acceleration there.
             prop_assert!(fastest >= sampled * (1.0 - 1e-9) && fastest <= sampled + 0.5e-4 * 100.0);
         }
+    }
+    #[test]
+    fn a_speed_that_rises_at_both_ends_of_a_short_time_is_found() {
+        let motion = AxisMotion {
+            position_mm: [0.0; 3],
+            velocity_mm_s: [-0.7612201019932336, 0.15096466543519568, 0.4351052670490418],
+            accel_mm_s2: [7.760711513434023, 8.892475998450323, -6.638000620760462],
+            jerk_mm_s3: [-24.16596683721455, -30.329215382770382, 7.513819605871589],
+        };
+        let fastest = fastest_mm_s(&PlannedStep { from_mm: 0.0, to_mm: 1.0, duration_s: 0.5, motion });
+        assert!((fastest - 2.11245).abs() < 1e-5, "{fastest}");
     }
 }

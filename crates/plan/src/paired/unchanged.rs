@@ -1,10 +1,10 @@
-//! The null member: the planned path is the programmed one, corners included.
+//! The planned path is the programmed one, corners included.
 
-use super::{BlendedStep, PlannedPiece, ProgrammedPart};
+use super::{PairedStep, PlannedPiece, ProgrammedPart};
 use crate::path::{PathError, Piece, Step, Steps};
 
-/// See the module's page.
-pub(crate) struct ExactBlend<'p> {
+/// The steps of a program as those of both paths.
+pub(crate) struct UnchangedSteps<'p> {
     steps: Steps<'p>,
     /// Pieces so far.
     pieces: u64,
@@ -12,29 +12,29 @@ pub(crate) struct ExactBlend<'p> {
     next: Option<Piece>,
 }
 
-impl<'p> ExactBlend<'p> {
+impl<'p> UnchangedSteps<'p> {
     /// Of the steps of a program.
     pub(crate) const fn new(steps: Steps<'p>) -> Self {
         Self { steps, pieces: 0, next: None }
     }
 }
 
-impl Iterator for ExactBlend<'_> {
-    type Item = Result<BlendedStep, PathError>;
+impl Iterator for UnchangedSteps<'_> {
+    type Item = Result<PairedStep, PathError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         if let Some(piece) = self.next.take() {
             let origin = ProgrammedPart::Unchanged(self.pieces);
             self.pieces += 1;
-            return Some(Ok(BlendedStep::Planned(PlannedPiece { piece, origin })));
+            return Some(Ok(PairedStep::Planned(PlannedPiece { piece, origin })));
         }
         Some(self.steps.next()?.map(|step| match step {
             Step::Piece(piece) => {
                 self.next = Some(piece.clone());
-                BlendedStep::Programmed(piece)
+                PairedStep::Programmed(piece)
             }
-            Step::Event(event) => BlendedStep::Event(event),
-            Step::Rest(rest) => BlendedStep::Rest(rest),
+            Step::Event(event) => PairedStep::Event(event),
+            Step::Rest(rest) => PairedStep::Rest(rest),
         }))
     }
 }

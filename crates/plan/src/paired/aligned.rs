@@ -5,7 +5,7 @@
 //! little that it may be further away where it is nearer to an even pace (`LEAN`).
 //! What the other program leaves out at its end has no foot: its distance from the other path is [`AlignedPaths::left_out_mm`].
 
-use super::{BlendedStep, BlendedSteps, PlannedPiece, ProgrammedPart};
+use super::{PairedStep, PairedSteps, PlannedPiece, ProgrammedPart};
 use crate::path::{Piece, Step};
 use crate::vector::{Vector, distance};
 
@@ -31,7 +31,7 @@ const LEFT_OUT_PLACES: u32 = 200;
 /// Two programs, one beside the other.
 #[derive(Debug, Clone)]
 pub struct AlignedPaths {
-    steps: Vec<BlendedStep>,
+    steps: Vec<PairedStep>,
     /// How far the programmed cutting path that the other program leaves out at its end is from the other path, mm; 0 where it leaves out nothing.
     pub left_out_mm: f64,
 }
@@ -40,7 +40,7 @@ impl AlignedPaths {
     /// The steps of `other`, beside those of the program that errors are measured to.
     pub fn new(programmed: &[Step], other: &[Step]) -> Self {
         let (programmed, planned) = (ProgrammedPath(pieces(programmed)), pieces(other));
-        let mut steps: Vec<BlendedStep> = programmed.0.iter().cloned().map(BlendedStep::Programmed).collect();
+        let mut steps: Vec<PairedStep> = programmed.0.iter().cloned().map(PairedStep::Programmed).collect();
         let mut foot_mm = 0.0;
         for step in other {
             steps.push(match step {
@@ -48,17 +48,17 @@ impl AlignedPaths {
                     let from_mm = foot_mm;
                     foot_mm = programmed.along(piece, from_mm);
                     let origin = ProgrammedPart::Part { from_mm, to_mm: foot_mm };
-                    BlendedStep::Planned(PlannedPiece { piece: piece.clone(), origin })
+                    PairedStep::Planned(PlannedPiece { piece: piece.clone(), origin })
                 }
-                Step::Event(event) => BlendedStep::Event(event.clone()),
-                Step::Rest(rest) => BlendedStep::Rest(*rest),
+                Step::Event(event) => PairedStep::Event(event.clone()),
+                Step::Rest(rest) => PairedStep::Rest(*rest),
             });
         }
         Self { left_out_mm: programmed.left_out_mm(foot_mm, &planned), steps }
     }
 
-    /// Both paths, as a blend hands them on.
-    pub fn steps(&self) -> BlendedSteps<'_> {
+    /// The steps of both paths.
+    pub fn steps(&self) -> PairedSteps<'_> {
         Box::new(self.steps.iter().cloned().map(Ok))
     }
 }
@@ -178,8 +178,8 @@ mod tests {
 
     /// Ends of the parts of the programmed path that the pieces of the other stand for.
     fn ends(aligned: &AlignedPaths) -> Vec<f64> {
-        let end = |step: &BlendedStep| match step {
-            BlendedStep::Planned(PlannedPiece { origin: ProgrammedPart::Part { to_mm, .. }, .. }) => Some(*to_mm),
+        let end = |step: &PairedStep| match step {
+            PairedStep::Planned(PlannedPiece { origin: ProgrammedPart::Part { to_mm, .. }, .. }) => Some(*to_mm),
             _ => None,
         };
         aligned.steps.iter().filter_map(end).collect()
