@@ -3,9 +3,13 @@
 # What .ci/run runs, without installing anything.
 check:
     cargo fmt --all --check
-    cargo clippy --workspace --all-targets --locked -- -D warnings
-    env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
-    cargo test --workspace --locked
+    cargo clippy --release --workspace --all-targets --locked -- -D warnings
+    env RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --locked
+    just test-all
+
+# All tests: product, laboratory, Python, page, fuzz targets. `cargo test --release` runs those of the product.
+test-all:
+    cargo test --release --workspace --locked
 
 # The suite with all cases of its long tests: more controllers, machines, moments and programs.
 sweep:
@@ -41,25 +45,25 @@ check-plan *options:
 corner-figure out="examples/04_planner/corner.svg":
     cargo run --release -p feedwright-lab --example corner_figure -- {{ out }}
 
-# Least times in which the tool stays within 10 um, open loop on a linear servo and with two controllers on tnv40: some ten minutes.
+# Least times in which the tool stays within 10 um, open loop on a linear servo and with the default controller on tnv40: some ten minutes.
 least-time *contours:
     cargo run --release -p feedwright-lab --example least_time -- {{ contours }}
 
-# Every controller on every contour, on machines without noise: the tables of examples/02_horizon.
+# Every controller on every contour, on machines without noise: the tables of examples/02_contours.
 compare out="target/compare":
-    cargo run --release -p feedwright-lab -- compare --only tnv40,heavy,sticky,rough,soft,coarse --knowledge own,unseen --at-tolerance --json {{ out }}.json --html {{ out }}.html
+    cargo run --release -p feedwright-lab -- compare --only tnv40,heavy,sticky,rough,soft,coarse --knowledge own,unseen --at-tolerance --json {{ out }}.json
 
 # Controllers that docs/results.md shows.
-shown := "contour-compensation,cross-coupled,cross-coupled-feedrate,corner-contour,constrained-feedrate,fuzzy-h-infinity,disturbance-observer,kalman-disturbance,feedforward-as-delivered,feedforward,feedforward-cross-coupled,receding-horizon,lqg-identified,lqg-preview"
+shown := "contour-compensation,cross-coupled,cross-coupled-feedrate,corner-contour,constrained-feedrate,fuzzy-h-infinity,disturbance-observer,kalman-disturbance,feedforward-as-delivered,feedforward,feedforward-cross-coupled,lqg-identified,lqg-preview"
 
 # The table of docs/results.md: held-out work on machines with noise.
 held-out-table out="target/held_out":
-    cargo run --release -p feedwright-lab -- compare --work held-out --only workshop,stiff,router,{{ shown }} --knowledge own,identified,20%off,log --json {{ out }}.json --html {{ out }}.html
+    cargo run --release -p feedwright-lab -- compare --work held-out --only workshop,stiff,router,{{ shown }} --knowledge own,identified,20%off,log --json {{ out }}.json
 
 # What each imperfection costs each controller: the table of examples/03_realism. Each peer is tuned on each machine first.
 imperfections out="target/imperfections":
     cargo run --release -p feedwright-lab -- compare --only tnv40,circle,eight,star,square,{{ shown }} --knowledge own,20%off \
-        $(printf -- '--machine %s ' examples/03_realism/machines/*.toml) --json {{ out }}.json --html {{ out }}.html
+        $(printf -- '--machine %s ' examples/03_realism/machines/*.toml) --json {{ out }}.json
 
 # Search the values that `compare` runs with, for every controller on every built-in machine: an hour. Ends where it was interrupted.
 # Behind it new seeds are due: `cargo run --release -p feedwright-lab --example draw_held_out`.
@@ -118,26 +122,21 @@ independent *options:
 
 # The identifier beside FANN (Debian: libfann-dev, valgrind), on one core.
 bench-fann:
-    taskset --cpu-list 1 cargo bench --package feedwright-control --bench fann
+    taskset --cpu-list 1 cargo bench --package feedwright-lab --bench fann
 
-# The solver of the receding horizon: beside another exact one, the times of one tick, and the cuts.
-solvers:
-    taskset --cpu-list 1 cargo bench --package feedwright-lab --bench solvers
-    cargo build --release --quiet --package feedwright-lab --example solvers
-    taskset --cpu-list 1 target/release/examples/solvers
+# The paper's inversion over several knots, on one core: a table of examples/02_contours.
+paper-horizon:
+    cargo build --release --quiet --package feedwright-lab --example paper_horizon
+    taskset --cpu-list 1 target/release/examples/paper_horizon
 
 # The limit, peers and our controllers over the level of each kind of noise: table, figures and noise.json of examples/05_noise, some ten
 # to twenty minutes. `just noise-levels target/noise 2` tries it with two levels each.
 noise-levels out="examples/05_noise" levels="5":
     cargo run --release --quiet -p feedwright-lab --example noise_levels -- {{ out }} {{ levels }}
 
-# How the error depends on what the correction may accelerate: table, and figure for examples/02_horizon.
-correction-acceleration out="target/correction_acceleration.svg":
-    cargo run --release --quiet -p feedwright-lab --example correction_acceleration -- {{ out }}
-
 # Percentiles of the time of a whole decision of the regulator, on one core; counts on an idle machine only.
 tick ticks="100000" runs="5":
-    cargo build --release --quiet -p feedwright-control --example tick_percentiles
+    cargo build --release --quiet -p feedwright-lab --example tick_percentiles
     taskset --cpu-list 1 target/release/examples/tick_percentiles {{ ticks }} {{ runs }}
 
 # The manual as a site, with its links checked: needs PyPI once, for mdbook.
@@ -172,15 +171,17 @@ gym-peers python="target/python-tests/bin/python":
 # Regenerate the tables and the figures of docs/results.md and of examples/.
 tables: paper compare held-out-table imperfections
     cp target/paper/figure_*.svg target/paper/paper.json examples/01_paper_circle/
+    cp target/compare.json examples/02_horizon/
+    cp target/held_out.json target/imperfections.json examples/03_realism/
     cargo run --release -p feedwright-lab --example tables
 
 # Write the messages of docs/gcode-mistakes.md anew.
 mistakes:
-    FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test -p feedwright --test suite golden_gcode_mistakes
+    FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test --release -p feedwright --test suite golden_gcode_mistakes
 
 # Write the help of all commands in docs/command-line.md anew.
 help:
-    FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test -p feedwright --test suite golden_help
+    FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test --release -p feedwright --test suite golden_help
 
 # The reader beside LinuxCNC on random programs (Debian: linuxcnc-uspace): about a quarter of an hour for 20,000. The kind "nested" is
 # of control flow.
@@ -228,7 +229,7 @@ miri:
 instructions:
     #!/usr/bin/env bash
     set -euo pipefail
-    cargo build --release --quiet -p feedwright-control --example instructions
+    cargo build --release --quiet -p feedwright-lab --example instructions
     counted() {
         valgrind --tool=callgrind --callgrind-out-file=/dev/null target/release/examples/instructions "$1" "$2" 2>&1 |
             sed -n 's/.*Collected : //p'

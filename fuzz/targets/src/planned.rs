@@ -67,8 +67,7 @@ pub(crate) fn run(data: &[u8]) {
     }
     let constraints = Constraints::from(&machine);
     let stages = Stages::of(&machine);
-    let blended = (stages.blend.make)(path_steps(steps), &constraints);
-    let Ok(plan) = Plan::new(blended, &constraints, stages.planner, Plc::default()) else { return };
+    let Ok(plan) = Plan::new(path_steps(steps), &constraints, stages.planner, Plc::default()) else { return };
     let mut last: Option<AxisMotion> = None;
     for planned in plan.take(PHASES) {
         let Planned::Phase(phase) = planned else { continue };
