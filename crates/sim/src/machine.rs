@@ -304,18 +304,20 @@ impl Machine {
     /// else is said.
     pub fn correction_accel_mm_s2(&self, i: usize) -> f64 {
         let axis = self.axis(i);
-        let planned_mm_s2 = axis.max_accel_mm_s2.filter(|_| self.has_axis_limits());
-        axis.correction_accel_mm_s2
-            .or(axis.fade_accel_mm_s2)
-            .or(planned_mm_s2)
-            .unwrap_or(self.limits.normal_accel_mm_s2)
+        axis.correction_accel_mm_s2.or(axis.fade_accel_mm_s2).unwrap_or_else(|| self.turning_accel_mm_s2(i))
+    }
+
+    /// Acceleration at which the plan turns the i-th axis round, mm/s2.
+    pub(crate) fn turning_accel_mm_s2(&self, i: usize) -> f64 {
+        self.axis(i).max_accel_mm_s2.filter(|_| self.has_axis_limits()).unwrap_or(self.limits.normal_accel_mm_s2)
     }
 
     /// Acceleration of the i-th axis that its command may have, mm/s2: the one that is stated, or the largest that its plan takes.
     pub fn accel_limit_mm_s2(&self, i: usize) -> f64 {
         let limits = &self.limits;
         let corner_mm_s2 = limits.corner_jump_mm_s / self.period.servo_s;
-        let planned_mm_s2 = limits.tangential_accel_mm_s2.max(limits.normal_accel_mm_s2).max(corner_mm_s2);
+        let curve_mm_s2 = libm::hypot(limits.tangential_accel_mm_s2, limits.normal_accel_mm_s2);
+        let planned_mm_s2 = curve_mm_s2.max(corner_mm_s2);
         self.axis(i).max_accel_mm_s2.unwrap_or(planned_mm_s2)
     }
 

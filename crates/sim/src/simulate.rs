@@ -179,11 +179,15 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         let at_mm = reference.at(0.0).position_mm;
         let start_mm = joints.at(at_mm);
         let fade_mm_s2 = (0..N).map(|i| machine.correction_accel_mm_s2(i)).fold(f64::INFINITY, f64::min);
-        let accel_mm_s2 = std::array::from_fn(|i| machine.correction_accel_mm_s2(i));
+        let uncrossed_mm = uncrossed_mm(known, controller);
+        // What makes up for lost motion and the correction share one acceleration.
+        let share = if uncrossed_mm.iter().any(|mm| *mm > 0.0) { 0.5 } else { 1.0 };
+        let lead_mm_s2 = std::array::from_fn(|i| share * machine.correction_accel_mm_s2(i));
+        let turning_mm_s2 = std::array::from_fn(|i| machine.turning_accel_mm_s2(i));
         let limits = &machine.limits;
         let bounds = Bounds::new(limits.max_deviation_mm, limits.rapid_mm_s, fade_mm_s2);
         let engaged_mm_s2 = if within_drives { machine.engaged_accel_mm_s2() } else { machine.owners_accel_mm_s2() };
-        let bounds = Bounds { engaged_mm_s2, ..bounds.feed_rise(limits.max_feed_rise_percent) };
+        let bounds = Bounds { engaged_mm_s2: share * engaged_mm_s2, ..bounds.feed_rise(limits.max_feed_rise_percent) };
         let plant: Box<dyn Mechanism> = match plant {
             Some(make) => make(tool_of(start_mm), machine.noise.seed),
             None => Box::new(Plant::<N>::new(machine, start_mm)),
@@ -191,7 +195,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         Self {
             machine,
             joints,
-            lost_motion: LostMotion::new(uncrossed_mm(known, controller), accel_mm_s2),
+            lost_motion: LostMotion::new(uncrossed_mm, turning_mm_s2, lead_mm_s2),
             servo_s,
             kept_s: KEPT_SETTLED_TIMES * settled_s(machine),
             lost_mm: LOST_MM.max(LOST_LAGS * machine.limits.rapid_mm_s * slowest_s),

@@ -2,18 +2,15 @@
 //!
 //! ```text
 //! lead_i = L_i / 2 tanh(w / v_i),   w = (r_i(tau + T) - r_i(tau - T)) / 2 T
-//! L_i = b_i + 2 F_i / k_i           v_i = sqrt(0.385 L_i a_i)       T = max_i v_i / a_i
+//! L_i = b_i + 2 F_i / k_i           v_i = a_i sqrt(0.385 L_i / l_i)     T = max_i v_i / a_i
 //! ```
 //!
 //! Lost motion is the backlash b and what the friction F of both directions winds the screw of stiffness k up. A table at rest
 //! needs no torque, so that an axis that rests has no lead. An axis that turns at its acceleration a passes its speed by w / v =
-//! +-1 in the time 2 T. The lead then changes by no more than that acceleration: the largest second derivative of tanh is 0.77. The
-//! mean speed over 2 T takes the place of the speed, because the lead must not leap where the speed does, at a corner.
+//! +-1 in the time 2 T. The lead then accelerates by no more than l: the largest second derivative of tanh is 0.77. The mean speed
+//! over 2 T takes the place of the speed, because the lead must not leap where the speed does, at a corner.
 //!
-//! Below v, vibration carries the table over most of its friction, so that it lags by less there. On `router`, v is 3.2 mm/s. With 2 and
-//! 4 mm/s, star, circle, slot and pocket leave 16.2, 16.4, 17.7, 22.1 and 16.8, 16.2, 17.7, 20.6 um at the tool.
-//!
-//! Symbols: L lost motion, mm; a acceleration of the axis, mm/s2; r reference of the axis, mm, over plan time tau, s.
+//! Symbols: L lost motion, mm; a acceleration of the axis and l of its lead, mm/s2; r reference of the axis, mm, over plan time tau, s.
 //!
 //! Source: Nordin and Gutman (2002), "Controlling mechanical systems with backlash: a survey", Automatica 38, section 4: the inverse of
 //! the gap, with a crossing of finite speed.
@@ -32,9 +29,9 @@ pub(super) struct LostMotion<const N: usize> {
 }
 
 impl<const N: usize> LostMotion<N> {
-    /// Of axes with this lost motion, mm, and acceleration, mm/s2.
-    pub(super) fn new(lost_mm: [f64; N], accel_mm_s2: [f64; N]) -> Self {
-        let turns_mm_s = std::array::from_fn(|i| (STEEPEST * lost_mm[i].abs() * accel_mm_s2[i]).sqrt());
+    /// Of axes with this lost motion, mm, and acceleration, mm/s2, where the lead may have `lead_mm_s2`.
+    pub(super) fn new(lost_mm: [f64; N], accel_mm_s2: [f64; N], lead_mm_s2: [f64; N]) -> Self {
+        let turns_mm_s = std::array::from_fn(|i| accel_mm_s2[i] * (STEEPEST * lost_mm[i].abs() / lead_mm_s2[i]).sqrt());
         let window_s = (0..N).map(|i| turns_mm_s[i] / accel_mm_s2[i]).fold(0.0, f64::max);
         Self { half_mm: lost_mm.map(|mm| 0.5 * mm), turns_mm_s, window_s }
     }
@@ -69,7 +66,7 @@ mod tests {
 
     #[test]
     fn half_of_the_lost_motion_is_ahead_in_motion_and_none_at_rest() {
-        let lost = LostMotion::new([LOST_MM, 0.0], [ACCEL_MM_S2; 2]);
+        let lost = LostMotion::new([LOST_MM, 0.0], [ACCEL_MM_S2; 2], [ACCEL_MM_S2; 2]);
         let lead_mm = |tau_s: f64| lost.lead_mm(tau_s, reference_mm);
         for (tau_s, wanted_mm) in [(0.5, 0.01), (1.0, 0.0), (1.5, -0.01), (3.0, 0.0)] {
             let [found_mm, other_mm] = lead_mm(tau_s);
@@ -78,17 +75,19 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_at_the_acceleration_of_the_axis_takes_no_more_than_that_again() {
-        let lost = LostMotion::new([LOST_MM], [ACCEL_MM_S2]);
-        let lead_mm = |n: u32| lost.lead_mm(0.9 + f64::from(n) * STEP_S, |at_s| [reference_mm(at_s)[0]])[0];
-        let accel = |n: u32| (lead_mm(n + 1) - 2.0 * lead_mm(n) + lead_mm(n - 1)) / (STEP_S * STEP_S);
-        let most_mm_s2 = (1..2000).map(|n| accel(n).abs()).fold(0.0, f64::max);
-        assert!(most_mm_s2 < 1.001 * ACCEL_MM_S2 && most_mm_s2 > 0.99 * ACCEL_MM_S2, "{most_mm_s2}");
+    fn a_turn_at_the_acceleration_of_the_axis_adds_no_more_than_the_lead_may_have() {
+        for allowed_mm_s2 in [ACCEL_MM_S2, 0.5 * ACCEL_MM_S2] {
+            let lost = LostMotion::new([LOST_MM], [ACCEL_MM_S2], [allowed_mm_s2]);
+            let lead_mm = |n: u32| lost.lead_mm(0.9 + f64::from(n) * STEP_S, |at_s| [reference_mm(at_s)[0]])[0];
+            let accel = |n: u32| (lead_mm(n + 1) - 2.0 * lead_mm(n) + lead_mm(n - 1)) / (STEP_S * STEP_S);
+            let most_mm_s2 = (1..2000).map(|n| accel(n).abs()).fold(0.0, f64::max);
+            assert!(most_mm_s2 < 1.001 * allowed_mm_s2 && most_mm_s2 > 0.99 * allowed_mm_s2, "{most_mm_s2}");
+        }
     }
 
     #[test]
     fn the_lead_of_an_axis_without_lost_motion_is_zero_to_the_bit() {
-        let lost = LostMotion::new([0.0; 2], [ACCEL_MM_S2; 2]);
+        let lost = LostMotion::new([0.0; 2], [ACCEL_MM_S2; 2], [ACCEL_MM_S2; 2]);
         assert_eq!(lost.lead_mm(0.5, |_| [f64::NAN; 2]), [0.0; 2]);
     }
 }
