@@ -56,7 +56,10 @@ mod conformance_measured;
 mod conformance_measured_run;
 mod conformance_models;
 mod conformance_names;
+#[cfg(has_page)]
 mod conformance_open;
+#[cfg(not(has_page))]
+mod conformance_open_without_page;
 mod conformance_outputs;
 mod conformance_plan;
 mod conformance_plan_inputs;

@@ -25,8 +25,9 @@ use serde_json::json;
 
 use super::hal_watch::HalWatch;
 
-/// Name, type and bytes of each file of the page.
-const PAGE: [(&str, &str, &[u8]); 5] = [
+/// Name, type and bytes of each file of the page; none where it was not built (`web/page`).
+#[cfg(has_page)]
+const PAGE: &[(&str, &str, &[u8])] = &[
     ("", "text/html; charset=utf-8", include_bytes!("../../assets/app/index.html")),
     ("app.css", "text/css; charset=utf-8", include_bytes!("../../assets/app/app.css")),
     ("app.js", "text/javascript; charset=utf-8", include_bytes!("../../assets/app/app.js")),
@@ -34,6 +35,11 @@ const PAGE: [(&str, &str, &[u8]); 5] = [
     // The page inflates it: as a type of its own no server or browser does so before.
     ("engine.wasm.gz", "application/octet-stream", include_bytes!("../../assets/app/engine.wasm.gz")),
 ];
+#[cfg(not(has_page))]
+const PAGE: &[(&str, &str, &[u8])] = &[];
+
+/// Whether this command has the page.
+pub(crate) const HAS_PAGE: bool = !PAGE.is_empty();
 
 /// Headers of every answer. Frames of other sites cannot show the page; its own policy stands in `index.html`.
 const HEADERS: &str = "Content-Security-Policy: frame-ancestors 'none'\r\nX-Content-Type-Options: nosniff\r\n\

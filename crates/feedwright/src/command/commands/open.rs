@@ -12,10 +12,15 @@ use crate::command::args::open::OpenArgs;
 use crate::command::console::Console;
 use crate::command::hal_watch::HalWatch;
 use crate::command::message::{printed, remark};
-use crate::command::page_server::PageServer;
+use crate::command::page_server::{HAS_PAGE, PageServer};
 use crate::command::streams::check_inputs;
 
 pub(crate) fn run(args: OpenArgs, console: &Console) -> Result<ExitCode> {
+    if !HAS_PAGE {
+        let help = "take a package of feedwright, which has it; or, in a clone, run `web/page` (Node 20.19 or newer), then \
+            `cargo build --release` again";
+        return Err(miette!(help = help, "this feedwright was built without the page"));
+    }
     check_inputs(console, args.files.iter().map(|file| ("the program", Some(file.as_path()))))?;
     for file in args.files.iter().filter(|file| !is_standard_input(file)) {
         let opened = File::open(file).and_then(|file| file.metadata());
