@@ -3,6 +3,7 @@
 use std::os::unix::fs::MetadataExt;
 
 use crate::command::{Folder, Ran};
+use crate::sweep::part_or_whole;
 
 /// Trace and table of a run, without what is said of where its model comes from.
 fn cut(folder: &Folder, more: &[&str]) -> (String, String) {
@@ -13,9 +14,8 @@ fn cut(folder: &Folder, more: &[&str]) -> (String, String) {
 
 #[test]
 fn a_run_with_the_model_that_identify_wrote_is_that_with_a_training_to_the_bit() {
-    for (controller, seed, machine) in
-        [("two-dimensional", "3", "tnv40"), ("lqg-identified", "1", "workshop"), ("lqg-identified", "7", "tnv40")]
-    {
+    let cases = [("lqg-identified", "7", "tnv40"), ("two-dimensional", "3", "tnv40"), ("lqg-identified", "1", "workshop")];
+    for (controller, seed, machine) in cases.into_iter().skip(part_or_whole(1, 0)) {
         let folder = Folder::new();
         let same = ["--controller", controller, "--machine", machine, "--seed", seed];
         folder.run(&[&["identify", "--out", "m.model.toml"], &same[..]].concat()).succeeded();
@@ -25,7 +25,10 @@ fn a_run_with_the_model_that_identify_wrote_is_that_with_a_training_to_the_bit()
         let other = ["--controller", controller, "--machine", machine, "--seed", "99"];
         let read = cut(&folder, &[&other[..], &["--model", "m.model.toml"]].concat());
         assert!(trained == read, "{controller}");
-        assert!(trained != cut(&folder, &[&other[..], &exact[..]].concat()), "{controller}");
+        // Nor is it by chance that both are the same.
+        if part_or_whole(controller == "two-dimensional", true) {
+            assert!(trained != cut(&folder, &[&other[..], &exact[..]].concat()), "{controller}");
+        }
     }
 }
 

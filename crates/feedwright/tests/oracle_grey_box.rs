@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::identification_log::{commands_mm, log_of, logged};
+use crate::sweep::part_or_whole;
 use feedwright::{LogIdentified, LogJob, machine_text, updated_text};
 use feedwright_ident::{AxisFacts, Columns, FoundAxis, LawTerm, LawVerdict, Log, NumberSource};
 use feedwright_sim::{Machine, Plant};
@@ -26,7 +27,7 @@ const FRICTION: f64 = 0.03;
 #[test]
 fn the_products_of_a_simulated_machine_are_found_from_positions_alone() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
-    let found = identified(log_of(&machine, 20.0, 1.0, 1), LogJob::default());
+    let found = identified(log_of(&machine, part_or_whole(10.0, 20.0), 1.0, 1), LogJob::default());
     for (axis, is) in found.machine.axes.iter().zip(&machine.axes) {
         let j = is.inertia_kg_m2;
         let fc = is.coulomb_friction_nm / j / is.rad_per_mm();
@@ -68,7 +69,9 @@ fn the_servo_periods_by_which_commands_are_late_are_found() {
     for (periods, drive_delay_s) in [(0, 0.001), (1, 0.0), (2, 0.0005)] {
         let machine = late_machine(periods, drive_delay_s);
         let facts = AxisFacts { record_delay_s: Some(0.0), ..AxisFacts::default() };
-        let found = identified(log_of(&machine, 8.0, 0.0, 5), LogJob { facts, ..LogJob::default() });
+        let mut log = log_of(&machine, part_or_whole(4.0, 8.0), 0.0, 5);
+        log.axes.truncate(part_or_whole(1, 2));
+        let found = identified(log, LogJob { facts, ..LogJob::default() });
         let mine = Machine::parse("mine.toml", &machine_text(&found, "mine")).unwrap();
         for (axis, written) in found.machine.axes.iter().zip(&mine.axes) {
             let late_s = axis.law().get(LawTerm::CommandDelay);
@@ -83,7 +86,7 @@ fn the_servo_periods_by_which_commands_are_late_are_found() {
 #[test]
 fn gains_that_are_given_scale_the_machine_file_and_nothing_else() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
-    let mut log = log_of(&machine, 8.0, 0.0, 3);
+    let mut log = log_of(&machine, part_or_whole(4.0, 8.0), 0.0, 3);
     log.axes.truncate(1);
     let is = machine.axes[0];
     let facts = AxisFacts {
@@ -105,7 +108,7 @@ fn gains_that_are_given_scale_the_machine_file_and_nothing_else() {
 #[test]
 fn a_log_that_moves_one_way_is_open_until_the_other_is_recorded() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
-    let both = commands_mm(0.001, 10.0, 31);
+    let both = commands_mm(0.001, part_or_whole(5.0, 10.0), 31);
     let mut at_mm = 0.0;
     let one_way: Vec<f64> = std::iter::once(0.0)
         .chain(both.windows(2).map(|pair| {
@@ -214,7 +217,7 @@ fn a_window_of_the_speed_goes_into_the_machine_file_and_holds_on_pulses() {
     for axis in &mut machine.axes {
         (axis.speed_window_s, axis.speed_held, axis.disturbance_nm) = (0.002, true, 0.0);
     }
-    let commands = [41, 42].map(|seed| commands_mm(0.001, 8.0, seed));
+    let commands = [41, 42].map(|seed| commands_mm(0.001, part_or_whole(4.0, 8.0), seed));
     let mut log = logged(&machine, commands, 0.2, 4);
     log.axes.truncate(1);
     let given = AxisFacts { speed_window_s: Some(0.002), record_delay_s: Some(0.0), ..AxisFacts::default() };

@@ -64,12 +64,17 @@ const PRESLIDING: [f64; 2] = [0.4, 2.0];
 /// How many of them are left to the sweep.
 const SWEPT: usize = 3;
 
+/// Both axes in the sweep, the first in the suite.
+fn axes() -> std::ops::Range<usize> {
+    0..part_or_whole(1, 2)
+}
+
 #[test]
 fn what_the_machine_file_says_comes_back() {
     for &(name, bounds) in &BOUNDS[part_or_whole(SWEPT, 0)..] {
         let machine = Machine::load(name.as_ref()).unwrap();
         let recording = recorded(&machine);
-        for axis in 0..2 {
+        for axis in axes() {
             let file = of_file(&machine, axis);
             let found = identify_axis(&recording, axis, &settings(&machine, axis)).unwrap();
             let off = off(&found.parameters, &file);
@@ -94,7 +99,7 @@ const SCREW: [f64; 3] = [0.03, 0.04, 0.15];
 fn a_ball_screw_that_gives_is_found_from_the_motor_alone() {
     let machine = Machine::load("soft".as_ref()).unwrap();
     let recording = recorded(&machine);
-    for axis in 0..2 {
+    for axis in axes() {
         let file = of_file(&machine, axis);
         let found = identify_axis(&recording, axis, &settings(&machine, axis)).unwrap().parameters;
         let part = |value: fn(&AxisParameters) -> f64| value(&found) / value(&file) - 1.0;
@@ -121,7 +126,7 @@ fn encoder_noise_of_half_a_micrometre_biases_least_squares_on_the_torque_and_not
         let mut machine = Machine::load("tnv40".as_ref()).unwrap();
         machine.axes.iter_mut().for_each(|axis| axis.encoder_noise_um = noise_um);
         let recording = recorded(&machine);
-        for axis in 0..2 {
+        for axis in axes() {
             let (file, settings) = (of_file(&machine, axis), settings(&machine, axis));
             let found = identify_axis(&recording, axis, &settings).unwrap();
             let [inertia, ..] = off(&found.parameters, &file);
