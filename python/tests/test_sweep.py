@@ -59,7 +59,7 @@ def written(folder: Path) -> dict[str, tuple[int, int]]:
     return {name: (found.st_ino, found.st_mtime_ns) for name, found in about.items()}
 
 
-def until(holds: Callable[[], bool], seconds: float = 60.0) -> None:
+def until(holds: Callable[[], bool], seconds: float = 600.0) -> None:
     """Waits."""
     end = time.monotonic() + seconds
     while not holds():
@@ -250,7 +250,7 @@ class Cluster(OfFolder):
         reach(15)
         self.assertIsNone(client.poll())
         scheduler.kill()
-        client.wait(timeout=60)
+        client.wait(timeout=600)
         self.assertNotEqual(client.returncode, 0)
         self.log.flush()
         self.assertIn(b"the scheduler of the cluster is gone", (self.folder / "log.txt").read_bytes())
@@ -261,13 +261,13 @@ class Cluster(OfFolder):
         self.assertLess(len(seen), LONG_JOBS)
         self.scheduler()
         workers = [self.worker(), self.worker(), self.worker()]
-        self.assertEqual(self.client().wait(timeout=60), 0)
+        self.assertEqual(self.client().wait(timeout=600), 0)
         told = (self.folder / "swept.txt").read_text()
         self.assertEqual(told, f"{LONG_JOBS - len(seen)} {len(seen)}")
         reach(LONG_JOBS)
         self.folder.command("sweep", "LONG.toml", "--out", "command")
         self.assertEqual(results(self.folder / "command"), {name: text for name, text in results(out).items() if name[0] != "."})
-        self.assertEqual(self.client("batches", ", batch=4").wait(timeout=60), 0)
+        self.assertEqual(self.client("batches", ", batch=4").wait(timeout=600), 0)
         self.assertEqual(results(self.folder / "batches"), results(self.folder / "command"))
 
 

@@ -38,12 +38,12 @@ fn the_lost_motion_of_a_machine_with_backlash_is_compensated() {
     let folder = Folder::new();
     folder.file("star.ngc", STAR);
     // Its own acceleration leaves no room for what makes up for its friction, and most of the error is then that.
-    let axes = ["x", "y", "z"].map(|axis| format!("[axis.{axis}]\ncorrection_accel_mm_s2 = 20000\n"));
+    let axes = ["x", "y", "z"].map(|axis| format!("[axis.{axis}]\ncorrection_accel_mm_s2 = 200000\n"));
     folder.file("quick.toml", format!("base = \"router\"\nname = \"quick\"\n{}", axes.concat()));
     let ([with_um, _], geometry) = rms_um(&folder, &["--machine", "quick.toml"]);
     assert_eq!(geometry["terms"], serde_json::json!(["backlash"]));
     let ([without_um, _], _) = rms_um(&folder, &["--machine", "quick.toml", "--no-geometry"]);
-    assert!(with_um < 0.93 * without_um, "{with_um} {without_um}");
+    assert!(with_um < 0.7 * without_um, "{with_um} {without_um}");
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn a_geometry_file_is_the_truth_of_the_simulation() {
 #[test]
 fn advice_and_plans_take_a_geometry_file_for_the_truth() {
     let folder = Folder::new();
-    folder.file("part.ngc", "G21 G90 G64\nG0 X0 Y0\nG2 X0 Y0 I6 J0 F1500\nM2\n");
+    folder.file("part.ngc", "G21 G90 G64\nG0 X0 Y0\nG2 X0 Y0 I2 J0 F1500\nM2\n");
     let head = "base = \"tnv40\"\nname = \"tnv40\"\ndescription = \"tnv40 with a geometry\"\nsource = \"a test\"\n";
     let errors = "[geometry]\nsquareness_xy_urad = 800\n";
     folder.file("machine.toml", format!("{head}{errors}"));

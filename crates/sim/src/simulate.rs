@@ -182,8 +182,8 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         let uncrossed_mm = uncrossed_mm(known, controller);
         // What makes up for lost motion and the correction share one acceleration.
         let share = if uncrossed_mm.iter().any(|mm| *mm > 0.0) { 0.5 } else { 1.0 };
-        let lead_mm_s2 = std::array::from_fn(|i| share * machine.correction_accel_mm_s2(i));
-        let turning_mm_s2 = std::array::from_fn(|i| machine.turning_accel_mm_s2(i));
+        let turning_mm_s2: [f64; N] = std::array::from_fn(|i| machine.turning_accel_mm_s2(i));
+        let lead_mm_s2 = std::array::from_fn(|i| share * machine.correction_accel_mm_s2(i).min(turning_mm_s2[i]));
         let limits = &machine.limits;
         let bounds = Bounds::new(limits.max_deviation_mm, limits.rapid_mm_s, fade_mm_s2);
         let engaged_mm_s2 = if within_drives { machine.engaged_accel_mm_s2() } else { machine.owners_accel_mm_s2() };
