@@ -1,12 +1,13 @@
-//! The identifier beside FANN, a C library of small neural networks, on the same 10-12-2 network: `just bench-fann`.
+//! The identifier beside FANN, a C library of small neural networks, on the same 10-12-2 network:
+//! `just bench-fann`.
 //!
-//! `fann/fann_bench.c` is compiled against double and single FANN and given the same weights and samples. First both must
-//! agree: double FANN's outputs and its weights after one step. Then rounds in turn, the order reversed each time; the
-//! figures are medians over rounds of medians over batches. Instructions by callgrind, where it is installed: those of
-//! two counts, subtracted.
+//! `fann/fann_bench.c` is compiled against double and single FANN and given the same weights and
+//! samples. First both must agree: double FANN's outputs and its weights after one step. Then
+//! rounds in turn, the order reversed each time; the figures are medians over rounds of medians
+//! over batches. Instructions by callgrind, where it is installed: those of two counts, subtracted.
 //!
-//! FANN has 14 connections from bias neurons more; no setting removes them. FANN is as its distribution compiled it, the
-//! identifier as `cargo bench` does, both for any x86-64.
+//! FANN has 14 connections from bias neurons more; no setting removes them. FANN is as its
+//! distribution compiled it, the identifier as `cargo bench` does, both for any x86-64.
 
 #![expect(clippy::unwrap_used, reason = "a bench may stop")]
 
@@ -49,8 +50,10 @@ fn main() {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
     let file = folder.join("fann_bench.txt");
     std::fs::write(&file, text(&net, &samples)).unwrap();
-    let libraries: Option<Vec<PathBuf>> =
-        [("doublefann", "DOUBLE"), ("floatfann", "SINGLE")].iter().map(|(l, d)| compiled(&folder, l, d)).collect();
+    let libraries: Option<Vec<PathBuf>> = [("doublefann", "DOUBLE"), ("floatfann", "SINGLE")]
+        .iter()
+        .map(|(l, d)| compiled(&folder, l, d))
+        .collect();
     let Some(libraries) = libraries else {
         return;
     };
@@ -85,19 +88,23 @@ fn weights(net: &Network) -> Vec<f64> {
 /// What `fann_bench` reads; every number to the last bit.
 fn text(net: &Network, samples: &[Sample]) -> String {
     let mut text = String::new();
-    let of_samples = samples.iter().flat_map(|(inputs, error)| [inputs.as_flattened(), error].concat());
+    let of_samples = samples
+        .iter()
+        .flat_map(|(inputs, error)| [inputs.as_flattened(), error].concat());
     for number in weights(net).into_iter().chain(of_samples) {
         writeln!(text, "{number:e}").unwrap();
     }
     text
 }
 
-/// `fann_bench` against one of FANN's libraries; `None`, said loudly, where a compiler or the library is missing.
+/// `fann_bench` against one of FANN's libraries; `None`, said loudly, where a compiler or the
+/// library is missing.
 fn compiled(folder: &Path, library: &str, define: &str) -> Option<PathBuf> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/fann/fann_bench.c");
     let program = folder.join(format!("fann_bench_{library}"));
     let mut cc = Command::new("cc");
-    cc.args(["-O2", "-std=c11", &format!("-D{define}"), "-o"]).args([&program, &source]);
+    cc.args(["-O2", "-std=c11", &format!("-D{define}"), "-o"])
+        .args([&program, &source]);
     let why = match cc.args([&format!("-l{library}"), "-lm"]).output() {
         Ok(output) if output.status.success() => return Some(program),
         Ok(output) => String::from_utf8_lossy(&output.stderr).into_owned(),
@@ -111,8 +118,16 @@ fn compiled(folder: &Path, library: &str, define: &str) -> Option<PathBuf> {
 /// The numbers that `fann_bench` prints.
 fn numbers(program: &Path, file: &Path, what: &str) -> Vec<f64> {
     let output = Command::new(program).arg(file).arg(what).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap().split_whitespace().map(|number| number.parse().unwrap()).collect()
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    String::from_utf8(output.stdout)
+        .unwrap()
+        .split_whitespace()
+        .map(|number| number.parse().unwrap())
+        .collect()
 }
 
 /// Both do the same: outputs, and weights after one step.
@@ -124,10 +139,23 @@ fn agree(double: &Path, file: &Path, net: &Network, (inputs, error): &Sample) {
     ours.extend(weights(&net));
     let theirs = numbers(double, file, "check");
     assert_eq!(ours.len(), theirs.len());
-    let apart = ours.iter().zip(&theirs).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    let moved = before.iter().zip(&ours[2..]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(apart <= AGREEMENT, "they compute different things: {apart:e}");
-    println!("agreement with double FANN: {apart:.1e} in outputs and weights; the step moved a weight by {moved:.1e}");
+    let apart = ours
+        .iter()
+        .zip(&theirs)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max);
+    let moved = before
+        .iter()
+        .zip(&ours[2..])
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max);
+    assert!(
+        apart <= AGREEMENT,
+        "they compute different things: {apart:e}"
+    );
+    println!(
+        "agreement with double FANN: {apart:.1e} in outputs and weights; the step moved a weight by {moved:.1e}"
+    );
 }
 
 /// Medians of the rounds and their ratios.
@@ -151,14 +179,19 @@ fn times(libraries: &[PathBuf], file: &Path, net: &Network, samples: &[Sample]) 
     }
     println!("{ROUNDS} rounds      identifier   double FANN (ratio)    float FANN (ratio)");
     for (work, name) in WORK.iter().enumerate() {
-        let each: Vec<f64> = rounds.iter_mut().map(|program| median(&mut program[work])).collect();
+        let each: Vec<f64> = rounds
+            .iter_mut()
+            .map(|program| median(&mut program[work]))
+            .collect();
         row(name, "ns", 1, &each);
     }
 }
 
 fn row(name: &str, unit: &str, digits: usize, each: &[f64]) {
     print!("{name:10} {:12.digits$} {unit}", each[0]);
-    each[1..].iter().for_each(|theirs| print!(" {theirs:11.digits$} {unit} ({:4.1})", theirs / each[0]));
+    each[1..]
+        .iter()
+        .for_each(|theirs| print!(" {theirs:11.digits$} {unit} ({:4.1})", theirs / each[0]));
     println!();
 }
 
@@ -201,10 +234,19 @@ fn instructions(libraries: &[PathBuf], file: &Path) {
         };
         let mut each = vec![counted(ours)];
         for library in libraries {
-            each.push(counted(|count| vec![library.into(), file.into(), WORK[work].into(), count.to_string().into()]));
+            each.push(counted(|count| {
+                vec![
+                    library.into(),
+                    file.into(),
+                    WORK[work].into(),
+                    count.to_string().into(),
+                ]
+            }));
         }
         let Some(each) = each.into_iter().collect::<Option<Vec<f64>>>() else {
-            eprintln!("no instructions counted: valgrind does not run\nhint: Debian: apt-get install valgrind");
+            eprintln!(
+                "no instructions counted: valgrind does not run\nhint: Debian: apt-get install valgrind"
+            );
             return;
         };
         row(name, "instr", 0, &each);
@@ -215,9 +257,19 @@ fn instructions(libraries: &[PathBuf], file: &Path) {
 fn counted(command: impl Fn(u64) -> Vec<std::ffi::OsString>) -> Option<f64> {
     let total = |count: u64| {
         let valgrind = ["--tool=callgrind", "--callgrind-out-file=/dev/null"];
-        let output = Command::new("valgrind").args(valgrind).args(command(count)).output().ok()?;
+        let output = Command::new("valgrind")
+            .args(valgrind)
+            .args(command(count))
+            .output()
+            .ok()?;
         let report = String::from_utf8_lossy(&output.stderr).into_owned();
-        report.lines().find_map(|line| line.split_once("Collected : ")?.1.trim().parse::<f64>().ok())
+        report.lines().find_map(|line| {
+            line.split_once("Collected : ")?
+                .1
+                .trim()
+                .parse::<f64>()
+                .ok()
+        })
     };
     Some((total(COUNTS[1])? - total(COUNTS[0])?) / (COUNTS[1] - COUNTS[0]) as f64)
 }

@@ -1,4 +1,5 @@
-//! Megabytes a second from G-code text to canonical motions, and what of that is reading the words alone.
+//! Megabytes a second from G-code text to canonical motions, and what of that is reading the words
+//! alone.
 //!
 //! `cargo bench -p feedwright-lab --bench reader`; the column MB/s counts bytes of program text.
 
@@ -21,14 +22,19 @@ fn print_program(lines: usize) -> String {
     text
 }
 
-/// A milling program as CAM systems write it: numbered lines, three axes, an arc and a comment now and then.
+/// A milling program as CAM systems write it: numbered lines, three axes, an arc and a comment now
+/// and then.
 fn cam_program(lines: usize) -> String {
     let mut text = String::from(
         "%\n(T1 D6 END MILL)\nG21 G17 G90 G94 G40 G64 P0.01\nT1 M6\nS12000 M3\nG0 X100.000 Y0.000 Z5.000\n",
     );
     for n in 0..lines {
         let angle = n as f64 * 0.01;
-        let (x, y, z) = (100.0 * angle.cos(), 100.0 * angle.sin(), -0.5 - 0.4 * (7.0 * angle).sin());
+        let (x, y, z) = (
+            100.0 * angle.cos(),
+            100.0 * angle.sin(),
+            -0.5 - 0.4 * (7.0 * angle).sin(),
+        );
         text += &match n % 50 {
             0 => format!("N{} (PASS {})\n", 10 * n, n / 50),
             1 => format!("N{} G1 X{x:.3} Y{y:.3} Z{z:.3} F1800.\n", 10 * n),
@@ -43,46 +49,64 @@ fn cam_program(lines: usize) -> String {
 
 /// A milling program with parameters and a loop.
 fn loop_program(rounds: usize) -> String {
-    format!("F600\n#1=0\no1 repeat [{rounds}]\n#1=[#1+0.1]\nG1 X[10*cos[#1]] Y[10*sin[#1]] Z-#1\no1 endrepeat\nM2\n")
+    format!(
+        "F600\n#1=0\no1 repeat [{rounds}]\n#1=[#1+0.1]\nG1 X[10*cos[#1]] Y[10*sin[#1]] Z-#1\no1 endrepeat\nM2\n"
+    )
 }
 
 fn read(text: &str, dialect: Dialect) -> usize {
-    let settings = Settings { dialect: Some(dialect), ..Settings::default() };
-    Reader::from_text("bench", text, settings).map_or(0, |reader| reader.filter(Result::is_ok).count())
+    let settings = Settings {
+        dialect: Some(dialect),
+        ..Settings::default()
+    };
+    Reader::from_text("bench", text, settings)
+        .map_or(0, |reader| reader.filter(Result::is_ok).count())
 }
 
 /// A program with mistakes would measure the making of messages.
 fn faults(text: &str, dialect: Dialect) -> usize {
-    let settings = Settings { dialect: Some(dialect), ..Settings::default() };
-    Reader::from_text("bench", text, settings).map_or(1, |reader| reader.filter(Result::is_err).count())
+    let settings = Settings {
+        dialect: Some(dialect),
+        ..Settings::default()
+    };
+    Reader::from_text("bench", text, settings)
+        .map_or(1, |reader| reader.filter(Result::is_err).count())
 }
 
 /// Words of the milling program, not carried out.
 #[divan::bench]
 fn cam_words_alone(bencher: Bencher<'_, '_>) {
     let text = cam_program(100_000);
-    bencher.counter(BytesCount::of_str(&text)).bench(|| count_words(divan::black_box(text.as_bytes())));
+    bencher
+        .counter(BytesCount::of_str(&text))
+        .bench(|| count_words(divan::black_box(text.as_bytes())));
 }
 
 /// Words of the print program, not carried out.
 #[divan::bench]
 fn print_words_alone(bencher: Bencher<'_, '_>) {
     let text = print_program(100_000);
-    bencher.counter(BytesCount::of_str(&text)).bench(|| count_words(divan::black_box(text.as_bytes())));
+    bencher
+        .counter(BytesCount::of_str(&text))
+        .bench(|| count_words(divan::black_box(text.as_bytes())));
 }
 
 #[divan::bench]
 fn cam_lines(bencher: Bencher<'_, '_>) {
     let text = cam_program(100_000);
     assert_eq!(faults(&text, Dialect::LinuxCnc), 0);
-    bencher.counter(BytesCount::of_str(&text)).bench(|| read(divan::black_box(&text), Dialect::LinuxCnc));
+    bencher
+        .counter(BytesCount::of_str(&text))
+        .bench(|| read(divan::black_box(&text), Dialect::LinuxCnc));
 }
 
 #[divan::bench]
 fn print_lines(bencher: Bencher<'_, '_>) {
     let text = print_program(100_000);
     assert_eq!(faults(&text, Dialect::Printer), 0);
-    bencher.counter(BytesCount::of_str(&text)).bench(|| read(divan::black_box(&text), Dialect::Printer));
+    bencher
+        .counter(BytesCount::of_str(&text))
+        .bench(|| read(divan::black_box(&text), Dialect::Printer));
 }
 
 #[divan::bench]
@@ -94,5 +118,7 @@ fn expressions_in_a_loop(bencher: Bencher<'_, '_>) {
 #[divan::bench]
 fn damaged_lines(bencher: Bencher<'_, '_>) {
     let text = "G1 X1 Y$ ; damaged\n".repeat(10_000);
-    bencher.counter(BytesCount::of_str(&text)).bench(|| read(divan::black_box(&text), Dialect::LinuxCnc));
+    bencher
+        .counter(BytesCount::of_str(&text))
+        .bench(|| read(divan::black_box(&text), Dialect::LinuxCnc));
 }

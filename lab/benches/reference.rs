@@ -16,7 +16,14 @@ fn main() {
     divan::main();
 }
 
-const NAMES: [&str; 6] = ["line", "circle", "ellipse", "star", "spline", "10 um chords"];
+const NAMES: [&str; 6] = [
+    "line",
+    "circle",
+    "ellipse",
+    "star",
+    "spline",
+    "10 um chords",
+];
 
 /// Chords of 10 um of a gentle wave.
 fn chords(count: u32) -> impl Iterator<Item = Canon> + Send {
@@ -27,15 +34,24 @@ fn chords(count: u32) -> impl Iterator<Item = Canon> + Send {
 /// A cubic spline through a wave of 5 mm, 100 mm long.
 fn wave() -> Canon {
     const POINTS: usize = 40;
-    let control_mm: Vec<[f64; 3]> =
-        (0..POINTS).map(|i| i as f64).map(|i| [2.5 * i, 5.0 * (0.5 * i).sin(), 0.0]).collect();
-    let knots = (0..POINTS + 4).map(|i| (i.clamp(3, POINTS) - 3) as f64).collect();
+    let control_mm: Vec<[f64; 3]> = (0..POINTS)
+        .map(|i| i as f64)
+        .map(|i| [2.5 * i, 5.0 * (0.5 * i).sin(), 0.0])
+        .collect();
+    let knots = (0..POINTS + 4)
+        .map(|i| (i.clamp(3, POINTS) - 3) as f64)
+        .collect();
     Canon::Motion(Motion {
         line: 1,
         kind: MotionKind::Feed,
         start_mm: control_mm[0],
         end_mm: control_mm[POINTS - 1],
-        shape: Shape::Spline(Arc::new(Spline { degree: 3, knots, control_mm, weights: vec![1.0; POINTS] })),
+        shape: Shape::Spline(Arc::new(Spline {
+            degree: 3,
+            knots,
+            control_mm,
+            weights: vec![1.0; POINTS],
+        })),
         feed_mm_s: 50.0,
         corner: BLEND,
         others: AuxiliaryAxes::default(),
@@ -44,11 +60,17 @@ fn wave() -> Canon {
 
 fn reference(name: &str) -> Reference<'static> {
     let reference = match name {
-        "line" => Reference::of_program(vec![line([0.0; 3], [100.0, 50.0, 0.0], 50.0, BLEND)], &LIMITS),
+        "line" => Reference::of_program(
+            vec![line([0.0; 3], [100.0, 50.0, 0.0], 50.0, BLEND)],
+            &LIMITS,
+        ),
         "spline" => Reference::of_program([wave()], &LIMITS),
         "10 um chords" => Reference::of_program(chords(10_000), &LIMITS),
         _ => Reference::of_steps(
-            contour(name).expect("a name of the table").steps(50.0, BLEND).expect("a feed"),
+            contour(name)
+                .expect("a name of the table")
+                .steps(50.0, BLEND)
+                .expect("a feed"),
             &LIMITS,
         ),
     };
@@ -72,7 +94,8 @@ fn at(bencher: Bencher<'_, '_>, name: &str) {
     });
 }
 
-/// 1000 servo periods: nearest point over 50 ms behind and ahead of a point that lies up to 20 um off the path.
+/// 1000 servo periods: nearest point over 50 ms behind and ahead of a point that lies up to 20 um
+/// off the path.
 #[divan::bench(args = NAMES)]
 fn nearest(bencher: Bencher<'_, '_>, name: &str) {
     let mut reference = reference(name);
@@ -89,7 +112,11 @@ fn nearest(bencher: Bencher<'_, '_>, name: &str) {
     bencher.counter(ItemsCount::new(1000usize)).bench_local(|| {
         points
             .iter()
-            .map(|&(tau_s, point)| reference.nearest(point, tau_s - 0.05, tau_s + 0.05).distance_mm)
+            .map(|&(tau_s, point)| {
+                reference
+                    .nearest(point, tau_s - 0.05, tau_s + 0.05)
+                    .distance_mm
+            })
             .sum::<f64>()
     });
 }
@@ -98,7 +125,8 @@ fn nearest(bencher: Bencher<'_, '_>, name: &str) {
 #[divan::bench(args = [1_000, 10_000, 100_000])]
 fn plan_chords(bencher: Bencher<'_, '_>, count: u32) {
     bencher.counter(ItemsCount::new(count)).bench_local(|| {
-        let mut reference = Reference::of_program(chords(count), &LIMITS).expect("limits are sound");
+        let mut reference =
+            Reference::of_program(chords(count), &LIMITS).expect("limits are sound");
         let mut tau_s = 0.0;
         while reference.end_s().is_none() {
             reference.at(tau_s);

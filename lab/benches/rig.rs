@@ -1,9 +1,11 @@
-//! What the benches and the instruction count share: a circle as the path, a lagging tool, and a network.
+//! What the benches and the instruction count share: a circle as the path, a lagging tool, and a
+//! network.
 
 use feedwright_control::{
-    AxisKnowledge, Bounds, ContourError, ContourIdentifier, Controller, Estimator, IDENTIFIED_WEIGHT, Inputs,
-    InvertingSettings, Knot, KnotSource, LqgPreview, LqgSettings, Measured, OffsetBounds, Parameters, Periods, Preview,
-    Register, Setpoint, Tick, TransmissionParameters, TwoDimensional, Window,
+    AxisKnowledge, Bounds, ContourError, ContourIdentifier, Controller, Estimator,
+    IDENTIFIED_WEIGHT, Inputs, InvertingSettings, Knot, KnotSource, LqgPreview, LqgSettings,
+    Measured, OffsetBounds, Parameters, Periods, Preview, Register, Setpoint, Tick,
+    TransmissionParameters, TwoDimensional, Window,
 };
 
 /// The circle of eq. 11 at 50 mm/s.
@@ -12,7 +14,10 @@ pub(crate) struct Circle;
 impl<const N: usize> KnotSource<N> for Circle {
     fn knot(&mut self, tau_s: f64) -> Knot<N> {
         let (sin, cos) = (5.0 * tau_s).sin_cos();
-        let mut knot = Knot { feed_mm_s: 50.0, ..Knot::REST };
+        let mut knot = Knot {
+            feed_mm_s: 50.0,
+            ..Knot::REST
+        };
         (knot.position_mm[0], knot.position_mm[1]) = (10.0 * (1.0 - cos), 10.0 * sin);
         (knot.tangent[0], knot.tangent[1]) = (sin, cos);
         knot
@@ -37,11 +42,16 @@ pub(crate) fn paper<const N: usize>() -> TwoDimensional<N> {
     TwoDimensional::untried(network().0, InvertingSettings::DEFAULT)
 }
 
-/// The regulator of axes like those of tnv40 with quick speed loops, as the tool of a [`Rig`] follows, each with noise, a disturbance and, where
-/// `gives`, a ball screw with backlash: it decides in every servo period.
+/// The regulator of axes like those of tnv40 with quick speed loops, as the tool of a [`Rig`]
+/// follows, each with noise, a disturbance and, where `gives`, a ball screw with backlash: it
+/// decides in every servo period.
 pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgPreview<N> {
     let mut axis = AxisKnowledge::NOTHING;
-    axis.periods = Periods { servo_s: 0.001, mechanics_s: 1e-4, mechanics_per_servo: 10 };
+    axis.periods = Periods {
+        servo_s: 0.001,
+        mechanics_s: 1e-4,
+        mechanics_per_servo: 10,
+    };
     axis.parameters = Parameters {
         rad_per_mm: 0.628,
         kp_1_s: 1.0 / LAG_S,
@@ -54,8 +64,14 @@ pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgPreview<N> {
         coulomb_smoothing_rad_s: 0.05,
     };
     axis.friction.presliding_rad = 1e-4;
-    (axis.statistics.encoder_noise_rad, axis.statistics.torque_noise_nm) = (1e-4, 0.1);
-    (axis.statistics.disturbance_nm, axis.statistics.disturbance_rad_s) = (0.01, 150.0);
+    (
+        axis.statistics.encoder_noise_rad,
+        axis.statistics.torque_noise_nm,
+    ) = (1e-4, 0.1);
+    (
+        axis.statistics.disturbance_nm,
+        axis.statistics.disturbance_rad_s,
+    ) = (0.01, 150.0);
     if gives {
         axis.transmission = TransmissionParameters {
             table_share: 0.4,
@@ -64,7 +80,10 @@ pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgPreview<N> {
             backlash_rad: 0.002,
         };
     }
-    let bounds = OffsetBounds { largest_mm: 0.5, fastest_mm_s: 400.0 };
+    let bounds = OffsetBounds {
+        largest_mm: 0.5,
+        fastest_mm_s: 400.0,
+    };
     let settings = LqgSettings::identified(IDENTIFIED_WEIGHT, 1e-3, bounds);
     LqgPreview::new([axis; N], settings)
 }
@@ -78,7 +97,8 @@ pub(crate) enum Tool {
     Follows,
 }
 
-/// The lag of the tool, s, and the part of the way to the command that it then goes in a servo period.
+/// The lag of the tool, s, and the part of the way to the command that it then goes in a servo
+/// period.
 const LAG_S: f64 = 0.02;
 const FOLLOWED: f64 = 0.001 / LAG_S;
 
@@ -94,7 +114,12 @@ impl<const N: usize, C: Controller<N>> Rig<N, C> {
     /// Warmed up by nearly a lap.
     pub(crate) fn new(controller: C, tool: Tool) -> Self {
         let tick = Tick::new(0.001, controller.schedule(), Bounds::new(0.5, 400.0, 400.0));
-        let mut rig = Self { tick, controller, tool, tool_mm: [0.0; N] };
+        let mut rig = Self {
+            tick,
+            controller,
+            tool,
+            tool_mm: [0.0; N],
+        };
         for _ in 0..1000 {
             rig.servo_period();
         }
@@ -103,25 +128,36 @@ impl<const N: usize, C: Controller<N>> Rig<N, C> {
 
     /// One servo period.
     pub(crate) fn servo_period(&mut self) -> Setpoint<N> {
-        let setpoint = self.tick.step(&mut Circle, &mut self.controller, self.tool_mm);
+        let setpoint = self
+            .tick
+            .step(&mut Circle, &mut self.controller, self.tool_mm);
         match self.tool {
-            Tool::OnThePath => self.tool_mm = Circle.knot(setpoint.tau_s + 0.001 - LAG_S).position_mm,
+            Tool::OnThePath => {
+                self.tool_mm = Circle.knot(setpoint.tau_s + 0.001 - LAG_S).position_mm;
+            }
             Tool::Follows => {
                 for axis in 0..N {
-                    self.tool_mm[axis] += FOLLOWED * (setpoint.command_mm[axis] - self.tool_mm[axis]);
+                    self.tool_mm[axis] +=
+                        FOLLOWED * (setpoint.command_mm[axis] - self.tool_mm[axis]);
                 }
             }
         }
         setpoint
     }
 
-    /// Stops the measurement where the supervisor has taken the controller out: its work would be missing.
+    /// Stops the measurement where the supervisor has taken the controller out: its work would be
+    /// missing.
     pub(crate) fn expect_in_the_loop(&self) {
-        assert!(self.tick.fade().is_none(), "the supervisor took the controller out: {:?}", self.tick.fade());
+        assert!(
+            self.tick.fade().is_none(),
+            "the supervisor took the controller out: {:?}",
+            self.tick.fade()
+        );
     }
 }
 
-/// A register filled by the circle, its preview, and the tool that lags behind by 20 ms and is 20 um inside.
+/// A register filled by the circle, its preview, and the tool that lags behind by 20 ms and is 20
+/// um inside.
 pub(crate) struct Surroundings<const N: usize> {
     register: Register<N>,
     preview: Preview<N>,
@@ -140,7 +176,11 @@ impl<const N: usize> Surroundings<N> {
         preview.fill(&mut Circle, 0.299, 0.15);
         let mut tool: Knot<N> = Circle.knot(0.279);
         tool.position_mm[0] += 0.02 * tool.tangent[1];
-        Self { register, preview, tool_mm: tool.position_mm }
+        Self {
+            register,
+            preview,
+            tool_mm: tool.position_mm,
+        }
     }
 
     /// What the controller sees.
@@ -158,7 +198,10 @@ impl<const N: usize> Surroundings<N> {
     /// What is measured.
     pub(crate) fn measured(&self) -> Measured<N> {
         let contour: ContourError<N> = Estimator::default().estimate(&self.window(), self.tool_mm);
-        Measured { position_mm: self.tool_mm, contour }
+        Measured {
+            position_mm: self.tool_mm,
+            contour,
+        }
     }
 }
 

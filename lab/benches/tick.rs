@@ -1,4 +1,5 @@
-//! Times of what runs in the servo thread: `cargo bench -p feedwright-lab --bench tick`. The figures to look at are medians.
+//! Times of what runs in the servo thread: `cargo bench -p feedwright-lab --bench tick`. The
+//! figures to look at are medians.
 
 #![expect(clippy::unwrap_used, reason = "a bench may stop")]
 
@@ -52,12 +53,17 @@ fn forward_and_jacobian<const N: usize>(bencher: Bencher<'_, '_>) {
 #[divan::bench(consts = [2, 3])]
 fn back_propagation<const N: usize>(bencher: Bencher<'_, '_>) {
     let (mut net, inputs) = rig::network::<N>();
-    let error: [f64; N] = inputs.iter().map(|axis| axis[0]).collect::<Vec<_>>().try_into().unwrap();
+    let error: [f64; N] = inputs
+        .iter()
+        .map(|axis| axis[0])
+        .collect::<Vec<_>>()
+        .try_into()
+        .unwrap();
     bencher.bench_local(|| net.learn(black_box(&inputs), black_box(error), 0.01));
 }
 
-/// A servo period of the whole: reference, register, and in every tenth the contour error and the decision. The mean over
-/// whole feed periods.
+/// A servo period of the whole: reference, register, and in every tenth the contour error and the
+/// decision. The mean over whole feed periods.
 #[divan::bench(consts = [2, 3], sample_size = 1000)]
 fn servo_period<const N: usize>(bencher: Bencher<'_, '_>) {
     let mut rig = rig::Rig::<N, _>::new(rig::paper(), rig::Tool::OnThePath);

@@ -1,14 +1,18 @@
-//! The table of the time-optimal planner: for each program the bound, each path from rest to rest as a whole, the streaming planner and
-//! the model of LinuxCNC's planner in the same run; how much of each limit is used, sampled at 0.1 ms; the deviation; what planning takes.
+//! The table of the time-optimal planner: for each program the bound, each path from rest to rest
+//! as a whole, the streaming planner and the model of LinuxCNC's planner in the same run; how much
+//! of each limit is used, sampled at 0.1 ms; the deviation; what planning takes.
 //!
 //!     cargo run --release -p feedwright-lab --example bench_plan [PROGRAM.ngc...]
 //!
-//! Without arguments: parts/, and ../shared/planner where it is. All axes 200 mm/s, 2000 mm/s2, 50,000 mm/s3, tolerance 10 um. The motion
-//! alone: rests are left out of all times, and so are rapids that lead from the origin to a rest before the first cut. `bound` holds the
-//! tolerance at the nodes of the whole path only, `whole` everywhere. `blocks/s`, `x real`, `latest` and `MiB` are those of the planner alone on
-//! one core: `push` and `pop`, without reading and sampling, in processor time where the system tells it. `latest` is the 99.9th
-//! percentile, over all calls that committed motion, of the time of a call by the motion that it committed: below 0.5 the motion never
-//! waits for a planner that begins when half of it is left. `MiB` is the most memory that the planner has at a time.
+//! Without arguments: parts/, and ../shared/planner where it is. All axes 200 mm/s, 2000 mm/s2,
+//! 50,000 mm/s3, tolerance 10 um. The motion alone: rests are left out of all times, and so are
+//! rapids that lead from the origin to a rest before the first cut. `bound` holds the tolerance at
+//! the nodes of the whole path only, `whole` everywhere. `blocks/s`, `x real`, `latest` and `MiB`
+//! are those of the planner alone on one core: `push` and `pop`, without reading and sampling, in
+//! processor time where the system tells it. `latest` is the 99.9th percentile, over all calls that
+//! committed motion, of the time of a call by the motion that it committed: below 0.5 the motion
+//! never waits for a planner that begins when half of it is left. `MiB` is the most memory that the
+//! planner has at a time.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -16,7 +20,9 @@ use std::time::Instant;
 use feedwright::{CycleTimeOptions, cycle_time, cycle_time_by};
 use feedwright_gcode::{Reader, Settings};
 use feedwright_lab::limited_machine;
-use feedwright_plan::{Constraints, FeedPlanner, Piece, PlanCounts, Step, Steps, TimeOptimal, feed_planner};
+use feedwright_plan::{
+    Constraints, FeedPlanner, Piece, PlanCounts, Step, Steps, TimeOptimal, feed_planner,
+};
 use feedwright_sim::{Machine, Stages, path_steps};
 
 /// Programs of which only the motion of the first seconds by LinuxCNC counts.
@@ -45,20 +51,36 @@ fn row(program: &Path, machine: &Machine) -> Result<(), Box<dyn std::error::Erro
     let name = program.file_stem().unwrap_or_default().to_string_lossy();
     let constraints = Constraints::from(machine);
     let mut read: Vec<Step> =
-        path_steps(Reader::open(program, Settings::default())?.map_while(Result::ok)).map_while(Result::ok).collect();
+        path_steps(Reader::open(program, Settings::default())?.map_while(Result::ok))
+            .map_while(Result::ok)
+            .collect();
     leave_out_the_way_there(&mut read);
-    if let Some((_, until_s)) = BEGINNINGS_S.iter().find(|(beginning, _)| *beginning == name) {
+    if let Some((_, until_s)) = BEGINNINGS_S
+        .iter()
+        .find(|(beginning, _)| *beginning == name)
+    {
         leave_out_what_is_later(&mut read, &constraints, *until_s);
     }
     let steps = || Ok(Box::new(read.iter().cloned().map(Ok)) as Steps<'_>);
     let found = cycle_time(machine, true, steps, &())?;
-    let stages = Stages { planner: feed_planner("linuxcnc").ok_or("no linuxcnc")? };
-    let linuxcnc = cycle_time_by(stages, machine, &constraints, CycleTimeOptions::default(), steps, &())?;
+    let stages = Stages {
+        planner: feed_planner("linuxcnc").ok_or("no linuxcnc")?,
+    };
+    let linuxcnc = cycle_time_by(
+        stages,
+        machine,
+        &constraints,
+        CycleTimeOptions::default(),
+        steps,
+        &(),
+    )?;
     let whole_s = planned(&mut TimeOptimal::whole_within(&constraints), &read);
     let alone = Alone::of(&constraints, &read);
     let bound_s = found.bound_s.unwrap_or(f64::NAN);
     let time_s = found.cutting_s + found.rapid_s;
-    let PlanCounts { windows, failed, .. } = alone.counts;
+    let PlanCounts {
+        windows, failed, ..
+    } = alone.counts;
     println!(
         "| {name} | {} | {bound_s:.4} | {whole_s:.4} | {time_s:.4} | {:.4} | {:.4} | {:.7} | {:.3} | {:.3} | {:.0} | {:.1} | {:.3} | {:.1} \
          | {windows} | {failed} |",
@@ -78,8 +100,12 @@ fn row(program: &Path, machine: &Machine) -> Result<(), Box<dyn std::error::Erro
 
 /// Leaves out rapids before the first cut, where the tool rests between.
 fn leave_out_the_way_there(steps: &mut Vec<Step>) {
-    let cut = steps.iter().position(|step| matches!(step, Step::Piece(Piece { cutting: true, .. })));
-    let rest = steps[..cut.unwrap_or(0)].iter().rposition(|step| !matches!(step, Step::Piece(_)));
+    let cut = steps
+        .iter()
+        .position(|step| matches!(step, Step::Piece(Piece { cutting: true, .. })));
+    let rest = steps[..cut.unwrap_or(0)]
+        .iter()
+        .rposition(|step| !matches!(step, Step::Piece(_)));
     steps.drain(..rest.map_or(0, |rest| rest + 1));
 }
 
@@ -104,7 +130,11 @@ fn leave_out_what_is_later(steps: &mut Vec<Step>, constraints: &Constraints, unt
 }
 
 /// Gives a planner everything.
-fn push_all(planner: &mut dyn FeedPlanner, steps: &[Step], mut after: impl FnMut(&mut dyn FeedPlanner)) {
+fn push_all(
+    planner: &mut dyn FeedPlanner,
+    steps: &[Step],
+    mut after: impl FnMut(&mut dyn FeedPlanner),
+) {
     let mut from_rest = true;
     for step in steps {
         let Step::Piece(piece) = step else {
@@ -127,7 +157,9 @@ fn planned(planner: &mut dyn FeedPlanner, steps: &[Step]) -> f64 {
 }
 
 fn popped_s(planner: &mut dyn FeedPlanner) -> f64 {
-    std::iter::from_fn(|| planner.pop()).map(|span| span.duration_s).sum()
+    std::iter::from_fn(|| planner.pop())
+        .map(|span| span.duration_s)
+        .sum()
 }
 
 /// What the planner does, and nothing else.
@@ -144,7 +176,9 @@ impl Alone {
         let (begun, begun_s) = (Instant::now(), processor_s());
         let mut planner = TimeOptimal::new(constraints);
         let motion_s = planned(&mut planner, steps);
-        let used_s = processor_s().zip(begun_s).map(|(now_s, begun_s)| now_s - begun_s);
+        let used_s = processor_s()
+            .zip(begun_s)
+            .map(|(now_s, begun_s)| now_s - begun_s);
         let took_s = used_s.unwrap_or_else(|| begun.elapsed().as_secs_f64());
         // Once more for the time of each call: asking for it takes as long as most calls.
         let mut again = TimeOptimal::new(constraints);
@@ -154,7 +188,11 @@ impl Alone {
             let motion_s = popped_s(planner);
             let now_s = processor_s();
             if motion_s > 0.0 {
-                latenesses.extend(now_s.zip(before_s).map(|(now_s, before_s)| (now_s - before_s) / motion_s));
+                latenesses.extend(
+                    now_s
+                        .zip(before_s)
+                        .map(|(now_s, before_s)| (now_s - before_s) / motion_s),
+                );
             }
             before_s = now_s;
         });
@@ -164,7 +202,13 @@ impl Alone {
         let memory = allocation_counter::measure(|| {
             planned(&mut TimeOptimal::new(constraints), steps);
         });
-        Self { motion_s, took_s, latest, most_bytes: memory.bytes_max, counts: planner.counts() }
+        Self {
+            motion_s,
+            took_s,
+            latest,
+            most_bytes: memory.bytes_max,
+            counts: planner.counts(),
+        }
     }
 }
 
@@ -180,7 +224,9 @@ fn programs_in(folder: &Path) -> Vec<PathBuf> {
         eprintln!("no programs at {}", folder.display());
         return Vec::new();
     };
-    let mut found: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    let mut found: Vec<PathBuf> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .collect();
     found.retain(|path| path.extension().is_some_and(|extension| extension == "ngc"));
     found.sort();
     found

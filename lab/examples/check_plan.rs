@@ -1,12 +1,14 @@
-//! Checks plans by what they come to: positions every 0.1 ms, and nothing else of the planner. Velocity, acceleration and jerk are finite
-//! differences of them; the programmed path is laid out anew from the lines and arcs of the reader, as chords of 1e-5 mm.
+//! Checks plans by what they come to: positions every 0.1 ms, and nothing else of the planner.
+//! Velocity, acceleration and jerk are finite differences of them; the programmed path is laid out
+//! anew from the lines and arcs of the reader, as chords of 1e-5 mm.
 //!
 //!     cargo run --release -p feedwright-lab --example check_plan -- [--machine NAME] [--tolerance UM] [--bound] [--seed S --count N] [PROGRAM...]
 //!
-//! A row for each program, and the largest and median values behind them. `use` is the largest share of a limit; `off um` the largest
-//! distance of the plan from the path, `uncut um` of the path from the plan, `of it` the first over the tolerance there. Programs come from files, and from the generator of the sweeps
-//! with `--seed`. A long program is shortened to its first motions of 60 s. Programs that are not read, or have splines or rotary axes,
-//! are named and left out.
+//! A row for each program, and the largest and median values behind them. `use` is the largest
+//! share of a limit; `off um` the largest distance of the plan from the path, `uncut um` of the
+//! path from the plan, `of it` the first over the tolerance there. Programs come from files, and
+//! from the generator of the sweeps with `--seed`. A long program is shortened to its first motions
+//! of 60 s. Programs that are not read, or have splines or rotary axes, are named and left out.
 
 use std::path::PathBuf;
 use std::sync::mpsc;
@@ -24,7 +26,8 @@ const H: f64 = 1e-4;
 /// Distance of chords from their arc, mm.
 const CHORD_MM: f64 = 1e-5;
 
-/// Way along the path that the nearest point is looked for in, in tolerances, beside the way of a step.
+/// Way along the path that the nearest point is looked for in, in tolerances, beside the way of a
+/// step.
 const WINDOW: f64 = 20.0;
 
 /// Most motion of a program, s.
@@ -50,14 +53,25 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             "--count" => count = value()?.parse()?,
             path => {
                 let path = PathBuf::from(path);
-                let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-                programs.push((name, String::from_utf8_lossy(&std::fs::read(&path)?).into_owned()));
+                let name = path
+                    .file_name()
+                    .unwrap_or_default()
+                    .to_string_lossy()
+                    .into_owned();
+                programs.push((
+                    name,
+                    String::from_utf8_lossy(&std::fs::read(&path)?).into_owned(),
+                ));
             }
         }
     }
     if let Some(seed) = seed {
         let drawn = draw(seed, count, 1, Class::Any)?;
-        programs.extend(drawn.into_iter().map(|made| (made.job.program.name.clone(), made.text)));
+        programs.extend(
+            drawn
+                .into_iter()
+                .map(|made| (made.job.program.name.clone(), made.text)),
+        );
     }
     let machine = machine.planned_by_axes(tolerance_um);
     println!(
@@ -80,13 +94,23 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 fn summary(rows: &[Row]) {
     let of = |value: fn(&Row) -> f64| {
-        let mut values: Vec<f64> = rows.iter().map(value).filter(|value| value.is_finite()).collect();
+        let mut values: Vec<f64> = rows
+            .iter()
+            .map(value)
+            .filter(|value| value.is_finite())
+            .collect();
         values.sort_by(f64::total_cmp);
-        (values.get(values.len() / 2).copied().unwrap_or(f64::NAN), values)
+        (
+            values.get(values.len() / 2).copied().unwrap_or(f64::NAN),
+            values,
+        )
     };
     println!("\n{} programs; median, smallest and largest:", rows.len());
     for (name, value) in [
-        ("time / bound", (|row| row.time_s / row.bound_s) as fn(&Row) -> f64),
+        (
+            "time / bound",
+            (|row| row.time_s / row.bound_s) as fn(&Row) -> f64,
+        ),
         ("use of a limit", |row| row.used),
         ("off, um", |row| 1e3 * row.off_mm),
         ("off / tolerance", |row| row.off_share),
@@ -96,7 +120,12 @@ fn summary(rows: &[Row]) {
     ] {
         let (median, values) = of(value);
         let ends = [values.first(), values.last()].map(|end| end.copied().unwrap_or(f64::NAN));
-        println!("{name:<16} {median:>12.5} {:>12.5} {:>12.5}   ({} of them)", ends[0], ends[1], values.len());
+        println!(
+            "{name:<16} {median:>12.5} {:>12.5} {:>12.5}   ({} of them)",
+            ends[0],
+            ends[1],
+            values.len()
+        );
     }
 }
 
@@ -115,7 +144,12 @@ struct Row {
 }
 
 impl Row {
-    fn of(name: &str, text: &str, machine: &Machine, bound: bool) -> Result<Self, Box<dyn std::error::Error>> {
+    fn of(
+        name: &str,
+        text: &str,
+        machine: &Machine,
+        bound: bool,
+    ) -> Result<Self, Box<dyn std::error::Error>> {
         let mut canon = Vec::new();
         for step in Reader::from_text(name, text, Settings::default())? {
             canon.push(step?);
@@ -126,20 +160,51 @@ impl Row {
         let steps = || path_steps(canon.clone());
         let begun = Instant::now();
         let planner = Stages::of(machine).planner;
-        let phases: Vec<Phase> =
-            Plan::new(steps(), &constraints, planner, Plc::default())?.filter_map(|planned| moving(&planned)).collect();
+        let phases: Vec<Phase> = Plan::new(steps(), &constraints, planner, Plc::default())?
+            .filter_map(|planned| moving(&planned))
+            .collect();
         let took_s = begun.elapsed().as_secs_f64();
         let time_s = phases.iter().map(|phase| phase.duration_s).sum();
-        let bound_s = if bound { bound_s(canon.clone(), machine) } else { f64::NAN };
+        let bound_s = if bound {
+            bound_s(canon.clone(), machine)
+        } else {
+            f64::NAN
+        };
         let mut ruler = Ruler::new(&path, &constraints);
         runs(&phases, |positions| ruler.run(positions));
         let uncut_mm = ruler.uncut_mm();
-        let Ruler { used, limit, off_mm, off_share, .. } = ruler;
-        Ok(Self { motions, time_s, bound_s, used, limit, off_mm, off_share, uncut_mm, took_s })
+        let Ruler {
+            used,
+            limit,
+            off_mm,
+            off_share,
+            ..
+        } = ruler;
+        Ok(Self {
+            motions,
+            time_s,
+            bound_s,
+            used,
+            limit,
+            off_mm,
+            off_share,
+            uncut_mm,
+            took_s,
+        })
     }
 
     fn print(&self, name: &str) {
-        let Self { motions, time_s, bound_s, used, limit, off_mm, off_share, uncut_mm, took_s } = self;
+        let Self {
+            motions,
+            time_s,
+            bound_s,
+            used,
+            limit,
+            off_mm,
+            off_share,
+            uncut_mm,
+            took_s,
+        } = self;
         println!(
             "| {name} | {motions} | {time_s:.3} | {:.4} | {used:.6} | {limit} | {:.3} | {off_share:.4} | {:.3} | {:.1} | {:.0} |",
             time_s / bound_s,
@@ -163,12 +228,17 @@ fn shortened(canon: &mut Vec<Canon>, constraints: &Constraints) -> Result<usize,
     let (mut time_s, mut motions) = (0.0, 0);
     let mut until = canon.len();
     for (i, step) in canon.iter().enumerate() {
-        let Canon::Motion(motion) = step else { continue };
+        let Canon::Motion(motion) = step else {
+            continue;
+        };
         if motion.others.axes.is_some() {
             return Err("rotary axes");
         }
         motions += 1;
-        let chord = (0..3).map(|k| (motion.end_mm[k] - motion.start_mm[k]).powi(2)).sum::<f64>().sqrt();
+        let chord = (0..3)
+            .map(|k| (motion.end_mm[k] - motion.start_mm[k]).powi(2))
+            .sum::<f64>()
+            .sqrt();
         time_s += chord / allowed_mm_s(motion, constraints);
         if time_s > MOST_S {
             until = i + 1;
@@ -176,7 +246,11 @@ fn shortened(canon: &mut Vec<Canon>, constraints: &Constraints) -> Result<usize,
         }
     }
     canon.truncate(until);
-    if motions == 0 { Err("no motion") } else { Ok(motions) }
+    if motions == 0 {
+        Err("no motion")
+    } else {
+        Ok(motions)
+    }
 }
 
 fn allowed_mm_s(motion: &Motion, constraints: &Constraints) -> f64 {
@@ -192,8 +266,17 @@ fn bound_s(canon: Vec<Canon>, machine: &Machine) -> f64 {
     let machine = machine.clone();
     std::thread::spawn(move || {
         let constraints = Constraints::from(&machine);
-        let plan = Plan::new(path_steps(canon), &constraints, &WHOLE_PROGRAM, Plc::default());
-        let time_s = plan.map(|plan| plan.filter_map(|planned| moving(&planned)).map(|phase| phase.duration_s).sum());
+        let plan = Plan::new(
+            path_steps(canon),
+            &constraints,
+            &WHOLE_PROGRAM,
+            Plc::default(),
+        );
+        let time_s = plan.map(|plan| {
+            plan.filter_map(|planned| moving(&planned))
+                .map(|phase| phase.duration_s)
+                .sum()
+        });
         // The other end is gone where the time was over.
         let _ = sender.send(time_s.unwrap_or(f64::NAN));
     });
@@ -235,16 +318,27 @@ struct WantedPath {
 
 impl WantedPath {
     fn of(canon: &[Canon]) -> Result<Self, &'static str> {
-        let mut path = Self { points: Vec::new(), at_mm: Vec::new(), motion: Vec::new(), motions: Vec::new() };
+        let mut path = Self {
+            points: Vec::new(),
+            at_mm: Vec::new(),
+            motion: Vec::new(),
+            motions: Vec::new(),
+        };
         for step in canon {
-            let Canon::Motion(motion) = step else { continue };
+            let Canon::Motion(motion) = step else {
+                continue;
+            };
             let number = path.motions.len();
             if path.points.is_empty() {
                 path.push(motion.start_mm, number);
             }
             match &motion.shape {
                 Shape::Line => path.push(motion.end_mm, number),
-                Shape::Arc { plane, center_mm, turns } => path.arc(motion, plane.axes(), *center_mm, *turns, number),
+                Shape::Arc {
+                    plane,
+                    center_mm,
+                    turns,
+                } => path.arc(motion, plane.axes(), *center_mm, *turns, number),
                 Shape::Spline(_) => return Err("a spline"),
             }
             let tolerance_mm = match motion.corner {
@@ -257,13 +351,24 @@ impl WantedPath {
     }
 
     fn push(&mut self, point: Point, motion: usize) {
-        let way = self.points.last().map_or(0.0, |last| distance(*last, point));
-        self.at_mm.push(self.at_mm.last().copied().unwrap_or(0.0) + way);
+        let way = self
+            .points
+            .last()
+            .map_or(0.0, |last| distance(*last, point));
+        self.at_mm
+            .push(self.at_mm.last().copied().unwrap_or(0.0) + way);
         self.points.push(point);
         self.motion.push(motion);
     }
 
-    fn arc(&mut self, motion: &Motion, [a, b, n]: [usize; 3], center: Point, turns: i32, number: usize) {
+    fn arc(
+        &mut self,
+        motion: &Motion,
+        [a, b, n]: [usize; 3],
+        center: Point,
+        turns: i32,
+        number: usize,
+    ) {
         let polar = |point: Point| {
             let [x, y] = [point[a] - center[a], point[b] - center[b]];
             (x.hypot(y), y.atan2(x))
@@ -277,7 +382,9 @@ impl WantedPath {
             angle = full;
         }
         angle += full * f64::from(turns.abs() - 1);
-        let count = (angle * (r0.max(r1) / (8.0 * CHORD_MM)).sqrt()).ceil().max(1.0);
+        let count = (angle * (r0.max(r1) / (8.0 * CHORD_MM)).sqrt())
+            .ceil()
+            .max(1.0);
         for i in 1..count as u32 {
             let part = f64::from(i) / count;
             let (r, turned) = (r0 + part * (r1 - r0), from + sense * part * angle);
@@ -336,35 +443,64 @@ impl<'a> Ruler<'a> {
             feeds.push(self.place(pair[0], pair[1]));
         }
         for (pair, feed_mm_s) in positions.windows(2).zip(feeds) {
-            self.uses(distance(pair[0], pair[1]) / H / feed_mm_s, || "feedrate".to_owned());
+            self.uses(distance(pair[0], pair[1]) / H / feed_mm_s, || {
+                "feedrate".to_owned()
+            });
         }
         for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
-            let Some(limits) = self.constraints.axes.get(k).or(self.constraints.axes.last()).copied() else { return };
+            let Some(limits) = self
+                .constraints
+                .axes
+                .get(k)
+                .or(self.constraints.axes.last())
+                .copied()
+            else {
+                return;
+            };
             for w in positions.windows(4) {
                 let [p, q, r, s] = [w[0][k], w[1][k], w[2][k], w[3][k]];
-                self.uses((q - p).abs() / H / limits.velocity_mm_s, || format!("{name} velocity"));
-                self.uses((r - 2.0 * q + p).abs() / (H * H) / limits.accel_mm_s2, || format!("{name} acceleration"));
+                self.uses((q - p).abs() / H / limits.velocity_mm_s, || {
+                    format!("{name} velocity")
+                });
+                self.uses(
+                    (r - 2.0 * q + p).abs() / (H * H) / limits.accel_mm_s2,
+                    || format!("{name} acceleration"),
+                );
                 let jerk_mm_s3 = (s - 3.0 * r + 3.0 * q - p).abs() / (H * H * H);
                 self.uses(jerk_mm_s3 / limits.jerk_mm_s3, || format!("{name} jerk"));
             }
         }
     }
 
-    /// Finds a position on the path and records its distance from the path, and the distance of the path from the step behind it.
-    /// Returns the highest feedrate programmed within a tolerance of that place, mm/s.
+    /// Finds a position on the path and records its distance from the path, and the distance of the
+    /// path from the step behind it. Returns the highest feedrate programmed within a tolerance of
+    /// that place, mm/s.
     fn place(&mut self, point: Point, next: Point) -> f64 {
-        let WantedPath { points, at_mm, motion, motions } = self.path;
+        let WantedPath {
+            points,
+            at_mm,
+            motion,
+            motions,
+        } = self.path;
         let machine_mm = self.constraints.path_tolerance_mm.unwrap_or(0.01);
-        let tolerance_mm = |chord: usize| motions[motion[(chord + 1).min(motion.len() - 1)]].1.unwrap_or(machine_mm);
-        let window_mm = WINDOW * tolerance_mm(self.nearest).max(machine_mm) + 2.0 * distance(point, next);
+        let tolerance_mm = |chord: usize| {
+            motions[motion[(chord + 1).min(motion.len() - 1)]]
+                .1
+                .unwrap_or(machine_mm)
+        };
+        let window_mm =
+            WINDOW * tolerance_mm(self.nearest).max(machine_mm) + 2.0 * distance(point, next);
         let from_mm = self.at_mm;
-        let first = at_mm.partition_point(|at| *at < from_mm - window_mm).saturating_sub(1);
+        let first = at_mm
+            .partition_point(|at| *at < from_mm - window_mm)
+            .saturating_sub(1);
         let (mut least, mut places) = (f64::INFINITY, Vec::new());
         let mut i = first;
         while i + 1 < points.len() && at_mm[i] <= from_mm + window_mm {
             // Only what lies in the window: a long chord may pass near the tool elsewhere.
             let length = (at_mm[i + 1] - at_mm[i]).max(f64::MIN_POSITIVE);
-            let parts = [-1.0, 1.0].map(|side| ((from_mm + side * window_mm - at_mm[i]) / length).clamp(0.0, 1.0));
+            let parts = [-1.0, 1.0]
+                .map(|side| ((from_mm + side * window_mm - at_mm[i]) / length).clamp(0.0, 1.0));
             let (away, part) = from_segment(point, points[i], points[i + 1], parts);
             least = least.min(away);
             places.push((away, i, at_mm[i] + part * length));
@@ -372,19 +508,31 @@ impl<'a> Ruler<'a> {
             self.reached_mm[i] = self.reached_mm[i].min(reached);
             i += 1;
         }
-        // Where a path goes back on itself, several places are within the tolerance: the tool is where its way since the last place that
-        // was the only one leads to.
+        // Where a path goes back on itself, several places are within the tolerance: the tool is
+        // where its way since the last place that was the only one leads to.
         let near_mm = tolerance_mm(self.nearest);
         places.retain(|(away, ..)| *away <= least.max(near_mm));
         let expected = |(_, _, at): &(f64, usize, f64)| (at - from_mm).abs();
-        let Some(&(.., about)) = places.iter().min_by(|a, b| expected(a).total_cmp(&expected(b))) else {
+        let Some(&(.., about)) = places
+            .iter()
+            .min_by(|a, b| expected(a).total_cmp(&expected(b)))
+        else {
             return f64::INFINITY;
         };
         let step_mm = distance(point, next);
-        let is_there = |(.., at): &&(f64, usize, f64)| (at - about).abs() < 4.0 * (step_mm + near_mm);
-        let there = places.iter().filter(is_there).min_by(|a, b| a.0.total_cmp(&b.0));
+        let is_there =
+            |(.., at): &&(f64, usize, f64)| (at - about).abs() < 4.0 * (step_mm + near_mm);
+        let there = places
+            .iter()
+            .filter(is_there)
+            .min_by(|a, b| a.0.total_cmp(&b.0));
         let (_, nearest, at) = there.copied().unwrap_or((0.0, self.nearest, from_mm));
-        self.at_mm = step_mm + if places.iter().all(|place| is_there(&place)) { at } else { from_mm };
+        self.at_mm = step_mm
+            + if places.iter().all(|place| is_there(&place)) {
+                at
+            } else {
+                from_mm
+            };
         if let (Some(last), true) = (points.last(), i + 1 >= points.len()) {
             let (reached, _) = from_segment(*last, point, next, [0.0, 1.0]);
             let end = self.reached_mm.len() - 1;
@@ -395,10 +543,18 @@ impl<'a> Ruler<'a> {
         let tolerance_mm = tolerance_mm(nearest);
         self.off_share = self.off_share.max(least / tolerance_mm);
         let [lo, hi] = [-1.0, 1.0].map(|side| {
-            let at = at_mm[nearest] + side * (4.0 * tolerance_mm + distance(points[nearest], point));
-            at_mm.partition_point(|place| *place < at).min(motion.len() - 1)
+            let at =
+                at_mm[nearest] + side * (4.0 * tolerance_mm + distance(points[nearest], point));
+            at_mm
+                .partition_point(|place| *place < at)
+                .min(motion.len() - 1)
         });
-        let feed = |i: usize| allowed_mm_s(&motions[motion[i.min(motion.len() - 1)]].0, self.constraints);
+        let feed = |i: usize| {
+            allowed_mm_s(
+                &motions[motion[i.min(motion.len() - 1)]].0,
+                self.constraints,
+            )
+        };
         (lo..=hi + 1).map(feed).fold(0.0, f64::max)
     }
 
@@ -416,6 +572,13 @@ fn from_segment(point: Point, a: Point, b: Point, [first, last]: [f64; 2]) -> (f
     let along: [f64; 3] = std::array::from_fn(|k| b[k] - a[k]);
     let square: f64 = along.iter().map(|part| part * part).sum();
     let dot: f64 = (0..3).map(|k| along[k] * (point[k] - a[k])).sum();
-    let part = if square > 0.0 { (dot / square).clamp(first, last) } else { first };
-    (distance(point, std::array::from_fn(|k| a[k] + part * along[k])), part)
+    let part = if square > 0.0 {
+        (dot / square).clamp(first, last)
+    } else {
+        first
+    };
+    (
+        distance(point, std::array::from_fn(|k| a[k] + part * along[k])),
+        part,
+    )
 }

@@ -1,5 +1,6 @@
-//! Draws the seeds of the held-out work of `feedwright-lab compare --work held-out` anew and records them:
-//! `cargo run --release -p feedwright-lab --example draw_held_out`, when all settings are final.
+//! Draws the seeds of the held-out work of `feedwright-lab compare --work held-out` anew and
+//! records them: `cargo run --release -p feedwright-lab --example draw_held_out`, when all settings
+//! are final.
 
 use std::error::Error;
 use std::hash::{BuildHasher, RandomState};
@@ -17,7 +18,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let first = RandomState::new().hash_one(&date) % SEEDS;
     let seeds = HeldOutSeeds::draw(first, date)?;
     let text = serde_json::to_string_pretty(&seeds)? + "\n";
-    std::fs::write(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/compare/held_out_seeds.json"), &text)?;
+    std::fs::write(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("src/compare/held_out_seeds.json"),
+        &text,
+    )?;
     print!("{text}");
     Ok(())
 }

@@ -1,10 +1,13 @@
-//! Speed alone on a fixed path, beside `time-optimal`, which may leave the path within a tolerance: the second table of `just bench-plan`.
+//! Speed alone on a fixed path, beside `time-optimal`, which may leave the path within a tolerance:
+//! the second table of `just bench-plan`.
 //!
 //!     cargo run --release -p feedwright-lab --features copp --example fixed_path_peer [CONTOUR...]
 //!
-//! The peer is `copp` (Wang and others, MIT): TOPP3-SOCP, linearised about TOPP2-RA first, then about its own last solution, the best of three such
-//! rounds on 1001 stations that are evenly apart. It has contours of one smooth curve only: a corner or a joint has no derivatives. Each axis has
-//! 200 mm/s, 2000 mm/s2 and 50,000 mm/s3. `jerk` is the largest of the third differences of its motion every millisecond, as a part of the limit.
+//! The peer is `copp` (Wang and others, MIT): TOPP3-SOCP, linearised about TOPP2-RA first, then
+//! about its own last solution, the best of three such rounds on 1001 stations that are evenly
+//! apart. It has contours of one smooth curve only: a corner or a joint has no derivatives. Each
+//! axis has 200 mm/s, 2000 mm/s2 and 50,000 mm/s3. `jerk` is the largest of the third differences
+//! of its motion every millisecond, as a part of the limit.
 
 use std::time::Instant;
 
@@ -12,19 +15,23 @@ use copp::InterpolationMode;
 use copp::path::{Jet3, Path};
 use copp::robot::Robot;
 use copp::solver::topp2_ra::{ReachSet2OptionsBuilder, Topp2ProblemBuilder, topp2_ra};
-use copp::solver::topp3_socp::{ClarabelOptionsBuilder, Topp3ProblemBuilder, s_to_t_topp3, t_to_s_topp3, topp3_socp};
+use copp::solver::topp3_socp::{
+    ClarabelOptionsBuilder, Topp3ProblemBuilder, s_to_t_topp3, t_to_s_topp3, topp3_socp,
+};
 use feedwright::cycle_time_within;
 use feedwright_gcode::canon::Corner;
 use feedwright_lab::{AXIS_LIMITS as LIMITS, contour, limited_machine};
 use feedwright_plan::{Constraints, Curve, Step, Steps};
 
-/// Contours of one smooth curve. Of the butterfly, with its tips between stations, the peer makes a motion that leaps there.
+/// Contours of one smooth curve. Of the butterfly, with its tips between stations, the peer makes a
+/// motion that leaps there.
 const CONTOURS: [&str; 4] = ["circle", "ellipse", "eight", "star"];
 
 const STATIONS: usize = 1001;
 const ROUNDS: u32 = 3;
 
-/// Least square of the speed that it is linearised about, (mm/s)^2: rounding makes some of its squares negative.
+/// Least square of the speed that it is linearised about, (mm/s)^2: rounding makes some of its
+/// squares negative.
 const LEAST_SQUARE: f64 = 1e-6;
 
 /// Axes that move.
@@ -51,7 +58,9 @@ fn main() -> Result<(), Failure> {
     if names.is_empty() {
         names = CONTOURS.map(str::to_owned).to_vec();
     }
-    println!("| Contour | copp s | jerk | took s | within 1 um s | took s | within 10 um s | took s | / copp |");
+    println!(
+        "| Contour | copp s | jerk | took s | within 1 um s | took s | within 10 um s | took s | / copp |"
+    );
     println!("|---|{}", "--:|".repeat(8));
     for name in &names {
         let peer = peer(&curve_of(name)?)?;
@@ -82,15 +91,22 @@ fn ours(name: &str, tolerance_um: f64) -> Result<(f64, f64), Failure> {
 }
 
 fn contour_steps(name: &str) -> Result<Vec<Step>, Failure> {
-    let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
-    Ok(contour(name).ok_or_else(|| format!("there is no contour {name}"))?.steps(LIMITS[0], corner)?)
+    let corner = Corner::Continuous {
+        tolerance_mm: None,
+        merge_mm: None,
+    };
+    Ok(contour(name)
+        .ok_or_else(|| format!("there is no contour {name}"))?
+        .steps(LIMITS[0], corner)?)
 }
 
 fn curve_of(name: &str) -> Result<Curve, Failure> {
-    let mut curves = contour_steps(name)?.into_iter().filter_map(|step| match step {
-        Step::Piece(piece) => Some(piece.curve),
-        _ => None,
-    });
+    let mut curves = contour_steps(name)?
+        .into_iter()
+        .filter_map(|step| match step {
+            Step::Piece(piece) => Some(piece.curve),
+            _ => None,
+        });
     match (curves.next(), curves.next()) {
         (Some(curve), None) => Ok(curve),
         _ => Err(format!("{name} is not one smooth curve").into()),
@@ -117,33 +133,50 @@ fn peer(curve: &Curve) -> Result<PeerPlan, Failure> {
     };
     robot.constraints.amax_substitute(&about, 0)?;
     about = between_rests(&about);
-    let options = ClarabelOptionsBuilder::new().allow_almost_solved(true).build()?;
+    let options = ClarabelOptionsBuilder::new()
+        .allow_almost_solved(true)
+        .build()?;
     let mut best: Option<(f64, Vec<f64>)> = None;
     for _ in 0..ROUNDS {
-        let problem =
-            Topp3ProblemBuilder::new(&mut robot, 0, &about, (0.0, 0.0), (0.0, 0.0)).build_with_linearization()?;
+        let problem = Topp3ProblemBuilder::new(&mut robot, 0, &about, (0.0, 0.0), (0.0, 0.0))
+            .build_with_linearization()?;
         let profile = topp3_socp(&problem, &options)?;
         let (time_s, times_s) = s_to_t_topp3(&stations_mm, profile.as_parts(), 0.0)?;
         if best.as_ref().is_none_or(|(best_s, _)| time_s < *best_s) {
             let grid = InterpolationMode::UniformTimeGrid(0.0, SAMPLE_S, true);
-            best = Some((time_s, t_to_s_topp3(&stations_mm, profile.as_parts(), &times_s, grid)?));
+            best = Some((
+                time_s,
+                t_to_s_topp3(&stations_mm, profile.as_parts(), &times_s, grid)?,
+            ));
         }
         about = between_rests(&profile.a);
     }
     let took_s = begun.elapsed().as_secs_f64();
     let (time_s, places_mm) = best.ok_or("no round came to a solution")?;
-    Ok(PeerPlan { time_s, jerk: largest_jerk(curve, &places_mm) / LIMITS[2], took_s })
+    Ok(PeerPlan {
+        time_s,
+        jerk: largest_jerk(curve, &places_mm) / LIMITS[2],
+        took_s,
+    })
 }
 
 /// Squares of speeds to linearise about: at rest at the ends alone.
 fn between_rests(squares: &[f64]) -> Vec<f64> {
     let last = squares.len() - 1;
-    let least = |(i, a): (usize, &f64)| if i == 0 || i == last { a.max(0.0) } else { a.max(LEAST_SQUARE) };
+    let least = |(i, a): (usize, &f64)| {
+        if i == 0 || i == last {
+            a.max(0.0)
+        } else {
+            a.max(LEAST_SQUARE)
+        }
+    };
     squares.iter().enumerate().map(least).collect()
 }
 
 fn stations(length_mm: f64) -> Vec<f64> {
-    (0..STATIONS).map(|i| length_mm * i as f64 / (STATIONS - 1) as f64).collect()
+    (0..STATIONS)
+        .map(|i| length_mm * i as f64 / (STATIONS - 1) as f64)
+        .collect()
 }
 
 /// Each axis and its derivatives by arc length.
@@ -160,10 +193,14 @@ fn axes_at(curve: &Curve, s: Jet3) -> Vec<Jet3> {
 
 /// Largest third difference of an axis, mm/s3; the last samples are not evenly apart.
 fn largest_jerk(curve: &Curve, places_mm: &[f64]) -> f64 {
-    let points: Vec<_> = places_mm.iter().map(|&s_mm| curve.at(s_mm).position_mm).collect();
+    let points: Vec<_> = places_mm
+        .iter()
+        .map(|&s_mm| curve.at(s_mm).position_mm)
+        .collect();
     let even = &points[..points.len().saturating_sub(1)];
-    let jerks = even
-        .windows(4)
-        .flat_map(|p| (0..AXES).map(|k| (p[3][k] - 3.0 * p[2][k] + 3.0 * p[1][k] - p[0][k]).abs() / SAMPLE_S.powi(3)));
+    let jerks = even.windows(4).flat_map(|p| {
+        (0..AXES)
+            .map(|k| (p[3][k] - 3.0 * p[2][k] + 3.0 * p[1][k] - p[0][k]).abs() / SAMPLE_S.powi(3))
+    });
     jerks.fold(0.0, f64::max)
 }

@@ -1,13 +1,15 @@
-//! What the paper's identifier learns, and what the machine does: the numbers of examples/01_paper_circle.
+//! What the paper's identifier learns, and what the machine does: the numbers of
+//! examples/01_paper_circle.
 //!
-//! Prints the effect of the feedrate on the contour error as the simulated machine has it, then as networks have learnt it from
-//! several training programmes, and what the two-dimensional controller makes of each on the circle of eq. 11.
+//! Prints the effect of the feedrate on the contour error as the simulated machine has it, then as
+//! networks have learnt it from several training programmes, and what the two-dimensional
+//! controller makes of each on the circle of eq. 11.
 
 use feedwright::Statistics;
 use feedwright_control::vector::{add_scaled, dot, scale, sub};
 use feedwright_control::{
-    Command, ContourIdentifier, Controller, Delays, ERROR_SCALE_MM, FEED_SCALE_MM_S, Gradient, INPUTS, Inputs,
-    InvertingSettings, Measured, Schedule, TwoDimensional, Window, seen_feed,
+    Command, ContourIdentifier, Controller, Delays, ERROR_SCALE_MM, FEED_SCALE_MM_S, Gradient,
+    INPUTS, Inputs, InvertingSettings, Measured, Schedule, TwoDimensional, Window, seen_feed,
 };
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use feedwright_ident::{Excitation, Training, train_contour};
@@ -26,7 +28,8 @@ const SHOWN: usize = 5;
 /// Step of the difference quotients, scaled units.
 const STEP: f64 = 1e-5;
 
-/// Uncorrected, but for one step of the offset across the path; keeps what an identifier would have seen.
+/// Uncorrected, but for one step of the offset across the path; keeps what an identifier would have
+/// seen.
 #[derive(Default)]
 struct Observer {
     kick_at: Option<usize>,
@@ -40,7 +43,10 @@ struct Observer {
 
 impl Controller<2> for Observer {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: 10, preview: 0 }
+        Schedule {
+            servo_periods: 10,
+            preview: 0,
+        }
     }
 
     fn reset(&mut self) {}
@@ -70,20 +76,32 @@ fn cut(machine: &Machine, controller: &mut dyn Controller<2>, sinks: &mut [&mut 
         kind: MotionKind::Feed,
         start_mm: [0.0; 3],
         end_mm: [0.0; 3],
-        shape: Shape::Arc { plane: Plane::Xy, center_mm: [RADIUS_MM, 0.0, 0.0], turns: -1 },
+        shape: Shape::Arc {
+            plane: Plane::Xy,
+            center_mm: [RADIUS_MM, 0.0, 0.0],
+            turns: -1,
+        },
         feed_mm_s: FEED_MM_S,
         corner: Corner::ExactStop,
         others: AuxiliaryAxes::default(),
     };
     Run::on(machine)
-        .cut(|| Ok(path_steps([Canon::Motion(motion.clone())])), controller, sinks)
+        .cut(
+            || Ok(path_steps([Canon::Motion(motion.clone())])),
+            controller,
+            sinks,
+        )
         .expect("a circle on a machine that was checked, sinks in memory");
 }
 
-/// d eps / d F of the machine, across the path, at the end of the feed period of F and of those after it; scaled.
+/// d eps / d F of the machine, across the path, at the end of the feed period of F and of those
+/// after it; scaled.
 fn effect_on_the_machine(machine: &Machine, plain: &Observer) -> [f64; SHOWN] {
     let at = FULL_FEED.start;
-    let mut kicked = Observer { kick_at: Some(at), ..Observer::default() };
+    let mut kicked = Observer {
+        kick_at: Some(at),
+        ..Observer::default()
+    };
     cut(machine, &mut kicked, &mut []);
     let feed = KICK_MM / (10.0 * machine.period.servo_s) / FEED_SCALE_MM_S;
     std::array::from_fn(|i| {
@@ -92,7 +110,8 @@ fn effect_on_the_machine(machine: &Machine, plain: &Observer) -> [f64; SHOWN] {
     })
 }
 
-/// d eps_a / d input of the same axis as a network has learnt it, mean over both axes and the circle at full feed.
+/// d eps_a / d input of the same axis as a network has learnt it, mean over both axes and the
+/// circle at full feed.
 fn effect_as_learnt(net: &ContourIdentifier<2>, plain: &Observer) -> [f64; INPUTS] {
     let samples = &plain.inputs[FULL_FEED];
     std::array::from_fn(|input| {
@@ -102,7 +121,8 @@ fn effect_as_learnt(net: &ContourIdentifier<2>, plain: &Observer) -> [f64; INPUT
                 let (mut up, mut down) = (*sample, *sample);
                 up[axis][input] += STEP;
                 down[axis][input] -= STEP;
-                sum += (net.predict(&up).error[axis] - net.predict(&down).error[axis]) / (2.0 * STEP);
+                sum +=
+                    (net.predict(&up).error[axis] - net.predict(&down).error[axis]) / (2.0 * STEP);
             }
         }
         sum / (2 * samples.len()) as f64
@@ -113,7 +133,11 @@ fn errors(machine: &Machine, net: &ContourIdentifier<2>, gradient: Gradient) -> 
     let mut settings = InvertingSettings::DEFAULT;
     settings.inversion.gradient = gradient;
     let mut statistics = Statistics::new();
-    cut(machine, &mut TwoDimensional::untried(net.clone(), settings), &mut [&mut statistics]);
+    cut(
+        machine,
+        &mut TwoDimensional::untried(net.clone(), settings),
+        &mut [&mut statistics],
+    );
     format!("{:.1} / {:.1}", statistics.rms_um(), statistics.max_um())
 }
 
@@ -126,8 +150,20 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let paper = Excitation::paper();
     let programmes = [
         ("one sense, with offsets", paper.clone()),
-        ("both senses, with offsets", Excitation { turns: vec![-1, 1], ..paper.clone() }),
-        ("one sense, no offsets", Excitation { offset_mm: 0.0, ..paper }),
+        (
+            "both senses, with offsets",
+            Excitation {
+                turns: vec![-1, 1],
+                ..paper.clone()
+            },
+        ),
+        (
+            "one sense, no offsets",
+            Excitation {
+                offset_mm: 0.0,
+                ..paper
+            },
+        ),
     ];
     println!("| training | seed | fit | F(k) | F(k-1) | F(k-2) | sum | `printed` | `exact` |");
     println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|");

@@ -1,6 +1,8 @@
-//! `identification_figure LOG FIT SCORE SHOWN FILE.svg`: the first axis of a log, as measured and as predicted by its law and by a linear model.
+//! `identification_figure LOG FIT SCORE SHOWN FILE.svg`: the first axis of a log, as measured and
+//! as predicted by its law and by a linear model.
 //!
-//! Times are written FROM:TO, s: those that are fitted, those that are scored, and those of the latter that the figure shows.
+//! Times are written FROM:TO, s: those that are fitted, those that are scored, and those of the
+//! latter that the figure shows.
 
 use std::ops::Range;
 use std::path::Path;
@@ -20,7 +22,10 @@ fn main() -> Result<(), Failure> {
     let [log, fit, score, shown, out] = &arguments[..] else {
         return Err("LOG FIT SCORE SHOWN FILE.svg are needed".into());
     };
-    let job = LogJob { times_s: Some([times(fit)?, times(score)?]), ..LogJob::default() };
+    let job = LogJob {
+        times_s: Some([times(fit)?, times(score)?]),
+        ..LogJob::default()
+    };
     let found = job.run(Log::read(Path::new(log), &Columns::default())?, &())?;
     std::fs::write(out, following_figure(&found, 0, times(shown)?).to_svg())?;
     Ok(())

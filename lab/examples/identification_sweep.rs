@@ -3,7 +3,8 @@
 //!
 //! Prints, for each machine, the errors of the identified products, how often 90 % intervals
 //! contain the true value, and the prediction error after 100 ms. The first argument is the number
-//! of logs per machine, or a range of them. Each log has its own noise and its own phase of the disturbance.
+//! of logs per machine, or a range of them. Each log has its own noise and its own phase of the
+//! disturbance.
 //!
 //!     cargo run --release -p feedwright-lab --example identification_sweep -- 11-12 tnv40 workshop stiff router
 
@@ -13,7 +14,9 @@ use feedwright::LogJob;
 use feedwright_control::Uncorrected;
 use feedwright_gcode::canon::Canon;
 use feedwright_gcode::{Reader, Settings};
-use feedwright_ident::{AxisFacts, ExciteOptions, FoundAxis, LawTerm, LawVerdict, excitation_program};
+use feedwright_ident::{
+    AxisFacts, ExciteOptions, FoundAxis, LawTerm, LawVerdict, excitation_program,
+};
 use feedwright_sim::{Axis, Machine, Row, Run, Sink, path_steps};
 
 #[path = "../../crates/ident/tests/common/identification_log.rs"]
@@ -35,7 +38,10 @@ struct Commands([Vec<f64>; 2]);
 
 impl Sink for Commands {
     fn row(&mut self, row: &Row) -> std::io::Result<()> {
-        self.0.iter_mut().zip(row.cmd_mm).for_each(|(commands, mm)| commands.push(mm));
+        self.0
+            .iter_mut()
+            .zip(row.cmd_mm)
+            .for_each(|(commands, mm)| commands.push(mm));
         Ok(())
     }
 }
@@ -49,7 +55,11 @@ fn excited(machine: &Machine) -> Result<[Vec<f64>; 2], Failure> {
         .collect::<Result<_, _>>()
         .map_err(|error| format!("{error:?}"))?;
     let mut commands = Commands::default();
-    Run::on(&machine).cut::<2>(|| Ok(path_steps(canon.clone())), &mut Uncorrected, &mut [&mut commands])?;
+    Run::on(&machine).cut::<2>(
+        || Ok(path_steps(canon.clone())),
+        &mut Uncorrected,
+        &mut [&mut commands],
+    )?;
     Ok(commands.0)
 }
 
@@ -58,8 +68,14 @@ fn products(axis: &Axis) -> [(&'static str, f64); 4] {
     let j = axis.inertia_kg_m2;
     [
         ("kp_kv_over_j_1_s2", axis.kp_1_s * axis.kv_nm_s_per_rad / j),
-        ("kv_plus_b_over_j_1_s", (axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) / j),
-        ("fc_over_j_mm_s2", axis.coulomb_friction_nm / j / axis.rad_per_mm()),
+        (
+            "kv_plus_b_over_j_1_s",
+            (axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) / j,
+        ),
+        (
+            "fc_over_j_mm_s2",
+            axis.coulomb_friction_nm / j / axis.rad_per_mm(),
+        ),
         ("velocity_feedforward", axis.velocity_feedforward),
     ]
 }
@@ -77,7 +93,13 @@ struct Seen {
 
 impl Seen {
     fn add(&mut self, found: &FoundAxis, (key, is): (&str, f64)) {
-        let Some(number) = found.numbers().into_iter().find(|number| number.key == key && is != 0.0) else { return };
+        let Some(number) = found
+            .numbers()
+            .into_iter()
+            .find(|number| number.key == key && is != 0.0)
+        else {
+            return;
+        };
         let off = number.value / is - 1.0;
         let [low, high] = number.interval.unwrap_or([f64::NAN; 2]);
         self.largest = self.largest.max(off.abs());
@@ -114,21 +136,45 @@ fn main() -> Result<(), Failure> {
         for seed in first..=last {
             let log = identification_log::logged(&machine, commands.clone(), STEP_UM, seed);
             // The log has commands and positions of the same moments.
-            let facts = AxisFacts { record_delay_s: Some(0.0), ..AxisFacts::default() };
-            let found = LogJob { facts, ..LogJob::default() }.run(log, &())?;
+            let facts = AxisFacts {
+                record_delay_s: Some(0.0),
+                ..AxisFacts::default()
+            };
+            let found = LogJob {
+                facts,
+                ..LogJob::default()
+            }
+            .run(log, &())?;
             for (axis, is) in found.machine.axes.iter().zip(&machine.axes) {
                 worst_um = worst_um.max(axis.scores.grey_box.at_um[2]);
                 opened += u32::from(axis.unseen.is_open());
                 holds += u32::from(LawVerdict::of(axis) == LawVerdict::LawHolds);
-                for term in axis.terms.iter().filter(|term| **term > LawTerm::RecordDelay) {
+                for term in axis
+                    .terms
+                    .iter()
+                    .filter(|term| **term > LawTerm::RecordDelay)
+                {
                     *beside.entry(term.key()).or_insert(0) += 1;
                 }
-                seen.iter_mut().zip(products(is)).for_each(|(seen, product)| seen.add(axis, product));
+                seen.iter_mut()
+                    .zip(products(is))
+                    .for_each(|(seen, product)| seen.add(axis, product));
             }
         }
         let products = products(&machine.axes[0]);
-        for ((key, _), seen) in products.iter().zip(seen).filter(|(_, seen)| seen.logs > 0.0) {
-            let Seen { largest, mean, square, half, held, logs } = seen;
+        for ((key, _), seen) in products
+            .iter()
+            .zip(seen)
+            .filter(|(_, seen)| seen.logs > 0.0)
+        {
+            let Seen {
+                largest,
+                mean,
+                square,
+                half,
+                held,
+                logs,
+            } = seen;
             println!(
                 "{name:<8} {key:<22} {:7.3} {:6.3} {:6.3} {:6.3} {:6.0} | {worst_um:5.2} {beside:?} {:.1} s, holds {holds}, open {opened}",
                 100.0 * largest,

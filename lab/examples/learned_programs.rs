@@ -1,12 +1,13 @@
 //! What corrected programs deliver that learn from logs of the parts that were cut:
 //! `cargo run --release -p feedwright-lab --example learned_programs [OPTION...] [SEED [COUNT]]`.
 //!
-//! The machine that cuts is one of [`MACHINES`], with disturbance, noise and encoder steps. Its geometry has no errors: all errors are
-//! those that encoders see. In the machine file, position gain, speed-loop gain, inertia, friction, integral time and feedforward of
-//! each axis are up to 20 % off, drawn by the seed. With `--unknown` the machine also has effects that its file does not have: cogging,
-//! ripple and more friction at rest. With `--mistyped` one value of the file is wrong, by a factor of two. `--without-logs` leaves the
-//! last two rows out, and `--exact` corrects by files that count as exact. Each program is planned for
-//! `generic`.
+//! The machine that cuts is one of [`MACHINES`], with disturbance, noise and encoder steps. Its
+//! geometry has no errors: all errors are those that encoders see. In the machine file, position
+//! gain, speed-loop gain, inertia, friction, integral time and feedforward of each axis are up to
+//! 20 % off, drawn by the seed. With `--unknown` the machine also has effects that its file does
+//! not have: cogging, ripple and more friction at rest. With `--mistyped` one value of the file is
+//! wrong, by a factor of two. `--without-logs` leaves the last two rows out, and `--exact` corrects
+//! by files that count as exact. Each program is planned for `generic`.
 //!
 //! | Row | Program |
 //! |---|---|
@@ -15,16 +16,18 @@
 //! | one log | corrected by the file and the log of the original |
 //! | two logs | by the file, the log of the original, and the log of `one log` |
 //!
-//! A log is a CSV file that is read as `correct --log` reads it. A program that `correct` does not write is replaced by the one before.
-//! Ratios are those of `corrected_programs`: without the error that no program can remove. The last columns compare one more cut with
-//! the prediction.
+//! A log is a CSV file that is read as `correct --log` reads it. A program that `correct` does not
+//! write is replaced by the one before. Ratios are those of `corrected_programs`: without the error
+//! that no program can remove. The last columns compare one more cut with the prediction.
 
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use feedwright::{CorrectJob, CorrectOutcome, ExportedCut, MeasuredLog, PredictedCut, TARGETS, deterministic};
+use feedwright::{
+    CorrectJob, CorrectOutcome, ExportedCut, MeasuredLog, PredictedCut, TARGETS, deterministic,
+};
 use feedwright_control::Uncorrected;
 use feedwright_gcode::canon::{Event, EventKind};
 use feedwright_gcode::{Program, Reader, Settings};
@@ -57,7 +60,10 @@ struct Logged {
 
 impl Logged {
     fn log(&self, command_mm: [f64; 3]) {
-        self.rows.lock().unwrap_or_else(PoisonError::into_inner).push([command_mm, self.seen_mm]);
+        self.rows
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push([command_mm, self.seen_mm]);
     }
 }
 
@@ -70,7 +76,12 @@ impl Mechanism for Logged {
     }
 
     fn skip(&mut self, periods: u64) {
-        let last = self.rows.lock().unwrap_or_else(PoisonError::into_inner).last().copied();
+        let last = self
+            .rows
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .last()
+            .copied();
         (0..periods).for_each(|_| self.log(last.unwrap_or_default()[0]));
         self.plant.skip(periods);
     }
@@ -83,9 +94,17 @@ impl Mechanism for Logged {
 /// The machine as a file has it, without geometry.
 fn file(name: &str) -> Result<Machine, Box<dyn Error>> {
     let machine = Machine::load(name.as_ref())?;
-    let axis = |axis: &Axis| Axis { scale_um_m: 0.0, pitch_error_um: 0.0, ..*axis };
+    let axis = |axis: &Axis| Axis {
+        scale_um_m: 0.0,
+        pitch_error_um: 0.0,
+        ..*axis
+    };
     let axes = machine.axes.iter().map(axis).collect();
-    Ok(Machine { axes, geometry: Squareness::default(), ..machine })
+    Ok(Machine {
+        axes,
+        geometry: Squareness::default(),
+        ..machine
+    })
 }
 
 /// A machine that is not as its file.
@@ -106,7 +125,10 @@ fn drawn(file: &Machine, seed: u64) -> Machine {
         axis.stribeck_nm *= friction;
         axis
     };
-    Machine { axes: file.axes.iter().map(&mut axis).collect(), ..file.clone() }
+    Machine {
+        axes: file.axes.iter().map(&mut axis).collect(),
+        ..file.clone()
+    }
 }
 
 /// A file with one wrong value in one axis: twice or half of it.
@@ -141,7 +163,10 @@ fn with_unknown(machine: &Machine) -> Machine {
         stribeck_mm_s: 1.0,
         ..*axis
     };
-    Machine { axes: machine.axes.iter().map(axis).collect(), ..machine.clone() }
+    Machine {
+        axes: machine.axes.iter().map(axis).collect(),
+        ..machine.clone()
+    }
 }
 
 /// What is off.
@@ -154,7 +179,9 @@ enum Off {
 
 fn steps(text: &str) -> Vec<Step> {
     let reader = Reader::from_text("part.ngc", text, Settings::default()).expect("a program");
-    Pieces::new(reader.map_while(Result::ok)).map_while(Result::ok).collect()
+    Pieces::new(reader.map_while(Result::ok))
+        .map_while(Result::ok)
+        .collect()
 }
 
 /// Rest before a cut, s, so that the disturbance has the phase of that number.
@@ -170,8 +197,15 @@ fn log(
     folder: &Path,
 ) -> Result<MeasuredLog, Box<dyn Error + Send + Sync>> {
     let machine = machine.with_noise_seed(7000 + number);
-    let wait = Event { line: 0, kind: EventKind::Dwell { seconds: wait_s(&machine, number) } };
-    let program: Vec<Step> = std::iter::once(Step::Event(wait)).chain(program.iter().cloned()).collect();
+    let wait = Event {
+        line: 0,
+        kind: EventKind::Dwell {
+            seconds: wait_s(&machine, number),
+        },
+    };
+    let program: Vec<Step> = std::iter::once(Step::Event(wait))
+        .chain(program.iter().cloned())
+        .collect();
     let rows = Arc::new(Mutex::new(Vec::new()));
     let plant = |start_mm: [f64; 3], seed: u64| -> Box<dyn Mechanism> {
         Box::new(Logged {
@@ -180,19 +214,35 @@ fn log(
             rows: Arc::clone(&rows),
         })
     };
-    let run = Run::on(&machine).uncompensated().stages(TARGETS[0].stages(&machine)).plant(&plant);
+    let run = Run::on(&machine)
+        .uncompensated()
+        .stages(TARGETS[0].stages(&machine))
+        .plant(&plant);
     run.cut_steps::<2>(&program, &mut Uncorrected, &mut [])?;
     let mut text = "t_s,x_cmd_mm,x_act_mm,y_cmd_mm,y_act_mm\n".to_owned();
-    for (k, [command, seen]) in rows.lock().unwrap_or_else(PoisonError::into_inner).iter().enumerate() {
+    for (k, [command, seen]) in rows
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .iter()
+        .enumerate()
+    {
         let t_s = k as f64 * machine.period.servo_s;
-        writeln!(text, "{t_s:.6},{:.6},{:.6},{:.6},{:.6}", command[0], seen[0], command[1], seen[1])?;
+        writeln!(
+            text,
+            "{t_s:.6},{:.6},{:.6},{:.6},{:.6}",
+            command[0], seen[0], command[1], seen[1]
+        )?;
     }
     let path = folder.join(format!("cut{number}.csv"));
     std::fs::write(&path, text)?;
-    Ok(MeasuredLog { name: format!("cut{number}.csv"), log: Log::read(&path, &Columns::default())? })
+    Ok(MeasuredLog {
+        name: format!("cut{number}.csv"),
+        log: Log::read(&path, &Columns::default())?,
+    })
 }
 
-/// Errors of a program: mean RMS and largest, um; the part of them that no program removes; and the time, s.
+/// Errors of a program: mean RMS and largest, um; the part of them that no program removes; and the
+/// time, s.
 #[derive(Debug, Clone, Copy)]
 struct Errors {
     rms_um: f64,
@@ -206,8 +256,16 @@ struct Errors {
 fn errors(machine: &Machine, original: &[Step], program: &[Step]) -> Errors {
     let once = |machine: &Machine, number: u64| {
         let stages = TARGETS[0].stages(machine);
-        let cut = ExportedCut { machine, error: None, stages, original, axes: 2, watch: &() };
-        cut.once(program, wait_s(machine, number), &mut []).expect("a cut")
+        let cut = ExportedCut {
+            machine,
+            error: None,
+            stages,
+            original,
+            axes: 2,
+            watch: &(),
+        };
+        cut.once(program, wait_s(machine, number), &mut [])
+            .expect("a cut")
     };
     let noisy = |number: u64| once(&machine.with_noise_seed(100 + number), number);
     let (mut rms_um, mut max_um, mut time_s) = (0.0, 0.0, 0.0);
@@ -218,8 +276,17 @@ fn errors(machine: &Machine, original: &[Step], program: &[Step]) -> Errors {
         time_s = now.time_s;
     }
     let quiet = once(&deterministic(machine), 0);
-    let nobody_um = [(rms_um.powi(2) - quiet.rms_um.powi(2)).max(0.0).sqrt(), (max_um - quiet.max_um).max(0.0)];
-    Errors { rms_um, max_um, nobody_um, time_s, next_um: noisy(CUTS + 3).rms_um }
+    let nobody_um = [
+        (rms_um.powi(2) - quiet.rms_um.powi(2)).max(0.0).sqrt(),
+        (max_um - quiet.max_um).max(0.0),
+    ];
+    Errors {
+        rms_um,
+        max_um,
+        nobody_um,
+        time_s,
+        next_um: noisy(CUTS + 3).rms_um,
+    }
 }
 
 /// Ratios of RMS and largest error, as in `corrected_programs`.
@@ -227,7 +294,10 @@ fn ratios(was: &Errors, is: &Errors) -> [f64; 2] {
     let [nobody_rms, nobody_max] = is.nobody_um;
     let rms = |rms_um: f64| (rms_um.powi(2) - nobody_rms.powi(2)).max(0.0).sqrt();
     let max = |max_um: f64| (max_um - nobody_max).max(0.0);
-    [rms(is.rms_um) / rms(was.rms_um).max(1e-9), max(is.max_um) / max(was.max_um).max(1e-9)]
+    [
+        rms(is.rms_um) / rms(was.rms_um).max(1e-9),
+        max(is.max_um) / max(was.max_um).max(1e-9),
+    ]
 }
 
 /// A row of the table.
@@ -254,7 +324,9 @@ fn case(
         Off::Mistyped => (mistyped(&built_in, seed), built_in),
         Off::Unknown => (other, with_unknown(&built_in)),
     };
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../parts")).join(part).with_extension("ngc");
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../parts"))
+        .join(part)
+        .with_extension("ngc");
     let original = steps(&std::fs::read_to_string(&path)?);
     let folder = tempfile::tempdir()?;
     let by = |file: &Machine, logs: Vec<MeasuredLog>| -> Result<CorrectOutcome, String> {
@@ -274,7 +346,10 @@ fn case(
                 if let Some(text) = outcome.program() {
                     *program = steps(text);
                 }
-                (outcome.learned.and_then(|learned| learned.predicted), outcome.refusal)
+                (
+                    outcome.learned.and_then(|learned| learned.predicted),
+                    outcome.refusal,
+                )
             }
             Err(error) => (None, Some(error)),
         };
@@ -283,13 +358,21 @@ fn case(
     let right = way(by(&machine, Vec::new()), &mut original.clone());
     let without = way(corrected(Vec::new()), &mut original.clone());
     if !logs {
-        return Ok(Case { name: format!("{name}-{number} {part}"), was, ways: vec![right, without] });
+        return Ok(Case {
+            name: format!("{name}-{number} {part}"),
+            was,
+            ways: vec![right, without],
+        });
     }
     let first = log(&machine, &original, 1, folder.path())?;
     let one = way(corrected(vec![first.clone()]), &mut program);
     let second = log(&machine, &program, 2, folder.path())?;
     let two = way(corrected(vec![first, second]), &mut program);
-    Ok(Case { name: format!("{name}-{number} {part}"), was, ways: vec![right, without, one, two] })
+    Ok(Case {
+        name: format!("{name}-{number} {part}"),
+        was,
+        ways: vec![right, without, one, two],
+    })
 }
 
 const WAYS: [&str; 4] = ["right file", "no log", "one log", "two logs"];
@@ -299,7 +382,10 @@ fn print(case: &Case) {
         let [rms, max] = ratios(&case.was, is);
         let band = predicted.map_or(String::new(), |predicted| {
             let [low, high] = predicted.band_um;
-            format!("{:>6.2} {:>6.2} ({low:.2} to {high:.2})", is.next_um, predicted.rms_um)
+            format!(
+                "{:>6.2} {:>6.2} ({low:.2} to {high:.2})",
+                is.next_um, predicted.rms_um
+            )
         });
         println!(
             "{:<20} {name:<10} {:>6.2} {:>6.2} {rms:>6.3}  {:>6.1} {:>6.1} {max:>6.3}  {:>6.3}  {band} {}",
@@ -317,7 +403,11 @@ fn print(case: &Case) {
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
-    if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
+    if values.len() % 2 == 1 {
+        values[middle]
+    } else {
+        0.5 * (values[middle - 1] + values[middle])
+    }
 }
 
 fn summary(cases: &[&Case], name: &str) {
@@ -325,10 +415,16 @@ fn summary(cases: &[&Case], name: &str) {
         return;
     }
     for (way, label) in WAYS.iter().enumerate().take(cases[0].ways.len()) {
-        let all: Vec<[f64; 2]> = cases.iter().map(|case| ratios(&case.was, &case.ways[way].0)).collect();
+        let all: Vec<[f64; 2]> = cases
+            .iter()
+            .map(|case| ratios(&case.was, &case.ways[way].0))
+            .collect();
         let of = |which: usize| all.iter().map(|ratios| ratios[which]).collect::<Vec<_>>();
         let most = |values: Vec<f64>| values.into_iter().fold(0.0, f64::max);
-        let times = cases.iter().map(|case| case.ways[way].0.time_s / case.was.time_s).collect::<Vec<_>>();
+        let times = cases
+            .iter()
+            .map(|case| case.ways[way].0.time_s / case.was.time_s)
+            .collect::<Vec<_>>();
         let is_worse = |case: &&&Case| {
             let is = &case.ways[way].0;
             is.rms_um > case.was.rms_um + 0.05 || is.max_um > case.was.max_um + 1.0
@@ -337,10 +433,14 @@ fn summary(cases: &[&Case], name: &str) {
         let predicted = || {
             cases.iter().filter_map(|case| {
                 let (is, predicted, refusal) = &case.ways[way];
-                predicted.filter(|_| refusal.is_none()).map(|predicted| (is, predicted))
+                predicted
+                    .filter(|_| refusal.is_none())
+                    .map(|predicted| (is, predicted))
             })
         };
-        let within = predicted().filter(|(is, p)| (p.band_um[0]..=p.band_um[1]).contains(&is.next_um)).count();
+        let within = predicted()
+            .filter(|(is, p)| (p.band_um[0]..=p.band_um[1]).contains(&is.next_um))
+            .count();
         println!(
             "{name:<10} {label:<10} RMS {:.3} median, {:.3} most; largest {:.3} median, {:.3} most; time {:.3} most; {worse} worse; \
              {within} of {} predicted",
@@ -355,37 +455,57 @@ fn summary(cases: &[&Case], name: &str) {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let (options, arguments): (Vec<String>, Vec<String>) = std::env::args().skip(1).partition(|a| a.starts_with("--"));
+    let (options, arguments): (Vec<String>, Vec<String>) =
+        std::env::args().skip(1).partition(|a| a.starts_with("--"));
     let given = |wanted: &str| options.iter().any(|option| option == wanted);
     let kinds = [("--unknown", Off::Unknown), ("--mistyped", Off::Mistyped)];
-    let off = kinds.into_iter().find(|(option, _)| given(option)).map_or(Off::File, |(_, off)| off);
+    let off = kinds
+        .into_iter()
+        .find(|(option, _)| given(option))
+        .map_or(Off::File, |(_, off)| off);
     let logs = !given("--without-logs");
     let exact = given("--exact");
     let mut arguments = arguments.into_iter();
     let seed = arguments.next().map_or(Ok(1), |seed| seed.parse())?;
     let machines = arguments.next().map_or(Ok(COUNT), |count| count.parse())?;
-    let work: Vec<(usize, &str)> = (0..machines).flat_map(|number| PARTS.map(|part| (number, part))).collect();
+    let work: Vec<(usize, &str)> = (0..machines)
+        .flat_map(|number| PARTS.map(|part| (number, part)))
+        .collect();
     println!(
         "RMS and largest error of original and program in um, ratios; ratio of time; RMS of one more cut, and its prediction"
     );
     let cases: Vec<Case> = work
         .par_iter()
-        .filter_map(|&(number, part)| match case(number, part, seed, off, [logs, exact]) {
-            Ok(case) => {
-                print(&case);
-                Some(case)
-            }
-            Err(error) => {
-                println!("{number} {part}: {error}");
-                None
-            }
-        })
+        .filter_map(
+            |&(number, part)| match case(number, part, seed, off, [logs, exact]) {
+                Ok(case) => {
+                    print(&case);
+                    Some(case)
+                }
+                Err(error) => {
+                    println!("{number} {part}: {error}");
+                    None
+                }
+            },
+        )
         .collect();
     for part in PARTS {
-        summary(&cases.iter().filter(|case| case.name.ends_with(part)).collect::<Vec<_>>(), part);
+        summary(
+            &cases
+                .iter()
+                .filter(|case| case.name.ends_with(part))
+                .collect::<Vec<_>>(),
+            part,
+        );
     }
     for file in MACHINES {
-        summary(&cases.iter().filter(|case| case.name.starts_with(file)).collect::<Vec<_>>(), file);
+        summary(
+            &cases
+                .iter()
+                .filter(|case| case.name.starts_with(file))
+                .collect::<Vec<_>>(),
+            file,
+        );
     }
     summary(&cases.iter().collect::<Vec<_>>(), "all");
     Ok(())

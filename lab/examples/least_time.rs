@@ -1,7 +1,8 @@
-//! Least times in which the tool stays within 10 um of the contours: `just least-time`, the second table of examples/04_planner.
+//! Least times in which the tool stays within 10 um of the contours: `just least-time`, the second
+//! table of examples/04_planner.
 //!
-//! `least_time [CONTOUR..]` looks for them uncorrected on the linear servo of `oracle_fastest`, and with the default controller on `tnv40`, each with axes of
-//! 200 mm/s, 2000 mm/s2 and 50,000 mm/s3.
+//! `least_time [CONTOUR..]` looks for them uncorrected on the linear servo of `oracle_fastest`, and
+//! with the default controller on `tnv40`, each with axes of 200 mm/s, 2000 mm/s2 and 50,000 mm/s3.
 
 use std::time::Instant;
 
@@ -23,12 +24,20 @@ fn main() -> Result<(), Failure> {
     if names.is_empty() {
         names = CONTOURS.map(str::to_owned).to_vec();
     }
-    let (tnv40, linear) = (feedwright_lab::limited_machine(TOLERANCE_UM), feedwright_lab::linear_machine(TOLERANCE_UM));
-    println!("| Contour | Controller | bound s | time s | ratio | largest error um | path's um | cuts | took s |");
+    let (tnv40, linear) = (
+        feedwright_lab::limited_machine(TOLERANCE_UM),
+        feedwright_lab::linear_machine(TOLERANCE_UM),
+    );
+    println!(
+        "| Contour | Controller | bound s | time s | ratio | largest error um | path's um | cuts | took s |"
+    );
     println!("|---|---|--:|--:|--:|--:|--:|--:|--:|");
     for name in &names {
         for (machine, controller) in [(&linear, BASELINE), (&tnv40, DEFAULT)] {
-            println!("| {name} | {controller} | {} |", row(name, machine, controller)?);
+            println!(
+                "| {name} | {controller} | {} |",
+                row(name, machine, controller)?
+            );
         }
     }
     Ok(())
@@ -36,13 +45,27 @@ fn main() -> Result<(), Failure> {
 
 fn row(name: &str, machine: &Machine, controller: &str) -> Result<String, Failure> {
     let begun = Instant::now();
-    let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
-    let steps = contour(name).ok_or("there is no such contour")?.steps(feedwright_lab::LIMITED_FEED_MM_S, corner)?;
+    let corner = Corner::Continuous {
+        tolerance_mm: None,
+        merge_mm: None,
+    };
+    let steps = contour(name)
+        .ok_or("there is no such contour")?
+        .steps(feedwright_lab::LIMITED_FEED_MM_S, corner)?;
     let all = || Ok(Box::new(steps.iter().cloned().map(Ok)) as Steps<'_>);
     let choices = Choices::default();
-    let entry = CONTROLLERS.find(controller).ok_or("there is no such controller")?;
+    let entry = CONTROLLERS
+        .find(controller)
+        .ok_or("there is no such controller")?;
     let mut controller = Make::<2>::make(entry, &mut Setup::new(machine, &choices));
-    let plan = match fastest::<2>(machine, TOLERANCE_UM, all, &mut *controller, entry.laps, &()) {
+    let plan = match fastest::<2>(
+        machine,
+        TOLERANCE_UM,
+        all,
+        &mut *controller,
+        entry.laps,
+        &(),
+    ) {
         Err(error @ FastestError::Impossible { .. }) => return Ok(error.to_string()),
         plan => plan?,
     };

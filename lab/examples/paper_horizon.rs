@@ -1,12 +1,14 @@
-//! What a horizon does to the paper's inversion: `just paper-horizon`, the table of "The paper's inversion over a horizon" in
-//! examples/02_contours.
+//! What a horizon does to the paper's inversion: `just paper-horizon`, the table of "The paper's
+//! inversion over a horizon" in examples/02_contours.
 //!
 //! Times are of whole decisions, medians over a cut.
 
 use std::time::{Duration, Instant};
 
 use feedwright::{Statistics, identified};
-use feedwright_control::{Controller, Gradient, INVERTING_FEED_PERIOD_S, InvertingSettings, TwoDimensional};
+use feedwright_control::{
+    Controller, Gradient, INVERTING_FEED_PERIOD_S, InvertingSettings, TwoDimensional,
+};
 use feedwright_ident::{Excitation, Training};
 use feedwright_lab::Workpiece;
 use feedwright_sim::{Machine, Run, RunResult, Watch};
@@ -21,18 +23,33 @@ type Failure = Box<dyn std::error::Error>;
 fn main() -> Result<(), Failure> {
     let machine = Machine::load("tnv40".as_ref())?;
     let all = Workpiece::contours();
-    let circle = all.iter().find(|workpiece| workpiece.name == "circle").ok_or("there is no circle")?;
+    let circle = all
+        .iter()
+        .find(|workpiece| workpiece.name == "circle")
+        .ok_or("there is no circle")?;
     inversions(&machine, circle)
 }
 
 /// The paper's inversion over several knots.
 fn inversions(machine: &Machine, workpiece: &Workpiece) -> Result<(), Failure> {
-    let trained = identified::<2>(machine, &Excitation::paper(), &Training::default(), SEED, &mut |_| {});
-    println!("| {}, {}: knots | gradient | RMS / max, um | time, s | decision, us |", machine.name, workpiece.name);
+    let trained = identified::<2>(
+        machine,
+        &Excitation::paper(),
+        &Training::default(),
+        SEED,
+        &mut |_| {},
+    );
+    println!(
+        "| {}, {}: knots | gradient | RMS / max, um | time, s | decision, us |",
+        machine.name, workpiece.name
+    );
     println!("|--:|---|--:|--:|--:|");
     for (name, gradient) in [("printed", Gradient::Printed), ("exact", Gradient::Exact)] {
         for knots in KNOTS {
-            let mut settings = InvertingSettings { knots, ..InvertingSettings::DEFAULT };
+            let mut settings = InvertingSettings {
+                knots,
+                ..InvertingSettings::DEFAULT
+            };
             settings.servo_periods = machine.period.servo_periods(INVERTING_FEED_PERIOD_S);
             settings.inversion.gradient = gradient;
             let mut controller = TwoDimensional::untried(trained.net.clone(), settings);
@@ -55,7 +72,11 @@ fn cut(
 ) -> Result<(Statistics, RunResult), Failure> {
     let mut statistics = Statistics::new();
     let watch = Timer(Instant::now());
-    let run = Run::on(machine).watched(&watch).cut_steps(&workpiece.steps, controller, &mut [&mut statistics])?;
+    let run = Run::on(machine).watched(&watch).cut_steps(
+        &workpiece.steps,
+        controller,
+        &mut [&mut statistics],
+    )?;
     Ok((statistics, run))
 }
 

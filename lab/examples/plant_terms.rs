@@ -1,7 +1,9 @@
-//! What each term of the plant does to a circle: `just plant-terms`, the figure of docs/machine-file.md.
+//! What each term of the plant does to a circle: `just plant-terms`, the figure of
+//! docs/machine-file.md.
 //!
-//! `plant_terms FILE.svg` cuts the circle of radius 10 mm uncorrected on tnv40 with one term more, and draws the deviation as a ball bar
-//! shows it. Slowly, where the lag of the loops does not cover what friction and torque do.
+//! `plant_terms FILE.svg` cuts the circle of radius 10 mm uncorrected on tnv40 with one term more,
+//! and draws the deviation as a ball bar shows it. Slowly, where the lag of the loops does not
+//! cover what friction and torque do.
 
 use feedwright::{COLORS, Figure, LineStyle, Panel, Polyline};
 use feedwright_control::Uncorrected;
@@ -33,7 +35,13 @@ struct Term {
 }
 
 const fn term(title: &'static str, feed_mm_s: f64, scale_um: f64, axes: &'static str) -> Term {
-    Term { title, feed_mm_s, scale_um, axes, more: "" }
+    Term {
+        title,
+        feed_mm_s,
+        scale_um,
+        axes,
+        more: "",
+    }
 }
 
 /// Slow enough for the lag to be small, mm/s.
@@ -41,7 +49,8 @@ const SLOW: f64 = 10.0;
 /// As programs cut, mm/s.
 const FAST: f64 = 50.0;
 
-/// A PI speed loop, which takes the constant part of friction back: what is left is how it turns its sign.
+/// A PI speed loop, which takes the constant part of friction back: what is left is how it turns
+/// its sign.
 macro_rules! with_integral {
     ($keys:literal) => {
         concat!("speed_integral_s = 0.02\n", $keys)
@@ -57,16 +66,56 @@ const TERMS: [Term; 20] = [
         10.0,
         with_integral!("presliding_um = 10\nstribeck_nm = 0.1\nstribeck_mm_s = 2"),
     ),
-    term("Stick-slip", 0.2, 10.0, "presliding_um = 1\nstribeck_nm = 0.6\nstribeck_mm_s = 0.3\nspeed_integral_s = 0.01"),
-    term("Asymmetric friction", SLOW, 10.0, "coulomb_asymmetry_nm = 0.15"),
-    term("Cogging", SLOW, 10.0, "cogging_nm = 0.2\ncogging_per_rev = 24"),
-    term("Torque ripple", SLOW, 10.0, "ripple = 0.3\nripple_per_rev = 8"),
-    term("Broadband torque", SLOW, 10.0, "torque_noise_nm = 0.2\ntorque_noise_s = 0.005"),
-    term("Wandering 25 Hz", SLOW, 10.0, "disturbance_nm = 0.5\ndisturbance_wander = 0.2"),
+    term(
+        "Stick-slip",
+        0.2,
+        10.0,
+        "presliding_um = 1\nstribeck_nm = 0.6\nstribeck_mm_s = 0.3\nspeed_integral_s = 0.01",
+    ),
+    term(
+        "Asymmetric friction",
+        SLOW,
+        10.0,
+        "coulomb_asymmetry_nm = 0.15",
+    ),
+    term(
+        "Cogging",
+        SLOW,
+        10.0,
+        "cogging_nm = 0.2\ncogging_per_rev = 24",
+    ),
+    term(
+        "Torque ripple",
+        SLOW,
+        10.0,
+        "ripple = 0.3\nripple_per_rev = 8",
+    ),
+    term(
+        "Broadband torque",
+        SLOW,
+        10.0,
+        "torque_noise_nm = 0.2\ntorque_noise_s = 0.005",
+    ),
+    term(
+        "Wandering 25 Hz",
+        SLOW,
+        10.0,
+        "disturbance_nm = 0.5\ndisturbance_wander = 0.2",
+    ),
     term("Encoder steps, 5 um", SLOW, 10.0, "encoder_step_um = 5"),
     term("Encoder noise, 2 um", SLOW, 10.0, "encoder_noise_um = 2"),
-    term("Interpolation error", SLOW, 10.0, "interpolation_error_um = 3\nsignal_period_um = 1000"),
-    term("Speed of the encoder", SLOW, 10.0, "encoder_step_um = 5\nspeed_from_encoder = 1"),
+    term(
+        "Interpolation error",
+        SLOW,
+        10.0,
+        "interpolation_error_um = 3\nsignal_period_um = 1000",
+    ),
+    term(
+        "Speed of the encoder",
+        SLOW,
+        10.0,
+        "encoder_step_um = 5\nspeed_from_encoder = 1",
+    ),
     Term {
         title: "Scale, pitch, square",
         feed_mm_s: SLOW,
@@ -74,18 +123,43 @@ const TERMS: [Term; 20] = [
         axes: "scale_um_m = 200\npitch_error_um = 2",
         more: "[geometry]\nsquareness_xy_urad = 200\n",
     },
-    term("Feedforward 0.95", FAST, 50.0, "velocity_feedforward = 0.95"),
-    term("and of acceleration", FAST, 50.0, "velocity_feedforward = 0.95\nacceleration_feedforward = 1"),
+    term(
+        "Feedforward 0.95",
+        FAST,
+        50.0,
+        "velocity_feedforward = 0.95",
+    ),
+    term(
+        "and of acceleration",
+        FAST,
+        50.0,
+        "velocity_feedforward = 0.95\nacceleration_feedforward = 1",
+    ),
     term("Torque filter, 15 Hz", FAST, 50.0, "torque_filter_hz = 15"),
     term("References 10 ms late", FAST, 50.0, "drive_delay_s = 0.01"),
-    term("Positions 10 ms late", FAST, 50.0, "measurement_delay_s = 0.01"),
+    term(
+        "Positions 10 ms late",
+        FAST,
+        50.0,
+        "measurement_delay_s = 0.01",
+    ),
     term("Speed limit, 49.5", FAST, 50.0, "speed_limit_mm_s = 49.5"),
 ];
 
 fn main() -> Result<(), Failure> {
-    let file = std::env::args().nth(1).ok_or("usage: plant_terms FILE.svg")?;
+    let file = std::env::args()
+        .nth(1)
+        .ok_or("usage: plant_terms FILE.svg")?;
     let panels = TERMS.iter().map(panel).collect::<Result<_, Failure>>()?;
-    std::fs::write(file, Figure { panels, columns: COLUMNS, aspect: 1.0 }.to_svg())?;
+    std::fs::write(
+        file,
+        Figure {
+            panels,
+            columns: COLUMNS,
+            aspect: 1.0,
+        }
+        .to_svg(),
+    )?;
     Ok(())
 }
 
@@ -106,7 +180,10 @@ fn panel(term: &Term) -> Result<Panel, Failure> {
     let [x, y] = ["x", "y"].map(|axis| format!("[axis.{axis}]\n{}\n", term.axes));
     let head = "base = \"tnv40\"\nname = \"term\"\ndescription = \"tnv40 with one term\"\nsource = \"made up\"\n";
     let machine = Machine::parse("term.toml", &format!("{head}{x}{y}{}", term.more))?;
-    let circle = CONTOURS.iter().find(|contour| contour.name == "circle").ok_or("there is a circle")?;
+    let circle = CONTOURS
+        .iter()
+        .find(|contour| contour.name == "circle")
+        .ok_or("there is a circle")?;
     let steps = circle.steps(term.feed_mm_s, Corner::ExactPath)?;
     let mut tool = Tool::default();
     Run::on(&machine).cut_steps::<2>(&steps, &mut Uncorrected, &mut [&mut tool])?;

@@ -1,11 +1,14 @@
-//! Percentiles of the time of a decision of the regulator, which decides in every servo period: `just tick`.
+//! Percentiles of the time of a decision of the regulator, which decides in every servo period:
+//! `just tick`.
 //!
-//! `tick_percentiles TICKS RUNS`. Timed is the servo period in which the controller decides, whole: reference, register,
-//! preview, contour error, plan, supervisor, command. The tool follows the command, so that the observer works
-//! on what it did. Caches are warm, which after a sleep of 1 ms they are not.
+//! `tick_percentiles TICKS RUNS`. Timed is the servo period in which the controller decides, whole:
+//! reference, register, preview, contour error, plan, supervisor, command. The tool follows the
+//! command, so that the observer works on what it did. Caches are warm, which after a sleep of 1 ms
+//! they are not.
 //!
-//! What else runs on the machine only ever makes a tick longer. Of several runs, the one with the least 99.9 % is
-//! therefore the nearest to an idle core; the maximum over all runs stands beside it.
+//! What else runs on the machine only ever makes a tick longer. Of several runs, the one with the
+//! least 99.9 % is therefore the nearest to an idle core; the maximum over all runs stands beside
+//! it.
 
 #![expect(clippy::unwrap_used, reason = "an example that only the recipe calls")]
 
@@ -24,19 +27,41 @@ const SERVO_US: f64 = 1000.0;
 const PER_MILLE: [usize; 4] = [500, 990, 999, 1000];
 
 fn main() {
-    let mut arguments = std::env::args().skip(1).map(|a| a.parse::<usize>().unwrap());
+    let mut arguments = std::env::args()
+        .skip(1)
+        .map(|a| a.parse::<usize>().unwrap());
     let (ticks, runs) = (arguments.next().unwrap(), arguments.next().unwrap());
     println!("{ticks} decisions, best of {runs} runs: us (share of a servo period of 1 ms)");
-    println!("{:34}  median           99 %         99.9 %        maximum   maximum of all runs", "controller, axes");
-    for (name, gives) in [("regulator", false), ("regulator, ball screw that gives", true)] {
-        report(name, 2, &measure(|| rig::regulator::<2>(gives), ticks, runs));
-        report(name, 3, &measure(|| rig::regulator::<3>(gives), ticks, runs));
+    println!(
+        "{:34}  median           99 %         99.9 %        maximum   maximum of all runs",
+        "controller, axes"
+    );
+    for (name, gives) in [
+        ("regulator", false),
+        ("regulator, ball screw that gives", true),
+    ] {
+        report(
+            name,
+            2,
+            &measure(|| rig::regulator::<2>(gives), ticks, runs),
+        );
+        report(
+            name,
+            3,
+            &measure(|| rig::regulator::<3>(gives), ticks, runs),
+        );
     }
 }
 
 /// The percentiles of each run, us.
-fn measure<const N: usize, C: Controller<N>>(controller: impl Fn() -> C, ticks: usize, runs: usize) -> Vec<[f64; 4]> {
-    (0..runs).map(|_| percentiles(run_us(controller(), ticks))).collect()
+fn measure<const N: usize, C: Controller<N>>(
+    controller: impl Fn() -> C,
+    ticks: usize,
+    runs: usize,
+) -> Vec<[f64; 4]> {
+    (0..runs)
+        .map(|_| percentiles(run_us(controller(), ticks)))
+        .collect()
 }
 
 /// The times of `ticks` decisions, us.
@@ -65,6 +90,7 @@ fn report(name: &str, axes: usize, runs: &[[f64; 4]]) {
     let best = runs.iter().min_by(|a, b| a[2].total_cmp(&b[2])).unwrap();
     let longest_us = runs.iter().map(|run| run[3]).fold(0.0, f64::max);
     print!("{:34}", format!("{name}, {axes}"));
-    best.iter().for_each(|us| print!(" {us:6.1} ({:4.1} %)", 100.0 * us / SERVO_US));
+    best.iter()
+        .for_each(|us| print!(" {us:6.1} ({:4.1} %)", 100.0 * us / SERVO_US));
     println!(" {longest_us:6.1}");
 }

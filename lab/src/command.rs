@@ -1,4 +1,5 @@
-//! The `feedwright-lab` command: what experiments need, and the commands of `feedwright` that take a controller, with all controllers.
+//! The `feedwright-lab` command: what experiments need, and the commands of `feedwright` that take
+//! a controller, with all controllers.
 
 mod args;
 mod sweep;
@@ -16,7 +17,9 @@ use args::{Cli, CommandArgs};
 pub fn main() -> ExitCode {
     let cli: Cli = parse();
     let writes_files = !matches!(cli.command, CommandArgs::Controllers { .. });
-    with_console(cli.common.quiet, writes_files, |console| run(cli.command, console))
+    with_console(cli.common.quiet, writes_files, |console| {
+        run(cli.command, console)
+    })
 }
 
 fn run(command: CommandArgs, console: &Console) -> Result<ExitCode> {

@@ -1,8 +1,9 @@
 //! The comparison: every controller on every workpiece and machine, in one table.
 //!
-//! The unit of work is a machine and a controller: each controller is tuned on each machine by the same search, under the machine's
-//! noise ([`tuning`]), made from what it may know of that machine ([`Knowledge`]), and cut on all workpieces with several noise seeds.
-//! A table is the same bit by bit for the same options, whatever the number of threads.
+//! The unit of work is a machine and a controller: each controller is tuned on each machine by the
+//! same search, under the machine's noise ([`tuning`]), made from what it may know of that machine
+//! ([`Knowledge`]), and cut on all workpieces with several noise seeds. A table is the same bit by
+//! bit for the same options, whatever the number of threads.
 //!
 //! | File | What |
 //! |---|---|
@@ -83,7 +84,16 @@ impl Comparison {
         let at_tolerance = tolerance::against_baseline(results.at_tolerance);
         let (seed, noise_seeds) = (options.seed, options.noise_seeds);
         let claims = Claimed::all(&verdicts);
-        Self { nominal, seed, noise_seeds, tuned: results.tuned, rows, verdicts, claims, at_tolerance }
+        Self {
+            nominal,
+            seed,
+            noise_seeds,
+            tuned: results.tuned,
+            rows,
+            verdicts,
+            claims,
+            at_tolerance,
+        }
     }
 }
 
@@ -91,6 +101,10 @@ impl Comparison {
 ///
 /// # Errors
 /// Where a machine has no sensible limits, or where it is ended from outside.
-pub fn compare(options: &ComparisonOptions, kept: &Kept, watch: &dyn Watch) -> Result<Comparison, RunError> {
+pub fn compare(
+    options: &ComparisonOptions,
+    kept: &Kept,
+    watch: &dyn Watch,
+) -> Result<Comparison, RunError> {
     Ok(Comparison::new(options, work_on(options, kept, watch)?))
 }

@@ -10,10 +10,14 @@
 //! | butterfly | NURBS of Yeh and Hsu (2002), see `butterfly.rs` |
 //! | line-line-circle | (0,0) (40,30) (60,30), then a full circle about (90,30), counter-clockwise |
 
-use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape, Spline};
+use feedwright_gcode::canon::{
+    AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape, Spline,
+};
 use feedwright_plan::vector::scale;
 
-use feedwright_plan::{Curve, Jet, MIN_FEED_MM_S, Parametric, PathError, Piece, Pieces, Smooth, Step};
+use feedwright_plan::{
+    Curve, Jet, MIN_FEED_MM_S, Parametric, PathError, Piece, Pieces, Smooth, Step,
+};
 
 use crate::butterfly::butterfly;
 use std::f64::consts::TAU;
@@ -48,14 +52,36 @@ pub const CONTOURS: &[Contour] = &[
         about: "circle of radius 10 mm, from the origin, clockwise",
         outline: Outline::Circle(&[[0.0, 0.0]], [10.0, 0.0], -1),
     },
-    Contour { name: "ellipse", about: "half axes 20 and 10 mm", outline: Outline::Curve(ellipse, ellipse_third) },
-    Contour { name: "eight", about: "figure of eight, 30 x 20 mm", outline: Outline::Curve(eight, eight_third) },
-    Contour { name: "star", about: "five soft points, radius 8 to 16 mm", outline: Outline::Curve(star, star_third) },
-    Contour { name: "butterfly", about: "NURBS with sharp tips, 103 x 62 mm", outline: Outline::Spline(butterfly) },
+    Contour {
+        name: "ellipse",
+        about: "half axes 20 and 10 mm",
+        outline: Outline::Curve(ellipse, ellipse_third),
+    },
+    Contour {
+        name: "eight",
+        about: "figure of eight, 30 x 20 mm",
+        outline: Outline::Curve(eight, eight_third),
+    },
+    Contour {
+        name: "star",
+        about: "five soft points, radius 8 to 16 mm",
+        outline: Outline::Curve(star, star_third),
+    },
+    Contour {
+        name: "butterfly",
+        about: "NURBS with sharp tips, 103 x 62 mm",
+        outline: Outline::Spline(butterfly),
+    },
     Contour {
         name: "square",
         about: "20 x 20 mm, sharp corners",
-        outline: Outline::Polygon(&[[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0], [0.0, 0.0]]),
+        outline: Outline::Polygon(&[
+            [0.0, 0.0],
+            [20.0, 0.0],
+            [20.0, 20.0],
+            [0.0, 20.0],
+            [0.0, 0.0],
+        ]),
     },
     Contour {
         name: "line-line-circle",
@@ -75,7 +101,10 @@ pub struct Placement {
 
 impl Placement {
     /// Where it is defined.
-    pub const NONE: Self = Self { scale: 1.0, turn_rad: 0.0 };
+    pub const NONE: Self = Self {
+        scale: 1.0,
+        turn_rad: 0.0,
+    };
 
     /// A vector, scaled and turned. Where nothing is to be done it keeps its bits.
     fn of(self, vector: [f64; 3]) -> [f64; 3] {
@@ -116,7 +145,12 @@ impl Contour {
     ///
     /// # Errors
     /// Fails if `feed_mm_s` is below [`MIN_FEED_MM_S`] or not finite.
-    pub fn placed_steps(&self, place: Placement, feed_mm_s: f64, corner: Corner) -> Result<Vec<Step>, PathError> {
+    pub fn placed_steps(
+        &self,
+        place: Placement,
+        feed_mm_s: f64,
+        corner: Corner,
+    ) -> Result<Vec<Step>, PathError> {
         if !(MIN_FEED_MM_S..=f64::MAX).contains(&feed_mm_s) {
             return Err(PathError::Feed { line: 1, feed_mm_s });
         }
@@ -128,7 +162,10 @@ impl Contour {
             Outline::Polygon(_) | Outline::Circle(..) => Ok(Vec::new()),
             Outline::Spline(spline) => {
                 let mut spline = spline();
-                spline.control_mm.iter_mut().for_each(|point_mm| *point_mm = place.of(*point_mm));
+                spline
+                    .control_mm
+                    .iter_mut()
+                    .for_each(|point_mm| *point_mm = place.of(*point_mm));
                 let spline = Arc::new(spline);
                 let ends_mm = [0, spline.control_mm.len() - 1].map(|i| spline.control_mm[i]);
                 let motion = Motion {
@@ -162,7 +199,12 @@ impl Contour {
     }
 
     /// The motions of a contour that is made of straight lines and full circles; none of others.
-    pub fn lines_and_arcs(&self, place: Placement, feed_mm_s: f64, corner: Corner) -> Option<Vec<Canon>> {
+    pub fn lines_and_arcs(
+        &self,
+        place: Placement,
+        feed_mm_s: f64,
+        corner: Corner,
+    ) -> Option<Vec<Canon>> {
         match self.outline {
             Outline::Polygon(points) => Some(lines(points, place, feed_mm_s, corner)),
             Outline::Circle(points, center, turns) => {
@@ -173,7 +215,11 @@ impl Contour {
                     kind: MotionKind::Feed,
                     start_mm: at,
                     end_mm: at,
-                    shape: Shape::Arc { plane: Plane::Xy, center_mm: place.of(space(center)), turns },
+                    shape: Shape::Arc {
+                        plane: Plane::Xy,
+                        center_mm: place.of(space(center)),
+                        turns,
+                    },
                     feed_mm_s,
                     corner,
                     others: AuxiliaryAxes::default(),
@@ -241,7 +287,10 @@ impl Parametric for Closed {
 
     fn third(&self, span: usize, u: f64) -> [f64; 3] {
         let per_span = TAU / SPANS as f64;
-        self.place.of(scale(per_span.powi(3), (self.third)(per_span * (span as f64 + u))))
+        self.place.of(scale(
+            per_span.powi(3),
+            (self.third)(per_span * (span as f64 + u)),
+        ))
     }
 }
 
@@ -284,7 +333,11 @@ fn star(a: f64) -> Jet {
     Jet {
         position_mm: [r * cos, r * sin, 0.0],
         first: [dr * cos - r * sin, dr * sin + r * cos, 0.0],
-        second: [(ddr - r) * cos - 2.0 * dr * sin, (ddr - r) * sin + 2.0 * dr * cos, 0.0],
+        second: [
+            (ddr - r) * cos - 2.0 * dr * sin,
+            (ddr - r) * sin + 2.0 * dr * cos,
+            0.0,
+        ],
     }
 }
 
@@ -293,29 +346,50 @@ fn star_third(a: f64) -> [f64; 3] {
     let (sin5, cos5) = libm::sincos(5.0 * a);
     let (r, dr, ddr, dddr) = (12.0 + 4.0 * cos5, -20.0 * sin5, -100.0 * cos5, 500.0 * sin5);
     let (inward, around) = (dddr - 3.0 * dr, 3.0 * ddr - r);
-    [inward * cos - around * sin, inward * sin + around * cos, 0.0]
+    [
+        inward * cos - around * sin,
+        inward * sin + around * cos,
+        0.0,
+    ]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Length and places of the first piece follow the placement; of a smooth curve to what its arc length is exact to.
+    /// Length and places of the first piece follow the placement; of a smooth curve to what its arc
+    /// length is exact to.
     #[test]
     fn a_contour_elsewhere_is_the_same_scaled_and_turned() {
-        let place = Placement { scale: 1.5, turn_rad: 2.0 };
-        let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
+        let place = Placement {
+            scale: 1.5,
+            turn_rad: 2.0,
+        };
+        let corner = Corner::Continuous {
+            tolerance_mm: None,
+            merge_mm: None,
+        };
         for contour in CONTOURS {
-            let (here, there) =
-                (contour.steps(50.0, corner).unwrap(), contour.placed_steps(place, 50.0, corner).unwrap());
+            let (here, there) = (
+                contour.steps(50.0, corner).unwrap(),
+                contour.placed_steps(place, 50.0, corner).unwrap(),
+            );
             let (Some(Step::Piece(a)), Some(Step::Piece(b))) = (here.first(), there.first()) else {
                 panic!("{}", contour.name)
             };
-            assert!((1.5 * a.length_mm - b.length_mm).abs() < 1e-7, "{}", contour.name);
+            assert!(
+                (1.5 * a.length_mm - b.length_mm).abs() < 1e-7,
+                "{}",
+                contour.name
+            );
             for part in [0.0, 0.3, 1.0] {
                 let wanted = place.of(a.curve.at(part * a.length_mm).position_mm);
                 let found = b.curve.at(part * b.length_mm).position_mm;
-                assert!((0..2).all(|k| (wanted[k] - found[k]).abs() < 1e-7), "{}: {wanted:?} {found:?}", contour.name);
+                assert!(
+                    (0..2).all(|k| (wanted[k] - found[k]).abs() < 1e-7),
+                    "{}: {wanted:?} {found:?}",
+                    contour.name
+                );
             }
         }
     }

@@ -1,12 +1,14 @@
-//! Identification and controllers on the independent plant: what a user does with a machine, done with one that obeys other equations.
+//! Identification and controllers on the independent plant: what a user does with a machine, done
+//! with one that obeys other equations.
 //!
 //! ```text
 //! data sheet -> excitation program -> cut by the plant -> log -> machine file -> model
 //! parts -> cut by the plant: uncorrected, with the model, with peers by the same machine file
 //! ```
 //!
-//! The log has commands and encoder positions of the same moments. The machine file is made from it alone; its limits are those that
-//! the control of the machine has. Every cut is planned within these limits and cut by the independent plant.
+//! The log has commands and encoder positions of the same moments. The machine file is made from it
+//! alone; its limits are those that the control of the machine has. Every cut is planned within
+//! these limits and cut by the independent plant.
 
 use std::cell::RefCell;
 use std::fmt::Write as _;
@@ -14,15 +16,17 @@ use std::path::Path;
 use std::rc::Rc;
 
 use feedwright::{
-    BEST, Choices, Entry, LogIdentified, LogJob, LogJobError, Make, ModelMisfit, Setup, Statistics, UNCORRECTED,
-    machine_text,
+    BEST, Choices, Entry, LogIdentified, LogJob, LogJobError, Make, ModelMisfit, Setup, Statistics,
+    UNCORRECTED, machine_text,
 };
 use feedwright_control::{Controller, Uncorrected};
 use feedwright_ident::{
-    AxisFacts, Columns, ExciteError, ExciteOptions, FoundAxis, LawTerm, Log, LogError, Model, excitation_program,
+    AxisFacts, Columns, ExciteError, ExciteOptions, FoundAxis, LawTerm, Log, LogError, Model,
+    excitation_program,
 };
 use feedwright_sim::{
-    AXIS_NAMES, Cancelled, Machine, MachineError, Measurement, Mechanism, Outcome, PlanCache, Run, RunError, Watch,
+    AXIS_NAMES, Cancelled, Machine, MachineError, Measurement, Mechanism, Outcome, PlanCache, Run,
+    RunError, Watch,
 };
 use miette::Diagnostic;
 use rayon::prelude::*;
@@ -44,7 +48,8 @@ pub(crate) const PROGRAMS: [(&str, &str); 4] = [
     ("slot", include_str!("../../parts/slot.ngc")),
 ];
 /// Controllers that cut where none is named.
-pub(crate) const DEFAULT_CONTROLLERS: [&str; 4] = [BEST, "feedforward", "cross-coupled", "disturbance-observer"];
+pub(crate) const DEFAULT_CONTROLLERS: [&str; 4] =
+    [BEST, "feedforward", "cross-coupled", "disturbance-observer"];
 /// Longest excitation that is recorded, s.
 const EXCITATION_S: f64 = 600.0;
 
@@ -159,7 +164,10 @@ pub(crate) enum IndependentError {
 impl IndependentError {
     /// Whether the machine could not be identified, where nothing else is wrong.
     fn is_refusal(&self) -> bool {
-        matches!(self, Self::Diverged { .. } | Self::Log(_) | Self::Identification(LogJobError::NotFound(_)))
+        matches!(
+            self,
+            Self::Diverged { .. } | Self::Log(_) | Self::Identification(LogJobError::NotFound(_))
+        )
     }
 }
 
@@ -204,21 +212,40 @@ fn recorded(
     let sheet = machine.sheet()?;
     let (name, text) = match &options.excitation {
         Some(given) => given.clone(),
-        None => ("excite.ngc".to_owned(), excitation_program(&sheet, ExciteOptions::default())?.text),
+        None => (
+            "excite.ngc".to_owned(),
+            excitation_program(&sheet, ExciteOptions::default())?.text,
+        ),
     };
-    let program = SweepProgram::from_text(&name, &text, Length { machine: &sheet, limit_s: EXCITATION_S })?;
+    let program = SweepProgram::from_text(
+        &name,
+        &text,
+        Length {
+            machine: &sheet,
+            limit_s: EXCITATION_S,
+        },
+    )?;
     let samples = Samples::default();
     let plant = |start_mm: [f64; 3], _: u64| -> Box<dyn Mechanism> {
         let plant = IndependentPlant::new(&machine.axes, start_mm);
-        Box::new(Recorded { plant, last: [start_mm; 2], samples: samples.clone() })
+        Box::new(Recorded {
+            plant,
+            last: [start_mm; 2],
+            samples: samples.clone(),
+        })
     };
     let run = Run::on(&sheet).plant(&plant).watched(watch);
     let done = run.cut_steps::<3>(&program.steps, &mut Uncorrected, &mut [])?;
     if let Outcome::Diverged { at_s } = done.outcome {
-        return Err(IndependentError::Diverged { machine: machine.name.clone(), at_s });
+        return Err(IndependentError::Diverged {
+            machine: machine.name.clone(),
+            at_s,
+        });
     }
     let mut text = format!("# sample_time_s = {}\n# n", sheet.period.servo_s);
-    AXIS_NAMES.iter().for_each(|name| text += &format!(" {name}.cmd {name}.act"));
+    AXIS_NAMES
+        .iter()
+        .for_each(|name| text += &format!(" {name}.cmd {name}.act"));
     for (n, [command_mm, seen_mm]) in samples.borrow().iter().enumerate() {
         let _ = write!(text, "\n{n}");
         for (command, seen) in command_mm.iter().zip(seen_mm) {
@@ -241,9 +268,23 @@ impl Identified {
         watch: &dyn Watch,
     ) -> Result<Self, IndependentError> {
         let name = format!("{}.log", machine.name);
-        let log = Log::from_reader(Path::new(&name), log.as_bytes(), log.len() as u64, &Columns::default(), watch)?;
-        let facts = AxisFacts { record_delay_s, ..AxisFacts::default() };
-        let identified = LogJob { name, facts, ..LogJob::default() }.run(log, watch)?;
+        let log = Log::from_reader(
+            Path::new(&name),
+            log.as_bytes(),
+            log.len() as u64,
+            &Columns::default(),
+            watch,
+        )?;
+        let facts = AxisFacts {
+            record_delay_s,
+            ..AxisFacts::default()
+        };
+        let identified = LogJob {
+            name,
+            facts,
+            ..LogJob::default()
+        }
+        .run(log, watch)?;
         let mut file = Machine::parse("mine.toml", &machine_text(&identified, &machine.name))?;
         let sheet = machine.sheet()?;
         file.limits = sheet.limits;
@@ -252,16 +293,26 @@ impl Identified {
             axis.max_accel_mm_s2 = of_sheet.max_accel_mm_s2;
             axis.max_jerk_mm_s3 = of_sheet.max_jerk_mm_s3;
         }
-        let axes = (0..identified.machine.axes.len()).map(|i| IdentifiedAxis::of(&identified, i, machine)).collect();
-        Ok(Self { machine: machine.clone(), axes, file, models: [None, None] })
+        let axes = (0..identified.machine.axes.len())
+            .map(|i| IdentifiedAxis::of(&identified, i, machine))
+            .collect();
+        Ok(Self {
+            machine: machine.clone(),
+            axes,
+            file,
+            models: [None, None],
+        })
     }
 
     /// Trains the models that the cuts of programs take, as `feedwright identify --machine` does.
     fn train(&mut self, programs: &[SweepProgram], options: &IndependentOptions) {
-        let Some(best) = options.controllers.iter().find(|entry| entry.name == BEST) else { return };
+        let Some(best) = options.controllers.iter().find(|entry| entry.name == BEST) else {
+            return;
+        };
         for (axes, model) in (2..).zip(&mut self.models) {
             if programs.iter().any(|program| program.axes == axes) {
-                *model = Some(Setup::new(&self.file, &options.choices).train(best, axes, String::new()));
+                *model =
+                    Some(Setup::new(&self.file, &options.choices).train(best, axes, String::new()));
             }
         }
     }
@@ -276,7 +327,9 @@ impl IdentifiedAxis {
             name: found.name.clone(),
             verdict: identified.verdict(axis),
             found: linear(found),
-            plant: place.map(|place| LinearPart::of(&machine.axes[place])).unwrap_or_default(),
+            plant: place
+                .map(|place| LinearPart::of(&machine.axes[place]))
+                .unwrap_or_default(),
             left_um: [scores.grey_box.whole_um, scores.following_um],
         }
     }
@@ -284,19 +337,27 @@ impl IdentifiedAxis {
 
 /// Linear part of a found law.
 fn linear(found: &FoundAxis) -> LinearPart {
-    let values = found.resolved.as_ref().map_or(&found.values, |resolved| &resolved.values);
+    let values = found
+        .resolved
+        .as_ref()
+        .map_or(&found.values, |resolved| &resolved.values);
     let get = |term: LawTerm| values.get(term);
     let (product, speed_loop) = (get(LawTerm::LoopGain), get(LawTerm::Damping));
     let feedforward = get(LawTerm::VelocityFeedforward);
     // Without an integral the loop carries its viscous friction by an error.
-    let carried = if get(LawTerm::Integral) > 0.0 { values.speed_gain_1_s() } else { speed_loop };
+    let carried = if get(LawTerm::Integral) > 0.0 {
+        values.speed_gain_1_s()
+    } else {
+        speed_loop
+    };
     LinearPart {
         gain_product_1_s2: product,
         speed_loop_1_s: speed_loop,
         velocity_feedforward: feedforward,
         command_delay_s: values.commands_late_s(),
         loop_delay_s: get(LawTerm::LoopDelay),
-        lag_s: (carried - feedforward * values.speed_gain_1_s()) / product + values.commands_late_s(),
+        lag_s: (carried - feedforward * values.speed_gain_1_s()) / product
+            + values.commands_late_s(),
     }
 }
 
@@ -323,7 +384,11 @@ fn cut_program(
 fn cut_axes<const N: usize>(
     identified: &Identified,
     program: &SweepProgram,
-    IndependentOptions { controllers, choices, .. }: &IndependentOptions,
+    IndependentOptions {
+        controllers,
+        choices,
+        ..
+    }: &IndependentOptions,
     watch: &dyn Watch,
 ) -> Result<Vec<IndependentCut>, Cancelled>
 where
@@ -336,7 +401,11 @@ where
     };
     let base = cut(&UNCORRECTED)?;
     let with = |entry: &&'static Entry| {
-        let CutOnce { tool, encoders_um, without_model } = cut(entry)?;
+        let CutOnce {
+            tool,
+            encoders_um,
+            without_model,
+        } = cut(entry)?;
         let row = SweepRow {
             program: program.name.clone(),
             machine: identified.machine.name.clone(),
@@ -347,7 +416,12 @@ where
             corrected: tool,
         };
         let (faults, encoders_um) = (row.faults(), [base.encoders_um, encoders_um]);
-        Ok(IndependentCut { row, encoders_um, without_model, faults })
+        Ok(IndependentCut {
+            row,
+            encoders_um,
+            without_model,
+            faults,
+        })
     };
     controllers.iter().map(with).collect()
 }
@@ -362,7 +436,11 @@ where
     Entry: Make<N>,
 {
     let setup = || Setup::new(file, choices);
-    let made = match models.get(N - 2).and_then(Option::as_ref).filter(|_| entry.name == BEST) {
+    let made = match models
+        .get(N - 2)
+        .and_then(Option::as_ref)
+        .filter(|_| entry.name == BEST)
+    {
         Some(Ok(model)) => entry.make_with::<N>(setup(), model),
         Some(Err(cause)) => return (Box::new(Uncorrected), Some(cause.to_string())),
         None => Ok(entry.make(&mut setup())),
@@ -381,23 +459,39 @@ fn cut_once<const N: usize>(
     (plan, watch): (&PlanCache, &dyn Watch),
 ) -> Result<CutOnce, Cancelled> {
     let axes = &identified.machine.axes;
-    let plant = |start_mm: [f64; 3], _: u64| -> Box<dyn Mechanism> { Box::new(IndependentPlant::new(axes, start_mm)) };
+    let plant = |start_mm: [f64; 3], _: u64| -> Box<dyn Mechanism> {
+        Box::new(IndependentPlant::new(axes, start_mm))
+    };
     let mut statistics = Statistics::new();
-    let run = Run::on(&identified.file).plant(&plant).laps(entry.laps).sharing(plan).watched(watch);
+    let run = Run::on(&identified.file)
+        .plant(&plant)
+        .laps(entry.laps)
+        .sharing(plan)
+        .watched(watch);
     let done = match run.cut_steps(&program.steps, &mut *controller, &mut [&mut statistics]) {
         Ok(done) => done,
         Err(RunError::Cancelled(cancelled)) => return Err(cancelled),
         Err(error) => {
             let tool = Figures::failed(&error.to_string());
-            return Ok(CutOnce { tool, encoders_um: [0.0; 2], without_model });
+            return Ok(CutOnce {
+                tool,
+                encoders_um: [0.0; 2],
+                without_model,
+            });
         }
     };
-    let encoders_um = done.joint_error.map_or([0.0; 2], |error| [error.rms_mm, error.max_mm].map(|mm| 1e3 * mm));
-    Ok(CutOnce { tool: Figures::of(&done, &statistics, entry), encoders_um, without_model })
+    let encoders_um = done.joint_error.map_or([0.0; 2], |error| {
+        [error.rms_mm, error.max_mm].map(|mm| 1e3 * mm)
+    });
+    Ok(CutOnce {
+        tool: Figures::of(&done, &statistics, entry),
+        encoders_um,
+        without_model,
+    })
 }
 
-/// Identifies machines one after the other and cuts all programs on each, programs side by side. The result does not depend on the number
-/// of threads.
+/// Identifies machines one after the other and cuts all programs on each, programs side by side.
+/// The result does not depend on the number of threads.
 ///
 /// # Errors
 /// An end from outside.
@@ -411,28 +505,46 @@ pub(crate) fn independent(
     for machine in machines {
         watch.begin(&format!("recording {}", machine.name), 1);
         let log = recorded(machine, options, watch);
-        let identified = log.and_then(|log| Identified::of(machine, &log, options.record_delay_s, watch));
+        let identified =
+            log.and_then(|log| Identified::of(machine, &log, options.record_delay_s, watch));
         let mut identified = match identified {
             Ok(identified) => identified,
             Err(error) if !error.is_refusal() => return Err(error),
             Err(error) => {
                 let refused = Some(error.to_string());
-                results.push(IndependentResult { machine: machine.clone(), axes: vec![], refused, cuts: vec![] });
+                results.push(IndependentResult {
+                    machine: machine.clone(),
+                    axes: vec![],
+                    refused,
+                    cuts: vec![],
+                });
                 continue;
             }
         };
         let programs = programs(&machine.sheet()?)?;
         watch.begin(&format!("identifying {} for {BEST}", machine.name), 1);
         identified.train(&programs, options);
-        watch.begin(&format!("cutting on {}", machine.name), programs.len() as u64);
+        watch.begin(
+            &format!("cutting on {}", machine.name),
+            programs.len() as u64,
+        );
         let cut = |program: &SweepProgram| {
             let cuts = cut_program(&identified, program, options, watch);
             watch.advance(1);
             cuts
         };
-        let cuts = programs.par_iter().map(cut).collect::<Result<Vec<_>, _>>()?.concat();
+        let cuts = programs
+            .par_iter()
+            .map(cut)
+            .collect::<Result<Vec<_>, _>>()?
+            .concat();
         let Identified { machine, axes, .. } = identified;
-        results.push(IndependentResult { machine, axes, refused: None, cuts });
+        results.push(IndependentResult {
+            machine,
+            axes,
+            refused: None,
+            cuts,
+        });
     }
     Ok(results)
 }

@@ -1,7 +1,9 @@
-//! An independent plant: a machine of other equations than the one that feedwright simulates and assumes.
+//! An independent plant: a machine of other equations than the one that feedwright simulates and
+//! assumes.
 //!
-//! Identification and controllers assume the law of `crates/control/src/axis.rs`, and [`feedwright_sim::Plant`] has the same. Here they are
-//! scored on a machine that they were not written for. It uses nothing of that law or that plant, and nothing is ever tuned on it.
+//! Identification and controllers assume the law of `crates/control/src/axis.rs`, and
+//! [`feedwright_sim::Plant`] has the same. Here they are scored on a machine that they were not
+//! written for. It uses nothing of that law or that plant, and nothing is ever tuned on it.
 //!
 //! | File | What | Unlike the simulated machine |
 //! |---|---|---|
@@ -13,8 +15,9 @@
 //! | `independent_plant/linearization.rs` | gains and delays for small motions | |
 //! | `independent_plant/machines.rs` | three machines, and others drawn around them | |
 //!
-//! The tool is where the table is and, with the lead error of the screw, A (sin(2 pi x / lead + p) - sin p), which no encoder sees. As
-//! joint counts what the position loop sees, without steps and errors of the encoder.
+//! The tool is where the table is and, with the lead error of the screw, A (sin(2 pi x / lead +
+//! p) - sin p), which no encoder sees. As joint counts what the position loop sees, without steps
+//! and errors of the encoder.
 
 pub mod lugre;
 pub mod ball_screw;
@@ -74,7 +77,9 @@ pub struct IndependentPlant {
 impl IndependentPlant {
     /// At rest with the encoders at `start_mm`.
     pub fn new(axes: &[IndependentAxis; 3], start_mm: [f64; 3]) -> Self {
-        Self { axes: std::array::from_fn(|i| RunningAxis::new(axes[i], start_mm[i])) }
+        Self {
+            axes: std::array::from_fn(|i| RunningAxis::new(axes[i], start_mm[i])),
+        }
     }
 
     /// State of an axis.
@@ -85,7 +90,10 @@ impl IndependentPlant {
 
 impl Mechanism for IndependentPlant {
     fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3> {
-        self.axes.iter_mut().zip(command_mm).for_each(|(axis, command_mm)| axis.servo_period(command_mm));
+        self.axes
+            .iter_mut()
+            .zip(command_mm)
+            .for_each(|(axis, command_mm)| axis.servo_period(command_mm));
         let each = |value: fn(&RunningAxis) -> f64| [0, 1, 2].map(|i| value(&self.axes[i]));
         Measurement {
             position_mm: each(RunningAxis::tool_mm),
@@ -98,7 +106,9 @@ impl Mechanism for IndependentPlant {
     /// Friction creeps and integrals go on in a rest: it is simulated as a whole.
     fn skip(&mut self, periods: u64) {
         for _ in 0..periods {
-            self.axes.iter_mut().for_each(|axis| axis.servo_period(axis.command_mm));
+            self.axes
+                .iter_mut()
+                .for_each(|axis| axis.servo_period(axis.command_mm));
         }
     }
 
@@ -121,7 +131,14 @@ impl IndependentAxis {
     /// Where these are, mm.
     fn places_mm(&self, state: &FeedState) -> [f64; 2] {
         let motor_mm = state.motor_rad / self.rad_per_mm();
-        [if self.scale.is_some() { 1e3 * state.table_m } else { motor_mm }, motor_mm]
+        [
+            if self.scale.is_some() {
+                1e3 * state.table_m
+            } else {
+                motor_mm
+            },
+            motor_mm,
+        ]
     }
 
     /// What the sensors show, mm.
@@ -139,7 +156,13 @@ impl RunningAxis {
         Self {
             axis,
             state,
-            drive: CascadeState::at_rest(&axis.cascade, command_rad, motor_rad, state.current_a, &axis.feed.motor),
+            drive: CascadeState::at_rest(
+                &axis.cascade,
+                command_rad,
+                motor_rad,
+                state.current_a,
+                &axis.feed.motor,
+            ),
             sensors: [0, 1].map(|i| Late::new(sensors[i].late_periods, seen_mm[i])),
             seen_mm,
             command_mm: start_mm,
@@ -161,14 +184,27 @@ impl RunningAxis {
         let from_mm = std::mem::replace(&mut self.command_mm, command_mm);
         let speed_rad_s = (command_mm - from_mm) / cascade.servo_s() * rad_per_mm;
         for period in 1..=drive_periods {
-            let part = if cascade.interpolates { f64::from(period) / f64::from(drive_periods) } else { 1.0 };
+            let part = if cascade.interpolates {
+                f64::from(period) / f64::from(drive_periods)
+            } else {
+                1.0
+            };
             let line_rad = (from_mm + part * (command_mm - from_mm)) * rad_per_mm;
             let seen_rad = self.seen_mm.map(|mm| mm * rad_per_mm);
-            self.drive.drive_period(&cascade, DriveInput { command: [line_rad, speed_rad_s], seen_rad });
+            self.drive.drive_period(
+                &cascade,
+                DriveInput {
+                    command: [line_rad, speed_rad_s],
+                    seen_rad,
+                },
+            );
             for _ in 0..current_periods {
-                let volts = self.drive.volts(&cascade, &feed.motor, self.state.current_a);
+                let volts = self
+                    .drive
+                    .volts(&cascade, &feed.motor, self.state.current_a);
                 for _ in 0..STEPS {
-                    self.state = feed.step(&self.state, volts, cascade.current_s / f64::from(STEPS));
+                    self.state =
+                        feed.step(&self.state, volts, cascade.current_s / f64::from(STEPS));
                 }
             }
             let shown_mm = self.axis.shown_mm(&self.state);

@@ -1,8 +1,9 @@
-//! Finished work of a study, in the store of results that `feedwright sweep` writes: an interrupted study continues where it
-//! stopped.
+//! Finished work of a study, in the store of results that `feedwright sweep` writes: an interrupted
+//! study continues where it stopped.
 //!
-//! A result is stored under the hash of everything that it follows from: the executable, what the whole study depends on, and
-//! the key of the work. Several processes may work on one folder. A result that cannot be read is computed again.
+//! A result is stored under the hash of everything that it follows from: the executable, what the
+//! whole study depends on, and the key of the work. Several processes may work on one folder. A
+//! result that cannot be read is computed again.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -28,26 +29,41 @@ pub struct Kept {
 impl Kept {
     /// Keeps nothing.
     pub const fn none() -> Self {
-        Self { store: None, common: String::new(), removed: None, found: AtomicUsize::new(0) }
+        Self {
+            store: None,
+            common: String::new(),
+            removed: None,
+            found: AtomicUsize::new(0),
+        }
     }
 
-    /// Keeps work in `folder`, or in a folder of the cache that [`Self::complete`] removes. `study` is everything that all
-    /// work depends on, apart from the executable.
+    /// Keeps work in `folder`, or in a folder of the cache that [`Self::complete`] removes. `study`
+    /// is everything that all work depends on, apart from the executable.
     ///
     /// # Errors
     /// A named folder that cannot be made.
     pub fn open(folder: Option<&Path>, study: &str) -> Result<Self> {
-        let program = std::env::current_exe().and_then(std::fs::read).unwrap_or_default();
+        let program = std::env::current_exe()
+            .and_then(std::fs::read)
+            .unwrap_or_default();
         let common = key_of(&[&program, study.as_bytes()]);
-        let removed =
-            if folder.is_some() { None } else { cache_folder().map(|cache| cache.join(format!("lab-{common}"))) };
+        let removed = if folder.is_some() {
+            None
+        } else {
+            cache_folder().map(|cache| cache.join(format!("lab-{common}")))
+        };
         let store = match (folder, &removed) {
             (Some(folder), _) => Some(ResultStore::create(folder)?),
             // Without a place in the cache, an interrupted study begins anew.
             (None, Some(folder)) => ResultStore::create(folder).ok(),
             (None, None) => None,
         };
-        Ok(Self { store, common, removed, found: AtomicUsize::new(0) })
+        Ok(Self {
+            store,
+            common,
+            removed,
+            found: AtomicUsize::new(0),
+        })
     }
 
     /// Number of results that were there.
@@ -67,7 +83,8 @@ impl Kept {
         Some(result)
     }
 
-    /// Stores a result. A result that cannot be written costs time after an interruption, nothing else.
+    /// Stores a result. A result that cannot be written costs time after an interruption, nothing
+    /// else.
     pub fn put<T: Serialize>(&self, key: &str, result: &T) {
         if let Some(store) = &self.store {
             let address = self.address(key);
@@ -110,7 +127,9 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let done = |study: &str, key: &str, result: f64| {
             let kept = Kept::open(Some(folder.path()), study).expect("a folder");
-            let result = kept.once(key, || Ok::<_, ()>(result)).expect("it has no errors");
+            let result = kept
+                .once(key, || Ok::<_, ()>(result))
+                .expect("it has no errors");
             let found = kept.found();
             kept.complete();
             (result, found)
@@ -119,7 +138,9 @@ mod tests {
         assert_eq!(done("a", "first", 2.0), (0.1, 1));
         assert_eq!(done("a", "second", 3.0), (3.0, 0));
         assert_eq!(done("b", "first", 4.0), (4.0, 0));
-        for entry in glob::glob(&format!("{}/*/*.json", folder.path().display())).expect("a pattern") {
+        for entry in
+            glob::glob(&format!("{}/*/*.json", folder.path().display())).expect("a pattern")
+        {
             let path = entry.expect("it can be read");
             let text = std::fs::read_to_string(&path).expect("it can be read");
             std::fs::write(path, &text[..text.len() / 2]).expect("it can be written");

@@ -1,7 +1,8 @@
-//! The laboratory of feedwright: published methods, the comparison, held-out work, and the experiments of Lee, Cho and Jeon (2005).
+//! The laboratory of feedwright: published methods, the comparison, held-out work, and the
+//! experiments of Lee, Cho and Jeon (2005).
 //!
-//! Nothing in the product depends on it. The command `feedwright-lab` starts from here, and the examples and studies of the
-//! repository use it.
+//! Nothing in the product depends on it. The command `feedwright-lab` starts from here, and the
+//! examples and studies of the repository use it.
 
 #![warn(clippy::disallowed_methods)]
 
@@ -40,5 +41,6 @@ pub use peers::CONTROLLERS;
 pub use peers::model_predictive::horizon::gauss_newton::GaussNewton;
 pub use peers::model_predictive::horizon::problem::{END_WEIGHT, HorizonProblem};
 pub use peers::model_predictive::horizon::{
-    Accelerations, CommandedPeriod, CorrectionLimits, HorizonSettings, MAX_KNOTS, Predictor, Sensitivity,
+    Accelerations, CommandedPeriod, CorrectionLimits, HorizonSettings, MAX_KNOTS, Predictor,
+    Sensitivity,
 };

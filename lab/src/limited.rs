@@ -13,17 +13,30 @@ pub fn limited_machine(tolerance_um: f64) -> Machine {
     [machine.limits.rapid_mm_s, machine.limits.max_feed_mm_s] = [LIMITED_FEED_MM_S; 2];
     machine.limits.path_tolerance_um = Some(tolerance_um);
     for axis in &mut machine.axes {
-        [axis.max_velocity_mm_s, axis.max_accel_mm_s2, axis.max_jerk_mm_s3] = AXIS_LIMITS.map(Some);
+        [
+            axis.max_velocity_mm_s,
+            axis.max_accel_mm_s2,
+            axis.max_jerk_mm_s3,
+        ] = AXIS_LIMITS.map(Some);
     }
     machine
 }
 
-/// The same with a linear servo, `x' = v`, `v' = a (k (r - x) - v)`, at 10 kHz: nothing but the two loops.
+/// The same with a linear servo, `x' = v`, `v' = a (k (r - x) - v)`, at 10 kHz: nothing but the two
+/// loops.
 pub fn linear_machine(tolerance_um: f64) -> Machine {
     let mut machine = limited_machine(tolerance_um);
-    (machine.period.servo_s, machine.period.mechanics_s, machine.period.mechanics_per_servo) = (1e-4, 1e-4, 1);
+    (
+        machine.period.servo_s,
+        machine.period.mechanics_s,
+        machine.period.mechanics_per_servo,
+    ) = (1e-4, 1e-4, 1);
     for axis in &mut machine.axes {
-        (axis.viscous_friction_nm_s, axis.coulomb_friction_nm, axis.disturbance_nm) = (0.0, 0.0, 0.0);
+        (
+            axis.viscous_friction_nm_s,
+            axis.coulomb_friction_nm,
+            axis.disturbance_nm,
+        ) = (0.0, 0.0, 0.0);
         axis.torque_limit_nm = 1e3;
     }
     machine

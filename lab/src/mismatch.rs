@@ -1,7 +1,9 @@
-//! Machines that differ from the one that a model was identified on: each of its values alone, and several together.
+//! Machines that differ from the one that a model was identified on: each of its values alone, and
+//! several together.
 //!
-//! The model is made on the base machine, and cuts on the variant. So are the settings of peers: everybody knows the same, and is wrong in
-//! the same. A variant that changes nothing of a base is left out.
+//! The model is made on the base machine, and cuts on the variant. So are the settings of peers:
+//! everybody knows the same, and is wrong in the same. A variant that changes nothing of a base is
+//! left out.
 //!
 //! | File | What |
 //! |---|---|
@@ -34,9 +36,12 @@ enum Difference {
     Delay(f64),
 }
 
-use Difference::{Delay, Feedforward, Friction, Inertia, InertiaOfY, IntegralTime, PositionGain, SpeedGain};
+use Difference::{
+    Delay, Feedforward, Friction, Inertia, InertiaOfY, IntegralTime, PositionGain, SpeedGain,
+};
 
-/// Everyday differences: a workpiece on the table, a cold morning, gains that were read off a screen.
+/// Everyday differences: a workpiece on the table, a cold morning, gains that were read off a
+/// screen.
 const EVERYDAY: [Difference; 20] = [
     Inertia(0.8),
     Inertia(1.25),
@@ -60,7 +65,13 @@ const EVERYDAY: [Difference; 20] = [
     Delay(0.8),
 ];
 /// Gross ones: another machine.
-const GROSS: [Difference; 5] = [Inertia(3.0), Inertia(1.0 / 3.0), PositionGain(0.7), Delay(2.0), Friction(3.0)];
+const GROSS: [Difference; 5] = [
+    Inertia(3.0),
+    Inertia(1.0 / 3.0),
+    PositionGain(0.7),
+    Delay(2.0),
+    Friction(3.0),
+];
 /// Parts by which drawn variants differ at the most in inertia, gains, integral time and friction.
 const DRAWN: [f64; 2] = [0.1, 0.2];
 
@@ -123,29 +134,48 @@ fn same_name(base: &str) -> String {
 pub fn variants(base: &Machine, Variants { gross, drawn, seed }: Variants) -> Vec<Machine> {
     let named = |name: &str, change: &mut dyn FnMut(&mut Axis, usize)| {
         let mut machine = base.clone();
-        machine.axes.iter_mut().enumerate().for_each(|(index, axis)| change(axis, index));
+        machine
+            .axes
+            .iter_mut()
+            .enumerate()
+            .for_each(|(index, axis)| change(axis, index));
         let is_base = machine.axes == base.axes;
         machine.name = format!("{}-{name}", base.name);
         (!is_base).then_some(machine)
     };
     let differences: &[Difference] = if gross { &GROSS } else { &EVERYDAY };
-    let mut all = vec![Machine { name: same_name(&base.name), ..base.clone() }];
+    let mut all = vec![Machine {
+        name: same_name(&base.name),
+        ..base.clone()
+    }];
     all.extend(differences.iter().filter_map(|difference| {
-        named(&difference.name(), &mut |axis: &mut Axis, index| difference.change(axis, index))
+        named(&difference.name(), &mut |axis: &mut Axis, index| {
+            difference.change(axis, index);
+        })
     }));
     for part in DRAWN {
         for number in 0..drawn {
-            let mut random = Random::new(seed.wrapping_add(u64::from(number)).wrapping_add((1e6 * part) as u64));
+            let mut random = Random::new(
+                seed.wrapping_add(u64::from(number))
+                    .wrapping_add((1e6 * part) as u64),
+            );
             let mut draw = |axis: &mut Axis, _: usize| {
-                let mut differ = |value: &mut f64| *value *= random.between([1.0 - part, 1.0 + part]);
-                for value in
-                    [&mut axis.inertia_kg_m2, &mut axis.kp_1_s, &mut axis.kv_nm_s_per_rad, &mut axis.speed_integral_s]
-                {
+                let mut differ =
+                    |value: &mut f64| *value *= random.between([1.0 - part, 1.0 + part]);
+                for value in [
+                    &mut axis.inertia_kg_m2,
+                    &mut axis.kp_1_s,
+                    &mut axis.kv_nm_s_per_rad,
+                    &mut axis.speed_integral_s,
+                ] {
                     differ(value);
                 }
                 friction(axis).into_iter().for_each(differ);
             };
-            all.extend(named(&format!("drawn{:.0}-{number}", 100.0 * part), &mut draw));
+            all.extend(named(
+                &format!("drawn{:.0}-{number}", 100.0 * part),
+                &mut draw,
+            ));
         }
     }
     all
@@ -159,13 +189,26 @@ mod tests {
     fn variants_differ_from_the_base_and_from_each_other_and_are_the_same_again() {
         for (name, count) in [("workshop", 20), ("tnv40", 15)] {
             let base = Machine::load(name.as_ref()).unwrap();
-            let of = |seed: u64| variants(&base, Variants { gross: false, drawn: 2, seed });
+            let of = |seed: u64| {
+                variants(
+                    &base,
+                    Variants {
+                        gross: false,
+                        drawn: 2,
+                        seed,
+                    },
+                )
+            };
             let all = of(7);
             assert_eq!(all.len(), 1 + count + 4, "{name}");
             assert_eq!(all, of(7));
             for (i, machine) in all.iter().enumerate() {
                 assert_eq!(machine.axes == base.axes, i == 0, "{}", machine.name);
-                assert!(all[..i].iter().all(|other| other.axes != machine.axes), "{}", machine.name);
+                assert!(
+                    all[..i].iter().all(|other| other.axes != machine.axes),
+                    "{}",
+                    machine.name
+                );
             }
             assert_ne!(all.last(), of(8).last());
         }
@@ -174,9 +217,26 @@ mod tests {
     #[test]
     fn a_delay_is_never_negative() {
         let base = Machine::load("tnv40".as_ref()).unwrap();
-        let all = variants(&base, Variants { gross: false, drawn: 0, seed: 1 });
-        assert!(all.iter().all(|machine| machine.axes.iter().all(|axis| axis.drive_delay_s >= 0.0)));
-        assert!(all.iter().any(|machine| machine.name == "tnv40-delay+0.8ms"));
-        assert!(!all.iter().any(|machine| machine.name == "tnv40-delay-0.3ms"), "it has none");
+        let all = variants(
+            &base,
+            Variants {
+                gross: false,
+                drawn: 0,
+                seed: 1,
+            },
+        );
+        assert!(
+            all.iter()
+                .all(|machine| machine.axes.iter().all(|axis| axis.drive_delay_s >= 0.0))
+        );
+        assert!(
+            all.iter()
+                .any(|machine| machine.name == "tnv40-delay+0.8ms")
+        );
+        assert!(
+            !all.iter()
+                .any(|machine| machine.name == "tnv40-delay-0.3ms"),
+            "it has none"
+        );
     }
 }

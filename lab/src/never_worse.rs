@@ -1,9 +1,11 @@
-//! Never worse: controllers compared with the uncorrected cut on every program and every machine, and the cuts that it made worse.
+//! Never worse: controllers compared with the uncorrected cut on every program and every machine,
+//! and the cuts that it made worse.
 //!
-//! A cut is worse where its RMS or its largest contour error, or the uncut path, is worse than the uncorrected cut's by the rule
-//! of [`feedwright::harm`], or where the controller is not in the loop any more at the end. Each controller is made for the
-//! machine that it cuts on, or for another one (`mismatch.rs`). Cuts depend on nothing but program, machines and seed: the rows are the
-//! same for any number of threads, and those that are [`Kept`] are not cut again.
+//! A cut is worse where its RMS or its largest contour error, or the uncut path, is worse than the
+//! uncorrected cut's by the rule of [`feedwright::harm`], or where the controller is not in the
+//! loop any more at the end. Each controller is made for the machine that it cuts on, or for
+//! another one (`mismatch.rs`). Cuts depend on nothing but program, machines and seed: the rows are
+//! the same for any number of threads, and those that are [`Kept`] are not cut again.
 //!
 //! | File | What |
 //! |---|---|
@@ -53,7 +55,8 @@ pub struct SweepOptions {
     pub controllers: Vec<&'static Entry>,
     /// Parameters that are set.
     pub set: Vec<Setting>,
-    /// Whether a controller of which nothing is set has the values that a search found for the machine that it is made for.
+    /// Whether a controller of which nothing is set has the values that a search found for the
+    /// machine that it is made for.
     pub recorded: bool,
     /// Seed of the training.
     pub seed: u64,
@@ -67,27 +70,51 @@ const RECORDED_SEED: u64 = 1;
 impl SweepOptions {
     /// These controllers with their defaults, on one thread.
     pub const fn of(controllers: Vec<&'static Entry>) -> Self {
-        Self { controllers, set: Vec::new(), recorded: false, seed: 1, threads: 1 }
+        Self {
+            controllers,
+            set: Vec::new(),
+            recorded: false,
+            seed: 1,
+            threads: 1,
+        }
     }
 
     /// Parameters of the controllers that are made for a machine.
     fn set_for(&self, model: &Machine) -> Vec<Setting> {
         let mut all = self.set.clone();
-        let known = if self.recorded { recorded::known(std::slice::from_ref(model), RECORDED_SEED) } else { vec![] };
+        let known = if self.recorded {
+            recorded::known(std::slice::from_ref(model), RECORDED_SEED)
+        } else {
+            vec![]
+        };
         for tuned in known {
-            let entry = self.controllers.iter().find(|entry| entry.name == tuned.controller);
-            let is_set = self.set.iter().any(|set| set.controller == tuned.controller);
-            all.extend(entry.filter(|_| !is_set).map_or(vec![], |&entry| tuned.settings(entry)));
+            let entry = self
+                .controllers
+                .iter()
+                .find(|entry| entry.name == tuned.controller);
+            let is_set = self
+                .set
+                .iter()
+                .any(|set| set.controller == tuned.controller);
+            all.extend(
+                entry
+                    .filter(|_| !is_set)
+                    .map_or(vec![], |&entry| tuned.settings(entry)),
+            );
         }
         all
     }
 }
 
-/// Every program on every machine: by machine, so that each is identified once for a thread, and the longest program
-/// first, so that no thread is left alone with it.
+/// Every program on every machine: by machine, so that each is identified once for a thread, and
+/// the longest program first, so that no thread is left alone with it.
 pub(crate) fn jobs(programs: Vec<SweepProgram>, machines: Vec<Machine>) -> Vec<SweepJob> {
     let mut programs: Vec<Arc<SweepProgram>> = programs.into_iter().map(Arc::new).collect();
-    programs.sort_by(|a, b| b.machining_s.total_cmp(&a.machining_s).then_with(|| a.name.cmp(&b.name)));
+    programs.sort_by(|a, b| {
+        b.machining_s
+            .total_cmp(&a.machining_s)
+            .then_with(|| a.name.cmp(&b.name))
+    });
     let on = |machine: Machine| {
         let machine = Arc::new(machine);
         programs.iter().map(move |program| SweepJob {
@@ -111,11 +138,22 @@ pub(crate) fn sample(jobs: Vec<SweepJob>, count: usize, seed: u64) -> Vec<SweepJ
 /// What a cut with a controller depends on, apart from the program that makes it.
 fn key(job: &SweepJob, options: &SweepOptions, controller: &Entry) -> String {
     let machine = serde_json::json!(*job.machine).to_string();
-    let set: Vec<Setting> =
-        options.set_for(&job.model).into_iter().filter(|set| set.controller == controller.name).collect();
-    let (seed, set_json) = (options.seed.to_le_bytes(), serde_json::json!(set).to_string());
+    let set: Vec<Setting> = options
+        .set_for(&job.model)
+        .into_iter()
+        .filter(|set| set.controller == controller.name)
+        .collect();
+    let (seed, set_json) = (
+        options.seed.to_le_bytes(),
+        serde_json::json!(set).to_string(),
+    );
     let model: String;
-    let mut parts = vec![job.program.key.as_bytes(), machine.as_bytes(), controller.name.as_bytes(), &seed];
+    let mut parts = vec![
+        job.program.key.as_bytes(),
+        machine.as_bytes(),
+        controller.name.as_bytes(),
+        &seed,
+    ];
     if !Arc::ptr_eq(&job.model, &job.machine) {
         model = serde_json::json!(*job.model).to_string();
         parts.push(model.as_bytes());
@@ -129,7 +167,12 @@ fn key(job: &SweepJob, options: &SweepOptions, controller: &Entry) -> String {
 /// A row under the names that program and machines have now.
 fn named(row: &SweepRow, job: &SweepJob) -> SweepRow {
     let model = (!Arc::ptr_eq(&job.model, &job.machine)).then(|| job.model.name.clone());
-    SweepRow { program: job.program.name.clone(), machine: job.machine.name.clone(), model, ..row.clone() }
+    SweepRow {
+        program: job.program.name.clone(),
+        machine: job.machine.name.clone(),
+        model,
+        ..row.clone()
+    }
 }
 
 /// What a sweep came to.
@@ -148,8 +191,8 @@ impl SweepJob {
     }
 }
 
-/// Cuts all jobs on all threads, uncorrected and with each controller. The controllers of a thread serve all jobs by the same
-/// model that follow each other.
+/// Cuts all jobs on all threads, uncorrected and with each controller. The controllers of a thread
+/// serve all jobs by the same model that follow each other.
 ///
 /// # Errors
 /// An end from outside; what was cut is in the store.
@@ -159,7 +202,10 @@ pub(crate) fn sweep(
     kept: &Kept,
     watch: &dyn Watch,
 ) -> Result<Swept, Cancelled> {
-    watch.begin(&format!("{} cuts", jobs.len()), jobs.iter().map(SweepJob::steps).sum());
+    watch.begin(
+        &format!("{} cuts", jobs.len()),
+        jobs.iter().map(SweepJob::steps).sum(),
+    );
     let (next, known) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let results = Mutex::new(vec![Vec::new(); jobs.len()]);
     let thread = || {
@@ -167,7 +213,11 @@ pub(crate) fn sweep(
         loop {
             let i = next.fetch_add(1, Ordering::Relaxed);
             let Some(job) = jobs.get(i) else { break };
-            let keys: Vec<String> = options.controllers.iter().map(|entry| key(job, options, entry)).collect();
+            let keys: Vec<String> = options
+                .controllers
+                .iter()
+                .map(|entry| key(job, options, entry))
+                .collect();
             let found: Option<Vec<SweepRow>> = keys.iter().map(|key| kept.get(key)).collect();
             let rows = match found {
                 Some(rows) => {
@@ -179,8 +229,12 @@ pub(crate) fn sweep(
                         Some(cutter) if cutter.is_for(&job.model) => cutter,
                         other => other.insert(Cutter::new(&job.model, options)),
                     };
-                    let Ok(rows) = cutter.rows(&job.program, &job.machine, watch) else { break };
-                    keys.iter().zip(&rows).for_each(|(key, row)| kept.put(key, row));
+                    let Ok(rows) = cutter.rows(&job.program, &job.machine, watch) else {
+                        break;
+                    };
+                    keys.iter()
+                        .zip(&rows)
+                        .for_each(|(key, row)| kept.put(key, row));
                     rows
                 }
             };
@@ -191,7 +245,13 @@ pub(crate) fn sweep(
     };
     std::thread::scope(|scope| (0..options.threads.max(1)).for_each(|_| drop(scope.spawn(thread))));
     watch.check()?;
-    Ok(Swept { rows: results.into_inner().unwrap_or_else(PoisonError::into_inner).concat(), known: known.into_inner() })
+    Ok(Swept {
+        rows: results
+            .into_inner()
+            .unwrap_or_else(PoisonError::into_inner)
+            .concat(),
+        known: known.into_inner(),
+    })
 }
 
 #[cfg(test)]
@@ -205,43 +265,75 @@ mod tests {
     fn what_was_cut_is_not_cut_again_and_half_a_file_does_no_harm() {
         let folder = tempfile::tempdir().expect("a folder");
         let machine = Machine::load("tnv40".as_ref()).expect("built in");
-        let length = Length { machine: &machine, limit_s: 10.0 };
+        let length = Length {
+            machine: &machine,
+            limit_s: 10.0,
+        };
         let programs = ["G21 F1200\nG1 X5\nG1 Y5\nM2\n", "G21 F1200\nG1 X-5\nM2\n"]
             .map(|text| SweepProgram::from_text("lines", text, length).expect("a program"));
         let jobs = jobs(programs.to_vec(), vec![machine.clone()]);
-        let options = SweepOptions { threads: 2, ..SweepOptions::of(vec![&UNCORRECTED]) };
+        let options = SweepOptions {
+            threads: 2,
+            ..SweepOptions::of(vec![&UNCORRECTED])
+        };
         let swept = |jobs: &[SweepJob]| {
             let kept = Kept::open(Some(folder.path()), "").expect("a folder");
             sweep(jobs, &options, &kept, &()).expect("nobody ends it")
         };
         let first = swept(&jobs);
-        let mut files = glob::glob(&format!("{}/*/*.json", folder.path().display())).expect("a pattern");
-        std::fs::write(files.next().expect("two files").expect("it can be read"), "{").expect("it can be written");
+        let mut files =
+            glob::glob(&format!("{}/*/*.json", folder.path().display())).expect("a pattern");
+        std::fs::write(
+            files.next().expect("two files").expect("it can be read"),
+            "{",
+        )
+        .expect("it can be written");
         let again = swept(&jobs);
         assert_eq!((first.known, again.known), (0, 1));
         assert_eq!(first.rows, again.rows);
         let renamed = SweepJob {
-            program: Arc::new(SweepProgram { name: "other".to_owned(), ..(*jobs[0].program).clone() }),
+            program: Arc::new(SweepProgram {
+                name: "other".to_owned(),
+                ..(*jobs[0].program).clone()
+            }),
             ..jobs[0].clone()
         };
         let named = swept(&[renamed]).rows;
-        assert_eq!((named[0].program.as_str(), &named[0].uncorrected), ("other", &first.rows[0].uncorrected));
+        assert_eq!(
+            (named[0].program.as_str(), &named[0].uncorrected),
+            ("other", &first.rows[0].uncorrected)
+        );
     }
 
     #[test]
     fn recorded_values_are_those_of_the_machine_of_the_model_and_what_is_set_goes_before() {
-        let set = Setting { controller: FEEDFORWARD_CROSS_COUPLED.name, name: "kp", value: 0.25 };
+        let set = Setting {
+            controller: FEEDFORWARD_CROSS_COUPLED.name,
+            name: "kp",
+            value: 0.25,
+        };
         let controllers = vec![&DISTURBANCE_OBSERVER, &FEEDFORWARD_CROSS_COUPLED];
-        let options = SweepOptions { recorded: true, set: vec![set], ..SweepOptions::of(controllers) };
+        let options = SweepOptions {
+            recorded: true,
+            set: vec![set],
+            ..SweepOptions::of(controllers)
+        };
         let of = |name: &str| options.set_for(&Machine::load(name.as_ref()).expect("built in"));
         let (workshop, router) = (of("workshop"), of("router"));
         for all in [&workshop, &router] {
             assert_eq!(all.len(), 2, "{all:?}");
-            assert_eq!((all[0], all[1].controller), (set, DISTURBANCE_OBSERVER.name));
+            assert_eq!(
+                (all[0], all[1].controller),
+                (set, DISTURBANCE_OBSERVER.name)
+            );
         }
         assert_ne!(workshop[1].value, router[1].value);
         let mut other = Machine::load("workshop".as_ref()).expect("built in");
         other.axes[0].inertia_kg_m2 *= 1.1;
-        assert_eq!(options.set_for(&other), [set], "nothing was searched for another machine");
+        assert_eq!(
+            options.set_for(&other),
+            [set],
+            "nothing was searched for another machine"
+        );
     }
 }

@@ -1,7 +1,8 @@
 //! The experiments of section 4 of Lee, Cho and Jeon (2005), on the circle of eq. 11.
 //!
-//! For every seed the identifier is trained anew and cuts the circle uncorrected, with both components of the feedrate, and
-//! with the magnitude only: once at the rho that gives it the same machining time, once at the same rho.
+//! For every seed the identifier is trained anew and cuts the circle uncorrected, with both
+//! components of the feedrate, and with the magnitude only: once at the rho that gives it the same
+//! machining time, once at the same rho.
 
 mod curves;
 pub(crate) mod departures;
@@ -9,7 +10,8 @@ pub(crate) mod figures;
 
 use feedwright::{Statistics, identified};
 use feedwright_control::{
-    ContourIdentifier, Controller, Gradient, InvertingSettings, MagnitudeOnly, TwoDimensional, Uncorrected,
+    ContourIdentifier, Controller, Gradient, InvertingSettings, MagnitudeOnly, TwoDimensional,
+    Uncorrected,
 };
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use feedwright_ident::{Excitation, TrainedContour, Training};
@@ -57,7 +59,8 @@ pub struct SeedResult {
     pub magnitude_only_same_rho: Numbers,
     /// Both components.
     pub two_dimensional: Numbers,
-    /// Both components, with the true gradient of eq. 7 instead of the printed one: does not converge.
+    /// Both components, with the true gradient of eq. 7 instead of the printed one: does not
+    /// converge.
     pub two_dimensional_exact_gradient: Numbers,
 }
 
@@ -128,7 +131,8 @@ impl Bench<'_> {
             uncorrected: self.cut_uncorrected()?,
             magnitude_only: self.cut_magnitude_only(net, same_time)?,
             magnitude_only_same_rho: self.cut_magnitude_only(net, settings.inversion.rho)?,
-            two_dimensional_exact_gradient: self.cut_two_dimensional(net, with_gradient(settings, Gradient::Exact))?,
+            two_dimensional_exact_gradient: self
+                .cut_two_dimensional(net, with_gradient(settings, Gradient::Exact))?,
             two_dimensional,
         })
     }
@@ -138,12 +142,20 @@ impl Bench<'_> {
         self.train_on(&Excitation::paper(), &Training::default(), seed)
     }
 
-    fn train_on(&self, excitation: &Excitation, training: &Training, seed: u64) -> TrainedContour<2> {
+    fn train_on(
+        &self,
+        excitation: &Excitation,
+        training: &Training,
+        seed: u64,
+    ) -> TrainedContour<2> {
         identified(self.machine, excitation, training, seed, &mut |_| {})
     }
 
     fn cut_uncorrected(&self) -> Result<Numbers, RunError> {
-        Ok(Numbers { rho: None, ..self.cut(&mut Uncorrected, &mut [], 0.0)? })
+        Ok(Numbers {
+            rho: None,
+            ..self.cut(&mut Uncorrected, &mut [], 0.0)?
+        })
     }
 
     fn cut_two_dimensional(
@@ -151,14 +163,23 @@ impl Bench<'_> {
         net: &ContourIdentifier<2>,
         settings: InvertingSettings,
     ) -> Result<Numbers, RunError> {
-        self.cut(&mut TwoDimensional::untried(net.clone(), settings), &mut [], settings.inversion.rho)
+        self.cut(
+            &mut TwoDimensional::untried(net.clone(), settings),
+            &mut [],
+            settings.inversion.rho,
+        )
     }
 
-    fn cut_magnitude_only(&self, net: &ContourIdentifier<2>, rho: f64) -> Result<Numbers, RunError> {
+    fn cut_magnitude_only(
+        &self,
+        net: &ContourIdentifier<2>,
+        rho: f64,
+    ) -> Result<Numbers, RunError> {
         self.cut(&mut magnitude_only(net, rho), &mut [], rho)
     }
 
-    /// The rho at which magnitude-only takes `time_s`: bisection on its logarithm, since more rho is less time.
+    /// The rho at which magnitude-only takes `time_s`: bisection on its logarithm, since more rho
+    /// is less time.
     fn rho_for_time(&self, net: &ContourIdentifier<2>, time_s: f64) -> Result<f64, RunError> {
         let (mut low, mut high) = (-6.0_f64, -1.0_f64);
         let mut rho = 0.0;
@@ -169,7 +190,11 @@ impl Bench<'_> {
             if (ratio - 1.0).abs() <= SAME_TIME {
                 break;
             }
-            if ratio > 1.0 { low = middle } else { high = middle }
+            if ratio > 1.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
         }
         Ok(rho)
     }
@@ -184,11 +209,10 @@ impl Bench<'_> {
         let mut statistics = Statistics::new();
         let mut all: Vec<&mut dyn Sink> = vec![&mut statistics];
         all.extend(sinks.iter_mut().map(|sink| &mut **sink as &mut dyn Sink));
-        let run = Run::on(self.machine).stages(Stages::default()).watched(self.watch).cut(
-            || Ok(path_steps([circle()])),
-            controller,
-            &mut all,
-        )?;
+        let run = Run::on(self.machine)
+            .stages(Stages::default())
+            .watched(self.watch)
+            .cut(|| Ok(path_steps([circle()])), controller, &mut all)?;
         Ok(Numbers {
             time_s: run.time_s,
             rms_um: statistics.rms_um(),
@@ -221,7 +245,11 @@ fn circle() -> Canon {
         kind: MotionKind::Feed,
         start_mm: [0.0; 3],
         end_mm: [0.0; 3],
-        shape: Shape::Arc { plane: Plane::Xy, center_mm: [RADIUS_MM, 0.0, 0.0], turns: -1 },
+        shape: Shape::Arc {
+            plane: Plane::Xy,
+            center_mm: [RADIUS_MM, 0.0, 0.0],
+            turns: -1,
+        },
         feed_mm_s: FEED_MM_S,
         corner: Corner::ExactStop,
         others: AuxiliaryAxes::default(),

@@ -1,4 +1,5 @@
-//! The peers: published controllers, each in a file named after its method, and the table of all controllers.
+//! The peers: published controllers, each in a file named after its method, and the table of all
+//! controllers.
 //!
 //! | File | What |
 //! |---|---|
@@ -30,14 +31,14 @@ mod make;
 mod rows;
 
 use feedwright::{
-    ACCELERATION_GAIN, Controllers, Entry, FEEDFORWARD, FRICTION_GAIN, LQG_IDENTIFIED, MAGNITUDE_ONLY, Parameter,
-    TWO_DIMENSIONAL, UNCORRECTED, VELOCITY_GAIN, controller,
+    ACCELERATION_GAIN, Controllers, Entry, FEEDFORWARD, FRICTION_GAIN, LQG_IDENTIFIED,
+    MAGNITUDE_ONLY, Parameter, TWO_DIMENSIONAL, UNCORRECTED, VELOCITY_GAIN, controller,
 };
 use rows::{
-    ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CONSTRAINED_ALLOWED, CONTROL_WEIGHT,
-    CORNER_REACH, CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT, FUZZY_CHANGE, FUZZY_ERROR,
-    FUZZY_SLOWEST, GAMMA_RATIO, INERTIA_SCALE, KNOTS, LAG_SCALE, PLAN_PERIOD_S, RATE_WEIGHT, SHAPED_DAMPING,
-    SHAPED_FREQUENCY, SHAPER_IMPULSES, TORQUE_NOISE,
+    ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CONSTRAINED_ALLOWED,
+    CONTROL_WEIGHT, CORNER_REACH, CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT,
+    FUZZY_CHANGE, FUZZY_ERROR, FUZZY_SLOWEST, GAMMA_RATIO, INERTIA_SCALE, KNOTS, LAG_SCALE,
+    PLAN_PERIOD_S, RATE_WEIGHT, SHAPED_DAMPING, SHAPED_FREQUENCY, SHAPER_IMPULSES, TORQUE_NOISE,
 };
 
 /// PID control of the contour error, added to the command across the path.
@@ -121,7 +122,8 @@ pub(crate) static CORNER_CONTOUR: Entry = controller!(
     |setup, values| make::corner_contour(setup, values)
 );
 
-/// The feedrate of least time with a bounded contour error, by nonlinear programming on linear models of the axes.
+/// The feedrate of least time with a bounded contour error, by nonlinear programming on linear
+/// models of the axes.
 pub(crate) static CONSTRAINED_FEEDRATE: Entry = controller!(
     "constrained-feedrate",
     "the feedrate of least time with a bounded contour error, by nonlinear programming on linear models of the axes",
@@ -132,7 +134,8 @@ pub(crate) static CONSTRAINED_FEEDRATE: Entry = controller!(
     |setup, values| make::constrained_feedrate(setup, values)
 );
 
-/// Velocity and acceleration feedforward as controls are delivered, set to each axis; nothing of friction.
+/// Velocity and acceleration feedforward as controls are delivered, set to each axis; nothing of
+/// friction.
 pub(crate) static FEEDFORWARD_AS_DELIVERED: Entry = controller!(
     "feedforward-as-delivered",
     "velocity and acceleration feedforward as controls are delivered, set to each axis; nothing of friction",
@@ -205,7 +208,8 @@ pub(crate) static DISTURBANCE_OBSERVER: Entry = controller!(
     |setup, values| make::disturbance_observer(setup, values)
 );
 
-/// Velocity, acceleration and friction feedforward, and a Kalman filter whose disturbance is taken out.
+/// Velocity, acceleration and friction feedforward, and a Kalman filter whose disturbance is taken
+/// out.
 pub(crate) static KALMAN_DISTURBANCE: Entry = controller!(
     "kalman-disturbance",
     "velocity, acceleration and friction feedforward, and a Kalman filter whose disturbance is taken out",
@@ -227,7 +231,8 @@ pub(crate) static MODEL_PREDICTIVE: Entry = controller!(
     |setup, values| make::model_predictive(setup, values)
 );
 
-/// The limit: Kalman filter and linear-quadratic regulator with preview, by everything that can be known of the machine.
+/// The limit: Kalman filter and linear-quadratic regulator with preview, by everything that can be
+/// known of the machine.
 pub(crate) static LQG_PREVIEW: Entry = controller!(
     "lqg-preview",
     "the limit: Kalman filter and linear-quadratic regulator with preview, by everything that can be known of the machine",

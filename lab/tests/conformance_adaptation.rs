@@ -1,4 +1,5 @@
-//! What controllers learn while cutting does no harm: not on a straight line of minutes, not with another seed of their training.
+//! What controllers learn while cutting does no harm: not on a straight line of minutes, not with
+//! another seed of their training.
 
 use crate::sweep::part_or_whole;
 use feedwright::{Choices, Make, Setup};
@@ -47,25 +48,44 @@ fn line_and_circle(length_mm: f64) -> Vec<Canon> {
             end_mm: [to_x, 0.0, 0.0],
             shape,
             feed_mm_s: FEED_MM_S,
-            corner: Corner::Continuous { tolerance_mm: None, merge_mm: None },
+            corner: Corner::Continuous {
+                tolerance_mm: None,
+                merge_mm: None,
+            },
             others: AuxiliaryAxes::default(),
         })
     };
-    let circle = Shape::Arc { plane: Plane::Xy, center_mm: [length_mm, 10.0, 0.0], turns: 1 };
-    vec![motion(1, 0.0, length_mm, Shape::Line), motion(2, length_mm, length_mm, circle)]
+    let circle = Shape::Arc {
+        plane: Plane::Xy,
+        center_mm: [length_mm, 10.0, 0.0],
+        turns: 1,
+    };
+    vec![
+        motion(1, 0.0, length_mm, Shape::Line),
+        motion(2, length_mm, length_mm, circle),
+    ]
 }
 
-/// RMS contour error of the circle behind a line of this length, um, with a controller that was identified on tnv40. It knows
-/// what the drives of the machine that it cuts on are set to.
+/// RMS contour error of the circle behind a line of this length, um, with a controller that was
+/// identified on tnv40. It knows what the drives of the machine that it cuts on are set to.
 fn circle_behind(length_mm: f64, machine: &Machine, seed: u64) -> f64 {
     let nominal = Machine::load("tnv40".as_ref()).unwrap();
-    let choices = Choices { seed, ..Choices::default() };
+    let choices = Choices {
+        seed,
+        ..Choices::default()
+    };
     let mut setup = Setup::new(&nominal, &choices);
     setup.known = machine.known();
     let mut controller = Make::<2>::make(CONTROLLERS.find(REGULATOR).unwrap(), &mut setup);
-    let mut error = LineError { line: 2, square_um2: 0.0, rows: 0 };
+    let mut error = LineError {
+        line: 2,
+        square_um2: 0.0,
+        rows: 0,
+    };
     let program = || Ok(path_steps(line_and_circle(length_mm)));
-    let run = Run::on(machine).cut(program, &mut *controller, &mut [&mut error]).unwrap();
+    let run = Run::on(machine)
+        .cut(program, &mut *controller, &mut [&mut error])
+        .unwrap();
     assert_eq!(run.faded_out, None);
     error.rms_um()
 }
@@ -81,8 +101,13 @@ fn nothing_drifts_on_a_long_straight_line() {
         eprintln!("{name}: circle behind short lines {short_um:.3?} um");
         let short_um = short_um.into_iter().fold(0.0, f64::max);
         let long_um = behind_um(long_mm);
-        eprintln!("{name}: circle behind a short line {short_um:.3} um, behind a long one {long_um:.3} um");
-        assert!(long_um <= 1.5 * short_um + 0.05, "{name}: {short_um} um, then {long_um} um");
+        eprintln!(
+            "{name}: circle behind a short line {short_um:.3} um, behind a long one {long_um:.3} um"
+        );
+        assert!(
+            long_um <= 1.5 * short_um + 0.05,
+            "{name}: {short_um} um, then {long_um} um"
+        );
     });
 }
 
@@ -90,11 +115,16 @@ fn nothing_drifts_on_a_long_straight_line() {
 fn the_worst_of_many_seeds_is_near_the_median() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
     let seeds = part_or_whole(4, 10);
-    let mut errors_um: Vec<f64> =
-        (1..=seeds).into_par_iter().map(|seed| circle_behind(SHORT_LINE_MM, &machine, seed)).collect();
+    let mut errors_um: Vec<f64> = (1..=seeds)
+        .into_par_iter()
+        .map(|seed| circle_behind(SHORT_LINE_MM, &machine, seed))
+        .collect();
     errors_um.sort_by(f64::total_cmp);
     let half = errors_um.len() / 2;
     let median_um = 0.5 * (errors_um[half - 1] + errors_um[half]);
     eprintln!("{seeds} seeds: {errors_um:.3?} um");
-    assert!(errors_um[errors_um.len() - 1] <= 1.5 * median_um, "{errors_um:?}");
+    assert!(
+        errors_um[errors_um.len() - 1] <= 1.5 * median_um,
+        "{errors_um:?}"
+    );
 }

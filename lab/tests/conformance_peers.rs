@@ -1,4 +1,5 @@
-//! Every controller of the table does on the circle what it is there for: it reduces the contour error, or trades it for time.
+//! Every controller of the table does on the circle what it is there for: it reduces the contour
+//! error, or trades it for time.
 //!
 //! A controller that does nothing cuts as the uncorrected cut does, and fails here.
 
@@ -22,29 +23,56 @@ struct Held {
 const PLANNED: [f64; 2] = [1.0, 1.0];
 
 const fn held(name: &'static str, rms: f64, time: [f64; 2]) -> Held {
-    Held { name, contour: "circle", set: &[], rms, time }
+    Held {
+        name,
+        contour: "circle",
+        set: &[],
+        rms,
+        time,
+    }
 }
 
 /// A contour error that cross-coupled control alone does not hold: it slows down throughout.
-const STRICT: Setting = Setting { controller: "cross-coupled-feedrate", name: "allowed_mm", value: 1e-4 };
-const LARGEST_STEPS: Setting = Setting { controller: "magnitude-only", name: "eta", value: 10.0 };
+const STRICT: Setting = Setting {
+    controller: "cross-coupled-feedrate",
+    name: "allowed_mm",
+    value: 1e-4,
+};
+const LARGEST_STEPS: Setting = Setting {
+    controller: "magnitude-only",
+    name: "eta",
+    value: 10.0,
+};
 
 /// The RMS that was measured, with a half more, or twice that where little is left.
 ///
-/// Feedforward with cross-coupled feedback and that with a Kalman filter are held to less than feedforward alone has (0.019), and
-/// cross-coupled control that slows down to less than without (0.024).
+/// Feedforward with cross-coupled feedback and that with a Kalman filter are held to less than
+/// feedforward alone has (0.019), and cross-coupled control that slows down to less than without
+/// (0.024).
 ///
-/// Two change the speed alone. The fuzzy rules pay for the error with time: 0.52 of it in 1.32 of the time. The inversion of the speed
-/// saves time at the same error by default (0.963 at 1.013); with steps as large as they may be it pays 1 % of time for 14 % of the
-/// error.
+/// Two change the speed alone. The fuzzy rules pay for the error with time: 0.52 of it in 1.32 of
+/// the time. The inversion of the speed saves time at the same error by default (0.963 at 1.013);
+/// with steps as large as they may be it pays 1 % of time for 14 % of the error.
 const HELD: &[Held] = &[
     held("cross-coupled", 0.05, PLANNED),
     held("contour-compensation", 0.16, PLANNED),
     held("fuzzy-feedrate", 0.7, [1.1, 1.5]),
     held("fuzzy-h-infinity", 0.023, [1.001, 1.02]),
     held("cross-coupled-feedrate", 0.05, [1.001, 1.02]),
-    Held { name: "cross-coupled-feedrate", contour: "circle", set: &[STRICT], rms: 0.02, time: [2.0, 2.7] },
-    Held { name: "corner-contour", contour: "square", set: &[], rms: 0.45, time: PLANNED },
+    Held {
+        name: "cross-coupled-feedrate",
+        contour: "circle",
+        set: &[STRICT],
+        rms: 0.02,
+        time: [2.0, 2.7],
+    },
+    Held {
+        name: "corner-contour",
+        contour: "square",
+        set: &[],
+        rms: 0.45,
+        time: PLANNED,
+    },
     held("constrained-feedrate", 0.6, [1.2, 1.7]),
     held("feedforward", 0.04, PLANNED),
     held("feedforward-as-delivered", 0.22, PLANNED),
@@ -60,7 +88,13 @@ const HELD: &[Held] = &[
     held("iterative-learning-3", 0.04, PLANNED),
     held("iterative-learning-10", 0.03, PLANNED),
     held("magnitude-only", 1.05, [0.9, 0.98]),
-    Held { name: "magnitude-only", contour: "circle", set: &[LARGEST_STEPS], rms: 0.93, time: [1.001, 1.03] },
+    Held {
+        name: "magnitude-only",
+        contour: "circle",
+        set: &[LARGEST_STEPS],
+        rms: 0.93,
+        time: [1.001, 1.03],
+    },
     held("two-dimensional", 0.15, [0.9, 0.98]),
     held("lqg-identified", 0.003, PLANNED),
 ];
@@ -73,12 +107,23 @@ where
     cut_contour::<N>("circle", machine, entry, set)
 }
 
-fn cut_contour<const N: usize>(contour: &str, machine: &Machine, entry: &Entry, set: &[Setting]) -> [f64; 2]
+fn cut_contour<const N: usize>(
+    contour: &str,
+    machine: &Machine,
+    entry: &Entry,
+    set: &[Setting],
+) -> [f64; 2]
 where
     Entry: Make<N>,
 {
-    let workpiece = Workpiece::contours().into_iter().find(|workpiece| workpiece.name == contour).unwrap();
-    let choices = Choices { set: set.to_vec(), ..Choices::default() };
+    let workpiece = Workpiece::contours()
+        .into_iter()
+        .find(|workpiece| workpiece.name == contour)
+        .unwrap();
+    let choices = Choices {
+        set: set.to_vec(),
+        ..Choices::default()
+    };
     let mut setup = Setup::new(machine, &choices);
     let mut controller = Make::<N>::make(entry, &mut setup);
     let mut statistics = Statistics::new();
@@ -96,12 +141,23 @@ where
 {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
     let mut failures = Vec::new();
-    // Identifiers of two and of three axes are not the same: values that were chosen are so for the plane.
-    for Held { name, contour, set, rms, time } in HELD.iter().filter(|held| N == 2 || held.set.is_empty()) {
-        let [open_um, open_s] = cut_contour::<N>(contour, &machine, CONTROLLERS.find(BASELINE).unwrap(), &[]);
-        let [rms_um, time_s] = cut_contour::<N>(contour, &machine, CONTROLLERS.find(name).unwrap(), set);
+    // Identifiers of two and of three axes are not the same: values that were chosen are so for the
+    // plane.
+    for Held {
+        name,
+        contour,
+        set,
+        rms,
+        time,
+    } in HELD.iter().filter(|held| N == 2 || held.set.is_empty())
+    {
+        let [open_um, open_s] =
+            cut_contour::<N>(contour, &machine, CONTROLLERS.find(BASELINE).unwrap(), &[]);
+        let [rms_um, time_s] =
+            cut_contour::<N>(contour, &machine, CONTROLLERS.find(name).unwrap(), set);
         let (of_rms, of_time) = (rms_um / open_um, time_s / open_s);
-        let what = format!("{name} {set:?}: RMS {of_rms:.4} of the uncorrected cut's, time {of_time:.4}");
+        let what =
+            format!("{name} {set:?}: RMS {of_rms:.4} of the uncorrected cut's, time {of_time:.4}");
         println!("{what}");
         let [shortest, longest] = *time;
         // Rounding of the instant at which the plan ends.
@@ -125,7 +181,11 @@ fn every_controller_does_in_space_what_it_is_there_for() {
 #[test]
 fn no_controller_is_left_out() {
     for entry in CONTROLLERS.iter().filter(|entry| entry.name != BASELINE) {
-        assert!(HELD.iter().any(|held| held.name == entry.name), "{} is not held to anything", entry.name);
+        assert!(
+            HELD.iter().any(|held| held.name == entry.name),
+            "{} is not held to anything",
+            entry.name
+        );
     }
 }
 
@@ -133,7 +193,8 @@ fn no_controller_is_left_out() {
 /// geometry errors, which no controller can know. A peer then leaves only the part of the
 /// uncorrected error that comes from what it does not know of the machine, or does not use.
 fn drive_of_workshop() -> Machine {
-    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/sim/machines/workshop.toml");
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../crates/sim/machines/workshop.toml");
     let mut machine = Machine::read(&file).unwrap();
     machine.geometry = Squareness::default();
     for axis in &mut machine.axes {
@@ -154,8 +215,10 @@ fn drive_of_workshop() -> Machine {
     machine
 }
 
-/// Largest parts of the uncorrected RMS on that machine. Measured: feedforward 0.0006, the limit 0.0004, model-predictive 0.0001; Kalman filter and observer 0.06 and 0.11, which know
-/// nothing of the torque filter; the shaper rounds the circle by 1.2 um, 0.2. Zero phase leaves the friction: 0.17; with that fed forward 0.01.
+/// Largest parts of the uncorrected RMS on that machine. Measured: feedforward 0.0006, the limit
+/// 0.0004, model-predictive 0.0001; Kalman filter and observer 0.06 and 0.11, which know nothing of
+/// the torque filter; the shaper rounds the circle by 1.2 um, 0.2. Zero phase leaves the friction:
+/// 0.17; with that fed forward 0.01.
 const HELD_ON_WORKSHOP: &[(&str, f64)] = &[
     ("feedforward", 0.01),
     ("zero-phase", 0.25),
@@ -168,15 +231,21 @@ const HELD_ON_WORKSHOP: &[(&str, f64)] = &[
 #[test]
 fn what_drives_do_by_themselves_is_not_done_twice_and_what_they_do_late_is_done_ahead() {
     let mut machine = drive_of_workshop();
-    for (measurement_delay_s, acceleration_feedforward) in [(0.0, 0.0), (0.001, 0.0), (0.0004, 0.5)] {
+    for (measurement_delay_s, acceleration_feedforward) in [(0.0, 0.0), (0.001, 0.0), (0.0004, 0.5)]
+    {
         for axis in &mut machine.axes {
-            *axis = Axis { measurement_delay_s, acceleration_feedforward, ..*axis };
+            *axis = Axis {
+                measurement_delay_s,
+                acceleration_feedforward,
+                ..*axis
+            };
         }
         let [open_um, _] = cut::<2>(&machine, CONTROLLERS.find(BASELINE).unwrap(), &[]);
         for (name, held) in HELD_ON_WORKSHOP {
             let [rms_um, _] = cut::<2>(&machine, CONTROLLERS.find(name).unwrap(), &[]);
-            let what =
-                format!("{name}, {measurement_delay_s} s, {acceleration_feedforward}: {rms_um:.4} of {open_um:.4} um");
+            let what = format!(
+                "{name}, {measurement_delay_s} s, {acceleration_feedforward}: {rms_um:.4} of {open_um:.4} um"
+            );
             println!("{what}");
             assert!(rms_um < held * open_um, "{what}");
         }
@@ -191,7 +260,8 @@ fn where_drives_feed_forward_by_themselves_as_delivered_is_uncorrected() {
 }
 
 fn combined() -> Machine {
-    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/03_realism/machines/combined.toml");
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../examples/03_realism/machines/combined.toml");
     Machine::read(&file).unwrap()
 }
 
@@ -202,21 +272,36 @@ const LIMIT_OF_FEEDBACK: f64 = 0.3;
 fn the_limit_is_below_all_others_under_noise() {
     let machine = combined();
     let [limit_um, _] = cut::<2>(&machine, CONTROLLERS.find("lqg-preview").unwrap(), &[]);
-    for name in ["feedforward", "feedforward-cross-coupled", "kalman-disturbance", "model-predictive"] {
+    for name in [
+        "feedforward",
+        "feedforward-cross-coupled",
+        "kalman-disturbance",
+        "model-predictive",
+    ] {
         let [rms_um, _] = cut::<2>(&machine, CONTROLLERS.find(name).unwrap(), &[]);
         println!("{name} {rms_um}, limit {limit_um}");
-        assert!(limit_um < LIMIT_OF_FEEDBACK * rms_um, "{name}: {limit_um} of {rms_um} um");
+        assert!(
+            limit_um < LIMIT_OF_FEEDBACK * rms_um,
+            "{name}: {limit_um} of {rms_um} um"
+        );
     }
 }
 
 #[test]
 fn without_noise_the_limit_is_no_worse_than_feedforward() {
     let mut machine = Machine::load("tnv40".as_ref()).unwrap();
-    machine.axes.iter_mut().for_each(|axis| axis.disturbance_nm = 0.0);
+    machine
+        .axes
+        .iter_mut()
+        .for_each(|axis| axis.disturbance_nm = 0.0);
     for machine in [machine, drive_of_workshop()] {
-        let [limit_um, feedforward_um] =
-            ["lqg-preview", "feedforward"].map(|name| cut::<2>(&machine, CONTROLLERS.find(name).unwrap(), &[])[0]);
+        let [limit_um, feedforward_um] = ["lqg-preview", "feedforward"]
+            .map(|name| cut::<2>(&machine, CONTROLLERS.find(name).unwrap(), &[])[0]);
         println!("{}: {limit_um} {feedforward_um}", machine.name);
-        assert!(limit_um <= feedforward_um, "{}: {limit_um}, feedforward {feedforward_um} um", machine.name);
+        assert!(
+            limit_um <= feedforward_um,
+            "{}: {limit_um}, feedforward {feedforward_um} um",
+            machine.name
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! What the rows of a run say about foot and contour error, on every contour of the comparison and in space.
+//! What the rows of a run say about foot and contour error, on every contour of the comparison and
+//! in space.
 
 use feedwright::{BASELINE, Choices, Entry, Make, Setup};
 use feedwright_gcode::{Reader, Settings};
@@ -8,7 +9,8 @@ use feedwright_sim::{Machine, Row, Run, path_steps};
 
 /// Rounding of coordinates of some ten millimetres, mm.
 const ROUNDING_MM: f64 = 1e-12;
-/// How well a nearest point is found, times what the path turns on the way: the tangent's share in the deviation, mm.
+/// How well a nearest point is found, times what the path turns on the way: the tangent's share in
+/// the deviation, mm.
 const ALONG_MM: f64 = 1e-7;
 
 fn rows<const N: usize>(machine: &Machine, steps: &[Step]) -> Vec<Row>
@@ -19,7 +21,9 @@ where
     let mut setup = Setup::new(machine, &choices);
     let mut controller = Make::<N>::make(CONTROLLERS.find(BASELINE).unwrap(), &mut setup);
     let mut rows = Vec::<Row>::new();
-    Run::on(machine).cut_steps(steps, &mut *controller, &mut [&mut rows]).unwrap();
+    Run::on(machine)
+        .cut_steps(steps, &mut *controller, &mut [&mut rows])
+        .unwrap();
     rows
 }
 
@@ -35,9 +39,16 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 fn agrees(row: &Row, axes: usize) {
     let away_mm = [0, 1, 2].map(|k| row.act_mm[k] - row.foot_mm[k]);
     let signed_mm = signed_distance_mm(row.tangent, away_mm);
-    let wanted = if axes == 2 { signed_mm } else { signed_mm.abs() };
+    let wanted = if axes == 2 {
+        signed_mm
+    } else {
+        signed_mm.abs()
+    };
     assert_eq!(row.contour_error_mm.to_bits(), wanted.to_bits(), "{row:?}");
-    assert!((dot(row.tangent, row.tangent) - 1.0).abs() < ROUNDING_MM, "{row:?}");
+    assert!(
+        (dot(row.tangent, row.tangent) - 1.0).abs() < ROUNDING_MM,
+        "{row:?}"
+    );
 }
 
 #[test]
@@ -53,28 +64,45 @@ fn on_every_contour_the_error_is_from_the_foot_to_the_tool() {
 #[test]
 fn on_the_circle_foot_and_tangent_are_those_of_the_circle() {
     let machine = tnv40();
-    let circle = Workpiece::contours().into_iter().find(|workpiece| workpiece.name == "circle").unwrap();
+    let circle = Workpiece::contours()
+        .into_iter()
+        .find(|workpiece| workpiece.name == "circle")
+        .unwrap();
     let rows = rows::<2>(&machine, &circle.steps);
     let mut largest_mm: f64 = 0.0;
     // The ends of the path are feet of a tool before and beyond them.
-    for row in rows.iter().filter(|row| row.cutting && row.s_mm > 1.0 && row.s_mm < 60.0) {
+    for row in rows
+        .iter()
+        .filter(|row| row.cutting && row.s_mm > 1.0 && row.s_mm < 60.0)
+    {
         let (x, y) = (row.foot_mm[0] - 10.0, row.foot_mm[1]);
         assert!((x.hypot(y) - 10.0).abs() < 1e-9, "{row:?}");
-        assert!((row.tangent[0] * x + row.tangent[1] * y).abs() < 1e-9, "{row:?}");
+        assert!(
+            (row.tangent[0] * x + row.tangent[1] * y).abs() < 1e-9,
+            "{row:?}"
+        );
         let away_mm = [0, 1, 2].map(|k| row.act_mm[k] - row.foot_mm[k]);
         assert!(dot(away_mm, row.tangent).abs() < ALONG_MM, "{row:?}");
         largest_mm = largest_mm.max(row.contour_error_mm.abs());
     }
-    assert!(largest_mm > 0.01, "{largest_mm}: the uncorrected cut cuts this circle some 20 um too small");
+    assert!(
+        largest_mm > 0.01,
+        "{largest_mm}: the uncorrected cut cuts this circle some 20 um too small"
+    );
 }
 
 #[test]
 fn in_space_the_error_is_the_distance_of_the_foot() {
     let machine = tnv40();
     let program = "G21 G90 F1500\nG1 X10 Y5 Z-3\nG2 X20 Y5 I5 J0 Z-6\nG1 X0 Y0 Z0\nM2\n";
-    let canon = Reader::from_text("lines and a helix", program, Settings::default()).unwrap().map(|step| step.unwrap());
+    let canon = Reader::from_text("lines and a helix", program, Settings::default())
+        .unwrap()
+        .map(|step| step.unwrap());
     let steps: Vec<Step> = path_steps(canon).map(|step| step.unwrap()).collect();
     let rows = rows::<3>(&machine, &steps);
-    assert!(rows.iter().any(|row| row.foot_mm[2] < -5.0 && row.contour_error_mm > 1e-4));
+    assert!(
+        rows.iter()
+            .any(|row| row.foot_mm[2] < -5.0 && row.contour_error_mm > 1e-4)
+    );
     rows.iter().for_each(|row| agrees(row, 3));
 }

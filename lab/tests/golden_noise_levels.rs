@@ -1,5 +1,5 @@
-//! Table and figures of the study of noise levels are those of its comparison, and that is what the program makes today:
-//! `just noise-levels` regenerates all of it.
+//! Table and figures of the study of noise levels are those of its comparison, and that is what the
+//! program makes today: `just noise-levels` regenerates all of it.
 //!
 //! Golden: that nothing has changed says nothing on whether it is right.
 
@@ -23,11 +23,18 @@ fn kept() -> Comparison {
 fn table_and_figures_are_those_of_the_kept_comparison() {
     let (kept, document) = (kept(), text(crate::show::DOCUMENT));
     let table = crate::show::table(&kept).unwrap();
-    assert_eq!(document[crate::show::place(&document).unwrap()], table, "hint: `just noise-levels`");
+    assert_eq!(
+        document[crate::show::place(&document).unwrap()],
+        table,
+        "hint: `just noise-levels`"
+    );
     let figures = crate::show::figures(&kept);
     assert_eq!(figures.len(), KINDS.len());
     for (name, drawing) in figures {
-        assert!(document.contains(&format!("]({name})")), "{name} is not shown");
+        assert!(
+            document.contains(&format!("]({name})")),
+            "{name} is not shown"
+        );
         assert_eq!(text(&name), drawing, "{name}; hint: `just noise-levels`");
     }
 }
@@ -41,7 +48,10 @@ fn every_controller_was_cut_at_the_ends_of_every_kind() {
             for controller in crate::show::CONTROLLERS {
                 for contour in kept.contours() {
                     let row = kept.row(contour, &machine, controller);
-                    assert!(row.is_some_and(|row| row.rms_um > 0.0), "{controller}, {contour} on {machine}: {row:?}");
+                    assert!(
+                        row.is_some_and(|row| row.rms_um > 0.0),
+                        "{controller}, {contour} on {machine}: {row:?}"
+                    );
                 }
             }
         }
@@ -50,11 +60,20 @@ fn every_controller_was_cut_at_the_ends_of_every_kind() {
 
 #[test]
 fn the_kept_comparison_is_what_the_program_makes() {
-    let machines = vec![KINDS[0].machine(KINDS[0].levels[0]).unwrap(), KINDS[3].machine(KINDS[3].levels[0]).unwrap()];
+    let machines = vec![
+        KINDS[0].machine(KINDS[0].levels[0]).unwrap(),
+        KINDS[3].machine(KINDS[3].levels[0]).unwrap(),
+    ];
     let mut workpieces = Workpiece::contours();
     workpieces.retain(|workpiece| workpiece.name == "square");
     let controllers = [BASELINE, "feedforward-cross-coupled", "kalman-disturbance"];
-    let options = of_kept(&kept(), workpieces, &[Knowledge::Own], machines, &controllers);
+    let options = of_kept(
+        &kept(),
+        workpieces,
+        &[Knowledge::Own],
+        machines,
+        &controllers,
+    );
     assert!(options.to_search().is_empty(), "{:?}", options.to_search());
     is_made_anew(&kept(), &options);
 }

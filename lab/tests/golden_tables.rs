@@ -1,10 +1,12 @@
 //! The tables of the documents are what the program makes today: `just tables` regenerates them.
 //!
-//! Golden: that they have not changed says nothing on whether they are right; `conformance_paper` holds bounds from elsewhere.
+//! Golden: that they have not changed says nothing on whether they are right; `conformance_paper`
+//! holds bounds from elsewhere.
 
 use crate::table::{Place, root};
 use feedwright_lab::{
-    CONTROLLERS, Comparison, ComparisonOptions, HeldOutSeeds, Kept, Knowledge, Tuning, Workpiece, compare,
+    CONTROLLERS, Comparison, ComparisonOptions, HeldOutSeeds, Kept, Knowledge, Tuning, Workpiece,
+    compare,
 };
 use feedwright_sim::Machine;
 
@@ -18,7 +20,9 @@ fn take_apart(table: &str) -> (Vec<(f64, f64)>, String) {
     for word in table.split_inclusive(|c| !is_number(c)) {
         let digits = word.trim_end_matches(|c| !is_number(c));
         if let Ok(number) = digits.parse() {
-            let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+            let decimals = digits
+                .split_once('.')
+                .map_or(0, |(_, decimals)| decimals.len());
             numbers.push((number, 0.1_f64.powi(decimals as i32)));
         }
         rest.push_str(&word[digits.len()..]);
@@ -30,7 +34,10 @@ fn same(document: &str, made: &str) -> bool {
     let ((was, was_between), (is, is_between)) = (take_apart(document), take_apart(made));
     was_between == is_between
         && was.len() == is.len()
-        && was.iter().zip(&is).all(|((was, place), (is, _))| (was - is).abs() < (LAST_PLACES + 0.5) * place)
+        && was
+            .iter()
+            .zip(&is)
+            .all(|((was, place), (is, _))| (was - is).abs() < (LAST_PLACES + 0.5) * place)
 }
 
 fn holds(place: Place) {
@@ -63,7 +70,10 @@ pub(crate) fn of_kept(
         workpieces,
         nominal: Machine::load(kept.nominal.as_ref()).unwrap(),
         machines,
-        controllers: controllers.iter().map(|name| CONTROLLERS.find(name).unwrap()).collect(),
+        controllers: controllers
+            .iter()
+            .map(|name| CONTROLLERS.find(name).unwrap())
+            .collect(),
         knowledge: knowledge.to_vec(),
         seed: kept.seed,
         noise_seeds: kept.noise_seeds,
@@ -76,19 +86,43 @@ pub(crate) fn of_kept(
 /// Whether the rows of a kept comparison are what the program makes.
 pub(crate) fn is_made_anew(kept: &Comparison, options: &ComparisonOptions) {
     let made = compare(options, &Kept::none(), &()).unwrap();
-    assert!(made.rows.len() >= options.workpieces.len() * options.machines.len() * options.controllers.len());
+    assert!(
+        made.rows.len()
+            >= options.workpieces.len() * options.machines.len() * options.controllers.len()
+    );
     for row in &made.rows {
-        let was = kept.row(&row.contour, &row.machine, &row.controller).unwrap();
-        for (was, is) in [(was.rms_um, row.rms_um), (was.max_um, row.max_um), (was.time_s, row.time_s)] {
-            assert_eq!(was, is, "hint: `just tables`, or `just noise-levels`\n{row:?}");
+        let was = kept
+            .row(&row.contour, &row.machine, &row.controller)
+            .unwrap();
+        for (was, is) in [
+            (was.rms_um, row.rms_um),
+            (was.max_um, row.max_um),
+            (was.time_s, row.time_s),
+        ] {
+            assert_eq!(
+                was, is,
+                "hint: `just tables`, or `just noise-levels`\n{row:?}"
+            );
         }
     }
 }
 
-fn cut_anew(file: &str, workpieces: Vec<Workpiece>, knowledge: &[Knowledge], machines: &[&str], controllers: &[&str]) {
+fn cut_anew(
+    file: &str,
+    workpieces: Vec<Workpiece>,
+    knowledge: &[Knowledge],
+    machines: &[&str],
+    controllers: &[&str],
+) {
     let kept: Comparison = crate::table::comparison(file).unwrap();
-    let machines = machines.iter().map(|name| Machine::load(name.as_ref()).unwrap()).collect();
-    is_made_anew(&kept, &of_kept(&kept, workpieces, knowledge, machines, controllers));
+    let machines = machines
+        .iter()
+        .map(|name| Machine::load(name.as_ref()).unwrap())
+        .collect();
+    is_made_anew(
+        &kept,
+        &of_kept(&kept, workpieces, knowledge, machines, controllers),
+    );
 }
 
 /// The whole takes minutes.
@@ -96,9 +130,21 @@ fn cut_anew(file: &str, workpieces: Vec<Workpiece>, knowledge: &[Knowledge], mac
 fn the_kept_comparison_is_what_the_program_makes() {
     let mut contours = Workpiece::contours();
     contours.retain(|workpiece| ["ellipse", "square"].contains(&workpiece.name.as_str()));
-    let controllers = ["uncorrected", "cross-coupled", "feedforward", "model-predictive", "two-dimensional"];
+    let controllers = [
+        "uncorrected",
+        "cross-coupled",
+        "feedforward",
+        "model-predictive",
+        "two-dimensional",
+    ];
     let knowledge = [Knowledge::Own, Knowledge::Unseen];
-    cut_anew(crate::table::COMPARISON, contours, &knowledge, &["tnv40", "rough", "soft"], &controllers);
+    cut_anew(
+        crate::table::COMPARISON,
+        contours,
+        &knowledge,
+        &["tnv40", "rough", "soft"],
+        &controllers,
+    );
 }
 
 /// A contour and a program, as they were drawn.
@@ -107,8 +153,18 @@ fn the_kept_held_out_work_is_what_the_program_makes() {
     let mut held_out = HeldOutSeeds::recorded().workpieces();
     let drawn: Vec<Workpiece> = [held_out.remove(0), held_out.pop().unwrap()].into();
     let knowledge = [Knowledge::Own, Knowledge::TwentyPercentOff];
-    let controllers = ["uncorrected", "feedforward-cross-coupled", "kalman-disturbance"];
-    cut_anew(crate::table::HELD_OUT, drawn, &knowledge, &["workshop"], &controllers);
+    let controllers = [
+        "uncorrected",
+        "feedforward-cross-coupled",
+        "kalman-disturbance",
+    ];
+    cut_anew(
+        crate::table::HELD_OUT,
+        drawn,
+        &knowledge,
+        &["workshop"],
+        &controllers,
+    );
 }
 
 #[test]

@@ -1,7 +1,8 @@
-//! Least time within a tolerance of the tool, against the least time of a nonlinear program for the same servo.
+//! Least time within a tolerance of the tool, against the least time of a nonlinear program for the
+//! same servo.
 //!
-//! The servo is linear, `x' = v`, `v' = a (k (r - x) - v)` with k = 50 and a = 194 and 167 1/s. The published times are those of the
-//! command on the path, as fast as leaves the tool within 10 um.
+//! The servo is linear, `x' = v`, `v' = a (k (r - x) - v)` with k = 50 and a = 194 and 167 1/s. The
+//! published times are those of the command on the path, as fast as leaves the tool within 10 um.
 
 use feedwright::{FastestPlan, fastest};
 use feedwright_control::Uncorrected;
@@ -10,14 +11,34 @@ use feedwright_lab::{contour, linear_machine};
 use feedwright_plan::Steps;
 
 /// Least times of the nonlinear program, s; of the butterfly the best that was found.
-const LEAST_S: [(&str, f64); 4] = [("circle", 1.921), ("star", 4.385), ("eight", 2.599), ("butterfly", 9.957)];
+const LEAST_S: [(&str, f64); 4] = [
+    ("circle", 1.921),
+    ("star", 4.385),
+    ("eight", 2.599),
+    ("butterfly", 9.957),
+];
 
 fn planned(name: &str, tolerance_um: f64) -> FastestPlan {
-    let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
+    let corner = Corner::Continuous {
+        tolerance_mm: None,
+        merge_mm: None,
+    };
     let steps = contour(name).unwrap().steps(200.0, corner).unwrap();
     let all = || Ok(Box::new(steps.iter().cloned().map(Ok)) as Steps<'_>);
-    let plan = fastest::<2>(&linear_machine(10.0), tolerance_um, all, &mut Uncorrected, 1, &()).unwrap();
-    assert!(plan.largest_um <= tolerance_um, "{name}: {} um", plan.largest_um);
+    let plan = fastest::<2>(
+        &linear_machine(10.0),
+        tolerance_um,
+        all,
+        &mut Uncorrected,
+        1,
+        &(),
+    )
+    .unwrap();
+    assert!(
+        plan.largest_um <= tolerance_um,
+        "{name}: {} um",
+        plan.largest_um
+    );
     plan
 }
 
@@ -25,7 +46,11 @@ fn planned(name: &str, tolerance_um: f64) -> FastestPlan {
 fn is_cut_in_the_least_time(name: &str, least_s: f64) {
     let plan = planned(name, 10.0);
     let ratio = plan.cycle.cutting_s / least_s;
-    assert!((0.99..1.03).contains(&ratio), "{name}: {ratio} in {} rounds", plan.rounds);
+    assert!(
+        (0.99..1.03).contains(&ratio),
+        "{name}: {ratio} in {} rounds",
+        plan.rounds
+    );
 }
 
 #[test]
@@ -42,8 +67,9 @@ fn contours_are_cut_in_the_least_time_of_uncorrected() {
     }
 }
 
-/// A steady circle of radius R at w lets an axis of gain `|G(jw)|`, `G = 1 / (1 + s / k + s^2 / ak)`, cut inside by `(1 - |G|) R`: the
-/// speed at which the better axis is at the tolerance is faster than any steady one, the other's slower.
+/// A steady circle of radius R at w lets an axis of gain `|G(jw)|`, `G = 1 / (1 + s / k + s^2 /
+/// ak)`, cut inside by `(1 - |G|) R`: the speed at which the better axis is at the tolerance is
+/// faster than any steady one, the other's slower.
 #[test]
 fn a_circle_takes_as_long_as_at_the_speed_of_its_error() {
     let tolerance_um = 100.0;
@@ -54,22 +80,43 @@ fn a_circle_takes_as_long_as_at_the_speed_of_its_error() {
         let (mut low, mut high) = (0.1, 100.0);
         for _ in 0..60 {
             let w = 0.5 * (low + high);
-            if missed_um(w) > tolerance_um { high = w } else { low = w }
+            if missed_um(w) > tolerance_um {
+                high = w;
+            } else {
+                low = w;
+            }
         }
         std::f64::consts::TAU / low
     });
-    let [fast_s, slow_s] = turn_s.collect::<Vec<_>>().try_into().map(|[x, y]: [f64; 2]| [x.min(y), x.max(y)]).unwrap();
+    let [fast_s, slow_s] = turn_s
+        .collect::<Vec<_>>()
+        .try_into()
+        .map(|[x, y]: [f64; 2]| [x.min(y), x.max(y)])
+        .unwrap();
     let time_s = planned("circle", tolerance_um).cycle.cutting_s;
-    // From rest to a speed v and back takes v / a + a / j more than the way at v, with acceleration a and jerk j of one axis.
-    let with_ends = |turn_s: f64| turn_s + 10.0 * std::f64::consts::TAU / turn_s / 2000.0 + 2000.0 / 50_000.0;
+    // From rest to a speed v and back takes v / a + a / j more than the way at v, with acceleration
+    // a and jerk j of one axis.
+    let with_ends =
+        |turn_s: f64| turn_s + 10.0 * std::f64::consts::TAU / turn_s / 2000.0 + 2000.0 / 50_000.0;
     let [fast_s, slow_s] = [fast_s, slow_s].map(with_ends);
-    assert!((0.97 * fast_s..1.03 * slow_s).contains(&time_s), "{time_s} s, {fast_s} to {slow_s} s");
+    assert!(
+        (0.97 * fast_s..1.03 * slow_s).contains(&time_s),
+        "{time_s} s, {fast_s} to {slow_s} s"
+    );
 }
 
 #[test]
 fn a_missing_jerk_is_the_one_that_reaches_the_acceleration_in_40_ms() {
-    let steps =
-        contour("circle").unwrap().steps(200.0, Corner::Continuous { tolerance_mm: None, merge_mm: None }).unwrap();
+    let steps = contour("circle")
+        .unwrap()
+        .steps(
+            200.0,
+            Corner::Continuous {
+                tolerance_mm: None,
+                merge_mm: None,
+            },
+        )
+        .unwrap();
     let all = || Ok(Box::new(steps.iter().cloned().map(Ok)) as Steps<'_>);
     let mut bare = linear_machine(10.0);
     let jerk_mm_s3 = bare.axes[1].max_jerk_mm_s3.take().unwrap();

@@ -1,7 +1,9 @@
 //! Plan times that have a closed form.
 
 use crate::programs::{BLEND, LIMITS, arc, line, polyline};
-use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Event, EventKind, Motion, MotionKind, Shape};
+use feedwright_gcode::canon::{
+    AuxiliaryAxes, Canon, Corner, Event, EventKind, Motion, MotionKind, Shape,
+};
 use feedwright_gcode::{Reader, Settings};
 use feedwright_lab::contour;
 use feedwright_plan::{Constraints, Durations, FEED_PLANNERS, PathLimits, Plan, Plc};
@@ -23,7 +25,11 @@ fn circle_takes_its_length_over_the_feed_and_one_ramp() {
     let circle = vec![arc([0.0; 3], [0.0; 3], [10.0, 0.0, 0.0], -1, 50.0)];
     let expected = 2.0 * PI * 10.0 / 50.0 + 0.5;
     assert!((plan_s(circle, &LIMITS) - expected).abs() < ROUNDING_S);
-    let mut contour = Reference::of_steps(contour("circle").unwrap().steps(50.0, BLEND).unwrap(), &LIMITS).unwrap();
+    let mut contour = Reference::of_steps(
+        contour("circle").unwrap().steps(50.0, BLEND).unwrap(),
+        &LIMITS,
+    )
+    .unwrap();
     assert!((contour.read_to_end_s() - expected).abs() < ROUNDING_S);
 }
 
@@ -82,7 +88,10 @@ fn rapid_runs_at_the_rapid_rate() {
 
 #[test]
 fn feed_is_capped_by_the_machine() {
-    let limits = PathLimits { max_feed_mm_s: 10.0, ..LIMITS };
+    let limits = PathLimits {
+        max_feed_mm_s: 10.0,
+        ..LIMITS
+    };
     let long = vec![line([0.0; 3], [10.0, 0.0, 0.0], 50.0, BLEND)];
     assert!((plan_s(long, &limits) - 1.1).abs() < ROUNDING_S);
 }
@@ -96,18 +105,31 @@ fn straight_line_in_a_thousand_blocks_is_a_straight_line() {
 #[test]
 fn circle_in_chords_takes_as_long_as_the_circle() {
     // Radius 1 mm: the normal limit holds the feed at 20 mm/s, hidden in the joints of 2000 chords.
-    let points: Vec<[f64; 3]> =
-        (0..=2000).map(|i| 2.0 * PI * f64::from(i) / 2000.0).map(|a: f64| [1.0 - a.cos(), a.sin(), 0.0]).collect();
+    let points: Vec<[f64; 3]> = (0..=2000)
+        .map(|i| 2.0 * PI * f64::from(i) / 2000.0)
+        .map(|a: f64| [1.0 - a.cos(), a.sin(), 0.0])
+        .collect();
     let time = plan_s(polyline(&points, 50.0, BLEND), &LIMITS);
-    // Between joints nothing bounds the speed but the joints ahead and behind: chords rise 0.3 mm2/s2 above 400.
-    assert!((time / (2.0 * PI / 20.0 + 0.2) - 1.0).abs() < 1e-3, "{time}");
+    // Between joints nothing bounds the speed but the joints ahead and behind: chords rise 0.3
+    // mm2/s2 above 400.
+    assert!(
+        (time / (2.0 * PI / 20.0 + 0.2) - 1.0).abs() < 1e-3,
+        "{time}"
+    );
 }
 
 #[test]
 fn dwell_stops_and_holds() {
     let event = |line, kind| Canon::Event(Event { line, kind });
     let program = vec![
-        event(1, EventKind::MCode { code: 3, p: None, q: None }),
+        event(
+            1,
+            EventKind::MCode {
+                code: 3,
+                p: None,
+                q: None,
+            },
+        ),
         event(2, EventKind::Dwell { seconds: 0.25 }),
         line([0.0; 3], [10.0, 0.0, 0.0], 10.0, BLEND),
         event(4, EventKind::SpindleSpeed { rpm: 1000.0 }),
@@ -135,7 +157,12 @@ fn dwell_stops_and_holds() {
     assert!(held.resting && !held.cutting && held.line == 6);
     assert_eq!(held.position_mm, [20.0, 0.0, 0.0]);
     let end = reference.at(1e9);
-    assert!(end.resting && end.position_mm == [30.0, 0.0, 0.0] && end.s_mm == 30.0 && end.feed_mm_s == 0.0);
+    assert!(
+        end.resting
+            && end.position_mm == [30.0, 0.0, 0.0]
+            && end.s_mm == 30.0
+            && end.feed_mm_s == 0.0
+    );
 }
 
 #[test]
@@ -143,13 +170,18 @@ fn empty_program_rests_at_the_origin() {
     let mut reference = Reference::of_program(vec![], &LIMITS).unwrap();
     assert!(reference.at(1.0).resting);
     assert_eq!(reference.end_s(), Some(0.0));
-    assert_eq!(reference.nearest([3.0, 4.0, 0.0], 0.0, 1.0).distance_mm, 5.0);
+    assert_eq!(
+        reference.nearest([3.0, 4.0, 0.0], 0.0, 1.0).distance_mm,
+        5.0
+    );
 }
 
 #[test]
 fn a_fault_ends_the_path_where_it_occurs() {
-    let program =
-        vec![line([0.0; 3], [10.0, 0.0, 0.0], 10.0, BLEND), line([10.0, 0.0, 0.0], [f64::NAN, 0.0, 0.0], 10.0, BLEND)];
+    let program = vec![
+        line([0.0; 3], [10.0, 0.0, 0.0], 10.0, BLEND),
+        line([10.0, 0.0, 0.0], [f64::NAN, 0.0, 0.0], 10.0, BLEND),
+    ];
     let mut reference = Reference::of_program(program, &LIMITS).unwrap();
     assert!((reference.read_to_end_s() - 1.1).abs() < ROUNDING_S);
     assert!(reference.fault().is_some());
@@ -158,11 +190,24 @@ fn a_fault_ends_the_path_where_it_occurs() {
 
 #[test]
 fn the_tool_rests_while_something_else_moves() {
-    let others = AuxiliaryAxes { extruder_mm: -2.0, axes: None };
-    let turn = AuxiliaryAxes { extruder_mm: 0.0, axes: Some(Box::new([[0.0; 6], [90.0, 0.0, 0.0, 0.0, 0.0, 0.0]])) };
+    let others = AuxiliaryAxes {
+        extruder_mm: -2.0,
+        axes: None,
+    };
+    let turn = AuxiliaryAxes {
+        extruder_mm: 0.0,
+        axes: Some(Box::new([[0.0; 6], [90.0, 0.0, 0.0, 0.0, 0.0, 0.0]])),
+    };
     let standing = |others, feed_mm_s| {
-        let Canon::Motion(motion) = line([10.0, 0.0, 0.0], [10.0, 0.0, 0.0], feed_mm_s, BLEND) else { panic!() };
-        Canon::Motion(Motion { others, line: 9, ..motion })
+        let Canon::Motion(motion) = line([10.0, 0.0, 0.0], [10.0, 0.0, 0.0], feed_mm_s, BLEND)
+        else {
+            panic!()
+        };
+        Canon::Motion(Motion {
+            others,
+            line: 9,
+            ..motion
+        })
     };
     let program = vec![
         line([0.0; 3], [10.0, 0.0, 0.0], 10.0, BLEND),
@@ -180,11 +225,24 @@ fn the_tool_rests_while_something_else_moves() {
 /// Plan time of a program on a machine whose rotary axes have a limit.
 fn program_s(text: &str, rotary_deg_s: f64) -> f64 {
     let reader = Reader::from_text("test", text, Settings::default()).expect("it is a program");
-    let canon: Vec<Canon> = reader.map(|step| step.expect("it has no mistakes")).collect();
-    let plc = Plc::new(Durations { rotary_deg_s, ..Durations::default() });
-    let rotary_deg_s = if rotary_deg_s > 0.0 { rotary_deg_s } else { f64::INFINITY };
-    let constraints = Constraints { rotary_deg_s, ..Constraints::from(&LIMITS) };
-    let plan = Plan::new(path_steps(canon), &constraints, &FEED_PLANNERS[0], plc).expect("limits are sound");
+    let canon: Vec<Canon> = reader
+        .map(|step| step.expect("it has no mistakes"))
+        .collect();
+    let plc = Plc::new(Durations {
+        rotary_deg_s,
+        ..Durations::default()
+    });
+    let rotary_deg_s = if rotary_deg_s > 0.0 {
+        rotary_deg_s
+    } else {
+        f64::INFINITY
+    };
+    let constraints = Constraints {
+        rotary_deg_s,
+        ..Constraints::from(&LIMITS)
+    };
+    let plan = Plan::new(path_steps(canon), &constraints, &FEED_PLANNERS[0], plc)
+        .expect("limits are sound");
     let mut reference = Reference::new(plan);
     let end_s = reference.read_to_end_s();
     assert_eq!(reference.fault(), None);
@@ -219,7 +277,10 @@ fn the_slowest_axis_of_a_motion_bounds_it() {
         ("G1 A90 F180000", 60.0, 1.5),
     ] {
         let time = program_s(&format!("G21 G90\n{program}\nM2\n"), rotary_deg_s);
-        assert!((time - expected).abs() < 1e-8, "{program}: {time} s, not {expected} s");
+        assert!(
+            (time - expected).abs() < 1e-8,
+            "{program}: {time} s, not {expected} s"
+        );
     }
     // A block with a turn before one without: from the slow speed u to 10 mm/s within the second.
     let u = 10.0_f64 / 3.0;

@@ -1,8 +1,10 @@
-//! A trace proves itself: a script that shares nothing with the program computes the act columns from the machine file and
-//! the cmd columns, to 1 nm, whatever controller made the command and whatever the machine has on top of a rigid axis.
+//! A trace proves itself: a script that shares nothing with the program computes the act columns
+//! from the machine file and the cmd columns, to 1 nm, whatever controller made the command and
+//! whatever the machine has on top of a rigid axis.
 //!
-//! The script: `oracle_scripts/resimulate.py`, written from the laws. With a finer step it also measures what the program's
-//! integration adds to them, against the closed form of that error; both limits are derived in the script.
+//! The script: `oracle_scripts/resimulate.py`, written from the laws. With a finer step it also
+//! measures what the program's integration adds to them, against the closed form of that error;
+//! both limits are derived in the script.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -13,14 +15,17 @@ use crate::sweep::part_or_whole;
 use feedwright::{BASELINE, BEST, Entry};
 use feedwright_lab::CONTROLLERS;
 
-/// Lines of the pocket that are cut: tool change, dwell, rapids, the first helix and the first passes of a level.
+/// Lines of the pocket that are cut: tool change, dwell, rapids, the first helix and the first
+/// passes of a level.
 const POCKET_LINES: usize = 30;
 
-/// At the same step, and at a quarter of it, which leaves three quarters of what the integration adds.
+/// At the same step, and at a quarter of it, which leaves three quarters of what the integration
+/// adds.
 const BOTH: &[u32] = &[1, 4];
 
-/// What no machine of the project has: the scale on the table, with backlash inside the position loop, and with all the steps;
-/// delays that are no whole number of servo periods; a screw without damping.
+/// What no machine of the project has: the scale on the table, with backlash inside the position
+/// loop, and with all the steps; delays that are no whole number of servo periods; a screw without
+/// damping.
 const ODD: &str = "
 base = 'tnv40'
 name = 'odd'
@@ -52,28 +57,40 @@ fn root() -> PathBuf {
 }
 
 fn machine_file(name: &str) -> PathBuf {
-    root().join("crates/sim/machines").join(format!("{name}.toml"))
+    root()
+        .join("crates/sim/machines")
+        .join(format!("{name}.toml"))
 }
 
 fn part(name: &str) -> PathBuf {
     root().join("parts").join(format!("{name}.ngc"))
 }
 
-/// The controllers that stand for all where all would take long: the script knows of none, it reads what they command.
+/// The controllers that stand for all where all would take long: the script knows of none, it reads
+/// what they command.
 fn two() -> [&'static Entry; 2] {
     [BASELINE, BEST].map(|name| CONTROLLERS.find(name).unwrap())
 }
 
-/// A finer step for those two alone. Others drive the rapids of the pocket into the torque limit, where the closed form of
-/// the integration's error does not hold.
+/// A finer step for those two alone. Others drive the rapids of the pocket into the torque limit,
+/// where the closed form of the integration's error does not hold.
 fn finer(entry: &Entry) -> &'static [u32] {
-    if two().iter().any(|one| one.name == entry.name) { BOTH } else { &[1] }
+    if two().iter().any(|one| one.name == entry.name) {
+        BOTH
+    } else {
+        &[1]
+    }
 }
 
 /// What the script says of a trace, its mechanics stepped `finer` times as often.
 fn resimulated(python: &str, machine: &Path, trace: &Path, finer: u32) -> Output {
     let script = root().join("crates/feedwright/tests/oracle_scripts/resimulate.py");
-    Command::new(python).arg(script).args([machine, trace]).arg(finer.to_string()).output().unwrap()
+    Command::new(python)
+        .arg(script)
+        .args([machine, trace])
+        .arg(finer.to_string())
+        .output()
+        .unwrap()
 }
 
 /// Cuts a part and has the script agree, its mechanics stepped `finer` times as often.
@@ -83,11 +100,25 @@ fn agrees(python: &str, part: &Path, machine: &Path, entry: &'static Entry, fine
     let axes = cut(part, machine, entry, &file).axes;
     for &finer in finer {
         let output = resimulated(python, machine, &file, finer);
-        let (said, failed) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-        let what = format!("{}, {}, {}: {said}{failed}", part.display(), machine.display(), entry.name);
+        let (said, failed) = (
+            String::from_utf8_lossy(&output.stdout),
+            String::from_utf8_lossy(&output.stderr),
+        );
+        let what = format!(
+            "{}, {}, {}: {said}{failed}",
+            part.display(),
+            machine.display(),
+            entry.name
+        );
         assert!(output.status.success(), "{what}");
         // The script may only pass where it has looked at every axis.
-        assert_eq!(said.lines().filter(|line| line.contains(" nm over ")).count(), axes, "{what}");
+        assert_eq!(
+            said.lines()
+                .filter(|line| line.contains(" nm over "))
+                .count(),
+            axes,
+            "{what}"
+        );
     }
 }
 
@@ -95,7 +126,13 @@ fn agrees(python: &str, part: &Path, machine: &Path, entry: &'static Entry, fine
 fn the_machine_file_and_the_command_give_the_tool_positions() {
     let Some(python) = python() else { return };
     for entry in CONTROLLERS {
-        agrees(python, &part("circle"), &machine_file("tnv40"), entry, finer(entry));
+        agrees(
+            python,
+            &part("circle"),
+            &machine_file("tnv40"),
+            entry,
+            finer(entry),
+        );
     }
 }
 
@@ -110,23 +147,45 @@ fn so_they_do_with_every_controller() {
             agrees(python, &part, &machine_file("tnv40"), entry, finer(entry));
         }
         for machine in ["soft", "coarse"] {
-            agrees(python, &part("circle"), &machine_file(machine), entry, steps(machine, entry));
+            agrees(
+                python,
+                &part("circle"),
+                &machine_file(machine),
+                entry,
+                steps(machine, entry),
+            );
         }
     }
     let odd = odd(folder.path());
     for entry in two() {
         for machine in ["soft", "coarse"] {
-            agrees(python, &part("star"), &machine_file(machine), entry, steps(machine, entry));
+            agrees(
+                python,
+                &part("star"),
+                &machine_file(machine),
+                entry,
+                steps(machine, entry),
+            );
         }
         agrees(python, &part("star"), &odd, entry, BOTH);
     }
-    agrees(python, &pocket, &machine_file("coarse"), &feedwright::UNCORRECTED, BOTH);
+    agrees(
+        python,
+        &pocket,
+        &machine_file("coarse"),
+        &feedwright::UNCORRECTED,
+        BOTH,
+    );
 }
 
-/// With backlash a finer step has the flanks strike at other times, and what a quick command makes of that the closed form does not
-/// know: by the same step it is the same to the last digit.
+/// With backlash a finer step has the flanks strike at other times, and what a quick command makes
+/// of that the closed form does not know: by the same step it is the same to the last digit.
 fn steps(machine: &str, entry: &Entry) -> &'static [u32] {
-    if machine == "soft" && entry.name == BEST { &[1] } else { finer(entry) }
+    if machine == "soft" && entry.name == BEST {
+        &[1]
+    } else {
+        finer(entry)
+    }
 }
 
 /// The machine that the project does not have, in a folder.
@@ -151,14 +210,21 @@ fn so_they_do_with_backlash_encoder_steps_delay_and_torque_steps() {
     for machine in ["soft", "coarse"] {
         for name in part_or_whole(&["square"][..], &["circle", "square"]) {
             for entry in two() {
-                agrees(python, &part(name), &machine_file(machine), entry, steps(machine, entry));
+                agrees(
+                    python,
+                    &part(name),
+                    &machine_file(machine),
+                    entry,
+                    steps(machine, entry),
+                );
             }
         }
     }
 }
 
-/// Without the controllers that chatter: with backlash inside the position loop the flanks then strike each other all the
-/// time, each blow amplifies the last bits of the one before, and what is left after a square of it is 3 nm.
+/// Without the controllers that chatter: with backlash inside the position loop the flanks then
+/// strike each other all the time, each blow amplifies the last bits of the one before, and what is
+/// left after a square of it is 3 nm.
 #[test]
 fn so_they_do_on_a_machine_that_the_project_does_not_have() {
     let Some(python) = python() else { return };
@@ -176,11 +242,24 @@ fn so_they_do_in_space() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().unwrap();
     let pocket = short_pocket(folder.path());
-    agrees(python, &pocket, &machine_file("tnv40"), CONTROLLERS.find(BEST).unwrap(), &[1]);
-    agrees(python, &pocket, &machine_file("soft"), &feedwright::UNCORRECTED, BOTH);
+    agrees(
+        python,
+        &pocket,
+        &machine_file("tnv40"),
+        CONTROLLERS.find(BEST).unwrap(),
+        &[1],
+    );
+    agrees(
+        python,
+        &pocket,
+        &machine_file("soft"),
+        &feedwright::UNCORRECTED,
+        BOTH,
+    );
 }
 
-/// Longer than what is simulated of them, one beside the other, one no whole number of feed periods.
+/// Longer than what is simulated of them, one beside the other, one no whole number of feed
+/// periods.
 #[test]
 fn so_they_do_over_long_rests() {
     let Some(python) = python() else { return };
@@ -194,9 +273,16 @@ fn so_they_do_over_long_rests() {
             let file = folder.path().join("trace.csv");
             cut(&part, &machine_file(machine), entry, &file);
             let text = std::fs::read_to_string(&file).unwrap();
-            let times: Vec<f64> =
-                text.lines().skip(1).map(|row| row.split(',').next().unwrap().parse().unwrap()).collect();
-            let gaps_s: Vec<f64> = times.windows(2).map(|two| two[1] - two[0]).filter(|gap_s| *gap_s > 0.01).collect();
+            let times: Vec<f64> = text
+                .lines()
+                .skip(1)
+                .map(|row| row.split(',').next().unwrap().parse().unwrap())
+                .collect();
+            let gaps_s: Vec<f64> = times
+                .windows(2)
+                .map(|two| two[1] - two[0])
+                .filter(|gap_s| *gap_s > 0.01)
+                .collect();
             for (gap_s, wanted_s) in gaps_s.iter().zip([1.3457, 3.0, 0.5]) {
                 assert!((gap_s - wanted_s).abs() < 0.005, "{gaps_s:?}");
             }
@@ -212,10 +298,18 @@ fn a_trace_with_a_wrong_position_is_found_out() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("trace.csv");
-    cut(&part("circle"), &machine_file("tnv40"), &feedwright::UNCORRECTED, &file);
+    cut(
+        &part("circle"),
+        &machine_file("tnv40"),
+        &feedwright::UNCORRECTED,
+        &file,
+    );
     let text = std::fs::read_to_string(&file).unwrap();
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
-    let column = lines[0].split(',').position(|name| name == "act_x_mm").unwrap();
+    let column = lines[0]
+        .split(',')
+        .position(|name| name == "act_x_mm")
+        .unwrap();
     let mut fields: Vec<String> = lines[500].split(',').map(str::to_owned).collect();
     fields[column] = (fields[column].parse::<f64>().unwrap() + 2e-6).to_string();
     lines[500] = fields.join(",");
@@ -251,14 +345,24 @@ fn a_machine_that_is_another_in_one_value_is_found_out() {
         ),
     ];
     for (name, changes) in others {
-        cut(&part("circle"), &machine_file(name), &feedwright::UNCORRECTED, &file);
+        cut(
+            &part("circle"),
+            &machine_file(name),
+            &feedwright::UNCORRECTED,
+            &file,
+        );
         let text = std::fs::read_to_string(machine_file(name)).unwrap();
         for [from, to] in changes {
             let other = folder.path().join("other.toml");
             // Of the x axis alone.
             std::fs::write(&other, text.replacen(from, to, 1)).unwrap();
             let output = resimulated(python, &other, &file, 1);
-            assert_eq!(output.status.code(), Some(1), "{to}: {}", String::from_utf8_lossy(&output.stdout));
+            assert_eq!(
+                output.status.code(),
+                Some(1),
+                "{to}: {}",
+                String::from_utf8_lossy(&output.stdout)
+            );
         }
     }
 }

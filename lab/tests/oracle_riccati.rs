@@ -1,6 +1,6 @@
-//! The dense solution of a tick against another way to solve the same problem: a recursion over time that shares no code
-//! with it, not even the derivative of the tool to the accelerations. Within limits,
-//! against a slow descent along one acceleration after the other.
+//! The dense solution of a tick against another way to solve the same problem: a recursion over
+//! time that shares no code with it, not even the derivative of the tool to the accelerations.
+//! Within limits, against a slow descent along one acceleration after the other.
 
 mod material;
 mod model;
@@ -11,21 +11,36 @@ use feedwright_lab::{Accelerations, END_WEIGHT, HorizonProblem, HorizonSettings}
 use material::{Material, difference};
 use riccati::{AGREEMENT, apart_from_gauss_newton};
 
-/// What J, here some 0.4 mm^2, may be above its minimum, mm^2: a tenth of a micrometre in one knot. Where the solver does not
-/// come to its own tolerance within its iterations, it is beyond it by a little; one iteration more would be enough here.
+/// What J, here some 0.4 mm^2, may be above its minimum, mm^2: a tenth of a micrometre in one knot.
+/// Where the solver does not come to its own tolerance within its iterations, it is beyond it by a
+/// little; one iteration more would be enough here.
 const NEAR_ENOUGH_MM2: f64 = 6e-9;
 
-/// J of the problem linearised about the plan of the tick before, term by term as it is written, mm^2.
-fn cost<const N: usize>(material: &Material<N>, problem: &HorizonProblem<N>, plan: &Accelerations<N>) -> f64 {
-    let HorizonSettings { rate_weight, change_weight, .. } = problem.settings;
+/// J of the problem linearised about the plan of the tick before, term by term as it is written,
+/// mm^2.
+fn cost<const N: usize>(
+    material: &Material<N>,
+    problem: &HorizonProblem<N>,
+    plan: &Accelerations<N>,
+) -> f64 {
+    let HorizonSettings {
+        rate_weight,
+        change_weight,
+        ..
+    } = problem.settings;
     let square = |v: [f64; N]| dot(v, v);
-    let changed: Accelerations<N> = std::array::from_fn(|knot| sub(plan[knot], material.plan[knot]));
+    let changed: Accelerations<N> =
+        std::array::from_fn(|knot| sub(plan[knot], material.plan[knot]));
     let mut cost = 0.0;
     let (mut faster_mm_s, mut further_mm) = ([0.0; N], [0.0; N]);
     for knot in 0..problem.knots {
         let end = &problem.ends[knot];
         let mut tool_mm = [0.0; N];
-        for (sensitivity, changed) in problem.sensitivity[knot].iter().zip(&changed).take(knot + 1) {
+        for (sensitivity, changed) in problem.sensitivity[knot]
+            .iter()
+            .zip(&changed)
+            .take(knot + 1)
+        {
             tool_mm = std::array::from_fn(|axis| tool_mm[axis] + sensitivity[axis] * changed[axis]);
         }
         for (d, direction) in end.directions.iter().enumerate() {
@@ -51,7 +66,10 @@ fn riccati_and_gauss_newton_agree<const N: usize>() {
         let exact = material.improved(&problem);
         let apart = apart_from_gauss_newton(&material);
         assert!(apart < AGREEMENT, "{N} axes, {knots} knots: {apart:e}");
-        assert!(difference(&exact, &material.plan) > 0.1, "the solution is not what it started from");
+        assert!(
+            difference(&exact, &material.plan) > 0.1,
+            "the solution is not what it started from"
+        );
     }
 }
 
@@ -72,13 +90,17 @@ fn nothing_beside_the_solution_costs_less() {
             for step in [-10.0, 10.0] {
                 let mut beside = exact;
                 beside[knot][axis] += step;
-                assert!(cost(&material, &problem, &beside) > least, "{knot} {axis} {step}");
+                assert!(
+                    cost(&material, &problem, &beside) > least,
+                    "{knot} {axis} {step}"
+                );
             }
         }
     }
 }
 
-/// The problem in accelerations alone, from nothing but its cost: that is a quadratic, of which differences are exact.
+/// The problem in accelerations alone, from nothing but its cost: that is a quadratic, of which
+/// differences are exact.
 struct KnotSource {
     curvature: Vec<Vec<f64>>,
     /// At the plan.
@@ -92,7 +114,9 @@ impl KnotSource {
     fn new<const N: usize>(material: &Material<N>, problem: &HorizonProblem<N>) -> Self {
         let moved_cost = |moved: &[(usize, f64)]| {
             let mut plan = material.plan;
-            moved.iter().for_each(|(i, step)| plan.as_flattened_mut()[*i] += step);
+            moved
+                .iter()
+                .for_each(|(i, step)| plan.as_flattened_mut()[*i] += step);
             cost(material, problem, &plan)
         };
         let (unknowns, h) = (problem.unknowns(), STEP_MM_S2);
@@ -101,15 +125,23 @@ impl KnotSource {
             let [more, neither] = [h, -h].map(|other| moved_cost(&[(i, -h), (j, other)]));
             (both - less - more + neither) / (4.0 * h * h)
         };
-        let curvature = (0..unknowns).map(|i| (0..unknowns).map(|j| entry(i, j)).collect()).collect();
-        let slopes = (0..unknowns).map(|i| (moved_cost(&[(i, h)]) - moved_cost(&[(i, -h)])) / (2.0 * h)).collect();
+        let curvature = (0..unknowns)
+            .map(|i| (0..unknowns).map(|j| entry(i, j)).collect())
+            .collect();
+        let slopes = (0..unknowns)
+            .map(|i| (moved_cost(&[(i, h)]) - moved_cost(&[(i, -h)])) / (2.0 * h))
+            .collect();
         Self { curvature, slopes }
     }
 
     /// The slopes after a change of the plan.
     fn slopes_after(&self, change: &[f64]) -> Vec<f64> {
         let moved = |row: &Vec<f64>| row.iter().zip(change).map(|(h, x)| h * x).sum::<f64>();
-        self.slopes.iter().zip(&self.curvature).map(|(slope, row)| slope + moved(row)).collect()
+        self.slopes
+            .iter()
+            .zip(&self.curvature)
+            .map(|(slope, row)| slope + moved(row))
+            .collect()
     }
 
     /// Coordinate descent: `sweeps` times, moves one acceleration after the other to its minimum
@@ -120,7 +152,10 @@ impl KnotSource {
             for (i, row) in self.curvature.iter().enumerate() {
                 let now = &mut plan.as_flattened_mut()[i];
                 let to = (*now - slopes[i] / row[i]).clamp(-most_mm_s2, most_mm_s2);
-                slopes.iter_mut().zip(row).for_each(|(slope, h)| *slope += h * (to - *now));
+                slopes
+                    .iter_mut()
+                    .zip(row)
+                    .for_each(|(slope, h)| *slope += h * (to - *now));
                 *now = to;
             }
         }
@@ -134,7 +169,8 @@ fn the_plan_within_limits_is_the_best<const N: usize>(most_mm_s2: f64) {
     let reference = KnotSource::new(&material, &problem);
     let case = format!("{N} axes, {most_mm_s2} mm/s^2");
 
-    // By duality J is above its minimum by no more than what the slopes could still gain within the limits.
+    // By duality J is above its minimum by no more than what the slopes could still gain within the
+    // limits.
     let change: Vec<f64> = plan
         .as_flattened()
         .iter()
@@ -143,7 +179,11 @@ fn the_plan_within_limits_is_the_best<const N: usize>(most_mm_s2: f64) {
         .take(problem.unknowns())
         .collect();
     let (mut gain, mut bound) = (0.0, 0);
-    for (slope, a) in reference.slopes_after(&change).iter().zip(plan.as_flattened()) {
+    for (slope, a) in reference
+        .slopes_after(&change)
+        .iter()
+        .zip(plan.as_flattened())
+    {
         assert!(a.abs() <= most_mm_s2, "{case}: {a}");
         gain += slope * a + slope.abs() * most_mm_s2;
         bound += usize::from(a.abs() > 0.999 * most_mm_s2);

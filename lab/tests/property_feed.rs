@@ -17,15 +17,30 @@ fn random_sections(seed: u64, count: usize) -> Vec<Section> {
         .map(|i| {
             // Sections from 1 um to 30 mm, bounds that are flat, that ramp, and that jump.
             let length_mm = 10f64.powf(random.between(-3.0, 1.5));
-            let start_cap = if random.next() < 0.7 { cap } else { 10f64.powf(random.between(0.0, 4.0)) };
-            let end_cap = if random.next() < 0.5 { start_cap } else { 10f64.powf(random.between(0.0, 4.0)) };
+            let start_cap = if random.next() < 0.7 {
+                cap
+            } else {
+                10f64.powf(random.between(0.0, 4.0))
+            };
+            let end_cap = if random.next() < 0.5 {
+                start_cap
+            } else {
+                10f64.powf(random.between(0.0, 4.0))
+            };
             cap = end_cap;
             let joint_cap = match random.next() {
                 r if r < 0.05 => 0.0,
                 r if r < 0.2 => 10f64.powf(random.between(-2.0, 4.0)),
                 _ => f64::INFINITY,
             };
-            Section { piece: i as u64, from_mm: 0.0, length_mm, joint_cap, start_cap, end_cap }
+            Section {
+                piece: i as u64,
+                from_mm: 0.0,
+                length_mm,
+                joint_cap,
+                start_cap,
+                end_cap,
+            }
         })
         .collect()
 }
@@ -51,7 +66,10 @@ fn joints(sections: &[Section], accel: f64) -> Vec<f64> {
     let cap = |i: usize| match i {
         0 => 0.0,
         i if i == count => 0.0,
-        i => sections[i].joint_cap.min(sections[i].start_cap).min(sections[i - 1].end_cap),
+        i => sections[i]
+            .joint_cap
+            .min(sections[i].start_cap)
+            .min(sections[i - 1].end_cap),
     };
     let mut forward = vec![0.0; count + 1];
     for i in 1..=count {
@@ -71,24 +89,38 @@ fn check_limits(spans: &[Span], sections: &[Section], accel: f64) {
     let mut place = (0, 0.0);
     for span in spans {
         let section = &sections[span.piece as usize];
-        assert!((span.speed_mm_s.powi(2) - speed.powi(2)).abs() <= ROUNDING, "speed jumps: {speed} {span:?}");
+        assert!(
+            (span.speed_mm_s.powi(2) - speed.powi(2)).abs() <= ROUNDING,
+            "speed jumps: {speed} {span:?}"
+        );
         assert!(span.accel_mm_s2.abs() <= accel * (1.0 + 1e-12), "{span:?}");
         if place.0 == span.piece {
-            assert!((span.from_mm - place.1).abs() < 1e-9, "gap: {place:?} {span:?}");
+            assert!(
+                (span.from_mm - place.1).abs() < 1e-9,
+                "gap: {place:?} {span:?}"
+            );
         } else {
             assert!(span.piece == place.0 + 1 && span.from_mm.abs() < 1e-9);
         }
         for i in 0..=4 {
             let t = span.duration_s * f64::from(i) / 4.0;
             let at = span.from_mm + t * (span.speed_mm_s + 0.5 * span.accel_mm_s2 * t);
-            let cap = section.start_cap + (section.end_cap - section.start_cap) * at / section.length_mm;
+            let cap =
+                section.start_cap + (section.end_cap - section.start_cap) * at / section.length_mm;
             let square = (span.speed_mm_s + span.accel_mm_s2 * t).powi(2);
-            let slack = ROUNDING + 1e-12 * (section.end_cap - section.start_cap).abs() / section.length_mm;
-            assert!(square <= cap + slack, "{square} > {cap}: {span:?} {section:?}");
+            let slack =
+                ROUNDING + 1e-12 * (section.end_cap - section.start_cap).abs() / section.length_mm;
+            assert!(
+                square <= cap + slack,
+                "{square} > {cap}: {span:?} {section:?}"
+            );
         }
         speed = (span.speed_mm_s + span.accel_mm_s2 * span.duration_s).max(0.0);
         let t = span.duration_s;
-        place = (span.piece, span.from_mm + t * (span.speed_mm_s + 0.5 * span.accel_mm_s2 * t));
+        place = (
+            span.piece,
+            span.from_mm + t * (span.speed_mm_s + 0.5 * span.accel_mm_s2 * t),
+        );
     }
     assert!(speed.powi(2) < ROUNDING, "ends at rest: {speed}");
 }
@@ -160,15 +192,29 @@ fn check_program(reference: &mut Reference<'_>, pieces: &[Piece], limits: &PathL
     let mut before = reference.at(0.0);
     for i in 1..=steps {
         let here = reference.at(dt * f64::from(i));
-        let piece = &pieces[pieces.partition_point(|piece| piece.s_mm <= here.s_mm).max(1) - 1];
+        let piece = &pieces[pieces
+            .partition_point(|piece| piece.s_mm <= here.s_mm)
+            .max(1)
+            - 1];
         assert!(here.feed_mm_s <= piece.feed_mm_s.min(limits.max_feed_mm_s) * (1.0 + 1e-12));
         let curvature = piece.curve.curvature(here.s_mm - piece.s_mm);
         let normal = here.feed_mm_s.powi(2) * curvature;
-        assert!(normal <= limits.normal_accel_mm_s2 * 1.001, "{normal} at {}", here.s_mm);
+        assert!(
+            normal <= limits.normal_accel_mm_s2 * 1.001,
+            "{normal} at {}",
+            here.s_mm
+        );
         let change = (here.feed_mm_s - before.feed_mm_s).abs();
-        assert!(change <= limits.tangential_accel_mm_s2 * dt * (1.0 + 1e-9) + 1e-9, "{change} at {}", here.s_mm);
+        assert!(
+            change <= limits.tangential_accel_mm_s2 * dt * (1.0 + 1e-9) + 1e-9,
+            "{change} at {}",
+            here.s_mm
+        );
         let way = here.s_mm - before.s_mm;
-        assert!((way - 0.5 * dt * (here.feed_mm_s + before.feed_mm_s)).abs() <= 0.25 * 200.0 * dt * dt + 1e-9);
+        assert!(
+            (way - 0.5 * dt * (here.feed_mm_s + before.feed_mm_s)).abs()
+                <= 0.25 * 200.0 * dt * dt + 1e-9
+        );
         before = here;
     }
 }
@@ -183,11 +229,22 @@ fn pieces_of(steps: &[Step]) -> Vec<Piece> {
 
 #[test]
 fn programs_keep_every_limit() {
-    for (seed, corner) in [(11, BLEND), (12, Corner::ExactPath), (13, Corner::ExactStop), (14, BLEND)] {
+    for (seed, corner) in [
+        (11, BLEND),
+        (12, Corner::ExactPath),
+        (13, Corner::ExactStop),
+        (14, BLEND),
+    ] {
         let program = random_program(seed, 200, corner);
-        let steps: Vec<Step> = Pieces::new(program.into_iter()).map(Result::unwrap).collect();
+        let steps: Vec<Step> = Pieces::new(program.into_iter())
+            .map(Result::unwrap)
+            .collect();
         let pieces = pieces_of(&steps);
-        check_program(&mut Reference::of_steps(steps, &LIMITS).unwrap(), &pieces, &LIMITS);
+        check_program(
+            &mut Reference::of_steps(steps, &LIMITS).unwrap(),
+            &pieces,
+            &LIMITS,
+        );
     }
 }
 
@@ -217,15 +274,23 @@ fn contours_keep_every_limit_and_waste_no_time() {
                         end_cap: bound(i + 1),
                     })
                     .collect();
-                let best: f64 = plan(Trapezoid::new(100.0), &fine).iter().map(|span| span.duration_s).sum();
+                let best: f64 = plan(Trapezoid::new(100.0), &fine)
+                    .iter()
+                    .map(|span| span.duration_s)
+                    .sum();
                 let time = reference.read_to_end_s();
-                assert!((time / best - 1.0).abs() < 2e-3, "{} at {feed}: {time} {best}", contour.name);
+                assert!(
+                    (time / best - 1.0).abs() < 2e-3,
+                    "{} at {feed}: {time} {best}",
+                    contour.name
+                );
             }
         }
     }
 }
 
-/// Average acceleration of the tool over a time that is short against the corner, on a circle hidden in chords.
+/// Average acceleration of the tool over a time that is short against the corner, on a circle
+/// hidden in chords.
 #[test]
 fn chords_of_a_curve_do_not_escape_the_normal_limit() {
     let mut random = Random(5);
@@ -243,9 +308,13 @@ fn chords_of_a_curve_do_not_escape_the_normal_limit() {
     let mut fastest: f64 = 0.0;
     while tau < end_s - 0.5 {
         let at = |reference: &mut Reference<'_>, tau| reference.at(tau).position_mm;
-        let (a, b, c) =
-            (at(&mut reference, tau - window_s), at(&mut reference, tau), at(&mut reference, tau + window_s));
-        let accel = distance([0, 1, 2].map(|k| a[k] + c[k] - 2.0 * b[k]), [0.0; 3]) / (window_s * window_s);
+        let (a, b, c) = (
+            at(&mut reference, tau - window_s),
+            at(&mut reference, tau),
+            at(&mut reference, tau + window_s),
+        );
+        let accel =
+            distance([0, 1, 2].map(|k| a[k] + c[k] - 2.0 * b[k]), [0.0; 3]) / (window_s * window_s);
         // The window sees three to ten joints, so single joints show by some percent.
         assert!(accel < 400.0 * 1.25, "{accel} at {tau}");
         fastest = fastest.max(reference.at(tau).feed_mm_s);

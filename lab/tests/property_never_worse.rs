@@ -1,5 +1,5 @@
-//! The default controller is never worse than uncorrected: on random programs and random machines, each identified first, and
-//! on shapes on which it once was.
+//! The default controller is never worse than uncorrected: on random programs and random machines,
+//! each identified first, and on shapes on which it once was.
 //!
 //! What fails is printed as program and machine file. `feedwright-lab held-out` does the same
 //! with thousands of cuts.
@@ -9,7 +9,8 @@ use std::sync::Arc;
 use crate::sweep::part_or_whole;
 use feedwright::BEST;
 use feedwright_lab::{
-    CONTROLLERS, Class, Cutter, Generated, Length, SweepOptions, SweepProgram, SweepRow, Variant, draw,
+    CONTROLLERS, Class, Cutter, Generated, Length, SweepOptions, SweepProgram, SweepRow, Variant,
+    draw,
 };
 
 /// Cuts, and those of the sweep.
@@ -19,8 +20,9 @@ const MANY_CUTS: usize = 36;
 const FOR_EACH: usize = 4;
 /// Seed of the cuts.
 const SEED: u64 = 20_261;
-/// The one that is worse, and by what: where a helix begins behind a rapid, which leaves the tool 0.60 mm behind its path, 0.604 mm of
-/// it stay uncut in place of 0.601. Its contour error is a tenth of the uncorrected cut's.
+/// The one that is worse, and by what: where a helix begins behind a rapid, which leaves the tool
+/// 0.60 mm behind its path, 0.604 mm of it stay uncut in place of 0.601. Its contour error is a
+/// tenth of the uncorrected cut's.
 const KNOWN: &str = "helix-836152549";
 
 fn options() -> SweepOptions {
@@ -50,7 +52,10 @@ fn random_programs_on_random_machines_are_cut_no_worse_than_uncorrected() {
     for of_machine in generated.chunks(FOR_EACH) {
         let mut cutter = Cutter::new(&of_machine[0].job.machine, &options);
         for made in of_machine {
-            let row = cutter.rows(&made.job.program, &made.job.machine, &()).unwrap().remove(0);
+            let row = cutter
+                .rows(&made.job.program, &made.job.machine, &())
+                .unwrap()
+                .remove(0);
             assert!(row.is_judged(), "the uncorrected cut is lost: {row:?}");
             if row.program == KNOWN {
                 let more = row.corrected.uncut_um.unwrap() / row.uncorrected.uncut_um.unwrap();
@@ -61,10 +66,16 @@ fn random_programs_on_random_machines_are_cut_no_worse_than_uncorrected() {
         }
     }
     failures.sort_by(|a, b| b.0.severity().total_cmp(&a.0.severity()));
-    failures.iter().for_each(|(row, _)| eprintln!("{}", told(row)));
+    failures
+        .iter()
+        .for_each(|(row, _)| eprintln!("{}", told(row)));
     if let Some((row, made)) = failures.first() {
         let (program, machine) = (&made.text, made.variant.text());
-        panic!("{} of {cuts} cuts are worse; the worst, {}:\n{program}\n{machine}", failures.len(), told(row));
+        panic!(
+            "{} of {cuts} cuts are worse; the worst, {}:\n{program}\n{machine}",
+            failures.len(),
+            told(row)
+        );
     }
 }
 
@@ -94,14 +105,22 @@ fn round_pocket() -> String {
         text += &format!("G2 X0 Y{across} I0 J{}\n", 0.5 * (across - y));
         y = across;
     }
-    text + &format!("G2 X0 Y{y} I0 J{}\nG1 Y{}\nG0 Z-0.5\nG0 Y2\nG1 Z-1.5\nM2\n", -y, y - 0.3)
+    text + &format!(
+        "G2 X0 Y{y} I0 J{}\nG1 Y{}\nG0 Z-0.5\nG0 Y2\nG1 Z-1.5\nM2\n",
+        -y,
+        y - 0.3
+    )
 }
 
 /// Battlements of 0.2 mm at 17 mm/s.
 fn low_teeth() -> String {
     let tooth = |k: i32| {
         let x = 1.244 * f64::from(k);
-        format!("G1 X{:.3}\nG1 Y0.209\nG1 X{:.3}\nG1 Y0\n", x + 0.622, x + 1.244)
+        format!(
+            "G1 X{:.3}\nG1 Y0.209\nG1 X{:.3}\nG1 Y0\n",
+            x + 0.622,
+            x + 1.244
+        )
     };
     "G21 G90 G64 F1020\nG0 X0 Y0\n".to_owned() + &(0..24).map(tooth).collect::<String>() + "M2\n"
 }
@@ -111,7 +130,9 @@ fn slots() -> String {
     let slot = |k: i32| {
         let y = 1.544 * f64::from(k);
         let (back, next) = (y + 0.772, y + 1.544);
-        format!("G1 X0.877 Y{y:.3}\nG3 X0.877 Y{back:.3} I0 J0.386\nG1 X0\nG2 X0 Y{next:.3} I0 J0.386\n")
+        format!(
+            "G1 X0.877 Y{y:.3}\nG3 X0.877 Y{back:.3} I0 J0.386\nG1 X0\nG2 X0 Y{next:.3} I0 J0.386\n"
+        )
     };
     "G21 G90 G64 F4340\nG0 X0 Y0\n".to_owned() + &(0..6).map(slot).collect::<String>() + "M2\n"
 }
@@ -124,9 +145,15 @@ fn holes() -> &'static str {
 /// What a program comes to on a machine.
 fn judged(name: &str, text: &str, variant: &Variant) -> SweepRow {
     let machine = Arc::new(variant.machine().unwrap());
-    let length = Length { machine: &machine, limit_s: 60.0 };
+    let length = Length {
+        machine: &machine,
+        limit_s: 60.0,
+    };
     let program = SweepProgram::from_text(name, text, length).unwrap();
-    let row = Cutter::new(&machine, &options()).rows(&program, &machine, &()).unwrap().remove(0);
+    let row = Cutter::new(&machine, &options())
+        .rows(&program, &machine, &())
+        .unwrap()
+        .remove(0);
     eprintln!("{}", told(&row));
     row
 }
@@ -148,7 +175,10 @@ fn two_turns_of_a_small_circle_are_cut_no_worse_than_uncorrected() {
 #[test]
 fn a_round_pocket_is_cut_no_worse_than_uncorrected_by_a_machine_that_speeds_up_well() {
     let variant = Variant::of("tnv40", "accel250").with("limits", "tangential_accel_mm_s2", 250.0);
-    assert_eq!(judged("round pocket", &round_pocket(), &variant).faults(), []);
+    assert_eq!(
+        judged("round pocket", &round_pocket(), &variant).faults(),
+        []
+    );
 }
 
 #[test]
@@ -175,18 +205,20 @@ fn slots_are_cut_no_worse_than_uncorrected_by_a_machine_that_is_late() {
 
 #[test]
 fn holes_behind_rapids_at_the_torque_limit_are_drilled_no_worse_than_uncorrected() {
-    let variant = Variant::of("tnv40", "accel4000").with("limits", "tangential_accel_mm_s2", 4000.0).with(
-        "limits",
-        "normal_accel_mm_s2",
-        4000.0,
-    );
+    let variant = Variant::of("tnv40", "accel4000")
+        .with("limits", "tangential_accel_mm_s2", 4000.0)
+        .with("limits", "normal_accel_mm_s2", 4000.0);
     assert_eq!(judged("holes", holes(), &variant).faults(), []);
 }
 
 /// The contours on which it was tuned: those above can pass.
 #[test]
 fn a_circle_is_cut_no_worse_than_uncorrected() {
-    let row = judged("circle", "G21 G90 F3000\nG2 X0 Y0 I10 J0\nM2\n", &Variant::of("tnv40", "tnv40"));
+    let row = judged(
+        "circle",
+        "G21 G90 F3000\nG2 X0 Y0 I10 J0\nM2\n",
+        &Variant::of("tnv40", "tnv40"),
+    );
     assert_eq!(row.faults(), []);
     assert!(row.rms_ratio() < 0.1, "{}", row.rms_ratio());
 }

@@ -34,7 +34,11 @@ fn arc(plane: Plane, radius: f64, from: f64, sweep: f64, rise: f64, turns: i32) 
         kind: MotionKind::Feed,
         start_mm: at(from, 0.0),
         end_mm: at(from + sense * sweep, rise),
-        shape: Shape::Arc { plane, center_mm: center, turns },
+        shape: Shape::Arc {
+            plane,
+            center_mm: center,
+            turns,
+        },
         feed_mm_s: 10.0,
         corner: BLEND,
         others: AuxiliaryAxes::default(),
@@ -49,8 +53,13 @@ fn brute_force(curve: &Curve, point: [f64; 3], lo: f64, hi: f64) -> f64 {
     const SAMPLES: usize = 2000;
     let at = |s: f64| distance(curve.at(s).position_mm, point);
     let sample = |i: usize| lo + (hi - lo) * i as f64 / SAMPLES as f64;
-    let best = (0..=SAMPLES).min_by(|&i, &j| at(sample(i)).total_cmp(&at(sample(j)))).expect("there are samples");
-    let (mut a, mut b) = (sample(best.saturating_sub(1)), sample((best + 1).min(SAMPLES)));
+    let best = (0..=SAMPLES)
+        .min_by(|&i, &j| at(sample(i)).total_cmp(&at(sample(j))))
+        .expect("there are samples");
+    let (mut a, mut b) = (
+        sample(best.saturating_sub(1)),
+        sample((best + 1).min(SAMPLES)),
+    );
     let ratio = 0.5 * (5.0f64.sqrt() - 1.0);
     while b - a > 1e-9 {
         let (c, d) = (b - ratio * (b - a), a + ratio * (b - a));
@@ -68,15 +77,29 @@ fn check_curve(curve: &Curve, random: &mut Random) {
         // Central differences: error of the order of h^2 times the derivative of the curvature.
         for k in 0..3 {
             let slope = (after.position_mm[k] - before.position_mm[k]) / (2.0 * h);
-            assert!((slope - here.tangent[k]).abs() < 1e-5, "{s} {slope} {:?}", here.tangent);
+            assert!(
+                (slope - here.tangent[k]).abs() < 1e-5,
+                "{s} {slope} {:?}",
+                here.tangent
+            );
         }
         let turn = distance(after.tangent, before.tangent) / (2.0 * h);
-        assert!((turn - curve.curvature(s)).abs() < 1e-4 * (1.0 + turn), "{s} {turn} {}", curve.curvature(s));
+        assert!(
+            (turn - curve.curvature(s)).abs() < 1e-4 * (1.0 + turn),
+            "{s} {turn} {}",
+            curve.curvature(s)
+        );
         let derivatives = curve.derivatives(s);
-        assert!(distance(derivatives.first, here.tangent) < 1e-14, "{s} {derivatives:?} {here:?}");
+        assert!(
+            distance(derivatives.first, here.tangent) < 1e-14,
+            "{s} {derivatives:?} {here:?}"
+        );
         for k in 0..3 {
             let bend = (after.tangent[k] - before.tangent[k]) / (2.0 * h);
-            assert!((bend - derivatives.second_1_mm[k]).abs() < 1e-4 * (1.0 + turn), "{s} {bend} {derivatives:?}");
+            assert!(
+                (bend - derivatives.second_1_mm[k]).abs() < 1e-4 * (1.0 + turn),
+                "{s} {bend} {derivatives:?}"
+            );
         }
         let second = |s: f64| curve.derivatives(s).second_1_mm;
         let (before, after) = (second(s - h), second(s + h));
@@ -84,7 +107,10 @@ fn check_curve(curve: &Curve, random: &mut Random) {
         let size = distance(third, [0.0; 3]);
         for k in 0..3 {
             let twist = (after[k] - before[k]) / (2.0 * h);
-            assert!((twist - third[k]).abs() < 1e-3 * (1.0 + size), "{s} {twist} {derivatives:?}");
+            assert!(
+                (twist - third[k]).abs() < 1e-3 * (1.0 + size),
+                "{s} {twist} {derivatives:?}"
+            );
         }
         let unit = distance(here.tangent, [0.0; 3]);
         assert!((unit - 1.0).abs() < 1e-14);
@@ -106,10 +132,14 @@ fn check_nearest(curve: &Curve, random: &mut Random, away_mm: f64) {
     assert!((lo..=hi).contains(&s), "{lo} {s} {hi}");
     let found = distance(curve.at(s).position_mm, point);
     let brute = brute_force(curve, point, lo, hi);
-    assert!(found <= brute + 1e-12, "{found} {brute} at {s} of {lo}..{hi}, {point:?}");
+    assert!(
+        found <= brute + 1e-12,
+        "{found} {brute} at {s} of {lo}..{hi}, {point:?}"
+    );
 }
 
-/// At an inner nearest point the offset is normal to the curve: this, not the distance, shows errors of arc length.
+/// At an inner nearest point the offset is normal to the curve: this, not the distance, shows
+/// errors of arc length.
 fn check_foot(curve: &Curve, random: &mut Random, away_mm: f64) {
     let length = curve.length_mm();
     let s = random.between(0.3 * length, 0.7 * length);
@@ -119,7 +149,9 @@ fn check_foot(curve: &Curve, random: &mut Random, away_mm: f64) {
     }
     let found = curve.nearest(point, s - 0.2 * length, s + 0.2 * length);
     let foot = curve.at(found);
-    let along: f64 = (0..3).map(|k| (point[k] - foot.position_mm[k]) * foot.tangent[k]).sum();
+    let along: f64 = (0..3)
+        .map(|k| (point[k] - foot.position_mm[k]) * foot.tangent[k])
+        .sum();
     assert!(along.abs() < 1e-9, "{along} at {found}");
 }
 
@@ -177,8 +209,16 @@ fn contours_join_and_close() {
         }
         if contour.name != "line-line-circle" {
             // The butterfly is tabulated to 1 um, and its first and last point differ by that.
-            let gap_mm = if contour.name == "butterfly" { 1.001e-3 } else { 1e-9 };
-            assert!(distance(here, pieces[0].start_mm) < gap_mm, "{}", contour.name);
+            let gap_mm = if contour.name == "butterfly" {
+                1.001e-3
+            } else {
+                1e-9
+            };
+            assert!(
+                distance(here, pieces[0].start_mm) < gap_mm,
+                "{}",
+                contour.name
+            );
         }
     }
 }
@@ -187,10 +227,17 @@ fn contours_join_and_close() {
 #[test]
 fn lengths_are_those_of_the_closed_form() {
     let length = |name: &str| -> f64 {
-        steps(contour(name).unwrap().steps(50.0, BLEND).unwrap()).iter().map(|piece| piece.length_mm).sum()
+        steps(contour(name).unwrap().steps(50.0, BLEND).unwrap())
+            .iter()
+            .map(|piece| piece.length_mm)
+            .sum()
     };
     // Hu et al. (2023) give 382.859 mm.
-    assert!((length("butterfly") - 382.859).abs() < 1e-3, "{}", length("butterfly"));
+    assert!(
+        (length("butterfly") - 382.859).abs() < 1e-3,
+        "{}",
+        length("butterfly")
+    );
     let (mut a, mut g): (f64, f64) = (20.0, 10.0);
     let (mut sum, mut power) = (0.5 * (a * a - g * g), 0.5);
     // Converges quadratically: ten rounds are plenty.
@@ -201,23 +248,41 @@ fn lengths_are_those_of_the_closed_form() {
         sum += power * c * c;
     }
     let perimeter = 2.0 * std::f64::consts::PI * (400.0 - sum) / a;
-    assert!((length("ellipse") - perimeter).abs() < 1e-9, "{} {perimeter}", length("ellipse"));
+    assert!(
+        (length("ellipse") - perimeter).abs() < 1e-9,
+        "{} {perimeter}",
+        length("ellipse")
+    );
     assert!((length("circle") - 20.0 * std::f64::consts::PI).abs() < 1e-12);
     assert!((length("square") - 80.0).abs() < 1e-12);
     assert!((length("line-line-circle") - 70.0 - 60.0 * std::f64::consts::PI).abs() < 1e-12);
     // The other two against a sum of 10 million chords, whose error is far below 1e-9 mm.
     for (name, x, y) in [
-        ("eight", (|a| 15.0 * f64::sin(a)) as fn(f64) -> f64, (|a| 10.0 * f64::sin(2.0 * a)) as fn(f64) -> f64),
-        ("star", |a| (12.0 + 4.0 * (5.0 * a).cos()) * a.cos(), |a| (12.0 + 4.0 * (5.0 * a).cos()) * a.sin()),
+        (
+            "eight",
+            (|a| 15.0 * f64::sin(a)) as fn(f64) -> f64,
+            (|a| 10.0 * f64::sin(2.0 * a)) as fn(f64) -> f64,
+        ),
+        (
+            "star",
+            |a| (12.0 + 4.0 * (5.0 * a).cos()) * a.cos(),
+            |a| (12.0 + 4.0 * (5.0 * a).cos()) * a.sin(),
+        ),
     ] {
         // Chords err by the square of their number: extrapolate from two numbers.
         let chords = |count: u32| {
             let at = |i: u32| 2.0 * std::f64::consts::PI * f64::from(i) / f64::from(count);
-            (0..count).map(|i| (x(at(i + 1)) - x(at(i))).hypot(y(at(i + 1)) - y(at(i)))).sum::<f64>()
+            (0..count)
+                .map(|i| (x(at(i + 1)) - x(at(i))).hypot(y(at(i + 1)) - y(at(i))))
+                .sum::<f64>()
         };
         let (coarse, fine) = (chords(20_000), chords(40_000));
         let sum = fine + (fine - coarse) / 3.0;
-        assert!((length(name) - sum).abs() < 1e-9, "{name} {} {sum}", length(name));
+        assert!(
+            (length(name) - sum).abs() < 1e-9,
+            "{name} {} {sum}",
+            length(name)
+        );
     }
 }
 

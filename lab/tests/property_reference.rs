@@ -23,7 +23,10 @@ fn program(seed: u64, count: usize, size_mm: f64) -> Vec<Canon> {
             steps.push(arc(here, here, center, turns, 40.0));
         }
         if random.next() < 0.1 {
-            steps.push(Canon::Event(Event { line: 7, kind: EventKind::Dwell { seconds: 0.01 } }));
+            steps.push(Canon::Event(Event {
+                line: 7,
+                kind: EventKind::Dwell { seconds: 0.01 },
+            }));
         }
     }
     steps
@@ -42,14 +45,33 @@ fn check_nearest(reference: &mut Reference<'_>, random: &mut Random, span_s: f64
     assert!((distance(foot.position_mm, point) - foot.distance_mm).abs() < 1e-12);
     assert!(foot.signed_mm.abs() == foot.distance_mm);
     let (s_lo, s_hi) = (reference.at(lo).s_mm, reference.at(hi).s_mm);
-    assert!(foot.s_mm >= s_lo - 1e-12 && foot.s_mm <= s_hi + 1e-12, "{s_lo} {} {s_hi}", foot.s_mm);
+    assert!(
+        foot.s_mm >= s_lo - 1e-12 && foot.s_mm <= s_hi + 1e-12,
+        "{s_lo} {} {s_hi}",
+        foot.s_mm
+    );
     let brute = (0..=SAMPLES)
-        .map(|i| distance(reference.at(lo + (hi - lo) * i as f64 / SAMPLES as f64).position_mm, point))
+        .map(|i| {
+            distance(
+                reference
+                    .at(lo + (hi - lo) * i as f64 / SAMPLES as f64)
+                    .position_mm,
+                point,
+            )
+        })
         .fold(f64::INFINITY, f64::min);
     // At no more than 50 mm/s, a sample is at most half a step from the foot.
     let step = 0.5 * 50.0 * (hi - lo) / SAMPLES as f64;
-    assert!(foot.distance_mm <= brute + 1e-12, "{} {brute}", foot.distance_mm);
-    assert!(brute <= foot.distance_mm + step + 1e-12, "{} {brute} {step}", foot.distance_mm);
+    assert!(
+        foot.distance_mm <= brute + 1e-12,
+        "{} {brute}",
+        foot.distance_mm
+    );
+    assert!(
+        brute <= foot.distance_mm + step + 1e-12,
+        "{} {brute} {step}",
+        foot.distance_mm
+    );
 }
 
 proptest! {
@@ -91,7 +113,8 @@ proptest! {
 fn nearest_on_contours() {
     let mut random = Random(3);
     for contour in CONTOURS {
-        let mut reference = Reference::of_steps(contour.steps(50.0, BLEND).unwrap(), &LIMITS).unwrap();
+        let mut reference =
+            Reference::of_steps(contour.steps(50.0, BLEND).unwrap(), &LIMITS).unwrap();
         for _ in 0..50 {
             check_nearest(&mut reference, &mut random, 0.1, 0.03);
             check_nearest(&mut reference, &mut random, 10.0, 5.0);
@@ -101,11 +124,17 @@ fn nearest_on_contours() {
 
 #[test]
 fn sign_is_left_of_travel() {
-    let mut reference = Reference::of_program(vec![line([0.0; 3], [10.0, 0.0, 0.0], 10.0, BLEND)], &LIMITS).unwrap();
+    let mut reference =
+        Reference::of_program(vec![line([0.0; 3], [10.0, 0.0, 0.0], 10.0, BLEND)], &LIMITS)
+            .unwrap();
     assert_eq!(reference.nearest([5.0, 0.5, 0.0], 0.0, 2.0).signed_mm, 0.5);
-    assert_eq!(reference.nearest([5.0, -0.5, 0.0], 0.0, 2.0).signed_mm, -0.5);
+    assert_eq!(
+        reference.nearest([5.0, -0.5, 0.0], 0.0, 2.0).signed_mm,
+        -0.5
+    );
     // Clockwise circle of the paper: its inside is on the right.
-    let mut reference = Reference::of_steps(CONTOURS[0].steps(50.0, BLEND).unwrap(), &LIMITS).unwrap();
+    let mut reference =
+        Reference::of_steps(CONTOURS[0].steps(50.0, BLEND).unwrap(), &LIMITS).unwrap();
     assert!(reference.nearest([10.0, 9.9, 0.0], 0.0, 2.0).signed_mm < 0.0);
 }
 
@@ -139,10 +168,14 @@ fn memory_does_not_grow_with_the_program() {
         s_mm = here.s_mm;
         reference.at(tau + 0.1);
         reference.forget_before(tau - 0.1);
-        most = (most.0.max(reference.kept().0), most.1.max(reference.kept().1));
+        most = (
+            most.0.max(reference.kept().0),
+            most.1.max(reference.kept().1),
+        );
         tau += 1e-3;
     }
-    // 12.5 mm to stop from 50 mm/s: 6250 blocks of 2 um; twice that between passes; the window is 0.3 s or 7500 blocks.
+    // 12.5 mm to stop from 50 mm/s: 6250 blocks of 2 um; twice that between passes; the window is
+    // 0.3 s or 7500 blocks.
     assert!(most.0 < 30_000 && most.1 < 30_000, "{most:?}");
     let at_end = reference.at(tau).position_mm;
     assert!(distance(at_end, [200.0, 200.0f64.sin(), 0.0]) < 1e-9);
@@ -159,15 +192,21 @@ fn forgetting_changes_nothing_that_is_kept() {
         forgetful.forget_before(tau - 0.05);
         assert_eq!(forgetful.at(tau), all.at(tau));
         let point = [0.3, 0.1, 0.0];
-        assert_eq!(forgetful.nearest(point, tau - 0.05, tau), all.nearest(point, tau - 0.05, tau));
+        assert_eq!(
+            forgetful.nearest(point, tau - 0.05, tau),
+            all.nearest(point, tau - 0.05, tau)
+        );
         tau += 0.013;
     }
 }
 
 #[test]
 fn a_polyline_of_one_point_has_no_length() {
-    let mut reference =
-        Reference::of_program(polyline(&[[1.0, 2.0, 3.0], [1.0, 2.0, 3.0]], 10.0, BLEND), &LIMITS).unwrap();
+    let mut reference = Reference::of_program(
+        polyline(&[[1.0, 2.0, 3.0], [1.0, 2.0, 3.0]], 10.0, BLEND),
+        &LIMITS,
+    )
+    .unwrap();
     assert_eq!(reference.read_to_end_s(), 0.0);
     assert_eq!(reference.at(0.0).s_mm, 0.0);
 }

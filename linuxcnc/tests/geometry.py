@@ -16,9 +16,10 @@ import headless
 import measure
 import programs
 
-# Of the circle at the tool, RMS, um: with the correction of the drives alone, and with that of the geometry, too: 1.39 and 0.50 to 0.56 in three
-# runs on a busy computer.
-CIRCLE_UM = (1.0, 0.6)
+# Of the circle at the tool: RMS with the correction of the drives alone, um, and the part of it that is left with that of the geometry, too:
+# 1.39 to 1.40, and 0.36 to 0.43 in five runs on a busy computer.
+CIRCLE_UM = 1.0
+CIRCLE_LEFT = 0.5
 # Between the tool and where LinuxCNC has it, where the axes stand: noise and interpolation of the encoders, um.
 STANDS_UM = 0.6
 # Far places, mm: there the geometry of workshop is 2 to 8 um.
@@ -70,7 +71,7 @@ class Cases:
             recording = self.run("cut", {"program": programs.part("circle", "G64"), "params": params})
             self.quiet(recording)
             rms.append(measure.figures(recording, programs.part("circle", "G64")).commanded[0])
-        assert rms[0] > CIRCLE_UM[0] and rms[1] <= CIRCLE_UM[1], rms
+        assert rms[0] > CIRCLE_UM and rms[1] < CIRCLE_LEFT * rms[0], rms
         return f"{rms[0]:.2f} um RMS at the tool with the drives corrected, {rms[1]:.2f} with the geometry, too, {rms[2]:.2f} with the geometry alone"
 
     def case_places(self):

@@ -43,7 +43,13 @@ pub(crate) struct RowColumns {
 impl RowColumns {
     /// No rows yet, of a cut in which so many axes move.
     pub(crate) fn new(axes: usize) -> Self {
-        Self { axes, line: vec![], cutting: vec![], numbers: Default::default(), vectors: Default::default() }
+        Self {
+            axes,
+            line: vec![],
+            cutting: vec![],
+            numbers: Default::default(),
+            vectors: Default::default(),
+        }
     }
 
     /// As arrays, which take over the memory.

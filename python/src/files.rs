@@ -67,7 +67,9 @@ impl PythonProgram {
         };
         let unit_mm = if inch_tools { INCH_MM } else { 1.0 };
         let settings = || {
-            let tools = tool_table.map(|path| ToolTable::read(&path, unit_mm)).transpose()?;
+            let tools = tool_table
+                .map(|path| ToolTable::read(&path, unit_mm))
+                .transpose()?;
             let dialect = Dialect::named(dialect)?;
             Ok(Settings {
                 dialect,
@@ -77,7 +79,11 @@ impl PythonProgram {
             })
         };
         let settings = settings().map_err(|error: Report| exception(&error))?;
-        Ok(Self { program: program.map_err(|error| exception(&error))?, settings, spec })
+        Ok(Self {
+            program: program.map_err(|error| exception(&error))?,
+            settings,
+            spec,
+        })
     }
 
     /// A job of a sweep with this program, as JSON.
@@ -102,7 +108,9 @@ fn unnamed() -> String {
 
 /// A job of a sweep as JSON.
 pub(crate) fn job_text(spec: &JobSpec) -> PyResult<String> {
-    serde_json::to_string(spec).into_diagnostic().map_err(|error| exception(&error))
+    serde_json::to_string(spec)
+        .into_diagnostic()
+        .map_err(|error| exception(&error))
 }
 
 /// A motion of a program.
@@ -123,7 +131,10 @@ impl MotionOfProgram {
     fn __repr__(&self) -> String {
         let (x, y, z) = self.end_mm;
         let kind = if self.rapid { "rapid" } else { self.shape };
-        format!("<feedwright.Motion line {}: {kind} to {x}, {y}, {z} mm>", self.line)
+        format!(
+            "<feedwright.Motion line {}: {kind} to {x}, {y}, {z} mm>",
+            self.line
+        )
     }
 }
 
@@ -138,7 +149,9 @@ impl MotionsOfProgram {
     #[new]
     fn new(program: &PythonProgram) -> PyResult<Self> {
         let reader = program.program.reader(program.settings.clone());
-        Ok(Self { reader: reader.map_err(|error| exception(&error.into()))? })
+        Ok(Self {
+            reader: reader.map_err(|error| exception(&error.into()))?,
+        })
     }
 
     fn __iter__(of: PyRef<'_, Self>) -> PyRef<'_, Self> {
@@ -148,10 +161,14 @@ impl MotionsOfProgram {
     fn __next__(&mut self) -> PyResult<Option<MotionOfProgram>> {
         let point = |[x, y, z]: [f64; 3]| (x, y, z);
         for step in &mut self.reader {
-            let Canon::Motion(motion) = step.map_err(|fault| exception(&fault.into()))? else { continue };
+            let Canon::Motion(motion) = step.map_err(|fault| exception(&fault.into()))? else {
+                continue;
+            };
             let (shape, center_mm, turns) = match &motion.shape {
                 Shape::Line => ("line", None, 0),
-                Shape::Arc { center_mm, turns, .. } => ("arc", Some(point(*center_mm)), *turns),
+                Shape::Arc {
+                    center_mm, turns, ..
+                } => ("arc", Some(point(*center_mm)), *turns),
                 Shape::Spline(_) => ("spline", None, 0),
             };
             let (start_mm, end_mm) = (point(motion.start_mm), point(motion.end_mm));
@@ -189,7 +206,9 @@ pub(crate) fn check<'py>(py: Python<'py>, program: &PythonProgram) -> PyResult<B
             })
         }
         Err(CheckError::Read(error)) => return Err(exception(&error.into())),
-        Err(CheckError::Faults(faults)) => json!({ "findings": faults.iter().map(mistake_json).collect::<Vec<_>>() }),
+        Err(CheckError::Faults(faults)) => {
+            json!({ "findings": faults.iter().map(mistake_json).collect::<Vec<_>>() })
+        }
     };
     from_json(py, &answer.to_string())
 }
@@ -205,11 +224,17 @@ pub(crate) struct PythonMachine {
 impl PythonMachine {
     /// The error of its values, as a fraction, where the user states none.
     pub(crate) fn file_error(&self, percent: Option<f64>) -> f64 {
-        percent.map_or_else(|| CorrectJob::usual_file_error(self.file.is_some()), |percent| 0.01 * percent)
+        percent.map_or_else(
+            || CorrectJob::usual_file_error(self.file.is_some()),
+            |percent| 0.01 * percent,
+        )
     }
 
     pub(crate) fn parsed(name: &str, text: &str) -> Result<Self, MachineError> {
-        Ok(Self { machine: Machine::parse(name, text)?, file: Some(name.to_owned()) })
+        Ok(Self {
+            machine: Machine::parse(name, text)?,
+            file: Some(name.to_owned()),
+        })
     }
 }
 
@@ -220,8 +245,11 @@ impl PythonMachine {
     fn new(name_or_path: Option<PathBuf>, text: Option<&str>, name: &str) -> PyResult<Self> {
         let found = match (name_or_path, text) {
             (Some(path), None) => {
-                let file = feedwright::sim::is_machine_path(&path).then(|| path.display().to_string());
-                Machine::load(path.as_os_str()).map(|machine| Self { machine, file }).map_err(Report::from)
+                let file =
+                    feedwright::sim::is_machine_path(&path).then(|| path.display().to_string());
+                Machine::load(path.as_os_str())
+                    .map(|machine| Self { machine, file })
+                    .map_err(Report::from)
             }
             (None, Some(text)) => Self::parsed(name, text).map_err(Report::from),
             _ => Err(miette!(
@@ -255,7 +283,8 @@ impl PythonMachine {
     /// The keys and values of its file, as nested dicts.
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        py.import("tomllib")?.call_method1("loads", (self.machine.text(),))
+        py.import("tomllib")?
+            .call_method1("loads", (self.machine.text(),))
     }
 
     /// A machine with other values, by the keys of the file: `{"axis.x.kp_1_s": 80}`.
@@ -278,7 +307,11 @@ impl PythonMachine {
     }
 
     fn __repr__(&self) -> String {
-        format!("<feedwright.Machine {}, {} axes>", self.machine.name, self.machine.axis_count())
+        format!(
+            "<feedwright.Machine {}, {} axes>",
+            self.machine.name,
+            self.machine.axis_count()
+        )
     }
 }
 
@@ -301,9 +334,14 @@ fn set(mut table: &mut Table, key: &str, value: Value) -> Result<(), Report> {
     let mut parts: Vec<&str> = key.split('.').collect();
     let last = parts.pop().unwrap_or_default();
     for part in parts {
-        let item = table.entry(part).or_insert_with(|| Item::Table(Table::new()));
+        let item = table
+            .entry(part)
+            .or_insert_with(|| Item::Table(Table::new()));
         table = item.as_table_mut().ok_or_else(|| {
-            miette!(help = "Machine.values has the keys of a machine", "{key}: `{part}` is a value, not a section")
+            miette!(
+                help = "Machine.values has the keys of a machine",
+                "{key}: `{part}` is a value, not a section"
+            )
         })?;
     }
     table.insert(last, Item::Value(value));
@@ -316,5 +354,9 @@ pub(crate) fn lists<'py>(py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
     let controllers: Vec<&str> = CONTROLLERS.iter().map(|entry| entry.name).collect();
     let machines: Vec<&str> = BUILT_IN_MACHINES.iter().map(|(name, _)| *name).collect();
     let targets: Vec<&str> = TARGETS.iter().map(|target| target.name).collect();
-    from_json(py, &json!({ "controllers": controllers, "machines": machines, "targets": targets }).to_string())
+    from_json(
+        py,
+        &json!({ "controllers": controllers, "machines": machines, "targets": targets })
+            .to_string(),
+    )
 }

@@ -10,9 +10,9 @@ use feedwright::ident::{Columns, Log, Model};
 use feedwright::plan::Constraints;
 use feedwright::sim::{Machine, Sink, Stages, Watch, path_steps};
 use feedwright::{
-    AdviseJob, BEST, CONTROLLERS, Choices, CorrectJob, CycleTimeOptions, Job, JobError, JobOutcome, LogIdentified,
-    LogJob, MeasuredLog, TARGETS, TargetControl, cycle_time_by, fitting_machines, machine_text, take_recorded_model,
-    write_html, write_json, write_page,
+    AdviseJob, BEST, CONTROLLERS, Choices, CorrectJob, CycleTimeOptions, Job, JobError, JobOutcome,
+    LogIdentified, LogJob, MeasuredLog, TARGETS, TargetControl, cycle_time_by, fitting_machines,
+    machine_text, take_recorded_model, write_html, write_json, write_page,
 };
 use miette::{IntoDiagnostic, Report, Result, miette};
 use numpy::PyArray1;
@@ -47,35 +47,65 @@ pub(crate) struct RunOptions {
 
 impl RunOptions {
     /// The job of these options, as the command makes it.
-    fn job(&self, program: &PythonProgram, machine: &PythonMachine, watch: &dyn Watch) -> Result<Job> {
+    fn job(
+        &self,
+        program: &PythonProgram,
+        machine: &PythonMachine,
+        watch: &dyn Watch,
+    ) -> Result<Job> {
         let controller = find(self.controller.as_deref().unwrap_or(BEST), CONTROLLERS)?;
         let against = find(&self.against, CONTROLLERS)?;
-        let set = settings(&self.settings, CONTROLLERS, Some(controller), &[controller, against])?;
+        let set = settings(
+            &self.settings,
+            CONTROLLERS,
+            Some(controller),
+            &[controller, against],
+        )?;
         let mut job = Job::new(program.program.clone(), machine.machine.clone());
         job.machine_file.clone_from(&machine.file);
         (job.controller, job.against) = (controller, against);
         job.feed_mm_s = self.feed_mm_s;
-        job.choices = Choices { seed: self.seed, set, tries: true, ..Choices::default() };
+        job.choices = Choices {
+            seed: self.seed,
+            set,
+            tries: true,
+            ..Choices::default()
+        };
         let both = [controller, against].into_iter();
-        let recorded = both.filter_map(|entry| Some((entry, CONTROLLERS.recorded(&job.machine, entry)?)));
-        job.choices.take_recorded(recorded.collect::<Vec<_>>().into_iter());
+        let recorded =
+            both.filter_map(|entry| Some((entry, CONTROLLERS.recorded(&job.machine, entry)?)));
+        job.choices
+            .take_recorded(recorded.collect::<Vec<_>>().into_iter());
         job.model = self.model.as_deref().map(Model::read).transpose()?;
         job.tolerance_um = self.tolerance_um;
         job.with_limits = true;
         job.reader = program.settings.clone();
-        job.log = self.log.as_deref().map(|path| measured(path, None, watch)).transpose()?;
+        job.log = self
+            .log
+            .as_deref()
+            .map(|path| measured(path, None, watch))
+            .transpose()?;
         Ok(job)
     }
 }
 
 /// A log of a cut.
 fn measured(path: &Path, columns: Option<&str>, watch: &dyn Watch) -> Result<MeasuredLog> {
-    let columns = columns.map(Columns::from_str).transpose()?.unwrap_or_default();
-    Ok(MeasuredLog { name: input::name(path), log: Log::read_watched(path, &columns, watch)? })
+    let columns = columns
+        .map(Columns::from_str)
+        .transpose()?
+        .unwrap_or_default();
+    Ok(MeasuredLog {
+        name: input::name(path),
+        log: Log::read_watched(path, &columns, watch)?,
+    })
 }
 
 /// A page as bytes, made without the lock of the interpreter.
-fn written(py: Python<'_>, write: impl FnOnce(&mut Vec<u8>) -> io::Result<()> + Send) -> PyResult<Vec<u8>> {
+fn written(
+    py: Python<'_>,
+    write: impl FnOnce(&mut Vec<u8>) -> io::Result<()> + Send,
+) -> PyResult<Vec<u8>> {
     let page = || {
         let mut page = Vec::new();
         write(&mut page).into_diagnostic().map(|()| page)
@@ -118,7 +148,8 @@ pub(crate) fn run<'py>(
         if !options.exact_settings {
             let model = take_recorded_model(&mut job, &machine.machine, axes, today()?, watch)?;
             if model.is_some() && options.band > 0 {
-                job.fitting = fitting_machines(&machine.machine, axes, options.seed, options.band, watch)?;
+                job.fitting =
+                    fitting_machines(&machine.machine, axes, options.seed, options.band, watch)?;
             }
         }
         let mut columns = RowColumns::new(axes);
@@ -143,7 +174,10 @@ fn text(bytes: Vec<u8>) -> Result<String> {
 fn target(name: &str) -> Result<&'static TargetControl> {
     TargetControl::find(name).ok_or_else(|| {
         let names: Vec<&str> = TARGETS.iter().map(|target| target.name).collect();
-        miette!("no control is called '{name}'; there are {}", names.join(", "))
+        miette!(
+            "no control is called '{name}'; there are {}",
+            names.join(", ")
+        )
     })
 }
 
@@ -178,14 +212,23 @@ pub(crate) fn correct<'py>(
 ) -> PyResult<(Bound<'py, PyAny>, Option<String>)> {
     let work = move |watch: &dyn Watch| {
         let (program, machine) = (program.get(), machine.get());
-        let mut job = CorrectJob::new(program.program.clone(), machine.machine.clone(), target(&options.control)?);
+        let mut job = CorrectJob::new(
+            program.program.clone(),
+            machine.machine.clone(),
+            target(&options.control)?,
+        );
         job.reader = program.settings.clone();
         job.file_error = machine.file_error(options.file_error);
         let measured = |path: &PathBuf| measured(path, options.columns.as_deref(), watch);
         job.logs = options.logs.iter().map(measured).collect::<Result<_>>()?;
         let outcome = job.run(watch)?;
         let mut results = serde_json::to_value(&outcome).into_diagnostic()?;
-        results["warnings"] = outcome.warnings.iter().map(mistake_json).collect::<Vec<_>>().into();
+        results["warnings"] = outcome
+            .warnings
+            .iter()
+            .map(mistake_json)
+            .collect::<Vec<_>>()
+            .into();
         Ok((results, outcome.program().map(str::to_owned)))
     };
     let (results, program) = watched(py, progress.as_ref(), work)?;
@@ -213,10 +256,20 @@ pub(crate) fn advise<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let work = move |watch: &dyn Watch| {
         let (program, machine) = (program.get(), machine.get());
-        let AdviseOptions { tolerance_um, control, controller, .. } = &options;
+        let AdviseOptions {
+            tolerance_um,
+            control,
+            controller,
+            ..
+        } = &options;
         check_tolerance(*tolerance_um)?;
         let machine_of = machine.machine.clone();
-        let mut job = AdviseJob::new(program.program.clone(), machine_of, target(control)?, *tolerance_um);
+        let mut job = AdviseJob::new(
+            program.program.clone(),
+            machine_of,
+            target(control)?,
+            *tolerance_um,
+        );
         job.controller = find(controller.as_deref().unwrap_or(BEST), CONTROLLERS)?;
         job.reader = program.settings.clone();
         job.file_error = machine.file_error(options.file_error);
@@ -244,18 +297,47 @@ pub(crate) fn plan<'py>(
             Some(name) => target(name)?.stages(machine),
             None => Stages::of(machine),
         };
-        let summary = program.program.check(program.settings.clone()).map_err(JobError::from)?;
-        let steps =
-            || Ok(path_steps(program.program.reader(program.settings.clone())?.map_while(std::result::Result::ok)));
-        let options = CycleTimeOptions { bound: false, lines: true, length_mm: summary.feed_mm + summary.rapid_mm };
-        let found = cycle_time_by(stages, machine, &Constraints::from(machine), options, steps, watch)?;
+        let summary = program
+            .program
+            .check(program.settings.clone())
+            .map_err(JobError::from)?;
+        let steps = || {
+            Ok(path_steps(
+                program
+                    .program
+                    .reader(program.settings.clone())?
+                    .map_while(std::result::Result::ok),
+            ))
+        };
+        let options = CycleTimeOptions {
+            bound: false,
+            lines: true,
+            length_mm: summary.feed_mm + summary.rapid_mm,
+        };
+        let found = cycle_time_by(
+            stages,
+            machine,
+            &Constraints::from(machine),
+            options,
+            steps,
+            watch,
+        )?;
         Ok((serde_json::to_value(&found).into_diagnostic()?, found.lines))
     };
     let (results, lines): (Value, _) = watched(py, progress.as_ref(), work)?;
     let arrays = PyDict::new(py);
-    arrays.set_item("line", PyArray1::from_vec(py, lines.iter().map(|line| line.line).collect()))?;
-    arrays.set_item("time_s", PyArray1::from_vec(py, lines.iter().map(|line| line.time_s).collect()))?;
-    arrays.set_item("waiting_s", PyArray1::from_vec(py, lines.iter().map(|line| line.waiting_s).collect()))?;
+    arrays.set_item(
+        "line",
+        PyArray1::from_vec(py, lines.iter().map(|line| line.line).collect()),
+    )?;
+    arrays.set_item(
+        "time_s",
+        PyArray1::from_vec(py, lines.iter().map(|line| line.time_s).collect()),
+    )?;
+    arrays.set_item(
+        "waiting_s",
+        PyArray1::from_vec(py, lines.iter().map(|line| line.waiting_s).collect()),
+    )?;
     Ok((from_json(py, &results.to_string())?, arrays))
 }
 
@@ -283,13 +365,26 @@ pub(crate) fn identify<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Bound<'py, PyAny>, PythonMachine, IdentifiedMachine)> {
     let work = move |watch: &dyn Watch| {
-        let columns = columns.as_deref().map(Columns::from_str).transpose()?.unwrap_or_default();
+        let columns = columns
+            .as_deref()
+            .map(Columns::from_str)
+            .transpose()?
+            .unwrap_or_default();
         let read = |path: &PathBuf| Ok((path.clone(), Log::read_watched(path, &columns, watch)?));
         let log = Log::joined(logs.iter().map(read).collect::<Result<Vec<_>, Report>>()?)?;
         let findings: Vec<String> = log.findings.iter().map(ToString::to_string).collect();
-        let named = logs.iter().map(|path| input::name(path)).collect::<Vec<_>>().join(", ");
-        let identified = LogJob { name: named, ..LogJob::default() }.run(log, watch)?;
-        let machine = PythonMachine::parsed(&format!("{name}.toml"), &machine_text(&identified, &name))?;
+        let named = logs
+            .iter()
+            .map(|path| input::name(path))
+            .collect::<Vec<_>>()
+            .join(", ");
+        let identified = LogJob {
+            name: named,
+            ..LogJob::default()
+        }
+        .run(log, watch)?;
+        let machine =
+            PythonMachine::parsed(&format!("{name}.toml"), &machine_text(&identified, &name))?;
         let mut results = Vec::new();
         write_json(&mut results, &identified).into_diagnostic()?;
         let mut results: Value = serde_json::from_slice(&results).into_diagnostic()?;
@@ -298,5 +393,9 @@ pub(crate) fn identify<'py>(
         Ok((results, machine, identified))
     };
     let (results, machine, identified) = watched(py, progress.as_ref(), work)?;
-    Ok((from_json(py, &results.to_string())?, machine, IdentifiedMachine { identified }))
+    Ok((
+        from_json(py, &results.to_string())?,
+        machine,
+        IdentifiedMachine { identified },
+    ))
 }

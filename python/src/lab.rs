@@ -46,7 +46,10 @@ struct GuestRun {
 
 impl GuestRun {
     fn cut(&self, watch: &dyn Watch) -> Result<(String, Option<RowColumns>, CutOutcome)> {
-        let watch = GuardedWatch { watch, raised: self.raised.clone() };
+        let watch = GuardedWatch {
+            watch,
+            raised: self.raised.clone(),
+        };
         watch.begin("reading the program", 1);
         let job = &self.task.job;
         let checked = job.check()?;
@@ -55,20 +58,37 @@ impl GuestRun {
         let made = |controller: &Py<PyAny>| {
             let made = self.raised.call(|py| {
                 let told = told(py, &known, axes)?;
-                PythonController::new(controller.bind(py), &told, known.period.servo_s, self.raised.clone())
+                PythonController::new(
+                    controller.bind(py),
+                    &told,
+                    known.period.servo_s,
+                    self.raised.clone(),
+                )
             });
             made.ok_or_else(|| miette!("the controller could not be made"))
         };
-        let (controller, informed) = (self.controller.as_ref().map(made).transpose()?, self.task.informed(&known));
-        let plant = self
-            .term
-            .as_ref()
-            .map(|term| move |start_mm: [f64; 3], seed: u64| term.plant(&job.machine, axes, start_mm, seed));
+        let (controller, informed) = (
+            self.controller.as_ref().map(made).transpose()?,
+            self.task.informed(&known),
+        );
+        let plant = self.term.as_ref().map(|term| {
+            move |start_mm: [f64; 3], seed: u64| term.plant(&job.machine, axes, start_mm, seed)
+        });
         let plant = plant.as_ref().map(|plant| plant as _);
         let feeds_mm_s = self.task.feeds_mm_s.as_deref();
         let guests = match &controller {
-            Some(controller) => Guests { plane: Some(controller), space: Some(controller), feeds_mm_s, plant },
-            None => Guests { plane: Some(&informed), space: Some(&informed), feeds_mm_s, plant },
+            Some(controller) => Guests {
+                plane: Some(controller),
+                space: Some(controller),
+                feeds_mm_s,
+                plant,
+            },
+            None => Guests {
+                plane: Some(&informed),
+                space: Some(&informed),
+                feeds_mm_s,
+                plant,
+            },
         };
         let (mut columns, mut end) = (RowColumns::new(axes), self.raised.clone());
         let mut sinks: Vec<&mut dyn Sink> = vec![&mut end];
@@ -76,7 +96,11 @@ impl GuestRun {
             sinks.push(&mut columns);
         }
         let outcome = checked.run_with(guests, &mut sinks, &watch)?;
-        Ok((self.task.results(&outcome)?, self.rows.then_some(columns), CutOutcome { outcome }))
+        Ok((
+            self.task.results(&outcome)?,
+            self.rows.then_some(columns),
+            CutOutcome { outcome },
+        ))
     }
 }
 
@@ -90,17 +114,29 @@ pub(crate) fn run_with<'py>(
     options: LabOptions,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Ran<'py>> {
-    let task = LabTask::new(program, machine, &options).map_err(|error| crate::fault::exception(&error))?;
+    let task = LabTask::new(program, machine, &options)
+        .map_err(|error| crate::fault::exception(&error))?;
     let raised = Raised::default();
     let (term, rows) = (options.plant_term(py, &raised), options.rows);
     let controller = options.of_library.is_none().then_some(controller);
     let calls = controller.is_some() || term.is_some();
-    let run = GuestRun { task, controller, term, rows, raised: raised.clone() };
+    let run = GuestRun {
+        task,
+        controller,
+        term,
+        rows,
+        raised: raised.clone(),
+    };
     let (running, ended) = channel::<()>();
     let done = watched(py, progress.as_ref(), move |watch| {
         let _running = running;
-        // A thread that calls code of the caller keeps its state of the interpreter from call to call.
-        if calls { Python::attach(|py| py.detach(|| run.cut(watch))) } else { run.cut(watch) }
+        // A thread that calls code of the caller keeps its state of the interpreter from call to
+        // call.
+        if calls {
+            Python::attach(|py| py.detach(|| run.cut(watch)))
+        } else {
+            run.cut(watch)
+        }
     });
     if done.is_err() && calls {
         // Nothing of the caller is called behind its back.

@@ -1,4 +1,5 @@
-//! feedwright as a module of Python: `feedwright._feedwright`, which the package `feedwright` wraps.
+//! feedwright as a module of Python: `feedwright._feedwright`, which the package `feedwright`
+//! wraps.
 //!
 //! | File | What |
 //! |---|---|
@@ -10,8 +11,8 @@
 //! | `lab.rs` | controllers and terms of the plant in Python |
 //! | `sweeps.rs` | jobs of sweeps, tables of their results |
 //!
-//! Figures leave as JSON, as the command writes them; rows leave as arrays of numpy that own their memory, so that
-//! nothing is copied.
+//! Figures leave as JSON, as the command writes them; rows leave as arrays of numpy that own their
+//! memory, so that nothing is copied.
 
 mod fault;
 mod watched;
@@ -34,7 +35,9 @@ mod _feedwright {
     #[pymodule_export]
     use super::fault::FeedwrightError;
     #[pymodule_export]
-    use super::files::{MotionOfProgram, MotionsOfProgram, PythonMachine, PythonProgram, check, lists};
+    use super::files::{
+        MotionOfProgram, MotionsOfProgram, PythonMachine, PythonProgram, check, lists,
+    };
     #[pymodule_export]
     use super::jobs::{advise, correct, identify, plan, run};
     #[cfg(feature = "peers")]
@@ -59,5 +62,7 @@ mod _feedwright {
 #[pyfunction]
 fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     let code = py.detach(|| feedwright::command::main_of(&arguments));
-    (0..=u8::MAX).find(|&number| ExitCode::from(number) == code).unwrap_or(u8::MAX)
+    (0..=u8::MAX)
+        .find(|&number| ExitCode::from(number) == code)
+        .unwrap_or(u8::MAX)
 }

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use feedwright::OutputError;
-use feedwright::command::{JobList, JobSpec, ListedJob, RESULT_COLUMNS, ResultStore, ResultTable, do_job};
+use feedwright::command::{
+    JobList, JobSpec, ListedJob, RESULT_COLUMNS, ResultStore, ResultTable, do_job,
+};
 use miette::{IntoDiagnostic, Report, WrapErr};
 use numpy::PyArray1;
 use pyo3::exceptions::PyIndexError;
@@ -25,7 +27,9 @@ pub(crate) struct PythonJobList {
 impl PythonJobList {
     #[new]
     fn new(path: PathBuf) -> PyResult<Self> {
-        Ok(Self { list: JobList::read(&path).map_err(|error| exception(&error))? })
+        Ok(Self {
+            list: JobList::read(&path).map_err(|error| exception(&error))?,
+        })
     }
 
     fn __len__(&self) -> usize {
@@ -41,7 +45,9 @@ impl PythonJobList {
 }
 
 fn listed(spec: &str, folder: PathBuf) -> Result<ListedJob, Report> {
-    let spec: JobSpec = serde_json::from_str(spec).into_diagnostic().wrap_err("no job")?;
+    let spec: JobSpec = serde_json::from_str(spec)
+        .into_diagnostic()
+        .wrap_err("no job")?;
     spec.check_names()?;
     Ok(ListedJob { spec, folder })
 }
@@ -49,11 +55,12 @@ fn listed(spec: &str, folder: PathBuf) -> Result<ListedJob, Report> {
 /// The address of the result of a job.
 #[pyfunction]
 pub(crate) fn job_address(py: Python<'_>, spec: &str, folder: PathBuf) -> PyResult<String> {
-    py.detach(|| listed(spec, folder)?.address()).map_err(|error| exception(&error))
+    py.detach(|| listed(spec, folder)?.address())
+        .map_err(|error| exception(&error))
 }
 
-/// Does a job, unless its result is in the store: its address, whether it was there, and the error that it is. No address if a file
-/// cannot be read.
+/// Does a job, unless its result is in the store: its address, whether it was there, and the error
+/// that it is. No address if a file cannot be read.
 ///
 /// # Errors
 /// A result that cannot be written, and an end from outside.
@@ -81,17 +88,24 @@ pub(crate) fn do_python_job(
 #[pyfunction]
 pub(crate) fn merge<'py>(py: Python<'py>, folders: Vec<PathBuf>) -> PyResult<Bound<'py, PyDict>> {
     let table = watched(py, None, move |watch| {
-        let stores = folders.iter().map(|folder| ResultStore::open(folder)).collect::<Result<Vec<_>, _>>()?;
+        let stores = folders
+            .iter()
+            .map(|folder| ResultStore::open(folder))
+            .collect::<Result<Vec<_>, _>>()?;
         ResultTable::of(&stores, watch)
     })?;
     let columns = PyDict::new(py);
     for (at, column) in RESULT_COLUMNS.iter().enumerate() {
         let cells = table.rows.iter().map(|row| &row[at]);
         if column.is_number {
-            let numbers = cells.map(|cell| cell.as_f64().unwrap_or(f64::NAN)).collect();
+            let numbers = cells
+                .map(|cell| cell.as_f64().unwrap_or(f64::NAN))
+                .collect();
             columns.set_item(column.name, PyArray1::from_vec(py, numbers))?;
         } else {
-            let objects = cells.map(|cell| object(py, cell)).collect::<PyResult<Vec<_>>>()?;
+            let objects = cells
+                .map(|cell| object(py, cell))
+                .collect::<PyResult<Vec<_>>>()?;
             columns.set_item(column.name, PyList::new(py, objects)?)?;
         }
     }

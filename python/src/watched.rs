@@ -1,4 +1,5 @@
-//! A job on a thread of its own, while the thread of the caller tells of its progress and hears Ctrl-C.
+//! A job on a thread of its own, while the thread of the caller tells of its progress and hears
+//! Ctrl-C.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -49,15 +50,20 @@ impl Progress {
         Python::attach(|py| {
             py.check_signals()?;
             let Some(told) = told else { return Ok(()) };
-            let (stage, steps) = self.stage.lock().unwrap_or_else(PoisonError::into_inner).clone();
+            let (stage, steps) = self
+                .stage
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .clone();
             let done = self.done.load(Ordering::Relaxed).min(steps);
             told.call1(py, (stage, done, steps)).map(|_| ())
         })
     }
 }
 
-/// Does a job on a thread of its own, without the lock of the interpreter. `told(stage, done, steps)` is called while it runs. Where it
-/// raises, and at Ctrl-C, the job is cancelled, and nobody waits until it has heard of it: what it comes to is dropped.
+/// Does a job on a thread of its own, without the lock of the interpreter. `told(stage, done,
+/// steps)` is called while it runs. Where it raises, and at Ctrl-C, the job is cancelled, and
+/// nobody waits until it has heard of it: what it comes to is dropped.
 pub(crate) fn watched<T: Send + 'static>(
     py: Python<'_>,
     told: Option<&Py<PyAny>>,
@@ -71,19 +77,25 @@ pub(crate) fn watched<T: Send + 'static>(
     });
     let (send, done) = channel();
     let of_job = Arc::clone(&progress);
-    thread::Builder::new().name("feedwright job".to_owned()).spawn(move || {
-        // Where nobody waits any more, nobody asks for the result.
-        let _ = send.send(job(&*of_job));
-    })?;
+    thread::Builder::new()
+        .name("feedwright job".to_owned())
+        .spawn(move || {
+            // Where nobody waits any more, nobody asks for the result.
+            let _ = send.send(job(&*of_job));
+        })?;
     py.detach(move || {
         loop {
             match done.recv_timeout(EVERY) {
                 Ok(result) => return result.map_err(|error| exception(&error)),
                 Err(RecvTimeoutError::Timeout) => {
-                    progress.tell(told).inspect_err(|_| progress.cancelled.store(true, Ordering::Relaxed))?;
+                    progress
+                        .tell(told)
+                        .inspect_err(|_| progress.cancelled.store(true, Ordering::Relaxed))?;
                 }
                 Err(RecvTimeoutError::Disconnected) => {
-                    return Err(PyRuntimeError::new_err("feedwright has a fault: its work ended without a result"));
+                    return Err(PyRuntimeError::new_err(
+                        "feedwright has a fault: its work ended without a result",
+                    ));
                 }
             }
         }

@@ -1,7 +1,8 @@
-//! The activation of the identifier: the bipolar sigmoid f(x) = tanh(x / 2) = (1 - e^-x) / (1 + e^-x).
+//! The activation of the identifier: the bipolar sigmoid f(x) = tanh(x / 2) = (1 - e^-x) / (1 +
+//! e^-x).
 //!
-//! Lee, Cho and Jeon (2005) call it a hyperbolic tangent; the factor 1/4 in their eqs 9 and 10 shows which one: each
-//! layer contributes f'(x) = (1 - f(x)^2) / 2.
+//! Lee, Cho and Jeon (2005) call it a hyperbolic tangent; the factor 1/4 in their eqs 9 and 10
+//! shows which one: each layer contributes f'(x) = (1 - f(x)^2) / 2.
 //!
 //! Written so that a compiler vectorises it over an array: no branch, no table, no call.
 
@@ -10,8 +11,8 @@ const SATURATED: f64 = 40.0;
 /// ln 2 in two parts, so that `x - n ln 2` is exact for |n| < 2^20 (Cody and Waite 1980).
 const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
 const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
-/// 1.5 * 2^52 + 1023: adding it rounds to the nearest integer and leaves that integer, biased as an exponent, in the
-/// low bits.
+/// 1.5 * 2^52 + 1023: adding it rounds to the nearest integer and leaves that integer, biased as an
+/// exponent, in the low bits.
 const ROUND_TO_EXPONENT: f64 = 6_755_399_441_055_744.0 + 1023.0;
 /// 1 / n! from n = 12 down to 0: the truncated series is good to 2e-16 on |r| <= ln(2) / 2.
 const EXP_SERIES: [f64; 13] = [

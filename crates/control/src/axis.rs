@@ -6,8 +6,8 @@
 //! J dw/dt = u - B w - Fc tanh(w / w_s) - load
 //! ```
 //!
-//! at the motor shaft, integrated by semi-implicit Euler: w first, then the angle with the new w. What simulates a machine, what
-//! predicts one and what inverts one use these lines and no others.
+//! at the motor shaft, integrated by semi-implicit Euler: w first, then the angle with the new w.
+//! What simulates a machine, what predicts one and what inverts one use these lines and no others.
 //!
 //! | File | What a machine may have beside it |
 //! |---|---|
@@ -16,14 +16,16 @@
 //! | `axis/transmission.rs` | motor and table as two masses: stiffness, damping, backlash of the ball screw |
 //! | `axis/delays.rs` | delays of commands, references and positions |
 //!
-//! `axis/mechanics.rs` steps motor, table and friction under given torques, `axis/inverse.rs` solves the law for the command, all of this included.
+//! `axis/mechanics.rs` steps motor, table and friction under given torques, `axis/inverse.rs`
+//! solves the law for the command, all of this included.
 //!
-//! Symbols: e error of the position at the motor, rad; w speed of the motor, rad/s; u torque, N m; Kp, Kd gains of the position
-//! loop, 1/s and none; Kv gain of the speed loop, N m s/rad; J inertia, kg m^2; B viscous friction, N m s/rad; Fc Coulomb friction,
-//! N m, which turns its sign over w_s, rad/s.
+//! Symbols: e error of the position at the motor, rad; w speed of the motor, rad/s; u torque, N m;
+//! Kp, Kd gains of the position loop, 1/s and none; Kv gain of the speed loop, N m s/rad; J
+//! inertia, kg m^2; B viscous friction, N m s/rad; Fc Coulomb friction, N m, which turns its sign
+//! over w_s, rad/s.
 //!
-//! Source: Lee, Cho and Jeon (2005), section 4, Table 1 and Fig. 6, which name the parts; the laws are written out as usual for
-//! such a loop.
+//! Source: Lee, Cho and Jeon (2005), section 4, Table 1 and Fig. 6, which name the parts; the laws
+//! are written out as usual for such a loop.
 
 pub(crate) mod drive;
 pub(crate) mod friction;
@@ -103,8 +105,9 @@ impl AxisLaw {
         }
     }
 
-    /// The PD position loop takes in an error of the position, rad; the speed that it asks for, rad/s. It is linear: what it makes
-    /// of a derivative of the error is the derivative of that speed.
+    /// The PD position loop takes in an error of the position, rad; the speed that it asks for,
+    /// rad/s. It is linear: what it makes of a derivative of the error is the derivative of that
+    /// speed.
     #[inline]
     pub fn position_loop(&self, error_rad: f64, state: &mut AxisState) -> f64 {
         let rate_rad_s = (error_rad - state.error_rad) / self.periods.servo_s;
@@ -119,10 +122,12 @@ impl AxisLaw {
         within(wanted, self.parameters.torque_limit_nm)
     }
 
-    /// Friction torque at a speed at which the Coulomb part has so much of its full size and this sign (`signs`), N m.
+    /// Friction torque at a speed at which the Coulomb part has so much of its full size and this
+    /// sign (`signs`), N m.
     #[inline]
     pub fn friction_nm(&self, speed_rad_s: f64, sign: f64) -> f64 {
-        self.parameters.viscous_friction_nm_s * speed_rad_s + self.parameters.coulomb_friction_nm * sign
+        self.parameters.viscous_friction_nm_s * speed_rad_s
+            + self.parameters.coulomb_friction_nm * sign
     }
 
     /// One mechanics period under a torque, N m.
@@ -138,9 +143,18 @@ impl AxisLaw {
     /// Coulomb friction from `friction_signs`.
     #[inline]
     pub fn slopes_nm_s(&self, torque_nm: f64, sign: f64) -> [f64; 2] {
-        let Parameters { kv_nm_s_per_rad, torque_limit_nm, viscous_friction_nm_s, coulomb_friction_nm, .. } =
-            self.parameters;
-        let gain = if torque_nm.abs() < torque_limit_nm { kv_nm_s_per_rad } else { 0.0 };
+        let Parameters {
+            kv_nm_s_per_rad,
+            torque_limit_nm,
+            viscous_friction_nm_s,
+            coulomb_friction_nm,
+            ..
+        } = self.parameters;
+        let gain = if torque_nm.abs() < torque_limit_nm {
+            kv_nm_s_per_rad
+        } else {
+            0.0
+        };
         let coulomb = coulomb_friction_nm * (1.0 - sign * sign) * self.inverse_smoothing_s;
         [gain, gain + (viscous_friction_nm_s + coulomb)]
     }
@@ -161,7 +175,9 @@ fn within(value: f64, most: f64) -> f64 {
 /// tanh(w / w_s) of each axis: all at once, which is faster.
 #[inline]
 pub fn friction_signs<const N: usize>(axes: &[AxisLaw; N], speeds_rad_s: [f64; N]) -> [f64; N] {
-    tanh(core::array::from_fn::<_, N, _>(|i| speeds_rad_s[i] * axes[i].inverse_smoothing_s))
+    tanh(core::array::from_fn::<_, N, _>(|i| {
+        speeds_rad_s[i] * axes[i].inverse_smoothing_s
+    }))
 }
 
 #[cfg(test)]
@@ -180,7 +196,14 @@ mod tests {
             coulomb_friction_nm: 0.2,
             coulomb_smoothing_rad_s: 0.5,
         };
-        AxisLaw::new(parameters, Periods { servo_s: 0.001, mechanics_s: 0.0001, mechanics_per_servo: 10 })
+        AxisLaw::new(
+            parameters,
+            Periods {
+                servo_s: 0.001,
+                mechanics_s: 0.0001,
+                mechanics_per_servo: 10,
+            },
+        )
     }
 
     /// Torque left for the inertia.
@@ -195,28 +218,55 @@ mod tests {
         for (reference, speed) in [(1.0, 0.9), (0.1, -0.2), (3.0, 0.0), (100.0, 1.0)] {
             let [sign] = friction_signs(&[axis], [speed]);
             let [gain, damping] = axis.slopes_nm_s(axis.torque_nm(reference, speed), sign);
-            let to_reference =
-                (left_nm(&axis, reference + h, speed) - left_nm(&axis, reference - h, speed)) / (2.0 * h);
-            let to_speed = (left_nm(&axis, reference, speed + h) - left_nm(&axis, reference, speed - h)) / (2.0 * h);
-            assert!((gain - to_reference).abs() < 1e-6 && (damping + to_speed).abs() < 1e-6, "{reference} {speed}");
+            let to_reference = (left_nm(&axis, reference + h, speed)
+                - left_nm(&axis, reference - h, speed))
+                / (2.0 * h);
+            let to_speed = (left_nm(&axis, reference, speed + h)
+                - left_nm(&axis, reference, speed - h))
+                / (2.0 * h);
+            assert!(
+                (gain - to_reference).abs() < 1e-6 && (damping + to_speed).abs() < 1e-6,
+                "{reference} {speed}"
+            );
         }
     }
 
     #[test]
     fn the_torque_is_within_its_limit_and_what_is_no_number_stays_none() {
         let axis = axis();
-        assert_eq!([1e9, -1e9, f64::INFINITY].map(|w| axis.torque_nm(w, 0.0)), [30.0, -30.0, 30.0]);
+        assert_eq!(
+            [1e9, -1e9, f64::INFINITY].map(|w| axis.torque_nm(w, 0.0)),
+            [30.0, -30.0, 30.0]
+        );
         assert!(axis.torque_nm(f64::NAN, 0.0).is_nan());
     }
 
     #[test]
     fn a_step_of_the_speed_is_taken_within_the_time_constant_of_the_loop() {
         // J dw/dt = Kv (1 - w) without friction: w = 1 - exp(-t Kv / J), 5 ms.
-        let parameters = Parameters { viscous_friction_nm_s: 0.0, coulomb_friction_nm: 0.0, ..axis().parameters };
-        let axis = AxisLaw::new(parameters, Periods { mechanics_s: 1e-6, ..axis().periods });
+        let parameters = Parameters {
+            viscous_friction_nm_s: 0.0,
+            coulomb_friction_nm: 0.0,
+            ..axis().parameters
+        };
+        let axis = AxisLaw::new(
+            parameters,
+            Periods {
+                mechanics_s: 1e-6,
+                ..axis().periods
+            },
+        );
         let mut state = AxisState::default();
         (0..5000).for_each(|_| axis.accelerate(axis.torque_nm(1.0, state.speed_rad_s), &mut state));
-        assert!((state.speed_rad_s - (1.0 - libm::exp(-1.0))).abs() < 1e-4, "{}", state.speed_rad_s);
-        assert!((state.angle_rad - 0.005 * libm::exp(-1.0)).abs() < 1e-6, "{}", state.angle_rad);
+        assert!(
+            (state.speed_rad_s - (1.0 - libm::exp(-1.0))).abs() < 1e-4,
+            "{}",
+            state.speed_rad_s
+        );
+        assert!(
+            (state.angle_rad - 0.005 * libm::exp(-1.0)).abs() < 1e-6,
+            "{}",
+            state.angle_rad
+        );
     }
 }

@@ -1,14 +1,14 @@
 //! What a controller is given of the machine, and what it asks for.
 //!
-//! The command of a feed period is the path, run at `rate` times the planned feed, plus an offset that moves to
-//! `offset_mm`:
+//! The command of a feed period is the path, run at `rate` times the planned feed, plus an offset
+//! that moves to `offset_mm`:
 //!
 //! ```text
 //! P'(t) = P*(tau(t)) + o(t),   tau(k+1) = tau(k) + rate T,   o(k+1) = offset_mm
 //! ```
 //!
-//! In the paper's words: P'(k+1) = P'(k) + F T with F = F(0) + dF, where the part of dF along F(0) makes the rate and
-//! the part across it makes the new offset.
+//! In the paper's words: P'(k+1) = P'(k) + F T with F = F(0) + dF, where the part of dF along F(0)
+//! makes the rate and the part across it makes the new offset.
 
 use crate::contour_error::ContourError;
 use crate::vector::{add_scaled, scale, sub};
@@ -46,16 +46,28 @@ impl<const N: usize> Command<N> {
 
     /// An offset that moves along a line.
     pub const fn straight(rate: f64, offset_mm: [f64; N]) -> Self {
-        Self { rate, offset_mm, bend_mm: [0.0; N] }
+        Self {
+            rate,
+            offset_mm,
+            bend_mm: [0.0; N],
+        }
     }
 
     /// An offset that accelerates by so much, from the place that it has and this speed.
     #[inline]
-    pub fn accelerated(window: &Window<'_, N>, speed_mm_s: [f64; N], acceleration_mm_s2: [f64; N]) -> Self {
+    pub fn accelerated(
+        window: &Window<'_, N>,
+        speed_mm_s: [f64; N],
+        acceleration_mm_s2: [f64; N],
+    ) -> Self {
         let period_s = window.feed_period_s;
         let bend_mm = scale(0.5 * period_s * period_s, acceleration_mm_s2);
         let moved_mm = add_scaled(bend_mm, period_s, speed_mm_s);
-        Self { rate: 1.0, offset_mm: add_scaled(window.offset_mm, 1.0, moved_mm), bend_mm }
+        Self {
+            rate: 1.0,
+            offset_mm: add_scaled(window.offset_mm, 1.0, moved_mm),
+            bend_mm,
+        }
     }
 
     /// Offset after a part of the feed period, which begins at `from_mm`.
@@ -68,7 +80,10 @@ impl<const N: usize> Command<N> {
     /// Speed of the offset at the end of a feed period of `period_s`, which begins at `from_mm`.
     #[inline]
     pub fn offset_mm_s(&self, from_mm: [f64; N], period_s: f64) -> [f64; N] {
-        scale(1.0 / period_s, add_scaled(sub(self.offset_mm, from_mm), 1.0, self.bend_mm))
+        scale(
+            1.0 / period_s,
+            add_scaled(sub(self.offset_mm, from_mm), 1.0, self.bend_mm),
+        )
     }
 }
 

@@ -1,4 +1,5 @@
-//! Contour error in real time: the distance of the tool from the line through the two stored reference knots nearest it.
+//! Contour error in real time: the distance of the tool from the line through the two stored
+//! reference knots nearest it.
 //!
 //! ```text
 //! eps_c = e_y cos(theta) - e_x sin(theta)   if x2 >= x1,   its negative if x2 < x1             (1)
@@ -9,32 +10,37 @@
 //!
 //! Source: Lee and Jeon (1999); Lee, Cho and Jeon (2005), section 2.2, eqs 1 and 2.
 //!
-//! Departures: the foot is clamped to the stretch between the knots, so that the tool has a nearest point beside a
-//! corner too; where the tangents of the two knots differ by a corner, the stretch goes through the corner; in space
-//! the error is a vector, and eq. 1 is its component along the left normal in the plane.
+//! Departures: the foot is clamped to the stretch between the knots, so that the tool has a nearest
+//! point beside a corner too; where the tangents of the two knots differ by a corner, the stretch
+//! goes through the corner; in space the error is a vector, and eq. 1 is its component along the
+//! left normal in the plane.
 //!
-//! The window of variable size: the search starts at the age where it ended last time and looks as far to both sides as
-//! the tool can be, given how far it was off and how fast the reference moves. [`MAX_ENTRIES`] bounds it.
+//! The window of variable size: the search starts at the age where it ended last time and looks as
+//! far to both sides as the tool can be, given how far it was off and how fast the reference moves.
+//! [`MAX_ENTRIES`] bounds it.
 
 use crate::vector::{add_scaled, bounded, dot, norm, reject, scale, sub};
 use crate::window::{CORNER_COSINE, Knot, Window, corner};
 
-/// Entries looked at on either side of the start, at the least: covers a feed period in which the lag changes.
+/// Entries looked at on either side of the start, at the least: covers a feed period in which the
+/// lag changes.
 const MIN_REACH: i32 = 12;
 /// Entries looked at on either side, at the most.
 const MAX_REACH: i32 = 48;
 /// The most register entries that one estimate looks at.
 pub const MAX_ENTRIES: usize = 2 * MAX_REACH as usize + 1;
-/// The window reaches this many times the last distance to both sides: the nearest point beyond a right-angled corner
-/// is no further along the path than 2.4 times the distance.
+/// The window reaches this many times the last distance to both sides: the nearest point beyond a
+/// right-angled corner is no further along the path than 2.4 times the distance.
 const REACH_OF_ERROR: f64 = 3.0;
-/// Entries that [`locate`] looks at on either side, at the least: between standstill and full acceleration the lag of a servo
-/// of 20 ms changes by a third.
+/// Entries that [`locate`] looks at on either side, at the least: between standstill and full
+/// acceleration the lag of a servo of 20 ms changes by a third.
 const MIN_LOCATE_REACH: i32 = 8;
-/// A tool that stands becomes older by the knots of a feed period, rounded, and by as much as it trembles; entries.
+/// A tool that stands becomes older by the knots of a feed period, rounded, and by as much as it
+/// trembles; entries.
 const STANDING: i32 = 2;
-/// Where the path runs back along itself, an old stretch is as near as the one that the tool is on, and following it leads
-/// out of the register: of feet whose distances differ by less than this, the newer counts, mm.
+/// Where the path runs back along itself, an old stretch is as near as the one that the tool is on,
+/// and following it leads out of the register: of feet whose distances differ by less than this,
+/// the newer counts, mm.
 const AS_NEAR_MM: f64 = 1e-4;
 
 /// The nearest point of the path, as known from the register.
@@ -52,10 +58,15 @@ pub struct ContourError<const N: usize> {
 
 impl<const N: usize> ContourError<N> {
     /// No error, nothing known.
-    pub const NONE: Self = Self { vector_mm: [0.0; N], tangent: [0.0; N], index: 0, entries: 0 };
+    pub const NONE: Self = Self {
+        vector_mm: [0.0; N],
+        tangent: [0.0; N],
+        index: 0,
+        entries: 0,
+    };
 
-    /// Eq. 1 in its own sign: positive where the path lies to the left of the tool, in the plane of the first two
-    /// axes; mm.
+    /// Eq. 1 in its own sign: positive where the path lies to the left of the tool, in the plane of
+    /// the first two axes; mm.
     pub fn signed_mm(&self) -> f64 {
         self.tangent[0] * self.vector_mm[1] - self.tangent[1] * self.vector_mm[0]
     }
@@ -74,22 +85,33 @@ pub struct Estimator {
 impl Estimator {
     /// The contour error of a tool at `tool_mm`.
     #[inline]
-    pub fn estimate<const N: usize>(&mut self, window: &Window<'_, N>, tool_mm: [f64; N]) -> ContourError<N> {
+    pub fn estimate<const N: usize>(
+        &mut self,
+        window: &Window<'_, N>,
+        tool_mm: [f64; N],
+    ) -> ContourError<N> {
         let [first, last] = window.range();
-        let start = if self.backwards { 0 } else { self.index }.min(last).max(first);
+        let start = if self.backwards { 0 } else { self.index }
+            .min(last)
+            .max(first);
         let reach = self.reach();
-        // On towards the current knot in any case: a tool that lags turns short of a point where the path turns back, and
-        // goes on from there on a newer stretch, which need not begin near the old one.
+        // On towards the current knot in any case: a tool that lags turns short of a point where
+        // the path turns back, and goes on from there on a newer stretch, which need not begin near
+        // the old one.
         let to = (start + reach).max((start + MAX_REACH).min(0)).min(last);
         let error = nearest(window, tool_mm, (start - reach).max(first), to);
-        // No tool moves back along its path: where it seems to, an older stretch beside the one that is cut was found, and
-        // following that would lead out of the register. The next search begins at the current knot again.
+        // No tool moves back along its path: where it seems to, an older stretch beside the one
+        // that is cut was found, and following that would lead out of the register. The next search
+        // begins at the current knot again.
         let pushed = (window.feed_period_s / window.servo_s()) as i32;
         self.backwards = error.index < self.index - pushed - STANDING;
         self.index = error.index;
         self.distance_mm = norm(error.vector_mm);
         let before = (error.index - 1).max(first);
-        self.spacing_mm = norm(sub(window.knot(before + 1).position_mm, window.knot(before).position_mm));
+        self.spacing_mm = norm(sub(
+            window.knot(before + 1).position_mm,
+            window.knot(before).position_mm,
+        ));
         error
     }
 
@@ -104,15 +126,22 @@ impl Estimator {
             return MAX_REACH;
         }
         // A float that is too large, or not a number, saturates here.
-        MIN_REACH + ((REACH_OF_ERROR * self.distance_mm / self.spacing_mm) as i32).min(MAX_REACH - MIN_REACH)
+        MIN_REACH
+            + ((REACH_OF_ERROR * self.distance_mm / self.spacing_mm) as i32)
+                .min(MAX_REACH - MIN_REACH)
     }
 }
 
-/// The contour error of a predicted tool whose nearest knot is near the index `near`: the nearest point within `reach`
-/// entries, 8 to 48. It does not look further, so that beside a corner a tool belongs to the side that its time belongs to, and
-/// not to the one that happens to be nearer.
+/// The contour error of a predicted tool whose nearest knot is near the index `near`: the nearest
+/// point within `reach` entries, 8 to 48. It does not look further, so that beside a corner a tool
+/// belongs to the side that its time belongs to, and not to the one that happens to be nearer.
 #[inline]
-pub fn locate<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], near: i32, reach: i32) -> ContourError<N> {
+pub fn locate<const N: usize>(
+    window: &Window<'_, N>,
+    tool_mm: [f64; N],
+    near: i32,
+    reach: i32,
+) -> ContourError<N> {
     let reach = reach.clamp(MIN_LOCATE_REACH, MAX_REACH);
     let [first, last] = window.range();
     let near = near.min(last).max(first);
@@ -123,30 +152,50 @@ pub fn locate<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], near: i
             (index, least) = (candidate, dot(d, d));
         }
     }
-    ContourError { index, ..nearest_foot(window, tool_mm, index) }
+    ContourError {
+        index,
+        ..nearest_foot(window, tool_mm, index)
+    }
 }
 
-/// A vector across the path, carried along it from one tangent to another by the smallest rotation between them. Behind a
-/// corner only what lies across the new stretch is left.
+/// A vector across the path, carried along it from one tangent to another by the smallest rotation
+/// between them. Behind a corner only what lies across the new stretch is left.
 pub fn carried<const N: usize>(across: [f64; N], from: [f64; N], to: [f64; N]) -> [f64; N] {
     let cosine = dot(from, to);
     if cosine < CORNER_COSINE {
         return reject(across, to);
     }
     let both = add_scaled(from, 1.0, to);
-    reject(add_scaled(across, -dot(across, to) / (1.0 + cosine), both), to)
+    reject(
+        add_scaled(across, -dot(across, to) / (1.0 + cosine), both),
+        to,
+    )
 }
 
-/// The nearest point of the path near the knots of a range, which is widened while the nearest stands at an end of it. Of
-/// two points as near, the newer.
+/// The nearest point of the path near the knots of a range, which is widened while the nearest
+/// stands at an end of it. Of two points as near, the newer.
 #[inline]
-fn nearest<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], from: i32, to: i32) -> ContourError<N> {
+fn nearest<const N: usize>(
+    window: &Window<'_, N>,
+    tool_mm: [f64; N],
+    from: i32,
+    to: i32,
+) -> ContourError<N> {
     let minima = minima(window, tool_mm, from, to);
-    let at = |index: i32| ContourError { index, entries: minima.entries, ..nearest_foot(window, tool_mm, index) };
+    let at = |index: i32| ContourError {
+        index,
+        entries: minima.entries,
+        ..nearest_foot(window, tool_mm, index)
+    };
     let newest = at(minima.newest);
-    // The nearer knot need not have the nearer foot: where the path turns back, both stretches are looked at.
+    // The nearer knot need not have the nearer foot: where the path turns back, both stretches are
+    // looked at.
     let older = minima.older.map_or(newest, at);
-    if norm(newest.vector_mm) <= norm(older.vector_mm) + AS_NEAR_MM { newest } else { older }
+    if norm(newest.vector_mm) <= norm(older.vector_mm) + AS_NEAR_MM {
+        newest
+    } else {
+        older
+    }
 }
 
 /// Knots at which the distance of the tool has a minimum.
@@ -182,7 +231,8 @@ fn minima<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], from: i32, 
     let mut entries = (to - from + 1) as usize;
     let [first, last] = window.range();
     let nearer_older = older.filter(|_| older_square < newest_square);
-    let (mut best, mut best_square) = nearer_older.map_or((newest, newest_square), |older| (older, older_square));
+    let (mut best, mut best_square) =
+        nearer_older.map_or((newest, newest_square), |older| (older, older_square));
     let direction = if best == from { -1 } else { 1 };
     if best == from || best == to {
         while entries < MAX_ENTRIES && (first..=last).contains(&(best + direction)) {
@@ -199,11 +249,19 @@ fn minima<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], from: i32, 
     } else {
         newest = best;
     }
-    Minima { newest, older, entries }
+    Minima {
+        newest,
+        older,
+        entries,
+    }
 }
 
 /// The nearest point on the stretches before and after the knot of this index.
-fn nearest_foot<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], index: i32) -> ContourError<N> {
+fn nearest_foot<const N: usize>(
+    window: &Window<'_, N>,
+    tool_mm: [f64; N],
+    index: i32,
+) -> ContourError<N> {
     let [first, last] = window.range();
     let knot = window.knot(index);
     let mut best = foot_on(knot.position_mm, knot.position_mm, knot.tangent, tool_mm);
@@ -220,24 +278,46 @@ fn nearest_foot<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], index
     best
 }
 
-/// The nearest points on the path between two knots: the chord, or where there is a corner the two sides of it.
-fn feet_between<const N: usize>(from: &Knot<N>, to: &Knot<N>, tool_mm: [f64; N]) -> [ContourError<N>; 2] {
+/// The nearest points on the path between two knots: the chord, or where there is a corner the two
+/// sides of it.
+fn feet_between<const N: usize>(
+    from: &Knot<N>,
+    to: &Knot<N>,
+    tool_mm: [f64; N],
+) -> [ContourError<N>; 2] {
     let (p, q) = (from.position_mm, to.position_mm);
     if let Some(to_corner_mm) = corner(from, to) {
         let corner_mm = add_scaled(p, to_corner_mm, from.tangent);
-        return [foot_on(p, corner_mm, from.tangent, tool_mm), foot_on(corner_mm, q, to.tangent, tool_mm)];
+        return [
+            foot_on(p, corner_mm, from.tangent, tool_mm),
+            foot_on(corner_mm, q, to.tangent, tool_mm),
+        ];
     }
     let chord = sub(q, p);
     let length = norm(chord);
-    let direction = if length > 0.0 { scale(1.0 / length, chord) } else { to.tangent };
+    let direction = if length > 0.0 {
+        scale(1.0 / length, chord)
+    } else {
+        to.tangent
+    };
     [foot_on(p, q, direction, tool_mm); 2]
 }
 
 /// The nearest point on the stretch from `p` to `q`, which runs along the unit vector `direction`.
-fn foot_on<const N: usize>(p: [f64; N], q: [f64; N], direction: [f64; N], tool_mm: [f64; N]) -> ContourError<N> {
+fn foot_on<const N: usize>(
+    p: [f64; N],
+    q: [f64; N],
+    direction: [f64; N],
+    tool_mm: [f64; N],
+) -> ContourError<N> {
     let along = bounded(dot(sub(tool_mm, p), direction), 0.0, norm(sub(q, p)));
     let foot = add_scaled(p, along, direction);
-    ContourError { vector_mm: sub(foot, tool_mm), tangent: direction, index: 0, entries: 0 }
+    ContourError {
+        vector_mm: sub(foot, tool_mm),
+        tangent: direction,
+        index: 0,
+        entries: 0,
+    }
 }
 
 #[cfg(test)]
@@ -261,7 +341,10 @@ mod tests {
 
     impl Behind {
         fn new(knots: impl Iterator<Item = Knot<2>>) -> Self {
-            let mut behind = Self { register: Register::default(), preview: Preview::new(0.001) };
+            let mut behind = Self {
+                register: Register::default(),
+                preview: Preview::new(0.001),
+            };
             for knot in knots {
                 behind.register.push(knot);
             }
@@ -283,7 +366,12 @@ mod tests {
 
     fn on_circle(a: f64) -> Knot<2> {
         let (sin, cos) = (libm::sin(a), libm::cos(a));
-        Knot { position_mm: [10.0 * (1.0 - cos), 10.0 * sin], tangent: [sin, cos], feed_mm_s: 50.0, cutting: true }
+        Knot {
+            position_mm: [10.0 * (1.0 - cos), 10.0 * sin],
+            tangent: [sin, cos],
+            feed_mm_s: 50.0,
+            cutting: true,
+        }
     }
 
     #[test]
@@ -296,7 +384,11 @@ mod tests {
             let error = behind.estimate(tool);
             let on = |i: i32| on_circle(f64::from(i) * step).position_mm;
             let eps = printed(on(knots - 21), on(knots - 20), tool);
-            assert!((error.signed_mm() - eps).abs() < 1e-9, "{knots}: {} {eps}", error.signed_mm());
+            assert!(
+                (error.signed_mm() - eps).abs() < 1e-9,
+                "{knots}: {} {eps}",
+                error.signed_mm()
+            );
             assert!((norm(error.vector_mm) - 0.03).abs() < 1e-4);
         }
     }
@@ -322,9 +414,17 @@ mod tests {
     #[test]
     fn a_path_that_runs_back_along_itself_is_followed_where_the_tool_is() {
         let there_and_back = |i: i32| {
-            let (x, back) =
-                if i <= 300 { (0.05 * f64::from(i), 1.0) } else { (0.05 * f64::from(600 - i) + 0.01, -1.0) };
-            Knot { position_mm: [x, 0.0], tangent: [back, 0.0], feed_mm_s: 50.0, cutting: true }
+            let (x, back) = if i <= 300 {
+                (0.05 * f64::from(i), 1.0)
+            } else {
+                (0.05 * f64::from(600 - i) + 0.01, -1.0)
+            };
+            Knot {
+                position_mm: [x, 0.0],
+                tangent: [back, 0.0],
+                feed_mm_s: 50.0,
+                cutting: true,
+            }
         };
         let mut behind = Behind::new((0..300).map(there_and_back));
         let mut estimator = Estimator::default();
@@ -343,7 +443,10 @@ mod tests {
                 offset_mm_s: [0.0; 2],
             };
             let error = estimator.estimate(&window, [x + 0.013, 0.02]);
-            assert!((norm(error.vector_mm) - 0.02).abs() < 1e-9, "{i}: {error:?}");
+            assert!(
+                (norm(error.vector_mm) - 0.02).abs() < 1e-9,
+                "{i}: {error:?}"
+            );
             assert!(i < 323 || error.tangent[0] == -1.0, "{i}: {error:?}");
         }
     }
@@ -361,12 +464,21 @@ mod tests {
             let a = 0.001 * f64::from(step);
             let to = [libm::cos(a), libm::sin(a)];
             let normal = carried([0.0, 2.0], [1.0, 0.0], to);
-            assert!(norm(sub(normal, [-2.0 * to[1], 2.0 * to[0]])) < 1e-12, "{a}: {normal:?}");
+            assert!(
+                norm(sub(normal, [-2.0 * to[1], 2.0 * to[0]])) < 1e-12,
+                "{a}: {normal:?}"
+            );
         }
         // In space, what lies along the axis of the rotation stays.
         let to = [libm::cos(0.05), libm::sin(0.05), 0.0];
-        assert!(norm(sub(carried([0.0, 0.0, 3.0], [1.0, 0.0, 0.0], to), [0.0, 0.0, 3.0])) < 1e-15);
-        // Behind a right-angled corner nothing is left, behind a point where the path runs back everything.
+        assert!(
+            norm(sub(
+                carried([0.0, 0.0, 3.0], [1.0, 0.0, 0.0], to),
+                [0.0, 0.0, 3.0]
+            )) < 1e-15
+        );
+        // Behind a right-angled corner nothing is left, behind a point where the path runs back
+        // everything.
         assert_eq!(carried([0.0, 2.0], [1.0, 0.0], [0.0, 1.0]), [0.0, 0.0]);
         assert_eq!(carried([0.0, 2.0], [1.0, 0.0], [-1.0, 0.0]), [0.0, 2.0]);
     }

@@ -1,4 +1,5 @@
-//! The family of controllers: each decides, once a feed period, how fast to go on along the path and how far beside it.
+//! The family of controllers: each decides, once a feed period, how fast to go on along the path
+//! and how far beside it.
 //!
 //! To add a controller: one file here and one row in the table of the library.
 
@@ -23,8 +24,9 @@ pub struct Schedule {
     pub preview: u32,
 }
 
-/// The contract. A controller is admitted by the conformance tests of the library: rest stays rest, the same input gives
-/// the same bits, a reset is complete, a measurement that is not a number gives a command that is.
+/// The contract. A controller is admitted by the conformance tests of the library: rest stays rest,
+/// the same input gives the same bits, a reset is complete, a measurement that is not a number
+/// gives a command that is.
 pub trait Controller<const N: usize> {
     /// When and how far.
     fn schedule(&self) -> Schedule;
@@ -34,14 +36,15 @@ pub trait Controller<const N: usize> {
     fn next_lap(&mut self) {
         self.reset();
     }
-    /// Learns from what the last feed period led to: what was really commanded on the way here is in the window, whatever was
-    /// asked for; what came of it is in `measured`, none where the position was lost. Called once a feed period, before
-    /// [`Self::command`], which is not called where nothing was measured.
+    /// Learns from what the last feed period led to: what was really commanded on the way here is
+    /// in the window, whatever was asked for; what came of it is in `measured`, none where the
+    /// position was lost. Called once a feed period, before [`Self::command`], which is not called
+    /// where nothing was measured.
     fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
         let _ = (window, measured);
     }
-    /// Distance between the last prediction and the measurement, mm; 0 without a prediction. `supervisor` reads
-    /// it after each decision.
+    /// Distance between the last prediction and the measurement, mm; 0 without a prediction.
+    /// `supervisor` reads it after each decision.
     fn prediction_error_mm(&self) -> f64 {
         0.0
     }
@@ -49,7 +52,8 @@ pub trait Controller<const N: usize> {
     fn doubt(&self) -> Option<FaultEvidence> {
         None
     }
-    /// The axes as it knows them now, if it goes by such knowledge: one that learns knows others than it was made with.
+    /// The axes as it knows them now, if it goes by such knowledge: one that learns knows others
+    /// than it was made with.
     fn known(&self) -> Option<[AxisKnowledge; N]> {
         None
     }
@@ -62,13 +66,13 @@ pub trait Controller<const N: usize> {
     fn moved_mm(&self) -> Option<[f64; N]> {
         None
     }
-    /// Whether it means to make the contour error smaller. One that excites the machine to identify it does not, and is
-    /// not taken out of the loop for making it larger.
+    /// Whether it means to make the contour error smaller. One that excites the machine to identify
+    /// it does not, and is not taken out of the loop for making it larger.
     fn corrects(&self) -> bool {
         true
     }
-    /// Whether its offset is there in the servo period in which it was decided, and not only in the next. It has to decide in every
-    /// servo period, and within it.
+    /// Whether its offset is there in the servo period in which it was decided, and not only in the
+    /// next. It has to decide in every servo period, and within it.
     fn acts_at_once(&self) -> bool {
         false
     }

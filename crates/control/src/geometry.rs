@@ -6,18 +6,22 @@
 //! skew_x = a_xy q_y + a_xz q_z,   skew_y = a_yz q_z,   skew_z = 0
 //! ```
 //!
-//! T_ii is a table of positioning errors, T_ij with j other than i one of straightness. A table is a cubic between its points
-//! with continuous slope, without overshoot; beyond its ends the error stays what it is there.
+//! T_ii is a table of positioning errors, T_ij with j other than i one of straightness. A table is
+//! a cubic between its points with continuous slope, without overshoot; beyond its ends the error
+//! stays what it is there.
 //!
-//! The inverse is a fixed point, `q <- t - E(q)`. All derivatives of E in a row sum up to L at most, and [`KnownGeometry::check`]
-//! refuses an L above [`MOST_SLOPE`]. After n steps the rest is therefore at most L^n |E| / (1 - L) in the largest
-//! coordinate. Tangents solve `(I + dE/dq) u = t` by the same steps.
+//! The inverse is a fixed point, `q <- t - E(q)`. All derivatives of E in a row sum up to L at
+//! most, and [`KnownGeometry::check`] refuses an L above [`MOST_SLOPE`]. After n steps the rest is
+//! therefore at most L^n |E| / (1 - L) in the largest coordinate. Tangents solve `(I + dE/dq) u =
+//! t` by the same steps.
 //!
-//! Symbols: t tool and q joints in mm; e scale; p amplitude, k = 2 pi / period and f phase of the pitch error; a squareness, rad.
+//! Symbols: t tool and q joints in mm; e scale; p amplitude, k = 2 pi / period and f phase of the
+//! pitch error; a squareness, rad.
 //!
-//! Source: ISO 230-1 (2012) for the errors and their names, ISO 230-2 (2014) for positioning errors. Schwenke et al. (2008),
-//! "Geometric error measurement and compensation of machines", CIRP Annals 57, for the tool's position by them. Fritsch and Butland
-//! (1984), "A method for constructing local monotone piecewise cubic interpolants", for the tables.
+//! Source: ISO 230-1 (2012) for the errors and their names, ISO 230-2 (2014) for positioning
+//! errors. Schwenke et al. (2008), "Geometric error measurement and compensation of machines", CIRP
+//! Annals 57, for the tool's position by them. Fritsch and Butland (1984), "A method for
+//! constructing local monotone piecewise cubic interpolants", for the tables.
 
 mod numbers;
 
@@ -26,12 +30,14 @@ use crate::window::Knot;
 
 /// Points of a table at the most: as many as LinuxCNC takes of a compensation file.
 pub const TABLE_POINTS: usize = 256;
-/// Largest sum of the derivatives of the errors in a row. The worst that a machine has is some 0.01: a pitch error of 10 um over
-/// a lead of 8 mm. Above this limit a geometry is wrong, and its inverse needs more steps.
+/// Largest sum of the derivatives of the errors in a row. The worst that a machine has is some
+/// 0.01: a pitch error of 10 um over a lead of 8 mm. Above this limit a geometry is wrong, and its
+/// inverse needs more steps.
 pub const MOST_SLOPE: f64 = 0.05;
 /// Steps of an inverse at the most. With L at its limit they leave 2e-12 of the error.
 const MOST_STEPS: u32 = 9;
-/// Change in a step below which an inverse is found, mm or part of a direction: it leaves L / (1 - L) of that.
+/// Change in a step below which an inverse is found, mm or part of a direction: it leaves L / (1 -
+/// L) of that.
 const FOUND: f64 = 1e-12;
 
 /// Geometry of an axis by itself.
@@ -45,8 +51,8 @@ pub struct AxisErrors {
     pub pitch_rad_per_mm: f64,
     /// Its phase at position 0, rad.
     pub pitch_phase_rad: f64,
-    /// Lost motion, mm: backlash, and what friction winds the screw up. The tool is half of it behind in either direction. It depends
-    /// on the direction, and is not part of the map.
+    /// Lost motion, mm: backlash, and what friction winds the screw up. The tool is half of it
+    /// behind in either direction. It depends on the direction, and is not part of the map.
     pub backlash_mm: f64,
 }
 
@@ -83,8 +89,12 @@ impl ErrorTable {
     /// # Errors
     /// A number of points that it cannot have, positions out of order, and what is not a number.
     pub fn new(points: impl IntoIterator<Item = [f64; 2]>) -> Result<Self, GeometryFault> {
-        let mut table =
-            Self { len: 0, at_mm: [0.0; TABLE_POINTS], error_mm: [0.0; TABLE_POINTS], slope: [0.0; TABLE_POINTS] };
+        let mut table = Self {
+            len: 0,
+            at_mm: [0.0; TABLE_POINTS],
+            error_mm: [0.0; TABLE_POINTS],
+            slope: [0.0; TABLE_POINTS],
+        };
         for [at_mm, error_mm] in points {
             if !(at_mm.is_finite() && error_mm.is_finite()) {
                 return Err(GeometryFault::NotFinite);
@@ -92,7 +102,10 @@ impl ErrorTable {
             if table.len > 0 && at_mm <= table.point(table.len - 1)[0] {
                 return Err(GeometryFault::Order(table.len));
             }
-            let (Some(at), Some(error)) = (table.at_mm.get_mut(table.len), table.error_mm.get_mut(table.len)) else {
+            let (Some(at), Some(error)) = (
+                table.at_mm.get_mut(table.len),
+                table.error_mm.get_mut(table.len),
+            ) else {
                 return Err(GeometryFault::Points(table.len + 1));
             };
             (*at, *error) = (at_mm, error_mm);
@@ -107,7 +120,10 @@ impl ErrorTable {
 
     /// First and last position, mm.
     pub fn range_mm(&self) -> [f64; 2] {
-        [self.at_mm[0], self.at_mm[self.len.saturating_sub(1).min(TABLE_POINTS - 1)]]
+        [
+            self.at_mm[0],
+            self.at_mm[self.len.saturating_sub(1).min(TABLE_POINTS - 1)],
+        ]
     }
 
     /// Position, error and slope of the n-th point; zero where there is none.
@@ -120,17 +136,26 @@ impl ErrorTable {
 
     /// Length and slope of the chord behind the n-th point.
     fn chord(&self, n: usize) -> [f64; 2] {
-        let ([from_mm, from_error_mm, _], [to_mm, to_error_mm, _]) = (self.point(n), self.point(n + 1));
-        [to_mm - from_mm, (to_error_mm - from_error_mm) / (to_mm - from_mm)]
+        let ([from_mm, from_error_mm, _], [to_mm, to_error_mm, _]) =
+            (self.point(n), self.point(n + 1));
+        [
+            to_mm - from_mm,
+            (to_error_mm - from_error_mm) / (to_mm - from_mm),
+        ]
     }
 
-    /// Slopes at the points: those of the chords at the ends; within, their weighted harmonic mean, and 0 at a turn.
+    /// Slopes at the points: those of the chords at the ends; within, their weighted harmonic mean,
+    /// and 0 at a turn.
     fn set_slopes(&mut self) {
         let last = self.len.saturating_sub(1);
         for n in 0..self.len {
             let ([h, before], [next_h, after]) = (self.chord(n.saturating_sub(1)), self.chord(n));
             let [w, next_w] = [2.0 * next_h + h, next_h + 2.0 * h];
-            let within = if before * after > 0.0 { (w + next_w) / (w / before + next_w / after) } else { 0.0 };
+            let within = if before * after > 0.0 {
+                (w + next_w) / (w / before + next_w / after)
+            } else {
+                0.0
+            };
             if let Some(slope) = self.slope.get_mut(n) {
                 *slope = if n == 0 {
                     after
@@ -164,9 +189,12 @@ impl ErrorTable {
         [error_mm, slope]
     }
 
-    /// Bound of the derivative: three times the steepest chord, as for every such cubic without overshoot.
+    /// Bound of the derivative: three times the steepest chord, as for every such cubic without
+    /// overshoot.
     fn most_slope(&self) -> f64 {
-        (1..self.len).map(|n| 3.0 * self.chord(n - 1)[1].abs()).fold(0.0, f64::max)
+        (1..self.len)
+            .map(|n| 3.0 * self.chord(n - 1)[1].abs())
+            .fold(0.0, f64::max)
     }
 }
 
@@ -184,7 +212,11 @@ impl<const N: usize> KnownGeometry<N> {
     /// Of axes with these errors and this squareness of y to x, z to x and z to y, rad.
     pub fn new(axes: [AxisErrors; N], squareness_rad: [f64; 3]) -> Self {
         let tables = core::array::from_fn(|_| core::array::from_fn(|_| None));
-        Self { axes, squareness_rad, tables }
+        Self {
+            axes,
+            squareness_rad,
+            tables,
+        }
     }
 
     /// With a table of the errors of coordinate `of` over the position of joint `over`.
@@ -198,7 +230,13 @@ impl<const N: usize> KnownGeometry<N> {
 
     /// Of the first M axes; one that is not there has no errors.
     pub fn of_first<const M: usize>(&self) -> KnownGeometry<M> {
-        let table = |i: usize, j: usize| self.tables.get(i).and_then(|row| row.get(j)).cloned().flatten();
+        let table = |i: usize, j: usize| {
+            self.tables
+                .get(i)
+                .and_then(|row| row.get(j))
+                .cloned()
+                .flatten()
+        };
         KnownGeometry {
             axes: core::array::from_fn(|i| self.axes.get(i).copied().unwrap_or_default()),
             squareness_rad: self.squareness_rad,
@@ -213,7 +251,10 @@ impl<const N: usize> KnownGeometry<N> {
     pub fn check(&self) -> Result<(), GeometryFault> {
         for (axis, own) in self.axes.iter().enumerate() {
             let slope = self.most_slope(axis);
-            if !slope.is_finite() || !own.pitch_phase_rad.is_finite() || !own.backlash_mm.is_finite() {
+            if !slope.is_finite()
+                || !own.pitch_phase_rad.is_finite()
+                || !own.backlash_mm.is_finite()
+            {
                 return Err(GeometryFault::NotFinite);
             }
             if slope > MOST_SLOPE {
@@ -226,14 +267,20 @@ impl<const N: usize> KnownGeometry<N> {
     /// Bound of the sum of the derivatives of an axis's errors.
     fn most_slope(&self, i: usize) -> f64 {
         let axis = self.axes[i];
-        let of_tables: f64 = self.tables[i].iter().flatten().map(ErrorTable::most_slope).sum();
+        let of_tables: f64 = self.tables[i]
+            .iter()
+            .flatten()
+            .map(ErrorTable::most_slope)
+            .sum();
         let skew: f64 = self.skew(i, [1.0; N], f64::abs);
         axis.scale.abs() + (axis.pitch_mm * axis.pitch_rad_per_mm).abs() + of_tables + skew
     }
 
     /// Whether it has no error at all.
     pub fn is_exact(&self) -> bool {
-        let exact = |axis: &AxisErrors| axis.scale == 0.0 && axis.pitch_mm == 0.0 && axis.backlash_mm == 0.0;
+        let exact = |axis: &AxisErrors| {
+            axis.scale == 0.0 && axis.pitch_mm == 0.0 && axis.backlash_mm == 0.0
+        };
         self.axes.iter().all(exact)
             && self.squareness_rad == [0.0; 3]
             && self.tables.iter().flatten().all(Option::is_none)
@@ -267,28 +314,50 @@ impl<const N: usize> KnownGeometry<N> {
     /// Where the tool is, mm.
     pub fn tool_mm(&self, joints_mm: [f64; N]) -> [f64; N] {
         core::array::from_fn(|i| {
-            let (AxisErrors { scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad, .. }, at_mm) =
-                (self.axes[i], joints_mm[i]);
-            let own_mm = at_mm + scale * at_mm + pitch_mm * libm::sin(pitch_rad_per_mm * at_mm + pitch_phase_rad);
+            let (
+                AxisErrors {
+                    scale,
+                    pitch_mm,
+                    pitch_rad_per_mm,
+                    pitch_phase_rad,
+                    ..
+                },
+                at_mm,
+            ) = (self.axes[i], joints_mm[i]);
+            let own_mm = at_mm
+                + scale * at_mm
+                + pitch_mm * libm::sin(pitch_rad_per_mm * at_mm + pitch_phase_rad);
             let tool_mm = own_mm + self.skew(i, joints_mm, |angle| angle);
-            self.tables[i].iter().zip(joints_mm).fold(tool_mm, |tool_mm, (table, at_mm)| match table {
-                Some(table) => tool_mm + table.at(at_mm)[0],
-                None => tool_mm,
-            })
+            self.tables[i].iter().zip(joints_mm).fold(
+                tool_mm,
+                |tool_mm, (table, at_mm)| match table {
+                    Some(table) => tool_mm + table.at(at_mm)[0],
+                    None => tool_mm,
+                },
+            )
         })
     }
 
     /// Extra motion of the tool when the joints move by `moved` from a place: dE/dq times `moved`.
     fn stretched(&self, joints_mm: [f64; N], moved: [f64; N]) -> [f64; N] {
         core::array::from_fn(|i| {
-            let AxisErrors { scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad, .. } = self.axes[i];
+            let AxisErrors {
+                scale,
+                pitch_mm,
+                pitch_rad_per_mm,
+                pitch_phase_rad,
+                ..
+            } = self.axes[i];
             let phase_rad = pitch_rad_per_mm * joints_mm[i] + pitch_phase_rad;
             let own = (scale + pitch_mm * pitch_rad_per_mm * libm::cos(phase_rad)) * moved[i];
             let whole = own + self.skew(i, moved, |angle| angle);
-            self.tables[i].iter().enumerate().fold(whole, |sum, (j, table)| match table {
-                Some(table) => sum + table.at(joints_mm[j])[1] * moved[j],
-                None => sum,
-            })
+            self.tables[i]
+                .iter()
+                .enumerate()
+                .fold(whole, |sum, (j, table)| match table {
+                    Some(table) => sum + table.at(joints_mm[j])[1] * moved[j],
+                    None => sum,
+                })
         })
     }
 
@@ -303,7 +372,8 @@ impl<const N: usize> KnownGeometry<N> {
         fixed_point(tool_mm, |joints_mm| sub(self.tool_mm(joints_mm), joints_mm))
     }
 
-    /// How the joints have to move at a place, so that the tool moves by `moved`: inverse Jacobian times `moved`.
+    /// How the joints have to move at a place, so that the tool moves by `moved`: inverse Jacobian
+    /// times `moved`.
     pub fn joints_moved(&self, joints_mm: [f64; N], moved: [f64; N]) -> [f64; N] {
         fixed_point(moved, |moved| self.stretched(joints_mm, moved))
     }
@@ -313,9 +383,15 @@ impl<const N: usize> KnownGeometry<N> {
         let position_mm = self.joints_mm(tool.position_mm);
         let moved = self.joints_moved(position_mm, tool.tangent);
         let length = norm(moved);
-        // Errors are small, so that a direction keeps nearly its length; one without any, or that is no number, stays.
+        // Errors are small, so that a direction keeps nearly its length; one without any, or that
+        // is no number, stays.
         let factor = bounded(length, 1.0 - 2.0 * MOST_SLOPE, 1.0 + 2.0 * MOST_SLOPE);
-        Knot { position_mm, tangent: scale(1.0 / factor, moved), feed_mm_s: factor * tool.feed_mm_s, ..*tool }
+        Knot {
+            position_mm,
+            tangent: scale(1.0 / factor, moved),
+            feed_mm_s: factor * tool.feed_mm_s,
+            ..*tool
+        }
     }
 }
 
@@ -324,7 +400,9 @@ fn fixed_point<const N: usize>(target: [f64; N], error: impl Fn([f64; N]) -> [f6
     let mut found = target;
     for _ in 0..MOST_STEPS {
         let next = sub(target, error(found));
-        let change = sub(next, found).into_iter().fold(0.0, |most: f64, part| most.max(part.abs()));
+        let change = sub(next, found)
+            .into_iter()
+            .fold(0.0, |most: f64, part| most.max(part.abs()));
         found = next;
         if change < FOUND {
             break;
@@ -341,13 +419,22 @@ mod tests {
     #[test]
     fn a_square_becomes_a_rhomb_and_a_metre_a_little_more() {
         let axes = [
-            AxisErrors { scale: 20e-6, ..AxisErrors::default() },
+            AxisErrors {
+                scale: 20e-6,
+                ..AxisErrors::default()
+            },
             AxisErrors::default(),
-            AxisErrors { pitch_mm: 0.003, pitch_rad_per_mm: TAU / 10.0, ..AxisErrors::default() },
+            AxisErrors {
+                pitch_mm: 0.003,
+                pitch_rad_per_mm: TAU / 10.0,
+                ..AxisErrors::default()
+            },
         ];
         let geometry = KnownGeometry::new(axes, [50e-6, -30e-6, 10e-6]);
         let moved = |joints: [f64; 3]| sub(geometry.tool_mm(joints), joints);
-        let near = |found: [f64; 3], wanted: [f64; 3]| (0..3).all(|i| (found[i] - wanted[i]).abs() < 1e-12);
+        let near = |found: [f64; 3], wanted: [f64; 3]| {
+            (0..3).all(|i| (found[i] - wanted[i]).abs() < 1e-12)
+        };
         assert!(near(moved([1000.0, 0.0, 0.0]), [0.02, 0.0, 0.0]));
         assert!(near(moved([0.0, 100.0, 0.0]), [0.005, 0.0, 0.0]));
         assert!(near(moved([0.0, 0.0, 100.0]), [-0.003, 0.001, 0.0]));
@@ -356,32 +443,74 @@ mod tests {
 
     #[test]
     fn a_table_meets_its_points_does_not_overshoot_and_stays_beyond_its_ends() {
-        let points = [[-10.0, 0.001], [0.0, 0.0], [5.0, 0.0], [20.0, 0.003], [40.0, -0.002]];
+        let points = [
+            [-10.0, 0.001],
+            [0.0, 0.0],
+            [5.0, 0.0],
+            [20.0, 0.003],
+            [40.0, -0.002],
+        ];
         let table = ErrorTable::new(points).unwrap();
         for [at_mm, error_mm] in points {
             assert!((table.at(at_mm)[0] - error_mm).abs() < 1e-15);
         }
         for n in 0..100 {
             let at_mm = 0.05 * f64::from(n);
-            assert_eq!(table.at(at_mm)[0], 0.0, "flat between equal points: {at_mm}");
+            assert_eq!(
+                table.at(at_mm)[0],
+                0.0,
+                "flat between equal points: {at_mm}"
+            );
         }
-        assert_eq!((table.at(-50.0), table.at(90.0)), ([0.001, 0.0], [-0.002, 0.0]));
+        assert_eq!(
+            (table.at(-50.0), table.at(90.0)),
+            ([0.001, 0.0], [-0.002, 0.0])
+        );
     }
 
     #[test]
     fn what_is_no_geometry_is_refused() {
         assert_eq!(ErrorTable::new([[0.0, 0.0]]), Err(GeometryFault::Points(1)));
-        assert_eq!(ErrorTable::new([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0]]), Err(GeometryFault::Order(2)));
-        assert_eq!(ErrorTable::new([[0.0, f64::NAN], [1.0, 0.0]]), Err(GeometryFault::NotFinite));
+        assert_eq!(
+            ErrorTable::new([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0]]),
+            Err(GeometryFault::Order(2))
+        );
+        assert_eq!(
+            ErrorTable::new([[0.0, f64::NAN], [1.0, 0.0]]),
+            Err(GeometryFault::NotFinite)
+        );
         let many = (0..=TABLE_POINTS).map(|n| [n as f64, 0.0]);
-        assert_eq!(ErrorTable::new(many), Err(GeometryFault::Points(TABLE_POINTS + 1)));
-        let steep = AxisErrors { scale: 0.06, ..AxisErrors::default() };
+        assert_eq!(
+            ErrorTable::new(many),
+            Err(GeometryFault::Points(TABLE_POINTS + 1))
+        );
+        let steep = AxisErrors {
+            scale: 0.06,
+            ..AxisErrors::default()
+        };
         let found = KnownGeometry::new([AxisErrors::default(), steep], [0.0; 3]);
-        assert_eq!(found.check(), Err(GeometryFault::Slope { axis: 1, slope: 0.06 }));
-        let unknown = AxisErrors { pitch_phase_rad: f64::NAN, ..AxisErrors::default() };
-        assert_eq!(KnownGeometry::new([unknown; 2], [0.0; 3]).check(), Err(GeometryFault::NotFinite));
+        assert_eq!(
+            found.check(),
+            Err(GeometryFault::Slope {
+                axis: 1,
+                slope: 0.06
+            })
+        );
+        let unknown = AxisErrors {
+            pitch_phase_rad: f64::NAN,
+            ..AxisErrors::default()
+        };
+        assert_eq!(
+            KnownGeometry::new([unknown; 2], [0.0; 3]).check(),
+            Err(GeometryFault::NotFinite)
+        );
         let table = ErrorTable::new([[0.0, 0.0], [1.0, 0.05]]).unwrap();
-        let found = KnownGeometry::new([AxisErrors::default(); 2], [0.0; 3]).with_table(0, 1, table).check();
-        assert!(matches!(found, Err(GeometryFault::Slope { axis: 0, .. })), "{found:?}");
+        let found = KnownGeometry::new([AxisErrors::default(); 2], [0.0; 3])
+            .with_table(0, 1, table)
+            .check();
+        assert!(
+            matches!(found, Err(GeometryFault::Slope { axis: 0, .. })),
+            "{found:?}"
+        );
     }
 }

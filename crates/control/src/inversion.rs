@@ -1,4 +1,5 @@
-//! The network inversion: at most five gradient steps on the feedrates of H knots, weights fixed. H = 1 is the paper's.
+//! The network inversion: at most five gradient steps on the feedrates of H knots, weights fixed. H
+//! = 1 is the paper's.
 //!
 //! ```text
 //! E       = sum_i 1/2 |eps_hat(i)|^2 + rho / |F(i)|^2,  i = k..k+H-1                           (7), summed
@@ -6,15 +7,17 @@
 //! dE/dF_a = -1/4 eps_a (1 - eps_a^2) sum_j W_aj (1 - f(net_j)^2) W_ja  - 2 rho F_a / |F|^4     (9, 10)
 //! ```
 //!
-//! Over several knots the identifier is rolled out: the errors that it predicts go into its delays, as the feedrates do.
+//! Over several knots the identifier is rolled out: the errors that it predicts go into its delays,
+//! as the feedrates do.
 //!
-//! Source: Kindermann and Linden (1990) for the inversion; Lee, Cho and Jeon (2005), section 3.3, eqs 7 to 10; the
-//! gradient over a horizon is back-propagation through time (Werbos 1990).
+//! Source: Kindermann and Linden (1990) for the inversion; Lee, Cho and Jeon (2005), section 3.3,
+//! eqs 7 to 10; the gradient over a horizon is back-propagation through time (Werbos 1990).
 //!
-//! The error term of (9) and (10) is printed with the diagonal of the Jacobian only and with the sign turned; the true
-//! gradient of (7) is `+ sum_o eps_o d eps_o / d F_a`. Both are here, see [`Gradient`]. Departure: the term of rho has
-//! the sign and the factor of the true derivative, and its denominator is (F_x^2 + F_y^2)^2 in both axes; in print it
-//! slows the machine down where eq. 7 is meant to speed it up.
+//! The error term of (9) and (10) is printed with the diagonal of the Jacobian only and with the
+//! sign turned; the true gradient of (7) is `+ sum_o eps_o d eps_o / d F_a`. Both are here, see
+//! [`Gradient`]. Departure: the term of rho has the sign and the factor of the true derivative, and
+//! its denominator is (F_x^2 + F_y^2)^2 in both axes; in print it slows the machine down where eq.
+//! 7 is meant to speed it up.
 //!
 //! All quantities are scaled as in [`crate::identifier`].
 
@@ -27,11 +30,12 @@ pub(crate) const MAX_KNOTS: usize = 20;
 /// Which gradient of the error term the inversion follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Gradient {
-    /// As in eqs 9 and 10: the diagonal, with the printed sign. Nearly all of F is the path going on, which makes no
-    /// error, and the path is not among the inputs; so the network cannot tell it from a command that leaves the path,
-    /// and learns the wrong sign for F(k). The printed sign puts that right: the Jacobian serves as the gain of an
-    /// integrating correction. Over several knots each is corrected for itself: what a feedrate does to later errors
-    /// has no printed form.
+    /// As in eqs 9 and 10: the diagonal, with the printed sign. Nearly all of F is the path going
+    /// on, which makes no error, and the path is not among the inputs; so the network cannot tell
+    /// it from a command that leaves the path, and learns the wrong sign for F(k). The printed sign
+    /// puts that right: the Jacobian serves as the gain of an integrating correction. Over several
+    /// knots each is corrected for itself: what a feedrate does to later errors has no printed
+    /// form.
     Printed,
     /// The true gradient of eq. 7 through the network, and over several knots through its delays.
     Exact,
@@ -46,7 +50,8 @@ pub enum TimeTerm {
     Derivative,
     /// With the sign and the factor of eqs 9 and 10, + rho F / |F|^4: a larger rho is slower.
     PrintedSign,
-    /// As eqs 9 and 10 are printed: beside that, the denominator of every axis but the first is (2 F_a^2)^2.
+    /// As eqs 9 and 10 are printed: beside that, the denominator of every axis but the first is (2
+    /// F_a^2)^2.
     Printed,
 }
 
@@ -59,7 +64,8 @@ pub struct InversionSettings {
     pub eta: f64,
     /// Gradient steps a tick; 1 to 20, the paper allows 5.
     pub steps: usize,
-    /// Longest step of each F, scaled units; 0.001 to 1. Keeps the term of rho, which grows as |F|^-3, in bounds near rest.
+    /// Longest step of each F, scaled units; 0.001 to 1. Keeps the term of rho, which grows as
+    /// |F|^-3, in bounds near rest.
     pub step_limit: f64,
     /// Gradient of the error term.
     pub gradient: Gradient,
@@ -67,7 +73,8 @@ pub struct InversionSettings {
     pub time_term: TimeTerm,
 }
 
-/// Below this feedrate (scaled; 1 mm/s) the term of rho is left out: near rest the feed plan decides, not the inversion.
+/// Below this feedrate (scaled; 1 mm/s) the term of rho is left out: near rest the feed plan
+/// decides, not the inversion.
 const MIN_FEED: f64 = 0.02;
 
 /// dE/dF of the term of rho in eq. 7.
@@ -81,14 +88,23 @@ fn time_gradient<const N: usize>(feed: [f64; N], rho: f64, term: TimeTerm) -> [f
         TimeTerm::Derivative => scale(-2.0 * rho / (square * square), feed),
         TimeTerm::PrintedSign => scale(rho / (square * square), feed),
         TimeTerm::Printed => core::array::from_fn(|axis| {
-            let printed = if axis == 0 { square } else { 2.0 * feed[axis] * feed[axis] };
-            if printed < MIN_FEED * MIN_FEED { 0.0 } else { rho * feed[axis] / (printed * printed) }
+            let printed = if axis == 0 {
+                square
+            } else {
+                2.0 * feed[axis] * feed[axis]
+            };
+            if printed < MIN_FEED * MIN_FEED {
+                0.0
+            } else {
+                rho * feed[axis] / (printed * printed)
+            }
         }),
     }
 }
 
-/// Inverts in all components: both the speed and the geometry change. `inputs` are those of the first knot, of which F(k)
-/// is not read; `feeds` hold F(0) of each knot on entry and the result on return. Knots beyond [`MAX_KNOTS`] stay as they are.
+/// Inverts in all components: both the speed and the geometry change. `inputs` are those of the
+/// first knot, of which F(k) is not read; `feeds` hold F(0) of each knot on entry and the result on
+/// return. Knots beyond [`MAX_KNOTS`] stay as they are.
 #[inline]
 pub(crate) fn invert<const N: usize, D: ContourModel<N>>(
     net: &D,
@@ -99,8 +115,8 @@ pub(crate) fn invert<const N: usize, D: ContourModel<N>>(
     descend(net, inputs, feeds, settings, false);
 }
 
-/// Inverts in the magnitudes, with arguments as in [`invert`]: each F keeps the direction of its F(0), the geometry stays
-/// on the path.
+/// Inverts in the magnitudes, with arguments as in [`invert`]: each F keeps the direction of its
+/// F(0), the geometry stays on the path.
 ///
 /// Source: Yoon and Jeon (2000).
 #[inline]
@@ -125,7 +141,13 @@ fn descend<const N: usize, D: ContourModel<N>>(
     let knots = feeds.len().min(MAX_KNOTS);
     match &mut feeds[..knots] {
         [] => {}
-        [feed] => descend_in::<N, 1, D>(net, inputs, core::slice::from_mut(feed), settings, magnitude),
+        [feed] => descend_in::<N, 1, D>(
+            net,
+            inputs,
+            core::slice::from_mut(feed),
+            settings,
+            magnitude,
+        ),
         feeds => descend_in::<N, MAX_KNOTS, D>(net, inputs, feeds, settings, magnitude),
     }
 }
@@ -149,8 +171,16 @@ fn descend_in<const N: usize, const H: usize, D: ContourModel<N>>(
     for _ in 0..settings.steps {
         let gradients = gradients::<N, H, D>(net, inputs, feeds, settings);
         for ((feed, direction), gradient) in feeds.iter_mut().zip(directions).zip(gradients) {
-            let gradient = if magnitude { scale(dot(gradient, direction), direction) } else { gradient };
-            *feed = add_scaled(*feed, 1.0, limit_norm(scale(-settings.eta, gradient), settings.step_limit));
+            let gradient = if magnitude {
+                scale(dot(gradient, direction), direction)
+            } else {
+                gradient
+            };
+            *feed = add_scaled(
+                *feed,
+                1.0,
+                limit_norm(scale(-settings.eta, gradient), settings.step_limit),
+            );
         }
     }
 }
@@ -167,7 +197,13 @@ fn gradients<const N: usize, const H: usize, D: ContourModel<N>>(
     let forwards = roll_out::<N, H, D>(net, inputs, feeds);
     // What later knots feel of the error and of the feedrate of this one, and of the one before.
     let (mut error_felt, mut feed_felt) = ([[0.0; N]; 2], [[0.0; N]; 2]);
-    for (knot, ((feed, forward), gradient)) in feeds.iter().zip(&forwards).zip(&mut gradients).enumerate().rev() {
+    for (knot, ((feed, forward), gradient)) in feeds
+        .iter()
+        .zip(&forwards)
+        .zip(&mut gradients)
+        .enumerate()
+        .rev()
+    {
         let adjoint = |error: [f64; N], input: usize| through(&net.slopes(forward, input), error);
         let of_error = match settings.gradient {
             Gradient::Printed => {
@@ -180,7 +216,11 @@ fn gradients<const N: usize, const H: usize, D: ContourModel<N>>(
                 let own = add_scaled(adjoint(error, 0), 1.0, feed_felt[0]);
                 (error_felt, feed_felt) = ([error_felt[1], [0.0; N]], [feed_felt[1], [0.0; N]]);
                 // The first knot has none before it, the second one.
-                for (back, (feed_felt, error_felt)) in feed_felt.iter_mut().zip(&mut error_felt).enumerate().take(knot)
+                for (back, (feed_felt, error_felt)) in feed_felt
+                    .iter_mut()
+                    .zip(&mut error_felt)
+                    .enumerate()
+                    .take(knot)
                 {
                     *feed_felt = add_scaled(*feed_felt, 1.0, adjoint(error, 1 + back));
                     *error_felt = add_scaled(*error_felt, 1.0, adjoint(error, 3 + back));
@@ -188,7 +228,11 @@ fn gradients<const N: usize, const H: usize, D: ContourModel<N>>(
                 own
             }
         };
-        *gradient = add_scaled(of_error, 1.0, time_gradient(*feed, settings.rho, settings.time_term));
+        *gradient = add_scaled(
+            of_error,
+            1.0,
+            time_gradient(*feed, settings.rho, settings.time_term),
+        );
     }
     gradients
 }
@@ -233,7 +277,11 @@ mod tests {
     fn sample<const H: usize>() -> (ContourIdentifier<2>, Inputs<2>, [[f64; 2]; H]) {
         let mut next = sequence();
         let (net, inputs) = sample_of(&mut next);
-        (net, inputs, core::array::from_fn(|_| core::array::from_fn(|_| 2.0 * next())))
+        (
+            net,
+            inputs,
+            core::array::from_fn(|_| core::array::from_fn(|_| 2.0 * next())),
+        )
     }
 
     fn settings(gradient: Gradient) -> InversionSettings {
@@ -248,7 +296,12 @@ mod tests {
     }
 
     /// Eq. 7 summed over the knots, without any of the above: the delays stand in one row.
-    fn index<const H: usize>(net: &ContourIdentifier<2>, inputs: &Inputs<2>, feeds: &[[f64; 2]; H], rho: f64) -> f64 {
+    fn index<const H: usize>(
+        net: &ContourIdentifier<2>,
+        inputs: &Inputs<2>,
+        feeds: &[[f64; 2]; H],
+        rho: f64,
+    ) -> f64 {
         let sigmoid = |x: f64| 2.0 / (1.0 + libm::exp(-x)) - 1.0;
         // F(k-2), F(k-1), F(k).. and eps(k-2), eps(k-1), eps(k)..
         let mut feed = [[0.0; 2]; 22];
@@ -265,14 +318,28 @@ mod tests {
             for (j, node) in nodes.iter_mut().enumerate() {
                 let mut x = 0.0;
                 for axis in 0..2 {
-                    let seen =
-                        [feed[k][axis], feed[k - 1][axis], feed[k - 2][axis], error[k - 1][axis], error[k - 2][axis]];
-                    x += (0..INPUTS).map(|i| net.hidden[axis][i][j] * seen[i]).sum::<f64>();
+                    let seen = [
+                        feed[k][axis],
+                        feed[k - 1][axis],
+                        feed[k - 2][axis],
+                        error[k - 1][axis],
+                        error[k - 2][axis],
+                    ];
+                    x += (0..INPUTS)
+                        .map(|i| net.hidden[axis][i][j] * seen[i])
+                        .sum::<f64>();
                 }
                 *node = sigmoid(x);
             }
-            error[k] = [0, 1].map(|o| sigmoid((0..HIDDEN).map(|j| net.output[o][j] * nodes[j]).sum::<f64>()));
-            sum += 0.5 * (error[k][0].powi(2) + error[k][1].powi(2)) + rho / (f[0].powi(2) + f[1].powi(2));
+            error[k] = [0, 1].map(|o| {
+                sigmoid(
+                    (0..HIDDEN)
+                        .map(|j| net.output[o][j] * nodes[j])
+                        .sum::<f64>(),
+                )
+            });
+            sum += 0.5 * (error[k][0].powi(2) + error[k][1].powi(2))
+                + rho / (f[0].powi(2) + f[1].powi(2));
         }
         sum
     }
@@ -316,9 +383,20 @@ mod tests {
             expected = printed_step(&net, &inputs, expected, 0.01, 0.3);
         }
         let mut found = [feed];
-        invert(&net, &inputs, &mut found, &InversionSettings { steps: 5, ..settings(Gradient::Printed) });
+        invert(
+            &net,
+            &inputs,
+            &mut found,
+            &InversionSettings {
+                steps: 5,
+                ..settings(Gradient::Printed)
+            },
+        );
         for axis in 0..2 {
-            assert!((found[0][axis] - expected[axis]).abs() < 1e-14, "{found:?} {expected:?}");
+            assert!(
+                (found[0][axis] - expected[axis]).abs() < 1e-14,
+                "{found:?} {expected:?}"
+            );
             assert!((found[0][axis] - feed[axis]).abs() > 1e-3);
         }
     }
@@ -337,12 +415,27 @@ mod tests {
             (moved(1e-6) - moved(-1e-6)) / 2e-6
         };
         let close = |found: [f64; 2], expected: [f64; 2]| {
-            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?} {expected:?}");
+            assert!(
+                found
+                    .iter()
+                    .zip(expected)
+                    .all(|(a, b)| (a - b).abs() < 1e-9),
+                "{found:?} {expected:?}"
+            );
         };
         let term = |term| time_gradient(feed, 0.01, term);
         close(term(TimeTerm::Derivative), [slope(0), slope(1)]);
-        close(term(TimeTerm::PrintedSign), [-0.5 * slope(0), -0.5 * slope(1)]);
-        close(term(TimeTerm::Printed), [0.01 * x / square.powi(2), 0.01 * y / (y * y + y * y).powi(2)]);
+        close(
+            term(TimeTerm::PrintedSign),
+            [-0.5 * slope(0), -0.5 * slope(1)],
+        );
+        close(
+            term(TimeTerm::Printed),
+            [
+                0.01 * x / square.powi(2),
+                0.01 * y / (y * y + y * y).powi(2),
+            ],
+        );
     }
 
     #[test]
@@ -372,10 +465,14 @@ mod tests {
                 let (mut up, mut down) = (feeds, feeds);
                 up[knot][axis] += h;
                 down[knot][axis] -= h;
-                let rise = index(&net, &inputs, &up, settings.rho) - index(&net, &inputs, &down, settings.rho);
+                let rise = index(&net, &inputs, &up, settings.rho)
+                    - index(&net, &inputs, &down, settings.rho);
                 let gradient = (feeds[knot][axis] - stepped[knot][axis]) / settings.eta;
                 let slope = rise / (2.0 * h);
-                assert!((gradient - slope).abs() < 1e-6 * slope.abs().max(1e-2), "{H} {knot}: {gradient} {slope}");
+                assert!(
+                    (gradient - slope).abs() < 1e-6 * slope.abs().max(1e-2),
+                    "{H} {knot}: {gradient} {slope}"
+                );
             }
         }
     }
@@ -392,12 +489,22 @@ mod tests {
     fn the_magnitude_keeps_its_direction_in_every_knot() {
         let (net, inputs, feeds) = sample::<8>();
         let mut found = feeds;
-        let settings = InversionSettings { steps: 5, step_limit: 0.05, ..settings(Gradient::Exact) };
+        let settings = InversionSettings {
+            steps: 5,
+            step_limit: 0.05,
+            ..settings(Gradient::Exact)
+        };
         invert_magnitude(&net, &inputs, &mut found, &settings);
         for (found, feed) in found.into_iter().zip(feeds) {
-            assert!((found[0] * feed[1] - found[1] * feed[0]).abs() < 1e-15, "{found:?} {feed:?}");
+            assert!(
+                (found[0] * feed[1] - found[1] * feed[0]).abs() < 1e-15,
+                "{found:?} {feed:?}"
+            );
             let moved = norm([found[0] - feed[0], found[1] - feed[1]]);
-            assert!(moved > 1e-6 && moved <= 5.0 * settings.step_limit + 1e-15, "{moved}");
+            assert!(
+                moved > 1e-6 && moved <= 5.0 * settings.step_limit + 1e-15,
+                "{moved}"
+            );
         }
     }
 

@@ -2,7 +2,8 @@
 //! tool position, and corrects the contour error with one of several controllers.
 //!
 //! The crate is `no_std`, so that the same code runs in a servo thread and in a simulation. The
-//! example follows a circle uncorrected with two axes that lag by 20 ms, and reads the contour error.
+//! example follows a circle uncorrected with two axes that lag by 20 ms, and reads the contour
+//! error.
 //!
 //! ```
 //! use feedwright_control::{Bounds, Controller, Knot, KnotSource, Uncorrected, Tick};
@@ -72,9 +73,9 @@
 //!
 //! The `mod` lines stand in the order in which data flows through a tick; each module uses only
 //! those above it. `axis` is the model of an axis, `window` holds the path behind and ahead,
-//! `geometry` leads from the tool to the joints, `contour_error` locates the tool on it, `identifier` and `model` predict, `inversion` computes
-//! corrections, `supervisor` judges and bounds what controllers ask for, `controller` has them,
-//! and `tick` joins all of it.
+//! `geometry` leads from the tool to the joints, `contour_error` locates the tool on it,
+//! `identifier` and `model` predict, `inversion` computes corrections, `supervisor` judges and
+//! bounds what controllers ask for, `controller` has them, and `tick` joins all of it.
 #![no_std]
 #![warn(clippy::disallowed_methods)]
 
@@ -106,21 +107,25 @@ pub use command::{Command, FaultEvidence, Measured};
 pub use contour_error::{ContourError, Estimator, MAX_ENTRIES, carried, locate};
 pub use controller::feedforward::{Feedforward, MAX_PREVIEW, preview};
 pub use controller::inverting::{INVERTING_FEED_PERIOD_S, InvertingSettings};
-pub use controller::lqg_preview::{IDENTIFIED_WEIGHT, LqgGains, LqgPreview, LqgSettings, OffsetBounds};
+pub use controller::lqg_preview::{
+    IDENTIFIED_WEIGHT, LqgGains, LqgPreview, LqgSettings, OffsetBounds,
+};
 pub use controller::magnitude_only::MagnitudeOnly;
 pub use controller::two_dimensional::TwoDimensional;
 pub use controller::uncorrected::Uncorrected;
 pub use controller::{Controller, Schedule};
-pub use geometry::{AxisErrors, ErrorTable, GeometryFault, KnownGeometry, MOST_SLOPE, TABLE_POINTS};
+pub use geometry::{
+    AxisErrors, ErrorTable, GeometryFault, KnownGeometry, MOST_SLOPE, TABLE_POINTS,
+};
 pub use identifier::contour::ContourIdentifier;
 pub use identifier::{
-    ContourModel, Delays, ERROR_SCALE_MM, FEED_PERIODS_S, FEED_SCALE_MM_S, HIDDEN, INPUTS, Identifier, IdentifierKind,
-    Inputs, seen_feed,
+    ContourModel, Delays, ERROR_SCALE_MM, FEED_PERIODS_S, FEED_SCALE_MM_S, HIDDEN, INPUTS,
+    Identifier, IdentifierKind, Inputs, seen_feed,
 };
 pub use inversion::{Gradient, InversionSettings, TimeTerm};
 pub use model::{
-    BLOCK_FORMAT, BlockError, IdentifiedAxes, MAX_MECHANICS_PER_SERVO, MAX_WEIGHT, MECHANICS_PERIODS_S, ModelBlock,
-    SERVO_PERIODS_S, Trained,
+    BLOCK_FORMAT, BlockError, IdentifiedAxes, MAX_MECHANICS_PER_SERVO, MAX_WEIGHT,
+    MECHANICS_PERIODS_S, ModelBlock, SERVO_PERIODS_S, Trained,
 };
 pub use sine::sin;
 pub use supervisor::{Bounds, Cause, FORGIVEN_S, Fade, State, fade_acceleration};

@@ -15,12 +15,13 @@
 //!
 //! The numbers of a contour identifier are its weights, group by group in the order of
 //! [`Identifier::weights`]. Axes have the mechanics period, s, and then [`AxisKnowledge::NUMBERS`],
-//! axis by axis. [`Number::format`] is the first format that has a number; in an earlier block the number is
-//! missing and zero. Behind the model, a block of format 4 has the geometry that the control
-//! compensates: of each axis its scale, the amplitude of its pitch error (mm), its phase for a travel
-//! (rad/mm) and at position 0 (rad); the three angles of squareness, rad; and row by row the tables of
-//! the errors of a coordinate over a joint, each as the number of its points, 0 without a table, and
-//! position and error (mm) of each point. A block has the lowest format that holds its content.
+//! axis by axis. [`Number::format`] is the first format that has a number; in an earlier block the
+//! number is missing and zero. Behind the model, a block of format 4 has the geometry that the
+//! control compensates: of each axis its scale, the amplitude of its pitch error (mm), its phase
+//! for a travel (rad/mm) and at position 0 (rad); the three angles of squareness, rad; and row by
+//! row the tables of the errors of a coordinate over a joint, each as the number of its points, 0
+//! without a table, and position and error (mm) of each point. A block has the lowest format that
+//! holds its content.
 //!
 //! Integers are unsigned; all other numbers are IEEE 754 double precision. Everything is
 //! little-endian. [`ModelBlock::from_bytes`] needs no memory beyond its result and never panics,
@@ -36,7 +37,8 @@ use crate::identifier::{FEED_PERIODS_S, Identifier, IdentifierKind};
 
 /// What a block begins with.
 pub(crate) const MAGIC: [u8; 8] = *b"FWMODEL\0";
-/// The latest format that is read and written. It is raised whenever the layout or the meaning of a number changes.
+/// The latest format that is read and written. It is raised whenever the layout or the meaning of a
+/// number changes.
 pub const BLOCK_FORMAT: u32 = 4;
 /// The earliest format that is read. Models without later numbers are still written in it.
 const EARLIEST_FORMAT: u32 = 2;
@@ -48,9 +50,11 @@ const MAX_GEOMETRY: f64 = 1e6;
 pub const SERVO_PERIODS_S: [f64; 2] = [1e-5, 0.1];
 /// Periods of the speed loop that it can have, s.
 pub const MECHANICS_PERIODS_S: [f64; 2] = [1e-7, 0.1];
-/// Most of them in a servo period. A controller is made in a time that grows with them. Usual machines have 1 to 20.
+/// Most of them in a servo period. A controller is made in a time that grows with them. Usual
+/// machines have 1 to 20.
 pub const MAX_MECHANICS_PER_SERVO: f64 = 1_000.0;
-/// Relative distance from a whole number below which the servo period counts as a whole multiple: rounding of decimal numbers.
+/// Relative distance from a whole number below which the servo period counts as a whole multiple:
+/// rounding of decimal numbers.
 const WHOLE_RATIO_TOLERANCE: f64 = 1e-9;
 /// Largest size of a weight. A hidden node that turns its sign within 0.25 mm/s has weights of 400.
 pub const MAX_WEIGHT: f64 = 1e6;
@@ -64,7 +68,8 @@ pub struct ModelBlock<const N: usize> {
     pub feed_period_s: f64,
     /// What was trained.
     pub trained: Trained<N>,
-    /// The geometry that the control compensates, without backlash; none where nothing is compensated.
+    /// The geometry that the control compensates, without backlash; none where nothing is
+    /// compensated.
     pub geometry: Option<KnownGeometry<N>>,
 }
 
@@ -79,20 +84,30 @@ pub struct IdentifiedAxes<const N: usize> {
 
 impl<const N: usize> IdentifiedAxes<N> {
     /// All zero.
-    pub const NULL: Self = Self { mechanics_s: 0.0, axes: [AxisKnowledge::NOTHING; N] };
+    pub const NULL: Self = Self {
+        mechanics_s: 0.0,
+        axes: [AxisKnowledge::NOTHING; N],
+    };
 
     /// Its numbers in the order of the block, each with what it is bound by.
     fn numbers(&mut self, each: &mut impl FnMut(&NumberBounds, &mut [f64])) {
         let [least, most] = MECHANICS_PERIODS_S;
-        each(&NumberBounds::Within(least, most), slice::from_mut(&mut self.mechanics_s));
+        each(
+            &NumberBounds::Within(least, most),
+            slice::from_mut(&mut self.mechanics_s),
+        );
         for axis in &mut self.axes {
             for number in AxisKnowledge::NUMBERS {
-                each(&NumberBounds::Of(number), slice::from_mut((number.of)(axis)));
+                each(
+                    &NumberBounds::Of(number),
+                    slice::from_mut((number.of)(axis)),
+                );
             }
         }
     }
 
-    /// With the periods that follow; none where the servo period is no whole multiple of the mechanics period, or of too many.
+    /// With the periods that follow; none where the servo period is no whole multiple of the
+    /// mechanics period, or of too many.
     #[must_use]
     pub fn with_periods(mut self, servo_s: f64) -> Option<Self> {
         let ratio = servo_s / self.mechanics_s;
@@ -102,7 +117,11 @@ impl<const N: usize> IdentifiedAxes<N> {
         if !(is_whole && (1.0..=MAX_MECHANICS_PER_SERVO).contains(&whole)) {
             return None;
         }
-        let periods = Periods { servo_s, mechanics_s: self.mechanics_s, mechanics_per_servo: whole as u32 };
+        let periods = Periods {
+            servo_s,
+            mechanics_s: self.mechanics_s,
+            mechanics_per_servo: whole as u32,
+        };
         self.axes.iter_mut().for_each(|axis| axis.periods = periods);
         Some(self)
     }
@@ -111,7 +130,9 @@ impl<const N: usize> IdentifiedAxes<N> {
     pub fn are_possible(&self, servo_s: f64) -> bool {
         let [least, most] = MECHANICS_PERIODS_S;
         let is_possible = self.mechanics_s >= least && self.mechanics_s <= most;
-        is_possible && self.with_periods(servo_s).is_some() && self.axes.iter().all(|axis| axis.is_possible())
+        is_possible
+            && self.with_periods(servo_s).is_some()
+            && self.axes.iter().all(|axis| axis.is_possible())
     }
 }
 
@@ -175,11 +196,18 @@ impl<const N: usize> ModelBlock<N> {
     /// # Errors
     /// The first thing that is wrong with it.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, BlockError> {
-        let mut rest = Bytes { rest: bytes, number: 0 };
+        let mut rest = Bytes {
+            rest: bytes,
+            number: 0,
+        };
         if rest.take::<8>() != Some(MAGIC) {
             return Err(BlockError::NoModel);
         }
-        let mut whole = || rest.take().map(u32::from_le_bytes).ok_or(BlockError::Length);
+        let mut whole = || {
+            rest.take()
+                .map(u32::from_le_bytes)
+                .ok_or(BlockError::Length)
+        };
         let (format, kind, axes, numbers) = (whole()?, whole()?, whole()?, whole()?);
         if !(EARLIEST_FORMAT..=BLOCK_FORMAT).contains(&format) {
             return Err(BlockError::Format(format));
@@ -196,9 +224,16 @@ impl<const N: usize> ModelBlock<N> {
         trained.numbers_of(format, &mut |_, group| expected += group.len());
         let (content, checksum) = bytes.split_last_chunk().ok_or(BlockError::Length)?;
         let numbers = numbers as usize;
-        let is_whole = if format < GEOMETRY_FORMAT { numbers == expected } else { numbers > expected };
+        let is_whole = if format < GEOMETRY_FORMAT {
+            numbers == expected
+        } else {
+            numbers > expected
+        };
         // The periods are two numbers more.
-        if !is_whole || numbers.checked_add(2).and_then(|all| all.checked_mul(8)) != rest.rest.len().checked_sub(4) {
+        if !is_whole
+            || numbers.checked_add(2).and_then(|all| all.checked_mul(8))
+                != rest.rest.len().checked_sub(4)
+        {
             return Err(BlockError::Length);
         }
         if crc_32(content) != u32::from_le_bytes(*checksum) {
@@ -220,8 +255,17 @@ impl<const N: usize> ModelBlock<N> {
             // The mechanics period is the first number behind the two others.
             *axes = axes.with_periods(servo_s).ok_or(BlockError::Number(2))?;
         }
-        let geometry = if format < GEOMETRY_FORMAT { None } else { Some(rest.geometry()?) };
-        Ok(Self { servo_s, feed_period_s, trained, geometry })
+        let geometry = if format < GEOMETRY_FORMAT {
+            None
+        } else {
+            Some(rest.geometry()?)
+        };
+        Ok(Self {
+            servo_s,
+            feed_period_s,
+            trained,
+            geometry,
+        })
     }
 
     /// Hands over the block that reads as this model, piece by piece.
@@ -256,7 +300,9 @@ impl<const N: usize> ModelBlock<N> {
             put_counted(&period_s.to_le_bytes());
         }
         let put_group = &mut |_: &NumberBounds, group: &mut [f64]| {
-            group.iter().for_each(|number| put_counted(&number.to_le_bytes()));
+            group
+                .iter()
+                .for_each(|number| put_counted(&number.to_le_bytes()));
         };
         trained.numbers_of(format, put_group);
         if let Some(geometry) = &self.geometry {
@@ -349,14 +395,23 @@ impl Bytes<'_> {
         let index = self.number;
         self.number += 1;
         let number = f64::from_le_bytes(self.take().ok_or(BlockError::Length)?);
-        if bounds.hold(number) { Ok(number) } else { Err(BlockError::Number(index)) }
+        if bounds.hold(number) {
+            Ok(number)
+        } else {
+            Err(BlockError::Number(index))
+        }
     }
 
     /// The geometry that takes all that is left but the checksum.
     fn geometry<const N: usize>(&mut self) -> Result<KnownGeometry<N>, BlockError> {
         let bounds = NumberBounds::Within(-MAX_GEOMETRY, MAX_GEOMETRY);
-        let geometry = KnownGeometry::from_numbers(|| self.number(&bounds))?.map_err(|_| BlockError::Geometry)?;
-        if self.rest.len() == 4 { Ok(geometry) } else { Err(BlockError::Length) }
+        let geometry = KnownGeometry::from_numbers(|| self.number(&bounds))?
+            .map_err(|_| BlockError::Geometry)?;
+        if self.rest.len() == 4 {
+            Ok(geometry)
+        } else {
+            Err(BlockError::Length)
+        }
     }
 }
 
@@ -367,7 +422,11 @@ fn crc_on(mut crc: u32, bytes: &[u8]) -> u32 {
     for byte in bytes {
         crc ^= u32::from(*byte);
         for _ in 0..8 {
-            crc = if crc & 1 == 1 { (crc >> 1) ^ 0xEDB8_8320 } else { crc >> 1 };
+            crc = if crc & 1 == 1 {
+                (crc >> 1) ^ 0xEDB8_8320
+            } else {
+                crc >> 1
+            };
         }
     }
     crc
@@ -391,13 +450,21 @@ mod tests {
         let mut next = sequence();
         let mut net = ContourIdentifier::NULL;
         net.weights(&mut |_, group| group.iter_mut().for_each(|weight| *weight = 3.0 * next()));
-        ModelBlock { servo_s: 0.001, feed_period_s: 0.01, trained: Trained::Contour(net), geometry: None }
+        ModelBlock {
+            servo_s: 0.001,
+            feed_period_s: 0.01,
+            trained: Trained::Contour(net),
+            geometry: None,
+        }
     }
 
     /// Each number within its range, and all different.
     fn axes<const N: usize>() -> ModelBlock<N> {
         let mut next = sequence();
-        let mut axes = IdentifiedAxes { mechanics_s: 1e-4, axes: [AxisKnowledge::NOTHING; N] };
+        let mut axes = IdentifiedAxes {
+            mechanics_s: 1e-4,
+            axes: [AxisKnowledge::NOTHING; N],
+        };
         for axis in &mut axes.axes {
             for number in AxisKnowledge::NUMBERS {
                 let [least, most] = number.range;
@@ -405,7 +472,12 @@ mod tests {
             }
         }
         let trained = Trained::Axes(axes.with_periods(0.001).unwrap());
-        ModelBlock { servo_s: 0.001, feed_period_s: 0.001, trained, geometry: None }
+        ModelBlock {
+            servo_s: 0.001,
+            feed_period_s: 0.001,
+            trained,
+            geometry: None,
+        }
     }
 
     fn block<const N: usize>(model: &ModelBlock<N>) -> Vec<u8> {
@@ -435,19 +507,36 @@ mod tests {
 
     #[test]
     fn a_model_comes_back_to_the_bit() {
-        assert_eq!(ModelBlock::from_bytes(&block(&contour::<2>())), Ok(contour::<2>()));
-        assert_eq!(ModelBlock::from_bytes(&block(&contour::<3>())), Ok(contour::<3>()));
-        assert_eq!(ModelBlock::from_bytes(&block(&axes::<2>())), Ok(axes::<2>()));
-        assert_eq!(ModelBlock::from_bytes(&block(&axes::<3>())), Ok(axes::<3>()));
+        assert_eq!(
+            ModelBlock::from_bytes(&block(&contour::<2>())),
+            Ok(contour::<2>())
+        );
+        assert_eq!(
+            ModelBlock::from_bytes(&block(&contour::<3>())),
+            Ok(contour::<3>())
+        );
+        assert_eq!(
+            ModelBlock::from_bytes(&block(&axes::<2>())),
+            Ok(axes::<2>())
+        );
+        assert_eq!(
+            ModelBlock::from_bytes(&block(&axes::<3>())),
+            Ok(axes::<3>())
+        );
     }
 
     #[test]
     fn the_layout_is_what_the_table_says() {
         let bytes = block(&contour::<2>());
-        assert_eq!(bytes[..24], *b"FWMODEL\0\x02\0\0\0\x01\0\0\0\x02\0\0\0\x90\0\0\0");
+        assert_eq!(
+            bytes[..24],
+            *b"FWMODEL\0\x02\0\0\0\x01\0\0\0\x02\0\0\0\x90\0\0\0"
+        );
         assert_eq!(bytes[24..32], 0.001_f64.to_le_bytes());
         assert_eq!(bytes[32..40], 0.01_f64.to_le_bytes());
-        let Trained::Contour(mut net) = contour::<2>().trained else { panic!("a contour") };
+        let Trained::Contour(mut net) = contour::<2>().trained else {
+            panic!("a contour")
+        };
         let mut weights = Vec::new();
         net.weights(&mut |_, group| weights.extend_from_slice(group));
         let n = 2 * (5 * 12 + 12);
@@ -455,13 +544,22 @@ mod tests {
         assert_eq!(bytes[40 + 8 * (n - 1)..][..8], weights[n - 1].to_le_bytes());
         assert_eq!((n, bytes.len()), (0x90, 40 + 8 * n + 4));
         let bytes = block(&axes::<3>());
-        let Trained::Axes(identified) = axes::<3>().trained else { panic!("axes") };
-        let at = |index: usize| f64::from_le_bytes(bytes[40 + 8 * index..][..8].try_into().unwrap());
+        let Trained::Axes(identified) = axes::<3>().trained else {
+            panic!("axes")
+        };
+        let at =
+            |index: usize| f64::from_le_bytes(bytes[40 + 8 * index..][..8].try_into().unwrap());
         let count = AxisKnowledge::NUMBERS.len();
-        assert_eq!((bytes[12], at(0), bytes.len()), (3, 1e-4, 40 + 8 * (1 + 3 * count) + 4));
+        assert_eq!(
+            (bytes[12], at(0), bytes.len()),
+            (3, 1e-4, 40 + 8 * (1 + 3 * count) + 4)
+        );
         assert_eq!(at(1), identified.axes[0].parameters.rad_per_mm);
         assert_eq!(at(1 + 10), identified.axes[0].drive.speed_window_s);
-        assert_eq!(at(1 + count + 13), identified.axes[1].parameters.inertia_kg_m2);
+        assert_eq!(
+            at(1 + count + 13),
+            identified.axes[1].parameters.inertia_kg_m2
+        );
         assert_eq!(at(3 * count), identified.axes[2].delays.command_s);
     }
 
@@ -469,37 +567,65 @@ mod tests {
     fn a_block_without_command_delay_is_one_of_format_2() {
         let mut model = axes::<2>();
         let with = block(&model);
-        let Trained::Axes(identified) = &mut model.trained else { panic!("axes") };
-        identified.axes.iter_mut().for_each(|axis| axis.delays.command_s = 0.0);
+        let Trained::Axes(identified) = &mut model.trained else {
+            panic!("axes")
+        };
+        identified
+            .axes
+            .iter_mut()
+            .for_each(|axis| axis.delays.command_s = 0.0);
         let without = block(&model);
-        assert_eq!((with[8], without[8], with.len() - without.len()), (3, 2, 2 * 8));
+        assert_eq!(
+            (with[8], without[8], with.len() - without.len()),
+            (3, 2, 2 * 8)
+        );
         assert_eq!(ModelBlock::<2>::from_bytes(&without), Ok(model));
         let mut relabeled = without;
         relabeled[8] = 3;
-        assert_eq!(ModelBlock::<2>::from_bytes(&sealed(relabeled)), Err(BlockError::Length));
+        assert_eq!(
+            ModelBlock::<2>::from_bytes(&sealed(relabeled)),
+            Err(BlockError::Length)
+        );
     }
 
     /// With every kind of error.
     fn with_geometry<const N: usize>(model: ModelBlock<N>) -> ModelBlock<N> {
-        let axis =
-            AxisErrors { scale: 1e-5, pitch_mm: 0.002, pitch_rad_per_mm: 0.6, pitch_phase_rad: 1.0, backlash_mm: 0.0 };
+        let axis = AxisErrors {
+            scale: 1e-5,
+            pitch_mm: 0.002,
+            pitch_rad_per_mm: 0.6,
+            pitch_phase_rad: 1.0,
+            backlash_mm: 0.0,
+        };
         let table = ErrorTable::new([[-10.0, 0.001], [0.0, 0.0], [30.0, -0.002]]).unwrap();
         let geometry = KnownGeometry::new([axis; N], [2e-5, -1e-5, 1e-5]).with_table(0, 1, table);
-        ModelBlock { geometry: Some(geometry), ..model }
+        ModelBlock {
+            geometry: Some(geometry),
+            ..model
+        }
     }
 
     #[test]
     fn a_geometry_comes_back_to_the_bit_in_a_block_of_format_4() {
         let model = with_geometry(axes::<3>());
         let bytes = block(&model);
-        assert_eq!((bytes[8], bytes.len()), (4, block(&axes::<3>()).len() + 8 * (3 * 4 + 3 + 9 + 6)));
+        assert_eq!(
+            (bytes[8], bytes.len()),
+            (4, block(&axes::<3>()).len() + 8 * (3 * 4 + 3 + 9 + 6))
+        );
         assert_eq!(ModelBlock::from_bytes(&bytes), Ok(model));
-        assert_eq!(ModelBlock::from_bytes(&block(&with_geometry(contour::<2>()))), Ok(with_geometry(contour::<2>())));
+        assert_eq!(
+            ModelBlock::from_bytes(&block(&with_geometry(contour::<2>()))),
+            Ok(with_geometry(contour::<2>()))
+        );
         // A geometry is not what an earlier format has, and a later one does not go without.
         for (bytes, format) in [(bytes, 3), (block(&axes::<3>()), 4)] {
             let mut relabeled = bytes;
             relabeled[8] = format;
-            assert_eq!(ModelBlock::<3>::from_bytes(&sealed(relabeled)), Err(BlockError::Length));
+            assert_eq!(
+                ModelBlock::<3>::from_bytes(&sealed(relabeled)),
+                Err(BlockError::Length)
+            );
         }
     }
 
@@ -520,12 +646,19 @@ mod tests {
 
     #[test]
     fn any_changed_byte_is_refused() {
-        for bytes in [block(&contour::<2>()), block(&axes::<2>()), block(&with_geometry(axes::<2>()))] {
+        for bytes in [
+            block(&contour::<2>()),
+            block(&axes::<2>()),
+            block(&with_geometry(axes::<2>())),
+        ] {
             for at in 0..bytes.len() {
                 for change in [0x01, 0x80, 0xff] {
                     let mut changed = bytes.clone();
                     changed[at] ^= change;
-                    assert!(ModelBlock::<2>::from_bytes(&changed).is_err(), "byte {at} by {change:#x}");
+                    assert!(
+                        ModelBlock::<2>::from_bytes(&changed).is_err(),
+                        "byte {at} by {change:#x}"
+                    );
                 }
             }
         }
@@ -540,16 +673,26 @@ mod tests {
 
     fn of_any_other_length_are_refused(bytes: Vec<u8>) {
         for length in 0..bytes.len() {
-            assert!(ModelBlock::<2>::from_bytes(&bytes[..length]).is_err(), "{length}");
+            assert!(
+                ModelBlock::<2>::from_bytes(&bytes[..length]).is_err(),
+                "{length}"
+            );
             let mut cut = bytes[..length].to_vec();
             if length >= 28 {
                 cut = sealed(cut);
-                assert_eq!(ModelBlock::<2>::from_bytes(&cut), Err(BlockError::Length), "{length}");
+                assert_eq!(
+                    ModelBlock::<2>::from_bytes(&cut),
+                    Err(BlockError::Length),
+                    "{length}"
+                );
             }
         }
         let mut longer = bytes;
         longer.extend_from_slice(&[0; 8]);
-        assert_eq!(ModelBlock::<2>::from_bytes(&sealed(longer)), Err(BlockError::Length));
+        assert_eq!(
+            ModelBlock::<2>::from_bytes(&sealed(longer)),
+            Err(BlockError::Length)
+        );
     }
 
     #[test]
@@ -562,13 +705,25 @@ mod tests {
         assert_eq!(with_whole(8, 1), Err(BlockError::Format(1)));
         assert_eq!(with_whole(12, 4), Err(BlockError::Kind(4)));
         let of_another_time = std::format!("{}", with_whole(12, SERVO).unwrap_err());
-        assert!(of_another_time.contains("servo identifier"), "{of_another_time}");
-        assert!(of_another_time.contains("'feedwright identify'"), "{of_another_time}");
+        assert!(
+            of_another_time.contains("servo identifier"),
+            "{of_another_time}"
+        );
+        assert!(
+            of_another_time.contains("'feedwright identify'"),
+            "{of_another_time}"
+        );
         assert_eq!(with_whole(12, 3), Err(BlockError::Length));
         assert_eq!(with_whole(16, 3), Err(BlockError::Axes(3)));
         assert_eq!(with_whole(20, u32::MAX), Err(BlockError::Length));
-        assert_eq!(ModelBlock::<3>::from_bytes(&block(&contour::<2>())), Err(BlockError::Axes(2)));
-        assert_eq!(ModelBlock::<2>::from_bytes(&[0; 4096]), Err(BlockError::NoModel));
+        assert_eq!(
+            ModelBlock::<3>::from_bytes(&block(&contour::<2>())),
+            Err(BlockError::Axes(2))
+        );
+        assert_eq!(
+            ModelBlock::<2>::from_bytes(&[0; 4096]),
+            Err(BlockError::NoModel)
+        );
     }
 
     #[test]
@@ -577,30 +732,54 @@ mod tests {
         let numbers = (bytes.len() - 28) / 8;
         for index in 0..numbers {
             for number in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e7, -1e7] {
-                let refused = ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), index, number));
+                let refused =
+                    ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), index, number));
                 assert_eq!(refused, Err(BlockError::Number(index)), "{number}");
             }
         }
-        let refused = |index, number| ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), index, number)).is_err();
+        let refused = |index, number| {
+            ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), index, number)).is_err()
+        };
         assert!(refused(0, 0.0) && refused(1, 0.0) && refused(1, 2.0));
     }
 
     #[test]
     fn every_number_of_an_axis_has_its_own_bounds() {
         let bytes = block(&axes::<2>());
-        let read = |index, number| ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), index, number));
+        let read =
+            |index, number| ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), index, number));
         for axis in 0..2 {
             for (i, number) in AxisKnowledge::NUMBERS.iter().enumerate() {
                 let index = 3 + axis * AxisKnowledge::NUMBERS.len() + i;
                 let [least, most] = number.range;
-                for value in [f64::NAN, f64::INFINITY, -f64::INFINITY, least - 1.0, 1.001 * most] {
-                    assert_eq!(read(index, value), Err(BlockError::Number(index)), "{} {value}", number.name);
+                for value in [
+                    f64::NAN,
+                    f64::INFINITY,
+                    -f64::INFINITY,
+                    least - 1.0,
+                    1.001 * most,
+                ] {
+                    assert_eq!(
+                        read(index, value),
+                        Err(BlockError::Number(index)),
+                        "{} {value}",
+                        number.name
+                    );
                 }
-                assert!(read(index, least).is_ok() && read(index, most).is_ok(), "{}", number.name);
+                assert!(
+                    read(index, least).is_ok() && read(index, most).is_ok(),
+                    "{}",
+                    number.name
+                );
                 // What is divided by is zero or no less than its least.
                 let divides = number.or_none || least > 0.0;
                 assert_eq!(read(index, 1e-300).is_err(), divides, "{}", number.name);
-                assert_eq!(read(index, 0.0).is_err(), least > 0.0 && !number.or_none, "{}", number.name);
+                assert_eq!(
+                    read(index, 0.0).is_err(),
+                    least > 0.0 && !number.or_none,
+                    "{}",
+                    number.name
+                );
             }
         }
     }
@@ -608,19 +787,49 @@ mod tests {
     #[test]
     fn axes_have_whole_mechanics_periods_in_a_servo_period() {
         let bytes = block(&axes::<2>());
-        let read = |mechanics_s| ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), 2, mechanics_s));
-        for hostile_s in [0.0, -0.0, -1e-4, f64::NAN, f64::INFINITY, 1e-300, 9e-8, 1e-7, 5e-7, 0.0003, 0.002, 0.1, 1e7]
-        {
+        let read =
+            |mechanics_s| ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), 2, mechanics_s));
+        for hostile_s in [
+            0.0,
+            -0.0,
+            -1e-4,
+            f64::NAN,
+            f64::INFINITY,
+            1e-300,
+            9e-8,
+            1e-7,
+            5e-7,
+            0.0003,
+            0.002,
+            0.1,
+            1e7,
+        ] {
             assert_eq!(read(hostile_s), Err(BlockError::Number(2)), "{hostile_s}");
         }
         for (fine_s, periods) in [(1e-6, 1_000), (1e-4, 10), (0.0005, 2), (0.001, 1)] {
-            let Ok(ModelBlock { trained: Trained::Axes(axes), .. }) = read(fine_s) else { panic!("{fine_s}") };
-            assert!(axes.axes.iter().all(|axis| axis.periods.mechanics_per_servo == periods), "{fine_s}");
+            let Ok(ModelBlock {
+                trained: Trained::Axes(axes),
+                ..
+            }) = read(fine_s)
+            else {
+                panic!("{fine_s}")
+            };
+            assert!(
+                axes.axes
+                    .iter()
+                    .all(|axis| axis.periods.mechanics_per_servo == periods),
+                "{fine_s}"
+            );
         }
         // The longest servo period has a million of the shortest.
         let longest = with_number(with_number(bytes.clone(), 0, 0.1), 2, 1e-7);
-        assert_eq!(ModelBlock::<2>::from_bytes(&longest), Err(BlockError::Number(2)));
-        let Trained::Axes(identified) = axes::<2>().trained else { panic!("axes") };
+        assert_eq!(
+            ModelBlock::<2>::from_bytes(&longest),
+            Err(BlockError::Number(2))
+        );
+        let Trained::Axes(identified) = axes::<2>().trained else {
+            panic!("axes")
+        };
         assert!(identified.are_possible(0.001) && !identified.are_possible(0.00015));
         assert!(!IdentifiedAxes::<2>::NULL.are_possible(0.001));
     }

@@ -32,7 +32,9 @@ pub fn sin(angle_rad: f64) -> f64 {
         half
     };
     let square = quarter * quarter;
-    let series = TAYLOR.iter().fold(0.0, |sum, coefficient| (sum + coefficient) * square);
+    let series = TAYLOR
+        .iter()
+        .fold(0.0, |sum, coefficient| (sum + coefficient) * square);
     quarter + quarter * series
 }
 
@@ -44,12 +46,22 @@ mod tests {
     fn it_is_that_of_the_library_and_what_is_not_finite_has_none() {
         for n in -20_000..20_000 {
             let angle_rad = 0.0137 * f64::from(n);
-            assert!((sin(angle_rad) - libm::sin(angle_rad)).abs() < 1e-12, "{angle_rad}");
+            assert!(
+                (sin(angle_rad) - libm::sin(angle_rad)).abs() < 1e-12,
+                "{angle_rad}"
+            );
         }
         for angle_rad in [1e5, -3.3e6] {
-            assert!((sin(angle_rad) - libm::sin(angle_rad)).abs() < 1e-9, "{angle_rad}");
+            assert!(
+                (sin(angle_rad) - libm::sin(angle_rad)).abs() < 1e-9,
+                "{angle_rad}"
+            );
         }
         assert_eq!(sin(0.0), 0.0);
-        assert!([f64::NAN, f64::INFINITY].into_iter().all(|angle_rad| sin(angle_rad).is_nan()));
+        assert!(
+            [f64::NAN, f64::INFINITY]
+                .into_iter()
+                .all(|angle_rad| sin(angle_rad).is_nan())
+        );
     }
 }

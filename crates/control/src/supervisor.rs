@@ -1,6 +1,8 @@
-//! The supervisor: it stands between every controller and the machine, in a simulation as in a servo thread.
+//! The supervisor: it stands between every controller and the machine, in a simulation as in a
+//! servo thread.
 //!
-//! It holds each command within [`Bounds`], and follows a controller only while the tool is nearer to the path by it:
+//! It holds each command within [`Bounds`], and follows a controller only while the tool is nearer
+//! to the path by it:
 //!
 //! | Seen | Test | Then |
 //! |---|---|---|
@@ -15,15 +17,19 @@
 //! | the command was held to a bound | | it asks for less |
 //! | nothing of this, for a while | 0.1 s of motion, and twice as long out as the last time | back in, within 40 ms or more |
 //!
-//! Out is a fade within [`Bounds::fade_mm_s2`]: less and less of what is asked for now, or the way back of an offset of which nothing is known any
-//! more. While a controller is out it goes on learning.
+//! Out is a fade within [`Bounds::fade_mm_s2`]: less and less of what is asked for now, or the way
+//! back of an offset of which nothing is known any more. While a controller is out it goes on
+//! learning.
 //!
-//! Each wrong prediction of a law counts only beyond four standard deviations of noise, and twice; a learned law is taken for better than a right one
-//! in one of a thousand trials (`controller/lqg_preview/learning.rs`).
+//! Each wrong prediction of a law counts only beyond four standard deviations of noise, and twice;
+//! a learned law is taken for better than a right one in one of a thousand trials
+//! (`controller/lqg_preview/learning.rs`).
 //!
-//! The bound of the harm, by a controller that harms as it likes within its bounds and knows what its offset does, on a machine with a lag of 20 ms: no error is beyond 1.5 times the largest
-//! without it, 30 um and half the largest deviation; none stays beyond the first two for longer than 0.15 s; and the mean square is at most 1.75 times that
-//! without it and (5 um)^2. `tests/property_supervisor.rs` attacks it.
+//! The bound of the harm, by a controller that harms as it likes within its bounds and knows what
+//! its offset does, on a machine with a lag of 20 ms: no error is beyond 1.5 times the largest
+//! without it, 30 um and half the largest deviation; none stays beyond the first two for longer
+//! than 0.15 s; and the mean square is at most 1.75 times that without it and (5 um)^2.
+//! `tests/property_supervisor.rs` attacks it.
 //!
 //! | File | What |
 //! |---|---|
@@ -63,14 +69,16 @@ pub use fade::fade_acceleration;
 const WRONG_DECISIONS: u32 = 4;
 /// A prediction is wrong where it misses by this part of the largest deviation.
 const WRONG_SHARE: f64 = 0.2;
-/// A prediction that misses by less than this is not worth a word, mm, however small the largest deviation is.
+/// A prediction that misses by less than this is not worth a word, mm, however small the largest
+/// deviation is.
 const MIN_WRONG_MM: f64 = 0.02;
 /// A prediction is good where it misses by less than this part of a wrong one.
 const GOOD_SHARE: f64 = 0.5;
 /// What a controller says of itself behind a decision.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SelfReport<const N: usize> {
-    /// By how much its last prediction missed, mm; infinite where its law is wrong, and what that rests on.
+    /// By how much its last prediction missed, mm; infinite where its law is wrong, and what that
+    /// rests on.
     pub(crate) prediction_error_mm: f64,
     pub(crate) doubt: Option<FaultEvidence>,
     /// By how much its offset has moved the tool, mm, where it knows.
@@ -148,8 +156,8 @@ impl<const N: usize> Supervisor<N> {
         self.benefit.open_mm()
     }
 
-    /// The command of the next feed period: what the controller wanted, within the bounds, or the way back to the path. It wanted nothing where the
-    /// position was lost.
+    /// The command of the next feed period: what the controller wanted, within the bounds, or the
+    /// way back to the path. It wanted nothing where the position was lost.
     #[inline]
     pub(crate) fn decide(
         &mut self,
@@ -176,7 +184,14 @@ impl<const N: usize> Supervisor<N> {
         let asked = match state {
             _ if told.acts_at_once => {
                 if state != before && state != State::Shadow {
-                    self.dose.turn(if is_known { wanted.offset_mm } else { window.offset_mm }, self.bounds.fade_mm_s2);
+                    self.dose.turn(
+                        if is_known {
+                            wanted.offset_mm
+                        } else {
+                            window.offset_mm
+                        },
+                        self.bounds.fade_mm_s2,
+                    );
                 }
                 self.dose.learn(told.learned);
                 self.at_once(window, &wanted, state, is_known)
@@ -185,15 +200,24 @@ impl<const N: usize> Supervisor<N> {
             State::Shadow => Command::AS_PLANNED,
             State::Fading => self.faded(window),
         };
-        let command = self.bounds.hold(window, asked, self.rate, told.acts_at_once);
+        let command = self
+            .bounds
+            .hold(window, asked, self.rate, told.acts_at_once);
         self.held = state == State::Engaged && (command != asked || self.dose.is_reduced());
         self.rate = command.rate;
         command
     }
 
-    /// The command of a controller that acts at once: the part of its offset that is due, within the owner's acceleration. Where nothing `is_known` of what
-    /// it asks for, the offset goes back from where it is.
-    fn at_once(&mut self, window: &Window<'_, N>, wanted: &Command<N>, state: State, is_known: bool) -> Command<N> {
+    /// The command of a controller that acts at once: the part of its offset that is due, within
+    /// the owner's acceleration. Where nothing `is_known` of what it asks for, the offset goes back
+    /// from where it is.
+    fn at_once(
+        &mut self,
+        window: &Window<'_, N>,
+        wanted: &Command<N>,
+        state: State,
+        is_known: bool,
+    ) -> Command<N> {
         let period_s = window.feed_period_s;
         let is_in = state == State::Engaged;
         let due_mm = match state {
@@ -214,7 +238,10 @@ impl<const N: usize> Supervisor<N> {
         };
         let offset_mm = self.bounds.accelerated_mm(window, due_mm);
         self.dose.take_in(sub(due_mm, offset_mm), period_s);
-        Command { offset_mm, ..if is_in { *wanted } else { Command::AS_PLANNED } }
+        Command {
+            offset_mm,
+            ..if is_in { *wanted } else { Command::AS_PLANNED }
+        }
     }
 
     /// Why a controller must not be followed, and what that rests on.
@@ -231,21 +258,31 @@ impl<const N: usize> Supervisor<N> {
             wrong_mm if wrong_mm > self.wrong_mm() => self.wrong + 1,
             _ => 0,
         };
-        // Where nothing that is predicted can be true, neither can what an offset is said to have done.
+        // Where nothing that is predicted can be true, neither can what an offset is said to have
+        // done.
         let harm = if told.prediction_error_mm < f64::INFINITY {
-            self.benefit.harm(window, measured.position_mm, &measured.contour, told.moved_mm)
+            self.benefit.harm(
+                window,
+                measured.position_mm,
+                &measured.contour,
+                told.moved_mm,
+            )
         } else {
             None
         };
         if !sum.is_finite() {
             Some((Cause::NotANumber, None))
         } else if self.wrong >= WRONG_DECISIONS {
-            let missed = FaultEvidence { found_mm: told.prediction_error_mm, limit_mm: self.wrong_mm() };
+            let missed = FaultEvidence {
+                found_mm: told.prediction_error_mm,
+                limit_mm: self.wrong_mm(),
+            };
             // An infinite error is the controller's own judgment: nothing was measured.
             let measured = Some(missed).filter(|missed| missed.found_mm < f64::INFINITY);
             Some((Cause::WrongPredictions, told.doubt.or(measured)))
         } else {
-            harm.filter(|_| told.corrects).map(|harm| (Cause::Harmful, Some(harm)))
+            harm.filter(|_| told.corrects)
+                .map(|harm| (Cause::Harmful, Some(harm)))
         }
     }
 
@@ -260,15 +297,21 @@ impl<const N: usize> Supervisor<N> {
         Command::accelerated(window, window.offset_mm_s, acceleration_mm_s2)
     }
 
-    /// Where an offset that is there at once is a period further on its way back, mm. What is there in one step has no speed that it has to go on with
-    /// where no acceleration is asked of it.
+    /// Where an offset that is there at once is a period further on its way back, mm. What is there
+    /// in one step has no speed that it has to go on with where no acceleration is asked of it.
     fn faded_mm(&self, window: &Window<'_, N>) -> [f64; N] {
         let mut speed_mm_s = window.offset_mm_s;
         if self.bounds.engaged_mm_s2 == f64::INFINITY {
             let axes = speed_mm_s.iter_mut().zip(window.offset_mm);
-            axes.for_each(|(speed, offset_mm)| *speed = fade::begins_mm_s(offset_mm, *speed, self.bounds.fade_mm_s2));
+            axes.for_each(|(speed, offset_mm)| {
+                *speed = fade::begins_mm_s(offset_mm, *speed, self.bounds.fade_mm_s2);
+            });
         }
-        let speed_mm_s = add_scaled(speed_mm_s, window.feed_period_s, self.fade_mm_s2(window, speed_mm_s));
+        let speed_mm_s = add_scaled(
+            speed_mm_s,
+            window.feed_period_s,
+            self.fade_mm_s2(window, speed_mm_s),
+        );
         add_scaled(window.offset_mm, window.feed_period_s, speed_mm_s)
     }
 
@@ -285,5 +328,9 @@ impl<const N: usize> Supervisor<N> {
 
 /// What is due of an offset that fades, but no more than its way back has, mm.
 fn nearer(due_mm: f64, faded_mm: f64) -> f64 {
-    if due_mm * faded_mm > 0.0 && due_mm.abs() < faded_mm.abs() { due_mm } else { faded_mm }
+    if due_mm * faded_mm > 0.0 && due_mm.abs() < faded_mm.abs() {
+        due_mm
+    } else {
+        faded_mm
+    }
 }

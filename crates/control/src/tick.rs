@@ -1,7 +1,8 @@
 //! The tick: from the reference and a measurement to the position command of one servo period.
 //!
-//! The same code runs around a simulated plant and in a servo thread. Once a feed period the controller observes and
-//! decides, under the supervisor; in every servo period the command moves on along the path and between the two offsets.
+//! The same code runs around a simulated plant and in a servo thread. Once a feed period the
+//! controller observes and decides, under the supervisor; in every servo period the command moves
+//! on along the path and between the two offsets.
 
 use crate::command::{Command, Measured};
 use crate::contour_error::{ContourError, Estimator};
@@ -24,8 +25,9 @@ pub struct Setpoint<const N: usize> {
     pub decided: bool,
 }
 
-/// Plan time in servo periods: whole ones and a part of one. At the planned feed it is a whole number, whatever its size; a sum
-/// of seconds would be off by rounding after minutes, and then lead to the servo period before.
+/// Plan time in servo periods: whole ones and a part of one. At the planned feed it is a whole
+/// number, whatever its size; a sum of seconds would be off by rounding after minutes, and then
+/// lead to the servo period before.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct PlanTime {
     periods: u64,
@@ -39,7 +41,10 @@ impl PlanTime {
         let sum = self.part + periods;
         let whole = libm::floor(sum);
         // A float that is not a number saturates to zero here.
-        Self { periods: self.periods + whole as u64, part: sum - whole }
+        Self {
+            periods: self.periods + whole as u64,
+            part: sum - whole,
+        }
     }
 
     #[inline]
@@ -71,12 +76,16 @@ pub struct Tick<const N: usize> {
 }
 
 impl<const N: usize> Tick<N> {
-    /// At the start of a program, for a controller with this schedule and a servo period of `servo_s` seconds.
+    /// At the start of a program, for a controller with this schedule and a servo period of
+    /// `servo_s` seconds.
     pub fn new(servo_s: f64, schedule: Schedule, bounds: Bounds) -> Self {
         Self {
             servo_s,
             supervisor: Supervisor::new(bounds),
-            schedule: Schedule { servo_periods: schedule.servo_periods.max(1), ..schedule },
+            schedule: Schedule {
+                servo_periods: schedule.servo_periods.max(1),
+                ..schedule
+            },
             register: Register::default(),
             feedback: Feedback::NONE,
             estimator: Estimator::default(),
@@ -91,52 +100,81 @@ impl<const N: usize> Tick<N> {
         }
     }
 
-    /// One servo period: the tool is at `tool_mm` at its start. Always the same work, but for the decision.
+    /// One servo period: the tool is at `tool_mm` at its start. Always the same work, but for the
+    /// decision.
     #[inline]
-    pub fn step<R, C>(&mut self, reference: &mut R, controller: &mut C, tool_mm: [f64; N]) -> Setpoint<N>
+    pub fn step<R, C>(
+        &mut self,
+        reference: &mut R,
+        controller: &mut C,
+        tool_mm: [f64; N],
+    ) -> Setpoint<N>
     where
         R: KnotSource<N> + ?Sized,
         C: Controller<N> + ?Sized,
     {
         if self.phase == self.schedule.servo_periods {
             self.time = self.time.after(f64::from(self.phase) * self.command.rate);
-            self.offset_from_mm_s = self.command.offset_mm_s(self.offset_from_mm, self.feed_period_s());
+            self.offset_from_mm_s = self
+                .command
+                .offset_mm_s(self.offset_from_mm, self.feed_period_s());
             self.offset_from_mm = self.command.offset_mm;
             self.phase = 0;
         }
         let decided = self.phase == 0;
-        let tau_s = self.time.after(f64::from(self.phase) * self.command.rate).seconds(self.servo_s);
+        let tau_s = self
+            .time
+            .after(f64::from(self.phase) * self.command.rate)
+            .seconds(self.servo_s);
         let path = reference.knot(tau_s).or_as(self.register.knot(0));
         self.register.push(path);
-        self.preview.fill(reference, tau_s, f64::from(self.schedule.preview) * self.feed_period_s());
+        self.preview.fill(
+            reference,
+            tau_s,
+            f64::from(self.schedule.preview) * self.feed_period_s(),
+        );
         let most_mm_s = self.supervisor.bounds().speed_mm_s;
         let last_mm = self.command_mm.unwrap_or(path.position_mm);
-        self.feedback.take_in(tool_mm, last_mm, self.servo_s, most_mm_s);
+        self.feedback
+            .take_in(tool_mm, last_mm, self.servo_s, most_mm_s);
         if decided {
             self.decide(controller, tool_mm);
         }
-        let reached = if controller.acts_at_once() { self.phase + 1 } else { self.phase };
+        let reached = if controller.acts_at_once() {
+            self.phase + 1
+        } else {
+            self.phase
+        };
         let part = f64::from(reached) / f64::from(self.schedule.servo_periods);
         let offset_mm = self.command.offset_after_mm(part, self.offset_from_mm);
         self.phase += 1;
         let command_mm = add_scaled(path.position_mm, 1.0, offset_mm);
         self.command_mm = Some(command_mm);
-        Setpoint { tau_s, path, command_mm, decided }
+        Setpoint {
+            tau_s,
+            path,
+            command_mm,
+            decided,
+        }
     }
 
     /// Advances plan time by `periods` servo periods at rest without computing them. Nothing else
     /// changes.
     pub fn skip(&mut self, periods: u64) {
-        self.time = PlanTime { periods: self.time.periods.saturating_add(periods), ..self.time };
+        self.time = PlanTime {
+            periods: self.time.periods.saturating_add(periods),
+            ..self.time
+        };
     }
 
-    /// Holds the commands to other bounds from the next decision on. A smaller deviation is reached within one step: the caller changes it
-    /// no faster than the offset may move.
+    /// Holds the commands to other bounds from the next decision on. A smaller deviation is reached
+    /// within one step: the caller changes it no faster than the offset may move.
     pub fn hold_to(&mut self, bounds: Bounds) {
         self.supervisor.hold_to(bounds);
     }
 
-    /// Whether a correction is wanted from the next decision on. One that is not fades; one that is again comes back as after a fault.
+    /// Whether a correction is wanted from the next decision on. One that is not fades; one that is
+    /// again comes back as after a fault.
     pub fn allow(&mut self, allowed: bool) {
         self.supervisor.allow(allowed);
     }
@@ -146,7 +184,8 @@ impl<const N: usize> Tick<N> {
         self.supervisor.held()
     }
 
-    /// Contour error that there would have been at the last decision without the correction, by the controller's model, mm.
+    /// Contour error that there would have been at the last decision without the correction, by the
+    /// controller's model, mm.
     pub fn without_mm(&self) -> f64 {
         self.supervisor.without_mm()
     }
@@ -176,7 +215,10 @@ impl<const N: usize> Tick<N> {
             offset_mm_s: self.offset_from_mm_s,
         };
         self.contour = self.estimator.estimate(&window, tool_mm);
-        let measured = Measured { position_mm: tool_mm, contour: self.contour };
+        let measured = Measured {
+            position_mm: tool_mm,
+            contour: self.contour,
+        };
         let lost = self.feedback.take_lost();
         controller.observe(&window, (!lost).then_some(&measured));
         let wanted = (!lost).then(|| controller.command(&window, &measured));
@@ -208,7 +250,10 @@ mod tests {
             time = time.after(3.0);
         }
         assert_eq!((time.periods, time.part), (3_000_000, 0.0));
-        assert_eq!(time.seconds(0.001).to_bits(), (3_000_000.0 * 0.001_f64).to_bits());
+        assert_eq!(
+            time.seconds(0.001).to_bits(),
+            (3_000_000.0 * 0.001_f64).to_bits()
+        );
     }
 
     #[test]
@@ -224,7 +269,10 @@ mod tests {
 
     impl Controller<2> for Growing {
         fn schedule(&self) -> Schedule {
-            Schedule { servo_periods: 5, preview: 0 }
+            Schedule {
+                servo_periods: 5,
+                preview: 0,
+            }
         }
 
         fn reset(&mut self) {
@@ -239,13 +287,24 @@ mod tests {
 
     #[test]
     fn an_offset_is_reached_at_the_end_of_the_feed_period_in_which_it_was_decided() {
-        let mut tick = Tick::new(0.001, Growing(0.0).schedule(), Bounds::new(1.0, 400.0, 1000.0));
+        let mut tick = Tick::new(
+            0.001,
+            Growing(0.0).schedule(),
+            Bounds::new(1.0, 400.0, 1000.0),
+        );
         let (mut controller, mut tool_mm) = (Growing(0.0), [0.0; 2]);
         for n in 0..50_u32 {
             let setpoint = tick.step(&mut Line, &mut controller, tool_mm);
             assert_eq!(setpoint.decided, n.is_multiple_of(5), "{n}");
-            assert!((setpoint.command_mm[0] - 0.05 * f64::from(n)).abs() < 1e-12, "{n}");
-            assert!((setpoint.command_mm[1] - 2e-4 * f64::from(n)).abs() < 1e-12, "{n}: {:?}", setpoint.command_mm);
+            assert!(
+                (setpoint.command_mm[0] - 0.05 * f64::from(n)).abs() < 1e-12,
+                "{n}"
+            );
+            assert!(
+                (setpoint.command_mm[1] - 2e-4 * f64::from(n)).abs() < 1e-12,
+                "{n}: {:?}",
+                setpoint.command_mm
+            );
             tool_mm = setpoint.command_mm;
         }
     }

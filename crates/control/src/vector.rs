@@ -59,8 +59,9 @@ pub fn fourth_power(x: f64) -> f64 {
     x * x * x * x
 }
 
-/// `x`, taken to the nearer end of `least` to `most` where it is beyond. Not a number becomes `least`; where the ends are
-/// crossed, or not numbers, the result is one of them or `x`. `f64::clamp` would panic.
+/// `x`, taken to the nearer end of `least` to `most` where it is beyond. Not a number becomes
+/// `least`; where the ends are crossed, or not numbers, the result is one of them or `x`.
+/// `f64::clamp` would panic.
 #[inline]
 pub fn bounded(x: f64, least: f64, most: f64) -> f64 {
     x.max(least).min(most)
@@ -88,12 +89,18 @@ mod tests {
     #[test]
     fn what_is_rejected_has_nothing_left_along_the_direction() {
         let left = reject([3.0, -2.0, 7.0], [0.6, 0.8, 0.0]);
-        assert!(dot(left, [0.6, 0.8, 0.0]).abs() < 1e-15 && (left[2] - 7.0).abs() < 1e-15, "{left:?}");
+        assert!(
+            dot(left, [0.6, 0.8, 0.0]).abs() < 1e-15 && (left[2] - 7.0).abs() < 1e-15,
+            "{left:?}"
+        );
     }
 
     #[test]
     fn a_bounded_number_is_within_its_bounds_whatever_it_was() {
-        assert_eq!([-3.0, 0.5, 3.0, f64::NAN].map(|x| bounded(x, -1.0, 2.0)), [-1.0, 0.5, 2.0, -1.0]);
+        assert_eq!(
+            [-3.0, 0.5, 3.0, f64::NAN].map(|x| bounded(x, -1.0, 2.0)),
+            [-1.0, 0.5, 2.0, -1.0]
+        );
         assert!(bounded(0.5, f64::NAN, f64::NAN) == 0.5);
     }
 }

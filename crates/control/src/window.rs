@@ -1,25 +1,29 @@
-//! The part of the path that a controller sees: knots behind (the paper's shift register) and ahead (the preview).
+//! The part of the path that a controller sees: knots behind (the paper's shift register) and ahead
+//! (the preview).
 //!
-//! Source: Lee, Cho and Jeon (2005), section 2.2: "previously stored N reference position data in a shift register".
-//! Departure: a knot also carries the tangent, so that a corner between two knots is not cut off.
+//! Source: Lee, Cho and Jeon (2005), section 2.2: "previously stored N reference position data in a
+//! shift register". Departure: a knot also carries the tangent, so that a corner between two knots
+//! is not cut off.
 
 use crate::vector::{add_scaled, bounded, dot, norm, reject, sub};
 
-/// Reference knots that the shift register holds. At a servo period of 1 ms they reach 0.26 s back, thirteen time
-/// constants of a position loop of 50 1/s; a tool that lags further behind than that is not following.
+/// Reference knots that the shift register holds. At a servo period of 1 ms they reach 0.26 s back,
+/// thirteen time constants of a position loop of 50 1/s; a tool that lags further behind than that
+/// is not following.
 pub const REGISTER_KNOTS: usize = 256;
-/// Reference knots that the preview holds. At a servo period of 1 ms they reach as far ahead as the register reaches
-/// back, more than twice the settling time of such a loop.
+/// Reference knots that the preview holds. At a servo period of 1 ms they reach as far ahead as the
+/// register reaches back, more than twice the settling time of such a loop.
 pub const PREVIEW_KNOTS: usize = 256;
 /// Grid points that the preview keeps: as many behind the current knot as ahead of it.
 const GRID_KNOTS: usize = 2 * PREVIEW_KNOTS;
-/// A plan time this near a grid point is at it, in parts of the grid's step: rounding is a millionth of that, and what the
-/// path turns by in so short a time is nothing.
+/// A plan time this near a grid point is at it, in parts of the grid's step: rounding is a
+/// millionth of that, and what the path turns by in so short a time is nothing.
 const AT_A_POINT: f64 = 1e-6;
-/// Cosine of the turn between neighbouring knots above which there is a corner between them (0.1 rad: a curve turns so
-/// much in one servo period only where its radius is below ten steps).
+/// Cosine of the turn between neighbouring knots above which there is a corner between them (0.1
+/// rad: a curve turns so much in one servo period only where its radius is below ten steps).
 pub(crate) const CORNER_COSINE: f64 = 0.995;
-/// A knot nearer than this to the last is not stored again, mm: at rest the register keeps its history.
+/// A knot nearer than this to the last is not stored again, mm: at rest the register keeps its
+/// history.
 const SAME_PLACE_MM: f64 = 1e-7;
 
 /// A point of the programmed path.
@@ -40,40 +44,68 @@ impl<const N: usize> Knot<N> {
     pub const REST: Self = {
         let mut tangent = [0.0; N];
         tangent[0] = 1.0;
-        Self { position_mm: [0.0; N], tangent, feed_mm_s: 0.0, cutting: false }
+        Self {
+            position_mm: [0.0; N],
+            tangent,
+            feed_mm_s: 0.0,
+            cutting: false,
+        }
     };
 
     /// Whether every number is one, and the tangent a direction.
     pub fn is_valid(&self) -> bool {
         let length = norm(self.tangent);
-        (length - 1.0).abs() < 1e-3 && norm(self.position_mm).is_finite() && self.feed_mm_s.is_finite()
+        (length - 1.0).abs() < 1e-3
+            && norm(self.position_mm).is_finite()
+            && self.feed_mm_s.is_finite()
     }
 
     /// This knot if it is valid; otherwise `other` with a feedrate of 0.
     #[inline]
     pub fn or_as(self, other: &Self) -> Self {
-        if self.is_valid() { self } else { Self { feed_mm_s: 0.0, ..*other } }
+        if self.is_valid() {
+            self
+        } else {
+            Self {
+                feed_mm_s: 0.0,
+                ..*other
+            }
+        }
     }
 
-    /// The path between this knot and one `step_s` later, after `part` of the time: a cubic that meets both with their
-    /// feedrates, or where there is a corner between them, both sides of it.
+    /// The path between this knot and one `step_s` later, after `part` of the time: a cubic that
+    /// meets both with their feedrates, or where there is a corner between them, both sides of it.
     #[inline]
     fn after(&self, next: &Self, step_s: f64, part: f64) -> Self {
         let chord = sub(next.position_mm, self.position_mm);
         let cosine = dot(self.tangent, next.tangent);
         let feed_mm_s = self.feed_mm_s + part * (next.feed_mm_s - self.feed_mm_s);
         let nearer = if part < 0.5 { self } else { next };
-        let mut knot = Self { feed_mm_s, ..*nearer };
+        let mut knot = Self {
+            feed_mm_s,
+            ..*nearer
+        };
         if cosine >= CORNER_COSINE {
             let rest = 1.0 - part;
-            let ends = [part * rest * rest * step_s * self.feed_mm_s, -part * part * rest * step_s * next.feed_mm_s];
+            let ends = [
+                part * rest * rest * step_s * self.feed_mm_s,
+                -part * part * rest * step_s * next.feed_mm_s,
+            ];
             let straight = add_scaled(self.position_mm, part * part * (1.0 + 2.0 * rest), chord);
-            knot.position_mm = add_scaled(add_scaled(straight, ends[0], self.tangent), ends[1], next.tangent);
+            knot.position_mm = add_scaled(
+                add_scaled(straight, ends[0], self.tangent),
+                ends[1],
+                next.tangent,
+            );
         } else if let Some(to_corner_mm) = corner(self, next) {
             let corner_mm = add_scaled(self.position_mm, to_corner_mm, self.tangent);
             let from_corner_mm = norm(sub(next.position_mm, corner_mm));
             let gone_mm = part * (to_corner_mm + from_corner_mm) - to_corner_mm;
-            knot.tangent = if gone_mm < 0.0 { self.tangent } else { next.tangent };
+            knot.tangent = if gone_mm < 0.0 {
+                self.tangent
+            } else {
+                next.tangent
+            };
             knot.position_mm = add_scaled(corner_mm, gone_mm, knot.tangent);
         } else {
             knot.position_mm = add_scaled(self.position_mm, part, chord);
@@ -82,8 +114,8 @@ impl<const N: usize> Knot<N> {
     }
 }
 
-/// How far the corner between two knots lies ahead of the first, mm: where the two tangent lines meet. None where the path
-/// is smooth, or turns back.
+/// How far the corner between two knots lies ahead of the first, mm: where the two tangent lines
+/// meet. None where the path is smooth, or turns back.
 #[inline]
 pub(crate) fn corner<const N: usize>(from: &Knot<N>, to: &Knot<N>) -> Option<f64> {
     let cosine = dot(from.tangent, to.tangent);
@@ -113,16 +145,21 @@ pub struct Register<const N: usize> {
 
 impl<const N: usize> Default for Register<N> {
     fn default() -> Self {
-        Self { knots: [Knot::REST; REGISTER_KNOTS], newest: 0, len: 0 }
+        Self {
+            knots: [Knot::REST; REGISTER_KNOTS],
+            newest: 0,
+            len: 0,
+        }
     }
 }
 
 impl<const N: usize> Register<N> {
-    /// Shifts a knot in; the oldest falls out. A knot in the place of the newest replaces it. Says whether it was
-    /// shifted.
+    /// Shifts a knot in; the oldest falls out. A knot in the place of the newest replaces it. Says
+    /// whether it was shifted.
     #[inline]
     pub fn push(&mut self, knot: Knot<N>) -> bool {
-        let moved = self.len == 0 || norm(sub(knot.position_mm, self.knot(0).position_mm)) > SAME_PLACE_MM;
+        let moved =
+            self.len == 0 || norm(sub(knot.position_mm, self.knot(0).position_mm)) > SAME_PLACE_MM;
         if moved {
             self.newest = (self.newest + 1) % REGISTER_KNOTS;
             self.len = (self.len + 1).min(REGISTER_KNOTS);
@@ -143,7 +180,8 @@ impl<const N: usize> Register<N> {
         self.len == 0
     }
 
-    /// The knot pushed `age` moves ago; 0 is the newest. `age` beyond the register gives the oldest slot's content.
+    /// The knot pushed `age` moves ago; 0 is the newest. `age` beyond the register gives the oldest
+    /// slot's content.
     #[inline]
     pub fn knot(&self, age: usize) -> &Knot<N> {
         &self.knots[(self.newest + REGISTER_KNOTS - age.min(REGISTER_KNOTS - 1)) % REGISTER_KNOTS]
@@ -162,10 +200,15 @@ pub struct Preview<const N: usize> {
 impl<const N: usize> Preview<N> {
     /// Empty, with a grid of `step_s` seconds.
     pub fn new(step_s: f64) -> Self {
-        Self { knots: [Knot::REST; GRID_KNOTS], next: 0, step_s }
+        Self {
+            knots: [Knot::REST; GRID_KNOTS],
+            next: 0,
+            step_s,
+        }
     }
 
-    /// Looks knots up until the grid reaches `ahead_s` beyond `tau_s`; at most `PREVIEW_KNOTS` of them ahead.
+    /// Looks knots up until the grid reaches `ahead_s` beyond `tau_s`; at most `PREVIEW_KNOTS` of
+    /// them ahead.
     #[inline]
     pub fn fill<R: KnotSource<N> + ?Sized>(&mut self, reference: &mut R, tau_s: f64, ahead_s: f64) {
         let (now, _) = self.place(tau_s);
@@ -186,18 +229,24 @@ impl<const N: usize> Preview<N> {
     pub fn at(&self, tau_s: f64) -> Knot<N> {
         let (point, part) = self.place(tau_s);
         let before = self.grid(point);
-        if part > 0.0 { before.after(self.grid(point + 1), self.step_s, part) } else { *before }
+        if part > 0.0 {
+            before.after(self.grid(point + 1), self.step_s, part)
+        } else {
+            *before
+        }
     }
 
     /// The knot of a grid point; the nearest that the ring holds where it does not hold it.
     #[inline]
     pub fn grid(&self, point: u64) -> &Knot<N> {
-        let held = point.min(self.next.saturating_sub(1)).max(self.next.saturating_sub(GRID_KNOTS as u64));
+        let held = point
+            .min(self.next.saturating_sub(1))
+            .max(self.next.saturating_sub(GRID_KNOTS as u64));
         &self.knots[(held % GRID_KNOTS as u64) as usize]
     }
 
-    /// The last grid point at or before a plan time, and the part of a step behind it. Plan time is a multiple of the step
-    /// but for rounding, which must not lead to the grid point before.
+    /// The last grid point at or before a plan time, and the part of a step behind it. Plan time is
+    /// a multiple of the step but for rounding, which must not lead to the grid point before.
     #[inline]
     fn place(&self, tau_s: f64) -> (u64, f64) {
         let place = (tau_s / self.step_s).max(0.0);
@@ -264,14 +313,19 @@ impl<'a, const N: usize> Window<'a, N> {
         if index <= 0 {
             self.register.knot(index.unsigned_abs() as usize)
         } else {
-            self.preview.grid(self.point() + u64::from(index.unsigned_abs()))
+            self.preview
+                .grid(self.point() + u64::from(index.unsigned_abs()))
         }
     }
 
     /// The first and the last index of that sequence.
     #[inline]
     pub fn range(&self) -> [i32; 2] {
-        let ahead = self.preview.next.saturating_sub(self.point() + 1).min(PREVIEW_KNOTS as u64 - 1);
+        let ahead = self
+            .preview
+            .next
+            .saturating_sub(self.point() + 1)
+            .min(PREVIEW_KNOTS as u64 - 1);
         [1 - self.register.len().max(1) as i32, ahead as i32]
     }
 }
@@ -285,12 +339,22 @@ pub(crate) mod tests {
 
     impl KnotSource<2> for Line {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
-            Knot { position_mm: [50.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0, cutting: true }
+            Knot {
+                position_mm: [50.0 * tau_s, 0.0],
+                tangent: [1.0, 0.0],
+                feed_mm_s: 50.0,
+                cutting: true,
+            }
         }
     }
 
     fn at(x: f64) -> Knot<2> {
-        Knot { position_mm: [x, 0.0], tangent: [1.0, 0.0], feed_mm_s: 1.0, cutting: true }
+        Knot {
+            position_mm: [x, 0.0],
+            tangent: [1.0, 0.0],
+            feed_mm_s: 1.0,
+            cutting: true,
+        }
     }
 
     #[test]

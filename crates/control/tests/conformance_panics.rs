@@ -6,15 +6,33 @@ use std::process::Command;
 /// Links `tests/linked_tick`, where the handler of a panic cannot be linked.
 fn link(more: &[&str]) -> Result<(), String> {
     let output = Command::new(env!("CARGO"))
-        .args(["rustc", "--release", "--locked", "--quiet", "--color", "never"])
-        .args(["--manifest-path", concat!(env!("CARGO_MANIFEST_DIR"), "/tests/linked_tick/Cargo.toml")])
-        .args(["--target-dir", concat!(env!("CARGO_TARGET_TMPDIR"), "/linked_tick")])
+        .args([
+            "rustc",
+            "--release",
+            "--locked",
+            "--quiet",
+            "--color",
+            "never",
+        ])
+        .args([
+            "--manifest-path",
+            concat!(env!("CARGO_MANIFEST_DIR"), "/tests/linked_tick/Cargo.toml"),
+        ])
+        .args([
+            "--target-dir",
+            concat!(env!("CARGO_TARGET_TMPDIR"), "/linked_tick"),
+        ])
         .args(more)
-        // A library may leave symbols open, but for this; what the compiler copies memory with is in the C library.
+        // A library may leave symbols open, but for this; what the compiler copies memory with is
+        // in the C library.
         .args(["--", "-C", "link-arg=-Wl,-z,defs", "-C", "link-arg=-lc"])
         .output()
         .unwrap();
-    if output.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&output.stderr).into_owned()) }
+    if output.status.success() {
+        Ok(())
+    } else {
+        Err(String::from_utf8_lossy(&output.stderr).into_owned())
+    }
 }
 
 #[test]

@@ -8,15 +8,15 @@ use proptest::prelude::*;
 const TRAVEL_MM: f64 = 1000.0;
 
 fn axis() -> impl Strategy<Value = AxisErrors> {
-    (-2e-3..2e-3, -0.02..0.02, 4.0..20.0, -4.0..4.0).prop_map(|(scale, pitch_mm, lead_mm, pitch_phase_rad)| {
-        AxisErrors {
+    (-2e-3..2e-3, -0.02..0.02, 4.0..20.0, -4.0..4.0).prop_map(
+        |(scale, pitch_mm, lead_mm, pitch_phase_rad)| AxisErrors {
             scale,
             pitch_mm,
             pitch_rad_per_mm: std::f64::consts::TAU / lead_mm,
             pitch_phase_rad,
             ..AxisErrors::default()
-        }
-    })
+        },
+    )
 }
 
 /// A table with points 20 to 400 mm apart, each up to 0.02 mm from the one before.
@@ -49,7 +49,9 @@ fn place() -> impl Strategy<Value = [f64; 3]> {
 }
 
 fn largest(difference: [f64; 3]) -> f64 {
-    difference.into_iter().fold(0.0, |most, part| most.max(part.abs()))
+    difference
+        .into_iter()
+        .fold(0.0, |most, part| most.max(part.abs()))
 }
 
 proptest! {
@@ -67,7 +69,8 @@ proptest! {
         let h = 1e-3;
         let by_differences = sub(step(h), step(-h)).map(|part| part / (2.0 * h));
         let found = geometry.tool_moved(joints_mm, moved);
-        // A table has a step in its second derivative at its points: at most 3 chords of 0.02 mm over 20 mm, over h.
+        // A table has a step in its second derivative at its points: at most 3 chords of 0.02 mm
+        // over 20 mm, over h.
         prop_assert!(largest(sub(found, by_differences)) < 2e-6, "{found:?} {by_differences:?}");
         let back = geometry.joints_moved(joints_mm, found);
         prop_assert!(largest(sub(back, moved)) < 1e-11, "{moved:?} {back:?}");

@@ -21,8 +21,8 @@ const BOUNDS: Bounds = Bounds {
 };
 /// Acceleration of a fade, mm/s2.
 const FADE_MM_S2: f64 = 400.0;
-/// The layer knows the path as chords between knots, behind at up to three times the planned spacing, and expects the next
-/// knot on such a chord: (s^2 + (3 s)^2) / 8 R, and rounding.
+/// The layer knows the path as chords between knots, behind at up to three times the planned
+/// spacing, and expects the next knot on such a chord: (s^2 + (3 s)^2) / 8 R, and rounding.
 const SAGITTA_MM: f64 = 3.2e-4;
 /// Lag of the simulated tool, s.
 const LAG_S: f64 = 0.02;
@@ -51,7 +51,10 @@ struct Script<C, M> {
 
 impl<C: Fn(u32) -> Command<2>, M: Fn(u32) -> f64> Controller<2> for Script<C, M> {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: SERVO_PERIODS, preview: 10 }
+        Schedule {
+            servo_periods: SERVO_PERIODS,
+            preview: 10,
+        }
     }
 
     fn reset(&mut self) {
@@ -93,21 +96,32 @@ fn run(
     command: impl Fn(u32) -> Command<2>,
     prediction_error_mm: impl Fn(u32) -> f64,
 ) -> Ran {
-    let mut controller = Script { command, prediction_error_mm, decision: 0 };
+    let mut controller = Script {
+        command,
+        prediction_error_mm,
+        decision: 0,
+    };
     let mut tick = Tick::new(SERVO_S, controller.schedule(), BOUNDS);
     let mut tool = [0.0; 2];
     let (mut knots, mut states) = (Vec::new(), Vec::new());
     for n in 0..periods {
         let setpoint = tick.step(&mut Circle, &mut controller, seen(n, tool));
         if setpoint.decided {
-            knots.push(Knots { path_mm: setpoint.path.position_mm, command_mm: setpoint.command_mm });
+            knots.push(Knots {
+                path_mm: setpoint.path.position_mm,
+                command_mm: setpoint.command_mm,
+            });
         }
         states.push(tick.state());
         for axis in 0..2 {
             tool[axis] += SERVO_S / LAG_S * (setpoint.command_mm[axis] - tool[axis]);
         }
     }
-    Ran { knots, fade: tick.fade(), states }
+    Ran {
+        knots,
+        fade: tick.fade(),
+        states,
+    }
 }
 
 fn as_it_is(_: u32, tool: [f64; 2]) -> [f64; 2] {
@@ -139,7 +153,8 @@ proptest! {
             let offset = sub(knot.command_mm, knot.path_mm);
             if let Some((_, before)) = last {
                 let speed = norm(sub(offset, before)) / FEED_PERIOD_S;
-                // The deviation goes before: where it binds, the command is taken back on top, across its motion.
+                // The deviation goes before: where it binds, the command is taken back on top,
+                // across its motion.
                 let binds = norm(offset) > BOUNDS.deviation_mm - 1e-9;
                 let bound = if binds { 2.0 } else { 1.0 } * BOUNDS.speed_mm_s;
                 prop_assert!(speed <= bound + 1e-6, "{k}: {speed} mm/s");
@@ -184,19 +199,36 @@ fn a_controller_that_does_well_stays() {
     assert_eq!(run(3000, as_it_is, good, |_| 0.01).fade, None);
 }
 
-/// Servo periods from a fault on until the controller has left the loop, and from its end until it is back.
+/// Servo periods from a fault on until the controller has left the loop, and from its end until it
+/// is back.
 fn left_and_back(states: &[State], from: usize, to: usize) -> (Option<usize>, Option<usize>) {
-    let left = states[from..].iter().position(|state| *state != State::Engaged);
-    let back = states[to..].iter().position(|state| *state == State::Engaged);
+    let left = states[from..]
+        .iter()
+        .position(|state| *state != State::Engaged);
+    let back = states[to..]
+        .iter()
+        .position(|state| *state == State::Engaged);
     (left, back)
 }
 
 #[test]
 fn after_lost_leaping_and_frozen_feedback_the_controller_comes_back() {
     const FROM: u32 = 500;
-    let lost = |n: u32, tool: [f64; 2]| if (FROM..FROM + 50).contains(&n) { [f64::NAN; 2] } else { tool };
+    let lost = |n: u32, tool: [f64; 2]| {
+        if (FROM..FROM + 50).contains(&n) {
+            [f64::NAN; 2]
+        } else {
+            tool
+        }
+    };
     let once = |n: u32, tool: [f64; 2]| if n == FROM { [f64::NAN, 0.0] } else { tool };
-    let leapt = |n: u32, tool: [f64; 2]| if (FROM..FROM + 50).contains(&n) { [tool[0] + 1.0, tool[1]] } else { tool };
+    let leapt = |n: u32, tool: [f64; 2]| {
+        if (FROM..FROM + 50).contains(&n) {
+            [tool[0] + 1.0, tool[1]]
+        } else {
+            tool
+        }
+    };
     let held = std::cell::Cell::new([0.0; 2]);
     let frozen = |n: u32, tool: [f64; 2]| {
         if !(FROM..FROM + 100).contains(&n) {
@@ -211,10 +243,20 @@ fn after_lost_leaping_and_frozen_feedback_the_controller_comes_back() {
         (run(3000, frozen, good, |_| 0.0), 100),
     ];
     for (kind, (ran, lasts)) in ran.into_iter().enumerate() {
-        assert_eq!(ran.fade.map(|fade| fade.cause), Some(Cause::LostFeedback), "{kind}");
+        assert_eq!(
+            ran.fade.map(|fade| fade.cause),
+            Some(Cause::LostFeedback),
+            "{kind}"
+        );
         let (left, back) = left_and_back(&ran.states, FROM as usize, FROM as usize + lasts);
-        assert!(left.is_some_and(|left| left <= 20), "{kind}: leaves after {left:?} ms");
-        assert!(back.is_some_and(|back| back <= 1000), "{kind}: back after {back:?} ms");
+        assert!(
+            left.is_some_and(|left| left <= 20),
+            "{kind}: leaves after {left:?} ms"
+        );
+        assert!(
+            back.is_some_and(|back| back <= 1000),
+            "{kind}: back after {back:?} ms"
+        );
     }
 }
 
@@ -222,11 +264,18 @@ fn after_lost_leaping_and_frozen_feedback_the_controller_comes_back() {
 fn a_fade_keeps_its_acceleration() {
     let lost = |n: u32, tool: [f64; 2]| if n >= 500 { [f64::NAN; 2] } else { tool };
     let ran = run(1000, lost, |_| Command::straight(1.0, [0.1, -0.1]), |_| 0.0);
-    let offsets: Vec<[f64; 2]> = ran.knots.iter().map(|knot| sub(knot.command_mm, knot.path_mm)).collect();
+    let offsets: Vec<[f64; 2]> = ran
+        .knots
+        .iter()
+        .map(|knot| sub(knot.command_mm, knot.path_mm))
+        .collect();
     for k in 102..offsets.len() {
         for axis in 0..2 {
             let second = offsets[k][axis] - 2.0 * offsets[k - 1][axis] + offsets[k - 2][axis];
-            assert!(second.abs() <= FADE_MM_S2 * FEED_PERIOD_S * FEED_PERIOD_S * (1.0 + 1e-9), "{k}: {second}");
+            assert!(
+                second.abs() <= FADE_MM_S2 * FEED_PERIOD_S * FEED_PERIOD_S * (1.0 + 1e-9),
+                "{k}: {second}"
+            );
         }
     }
     assert!(norm(*offsets.last().unwrap()) < 1e-6);
@@ -238,12 +287,21 @@ fn predictions_that_are_wrong_several_times_in_a_row_take_the_controller_out() {
     assert_eq!(run(2000, as_it_is, good, now_and_then).fade, None);
     let from_100_on = |k: u32| if k > 100 { 1.0 } else { 0.0 };
     let fade = run(2000, as_it_is, good, from_100_on).fade;
-    assert_eq!(fade.map(|fade| (fade.cause, fade.decision)), Some((Cause::WrongPredictions, 103)));
-    assert!(fade.is_some_and(|fade| fade.evidence.is_some_and(|evidence| evidence.found_mm == 1.0)));
+    assert_eq!(
+        fade.map(|fade| (fade.cause, fade.decision)),
+        Some((Cause::WrongPredictions, 103))
+    );
+    assert!(fade.is_some_and(|fade| {
+        fade.evidence
+            .is_some_and(|evidence| evidence.found_mm == 1.0)
+    }));
     // A controller that gives itself up has measured nothing.
     let gives_up = |k: u32| if k > 100 { f64::INFINITY } else { 0.0 };
     let fade = run(2000, as_it_is, good, gives_up).fade;
-    assert_eq!(fade.map(|fade| (fade.cause, fade.evidence)), Some((Cause::WrongPredictions, None)));
+    assert_eq!(
+        fade.map(|fade| (fade.cause, fade.evidence)),
+        Some((Cause::WrongPredictions, None))
+    );
 }
 
 #[test]
@@ -254,16 +312,23 @@ fn a_correction_that_makes_it_worse_leaves_the_loop() {
         let swing = 0.15 * (std::f64::consts::TAU * 10.0 * FEED_PERIOD_S * f64::from(k)).sin();
         Command::straight(1.0, [swing, swing])
     };
-    for fade in [run(3000, as_it_is, steady, |_| 0.0).fade, run(3000, as_it_is, swinging, |_| 0.0).fade] {
+    for fade in [
+        run(3000, as_it_is, steady, |_| 0.0).fade,
+        run(3000, as_it_is, swinging, |_| 0.0).fade,
+    ] {
         assert_eq!(fade.map(|fade| fade.cause), Some(Cause::Harmful));
     }
 }
 
-/// A controller that wants three times the feed, under a rise of 20 %: the plan never runs faster than 1.2 times, and comes to that.
+/// A controller that wants three times the feed, under a rise of 20 %: the plan never runs faster
+/// than 1.2 times, and comes to that.
 #[test]
 fn the_feed_rises_by_no_more_than_it_may() {
-    let mut controller =
-        Script { command: |_| Command::straight(3.0, [0.0; 2]), prediction_error_mm: |_| 0.0, decision: 0 };
+    let mut controller = Script {
+        command: |_| Command::straight(3.0, [0.0; 2]),
+        prediction_error_mm: |_| 0.0,
+        decision: 0,
+    };
     let mut tick = Tick::new(SERVO_S, controller.schedule(), BOUNDS.feed_rise(Some(20.0)));
     let (mut tool_mm, mut last_s, mut fastest) = ([0.0; 2], 0.0, 0.0_f64);
     for _ in 0..500 {
@@ -277,7 +342,8 @@ fn the_feed_rises_by_no_more_than_it_may() {
     assert!((fastest - 1.2).abs() < 1e-9, "{fastest}");
 }
 
-/// Harms as it likes, and knows what its offset does: the tool follows it with the lag of the machine.
+/// Harms as it likes, and knows what its offset does: the tool follows it with the lag of the
+/// machine.
 struct Wild {
     /// Amplitude of each axis, mm, and frequency of each, Hz.
     amplitude_mm: [f64; 2],
@@ -288,7 +354,10 @@ struct Wild {
 
 impl Controller<2> for Wild {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: 1, preview: 10 }
+        Schedule {
+            servo_periods: 1,
+            preview: 10,
+        }
     }
 
     fn reset(&mut self) {
@@ -318,7 +387,9 @@ impl Wild {
     /// The offset of the last decision.
     fn swing_mm(&self) -> [f64; 2] {
         let t_s = SERVO_S * f64::from(self.period);
-        std::array::from_fn(|i| self.amplitude_mm[i] * (std::f64::consts::TAU * self.hz[i] * t_s).sin())
+        std::array::from_fn(|i| {
+            self.amplitude_mm[i] * (std::f64::consts::TAU * self.hz[i] * t_s).sin()
+        })
     }
 }
 
@@ -341,7 +412,8 @@ fn wild(mut controller: Wild, allowed: bool) -> Vec<(f64, State)> {
 const ROUNDING_MM: f64 = 1e-12;
 /// An error beyond this many times the largest without the correction, and this much, mm, is harm.
 const HARM: [f64; 2] = [1.5, 0.03];
-/// Behind it the offset goes on moving the tool by this part of its bound, and for so long, servo periods.
+/// Behind it the offset goes on moving the tool by this part of its bound, and for so long, servo
+/// periods.
 const GOES_ON: f64 = 0.5;
 const FOR_PERIODS: usize = 150;
 /// Mean square that is harm, times that without and mm^2.
@@ -403,7 +475,12 @@ struct Line;
 
 impl KnotSource<2> for Line {
     fn knot(&mut self, tau_s: f64) -> Knot<2> {
-        Knot { position_mm: [FEED_MM_S * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: FEED_MM_S, cutting: true }
+        Knot {
+            position_mm: [FEED_MM_S * tau_s, 0.0],
+            tangent: [1.0, 0.0],
+            feed_mm_s: FEED_MM_S,
+            cutting: true,
+        }
     }
 }
 
@@ -412,7 +489,14 @@ impl KnotSource<2> for Line {
 fn an_offset_along_the_path_is_kept_however_long_it_is() {
     const LEAD_MM: f64 = 8.0;
     for lead_mm in [LEAD_MM, -LEAD_MM] {
-        let mut tick = Tick::new(SERVO_S, Schedule { servo_periods: SERVO_PERIODS, preview: 40 }, BOUNDS);
+        let mut tick = Tick::new(
+            SERVO_S,
+            Schedule {
+                servo_periods: SERVO_PERIODS,
+                preview: 40,
+            },
+            BOUNDS,
+        );
         let mut controller = Script {
             command: |k| Command::straight(1.0, [(0.5 * f64::from(k)).min(1.0) * lead_mm, 0.0]),
             prediction_error_mm: |_| 0.0,
@@ -430,15 +514,25 @@ fn an_offset_along_the_path_is_kept_however_long_it_is() {
     }
 }
 
-/// The offset of a controller that acts at once is there in the servo period of the decision; behind a fault it comes back gently.
+/// The offset of a controller that acts at once is there in the servo period of the decision;
+/// behind a fault it comes back gently.
 #[test]
 fn what_acts_at_once_is_there_at_once_and_comes_back_gently() {
     const LOST: std::ops::Range<u32> = 1500..1510;
-    let mut controller = Wild { amplitude_mm: [0.002, 0.003], hz: [0.3, 0.2], moved_mm: [0.0; 2], period: 0 };
+    let mut controller = Wild {
+        amplitude_mm: [0.002, 0.003],
+        hz: [0.3, 0.2],
+        moved_mm: [0.0; 2],
+        period: 0,
+    };
     let mut tick = Tick::new(SERVO_S, controller.schedule(), BOUNDS);
     let (mut tool_mm, mut back) = ([0.0; 2], 0);
     for n in 0..4000 {
-        let seen_mm = if LOST.contains(&n) { [f64::NAN; 2] } else { tool_mm };
+        let seen_mm = if LOST.contains(&n) {
+            [f64::NAN; 2]
+        } else {
+            tool_mm
+        };
         let setpoint = tick.step(&mut Circle, &mut controller, seen_mm);
         let offset_mm = sub(setpoint.command_mm, setpoint.path.position_mm);
         let off_mm = norm(sub(offset_mm, controller.swing_mm()));
@@ -447,7 +541,10 @@ fn what_acts_at_once_is_there_at_once_and_comes_back_gently() {
         }
         if n > LOST.end && tick.state() == State::Engaged {
             back += 1;
-            assert!(back > 5 || norm(offset_mm) < 0.3 * norm(controller.swing_mm()), "{n}: {offset_mm:?}");
+            assert!(
+                back > 5 || norm(offset_mm) < 0.3 * norm(controller.swing_mm()),
+                "{n}: {offset_mm:?}"
+            );
         }
         for axis in 0..2 {
             tool_mm[axis] += SERVO_S / LAG_S * (setpoint.command_mm[axis] - tool_mm[axis]);
@@ -458,14 +555,22 @@ fn what_acts_at_once_is_there_at_once_and_comes_back_gently() {
 
 #[test]
 fn without_an_offset_the_error_without_a_correction_is_the_error_and_skipped_time_is_exact() {
-    let mut controller = Script { command: |_| Command::AS_PLANNED, prediction_error_mm: |_| 0.0, decision: 0 };
+    let mut controller = Script {
+        command: |_| Command::AS_PLANNED,
+        prediction_error_mm: |_| 0.0,
+        decision: 0,
+    };
     let mut tick = Tick::new(SERVO_S, controller.schedule(), BOUNDS);
     let mut tool_mm = [0.0; 2];
     for _ in 0..500 {
         let setpoint = tick.step(&mut Circle, &mut controller, tool_mm);
         tool_mm = setpoint.command_mm;
     }
-    assert!((tick.without_mm() - norm(tick.contour().vector_mm)).abs() < 1e-9, "{}", tick.without_mm());
+    assert!(
+        (tick.without_mm() - norm(tick.contour().vector_mm)).abs() < 1e-9,
+        "{}",
+        tick.without_mm()
+    );
     let before_s = tick.step(&mut Circle, &mut controller, tool_mm).tau_s;
     tick.skip(1000);
     let skipped_s = tick.step(&mut Circle, &mut controller, tool_mm).tau_s - before_s;

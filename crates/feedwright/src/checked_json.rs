@@ -1,4 +1,5 @@
-//! JSON objects with a checksum in front, so that a damaged one is found: `{"check":"0123456789abcdef",...}`.
+//! JSON objects with a checksum in front, so that a damaged one is found:
+//! `{"check":"0123456789abcdef",...}`.
 //!
 //! The checksum is the beginning of the BLAKE3 hash of all that stands behind it.
 
@@ -15,7 +16,10 @@ pub fn with_check(object: &str) -> String {
 
 /// The text of the object without its checksum; nothing where the two do not agree.
 pub fn checked(text: &str) -> Option<String> {
-    let (check, rest) = text.trim_end().strip_prefix(BEGIN)?.split_at_checked(DIGITS)?;
+    let (check, rest) = text
+        .trim_end()
+        .strip_prefix(BEGIN)?
+        .split_at_checked(DIGITS)?;
     let rest = rest.strip_prefix(BETWEEN)?;
     (checksum(rest) == check).then(|| format!("{{{rest}"))
 }
@@ -37,7 +41,13 @@ mod tests {
         for at in 0..kept.len() {
             let mut bytes = kept.clone().into_bytes();
             bytes[at] ^= 1;
-            assert_eq!(String::from_utf8(bytes).ok().and_then(|text| checked(&text)), None, "byte {at}");
+            assert_eq!(
+                String::from_utf8(bytes)
+                    .ok()
+                    .and_then(|text| checked(&text)),
+                None,
+                "byte {at}"
+            );
         }
         assert_eq!((checked(object), checked("")), (None, None));
     }

@@ -1,9 +1,12 @@
-//! The `feedwright` command: arguments in, calls of the library, messages out. It converts and never computes.
+//! The `feedwright` command: arguments in, calls of the library, messages out. It converts and
+//! never computes.
 //!
-//! Data go to stdout, messages and progress to stderr. Exit codes: 0 within tolerance, 1 out of tolerance or worse than without a
-//! correction, 2 any error, 130 interrupted. Those of `check`: 0 at most warnings, 1 mistakes in a file, 2 a file that cannot be read.
+//! Data go to stdout, messages and progress to stderr. Exit codes: 0 within tolerance, 1 out of
+//! tolerance or worse than without a correction, 2 any error, 130 interrupted. Those of `check`: 0
+//! at most warnings, 1 mistakes in a file, 2 a file that cannot be read.
 //!
-//! What is public here serves the laboratory, which has commands of its own and the same look. It may change at any time.
+//! What is public here serves the laboratory, which has commands of its own and the same look. It
+//! may change at any time.
 
 mod date;
 mod terminal;
@@ -58,15 +61,23 @@ pub fn main() -> ExitCode {
     main_of(&std::env::args_os().collect::<Vec<_>>())
 }
 
-/// Runs a command line, whose first argument is the name of the command; help, version and mistakes of it end the process.
+/// Runs a command line, whose first argument is the name of the command; help, version and mistakes
+/// of it end the process.
 pub fn main_of(arguments: &[OsString]) -> ExitCode {
     let cli: Cli = parse_from(arguments);
     let writes_files = cli.command.writes_files();
-    with_console(cli.common.quiet, writes_files, |console| run(cli.command, console))
+    with_console(cli.common.quiet, writes_files, |console| {
+        run(cli.command, console)
+    })
 }
 
-/// Runs a command, shows its error, and returns its exit code. Where the command writes files, an interrupt ends it between two steps.
-pub fn with_console(quiet: bool, writes_files: bool, command: impl FnOnce(&Console) -> Result<ExitCode>) -> ExitCode {
+/// Runs a command, shows its error, and returns its exit code. Where the command writes files, an
+/// interrupt ends it between two steps.
+pub fn with_console(
+    quiet: bool,
+    writes_files: bool,
+    command: impl FnOnce(&Console) -> Result<ExitCode>,
+) -> ExitCode {
     let console = Console::new(quiet);
     if writes_files {
         console.listen();
@@ -95,9 +106,10 @@ fn run(command: CommandArgs, console: &Console) -> Result<ExitCode> {
         CommandArgs::Open(args) => commands::open::run(args, console),
         CommandArgs::Canon(args) => commands::canon::run(&args, console),
         CommandArgs::Machines(MachinesArgs { name: None, .. }) => commands::list::machines(),
-        CommandArgs::Machines(MachinesArgs { name: Some(name), out }) => {
-            commands::list::machine(&name, out.as_deref(), console)
-        }
+        CommandArgs::Machines(MachinesArgs {
+            name: Some(name),
+            out,
+        }) => commands::list::machine(&name, out.as_deref(), console),
         CommandArgs::Controllers { name: None } => controllers(CONTROLLERS),
         CommandArgs::Controllers { name: Some(name) } => controller(&name, CONTROLLERS),
         CommandArgs::Lab(args) => commands::lab::run(&args),

@@ -14,14 +14,16 @@ use crate::report::CompensatedGeometry;
 pub enum GeometryChoice {
     /// Nothing is compensated.
     Off,
-    /// Scale, pitch, squareness and lost motion as the machine file states them. Where an axis has backlash that its encoder does not
-    /// see, lost motion alone: on `router` it leaves 0.61, 0.59, 0.73 and 0.89 of the error of star, circle, slot and pocket, and all
-    /// together 0.53, 0.58, 0.69 and 1.35.
+    /// Scale, pitch, squareness and lost motion as the machine file states them. Where an axis has
+    /// backlash that its encoder does not see, lost motion alone: on `router` it leaves 0.61, 0.59,
+    /// 0.73 and 0.89 of the error of star, circle, slot and pocket, and all together 0.53, 0.58,
+    /// 0.69 and 1.35.
     #[default]
     Machine,
     /// What a geometry file states, whatever the machine file says: the simulated machine has it.
     File(Box<NamedGeometry>),
-    /// The simulated machine has what a geometry file states, and its control compensates nothing: the program does.
+    /// The simulated machine has what a geometry file states, and its control compensates nothing:
+    /// the program does.
     InProgram(Box<NamedGeometry>),
 }
 
@@ -41,11 +43,16 @@ mod text {
     use serde::de::{Deserialize, Deserializer, Error};
     use serde::ser::Serializer;
 
-    pub(super) fn serialize<S: Serializer>(geometry: &GeometryFile, serializer: S) -> Result<S::Ok, S::Error> {
+    pub(super) fn serialize<S: Serializer>(
+        geometry: &GeometryFile,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(&geometry.text())
     }
 
-    pub(super) fn deserialize<'d, D: Deserializer<'d>>(deserializer: D) -> Result<GeometryFile, D::Error> {
+    pub(super) fn deserialize<'d, D: Deserializer<'d>>(
+        deserializer: D,
+    ) -> Result<GeometryFile, D::Error> {
         GeometryFile::parse("geometry", &String::deserialize(deserializer)?).map_err(Error::custom)
     }
 }
@@ -60,8 +67,8 @@ impl GeometryChoice {
         }
     }
 
-    /// The machine with a control that compensates it, for a part with these least and greatest positions, mm. With a geometry file, it is where the
-    /// tool of the machine is, too.
+    /// The machine with a control that compensates it, for a part with these least and greatest
+    /// positions, mm. With a geometry file, it is where the tool of the machine is, too.
     ///
     /// # Errors
     /// As [`Self::on_any_part`], and a geometry that was not measured where the part is.
@@ -76,23 +83,38 @@ impl GeometryChoice {
     /// The machine with a control that compensates it, wherever it cuts.
     ///
     /// # Errors
-    /// A geometry that is out of its range, does not suit the machine, or does not pass its own check.
+    /// A geometry that is out of its range, does not suit the machine, or does not pass its own
+    /// check.
     pub fn on_any_part(&self, machine: &Machine) -> Result<Machine, JobError> {
         Ok(match self {
-            Self::Off => Machine { compensated: None, ..machine.clone() },
+            Self::Off => Machine {
+                compensated: None,
+                ..machine.clone()
+            },
             Self::Machine => machine.compensating_own()?,
             Self::File(file) | Self::InProgram(file) => {
                 file.geometry.check()?;
                 file.geometry.suits(machine)?;
                 let known = file.geometry.known()?;
                 let compensating = machine.compensating(known.clone())?.with_tool(known);
-                if matches!(self, Self::File(_)) { compensating } else { Machine { compensated: None, ..compensating } }
+                if matches!(self, Self::File(_)) {
+                    compensating
+                } else {
+                    Machine {
+                        compensated: None,
+                        ..compensating
+                    }
+                }
             }
         })
     }
 
     /// What the report says of it; none where nothing is compensated.
-    pub(crate) fn reported(&self, machine: &Machine, spread: &SpreadMeter<'_>) -> Option<CompensatedGeometry> {
+    pub(crate) fn reported(
+        &self,
+        machine: &Machine,
+        spread: &SpreadMeter<'_>,
+    ) -> Option<CompensatedGeometry> {
         let compensated = machine.compensated.as_ref()?;
         let from = match self {
             Self::Off | Self::InProgram(_) => return None,
@@ -100,15 +122,32 @@ impl GeometryChoice {
             Self::File(file) => Some(file.name.clone()),
         };
         let mut terms = self.terms(Some(machine));
-        terms.extend(compensated.backlash_mm().iter().any(|mm| *mm != 0.0).then_some("backlash"));
-        let [spread_rms_um, spread_max_um] = spread.finish().map_or([None; 2], |spread_um| spread_um.map(Some));
-        Some(CompensatedGeometry { from, terms, spread_rms_um, spread_max_um })
+        terms.extend(
+            compensated
+                .backlash_mm()
+                .iter()
+                .any(|mm| *mm != 0.0)
+                .then_some("backlash"),
+        );
+        let [spread_rms_um, spread_max_um] = spread
+            .finish()
+            .map_or([None; 2], |spread_um| spread_um.map(Some));
+        Some(CompensatedGeometry {
+            from,
+            terms,
+            spread_rms_um,
+            spread_max_um,
+        })
     }
 
     /// Names of the errors of position that it states, of a machine or of none.
     pub(crate) fn terms(&self, machine: Option<&Machine>) -> Vec<&'static str> {
         let there = |terms: &[(&'static str, bool)]| -> Vec<&'static str> {
-            terms.iter().filter(|(_, there)| *there).map(|(term, _)| *term).collect()
+            terms
+                .iter()
+                .filter(|(_, there)| *there)
+                .map(|(term, _)| *term)
+                .collect()
         };
         match (self, machine) {
             (Self::Off | Self::InProgram(_), _) | (Self::Machine, None) => Vec::new(),
@@ -125,8 +164,16 @@ impl GeometryChoice {
                     ("scale", axes.iter().any(|axis| axis.scale_um_m != 0.0)),
                     ("pitch", axes.iter().any(|axis| axis.pitch_error_um != 0.0)),
                     ("positions", axes.iter().any(|axis| !axis.table.is_empty())),
-                    ("straightness", axes.iter().flat_map(|axis| &axis.straightness).any(|table| !table.is_empty())),
-                    ("squareness", file.geometry.squareness != feedwright_sim::MeasuredSquareness::default()),
+                    (
+                        "straightness",
+                        axes.iter()
+                            .flat_map(|axis| &axis.straightness)
+                            .any(|table| !table.is_empty()),
+                    ),
+                    (
+                        "squareness",
+                        file.geometry.squareness != feedwright_sim::MeasuredSquareness::default(),
+                    ),
                 ])
             }
         }
@@ -138,7 +185,12 @@ impl GeometryChoice {
             Self::File(file) if file.geometry.states_spread() => Some(&file.geometry),
             _ => None,
         };
-        SpreadMeter { geometry, square_sum_um2: 0.0, max_um: 0.0, rows: 0 }
+        SpreadMeter {
+            geometry,
+            square_sum_um2: 0.0,
+            max_um: 0.0,
+            rows: 0,
+        }
     }
 }
 
@@ -151,7 +203,8 @@ pub(crate) struct SpreadMeter<'a> {
 }
 
 impl SpreadMeter<'_> {
-    /// Its root mean square and its largest value, um; none where no standard deviations are stated or nothing cuts.
+    /// Its root mean square and its largest value, um; none where no standard deviations are stated
+    /// or nothing cuts.
     fn finish(&self) -> Option<[f64; 2]> {
         (self.rows > 0).then(|| [(self.square_sum_um2 / self.rows as f64).sqrt(), self.max_um])
     }

@@ -1,7 +1,7 @@
 //! The table of controllers: a name, what it is, where it comes from, and how it is made.
 //!
-//! Help texts, docs and conformance tests iterate over [`CONTROLLERS`]; another table can hold the same rows and more, with the
-//! macro [`controller!`](crate::controller).
+//! Help texts, docs and conformance tests iterate over [`CONTROLLERS`]; another table can hold the
+//! same rows and more, with the macro [`controller!`](crate::controller).
 //!
 //! | File | What |
 //! |---|---|
@@ -27,7 +27,10 @@ pub use make::offset_bounds;
 pub use parameters::{Parameter, ParameterKind, Setting, SettingError, Values};
 pub use recorded::RecordedValues;
 pub use rows::{ACCELERATION_GAIN, FRICTION_GAIN, VELOCITY_GAIN};
-use rows::{ETA, IDENTIFIED_WEIGHT, INVERSION_KNOTS, INVERSION_PERIOD_S, INVERSION_STEPS, LEARNING_STEP, RHO};
+use rows::{
+    ETA, IDENTIFIED_WEIGHT, INVERSION_KNOTS, INVERSION_PERIOD_S, INVERSION_STEPS, LEARNING_STEP,
+    RHO,
+};
 pub use setup::{CutsUncorrected, ModelMisfit, Setup};
 
 /// The stage of all that a first cut on a machine waits for.
@@ -78,8 +81,8 @@ pub enum Knows {
 /// Makes a controller from a setup and the values of its parameters.
 pub type Maker<const N: usize> = fn(&mut Setup<'_>, &Values) -> Box<dyn Controller<N>>;
 
-/// A row of a table of controllers: name, summary, source, what it knows, laps, parameters, and how it is made for N axes from a
-/// [`Setup`] and the values of its parameters.
+/// A row of a table of controllers: name, summary, source, what it knows, laps, parameters, and how
+/// it is made for N axes from a [`Setup`] and the values of its parameters.
 #[macro_export]
 macro_rules! controller {
     ($name:literal, $summary:literal, $source:literal, $knows:ident $(($kind:ident))?, laps: $laps:literal, $parameters:expr, |$setup:ident, $values:ident| $make:expr) => {{
@@ -159,9 +162,16 @@ pub static LQG_IDENTIFIED: Entry = controller!(
 );
 
 /// The controllers that a machine runs.
-pub const CONTROLLERS: Controllers = Controllers::new(&ROWS, include_str!("controllers/recorded.jsonl"));
+pub const CONTROLLERS: Controllers =
+    Controllers::new(&ROWS, include_str!("controllers/recorded.jsonl"));
 
-static ROWS: [&Entry; 5] = [&UNCORRECTED, &FEEDFORWARD, &MAGNITUDE_ONLY, &TWO_DIMENSIONAL, &LQG_IDENTIFIED];
+static ROWS: [&Entry; 5] = [
+    &UNCORRECTED,
+    &FEEDFORWARD,
+    &MAGNITUDE_ONLY,
+    &TWO_DIMENSIONAL,
+    &LQG_IDENTIFIED,
+];
 
 /// The default.
 pub const BEST: &str = "lqg-identified";
@@ -219,10 +229,12 @@ pub struct Choices {
     pub seed: u64,
     /// Parameters that were set, of any controller; the last of the same counts.
     pub set: Vec<Setting>,
-    /// Controllers that cut uncorrected, because none of their values is better than no correction on the machine.
+    /// Controllers that cut uncorrected, because none of their values is better than no correction
+    /// on the machine.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unsuited: Vec<String>,
-    /// Whether the paper's controller has to show that it helps before it is followed. The comparison cuts it as it was published.
+    /// Whether the paper's controller has to show that it helps before it is followed. The
+    /// comparison cuts it as it was published.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub tries: bool,
 }
@@ -230,12 +242,16 @@ pub struct Choices {
 impl Entry {
     /// A parameter by its name.
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
-        self.parameters.iter().find(|parameter| parameter.name == name)
+        self.parameters
+            .iter()
+            .find(|parameter| parameter.name == name)
     }
 
     /// The parameters that the comparison searches for the best of, with the ranges.
     pub fn searched(&self) -> impl Iterator<Item = (&'static Parameter, [f64; 2])> + use<> {
-        self.parameters.iter().filter_map(|parameter| Some((parameter, parameter.searched?)))
+        self.parameters
+            .iter()
+            .filter_map(|parameter| Some((parameter, parameter.searched?)))
     }
 
     /// The controller of this row, with a model in place of a training.

@@ -104,7 +104,8 @@ pub use file_prior::{AssumedValue, FileAssumption};
 use file_prior::{FILE_ERROR, FileModel};
 use kept_work::{Workers, forget, hash_of, keeps_parts};
 pub use learned::{
-    CutProgram, LearnError, LearnedLog, LearnedOutcome, LearnedValue, ModelValue, PlaceError, PredictedCut,
+    CutProgram, LearnError, LearnedLog, LearnedOutcome, LearnedValue, ModelValue, PlaceError,
+    PredictedCut,
 };
 use learned::{LearnedMachine, LoggedProgram};
 pub use nominal::deterministic;
@@ -141,13 +142,15 @@ pub struct CorrectJob {
     pub reader: Settings,
     /// Logs of cuts of the part, by this program or by corrected ones.
     pub logs: Vec<MeasuredLog>,
-    /// Standard deviation of each value of the machine, as a fraction of it; 0 where it is exact. With logs or `believed` it is ignored.
+    /// Standard deviation of each value of the machine, as a fraction of it; 0 where it is exact.
+    /// With logs or `believed` it is ignored.
     pub file_error: f64,
     /// Servo periods of a piece. A program of more than twice as many is corrected in pieces.
     pub piece_periods: u64,
     /// Threads that correct pieces. The result is the same with any number.
     pub threads: usize,
-    /// Where finished pieces of a long program are kept, for a run that ends early. See [`CorrectJob::forget_pieces`].
+    /// Where finished pieces of a long program are kept, for a run that ends early. See
+    /// [`CorrectJob::forget_pieces`].
     pub keep: Option<PathBuf>,
 }
 
@@ -162,13 +165,20 @@ const NO_OVERRIDES: &str = "feed override: not simulated";
 #[cfg(feature = "command")]
 const NOTED_WITHIN: usize = 100;
 
-/// The control that a corrected program was made for, as its note says; none where it has no such note or cannot be read.
+/// The control that a corrected program was made for, as its note says; none where it has no such
+/// note or cannot be read.
 #[cfg(feature = "command")]
 pub(crate) fn corrected_for(program: &Program) -> Option<&'static TargetControl> {
     let (text, _) = program.text().ok()?;
-    let lines = BufReader::new(text).lines().take(NOTED_WITHIN).map_while(Result::ok);
+    let lines = BufReader::new(text)
+        .lines()
+        .take(NOTED_WITHIN)
+        .map_while(Result::ok);
     let mut controls = lines.filter_map(|line| {
-        let (_, control) = line.split_once(CORRECTED_FOR)?.1.rsplit_once(", control ")?;
+        let (_, control) = line
+            .split_once(CORRECTED_FOR)?
+            .1
+            .rsplit_once(", control ")?;
         TargetControl::find(control.trim_end().trim_end_matches(')'))
     });
     controls.next()
@@ -190,7 +200,9 @@ impl JobMachines {
     /// The machine that programs are judged on.
     fn machine(&self) -> &Machine {
         let learned = self.learned.as_ref().map(|learned| &learned.machine);
-        learned.or(self.file.as_ref().map(|file| &file.machine)).unwrap_or(&self.of_job)
+        learned
+            .or(self.file.as_ref().map(|file| &file.machine))
+            .unwrap_or(&self.of_job)
     }
 }
 
@@ -220,13 +232,14 @@ impl CorrectJob {
             logs: Vec::new(),
             file_error: FILE_ERROR,
             piece_periods: PIECE_PERIODS,
-            threads: std::thread::available_parallelism().map_or(1, |cores| cores.get().min(MOST_THREADS)),
+            threads: std::thread::available_parallelism()
+                .map_or(1, |cores| cores.get().min(MOST_THREADS)),
             keep: None,
         }
     }
 
-    /// The error of a machine, as a fraction, where the user states none: a file is uncertain, and a built-in machine is simulated as it is
-    /// written.
+    /// The error of a machine, as a fraction, where the user states none: a file is uncertain, and
+    /// a built-in machine is simulated as it is written.
     pub const fn usual_file_error(is_file: bool) -> f64 {
         if is_file { FILE_ERROR } else { 0.0 }
     }
@@ -234,38 +247,74 @@ impl CorrectJob {
     /// Corrects it and verifies the text.
     ///
     /// # Errors
-    /// A program with mistakes, more axes than the machine has, a geometry that cannot be compensated, or an end from outside.
+    /// A program with mistakes, more axes than the machine has, a geometry that cannot be
+    /// compensated, or an end from outside.
     pub fn run(&self, watch: &dyn Watch) -> Result<CorrectOutcome, JobError> {
         watch.begin("reading the program", 1);
         let summary = self.program.check(self.reader.clone())?;
         let axes = axes_that_move(&self.program, &summary, &self.machine)?;
         self.check_motions(&summary)?;
         let source = SourceProgram::read(&self.program, &self.reader, self.feed_mm_s)?;
-        let path_error = |fault| JobError::Path { part: self.program.name(), fault };
+        let path_error = |fault| JobError::Path {
+            part: self.program.name(),
+            fault,
+        };
         let original = steps_of(&source.steps).map_err(path_error)?;
         let stages = self.target.stages(&self.machine);
         let machines = self.machines(&original, axes, summary.box_mm, watch)?;
         let (machine, learned) = (machines.machine(), machines.learned.as_ref());
         let error = learned.map(|learned| &learned.error);
-        let on = |machine| ExportedCut { machine, error, stages, original: &original, axes, watch };
+        let on = |machine| ExportedCut {
+            machine,
+            error,
+            stages,
+            original: &original,
+            axes,
+            watch,
+        };
         let of_run = |error| JobError::of_run(&self.program, error);
-        let (mut found, workers) =
-            self.found(source, &on(&machines.nominal), machines.file.as_ref()).map_err(of_run)?;
-        let figures = |program: &[Step], stage: &str| on(machine).figures_by(program, stage, &workers).map_err(of_run);
+        let (mut found, workers) = self
+            .found(source, &on(&machines.nominal), machines.file.as_ref())
+            .map_err(of_run)?;
+        let figures = |program: &[Step], stage: &str| {
+            on(machine)
+                .figures_by(program, stage, &workers)
+                .map_err(of_run)
+        };
         let uncorrected = figures(&original, "cutting the uncorrected program")?;
-        let corrected =
-            found.written.as_ref().map(|written| figures(&written.steps, "cutting as exported")).transpose()?;
-        let steps = found.written.as_ref().map(|written| written.steps.as_slice());
-        let predict = |learned: &LearnedMachine| learned_outcome(learned, &on(machine), steps).map_err(of_run);
+        let corrected = found
+            .written
+            .as_ref()
+            .map(|written| figures(&written.steps, "cutting as exported"))
+            .transpose()?;
+        let steps = found
+            .written
+            .as_ref()
+            .map(|written| written.steps.as_slice());
+        let predict = |learned: &LearnedMachine| {
+            learned_outcome(learned, &on(machine), steps).map_err(of_run)
+        };
         let learned = learned.map(predict).transpose()?;
-        let no_gain = learned.as_ref().and_then(|learned| no_gain(learned, &uncorrected));
+        let no_gain = learned
+            .as_ref()
+            .and_then(|learned| no_gain(learned, &uncorrected));
         let changed = found.rounds.commands.iter().flatten().count();
-        let refusal = refusal(&uncorrected, corrected.as_ref(), changed, found.unwritten.as_ref()).or(no_gain);
+        let refusal = refusal(
+            &uncorrected,
+            corrected.as_ref(),
+            changed,
+            found.unwritten.as_ref(),
+        )
+        .or(no_gain);
         let mut feed_overrides = Vec::new();
         if let (Some(written), Some(corrected), None) = (&mut found.written, corrected, &refusal) {
             let programs = [original.as_slice(), written.steps.as_slice()];
-            feed_overrides = on(machine).at_overrides(programs, [uncorrected, corrected], &workers).map_err(of_run)?;
-            written.text = written.text.replacen(NO_OVERRIDES, &override_note(&feed_overrides), 1);
+            feed_overrides = on(machine)
+                .at_overrides(programs, [uncorrected, corrected], &workers)
+                .map_err(of_run)?;
+            written.text = written
+                .text
+                .replacen(NO_OVERRIDES, &override_note(&feed_overrides), 1);
         }
         Ok(CorrectOutcome {
             control: self.target.name,
@@ -278,12 +327,20 @@ impl CorrectJob {
             stretches: found.rounds.commands.len(),
             stretches_changed: changed,
             unchanged: found.unchanged,
-            expanded: found.written.as_ref().is_some_and(|written| written.expanded),
+            expanded: found
+                .written
+                .as_ref()
+                .is_some_and(|written| written.expanded),
             rounds: found.rounds.rounds,
             pieces: found.pieces,
             kept_fault: workers.fault().map(|fault| fault.to_string()),
             dwell_s: found.rounds.dwell_s,
-            warnings: summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect(),
+            warnings: summary
+                .warnings
+                .iter()
+                .cloned()
+                .chain(summary.uncontrolled())
+                .collect(),
             written: found.written,
             learned,
             machine: machine.clone(),
@@ -304,11 +361,21 @@ impl CorrectJob {
         let of_job = self.compensation.on(&self.machine, box_mm)?;
         let learned = self.learned(&of_job, original, axes, watch)?;
         let is_uncertain = learned.is_none() && self.believed.is_none();
-        let file = is_uncertain.then(|| FileModel::uncertain(&of_job, axes, self.file_error)).flatten();
+        let file = is_uncertain
+            .then(|| FileModel::uncertain(&of_job, axes, self.file_error))
+            .flatten();
         let believed = self.believed.as_ref();
         let compensated = of_job.compensated.clone();
-        let believed = believed.map(|machine| Machine { compensated, ..machine.clone() });
-        let mut machines = JobMachines { nominal: of_job.clone(), of_job, learned, file };
+        let believed = believed.map(|machine| Machine {
+            compensated,
+            ..machine.clone()
+        });
+        let mut machines = JobMachines {
+            nominal: of_job.clone(),
+            of_job,
+            learned,
+            file,
+        };
         machines.nominal = deterministic(believed.as_ref().unwrap_or(machines.machine()));
         Ok(machines)
     }
@@ -324,25 +391,48 @@ impl CorrectJob {
         let parts = parts(&source.steps, &splits(&pieces));
         let workers = self.workers(&source, pieces.len());
         let target = self.target.printed(source.largest_unit_mm());
-        let program = LongProgram { steps: &source.steps, parts: &parts, pieces: &pieces };
+        let program = LongProgram {
+            steps: &source.steps,
+            parts: &parts,
+            pieces: &pieces,
+        };
         let mut rounds = rounds_of_pieces(cut, &program, target, file, &workers)?;
         let written = self.written(&source, &parts, &mut rounds);
-        let (written, unwritten) = written.map_or_else(|fault| (None, Some(fault)), |written| (Some(written), None));
+        let (written, unwritten) =
+            written.map_or_else(|fault| (None, Some(fault)), |written| (Some(written), None));
         let unchanged = unchanged_stretches(&parts, &rounds.reasons);
-        Ok((FoundProgram { rounds, unchanged, written, unwritten, pieces: pieces.len() }, workers))
+        Ok((
+            FoundProgram {
+                rounds,
+                unchanged,
+                written,
+                unwritten,
+                pieces: pieces.len(),
+            },
+            workers,
+        ))
     }
 
     /// Refuses a program that does not fit in memory, before it is read into it.
     fn check_motions(&self, summary: &Summary) -> Result<(), JobError> {
         let motions = summary.motions + summary.events;
         if motions > MOST_MOTIONS {
-            return Err(JobError::TooManyMotions { part: self.program.name(), motions, most: MOST_MOTIONS });
+            return Err(JobError::TooManyMotions {
+                part: self.program.name(),
+                motions,
+                most: MOST_MOTIONS,
+            });
         }
         Ok(())
     }
 
-    /// The pieces of a program. Errors that logs show lie along the whole path: with logs there is one piece.
-    fn pieces(&self, cut: &ExportedCut<'_>, program: &[Canon]) -> Result<Vec<ProgramPiece>, RunError> {
+    /// The pieces of a program. Errors that logs show lie along the whole path: with logs there is
+    /// one piece.
+    fn pieces(
+        &self,
+        cut: &ExportedCut<'_>,
+        program: &[Canon],
+    ) -> Result<Vec<ProgramPiece>, RunError> {
         if self.logs.is_empty() {
             return pieces(cut, program, self.piece_periods);
         }
@@ -351,8 +441,15 @@ impl CorrectJob {
 
     /// Who does the work in pieces.
     fn workers(&self, source: &SourceProgram, pieces: usize) -> Workers {
-        let Some(path) = self.keep.as_ref().filter(|_| pieces > 1) else { return Workers::new(self.threads) };
-        let work = hash_of(format_args!("{:?} {:?} {}", source.lines, source.steps, self.depends_on()));
+        let Some(path) = self.keep.as_ref().filter(|_| pieces > 1) else {
+            return Workers::new(self.threads);
+        };
+        let work = hash_of(format_args!(
+            "{:?} {:?} {}",
+            source.lines,
+            source.steps,
+            self.depends_on()
+        ));
         Workers::keeping(self.threads, path, &work)
     }
 
@@ -403,13 +500,22 @@ impl CorrectJob {
             return Ok(None);
         }
         watch.begin("learning from the logs", 1);
-        let program = LoggedProgram { machine, stages: self.target.stages(machine), original, axes, watch };
+        let program = LoggedProgram {
+            machine,
+            stages: self.target.stages(machine),
+            original,
+            axes,
+            watch,
+        };
         let learned = program.learned(&self.logs);
-        learned.map(Some).map_err(|(log, error)| JobError::of_part_log(&log, &self.program, &error))
+        learned
+            .map(Some)
+            .map_err(|(log, error)| JobError::of_part_log(&log, &self.program, &error))
     }
 
-    /// A text that says what was found, with as many lines of the original as can be. Where the program cannot be written out, stretches whose lines
-    /// cannot be replaced are given up, as long as others remain.
+    /// A text that says what was found, with as many lines of the original as can be. Where the
+    /// program cannot be written out, stretches whose lines cannot be replaced are given up, as
+    /// long as others remain.
     fn written(
         &self,
         source: &SourceProgram,
@@ -419,22 +525,30 @@ impl CorrectJob {
         loop {
             match self.written_as_found(source, parts, found) {
                 Ok(written) => return Ok(written),
-                Err((_, UnkeptLines::Stretches(unkept))) if found.has_other_commands(&unkept) => found.give_up(&unkept),
+                Err((_, UnkeptLines::Stretches(unkept))) if found.has_other_commands(&unkept) => {
+                    found.give_up(&unkept);
+                }
                 Err((fault, _)) => return Err(fault),
             }
         }
     }
 
-    /// A text with all that was found. The error says why the program cannot be written out, and why the original lines cannot stay.
+    /// A text with all that was found. The error says why the program cannot be written out, and
+    /// why the original lines cannot stay.
     fn written_as_found(
         &self,
         source: &SourceProgram,
         parts: &[ProgramPart],
         found: &RoundsResult,
     ) -> Result<WrittenProgram, (UnwrittenProgram, UnkeptLines)> {
-        let RoundsResult { commands, rests_s, .. } = found;
+        let RoundsResult {
+            commands, rests_s, ..
+        } = found;
         let notes = [
-            format!("{CORRECTED_FOR} {}, control {}", self.machine.name, self.target.name),
+            format!(
+                "{CORRECTED_FOR} {}, control {}",
+                self.machine.name, self.target.name
+            ),
             format!(
                 "{} of {} stretches between corners were changed",
                 commands.iter().flatten().count(),
@@ -442,15 +556,31 @@ impl CorrectJob {
             ),
             NO_OVERRIDES.to_owned(),
         ];
-        let text = TextParts { source, parts, commands, rests_s, target: self.target, notes: &notes };
+        let text = TextParts {
+            source,
+            parts,
+            commands,
+            rests_s,
+            target: self.target,
+            notes: &notes,
+        };
         let wanted = assembled(parts, commands, rests_s);
         let verify = |text: &str| self.verified(text, source, &wanted);
         let checked = |text: String, expanded: bool| {
             let is_own = |line: &str| source.lines.iter().any(|kept| kept == line);
-            if text.lines().any(|line| line.len() > self.target.columns && !is_own(line)) {
+            if text
+                .lines()
+                .any(|line| line.len() > self.target.columns && !is_own(line))
+            {
                 return Err(UnwrittenProgram::Columns(self.target.columns));
             }
-            verify(&text).map(|steps| WrittenProgram { text, steps, expanded }).map_err(UnwrittenProgram::Text)
+            verify(&text)
+                .map(|steps| WrittenProgram {
+                    text,
+                    steps,
+                    expanded,
+                })
+                .map_err(UnwrittenProgram::Text)
         };
         let unkept = match text.kept() {
             Ok(text) => match checked(text, false) {
@@ -460,18 +590,34 @@ impl CorrectJob {
             Err(unkept) => unkept,
         };
         let expanded = text.expanded().map_err(UnwrittenProgram::Line);
-        expanded.and_then(|text| checked(text, true)).map_err(|fault| (fault, unkept))
+        expanded
+            .and_then(|text| checked(text, true))
+            .map_err(|fault| (fault, unkept))
     }
 
     /// The path of a text as the control reads it, where that is what is wanted.
-    fn verified(&self, text: &str, source: &SourceProgram, wanted: &[Canon]) -> Result<Vec<Step>, TextFault> {
+    fn verified(
+        &self,
+        text: &str,
+        source: &SourceProgram,
+        wanted: &[Canon],
+    ) -> Result<Vec<Step>, TextFault> {
         let dialect = self.target.reads_as(source.dialect);
         let step_mm = self.target.step_mm(source.largest_unit_mm());
-        let comparison = TextComparison { step_mm, of_linuxcnc: dialect == Dialect::LinuxCnc };
+        let comparison = TextComparison {
+            step_mm,
+            of_linuxcnc: dialect == Dialect::LinuxCnc,
+        };
         let (read, modes) = verified::read(text, &self.reader, dialect)?;
-        comparison.frames(read.iter().zip(modes.iter().map(Arc::as_ref)), source.steps_and_modes())?;
+        comparison.frames(
+            read.iter().zip(modes.iter().map(Arc::as_ref)),
+            source.steps_and_modes(),
+        )?;
         comparison.steps(&read, wanted)?;
-        steps_of(&read).map_err(|fault| TextFault::Unreadable { text: self.program.name(), fault: fault.to_string() })
+        steps_of(&read).map_err(|fault| TextFault::Unreadable {
+            text: self.program.name(),
+            fault: fault.to_string(),
+        })
     }
 }
 

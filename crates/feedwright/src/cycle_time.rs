@@ -1,7 +1,8 @@
-//! Cycle time of a program on a machine: how long its plan takes, with which tool and in which kind of motion, what binds it, and
-//! whether it keeps what it has to.
+//! Cycle time of a program on a machine: how long its plan takes, with which tool and in which kind
+//! of motion, what binds it, and whether it keeps what it has to.
 //!
-//! The plan is looked at as it comes out, every 0.1 ms; memory does not grow with the program. `cycle_time/along.rs` keeps what binds where.
+//! The plan is looked at as it comes out, every 0.1 ms; memory does not grow with the program.
+//! `cycle_time/along.rs` keeps what binds where.
 
 pub(crate) mod along;
 
@@ -12,8 +13,8 @@ use feedwright_gcode::ReadError;
 use feedwright_gcode::canon::{Corner, EventKind};
 use feedwright_plan::vector::{distance, dot, norm, sub};
 use feedwright_plan::{
-    AxisLimits, AxisMotion, Constraints, FeedMember, PathLimits, Phase, Piece, Plan, PlanSink, Planned, Plc, Steps,
-    WHOLE_PROGRAM, feed_mm_s,
+    AxisLimits, AxisMotion, Constraints, FeedMember, PathLimits, Phase, Piece, Plan, PlanSink,
+    Planned, Plc, Steps, WHOLE_PROGRAM, feed_mm_s,
 };
 use feedwright_sim::{AXIS_NAMES, Cancelled, Machine, RunError, StageSteps, Stages, Watch};
 use serde::Serialize;
@@ -26,16 +27,19 @@ const SAMPLE_S: f64 = 1e-4;
 /// A limit binds where so much of it is used.
 const BINDS: f64 = 0.999;
 
-/// The tolerance binds where so much of it is used: a planner keeps a part of it for what it does not look at.
+/// The tolerance binds where so much of it is used: a planner keeps a part of it for what it does
+/// not look at.
 const TOLERANCE_BINDS: f64 = 0.8;
 
 /// A cap on the speed, which holds roughly, binds where so much of it is used.
 const CAP_BINDS: f64 = 0.98;
 
-/// A cut below this part of the programmed feedrate is slow: chips get thin, and a tool that only rubs wears.
+/// A cut below this part of the programmed feedrate is slow: chips get thin, and a tool that only
+/// rubs wears.
 const SLOW: f64 = 0.8;
 
-/// Parts of the acceleration of the axes that LinuxCNC has along the path and across it where the path turns.
+/// Parts of the acceleration of the axes that LinuxCNC has along the path and across it where the
+/// path turns.
 const TANGENTIAL: f64 = 0.5;
 const NORMAL: f64 = 0.866;
 
@@ -102,9 +106,11 @@ pub struct CycleTime {
     pub rapid_s: f64,
     /// Dwells, tool changes, spindle, s.
     pub waiting_s: f64,
-    /// Motion alone with each path from rest to rest planned as a whole, s, where that was asked for.
+    /// Motion alone with each path from rest to rest planned as a whole, s, where that was asked
+    /// for.
     pub bound_s: Option<f64>,
-    /// Largest ratio of a velocity, acceleration or jerk to its limit, or of the speed to the feedrate; none where axes have no limits.
+    /// Largest ratio of a velocity, acceleration or jerk to its limit, or of the speed to the
+    /// feedrate; none where axes have no limits.
     pub largest_violation: Option<f64>,
     /// Largest distance of the planned motion from the programmed path, um.
     pub largest_deviation_um: f64,
@@ -124,14 +130,21 @@ pub struct CycleTime {
 
 /// Names of limits, in the order in which they are counted everywhere.
 pub(crate) fn limit_names() -> Vec<String> {
-    let of_axis = |name: &str| ["velocity", "acceleration", "jerk"].map(|limit| format!("{name} {limit}"));
+    let of_axis =
+        |name: &str| ["velocity", "acceleration", "jerk"].map(|limit| format!("{name} {limit}"));
     let axes = AXIS_NAMES.iter().flat_map(|name| of_axis(name));
     let first = ["feedrate", "tolerance"].map(str::to_owned);
-    let of_path = ["acceleration along the path", "acceleration across the path", "corners"].map(str::to_owned);
+    let of_path = [
+        "acceleration along the path",
+        "acceleration across the path",
+        "corners",
+    ]
+    .map(str::to_owned);
     first.into_iter().chain(axes).chain(of_path).collect()
 }
 
-/// Plans a program by the stages that suit a machine, `steps` once, and once more for the bound where `bound` asks for it.
+/// Plans a program by the stages that suit a machine, `steps` once, and once more for the bound
+/// where `bound` asks for it.
 ///
 /// # Errors
 /// Fails if the program cannot be read, a motion has no path, a limit is not a valid number, or
@@ -156,8 +169,18 @@ pub fn cycle_time_within<'p>(
     steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
     watch: &dyn Watch,
 ) -> Result<CycleTime, RunError> {
-    let options = CycleTimeOptions { bound, ..CycleTimeOptions::default() };
-    cycle_time_by(Stages::of(machine), machine, constraints, options, steps, watch)
+    let options = CycleTimeOptions {
+        bound,
+        ..CycleTimeOptions::default()
+    };
+    cycle_time_by(
+        Stages::of(machine),
+        machine,
+        constraints,
+        options,
+        steps,
+        watch,
+    )
 }
 
 /// The same by stages of one's own choice, with more of it.
@@ -198,8 +221,8 @@ pub fn cycle_time_by<'p>(
     Ok(result)
 }
 
-/// Plans each path from rest to rest as a whole, and hands out the phases of motion of each path once it is planned: what no plan can be
-/// faster than by much.
+/// Plans each path from rest to rest as a whole, and hands out the phases of motion of each path
+/// once it is planned: what no plan can be faster than by much.
 ///
 /// # Errors
 /// As [`cycle_time`].
@@ -228,13 +251,19 @@ impl<'a> CycleTimeOfCut<'a> {
 
     /// What the plan came to, where it was handed out to its end.
     pub(crate) fn finish(self) -> CycleTime {
-        self.0.into_inner().unwrap_or_else(PoisonError::into_inner).finish()
+        self.0
+            .into_inner()
+            .unwrap_or_else(PoisonError::into_inner)
+            .finish()
     }
 }
 
 impl PlanSink for CycleTimeOfCut<'_> {
     fn planned(&self, planned: &Planned) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).take(planned);
+        self.0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .take(planned);
     }
 }
 
@@ -276,7 +305,10 @@ impl<'a> Sampler<'a> {
     fn new(constraints: &'a Constraints, planner: &'static FeedMember) -> Self {
         let result = CycleTime {
             planner: planner.name.to_owned(),
-            tools: vec![ToolTime { tool: 0, time_s: 0.0 }],
+            tools: vec![ToolTime {
+                tool: 0,
+                time_s: 0.0,
+            }],
             ..CycleTime::default()
         };
         Self {
@@ -303,7 +335,10 @@ impl<'a> Sampler<'a> {
             Planned::Event(event) => match &event.event.kind {
                 EventKind::ToolSelect { tool } => self.selected = *tool,
                 EventKind::MCode { code: 6, .. } => {
-                    self.result.tools.push(ToolTime { tool: self.selected, time_s: 0.0 });
+                    self.result.tools.push(ToolTime {
+                        tool: self.selected,
+                        time_s: 0.0,
+                    });
                 }
                 _ => {}
             },
@@ -346,20 +381,42 @@ impl<'a> Sampler<'a> {
         self.line_takes(at.line, duration_s, 0.0);
         let count = (duration_s / SAMPLE_S).ceil().max(1.0);
         for i in 0..count as u32 {
-            self.look_at(phase, at, duration_s * (f64::from(i) + 0.5) / count, duration_s / count);
+            self.look_at(
+                phase,
+                at,
+                duration_s * (f64::from(i) + 0.5) / count,
+                duration_s / count,
+            );
         }
         // Acceleration is straight over a phase: its ends are its extremes.
-        for motion in phase.motion.into_iter().flat_map(|motion| [motion, motion.after(duration_s)]) {
+        for motion in phase
+            .motion
+            .into_iter()
+            .flat_map(|motion| [motion, motion.after(duration_s)])
+        {
             self.axes(&motion, 0.0);
         }
     }
 
     /// Looks at a moment of a phase, which stands for so much time.
     fn look_at(&mut self, phase: &Phase, at: PiecePlace, t: f64, time_s: f64) {
-        let PiecePlace { index, s_mm, line, programmed_mm_s, feed_mm_s, tolerance_mm } = at;
+        let PiecePlace {
+            index,
+            s_mm,
+            line,
+            programmed_mm_s,
+            feed_mm_s,
+            tolerance_mm,
+        } = at;
         let to_mm = s_mm + phase.place_mm(t);
         let way_mm = phase.speed_mm_s(t) * time_s;
-        self.sample = BindingStretch { duration_s: time_s, to_mm, way_mm, lines: [line, line], ..Default::default() };
+        self.sample = BindingStretch {
+            duration_s: time_s,
+            to_mm,
+            way_mm,
+            lines: [line, line],
+            ..Default::default()
+        };
         if let Some(motion) = phase.motion.map(|motion| motion.after(t)) {
             let speed_mm_s = norm(motion.velocity_mm_s);
             self.sample.way_mm = speed_mm_s * time_s;
@@ -368,22 +425,44 @@ impl<'a> Sampler<'a> {
             self.binds(0, speed_mm_s / feed_mm_s, BINDS, time_s);
             let away_mm = self.distance_mm(index, motion.position_mm, tolerance_mm);
             self.result.largest_deviation_um = self.result.largest_deviation_um.max(1e3 * away_mm);
-            let cap_mm_s = self.constraints.speed_caps.as_ref().map_or(f64::INFINITY, |caps| caps.at(to_mm));
-            // Where the speed is held down for the tool to stay within the tolerance, it is the tolerance that binds.
-            let used = if speed_mm_s >= CAP_BINDS * cap_mm_s { 1.0 } else { away_mm / tolerance_mm };
+            let cap_mm_s = self
+                .constraints
+                .speed_caps
+                .as_ref()
+                .map_or(f64::INFINITY, |caps| caps.at(to_mm));
+            // Where the speed is held down for the tool to stay within the tolerance, it is the
+            // tolerance that binds.
+            let used = if speed_mm_s >= CAP_BINDS * cap_mm_s {
+                1.0
+            } else {
+                away_mm / tolerance_mm
+            };
             self.binds(1, used, TOLERANCE_BINDS, time_s);
             if !self.planner.limits_jerk {
                 let (along, across) = self.shares_of_acceleration(&motion);
-                self.path([speed_mm_s / feed_mm_s, along / TANGENTIAL, across / NORMAL], time_s);
+                self.path(
+                    [speed_mm_s / feed_mm_s, along / TANGENTIAL, across / NORMAL],
+                    time_s,
+                );
             }
         } else {
-            let PathLimits { tangential_accel_mm_s2, normal_accel_mm_s2, .. } = self.constraints.path;
-            let (speed_mm_s, accel_mm_s2) = (phase.speed_mm_s(t), phase.accel_mm_s2 + phase.jerk_mm_s3 * t);
+            let PathLimits {
+                tangential_accel_mm_s2,
+                normal_accel_mm_s2,
+                ..
+            } = self.constraints.path;
+            let (speed_mm_s, accel_mm_s2) = (
+                phase.speed_mm_s(t),
+                phase.accel_mm_s2 + phase.jerk_mm_s3 * t,
+            );
             let curvature_1_mm = self.pieces[index].curve.curvature(phase.place_mm(t));
             let feedrate = speed_mm_s / feed_mm_s;
             let across = speed_mm_s * speed_mm_s * curvature_1_mm / normal_accel_mm_s2;
             self.binds(0, feedrate, BINDS, time_s);
-            self.path([feedrate, accel_mm_s2.abs() / tangential_accel_mm_s2, across], time_s);
+            self.path(
+                [feedrate, accel_mm_s2.abs() / tangential_accel_mm_s2, across],
+                time_s,
+            );
         }
         if programmed_mm_s.is_some_and(|feed_mm_s| self.sample.way_mm < SLOW * feed_mm_s * time_s) {
             self.slow_s += time_s;
@@ -391,8 +470,9 @@ impl<'a> Sampler<'a> {
         self.result.along.push(&self.sample);
     }
 
-    /// What binds a planner that keeps limits along and across the path, by the use of feedrate and of both: what is slower than the
-    /// feedrate, and neither speeds up nor turns as fast as it may, is held down by a corner.
+    /// What binds a planner that keeps limits along and across the path, by the use of feedrate and
+    /// of both: what is slower than the feedrate, and neither speeds up nor turns as fast as it
+    /// may, is held down by a corner.
     fn path(&mut self, [feedrate, along, across]: [f64; 3], time_s: f64) {
         self.binds(OF_PATH, along, BINDS, time_s);
         self.binds(OF_PATH + 1, across, BINDS, time_s);
@@ -403,7 +483,11 @@ impl<'a> Sampler<'a> {
 
     /// The acceleration along and across the motion, each over what the axes can in its direction.
     fn shares_of_acceleration(&self, motion: &AxisMotion) -> (f64, f64) {
-        let AxisMotion { velocity_mm_s, accel_mm_s2, .. } = motion;
+        let AxisMotion {
+            velocity_mm_s,
+            accel_mm_s2,
+            ..
+        } = motion;
         let speed_mm_s = norm(*velocity_mm_s);
         if speed_mm_s == 0.0 {
             return (0.0, 0.0);
@@ -413,7 +497,9 @@ impl<'a> Sampler<'a> {
         let along = tangent.map(|part| along_mm_s2 * part);
         let used = |part: [f64; 3]| {
             let ratio = |(k, part_mm_s2): (usize, f64)| {
-                self.constraints.axis(k).map_or(0.0, |limits| part_mm_s2.abs() / limits.accel_mm_s2)
+                self.constraints
+                    .axis(k)
+                    .map_or(0.0, |limits| part_mm_s2.abs() / limits.accel_mm_s2)
             };
             part.into_iter().enumerate().map(ratio).fold(0.0, f64::max)
         };
@@ -424,7 +510,14 @@ impl<'a> Sampler<'a> {
         if let Some(lines) = &mut self.lines {
             let index = line as usize;
             if lines.len() <= index {
-                lines.resize(index + 1, LineTime { line: 0, time_s: 0.0, waiting_s: 0.0 });
+                lines.resize(
+                    index + 1,
+                    LineTime {
+                        line: 0,
+                        time_s: 0.0,
+                        waiting_s: 0.0,
+                    },
+                );
             }
             let of_line = &mut lines[index];
             of_line.line = line;
@@ -436,13 +529,17 @@ impl<'a> Sampler<'a> {
     fn tolerance_mm(&self, piece: &Piece) -> f64 {
         let machine_mm = self.constraints.path_tolerance_mm.unwrap_or(f64::INFINITY);
         match piece.corner {
-            Corner::Continuous { tolerance_mm: Some(tolerance_mm), .. } => tolerance_mm,
+            Corner::Continuous {
+                tolerance_mm: Some(tolerance_mm),
+                ..
+            } => tolerance_mm,
             _ => machine_mm,
         }
     }
 
     fn violated(&mut self, ratio: f64) {
-        self.result.largest_violation = Some(self.result.largest_violation.unwrap_or(0.0).max(ratio));
+        self.result.largest_violation =
+            Some(self.result.largest_violation.unwrap_or(0.0).max(ratio));
     }
 
     fn binds(&mut self, limit: usize, ratio: f64, least: f64, time_s: f64) {
@@ -454,7 +551,12 @@ impl<'a> Sampler<'a> {
 
     fn axes(&mut self, motion: &AxisMotion, time_s: f64) {
         for k in 0..AXIS_NAMES.len() {
-            let Some(AxisLimits { velocity_mm_s, accel_mm_s2, jerk_mm_s3 }) = self.constraints.axis(k) else {
+            let Some(AxisLimits {
+                velocity_mm_s,
+                accel_mm_s2,
+                jerk_mm_s3,
+            }) = self.constraints.axis(k)
+            else {
                 return;
             };
             let ratios = [
@@ -482,7 +584,8 @@ impl<'a> Sampler<'a> {
             let mut way_mm = 0.0;
             let mut at = index as isize;
             for _ in 0..MOST_PIECES {
-                let Some(piece) = usize::try_from(at).ok().and_then(|at| self.pieces.get(at)) else {
+                let Some(piece) = usize::try_from(at).ok().and_then(|at| self.pieces.get(at))
+                else {
                     break;
                 };
                 look(piece);
@@ -504,7 +607,10 @@ impl<'a> Sampler<'a> {
         let shares = limit_names().into_iter().zip(&self.bound_s);
         result.binding = shares
             .filter(|(_, time_s)| **time_s > 0.0)
-            .map(|(limit, time_s)| BindingShare { limit, share: time_s / moving_s })
+            .map(|(limit, time_s)| BindingShare {
+                limit,
+                share: time_s / moving_s,
+            })
             .collect();
         result.binding.sort_by(|a, b| b.share.total_cmp(&a.share));
         result.tools.retain(|tool| tool.time_s > 0.0);

@@ -1,9 +1,11 @@
-//! Least time within a tolerance of the tool: speed is held down only where the simulated tool would leave it.
+//! Least time within a tolerance of the tool: speed is held down only where the simulated tool
+//! would leave it.
 //!
-//! The tolerance of the tool is shared between the planned path and the error of the servo and its controller. The program is planned
-//! and cut. By what the cut was like the error at each place is modelled over the speeds around it, and speeds of least time
-//! are found within the tolerance; they bound the next plan, which is cut in turn. Where errors are beyond the tolerance in spite of it, less is aimed at
-//! there. The fastest plan whose cut stayed within the tolerance is taken.
+//! The tolerance of the tool is shared between the planned path and the error of the servo and its
+//! controller. The program is planned and cut. By what the cut was like the error at each place is
+//! modelled over the speeds around it, and speeds of least time are found within the tolerance;
+//! they bound the next plan, which is cut in turn. Where errors are beyond the tolerance in spite
+//! of it, less is aimed at there. The fastest plan whose cut stayed within the tolerance is taken.
 //!
 //! | File | What |
 //! |---|---|
@@ -44,23 +46,25 @@ use tightening::{LOWEST_MM_S, Tightening};
 /// Distance of bounds along the path, mm.
 const SPACING_MM: f64 = 0.1;
 
-/// How often the program is planned and cut with one share of the path at most, and after how many cuts within the tolerance without a gain
-/// it is enough.
+/// How often the program is planned and cut with one share of the path at most, and after how many
+/// cuts within the tolerance without a gain it is enough.
 const ROUNDS: u32 = 24;
 const NO_GAIN: u32 = 3;
 
 /// Smallest reduction of the time that counts as a gain, as a fraction of the time.
 const LEAST_GAIN: f64 = 1e-3;
 
-/// From this cut on less is aimed at where errors are beyond the tolerance: before, they are beyond it since speeds still change.
+/// From this cut on less is aimed at where errors are beyond the tolerance: before, they are beyond
+/// it since speeds still change.
 const AIM_LOWER: u32 = 8;
 
 /// Part of the tolerance that the path has at first.
 const FIRST_SHARE: f64 = 0.9;
 
-/// Where the controller errs much, it errs the less the slower it is. What the path has of the tolerance then costs speed everywhere; what it lacks costs
-/// it at corners and chords. After some cuts with the first of these it shows which: where the speed is bounded by the error for all of the time but
-/// this part, the path has less; elsewhere more, as long as that gains time.
+/// Where the controller errs much, it errs the less the slower it is. What the path has of the
+/// tolerance then costs speed everywhere; what it lacks costs it at corners and chords. After some
+/// cuts with the first of these it shows which: where the speed is bounded by the error for all of
+/// the time but this part, the path has less; elsewhere more, as long as that gains time.
 const MUCH_SHARES: [f64; 5] = [0.03, 0.1, 0.3, 0.6, FIRST_SHARE];
 const LITTLE_SHARE: f64 = 0.01;
 const TRIED: u32 = 5;
@@ -99,7 +103,9 @@ pub struct FastestPlan {
 #[derive(Debug, Error, miette::Diagnostic)]
 pub enum FastestError {
     /// The tool is too far away however slow it is.
-    #[error("line {line}: the tool is {error_um:.2} um away, and {tolerance_um} um are allowed; {reason}")]
+    #[error(
+        "line {line}: the tool is {error_um:.2} um away, and {tolerance_um} um are allowed; {reason}"
+    )]
     Impossible {
         /// Where it is furthest away.
         line: u32,
@@ -116,7 +122,8 @@ pub enum FastestError {
     Run(#[from] RunError),
 }
 
-/// Finds the fastest plan of a program that a controller cuts within a tolerance on a machine; `laps` as in [`Run::laps`].
+/// Finds the fastest plan of a program that a controller cuts within a tolerance on a machine;
+/// `laps` as in [`Run::laps`].
 ///
 /// # Errors
 /// See [`FastestError`].
@@ -130,7 +137,9 @@ pub fn fastest<'p, const N: usize>(
 ) -> Result<FastestPlan, FastestError> {
     let grid = PathGrid::of(steps().map_err(RunError::from)?, SPACING_MM);
     let mut search = Search::new(machine, tolerance_um, grid, "looking for the least time");
-    let mut cut = |search: &mut Search<'_>, share: f64| search.cut(share, &mut steps, controller, laps, watch);
+    let mut cut = |search: &mut Search<'_>, share: f64| {
+        search.cut(share, &mut steps, controller, laps, watch)
+    };
     let first = cut(&mut search, FIRST_SHARE)?;
     let error = first.worst().0 / tolerance_um;
     if error > 1.0 && !search.diverged {
@@ -215,17 +224,27 @@ impl<'a> Search<'a> {
         let planned = self.planned(share);
         let mut places = CutPlaces::new(self.grid.spacing_mm, self.grid.len());
         let path_mm = 1e-3 * share * self.tolerance_um;
-        let run = Run::on(&planned).within_drives().capped(Some(&self.caps)).laps(laps).watched(watch).cut(
-            || Ok(with_tolerance(steps()?, path_mm)),
-            controller,
-            &mut [&mut places],
-        )?;
+        let run = Run::on(&planned)
+            .within_drives()
+            .capped(Some(&self.caps))
+            .laps(laps)
+            .watched(watch)
+            .cut(
+                || Ok(with_tolerance(steps()?, path_mm)),
+                controller,
+                &mut [&mut places],
+            )?;
         self.diverged = run.outcome != Outcome::Completed;
         self.worst = places.worst();
         let (time_s, error_um) = (run.time_s, self.worst.0);
         self.time_s = time_s;
         if !self.diverged && error_um <= self.tolerance_um && time_s < self.best_s() {
-            self.best = Some(FastestCut { time_s, error_um, share, caps: self.caps.clone() });
+            self.best = Some(FastestCut {
+                time_s,
+                error_um,
+                share,
+                caps: self.caps.clone(),
+            });
         }
         Ok(places)
     }
@@ -238,7 +257,8 @@ impl<'a> Search<'a> {
         cut: &mut impl FnMut(&mut Self, f64) -> Result<CutPlaces, FastestError>,
     ) -> Result<(), FastestError> {
         if error < LITTLE {
-            // What the path leaves to the servo is what the servo was seen to need; or it keeps what it has.
+            // What the path leaves to the servo is what the servo was seen to need; or it keeps
+            // what it has.
             let needed = (1.0 - (error - FIRST_SHARE)).max(LITTLE_SHARE);
             return self.over([needed, FIRST_SHARE], cut);
         }
@@ -257,7 +277,11 @@ impl<'a> Search<'a> {
     ) -> Result<(), FastestError> {
         let mut next = Some(MUCH_SHARES[0]);
         while let Some(share) = next {
-            let before_s = if share > MUCH_SHARES[0] { self.best_s() } else { f64::INFINITY };
+            let before_s = if share > MUCH_SHARES[0] {
+                self.best_s()
+            } else {
+                f64::INFINITY
+            };
             if !self.gains(share, before_s, cut)? {
                 break;
             }
@@ -266,11 +290,19 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
-    /// The next share of the path: what the tool has left of the tolerance, where that is less than the next one that is tried anyway.
+    /// The next share of the path: what the tool has left of the tolerance, where that is less than
+    /// the next one that is tried anyway.
     fn larger_share(&self, share: f64) -> Option<f64> {
         let next = MUCH_SHARES.into_iter().find(|&next| next > share)?;
-        let left = self.best.as_ref().map_or(0.0, |best| 1.0 - best.error_um / self.tolerance_um);
-        Some(if left > LITTLE_SHARE { next.min(share + left) } else { next })
+        let left = self
+            .best
+            .as_ref()
+            .map_or(0.0, |best| 1.0 - best.error_um / self.tolerance_um);
+        Some(if left > LITTLE_SHARE {
+            next.min(share + left)
+        } else {
+            next
+        })
     }
 
     const fn ends(&self) -> bool {
@@ -291,7 +323,8 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
-    /// Looks for it with a share; whether that has gained time beside what was known before, s, and another may gain more.
+    /// Looks for it with a share; whether that has gained time beside what was known before, s, and
+    /// another may gain more.
     fn gains(
         &mut self,
         share: f64,
@@ -319,12 +352,18 @@ impl<'a> Search<'a> {
             let places = cut(self, share)?;
             let (lowers, error_um) = (self.rounds >= AIM_LOWER, self.worst.0);
             if error_um <= self.tolerance_um {
-                since = if self.best_s() < (1.0 - LEAST_GAIN) * before_s { 0 } else { since + 1 };
+                since = if self.best_s() < (1.0 - LEAST_GAIN) * before_s {
+                    0
+                } else {
+                    since + 1
+                };
             }
-            let near = error_um < BEYOND * self.tolerance_um || error_um < (1.0 - NEARER) * nearest_um;
+            let near =
+                error_um < BEYOND * self.tolerance_um || error_um < (1.0 - NEARER) * nearest_um;
             no_nearer = if near || !lowers { 0 } else { no_nearer + 1 };
             nearest_um = nearest_um.min(error_um);
-            self.hopeless = self.best.is_none() && remaining.take_in(&places, 1e-3 * self.tolerance_um);
+            self.hopeless =
+                self.best.is_none() && remaining.take_in(&places, 1e-3 * self.tolerance_um);
             let slower = lowers && self.time_s > known_s;
             if self.ends() || slower || since >= NO_GAIN || no_nearer >= NO_NEARER {
                 break;
@@ -332,7 +371,9 @@ impl<'a> Search<'a> {
             if lowers {
                 self.tightening.aim_lower(&places, self.grid.spacing_mm);
             }
-            let next = self.tightening.caps(&self.grid, &places, &self.caps, self.rounds);
+            let next = self
+                .tightening
+                .caps(&self.grid, &places, &self.caps, self.rounds);
             self.held_part = next.held_part;
             if error_um <= self.tolerance_um && next.caps == *self.caps {
                 break;
@@ -352,7 +393,12 @@ impl<'a> Search<'a> {
         } else {
             "lower speeds brought it no nearer"
         };
-        FastestError::Impossible { line, error_um, tolerance_um: self.tolerance_um, reason }
+        FastestError::Impossible {
+            line,
+            error_um,
+            tolerance_um: self.tolerance_um,
+            reason,
+        }
     }
 
     /// What a cut comes to as a plan.
@@ -362,16 +408,37 @@ impl<'a> Search<'a> {
         steps: &mut impl FnMut() -> Result<Steps<'p>, ReadError>,
         watch: &dyn Watch,
     ) -> Result<FastestPlan, FastestError> {
-        let FastestCut { error_um, share, caps, .. } = found;
-        let mut cycle_of = |machine: &Machine, constraints: &Constraints, share: f64, bound: bool| {
-            let path_mm = 1e-3 * share * self.tolerance_um;
-            cycle_time_within(machine, constraints, bound, || Ok(with_tolerance(steps()?, path_mm)), watch)
-        };
+        let FastestCut {
+            error_um,
+            share,
+            caps,
+            ..
+        } = found;
+        let mut cycle_of =
+            |machine: &Machine, constraints: &Constraints, share: f64, bound: bool| {
+                let path_mm = 1e-3 * share * self.tolerance_um;
+                cycle_time_within(
+                    machine,
+                    constraints,
+                    bound,
+                    || Ok(with_tolerance(steps()?, path_mm)),
+                    watch,
+                )
+            };
         let (planned, whole) = (self.planned(share), self.planned(1.0));
-        let constraints = Constraints { speed_caps: Some(caps.clone()), ..Constraints::from(&planned) };
+        let constraints = Constraints {
+            speed_caps: Some(caps.clone()),
+            ..Constraints::from(&planned)
+        };
         let mut cycle = cycle_of(&planned, &constraints, share, false)?;
         cycle.bound_s = cycle_of(&whole, &Constraints::from(&whole), 1.0, true)?.bound_s;
-        Ok(FastestPlan { machine: planned, caps, largest_um: error_um, cycle, rounds: self.rounds })
+        Ok(FastestPlan {
+            machine: planned,
+            caps,
+            largest_um: error_um,
+            cycle,
+            rounds: self.rounds,
+        })
     }
 }
 
@@ -381,7 +448,10 @@ pub(crate) fn with_tolerance<'p>(steps: Steps<'p>, tolerance_mm: f64) -> Steps<'
         step.map(|step| match step {
             Step::Piece(mut piece) => {
                 if matches!(piece.corner, Corner::Continuous { .. }) {
-                    piece.corner = Corner::Continuous { tolerance_mm: Some(tolerance_mm), merge_mm: None };
+                    piece.corner = Corner::Continuous {
+                        tolerance_mm: Some(tolerance_mm),
+                        merge_mm: None,
+                    };
                 }
                 Step::Piece(piece)
             }

@@ -1,9 +1,10 @@
-//! Trained identifiers are kept by content: the same recording and training find the same weights. The recording is made
-//! anew each time, which takes a fraction of the training, so that no change of machine, plant or planner finds old weights.
-//! Identified axes are found by the program that identified them alone.
+//! Trained identifiers are kept by content: the same recording and training find the same weights.
+//! The recording is made anew each time, which takes a fraction of the training, so that no change
+//! of machine, plant or planner finds old weights. Identified axes are found by the program that
+//! identified them alone.
 //!
-//! What cannot be read, is damaged or does not hold an identifier is trained anew. Without the feature `files` nothing is kept but what
-//! logs of machines tell, by [`keep_in`].
+//! What cannot be read, is damaged or does not hold an identifier is trained anew. Without the
+//! feature `files` nothing is kept but what logs of machines tell, by [`keep_in`].
 
 #[cfg(feature = "files")]
 pub(crate) mod files;
@@ -13,8 +14,8 @@ mod kept_texts;
 
 use feedwright_control::{ContourIdentifier, HIDDEN, INPUTS};
 use feedwright_ident::{
-    AxisEstimate, AxisRecordings, Excitation, Model, NotIdentified, Origin, Recording, Rng, TrainedAxes,
-    TrainedContour, Training, train_axes, train_contour,
+    AxisEstimate, AxisRecordings, Excitation, Model, NotIdentified, Origin, Recording, Rng,
+    TrainedAxes, TrainedContour, Training, train_axes, train_contour,
 };
 use feedwright_sim::{Known, Machine};
 use serde::{Deserialize, Serialize};
@@ -24,7 +25,8 @@ pub use kept_texts::{KeptTexts, keep_in};
 #[cfg(not(feature = "files"))]
 use no_files as files;
 
-/// Raised whenever the same recording gives other weights: a change of the network or of its training.
+/// Raised whenever the same recording gives other weights: a change of the network or of its
+/// training.
 const FORMAT: u32 = 4;
 
 #[derive(Serialize, Deserialize)]
@@ -88,15 +90,26 @@ pub(crate) fn identified_axes<const N: usize>(
         let model = Model::parse("cache", &model).ok()?;
         let fit = model.fit();
         let samples = usize::try_from(fit.samples).ok()?;
-        Some(TrainedAxes { axes: model.identified_axes()?, estimates, fit_um: fit.fit_um, samples })
+        Some(TrainedAxes {
+            axes: model.identified_axes()?,
+            estimates,
+            fit_um: fit.fit_um,
+            samples,
+        })
     });
     if let Some(trained) = kept {
         return Ok(trained);
     }
     let trained = train_axes(recordings, known, used_on)?;
-    let origin = Origin { source: "a simulated excitation".to_owned(), date: "1970-01-01".to_owned() };
+    let origin = Origin {
+        source: "a simulated excitation".to_owned(),
+        date: "1970-01-01".to_owned(),
+    };
     let model = Model::of_axes(&recording, &trained, origin).text();
-    if let Ok(text) = serde_json::to_string(&StoredAxes { model, estimates: trained.estimates.clone() }) {
+    if let Ok(text) = serde_json::to_string(&StoredAxes {
+        model,
+        estimates: trained.estimates.clone(),
+    }) {
         keep_text(&content(), &text);
     }
     Ok(trained)
@@ -117,7 +130,10 @@ pub(crate) fn keep_text(content: &str, object: &str) {
 /// The name of a file of this program, where there is a cache.
 fn name_of(content: &str) -> Option<String> {
     let program = kept_texts::program()?;
-    Some(format!("{}.json", key_of(&[program.as_bytes(), content.as_bytes()])))
+    Some(format!(
+        "{}.json",
+        key_of(&[program.as_bytes(), content.as_bytes()])
+    ))
 }
 
 /// A name for what depends on these parts.
@@ -132,23 +148,37 @@ pub fn key_of(parts: &[&[u8]]) -> String {
 
 fn key<const N: usize>(recording: &Recording<N>, training: &Training, rng: &Rng) -> String {
     let content = serde_json::json!([FORMAT, N, recording.hash(), format!("{rng:?}"), training]);
-    blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
+    blake3::hash(content.to_string().as_bytes())
+        .to_hex()
+        .to_string()
 }
 
 /// The identifier in a file of the cache.
 fn stored<const N: usize>(text: &str) -> Option<TrainedContour<N>> {
     let stored: StoredWeights = serde_json::from_str(&checked(text)?).ok()?;
     let complete = stored.hidden.len() == N * INPUTS * HIDDEN && stored.output.len() == N * HIDDEN;
-    if !complete || stored.hidden.iter().chain(&stored.output).any(|w| !w.is_finite()) {
+    if !complete
+        || stored
+            .hidden
+            .iter()
+            .chain(&stored.output)
+            .any(|w| !w.is_finite())
+    {
         return None;
     }
     let net = ContourIdentifier {
         hidden: std::array::from_fn(|a| {
-            std::array::from_fn(|i| std::array::from_fn(|j| stored.hidden[(a * INPUTS + i) * HIDDEN + j]))
+            std::array::from_fn(|i| {
+                std::array::from_fn(|j| stored.hidden[(a * INPUTS + i) * HIDDEN + j])
+            })
         }),
         output: std::array::from_fn(|o| std::array::from_fn(|j| stored.output[o * HIDDEN + j])),
     };
-    Some(TrainedContour { net, fit_um: stored.fit_um, samples: stored.samples })
+    Some(TrainedContour {
+        net,
+        fit_um: stored.fit_um,
+        samples: stored.samples,
+    })
 }
 
 /// The file of an identifier.

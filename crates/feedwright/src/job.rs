@@ -1,7 +1,7 @@
 //! The main job: a program and a machine in, every controller's cut, its rows and the report out.
 //!
-//! Calls, no arithmetic. The program is read twice: once to find every mistake before anything is cut, once for each
-//! cut, as a stream. A cut is a [`Run`].
+//! Calls, no arithmetic. The program is read twice: once to find every mistake before anything is
+//! cut, once for each cut, as a stream. A cut is a [`Run`].
 //!
 //! | File | What |
 //! |---|---|
@@ -40,7 +40,9 @@ use feedwright_sim::{Machine, Outcome, PlanCache, RunError, Sink, Stages, Watch,
 use serde::{Deserialize, Serialize};
 
 use crate::compensation::GeometryChoice;
-use crate::controllers::{Choices, CutsUncorrected, Entry, LQG_IDENTIFIED, Make, Setup, UNCORRECTED};
+use crate::controllers::{
+    Choices, CutsUncorrected, Entry, LQG_IDENTIFIED, Make, Setup, UNCORRECTED,
+};
 use crate::correct::{CorrectOutcome, TargetControl};
 use crate::cycle_time::CycleTimeOfCut;
 use crate::fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within};
@@ -55,8 +57,9 @@ use record::RunRecord;
 
 /// A program, a machine, two controllers, and what is wanted of the cuts.
 ///
-/// [`Job::new`] cuts the program without a correction and with the default controller; what else is wanted is set in its fields.
-/// Serialised, the machine and the model are the texts of their files, and the controllers their names; the log is left out.
+/// [`Job::new`] cuts the program without a correction and with the default controller; what else is
+/// wanted is set in its fields. Serialised, the machine and the model are the texts of their files,
+/// and the controllers their names; the log is left out.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Job {
@@ -82,20 +85,26 @@ pub struct Job {
     /// A model for the controller that is asked for, in place of a training.
     #[serde(with = "stored::model")]
     pub model: Option<Model>,
-    /// Machines that fit the recording of the model: each is cut with the controller too, and what they come to is the band of the report.
+    /// Machines that fit the recording of the model: each is cut with the controller too, and what
+    /// they come to is the band of the report.
     #[serde(skip)]
     pub fitting: Vec<Machine>,
-    /// The day, year-month-day, on which the model that the controller learns is written; `None` where none is wanted.
+    /// The day, year-month-day, on which the model that the controller learns is written; `None`
+    /// where none is wanted.
     #[serde(skip)]
     pub learned_on: Option<String>,
-    /// Largest contour error that is allowed, um. Where the machine is planned axis by axis, the planned path uses what the predicted error
-    /// of the machine leaves of it.
+    /// Largest contour error that is allowed, um. Where the machine is planned axis by axis, the
+    /// planned path uses what the predicted error of the machine leaves of it.
     pub tolerance_um: Option<f64>,
     /// The control, without feedback, that a corrected program is made for.
     #[serde(with = "stored::target")]
     pub target: Option<&'static TargetControl>,
     /// Plans the program with the planner of this control, not with that of the machine.
-    #[serde(default, with = "stored::target", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        with = "stored::target",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub planned_as: Option<&'static TargetControl>,
     /// A program that errors are measured to, in place of the one that is cut.
     pub reference: Option<Program>,
@@ -113,8 +122,8 @@ pub struct Job {
 /// What stands for a controller in the run of a log.
 pub const MEASURED: &str = "measured";
 
-/// What a job came to. The runs stand in the order in which they were made: what is compared against, what was
-/// measured, where there is a log, then the controller that was asked for.
+/// What a job came to. The runs stand in the order in which they were made: what is compared
+/// against, what was measured, where there is a log, then the controller that was asked for.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct JobOutcome {
@@ -126,7 +135,8 @@ pub struct JobOutcome {
     pub without_identification: Vec<CutsUncorrected>,
     /// What was guessed or noticed of the log.
     pub log_findings: Vec<LogFinding>,
-    /// The model that the controller had at the end of the cut, where it was given one and that was asked for.
+    /// The model that the controller had at the end of the cut, where it was given one and that was
+    /// asked for.
     pub learned: Option<Model>,
     /// The corrected program for another control, where one was asked for; its run is the last.
     pub exported: Option<CorrectOutcome>,
@@ -134,12 +144,14 @@ pub struct JobOutcome {
     pub fastest: Option<FastestPlan>,
     /// Tolerance of the planned path, um, where it is a part of the tolerance of the tool.
     pub path_um: Option<f64>,
-    /// In what the correction is worse than uncorrected; nothing where it is compared with something else.
+    /// In what the correction is worse than uncorrected; nothing where it is compared with
+    /// something else.
     pub harm: Vec<Harm>,
-    /// Whether the command of the controller may be used: it was cut to its end, does no harm, and asks no drive for twice its limit.
+    /// Whether the command of the controller may be used: it was cut to its end, does no harm, and
+    /// asks no drive for twice its limit.
     pub is_of_use: bool,
-    /// Whether the last run was cut to its end and within the tolerance, where one was asked for, and a program that was asked for is better
-    /// than the original.
+    /// Whether the last run was cut to its end and within the tolerance, where one was asked for,
+    /// and a program that was asked for is better than the original.
     pub within_tolerance: bool,
 }
 
@@ -181,17 +193,19 @@ impl Job {
     /// Runs it.
     ///
     /// # Errors
-    /// A value out of its range, a program with mistakes, more axes than the machine has, or an end from outside.
+    /// A value out of its range, a program with mistakes, more axes than the machine has, or an end
+    /// from outside.
     pub fn run(&self, watch: &dyn Watch) -> Result<JobOutcome, JobError> {
         watch.begin("reading the program", 1);
         self.check()?.run(&mut [], watch)
     }
 
-    /// Reads the program and the reference to their ends and looks whether the log is one of the program, so that every mistake is known before
-    /// anything is identified or cut.
+    /// Reads the program and the reference to their ends and looks whether the log is one of the
+    /// program, so that every mistake is known before anything is identified or cut.
     ///
     /// # Errors
-    /// A value out of its range, a program with mistakes, more axes than the machine has, a model that does not suit, and a log of another program.
+    /// A value out of its range, a program with mistakes, more axes than the machine has, a model
+    /// that does not suit, and a log of another program.
     pub fn check(&self) -> Result<CheckedJob<'_>, JobError> {
         self.check_values()?;
         let checked = self.check_read(self.program.check(self.reader.clone())?)?;
@@ -205,15 +219,26 @@ impl Job {
     /// The same where the program was read to its end before.
     ///
     /// # Errors
-    /// Axes that the machine does not have, a model that does not suit, and a geometry that cannot be compensated or does not suit.
+    /// Axes that the machine does not have, a model that does not suit, and a geometry that cannot
+    /// be compensated or does not suit.
     pub fn check_read(&self, summary: Summary) -> Result<CheckedJob<'_>, JobError> {
         let axes = axes_that_move(&self.program, &summary, &self.machine)?;
         if let Some(model) = &self.model {
-            self.controller.suits(model, &self.machine.known(), axes, &self.choices)?;
+            self.controller
+                .suits(model, &self.machine.known(), axes, &self.choices)?;
         }
         let machine = self.compensation.on(&self.machine, summary.box_mm)?;
-        let as_it_is = machine.tool.is_none() && machine.compensated.is_none() && self.machine.compensated.is_none();
-        let job = if as_it_is { Cow::Borrowed(self) } else { Cow::Owned(Self { machine, ..self.clone() }) };
+        let as_it_is = machine.tool.is_none()
+            && machine.compensated.is_none()
+            && self.machine.compensated.is_none();
+        let job = if as_it_is {
+            Cow::Borrowed(self)
+        } else {
+            Cow::Owned(Self {
+                machine,
+                ..self.clone()
+            })
+        };
         Ok(CheckedJob { job, summary, axes })
     }
 }
@@ -229,8 +254,9 @@ impl CheckedJob<'_> {
         self.summary
     }
 
-    /// The plan whose path uses what the machine leaves of the job's tolerance; `None` without a tolerance, on a machine that is not planned
-    /// axis by axis, and where the machine needs all of it.
+    /// The plan whose path uses what the machine leaves of the job's tolerance; `None` without a
+    /// tolerance, on a machine that is not planned axis by axis, and where the machine needs all of
+    /// it.
     ///
     /// # Errors
     /// As [`CheckedJob::run`].
@@ -245,7 +271,11 @@ impl CheckedJob<'_> {
     ///
     /// # Errors
     /// A cut that does not come to its end, a sink that takes no more, or an end from outside.
-    pub fn run(&self, rows: &mut [&mut dyn Sink], watch: &dyn Watch) -> Result<JobOutcome, JobError> {
+    pub fn run(
+        &self,
+        rows: &mut [&mut dyn Sink],
+        watch: &dyn Watch,
+    ) -> Result<JobOutcome, JobError> {
         self.run_with(Guests::default(), rows, watch)
     }
 
@@ -260,8 +290,12 @@ impl CheckedJob<'_> {
         watch: &dyn Watch,
     ) -> Result<JobOutcome, JobError> {
         match self.axes {
-            2 => self.job.cut::<2>(&self.summary, guests.plane, guests, rows, watch),
-            _ => self.job.cut::<3>(&self.summary, guests.space, guests, rows, watch),
+            2 => self
+                .job
+                .cut::<2>(&self.summary, guests.plane, guests, rows, watch),
+            _ => self
+                .job
+                .cut::<3>(&self.summary, guests.space, guests, rows, watch),
         }
     }
 }
@@ -271,7 +305,9 @@ impl Job {
         &self,
         summary: &Summary,
         guest: Option<&dyn Make<N>>,
-        Guests { plant, feeds_mm_s, .. }: Guests<'_>,
+        Guests {
+            plant, feeds_mm_s, ..
+        }: Guests<'_>,
         rows: &mut [&mut dyn Sink],
         watch: &dyn Watch,
     ) -> Result<JobOutcome, JobError>
@@ -281,7 +317,10 @@ impl Job {
         let aligned = self.aligned()?;
         let fastest = self.fastest_plan::<N>(watch)?;
         let within = self.tolerance_plan::<N>(watch)?;
-        let planned = fastest.as_ref().map(|plan| &plan.machine).or(within.as_ref().map(|plan| &plan.machine));
+        let planned = fastest
+            .as_ref()
+            .map(|plan| &plan.machine)
+            .or(within.as_ref().map(|plan| &plan.machine));
         let machine = planned.unwrap_or(&self.machine);
         let circles = self.circles()?;
         let constraints = Constraints::from(machine);
@@ -298,22 +337,45 @@ impl Job {
             circles: &circles,
             looked_at: looked_at.as_ref().map(|cycle| cycle as &dyn PlanSink),
         };
-        let Cuts { mut runs, without_identification, learned, geometry } =
-            self.cut_with_each::<N>(summary, guest, plan, rows, watch)?;
-        let band = runs.last().map_or(Ok(None), |run| self.band::<N>(plan, &run.summary, watch))?;
-        let completed = runs.last().is_some_and(|run| run.summary.outcome == Outcome::Completed);
+        let Cuts {
+            mut runs,
+            without_identification,
+            learned,
+            geometry,
+        } = self.cut_with_each::<N>(summary, guest, plan, rows, watch)?;
+        let band = runs
+            .last()
+            .map_or(Ok(None), |run| self.band::<N>(plan, &run.summary, watch))?;
+        let completed = runs
+            .last()
+            .is_some_and(|run| run.summary.outcome == Outcome::Completed);
         let cycle = looked_at.filter(|_| completed).map(CycleTimeOfCut::finish);
         let log_findings = self.insert_measured(&mut runs, N, &circles, watch)?;
         let exported = self.push_exported(&mut runs, &circles, watch)?;
-        let limits = self.limit_band(machine, fastest.as_ref().map(|plan| &plan.cycle).or(cycle.as_ref()), watch)?;
-        let report =
-            Report { limits, band, geometry, ..self.report(N, summary, circles, runs, &without_identification)? };
-        let exported_well = exported.as_ref().is_none_or(|outcome| outcome.refusal.is_none());
+        let limits = self.limit_band(
+            machine,
+            fastest.as_ref().map(|plan| &plan.cycle).or(cycle.as_ref()),
+            watch,
+        )?;
+        let report = Report {
+            limits,
+            band,
+            geometry,
+            ..self.report(N, summary, circles, runs, &without_identification)?
+        };
+        let exported_well = exported
+            .as_ref()
+            .is_none_or(|outcome| outcome.refusal.is_none());
         Ok(JobOutcome {
             harm: report.harm(),
             is_of_use: self.is_of_use(&report),
             within_tolerance: report.is_within_tolerance() && exported_well,
-            warnings: summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect(),
+            warnings: summary
+                .warnings
+                .iter()
+                .cloned()
+                .chain(summary.uncontrolled())
+                .collect(),
             report,
             without_identification,
             log_findings,
@@ -324,8 +386,8 @@ impl Job {
         })
     }
 
-    /// Puts what a log says of the cut, where there is one, before the run of the controller that is asked for; returns what was
-    /// guessed or noticed.
+    /// Puts what a log says of the cut, where there is one, before the run of the controller that
+    /// is asked for; returns what was guessed or noticed.
     fn insert_measured(
         &self,
         runs: &mut Vec<ReportedRun>,
@@ -333,10 +395,14 @@ impl Job {
         circles: &[FullCircle],
         watch: &dyn Watch,
     ) -> Result<Vec<LogFinding>, JobError> {
-        let Some(MeasuredLog { log, .. }) = &self.log else { return Ok(Vec::new()) };
+        let Some(MeasuredLog { log, .. }) = &self.log else {
+            return Ok(Vec::new());
+        };
         watch.begin("comparing the log", 1);
         let mut record = RunRecord::new(axes, log.sample_time_s, circles);
-        let Some(MeasuredRun { run, findings }) = self.measured_run(axes, &mut record.sinks(), watch)? else {
+        let Some(MeasuredRun { run, findings }) =
+            self.measured_run(axes, &mut record.sinks(), watch)?
+        else {
             return Ok(Vec::new());
         };
         let run = self.reported(record, MEASURED, run)?;
@@ -351,16 +417,24 @@ impl Job {
         rows: &mut [&mut dyn Sink],
         watch: &dyn Watch,
     ) -> Result<Option<MeasuredRun>, JobError> {
-        let Some(MeasuredLog { name, log }) = &self.log else { return Ok(None) };
+        let Some(MeasuredLog { name, log }) = &self.log else {
+            return Ok(None);
+        };
         let steps = path_steps(self.steps()?);
         let limits = |error| JobError::of_run(&self.program, RunError::Limits(error));
-        let mut reference = Stages::of(&self.machine).reference(steps, &self.machine).map_err(limits)?;
+        let mut reference = Stages::of(&self.machine)
+            .reference(steps, &self.machine)
+            .map_err(limits)?;
         let run = measured(log, &self.machine, axes, &mut reference, rows, watch);
-        run.map(Some).map_err(|error| JobError::of_log(name, &self.program, error))
+        run.map(Some)
+            .map_err(|error| JobError::of_log(name, &self.program, error))
     }
 
     /// The plan of least time, found with a controller of its own.
-    fn fastest_plan<const N: usize>(&self, watch: &dyn Watch) -> Result<Option<FastestPlan>, JobError>
+    fn fastest_plan<const N: usize>(
+        &self,
+        watch: &dyn Watch,
+    ) -> Result<Option<FastestPlan>, JobError>
     where
         Entry: Make<N>,
     {
@@ -370,23 +444,43 @@ impl Job {
         watch.begin("planning the least time", 1);
         let mut controller = self.own_controller::<N>()?;
         let steps = || Ok(path_steps(self.steps()?));
-        let found = fastest(&self.machine, tolerance_um, steps, &mut *controller, self.controller.laps, watch);
+        let found = fastest(
+            &self.machine,
+            tolerance_um,
+            steps,
+            &mut *controller,
+            self.controller.laps,
+            watch,
+        );
         found.map(Some).map_err(|error| self.of_search(error))
     }
 
-    /// The plan whose path uses what the machine leaves of the tolerance, where the machine is planned axis by axis.
-    fn tolerance_plan<const N: usize>(&self, watch: &dyn Watch) -> Result<Option<TolerancePlan>, JobError>
+    /// The plan whose path uses what the machine leaves of the tolerance, where the machine is
+    /// planned axis by axis.
+    fn tolerance_plan<const N: usize>(
+        &self,
+        watch: &dyn Watch,
+    ) -> Result<Option<TolerancePlan>, JobError>
     where
         Entry: Make<N>,
     {
-        let shares = !self.fastest && self.reference.is_none() && Stages::of(&self.machine).planner.needs_axes;
+        let shares = !self.fastest
+            && self.reference.is_none()
+            && Stages::of(&self.machine).planner.needs_axes;
         let Some(tolerance_um) = self.tolerance_um.filter(|_| shares) else {
             return Ok(None);
         };
         watch.begin("looking for the tolerance of the path", 1);
         let mut controller = self.own_controller::<N>()?;
         let steps = || Ok(path_steps(self.steps()?));
-        let found = plan_within(&self.machine, tolerance_um, steps, &mut *controller, self.controller.laps, watch);
+        let found = plan_within(
+            &self.machine,
+            tolerance_um,
+            steps,
+            &mut *controller,
+            self.controller.laps,
+            watch,
+        );
         found.map_err(|error| self.of_search(error))
     }
 
@@ -405,7 +499,10 @@ impl Job {
     fn of_search(&self, error: FastestError) -> JobError {
         match error {
             FastestError::Run(error) => JobError::of_run(&self.program, error),
-            error => JobError::Fastest { part: self.program.name(), error },
+            error => JobError::Fastest {
+                part: self.program.name(),
+                error,
+            },
         }
     }
 
@@ -422,15 +519,22 @@ impl Job {
 
     /// The path that is cut beside the one that errors are measured to, where that is another.
     fn aligned(&self) -> Result<Option<AlignedPaths>, JobError> {
-        let Some(reference) = &self.reference else { return Ok(None) };
+        let Some(reference) = &self.reference else {
+            return Ok(None);
+        };
         reference.check(self.reader.clone())?;
         let original = reference.reader(self.reader.clone())?.map_while(Result::ok);
         let steps = |program: &Program, steps: Steps<'_>| {
-            let of_path = |fault| JobError::Path { part: program.name(), fault };
+            let of_path = |fault| JobError::Path {
+                part: program.name(),
+                fault,
+            };
             steps.collect::<Result<Vec<Step>, _>>().map_err(of_path)
         };
-        let (original, other) =
-            (steps(reference, path_steps(original))?, steps(&self.program, path_steps(self.steps()?))?);
+        let (original, other) = (
+            steps(reference, path_steps(original))?,
+            steps(&self.program, path_steps(self.steps()?))?,
+        );
         Ok(Some(AlignedPaths::new(&original, &other)))
     }
 
@@ -445,8 +549,12 @@ impl Job {
 
     /// The canonical steps of the program, with the feedrate replaced where that was asked for.
     fn steps(&self) -> Result<impl Iterator<Item = Canon> + Send + use<>, ReadError> {
-        // The program was checked from end to end before: a mistake here means that the file changed, and ends it.
-        let steps = self.program.reader(self.reader.clone())?.map_while(Result::ok);
+        // The program was checked from end to end before: a mistake here means that the file
+        // changed, and ends it.
+        let steps = self
+            .program
+            .reader(self.reader.clone())?
+            .map_while(Result::ok);
         Ok(with_feeds(steps, self.feed_mm_s.into_iter().cycle()))
     }
 }

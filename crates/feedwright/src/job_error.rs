@@ -35,7 +35,9 @@ pub enum JobError {
     },
     /// The program moves an axis that the machine does not have.
     #[error("{part} moves Z, and the machine `{machine}` has no [axis.z]")]
-    #[diagnostic(help("give the machine file a section [axis.z], or choose a machine with three axes"))]
+    #[diagnostic(help(
+        "give the machine file a section [axis.z], or choose a machine with three axes"
+    ))]
     NoZ {
         /// The program.
         part: String,
@@ -43,7 +45,9 @@ pub enum JobError {
         machine: String,
     },
     /// A program with more motions than a correction keeps in memory.
-    #[error("{part} has {motions} motions and events, and a correction keeps up to {most} of them in memory")]
+    #[error(
+        "{part} has {motions} motions and events, and a correction keeps up to {most} of them in memory"
+    )]
     #[diagnostic(help(
         "split the program at a rapid and correct its parts one by one, or write it with longer blocks"
     ))]
@@ -159,20 +163,37 @@ impl JobError {
     /// A log that is not one of the program, with the remedy.
     pub(crate) fn of_log(log: &str, program: &Program, error: MeasuredError) -> Self {
         let hint = miette::Diagnostic::help(&error).map(|hint| hint.to_string());
-        Self::Measured { log: log.to_owned(), part: program.name(), error: Box::new(error), hint }
+        Self::Measured {
+            log: log.to_owned(),
+            part: program.name(),
+            error: Box::new(error),
+            hint,
+        }
     }
 
     /// A log of the part that nothing can be learned from, with the remedy.
-    pub(crate) fn of_part_log(log: &str, program: &Program, error: &dyn miette::Diagnostic) -> Self {
+    pub(crate) fn of_part_log(
+        log: &str,
+        program: &Program,
+        error: &dyn miette::Diagnostic,
+    ) -> Self {
         let hint = error.help().map(|hint| hint.to_string());
-        Self::NotLearned { log: log.to_owned(), part: program.name(), error: error.to_string(), hint }
+        Self::NotLearned {
+            log: log.to_owned(),
+            part: program.name(),
+            error: error.to_string(),
+            hint,
+        }
     }
 
     /// Of a cut of a part.
     pub(crate) fn of_run(program: &Program, error: RunError) -> Self {
         match error {
             RunError::Read(error) => Self::Read(error),
-            RunError::Path(fault) => Self::Path { part: program.name(), fault },
+            RunError::Path(fault) => Self::Path {
+                part: program.name(),
+                fault,
+            },
             RunError::Write(error) => Self::Write(error),
             RunError::Cancelled(cancelled) => Self::Cancelled(cancelled),
             RunError::Limits(_) | RunError::TooLong { .. } => Self::Run(error),
@@ -191,7 +212,10 @@ impl From<CheckError> for JobError {
         match error {
             CheckError::Read(error) => Self::Read(error),
             CheckError::Faults(faults) => {
-                let part = faults.first().map(|fault| fault.file.to_string()).unwrap_or_default();
+                let part = faults
+                    .first()
+                    .map(|fault| fault.file.to_string())
+                    .unwrap_or_default();
                 Self::Faults { part, faults }
             }
         }
@@ -202,10 +226,17 @@ impl From<CheckError> for JobError {
 ///
 /// # Errors
 /// A program that moves an axis that the machine does not have.
-pub(crate) fn axes_that_move(program: &Program, summary: &Summary, machine: &Machine) -> Result<usize, JobError> {
+pub(crate) fn axes_that_move(
+    program: &Program,
+    summary: &Summary,
+    machine: &Machine,
+) -> Result<usize, JobError> {
     match (summary.moves[2], machine.axis_count()) {
         (false, _) => Ok(2),
         (true, 3..) => Ok(3),
-        (true, _) => Err(JobError::NoZ { part: program.name(), machine: machine.name.clone() }),
+        (true, _) => Err(JobError::NoZ {
+            part: program.name(),
+            machine: machine.name.clone(),
+        }),
     }
 }

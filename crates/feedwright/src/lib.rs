@@ -2,7 +2,8 @@
 //! and geometry of the command, so that the part is more accurate and done sooner.
 //!
 //! The example cuts the circle of 10 mm radius at 50 mm/s on the machine of the paper, without a
-//! correction and with the default controller, which identifies the machine first. It needs no file.
+//! correction and with the default controller, which identifies the machine first. It needs no
+//! file.
 //!
 //! ```
 //! use feedwright::gcode::Program;
@@ -61,8 +62,8 @@
 //!
 //! - The same job predicts the same cut, bit for bit.
 //! - Output files appear whole or not at all (`OutputFile`).
-//! - [`Job`] and [`CorrectJob`] compare a correction with the uncorrected cut, and say whether it is
-//!   worse ([`JobOutcome::is_of_use`]).
+//! - [`Job`] and [`CorrectJob`] compare a correction with the uncorrected cut, and say whether it
+//!   is worse ([`JobOutcome::is_of_use`]).
 //! - A corrected program is read, planned and cut again before it is written.
 //! - The mistakes of a program and of a machine file are reported with their lines before a cut
 //!   starts.
@@ -124,19 +125,22 @@ pub mod command;
 pub use checked_json::{checked, with_check};
 pub use compensation::{GeometryChoice, NamedGeometry};
 pub use controllers::{
-    ACCELERATION_GAIN, BASELINE, BEST, CONTROLLERS, Choices, Controllers, CutsUncorrected, Entry, FEEDFORWARD,
-    FRICTION_GAIN, Knows, LQG_IDENTIFIED, MAGNITUDE_ONLY, Make, Maker, ModelMisfit, Parameter, ParameterKind,
-    RecordedValues, Setting, SettingError, Setup, TWO_DIMENSIONAL, UNCORRECTED, VELOCITY_GAIN, Values, offset_bounds,
+    ACCELERATION_GAIN, BASELINE, BEST, CONTROLLERS, Choices, Controllers, CutsUncorrected, Entry,
+    FEEDFORWARD, FRICTION_GAIN, Knows, LQG_IDENTIFIED, MAGNITUDE_ONLY, Make, Maker, ModelMisfit,
+    Parameter, ParameterKind, RecordedValues, Setting, SettingError, Setup, TWO_DIMENSIONAL,
+    UNCORRECTED, VELOCITY_GAIN, Values, offset_bounds,
 };
 pub use correct::advise::{Advice, AdviseJob, CutWay, ErrorPlace};
 pub use correct::arc_fit::{ArcFit, FitPoint};
 pub use correct::exported::{ExportedCut, ExportedFigures};
 pub use correct::{
-    AssumedValue, CorrectJob, CorrectOutcome, CutProgram, FileAssumption, LearnError, LearnedLog, LearnedOutcome,
-    LearnedValue, ModelValue, OverrideFigures, OverrideVerdict, PlaceError, PredictedCut, TARGETS, TargetControl,
-    UnchangedStretch, deterministic,
+    AssumedValue, CorrectJob, CorrectOutcome, CutProgram, FileAssumption, LearnError, LearnedLog,
+    LearnedOutcome, LearnedValue, ModelValue, OverrideFigures, OverrideVerdict, PlaceError,
+    PredictedCut, TARGETS, TargetControl, UnchangedStretch, deterministic,
 };
-pub use cycle_time::{CycleTime, CycleTimeOptions, LineTime, cycle_time, cycle_time_by, cycle_time_within};
+pub use cycle_time::{
+    CycleTime, CycleTimeOptions, LineTime, cycle_time, cycle_time_by, cycle_time_within,
+};
 pub use fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within};
 #[cfg(feature = "files")]
 pub use identifier_cache::files::folder as cache_folder;
@@ -145,23 +149,27 @@ pub use job::{CheckedJob, Guests, Job, JobError, JobOutcome, MEASURED};
 #[cfg(feature = "files")]
 pub use linuxcnc_setup::{HALLIB, LinuxcncSetup, LinuxcncSetupError, LinuxcncWiring};
 pub use log_job::{
-    LogIdentified, LogJob, LogJobError, UpdateError, following_figure, informative, machine_text, updated_text,
-    write_json, write_page,
+    LogIdentified, LogJob, LogJobError, UpdateError, following_figure, informative, machine_text,
+    updated_text, write_json, write_page,
 };
 pub use measured::{MeasuredError, MeasuredLog, measured};
 #[cfg(feature = "files")]
 pub use output::{FileOperation, OutputError, OutputFile, OutputFiles};
-pub use recorded_model::{RecordedModelError, built_in_lines, fitting_machines, recorded_machine, take_recorded_model};
+pub use recorded_model::{
+    RecordedModelError, built_in_lines, fitting_machines, recorded_machine, take_recorded_model,
+};
 pub use report::figure::{
-    COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline, figure_parts, write_figure_page, write_figure_part,
+    COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline, figure_parts, write_figure_page,
+    write_figure_part,
 };
 pub use report::harm::{CutErrors, ErrorChange, Harm, MAX_UM, RMS_UM, UNCUT_UM, harm};
 pub use report::plain_page::{PagePart, write_foot, write_head, write_table_end, write_table_head};
 pub use report::text::{escaped, number};
 pub use report::{
-    Assumptions, Band, BandErrors, CommandShare, CommandShares, CompensatedGeometry, DrawnLimits, DriveLimits,
-    ErrorSpectrum, FullCircle, Histogram, LawKnowledge, LimitBand, PageUnits, ProgramLine, Report, ReportedRun,
-    Roundness, RunFacts, RunSummary, Series, SeriesPoint, SpectrumBand, Statistics, TimelineEvent, WorstPlace,
-    write_html, write_html_data, write_html_in,
+    Assumptions, Band, BandErrors, CommandShare, CommandShares, CompensatedGeometry, DrawnLimits,
+    DriveLimits, ErrorSpectrum, FullCircle, Histogram, LawKnowledge, LimitBand, PageUnits,
+    ProgramLine, Report, ReportedRun, Roundness, RunFacts, RunSummary, Series, SeriesPoint,
+    SpectrumBand, Statistics, TimelineEvent, WorstPlace, write_html, write_html_data,
+    write_html_in,
 };
 pub use results_format::RESULTS_FORMAT;

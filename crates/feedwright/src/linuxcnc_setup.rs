@@ -1,13 +1,14 @@
-//! Wires the HAL component `feedwright` into a LinuxCNC configuration: reads the INI file and its HAL
-//! files, says of every joint what can be corrected, and writes a changed copy beside the original.
+//! Wires the HAL component `feedwright` into a LinuxCNC configuration: reads the INI file and its
+//! HAL files, says of every joint what can be corrected, and writes a changed copy beside the
+//! original.
 //!
 //! ```text
 //! INI -> HAL lines -> netlist -> joints -> verdict -> copies with feedwright between planner and drives, machine file, record script
 //! ```
 //!
-//! The original files are only read. The copies are named after the INI file, and a manifest lists them
-//! with checksums, so that they can be taken away again. Lengths of a configuration are in its own unit
-//! until a name ends in `_mm`.
+//! The original files are only read. The copies are named after the INI file, and a manifest lists
+//! them with checksums, so that they can be taken away again. Lengths of a configuration are in its
+//! own unit until a name ends in `_mm`.
 
 pub(crate) mod error;
 pub(crate) mod ini;
@@ -55,8 +56,9 @@ pub struct LinuxcncSetup {
     pub hallib: PathBuf,
     /// Built-in machine or machine file that stands in for drives that are simulated.
     pub simulate: Option<String>,
-    /// Following error that the copy allows, in the unit of the configuration: FERROR and MIN_FERROR of linear joints that are below it are
-    /// raised to it. Without it, the copy has those of the original.
+    /// Following error that the copy allows, in the unit of the configuration: FERROR and
+    /// MIN_FERROR of linear joints that are below it are raised to it. Without it, the copy has
+    /// those of the original.
     pub raise_ferror: Option<f64>,
     /// Replaces copies of an earlier setup that were changed by hand.
     pub replace: bool,
@@ -93,14 +95,21 @@ impl LinuxcncWiring {
                 let _ = writeln!(text, "{title}");
                 for line in lines {
                     // Commands stand alone in their line, so that they can be copied.
-                    let shown = if line.starts_with(' ') { line.clone() } else { wrapped(&format!("  {line}")) };
+                    let shown = if line.starts_with(' ') {
+                        line.clone()
+                    } else {
+                        wrapped(&format!("  {line}"))
+                    };
                     let _ = writeln!(text, "{shown}");
                 }
             }
         };
         part("Found:", &self.findings);
         part("Not wired, because:", &self.refusals);
-        part("Disconnected in the copy, as setup does not know what moves there:", &self.disconnected);
+        part(
+            "Disconnected in the copy, as setup does not know what moves there:",
+            &self.disconnected,
+        );
         part("Change before the correction is enabled:", &self.changes);
         part("Next:", &self.steps);
         text
@@ -129,8 +138,8 @@ impl LinuxcncSetup {
     /// configuration cannot be wired, nothing is written, and the result says why.
     ///
     /// # Errors
-    /// As [`LinuxcncSetup::survey`]; copies of an earlier setup that were changed by hand; files that
-    /// cannot be written.
+    /// As [`LinuxcncSetup::survey`]; copies of an earlier setup that were changed by hand; files
+    /// that cannot be written.
     pub fn wire(&self, watch: &dyn Watch) -> Result<LinuxcncWiring, LinuxcncSetupError> {
         let read = self.read()?;
         let simulated = self.stand_in()?;
@@ -143,8 +152,8 @@ impl LinuxcncSetup {
         Ok(outcome)
     }
 
-    /// Removes what [`LinuxcncSetup::wire`] wrote: the removed files, and those that stay because they were
-    /// changed by hand.
+    /// Removes what [`LinuxcncSetup::wire`] wrote: the removed files, and those that stay because
+    /// they were changed by hand.
     ///
     /// # Errors
     /// There is no manifest beside the INI file, or a file cannot be removed.
@@ -157,16 +166,30 @@ impl LinuxcncSetup {
         let script = HalScript::read(&ini, folder_of(&self.ini), &self.hallib)?;
         let netlist = Netlist::of(&script);
         let joints = SetupJoints::of(&ini, &netlist);
-        Ok(Configuration { ini, script, netlist, joints })
+        Ok(Configuration {
+            ini,
+            script,
+            netlist,
+            joints,
+        })
     }
 
     /// The machine that stands in for simulated drives.
     fn stand_in(&self) -> Result<Option<Machine>, LinuxcncSetupError> {
-        Ok(self.simulate.as_deref().map(|machine| Machine::load(machine.as_ref())).transpose()?)
+        Ok(self
+            .simulate
+            .as_deref()
+            .map(|machine| Machine::load(machine.as_ref()))
+            .transpose()?)
     }
 
     fn outcome(&self, read: &Configuration, simulated: Option<&Machine>) -> LinuxcncWiring {
-        let Configuration { ini, script, netlist, joints } = read;
+        let Configuration {
+            ini,
+            script,
+            netlist,
+            joints,
+        } = read;
         let mut findings = script.notes.clone();
         findings.extend(joints.findings());
         findings.extend(netlist.findings());
@@ -174,16 +197,39 @@ impl LinuxcncSetup {
         let mut refusals = script.refusals.clone();
         refusals.extend(joints.refusals(simulated.is_some()));
         refusals.extend(wiring::refusals(ini, netlist));
-        let cut = if simulated.is_some() { disconnect::cut_pins(netlist) } else { Vec::new() };
+        let cut = if simulated.is_some() {
+            disconnect::cut_pins(netlist)
+        } else {
+            Vec::new()
+        };
         if simulated.is_some() {
             refusals.extend(disconnect::refusals(ini, script, &cut));
         }
         let wired = refusals.is_empty();
         let names = SetupNames::of(&self.ini);
-        let changes = if wired { limits::changes(joints, simulated, self.raise_ferror) } else { Vec::new() };
-        let steps = if wired { steps::steps(&names, joints.wired().count(), simulated.is_some()) } else { Vec::new() };
-        let disconnected = if wired { disconnect::cut_words(&cut) } else { Vec::new() };
-        LinuxcncWiring { findings, refusals, disconnected, changes, steps, written: Vec::new() }
+        let changes = if wired {
+            limits::changes(joints, simulated, self.raise_ferror)
+        } else {
+            Vec::new()
+        };
+        let steps = if wired {
+            steps::steps(&names, joints.wired().count(), simulated.is_some())
+        } else {
+            Vec::new()
+        };
+        let disconnected = if wired {
+            disconnect::cut_words(&cut)
+        } else {
+            Vec::new()
+        };
+        LinuxcncWiring {
+            findings,
+            refusals,
+            disconnected,
+            changes,
+            steps,
+            written: Vec::new(),
+        }
     }
 
     fn files(
@@ -192,22 +238,49 @@ impl LinuxcncSetup {
         names: &SetupNames,
         simulated: Option<&Machine>,
     ) -> Result<Vec<SetupFile>, LinuxcncSetupError> {
-        let Configuration { ini, script, netlist, joints } = read;
+        let Configuration {
+            ini,
+            script,
+            netlist,
+            joints,
+        } = read;
         let wired = wiring::wire(ini, script, netlist, joints, names, simulated.is_some())?;
-        let text = |name: &str, text: String| SetupFile { path: names.path(name), bytes: text.into_bytes() };
-        let mut files: Vec<SetupFile> = wired.copies.iter().map(|(name, copy)| text(name, copy.clone())).collect();
+        let text = |name: &str, text: String| SetupFile {
+            path: names.path(name),
+            bytes: text.into_bytes(),
+        };
+        let mut files: Vec<SetupFile> = wired
+            .copies
+            .iter()
+            .map(|(name, copy)| text(name, copy.clone()))
+            .collect();
         files.push(text(&names.hal, wired.hal));
-        files.push(text(&names.machine, machine_guess::machine_file(joints, ini, names)));
+        files.push(text(
+            &names.machine,
+            machine_guess::machine_file(joints, ini, names),
+        ));
         files.push(text(&names.record, steps::record_script(joints, names)));
         if let Some(machine) = simulated {
             let axes = joints.wired().count().min(machine.axis_count());
             let bytes = exact_block(machine, axes, machine.errors_of_geometry().as_ref());
-            files.push(SetupFile { path: names.path(&names.plant), bytes });
+            files.push(SetupFile {
+                path: names.path(&names.plant),
+                bytes,
+            });
         }
         // The INI file comes last: whoever finds it finds the others.
         let values = limits::written(joints, simulated.is_some(), self.raise_ferror);
-        let accel_mm_s2 = joints.least_mm("MAX_ACCELERATION", LIVE_ACCELERATIONS_MM_S2).map(|least| least.value);
-        let copy = ini_copy::ini_copy(ini, &wired.renamed, names, simulated.is_some(), &values, accel_mm_s2);
+        let accel_mm_s2 = joints
+            .least_mm("MAX_ACCELERATION", LIVE_ACCELERATIONS_MM_S2)
+            .map(|least| least.value);
+        let copy = ini_copy::ini_copy(
+            ini,
+            &wired.renamed,
+            names,
+            simulated.is_some(),
+            &values,
+            accel_mm_s2,
+        );
         files.push(text(&names.ini, copy));
         Ok(files)
     }
@@ -215,5 +288,7 @@ impl LinuxcncSetup {
 
 /// The folder of a file.
 fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+    path.parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."))
 }

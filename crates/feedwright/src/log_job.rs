@@ -1,4 +1,5 @@
-//! The identification of a real machine from its log: a log in; a machine file, numbers and a page out.
+//! The identification of a real machine from its log: a log in; a machine file, numbers and a page
+//! out.
 //!
 //! ```text
 //! log -> records of its axes -> grey box of each -> machine file, JSON, page
@@ -18,8 +19,8 @@ use std::ops::Range;
 
 use feedwright_gcode::visible;
 use feedwright_ident::{
-    AxisFacts, AxisRecord, Fitness, FoundMachine, GreyBoxOptions, LawTerm, LawVerdict, Log, NotFound, NumberSource,
-    identify_machine,
+    AxisFacts, AxisRecord, Fitness, FoundMachine, GreyBoxOptions, LawTerm, LawVerdict, Log,
+    NotFound, NumberSource, identify_machine,
 };
 use feedwright_sim::{Cancelled, Machine, StageSteps, Watch};
 use miette::Diagnostic;
@@ -91,15 +92,24 @@ impl LogJob {
                 step_mm: axis.step_mm,
             })
             .collect();
-        let torques: Vec<Option<&[f64]>> = log.axes.iter().map(|axis| axis.torque.as_deref()).collect();
-        let options = GreyBoxOptions { times_s: self.times_s.clone(), facts: self.facts_of(&log) };
+        let torques: Vec<Option<&[f64]>> =
+            log.axes.iter().map(|axis| axis.torque.as_deref()).collect();
+        let options = GreyBoxOptions {
+            times_s: self.times_s.clone(),
+            facts: self.facts_of(&log),
+        };
         let mut steps = StageSteps::begin(watch, "identifying the axes");
         let machine = identify_machine(&records, &torques, &log.time_s, &options, |part| {
             steps.reach(part);
             !watch.is_cancelled()
         })?;
         watch.check()?;
-        Ok(LogIdentified { job: self, log, machine, of_samples })
+        Ok(LogIdentified {
+            job: self,
+            log,
+            machine,
+            of_samples,
+        })
     }
 }
 
@@ -111,13 +121,19 @@ impl LogJob {
         let of_axis = |i: usize| {
             let place = places.iter().position(|place| *place == Some(i))?;
             let before = self.before.as_ref()?;
-            Some(self.facts.or_of(before.axes.get(place)?, before.period.servo_s))
+            Some(
+                self.facts
+                    .or_of(before.axes.get(place)?, before.period.servo_s),
+            )
         };
-        (0..names.len()).map(|i| of_axis(i).unwrap_or(self.facts)).collect()
+        (0..names.len())
+            .map(|i| of_axis(i).unwrap_or(self.facts))
+            .collect()
     }
 }
 
-/// A log of no more samples than are used: windows of a longer one, evenly over those in which it moves.
+/// A log of no more samples than are used: windows of a longer one, evenly over those in which it
+/// moves.
 pub fn informative(log: Log) -> (Log, Option<usize>) {
     let samples = log.time_s.len();
     if samples <= MOST_SAMPLES {
@@ -128,7 +144,8 @@ pub fn informative(log: Log) -> (Log, Option<usize>) {
         let mut from = stretch.start;
         while from < stretch.end {
             let to = (from + WINDOW_SAMPLES).min(stretch.end);
-            let moves = |command: &[f64]| command[from..to].windows(2).any(|pair| pair[0] != pair[1]);
+            let moves =
+                |command: &[f64]| command[from..to].windows(2).any(|pair| pair[0] != pair[1]);
             if log.axes.iter().any(|axis| moves(&axis.command_mm)) {
                 windows.push(from..to);
             }
@@ -142,8 +159,17 @@ pub fn informative(log: Log) -> (Log, Option<usize>) {
         used += window.len();
         used <= MOST_SAMPLES
     };
-    let windows: Vec<Range<usize>> = windows.into_iter().step_by(apart).take_while(within).collect();
-    let of = |values: &[f64]| -> Vec<f64> { windows.iter().flat_map(|w| values[w.clone()].iter().copied()).collect() };
+    let windows: Vec<Range<usize>> = windows
+        .into_iter()
+        .step_by(apart)
+        .take_while(within)
+        .collect();
+    let of = |values: &[f64]| -> Vec<f64> {
+        windows
+            .iter()
+            .flat_map(|w| values[w.clone()].iter().copied())
+            .collect()
+    };
     let mut short = log;
     short.time_s = of(&short.time_s);
     for axis in &mut short.axes {
@@ -164,7 +190,12 @@ pub fn informative(log: Log) -> (Log, Option<usize>) {
 impl LogIdentified {
     /// Which axis of the log is x, y and z of the machine file.
     fn places(&self) -> [Option<usize>; 3] {
-        let names: Vec<&str> = self.machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+        let names: Vec<&str> = self
+            .machine
+            .axes
+            .iter()
+            .map(|axis| axis.name.as_str())
+            .collect();
         places(&names)
     }
 
@@ -173,7 +204,9 @@ impl LogIdentified {
         let found = &self.machine.axes[axis];
         let words = LawVerdict::of(found).words(found);
         match self.log.axes.get(axis).map(|axis| &axis.verdict) {
-            Some(Fitness::NotForControl { reason }) => format!("not for control: {reason}; {words}"),
+            Some(Fitness::NotForControl { reason }) => {
+                format!("not for control: {reason}; {words}")
+            }
             _ => words,
         }
     }
@@ -208,18 +241,26 @@ impl LogIdentified {
         }
         for (axis, direction) in &self.machine.split.one_sided {
             if let Some(axis) = self.machine.axes.get(*axis) {
-                let way = if *direction > 0 { "positive" } else { "negative" };
+                let way = if *direction > 0 {
+                    "positive"
+                } else {
+                    "negative"
+                };
                 advice.push(format!("axis {}: nearly all motion in the {way} direction lies in one of the two parts, fitted or scored. Record both directions several times", axis.name));
             }
         }
         advice
     }
 
-    /// What other settings of the drives would bring, as far as the log supports it: of axes whose law holds.
+    /// What other settings of the drives would bring, as far as the log supports it: of axes whose
+    /// law holds.
     pub fn improvements(&self) -> Vec<String> {
         let mut improvements = vec![];
         for (found, axis) in self.machine.axes.iter().zip(&self.log.axes) {
-            let is_sound = matches!(LawVerdict::of(found), LawVerdict::LawHolds | LawVerdict::LinearSuffices);
+            let is_sound = matches!(
+                LawVerdict::of(found),
+                LawVerdict::LawHolds | LawVerdict::LinearSuffices
+            );
             if !is_sound || axis.verdict != Fitness::ForControl {
                 continue;
             }
@@ -238,13 +279,23 @@ impl LogIdentified {
         improvements
     }
 
-    /// The numbers of an axis: name, value, unit, interval of 90 % (empty where it has none), and where it comes from.
+    /// The numbers of an axis: name, value, unit, interval of 90 % (empty where it has none), and
+    /// where it comes from.
     pub fn rows(&self, axis: usize) -> Vec<[String; 5]> {
         let numbers = self.machine.axes[axis].numbers().into_iter();
         let row = numbers.map(|number| {
-            let interval = number.interval.map(|[low, high]| format!("{} to {}", digits(low), digits(high)));
-            let [name, unit, source] = [number.name, number.unit, number.source.word()].map(str::to_owned);
-            [name, digits(number.value), unit, interval.unwrap_or_default(), source]
+            let interval = number
+                .interval
+                .map(|[low, high]| format!("{} to {}", digits(low), digits(high)));
+            let [name, unit, source] =
+                [number.name, number.unit, number.source.word()].map(str::to_owned);
+            [
+                name,
+                digits(number.value),
+                unit,
+                interval.unwrap_or_default(),
+                source,
+            ]
         });
         row.collect()
     }
@@ -253,9 +304,17 @@ impl LogIdentified {
     pub fn table(&self) -> String {
         let mut text = String::new();
         for (i, axis) in self.machine.axes.iter().enumerate() {
-            let _ = writeln!(text, "axis {}: {}", visible(&axis.name), visible(&self.verdict(i)));
+            let _ = writeln!(
+                text,
+                "axis {}: {}",
+                visible(&axis.name),
+                visible(&self.verdict(i))
+            );
             for [name, value, unit, interval, source] in self.rows(i) {
-                let _ = writeln!(text, "  {name:<27} {value:>12} {unit:<10} {interval:<24} {source}");
+                let _ = writeln!(
+                    text,
+                    "  {name:<27} {value:>12} {unit:<10} {interval:<24} {source}"
+                );
             }
         }
         text
@@ -267,24 +326,35 @@ pub(crate) fn digits(value: f64) -> String {
     significant(value, 4, 5)
 }
 
-/// With so many digits. A number of more than `most` + 1 places before the point, or with zeros behind it, has an exponent.
+/// With so many digits. A number of more than `most` + 1 places before the point, or with zeros
+/// behind it, has an exponent.
 pub(crate) fn significant(value: f64, digits: i32, most: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
     let before_the_point = libm::log10(value.abs()).floor() as i32;
     if (-4..=most).contains(&before_the_point) {
-        format!("{value:.*}", (digits - 1 - before_the_point).max(0) as usize)
+        format!(
+            "{value:.*}",
+            (digits - 1 - before_the_point).max(0) as usize
+        )
     } else {
         format!("{value:.*e}", (digits - 1) as usize)
     }
 }
 
-/// Name of the axis of a machine file that each axis of the log becomes: those that are called so, the others in their order.
+/// Name of the axis of a machine file that each axis of the log becomes: those that are called so,
+/// the others in their order.
 fn places(axes: &[&str]) -> [Option<usize>; 3] {
-    let named = |name: &str| axes.iter().position(|axis| axis.to_lowercase().starts_with(name));
+    let named = |name: &str| {
+        axes.iter()
+            .position(|axis| axis.to_lowercase().starts_with(name))
+    };
     let mut places = ["x", "y", "z"].map(named);
-    let mut left = (0..axes.len()).filter(|i| !places.contains(&Some(*i))).collect::<Vec<_>>().into_iter();
+    let mut left = (0..axes.len())
+        .filter(|i| !places.contains(&Some(*i)))
+        .collect::<Vec<_>>()
+        .into_iter();
     for place in &mut places {
         if place.is_none() {
             *place = left.next();

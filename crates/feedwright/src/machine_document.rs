@@ -1,7 +1,8 @@
 //! A built-in machine as a file to start from: every key, with its comment.
 //!
-//! Machines build upon one another ([`Machine`]'s key `base`). Here all of them are in one text: each key with the value and the comment of the
-//! last file that states it. Keys that may be left out stand as comments where no file states them.
+//! Machines build upon one another ([`Machine`]'s key `base`). Here all of them are in one text:
+//! each key with the value and the comment of the last file that states it. Keys that may be left
+//! out stand as comments where no file states them.
 //!
 //! [`Machine`]: feedwright_sim::Machine
 
@@ -16,8 +17,15 @@ use toml_edit::{DocumentMut, Item, Table, TomlError};
 /// # Errors
 /// A built-in machine that is no TOML, which a test keeps out.
 pub(crate) fn machine_document(name: &str) -> Result<Option<String>, TomlError> {
-    let Some(document) = merged(name)? else { return Ok(None) };
-    let value = |key: &str| document.get(key).and_then(Item::as_value).map(|value| value.to_string().trim().to_owned());
+    let Some(document) = merged(name)? else {
+        return Ok(None);
+    };
+    let value = |key: &str| {
+        document
+            .get(key)
+            .and_then(Item::as_value)
+            .map(|value| value.to_string().trim().to_owned())
+    };
     let mut text = format!(
         "# The built-in machine {name}, with all of its keys. Change what your machine has otherwise, and give it a name of its own.\n\
          # docs/machine-file.md explains every key. A comment beside a value says where the value comes from.\n\n\
@@ -26,23 +34,60 @@ pub(crate) fn machine_document(name: &str) -> Result<Option<String>, TomlError> 
     for key in ["name", "description", "source"] {
         let _ = writeln!(text, "{key} = {}", value(key).unwrap_or_default());
     }
-    table(&mut text, &document, "period", &left_out(machine_keys::PERIOD));
-    table(&mut text, &document, "limits", &left_out(machine_keys::LIMITS));
+    table(
+        &mut text,
+        &document,
+        "period",
+        &left_out(machine_keys::PERIOD),
+    );
+    table(
+        &mut text,
+        &document,
+        "limits",
+        &left_out(machine_keys::LIMITS),
+    );
     for axis in AXIS_NAMES {
-        table(&mut text, &document, &format!("axis.{axis}"), &left_out(machine_keys::AXIS));
-        table(&mut text, &document, &format!("axis.{axis}.transmission"), &left_out(machine_keys::TRANSMISSION));
+        table(
+            &mut text,
+            &document,
+            &format!("axis.{axis}"),
+            &left_out(machine_keys::AXIS),
+        );
+        table(
+            &mut text,
+            &document,
+            &format!("axis.{axis}.transmission"),
+            &left_out(machine_keys::TRANSMISSION),
+        );
     }
-    table(&mut text, &document, "geometry", &left_out(machine_keys::GEOMETRY));
-    table(&mut text, &document, "noise", &left_out(machine_keys::NOISE));
+    table(
+        &mut text,
+        &document,
+        "geometry",
+        &left_out(machine_keys::GEOMETRY),
+    );
+    table(
+        &mut text,
+        &document,
+        "noise",
+        &left_out(machine_keys::NOISE),
+    );
     table(&mut text, &document, "plc", &left_out(machine_keys::PLC));
     Ok(Some(text))
 }
 
 /// The document of a built-in machine upon those that it builds upon.
 fn merged(name: &str) -> Result<Option<Table>, TomlError> {
-    let Some((_, text)) = BUILT_IN_MACHINES.iter().find(|(known, _)| *known == name) else { return Ok(None) };
+    let Some((_, text)) = BUILT_IN_MACHINES.iter().find(|(known, _)| *known == name) else {
+        return Ok(None);
+    };
     let document: DocumentMut = text.parse()?;
-    let base = document.get("base").and_then(Item::as_str).map(merged).transpose()?.flatten();
+    let base = document
+        .get("base")
+        .and_then(Item::as_str)
+        .map(merged)
+        .transpose()?
+        .flatten();
     let mut all = base.unwrap_or_default();
     overlay(&mut all, document.as_table());
     Ok(Some(all))
@@ -51,7 +96,10 @@ fn merged(name: &str) -> Result<Option<Table>, TomlError> {
 /// Puts the keys of a table over those of another one.
 fn overlay(below: &mut Table, above: &Table) {
     for (key, item) in above {
-        match (below.get_mut(key).and_then(Item::as_table_mut), item.as_table()) {
+        match (
+            below.get_mut(key).and_then(Item::as_table_mut),
+            item.as_table(),
+        ) {
             (Some(below), Some(above)) => overlay(below, above),
             _ => {
                 below.insert(key, item.clone());
@@ -64,16 +112,30 @@ fn overlay(below: &mut Table, above: &Table) {
 fn left_out<T>(keys: &[Key<T>]) -> Vec<(&'static str, String)> {
     let line = |key: &Key<T>| {
         let [least, most] = key.range;
-        let unit = if key.unit.starts_with('(') { "" } else { key.unit };
-        let allowed = if key.unit == "(0 or 1)" { "0 or 1".to_owned() } else { format!("{least} to {most} {unit}") };
-        (key.name, format!("# {} is left out: {}", key.name, allowed.trim_end()))
+        let unit = if key.unit.starts_with('(') {
+            ""
+        } else {
+            key.unit
+        };
+        let allowed = if key.unit == "(0 or 1)" {
+            "0 or 1".to_owned()
+        } else {
+            format!("{least} to {most} {unit}")
+        };
+        (
+            key.name,
+            format!("# {} is left out: {}", key.name, allowed.trim_end()),
+        )
     };
     keys.iter().map(line).collect()
 }
 
 /// A table of the text: the keys of the document, and as comments those that it leaves out.
 fn table(text: &mut String, document: &Table, name: &str, keys: &[(&str, String)]) {
-    let Some(table) = name.split('.').try_fold(document, |table, key| table.get(key)?.as_table()) else {
+    let Some(table) = name
+        .split('.')
+        .try_fold(document, |table, key| table.get(key)?.as_table())
+    else {
         if !name.starts_with("axis") {
             let _ = writeln!(text, "\n# The table [{name}] is left out.");
         }
@@ -82,7 +144,12 @@ fn table(text: &mut String, document: &Table, name: &str, keys: &[(&str, String)
     let _ = writeln!(text, "\n[{name}]");
     for (key, item) in table {
         if let Some(value) = item.as_value() {
-            let decor = value.decor().suffix().and_then(|suffix| suffix.as_str()).unwrap_or("").trim();
+            let decor = value
+                .decor()
+                .suffix()
+                .and_then(|suffix| suffix.as_str())
+                .unwrap_or("")
+                .trim();
             let bare = value.clone().decorated("", "");
             let _ = writeln!(text, "{}", format!("{key} = {bare} {decor}").trim_end());
         }
@@ -102,8 +169,8 @@ mod tests {
     fn each_document_is_the_machine() {
         for (name, text) in BUILT_IN_MACHINES {
             let document = machine_document(name).unwrap().unwrap();
-            let [written, built_in] =
-                [document.as_str(), text].map(|text| Machine::parse(&format!("{name}.toml"), text).unwrap());
+            let [written, built_in] = [document.as_str(), text]
+                .map(|text| Machine::parse(&format!("{name}.toml"), text).unwrap());
             assert_eq!(written, built_in, "{name}");
             assert!(!document.contains("\nbase"), "{name}");
         }
@@ -117,9 +184,13 @@ mod tests {
             assert!(document.contains(key.name), "{}", key.name);
         }
         assert!(
-            document.contains("inertia_kg_m2 = ") && document.contains("# jitter_s is left out: 0 to 0.02 s"),
+            document.contains("inertia_kg_m2 = ")
+                && document.contains("# jitter_s is left out: 0 to 0.02 s"),
             "{document}"
         );
-        assert!(document.contains("encoder_step_um = 0.1 # choice: 100,000 steps a turn of the screw"), "{document}");
+        assert!(
+            document.contains("encoder_step_um = 0.1 # choice: 100,000 steps a turn of the screw"),
+            "{document}"
+        );
     }
 }

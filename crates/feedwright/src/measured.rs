@@ -1,4 +1,5 @@
-//! What a machine really cut: the contour error of a log against the program that it was cut by, in the rows of a run.
+//! What a machine really cut: the contour error of a log against the program that it was cut by, in
+//! the rows of a run.
 //!
 //! ```text
 //! s(k)  arc length of the commanded position c(k) of sample k: from s(k - 1) on, no further than a few times the way of the command
@@ -6,12 +7,15 @@
 //! e(k) = |a(k) - P(f(k))|
 //! ```
 //!
-//! Where the path turns back, what lies ahead comes into reach only behind the turn: a point that does not get on reaches as far as it has gone since it did.
+//! Where the path turns back, what lies ahead comes into reach only behind the turn: a point that
+//! does not get on reaches as far as it has gone since it did.
 //!
-//! W is the time in which a loop of the machine has followed, and what a control may delay the command by beside. The record begins where
-//! the command first comes to where the program begins to cut; what it shows before, and the way there, are left out. Positions of the
-//! machine are those of the program but for a shift along each axis, which is found where both fill boxes of the same size; to less than a micrometre it is
-//! known where the command rests before the first cut.
+//! W is the time in which a loop of the machine has followed, and what a control may delay the
+//! command by beside. The record begins where the command first comes to where the program begins
+//! to cut; what it shows before, and the way there, are left out. Positions of the machine are
+//! those of the program but for a shift along each axis, which is found where both fill boxes of
+//! the same size; to less than a micrometre it is known where the command rests before the first
+//! cut.
 //!
 //! Actual positions are those of the encoders: what no encoder sees is not in them.
 
@@ -21,8 +25,8 @@ use feedwright_gcode::INCH_MM;
 use feedwright_ident::{Log, LogAxis, LogFinding};
 use feedwright_plan::vector::{Vector, add_scaled, distance, sub};
 use feedwright_sim::{
-    AXIS_NAMES, Commanded, Foot, Machine, Reference, Row, RunResult, Sink, Stopped, Uncut, Watch, settled_s, shown,
-    to_four_digits,
+    AXIS_NAMES, Commanded, Foot, Machine, Reference, Row, RunResult, Sink, Stopped, Uncut, Watch,
+    settled_s, shown, to_four_digits,
 };
 use thiserror::Error;
 
@@ -32,7 +36,8 @@ use pairing::PairedAxes;
 const DELAY_S: f64 = 0.05;
 /// What vibration takes a tool back by at most, mm.
 const BACK_MM: f64 = 0.01;
-/// How far along the path a point may have come, times its way, and this beside, mm: corners that are rounded are shorter.
+/// How far along the path a point may have come, times its way, and this beside, mm: corners that
+/// are rounded are shorter.
 const REACH: f64 = 3.0;
 const REACH_MM: f64 = 0.02;
 /// The command has come to the beginning where it is this near, mm.
@@ -40,7 +45,8 @@ const BEGUN_MM: f64 = 0.05;
 /// Largest distance between a cutting command of the log and the program, mm. Beyond it, the log
 /// does not match the program.
 const LEFT_MM: f64 = 1.0;
-/// Boxes that differ by less have the same size, mm, and lie in the same place: corners are rounded.
+/// Boxes that differ by less have the same size, mm, and lie in the same place: corners are
+/// rounded.
 const SAME_SIZE_MM: f64 = 0.05;
 /// Sizes of a unit in another that a log was read in, and both: what is mistaken for one another.
 const UNITS: [(f64, &str, &str); 5] = [
@@ -50,7 +56,8 @@ const UNITS: [(f64, &str, &str); 5] = [
     (1e-3, "mm", "m"),
     (1e3, "m", "mm"),
 ];
-/// Part of their size by which boxes of the same size may differ: a record may begin before the program or end behind it.
+/// Part of their size by which boxes of the same size may differ: a record may begin before the
+/// program or end behind it.
 const SAME_SIZE: f64 = 0.01;
 /// A command that moves by less in a sample rests, mm.
 const RESTS_MM: f64 = 1e-6;
@@ -97,7 +104,9 @@ pub enum MeasuredError {
         "the log goes over {} mm in {axis}, and the program over {} mm: {} times as much. The log is in {unit}, and was read in {read}",
         to_four_digits(*log_mm), to_four_digits(*program_mm), to_four_digits(program_mm / log_mm)
     )]
-    #[diagnostic(help("write the line '# unit = {unit}' in front of the log, or say --columns unit={unit}"))]
+    #[diagnostic(help(
+        "write the line '# unit = {unit}' in front of the log, or say --columns unit={unit}"
+    ))]
     Unit {
         /// The axis that goes farthest.
         axis: &'static str,
@@ -170,8 +179,8 @@ pub struct MeasuredRun {
     pub findings: Vec<LogFinding>,
 }
 
-/// The rows of a log, as if it were a run: each goes to every sink. `axes` of the machine are compared, 2 or 3. One that stands still in
-/// the program need not be in the log.
+/// The rows of a log, as if it were a run: each goes to every sink. `axes` of the machine are
+/// compared, 2 or 3. One that stands still in the program need not be in the log.
 ///
 /// # Errors
 /// Where the log is not one of this program: see [`MeasuredError`].
@@ -185,9 +194,15 @@ pub fn measured(
 ) -> Result<MeasuredRun, MeasuredError> {
     let located = LocatedLog::of(log, axes, reference)?;
     let run = located.compared(machine, reference, watch, &mut |row| {
-        sinks.iter_mut().try_for_each(|sink| sink.row(row)).map_err(Into::into)
+        sinks
+            .iter_mut()
+            .try_for_each(|sink| sink.row(row))
+            .map_err(Into::into)
     })?;
-    Ok(MeasuredRun { run, findings: located.findings })
+    Ok(MeasuredRun {
+        run,
+        findings: located.findings,
+    })
 }
 
 /// A log in the coordinates of its program.
@@ -245,17 +260,32 @@ struct LocatedLog<'a> {
 impl<'a> LocatedLog<'a> {
     fn of(log: &'a Log, axes: usize, reference: &mut Reference<'_>) -> Result<Self, MeasuredError> {
         if let [first, _, ..] = &log.stretches[..] {
-            return Err(MeasuredError::Gap { at_s: log.time_s[first.end - 1] });
+            return Err(MeasuredError::Gap {
+                at_s: log.time_s[first.end - 1],
+            });
         }
         let planned = PlannedPath::of(reference)?;
-        let PairedAxes { axes: recorded, findings } = PairedAxes::of(log, planned.range_mm(), axes)?;
-        let mut record =
-            RecordedAxes { axes: recorded, time_s: &log.time_s, shift_mm: [0.0; 3], still_mm: planned.start_mm };
+        let PairedAxes {
+            axes: recorded,
+            findings,
+        } = PairedAxes::of(log, planned.range_mm(), axes)?;
+        let mut record = RecordedAxes {
+            axes: recorded,
+            time_s: &log.time_s,
+            shift_mm: [0.0; 3],
+            still_mm: planned.start_mm,
+        };
         planned.check_unit(&record, axes)?;
         record.shift_mm = planned.shift_mm(&record, axes);
         let first = record.begins(planned.start_mm)?;
         record.shift_to(first, planned.start_mm);
-        Ok(Self { sample_s: log.sample_time_s, planned, record, first, findings })
+        Ok(Self {
+            sample_s: log.sample_time_s,
+            planned,
+            record,
+            first,
+            findings,
+        })
     }
 
     /// Hands every row to `take`.
@@ -268,11 +298,18 @@ impl<'a> LocatedLog<'a> {
     ) -> Result<RunResult, MeasuredError> {
         let Self { record, first, .. } = self;
         let stopped = |stopped| MeasuredError::Stopped { stopped };
-        let mut comparison = MeasuredCut::new(machine, self.sample_s, self.planned.start_s_mm, &record.at(*first));
+        let mut comparison = MeasuredCut::new(
+            machine,
+            self.sample_s,
+            self.planned.start_s_mm,
+            &record.at(*first),
+        );
         for k in *first..record.len() {
             take(&comparison.row(record, *first, k, reference)?).map_err(stopped)?;
             if (k - first).is_multiple_of(SAMPLES_BETWEEN_CHECKS) {
-                watch.check().map_err(|cancelled| stopped(cancelled.into()))?;
+                watch
+                    .check()
+                    .map_err(|cancelled| stopped(cancelled.into()))?;
             }
         }
         comparison.finish(&self.planned)
@@ -310,7 +347,12 @@ impl PlannedPath {
             last_s = n as f64 * STEP_S;
         }
         let (start_mm, start_s_mm) = start.ok_or(MeasuredError::NothingCut)?;
-        Ok(Self { start_mm, start_s_mm, end_s_mm, boxes_mm })
+        Ok(Self {
+            start_mm,
+            start_s_mm,
+            end_s_mm,
+            boxes_mm,
+        })
     }
 
     /// How far each axis goes, mm.
@@ -319,22 +361,34 @@ impl PlannedPath {
         sub(high, low)
     }
 
-    /// Refuses a log whose axes all go as far as those of the program if it is read in another unit.
+    /// Refuses a log whose axes all go as far as those of the program if it is read in another
+    /// unit.
     fn check_unit(&self, record: &RecordedAxes<'_>, axes: usize) -> Result<(), MeasuredError> {
         let mut theirs = NO_BOX;
         (0..record.len()).for_each(|k| grow(&mut theirs, record.at(k).command_mm));
         let size = |[low, high]: [Vector; 2], i: usize| high[i] - low[i];
         for (factor, unit, read) in UNITS {
             let fits = |ours: [Vector; 2], i: usize| {
-                (size(ours, i) - factor * size(theirs, i)).abs() < SAME_SIZE_MM.max(SAME_SIZE * size(ours, i))
+                (size(ours, i) - factor * size(theirs, i)).abs()
+                    < SAME_SIZE_MM.max(SAME_SIZE * size(ours, i))
             };
             let is_scaled = |ours: &&[Vector; 2]| (0..axes).all(|i| fits(**ours, i));
-            let Some(ours) = self.boxes_mm.iter().find(is_scaled) else { continue };
-            let farthest = (0..axes).max_by(|&a, &b| size(*ours, a).total_cmp(&size(*ours, b))).unwrap_or(0);
+            let Some(ours) = self.boxes_mm.iter().find(is_scaled) else {
+                continue;
+            };
+            let farthest = (0..axes)
+                .max_by(|&a, &b| size(*ours, a).total_cmp(&size(*ours, b)))
+                .unwrap_or(0);
             // A program that goes nowhere fits every unit.
             if size(*ours, farthest) > LEFT_MM {
                 let [log_mm, program_mm] = [size(theirs, farthest), size(*ours, farthest)];
-                return Err(MeasuredError::Unit { axis: AXIS_NAMES[farthest], log_mm, program_mm, unit, read });
+                return Err(MeasuredError::Unit {
+                    axis: AXIS_NAMES[farthest],
+                    log_mm,
+                    program_mm,
+                    unit,
+                    read,
+                });
             }
         }
         Ok(())
@@ -347,11 +401,19 @@ impl PlannedPath {
         let mut theirs = NO_BOX;
         (0..record.len()).for_each(|k| grow(&mut theirs, record.at(k).command_mm));
         let size = |[low, high]: [Vector; 2], i: usize| high[i] - low[i];
-        let same = |ours: &&[Vector; 2]| (0..axes).all(|i| (size(**ours, i) - size(theirs, i)).abs() < SAME_SIZE_MM);
-        let Some(ours) = self.boxes_mm.iter().find(same) else { return [0.0; 3] };
+        let same = |ours: &&[Vector; 2]| {
+            (0..axes).all(|i| (size(**ours, i) - size(theirs, i)).abs() < SAME_SIZE_MM)
+        };
+        let Some(ours) = self.boxes_mm.iter().find(same) else {
+            return [0.0; 3];
+        };
         std::array::from_fn(|i| {
             let shift_mm = 0.5 * (ours[0][i] + ours[1][i] - theirs[0][i] - theirs[1][i]);
-            if i < axes && shift_mm.abs() > SAME_SIZE_MM { shift_mm } else { 0.0 }
+            if i < axes && shift_mm.abs() > SAME_SIZE_MM {
+                shift_mm
+            } else {
+                0.0
+            }
         })
     }
 }
@@ -360,7 +422,11 @@ impl PlannedPath {
 fn first_cut(reference: &mut Reference<'_>, mut before_s: f64, mut after_s: f64) -> (Vector, f64) {
     for _ in 0..HALVINGS {
         let middle_s = 0.5 * (before_s + after_s);
-        if reference.at(middle_s).cutting { after_s = middle_s } else { before_s = middle_s }
+        if reference.at(middle_s).cutting {
+            after_s = middle_s;
+        } else {
+            before_s = middle_s;
+        }
     }
     let begin = reference.at(after_s);
     (begin.programmed_mm, begin.s_mm)
@@ -407,20 +473,30 @@ impl RecordedAxes<'_> {
                 None => (command_mm[i], actual_mm[i]) = (self.still_mm[i], self.still_mm[i]),
             }
         }
-        Sampled { time_s: self.time_s[k], command_mm, actual_mm }
+        Sampled {
+            time_s: self.time_s[k],
+            command_mm,
+            actual_mm,
+        }
     }
 
-    /// Shifts the record so that the command begins at `start_mm`, where it rests there in the first sample that is near, or behind.
+    /// Shifts the record so that the command begins at `start_mm`, where it rests there in the
+    /// first sample that is near, or behind.
     fn shift_to(&mut self, first: usize, start_mm: Vector) {
         let away_mm = |k: usize| distance(self.at(k).command_mm, start_mm);
         let near = (first..self.len()).take_while(|&k| away_mm(k) < BEGUN_MM);
-        let rests = |k: &usize| *k > 0 && distance(self.at(*k).command_mm, self.at(k - 1).command_mm) < RESTS_MM;
-        let Some(at) = near.into_iter().find(rests) else { return };
+        let rests = |k: &usize| {
+            *k > 0 && distance(self.at(*k).command_mm, self.at(k - 1).command_mm) < RESTS_MM
+        };
+        let Some(at) = near.into_iter().find(rests) else {
+            return;
+        };
         let off_mm = sub(start_mm, self.at(at).command_mm);
         self.shift_mm = add_scaled(self.shift_mm, 1.0, off_mm);
     }
 
-    /// The sample in which the command has come nearest to `start_mm`, the first time that it is there.
+    /// The sample in which the command has come nearest to `start_mm`, the first time that it is
+    /// there.
     fn begins(&self, start_mm: Vector) -> Result<usize, MeasuredError> {
         let away = |k: usize| distance(self.at(k).command_mm, start_mm);
         let mut nearest = (f64::INFINITY, 0);
@@ -435,7 +511,11 @@ impl RecordedAxes<'_> {
             }
         }
         let at_s = self.time_s.get(nearest.1).copied().unwrap_or(0.0);
-        Err(MeasuredError::NotBegun { start_mm, nearest_mm: nearest.0, at_s })
+        Err(MeasuredError::NotBegun {
+            start_mm,
+            nearest_mm: nearest.0,
+            at_s,
+        })
     }
 }
 
@@ -449,18 +529,32 @@ struct Follower {
 
 impl Follower {
     fn at(s_mm: f64) -> Self {
-        Self { s_mm, last_mm: None, since_mm: 0.0 }
+        Self {
+            s_mm,
+            last_mm: None,
+            since_mm: 0.0,
+        }
     }
 
     /// The way to where the point is now, mm.
     fn goes(&mut self, to_mm: Vector) -> f64 {
-        let way_mm = self.last_mm.replace(to_mm).map_or(0.0, |last_mm| distance(to_mm, last_mm));
+        let way_mm = self
+            .last_mm
+            .replace(to_mm)
+            .map_or(0.0, |last_mm| distance(to_mm, last_mm));
         self.since_mm += way_mm;
         way_mm
     }
 
-    /// The foot of a point that went there, no further back than `back_mm` and within these arc lengths, mm.
-    fn foot(&mut self, reference: &Reference<'_>, to_mm: Vector, back_mm: f64, within_mm: [f64; 2]) -> Foot {
+    /// The foot of a point that went there, no further back than `back_mm` and within these arc
+    /// lengths, mm.
+    fn foot(
+        &mut self,
+        reference: &Reference<'_>,
+        to_mm: Vector,
+        back_mm: f64,
+        within_mm: [f64; 2],
+    ) -> Foot {
         let lo_mm = (self.s_mm - back_mm).max(within_mm[0]);
         let hi_mm = (self.s_mm + REACH * self.since_mm + REACH_MM).min(within_mm[1]);
         let foot = reference.nearest_along(to_mm, lo_mm, hi_mm.max(lo_mm));
@@ -507,17 +601,38 @@ impl MeasuredCut {
         k: usize,
         reference: &Reference<'_>,
     ) -> Result<Row, MeasuredError> {
-        let Sampled { time_s, command_mm, actual_mm } = record.at(k);
+        let Sampled {
+            time_s,
+            command_mm,
+            actual_mm,
+        } = record.at(k);
         let way_mm = self.command.goes(command_mm);
-        let commanded = self.command.foot(reference, command_mm, 0.0, [0.0, f64::INFINITY]);
+        let commanded = self
+            .command
+            .foot(reference, command_mm, 0.0, [0.0, f64::INFINITY]);
         if commanded.cutting && commanded.distance_mm > LEFT_MM {
-            let Foot { distance_mm: off_mm, line, .. } = commanded;
-            return Err(MeasuredError::Leaves { at_s: time_s, off_mm, line });
+            let Foot {
+                distance_mm: off_mm,
+                line,
+                ..
+            } = commanded;
+            return Err(MeasuredError::Leaves {
+                at_s: time_s,
+                off_mm,
+                line,
+            });
         }
         self.commanded_mm.push(commanded.s_mm);
-        let settled_mm = (k - first).checked_sub(self.follows).map_or(0.0, |then| self.commanded_mm[then]);
+        let settled_mm = (k - first)
+            .checked_sub(self.follows)
+            .map_or(0.0, |then| self.commanded_mm[then]);
         self.tool.goes(actual_mm);
-        let foot = self.tool.foot(reference, actual_mm, BACK_MM, [settled_mm, commanded.s_mm + REACH_MM]);
+        let foot = self.tool.foot(
+            reference,
+            actual_mm,
+            BACK_MM,
+            [settled_mm, commanded.s_mm + REACH_MM],
+        );
         let rests = way_mm < RESTS_MM;
         if !rests {
             (self.line, self.ended_s) = (commanded.line, time_s - record.time_s[first]);
@@ -542,7 +657,11 @@ impl MeasuredCut {
             torque_nm: [0.0; 3],
             foot_mm: foot.position_mm,
             tangent: foot.tangent,
-            contour_error_mm: if record.axes.len() == 2 { foot.signed_mm } else { foot.distance_mm },
+            contour_error_mm: if record.axes.len() == 2 {
+                foot.signed_mm
+            } else {
+                foot.distance_mm
+            },
         };
         self.uncut.row(&row);
         Ok(row)
@@ -551,7 +670,10 @@ impl MeasuredCut {
     fn finish(self, planned: &PlannedPath) -> Result<RunResult, MeasuredError> {
         let at_mm = self.commanded_mm.last().copied().unwrap_or(0.0);
         if at_mm < planned.end_s_mm - LEFT_MM {
-            return Err(MeasuredError::EndsEarly { line: self.line, share: at_mm / planned.end_s_mm });
+            return Err(MeasuredError::EndsEarly {
+                line: self.line,
+                share: at_mm / planned.end_s_mm,
+            });
         }
         Ok(RunResult {
             time_s: self.ended_s,

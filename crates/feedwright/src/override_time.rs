@@ -1,11 +1,11 @@
-//! How long a program takes with a feed override, and where a feed hold leaves it: the plan of the program, moved along by
-//! [`TimeScaling`](feedwright_plan::TimeScaling).
+//! How long a program takes with a feed override, and where a feed hold leaves it: the plan of the
+//! program, moved along by [`TimeScaling`](feedwright_plan::TimeScaling).
 
 use std::collections::VecDeque;
 
 use feedwright_plan::{
-    AxisLimits, Constraints, Plan, Planned, Plc, PublishedPlan, ScaledStep, ScalingLimits, Steps, TimeScaling,
-    shortest_stop_mm,
+    AxisLimits, Constraints, Plan, Planned, Plc, PublishedPlan, ScaledStep, ScalingLimits, Steps,
+    TimeScaling, shortest_stop_mm,
 };
 use feedwright_sim::{Machine, RunError, Stages, Watch};
 use serde::Serialize;
@@ -97,7 +97,11 @@ pub(crate) fn override_time(
     let limits = ScalingLimits {
         axes: [limits(0), limits(1), limits(2)],
         speed_mm_s: constraints.path.max_feed_mm_s,
-        period_s: if request.override_of_feeds > 1.0 { PERIOD_ABOVE_S } else { PERIOD_S },
+        period_s: if request.override_of_feeds > 1.0 {
+            PERIOD_ABOVE_S
+        } else {
+            PERIOD_S
+        },
     };
     moved_along(&published, limits, request, watch).map(Some)
 }
@@ -109,7 +113,12 @@ fn moved_along(
     watch: &dyn Watch,
 ) -> Result<OverrideTime, RunError> {
     let mut scaling = TimeScaling::new(plan, limits);
-    let mut result = OverrideTime { time_s: 0.0, plan_s: plan.end_s(), largest_violation: 0.0, hold: None };
+    let mut result = OverrideTime {
+        time_s: 0.0,
+        plan_s: plan.end_s(),
+        largest_violation: 0.0,
+        hold: None,
+    };
     // Plan time and time at which the hold was pressed.
     let mut pressed: Option<(f64, f64)> = None;
     while !scaling.has_ended() {
@@ -137,7 +146,9 @@ fn moved_along(
         }
         let step = scaling.step(request.override_of_feeds, hold);
         result.time_s += step.duration_s;
-        result.largest_violation = result.largest_violation.max(use_of_limits(plan, &limits, &step));
+        result.largest_violation = result
+            .largest_violation
+            .max(use_of_limits(plan, &limits, &step));
     }
     Ok(result)
 }

@@ -4,8 +4,8 @@
 //! program of excite -> cut uncorrected -> log of commands and encoders -> law of each axis -> machine file -> model
 //! ```
 //!
-//! It is kept by content: the same program and the same machine find the same model. The built-in machines come with what their logs
-//! tell: `recorded_model/built_in.rs`.
+//! It is kept by content: the same program and the same machine find the same model. The built-in
+//! machines come with what their logs tell: `recorded_model/built_in.rs`.
 
 mod built_in;
 
@@ -14,8 +14,8 @@ use std::path::Path;
 use feedwright_control::IdentifierKind;
 use feedwright_gcode::Program;
 use feedwright_ident::{
-    AxisFacts, Columns, ExciteOptions, LawVerdict, Log, Model, SERVO_MECHANICS, excitation_program, recorded_log,
-    servo_period_s,
+    AxisFacts, Columns, ExciteOptions, LawVerdict, Log, Model, SERVO_MECHANICS, excitation_program,
+    recorded_log, servo_period_s,
 };
 use feedwright_sim::{Cancelled, Machine, Watch};
 use miette::Diagnostic;
@@ -29,11 +29,13 @@ use crate::log_job::{LogIdentified, LogJob, LogJobError, machine_text};
 
 /// Machines that are drawn with a log at the most: their files stay with that of the machine.
 const MOST_FITTING: usize = 32;
-/// Bits by which the number of a draw is shifted before it is added to the seed of the log: seeds that are counted up draw apart.
+/// Bits by which the number of a draw is shifted before it is added to the seed of the log: seeds
+/// that are counted up draw apart.
 const SEED_SHIFT: u32 = 32;
 
-/// Share of the log in the time of a first model, and of its recording in the time of the log: the progress goes by them. Measured with a file like `workshop`,
-/// 20 s of 23 s, and 2.7 s of 19.4 s; other machines take other shares, and their time left is off by as much.
+/// Share of the log in the time of a first model, and of its recording in the time of the log: the
+/// progress goes by them. Measured with a file like `workshop`, 20 s of 23 s, and 2.7 s of 19.4 s;
+/// other machines take other shares, and their time left is off by as much.
 const LOG_SHARE: f64 = 0.85;
 const RECORD_SHARE: f64 = 0.14;
 
@@ -81,13 +83,15 @@ struct Told {
 }
 
 impl Told {
-    /// What is shipped with the program or kept for a content, with `fitting` machines at the least; made anew where there is none.
+    /// What is shipped with the program or kept for a content, with `fitting` machines at the
+    /// least; made anew where there is none.
     fn of(
         content: &str,
         fitting: usize,
         make: impl FnOnce() -> Result<Self, RecordedModelError>,
     ) -> Result<Self, RecordedModelError> {
-        if let Some(shipped) = built_in::told(content).filter(|told| told.fitting.len() >= fitting) {
+        if let Some(shipped) = built_in::told(content).filter(|told| told.fitting.len() >= fitting)
+        {
             return Ok(shipped);
         }
         if let Some(kept) = kept_text(content).and_then(|text| serde_json::from_str(&text).ok()) {
@@ -101,25 +105,40 @@ impl Told {
     }
 
     /// What a new log of a machine tells.
-    fn identified(machine: &Machine, axes: usize, seed: u64, watch: &dyn Watch) -> Result<Self, RecordedModelError> {
+    fn identified(
+        machine: &Machine,
+        axes: usize,
+        seed: u64,
+        watch: &dyn Watch,
+    ) -> Result<Self, RecordedModelError> {
         let mut identified = identified(machine, axes, seed, watch)?;
         let (name, doubts) = (format!("{} by its log", machine.name), doubts(&identified));
         let text = machine_text(&identified, &name);
         let found = identified.machine.axes.clone();
         let mechanics_s = servo_period_s(identified.machine.sample_s) / f64::from(SERVO_MECHANICS);
         let draw = |number: u64| {
-            let seed = |axis: usize| seed.wrapping_add((MOST_FITTING as u64 * axis as u64 + number) << SEED_SHIFT);
-            identified.machine.axes =
-                found.iter().enumerate().map(|(i, axis)| axis.drawn(seed(i), mechanics_s)).collect();
+            let seed = |axis: usize| {
+                seed.wrapping_add((MOST_FITTING as u64 * axis as u64 + number) << SEED_SHIFT)
+            };
+            identified.machine.axes = found
+                .iter()
+                .enumerate()
+                .map(|(i, axis)| axis.drawn(seed(i), mechanics_s))
+                .collect();
             machine_text(&identified, &name)
         };
-        Ok(Self { text, doubts, fitting: (1..=MOST_FITTING as u64).map(draw).collect() })
+        Ok(Self {
+            text,
+            doubts,
+            fitting: (1..=MOST_FITTING as u64).map(draw).collect(),
+        })
     }
 }
 
-/// Gives the controller of a job the model that a log of its machine tells, where it goes by one and has none: what `run` does by default.
-/// `machine` is as its file has it, whatever limits the job plans with; `date` becomes the date in the model file. Returns the axes that
-/// the log does not tell well enough, in words; `None` where the job takes no such model.
+/// Gives the controller of a job the model that a log of its machine tells, where it goes by one
+/// and has none: what `run` does by default. `machine` is as its file has it, whatever limits the
+/// job plans with; `date` becomes the date in the model file. Returns the axes that the log does
+/// not tell well enough, in words; `None` where the job takes no such model.
 ///
 /// # Errors
 /// A log that does not tell the law of an axis, or an end from outside.
@@ -133,13 +152,15 @@ pub fn take_recorded_model(
     if job.model.is_some() || job.controller.identifier != Some(IdentifierKind::Axes) {
         return Ok(None);
     }
-    let RecordedModel { model, doubts } = recorded_model(machine, axes, (job.controller, &job.choices), date, watch)?;
+    let RecordedModel { model, doubts } =
+        recorded_model(machine, axes, (job.controller, &job.choices), date, watch)?;
     job.model = Some(model);
     Ok(Some(doubts))
 }
 
-/// The model of the first axes of a machine, two or three, for a controller that goes by one: the machine cuts the program of `excite`
-/// uncorrected, and its log tells the rest. `date` becomes the date in the model file.
+/// The model of the first axes of a machine, two or three, for a controller that goes by one: the
+/// machine cuts the program of `excite` uncorrected, and its log tells the rest. `date` becomes the
+/// date in the model file.
 ///
 /// # Errors
 /// A log that tells no model, or an end from outside.
@@ -153,18 +174,32 @@ fn recorded_model(
     let content = model_content(machine, axes, (entry, choices));
     let make = || {
         let mut steps = identifying(machine, watch);
-        let (told, doubts) = steps.filled(LOG_SHARE, |watch| recorded_machine(machine, axes, choices.seed, watch))?;
+        let (told, doubts) = steps.filled(LOG_SHARE, |watch| {
+            recorded_machine(machine, axes, choices.seed, watch)
+        })?;
         let text = trained(machine, &told, axes, (entry, choices), date)?;
-        Ok(Told { text, doubts, fitting: vec![] })
+        Ok(Told {
+            text,
+            doubts,
+            fitting: vec![],
+        })
     };
     let told = Told::of(&content, 0, make)?;
-    let model = Model::parse("the model of the log", &told.text).map_err(|error| not_told(machine, &error))?;
-    Ok(RecordedModel { model, doubts: told.doubts })
+    let model = Model::parse("the model of the log", &told.text)
+        .map_err(|error| not_told(machine, &error))?;
+    Ok(RecordedModel {
+        model,
+        doubts: told.doubts,
+    })
 }
 
 /// What the model of a log follows from.
 fn model_content(machine: &Machine, axes: usize, (entry, choices): (&Entry, &Choices)) -> String {
-    format!("model {axes} {} {choices:?} {}", entry.name, log_content(machine))
+    format!(
+        "model {axes} {} {choices:?} {}",
+        entry.name,
+        log_content(machine)
+    )
 }
 
 /// The model file of a machine that a log told of.
@@ -175,7 +210,9 @@ fn trained(
     (entry, choices): (&Entry, &Choices),
     date: String,
 ) -> Result<String, RecordedModelError> {
-    let model = Setup::new(told, choices).train(entry, axes, date).map_err(|error| not_told(machine, &error))?;
+    let model = Setup::new(told, choices)
+        .train(entry, axes, date)
+        .map_err(|error| not_told(machine, &error))?;
     Ok(model.text())
 }
 
@@ -191,11 +228,14 @@ pub fn recorded_machine(
 ) -> Result<(Machine, Vec<String>), RecordedModelError> {
     let told = told_machine(machine, axes, seed, 0, watch)?;
     let read = Machine::parse("the machine file of the log", &told.text);
-    Ok((read.map_err(|error| not_told(machine, &error))?, told.doubts))
+    Ok((
+        read.map_err(|error| not_told(machine, &error))?,
+        told.doubts,
+    ))
 }
 
-/// Machines that fit the same log about as well, 32 at the most: their laws are drawn from what the identification leaves
-/// open, and the same log gives the same machines.
+/// Machines that fit the same log about as well, 32 at the most: their laws are drawn from what the
+/// identification leaves open, and the same log gives the same machines.
 ///
 /// # Errors
 /// As [`recorded_machine`].
@@ -208,11 +248,17 @@ pub fn fitting_machines(
 ) -> Result<Vec<Machine>, RecordedModelError> {
     let told = told_machine(machine, axes, seed, number, watch)?;
     let read = |text: &String| Machine::parse("a machine file of the log", text);
-    told.fitting.iter().take(number).map(read).collect::<Result<_, _>>().map_err(|error| not_told(machine, &error))
+    told.fitting
+        .iter()
+        .take(number)
+        .map(read)
+        .collect::<Result<_, _>>()
+        .map_err(|error| not_told(machine, &error))
 }
 
-/// What the program is shipped with of a built-in machine, made anew: what its log tells, and the model by that for a controller, as `run` has
-/// them by default. `date` becomes the date in the model.
+/// What the program is shipped with of a built-in machine, made anew: what its log tells, and the
+/// model by that for a controller, as `run` has them by default. `date` becomes the date in the
+/// model.
 ///
 /// # Errors
 /// As [`take_recorded_model`].
@@ -224,29 +270,50 @@ pub fn built_in_lines(
     watch: &dyn Watch,
 ) -> Result<Vec<String>, RecordedModelError> {
     let told = Told::identified(machine, axes, BUILT_IN_SEED, watch)?;
-    let found = Machine::parse("the machine file of the log", &told.text).map_err(|error| not_told(machine, &error))?;
-    let choices = Choices { seed: BUILT_IN_SEED, tries: true, ..Choices::default() };
-    let mut lines = vec![built_in::line(&content(machine, axes, BUILT_IN_SEED), &told)];
+    let found = Machine::parse("the machine file of the log", &told.text)
+        .map_err(|error| not_told(machine, &error))?;
+    let choices = Choices {
+        seed: BUILT_IN_SEED,
+        tries: true,
+        ..Choices::default()
+    };
+    let mut lines = vec![built_in::line(
+        &content(machine, axes, BUILT_IN_SEED),
+        &told,
+    )];
     // A log that tells a machine need not tell a model: that is said at each cut.
     if let Ok(text) = trained(machine, &found, axes, (entry, &choices), date) {
-        let model = Told { text, doubts: told.doubts, fitting: vec![] };
-        lines.push(built_in::line(&model_content(machine, axes, (entry, &choices)), &model));
+        let model = Told {
+            text,
+            doubts: told.doubts,
+            fitting: vec![],
+        };
+        lines.push(built_in::line(
+            &model_content(machine, axes, (entry, &choices)),
+            &model,
+        ));
     }
     Ok(lines)
 }
 
 /// What the machine of a log follows from.
 fn content(machine: &Machine, axes: usize, seed: u64) -> String {
-    format!("machine and those that fit, {axes} {seed} {}", log_content(machine))
+    format!(
+        "machine and those that fit, {axes} {seed} {}",
+        log_content(machine)
+    )
 }
 
-/// What a log follows from, and what is written with it: a field that a machine does not use changes nothing.
+/// What a log follows from, and what is written with it: a field that a machine does not use
+/// changes nothing.
 fn log_content(machine: &Machine) -> String {
-    let geometries = [&machine.compensated, &machine.tool].map(|geometry| geometry.as_ref().map(|g| format!("{g:?}")));
+    let geometries = [&machine.compensated, &machine.tool]
+        .map(|geometry| geometry.as_ref().map(|g| format!("{g:?}")));
     format!("{} {} {geometries:?}", machine.name, machine.fingerprint())
 }
 
-/// The machine that the log tells, and those that fit as well, `fitting` at the least: shipped with the program, kept, or identified.
+/// The machine that the log tells, and those that fit as well, `fitting` at the least: shipped with
+/// the program, kept, or identified.
 fn told_machine(
     machine: &Machine,
     axes: usize,
@@ -254,7 +321,9 @@ fn told_machine(
     fitting: usize,
     watch: &dyn Watch,
 ) -> Result<Told, RecordedModelError> {
-    Told::of(&content(machine, axes, seed), fitting, || Told::identified(machine, axes, seed, watch))
+    Told::of(&content(machine, axes, seed), fitting, || {
+        Told::identified(machine, axes, seed, watch)
+    })
 }
 
 /// Records the log, and identifies the axes.
@@ -265,30 +334,58 @@ fn identified(
     watch: &dyn Watch,
 ) -> Result<LogIdentified, RecordedModelError> {
     // What is random in the log is not what is random in the cut.
-    let recorder = Machine { axes: machine.axes.iter().take(axes).cloned().collect(), ..machine.clone() };
+    let recorder = Machine {
+        axes: machine.axes.iter().take(axes).cloned().collect(),
+        ..machine.clone()
+    };
     let recorder = recorder.with_noise_seed(machine.noise.seed.wrapping_add(seed));
     let mut steps = identifying(machine, watch);
     let excitation = excitation_program(&recorder, ExciteOptions::default());
-    let program = Program::from_text("excite.ngc", excitation.map_err(|error| not_told(machine, &error))?.text);
+    let program = Program::from_text(
+        "excite.ngc",
+        excitation.map_err(|error| not_told(machine, &error))?.text,
+    );
     let text = match axes {
         2 => recorded_log::<2>(&recorder, &program),
         _ => recorded_log::<3>(&recorder, &program),
     };
     let text = text.map_err(|error| not_told(machine, &error))?;
     let name = Path::new("the log of excite");
-    let read =
-        |watch: &dyn Watch| Log::from_reader(name, text.as_bytes(), text.len() as u64, &Columns::default(), watch);
-    let log = steps.filled(RECORD_SHARE, read).map_err(|error| not_told(machine, &error))?;
-    let facts = AxisFacts { record_delay_s: Some(0.0), ..AxisFacts::default() };
-    let job = LogJob { name: format!("a log of {}", machine.name), facts, ..LogJob::default() };
-    steps.filled(1.0, |watch| job.run(log, watch)).map_err(|error| match error {
-        LogJobError::Cancelled(cancelled) => RecordedModelError::Cancelled(cancelled),
-        error => not_told(machine, &error),
-    })
+    let read = |watch: &dyn Watch| {
+        Log::from_reader(
+            name,
+            text.as_bytes(),
+            text.len() as u64,
+            &Columns::default(),
+            watch,
+        )
+    };
+    let log = steps
+        .filled(RECORD_SHARE, read)
+        .map_err(|error| not_told(machine, &error))?;
+    let facts = AxisFacts {
+        record_delay_s: Some(0.0),
+        ..AxisFacts::default()
+    };
+    let job = LogJob {
+        name: format!("a log of {}", machine.name),
+        facts,
+        ..LogJob::default()
+    };
+    steps
+        .filled(1.0, |watch| job.run(log, watch))
+        .map_err(|error| match error {
+            LogJobError::Cancelled(cancelled) => RecordedModelError::Cancelled(cancelled),
+            error => not_told(machine, &error),
+        })
 }
 
 fn not_told(machine: &Machine, cause: &dyn Diagnostic) -> RecordedModelError {
-    let reasons = cause.related().into_iter().flatten().map(|reason| format!("; {reason}"));
+    let reasons = cause
+        .related()
+        .into_iter()
+        .flatten()
+        .map(|reason| format!("; {reason}"));
     RecordedModelError::NotTold {
         machine: machine.name.clone(),
         cause: format!("{cause}{}", reasons.collect::<String>()),
@@ -298,8 +395,20 @@ fn not_told(machine: &Machine, cause: &dyn Diagnostic) -> RecordedModelError {
 /// Axes whose law is not good enough for a correction, or is open.
 fn doubts(identified: &LogIdentified) -> Vec<String> {
     let is_sound = |verdict| matches!(verdict, LawVerdict::LawHolds | LawVerdict::LinearSuffices);
-    let axes = identified.machine.axes.iter().enumerate().filter(|(_, axis)| !is_sound(LawVerdict::of(axis)));
-    axes.map(|(i, axis)| format!("axis {}, by its simulated log: {}", axis.name, identified.verdict(i))).collect()
+    let axes = identified
+        .machine
+        .axes
+        .iter()
+        .enumerate()
+        .filter(|(_, axis)| !is_sound(LawVerdict::of(axis)));
+    axes.map(|(i, axis)| {
+        format!(
+            "axis {}, by its simulated log: {}",
+            axis.name,
+            identified.verdict(i)
+        )
+    })
+    .collect()
 }
 
 #[cfg(test)]
@@ -312,15 +421,26 @@ mod tests {
     #[test]
     fn what_the_program_is_shipped_with_is_found_by_the_machines_of_today() {
         let entry = CONTROLLERS.find(BEST).unwrap();
-        let choices = Choices { seed: BUILT_IN_SEED, tries: true, ..Choices::default() };
+        let choices = Choices {
+            seed: BUILT_IN_SEED,
+            tries: true,
+            ..Choices::default()
+        };
         let (mut logs, mut models) = (0, 0);
         for (name, _) in BUILT_IN_MACHINES {
             let machine = Machine::load(name.as_ref()).unwrap();
             for axes in [2, 3] {
-                logs += usize::from(built_in::told(&content(&machine, axes, BUILT_IN_SEED)).is_some());
-                models += usize::from(built_in::told(&model_content(&machine, axes, (entry, &choices))).is_some());
+                logs +=
+                    usize::from(built_in::told(&content(&machine, axes, BUILT_IN_SEED)).is_some());
+                models += usize::from(
+                    built_in::told(&model_content(&machine, axes, (entry, &choices))).is_some(),
+                );
             }
         }
-        assert_eq!(logs + models, built_in::lines().count(), "a first cut identifies anew: `just built-in-logs`");
+        assert_eq!(
+            logs + models,
+            built_in::lines().count(),
+            "a first cut identifies anew: `just built-in-logs`"
+        );
     }
 }

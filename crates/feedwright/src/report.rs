@@ -1,10 +1,12 @@
-//! Report: what a run came to, as numbers ([`RunSummary`]), as one HTML page ([`write_html`]) and as figures ([`figure`]).
+//! Report: what a run came to, as numbers ([`RunSummary`]), as one HTML page ([`write_html`]) and
+//! as figures ([`figure`]).
 //!
-//! A run hands its rows to two sinks of bounded memory: [`Statistics`] sees every row and keeps exact sums, [`Series`]
-//! keeps a thinned record to draw. The page is one file without references to anything outside it, and equal
-//! reports give equal bytes.
+//! A run hands its rows to two sinks of bounded memory: [`Statistics`] sees every row and keeps
+//! exact sums, [`Series`] keeps a thinned record to draw. The page is one file without references
+//! to anything outside it, and equal reports give equal bytes.
 //!
-//! Only rows that cut count for the contour error; rapids and dwells are recorded and drawn, but not judged.
+//! Only rows that cut count for the contour error; rapids and dwells are recorded and drawn, but
+//! not judged.
 
 pub(crate) mod text;
 mod page_units;
@@ -47,7 +49,8 @@ pub use worst::WorstPlace;
 pub(crate) use feedwright_sim::CorrectionChange;
 pub(crate) use feedwright_sim::{FadedOut, Outcome, Transition};
 
-/// In place of a controller: the run of a corrected program, cut without feedback by another control.
+/// In place of a controller: the run of a corrected program, cut without feedback by another
+/// control.
 pub(crate) const AS_EXPORTED: &str = "as exported";
 
 /// Everything that the page shows.
@@ -77,7 +80,8 @@ pub struct Report {
     pub axis_limits: Vec<DrawnLimits>,
     /// What other machines that fit the recording come to, where they were cut.
     pub band: Option<Band>,
-    /// One for each controller. The first is what the others are compared with; the last is the one that is judged.
+    /// One for each controller. The first is what the others are compared with; the last is the one
+    /// that is judged.
     pub runs: Vec<ReportedRun>,
 }
 
@@ -139,5 +143,8 @@ pub struct TimelineEvent {
 /// A row of the tests: at rest.
 #[cfg(test)]
 const fn row(t_s: f64) -> feedwright_sim::Row {
-    feedwright_sim::Row { t_s, ..feedwright_sim::Row::AT_REST }
+    feedwright_sim::Row {
+        t_s,
+        ..feedwright_sim::Row::AT_REST
+    }
 }

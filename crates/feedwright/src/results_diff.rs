@@ -1,7 +1,8 @@
 //! Two results, or two programs, side by side: their figures with the ratio, and one plot.
 //!
-//! Results are the JSON of `run`, `correct` and `plan`. Of a run the last cut counts, the one that is judged. The plot has the
-//! distribution of the contour error of two runs, and the paths of two programs.
+//! Results are the JSON of `run`, `correct` and `plan`. Of a run the last cut counts, the one that
+//! is judged. The plot has the distribution of the contour error of two runs, and the paths of two
+//! programs.
 
 use std::io::{self, Write};
 
@@ -13,7 +14,9 @@ use serde_json::Value;
 use crate::report::figure::{
     COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline, figure_parts, write_figure_part,
 };
-use crate::report::plain_page::{PagePart, write_foot, write_head, write_table_end, write_table_head};
+use crate::report::plain_page::{
+    PagePart, write_foot, write_head, write_table_end, write_table_head,
+};
 use crate::report::text::{change, escaped, number};
 
 /// Figures by their keys in the JSON results, and what they are called.
@@ -49,10 +52,14 @@ impl DiffSide {
     pub(crate) fn of_result(name: &str, result: &Value) -> Option<Self> {
         let last = result["runs"].as_array().and_then(|runs| runs.last());
         let exported = result.get("as_exported");
-        let of = last.or(exported).or(result.get("cutting_s").map(|_| result))?;
+        let of = last
+            .or(exported)
+            .or(result.get("cutting_s").map(|_| result))?;
         let figure = |(key, name): &(&str, &'static str)| Some((*name, of[*key].as_f64()?));
         let figures: Vec<_> = KEYS.iter().filter_map(figure).collect();
-        let controller = of["controller"].as_str().map_or_else(String::new, |controller| format!(", {controller}"));
+        let controller = of["controller"]
+            .as_str()
+            .map_or_else(String::new, |controller| format!(", {controller}"));
         Some(Self {
             name: format!("{name}{controller}"),
             figures,
@@ -78,7 +85,12 @@ impl DiffSide {
             ("Y size mm", size_mm(1)),
             ("Z size mm", size_mm(2)),
         ];
-        Ok(Self { name: program.name(), figures, curve: path(read.map_while(Result::ok)), is_path: true })
+        Ok(Self {
+            name: program.name(),
+            figures,
+            curve: path(read.map_while(Result::ok)),
+            is_path: true,
+        })
     }
 }
 
@@ -91,9 +103,14 @@ const MOST_POINTS: usize = 200_000;
 fn path(steps: impl Iterator<Item = Canon> + Send) -> Vec<[f64; 2]> {
     let mut points = Vec::new();
     for step in path_steps(steps).map_while(Result::ok) {
-        let feedwright_plan::Step::Piece(piece) = step else { continue };
+        let feedwright_plan::Step::Piece(piece) = step else {
+            continue;
+        };
         for k in 0..=POINTS {
-            let at_mm = piece.curve.at(piece.length_mm * k as f64 / POINTS as f64).position_mm;
+            let at_mm = piece
+                .curve
+                .at(piece.length_mm * k as f64 / POINTS as f64)
+                .position_mm;
             points.push([at_mm[0], at_mm[1]]);
         }
         if points.len() > MOST_POINTS {
@@ -103,11 +120,18 @@ fn path(steps: impl Iterator<Item = Canon> + Send) -> Vec<[f64; 2]> {
     points
 }
 
-/// The distribution of the contour error: share of the servo periods for each um, over the error, um.
+/// The distribution of the contour error: share of the servo periods for each um, over the error,
+/// um.
 fn distribution(histogram: &Value) -> Vec<[f64; 2]> {
-    let Some(counts) = histogram["counts"].as_array() else { return Vec::new() };
-    let [width_um, first] = ["bin_um", "first_bin"].map(|key| histogram[key].as_f64().unwrap_or(0.0));
-    let counts: Vec<f64> = counts.iter().map(|count| count.as_f64().unwrap_or(0.0)).collect();
+    let Some(counts) = histogram["counts"].as_array() else {
+        return Vec::new();
+    };
+    let [width_um, first] =
+        ["bin_um", "first_bin"].map(|key| histogram[key].as_f64().unwrap_or(0.0));
+    let counts: Vec<f64> = counts
+        .iter()
+        .map(|count| count.as_f64().unwrap_or(0.0))
+        .collect();
     let all: f64 = counts.iter().sum();
     let step = |(k, count): (usize, &f64)| {
         let (from, share) = (first + k as f64, 100.0 * count / (all * width_um));
@@ -131,7 +155,11 @@ impl DiffFigure {
     /// The second over the first, with three decimals; a dash where the first is zero.
     pub(crate) fn ratio(&self) -> String {
         let ratio = self.after / self.before;
-        if ratio.is_finite() { format!("{ratio:.3}") } else { "-".to_owned() }
+        if ratio.is_finite() {
+            format!("{ratio:.3}")
+        } else {
+            "-".to_owned()
+        }
     }
 }
 
@@ -139,7 +167,11 @@ impl DiffFigure {
 pub(crate) fn diff_figures(before: &DiffSide, after: &DiffSide) -> Vec<DiffFigure> {
     let both = |(name, value): &(&'static str, f64)| {
         let (_, after) = after.figures.iter().find(|(other, _)| other == name)?;
-        Some(DiffFigure { name, before: *value, after: *after })
+        Some(DiffFigure {
+            name,
+            before: *value,
+            after: *after,
+        })
     };
     before.figures.iter().filter_map(both).collect()
 }
@@ -148,7 +180,10 @@ pub(crate) fn diff_figures(before: &DiffSide, after: &DiffSide) -> Vec<DiffFigur
 ///
 /// # Errors
 /// Where `out` takes no more.
-pub(crate) fn write_diff_page(out: &mut impl Write, [before, after]: [&DiffSide; 2]) -> io::Result<()> {
+pub(crate) fn write_diff_page(
+    out: &mut impl Write,
+    [before, after]: [&DiffSide; 2],
+) -> io::Result<()> {
     let figures = [CaptionedFigure {
         figure: figure([before, after]),
         number: "Figure 1".to_owned(),
@@ -161,13 +196,34 @@ pub(crate) fn write_diff_page(out: &mut impl Write, [before, after]: [&DiffSide;
     let has_plot = !before.curve.is_empty() && !after.curve.is_empty();
     let table = PagePart::new("figures", "Figures");
     let plots: Vec<PagePart> = figure_parts(&figures).filter(|_| has_plot).collect();
-    let parts: Vec<PagePart> = std::iter::once(table.clone()).chain(plots.iter().cloned()).collect();
+    let parts: Vec<PagePart> = std::iter::once(table.clone())
+        .chain(plots.iter().cloned())
+        .collect();
     let title = format!("{} and {}", before.name, after.name);
-    write_head(out, "tables", &title, "Before and after: their figures, with the ratio, and one plot.", &parts)?;
+    write_head(
+        out,
+        "tables",
+        &title,
+        "Before and after: their figures, with the ratio, and one plot.",
+        &parts,
+    )?;
     table.begin(out)?;
-    write_table_head(out, ["", before.name.as_str(), after.name.as_str(), "ratio", "change"])?;
+    write_table_head(
+        out,
+        [
+            "",
+            before.name.as_str(),
+            after.name.as_str(),
+            "ratio",
+            "change",
+        ],
+    )?;
     for figure in diff_figures(before, after) {
-        let DiffFigure { name, before, after } = figure;
+        let DiffFigure {
+            name,
+            before,
+            after,
+        } = figure;
         writeln!(
             out,
             "<tr><td class=\"words\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
@@ -180,22 +236,35 @@ pub(crate) fn write_diff_page(out: &mut impl Write, [before, after]: [&DiffSide;
     }
     write_table_end(out)?;
     PagePart::end(out)?;
-    plots.iter().zip(&figures).try_for_each(|(part, entry)| write_figure_part(out, part, entry))?;
+    plots
+        .iter()
+        .zip(&figures)
+        .try_for_each(|(part, entry)| write_figure_part(out, part, entry))?;
     write_foot(out)
 }
 
 /// Both curves over each other.
 fn figure(sides: [&DiffSide; 2]) -> Figure {
     let is_path = sides[0].is_path;
-    let line = [if is_path { LineStyle::Thin } else { LineStyle::Dashed }, LineStyle::Solid];
+    let line = [
+        if is_path {
+            LineStyle::Thin
+        } else {
+            LineStyle::Dashed
+        },
+        LineStyle::Solid,
+    ];
     let curve = |k: usize| Polyline {
         label: sides[k].name.clone(),
         points: sides[k].curve.clone(),
         line: line[k],
         color: COLORS[k].to_owned(),
     };
-    let titles =
-        if is_path { ["X [mm]", "Y [mm]"] } else { ["Contour error [\u{b5}m]", "Servo periods [% per \u{b5}m]"] };
+    let titles = if is_path {
+        ["X [mm]", "Y [mm]"]
+    } else {
+        ["Contour error [\u{b5}m]", "Servo periods [% per \u{b5}m]"]
+    };
     let panel = Panel {
         x_title: titles[0].to_owned(),
         y_title: titles[1].to_owned(),
@@ -203,7 +272,11 @@ fn figure(sides: [&DiffSide; 2]) -> Figure {
         equal_axes: is_path,
         ..Panel::default()
     };
-    Figure { panels: vec![panel], columns: 1, aspect: 0.62 }
+    Figure {
+        panels: vec![panel],
+        columns: 1,
+        aspect: 0.62,
+    }
 }
 
 #[cfg(test)]
@@ -215,12 +288,26 @@ mod tests {
     fn the_last_cut_of_a_run_counts_and_its_distribution_sums_to_all() {
         let histogram = json!({ "bin_um": 0.5, "first_bin": -1, "counts": [1, 3] });
         let run = |max_um: f64| json!({ "runs": [{ "max_um": 99.0 }, { "controller": "c", "max_um": max_um, "histogram": histogram }] });
-        let [before, after] = [4.0, 1.0].map(|max_um| DiffSide::of_result("a.json", &run(max_um)).unwrap());
+        let [before, after] =
+            [4.0, 1.0].map(|max_um| DiffSide::of_result("a.json", &run(max_um)).unwrap());
         let figures = diff_figures(&before, &after);
-        assert_eq!(figures, [DiffFigure { name: "max um", before: 4.0, after: 1.0 }]);
-        assert_eq!((figures[0].ratio().as_str(), before.name.as_str()), ("0.250", "a.json, c"));
+        assert_eq!(
+            figures,
+            [DiffFigure {
+                name: "max um",
+                before: 4.0,
+                after: 1.0
+            }]
+        );
+        assert_eq!(
+            (figures[0].ratio().as_str(), before.name.as_str()),
+            ("0.250", "a.json, c")
+        );
         // 25 % and 75 % of the periods, over 0.5 um each.
-        assert_eq!(before.curve, [[-0.5, 50.0], [0.0, 50.0], [0.0, 150.0], [0.5, 150.0]]);
+        assert_eq!(
+            before.curve,
+            [[-0.5, 50.0], [0.0, 50.0], [0.0, 150.0], [0.5, 150.0]]
+        );
         assert_eq!(DiffSide::of_result("x", &json!({ "files": [] })), None);
     }
 
@@ -230,13 +317,23 @@ mod tests {
             let program = Program::from_text("a.ngc", text);
             DiffSide::of_program(&program, &Settings::default()).unwrap()
         };
-        let [before, after] = ["G21 G90 F600\nG1 X10\nM2\n", "G21 G90 F600\nG1 X20\nM2\n"].map(side);
-        let feed = diff_figures(&before, &after).into_iter().find(|figure| figure.name == "feed mm").unwrap();
-        assert_eq!((feed.before, feed.after, feed.ratio().as_str()), (10.0, 20.0, "2.000"));
+        let [before, after] =
+            ["G21 G90 F600\nG1 X10\nM2\n", "G21 G90 F600\nG1 X20\nM2\n"].map(side);
+        let feed = diff_figures(&before, &after)
+            .into_iter()
+            .find(|figure| figure.name == "feed mm")
+            .unwrap();
+        assert_eq!(
+            (feed.before, feed.after, feed.ratio().as_str()),
+            (10.0, 20.0, "2.000")
+        );
         assert_eq!(after.curve.last(), Some(&[20.0, 0.0]));
         let mut page = Vec::new();
         write_diff_page(&mut page, [&before, &after]).unwrap();
         let page = String::from_utf8(page).unwrap();
-        assert!(page.contains("<svg") && page.contains("2.000") && page.contains("+100 %"), "{page}");
+        assert!(
+            page.contains("<svg") && page.contains("2.000") && page.contains("+100 %"),
+            "{page}"
+        );
     }
 }

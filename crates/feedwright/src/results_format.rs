@@ -6,8 +6,8 @@ use feedwright_gcode::is_hidden;
 use serde::Serialize;
 use serde_json::Value;
 
-/// The format of the JSON results, as docs/json.md has it. It is raised whenever a key goes or changes its meaning; new keys may
-/// come without.
+/// The format of the JSON results, as docs/json.md has it. It is raised whenever a key goes or
+/// changes its meaning; new keys may come without.
 pub const RESULTS_FORMAT: u32 = 1;
 
 /// A result, an object, with its format and version.
@@ -17,7 +17,8 @@ pub(crate) fn stamped(mut result: Value) -> Value {
     result
 }
 
-/// Writes a value as JSON, in which what [`is_hidden`] is spelled out: a terminal shows it, and a program reads it unchanged.
+/// Writes a value as JSON, in which what [`is_hidden`] is spelled out: a terminal shows it, and a
+/// program reads it unchanged.
 pub(crate) fn write_json(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
     let mut spelled = SpelledOut(BufWriter::new(out));
     serde_json::to_writer_pretty(&mut spelled, value)?;
@@ -25,7 +26,8 @@ pub(crate) fn write_json(out: &mut impl Write, value: &impl Serialize) -> io::Re
     spelled.flush()
 }
 
-/// Writes JSON text with [`spelled_out`]. The serializer writes whole strings, so no character is divided.
+/// Writes JSON text with [`spelled_out`]. The serializer writes whole strings, so no character is
+/// divided.
 struct SpelledOut<W>(W);
 
 impl<W: Write> Write for SpelledOut<W> {
@@ -48,7 +50,9 @@ pub(crate) fn spelled_out(text: &str) -> String {
             out.push(c);
         } else {
             let mut units = [0; 2];
-            c.encode_utf16(&mut units).iter().for_each(|unit| out.push_str(&format!("\\u{unit:04x}")));
+            c.encode_utf16(&mut units)
+                .iter()
+                .for_each(|unit| out.push_str(&format!("\\u{unit:04x}")));
         }
     }
     out

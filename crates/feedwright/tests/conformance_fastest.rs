@@ -1,26 +1,37 @@
-//! `feedwright run --tolerance UM --fastest`: what it prints, what bounds it, and what it says where there is no such plan.
+//! `feedwright run --tolerance UM --fastest`: what it prints, what bounds it, and what it says
+//! where there is no such plan.
 
 use crate::command::{Folder, Ran};
 
 const LIMITS: &str = "max_velocity_mm_s = 200\nmax_accel_mm_s2 = 2000\nmax_jerk_mm_s3 = 50000\n";
 
-/// The paper's machine with limits of its axes, without a tolerance of the path; what else its axes have.
+/// The paper's machine with limits of its axes, without a tolerance of the path; what else its axes
+/// have.
 fn folder(axes_have: &str) -> Folder {
     let folder = Folder::new();
-    let axes = ["x", "y", "z"].map(|axis| format!("[axis.{axis}]\n{LIMITS}{axes_have}")).concat();
+    let axes = ["x", "y", "z"]
+        .map(|axis| format!("[axis.{axis}]\n{LIMITS}{axes_have}"))
+        .concat();
     let head = "base = \"tnv40\"\nname = \"m\"\ndescription = \"d\"\nsource = \"s\"\n";
     folder.file("m.toml", format!("{head}{axes}"));
     folder
 }
 
 fn fastest(folder: &Folder, arguments: &[&str]) -> Ran {
-    let all: Vec<&str> = ["circle.ngc", "--machine", "m.toml", "--fastest"].iter().chain(arguments).copied().collect();
+    let all: Vec<&str> = ["circle.ngc", "--machine", "m.toml", "--fastest"]
+        .iter()
+        .chain(arguments)
+        .copied()
+        .collect();
     folder.run_uncorrected(&all)
 }
 
 /// The number behind a word.
 fn number(ran: &Ran, before: &str) -> f64 {
-    let (_, rest) = ran.stdout.split_once(before).unwrap_or_else(|| panic!("no {before} in {}", ran.stdout));
+    let (_, rest) = ran
+        .stdout
+        .split_once(before)
+        .unwrap_or_else(|| panic!("no {before} in {}", ran.stdout));
     rest.split_whitespace().next().unwrap().parse().unwrap()
 }
 
@@ -30,18 +41,27 @@ fn it_tells_time_bound_error_and_what_binds() {
     let ran = fastest(&folder, &["--tolerance", "50"]).succeeded();
     let (time_s, error_um) = (number(&ran, "least time: "), number(&ran, "largest error "));
     assert!(error_um <= 50.0 && time_s >= 12.56 / 20.0, "{}", ran.stdout);
-    for told in
-        ["s for a tool without error, motion ", "um are the path's", "feedrate ", "% of the motion", "within tolerance"]
-    {
+    for told in [
+        "s for a tool without error, motion ",
+        "um are the path's",
+        "feedrate ",
+        "% of the motion",
+        "within tolerance",
+    ] {
         assert!(ran.told().contains(told), "{told} in {}", ran.stdout);
     }
-    assert!(folder.text("circle.report.html").contains("What binds along the path"));
+    assert!(
+        folder
+            .text("circle.report.html")
+            .contains("What binds along the path")
+    );
 }
 
 #[test]
 fn the_programmed_feedrate_is_the_ceiling_and_feed_raises_it() {
     let folder = folder("");
-    let time_s = |arguments: &[&str]| number(&fastest(&folder, arguments).succeeded(), "least time: ");
+    let time_s =
+        |arguments: &[&str]| number(&fastest(&folder, arguments).succeeded(), "least time: ");
     let programmed_s = time_s(&["--tolerance", "100"]);
     let raised_s = time_s(&["--tolerance", "100", "--feed", "40mm/s"]);
     assert!(raised_s < 0.8 * programmed_s, "{raised_s} {programmed_s}");
@@ -50,23 +70,44 @@ fn the_programmed_feedrate_is_the_ceiling_and_feed_raises_it() {
     assert!(tight_s > 1.05 * raised_s, "{tight_s} {raised_s}");
 }
 
-/// With 20 um of encoder noise the tool is some 12 um away at any speed: that is seen before it is slow.
+/// With 20 um of encoder noise the tool is some 12 um away at any speed: that is seen before it is
+/// slow.
 #[test]
 fn what_no_speed_brings_within_the_tolerance_is_told_with_its_line_and_nothing_is_written() {
     let folder = folder("encoder_noise_um = 20\n");
-    folder.file("small.ngc", "G21 G90 G64\nG0 X0 Y0\nG2 X0 Y0 I1 J0 F3000\nM2\n");
+    folder.file(
+        "small.ngc",
+        "G21 G90 G64\nG0 X0 Y0\nG2 X0 Y0 I1 J0 F3000\nM2\n",
+    );
     let before = folder.content();
-    let ran = folder.run_uncorrected(&["small.ngc", "--machine", "m.toml", "--fastest", "--tolerance", "5"]);
-    ran.faulty(&["small.ngc", "line 3", "5 um are allowed", "no matter of speed"]);
+    let ran = folder.run_uncorrected(&[
+        "small.ngc",
+        "--machine",
+        "m.toml",
+        "--fastest",
+        "--tolerance",
+        "5",
+    ]);
+    ran.faulty(&[
+        "small.ngc",
+        "line 3",
+        "5 um are allowed",
+        "no matter of speed",
+    ]);
     assert_eq!(folder.content(), before);
 }
 
 #[test]
 fn it_needs_a_tolerance_and_tells_which_limits_of_the_axes_it_assumes() {
     let folder = folder("");
-    let run = |arguments: &[&str]| folder.run_uncorrected(&[&["circle.ngc", "--fastest"], arguments].concat());
+    let run = |arguments: &[&str]| {
+        folder.run_uncorrected(&[&["circle.ngc", "--fastest"], arguments].concat())
+    };
     let ran = run(&["--machine", "tnv40", "--tolerance", "400"]).succeeded();
     let remarked = ran.remarked();
-    assert!(remarked.contains("tnv40 has no limits of its axes") && remarked.contains("max_jerk_mm_s3"), "{ran:?}");
+    assert!(
+        remarked.contains("tnv40 has no limits of its axes") && remarked.contains("max_jerk_mm_s3"),
+        "{ran:?}"
+    );
     run(&["--machine", "m.toml"]).refused(&["--tolerance"]);
 }

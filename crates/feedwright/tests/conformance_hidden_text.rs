@@ -1,4 +1,5 @@
-//! Text of others commands nothing: neither the terminal, nor a log of CI, nor a page. Every way in, every format out.
+//! Text of others commands nothing: neither the terminal, nor a log of CI, nor a page. Every way
+//! in, every format out.
 
 use std::fs::File;
 
@@ -15,9 +16,19 @@ const FORGING: &str = "\u{1b}]0;X\u{7}\u{9b}31m\u{202e}\nFORGED";
 /// Nothing is hidden in the text but the ends of its lines, and none of them is forged.
 #[track_caller]
 fn assert_inert(what: &str, text: &str) {
-    let hidden: Vec<char> = text.chars().filter(|&c| is_hidden(c) && c != '\n').collect();
-    assert!(hidden.is_empty(), "{what}: {hidden:?}\n{}", text.escape_debug());
-    assert!(!text.lines().any(|line| line.starts_with("FORGED")), "{what}\n{text}");
+    let hidden: Vec<char> = text
+        .chars()
+        .filter(|&c| is_hidden(c) && c != '\n')
+        .collect();
+    assert!(
+        hidden.is_empty(),
+        "{what}: {hidden:?}\n{}",
+        text.escape_debug()
+    );
+    assert!(
+        !text.lines().any(|line| line.starts_with("FORGED")),
+        "{what}\n{text}"
+    );
 }
 
 /// Runs, and looks at what is printed and at the files that are written.
@@ -60,31 +71,64 @@ fn programs_command_nothing() {
             inert(&folder, &["check", "--format", format, "part.ngc"], &[]);
         }
         inert(&folder, &["canon", "part.ngc"], &[]);
-        inert(&folder, &["run", "part.ngc", "--controller", "uncorrected"], &[]);
+        inert(
+            &folder,
+            &["run", "part.ngc", "--controller", "uncorrected"],
+            &[],
+        );
     }
     // What JSON says is still what the program says.
     let canon = folder.run(&["canon", "part.ngc"]).stdout;
-    assert!(canon.contains("\\u001b]0;X\\u0007\\u009b31m\\u202e\\u200bevil"), "{canon}");
+    assert!(
+        canon.contains("\\u001b]0;X\\u0007\\u009b31m\\u202e\\u200bevil"),
+        "{canon}"
+    );
     let outputs = ["r.html", "r.json", "p.json", "l.csv", "c.ngc"];
     inert(
         &folder,
-        &["run", "part.ngc", "--controller", "uncorrected", "--report", "r.html", "--json", "r.json"],
+        &[
+            "run",
+            "part.ngc",
+            "--controller",
+            "uncorrected",
+            "--report",
+            "r.html",
+            "--json",
+            "r.json",
+        ],
         &outputs[..2],
     );
-    inert(&folder, &["plan", "part.ngc", "--json", "p.json", "--lines", "l.csv"], &outputs[2..4]);
+    inert(
+        &folder,
+        &["plan", "part.ngc", "--json", "p.json", "--lines", "l.csv"],
+        &outputs[2..4],
+    );
 }
 
 #[test]
 fn machine_files_command_nothing() {
     let folder = Folder::new();
-    let named = |name: &str| format!("base = \"tnv40\"\nname = {}\ndescription = {}\n", quoted(name), quoted(name));
+    let named = |name: &str| {
+        format!(
+            "base = \"tnv40\"\nname = {}\ndescription = {}\n",
+            quoted(name),
+            quoted(name)
+        )
+    };
     let files = [
         format!("{}{} = 1\n", named("x"), quoted(FORGING)),
         format!("{}[axis.x]\n{} = 1\n", named("x"), quoted(FORGING)),
         format!("base = {}\nname = \"x\"\n", quoted(FORGING)),
         format!("{}kd = {HOSTILE}\n", named("x")),
-        format!("{}\n[plc.event.{}]\nrow = \"a\"\nlabel = \"b\"\ntakes_s = 1\n", named("x"), quoted(FORGING)),
-        format!("# {HOSTILE}\nname = \"\u{202e}\"\n[limits]\nrapid_mm_s = \"{}\"\n", "\u{202e}\u{200b}"),
+        format!(
+            "{}\n[plc.event.{}]\nrow = \"a\"\nlabel = \"b\"\ntakes_s = 1\n",
+            named("x"),
+            quoted(FORGING)
+        ),
+        format!(
+            "# {HOSTILE}\nname = \"\u{202e}\"\n[limits]\nrapid_mm_s = \"{}\"\n",
+            "\u{202e}\u{200b}"
+        ),
     ];
     for file in &files {
         folder.file("m.toml", file);
@@ -92,17 +136,52 @@ fn machine_files_command_nothing() {
             let ran = inert(&folder, &["check", "--format", format, "m.toml"], &[]);
             assert_ne!(ran.code, Some(0), "{file:?}: {ran:?}");
         }
-        inert(&folder, &["run", "circle.ngc", "--machine", "m.toml", "--controller", "uncorrected"], &[]);
+        inert(
+            &folder,
+            &[
+                "run",
+                "circle.ngc",
+                "--machine",
+                "m.toml",
+                "--controller",
+                "uncorrected",
+            ],
+            &[],
+        );
     }
     folder.file("m.toml", named(FORGING));
     for format in FORMATS {
-        assert_eq!(inert(&folder, &["check", "--format", format, "m.toml"], &[]).code, Some(0));
+        assert_eq!(
+            inert(&folder, &["check", "--format", format, "m.toml"], &[]).code,
+            Some(0)
+        );
     }
     let machine = ["--machine", "m.toml", "--json", "r.json"];
-    let cut = ["run", "circle.ngc", "--controller", "uncorrected", "--report", "r.html", "--out", "o.csv"];
-    inert(&folder, &[&cut[..], &machine].concat(), &["r.html", "r.json"]);
-    inert(&folder, &[&["plan", "circle.ngc"][..], &machine].concat(), &["r.json"]);
-    inert(&folder, &[&["correct", "circle.ngc", "--out", "c.ngc"][..], &machine].concat(), &["r.json", "c.ngc"]);
+    let cut = [
+        "run",
+        "circle.ngc",
+        "--controller",
+        "uncorrected",
+        "--report",
+        "r.html",
+        "--out",
+        "o.csv",
+    ];
+    inert(
+        &folder,
+        &[&cut[..], &machine].concat(),
+        &["r.html", "r.json"],
+    );
+    inert(
+        &folder,
+        &[&["plan", "circle.ngc"][..], &machine].concat(),
+        &["r.json"],
+    );
+    inert(
+        &folder,
+        &[&["correct", "circle.ngc", "--out", "c.ngc"][..], &machine].concat(),
+        &["r.json", "c.ngc"],
+    );
     let results: Value = serde_json::from_str(&folder.text("r.json")).unwrap();
     assert_eq!(results["machine"], FORGING);
 }
@@ -111,9 +190,15 @@ fn machine_files_command_nothing() {
 #[test]
 fn the_place_of_a_fault_is_that_of_the_text_that_is_shown() {
     let folder = Folder::new();
-    folder.file("m.toml", "# \u{9b}\u{200b}\nbase = \"tnv40\"\nname = \"\u{9b}\u{202e}\"\nspeed = 1\n");
+    folder.file(
+        "m.toml",
+        "# \u{9b}\u{200b}\nbase = \"tnv40\"\nname = \"\u{9b}\u{202e}\"\nspeed = 1\n",
+    );
     let ran = folder.run(&["check", "m.toml"]);
-    assert!(ran.stderr.contains("[m.toml:4:1]") && ran.stderr.contains("4 │ speed = 1\n   · ──"), "{ran:?}");
+    assert!(
+        ran.stderr.contains("[m.toml:4:1]") && ran.stderr.contains("4 │ speed = 1\n   · ──"),
+        "{ran:?}"
+    );
 }
 
 #[cfg(unix)]
@@ -128,15 +213,34 @@ fn names_of_files_and_words_of_the_command_line_command_nothing() {
     folder.file(&log, text(HEAD, rows(1)));
     let missing = format!("{FORGING}none.ngc");
     for format in FORMATS {
-        inert(&folder, &["check", "--format", format, &program, &program, &faulty, &machine, &missing], &[]);
+        inert(
+            &folder,
+            &[
+                "check", "--format", format, &program, &program, &faulty, &machine, &missing,
+            ],
+            &[],
+        );
     }
     let [page, json] = ["html", "json"].map(|ending| format!("{FORGING}.{ending}"));
-    let cut = ["run", &program, "--controller", "uncorrected", "--report", &page, "--json", &json];
+    let cut = [
+        "run",
+        &program,
+        "--controller",
+        "uncorrected",
+        "--report",
+        &page,
+        "--json",
+        &json,
+    ];
     assert_eq!(inert(&folder, &cut, &[&page, &json]).code, Some(0));
     let part = serde_json::from_str::<Value>(&folder.text(&json)).unwrap()["part"].clone();
     assert_eq!(part, "\u{fffd}]0;X\u{fffd}\u{fffd}31m\u{fffd} FORGED.ngc");
     inert(&folder, &["canon", &program], &[]);
-    inert(&folder, &["identify", &log, "--out", "mine.toml", "--report", "i.html"], &["mine.toml", "i.html"]);
+    inert(
+        &folder,
+        &["identify", &log, "--out", "mine.toml", "--report", "i.html"],
+        &["mine.toml", "i.html"],
+    );
     for arguments in [
         &["run", &program, "--machine", FORGING][..],
         &["run", &program, "--controller", FORGING],
@@ -144,27 +248,56 @@ fn names_of_files_and_words_of_the_command_line_command_nothing() {
         &["run", "--no-such-option", &program],
         &["correct", &program, "--for", HOSTILE],
         &["identify", &log, "--columns", HOSTILE],
-        &["identify", &log, "--columns", &format!("x.cmd={HOSTILE},x.act=1")],
+        &[
+            "identify",
+            &log,
+            "--columns",
+            &format!("x.cmd={HOSTILE},x.act=1"),
+        ],
         &["check", "--tool-table", &missing, &program],
         &[HOSTILE],
     ] {
-        assert_ne!(inert(&folder, arguments, &[]).code, Some(0), "{arguments:?}");
+        assert_ne!(
+            inert(&folder, arguments, &[]).code,
+            Some(0),
+            "{arguments:?}"
+        );
     }
 }
 
 #[test]
 fn columns_of_logs_command_nothing() {
     let folder = Folder::new();
-    for head in
-        [format!("t,{HOSTILE}.cmd,{HOSTILE}.act"), format!("t,x.cmd,x.{HOSTILE}"), format!("{HOSTILE},{HOSTILE}a,b")]
-    {
+    for head in [
+        format!("t,{HOSTILE}.cmd,{HOSTILE}.act"),
+        format!("t,x.cmd,x.{HOSTILE}"),
+        format!("{HOSTILE},{HOSTILE}a,b"),
+    ] {
         folder.file("log.csv", text(&head, rows(1)));
-        let outputs = ["--out", "mine.toml", "--report", "i.html", "--json", "i.json"];
-        let ran = inert(&folder, &[&["identify", "log.csv"][..], &outputs].concat(), &[]);
-        for file in ["mine.toml", "i.html", "i.json"].iter().filter(|file| folder.path().join(file).is_file()) {
+        let outputs = [
+            "--out",
+            "mine.toml",
+            "--report",
+            "i.html",
+            "--json",
+            "i.json",
+        ];
+        let ran = inert(
+            &folder,
+            &[&["identify", "log.csv"][..], &outputs].concat(),
+            &[],
+        );
+        for file in ["mine.toml", "i.html", "i.json"]
+            .iter()
+            .filter(|file| folder.path().join(file).is_file())
+        {
             assert_inert(&format!("{file} of {head:?}, {ran:?}"), &folder.text(file));
         }
-        inert(&folder, &["identify", "log.csv", "--columns", "x.cmd=none,x.act=1"], &[]);
+        inert(
+            &folder,
+            &["identify", "log.csv", "--columns", "x.cmd=none,x.act=1"],
+            &[],
+        );
     }
 }
 
@@ -173,13 +306,32 @@ fn columns_of_logs_command_nothing() {
 fn a_standard_output_without_room_is_named() {
     let folder = Folder::new();
     let mut command = folder.command();
-    command.args(["run", "circle.ngc", "--controller", "uncorrected", "--json", "-"]);
+    command.args([
+        "run",
+        "circle.ngc",
+        "--controller",
+        "uncorrected",
+        "--json",
+        "-",
+    ]);
     let full = File::options().write(true).open("/dev/full").unwrap();
     let ran = Ran::from(
-        command.stdout(full).stderr(std::process::Stdio::piped()).spawn().unwrap().wait_with_output().unwrap(),
+        command
+            .stdout(full)
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap()
+            .wait_with_output()
+            .unwrap(),
     );
     assert_eq!(ran.code, Some(2), "{ran:?}");
     let told = ran.remarked();
-    assert!(told.contains("cannot write the standard output: No space left on device"), "{told}");
-    assert!(told.contains("make room where the standard output goes") && !told.contains("room in ,"), "{told}");
+    assert!(
+        told.contains("cannot write the standard output: No space left on device"),
+        "{told}"
+    );
+    assert!(
+        told.contains("make room where the standard output goes") && !told.contains("room in ,"),
+        "{told}"
+    );
 }

@@ -1,4 +1,5 @@
-//! What an identification writes: JSON with what it promises, a machine file that reads back, a page that refers to nothing outside.
+//! What an identification writes: JSON with what it promises, a machine file that reads back, a
+//! page that refers to nothing outside.
 
 use crate::identification_log::{commands_mm, drawn, log_of};
 use feedwright::{LogJob, LogJobError, machine_text, write_json, write_page};
@@ -7,9 +8,12 @@ use feedwright_sim::Machine;
 #[test]
 fn files_hold_what_they_promise() {
     let machine = Machine::load("stiff".as_ref()).unwrap();
-    let found = LogJob { name: "a <log>\n.csv".to_owned(), ..LogJob::default() }
-        .run(log_of(&machine, 5.0, 1.0, 5), &())
-        .unwrap();
+    let found = LogJob {
+        name: "a <log>\n.csv".to_owned(),
+        ..LogJob::default()
+    }
+    .run(log_of(&machine, 5.0, 1.0, 5), &())
+    .unwrap();
     let mut json = vec![];
     write_json(&mut json, &found).unwrap();
     let json: serde_json::Value = serde_json::from_slice(&json).unwrap();
@@ -17,26 +21,48 @@ fn files_hold_what_they_promise() {
         let axis = &json["axes"][name];
         assert!(axis["following_um"].as_f64().unwrap() > 0.0);
         for horizon in ["20ms", "50ms", "100ms", "whole"] {
-            assert!(axis["free_run_um"][horizon].as_f64().unwrap() >= 0.0, "{name} {horizon}");
+            assert!(
+                axis["free_run_um"][horizon].as_f64().unwrap() >= 0.0,
+                "{name} {horizon}"
+            );
             let arx = &axis["arx"]["free_run_um"][horizon];
-            assert!(arx.is_null() || arx.as_f64().unwrap() >= 0.0, "{name} {horizon}");
+            assert!(
+                arx.is_null() || arx.as_f64().unwrap() >= 0.0,
+                "{name} {horizon}"
+            );
         }
         let parameters = axis["parameters"].as_object().unwrap();
-        for key in ["kp_kv_over_j_1_s2", "kv_plus_b_over_j_1_s", "fc_over_j_mm_s2", "offset_over_j_mm_s2"] {
+        for key in [
+            "kp_kv_over_j_1_s2",
+            "kv_plus_b_over_j_1_s",
+            "fc_over_j_mm_s2",
+            "offset_over_j_mm_s2",
+        ] {
             assert!(parameters[key]["identifiable"].as_bool().unwrap(), "{key}");
-            assert_eq!(parameters[key]["interval"].as_array().unwrap().len(), 2, "{key}");
+            assert_eq!(
+                parameters[key]["interval"].as_array().unwrap().len(),
+                2,
+                "{key}"
+            );
         }
         assert_eq!(parameters["inertia_kg_m2"]["identifiable"], false);
         assert!(!axis["verdict"].as_str().unwrap().is_empty());
     }
     let mine = Machine::parse("mine.toml", &machine_text(&found, "mine")).unwrap();
-    assert_eq!((mine.axis_count(), mine.period.servo_s), (2, machine.period.servo_s));
+    assert_eq!(
+        (mine.axis_count(), mine.period.servo_s),
+        (2, machine.period.servo_s)
+    );
     let mut page = vec![];
     write_page(&mut page, &found).unwrap();
     let page = String::from_utf8(page).unwrap();
     assert!(page.contains("a &lt;log&gt;") && !page.contains("NaN"));
     // The name space of a drawing is no reference.
-    assert!(!page.replace("http://www.w3.org/2000/svg", "").contains("://"));
+    assert!(
+        !page
+            .replace("http://www.w3.org/2000/svg", "")
+            .contains("://")
+    );
 }
 
 #[test]
@@ -47,9 +73,15 @@ fn what_tells_no_law_is_refused_with_the_reason() {
         LogJobError::NotFound(reason) => reason.to_string(),
         LogJobError::Cancelled(_) => panic!("nobody ended it"),
     };
-    let times = |from: f64, to: f64| LogJob { times_s: Some([from..to, 3.0..4.0]), ..LogJob::default() };
+    let times = |from: f64, to: f64| LogJob {
+        times_s: Some([from..to, 3.0..4.0]),
+        ..LogJob::default()
+    };
     let text = refused(good.clone(), times(10.0, 20.0));
-    assert!(text.starts_with("--fit has 0 samples") && text.contains("0.000 to 3.999 s"), "{text}");
+    assert!(
+        text.starts_with("--fit has 0 samples") && text.contains("0.000 to 3.999 s"),
+        "{text}"
+    );
     let mut still = good.clone();
     still.axes[1].command_mm.fill(1.0);
     let text = refused(still, times(0.0, 3.0));
@@ -57,7 +89,10 @@ fn what_tells_no_law_is_refused_with_the_reason() {
     // The actual position of another motion.
     let mut strange = good;
     let mut state = 1;
-    strange.axes[0].actual_mm = commands_mm(0.001, 4.0, 99).iter().map(|mm| mm + 5.0 * drawn(&mut state)).collect();
+    strange.axes[0].actual_mm = commands_mm(0.001, 4.0, 99)
+        .iter()
+        .map(|mm| mm + 5.0 * drawn(&mut state))
+        .collect();
     strange.axes.truncate(1);
     let text = match times(0.0, 3.0).run(strange, &()) {
         Err(LogJobError::NotFound(reason)) => reason.to_string(),

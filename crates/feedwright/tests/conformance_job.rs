@@ -1,11 +1,14 @@
-//! What a job promises to whoever runs it: it can be written down and read back, it tells its progress, it ends when it is told
-//! to, it needs no file, and it shares nothing with another one beside it.
+//! What a job promises to whoever runs it: it can be written down and read back, it tells its
+//! progress, it ends when it is told to, it needs no file, and it shares nothing with another one
+//! beside it.
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use feedwright::{BEST, CONTROLLERS, Choices, Guests, Job, JobError, Make, Setting, Setup, TARGETS};
+use feedwright::{
+    BEST, CONTROLLERS, Choices, Guests, Job, JobError, Make, Setting, Setup, TARGETS,
+};
 use feedwright_gcode::{Dialect, Increment, Program, Settings};
 use feedwright_sim::{BUILT_IN_MACHINES, Machine, Mechanism, Plant, Row, Run, Watch, path_steps};
 
@@ -14,7 +17,10 @@ fn part() -> PathBuf {
 }
 
 fn job(machine: &str, controller: &str) -> Job {
-    let mut job = Job::new(Program::in_file(part()), Machine::load(machine.as_ref()).unwrap());
+    let mut job = Job::new(
+        Program::in_file(part()),
+        Machine::load(machine.as_ref()).unwrap(),
+    );
     job.controller = CONTROLLERS.find(controller).unwrap();
     job
 }
@@ -38,7 +44,11 @@ fn everything_that_can_be_asked_for_is_read_back() {
     let setting = Setting::parse("two-dimensional.eta=3.3e-10", None, CONTROLLERS).unwrap();
     let mut full = job("soft", BEST);
     full.feed_mm_s = Some(33.3);
-    full.choices = Choices { seed: u64::MAX, set: vec![setting], ..Choices::default() };
+    full.choices = Choices {
+        seed: u64::MAX,
+        set: vec![setting],
+        ..Choices::default()
+    };
     full.tolerance_um = Some(1.0 / 3.0);
     full.target = Some(&TARGETS[2]);
     full.reference = Some(Program::from_text("original", "G1 X1 F100\nM2\n"));
@@ -50,12 +60,25 @@ fn everything_that_can_be_asked_for_is_read_back() {
 #[test]
 fn what_is_no_job_is_refused_with_the_reason() {
     let mut text = serde_json::to_value(job("tnv40", BEST)).unwrap();
-    let refused = |text: &serde_json::Value| serde_json::from_value::<Job>(text.clone()).unwrap_err().to_string();
+    let refused = |text: &serde_json::Value| {
+        serde_json::from_value::<Job>(text.clone())
+            .unwrap_err()
+            .to_string()
+    };
     text["controller"] = "two".into();
-    assert!(refused(&text).contains("no controller is called 'two'"), "{}", refused(&text));
+    assert!(
+        refused(&text).contains("no controller is called 'two'"),
+        "{}",
+        refused(&text)
+    );
     text["controller"] = BEST.into();
-    text["choices"]["set"] = serde_json::json!([{ "controller": "two-dimensional", "name": "knots", "value": 21.0 }]);
-    assert!(refused(&text).contains("knots is 1 to 20, whole"), "{}", refused(&text));
+    text["choices"]["set"] =
+        serde_json::json!([{ "controller": "two-dimensional", "name": "knots", "value": 21.0 }]);
+    assert!(
+        refused(&text).contains("knots is 1 to 20, whole"),
+        "{}",
+        refused(&text)
+    );
     text["choices"]["set"] = serde_json::json!([]);
     text["machine"] = "name = 'none'".into();
     assert!(refused(&text).contains("machine"), "{}", refused(&text));
@@ -66,13 +89,19 @@ fn rows_are_read_back_to_the_bit() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
     let text = std::fs::read_to_string(part()).unwrap();
     let program = || {
-        let reader = feedwright_gcode::Reader::from_text("circle", text.clone(), Settings::default())?;
+        let reader =
+            feedwright_gcode::Reader::from_text("circle", text.clone(), Settings::default())?;
         Ok(path_steps(reader.map_while(Result::ok)))
     };
     let choices = Choices::default();
-    let mut controller = Make::<2>::make(CONTROLLERS.find(BEST).unwrap(), &mut Setup::new(&machine, &choices));
+    let mut controller = Make::<2>::make(
+        CONTROLLERS.find(BEST).unwrap(),
+        &mut Setup::new(&machine, &choices),
+    );
     let mut rows = Vec::<Row>::new();
-    Run::on(&machine).cut(program, &mut *controller, &mut [&mut rows]).unwrap();
+    Run::on(&machine)
+        .cut(program, &mut *controller, &mut [&mut rows])
+        .unwrap();
     assert!(rows.len() > 1000);
     let read: Vec<Row> = serde_json::from_str(&serde_json::to_string(&rows).unwrap()).unwrap();
     assert_eq!(read, rows);
@@ -87,13 +116,20 @@ struct Ending {
 
 impl Ending {
     fn after(after: u64) -> Self {
-        Self { after, steps: AtomicU64::new(0), stages: Mutex::default() }
+        Self {
+            after,
+            steps: AtomicU64::new(0),
+            stages: Mutex::default(),
+        }
     }
 }
 
 impl Watch for Ending {
     fn begin(&self, stage: &str, steps: u64) {
-        self.stages.lock().unwrap().push((stage.to_owned(), steps, 0));
+        self.stages
+            .lock()
+            .unwrap()
+            .push((stage.to_owned(), steps, 0));
     }
 
     fn advance(&self, steps: u64) {
@@ -112,18 +148,33 @@ fn a_job_tells_its_stages_and_never_more_than_their_steps() {
     job("tnv40", "two-dimensional").run(&watch).unwrap();
     let stages = watch.stages.into_inner().unwrap();
     let names: Vec<&str> = stages.iter().map(|(name, ..)| name.as_str()).collect();
-    let expected = ["reading the program", "cutting, uncorrected", "identifying tnv40", "cutting, two-dimensional"];
+    let expected = [
+        "reading the program",
+        "cutting, uncorrected",
+        "identifying tnv40",
+        "cutting, two-dimensional",
+    ];
     assert_eq!(names, expected);
-    assert!(stages.iter().all(|(_, steps, done)| done <= steps), "{stages:?}");
-    let cuts = stages.iter().filter(|(name, ..)| name.starts_with("cutting"));
-    assert!(cuts.clone().all(|(_, steps, done)| 10 * done > 9 * steps), "{stages:?}");
+    assert!(
+        stages.iter().all(|(_, steps, done)| done <= steps),
+        "{stages:?}"
+    );
+    let cuts = stages
+        .iter()
+        .filter(|(name, ..)| name.starts_with("cutting"));
+    assert!(
+        cuts.clone().all(|(_, steps, done)| 10 * done > 9 * steps),
+        "{stages:?}"
+    );
 }
 
 #[test]
 fn a_job_ends_when_it_is_told_to() {
     // In the cut of the first, of the second, and before anything.
     for after in [300, 1300, 0] {
-        let ended = job("tnv40", "feedforward").run(&Ending::after(after)).unwrap_err();
+        let ended = job("tnv40", "feedforward")
+            .run(&Ending::after(after))
+            .unwrap_err();
         assert!(matches!(ended, JobError::Cancelled(_)), "{after}: {ended}");
     }
 }
@@ -149,34 +200,73 @@ fn a_text_is_cut_as_the_file_is() {
 fn guests_take_the_place_of_the_controller_that_is_asked_for_and_of_the_plant_of_every_cut() {
     let rows = |job: &Job, guests: Guests<'_>| {
         let mut rows = Vec::<Row>::new();
-        let outcome = job.check().unwrap().run_with(guests, &mut [&mut rows], &()).unwrap();
-        let runs: Vec<_> =
-            outcome.report.runs.iter().map(|run| (run.summary.controller.clone(), run.summary.rms_um)).collect();
+        let outcome = job
+            .check()
+            .unwrap()
+            .run_with(guests, &mut [&mut rows], &())
+            .unwrap();
+        let runs: Vec<_> = outcome
+            .report
+            .runs
+            .iter()
+            .map(|run| (run.summary.controller.clone(), run.summary.rms_um))
+            .collect();
         (rows, runs)
     };
     let (asked, feedforward) = (job("tnv40", BEST), job("tnv40", "feedforward"));
     let (theirs, of_theirs) = rows(&feedforward, Guests::default());
-    let guests = Guests { plane: Some(feedforward.controller), ..Guests::default() };
+    let guests = Guests {
+        plane: Some(feedforward.controller),
+        ..Guests::default()
+    };
     let (ours, of_ours) = rows(&asked, guests);
     assert!(ours == theirs && of_ours[0] == of_theirs[0]);
     assert_eq!((&*of_ours[1].0, of_ours[1].1), (BEST, of_theirs[1].1));
     let cut_on = |machine: &Machine| {
         let plant = |start_mm: [f64; 3], seed: u64| -> Box<dyn Mechanism> {
-            Box::new(Plant::<2>::with_seed(machine, [start_mm[0], start_mm[1]], seed))
+            Box::new(Plant::<2>::with_seed(
+                machine,
+                [start_mm[0], start_mm[1]],
+                seed,
+            ))
         };
-        rows(&feedforward, Guests { plant: Some(&plant), ..Guests::default() })
+        rows(
+            &feedforward,
+            Guests {
+                plant: Some(&plant),
+                ..Guests::default()
+            },
+        )
     };
     assert_eq!(cut_on(&feedforward.machine), (theirs, of_theirs.clone()));
     let (_, of_heavy) = cut_on(&Machine::load("heavy".as_ref()).unwrap());
-    assert!((0..2).all(|run| of_heavy[run].1 != of_theirs[run].1), "{of_heavy:?}");
-    let (slow, of_slow) = rows(&feedforward, Guests { feeds_mm_s: Some(&[10.0]), ..Guests::default() });
-    assert!(slow.iter().filter(|row| row.cutting).all(|row| row.feed_plan_mm_s <= 10.0 * (1.0 + 1e-9)));
-    assert_eq!(of_slow[0], of_theirs[0], "the cut beside it is as programmed");
+    assert!(
+        (0..2).all(|run| of_heavy[run].1 != of_theirs[run].1),
+        "{of_heavy:?}"
+    );
+    let (slow, of_slow) = rows(
+        &feedforward,
+        Guests {
+            feeds_mm_s: Some(&[10.0]),
+            ..Guests::default()
+        },
+    );
+    assert!(
+        slow.iter()
+            .filter(|row| row.cutting)
+            .all(|row| row.feed_plan_mm_s <= 10.0 * (1.0 + 1e-9))
+    );
+    assert_eq!(
+        of_slow[0], of_theirs[0],
+        "the cut beside it is as programmed"
+    );
 }
 
 #[test]
 fn jobs_beside_each_other_share_nothing() {
-    let jobs: Vec<Job> = ["feedforward", BEST, "uncorrected"].map(|name| job("tnv40", name)).into();
+    let jobs: Vec<Job> = ["feedforward", BEST, "uncorrected"]
+        .map(|name| job("tnv40", name))
+        .into();
     let summary = |job: &Job| {
         let mut summary = job.run(&()).unwrap().report.runs.pop().unwrap().summary;
         // Times of ticks are the clock's.
@@ -185,8 +275,14 @@ fn jobs_beside_each_other_share_nothing() {
     };
     let alone: Vec<String> = jobs.iter().map(summary).collect();
     let together: Vec<String> = std::thread::scope(|scope| {
-        let threads: Vec<_> = jobs.iter().map(|job| scope.spawn(move || summary(job))).collect();
-        threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+        let threads: Vec<_> = jobs
+            .iter()
+            .map(|job| scope.spawn(move || summary(job)))
+            .collect();
+        threads
+            .into_iter()
+            .map(|thread| thread.join().unwrap())
+            .collect()
     });
     assert_eq!(alone, together);
 }
@@ -195,7 +291,10 @@ fn jobs_beside_each_other_share_nothing() {
 fn the_band_of_the_machine_itself_is_its_cut_and_a_machine_that_differs_widens_it() {
     let mut job = job("tnv40", "feedforward");
     let mut heavy = job.machine.clone();
-    heavy.axes.iter_mut().for_each(|axis| axis.inertia_kg_m2 *= 1.5);
+    heavy
+        .axes
+        .iter_mut()
+        .for_each(|axis| axis.inertia_kg_m2 *= 1.5);
     // Nothing is random on tnv40, and a recording knows no lead.
     let mut other_lead = job.machine.clone();
     for axis in &mut other_lead.axes {
@@ -206,7 +305,10 @@ fn the_band_of_the_machine_itself_is_its_cut_and_a_machine_that_differs_widens_i
         }
         axis.disturbance_nm = 0.0;
     }
-    job.machine.axes.iter_mut().for_each(|axis| axis.disturbance_nm = 0.0);
+    job.machine
+        .axes
+        .iter_mut()
+        .for_each(|axis| axis.disturbance_nm = 0.0);
     let without = job.run(&()).unwrap();
     assert_eq!(without.report.band, None);
     let errors = |run: &feedwright::ReportedRun| [run.summary.rms_um, run.summary.max_um];
@@ -215,16 +317,40 @@ fn the_band_of_the_machine_itself_is_its_cut_and_a_machine_that_differs_widens_i
     let watch = Ending::after(u64::MAX);
     let outcome = job.run(&watch).unwrap();
     let band = outcome.report.band.unwrap();
-    assert_eq!([band.rms_um.median, band.max_um.median].map(f64::to_bits), own.map(f64::to_bits));
-    assert_eq!((band.machines, band.diverged, band.first_s, band.joint_rms_um), (2, 0, None, None));
+    assert_eq!(
+        [band.rms_um.median, band.max_um.median].map(f64::to_bits),
+        own.map(f64::to_bits)
+    );
+    assert_eq!(
+        (
+            band.machines,
+            band.diverged,
+            band.first_s,
+            band.joint_rms_um
+        ),
+        (2, 0, None, None)
+    );
     let stages = watch.stages.into_inner().unwrap();
-    assert_eq!(stages.last().unwrap(), &("cutting on machines that fit the recording".to_owned(), 2, 2));
+    assert_eq!(
+        stages.last().unwrap(),
+        &(
+            "cutting on machines that fit the recording".to_owned(),
+            2,
+            2
+        )
+    );
     job.fitting = vec![other_lead];
     let band = job.run(&()).unwrap().report.band.unwrap();
-    assert!((band.rms_um.median / own[0] - 1.0).abs() < 1e-9, "{band:?} {own:?}");
+    assert!(
+        (band.rms_um.median / own[0] - 1.0).abs() < 1e-9,
+        "{band:?} {own:?}"
+    );
     job.fitting = vec![job.machine.clone(), heavy];
     let band = job.run(&()).unwrap().report.band.unwrap();
-    assert!(band.rms_um.p90 > 2.0 * own[0] && band.rms_um.median < band.rms_um.p90, "{band:?} {own:?}");
+    assert!(
+        band.rms_um.p90 > 2.0 * own[0] && band.rms_um.median < band.rms_um.p90,
+        "{band:?} {own:?}"
+    );
 }
 
 #[test]
@@ -235,17 +361,31 @@ fn of_a_long_cut_the_band_has_the_beginning() {
     job.fitting = vec![job.machine.clone()];
     let report = job.run(&()).unwrap().report;
     let (band, whole) = (report.band.unwrap(), &report.runs.last().unwrap().summary);
-    assert!(whole.time_s > 31.0 && band.first_s == Some(30.0), "{} {band:?}", whole.time_s);
-    assert!(band.machines == 1 && band.max_um.median < 0.5 * whole.max_um, "{band:?} {}", whole.max_um);
+    assert!(
+        whole.time_s > 31.0 && band.first_s == Some(30.0),
+        "{} {band:?}",
+        whole.time_s
+    );
+    assert!(
+        band.machines == 1 && band.max_um.median < 0.5 * whole.max_um,
+        "{band:?} {}",
+        whole.max_um
+    );
 }
 
 #[test]
 fn a_machine_whose_loop_is_unstable_is_counted_and_left_out_of_the_band() {
     let mut job = job("tnv40", "feedforward");
     let mut unstable = job.machine.clone();
-    unstable.axes.iter_mut().for_each(|axis| (axis.kp_1_s, axis.torque_limit_nm) = (1e5, 1e6));
+    unstable
+        .axes
+        .iter_mut()
+        .for_each(|axis| (axis.kp_1_s, axis.torque_limit_nm) = (1e5, 1e6));
     job.fitting = vec![unstable, job.machine.clone()];
     let band = job.run(&()).unwrap().report.band.unwrap();
     assert_eq!((band.machines, band.diverged), (1, 1));
-    assert!(band.sentence().contains("1 more fit the recording, and their servo loops are unstable"));
+    assert!(
+        band.sentence()
+            .contains("1 more fit the recording, and their servo loops are unstable")
+    );
 }

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use crate::command::{Folder, Ran};
 use serde_json::Value;
 
-/// The machine that cuts is tnv40. Its file has a position gain of y, an inertia and a speed-loop gain that are not so.
+/// The machine that cuts is tnv40. Its file has a position gain of y, an inertia and a speed-loop
+/// gain that are not so.
 const FILE: &str = "base = \"tnv40\"\nname = \"misjudged\"\ndescription = \"tnv40 with wrong values\"\nsource = \"a test\"\n\
                     [axis.x]\ninertia_kg_m2 = 0.0124\n[axis.y]\nkp_1_s = 44\nkv_nm_s_per_rad = 1.7\n";
 
@@ -17,8 +18,17 @@ type Samples = Vec<[f64; 5]>;
 
 /// The cut of a program by tnv40, beside `circle.ngc`: RMS at the encoders, um, and its samples.
 fn cut(folder: &Folder, program: &str) -> (f64, Samples) {
-    let arguments =
-        [program, "--machine", "tnv40", "--reference", "circle.ngc", "--trace", "t.csv", "--json", "r.json"];
+    let arguments = [
+        program,
+        "--machine",
+        "tnv40",
+        "--reference",
+        "circle.ngc",
+        "--trace",
+        "t.csv",
+        "--json",
+        "r.json",
+    ];
     folder.run_uncorrected(&arguments).succeeded();
     let results: Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
     let text = folder.text("t.csv");
@@ -30,7 +40,10 @@ fn cut(folder: &Folder, program: &str) -> (f64, Samples) {
         let cells: Vec<&str> = line.split(',').collect();
         columns.map(|column| cells[column].parse().unwrap())
     };
-    (results["runs"][0]["rms_um"].as_f64().unwrap(), lines.map(row).collect())
+    (
+        results["runs"][0]["rms_um"].as_f64().unwrap(),
+        lines.map(row).collect(),
+    )
 }
 
 fn write(folder: &Folder, name: &str, samples: &[[f64; 5]]) {
@@ -43,11 +56,24 @@ fn write(folder: &Folder, name: &str, samples: &[[f64; 5]]) {
 
 fn correct(folder: &Folder, logs: &[&str], out: &str) -> (Ran, Option<Value>) {
     let logs = logs.iter().flat_map(|log| ["--log", log]);
-    let all =
-        ["correct", "circle.ngc", "--machine", "file.toml", "--out", out, "--json", "p.json"].into_iter().chain(logs);
+    let all = [
+        "correct",
+        "circle.ngc",
+        "--machine",
+        "file.toml",
+        "--out",
+        out,
+        "--json",
+        "p.json",
+    ]
+    .into_iter()
+    .chain(logs);
     let ran = folder.run(&all.collect::<Vec<_>>());
-    let results =
-        folder.path().join("p.json").exists().then(|| serde_json::from_slice(&folder.read("p.json")).unwrap());
+    let results = folder
+        .path()
+        .join("p.json")
+        .exists()
+        .then(|| serde_json::from_slice(&folder.read("p.json")).unwrap());
     (ran, results)
 }
 
@@ -63,21 +89,58 @@ fn a_program_learns_from_the_log_of_the_original_and_a_good_one_is_kept() {
     samples.remove(500);
     // The control delays the command by 9 ms.
     let late = samples.clone();
-    samples.iter_mut().skip(9).zip(&late).for_each(|(sample, late)| (sample[2], sample[4]) = (late[2], late[4]));
+    samples
+        .iter_mut()
+        .skip(9)
+        .zip(&late)
+        .for_each(|(sample, late)| (sample[2], sample[4]) = (late[2], late[4]));
     write(&folder, "cut.csv", &samples);
-    folder.run(&["correct", "circle.ngc", "--machine", "file.toml", "--file-error", "0", "--out", "p0.ngc"]);
-    let unlearned_um = if folder.path().join("p0.ngc").exists() { cut(&folder, "p0.ngc").0 } else { original_um };
+    folder.run(&[
+        "correct",
+        "circle.ngc",
+        "--machine",
+        "file.toml",
+        "--file-error",
+        "0",
+        "--out",
+        "p0.ngc",
+    ]);
+    let unlearned_um = if folder.path().join("p0.ngc").exists() {
+        cut(&folder, "p0.ngc").0
+    } else {
+        original_um
+    };
     let (ran, results) = correct(&folder, &["cut.csv"], "p1.ngc");
     let (ran, results) = (ran.succeeded(), results.unwrap());
-    assert!(!ran.told().contains(" took "), "the control was as fast as planned: {}", ran.stdout);
+    assert!(
+        !ran.told().contains(" took "),
+        "the control was as fast as planned: {}",
+        ran.stdout
+    );
     let told = ran.told();
-    assert!(told.contains("cut.csv original 1") && told.contains("in the next cut"), "{told}");
+    assert!(
+        told.contains("cut.csv original 1") && told.contains("in the next cut"),
+        "{told}"
+    );
     crate::json_keys::hold("correct", &results);
     let (learned_um, samples) = cut(&folder, "p1.ngc");
-    assert!(unlearned_um > 0.3 * original_um, "the file is wrong enough: {unlearned_um} {original_um}");
-    assert!(learned_um < 0.05 * original_um, "{learned_um} {original_um}");
-    let band = [0, 1].map(|end| results["learned"]["predicted"]["band_um"][end].as_f64().unwrap());
-    assert!((band[0]..band[1]).contains(&learned_um), "{learned_um} {band:?}");
+    assert!(
+        unlearned_um > 0.3 * original_um,
+        "the file is wrong enough: {unlearned_um} {original_um}"
+    );
+    assert!(
+        learned_um < 0.05 * original_um,
+        "{learned_um} {original_um}"
+    );
+    let band = [0, 1].map(|end| {
+        results["learned"]["predicted"]["band_um"][end]
+            .as_f64()
+            .unwrap()
+    });
+    assert!(
+        (band[0]..band[1]).contains(&learned_um),
+        "{learned_um} {band:?}"
+    );
     write(&folder, "cut2.csv", &samples);
     let (ran, results) = correct(&folder, &["cut.csv", "cut2.csv"], "p2.ngc");
     let results = results.unwrap();
@@ -86,7 +149,12 @@ fn a_program_learns_from_the_log_of_the_original_and_a_good_one_is_kept() {
     if folder.path().join("p2.ngc").exists() {
         assert!(cut(&folder, "p2.ngc").0 <= learned_um, "{}", ran.stdout);
     } else {
-        assert!(ran.told().contains("the corrected program that was cut is as good"), "{}", ran.stdout);
+        assert!(
+            ran.told()
+                .contains("the corrected program that was cut is as good"),
+            "{}",
+            ran.stdout
+        );
     }
 }
 
@@ -103,21 +171,46 @@ fn a_log_that_tells_nothing_is_refused_with_place_value_limit_and_remedy() {
         assert!(!folder.path().join("p.ngc").exists());
     };
     let changed = |change: &dyn Fn(usize, [f64; 5]) -> [f64; 5]| -> Samples {
-        samples.iter().enumerate().map(|(k, sample)| change(k, *sample)).collect()
+        samples
+            .iter()
+            .enumerate()
+            .map(|(k, sample)| change(k, *sample))
+            .collect()
     };
-    refused(&changed(&|_, [t, x, a, y, b]| [t, 1.5 * x, 1.5 * a, y, b]), &["away from the program", "another program"]);
+    refused(
+        &changed(&|_, [t, x, a, y, b]| [t, 1.5 * x, 1.5 * a, y, b]),
+        &["away from the program", "another program"],
+    );
     refused(
         &changed(&|_, [t, x, a, y, b]| [t, x / 25.4, a / 25.4, y / 25.4, b / 25.4]),
         &["inch", "--columns unit=inch"],
     );
-    refused(&samples[..samples.len() * 6 / 10], &["ends at line 4, at 62 %", "record until the program has ended"]);
+    refused(
+        &samples[..samples.len() * 6 / 10],
+        &[
+            "ends at line 4, at 62 %",
+            "record until the program has ended",
+        ],
+    );
     let slow: Samples = samples.iter().copied().step_by(10).collect();
-    refused(&slow, &["10 ms", "at most 5.682 ms", "record each servo period"]);
+    refused(
+        &slow,
+        &["10 ms", "at most 5.682 ms", "record each servo period"],
+    );
     let noisy = changed(&|k, [t, x, a, y, b]| {
-        let noise = |k: usize| 0.1 * (libm::sin(k as f64 * k as f64) + libm::sin(0.3 * (k * k) as f64));
+        let noise =
+            |k: usize| 0.1 * (libm::sin(k as f64 * k as f64) + libm::sin(0.3 * (k * k) as f64));
         [t, x, a + noise(k), y, b + noise(k + 7)]
     });
     refused(&noisy, &["um RMS", "at most 0.7", "record the encoders"]);
     folder.file("file.toml", FILE.replace("kp_1_s = 44", "kp_1_s = 25"));
-    refused(&samples, &["axis y", "position gain of the machine file", "0.6 to 1.667", "--update"]);
+    refused(
+        &samples,
+        &[
+            "axis y",
+            "position gain of the machine file",
+            "0.6 to 1.667",
+            "--update",
+        ],
+    );
 }

@@ -1,4 +1,5 @@
-//! What LinuxCNC's `halsampler` writes is read without options: names of pins, the counter of `halsampler -t`, lost samples, and inches.
+//! What LinuxCNC's `halsampler` writes is read without options: names of pins, the counter of
+//! `halsampler -t`, lost samples, and inches.
 
 use std::fmt::Write as _;
 
@@ -15,29 +16,42 @@ fn head(unit: &str, columns: &str) -> String {
 /// A circle of 3 s.
 const PART: &str = "G21 G17 G90 G94 G64\nG0 X0 Y0\nG2 X0 Y0 I10 J0 F1200\nM2\n";
 
-/// The circle, as a sampler in a LinuxCNC of that unit records it, with lost samples behind row `lost`.
+/// The circle, as a sampler in a LinuxCNC of that unit records it, with lost samples behind row
+/// `lost`.
 fn cut(folder: &Folder, columns: &str, unit: &str, unit_mm: f64, lost: Option<usize>) -> String {
     folder.file("part.ngc", PART);
-    folder.run_uncorrected(&["part.ngc", "--machine", "tnv40", "--trace", "t.csv"]).succeeded();
+    folder
+        .run_uncorrected(&["part.ngc", "--machine", "tnv40", "--trace", "t.csv"])
+        .succeeded();
     let text = folder.text("t.csv");
     let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
-    let at =
-        ["cmd_x_mm", "act_x_mm", "cmd_y_mm", "act_y_mm"].map(|name| names.iter().position(|n| *n == name).unwrap());
+    let at = ["cmd_x_mm", "act_x_mm", "cmd_y_mm", "act_y_mm"]
+        .map(|name| names.iter().position(|n| *n == name).unwrap());
     let mut log = head(unit, columns);
     for (row, line) in text.lines().skip(1).enumerate() {
         let cells: Vec<&str> = line.split(',').collect();
         if lost == Some(row) {
             log.push_str("overrun\n");
         }
-        let values = at.map(|column| format!("{:.9}", cells[column].parse::<f64>().unwrap() / unit_mm));
+        let values =
+            at.map(|column| format!("{:.9}", cells[column].parse::<f64>().unwrap() / unit_mm));
         writeln!(log, "{} {}", 40 + row, values.join(" ")).unwrap();
     }
     log
 }
 
-const PINS: &str = "joint.0.motor-pos-cmd feedwright.actual-0 joint.1.motor-pos-cmd feedwright.actual-1";
+const PINS: &str =
+    "joint.0.motor-pos-cmd feedwright.actual-0 joint.1.motor-pos-cmd feedwright.actual-1";
 const NAMED: &str = "n x.cmd x.act y.cmd y.act";
-const RUN: [&str; 7] = ["part.ngc", "--machine", "tnv40", "--log", "log.txt", "--json", "r.json"];
+const RUN: [&str; 7] = [
+    "part.ngc",
+    "--machine",
+    "tnv40",
+    "--log",
+    "log.txt",
+    "--json",
+    "r.json",
+];
 
 /// What it says on stderr, without the line that is drawn beside a long message.
 fn unframed(ran: &Ran) -> String {
@@ -48,7 +62,11 @@ fn measured_um(folder: &Folder) -> f64 {
     folder.run_uncorrected(&RUN).succeeded();
     let json: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
     let runs = json["runs"].as_array().unwrap();
-    runs.iter().find(|run| run["controller"] == "measured").unwrap()["rms_um"].as_f64().unwrap()
+    runs.iter()
+        .find(|run| run["controller"] == "measured")
+        .unwrap()["rms_um"]
+        .as_f64()
+        .unwrap()
 }
 
 #[test]
@@ -66,7 +84,10 @@ fn a_cut_is_the_same_in_every_unit_and_by_every_name() {
         folder.file("log.txt", cut(&folder, columns, unit, unit_mm, None));
         let found_um = measured_um(&folder);
         // Nine digits of an inch are 25 fm.
-        assert!((found_um - wanted_um).abs() < 1e-3, "{columns} {unit}: {found_um}, {wanted_um}");
+        assert!(
+            (found_um - wanted_um).abs() < 1e-3,
+            "{columns} {unit}: {found_um}, {wanted_um}"
+        );
     }
 }
 
@@ -77,13 +98,24 @@ fn a_log_in_another_unit_than_it_is_read_in_is_refused() {
     let ran = folder.run_uncorrected(&RUN);
     assert_eq!(ran.code, Some(2));
     let told = unframed(&ran);
-    assert!(told.contains("The log is in inch") && told.contains("--columns unit=inch"), "{told}");
+    assert!(
+        told.contains("The log is in inch") && told.contains("--columns unit=inch"),
+        "{told}"
+    );
     folder.file("log.txt", cut(&folder, NAMED, "# unit = inch\n", 1.0, None));
     let told = unframed(&folder.run_uncorrected(&RUN));
-    assert!(told.contains("The log is in mm, and was read in inch"), "{told}");
+    assert!(
+        told.contains("The log is in mm, and was read in inch"),
+        "{told}"
+    );
     let ran = folder.run_uncorrected(&[&RUN[..], &["--columns", "unit=mm"]].concat());
     let told = unframed(&ran);
-    assert!(told.contains("--columns says that positions are in mm, and the file that they are in inch"), "{told}");
+    assert!(
+        told.contains(
+            "--columns says that positions are in mm, and the file that they are in inch"
+        ),
+        "{told}"
+    );
 }
 
 #[test]
@@ -103,10 +135,17 @@ fn an_axis_is_identified_from_inches_as_from_millimetres() {
         let mut text = head(unit, "n x.planned x.cmd x.act");
         for (row, [_, command_mm, actual_mm]) in rows_of_one_axis(1).into_iter().enumerate() {
             let [command, actual] = [command_mm / unit_mm, actual_mm / unit_mm];
-            writeln!(text, "{row} {:.9} {command:.9} {actual:.9}", command + 0.001).unwrap();
+            writeln!(
+                text,
+                "{row} {:.9} {command:.9} {actual:.9}",
+                command + 0.001
+            )
+            .unwrap();
         }
         folder.file("log.txt", text);
-        folder.run(&["identify", "log.txt", "--out", "mine.toml"]).succeeded();
+        folder
+            .run(&["identify", "log.txt", "--out", "mine.toml"])
+            .succeeded();
         let machine: toml::Table = folder.text("mine.toml").parse().unwrap();
         let axis = machine["axis"]["x"].as_table().unwrap().clone();
         found.push(["kp_1_s", "kv_nm_s_per_rad"].map(|key| axis[key].as_float().unwrap()));

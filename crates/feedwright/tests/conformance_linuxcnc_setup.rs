@@ -1,5 +1,6 @@
-//! `linuxcnc setup` leaves the original as it is, can be repeated and undone, and replaces nothing that was changed by hand. Every sample
-//! configuration of Debian's LinuxCNC is wired, or told why not.
+//! `linuxcnc setup` leaves the original as it is, can be repeated and undone, and replaces nothing
+//! that was changed by hand. Every sample configuration of Debian's LinuxCNC is wired, or told why
+//! not.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -20,12 +21,19 @@ fn setup_is_repeated_and_undone_without_a_trace() {
     folder.run(&SETUP).succeeded();
     let wired = folder.content();
     assert!(wired.len() > before.len() + 5, "{:?}", wired.keys());
-    assert!(before.iter().all(|(path, bytes)| wired[path] == *bytes), "an original was changed");
+    assert!(
+        before.iter().all(|(path, bytes)| wired[path] == *bytes),
+        "an original was changed"
+    );
     folder.run(&SETUP).succeeded();
     assert_eq!(folder.content(), wired, "a second setup changed something");
-    folder.run(&["linuxcnc", "setup", "my.ini", "--dry-run"]).succeeded();
+    folder
+        .run(&["linuxcnc", "setup", "my.ini", "--dry-run"])
+        .succeeded();
     assert_eq!(folder.content(), wired);
-    folder.run(&["linuxcnc", "setup", "my.ini", "--undo"]).succeeded();
+    folder
+        .run(&["linuxcnc", "setup", "my.ini", "--undo"])
+        .succeeded();
     assert_eq!(folder.content(), before);
     folder
         .run(&["linuxcnc", "setup", "my.ini", "--undo"])
@@ -36,14 +44,33 @@ fn setup_is_repeated_and_undone_without_a_trace() {
 fn what_was_changed_by_hand_is_neither_replaced_nor_removed() {
     let folder = copied("ethercat");
     folder.run(&SETUP).succeeded();
-    folder.file("my-feedwright.ini", folder.text("my-feedwright.ini").replace("ENABLE = 0", "ENABLE = 1"));
+    folder.file(
+        "my-feedwright.ini",
+        folder
+            .text("my-feedwright.ini")
+            .replace("ENABLE = 0", "ENABLE = 1"),
+    );
     let changed = folder.content();
-    folder.run(&SETUP).refused(&["changed by hand since the last setup: my-feedwright.ini", "--replace"]);
+    folder.run(&SETUP).refused(&[
+        "changed by hand since the last setup: my-feedwright.ini",
+        "--replace",
+    ]);
     assert_eq!(folder.content(), changed);
-    let undone = folder.run(&["linuxcnc", "setup", "my.ini", "--undo"]).succeeded();
-    assert!(undone.told().contains("kept my-feedwright.ini, which was changed by hand"), "{undone:?}");
-    folder.run(&SETUP).refused(&["my-feedwright.ini is there already, and setup did not write it"]);
-    folder.run(&["linuxcnc", "setup", "my.ini", "--replace"]).succeeded();
+    let undone = folder
+        .run(&["linuxcnc", "setup", "my.ini", "--undo"])
+        .succeeded();
+    assert!(
+        undone
+            .told()
+            .contains("kept my-feedwright.ini, which was changed by hand"),
+        "{undone:?}"
+    );
+    folder
+        .run(&SETUP)
+        .refused(&["my-feedwright.ini is there already, and setup did not write it"]);
+    folder
+        .run(&["linuxcnc", "setup", "my.ini", "--replace"])
+        .succeeded();
     assert!(folder.text("my-feedwright.ini").contains("ENABLE = 0"));
 }
 
@@ -53,7 +80,11 @@ fn the_copy_is_not_wired_again() {
     folder.run(&SETUP).succeeded();
     let ran = folder.run(&["linuxcnc", "setup", "my-feedwright.ini"]);
     assert_eq!(ran.code, Some(1));
-    assert!(ran.told().contains("give setup the original INI file, not the copy"), "{ran:?}");
+    assert!(
+        ran.told()
+            .contains("give setup the original INI file, not the copy"),
+        "{ran:?}"
+    );
 }
 
 #[test]
@@ -61,17 +92,34 @@ fn nothing_is_written_where_a_file_cannot_be() {
     let folder = copied("ethercat");
     std::fs::create_dir(folder.path().join("my-feedwright.toml")).unwrap();
     let before = folder.content();
-    folder.run(&SETUP).refused(&["cannot write", "my-feedwright.toml", "it is a directory"]);
+    folder
+        .run(&SETUP)
+        .refused(&["cannot write", "my-feedwright.toml", "it is a directory"]);
     assert_eq!(folder.content(), before);
 }
 
 #[test]
 fn the_machine_file_is_one_that_excite_takes() {
-    for name in ["mesa-servo-inch", "analog-servo", "ethercat", "stepper-with-encoders"] {
+    for name in [
+        "mesa-servo-inch",
+        "analog-servo",
+        "ethercat",
+        "stepper-with-encoders",
+    ] {
         let folder = copied(name);
         folder.run(&SETUP).succeeded();
-        folder.run(&["excite", "--machine", "my-feedwright.toml", "--out", "excite.ngc"]).succeeded();
-        folder.run(&["check", "my-feedwright.toml", "excite.ngc"]).succeeded();
+        folder
+            .run(&[
+                "excite",
+                "--machine",
+                "my-feedwright.toml",
+                "--out",
+                "excite.ngc",
+            ])
+            .succeeded();
+        folder
+            .run(&["check", "my-feedwright.toml", "excite.ngc"])
+            .succeeded();
     }
 }
 
@@ -109,7 +157,9 @@ fn every_sample_of_debian_is_wired_or_told_why_not() {
         setup.simulate = Some("tnv40".to_owned());
         match (plain, setup.survey()) {
             (Ok(plain), _) if plain.is_wired() => count("wired".to_owned()),
-            (Ok(_), Ok(simulated)) if simulated.is_wired() => count("wired with --simulate".to_owned()),
+            (Ok(_), Ok(simulated)) if simulated.is_wired() => {
+                count("wired with --simulate".to_owned());
+            }
             (Ok(plain), _) => {
                 assert!(
                     !plain.refusals.is_empty() && plain.refusals.iter().all(|why| why.len() > 40),
@@ -129,7 +179,10 @@ fn every_sample_of_debian_is_wired_or_told_why_not() {
         eprintln!("{number:4} {what}");
     }
     assert_eq!(counts.values().sum::<usize>(), samples.len());
-    assert!(samples.len() > 250 && counts["wired"] > 10 && counts["wired with --simulate"] > 30, "{counts:?}");
+    assert!(
+        samples.len() > 250 && counts["wired"] > 10 && counts["wired with --simulate"] > 30,
+        "{counts:?}"
+    );
 }
 
 /// A refusal without the names in it.
@@ -145,5 +198,8 @@ fn kind_of(refusal: &str) -> &'static str {
         ("does not know whether", "an unknown position"),
         ("connected to nothing", "a joint that is not connected"),
     ];
-    KINDS.iter().find(|(words, _)| refusal.contains(words)).map_or("another reason", |(_, kind)| kind)
+    KINDS
+        .iter()
+        .find(|(words, _)| refusal.contains(words))
+        .map_or("another reason", |(_, kind)| kind)
 }

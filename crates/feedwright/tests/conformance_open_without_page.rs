@@ -6,7 +6,14 @@ use crate::missing::missing;
 #[test]
 fn a_command_without_the_page_says_where_there_is_one() {
     let folder = Folder::new();
-    let said = ["this feedwright was built without the page", "a package of feedwright", "web/page", "cargo build --release"];
-    folder.run(&["open", "--no-browser", "circle.ngc"]).refused(&said);
+    let said = [
+        "this feedwright was built without the page",
+        "a package of feedwright",
+        "web/page",
+        "cargo build --release",
+    ];
+    folder
+        .run(&["open", "--no-browser", "circle.ngc"])
+        .refused(&said);
     missing("the page is not built (web/page): what serves it is not tested");
 }

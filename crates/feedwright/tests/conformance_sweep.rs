@@ -1,4 +1,5 @@
-//! Sweeps: the figures of `run`, content addresses, shards, and what is left when a sweep is killed or the disk is full.
+//! Sweeps: the figures of `run`, content addresses, shards, and what is left when a sweep is killed
+//! or the disk is full.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -13,7 +14,8 @@ use crate::json_keys;
 const SQUARE: &str = "G21 G90 G64\nG1 X5 F1200\nG1 Y5\nG1 X0\nG1 Y0\nM2\n";
 const CALLER: &str = "G21 G90 G64\nG1 X1 F1200\nO<side> call\nM2\n";
 const SIDE: &str = "O<side> sub\nG1 Y4\nO<side> endsub\nM2\n";
-/// Three programs, one of them with a mistake, on two machines with two controllers, and a single job.
+/// Three programs, one of them with a mistake, on two machines with two controllers, and a single
+/// job.
 const JOBS: &str = "programs = ['circle.ngc', 'more/*.ngc']\nmachines = ['tnv40', 'mine.toml']\n\
     controllers = ['uncorrected', 'feedforward']\n[each]\ntolerance_um = 10\n\
     [[job]]\nprogram = 'circle.ngc'\nmachine = 'tnv40'\n";
@@ -23,17 +25,33 @@ fn folder() -> Folder {
     std::fs::create_dir(folder.path().join("more")).unwrap();
     folder.file("more/square.ngc", SQUARE);
     folder.file("more/wrong.ngc", "G1 X1 F100\nG2 X5 Y0 R1\nM2\n");
-    folder.file("mine.toml", "base = 'tnv40'\nname = 'mine'\naxis.x.kp_1_s = 40\n");
+    folder.file(
+        "mine.toml",
+        "base = 'tnv40'\nname = 'mine'\naxis.x.kp_1_s = 40\n",
+    );
     folder.file("JOBS.toml", JOBS);
     folder
 }
 
 /// The results in a folder, by the names of their files. Files under way come and go meanwhile.
 fn results(folder: &Folder, out: &str) -> BTreeMap<String, Vec<u8>> {
-    let entries = |folder: PathBuf| std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let entries = |folder: PathBuf| {
+        std::fs::read_dir(folder)
+            .into_iter()
+            .flatten()
+            .flatten()
+            .map(|entry| entry.path())
+    };
     let files = entries(folder.path().join(out)).flat_map(entries);
     let results = files.filter(|path| path.extension().is_some_and(|ending| ending == "json"));
-    results.map(|path| (path.file_name().unwrap().to_str().unwrap().to_owned(), std::fs::read(path).unwrap())).collect()
+    results
+        .map(|path| {
+            (
+                path.file_name().unwrap().to_str().unwrap().to_owned(),
+                std::fs::read(path).unwrap(),
+            )
+        })
+        .collect()
 }
 
 fn swept(folder: &Folder, options: &[&str]) -> Ran {
@@ -47,7 +65,9 @@ fn value(text: &[u8]) -> Value {
 /// What a result has beside the keys of `run`.
 fn of_sweep(result: &Value) -> Value {
     let keys = ["format", "version", "address", "job", "error"];
-    let of_result = keys.iter().filter_map(|&key| Some((key.to_owned(), result.get(key)?.clone())));
+    let of_result = keys
+        .iter()
+        .filter_map(|&key| Some((key.to_owned(), result.get(key)?.clone())));
     Value::Object(of_result.collect())
 }
 
@@ -61,7 +81,9 @@ fn figures(mut result: Value) -> Value {
     // The day on which the model was identified.
     for told in ["/assumed/law_from", "/settings/Model"] {
         if let Some(Value::String(text)) = result.pointer_mut(told)
-            && let Some((before, "0")) = text.rsplit_once(", 2").map(|(before, date)| (before, &date[..1]))
+            && let Some((before, "0")) = text
+                .rsplit_once(", 2")
+                .map(|(before, date)| (before, &date[..1]))
         {
             *text = before.to_owned();
         }
@@ -76,9 +98,13 @@ fn figures(mut result: Value) -> Value {
 fn a_job_has_the_figures_of_run_and_a_mistake_stops_no_other() {
     let folder = folder();
     let ran = swept(&folder, &["--out", "all"]);
-    assert_eq!((ran.code, ran.stdout.as_str()), (Some(1), "13 jobs: 13 computed, 0 found, 4 with mistakes\n"));
+    assert_eq!(
+        (ran.code, ran.stdout.as_str()),
+        (Some(1), "13 jobs: 13 computed, 0 found, 4 with mistakes\n")
+    );
     assert!(
-        ran.remarked().contains("more/wrong.ngc on tnv40") && ran.remarked().contains("1.000000 mm is too small"),
+        ran.remarked().contains("more/wrong.ngc on tnv40")
+            && ran.remarked().contains("1.000000 mm is too small"),
         "{ran:?}"
     );
     let all = results(&folder, "all");
@@ -88,20 +114,37 @@ fn a_job_has_the_figures_of_run_and_a_mistake_stops_no_other() {
         json_keys::hold("sweep", &of_sweep(&result));
         if result.get("error").is_some() {
             assert_eq!(
-                (job("program").as_str(), result["error"]["findings"][0]["line"].as_u64()),
+                (
+                    job("program").as_str(),
+                    result["error"]["findings"][0]["line"].as_u64()
+                ),
                 ("more/wrong.ngc", Some(2))
             );
             continue;
         }
         let (program, machine, controller) = (job("program"), job("machine"), job("controller"));
-        let cut = ["run", &program, "--machine", &machine, "--controller", &controller];
-        let line = [&cut[..], &["--tolerance", "10", "--band", "0", "--json", "run.json"]].concat();
+        let cut = [
+            "run",
+            &program,
+            "--machine",
+            &machine,
+            "--controller",
+            &controller,
+        ];
+        let line = [
+            &cut[..],
+            &["--tolerance", "10", "--band", "0", "--json", "run.json"],
+        ]
+        .concat();
         folder.run(&line);
         let of_run = value(&folder.read("run.json"));
         assert_eq!(figures(result), figures(of_run), "{line:?}");
     }
     let again = swept(&folder, &["--out", "all"]);
-    assert_eq!((again.code, again.stdout.as_str()), (Some(1), "13 jobs: 0 computed, 13 found, 4 with mistakes\n"));
+    assert_eq!(
+        (again.code, again.stdout.as_str()),
+        (Some(1), "13 jobs: 0 computed, 13 found, 4 with mistakes\n")
+    );
     assert_eq!(results(&folder, "all"), all);
 }
 
@@ -118,15 +161,35 @@ fn shards_and_workers_change_nothing_and_a_changed_list_moves_no_job() {
     };
     let parts = [1, 2, 3].map(|number| shard(number, &format!("part{number}")));
     assert_eq!(parts.iter().map(BTreeMap::len).sum::<usize>(), one.len());
-    assert_eq!(parts.clone().into_iter().flatten().collect::<BTreeMap<_, _>>(), one);
-    for (out, folders) in [("one.csv", &["one"][..]), ("parts.csv", &["part1", "part2", "part3", "one"])] {
-        folder.run(&[&["merge"], folders, &["--out", out]].concat()).succeeded();
+    assert_eq!(
+        parts
+            .clone()
+            .into_iter()
+            .flatten()
+            .collect::<BTreeMap<_, _>>(),
+        one
+    );
+    for (out, folders) in [
+        ("one.csv", &["one"][..]),
+        ("parts.csv", &["part1", "part2", "part3", "one"]),
+    ] {
+        folder
+            .run(&[&["merge"], folders, &["--out", out]].concat())
+            .succeeded();
     }
     let table = folder.text("one.csv");
-    assert_eq!((&table, table.lines().count()), (&folder.text("parts.csv"), 14));
-    let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/sweeps.md")).unwrap();
+    assert_eq!(
+        (&table, table.lines().count()),
+        (&folder.text("parts.csv"), 14)
+    );
+    let page =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/sweeps.md"))
+            .unwrap();
     for column in table.lines().next().unwrap().split(',') {
-        assert!(page.contains(&format!("`{column}`")), "docs/sweeps.md lacks the column {column}");
+        assert!(
+            page.contains(&format!("`{column}`")),
+            "docs/sweeps.md lacks the column {column}"
+        );
     }
     // The folder is not part of a result.
     std::fs::create_dir(folder.path().join("elsewhere")).unwrap();
@@ -137,10 +200,18 @@ fn shards_and_workers_change_nothing_and_a_changed_list_moves_no_job() {
         .output();
     assert_eq!(from_there.unwrap().status.code(), Some(1));
     assert_eq!(results(&folder, "there"), one);
-    folder.file("JOBS.toml", JOBS.replace("'circle.ngc', ", "").replace("'uncorrected', ", ""));
+    folder.file(
+        "JOBS.toml",
+        JOBS.replace("'circle.ngc', ", "")
+            .replace("'uncorrected', ", ""),
+    );
     let fewer = [1, 2, 3].map(|number| shard(number, &format!("fewer{number}")));
     for (part, fewer) in parts.iter().zip(&fewer) {
-        assert!(fewer.iter().all(|(name, text)| part.get(name) == Some(text)));
+        assert!(
+            fewer
+                .iter()
+                .all(|(name, text)| part.get(name) == Some(text))
+        );
     }
     assert_eq!(fewer.iter().map(BTreeMap::len).sum::<usize>(), 5);
 }
@@ -151,33 +222,57 @@ fn the_address_follows_from_all_content_and_from_nothing_else() {
     folder.file("more/wrong.ngc", CALLER);
     folder.file("more/side.ngc", SIDE);
     let jobs = |list: &str| folder.file("JOBS.toml", list);
-    jobs("[[job]]\nprogram = 'more/wrong.ngc'\nmachine = 'mine.toml'\ncontroller = 'uncorrected'\n");
-    let computed = || swept(&folder, &["--out", "all"]).succeeded().stdout.contains(" 1 computed");
+    jobs(
+        "[[job]]\nprogram = 'more/wrong.ngc'\nmachine = 'mine.toml'\ncontroller = 'uncorrected'\n",
+    );
+    let computed = || {
+        swept(&folder, &["--out", "all"])
+            .succeeded()
+            .stdout
+            .contains(" 1 computed")
+    };
     assert!(computed() && !computed());
     folder.file("more/side.ngc", SIDE.replace("Y4", "Y5"));
     assert!(computed(), "a subroutine");
-    folder.file("mine.toml", "# A remark\nbase = 'tnv40'\nname = 'mine'\naxis.x.kp_1_s = 40\n");
+    folder.file(
+        "mine.toml",
+        "# A remark\nbase = 'tnv40'\nname = 'mine'\naxis.x.kp_1_s = 40\n",
+    );
     folder.file("more/other.ngc", SQUARE);
-    assert!(!computed(), "a remark in a machine file, a program that is not called");
-    folder.file("mine.toml", "base = 'tnv40'\nname = 'mine'\naxis.x.kp_1_s = 41\n");
+    assert!(
+        !computed(),
+        "a remark in a machine file, a program that is not called"
+    );
+    folder.file(
+        "mine.toml",
+        "base = 'tnv40'\nname = 'mine'\naxis.x.kp_1_s = 41\n",
+    );
     assert!(computed(), "a machine");
     folder.file("more/wrong.ngc", CALLER.replace("1200", "1300"));
     assert!(computed(), "a program");
-    for key in
-        ["seed = 2", "tolerance_um = 500.0", "feed_mm_s = 10.0", "against = 'feedforward'", "dialect = 'linuxcnc'"]
-    {
+    for key in [
+        "seed = 2",
+        "tolerance_um = 500.0",
+        "feed_mm_s = 10.0",
+        "against = 'feedforward'",
+        "dialect = 'linuxcnc'",
+    ] {
         jobs(&format!(
             "[[job]]\nprogram = 'more/wrong.ngc'\nmachine = 'mine.toml'\ncontroller = 'uncorrected'\n{key}\n"
         ));
         assert!(computed() && !computed(), "{key}");
     }
     // A damaged result counts as missing.
-    for file in
-        folder.content().into_keys().filter(|path| path.is_file() && path.starts_with(folder.path().join("all")))
+    for file in folder
+        .content()
+        .into_keys()
+        .filter(|path| path.is_file() && path.starts_with(folder.path().join("all")))
     {
         std::fs::write(&file, &std::fs::read(&file).unwrap()[..100]).unwrap();
     }
-    folder.run(&["merge", "all", "--out", "all.csv"]).refused(&["damaged", "sweep again"]);
+    folder
+        .run(&["merge", "all", "--out", "all.csv"])
+        .refused(&["damaged", "sweep again"]);
     assert!(computed());
 }
 
@@ -186,10 +281,22 @@ fn what_a_list_cannot_mean_is_refused_before_anything_is_done() {
     let folder = folder();
     for (list, says) in [
         ("programs = ['none/*.ngc']", "none fits"),
-        ("programs = ['circle.ngc']\nmachine = ['tnv40']", "unknown field `machine`"),
-        ("programs = ['circle.ngc']\ncontrollers = ['lqg']", "no controller is called 'lqg'"),
-        ("programs = ['circle.ngc']\nseeds = ['one']", "string \"one\""),
-        ("programs = ['circle.ngc']\ncontrollers = ['uncorrected']\nsettings = [{ nothing = 1 }]", "nothing"),
+        (
+            "programs = ['circle.ngc']\nmachine = ['tnv40']",
+            "unknown field `machine`",
+        ),
+        (
+            "programs = ['circle.ngc']\ncontrollers = ['lqg']",
+            "no controller is called 'lqg'",
+        ),
+        (
+            "programs = ['circle.ngc']\nseeds = ['one']",
+            "string \"one\"",
+        ),
+        (
+            "programs = ['circle.ngc']\ncontrollers = ['uncorrected']\nsettings = [{ nothing = 1 }]",
+            "nothing",
+        ),
         ("[[job]]\nprogram = 'circle.ngc'\nfeed = 3", "[[job]] 1"),
         ("programs = ['circle.ngc'\n", "line"),
         ("", "no job"),
@@ -202,8 +309,12 @@ fn what_a_list_cannot_mean_is_refused_before_anything_is_done() {
     for shard in ["0/3", "4/3", "1", "a/b"] {
         swept(&folder, &["--out", "all", "--shard", shard]).refused(&["--shard", "3/8"]);
     }
-    folder.run(&["merge", "nowhere", "--out", "all.csv"]).refused(&["nowhere: there is no such folder"]);
-    folder.run(&["merge", "more", "--out", "all.parquet"]).refused(&["all.parquet does not say", "to_parquet"]);
+    folder
+        .run(&["merge", "nowhere", "--out", "all.csv"])
+        .refused(&["nowhere: there is no such folder"]);
+    folder
+        .run(&["merge", "more", "--out", "all.parquet"])
+        .refused(&["all.parquet does not say", "to_parquet"]);
     // A file that is not there is no result, and keeps no other job from being done.
     folder.file(
         "JOBS.toml",
@@ -229,7 +340,13 @@ fn a_sweep_that_is_killed_keeps_what_was_written_and_goes_on() {
         ),
     );
     let line = ["sweep", "JOBS.toml", "--out", "all"];
-    let mut sweep = folder.command().args(line).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let mut sweep = folder
+        .command()
+        .args(line)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
     while results(&folder, "all").len() < 10 {
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -238,9 +355,19 @@ fn a_sweep_that_is_killed_keeps_what_was_written_and_goes_on() {
     let kept = results(&folder, "all");
     assert!((10..120).contains(&kept.len()), "{}", kept.len());
     let told = folder.run(&line).succeeded().stdout;
-    assert_eq!(told, format!("120 jobs: {} computed, {} found\n", 120 - kept.len(), kept.len()));
+    assert_eq!(
+        told,
+        format!(
+            "120 jobs: {} computed, {} found\n",
+            120 - kept.len(),
+            kept.len()
+        )
+    );
     let all = results(&folder, "all");
-    let half = folder.content().into_keys().find(|path| path.to_string_lossy().ends_with(".part"));
+    let half = folder
+        .content()
+        .into_keys()
+        .find(|path| path.to_string_lossy().ends_with(".part"));
     assert_eq!((all.len(), half), (120, None));
     assert!(kept.iter().all(|(name, text)| &all[name] == text));
 }
@@ -259,7 +386,9 @@ fn a_full_disk_is_said_and_leaves_nothing_half_written() {
         .args(["--map-root-user", "--mount", "sh", "-c", script])
         .arg(command.get_program())
         .current_dir(folder.path());
-    let Ok(ran) = unshare.output() else { return skipped("a full disk: no unshare") };
+    let Ok(ran) = unshare.output() else {
+        return skipped("a full disk: no unshare");
+    };
     let ran = Ran::from(ran);
     if ran.code == Some(77) || ran.stderr.contains("unshare failed") {
         return skipped("a full disk: no name spaces");
@@ -267,8 +396,11 @@ fn a_full_disk_is_said_and_leaves_nothing_half_written() {
     ran.refused(&["the sweep ended after", "No space left", "make room"]);
     let kept = results(&folder, "kept");
     assert!((1..13).contains(&kept.len()), "{:?}", kept.keys());
-    let files: Vec<PathBuf> =
-        folder.content().into_keys().filter(|path| path.to_string_lossy().ends_with(".part")).collect();
+    let files: Vec<PathBuf> = folder
+        .content()
+        .into_keys()
+        .filter(|path| path.to_string_lossy().ends_with(".part"))
+        .collect();
     assert!(files.is_empty(), "{files:?}");
     for (name, text) in &kept {
         assert_eq!(value(text)["address"].as_str(), name.strip_suffix(".json"));

@@ -9,7 +9,15 @@ const HEADING: &str = "\n## Commands\n\n";
 
 fn help(folder: &Folder, arguments: &[&str], all: &str) -> String {
     let mut command = folder.command();
-    let ran = Ran::from(command.env_remove("COLUMNS").args(arguments).arg(all).output().unwrap()).succeeded();
+    let ran = Ran::from(
+        command
+            .env_remove("COLUMNS")
+            .args(arguments)
+            .arg(all)
+            .output()
+            .unwrap(),
+    )
+    .succeeded();
     ran.stdout.trim_end().to_owned()
 }
 
@@ -17,13 +25,21 @@ fn help(folder: &Folder, arguments: &[&str], all: &str) -> String {
 fn section() -> String {
     let folder = Folder::new();
     let root = help(&folder, &[], "-h");
-    let commands = root.lines().take_while(|line| *line != "Options:").filter(|line| line.starts_with("  "));
-    let names =
-        commands.map(|line| line.split_whitespace().next().unwrap()).filter(|name| !["help", "lab"].contains(name));
+    let commands = root
+        .lines()
+        .take_while(|line| *line != "Options:")
+        .filter(|line| line.starts_with("  "));
+    let names = commands
+        .map(|line| line.split_whitespace().next().unwrap())
+        .filter(|name| !["help", "lab"].contains(name));
     let mut text = String::new();
     for name in names {
         // A command of commands has one.
-        let words: &[&str] = if name == "linuxcnc" { &["linuxcnc", "setup"] } else { &[name] };
+        let words: &[&str] = if name == "linuxcnc" {
+            &["linuxcnc", "setup"]
+        } else {
+            &[name]
+        };
         let name = words.join(" ");
         let lines: String = help(&folder, words, "--help-all")
             .lines()
@@ -36,7 +52,10 @@ fn section() -> String {
 
 #[test]
 fn the_help_in_the_document_is_that_of_the_program() {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/command-line.md"));
+    let path = Path::new(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../docs/command-line.md"
+    ));
     let document = std::fs::read_to_string(path).unwrap();
     let (before, found) = document.split_once(HEADING).unwrap();
     let wanted = section();
@@ -44,6 +63,12 @@ fn the_help_in_the_document_is_that_of_the_program() {
         std::fs::write(path, format!("{before}{HEADING}{wanted}")).unwrap();
         return;
     }
-    let difference = found.lines().zip(wanted.lines()).find(|(found, wanted)| found != wanted);
-    assert!(found == wanted, "the document is out of date; hint: `just help`\nfirst difference: {difference:?}");
+    let difference = found
+        .lines()
+        .zip(wanted.lines())
+        .find(|(found, wanted)| found != wanted);
+    assert!(
+        found == wanted,
+        "the document is out of date; hint: `just help`\nfirst difference: {difference:?}"
+    );
 }

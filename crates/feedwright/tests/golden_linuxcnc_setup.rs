@@ -1,5 +1,5 @@
-//! `linuxcnc setup` on configurations of every kind: what it says and what it writes, as tests/linuxcnc/NAME/expected.txt has it.
-//! FEEDWRIGHT_UPDATE_DOCUMENTS=1 writes these files anew.
+//! `linuxcnc setup` on configurations of every kind: what it says and what it writes, as
+//! tests/linuxcnc/NAME/expected.txt has it. FEEDWRIGHT_UPDATE_DOCUMENTS=1 writes these files anew.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -13,7 +13,11 @@ const CASES: [(&str, u8, &[&str]); 15] = [
     ("analog-servo", 0, &["--raise-ferror", "4"]),
     ("stepper-with-encoders", 0, &[]),
     ("ethercat", 0, &[]),
-    ("simulated", 0, &["--simulate", "tnv40", "--raise-ferror", "6"]),
+    (
+        "simulated",
+        0,
+        &["--simulate", "tnv40", "--raise-ferror", "6"],
+    ),
     ("mesa-servo-inch", 1, &["--simulate", "tnv40"]),
     ("mesa-stepper", 1, &[]),
     ("gantry", 0, &[]),
@@ -34,7 +38,12 @@ fn fixture(name: &str) -> PathBuf {
 pub(crate) fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let entries = std::fs::read_dir(folder).unwrap().map(Result::unwrap);
     let file = |entry: std::fs::DirEntry| {
-        entry.path().is_file().then(|| (entry.file_name().into_string().unwrap(), std::fs::read(entry.path()).unwrap()))
+        entry.path().is_file().then(|| {
+            (
+                entry.file_name().into_string().unwrap(),
+                std::fs::read(entry.path()).unwrap(),
+            )
+        })
     };
     entries.filter_map(file).collect()
 }
@@ -42,7 +51,10 @@ pub(crate) fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 /// A folder with a copy of a fixture.
 pub(crate) fn copied(name: &str) -> Folder {
     let folder = Folder::new();
-    for (file, bytes) in files(&fixture(name)).into_iter().filter(|(file, _)| !file.starts_with("expected")) {
+    for (file, bytes) in files(&fixture(name))
+        .into_iter()
+        .filter(|(file, _)| !file.starts_with("expected"))
+    {
         folder.file(&file, bytes);
     }
     folder
@@ -54,13 +66,23 @@ fn what_setup_says_and_writes_is_as_it_was() {
         let folder = copied(name);
         let before = files(folder.path());
         let ran = folder.run(&[&["linuxcnc", "setup", "my.ini"], options].concat());
-        assert_eq!(ran.code, Some(i32::from(code)), "{name}: {}{}", ran.stdout, ran.stderr);
+        assert_eq!(
+            ran.code,
+            Some(i32::from(code)),
+            "{name}: {}{}",
+            ran.stdout,
+            ran.stderr
+        );
         let mut text = ran.stdout + &ran.stderr;
         for (file, bytes) in files(folder.path()) {
             match before.get(&file) {
                 Some(old) => assert_eq!(*old, bytes, "{name}: setup changed {file}"),
-                None if file.ends_with(".fwmodel") => writeln!(text, "==> {file}: {} bytes", bytes.len()).unwrap(),
-                None if file.ends_with(".files") || file.ends_with(".sh") => writeln!(text, "==> {file}").unwrap(),
+                None if file.ends_with(".fwmodel") => {
+                    writeln!(text, "==> {file}: {} bytes", bytes.len()).unwrap();
+                }
+                None if file.ends_with(".files") || file.ends_with(".sh") => {
+                    writeln!(text, "==> {file}").unwrap();
+                }
                 None => write!(text, "==> {file}\n{}", String::from_utf8(bytes).unwrap()).unwrap(),
             }
         }
@@ -73,7 +95,13 @@ fn what_setup_says_and_writes_is_as_it_was() {
             std::fs::write(&place, &text).unwrap();
         }
         let expected = std::fs::read_to_string(&place).unwrap_or_default();
-        let difference = expected.lines().zip(text.lines()).find(|(old, new)| old != new);
-        assert!(text == expected, "{name}: first difference: {difference:?}\n{text}");
+        let difference = expected
+            .lines()
+            .zip(text.lines())
+            .find(|(old, new)| old != new);
+        assert!(
+            text == expected,
+            "{name}: first difference: {difference:?}\n{text}"
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! `linuxcnc setup` of configurations that are damaged anywhere: it wires, says why not, or names a file and a line. It never panics.
+//! `linuxcnc setup` of configurations that are damaged anywhere: it wires, says why not, or names a
+//! file and a line. It never panics.
 
 use std::path::Path;
 
@@ -7,10 +8,20 @@ use proptest::prelude::*;
 
 use crate::golden_linuxcnc_setup::copied;
 
-const NAMES: [&str; 8] =
-    ["mesa-servo-inch", "analog-servo", "ethercat", "stepper-with-encoders", "broken", "simulated", "gantry", "rotary"];
+const NAMES: [&str; 8] = [
+    "mesa-servo-inch",
+    "analog-servo",
+    "ethercat",
+    "stepper-with-encoders",
+    "broken",
+    "simulated",
+    "gantry",
+    "rotary",
+];
 /// Signs that mean something in a HAL file or an INI file, and some that do not.
-const SIGNS: [&str; 14] = ["\"", "'", "[", "]", "$", "(", ")", "#", "\\", "=", "<=", "\n", " ", "\u{fc}"];
+const SIGNS: [&str; 14] = [
+    "\"", "'", "[", "]", "$", "(", ")", "#", "\\", "=", "<=", "\n", " ", "\u{fc}",
+];
 
 /// What happens to a file.
 #[derive(Debug, Clone)]
@@ -34,7 +45,9 @@ fn damaged(text: &str, damage: &Damage) -> String {
     let place = |at: usize| at % (signs.len() + 1);
     let part = |range: &[char]| range.iter().collect::<String>();
     match *damage {
-        Damage::Insert { at, sign } => part(&signs[..place(at)]) + SIGNS[sign] + &part(&signs[place(at)..]),
+        Damage::Insert { at, sign } => {
+            part(&signs[..place(at)]) + SIGNS[sign] + &part(&signs[place(at)..])
+        }
         Damage::Delete { at, count } => {
             part(&signs[..place(at)]) + &part(&signs[(place(at) + count).min(signs.len())..])
         }
@@ -45,9 +58,14 @@ fn damaged(text: &str, damage: &Damage) -> String {
 fn are_told_about(name: &str, file: usize, damages: &[Damage]) -> Result<(), TestCaseError> {
     let folder = copied(name);
     let is_read = |name: &String| name.ends_with(".hal") || name.ends_with(".ini");
-    let files: Vec<String> = crate::golden_linuxcnc_setup::files(folder.path()).into_keys().filter(is_read).collect();
+    let files: Vec<String> = crate::golden_linuxcnc_setup::files(folder.path())
+        .into_keys()
+        .filter(is_read)
+        .collect();
     let file = &files[file % files.len()];
-    let text = damages.iter().fold(folder.text(file), |text, damage| damaged(&text, damage));
+    let text = damages
+        .iter()
+        .fold(folder.text(file), |text, damage| damaged(&text, damage));
     folder.file(file, text);
     for simulate in [None, Some("tnv40".to_owned())] {
         let setup = LinuxcncSetup {

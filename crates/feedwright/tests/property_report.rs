@@ -10,7 +10,11 @@ const ROWS: usize = 2 * Series::MAX_POINTS + 777;
 /// The row of a tool that is `error_mm` to the left of its foot.
 fn beside(row: Row, error_mm: f64) -> Row {
     let ([x, y, z], [along_x, along_y, _]) = (row.foot_mm, row.tangent);
-    Row { act_mm: [x - error_mm * along_y, y + error_mm * along_x, z], contour_error_mm: error_mm, ..row }
+    Row {
+        act_mm: [x - error_mm * along_y, y + error_mm * along_x, z],
+        contour_error_mm: error_mm,
+        ..row
+    }
 }
 
 /// A run with spikes at given rows and rapids at given stretches.
@@ -27,7 +31,9 @@ fn rows(spikes: &[(usize, f64)], rapids: &[(usize, usize)]) -> Vec<Row> {
                 line: 1 + k as u32 / 500,
                 feed_plan_mm_s: 10.0,
                 programmed_mm_s: 0.0,
-                cutting: !rapids.iter().any(|&(start, length)| (start..start + length).contains(&k)),
+                cutting: !rapids
+                    .iter()
+                    .any(|&(start, length)| (start..start + length).contains(&k)),
                 commanded: Commanded::Cut,
                 path_mm,
                 cmd_mm: path_mm,

@@ -1,4 +1,5 @@
-//! All tests of the command and its library in one binary: it links once, and uses every core to its end.
+//! All tests of the command and its library in one binary: it links once, and uses every core to
+//! its end.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
@@ -66,7 +67,6 @@ mod conformance_plan_inputs;
 mod conformance_real_axes;
 mod conformance_report_page;
 mod conformance_results;
-mod conformance_style;
 mod conformance_supply_chain;
 mod conformance_sweep;
 mod golden_gcode_mistakes;

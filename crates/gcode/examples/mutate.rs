@@ -1,8 +1,11 @@
-//! Looks for programs that make the reader panic, hang or misplace a fault: mutates real programs for as long as it is told.
+//! Looks for programs that make the reader panic, hang or misplace a fault: mutates real programs
+//! for as long as it is told.
 //!
-//! Usage: `cargo run --release -p feedwright-gcode --example mutate -- SECONDS [SEED] FILE_OR_FOLDER...`
+//! Usage: `cargo run --release -p feedwright-gcode --example mutate -- SECONDS [SEED]
+//! FILE_OR_FOLDER...`
 //!
-//! Every finding is written to `gcode_mutate_SEED_ROUND.ngc` and ends the run with exit code 1. The same seed gives the same programs.
+//! Every finding is written to `gcode_mutate_SEED_ROUND.ngc` and ends the run with exit code 1. The
+//! same seed gives the same programs.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -126,7 +129,8 @@ const PIECES: &[&str] = &[
     "N10",
 ];
 
-/// A small generator of pseudo-random numbers (splitmix64, S. Vigna): the runs must be the same everywhere.
+/// A small generator of pseudo-random numbers (splitmix64, S. Vigna): the runs must be the same
+/// everywhere.
 struct Random(u64);
 
 impl Random {
@@ -145,9 +149,16 @@ impl Random {
 
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
-    let seconds: u64 = arguments.next().and_then(|text| text.parse().ok()).unwrap_or(10);
-    let seed: u64 = arguments.next().and_then(|text| text.parse().ok()).unwrap_or(1);
-    let mut seeds: Vec<Vec<u8>> = vec![b"G21\nF100\no1 sub\nG1 X#1\no1 endsub\no1 call [1]\nG2 X2 I1\nM2\n".to_vec()];
+    let seconds: u64 = arguments
+        .next()
+        .and_then(|text| text.parse().ok())
+        .unwrap_or(10);
+    let seed: u64 = arguments
+        .next()
+        .and_then(|text| text.parse().ok())
+        .unwrap_or(1);
+    let mut seeds: Vec<Vec<u8>> =
+        vec![b"G21\nF100\no1 sub\nG1 X#1\no1 endsub\no1 call [1]\nG2 X2 I1\nM2\n".to_vec()];
     for path in arguments {
         collect(Path::new(&path), &mut seeds);
     }
@@ -173,7 +184,9 @@ fn main() -> ExitCode {
 /// Adds the beginnings of all files below `path`.
 fn collect(path: &Path, seeds: &mut Vec<Vec<u8>>) {
     let mut entries: Vec<PathBuf> = match std::fs::read_dir(path) {
-        Ok(entries) => entries.filter_map(|entry| Some(entry.ok()?.path())).collect(),
+        Ok(entries) => entries
+            .filter_map(|entry| Some(entry.ok()?.path()))
+            .collect(),
         Err(_) => {
             if let Ok(mut bytes) = std::fs::read(path) {
                 bytes.truncate(MAX_BYTES);
@@ -218,11 +231,16 @@ fn mutated(seeds: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
     text
 }
 
-/// Reads a program; says what is wrong with the reader's answer. A program that takes too long is read `again`.
+/// Reads a program; says what is wrong with the reader's answer. A program that takes too long is
+/// read `again`.
 fn try_program(text: &[u8], again: bool) -> Result<(), String> {
     let begin = Instant::now();
     let result = std::panic::catch_unwind(|| {
-        let settings = Settings { max_idle_lines: 20_000, max_motions: 20_000, ..Settings::default() };
+        let settings = Settings {
+            max_idle_lines: 20_000,
+            max_motions: 20_000,
+            ..Settings::default()
+        };
         let Ok(reader) = Reader::from_text("mutated", text, settings) else {
             return Ok(());
         };
@@ -236,7 +254,11 @@ fn try_program(text: &[u8], again: bool) -> Result<(), String> {
                 }
                 Err(_) => faults = true,
                 Ok(Canon::Motion(motion)) => {
-                    let numbers = motion.start_mm.iter().chain(&motion.end_mm).chain([&motion.feed_mm_s]);
+                    let numbers = motion
+                        .start_mm
+                        .iter()
+                        .chain(&motion.end_mm)
+                        .chain([&motion.feed_mm_s]);
                     if numbers.clone().any(|value| !value.is_finite()) {
                         return Err(format!("a number is not finite: {motion:?}"));
                     }

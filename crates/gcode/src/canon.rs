@@ -1,6 +1,7 @@
 //! What a G-code program asks for, once modes, units, offsets and expressions are resolved.
 //!
-//! Lengths in millimetres, feeds in mm/s, times in seconds, in machine coordinates: offsets and tool lengths are added.
+//! Lengths in millimetres, feeds in mm/s, times in seconds, in machine coordinates: offsets and
+//! tool lengths are added.
 
 use std::sync::Arc;
 
@@ -71,14 +72,15 @@ pub enum MotionKind {
 pub enum Shape {
     /// Straight.
     Line,
-    /// Circular in `plane` about `center_mm`, with a linear motion along the plane's normal (helix).
+    /// Circular in `plane` about `center_mm`, with a linear motion along the plane's normal
+    /// (helix).
     Arc {
         /// Plane of the circle.
         plane: Plane,
         /// Centre; its component along the plane's normal is the start's.
         center_mm: [f64; 3],
-        /// Sign: positive is counter-clockwise seen from the positive normal. Magnitude: 1 is at most one full turn,
-        /// each further unit adds a full turn.
+        /// Sign: positive is counter-clockwise seen from the positive normal. Magnitude: 1 is at
+        /// most one full turn, each further unit adds a full turn.
         turns: i32,
     },
     /// Rational B-spline.

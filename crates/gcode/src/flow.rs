@@ -1,8 +1,9 @@
 //! Which line comes next, and carrying it out.
 //!
-//! A definition is stepped over when the flow meets it and entered by a call. Branches not taken are skipped line by line, so that
-//! nothing of a program has to be kept in memory except the places of its subroutines. What a line asks for, `execute` carries out
-//! in RS-274's order, with what `motion` and `dialects` offer; `reader` hands out what comes of it.
+//! A definition is stepped over when the flow meets it and entered by a call. Branches not taken
+//! are skipped line by line, so that nothing of a program has to be kept in memory except the
+//! places of its subroutines. What a line asks for, `execute` carries out in RS-274's order, with
+//! what `motion` and `dialects` offer; `reader` hands out what comes of it.
 
 mod owords;
 mod statements;

@@ -1,8 +1,10 @@
-//! Reads G-code as LinuxCNC, Fanuc, Haas, grbl, Marlin and Klipper do: text to motions and events, one by one.
+//! Reads G-code as LinuxCNC, Fanuc, Haas, grbl, Marlin and Klipper do: text to motions and events,
+//! one by one.
 //!
-//! A [`Reader`] is an iterator. Modes, units, offsets, parameters, subroutines, loops, canned cycles and cutter compensation are
-//! resolved; what comes out ([`canon`]) is where the tool goes, along which curve and how fast. A line that is wrong comes out as a
-//! [`Diagnostic`], and the reader goes on behind it, so that one run shows all mistakes.
+//! A [`Reader`] is an iterator. Modes, units, offsets, parameters, subroutines, loops, canned
+//! cycles and cutter compensation are resolved; what comes out ([`canon`]) is where the tool goes,
+//! along which curve and how fast. A line that is wrong comes out as a [`Diagnostic`], and the
+//! reader goes on behind it, so that one run shows all mistakes.
 //!
 //! ```
 //! use feedwright_gcode::canon::{Canon, MotionKind, Shape};
@@ -33,10 +35,13 @@
 //!
 //! # Dialects
 //!
-//! [`Settings::dialect`] names one; without it the beginning of the program decides ([`Reader::dialect`] says which, and why).
+//! [`Settings::dialect`] names one; without it the beginning of the program decides
+//! ([`Reader::dialect`] says which, and why).
 //!
-//! - LinuxCNC 2.9 (RS-274/NGC): parameters, expressions, O-words, cycles of mills and lathes, compensation, G5 to G6.2.
-//! - Fanuc and Haas, mills and lathes of G-code system A: macros (IF, WHILE, GOTO, G65), G68, G16, `,R` and `,C`, G70 to G76.
+//! - LinuxCNC 2.9 (RS-274/NGC): parameters, expressions, O-words, cycles of mills and lathes,
+//!   compensation, G5 to G6.2.
+//! - Fanuc and Haas, mills and lathes of G-code system A: macros (IF, WHILE, GOTO, G65), G68, G16,
+//!   `,R` and `,C`, G70 to G76.
 //! - grbl: its commands beside RS-274, programs without an end.
 //! - Marlin and Klipper: the extruder E, M-codes without limit, homing by G28, checksums.
 //!
@@ -44,35 +49,41 @@
 //!
 //! # Units
 //!
-//! Lengths are millimetres, feeds millimetres a second, times seconds, angles of rotary axes degrees, whatever the program's unit;
-//! [`INCH_MM`] is the inch. Coordinates are the machine's: offsets, G92, rotations and tool lengths are added. Rapids have no
-//! feedrate; it is the machine's own.
+//! Lengths are millimetres, feeds millimetres a second, times seconds, angles of rotary axes
+//! degrees, whatever the program's unit; [`INCH_MM`] is the inch. Coordinates are the machine's:
+//! offsets, G92, rotations and tool lengths are added. Rapids have no feedrate; it is the machine's
+//! own.
 //!
 //! # Mistakes
 //!
-//! [`ReadError`] says why a file is no program at all. A [`Diagnostic`] has a stable code, line, column, a message with value and
-//! limit, and most have a hint; each place is told once. It is a [`miette::Diagnostic`], so that miette shows it with its line and
-//! a caret. [`Reader::warnings`] has what deserves a look and stops nothing. [`Program::check`] runs through a whole program ahead of all work:
-//! every mistake, or a [`Summary`] with lengths, extent and axes.
+//! [`ReadError`] says why a file is no program at all. A [`Diagnostic`] has a stable code, line,
+//! column, a message with value and limit, and most have a hint; each place is told once. It is a
+//! [`miette::Diagnostic`], so that miette shows it with its line and a caret. [`Reader::warnings`]
+//! has what deserves a look and stops nothing. [`Program::check`] runs through a whole program
+//! ahead of all work: every mistake, or a [`Summary`] with lengths, extent and axes.
 //!
 //! # What is bounded
 //!
-//! Memory does not grow with the program: lines are read in chunks, and motions are handed out as they come. Held back is only what
-//! one block or one profile asks for, within limits. Loops without a motion, motions, calls inside each other and mistakes that are
-//! kept have limits in [`Settings`]; a program that exceeds one ends with a diagnostic. There is no unsafe code, and no input is
-//! meant to panic.
+//! Memory does not grow with the program: lines are read in chunks, and motions are handed out as
+//! they come. Held back is only what one block or one profile asks for, within limits. Loops
+//! without a motion, motions, calls inside each other and mistakes that are kept have limits in
+//! [`Settings`]; a program that exceeds one ends with a diagnostic. There is no unsafe code, and no
+//! input is meant to panic.
 //!
 //! # Features
 //!
-//! The crate has none, and needs no more than files to read: it builds for `wasm32-unknown-unknown`, where [`Reader::from_text`]
-//! takes the text. Motions and events implement [`serde::Serialize`].
+//! The crate has none, and needs no more than files to read: it builds for
+//! `wasm32-unknown-unknown`, where [`Reader::from_text`] takes the text. Motions and events
+//! implement [`serde::Serialize`].
 //!
 //! # Layers
 //!
-//! The modules stand in the order in which data flows, and each uses only those above it: `text` makes words of a line, `canon` is
-//! what comes out, `geometry` measures it, `settings` is what the caller says, `state` what a program has brought about so far,
-//! `motion` what moves, `dialects` what other controls mean by the same words, and `flow` decides which line comes next and carries
-//! it out. `program` is where a program comes from. Plain G0 and G1, nearly all lines of a long program, take the short way of `flow/reader/plain`.
+//! The modules stand in the order in which data flows, and each uses only those above it: `text`
+//! makes words of a line, `canon` is what comes out, `geometry` measures it, `settings` is what the
+//! caller says, `state` what a program has brought about so far, `motion` what moves, `dialects`
+//! what other controls mean by the same words, and `flow` decides which line comes next and carries
+//! it out. `program` is where a program comes from. Plain G0 and G1, nearly all lines of a long
+//! program, take the short way of `flow/reader/plain`.
 
 #![warn(clippy::disallowed_methods)]
 
@@ -92,7 +103,9 @@ pub use flow::reader::Reader;
 pub use flow::summary::{CheckError, Summary, summarize};
 pub use program::Program;
 pub use settings::tools::{Tool, ToolTable, ToolTableError};
-pub use settings::{AUTO, DIALECTS, Dialect, Increment, Settings, UnknownDialect, UnknownIncrement};
+pub use settings::{
+    AUTO, DIALECTS, Dialect, Increment, Settings, UnknownDialect, UnknownIncrement,
+};
 pub use state::in_force::ModesInForce;
 pub use state::modal::INCH_MM;
 #[doc(hidden)]

@@ -1,4 +1,5 @@
-//! What a block makes of its words: straight motions, arcs, curves, cycles, and the tool beside them.
+//! What a block makes of its words: straight motions, arcs, curves, cycles, and the tool beside
+//! them.
 
 mod target;
 pub(crate) mod feed;

@@ -14,7 +14,8 @@ use crate::settings::Settings;
 use crate::text::input;
 use crate::text::read_error::ReadError;
 
-/// A G-code program: text in memory, or a file that is opened anew for each reading, so that a long program takes no memory.
+/// A G-code program: text in memory, or a file that is opened anew for each reading, so that a long
+/// program takes no memory.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Program(ProgramPlace);
 
@@ -26,9 +27,13 @@ enum ProgramPlace {
 }
 
 impl Program {
-    /// The program in `text`; messages call it `name`. Bytes that are no UTF-8, which only comments have, become U+FFFD.
+    /// The program in `text`; messages call it `name`. Bytes that are no UTF-8, which only comments
+    /// have, become U+FFFD.
     pub fn from_text(name: impl Into<String>, text: impl AsRef<[u8]>) -> Self {
-        Self(ProgramPlace::Text { name: name.into(), text: String::from_utf8_lossy(text.as_ref()).into() })
+        Self(ProgramPlace::Text {
+            name: name.into(),
+            text: String::from_utf8_lossy(text.as_ref()).into(),
+        })
     }
 
     /// The program that a reader gives, which is kept in memory.
@@ -41,7 +46,8 @@ impl Program {
         Ok(Self::from_text(name, text))
     }
 
-    /// The program in a file; `-` is the standard input, which is read once and kept. Nothing is opened yet.
+    /// The program in a file; `-` is the standard input, which is read once and kept. Nothing is
+    /// opened yet.
     pub fn in_file(path: impl Into<PathBuf>) -> Self {
         Self(ProgramPlace::File(path.into()))
     }
@@ -57,14 +63,19 @@ impl Program {
     /// What reports call it: the name of the file without its folder.
     pub fn file_name(&self) -> String {
         let name = self.name();
-        Path::new(&name).file_name().map_or(Cow::from(&name), |last| last.to_string_lossy()).into_owned()
+        Path::new(&name)
+            .file_name()
+            .map_or(Cow::from(&name), |last| last.to_string_lossy())
+            .into_owned()
     }
 
     /// The file that it is in; none for a text and for the standard input.
     pub fn path(&self) -> Option<&Path> {
         match &self.0 {
             ProgramPlace::Text { .. } => None,
-            ProgramPlace::File(path) => Some(path.as_path()).filter(|path| !input::is_standard_input(path)),
+            ProgramPlace::File(path) => {
+                Some(path.as_path()).filter(|path| !input::is_standard_input(path))
+            }
         }
     }
 
@@ -120,7 +131,11 @@ mod tests {
             Program::in_file(file.path()),
         ];
         let read = |program: &Program| {
-            let steps: Vec<_> = program.reader(Settings::default()).unwrap().map(Result::unwrap).collect();
+            let steps: Vec<_> = program
+                .reader(Settings::default())
+                .unwrap()
+                .map(Result::unwrap)
+                .collect();
             let mut all = String::new();
             let (mut whole, size) = program.text().unwrap();
             whole.read_to_string(&mut all).unwrap();

@@ -1,4 +1,5 @@
-//! What the reader has to know besides the program: dialect, limits, tools, and where subroutines are.
+//! What the reader has to know besides the program: dialect, limits, tools, and where subroutines
+//! are.
 
 pub(crate) mod tools;
 
@@ -39,13 +40,15 @@ pub enum Dialect {
     Haas,
     /// Mills of Fanuc, Haas and their relatives: O-numbers, machine M-codes.
     FanucMill,
-    /// Lathes of Fanuc and its relatives, G-code system A: X is a diameter, U and W are distances, G90 is a turning cycle.
+    /// Lathes of Fanuc and its relatives, G-code system A: X is a diameter, U and W are distances,
+    /// G90 is a turning cycle.
     FanucLathe,
     /// Lathes of Haas: the same, but R of a drilling cycle is a coordinate.
     HaasLathe,
     /// grbl and the senders around it: no program end needed, `$` lines.
     Grbl,
-    /// Marlin, Klipper and other firmware of 3D printers: an E axis, M-codes without limit, G28 is homing.
+    /// Marlin, Klipper and other firmware of 3D printers: an E axis, M-codes without limit, G28 is
+    /// homing.
     Printer,
 }
 
@@ -68,7 +71,10 @@ impl Dialect {
         if name.eq_ignore_ascii_case(AUTO) {
             return Ok(None);
         }
-        match DIALECTS.iter().find(|(known, _)| known.eq_ignore_ascii_case(name)) {
+        match DIALECTS
+            .iter()
+            .find(|(known, _)| known.eq_ignore_ascii_case(name))
+        {
             Some((_, dialect)) => Ok(Some(*dialect)),
             None => Err(UnknownDialect::new(name)),
         }
@@ -88,13 +94,19 @@ pub struct UnknownDialect {
 
 impl UnknownDialect {
     fn new(name: &str) -> Self {
-        let meant = nearest(name, &names()).map_or(String::new(), |meant| format!("did you mean '{meant}'? "));
-        Self { name: name.to_owned(), hint: format!("{meant}'{AUTO}' chooses by the beginning of the program") }
+        let meant = nearest(name, &names())
+            .map_or(String::new(), |meant| format!("did you mean '{meant}'? "));
+        Self {
+            name: name.to_owned(),
+            hint: format!("{meant}'{AUTO}' chooses by the beginning of the program"),
+        }
     }
 }
 
 fn names() -> Vec<&'static str> {
-    std::iter::once(AUTO).chain(DIALECTS.iter().map(|(name, _)| *name)).collect()
+    std::iter::once(AUTO)
+        .chain(DIALECTS.iter().map(|(name, _)| *name))
+        .collect()
 }
 
 impl fmt::Display for Dialect {
@@ -120,8 +132,11 @@ pub struct Increment {
 }
 
 /// Every increment by its names, in mm and in inches.
-const INCREMENTS: [(&str, &str, f64); 3] =
-    [("0.01mm", "0.001inch", 0.01), ("0.001mm", "0.0001inch", 0.001), ("0.0001mm", "0.00001inch", 0.0001)];
+const INCREMENTS: [(&str, &str, f64); 3] = [
+    ("0.01mm", "0.001inch", 0.01),
+    ("0.001mm", "0.0001inch", 0.001),
+    ("0.0001mm", "0.00001inch", 0.0001),
+];
 
 impl Increment {
     /// Returns the increment with a name such as `0.001mm` or `0.0001inch`, ignoring case and
@@ -131,8 +146,13 @@ impl Increment {
     /// If no increment has this name.
     pub fn named(name: &str) -> Result<Self, UnknownIncrement> {
         let plain = name.to_ascii_lowercase().replace(' ', "");
-        let row = INCREMENTS.iter().find(|row| row.0 == plain || row.1 == plain);
-        row.map(|row| Self { mm: row.2 }).ok_or_else(|| UnknownIncrement { name: name.to_owned() })
+        let row = INCREMENTS
+            .iter()
+            .find(|row| row.0 == plain || row.1 == plain);
+        row.map(|row| Self { mm: row.2 })
+            .ok_or_else(|| UnknownIncrement {
+                name: name.to_owned(),
+            })
     }
 
     /// What one counts, in the unit of the program.
@@ -171,14 +191,16 @@ pub struct UnknownIncrement {
 pub struct Settings {
     /// Dialect; `None` chooses by the beginning of the file.
     pub dialect: Option<Dialect>,
-    /// What a length without a decimal point counts on a Fanuc or Haas; `None` reads it as whole millimetres or inches.
+    /// What a length without a decimal point counts on a Fanuc or Haas; `None` reads it as whole
+    /// millimetres or inches.
     pub increment: Option<Increment>,
     /// Whether the reader skips lines that begin with `/`. Off by default, like the block delete
     /// switch of a control.
     pub block_delete: bool,
     /// Faults that are kept before the rest is only counted.
     pub max_errors: usize,
-    /// Largest coordinate, mm. 1 km: no machine is larger, and beyond it f64 begins to lose the nanometre.
+    /// Largest coordinate, mm. 1 km: no machine is larger, and beyond it f64 begins to lose the
+    /// nanometre.
     pub coordinate_limit_mm: f64,
     /// Lines that may be carried out without a motion before the program counts as an endless loop.
     pub max_idle_lines: u64,
@@ -200,7 +222,8 @@ impl Default for Settings {
             block_delete: false,
             max_errors: 100,
             coordinate_limit_mm: 1e6,
-            // A file of ten million comment lines still passes; an empty loop ends after about a second.
+            // A file of ten million comment lines still passes; an empty loop ends after about a
+            // second.
             max_idle_lines: 20_000_000,
             max_motions: 1_000_000_000,
             max_depth: 100,
@@ -221,11 +244,9 @@ mod tests {
             assert_eq!(Dialect::named(&name.to_uppercase()), Ok(Some(dialect)));
         }
         let unknown = Dialect::named("linuxcn").unwrap_err();
-        assert!(
-            unknown
-                .to_string()
-                .ends_with("haas, fanuc-mill, haas-mill, fanuc-lathe, haas-lathe, grbl, marlin, klipper")
-        );
+        assert!(unknown.to_string().ends_with(
+            "haas, fanuc-mill, haas-mill, fanuc-lathe, haas-lathe, grbl, marlin, klipper"
+        ));
         assert!(unknown.hint.starts_with("did you mean 'linuxcnc'?"));
     }
 }

@@ -1,4 +1,5 @@
-//! What a program has brought about so far: modes, offsets, position, parameters, and the steps that wait to be fetched.
+//! What a program has brought about so far: modes, offsets, position, parameters, and the steps
+//! that wait to be fetched.
 
 pub(crate) mod modal;
 pub(crate) mod frame;
@@ -100,7 +101,11 @@ impl Interpreter {
             settings,
             dialect,
             parameters,
-            modal: if dialect.is_fanuc() { fanuc_modes(dialect.is_lathe()) } else { Modal::new() },
+            modal: if dialect.is_fanuc() {
+                fanuc_modes(dialect.is_lathe())
+            } else {
+                Modal::new()
+            },
             frame: Frame::new(),
             at: [0.0; 9],
             here: [0.0; 9],
@@ -121,7 +126,10 @@ impl Interpreter {
 
     /// Hands out an event of the line under way.
     pub(crate) fn event(&mut self, kind: EventKind) {
-        self.push(Canon::Event(Event { line: self.line, kind }));
+        self.push(Canon::Event(Event {
+            line: self.line,
+            kind,
+        }));
     }
 
     /// Hands out a step, behind those that are held back.
@@ -129,7 +137,12 @@ impl Interpreter {
     pub(crate) fn push(&mut self, step: Canon) {
         if self.lathe.is_some() {
             self.keep(step);
-        } else if self.fanuc.capture.as_ref().is_some_and(|capture| capture.keeps()) {
+        } else if self
+            .fanuc
+            .capture
+            .as_ref()
+            .is_some_and(|capture| capture.keeps())
+        {
             self.keep_own(step);
         } else if self.carried.held.is_empty() {
             self.output.steps.push_back(step);
@@ -192,6 +205,10 @@ impl Interpreter {
             -1 => 4,
             _ => 5,
         };
-        self.event(EventKind::MCode { code, p: None, q: None });
+        self.event(EventKind::MCode {
+            code,
+            p: None,
+            q: None,
+        });
     }
 }

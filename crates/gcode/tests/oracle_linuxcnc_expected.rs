@@ -1,20 +1,34 @@
 //! LinuxCNC's own interpreter tests: the motions that its `.expected` files print, against ours.
 //!
-//! The files print four decimals in the unit under way and program coordinates, so offsets are followed here. They need no LinuxCNC.
+//! The files print four decimals in the unit under way and program coordinates, so offsets are
+//! followed here. They need no LinuxCNC.
 use std::path::{Path, PathBuf};
 
 use feedwright_gcode::canon::{Canon, MotionKind, Shape};
 use feedwright_gcode::{Dialect, Reader, Settings, ToolTable};
 
-/// Half of the last printed decimal, and as much again for sums of offsets, in the unit of the program.
+/// Half of the last printed decimal, and as much again for sums of offsets, in the unit of the
+/// program.
 const PRINTED: f64 = 1.2e-4;
 
 /// Tests whose motions are different, and why.
 const DIFFERENCES: &[(&str, &str)] = &[
-    ("g71-endless-loop_2", "G70 with cutter compensation is not read"),
-    ("g84__g18__g99", "the axes of G84 outside G17 are exchanged there"),
-    ("g84__g19__g99", "the axes of G84 outside G17 are exchanged there"),
-    ("cam-nisley", "needs the radius of a tool that its tool table has"),
+    (
+        "g71-endless-loop_2",
+        "G70 with cutter compensation is not read",
+    ),
+    (
+        "g84__g18__g99",
+        "the axes of G84 outside G17 are exchanged there",
+    ),
+    (
+        "g84__g19__g99",
+        "the axes of G84 outside G17 are exchanged there",
+    ),
+    (
+        "cam-nisley",
+        "needs the radius of a tool that its tool table has",
+    ),
     ("machine-coord-params", "prints messages only"),
     ("iniparam", "needs an INI file"),
     (
@@ -55,12 +69,22 @@ impl Printed {
     fn line(&mut self, line: &str) -> Option<Move> {
         let command = line.split_once("N.....")?.1.trim();
         let (name, arguments) = command.split_once('(')?;
-        let numbers: Vec<f64> = arguments.split([',', ' ', ')']).filter_map(|text| text.parse().ok()).collect();
-        let three =
-            |from: usize| -> [f64; 3] { std::array::from_fn(|axis| numbers.get(from + axis).copied().unwrap_or(0.0)) };
+        let numbers: Vec<f64> = arguments
+            .split([',', ' ', ')'])
+            .filter_map(|text| text.parse().ok())
+            .collect();
+        let three = |from: usize| -> [f64; 3] {
+            std::array::from_fn(|axis| numbers.get(from + axis).copied().unwrap_or(0.0))
+        };
         let scaled = |values: [f64; 3], unit: f64| values.map(|value| value * unit);
         match name {
-            "USE_LENGTH_UNITS" => self.unit_mm = if arguments.contains("INCH") { 25.4 } else { 1.0 },
+            "USE_LENGTH_UNITS" => {
+                self.unit_mm = if arguments.contains("INCH") {
+                    25.4
+                } else {
+                    1.0
+                }
+            }
             "SELECT_PLANE" if arguments.contains("XZ") => self.plane = [2, 0, 1],
             "SELECT_PLANE" if arguments.contains("YZ") => self.plane = [1, 2, 0],
             "SELECT_PLANE" => self.plane = [0, 1, 2],
@@ -69,15 +93,28 @@ impl Printed {
             "SET_XY_ROTATION" => self.rotation = numbers[0],
             "USE_TOOL_LENGTH_OFFSET" => self.tool = scaled(three(0), self.unit_mm),
             "STRAIGHT_TRAVERSE" => {
-                return Some(Move { is_rapid: true, is_arc: false, end_mm: self.machine(three(0)) });
+                return Some(Move {
+                    is_rapid: true,
+                    is_arc: false,
+                    end_mm: self.machine(three(0)),
+                });
             }
             "STRAIGHT_FEED" | "STRAIGHT_PROBE" | "RIGID_TAP" => {
-                return Some(Move { is_rapid: false, is_arc: false, end_mm: self.machine(three(0)) });
+                return Some(Move {
+                    is_rapid: false,
+                    is_arc: false,
+                    end_mm: self.machine(three(0)),
+                });
             }
             "ARC_FEED" => {
                 let mut end = [0.0; 3];
-                (end[self.plane[0]], end[self.plane[1]], end[self.plane[2]]) = (numbers[0], numbers[1], numbers[5]);
-                return Some(Move { is_rapid: false, is_arc: true, end_mm: self.machine(end) });
+                (end[self.plane[0]], end[self.plane[1]], end[self.plane[2]]) =
+                    (numbers[0], numbers[1], numbers[5]);
+                return Some(Move {
+                    is_rapid: false,
+                    is_arc: true,
+                    end_mm: self.machine(end),
+                });
             }
             _ => {}
         }
@@ -87,8 +124,14 @@ impl Printed {
 
 /// Motions of an `.expected` file, without those that do not move, and the largest unit.
 fn printed(path: &Path) -> (Vec<Move>, f64) {
-    let mut state =
-        Printed { unit_mm: 1.0, plane: [0, 1, 2], system: [0.0; 3], shift: [0.0; 3], tool: [0.0; 3], rotation: 0.0 };
+    let mut state = Printed {
+        unit_mm: 1.0,
+        plane: [0, 1, 2],
+        system: [0.0; 3],
+        shift: [0.0; 3],
+        tool: [0.0; 3],
+        rotation: 0.0,
+    };
     let text = std::fs::read_to_string(path).unwrap();
     let mut unit: f64 = 1.0;
     let moves = text
@@ -103,7 +146,9 @@ fn printed(path: &Path) -> (Vec<Move>, f64) {
 }
 
 fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|axis| (a[axis] - b[axis]).abs()).fold(0.0, f64::max)
+    (0..3)
+        .map(|axis| (a[axis] - b[axis]).abs())
+        .fold(0.0, f64::max)
 }
 
 fn without_rests(moves: Vec<Move>, tolerance: f64) -> Vec<Move> {
@@ -133,12 +178,18 @@ fn compare(program: &Path, expected: &Path) -> Result<usize, String> {
             Ok(Canon::Motion(motion)) => {
                 // RIGID_TAP comes back by itself.
                 let returns = std::mem::take(&mut is_return);
-                is_return = std::fs::read_to_string(expected).unwrap().contains("RIGID_TAP")
+                is_return = std::fs::read_to_string(expected)
+                    .unwrap()
+                    .contains("RIGID_TAP")
                     && !returns
                     && motion.kind == MotionKind::Feed;
                 if !returns {
                     let is_arc = matches!(motion.shape, Shape::Arc { .. });
-                    ours.push(Move { is_rapid: motion.kind == MotionKind::Rapid, is_arc, end_mm: motion.end_mm });
+                    ours.push(Move {
+                        is_rapid: motion.kind == MotionKind::Rapid,
+                        is_arc,
+                        end_mm: motion.end_mm,
+                    });
                 }
             }
             Ok(Canon::Event(_)) => {}
@@ -147,22 +198,33 @@ fn compare(program: &Path, expected: &Path) -> Result<usize, String> {
     }
     let (theirs, unit) = printed(expected);
     let tolerance = PRINTED * unit;
-    let (ours, theirs) = (without_rests(ours, tolerance), without_rests(theirs, tolerance));
+    let (ours, theirs) = (
+        without_rests(ours, tolerance),
+        without_rests(theirs, tolerance),
+    );
     for (number, (a, b)) in ours.iter().zip(&theirs).enumerate() {
-        if a.is_rapid != b.is_rapid || a.is_arc != b.is_arc || apart(a.end_mm, b.end_mm) > 2.0 * tolerance {
+        if a.is_rapid != b.is_rapid
+            || a.is_arc != b.is_arc
+            || apart(a.end_mm, b.end_mm) > 2.0 * tolerance
+        {
             return Err(format!("motion {number}: ours {a:?}, theirs {b:?}"));
         }
     }
     if ours.len() == theirs.len() {
         Ok(ours.len())
     } else {
-        Err(format!("{} motions here, {} there", ours.len(), theirs.len()))
+        Err(format!(
+            "{} motions here, {} there",
+            ours.len(),
+            theirs.len()
+        ))
     }
 }
 
 #[test]
 fn motions_are_those_of_the_interpreter_tests() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus/gcode/linuxcnc-interp-tests");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../../shared/corpus/gcode/linuxcnc-interp-tests");
     let Ok(entries) = std::fs::read_dir(&folder) else {
         eprintln!(
             "SKIPPED: LinuxCNC's interpreter tests are not at {}; take tests/interp of its sources",
@@ -174,25 +236,34 @@ fn motions_are_those_of_the_interpreter_tests() {
     paths.sort();
     let mut failures = Vec::new();
     let (mut tests, mut compared) = (0, 0);
-    for expected in paths.iter().filter(|path| path.extension().is_some_and(|extension| extension == "expected")) {
+    for expected in paths.iter().filter(|path| {
+        path.extension()
+            .is_some_and(|extension| extension == "expected")
+    }) {
         let name = expected.file_stem().unwrap().to_string_lossy().into_owned();
         let programs: Vec<&PathBuf> = paths
             .iter()
             .filter(|path| {
                 let file = path.file_name().unwrap().to_string_lossy().into_owned();
-                file == format!("{name}.ngc") || (file.starts_with(&format!("{name}--")) && file.ends_with(".ngc"))
+                file == format!("{name}.ngc")
+                    || (file.starts_with(&format!("{name}--")) && file.ends_with(".ngc"))
             })
             .collect();
-        let main = programs.iter().find(|path| path.ends_with(format!("{name}.ngc"))).or(if programs.len() == 1 {
-            programs.first()
-        } else {
-            None
-        });
+        let main = programs
+            .iter()
+            .find(|path| path.ends_with(format!("{name}.ngc")))
+            .or(if programs.len() == 1 {
+                programs.first()
+            } else {
+                None
+            });
         let Some(program) = main else { continue };
         tests += 1;
         let known = DIFFERENCES.iter().any(|row| row.0 == name);
         match compare(program, expected) {
-            Ok(_) if known => failures.push(format!("{name}: listed as a difference, but there is none")),
+            Ok(_) if known => {
+                failures.push(format!("{name}: listed as a difference, but there is none"));
+            }
             Ok(count) => compared += count,
             Err(_) if known => {}
             Err(failure) => failures.push(format!("{name}: {failure}")),

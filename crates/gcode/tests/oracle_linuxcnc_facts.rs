@@ -1,4 +1,5 @@
-//! Small programs whose end points LinuxCNC 2.9 was asked for, where this reader once went elsewhere.
+//! Small programs whose end points LinuxCNC 2.9 was asked for, where this reader once went
+//! elsewhere.
 //!
 //! The numbers are those of `oracle_scripts/linuxcnc_canon.py`, rounded to 1e-6 mm.
 use feedwright_gcode::canon::{Canon, EventKind, Motion, MotionKind};
@@ -21,16 +22,31 @@ fn read(text: &str) -> (Vec<Canon>, Vec<Diagnostic>) {
 fn motions(text: &str) -> Vec<Motion> {
     let (steps, faults) = read(text);
     assert!(faults.is_empty(), "{text}: {faults:?}");
-    steps.into_iter().filter_map(|step| if let Canon::Motion(motion) = step { Some(motion) } else { None }).collect()
+    steps
+        .into_iter()
+        .filter_map(|step| {
+            if let Canon::Motion(motion) = step {
+                Some(motion)
+            } else {
+                None
+            }
+        })
+        .collect()
 }
 
 #[track_caller]
 fn assert_ends(text: &str, expected: &[(MotionKind, [f64; 3])]) {
     let motions = motions(text);
-    let shown: Vec<_> = motions.iter().map(|motion| (motion.kind, motion.end_mm)).collect();
+    let shown: Vec<_> = motions
+        .iter()
+        .map(|motion| (motion.kind, motion.end_mm))
+        .collect();
     assert_eq!(shown.len(), expected.len(), "{text}{shown:?}");
     for ((kind, end), (wanted_kind, wanted)) in shown.iter().zip(expected) {
-        assert!((0..3).all(|axis| (end[axis] - wanted[axis]).abs() <= SAME_MM), "{text}{shown:?}");
+        assert!(
+            (0..3).all(|axis| (end[axis] - wanted[axis]).abs() <= SAME_MM),
+            "{text}{shown:?}"
+        );
         assert_eq!(kind, wanted_kind, "{text}{shown:?}");
     }
 }
@@ -42,9 +58,21 @@ const RAPID: MotionKind = MotionKind::Rapid;
 fn a_program_may_give_itself_up() {
     let (steps, faults) = read("G21\n#1=5\nG0 X1\n(abort, stop at #1)\nG0 X2\nM2\n");
     assert_eq!(faults.len(), 1);
-    assert!(faults[0].line == 4 && faults[0].message.ends_with("stop at 5.000000"), "{faults:?}");
-    assert_eq!(steps.iter().filter(|step| matches!(step, Canon::Motion(_))).count(), 1);
-    assert_eq!(motions("G21\no1 if [0]\n(abort, no)\no1 endif\nG0 X2 ;abort, no\nM2\n").len(), 1);
+    assert!(
+        faults[0].line == 4 && faults[0].message.ends_with("stop at 5.000000"),
+        "{faults:?}"
+    );
+    assert_eq!(
+        steps
+            .iter()
+            .filter(|step| matches!(step, Canon::Motion(_)))
+            .count(),
+        1
+    );
+    assert_eq!(
+        motions("G21\no1 if [0]\n(abort, no)\no1 endif\nG0 X2 ;abort, no\nM2\n").len(),
+        1
+    );
 }
 
 #[test]
@@ -64,26 +92,46 @@ fn g28_with_one_axis_in_a_rotated_system_moves_along_the_program_s_axis() {
 fn m72_brings_back_whether_g92_is_in_effect() {
     assert_ends(
         "G21\nG0 X5\nM70\nG92 X1\nM72\nG0 X3\nG92.3\nG0 X4\nM70\nG92.2\nM72\nG0 X5\nM2\n",
-        &[(RAPID, [5.0, 0.0, 0.0]), (RAPID, [3.0, 0.0, 0.0]), (RAPID, [8.0, 0.0, 0.0]), (RAPID, [9.0, 0.0, 0.0])],
+        &[
+            (RAPID, [5.0, 0.0, 0.0]),
+            (RAPID, [3.0, 0.0, 0.0]),
+            (RAPID, [8.0, 0.0, 0.0]),
+            (RAPID, [9.0, 0.0, 0.0]),
+        ],
     );
 }
 
 #[test]
 fn cycles_that_feed_out_feed_to_the_height_of_g98() {
     let start = "G21 F100 S100 M3\nG0 Z10\n";
-    let drilled = [(RAPID, [0.0, 0.0, 10.0]), (RAPID, [1.0, 1.0, 10.0]), (RAPID, [1.0, 1.0, 2.0])];
+    let drilled = [
+        (RAPID, [0.0, 0.0, 10.0]),
+        (RAPID, [1.0, 1.0, 10.0]),
+        (RAPID, [1.0, 1.0, 2.0]),
+    ];
     let whole = [(FEED, [1.0, 1.0, -2.0]), (FEED, [1.0, 1.0, 10.0])];
     for cycle in ["G98 G84 P0", "M4 G98 G74 P0", "G98 G89 P0.5"] {
-        assert_ends(&format!("{start}{cycle} X1 Y1 Z-2 R2\nM2\n"), &[&drilled[..], &whole].concat());
+        assert_ends(
+            &format!("{start}{cycle} X1 Y1 Z-2 R2\nM2\n"),
+            &[&drilled[..], &whole].concat(),
+        );
     }
     // G85 feeds to R.
-    let stepped = [(FEED, [1.0, 1.0, -2.0]), (FEED, [1.0, 1.0, 2.0]), (RAPID, [1.0, 1.0, 10.0])];
-    assert_ends(&format!("{start}G98 G85 X1 Y1 Z-2 R2\nM2\n"), &[&drilled[..], &stepped].concat());
+    let stepped = [
+        (FEED, [1.0, 1.0, -2.0]),
+        (FEED, [1.0, 1.0, 2.0]),
+        (RAPID, [1.0, 1.0, 10.0]),
+    ];
+    assert_ends(
+        &format!("{start}G98 G85 X1 Y1 Z-2 R2\nM2\n"),
+        &[&drilled[..], &stepped].concat(),
+    );
 }
 
 #[test]
 fn control_points_of_g5_2_in_g91_are_distances_from_the_start() {
-    let text = "G21 F100\nG0 X5 Y5\nG91\nG5.2 X1 Y1 P1 L3\nX1 Y0 P1\nX1 Y-1 P1\nX1 Y0 P1\nG5.3\nG90\nM2\n";
+    let text =
+        "G21 F100\nG0 X5 Y5\nG91\nG5.2 X1 Y1 P1 L3\nX1 Y0 P1\nX1 Y-1 P1\nX1 Y0 P1\nG5.3\nG90\nM2\n";
     assert_ends(text, &[(RAPID, [5.0, 5.0, 0.0]), (FEED, [6.0, 5.0, 0.0])]);
 }
 
@@ -91,17 +139,34 @@ fn control_points_of_g5_2_in_g91_are_distances_from_the_start() {
 fn the_infeed_into_the_taper_of_a_thread_waits_for_the_spindle() {
     let text = "G21 G18 F100 S100 M3\nG0 X20 Z5\nG76 P1 Z-10 I-1 J0.3 K1 R1 E2 L1\nM2\n";
     let motions = motions(text);
-    let kinds: Vec<_> = motions[1..5].iter().map(|motion| (motion.kind, motion.end_mm[0])).collect();
-    assert_eq!(kinds, [(RAPID, 20.7), (FEED, 19.7), (FEED, 18.7), (FEED, 18.7)]);
+    let kinds: Vec<_> = motions[1..5]
+        .iter()
+        .map(|motion| (motion.kind, motion.end_mm[0]))
+        .collect();
+    assert_eq!(
+        kinds,
+        [(RAPID, 20.7), (FEED, 19.7), (FEED, 18.7), (FEED, 18.7)]
+    );
     let (steps, _) = read(text);
-    let infeed = steps.iter().position(|step| matches!(step, Canon::Motion(motion) if motion.kind == FEED)).unwrap();
-    let Canon::Event(before) = &steps[infeed - 1] else { panic!("{:?}", steps[infeed - 1]) };
-    let EventKind::SpindleSync { pitch_mm: Some(pitch_mm) } = before.kind else { panic!("{before:?}") };
+    let infeed = steps
+        .iter()
+        .position(|step| matches!(step, Canon::Motion(motion) if motion.kind == FEED))
+        .unwrap();
+    let Canon::Event(before) = &steps[infeed - 1] else {
+        panic!("{:?}", steps[infeed - 1])
+    };
+    let EventKind::SpindleSync {
+        pitch_mm: Some(pitch_mm),
+    } = before.kind
+    else {
+        panic!("{before:?}")
+    };
     assert!((pitch_mm - 1.118_034).abs() < SAME_MM, "{pitch_mm}");
 }
 
-/// `rs274` writes `START_SPEED_FEED_SYNC(1.500000,0)` around one straight motion: position and spindle are coupled, K is the way of
-/// the tool a revolution, and the spindle turns as fast as the surface speed asks for at each X.
+/// `rs274` writes `START_SPEED_FEED_SYNC(1.500000,0)` around one straight motion: position and
+/// spindle are coupled, K is the way of the tool a revolution, and the spindle turns as fast as the
+/// surface speed asks for at each X.
 #[test]
 fn a_thread_at_a_surface_speed_has_its_lead_everywhere() {
     const LEAD_MM: f64 = 1.5;
@@ -127,7 +192,10 @@ fn a_thread_at_a_surface_speed_has_its_lead_everywhere() {
         // The lead at both ends of a piece is within what the spindle changes along it.
         for x_mm in [a, b] {
             let lead_mm = motion.feed_mm_s / (rpm(x_mm) / 60.0);
-            assert!((lead_mm / LEAD_MM - 1.0).abs() < 0.03, "{lead_mm} at X {x_mm}: {motion:?}");
+            assert!(
+                (lead_mm / LEAD_MM - 1.0).abs() < 0.03,
+                "{lead_mm} at X {x_mm}: {motion:?}"
+            );
         }
         time_s += motion.length_mm() / motion.feed_mm_s;
         const PARTS: u32 = 100;
@@ -136,8 +204,15 @@ fn a_thread_at_a_surface_speed_has_its_lead_everywhere() {
             expected_s += motion.length_mm() / f64::from(PARTS) / (LEAD_MM * rpm(x_mm) / 60.0);
         }
     }
-    assert!((time_s / expected_s - 1.0).abs() < 2e-4, "{time_s} s, {expected_s} s");
+    assert!(
+        (time_s / expected_s - 1.0).abs() < 2e-4,
+        "{time_s} s, {expected_s} s"
+    );
     // No stop between the pieces of one thread.
-    assert!(threads.windows(2).all(|pair| pair[0].end_mm == pair[1].start_mm));
+    assert!(
+        threads
+            .windows(2)
+            .all(|pair| pair[0].end_mm == pair[1].start_mm)
+    );
     assert_eq!(threads.last().unwrap().end_mm, [5.0, 0.0, -30.0]);
 }

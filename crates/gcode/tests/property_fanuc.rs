@@ -1,4 +1,5 @@
-//! Random programs of what Fanuc and Haas have besides: no panic, no endless loop, and every motion begins where the one before it ends.
+//! Random programs of what Fanuc and Haas have besides: no panic, no endless loop, and every motion
+//! begins where the one before it ends.
 
 use feedwright_gcode::canon::{Canon, Motion};
 use feedwright_gcode::{Dialect, Increment, Reader, Settings};
@@ -74,20 +75,35 @@ const LINES: [&str; 62] = [
 
 fn program() -> impl Strategy<Value = String> {
     let line = (0..LINES.len(), 0..30_u32, prop::bool::ANY).prop_map(|(line, value, dot)| {
-        let value = if dot { format!("{value}.{}", value % 7) } else { value.to_string() };
+        let value = if dot {
+            format!("{value}.{}", value % 7)
+        } else {
+            value.to_string()
+        };
         LINES[line].replace("#V", &value)
     });
-    prop::collection::vec(line, 1..40).prop_map(|lines| format!("G97 S500 M3 F0.3\n{}\nM99\n", lines.join("\n")))
+    prop::collection::vec(line, 1..40)
+        .prop_map(|lines| format!("G97 S500 M3 F0.3\n{}\nM99\n", lines.join("\n")))
 }
 
-/// Found by the test below: pecks at constant surface speed that begin far out, some hundred motions each.
+/// Found by the test below: pecks at constant surface speed that begin far out, some hundred
+/// motions each.
 #[test]
 fn pecks_at_constant_surface_speed_are_bounded() {
-    let text = "G97 S500 M3 F0.3\nG96 S100\nG0 X50. Z2.\nF0.1\nG75 R25.\nG75 X0. Z-25. P.1 Q.1 R.1\nM99\n";
-    let settings = Settings { dialect: Some(Dialect::FanucLathe), ..Settings::default() };
-    let steps: Vec<_> = Reader::from_text("part.nc", text, settings).unwrap().collect();
+    let text =
+        "G97 S500 M3 F0.3\nG96 S100\nG0 X50. Z2.\nF0.1\nG75 R25.\nG75 X0. Z-25. P.1 Q.1 R.1\nM99\n";
+    let settings = Settings {
+        dialect: Some(Dialect::FanucLathe),
+        ..Settings::default()
+    };
+    let steps: Vec<_> = Reader::from_text("part.nc", text, settings)
+        .unwrap()
+        .collect();
     assert!(steps.len() < 500_000, "{}", steps.len());
-    assert!(steps.iter().any(|step| step.as_ref().is_err_and(|fault| fault.message.contains("400000 motions"))));
+    assert!(steps.iter().any(|step| {
+        step.as_ref()
+            .is_err_and(|fault| fault.message.contains("400000 motions"))
+    }));
 }
 
 proptest! {

@@ -1,5 +1,6 @@
-//! G71, G72 and G73 of Fanuc lathes over random profiles: no motion comes into the part that the allowance leaves, the roughing leaves nothing
-//! thicker than a pass and the allowance, and extreme words end in a fault or in few motions.
+//! G71, G72 and G73 of Fanuc lathes over random profiles: no motion comes into the part that the
+//! allowance leaves, the roughing leaves nothing thicker than a pass and the allowance, and extreme
+//! words end in a fault or in few motions.
 use feedwright_gcode::canon::{Canon, Motion, MotionKind, Shape};
 use feedwright_gcode::{Diagnostic, Dialect, Reader, Settings};
 use proptest::prelude::*;
@@ -21,7 +22,11 @@ struct Stroke {
 
 fn strokes(falls: bool) -> impl Strategy<Value = Vec<Stroke>> {
     let up = if falls { -3.0..4.0_f64 } else { 0.0..4.0_f64 };
-    let stroke = (prop_oneof![Just(0.0), 0.05..6.0], prop_oneof![1 => Just(0.0), 3 => up], -1..=1)
+    let stroke = (
+        prop_oneof![Just(0.0), 0.05..6.0],
+        prop_oneof![1 => Just(0.0), 3 => up],
+        -1..=1,
+    )
         .prop_map(|(along, up, arc)| Stroke { along, up, arc });
     prop::collection::vec(stroke, 2..8)
 }
@@ -35,12 +40,19 @@ struct Part {
 /// A profile for turning outside; `facing` exchanges X and Z.
 fn part(strokes: &[Stroke], facing: bool, first: &str) -> Part {
     let word = |[a, d]: [f64; 2]| {
-        if facing { format!("X{:.6} Z{d:.6}", 2.0 * (60.0 - a)) } else { format!("X{:.6} Z{:.6}", 2.0 * d, -a) }
+        if facing {
+            format!("X{:.6} Z{d:.6}", 2.0 * (60.0 - a))
+        } else {
+            format!("X{:.6} Z{:.6}", 2.0 * d, -a)
+        }
     };
     let mut at = [0.5, 10.0];
     let entry = word(at);
     let entry = entry.split(' ').nth(usize::from(facing)).unwrap();
-    let mut part = Part { blocks: format!("N1 G0 {entry}{first}\n"), points: Vec::new() };
+    let mut part = Part {
+        blocks: format!("N1 G0 {entry}{first}\n"),
+        points: Vec::new(),
+    };
     at[0] = -BEFORE_MM;
     part.points.push(at);
     for stroke in strokes {
@@ -51,7 +63,11 @@ fn part(strokes: &[Stroke], facing: bool, first: &str) -> Part {
             let radius = stroke.along.min(rises);
             end = [at[0] + radius, at[1] + radius];
             let inner = stroke.arc > 0;
-            let center = if inner { [at[0], end[1]] } else { [end[0], at[1]] };
+            let center = if inner {
+                [at[0], end[1]]
+            } else {
+                [end[0], at[1]]
+            };
             let turns_left = inner != facing;
             // Along -Z with X up, a left turn of the profile is clockwise.
             let code = if turns_left { "G2" } else { "G3" };
@@ -59,9 +75,15 @@ fn part(strokes: &[Stroke], facing: bool, first: &str) -> Part {
             part.points.extend((1..=CHORDS).map(|n| {
                 let angle = std::f64::consts::FRAC_PI_2 * f64::from(n) / f64::from(CHORDS);
                 if inner {
-                    [center[0] + radius * angle.sin(), center[1] - radius * angle.cos()]
+                    [
+                        center[0] + radius * angle.sin(),
+                        center[1] - radius * angle.cos(),
+                    ]
                 } else {
-                    [center[0] - radius * angle.cos(), center[1] + radius * angle.sin()]
+                    [
+                        center[0] - radius * angle.cos(),
+                        center[1] + radius * angle.sin(),
+                    ]
                 }
             }));
         } else if end != at {
@@ -86,9 +108,13 @@ impl Part {
     /// Height of the part along the passes; 0 before it.
     fn height(&self, along: f64) -> f64 {
         let inside = |pair: &[[f64; 2]]| (pair[0][0] + 1e-9..pair[1][0] - 1e-9).contains(&along);
-        self.points.windows(2).find(|pair| inside(pair)).map_or(0.0, |pair| {
-            pair[0][1] + (pair[1][1] - pair[0][1]) * (along - pair[0][0]) / (pair[1][0] - pair[0][0])
-        })
+        self.points
+            .windows(2)
+            .find(|pair| inside(pair))
+            .map_or(0.0, |pair| {
+                pair[0][1]
+                    + (pair[1][1] - pair[0][1]) * (along - pair[0][0]) / (pair[1][0] - pair[0][0])
+            })
     }
 }
 
@@ -96,14 +122,24 @@ impl Part {
     /// The lowest height within [`SLACK_MM`] along the passes.
     fn lowest_near(&self, along: f64) -> f64 {
         let beside = [-SLACK_MM, 0.0, SLACK_MM].map(|by| self.height(along + by));
-        let corners = self.points.iter().filter(|point| (point[0] - along).abs() <= SLACK_MM).map(|point| point[1]);
-        beside.into_iter().chain(corners).fold(f64::INFINITY, f64::min)
+        let corners = self
+            .points
+            .iter()
+            .filter(|point| (point[0] - along).abs() <= SLACK_MM)
+            .map(|point| point[1]);
+        beside
+            .into_iter()
+            .chain(corners)
+            .fold(f64::INFINITY, f64::min)
     }
 }
 
 fn read(text: &str) -> (Vec<Motion>, Vec<Diagnostic>) {
     let (mut motions, mut faults) = (Vec::new(), Vec::new());
-    let settings = Settings { dialect: Some(Dialect::FanucLathe), ..Settings::default() };
+    let settings = Settings {
+        dialect: Some(Dialect::FanucLathe),
+        ..Settings::default()
+    };
     for step in Reader::from_text("lathe.nc", text, settings).unwrap() {
         match step {
             Ok(Canon::Motion(motion)) => motions.push(motion),
@@ -121,7 +157,9 @@ fn points_of(motion: &Motion, facing: bool) -> Vec<[f64; 2]> {
     (0..=24)
         .map(|n| {
             let chord = between(f64::from(n) / 24.0);
-            let Shape::Arc { center_mm, .. } = &motion.shape else { return chord };
+            let Shape::Arc { center_mm, .. } = &motion.shape else {
+                return chord;
+            };
             let center = plane(*center_mm);
             let radius = (start[0] - center[0]).hypot(start[1] - center[1]);
             let ray = [chord[0] - center[0], chord[1] - center[1]];
@@ -133,7 +171,11 @@ fn points_of(motion: &Motion, facing: bool) -> Vec<[f64; 2]> {
 fn program(code: &str, part: &Part, words: [f64; 4]) -> String {
     let [depth, escape, u, w] = words;
     let first = if code == "G71" { "U" } else { "W" };
-    let start = if code == "G71" { "X80. Z2." } else { "X124. Z40." };
+    let start = if code == "G71" {
+        "X80. Z2."
+    } else {
+        "X124. Z40."
+    };
     format!(
         "O1\nG21 G97 G99 S900 M3\nG0 {start}\n{code} {first}{depth:.6} R{escape:.6}\n{code} P1 Q2 U{u:.6} W{w:.6} F0.2\n{}M30\n",
         part.blocks

@@ -1,7 +1,9 @@
-//! Lathe cycles over random profiles: whatever the profile, no motion comes closer to the part than the words of the cycle allow, none
-//! leaves the stock and the way back, and words that ask for too much end in a fault.
+//! Lathe cycles over random profiles: whatever the profile, no motion comes closer to the part than
+//! the words of the cycle allow, none leaves the stock and the way back, and words that ask for too
+//! much end in a fault.
 //!
-//! The part is here a polyline of its own: distances are those of points from chords, and what lies below is found by height.
+//! The part is here a polyline of its own: distances are those of points from chords, and what lies
+//! below is found by height.
 use feedwright_gcode::canon::{Canon, Motion, Shape};
 use feedwright_gcode::{Diagnostic, Reader, Settings};
 use proptest::prelude::*;
@@ -18,7 +20,8 @@ const BEFORE_MM: f64 = 2.0;
 struct Stroke {
     along: f64,
     up: f64,
-    /// 0 is a line; an arc with its centre to the left (above 0) or right (below), its radius this many chords.
+    /// 0 is a line; an arc with its centre to the left (above 0) or right (below), its radius this
+    /// many chords.
     bend: f64,
 }
 
@@ -26,10 +29,14 @@ fn strokes() -> impl Strategy<Value = Vec<Stroke>> {
     let length = prop_oneof![Just(0.0), Just(1.0), 0.01..4.0];
     let height = prop_oneof![Just(0.0), Just(-1.0), Just(1.0), -3.0..3.0];
     let bend = prop_oneof![3 => Just(0.0), 1 => 0.55..4.0, 1 => -4.0..-0.55];
-    prop::collection::vec((length, height, bend).prop_map(|(along, up, bend)| Stroke { along, up, bend }), 2..9)
+    prop::collection::vec(
+        (length, height, bend).prop_map(|(along, up, bend)| Stroke { along, up, bend }),
+        2..9,
+    )
 }
 
-/// A profile in coordinates along the passes and of their depth: the program, and the part as a polyline.
+/// A profile in coordinates along the passes and of their depth: the program, and the part as a
+/// polyline.
 struct Part {
     block: String,
     points: Vec<[f64; 2]>,
@@ -38,10 +45,17 @@ struct Part {
 /// `facing` turns the plane, which keeps the sense of arcs; turning reverses it.
 fn part(strokes: &[Stroke], facing: bool) -> Part {
     let word = |[a, d]: [f64; 2]| {
-        if facing { format!("X{:.6} Z{d:.6}", 30.0 - a) } else { format!("X{d:.6} Z{:.6}", -a) }
+        if facing {
+            format!("X{:.6} Z{d:.6}", 30.0 - a)
+        } else {
+            format!("X{d:.6} Z{:.6}", -a)
+        }
     };
     let mut at = [0.0, 20.0];
-    let mut part = Part { block: format!("G0 {}\n", word(at)), points: vec![at] };
+    let mut part = Part {
+        block: format!("G0 {}\n", word(at)),
+        points: vec![at],
+    };
     for stroke in strokes {
         // It must not end lower than it begins.
         let end = [at[0] + stroke.along, (at[1] + stroke.up).max(2.0)];
@@ -60,13 +74,21 @@ fn part(strokes: &[Stroke], facing: bool) -> Part {
             let is_left = stroke.bend > 0.0;
             let code = if is_left == facing { "G3" } else { "G2" };
             let to = [center[0] - at[0], center[1] - at[1]];
-            let [i, k] = if facing { [-to[0], to[1]] } else { [to[1], -to[0]] };
+            let [i, k] = if facing {
+                [-to[0], to[1]]
+            } else {
+                [to[1], -to[0]]
+            };
             part.block += &format!("{code} {} I{i:.6} K{k:.6}\n", word(end));
-            let [from, until] = [at, end].map(|point| (point[1] - center[1]).atan2(point[0] - center[0]));
+            let [from, until] =
+                [at, end].map(|point| (point[1] - center[1]).atan2(point[0] - center[0]));
             let turn = (until - from).sin().atan2((until - from).cos());
             part.points.extend((1..=CHORDS).map(|n| {
                 let angle = from + turn * f64::from(n) / f64::from(CHORDS);
-                [center[0] + radius * angle.cos(), center[1] + radius * angle.sin()]
+                [
+                    center[0] + radius * angle.cos(),
+                    center[1] + radius * angle.sin(),
+                ]
             }));
         }
         at = end;
@@ -83,8 +105,11 @@ impl Part {
             let along = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
             let ray = [point[0] - pair[0][0], point[1] - pair[0][1]];
             let square = along[0] * along[0] + along[1] * along[1];
-            let share =
-                if square > 0.0 { ((ray[0] * along[0] + ray[1] * along[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
+            let share = if square > 0.0 {
+                ((ray[0] * along[0] + ray[1] * along[1]) / square).clamp(0.0, 1.0)
+            } else {
+                0.0
+            };
             (ray[0] - share * along[0]).hypot(ray[1] - share * along[1])
         };
         self.points.windows(2).map(to).fold(f64::INFINITY, f64::min)
@@ -125,13 +150,20 @@ fn points_of(motion: &Motion, facing: bool) -> Vec<[f64; 2]> {
     };
     let between = |share: f64| [0, 1].map(|n| start[n] + share * (end[n] - start[n]));
     let at = |share: f64| {
-        let Some(center) = center else { return between(share) };
-        // No arc of a cycle goes round more than half a circle, so the point of the chord shows the angle, but in the middle of a half.
+        let Some(center) = center else {
+            return between(share);
+        };
+        // No arc of a cycle goes round more than half a circle, so the point of the chord shows the
+        // angle, but in the middle of a half.
         let radius = (start[0] - center[0]).hypot(start[1] - center[1]);
         let chord = between(share);
         let ray = [chord[0] - center[0], chord[1] - center[1]];
         let length = ray[0].hypot(ray[1]);
-        if length < 1e-3 * radius { start } else { [0, 1].map(|n| center[n] + ray[n] * radius / length) }
+        if length < 1e-3 * radius {
+            start
+        } else {
+            [0, 1].map(|n| center[n] + ray[n] * radius / length)
+        }
     };
     (0..=16).map(|n| at(f64::from(n) / 16.0)).collect()
 }
@@ -167,7 +199,8 @@ proptest! {
         }
         let back_mm = part.points.windows(2).map(|pair| pair[0][0] - pair[1][0]).fold(0.0, f64::max);
         if back_mm > 1e-9 {
-            // An arc that turns back by next to nothing counts as straight up; G70 follows a profile that only X runs along.
+            // An arc that turns back by next to nothing counts as straight up; G70 follows a
+            // profile that only X runs along.
             prop_assert!(back_mm < SLACK_MM || code == "G70", "{text}");
             return Ok(());
         }
@@ -180,7 +213,8 @@ proptest! {
         for motion in &motions[reach + 1..] {
             for point in points_of(motion, facing) {
                 let away = part.away(point);
-                // The way to the profile is straight, as LinuxCNC's, and may cut the distance to its first point short.
+                // The way to the profile is straight, as LinuxCNC's, and may cut the distance to
+                // its first point short.
                 prop_assert!(away >= left - SLACK_MM || point[0] < left, "{away} mm from the part at {point:?}\n{text}\n{motion:?}");
                 prop_assert!(!part.is_inside(point), "inside at {point:?}\n{text}\n{motion:?}");
                 prop_assert!(point[1] <= TOP_MM + back + SLACK_MM, "above the stock at {point:?}\n{text}");
@@ -219,5 +253,9 @@ fn a_large_distance_to_many_details_is_given_up() {
     let text = "G21 G18 G8 F100\nG0 X300 Z5\no1 sub\nG0 X10\n#1=0\no2 while [#1 LT 20000]\n\
                 G1 W-0.002 U[0.001*[#1 MOD 7 - 3]]\n#1=[#1+1]\no2 endwhile\nG1 X300\no1 endsub\nG70 Q1 D90 E90\nM2\n";
     let (motions, faults) = read(text);
-    assert!(motions.len() < 100_000 && (faults.is_empty() || faults[0].hint.is_some()), "{} {faults:?}", motions.len());
+    assert!(
+        motions.len() < 100_000 && (faults.is_empty() || faults[0].hint.is_some()),
+        "{} {faults:?}",
+        motions.len()
+    );
 }

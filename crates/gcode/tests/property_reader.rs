@@ -1,4 +1,5 @@
-//! The reader on printed numbers, on garbage, and on every program of the corpus: it answers, and its answers lie inside the file.
+//! The reader on printed numbers, on garbage, and on every program of the corpus: it answers, and
+//! its answers lie inside the file.
 use std::path::{Path, PathBuf};
 
 use feedwright_gcode::canon::Canon;
@@ -7,7 +8,11 @@ use proptest::prelude::*;
 
 /// Reads all of `text`; returns the steps and the faults.
 fn read(text: &[u8]) -> (Vec<Canon>, Vec<Diagnostic>) {
-    let settings = Settings { max_idle_lines: 10_000, max_motions: 100_000, ..Settings::default() };
+    let settings = Settings {
+        max_idle_lines: 10_000,
+        max_motions: 100_000,
+        ..Settings::default()
+    };
     let Ok(reader) = Reader::from_text("test", text, settings) else {
         return (Vec::new(), Vec::new());
     };
@@ -35,7 +40,10 @@ fn assert_inside(text: &[u8], faults: &[Diagnostic]) {
         miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::unicode_nocolor())
             .render_report(&mut shown, fault)
             .unwrap();
-        assert!(shown.contains(&fault.message[..fault.message.len().min(5)]), "{shown}");
+        assert!(
+            shown.contains(&fault.message[..fault.message.len().min(5)]),
+            "{shown}"
+        );
     }
 }
 
@@ -45,15 +53,30 @@ fn a_line() -> impl Strategy<Value = String> {
         (-500i32..500).prop_map(|n| n.to_string()),
         (-90_000i32..90_000).prop_map(|n| format!("{:.2}", f64::from(n) * 1e-3)),
         (-9.0..9.0f64).prop_map(|x| x.to_string()),
-        prop::sample::select(vec!["-.5", "+7.", "1 2", "0", "-0.0", "00012.5", "1000000.5"]).prop_map(str::to_owned),
+        prop::sample::select(vec![
+            "-.5",
+            "+7.",
+            "1 2",
+            "0",
+            "-0.0",
+            "00012.5",
+            "1000000.5"
+        ])
+        .prop_map(str::to_owned),
     ];
     let code = prop::sample::select(vec!["", "G1 ", "G0", "g01", "G1", "N7 G1", "n8", " "]);
-    let letters = prop::sample::select(vec!["X", "XY", "xyz", "E", "XYE", "ZF", "XF", "YX", "XX", "XA", "UW", "F", ""]);
-    let plain = (code, letters, prop::collection::vec(number, 3)).prop_map(|(code, letters, numbers)| {
-        let words: Vec<String> =
-            letters.chars().zip(&numbers).map(|(letter, number)| format!("{letter}{number}")).collect();
-        format!("{code}{}", words.join(" "))
-    });
+    let letters = prop::sample::select(vec![
+        "X", "XY", "xyz", "E", "XYE", "ZF", "XF", "YX", "XX", "XA", "UW", "F", "",
+    ]);
+    let plain =
+        (code, letters, prop::collection::vec(number, 3)).prop_map(|(code, letters, numbers)| {
+            let words: Vec<String> = letters
+                .chars()
+                .zip(&numbers)
+                .map(|(letter, number)| format!("{letter}{number}"))
+                .collect();
+            format!("{code}{}", words.join(" "))
+        });
     let others = vec![
         "G90",
         "G91",
@@ -143,7 +166,10 @@ proptest! {
 }
 
 fn files_below(folder: &Path, files: &mut Vec<PathBuf>) {
-    let mut entries: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut entries: Vec<PathBuf> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
     entries.sort();
     for path in entries {
         if path.is_dir() {
@@ -158,18 +184,28 @@ fn files_below(folder: &Path, files: &mut Vec<PathBuf>) {
 fn every_file_of_the_corpus_is_answered() {
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus");
     if !corpus.is_dir() {
-        eprintln!("SKIPPED: no corpus of foreign programs at {}", corpus.display());
+        eprintln!(
+            "SKIPPED: no corpus of foreign programs at {}",
+            corpus.display()
+        );
         return;
     }
     let mut files = Vec::new();
     files_below(&corpus, &mut files);
     assert!(!files.is_empty());
     for file in files {
-        let settings = Settings { max_idle_lines: 100_000, max_motions: 1_000_000, ..Settings::default() };
+        let settings = Settings {
+            max_idle_lines: 100_000,
+            max_motions: 1_000_000,
+            ..Settings::default()
+        };
         let Ok(reader) = Reader::open(&file, settings) else {
             continue;
         };
         let faults: Vec<Diagnostic> = reader.filter_map(Result::err).collect();
-        assert_inside(&std::fs::read(&file).unwrap(), &faults[..faults.len().min(5)]);
+        assert_inside(
+            &std::fs::read(&file).unwrap(),
+            &faults[..faults.len().min(5)],
+        );
     }
 }

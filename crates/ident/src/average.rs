@@ -2,17 +2,24 @@
 
 /// Quadratic mean; not a number of nothing.
 pub fn quadratic_mean(values: impl IntoIterator<Item = f64>) -> f64 {
-    let (sum, count) = values.into_iter().fold((0.0, 0.0), |(sum, count), value| (sum + value * value, count + 1.0));
+    let (sum, count) = values.into_iter().fold((0.0, 0.0), |(sum, count), value| {
+        (sum + value * value, count + 1.0)
+    });
     f64::sqrt(sum / count)
 }
 
 /// The same; zero of nothing.
 pub(crate) fn rms(values: impl IntoIterator<Item = f64>) -> f64 {
     let mut values = values.into_iter().peekable();
-    if values.peek().is_some() { quadratic_mean(values) } else { 0.0 }
+    if values.peek().is_some() {
+        quadratic_mean(values)
+    } else {
+        0.0
+    }
 }
 
-/// The one in the middle, of an even number the higher of the two; zero of nothing. Reorders the values.
+/// The one in the middle, of an even number the higher of the two; zero of nothing. Reorders the
+/// values.
 pub(crate) fn middle_of(values: &mut [f64]) -> f64 {
     if values.is_empty() {
         return 0.0;
@@ -25,10 +32,15 @@ pub(crate) fn middle_of(values: &mut [f64]) -> f64 {
 pub fn median_and_spread(values: impl IntoIterator<Item = f64>) -> (f64, [f64; 2]) {
     let mut values: Vec<f64> = values.into_iter().collect();
     values.sort_by(f64::total_cmp);
-    let (Some(&low), Some(&high)) = (values.first(), values.last()) else { return (f64::NAN, [f64::NAN; 2]) };
+    let (Some(&low), Some(&high)) = (values.first(), values.last()) else {
+        return (f64::NAN, [f64::NAN; 2]);
+    };
     let middle = values.len() / 2;
-    let median =
-        if values.len().is_multiple_of(2) { 0.5 * (values[middle - 1] + values[middle]) } else { values[middle] };
+    let median = if values.len().is_multiple_of(2) {
+        0.5 * (values[middle - 1] + values[middle])
+    } else {
+        values[middle]
+    };
     (median, [low, high])
 }
 

@@ -1,4 +1,5 @@
-//! A program that shows how the axes of a machine behave: what to cut, in the air, while a log is recorded.
+//! A program that shows how the axes of a machine behave: what to cut, in the air, while a log is
+//! recorded.
 //!
 //! ```text
 //! each axis alone     standstill; creeping there and back; reversals at several speeds; short strokes at the full acceleration
@@ -7,9 +8,10 @@
 //!
 //! A log that has some of this already needs the rest alone: [`next_excitation`] writes that.
 //!
-//! Creeping shows friction and its asymmetry, where inertia counts for nothing; strokes and small circles show the loops and the
-//! inertia, where friction counts for little; standstills show noise and offset. All moves are relative to where the machine stands,
-//! and stay within half of the travel on each side of it.
+//! Creeping shows friction and its asymmetry, where inertia counts for nothing; strokes and small
+//! circles show the loops and the inertia, where friction counts for little; standstills show noise
+//! and offset. All moves are relative to where the machine stands, and stay within half of the
+//! travel on each side of it.
 
 pub(crate) mod recorded;
 
@@ -28,7 +30,9 @@ pub struct ExciteOptions {
 
 impl Default for ExciteOptions {
     fn default() -> Self {
-        Self { travel_mm: TRAVEL_MM }
+        Self {
+            travel_mm: TRAVEL_MM,
+        }
     }
 }
 
@@ -59,11 +63,15 @@ impl MotionPart {
     /// What it is for.
     fn purpose(self) -> &'static str {
         match self {
-            Self::Creeping => "creeping there and back, for friction, its asymmetry, presliding and backlash",
+            Self::Creeping => {
+                "creeping there and back, for friction, its asymmetry, presliding and backlash"
+            }
             Self::Reversals => {
                 "reversals at constant speeds, for Coulomb and viscous friction, Kp and velocity feedforward"
             }
-            Self::Strokes => "short strokes and pulses, for inertia, delays, integral and acceleration feedforward",
+            Self::Strokes => {
+                "short strokes and pulses, for inertia, delays, integral and acceleration feedforward"
+            }
         }
     }
 }
@@ -104,7 +112,9 @@ pub struct ExciteProgram {
 #[derive(Debug, Clone, PartialEq, Error, Diagnostic)]
 pub enum ExciteError {
     /// The travel is out of range.
-    #[error("a travel of {travel_mm} mm is asked for; {MIN_TRAVEL_MM} to {MAX_TRAVEL_MM} mm are possible")]
+    #[error(
+        "a travel of {travel_mm} mm is asked for; {MIN_TRAVEL_MM} to {MAX_TRAVEL_MM} mm are possible"
+    )]
     #[diagnostic(help("free travel of 20 mm about where the machine stands is enough"))]
     Travel {
         /// What was asked for, mm.
@@ -112,22 +122,33 @@ pub enum ExciteError {
     },
 }
 
-/// Travel where nothing else is said, mm: machines of any size have it, and rapid axes come to a tenth of their speed in it.
+/// Travel where nothing else is said, mm: machines of any size have it, and rapid axes come to a
+/// tenth of their speed in it.
 const TRAVEL_MM: f64 = 20.0;
 /// Least travel, mm: circles are a quarter of it at the most.
 const MIN_TRAVEL_MM: f64 = 2.0;
 /// Most travel, mm.
 const MAX_TRAVEL_MM: f64 = 1000.0;
-/// Part of the highest feed that is used: a control slows down at its limit, and what it then does is no longer what is programmed.
+/// Part of the highest feed that is used: a control slows down at its limit, and what it then does
+/// is no longer what is programmed.
 const FEED_PART: f64 = 0.8;
-/// Speeds of creeping, mm/s, and how far each way, mm: below and above the speed at which friction has its least.
+/// Speeds of creeping, mm/s, and how far each way, mm: below and above the speed at which friction
+/// has its least.
 const CREEPS: [(f64, f64); 3] = [(0.2, 0.08), (1.0, 0.5), (4.0, 2.0)];
 /// Speeds of reversals, parts of the fastest.
 const SPEEDS: [f64; 4] = [0.1, 0.3, 0.6, 1.0];
 /// Short strokes: length each way, mm, and how often.
 const STROKES: [(f64, u32); 4] = [(1.0, 1), (0.4, 2), (0.15, 3), (0.05, 4)];
 /// Radii of circles, mm, and turns of each; larger ones first.
-const CIRCLES: [(f64, u32); 7] = [(5.0, 1), (2.0, 1), (0.8, 2), (0.3, 3), (0.12, 4), (0.05, 5), (0.02, 6)];
+const CIRCLES: [(f64, u32); 7] = [
+    (5.0, 1),
+    (2.0, 1),
+    (0.8, 2),
+    (0.3, 3),
+    (0.12, 4),
+    (0.05, 5),
+    (0.02, 6),
+];
 /// Part of the travel that a circle reaches over at the most.
 const CIRCLE_PART: f64 = 0.5;
 /// Standstill between the parts, s.
@@ -137,7 +158,10 @@ const STANDSTILL_S: f64 = 0.3;
 ///
 /// # Errors
 /// A travel out of range.
-pub fn excitation_program(machine: &Machine, options: ExciteOptions) -> Result<ExciteProgram, ExciteError> {
+pub fn excitation_program(
+    machine: &Machine,
+    options: ExciteOptions,
+) -> Result<ExciteProgram, ExciteError> {
     let travel_mm = options.travel_mm;
     if !(MIN_TRAVEL_MM..=MAX_TRAVEL_MM).contains(&travel_mm) {
         return Err(ExciteError::Travel { travel_mm });
@@ -151,44 +175,82 @@ pub fn excitation_program(machine: &Machine, options: ExciteOptions) -> Result<E
         parts: MotionPart::ALL.to_vec(),
     };
     let axes: Vec<AxisExcitation> = (0..machine.axis_count()).map(motion).collect();
-    Ok(program(&axes, limits.normal_accel_mm_s2, |takes_s, max_feed_mm_s| {
-        head(machine, travel_mm, takes_s, max_feed_mm_s)
-    }))
+    Ok(program(
+        &axes,
+        limits.normal_accel_mm_s2,
+        |takes_s, max_feed_mm_s| head(machine, travel_mm, takes_s, max_feed_mm_s),
+    ))
 }
 
-/// The program that lets axes make the motion that a log lacks. Where each of them needs every kind of motion it is the whole excitation.
-/// None where nothing is needed.
+/// The program that lets axes make the motion that a log lacks. Where each of them needs every kind
+/// of motion it is the whole excitation. None where nothing is needed.
 pub fn next_excitation(axes: &[AxisExcitation]) -> Option<ExciteProgram> {
-    let axes: Vec<AxisExcitation> = axes.iter().filter(|axis| !axis.parts.is_empty()).cloned().collect();
-    let accel_mm_s2 = axes.iter().map(|axis| axis.accel_mm_s2).fold(f64::INFINITY, f64::min);
-    (!axes.is_empty()).then(|| program(&axes, accel_mm_s2, |takes_s, max_mm_s| next_head(&axes, takes_s, max_mm_s)))
+    let axes: Vec<AxisExcitation> = axes
+        .iter()
+        .filter(|axis| !axis.parts.is_empty())
+        .cloned()
+        .collect();
+    let accel_mm_s2 = axes
+        .iter()
+        .map(|axis| axis.accel_mm_s2)
+        .fold(f64::INFINITY, f64::min);
+    (!axes.is_empty()).then(|| {
+        program(&axes, accel_mm_s2, |takes_s, max_mm_s| {
+            next_head(&axes, takes_s, max_mm_s)
+        })
+    })
 }
 
-/// Each axis alone, and x and y together where both make all kinds of motion. The head is made of the time that it takes and of the highest
-/// feed, s and mm/s.
-fn program(axes: &[AxisExcitation], normal_accel_mm_s2: f64, head: impl Fn(f64, f64) -> String) -> ExciteProgram {
+/// Each axis alone, and x and y together where both make all kinds of motion. The head is made of
+/// the time that it takes and of the highest feed, s and mm/s.
+fn program(
+    axes: &[AxisExcitation],
+    normal_accel_mm_s2: f64,
+    head: impl Fn(f64, f64) -> String,
+) -> ExciteProgram {
     let mut moves = MoveWriter {
         text: String::new(),
         takes_s: 0.0,
         max_feed_mm_s: 0.0,
-        accel_mm_s2: axes.iter().map(|axis| axis.accel_mm_s2).fold(f64::INFINITY, f64::min),
+        accel_mm_s2: axes
+            .iter()
+            .map(|axis| axis.accel_mm_s2)
+            .fold(f64::INFINITY, f64::min),
         normal_accel_mm_s2,
     };
     axes.iter().for_each(|axis| moves.axis_alone(axis));
-    let plane: Vec<&AxisExcitation> =
-        axes.iter().filter(|axis| axis.axis < 2 && axis.parts.len() == MotionPart::ALL.len()).collect();
+    let plane: Vec<&AxisExcitation> = axes
+        .iter()
+        .filter(|axis| axis.axis < 2 && axis.parts.len() == MotionPart::ALL.len())
+        .collect();
     if let [x, y] = plane.as_slice() {
-        moves.two_together(x.fastest_mm_s.min(y.fastest_mm_s), x.travel_mm().min(y.travel_mm()));
+        moves.two_together(
+            x.fastest_mm_s.min(y.fastest_mm_s),
+            x.travel_mm().min(y.travel_mm()),
+        );
     }
-    let MoveWriter { text: body, takes_s, max_feed_mm_s, .. } = moves;
+    let MoveWriter {
+        text: body,
+        takes_s,
+        max_feed_mm_s,
+        ..
+    } = moves;
     let head = head(takes_s, max_feed_mm_s);
     let text = format!("{head}G21 G17 G40 G49 G80 G91 G91.1 G94 G61\n{body}G90\nM2\n");
-    ExciteProgram { text, takes_s, max_feed_mm_s }
+    ExciteProgram {
+        text,
+        takes_s,
+        max_feed_mm_s,
+    }
 }
 
 /// The highest speed that is programmed for an axis, mm/s.
 fn fastest_mm_s(machine: &Machine, axis: usize) -> f64 {
-    let own_mm_s = machine.axes.get(axis).and_then(|axis| axis.max_velocity_mm_s).unwrap_or(f64::INFINITY);
+    let own_mm_s = machine
+        .axes
+        .get(axis)
+        .and_then(|axis| axis.max_velocity_mm_s)
+        .unwrap_or(f64::INFINITY);
     FEED_PART * machine.limits.max_feed_mm_s.min(own_mm_s)
 }
 
@@ -198,7 +260,10 @@ fn head(machine: &Machine, travel_mm: f64, takes_s: f64, max_feed_mm_s: f64) -> 
     let half_mm = to_four_digits(0.5 * travel_mm);
     let (takes_s, feed) = (takes_s.round(), to_four_digits(max_feed_mm_s));
     let servo_s = machine.period.servo_s;
-    let columns: Vec<String> = names.iter().map(|name| format!("{name}.cmd {name}.act")).collect();
+    let columns: Vec<String> = names
+        .iter()
+        .map(|name| format!("{name}.cmd {name}.act"))
+        .collect();
     let mut lines = vec![
         format!("Moves that show how the axes of {} behave; written by feedwright excite.", machine.name),
         format!("About {takes_s} s, at most {feed} mm/s, within {half_mm} mm on each side of where the machine stands."),
@@ -231,12 +296,19 @@ fn head(machine: &Machine, travel_mm: f64, takes_s: f64, max_feed_mm_s: f64) -> 
 
 /// The same for the motion that a log lacks.
 fn next_head(axes: &[AxisExcitation], takes_s: f64, max_feed_mm_s: f64) -> String {
-    let each = |of: &dyn Fn(&AxisExcitation) -> String| axes.iter().map(of).collect::<Vec<_>>().join(", ");
+    let each =
+        |of: &dyn Fn(&AxisExcitation) -> String| axes.iter().map(of).collect::<Vec<_>>().join(", ");
     let name = |axis: &AxisExcitation| AXIS_NAMES[axis.axis];
     let middle_mm = |axis: &AxisExcitation| rounded(0.5 * (axis.range_mm[0] + axis.range_mm[1]));
     let start = each(&|axis| format!("{} = {} mm", name(axis), middle_mm(axis)));
     // Rounded down: it is not to exceed what is allowed.
-    let within = each(&|axis| format!("{:.3} mm in {}", (500.0 * axis.travel_mm()).floor() * 1e-3, name(axis)));
+    let within = each(&|axis| {
+        format!(
+            "{:.3} mm in {}",
+            (500.0 * axis.travel_mm()).floor() * 1e-3,
+            name(axis)
+        )
+    });
     comments(&[
         "Motion that a log lacks; written by feedwright identify --excite-next.".to_owned(),
         format!("About {} s, at most {} mm/s.", takes_s.round(), to_four_digits(max_feed_mm_s)),
@@ -253,7 +325,10 @@ fn next_head(axes: &[AxisExcitation], takes_s: f64, max_feed_mm_s: f64) -> Strin
 }
 
 fn comments(lines: &[String]) -> String {
-    lines.iter().map(|line| format!("; {line}").trim_end().to_owned() + "\n").collect()
+    lines
+        .iter()
+        .map(|line| format!("; {line}").trim_end().to_owned() + "\n")
+        .collect()
 }
 
 /// Writes moves, and adds up how long they take.
@@ -283,8 +358,11 @@ impl MoveWriter {
         self.max_feed_mm_s = self.max_feed_mm_s.max(feed_mm_s);
         let accel = self.accel_mm_s2;
         let reaches = feed_mm_s * feed_mm_s / accel <= length_mm;
-        self.takes_s +=
-            if reaches { length_mm / feed_mm_s + feed_mm_s / accel } else { 2.0 * (length_mm / accel).sqrt() };
+        self.takes_s += if reaches {
+            length_mm / feed_mm_s + feed_mm_s / accel
+        } else {
+            2.0 * (length_mm / accel).sqrt()
+        };
     }
 
     /// To one side, to the other, and back.
@@ -316,14 +394,20 @@ impl MoveWriter {
 
     fn creeping(&mut self, motion: &AxisExcitation) {
         for (creep_mm_s, way_mm) in CREEPS {
-            self.there_and_back(motion.axis, way_mm.min(0.5 * motion.travel_mm()), creep_mm_s.min(motion.fastest_mm_s));
+            self.there_and_back(
+                motion.axis,
+                way_mm.min(0.5 * motion.travel_mm()),
+                creep_mm_s.min(motion.fastest_mm_s),
+            );
         }
     }
 
     fn reversals(&mut self, motion: &AxisExcitation) {
         let travel_mm = motion.travel_mm();
         // What can be reached within the travel: half of it to speed up, half to slow down.
-        let reached_mm_s = motion.fastest_mm_s.min((self.accel_mm_s2 * travel_mm).sqrt());
+        let reached_mm_s = motion
+            .fastest_mm_s
+            .min((self.accel_mm_s2 * travel_mm).sqrt());
         for part in SPEEDS {
             let feed_mm_s = part * reached_mm_s;
             // Ways of a quarter of a second at that speed, and what it takes to come to it.
@@ -349,7 +433,11 @@ impl MoveWriter {
             // Both senses, so that friction meets each quadrant from both sides.
             let code = if number % 2 == 0 { "G2" } else { "G3" };
             for _ in 0..turns {
-                self.line(format_args!("{code} X0 Y0 I-{} J0 F{}", rounded(radius_mm), minutes(feed_mm_s)));
+                self.line(format_args!(
+                    "{code} X0 Y0 I-{} J0 F{}",
+                    rounded(radius_mm),
+                    minutes(feed_mm_s)
+                ));
                 self.takes_s += std::f64::consts::TAU * radius_mm / feed_mm_s;
             }
             self.max_feed_mm_s = self.max_feed_mm_s.max(feed_mm_s);
@@ -358,9 +446,20 @@ impl MoveWriter {
         self.rest();
         let way_mm = rounded(0.25 * travel_mm);
         let feed_mm_s = fastest_mm_s.min((self.accel_mm_s2 * way_mm).sqrt());
-        for [x, y] in [[1.0, 1.0], [-2.0, -2.0], [1.0, 1.0], [1.0, -1.0], [-2.0, 2.0], [1.0, -1.0]] {
+        for [x, y] in [
+            [1.0, 1.0],
+            [-2.0, -2.0],
+            [1.0, 1.0],
+            [1.0, -1.0],
+            [-2.0, 2.0],
+            [1.0, -1.0],
+        ] {
             let length_mm = way_mm * libm::hypot(x, y);
-            self.straight(format_args!("X{} Y{}", x * way_mm, y * way_mm), length_mm, feed_mm_s);
+            self.straight(
+                format_args!("X{} Y{}", x * way_mm, y * way_mm),
+                length_mm,
+                feed_mm_s,
+            );
         }
         self.rest();
     }

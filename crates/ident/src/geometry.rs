@@ -1,7 +1,8 @@
-//! Geometry of a machine from measurements: ball bar, laser or scale, compensation file, test part, grid encoder.
+//! Geometry of a machine from measurements: ball bar, laser or scale, compensation file, test part,
+//! grid encoder.
 //!
-//! All of them are deviations that are linear in the errors of the geometry ([`feedwright_sim::Observation`]). One weighted least
-//! squares fit takes all files together.
+//! All of them are deviations that are linear in the errors of the geometry
+//! ([`feedwright_sim::Observation`]). One weighted least squares fit takes all files together.
 //!
 //! | File | What |
 //! |---|---|

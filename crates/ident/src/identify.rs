@@ -1,9 +1,10 @@
 //! Identification: from what a machine showed to the trained weights of an identifier.
 //!
-//! What a machine showed is a [`recording`]. A simulated machine cuts an identification excitation for it: laps of circles at
-//! random feeds, two thirds of them with random offsets of the command from the path, so that the data tell the effect of the
-//! feedrate from that of the path. [`contour`] trains the paper's network on it. [`axis_parameters`] finds what an axis is, inertia and friction, where its drive's settings are known.
-//! None of them sees the machine.
+//! What a machine showed is a [`recording`]. A simulated machine cuts an identification excitation
+//! for it: laps of circles at random feeds, two thirds of them with random offsets of the command
+//! from the path, so that the data tell the effect of the feedrate from that of the path.
+//! [`contour`] trains the paper's network on it. [`axis_parameters`] finds what an axis is, inertia
+//! and friction, where its drive's settings are known. None of them sees the machine.
 
 pub(crate) mod recording;
 mod excitation;
@@ -21,15 +22,18 @@ use serde::Serialize;
 
 use recording::Recording;
 
-/// The generator behind everything random here: the same seed gives the same bits on every platform.
+/// The generator behind everything random here: the same seed gives the same bits on every
+/// platform.
 pub type Rng = Xoshiro256PlusPlus;
 
-/// Laps that parameters of an axis are found from: six of each radius, a third of them without offsets. On workshop the standard errors
-/// are then below 0.1 % of the inertia and 2 % of the friction; all 60 would take more than twice the time.
+/// Laps that parameters of an axis are found from: six of each radius, a third of them without
+/// offsets. On workshop the standard errors are then below 0.1 % of the inertia and 2 % of the
+/// friction; all 60 would take more than twice the time.
 const AXIS_PARAMETER_LAPS: u32 = 24;
 
-/// Time between random offsets of the command for the parameters of an axis, s, and time in which the command goes to one.
-/// A product, since the result of rounding to servo periods must not change: 6 and 1 times 3 ms.
+/// Time between random offsets of the command for the parameters of an axis, s, and time in which
+/// the command goes to one. A product, since the result of rounding to servo periods must not
+/// change: 6 and 1 times 3 ms.
 const RENEWAL_S: f64 = 6.0 * 0.003;
 const RAMP_S: f64 = 0.003;
 
@@ -60,7 +64,8 @@ impl Excitation {
         f64::from(machine.period.servo_periods(self.feed_period_s)) * machine.period.servo_s
     }
 
-    /// What a machine shows that cuts it, and the generator as it is then: a training that draws goes on with it.
+    /// What a machine shows that cuts it, and the generator as it is then: a training that draws
+    /// goes on with it.
     pub fn record<const N: usize>(&self, machine: &Machine, seed: u64) -> (Recording<N>, Rng) {
         let mut rng = Rng::seed_from_u64(seed);
         (excitation::record(machine, self, &mut rng), rng)
@@ -85,14 +90,19 @@ impl Excitation {
         }
     }
 
-    /// Circles from tight to wide, none of them a test contour: for programs of any shape. All in one sense, as the
-    /// paper's: with both, the derivative that the inversion takes for its gain comes out four times smaller.
+    /// Circles from tight to wide, none of them a test contour: for programs of any shape. All in
+    /// one sense, as the paper's: with both, the derivative that the inversion takes for its gain
+    /// comes out four times smaller.
     pub fn general() -> Self {
-        Self { radii_mm: vec![3.0, 6.0, 12.0, 24.0], ..Self::paper() }
+        Self {
+            radii_mm: vec![3.0, 6.0, 12.0, 24.0],
+            ..Self::paper()
+        }
     }
 
-    /// For the parameters of an axis, whose motion does not depend on the path: circles in both senses, over a wider range of
-    /// feeds, with a knot in every servo period, since the model of an axis is stepped through all of them.
+    /// For the parameters of an axis, whose motion does not depend on the path: circles in both
+    /// senses, over a wider range of feeds, with a knot in every servo period, since the model of
+    /// an axis is stepped through all of them.
     pub fn axis_parameters(machine: &Machine) -> Self {
         let servo_periods = |time_s: f64| (time_s / machine.period.servo_s).round().max(1.0) as u32;
         Self {
@@ -106,8 +116,8 @@ impl Excitation {
         }
     }
 
-    /// For the statistics of the axes of a machine: a minute at its servo period, at all speeds from slow ones, at which cogging moves the
-    /// axis, without offsets.
+    /// For the statistics of the axes of a machine: a minute at its servo period, at all speeds
+    /// from slow ones, at which cogging moves the axis, without offsets.
     pub fn statistics(machine: &Machine) -> Self {
         Self {
             radii_mm: vec![2.0, 5.0, 10.0],

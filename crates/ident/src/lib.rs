@@ -80,7 +80,8 @@ mod geometry;
 pub use average::{median_and_spread, quadratic_mean};
 pub use excite::recorded::recorded_log;
 pub use excite::{
-    AxisExcitation, ExciteError, ExciteOptions, ExciteProgram, MotionPart, excitation_program, next_excitation,
+    AxisExcitation, ExciteError, ExciteOptions, ExciteProgram, MotionPart, excitation_program,
+    next_excitation,
 };
 pub use geometry::circularity::Circularity;
 pub use geometry::comp_file::{comp_file, geometry_of_tables, sampled_table};
@@ -91,7 +92,9 @@ pub use geometry::readings::KnownScrew;
 pub use geometry::simulated::SimulatedBallBar;
 pub use geometry::text::MeasurementError;
 pub use identify::axes::{AxisRecordings, TrainedAxes, train_axes};
-pub use identify::axis_parameters::{AxisEstimate, AxisParameters, DriveSettings, NotIdentified, identify_axis};
+pub use identify::axis_parameters::{
+    AxisEstimate, AxisParameters, DriveSettings, NotIdentified, identify_axis,
+};
 pub use identify::axis_statistics::axis_statistics;
 pub use identify::contour::{TrainedContour, Training, train_contour};
 pub use identify::grey_box::axis_facts::AxisFacts;

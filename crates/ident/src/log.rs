@@ -1,11 +1,13 @@
-//! Logs of real machines: commanded and actual positions, recorded at an even clock, from whatever file there is.
+//! Logs of real machines: commanded and actual positions, recorded at an even clock, from whatever
+//! file there is.
 //!
 //! ```text
 //! file -> format by content -> table of columns -> which column is what -> clock, units -> screening -> Log
 //! ```
 //!
-//! Nothing is taken for granted: what was guessed is a [`LogFinding`], and a log of which a servo model cannot be made is refused
-//! with its reason. Formats are recognised by content, never by the name of the file.
+//! Nothing is taken for granted: what was guessed is a [`LogFinding`], and a log of which a servo
+//! model cannot be made is refused with its reason. Formats are recognised by content, never by the
+//! name of the file.
 
 pub(crate) mod error;
 pub(crate) mod units;
@@ -45,11 +47,13 @@ pub struct Log {
     pub format: LogFormat,
     /// Time between two samples, s.
     pub sample_time_s: f64,
-    /// Even stretches: where the record has a gap, a new one begins. Indices are into the vectors of the axes.
+    /// Even stretches: where the record has a gap, a new one begins. Indices are into the vectors
+    /// of the axes.
     pub stretches: Vec<Range<usize>>,
     /// Time of every sample, s, as recorded; zero at the first where the file counts samples only.
     pub time_s: Vec<f64>,
-    /// Axes in the order of the file, at most [`MAX_AXES`]: those that have command and actual position, and move.
+    /// Axes in the order of the file, at most [`MAX_AXES`]: those that have command and actual
+    /// position, and move.
     pub axes: Vec<LogAxis>,
     /// Axes that have both and whose command stands still.
     pub still: Vec<LogAxis>,
@@ -116,13 +120,20 @@ impl std::fmt::Display for LogFormat {
 }
 
 impl LogFormat {
-    /// What to record with the scope of a control; none of a format whose columns may have any names.
+    /// What to record with the scope of a control; none of a format whose columns may have any
+    /// names.
     const fn record(self) -> Option<&'static str> {
         match self {
-            Self::TncScope => Some("record 's nominal' and 's actual', or 's actual' and 's dif', of each axis"),
+            Self::TncScope => {
+                Some("record 's nominal' and 's actual', or 's actual' and 's dif', of each axis")
+            }
             Self::ServoGuide => Some("record POSF and ERR of each axis: their sum is the command"),
             Self::TwinCatScope => Some("add SetPos and ActPos of each axis to the scope"),
-            Self::Halsampler | Self::Halscope | Self::Matlab | Self::SinumerikEdge | Self::TextTable => None,
+            Self::Halsampler
+            | Self::Halscope
+            | Self::Matlab
+            | Self::SinumerikEdge
+            | Self::TextTable => None,
         }
     }
 }
@@ -183,7 +194,11 @@ impl Log {
     ///
     /// # Errors
     /// As [`Log::read`]; and where it is ended.
-    pub fn read_watched(path: &Path, columns: &Columns, watch: &dyn Watch) -> Result<Self, LogError> {
+    pub fn read_watched(
+        path: &Path,
+        columns: &Columns,
+        watch: &dyn Watch,
+    ) -> Result<Self, LogError> {
         let unreadable = |source| LogError::unreadable(path, source);
         if input::is_standard_input(path) {
             let bytes = input::standard_input().map_err(unreadable)?;
@@ -192,7 +207,9 @@ impl Log {
         let file = File::open(path).map_err(unreadable)?;
         let found = file.metadata().map_err(unreadable)?;
         if found.is_dir() {
-            return Err(unreadable(std::io::Error::from(std::io::ErrorKind::IsADirectory)));
+            return Err(unreadable(std::io::Error::from(
+                std::io::ErrorKind::IsADirectory,
+            )));
         }
         Self::from_reader(path, file, found.len(), columns, watch)
     }
@@ -226,7 +243,10 @@ fn read_table(
     watch: &dyn Watch,
 ) -> Result<LogTable, LogError> {
     let mut head = Vec::with_capacity(HEAD_BYTES);
-    let beginning = reader.by_ref().take(HEAD_BYTES as u64).read_to_end(&mut head);
+    let beginning = reader
+        .by_ref()
+        .take(HEAD_BYTES as u64)
+        .read_to_end(&mut head);
     beginning.map_err(|source| LogError::unreadable(path, source))?;
     let mut whole = Cursor::new(&head).chain(reader);
     let mut steps = StageSteps::begin(watch, &format!("reading {}", path.display()));
@@ -236,21 +256,45 @@ fn read_table(
     if sinumerik::is_json(&head) {
         return sinumerik::read(path, &mut whole, size_bytes, columns, &mut steps, watch);
     }
-    text::read(path, &mut whole, size_bytes, &head, columns, &mut steps, watch)
+    text::read(
+        path, &mut whole, size_bytes, &head, columns, &mut steps, watch,
+    )
 }
 
 /// The log in a table.
 fn of_table(path: &Path, mut table: LogTable, columns: &Columns) -> Result<Log, LogError> {
     table.make_visible();
-    let mut findings: Vec<LogFinding> =
-        table.cut_off_line.map(|line| LogFinding::CutOff { line }).into_iter().collect();
-    if let Some(announced) = table.announced_rows.filter(|announced| *announced > table.rows()) {
-        findings.push(LogFinding::Short { announced, found: table.rows() });
+    let mut findings: Vec<LogFinding> = table
+        .cut_off_line
+        .map(|line| LogFinding::CutOff { line })
+        .into_iter()
+        .collect();
+    if let Some(announced) = table
+        .announced_rows
+        .filter(|announced| *announced > table.rows())
+    {
+        findings.push(LogFinding::Short {
+            announced,
+            found: table.rows(),
+        });
     }
     let roles = roles::find(path, &table, columns, &mut findings)?;
     let clock = clock::of_table(path, &mut table, &roles, columns, &mut findings)?;
     let axes = axes::of_table(path, &mut table, &roles, columns, &clock, &mut findings)?;
     let [axes, still] = screen::fit(path, axes, &clock, &mut findings)?;
-    let clock::Clock { sample_time_s, stretches, time_s, .. } = clock;
-    Ok(Log { format: table.format, sample_time_s, stretches, time_s, axes, still, findings })
+    let clock::Clock {
+        sample_time_s,
+        stretches,
+        time_s,
+        ..
+    } = clock;
+    Ok(Log {
+        format: table.format,
+        sample_time_s,
+        stretches,
+        time_s,
+        axes,
+        still,
+        findings,
+    })
 }

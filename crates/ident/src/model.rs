@@ -14,8 +14,8 @@ mod layout;
 use std::path::Path;
 
 use feedwright_control::{
-    AxisKnowledge, ContourIdentifier, IdentifiedAxes, Identifier, IdentifierKind, KnownGeometry, ModelBlock, Number,
-    Trained,
+    AxisKnowledge, ContourIdentifier, IdentifiedAxes, Identifier, IdentifierKind, KnownGeometry,
+    ModelBlock, Number, Trained,
 };
 use feedwright_gcode::input;
 use feedwright_sim::toml_file::key::write;
@@ -25,7 +25,8 @@ use serde::Serialize;
 use crate::identify::recording::Recording;
 use crate::identify::{axes, contour};
 
-/// The format that is read and written. It is raised whenever a file of before would be read otherwise.
+/// The format that is read and written. It is raised whenever a file of before would be read
+/// otherwise.
 pub(crate) const FORMAT: u64 = 1;
 
 /// A model file, for messages.
@@ -36,7 +37,8 @@ pub(crate) const FILE: toml_file::Kind = toml_file::Kind {
     where_to_find: "'feedwright identify --out FILE.model.toml' writes one",
 };
 
-/// A trained identifier and where it comes from. Made by a training or read from a file, and whole either way.
+/// A trained identifier and where it comes from. Made by a training or read from a file, and whole
+/// either way.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Model {
     pub(crate) about: About,
@@ -90,7 +92,8 @@ pub(crate) struct Weights {
     pub(crate) hidden: Vec<f64>,
     pub(crate) output: Vec<f64>,
     pub(crate) mechanics_s: f64,
-    /// Each of [`AxisKnowledge::NUMBERS`], axis by axis; one that is optional and zero on all axes is empty.
+    /// Each of [`AxisKnowledge::NUMBERS`], axis by axis; one that is optional and zero on all axes
+    /// is empty.
     pub(crate) axes: Vec<Vec<f64>>,
 }
 
@@ -111,12 +114,20 @@ impl Weights {
 
     fn of_axes<const N: usize>(mut identified: IdentifiedAxes<N>) -> Self {
         let of = |number: &Number| -> Vec<f64> {
-            let values: Vec<f64> = identified.axes.iter_mut().map(|axis| *(number.of)(axis)).collect();
+            let values: Vec<f64> = identified
+                .axes
+                .iter_mut()
+                .map(|axis| *(number.of)(axis))
+                .collect();
             let is_there = !number.optional || values.iter().any(|value| *value != 0.0);
             if is_there { values } else { Vec::new() }
         };
         let axes = AxisKnowledge::NUMBERS.iter().map(of).collect();
-        Self { mechanics_s: identified.mechanics_s, axes, ..Self::default() }
+        Self {
+            mechanics_s: identified.mechanics_s,
+            axes,
+            ..Self::default()
+        }
     }
 
     /// Takes what a number is, axis by axis.
@@ -131,7 +142,10 @@ impl Weights {
         net.weights(&mut |name, group| {
             let own = weights.group(name);
             fits &= own.len() == group.len();
-            group.iter_mut().zip(own).for_each(|(weight, own)| *weight = *own);
+            group
+                .iter_mut()
+                .zip(own)
+                .for_each(|(weight, own)| *weight = *own);
         });
         fits.then_some(net)
     }
@@ -160,7 +174,9 @@ pub(crate) const SERVO: &str = "servo";
 
 /// The kind of a name.
 pub(crate) fn kind_named(name_of_kind: &str) -> Option<IdentifierKind> {
-    KINDS.into_iter().find(|kind| identifier_name(*kind) == name_of_kind)
+    KINDS
+        .into_iter()
+        .find(|kind| identifier_name(*kind) == name_of_kind)
 }
 
 /// Where a training comes from.
@@ -179,8 +195,17 @@ impl Model {
         trained: &contour::TrainedContour<N>,
         origin: Origin,
     ) -> Self {
-        let fit = Fit { fit_um: trained.fit_um, samples: trained.samples as u64 };
-        Self::sealed(IdentifierKind::Contour, recording, fit, Weights::of(trained.net.clone()), origin)
+        let fit = Fit {
+            fit_um: trained.fit_um,
+            samples: trained.samples as u64,
+        };
+        Self::sealed(
+            IdentifierKind::Contour,
+            recording,
+            fit,
+            Weights::of(trained.net.clone()),
+            origin,
+        )
     }
 
     /// Of axes that were identified from a recording.
@@ -189,15 +214,38 @@ impl Model {
         identified: &axes::TrainedAxes<N>,
         origin: Origin,
     ) -> Self {
-        let fit = Fit { fit_um: identified.fit_um, samples: identified.samples as u64 };
-        Self::sealed(IdentifierKind::Axes, recording, fit, Weights::of_axes(identified.axes), origin)
+        let fit = Fit {
+            fit_um: identified.fit_um,
+            samples: identified.samples as u64,
+        };
+        Self::sealed(
+            IdentifierKind::Axes,
+            recording,
+            fit,
+            Weights::of_axes(identified.axes),
+            origin,
+        )
     }
 
-    /// This model of axes with other numbers of them; `None` of another kind, and for another number of axes.
-    pub fn with_axes<const N: usize>(&self, axes: IdentifiedAxes<N>, Origin { source, date }: Origin) -> Option<Self> {
+    /// This model of axes with other numbers of them; `None` of another kind, and for another
+    /// number of axes.
+    pub fn with_axes<const N: usize>(
+        &self,
+        axes: IdentifiedAxes<N>,
+        Origin { source, date }: Origin,
+    ) -> Option<Self> {
         self.identified_axes::<N>()?;
-        let about = About { written_by: version(), source, date, ..self.about.clone() };
-        let mut model = Self { about, weights: Weights::of_axes(axes), ..self.clone() };
+        let about = About {
+            written_by: version(),
+            source,
+            date,
+            ..self.about.clone()
+        };
+        let mut model = Self {
+            about,
+            weights: Weights::of_axes(axes),
+            ..self.clone()
+        };
         model.about.checksum = model.checksum();
         Some(model)
     }
@@ -219,8 +267,16 @@ impl Model {
             training_data: recording.hash(),
             checksum: String::new(),
         };
-        let period = ModelPeriods { servo_s: recording.servo_s, feed_period_s: recording.feed_period_s };
-        let mut model = Self { about, period, fit, weights };
+        let period = ModelPeriods {
+            servo_s: recording.servo_s,
+            feed_period_s: recording.feed_period_s,
+        };
+        let mut model = Self {
+            about,
+            period,
+            fit,
+            weights,
+        };
         model.about.checksum = model.checksum();
         model
     }
@@ -245,8 +301,14 @@ impl Model {
 
     /// The text of a model file that reads as this model.
     pub fn text(&self) -> String {
-        let Self { about, period, fit, .. } = self;
-        let (about, period, fit) = (write(keys::ABOUT, about), write(keys::PERIOD, period), write(keys::FIT, fit));
+        let Self {
+            about, period, fit, ..
+        } = self;
+        let (about, period, fit) = (
+            write(keys::ABOUT, about),
+            write(keys::PERIOD, period),
+            write(keys::FIT, fit),
+        );
         let weights = write(keys::weights(self.kind()), &self.weights);
         format!("{about}\n[period]\n{period}\n[fit]\n{fit}\n[weights]\n{weights}")
     }
@@ -254,8 +316,22 @@ impl Model {
     /// The checksum of its content.
     pub(crate) fn checksum(&self) -> String {
         let [written_by, date, checksum] = [const { String::new() }; 3];
-        let about = About { written_by, date, checksum, ..self.about.clone() };
-        blake3::hash(Self { about, ..self.clone() }.text().as_bytes()).to_hex().to_string()
+        let about = About {
+            written_by,
+            date,
+            checksum,
+            ..self.about.clone()
+        };
+        blake3::hash(
+            Self {
+                about,
+                ..self.clone()
+            }
+            .text()
+            .as_bytes(),
+        )
+        .to_hex()
+        .to_string()
     }
 
     /// What it is and where it comes from.
@@ -284,21 +360,36 @@ impl Model {
         self.fit
     }
 
-    /// The identifier of the contour error that it holds; none where it holds another, or for another number of axes.
+    /// The identifier of the contour error that it holds; none where it holds another, or for
+    /// another number of axes.
     pub fn contour<const N: usize>(&self) -> Option<ContourIdentifier<N>> {
-        self.weights.fill().filter(|_| self.is(IdentifierKind::Contour, N))
+        self.weights
+            .fill()
+            .filter(|_| self.is(IdentifierKind::Contour, N))
     }
 
     /// The axes that it holds; none where it holds another kind, or another number of them.
     pub fn identified_axes<const N: usize>(&self) -> Option<IdentifiedAxes<N>> {
-        let Weights { mechanics_s, axes, .. } = &self.weights;
-        let mut identified = IdentifiedAxes::<N> { mechanics_s: *mechanics_s, ..IdentifiedAxes::NULL };
-        let mut fits = self.is(IdentifierKind::Axes, N) && axes.len() == AxisKnowledge::NUMBERS.len();
+        let Weights {
+            mechanics_s, axes, ..
+        } = &self.weights;
+        let mut identified = IdentifiedAxes::<N> {
+            mechanics_s: *mechanics_s,
+            ..IdentifiedAxes::NULL
+        };
+        let mut fits =
+            self.is(IdentifierKind::Axes, N) && axes.len() == AxisKnowledge::NUMBERS.len();
         for (number, values) in AxisKnowledge::NUMBERS.iter().zip(axes) {
             fits &= values.len() == N || (number.optional && values.is_empty());
-            identified.axes.iter_mut().zip(values).for_each(|(axis, value)| *(number.of)(axis) = *value);
+            identified
+                .axes
+                .iter_mut()
+                .zip(values)
+                .for_each(|(axis, value)| *(number.of)(axis) = *value);
         }
-        identified.with_periods(self.period.servo_s).filter(|_| fits)
+        identified
+            .with_periods(self.period.servo_s)
+            .filter(|_| fits)
     }
 
     fn is(&self, kind: IdentifierKind, axes: usize) -> bool {
@@ -311,18 +402,35 @@ impl Model {
             IdentifierKind::Contour => Trained::Contour(self.contour()?),
             IdentifierKind::Axes => Trained::Axes(self.identified_axes()?),
         };
-        let ModelPeriods { servo_s, feed_period_s } = self.period;
-        Some(ModelBlock { servo_s, feed_period_s, trained, geometry: None })
+        let ModelPeriods {
+            servo_s,
+            feed_period_s,
+        } = self.period;
+        Some(ModelBlock {
+            servo_s,
+            feed_period_s,
+            trained,
+            geometry: None,
+        })
     }
 
-    /// The block of bytes that a component in a servo thread is given, with the geometry that it compensates.
+    /// The block of bytes that a component in a servo thread is given, with the geometry that it
+    /// compensates.
     pub fn block(&self, geometry: Option<&KnownGeometry<3>>) -> Vec<u8> {
         let mut bytes = Vec::new();
         let put = |more: &[u8]| bytes.extend_from_slice(more);
         if let Some(model) = self.control::<2>() {
-            ModelBlock { geometry: exact::of_a_block(geometry), ..model }.to_bytes(put);
+            ModelBlock {
+                geometry: exact::of_a_block(geometry),
+                ..model
+            }
+            .to_bytes(put);
         } else if let Some(model) = self.control::<3>() {
-            ModelBlock { geometry: exact::of_a_block(geometry), ..model }.to_bytes(put);
+            ModelBlock {
+                geometry: exact::of_a_block(geometry),
+                ..model
+            }
+            .to_bytes(put);
         }
         bytes
     }

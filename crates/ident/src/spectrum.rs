@@ -5,11 +5,12 @@
 //! I(f) = mean over segments of |sum of g m x exp(..)|^2 / sum of (g m)^2    g window, m 1 where x counts and 0 where it does not
 //! ```
 //!
-//! The window is Gaussian, cut off at four standard deviations: a line of Gaussian shape stays Gaussian behind it, and what leaks
-//! lies 70 dB below.
+//! The window is Gaussian, cut off at four standard deviations: a line of Gaussian shape stays
+//! Gaussian behind it, and what leaks lies 70 dB below.
 //!
-//! Source: Cooley and Tukey (1965), An algorithm for the machine calculation of complex Fourier series; Welch (1967), The use of fast
-//! Fourier transform for the estimation of power spectra; Harris (1978) for the window.
+//! Source: Cooley and Tukey (1965), An algorithm for the machine calculation of complex Fourier
+//! series; Welch (1967), The use of fast Fourier transform for the estimation of power spectra;
+//! Harris (1978) for the window.
 
 use std::f64::consts::{PI, TAU};
 
@@ -55,7 +56,9 @@ pub(crate) fn transform(values: &mut [Phasor]) {
             values.swap(i, j);
         }
     }
-    let turns: Vec<Phasor> = (0..length / 2).map(|k| turned(-TAU * k as f64 / length as f64)).collect();
+    let turns: Vec<Phasor> = (0..length / 2)
+        .map(|k| turned(-TAU * k as f64 / length as f64))
+        .collect();
     let mut half = 1;
     while half < length {
         let stride = length / (2 * half);
@@ -73,10 +76,14 @@ pub(crate) fn transform(values: &mut [Phasor]) {
 
 /// Its inverse.
 pub(crate) fn transform_back(values: &mut [Phasor]) {
-    values.iter_mut().for_each(|value| *value = conjugate(*value));
+    values
+        .iter_mut()
+        .for_each(|value| *value = conjugate(*value));
     transform(values);
     let scale = 1.0 / values.len() as f64;
-    values.iter_mut().for_each(|[a, b]| (*a, *b) = (*a * scale, -*b * scale));
+    values
+        .iter_mut()
+        .for_each(|[a, b]| (*a, *b) = (*a * scale, -*b * scale));
 }
 
 /// Transform of real numbers, with zeros behind them up to a length.
@@ -120,7 +127,12 @@ impl SpectrumSegments {
         let middle = 0.5 * length as f64;
         let deviation = middle / WINDOW_DEVIATIONS;
         let gauss = |k: usize| libm::exp(-0.5 * ((k as f64 + 0.5 - middle) / deviation).powi(2));
-        Self { window: (0..length).map(gauss).collect(), deviation, sum: vec![0.0; length / 2 + 1], weight: 0.0 }
+        Self {
+            window: (0..length).map(gauss).collect(),
+            deviation,
+            sum: vec![0.0; length / 2 + 1],
+            weight: 0.0,
+        }
     }
 
     /// Distance between the starts of consecutive segments, samples.
@@ -136,15 +148,27 @@ impl SpectrumSegments {
             .zip(&self.window)
             .map(|((value, &counts), g)| if counts { [value * g, 0.0] } else { [0.0; 2] })
             .collect();
-        self.weight += counts.iter().zip(&self.window).filter(|&(&counts, _)| counts).map(|(_, g)| g * g).sum::<f64>();
+        self.weight += counts
+            .iter()
+            .zip(&self.window)
+            .filter(|&(&counts, _)| counts)
+            .map(|(_, g)| g * g)
+            .sum::<f64>();
         transform(&mut segment);
-        self.sum.iter_mut().zip(&segment).for_each(|(sum, value)| *sum += power(*value));
+        self.sum
+            .iter_mut()
+            .zip(&segment)
+            .for_each(|(sum, value)| *sum += power(*value));
     }
 
     /// The spectrum, of a sequence in which `seen` values count.
     pub fn spectrum(&self, seen: usize) -> Spectrum {
         Spectrum {
-            power: self.sum.iter().map(|p| p / self.weight.max(f64::MIN_POSITIVE)).collect(),
+            power: self
+                .sum
+                .iter()
+                .map(|p| p / self.weight.max(f64::MIN_POSITIVE))
+                .collect(),
             weight_of_value: seen as f64 / self.window.len() as f64,
             width: 1.0 / (2.0 * PI * self.deviation * 2.0_f64.sqrt()),
         }
@@ -157,7 +181,10 @@ impl Spectrum {
         let mut segments = SpectrumSegments::new(length);
         let mut start = 0;
         while start + length <= values.len() {
-            segments.add(&values[start..start + length], &counts[start..start + length]);
+            segments.add(
+                &values[start..start + length],
+                &counts[start..start + length],
+            );
             start += segments.step();
         }
         segments.spectrum(counts.iter().filter(|&&counts| counts).count())

@@ -9,16 +9,34 @@ const ROUNDING_MM: f64 = 1e-9;
 
 fn assert_near(what: &str, found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len(), "{what}");
-    let worst = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let worst = found
+        .iter()
+        .zip(expected)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max);
     assert!(worst < ROUNDING_MM, "{what} is off by {worst}");
 }
 
 /// Asserts that the log has this format and holds the one axis that was written.
 fn assert_is(log: &Log, format: LogFormat, (command, actual): &(Vec<f64>, Vec<f64>)) {
     assert_eq!(log.format, format, "{}", told(log));
-    assert!((log.sample_time_s - SAMPLE_S).abs() < 1e-12, "{} s", log.sample_time_s);
+    assert!(
+        (log.sample_time_s - SAMPLE_S).abs() < 1e-12,
+        "{} s",
+        log.sample_time_s
+    );
     assert_eq!((log.stretches.len(), &log.stretches[0]), (1, &(0..SAMPLES)));
-    let [LogAxis { command_mm, actual_mm, verdict, .. }] = &log.axes[..] else { panic!("{} axes", log.axes.len()) };
+    let [
+        LogAxis {
+            command_mm,
+            actual_mm,
+            verdict,
+            ..
+        },
+    ] = &log.axes[..]
+    else {
+        panic!("{} axes", log.axes.len())
+    };
     assert_near("command", command_mm, command);
     assert_near("actual position", actual_mm, actual);
     assert_eq!(*verdict, Fitness::ForControl, "{}", told(log));
@@ -36,9 +54,17 @@ fn tables_of_any_delimiter_are_read() {
         ("|", ""),
     ] {
         let text = header.to_owned() + &rows(&[&time_s(), command, actual], delimiter);
-        for content in [text.clone(), format!("\u{feff}{text}"), text.replace('\n', "\r\n"), text.trim_end().to_owned()]
-        {
-            assert_is(&read(content.as_bytes(), "").unwrap(), LogFormat::TextTable, &data);
+        for content in [
+            text.clone(),
+            format!("\u{feff}{text}"),
+            text.replace('\n', "\r\n"),
+            text.trim_end().to_owned(),
+        ] {
+            assert_is(
+                &read(content.as_bytes(), "").unwrap(),
+                LogFormat::TextTable,
+                &data,
+            );
         }
     }
 }
@@ -46,11 +72,20 @@ fn tables_of_any_delimiter_are_read() {
 #[test]
 fn a_decimal_comma_is_read() {
     let data = axis(20.0, 1.0);
-    let text = "t;x cmd;x act\ns;mm;mm\n".to_owned() + &rows(&[&time_s(), &data.0, &data.1], ";").replace('.', ",");
+    let text = "t;x cmd;x act\ns;mm;mm\n".to_owned()
+        + &rows(&[&time_s(), &data.0, &data.1], ";").replace('.', ",");
     let log = read(text.as_bytes(), "").unwrap();
     assert_is(&log, LogFormat::TextTable, &data);
-    assert!(told(&log).contains("positions are in mm: the column says so"), "{}", told(&log));
-    assert!(told(&log).contains("time is in s: the column says so"), "{}", told(&log));
+    assert!(
+        told(&log).contains("positions are in mm: the column says so"),
+        "{}",
+        told(&log)
+    );
+    assert!(
+        told(&log).contains("time is in s: the column says so"),
+        "{}",
+        told(&log)
+    );
 }
 
 #[test]
@@ -60,7 +95,11 @@ fn columns_without_names_are_found_by_what_they_hold() {
     let text = rows(&[&current, &actual, &time_s(), &command], "\t");
     let log = read(text.as_bytes(), "").unwrap();
     assert_is(&log, LogFormat::TextTable, &(command, actual));
-    assert!(told(&log).contains("command in column 3, actual position in column 1; guessed"), "{}", told(&log));
+    assert!(
+        told(&log).contains("command in column 3, actual position in column 1; guessed"),
+        "{}",
+        told(&log)
+    );
     assert!(told(&log).contains("not used: column 0"), "{}", told(&log));
 }
 
@@ -69,9 +108,23 @@ fn columns_are_what_is_said_of_them() {
     let (command, actual) = axis(20.0, 1.0);
     let (other, later) = axis(5.0, 1.7);
     let torque = time_s();
-    let text = "a,b,c,d,e,f\n".to_owned() + &rows(&[&command, &actual, &other, &later, &torque, &time_s()], ",");
-    let log = read(text.as_bytes(), "t=f, x.cmd=0,x.act=b,x.torque=e, y.cmd=c,y.act=3").unwrap();
-    assert_eq!(log.axes.iter().map(|axis| axis.name.as_str()).collect::<Vec<_>>(), ["x", "y"]);
+    let text = "a,b,c,d,e,f\n".to_owned()
+        + &rows(
+            &[&command, &actual, &other, &later, &torque, &time_s()],
+            ",",
+        );
+    let log = read(
+        text.as_bytes(),
+        "t=f, x.cmd=0,x.act=b,x.torque=e, y.cmd=c,y.act=3",
+    )
+    .unwrap();
+    assert_eq!(
+        log.axes
+            .iter()
+            .map(|axis| axis.name.as_str())
+            .collect::<Vec<_>>(),
+        ["x", "y"]
+    );
     assert_near("torque", log.axes[0].torque.as_ref().unwrap(), &torque);
     assert_near("y", &log.axes[1].command_mm, &other);
     let log = read(text.as_bytes(), "x.cmd=0,x.act=1,period_s=0.002,unit=um").unwrap();
@@ -94,13 +147,20 @@ fn what_columns_cannot_be_is_said() {
         ("t=1,t=2", "said twice"),
     ] {
         let error = text.parse::<Columns>().unwrap_err();
-        assert!(format!("{error} {}", error.hint).contains(part), "{text}: {error} {}", error.hint);
+        assert!(
+            format!("{error} {}", error.hint).contains(part),
+            "{text}: {error} {}",
+            error.hint
+        );
     }
     let (command, actual) = axis(20.0, 1.0);
     let text = "t,command,position\n".to_owned() + &rows(&[&time_s(), &command, &actual], ",");
     for (columns, part) in [
         ("x.cmd=comand,x.act=2", "did you mean 'command'?"),
-        ("x.cmd=1,x.act=7", "there is no column 7: the last of 3 is 2"),
+        (
+            "x.cmd=1,x.act=7",
+            "there is no column 7: the last of 3 is 2",
+        ),
     ] {
         let error = read(text.as_bytes(), columns).unwrap_err().to_string();
         assert!(error.contains(part), "{error}");
@@ -110,20 +170,41 @@ fn what_columns_cannot_be_is_said() {
 #[test]
 fn units_are_guessed_and_told() {
     let data = axis(20.0, 1.0);
-    let scaled = |values: &[f64], by: f64| values.iter().map(|value| value * by).collect::<Vec<f64>>();
+    let scaled =
+        |values: &[f64], by: f64| values.iter().map(|value| value * by).collect::<Vec<f64>>();
     for (by, unit) in [(1e-3, "m"), (1.0, "mm"), (1e3, "um")] {
         for (time_by, time_unit) in [(1.0, "s"), (1e3, "ms"), (1e6, "us"), (1e9, "ns")] {
-            let columns = [scaled(&time_s(), time_by), scaled(&data.0, by), scaled(&data.1, by)];
-            let log = read(rows(&columns.each_ref().map(Vec::as_slice), ",").as_bytes(), "").unwrap();
+            let columns = [
+                scaled(&time_s(), time_by),
+                scaled(&data.0, by),
+                scaled(&data.1, by),
+            ];
+            let log = read(
+                rows(&columns.each_ref().map(Vec::as_slice), ",").as_bytes(),
+                "",
+            )
+            .unwrap();
             assert_is(&log, LogFormat::TextTable, &data);
-            assert!(told(&log).contains(&format!("positions are in {unit}: guessed")), "{}", told(&log));
-            assert!(told(&log).contains(&format!("time is in {time_unit}: guessed")), "{}", told(&log));
+            assert!(
+                told(&log).contains(&format!("positions are in {unit}: guessed")),
+                "{}",
+                told(&log)
+            );
+            assert!(
+                told(&log).contains(&format!("time is in {time_unit}: guessed")),
+                "{}",
+                told(&log)
+            );
         }
     }
     let inches = scaled(&data.0, 1.0 / 25.4);
-    let text =
-        "t,x.cmd [inch],x.act [inch]\n".to_owned() + &rows(&[&time_s(), &inches, &scaled(&data.1, 1.0 / 25.4)], ",");
-    assert_is(&read(text.as_bytes(), "").unwrap(), LogFormat::TextTable, &data);
+    let text = "t,x.cmd [inch],x.act [inch]\n".to_owned()
+        + &rows(&[&time_s(), &inches, &scaled(&data.1, 1.0 / 25.4)], ",");
+    assert_is(
+        &read(text.as_bytes(), "").unwrap(),
+        LogFormat::TextTable,
+        &data,
+    );
 }
 
 #[test]
@@ -131,48 +212,90 @@ fn halsampler_is_read_with_its_overruns() {
     let data = axis(20.0, 1.0);
     let counts: Vec<f64> = (0..SAMPLES).map(|k| k as f64 + 17.0).collect();
     let lines = rows(&[&counts, &data.0, &data.1], " ");
-    for header in ["", "# n x.cmd x.act\n", "# sample_time_s = 0.001\n# n x.cmd x.act\n"] {
+    for header in [
+        "",
+        "# n x.cmd x.act\n",
+        "# sample_time_s = 0.001\n# n x.cmd x.act\n",
+    ] {
         let log = read((header.to_owned() + &lines).as_bytes(), "").unwrap();
         assert_is(&log, LogFormat::Halsampler, &data);
         let guesses = !header.contains("sample_time_s");
-        assert_eq!(told(&log).contains("1 ms between samples: guessed"), guesses, "{}", told(&log));
+        assert_eq!(
+            told(&log).contains("1 ms between samples: guessed"),
+            guesses,
+            "{}",
+            told(&log)
+        );
         assert_eq!(log.time_s[0], 0.0);
     }
     // Samples 1017 to 1021 were lost.
     let mut with_gap: Vec<&str> = lines.lines().collect();
     with_gap.splice(1000..1005, ["overrun"]);
     let log = read(with_gap.join("\n").as_bytes(), "").unwrap();
-    assert_eq!((log.format, &log.stretches[..]), (LogFormat::Halsampler, [0..1000, 1000..2995].as_slice()));
-    assert!(told(&log).contains("a gap of 6 ms from 0.9990 s to 1.0050 s"), "{}", told(&log));
+    assert_eq!(
+        (log.format, &log.stretches[..]),
+        (LogFormat::Halsampler, [0..1000, 1000..2995].as_slice())
+    );
+    assert!(
+        told(&log).contains("a gap of 6 ms from 0.9990 s to 1.0050 s"),
+        "{}",
+        told(&log)
+    );
     // Without numbers only the word tells that some are missing.
-    let without: Vec<String> =
-        with_gap.iter().map(|line| line.split_once(' ').map_or("overrun", |(_, rest)| rest).to_owned()).collect();
-    let log = read(without.join("\n").as_bytes(), "x.cmd=0,x.act=1,period_s=0.001").unwrap();
-    assert_eq!((log.format, &log.stretches[..]), (LogFormat::Halsampler, [0..1000, 1000..2995].as_slice()));
+    let without: Vec<String> = with_gap
+        .iter()
+        .map(|line| {
+            line.split_once(' ')
+                .map_or("overrun", |(_, rest)| rest)
+                .to_owned()
+        })
+        .collect();
+    let log = read(
+        without.join("\n").as_bytes(),
+        "x.cmd=0,x.act=1,period_s=0.001",
+    )
+    .unwrap();
+    assert_eq!(
+        (log.format, &log.stretches[..]),
+        (LogFormat::Halsampler, [0..1000, 1000..2995].as_slice())
+    );
 }
 
 #[test]
 fn both_forms_of_halscope_are_read() {
     let data = axis(20.0, 1.0);
     let (command, actual) = &data;
-    let mut csv = "# Sampling period is 1000000 ns\njoint.0.motor-pos-cmd;joint.0.motor-pos-fb\n".to_owned();
+    let mut csv =
+        "# Sampling period is 1000000 ns\njoint.0.motor-pos-cmd;joint.0.motor-pos-fb\n".to_owned();
     let mut log = "Sampling period is 1000000 nSec \n".to_owned();
     for (command, actual) in command.iter().zip(actual) {
         csv.push_str(&format!("{command:.14};{actual:.14}\n"));
-        log.push_str(&format!("\njoint.0.motor-pos-cmd {command:+.14} joint.0.motor-pos-fb {actual:+.14} "));
+        log.push_str(&format!(
+            "\njoint.0.motor-pos-cmd {command:+.14} joint.0.motor-pos-fb {actual:+.14} "
+        ));
     }
     for text in [csv, log] {
         let log = read(text.as_bytes(), "").unwrap();
         assert_is(&log, LogFormat::Halscope, &data);
         assert_eq!(log.axes[0].name, "joint0");
         // By number: the names in the rows are not counted as columns.
-        assert_is(&read(text.as_bytes(), "x.cmd=0,x.act=1").unwrap(), LogFormat::Halscope, &data);
+        assert_is(
+            &read(text.as_bytes(), "x.cmd=0,x.act=1").unwrap(),
+            LogFormat::Halscope,
+            &data,
+        );
     }
 }
 
 /// An element of a MAT-file, of either byte order.
 fn element(kind: u32, data: &[u8], is_little: bool) -> Vec<u8> {
-    let word = |value: u32| if is_little { value.to_le_bytes() } else { value.to_be_bytes() };
+    let word = |value: u32| {
+        if is_little {
+            value.to_le_bytes()
+        } else {
+            value.to_be_bytes()
+        }
+    };
     let mut bytes = [word(kind), word(data.len() as u32)].concat();
     bytes.extend_from_slice(data);
     bytes.resize(bytes.len().next_multiple_of(8), 0);
@@ -183,13 +306,34 @@ fn element(kind: u32, data: &[u8], is_little: bool) -> Vec<u8> {
 fn mat_file(variables: &[(&str, &[f64])], is_little: bool, is_compressed: bool) -> Vec<u8> {
     let mut bytes = b"MATLAB 5.0 MAT-file, written by a test".to_vec();
     bytes.resize(124, b' ');
-    bytes.extend_from_slice(if is_little { b"\x00\x01IM" } else { b"\x01\x00MI" });
+    bytes.extend_from_slice(if is_little {
+        b"\x00\x01IM"
+    } else {
+        b"\x01\x00MI"
+    });
     let words = |values: &[u32]| -> Vec<u8> {
-        values.iter().flat_map(|value| if is_little { value.to_le_bytes() } else { value.to_be_bytes() }).collect()
+        values
+            .iter()
+            .flat_map(|value| {
+                if is_little {
+                    value.to_le_bytes()
+                } else {
+                    value.to_be_bytes()
+                }
+            })
+            .collect()
     };
     for (name, values) in variables {
-        let numbers: Vec<u8> =
-            values.iter().flat_map(|value| if is_little { value.to_le_bytes() } else { value.to_be_bytes() }).collect();
+        let numbers: Vec<u8> = values
+            .iter()
+            .flat_map(|value| {
+                if is_little {
+                    value.to_le_bytes()
+                } else {
+                    value.to_be_bytes()
+                }
+            })
+            .collect();
         let parts = [
             element(6, &words(&[6, 0]), is_little),
             element(5, &words(&[values.len() as u32, 1]), is_little),
@@ -213,8 +357,13 @@ fn matlab_files_are_read_compressed_or_not_in_either_byte_order() {
     let data = axis(20.0, 1.0);
     let time = time_s();
     let torque: Vec<f64> = time.iter().map(|t| t.sin()).collect();
-    let variables: [(&str, &[f64]); 5] =
-        [("gain", &[3.0]), ("qm", &data.1), ("qg", &data.0), ("t", &time), ("vir", &torque)];
+    let variables: [(&str, &[f64]); 5] = [
+        ("gain", &[3.0]),
+        ("qm", &data.1),
+        ("qg", &data.0),
+        ("t", &time),
+        ("vir", &torque),
+    ];
     for (is_little, is_compressed) in [(true, true), (true, false), (false, true), (false, false)] {
         let log = read(&mat_file(&variables, is_little, is_compressed), "").unwrap();
         assert_is(&log, LogFormat::Matlab, &data);
@@ -232,16 +381,25 @@ fn matlab_files_are_read_compressed_or_not_in_either_byte_order() {
 #[test]
 fn sinumerik_edge_is_read_with_its_axes() {
     let data = axis(20.0, 1.0);
-    let signals: String =
-        ["CYCLE,Cycle", "DES_POS|1,X1", "ENC_POS|1,X1", "TORQUE|1,X1", "DES_POS|4,C1", "ENC_POS|4,C1"]
-            .iter()
-            .map(|signal| signal.split_once(',').unwrap())
-            .map(|(name, axis)| format!("{{\"Name\":\"{name}\",\"Type\":\"DOUBLE\",\"Axis\":\"{axis}\"}},"))
-            .collect();
+    let signals: String = [
+        "CYCLE,Cycle",
+        "DES_POS|1,X1",
+        "ENC_POS|1,X1",
+        "TORQUE|1,X1",
+        "DES_POS|4,C1",
+        "ENC_POS|4,C1",
+    ]
+    .iter()
+    .map(|signal| signal.split_once(',').unwrap())
+    .map(|(name, axis)| format!("{{\"Name\":\"{name}\",\"Type\":\"DOUBLE\",\"Axis\":\"{axis}\"}},"))
+    .collect();
     let row = |k: usize| format!("[{},{},{},1.5e-1,{k},{k}]", k + 500, data.0[k], data.1[k]);
     let block = |k: usize| {
         let rows: Vec<String> = (k..k + 100).map(row).collect();
-        format!("{{\"HFData\":[{}]}},{{\"HFBlockEvent\":{{\"GCode\":null}}}},", rows.join(","))
+        format!(
+            "{{\"HFData\":[{}]}},{{\"HFBlockEvent\":{{\"GCode\":null}}}},",
+            rows.join(",")
+        )
     };
     let payload: String = (0..SAMPLES).step_by(100).map(block).collect();
     let text = format!(
@@ -251,10 +409,16 @@ fn sinumerik_edge_is_read_with_its_axes() {
     );
     let log = read(text.as_bytes(), "").unwrap();
     assert_is(&log, LogFormat::SinumerikEdge, &data);
-    assert_eq!((log.axes[0].name.as_str(), log.axes[0].torque_unit), ("x", TorqueUnit::NewtonMetre));
+    assert_eq!(
+        (log.axes[0].name.as_str(), log.axes[0].torque_unit),
+        ("x", TorqueUnit::NewtonMetre)
+    );
     assert!(told(&log).contains("axis c is rotary"), "{}", told(&log));
     for (bad, part) in [
-        (text.replace("[501,", "[501,7,"), "row 1 has 7 values, where the header announces 6"),
+        (
+            text.replace("[501,", "[501,7,"),
+            "row 1 has 7 values, where the header announces 6",
+        ),
         (text[..text.len() / 2].to_owned(), "EOF"),
         ("{\"a\": 1}".to_owned(), "there is no Header"),
     ] {
@@ -266,14 +430,30 @@ fn sinumerik_edge_is_read_with_its_axes() {
 #[test]
 fn a_gap_begins_a_new_stretch_and_a_last_line_that_is_cut_off_is_left_out() {
     let (command, actual) = axis(20.0, 1.0);
-    let time: Vec<f64> = time_s().iter().map(|&t| if t < 1.2 { t } else { t + 0.5 }).collect();
+    let time: Vec<f64> = time_s()
+        .iter()
+        .map(|&t| if t < 1.2 { t } else { t + 0.5 })
+        .collect();
     let text = rows(&[&time, &command, &actual], ",") + "3.5,0.0";
     let log = read(text.as_bytes(), "").unwrap();
     assert_eq!(log.stretches, [0..1200, 1200..SAMPLES]);
     assert!((log.sample_time_s - SAMPLE_S).abs() < 1e-12);
-    assert!(told(&log).contains("line 3001, the last, is cut off"), "{}", told(&log));
-    let error = read((rows(&[&time, &command, &actual], ",") + "3.5,0.0\n4,1,2\n").as_bytes(), "").unwrap_err();
-    assert!(error.to_string().contains("line 3001: 2 columns, where the lines before have 3"), "{error}");
+    assert!(
+        told(&log).contains("line 3001, the last, is cut off"),
+        "{}",
+        told(&log)
+    );
+    let error = read(
+        (rows(&[&time, &command, &actual], ",") + "3.5,0.0\n4,1,2\n").as_bytes(),
+        "",
+    )
+    .unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("line 3001: 2 columns, where the lines before have 3"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -284,13 +464,20 @@ fn steps_limits_and_lines_are_told() {
         let swing = 0.02 * (std::f64::consts::TAU * 62.0 * time[k]).sin();
         *position = ((*position + swing) * 500.0).round() / 500.0;
     }
-    let torque: Vec<f64> = time.iter().map(|t| (8.0 * (7.0 * t).sin()).clamp(-5.0, 5.0)).collect();
-    let text = "t,x.cmd,x.act,x.torque [Nm]\n".to_owned() + &rows(&[&time, &command, &actual, &torque], ",");
+    let torque: Vec<f64> = time
+        .iter()
+        .map(|t| (8.0 * (7.0 * t).sin()).clamp(-5.0, 5.0))
+        .collect();
+    let text = "t,x.cmd,x.act,x.torque [Nm]\n".to_owned()
+        + &rows(&[&time, &command, &actual, &torque], ",");
     let log = read(text.as_bytes(), "").unwrap();
     let told = told(&log);
     assert_eq!(log.axes[0].step_mm, 0.002);
     assert!(told.contains("in steps of 2 um"), "{told}");
-    assert!(told.contains("the torque of x is at its limit of 5 N m"), "{told}");
+    assert!(
+        told.contains("the torque of x is at its limit of 5 N m"),
+        "{told}"
+    );
     assert!(told.contains("swings at 62"), "{told}");
     // A speed limit of 80 mm/s under a command of 126 mm/s.
     let mut limited = vec![0.0_f64];
@@ -311,13 +498,19 @@ fn axes_that_stand_still_are_left_out_and_different_zeros_are_taken_out() {
     let data = axis(20.0, 1.0);
     let still = vec![5.0; SAMPLES];
     let shifted: Vec<f64> = data.1.iter().map(|position| position + 150.0).collect();
-    let text = "t,x.cmd,x.act,z.cmd,z.act\n".to_owned() + &rows(&[&time_s(), &data.0, &shifted, &still, &still], ",");
+    let text = "t,x.cmd,x.act,z.cmd,z.act\n".to_owned()
+        + &rows(&[&time_s(), &data.0, &shifted, &still, &still], ",");
     let log = read(text.as_bytes(), "").unwrap();
     assert_eq!(log.axes.len(), 1);
     assert!(told(&log).contains("axis z stands still"), "{}", told(&log));
     assert!(told(&log).contains("differ by -1"), "{}", told(&log));
-    let mean =
-        log.axes[0].command_mm.iter().zip(&log.axes[0].actual_mm).map(|(c, a)| c - a).sum::<f64>() / SAMPLES as f64;
+    let mean = log.axes[0]
+        .command_mm
+        .iter()
+        .zip(&log.axes[0].actual_mm)
+        .map(|(c, a)| c - a)
+        .sum::<f64>()
+        / SAMPLES as f64;
     assert!(mean.abs() < 0.1, "{mean} mm are left");
 }
 
@@ -327,14 +520,29 @@ fn what_is_no_log_is_told_as_such() {
         (b"".as_slice(), "the file is empty"),
         (b"\xff\xfet\x00", "UTF-16"),
         (b"\x00\x01\x02\x03", "neither text nor"),
-        (b"G0 X0 Y0\nG1 X10 F100\n", "no rows of at least two numbers"),
-        (b"t,x\n0,1\n1,2\n2,3\n", "no two columns are the command and the actual position"),
+        (
+            b"G0 X0 Y0\nG1 X10 F100\n",
+            "no rows of at least two numbers",
+        ),
+        (
+            b"t,x\n0,1\n1,2\n2,3\n",
+            "no two columns are the command and the actual position",
+        ),
     ] {
         let error = read(content, "").unwrap_err();
         assert!(error.to_string().contains(part), "{error}");
     }
     let (folder, path) = file(b"0 1 2\n");
-    for place in [folder.path().to_owned(), path.join("not_there"), folder.path().join("not_there")] {
-        assert!(Log::read(&place, &Columns::default()).unwrap_err().to_string().contains("cannot read log"));
+    for place in [
+        folder.path().to_owned(),
+        path.join("not_there"),
+        folder.path().join("not_there"),
+    ] {
+        assert!(
+            Log::read(&place, &Columns::default())
+                .unwrap_err()
+                .to_string()
+                .contains("cannot read log")
+        );
     }
 }

@@ -1,8 +1,10 @@
-//! Inertia and friction of an axis, identified from commanded and measured positions, against the machine files that they were
-//! simulated with. The machine file is the oracle: the identification never sees these values.
+//! Inertia and friction of an axis, identified from commanded and measured positions, against the
+//! machine files that they were simulated with. The machine file is the oracle: the identification
+//! never sees these values.
 //!
-//! Encoder noise leaves the output error where it is; linear least squares on the torque that the law makes of measured positions,
-//! `torque = J a + B v + Fc sign(v) + Fa`, has the noise in a and v, and is biased by it. Both are measured here.
+//! Encoder noise leaves the output error where it is; linear least squares on the torque that the
+//! law makes of measured positions, `torque = J a + B v + Fc sign(v) + Fa`, has the noise in a and
+//! v, and is biased by it. Both are measured here.
 
 use crate::sweep::part_or_whole;
 use feedwright_control::{AxisLaw, AxisState, DriveLaw, DriveState, Parameters};
@@ -32,7 +34,8 @@ fn of_file(machine: &Machine, axis: usize) -> AxisParameters {
     }
 }
 
-/// How far inertia, viscous and Coulomb friction are off, as a part, and the asymmetry, as a part of the Coulomb friction.
+/// How far inertia, viscous and Coulomb friction are off, as a part, and the asymmetry, as a part
+/// of the Coulomb friction.
 fn off(found: &AxisParameters, file: &AxisParameters) -> [f64; 4] {
     let part = |value: fn(&AxisParameters) -> f64| value(found) / value(file) - 1.0;
     [
@@ -78,15 +81,27 @@ fn what_the_machine_file_says_comes_back() {
             let file = of_file(&machine, axis);
             let found = identify_axis(&recording, axis, &settings(&machine, axis)).unwrap();
             let off = off(&found.parameters, &file);
-            assert!(off.iter().zip(bounds).all(|(off, bound)| off.abs() < bound), "{name} {axis}: {off:?}");
+            assert!(
+                off.iter().zip(bounds).all(|(off, bound)| off.abs() < bound),
+                "{name} {axis}: {off:?}"
+            );
             if file.presliding_rad > 0.0 {
                 let part = found.parameters.presliding_rad / file.presliding_rad;
-                assert!(PRESLIDING[0] < part && part < PRESLIDING[1], "{name} {axis}: {part}");
+                assert!(
+                    PRESLIDING[0] < part && part < PRESLIDING[1],
+                    "{name} {axis}: {part}"
+                );
             } else {
                 assert_eq!(found.parameters.presliding_rad, 0.0, "{name} {axis}");
             }
-            assert!(found.standard_errors.inertia_kg_m2 < 0.02 * file.inertia_kg_m2, "{found:?}");
-            assert!(name == "router" || !found.parameters.has_screw(), "{name} {axis}: {found:?}");
+            assert!(
+                found.standard_errors.inertia_kg_m2 < 0.02 * file.inertia_kg_m2,
+                "{found:?}"
+            );
+            assert!(
+                name == "router" || !found.parameters.has_screw(),
+                "{name} {axis}: {found:?}"
+            );
         }
     }
 }
@@ -101,14 +116,19 @@ fn a_ball_screw_that_gives_is_found_from_the_motor_alone() {
     let recording = recorded(&machine);
     for axis in axes() {
         let file = of_file(&machine, axis);
-        let found = identify_axis(&recording, axis, &settings(&machine, axis)).unwrap().parameters;
+        let found = identify_axis(&recording, axis, &settings(&machine, axis))
+            .unwrap()
+            .parameters;
         let part = |value: fn(&AxisParameters) -> f64| value(&found) / value(&file) - 1.0;
         let off = [
             part(|p| p.transmission.table_share),
             part(|p| p.transmission.resonance_rad_s),
             part(|p| p.transmission.backlash_rad),
         ];
-        assert!(off.iter().zip(SCREW).all(|(off, most)| off.abs() < most), "{axis}: {off:?}");
+        assert!(
+            off.iter().zip(SCREW).all(|(off, most)| off.abs() < most),
+            "{axis}: {off:?}"
+        );
         assert!(part(|p| p.inertia_kg_m2).abs() < 0.005, "{axis}: {found:?}");
     }
 }
@@ -121,10 +141,14 @@ const UNBIASED: f64 = 0.002;
 const BIASED: f64 = 0.5;
 
 #[test]
-fn encoder_noise_of_half_a_micrometre_biases_least_squares_on_the_torque_and_not_the_output_error() {
+fn encoder_noise_of_half_a_micrometre_biases_least_squares_on_the_torque_and_not_the_output_error()
+{
     for noise_um in [0.0, 0.5] {
         let mut machine = Machine::load("tnv40".as_ref()).unwrap();
-        machine.axes.iter_mut().for_each(|axis| axis.encoder_noise_um = noise_um);
+        machine
+            .axes
+            .iter_mut()
+            .for_each(|axis| axis.encoder_noise_um = noise_um);
         let recording = recorded(&machine);
         for axis in axes() {
             let (file, settings) = (of_file(&machine, axis), settings(&machine, axis));
@@ -132,16 +156,27 @@ fn encoder_noise_of_half_a_micrometre_biases_least_squares_on_the_torque_and_not
             let [inertia, ..] = off(&found.parameters, &file);
             assert!(inertia.abs() < UNBIASED, "{noise_um}: {inertia}");
             // What is left is the noise, and what the disturbance of 25 Hz does.
-            assert!(found.left_um > noise_um && found.left_um < noise_um.hypot(0.4), "{}", found.left_um);
+            assert!(
+                found.left_um > noise_um && found.left_um < noise_um.hypot(0.4),
+                "{}",
+                found.left_um
+            );
             let [inertia, ..] = off(&equation_error(&recording, axis, &settings), &file);
             // Without noise it is right: the method is not made worse than it is.
-            assert!(if noise_um > 0.0 { inertia < -BIASED } else { inertia.abs() < 0.005 }, "{noise_um}: {inertia}");
+            assert!(
+                if noise_um > 0.0 {
+                    inertia < -BIASED
+                } else {
+                    inertia.abs() < 0.005
+                },
+                "{noise_um}: {inertia}"
+            );
         }
     }
 }
 
-/// Standard errors of repeated identifications under other noise are those that each states, within this factor: their own are of 24
-/// stretches, the spread is of four to six seeds.
+/// Standard errors of repeated identifications under other noise are those that each states, within
+/// this factor: their own are of 24 stretches, the spread is of four to six seeds.
 const SPREAD: f64 = 4.0;
 
 #[test]
@@ -153,20 +188,44 @@ fn the_standard_error_is_about_the_spread_over_noise_seeds() {
         .map(|seed| {
             let recording = recorded(&machine.with_noise_seed(100 + seed));
             let found = identify_axis(&recording, 0, &settings(&machine, 0)).unwrap();
-            [found.parameters.coulomb_friction_nm, found.standard_errors.coulomb_friction_nm]
+            [
+                found.parameters.coulomb_friction_nm,
+                found.standard_errors.coulomb_friction_nm,
+            ]
         })
         .collect();
-    let mean = |values: &dyn Fn(&[f64; 2]) -> f64| found.iter().map(values).sum::<f64>() / found.len() as f64;
+    let mean = |values: &dyn Fn(&[f64; 2]) -> f64| {
+        found.iter().map(values).sum::<f64>() / found.len() as f64
+    };
     let center_nm = mean(&|f| f[0]);
-    let spread_nm = (mean(&|f| (f[0] - center_nm).powi(2)) * seeds as f64 / (seeds - 1) as f64).sqrt();
+    let spread_nm =
+        (mean(&|f| (f[0] - center_nm).powi(2)) * seeds as f64 / (seeds - 1) as f64).sqrt();
     let stated_nm = mean(&|f| f[1]);
-    assert!(stated_nm < SPREAD * spread_nm && spread_nm < SPREAD * stated_nm, "{spread_nm} {stated_nm}");
-    assert!((center_nm / file.coulomb_friction_nm - 1.0).abs() < 0.2, "{center_nm}");
+    assert!(
+        stated_nm < SPREAD * spread_nm && spread_nm < SPREAD * stated_nm,
+        "{spread_nm} {stated_nm}"
+    );
+    assert!(
+        (center_nm / file.coulomb_friction_nm - 1.0).abs() < 0.2,
+        "{center_nm}"
+    );
 }
 
 /// Linear least squares on the torque that the law makes of measured positions.
-fn equation_error(recording: &Recording<2>, axis: usize, settings: &DriveSettings) -> AxisParameters {
-    let DriveSettings { rad_per_mm, kp_1_s, kd, kv_nm_s_per_rad, torque_limit_nm, periods, .. } = *settings;
+fn equation_error(
+    recording: &Recording<2>,
+    axis: usize,
+    settings: &DriveSettings,
+) -> AxisParameters {
+    let DriveSettings {
+        rad_per_mm,
+        kp_1_s,
+        kd,
+        kv_nm_s_per_rad,
+        torque_limit_nm,
+        periods,
+        ..
+    } = *settings;
     // The inertia is in the drive's feedforward alone, where it cancels.
     let parameters = Parameters {
         rad_per_mm,
@@ -201,7 +260,12 @@ fn equation_error(recording: &Recording<2>, axis: usize, settings: &DriveSetting
             };
             let mean_nm = (0..per_servo).map(torque_nm).sum::<f64>() / f64::from(per_servo);
             let speed = (at(k + 1) - at(k)) / periods.servo_s;
-            let row = SVector::from([(last - first) / periods.servo_s, speed, (speed / 0.05).tanh(), 1.0]);
+            let row = SVector::from([
+                (last - first) / periods.servo_s,
+                speed,
+                (speed / 0.05).tanh(),
+                1.0,
+            ]);
             matrix += row * row.transpose();
             right += row * mean_nm;
         }
@@ -217,12 +281,22 @@ fn equation_error(recording: &Recording<2>, axis: usize, settings: &DriveSetting
     }
 }
 
-/// Its x axis was once no law: without friction for a moment, presliding changes nothing, and the search took that for an axis that does not move.
+/// Its x axis was once no law: without friction for a moment, presliding changes nothing, and the
+/// search took that for an axis that does not move.
 #[test]
 fn a_search_that_comes_by_no_friction_goes_on() {
-    let machine = Machine::parse("stiff.toml", include_str!("common/stiff_by_its_log.toml")).unwrap();
+    let machine =
+        Machine::parse("stiff.toml", include_str!("common/stiff_by_its_log.toml")).unwrap();
     let known = machine.known();
     let (recording, _) = Excitation::axis_parameters(&machine).record::<3>(&machine, 1);
-    let found = identify_axis(&recording, 0, &DriveSettings::of(known.axis(0), &known.period)).unwrap();
-    assert!((found.parameters.inertia_kg_m2 / machine.axes[0].inertia_kg_m2 - 1.0).abs() < 0.01, "{found:?}");
+    let found = identify_axis(
+        &recording,
+        0,
+        &DriveSettings::of(known.axis(0), &known.period),
+    )
+    .unwrap();
+    assert!(
+        (found.parameters.inertia_kg_m2 / machine.axes[0].inertia_kg_m2 - 1.0).abs() < 0.01,
+        "{found:?}"
+    );
 }

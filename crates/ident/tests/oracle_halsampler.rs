@@ -1,7 +1,8 @@
-//! What LinuxCNC's `halsampler` records is read without options: commands and actual positions; a feedback that is not connected, and one
-//! that is the command itself, are refused.
+//! What LinuxCNC's `halsampler` records is read without options: commands and actual positions; a
+//! feedback that is not connected, and one that is the command itself, are refused.
 //!
-//! The recording is made here, by LinuxCNC's HAL without its motion controller: a generator is the command, a filter behind it the axis.
+//! The recording is made here, by LinuxCNC's HAL without its motion controller: a generator is the
+//! command, a filter behind it the axis.
 
 use std::os::unix::fs::{MetadataExt, PermissionsExt, chown};
 use std::path::Path;
@@ -11,13 +12,16 @@ use feedwright_ident::{Columns, Log, LogFormat, RefusalReason};
 
 /// Samples, one a millisecond.
 const SAMPLES: usize = 1500;
-/// Samples that HAL keeps until `halsampler` fetches them: it may be late by a minute on a busy machine.
+/// Samples that HAL keeps until `halsampler` fetches them: it may be late by a minute on a busy
+/// machine.
 const KEPT: usize = 60_000;
 /// How long another HAL may go on before this one starts, s.
 const TURN_S: u32 = 200;
-/// How often a recording is tried: without a real-time kernel HAL may fail to start on a busy machine.
+/// How often a recording is tried: without a real-time kernel HAL may fail to start on a busy
+/// machine.
 const TRIALS: usize = 3;
-/// Part of the way to its input that the filter goes in a period: its output is behind by (1 - g) / g periods.
+/// Part of the way to its input that the filter goes in a period: its output is behind by (1 - g) /
+/// g periods.
 const GAIN: f64 = 0.05;
 /// Whom HAL runs as where it is started by root.
 const NOBODY: u32 = 65534;
@@ -56,7 +60,11 @@ fn recorded(folder: &Path) -> Option<String> {
         std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755)).unwrap();
         command.env("RTAPI_UID", NOBODY.to_string());
     }
-    let has_run = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    let has_run = command
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status();
     has_run.ok().filter(|status| status.success())?;
     let text = std::fs::read_to_string(folder.join("log.txt")).ok()?;
     (text.lines().count() == SAMPLES).then_some(text)
@@ -75,7 +83,10 @@ fn columns(text: &str, wanted: [usize; 3]) -> String {
 fn a_recording_of_halsampler_is_read_without_options() {
     let folder = tempfile::tempdir().unwrap();
     let Some(text) = record(folder.path()) else {
-        assert!(std::env::var_os("CI").is_none(), "halrun of LinuxCNC is missing, or does not run");
+        assert!(
+            std::env::var_os("CI").is_none(),
+            "halrun of LinuxCNC is missing, or does not run"
+        );
         eprintln!("SKIPPED: no halrun of LinuxCNC, or it does not run");
         return;
     };
@@ -85,17 +96,26 @@ fn a_recording_of_halsampler_is_read_without_options() {
         Log::read(&path, &Columns::default())
     };
     let log = read("", [0, 1, 2]).unwrap();
-    assert_eq!((log.format, log.sample_time_s, log.axes.len()), (LogFormat::Halsampler, 1e-3, 1));
+    assert_eq!(
+        (log.format, log.sample_time_s, log.axes.len()),
+        (LogFormat::Halsampler, 1e-3, 1)
+    );
     // By (1 - g) / g periods: 19 ms.
     let axis = &log.axes[0];
     let behind = (1.0 - GAIN) / GAIN;
     let speed = |k: usize| 0.5 * (axis.command_mm[k + 1] - axis.command_mm[k - 1]);
-    let fast = (200..SAMPLES - 1).max_by(|&a, &b| speed(a).abs().total_cmp(&speed(b).abs())).unwrap();
+    let fast = (200..SAMPLES - 1)
+        .max_by(|&a, &b| speed(a).abs().total_cmp(&speed(b).abs()))
+        .unwrap();
     let lag = (axis.command_mm[fast] - axis.actual_mm[fast]) / speed(fast);
     assert!((lag - behind).abs() < 0.5, "{lag} periods");
     // A pin that never changes is no position by itself: the names say that it should be one.
     for (head, not_connected) in [("", [0, 1, 3]), ("# n x.cmd x.act\n", [0, 1, 4])] {
         let error = read(head, not_connected).unwrap_err();
-        assert_eq!(error.reasons(), [RefusalReason::FeedbackNotConnected], "{error}");
+        assert_eq!(
+            error.reasons(),
+            [RefusalReason::FeedbackNotConnected],
+            "{error}"
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! Whatever a file holds, reading it gives a log or a message, and a log is what its description says.
+//! Whatever a file holds, reading it gives a log or a message, and a log is what its description
+//! says.
 
 use crate::logs::{axis, read, rows, time_s};
 use feedwright_ident::Log;
@@ -9,21 +10,47 @@ fn check(log: &Log) {
     let rows = log.time_s.len();
     assert!(log.sample_time_s > 0.0 && log.sample_time_s.is_finite());
     assert!(!log.axes.is_empty() && log.axes.len() <= feedwright_ident::MAX_AXES);
-    assert_eq!(log.stretches.iter().map(ExactSizeIterator::len).sum::<usize>(), rows);
-    assert!(log.stretches.windows(2).all(|pair| pair[0].end == pair[1].start && !pair[0].is_empty()));
+    assert_eq!(
+        log.stretches
+            .iter()
+            .map(ExactSizeIterator::len)
+            .sum::<usize>(),
+        rows
+    );
+    assert!(
+        log.stretches
+            .windows(2)
+            .all(|pair| pair[0].end == pair[1].start && !pair[0].is_empty())
+    );
     assert!(log.time_s.windows(2).all(|pair| pair[1] > pair[0]));
     for axis in &log.axes {
         assert_eq!([axis.command_mm.len(), axis.actual_mm.len()], [rows; 2]);
-        assert!(axis.command_mm.iter().chain(&axis.actual_mm).all(|value| value.is_finite()));
-        assert!(axis.torque.as_ref().is_none_or(|torque| torque.len() == rows));
+        assert!(
+            axis.command_mm
+                .iter()
+                .chain(&axis.actual_mm)
+                .all(|value| value.is_finite())
+        );
+        assert!(
+            axis.torque
+                .as_ref()
+                .is_none_or(|torque| torque.len() == rows)
+        );
     }
-    assert!(log.findings.iter().all(|finding| !finding.to_string().contains('\n')));
+    assert!(
+        log.findings
+            .iter()
+            .all(|finding| !finding.to_string().contains('\n'))
+    );
 }
 
 /// Lines as logs have them, and as they should not have them.
 fn line() -> impl Strategy<Value = String> {
     let number = (-9999..10_000_i32, 0..=6_usize, any::<u32>());
-    let letters = prop::collection::vec(prop::sample::select(&b"abcdefghijklmnopqrstuvwxyz."[..]), 0..6);
+    let letters = prop::collection::vec(
+        prop::sample::select(&b"abcdefghijklmnopqrstuvwxyz."[..]),
+        0..6,
+    );
     let field = prop_oneof![
         4 => number.prop_map(|(whole, digits, part)| {
             if digits == 0 { whole.to_string() } else { format!("{whole}.{:0digits$}", part % 10_u32.pow(digits as u32)) }
@@ -32,7 +59,10 @@ fn line() -> impl Strategy<Value = String> {
         1 => Just("nan".to_owned()),
         1 => Just("1e400".to_owned()),
     ];
-    let row = (prop::collection::vec(field, 0..6), prop_oneof![Just(","), Just(";"), Just("\t"), Just(" ")]);
+    let row = (
+        prop::collection::vec(field, 0..6),
+        prop_oneof![Just(","), Just(";"), Just("\t"), Just(" ")],
+    );
     prop_oneof![
         6 => row.prop_map(|(fields, delimiter)| fields.join(delimiter)),
         1 => Just("overrun".to_owned()),

@@ -4,14 +4,23 @@ use std::slice::from_ref;
 
 use crate::sweep::part_or_whole;
 use feedwright_ident::{
-    AxisFacts, AxisRecord, FoundAxis, GreyBoxOptions, LawTerm, LawVerdict, NotFound, SearchBound, identify_machine,
+    AxisFacts, AxisRecord, FoundAxis, GreyBoxOptions, LawTerm, LawVerdict, NotFound, SearchBound,
+    identify_machine,
 };
 
 /// Kp Kv / J, 1/s2, (Kv + B) / J, 1/s, and Fc / J, mm/s2, of the axis that is recorded.
 const LAW: [f64; 3] = [8000.0, 160.0, 50.0];
 /// Ends of strokes, mm, and their speeds, mm/s.
-const STROKES: [[f64; 2]; 8] =
-    [[15.0, 100.0], [0.0, 100.0], [8.0, 20.0], [0.0, 60.0], [15.0, 40.0], [3.0, 10.0], [12.0, 80.0], [0.0, 30.0]];
+const STROKES: [[f64; 2]; 8] = [
+    [15.0, 100.0],
+    [0.0, 100.0],
+    [8.0, 20.0],
+    [0.0, 60.0],
+    [15.0, 40.0],
+    [3.0, 10.0],
+    [12.0, 80.0],
+    [0.0, 30.0],
+];
 const ACCEL_MM_S2: f64 = 1500.0;
 const REST_S: f64 = 0.2;
 /// Steps of the integration in a sample.
@@ -24,7 +33,10 @@ fn command_mm(sample_s: f64, samples: usize) -> Vec<f64> {
         let from_mm = way_mm[way_mm.len() - 1];
         let (length_mm, way): (f64, f64) = ((end_mm - from_mm).abs(), (end_mm - from_mm).signum());
         let peak_mm_s = speed_mm_s.min((ACCEL_MM_S2 * length_mm).sqrt());
-        let (ramp_s, time_s) = (peak_mm_s / ACCEL_MM_S2, length_mm / peak_mm_s + peak_mm_s / ACCEL_MM_S2);
+        let (ramp_s, time_s) = (
+            peak_mm_s / ACCEL_MM_S2,
+            length_mm / peak_mm_s + peak_mm_s / ACCEL_MM_S2,
+        );
         let gone_mm = |t: f64| match time_s - t {
             left if left <= 0.0 => length_mm,
             left if left < ramp_s => length_mm - 0.5 * ACCEL_MM_S2 * left * left,
@@ -49,7 +61,9 @@ fn actual_mm(command_mm: &[f64], sample_s: f64) -> Vec<f64> {
     let follow = |&command_mm: &f64| {
         let before_mm = at_mm;
         for _ in 0..STEPS {
-            let force = gain * (command_mm - at_mm) - damping * speed_mm_s - friction * (speed_mm_s / 0.1).tanh();
+            let force = gain * (command_mm - at_mm)
+                - damping * speed_mm_s
+                - friction * (speed_mm_s / 0.1).tanh();
             speed_mm_s += step_s * force;
             at_mm += step_s * speed_mm_s;
         }
@@ -58,26 +72,47 @@ fn actual_mm(command_mm: &[f64], sample_s: f64) -> Vec<f64> {
     command_mm.iter().map(follow).collect()
 }
 
-/// What is found of a record whose actual positions are so many samples later than its commands, beside what the axis makes.
-fn found(sample_s: f64, seconds: f64, late: isize, facts: AxisFacts) -> Result<FoundAxis, NotFound> {
+/// What is found of a record whose actual positions are so many samples later than its commands,
+/// beside what the axis makes.
+fn found(
+    sample_s: f64,
+    seconds: f64,
+    late: isize,
+    facts: AxisFacts,
+) -> Result<FoundAxis, NotFound> {
     let all_mm = command_mm(sample_s, (seconds / sample_s) as usize);
     let actual_mm = actual_mm(&all_mm, sample_s);
     let cut = late.unsigned_abs();
     let kept = all_mm.len() - cut;
-    let [command_mm, actual_mm] =
-        if late < 0 { [&all_mm[..kept], &actual_mm[cut..]] } else { [&all_mm[cut..], &actual_mm[..kept]] };
+    let [command_mm, actual_mm] = if late < 0 {
+        [&all_mm[..kept], &actual_mm[cut..]]
+    } else {
+        [&all_mm[cut..], &actual_mm[..kept]]
+    };
     let stretches = 0..kept;
-    let record =
-        AxisRecord { name: "x", sample_s, stretches: from_ref(&stretches), command_mm, actual_mm, step_mm: 1e-5 };
+    let record = AxisRecord {
+        name: "x",
+        sample_s,
+        stretches: from_ref(&stretches),
+        command_mm,
+        actual_mm,
+        step_mm: 1e-5,
+    };
     let time_s: Vec<f64> = (0..kept).map(|k| k as f64 * sample_s).collect();
-    let options = GreyBoxOptions { facts: vec![facts], ..GreyBoxOptions::default() };
+    let options = GreyBoxOptions {
+        facts: vec![facts],
+        ..GreyBoxOptions::default()
+    };
     let mut machine = identify_machine(&[record], &[None], &time_s, &options, |_| true)?;
     Ok(machine.axes.remove(0))
 }
 
 /// Whether the verdict lets the law be used.
 fn holds(axis: &FoundAxis) -> bool {
-    matches!(LawVerdict::of(axis), LawVerdict::LawHolds | LawVerdict::LinearSuffices)
+    matches!(
+        LawVerdict::of(axis),
+        LawVerdict::LawHolds | LawVerdict::LinearSuffices
+    )
 }
 
 /// The largest part by which the two gains are off.
@@ -89,7 +124,8 @@ fn off(axis: &FoundAxis) -> f64 {
 /// The gains of a record of 3 ms are known to this part: the axis is sampled coarsely.
 const GAINS: f64 = 0.1;
 
-/// A search that ended at 0.1 s gave 4,174 1/s2 of 8,000 for a record that is 0.105 s late, and said that the law holds.
+/// A search that ended at 0.1 s gave 4,174 1/s2 of 8,000 for a record that is 0.105 s late, and
+/// said that the law holds.
 #[test]
 fn a_record_that_is_a_tenth_of_a_second_late_gives_the_law_of_the_axis() {
     let all = [(0.003, 9.0, 35), (0.003, 9.0, 80), (0.002, 6.0, 75)];
@@ -97,7 +133,10 @@ fn a_record_that_is_a_tenth_of_a_second_late_gives_the_law_of_the_axis() {
         let axis = found(sample_s, seconds, late, AxisFacts::default()).unwrap();
         let wanted_s = late as f64 * sample_s;
         let late_s = axis.law().get(LawTerm::RecordDelay);
-        assert!((late_s - wanted_s).abs() < 2e-3, "{late_s} s, not {wanted_s} s");
+        assert!(
+            (late_s - wanted_s).abs() < 2e-3,
+            "{late_s} s, not {wanted_s} s"
+        );
         assert!(off(&axis) < GAINS, "{late_s} s late: {:?}", axis.law());
         assert!(axis.at_bounds.is_empty(), "{:?}", axis.at_bounds);
     }
@@ -106,7 +145,10 @@ fn a_record_that_is_a_tenth_of_a_second_late_gives_the_law_of_the_axis() {
 /// A law with a value at an end of its search held, however wrong its other values were.
 #[test]
 fn a_value_that_ends_where_its_search_ends_never_holds() {
-    let on_time = AxisFacts { record_delay_s: Some(0.0), ..AxisFacts::default() };
+    let on_time = AxisFacts {
+        record_delay_s: Some(0.0),
+        ..AxisFacts::default()
+    };
     let all = [
         // Actual positions before their commands.
         (-3, AxisFacts::default(), LawTerm::RecordDelay),
@@ -119,9 +161,13 @@ fn a_value_that_ends_where_its_search_ends_never_holds() {
         assert!(off(&axis) > GAINS, "{late}: {:?}", axis.law());
         assert!(!holds(&axis), "{late}: {:?}", axis.law());
         let bound = axis.at_bounds.iter().find(|bound| bound.term == at);
-        let SearchBound { value, .. } = bound.unwrap_or_else(|| panic!("{late}: {:?}", axis.at_bounds));
+        let SearchBound { value, .. } =
+            bound.unwrap_or_else(|| panic!("{late}: {:?}", axis.at_bounds));
         let words = LawVerdict::of(&axis).words(&axis);
         let unit = format!("{value:.4} s, where its search ends");
-        assert!(words.contains(&unit) && words.contains(bound.unwrap().remedy()), "{words}");
+        assert!(
+            words.contains(&unit) && words.contains(bound.unwrap().remedy()),
+            "{words}"
+        );
     }
 }

@@ -1,13 +1,15 @@
 //! Feed plan: speed over the arc length of the planned path, and so over plan time.
 //!
-//! A [`FeedPlanner`] is given the planned path piece by piece: curves with their derivatives by arc length
-//! ([`Curve::derivatives`](crate::path::Curve::derivatives)), programmed feedrates and corners, under the [`Constraints`] of the
-//! machine, those of the path and those of each axis. It answers with [`Span`]s of constant jerk; [`plan::Plan`] puts them on the
-//! clock as [`Phase`]s, with the events between them.
+//! A [`FeedPlanner`] is given the planned path piece by piece: curves with their derivatives by arc
+//! length ([`Curve::derivatives`](crate::path::Curve::derivatives)), programmed feedrates and
+//! corners, under the [`Constraints`] of the machine, those of the path and those of each axis. It
+//! answers with [`Span`]s of constant jerk; [`plan::Plan`] puts them on the clock as [`Phase`]s,
+//! with the events between them.
 //!
-//! Planners are a family: this file has the contract and the table [`FEED_PLANNERS`], each member one file. Those that need no more than
-//! a bound on the square of the speed take the path as [`sections::Section`]s. Those that choose the path too, within its tolerance,
-//! say with each span what the axes do ([`AxisMotion`]).
+//! Planners are a family: this file has the contract and the table [`FEED_PLANNERS`], each member
+//! one file. Those that need no more than a bound on the square of the speed take the path as
+//! [`sections::Section`]s. Those that choose the path too, within its tolerance, say with each span
+//! what the axes do ([`AxisMotion`]).
 //!
 //! | File | What |
 //! |---|---|
@@ -49,15 +51,26 @@ pub struct AxisMotion {
 
 impl AxisMotion {
     /// At rest in the origin.
-    pub const REST: Self =
-        Self { position_mm: [0.0; 3], velocity_mm_s: [0.0; 3], accel_mm_s2: [0.0; 3], jerk_mm_s3: [0.0; 3] };
+    pub const REST: Self = Self {
+        position_mm: [0.0; 3],
+        velocity_mm_s: [0.0; 3],
+        accel_mm_s2: [0.0; 3],
+        jerk_mm_s3: [0.0; 3],
+    };
 
     /// The same motion from `t` seconds later on.
     #[inline]
     pub fn after(&self, t: f64) -> Self {
-        let Self { position_mm: p, velocity_mm_s: v, accel_mm_s2: a, jerk_mm_s3: j } = self;
+        let Self {
+            position_mm: p,
+            velocity_mm_s: v,
+            accel_mm_s2: a,
+            jerk_mm_s3: j,
+        } = self;
         Self {
-            position_mm: std::array::from_fn(|k| p[k] + t * (v[k] + t * (0.5 * a[k] + t * j[k] / 6.0))),
+            position_mm: std::array::from_fn(|k| {
+                p[k] + t * (v[k] + t * (0.5 * a[k] + t * j[k] / 6.0))
+            }),
             velocity_mm_s: std::array::from_fn(|k| v[k] + t * (a[k] + 0.5 * t * j[k])),
             accel_mm_s2: std::array::from_fn(|k| a[k] + t * j[k]),
             jerk_mm_s3: *j,
@@ -80,8 +93,8 @@ pub struct Span {
     pub accel_mm_s2: f64,
     /// Jerk.
     pub jerk_mm_s3: f64,
-    /// Where the motion leaves the piece within its tolerance: what the axes do, while the values above say which place of the piece
-    /// stands for each moment.
+    /// Where the motion leaves the piece within its tolerance: what the axes do, while the values
+    /// above say which place of the piece stands for each moment.
     pub motion: Option<AxisMotion>,
 }
 
@@ -116,7 +129,8 @@ impl Phase {
         self.from_mm + along_s * (self.speed_mm_s + along_s * bend)
     }
 
-    /// Speed after `along_s` of the phase: `v + a t + j t^2 / 2`; rounding does not take it below zero.
+    /// Speed after `along_s` of the phase: `v + a t + j t^2 / 2`; rounding does not take it below
+    /// zero.
     #[inline]
     pub fn speed_mm_s(&self, along_s: f64) -> f64 {
         (self.speed_mm_s + along_s * (self.accel_mm_s2 + 0.5 * self.jerk_mm_s3 * along_s)).max(0.0)
@@ -134,10 +148,11 @@ pub struct TimedEvent {
     pub event: Event,
 }
 
-/// Plans speeds over the pieces of a path: from rest before the first to rest after the last, with bounded look-ahead.
+/// Plans speeds over the pieces of a path: from rest before the first to rest after the last, with
+/// bounded look-ahead.
 ///
-/// Spans come out as soon as no later piece can change them, in order, without gaps; they are the same however the calls
-/// of `pop` are spread over the calls of `push`.
+/// Spans come out as soon as no later piece can change them, in order, without gaps; they are the
+/// same however the calls of `pop` are spread over the calls of `push`.
 pub trait FeedPlanner: Send {
     /// Adds a piece behind those before; where it starts `from_rest`, so does the motion.
     fn push(&mut self, piece: &Piece, from_rest: bool);
@@ -154,8 +169,16 @@ pub trait FeedPlanner: Send {
 /// A cutting piece has its programmed feedrate, capped at the machine's largest feedrate. A rapid
 /// has the rapid speed. The axes that move along may lower both.
 pub fn feed_mm_s(piece: &Piece, constraints: &Constraints) -> f64 {
-    let PathLimits { max_feed_mm_s, rapid_mm_s, .. } = constraints.path;
-    let feed_mm_s = if piece.cutting { piece.feed_mm_s.min(max_feed_mm_s) } else { rapid_mm_s };
+    let PathLimits {
+        max_feed_mm_s,
+        rapid_mm_s,
+        ..
+    } = constraints.path;
+    let feed_mm_s = if piece.cutting {
+        piece.feed_mm_s.min(max_feed_mm_s)
+    } else {
+        rapid_mm_s
+    };
     feed_mm_s.min(constraints.along_mm_s(piece.turn_deg_mm, piece.further_mm_mm))
 }
 
@@ -166,7 +189,8 @@ pub struct FeedMember {
     pub name: &'static str,
     /// What it does, for lists.
     pub about: &'static str,
-    /// Whether it needs velocity, acceleration and jerk of each axis; otherwise it keeps the bounds along and across the path.
+    /// Whether it needs velocity, acceleration and jerk of each axis; otherwise it keeps the bounds
+    /// along and across the path.
     pub needs_axes: bool,
     /// Whether it keeps the jerk of each axis.
     pub limits_jerk: bool,
@@ -209,8 +233,8 @@ pub const FEED_PLANNERS: &[FeedMember] = &[
     },
 ];
 
-/// The bound that `time-optimal` is measured by: each path from rest to rest as a whole, with the tolerance held at nodes only. Memory
-/// grows with the program, so it is no member.
+/// The bound that `time-optimal` is measured by: each path from rest to rest as a whole, with the
+/// tolerance held at nodes only. Memory grows with the program, so it is no member.
 pub const WHOLE_PROGRAM: FeedMember = FeedMember {
     name: "whole",
     about: "time-optimal, each path from rest to rest as a whole",

@@ -44,8 +44,8 @@
 //! | Events | [`Plc`], [`Durations`], [`PlcEvent`], [`TimedEvent`] |
 //! | Feed override | [`TimeScaling`], [`ScalingLimits`], [`PublishedPlan`], [`shortest_stop_mm`] |
 //!
-//! The table [`FEED_PLANNERS`] lists what can be chosen for the speed along the path. Its first row is
-//! the default.
+//! The table [`FEED_PLANNERS`] lists what can be chosen for the speed along the path. Its first row
+//! is the default.
 //!
 //! # Units
 //!
@@ -78,7 +78,8 @@ mod feed;
 pub use constraints::speed_caps::SpeedCaps;
 pub use constraints::{AxisLimits, Constraints, LimitsError, PathLimits};
 pub use feed::feed_override::{
-    MOST_OVERRIDE, PublishedPlan, PublishedSpan, ScaledStep, ScalingLimits, TimeScaling, shortest_stop_mm,
+    MOST_OVERRIDE, PublishedPlan, PublishedSpan, ScaledStep, ScalingLimits, TimeScaling,
+    shortest_stop_mm,
 };
 pub use feed::plan::{KeptPlan, Plan, PlanSink, Planned};
 pub use feed::sections::{Section, SectionPlanner};
@@ -86,12 +87,15 @@ pub use feed::time_optimal::{PlanCounts, TimeOptimal};
 pub use feed::trapezoid::Trapezoid;
 pub use feed::unlimited::Unlimited;
 pub use feed::{
-    AxisMotion, FEED_PLANNERS, FeedMember, FeedPlanner, Phase, Span, TimedEvent, WHOLE_PROGRAM, feed_mm_s, feed_planner,
+    AxisMotion, FEED_PLANNERS, FeedMember, FeedPlanner, Phase, Span, TimedEvent, WHOLE_PROGRAM,
+    feed_mm_s, feed_planner,
 };
 pub use paired::aligned::AlignedPaths;
 pub use paired::{PairedStep, PairedSteps, PlannedPiece, ProgrammedPart};
 pub use path::arc::Arc;
 pub use path::pieces::Pieces;
 pub use path::smooth::{Jet, Parametric, Smooth};
-pub use path::{Curve, MIN_FEED_MM_S, PathError, Piece, Point, Rest, Step, Steps, signed_distance_mm};
+pub use path::{
+    Curve, MIN_FEED_MM_S, PathError, Piece, Point, Rest, Step, Steps, signed_distance_mm,
+};
 pub use plc::{Durations, EventName, Plc, PlcEvent, named};

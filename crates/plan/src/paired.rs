@@ -1,8 +1,9 @@
 //! The planned path beside the programmed one.
 //!
-//! What is planned need not be what is programmed: a correction commands another path. Both paths go on from here. The command
-//! runs along the planned one; contour errors are measured to the programmed one. Each planned piece says for which part of the
-//! programmed path it stands ([`ProgrammedPart`]), so that line, arc length and contour error of a plan time are those of the
+//! What is planned need not be what is programmed: a correction commands another path. Both paths
+//! go on from here. The command runs along the planned one; contour errors are measured to the
+//! programmed one. Each planned piece says for which part of the programmed path it stands
+//! ([`ProgrammedPart`]), so that line, arc length and contour error of a plan time are those of the
 //! program.
 //!
 //! | File | What |
@@ -20,7 +21,8 @@ use crate::path::{PathError, Piece, Rest};
 /// A piece of the planned path.
 #[derive(Debug, Clone)]
 pub struct PlannedPiece {
-    /// Curve, feedrate and what else the program says; its `s_mm` is the arc length of the planned path.
+    /// Curve, feedrate and what else the program says; its `s_mm` is the arc length of the planned
+    /// path.
     pub piece: Piece,
     /// For which part of the programmed path it stands.
     pub origin: ProgrammedPart,
@@ -43,9 +45,11 @@ pub enum ProgrammedPart {
 /// One step of both paths.
 #[derive(Debug, Clone)]
 pub enum PairedStep {
-    /// The next piece of the programmed path. It comes before all planned pieces that stand for a part of it.
+    /// The next piece of the programmed path. It comes before all planned pieces that stand for a
+    /// part of it.
     Programmed(Piece),
-    /// The next piece of the planned path; where the tool does not stop, it begins where the one before ended.
+    /// The next piece of the planned path; where the tool does not stop, it begins where the one
+    /// before ended.
     Planned(PlannedPiece),
     /// Something else happens.
     Event(Event),

@@ -1,8 +1,8 @@
 //! Path: exact curves by arc length.
 //!
-//! A motion of the program becomes one or more [`Piece`]s, each an exact [`Curve`] over its own arc length `s` in mm,
-//! from 0 to its length. No curve is replaced by chords: positions, tangents and curvatures are those of the programmed
-//! curve, and the nearest point is exact to 1e-9 mm.
+//! A motion of the program becomes one or more [`Piece`]s, each an exact [`Curve`] over its own arc
+//! length `s` in mm, from 0 to its length. No curve is replaced by chords: positions, tangents and
+//! curvatures are those of the programmed curve, and the nearest point is exact to 1e-9 mm.
 //!
 //! | File | What |
 //! |---|---|
@@ -27,20 +27,22 @@ use arc::Arc;
 use line::Line;
 use smooth::Smooth;
 
-/// Motions shorter than this vanish: 1 pm, a thousandth of what any encoder resolves; the next motion starts where the
-/// last kept one ended, so that nothing is lost or shifted.
+/// Motions shorter than this vanish: 1 pm, a thousandth of what any encoder resolves; the next
+/// motion starts where the last kept one ended, so that nothing is lost or shifted.
 pub(crate) const MIN_LENGTH_MM: f64 = 1e-9;
 
 /// A coordinate further out than this is refused: 1000 km, where a double still resolves 0.1 um.
 pub(crate) const MAX_COORDINATE_MM: f64 = 1e9;
 
-/// Two motions that should join may be this far apart; more is an error of whoever made the motions.
+/// Two motions that should join may be this far apart; more is an error of whoever made the
+/// motions.
 pub(crate) const MAX_GAP_MM: f64 = 1e-6;
 
 /// Feedrates below this are refused: 1 mm would take eleven days.
 pub const MIN_FEED_MM_S: f64 = 1e-6;
 
-/// The tool rests for no longer than this at a time, s: thirty years, beyond which plan time would lose its milliseconds.
+/// The tool rests for no longer than this at a time, s: thirty years, beyond which plan time would
+/// lose its milliseconds.
 pub(crate) const MAX_REST_S: f64 = 1e9;
 
 /// Signed length of `away_mm`, mm: negative if, seen along `tangent` in the XY plane, it points to
@@ -52,7 +54,11 @@ pub(crate) const MAX_REST_S: f64 = 1e9;
 pub fn signed_distance_mm(tangent: [f64; 3], away_mm: [f64; 3]) -> f64 {
     let left = tangent[0] * away_mm[1] - tangent[1] * away_mm[0];
     let distance_mm = norm(away_mm);
-    if left < 0.0 { -distance_mm } else { distance_mm }
+    if left < 0.0 {
+        -distance_mm
+    } else {
+        distance_mm
+    }
 }
 
 /// Position and unit tangent at one arc length.
@@ -64,9 +70,9 @@ pub struct Point {
     pub tangent: [f64; 3],
 }
 
-/// Derivatives of a curve by its arc length, for planners that bound what each axis does: with the speed v along the path and its
-/// acceleration a and jerk j, an axis has the velocity `p' v`, the acceleration `p'' v^2 + p' a` and the jerk
-/// `p''' v^3 + 3 p'' v a + p' j`.
+/// Derivatives of a curve by its arc length, for planners that bound what each axis does: with the
+/// speed v along the path and its acceleration a and jerk j, an axis has the velocity `p' v`, the
+/// acceleration `p'' v^2 + p' a` and the jerk `p''' v^3 + 3 p'' v a + p' j`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Derivatives {
     /// p': the unit tangent.
@@ -161,7 +167,8 @@ pub struct Piece {
     pub feed_mm_s: f64,
     /// How the corner at its end is taken.
     pub corner: Corner,
-    /// Largest angle that one of A, B and C turns in a millimetre of this piece, degrees/mm; 0 where none turns.
+    /// Largest angle that one of A, B and C turns in a millimetre of this piece, degrees/mm; 0
+    /// where none turns.
     pub turn_deg_mm: f64,
     /// Way of U, V and W in a millimetre of this piece, mm/mm; 0 where none moves.
     pub further_mm_mm: f64,
@@ -207,7 +214,9 @@ pub enum PathError {
         value_mm: f64,
     },
     /// The motion does not start where the one before ended.
-    #[error("line {line}: the motion starts {gap_mm} mm away from the end of the one before, limit {MAX_GAP_MM:e} mm")]
+    #[error(
+        "line {line}: the motion starts {gap_mm} mm away from the end of the one before, limit {MAX_GAP_MM:e} mm"
+    )]
     Gap {
         /// Line of the program.
         line: u32,

@@ -1,7 +1,7 @@
 //! The PLC and the spindle unit: how long tool changes, spindle and coolant hold the motion up.
 //!
-//! The CNC system of Lee, Cho and Jeon (2005), Fig. 1, has both beside the axes. Durations come from the machine file; a
-//! spindle speeds up and slows down at a constant rate.
+//! The CNC system of Lee, Cho and Jeon (2005), Fig. 1, has both beside the axes. Durations come
+//! from the machine file; a spindle speeds up and slows down at a constant rate.
 
 use feedwright_gcode::canon::EventKind;
 use serde::Serialize;
@@ -21,7 +21,8 @@ pub struct Durations {
     pub pallet_change_s: f64,
     /// Rate at which the spindle changes its speed, rev/min in a second; 0 is at once.
     pub spindle_rev_min_s: f64,
-    /// Most that a rotary axis A, B or C turns in a second, degrees; 0 is no limit, and at once in a rapid.
+    /// Most that a rotary axis A, B or C turns in a second, degrees; 0 is no limit, and at once in
+    /// a rapid.
     pub rotary_deg_s: f64,
 }
 
@@ -54,7 +55,12 @@ pub struct Plc {
 impl Plc {
     /// At rest, with these durations.
     pub const fn new(durations: Durations) -> Self {
-        Self { durations, events: Vec::new(), speed_rev_min: 0.0, spindle_rev_min: 0.0 }
+        Self {
+            durations,
+            events: Vec::new(),
+            speed_rev_min: 0.0,
+            spindle_rev_min: 0.0,
+        }
     }
 
     /// With M-codes that the machine builder gave a meaning and a duration.
@@ -72,7 +78,8 @@ impl Plc {
             EventKind::SpindleSpeed { rpm } => {
                 self.speed_rev_min = *rpm;
                 // A change of S under way goes on while the tool moves.
-                self.spindle_rev_min = self.spindle_rev_min.signum() * if self.runs() { *rpm } else { 0.0 };
+                self.spindle_rev_min =
+                    self.spindle_rev_min.signum() * if self.runs() { *rpm } else { 0.0 };
                 0.0
             }
             EventKind::MCode { code: 3, .. } => self.spin_to(self.speed_rev_min),
@@ -92,7 +99,11 @@ impl Plc {
 
     /// Rate at which a rotary axis turns at most, degrees/s; infinite without a limit.
     pub const fn most_deg_s(&self) -> f64 {
-        if self.durations.rotary_deg_s > 0.0 { self.durations.rotary_deg_s } else { f64::INFINITY }
+        if self.durations.rotary_deg_s > 0.0 {
+            self.durations.rotary_deg_s
+        } else {
+            f64::INFINITY
+        }
     }
 
     fn runs(&self) -> bool {
@@ -103,7 +114,11 @@ impl Plc {
     fn spin_to(&mut self, wanted_rev_min: f64) -> f64 {
         let change = (wanted_rev_min - self.spindle_rev_min).abs();
         self.spindle_rev_min = wanted_rev_min;
-        if self.durations.spindle_rev_min_s > 0.0 { change / self.durations.spindle_rev_min_s } else { 0.0 }
+        if self.durations.spindle_rev_min_s > 0.0 {
+            change / self.durations.spindle_rev_min_s
+        } else {
+            0.0
+        }
     }
 }
 
@@ -120,7 +135,11 @@ mod tests {
     };
 
     fn m(code: u16) -> EventKind {
-        EventKind::MCode { code, p: None, q: None }
+        EventKind::MCode {
+            code,
+            p: None,
+            q: None,
+        }
     }
 
     #[test]
@@ -146,22 +165,44 @@ mod tests {
     fn rotary_axes_turn_at_their_rate_or_at_once() {
         assert_eq!(Plc::new(DURATIONS).turn_s(90.0), 1.5);
         assert_eq!(Plc::default().turn_s(90.0), 0.0);
-        assert_eq!([Plc::new(DURATIONS).most_deg_s(), Plc::default().most_deg_s()], [60.0, f64::INFINITY]);
+        assert_eq!(
+            [
+                Plc::new(DURATIONS).most_deg_s(),
+                Plc::default().most_deg_s()
+            ],
+            [60.0, f64::INFINITY]
+        );
     }
 
     #[test]
     fn coolant_pallet_and_the_rest_take_what_the_file_says() {
         let mut plc = Plc::new(DURATIONS);
-        assert_eq!([7, 8, 9, 60, 0, 1].map(|code| plc.takes_s(&m(code))), [0.5, 0.5, 0.5, 10.0, 0.0, 0.0]);
+        assert_eq!(
+            [7, 8, 9, 60, 0, 1].map(|code| plc.takes_s(&m(code))),
+            [0.5, 0.5, 0.5, 10.0, 0.0, 0.0]
+        );
         assert_eq!(Plc::default().takes_s(&m(6)), 0.0);
     }
 
     #[test]
     fn what_the_builder_named_takes_what_the_builder_says() {
-        let event = |p, takes_s| PlcEvent { code: 64, p, row: "lamp".to_owned(), label: "on".to_owned(), takes_s };
+        let event = |p, takes_s| PlcEvent {
+            code: 64,
+            p,
+            row: "lamp".to_owned(),
+            label: "on".to_owned(),
+            takes_s,
+        };
         let mut plc = Plc::new(DURATIONS).with_events(&[event(None, 1.0), event(Some(3), 0.25)]);
-        let output = |p| EventKind::MCode { code: 64, p, q: None };
-        assert_eq!([Some(3.0), Some(2.0), None].map(|p| plc.takes_s(&output(p))), [0.25, 1.0, 1.0]);
+        let output = |p| EventKind::MCode {
+            code: 64,
+            p,
+            q: None,
+        };
+        assert_eq!(
+            [Some(3.0), Some(2.0), None].map(|p| plc.takes_s(&output(p))),
+            [0.25, 1.0, 1.0]
+        );
         assert_eq!(plc.takes_s(&m(65)), 0.0);
     }
 }

@@ -1,4 +1,5 @@
-//! Vectors: what the servo thread's crate has for N axes, and what only three dimensions, or only planning, need.
+//! Vectors: what the servo thread's crate has for N axes, and what only three dimensions, or only
+//! planning, need.
 
 pub use feedwright_control::vector::{add_scaled, dot, norm, scale, sub};
 
@@ -14,7 +15,11 @@ pub fn distance<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
 /// Vector product.
 #[inline]
 pub fn cross(a: Vector, b: Vector) -> Vector {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 /// Angle between two directions, 0 to pi; accurate at both ends, where an arc cosine is not.

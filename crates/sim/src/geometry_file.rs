@@ -1,14 +1,17 @@
-//! Geometry files: errors of the axes that no encoder sees, as they were measured, with the measurement itself.
+//! Geometry files: errors of the axes that no encoder sees, as they were measured, with the
+//! measurement itself.
 //!
-//! Position of the tool while the encoders are at q; d_i is the direction of travel of axis i, 1 or -1, and 0 where it is unknown:
+//! Position of the tool while the encoders are at q; d_i is the direction of travel of axis i, 1 or
+//! -1, and 0 where it is unknown:
 //!
 //! ```text
 //! t_i = q_i + e_i q_i + p_i sin(2 pi q_i / lead_i + phase_i) + T_i(q_i, d_i) - d_i b_i / 2 + sum over j of S_ij(q_j)
 //! x = t_x + a_xy q_y + a_xz q_z,   y = t_y + a_yz q_z,   z = t_z
 //! ```
 //!
-//! with scale e, pitch error p, table T (linear between its positions, constant beyond them), backlash b, straightness S_ij of axis j
-//! in direction i, and squareness a. The signs are those of machine files. Source: ISO 230-1 (2012), ISO 230-2 (2014).
+//! with scale e, pitch error p, table T (linear between its positions, constant beyond them),
+//! backlash b, straightness S_ij of axis j in direction i, and squareness a. The signs are those of
+//! machine files. Source: ISO 230-1 (2012), ISO 230-2 (2014).
 //!
 //! | File | What |
 //! |---|---|
@@ -45,7 +48,8 @@ const FILE_KIND: Kind = Kind {
     where_to_find: "'feedwright identify --geometry MEASUREMENT --machine MACHINE --out FILE.toml' writes one",
 };
 
-/// A geometry and the measurement that it was found from. A standard deviation of 0 is one that is not stated.
+/// A geometry and the measurement that it was found from. A standard deviation of 0 is one that is
+/// not stated.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct GeometryFile {
     /// Where it comes from.
@@ -56,7 +60,8 @@ pub struct GeometryFile {
     pub squareness: MeasuredSquareness,
     /// What the values were found from.
     pub measured: Vec<MeasuredSet>,
-    /// Parameters that were fitted to the measurement, nuisances such as the center of a ball bar included.
+    /// Parameters that were fitted to the measurement, nuisances such as the center of a ball bar
+    /// included.
     pub unknowns: u64,
 }
 
@@ -96,17 +101,20 @@ pub struct AxisGeometry {
     pub from_mm: f64,
     /// Greatest position that was measured, mm; not above the least where this is not known.
     pub to_mm: f64,
-    /// Further error: position (mm), and error in forward and in backward travel (um); positions rise.
+    /// Further error: position (mm), and error in forward and in backward travel (um); positions
+    /// rise.
     pub table: Vec<[f64; 3]>,
     /// Standard deviation of a value of the table, um.
     pub table_std_um: f64,
-    /// Error in direction x, y and z over the position of this axis: position (mm) and error (um). Its own direction is empty.
+    /// Error in direction x, y and z over the position of this axis: position (mm) and error (um).
+    /// Its own direction is empty.
     pub straightness: [Vec<[f64; 2]>; 3],
     /// Standard deviation of a value of straightness, um.
     pub straightness_std_um: f64,
 }
 
-/// Angles between the axes; positive where the angle between the positive directions is less than 90 degrees.
+/// Angles between the axes; positive where the angle between the positive directions is less than
+/// 90 degrees.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MeasuredSquareness {
     /// Of y to x.
@@ -123,12 +131,19 @@ pub struct MeasuredSquareness {
     pub squareness_yz_std_urad: f64,
 }
 
-/// Value of a function that is linear between its points and constant beyond them; 0 without points.
+/// Value of a function that is linear between its points and constant beyond them; 0 without
+/// points.
 fn interpolated(points: usize, at_mm: f64, point: impl Fn(usize) -> [f64; 2]) -> f64 {
-    let Some(last) = points.checked_sub(1) else { return 0.0 };
+    let Some(last) = points.checked_sub(1) else {
+        return 0.0;
+    };
     let above = (0..points).find(|&i| point(i)[0] > at_mm).unwrap_or(last);
     let ([x0, y0], [x1, y1]) = (point(above.saturating_sub(1)), point(above));
-    let part = if x1 > x0 { ((at_mm - x0) / (x1 - x0)).clamp(0.0, 1.0) } else { 0.0 };
+    let part = if x1 > x0 {
+        ((at_mm - x0) / (x1 - x0)).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
     y0 + part * (y1 - y0)
 }
 
@@ -137,12 +152,16 @@ impl AxisGeometry {
     fn own_um(&self, at_mm: f64, direction: f64) -> f64 {
         let scale_um = 1e-3 * self.scale_um_m * at_mm;
         let pitch_um = if self.lead_mm_per_rev > 0.0 {
-            self.pitch_error_um * libm::sin(TAU * at_mm / self.lead_mm_per_rev + self.pitch_phase_deg.to_radians())
+            self.pitch_error_um
+                * libm::sin(TAU * at_mm / self.lead_mm_per_rev + self.pitch_phase_deg.to_radians())
         } else {
             0.0
         };
-        let column =
-            |column: usize| interpolated(self.table.len(), at_mm, |i| [self.table[i][0], self.table[i][column]]);
+        let column = |column: usize| {
+            interpolated(self.table.len(), at_mm, |i| {
+                [self.table[i][0], self.table[i][column]]
+            })
+        };
         let [forward_um, backward_um] = [column(1), column(2)];
         let table_um = 0.5 * (forward_um * (1.0 + direction) + backward_um * (1.0 - direction));
         scale_um + pitch_um + table_um - 0.5 * direction * self.backlash_um
@@ -150,17 +169,23 @@ impl AxisGeometry {
 
     /// Whether no error of this axis is known.
     pub fn is_zero(&self) -> bool {
-        let own = [self.scale_um_m, self.pitch_error_um, self.backlash_um].iter().all(|value| *value == 0.0);
+        let own = [self.scale_um_m, self.pitch_error_um, self.backlash_um]
+            .iter()
+            .all(|value| *value == 0.0);
         own && self.table.is_empty() && self.straightness.iter().all(Vec::is_empty)
     }
 }
 
 impl GeometryFile {
-    /// Distance of the tool from where the encoders say it is, um: encoders at `at_mm`, axes that travel in `direction` (1, -1, or 0
-    /// where this is not known).
+    /// Distance of the tool from where the encoders say it is, um: encoders at `at_mm`, axes that
+    /// travel in `direction` (1, -1, or 0 where this is not known).
     pub fn error_um(&self, at_mm: [f64; 3], direction: [f64; 3]) -> [f64; 3] {
-        let MeasuredSquareness { squareness_xy_urad: xy, squareness_xz_urad: xz, squareness_yz_urad: yz, .. } =
-            self.squareness;
+        let MeasuredSquareness {
+            squareness_xy_urad: xy,
+            squareness_xz_urad: xz,
+            squareness_yz_urad: yz,
+            ..
+        } = self.squareness;
         let [_, y_mm, z_mm] = at_mm;
         let skew_um = [1e-3 * (xy * y_mm + xz * z_mm), 1e-3 * yz * z_mm, 0.0];
         std::array::from_fn(|i| {
@@ -180,7 +205,8 @@ impl GeometryFile {
         Self::parse(&input::name(path), &read_text(&FILE_KIND, path)?)
     }
 
-    /// A geometry from the text of a geometry file; `file` is its name in messages. [`GeometryFile::check`] tests the values.
+    /// A geometry from the text of a geometry file; `file` is its name in messages.
+    /// [`GeometryFile::check`] tests the values.
     ///
     /// # Errors
     /// Every fault found in the text, in one go.
@@ -192,7 +218,10 @@ impl GeometryFile {
 
     /// The text of a geometry file that reads as this geometry.
     pub fn text(&self) -> String {
-        let mut text = format!("format = {GEOMETRY_FORMAT}\n{}", write(keys::ORIGIN, &self.origin));
+        let mut text = format!(
+            "format = {GEOMETRY_FORMAT}\n{}",
+            write(keys::ORIGIN, &self.origin)
+        );
         for (axis, name) in self.axes.iter().zip(AXIS_NAMES) {
             let mut lines = write(keys::AXIS, axis);
             lines += &write_rows("table", axis.table.iter().map(<[f64; 3]>::as_slice));
@@ -212,7 +241,11 @@ impl GeometryFile {
         }
         for set in &self.measured {
             let rows = write_rows("rows", set.rows.iter().map(Vec::as_slice));
-            text += &format!("\n[measured.set.{}]\n{}{rows}", toml_file::quoted(&set.name), write(keys::SET, set));
+            text += &format!(
+                "\n[measured.set.{}]\n{}{rows}",
+                toml_file::quoted(&set.name),
+                write(keys::SET, set)
+            );
         }
         text
     }

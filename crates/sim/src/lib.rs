@@ -64,8 +64,9 @@
 //! # Layers
 //!
 //! The `mod` lines stand in the order in which data flows; each module uses only those above it.
-//! `machine` reads machine files, `geometry_file` measured geometry, `reference` looks the plan up by time, `plant` is the simulated
-//! machine, `trace` takes the rows, `simulate` closes the loop, and `pipeline` joins all stages.
+//! `machine` reads machine files, `geometry_file` measured geometry, `reference` looks the plan up
+//! by time, `plant` is the simulated machine, `trace` takes the rows, `simulate` closes the loop,
+//! and `pipeline` joins all stages.
 
 #![warn(clippy::disallowed_methods)]
 
@@ -86,14 +87,16 @@ mod pipeline;
 pub use geometry_file::check::{CHECK_ERROR_RATE, GeometryCheck, GeometryRefused};
 pub use geometry_file::least_squares::{RankedLeastSquares, f_exceeded};
 pub use geometry_file::observation::{MeasuredPlace, MeasuredSet, NUISANCES, Observation};
-pub use geometry_file::{AxisGeometry, GEOMETRY_FORMAT, GeometryFile, GeometryOrigin, MeasuredSquareness};
+pub use geometry_file::{
+    AxisGeometry, GEOMETRY_FORMAT, GeometryFile, GeometryOrigin, MeasuredSquareness,
+};
 pub use kinematics::joints_of;
 pub use known_geometry::CompensationError;
 #[doc(hidden)]
 pub use machine::keys as machine_keys;
 pub use machine::{
-    AXIS_NAMES, Axis, BUILT_IN_MACHINES, DEFAULT_MACHINE, Known, KnownAxis, Limits, MACHINE_FORMAT, Machine,
-    MachineError, Noise, Period, Squareness, Transmission, is_machine_path,
+    AXIS_NAMES, Axis, BUILT_IN_MACHINES, DEFAULT_MACHINE, Known, KnownAxis, Limits, MACHINE_FORMAT,
+    Machine, MachineError, Noise, Period, Squareness, Transmission, is_machine_path,
 };
 pub use number::{shown, to_four_digits};
 pub use parallel::map_in_parallel;

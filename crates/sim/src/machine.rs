@@ -1,9 +1,10 @@
 //! Machine files: what the simulated or real machine is, read from TOML and checked value by value.
 //!
-//! A machine is a file; `crates/sim/machines/tnv40.toml` explains every key beside its value. [`Machine::load`] takes the name of
-//! a machine that is built in or the path of a file. A later part of a machine (a compliant transmission, an encoder)
-//! is an optional table of the file: one struct here, one `Option` field in [`Machine`] or [`Axis`], one table in
-//! [`keys`], one reader in `layout`.
+//! A machine is a file; `crates/sim/machines/tnv40.toml` explains every key beside its value.
+//! [`Machine::load`] takes the name of a machine that is built in or the path of a file. A later
+//! part of a machine (a compliant transmission, an encoder) is an optional table of the file: one
+//! struct here, one `Option` field in [`Machine`] or [`Axis`], one table in [`keys`], one reader in
+//! `layout`.
 
 mod axis;
 mod error;
@@ -44,7 +45,8 @@ pub const BUILT_IN_MACHINES: &[(&str, &str)] = &[
     ("sinumerik", include_str!("../machines/sinumerik.toml")),
 ];
 
-/// What is cut on where nothing else is said: the built-in machine that is most like one that somebody has.
+/// What is cut on where nothing else is said: the built-in machine that is most like one that
+/// somebody has.
 pub const DEFAULT_MACHINE: &str = "workshop";
 
 /// Names of the axes, in the order of every `[f64; 3]` of this library.
@@ -78,13 +80,14 @@ pub struct Machine {
     /// The geometry that its control compensates, by [`Machine::compensating`]; no key of the file.
     #[serde(skip)]
     pub compensated: Option<Arc<KnownGeometry<3>>>,
-    /// Geometry that the tool has in place of what the axes and `geometry` state, by [`Machine::with_tool`]; no key of the file.
+    /// Geometry that the tool has in place of what the axes and `geometry` state, by
+    /// [`Machine::with_tool`]; no key of the file.
     #[serde(skip)]
     pub tool: Option<Arc<KnownGeometry<3>>>,
 }
 
-/// How far from square the axes are: table `[geometry]`, all zero without it. Positive where the angle between the positive
-/// directions is less than 90 degrees.
+/// How far from square the axes are: table `[geometry]`, all zero without it. Positive where the
+/// angle between the positive directions is less than 90 degrees.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Squareness {
     /// Of y to x, urad.
@@ -119,13 +122,24 @@ const MAX_SERVO_PERIODS: f64 = 12.0;
 impl Period {
     /// As the law of an axis takes them.
     pub fn periods(&self) -> Periods {
-        let Self { servo_s, mechanics_s, mechanics_per_servo } = *self;
-        Periods { servo_s, mechanics_s, mechanics_per_servo }
+        let Self {
+            servo_s,
+            mechanics_s,
+            mechanics_per_servo,
+        } = *self;
+        Periods {
+            servo_s,
+            mechanics_s,
+            mechanics_per_servo,
+        }
     }
 
-    /// Servo periods in a feed period of about `feed_period_s`: at least one, and no more than a preview has room for.
+    /// Servo periods in a feed period of about `feed_period_s`: at least one, and no more than a
+    /// preview has room for.
     pub fn servo_periods(&self, feed_period_s: f64) -> u32 {
-        (feed_period_s / self.servo_s).round().clamp(1.0, MAX_SERVO_PERIODS) as u32
+        (feed_period_s / self.servo_s)
+            .round()
+            .clamp(1.0, MAX_SERVO_PERIODS) as u32
     }
 }
 
@@ -147,8 +161,8 @@ pub struct Limits {
     /// How far a correction may raise the feedrate above the planned one, %; none is 200.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_feed_rise_percent: Option<f64>,
-    /// Largest distance of the planned path from the programmed one where the program says none (G64 without P), um; none is a planner
-    /// that keeps to the programmed path.
+    /// Largest distance of the planned path from the programmed one where the program says none
+    /// (G64 without P), um; none is a planner that keeps to the programmed path.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub path_tolerance_um: Option<f64>,
 }
@@ -157,17 +171,19 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
-/// The format of machine files that is read and written; a file that states none has it. It is raised whenever a file of before
-/// would be read otherwise.
+/// The format of machine files that is read and written; a file that states none has it. It is
+/// raised whenever a file of before would be read otherwise.
 pub const MACHINE_FORMAT: u64 = 1;
 
 impl Machine {
     /// A machine by the name of one that is built in, or by the path of a machine file.
     ///
-    /// Whatever ends in `.toml` or contains a path separator is a path, and so is `-`, the standard input.
+    /// Whatever ends in `.toml` or contains a path separator is a path, and so is `-`, the standard
+    /// input.
     ///
     /// # Errors
-    /// No such name or file, a file that cannot be read or is not text, and every fault found in its text.
+    /// No such name or file, a file that cannot be read or is not text, and every fault found in
+    /// its text.
     pub fn load(name_or_path: &OsStr) -> Result<Self, MachineError> {
         let path = Path::new(name_or_path);
         if is_machine_path(path) {
@@ -219,21 +235,33 @@ impl Machine {
 
     /// The text of a machine file that reads as this machine, without a base.
     pub fn text(&self) -> String {
-        let texts = [("name", &self.name), ("description", &self.description), ("source", &self.source)];
+        let texts = [
+            ("name", &self.name),
+            ("description", &self.description),
+            ("source", &self.source),
+        ];
         let mut text = format!("format = {MACHINE_FORMAT}\n");
-        text.extend(texts.iter().map(|(key, value)| format!("{key} = {}\n", quoted(value))));
+        text.extend(
+            texts
+                .iter()
+                .map(|(key, value)| format!("{key} = {}\n", quoted(value))),
+        );
         let mut table = |name: &str, lines: String| text += &format!("\n[{name}]\n{lines}");
         table("period", write(keys::PERIOD, &self.period));
         table("limits", write(keys::LIMITS, &self.limits));
         for (axis, name) in self.axes.iter().zip(AXIS_NAMES) {
             table(&format!("axis.{name}"), write(keys::AXIS, axis));
             if let Some(transmission) = &axis.transmission {
-                table(&format!("axis.{name}.transmission"), write(keys::TRANSMISSION, transmission));
+                table(
+                    &format!("axis.{name}.transmission"),
+                    write(keys::TRANSMISSION, transmission),
+                );
             }
         }
-        for (name, lines) in
-            [("geometry", write(keys::GEOMETRY, &self.geometry)), ("noise", write(keys::NOISE, &self.noise))]
-        {
+        for (name, lines) in [
+            ("geometry", write(keys::GEOMETRY, &self.geometry)),
+            ("noise", write(keys::NOISE, &self.noise)),
+        ] {
             if !lines.is_empty() {
                 table(name, lines);
             }
@@ -242,14 +270,18 @@ impl Machine {
         for event in &self.plc_events {
             let p = event.p.map_or(String::new(), |p| format!(" P{p}"));
             let [row, label] = [&event.row, &event.label].map(|value| quoted(value));
-            let lines = format!("row = {row}\nlabel = {label}\ntakes_s = {:?}\n", event.takes_s);
+            let lines = format!(
+                "row = {row}\nlabel = {label}\ntakes_s = {:?}\n",
+                event.takes_s
+            );
             table(&format!("plc.event.\"M{}{p}\"", event.code), lines);
         }
         text
     }
 
-    /// Name and text of a base: a built-in machine, or a file beside the one that names it. The name that a built-in machine gets here
-    /// is no file name, so a file `tnv40.toml` may build upon `tnv40`.
+    /// Name and text of a base: a built-in machine, or a file beside the one that names it. The
+    /// name that a built-in machine gets here is no file name, so a file `tnv40.toml` may build
+    /// upon `tnv40`.
     fn base_text(file: &str, base: &str) -> Result<(String, String), MachineError> {
         if let Some((name, text)) = BUILT_IN_MACHINES.iter().find(|(name, _)| *name == base) {
             return Ok((format!("built-in {name}"), (*text).to_owned()));
@@ -269,7 +301,10 @@ impl Machine {
     /// The same machine with other random numbers.
     #[must_use]
     pub fn with_noise_seed(&self, seed: u64) -> Self {
-        Self { noise: Noise { seed }, ..self.clone() }
+        Self {
+            noise: Noise { seed },
+            ..self.clone()
+        }
     }
 
     /// The law of the first N axes.
@@ -280,14 +315,19 @@ impl Machine {
     /// Whether each axis has limits of its own: then it is planned axis by axis.
     pub fn has_axis_limits(&self) -> bool {
         let limited = |axis: &Axis| {
-            axis.max_velocity_mm_s.is_some() && axis.max_accel_mm_s2.is_some() && axis.max_jerk_mm_s3.is_some()
+            axis.max_velocity_mm_s.is_some()
+                && axis.max_accel_mm_s2.is_some()
+                && axis.max_jerk_mm_s3.is_some()
         };
         self.axes.iter().all(limited)
     }
 
     /// The lowest gain of a position loop, 1/s.
     pub fn slowest_kp_1_s(&self) -> f64 {
-        self.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min)
+        self.axes
+            .iter()
+            .map(|axis| axis.kp_1_s)
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// Two or three.
@@ -300,19 +340,25 @@ impl Machine {
         &self.axes[i.min(self.axes.len() - 1)]
     }
 
-    /// Acceleration that a correction of the i-th axis may add to the plan's where it fades, mm/s2: as much as the plan itself has, where nothing
-    /// else is said.
+    /// Acceleration that a correction of the i-th axis may add to the plan's where it fades, mm/s2:
+    /// as much as the plan itself has, where nothing else is said.
     pub fn correction_accel_mm_s2(&self, i: usize) -> f64 {
         let axis = self.axis(i);
-        axis.correction_accel_mm_s2.or(axis.fade_accel_mm_s2).unwrap_or_else(|| self.turning_accel_mm_s2(i))
+        axis.correction_accel_mm_s2
+            .or(axis.fade_accel_mm_s2)
+            .unwrap_or_else(|| self.turning_accel_mm_s2(i))
     }
 
     /// Acceleration at which the plan turns the i-th axis round, mm/s2.
     pub(crate) fn turning_accel_mm_s2(&self, i: usize) -> f64 {
-        self.axis(i).max_accel_mm_s2.filter(|_| self.has_axis_limits()).unwrap_or(self.limits.normal_accel_mm_s2)
+        self.axis(i)
+            .max_accel_mm_s2
+            .filter(|_| self.has_axis_limits())
+            .unwrap_or(self.limits.normal_accel_mm_s2)
     }
 
-    /// Acceleration of the i-th axis that its command may have, mm/s2: the one that is stated, or the largest that its plan takes.
+    /// Acceleration of the i-th axis that its command may have, mm/s2: the one that is stated, or
+    /// the largest that its plan takes.
     pub fn accel_limit_mm_s2(&self, i: usize) -> f64 {
         let limits = &self.limits;
         let corner_mm_s2 = limits.corner_jump_mm_s / self.period.servo_s;
@@ -321,39 +367,61 @@ impl Machine {
         self.axis(i).max_accel_mm_s2.unwrap_or(planned_mm_s2)
     }
 
-    /// Acceleration that the owner allows the offset of a correction in the loop, mm/s2; infinite where nothing is stated.
+    /// Acceleration that the owner allows the offset of a correction in the loop, mm/s2; infinite
+    /// where nothing is stated.
     pub(crate) fn owners_accel_mm_s2(&self) -> f64 {
-        self.axes.iter().filter_map(|axis| axis.correction_accel_mm_s2).fold(f64::INFINITY, f64::min)
+        self.axes
+            .iter()
+            .filter_map(|axis| axis.correction_accel_mm_s2)
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// Acceleration that the offset of a correction in the loop may have in every axis, mm/s2.
     pub fn engaged_accel_mm_s2(&self) -> f64 {
-        let of_axis = |i| self.axis(i).correction_accel_mm_s2.unwrap_or_else(|| self.accel_limit_mm_s2(i));
-        (0..self.axis_count()).map(of_axis).fold(f64::INFINITY, f64::min)
+        let of_axis = |i| {
+            self.axis(i)
+                .correction_accel_mm_s2
+                .unwrap_or_else(|| self.accel_limit_mm_s2(i))
+        };
+        (0..self.axis_count())
+            .map(of_axis)
+            .fold(f64::INFINITY, f64::min)
     }
 
-    /// Content of the machine as a hexadecimal key for caches: equal for machines whose axes move equally, whatever
-    /// their names and however long their PLC takes.
+    /// Content of the machine as a hexadecimal key for caches: equal for machines whose axes move
+    /// equally, whatever their names and however long their PLC takes.
     ///
-    /// Hashed is the JSON of periods, limits and axes, and of geometry and noise where there is any; field order and the
-    /// shortest round-trip form of numbers make it canonical.
+    /// Hashed is the JSON of periods, limits and axes, and of geometry and noise where there is
+    /// any; field order and the shortest round-trip form of numbers make it canonical.
     pub fn fingerprint(&self) -> String {
         let content = if is_default(&self.geometry) && is_default(&self.noise) {
             serde_json::json!([self.period, self.limits, self.axes])
         } else {
-            serde_json::json!([self.period, self.limits, self.axes, self.geometry, self.noise])
+            serde_json::json!([
+                self.period,
+                self.limits,
+                self.axes,
+                self.geometry,
+                self.noise
+            ])
         };
-        blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
+        blake3::hash(content.to_string().as_bytes())
+            .to_hex()
+            .to_string()
     }
 }
 
-/// Bases of bases up to which a file is read; a longer chain leads around by other names of the same files.
+/// Bases of bases up to which a file is read; a longer chain leads around by other names of the
+/// same files.
 const MAX_BASES: usize = 16;
 
-/// Whether `--machine` means a file, or the standard input, rather than the name of a built-in machine.
+/// Whether `--machine` means a file, or the standard input, rather than the name of a built-in
+/// machine.
 pub fn is_machine_path(name_or_path: &Path) -> bool {
     input::is_standard_input(name_or_path)
-        || name_or_path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+        || name_or_path
+            .extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
         || name_or_path.components().count() != 1
 }
 

@@ -4,8 +4,8 @@
 //! pieces -> plan -> reference -> loop of controller and plant -> rows
 //! ```
 //!
-//! Whatever cuts goes through [`Run`]: the main job, the comparison, the experiments of the paper, the excitation of an
-//! identification, tests.
+//! Whatever cuts goes through [`Run`]: the main job, the comparison, the experiments of the paper,
+//! the excitation of an identification, tests.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -13,8 +13,8 @@ use feedwright_control::Controller;
 use feedwright_gcode::ReadError;
 use feedwright_gcode::canon::Canon;
 use feedwright_plan::{
-    AlignedPaths, Constraints, FEED_PLANNERS, FeedMember, KeptPlan, LimitsError, PairedSteps, PathError, Pieces, Plan,
-    PlanSink, Plc, SpeedCaps, Step, Steps,
+    AlignedPaths, Constraints, FEED_PLANNERS, FeedMember, KeptPlan, LimitsError, PairedSteps,
+    PathError, Pieces, Plan, PlanSink, Plc, SpeedCaps, Step, Steps,
 };
 use thiserror::Error;
 
@@ -34,22 +34,33 @@ pub struct Stages {
 impl Default for Stages {
     /// The first feed planner.
     fn default() -> Self {
-        Self { planner: &FEED_PLANNERS[0] }
+        Self {
+            planner: &FEED_PLANNERS[0],
+        }
     }
 }
 
 impl Stages {
-    /// Those that suit a machine: where each axis has limits of its own, the planner that keeps them; otherwise the first.
+    /// Those that suit a machine: where each axis has limits of its own, the planner that keeps
+    /// them; otherwise the first.
     pub fn of(machine: &Machine) -> Self {
-        let planner = FEED_PLANNERS.iter().find(|member| member.needs_axes == machine.has_axis_limits());
-        Self { planner: planner.unwrap_or(&FEED_PLANNERS[0]) }
+        let planner = FEED_PLANNERS
+            .iter()
+            .find(|member| member.needs_axes == machine.has_axis_limits());
+        Self {
+            planner: planner.unwrap_or(&FEED_PLANNERS[0]),
+        }
     }
 
     /// Reference of the steps of a program on a machine.
     ///
     /// # Errors
     /// Fails if a limit of the machine is missing or outside its allowed range.
-    pub fn reference<'p>(self, steps: Steps<'p>, machine: &Machine) -> Result<Reference<'p>, LimitsError> {
+    pub fn reference<'p>(
+        self,
+        steps: Steps<'p>,
+        machine: &Machine,
+    ) -> Result<Reference<'p>, LimitsError> {
         self.reference_within(steps, machine, &Constraints::from(machine))
     }
 
@@ -63,7 +74,12 @@ impl Stages {
         machine: &Machine,
         constraints: &Constraints,
     ) -> Result<Reference<'p>, LimitsError> {
-        Ok(Reference::new(Plan::new(steps, constraints, self.planner, Plc::from(machine))?))
+        Ok(Reference::new(Plan::new(
+            steps,
+            constraints,
+            self.planner,
+            Plc::from(machine),
+        )?))
     }
 }
 
@@ -92,13 +108,17 @@ pub struct Run<'a> {
     watch: &'a dyn Watch,
 }
 
-/// The plan of one path within one set of limits, for all cuts along it: the first that comes to its end leaves it here.
+/// The plan of one path within one set of limits, for all cuts along it: the first that comes to
+/// its end leaves it here.
 #[derive(Debug, Default)]
 pub struct PlanCache(Mutex<Option<KeptPlan>>);
 
 impl PlanCache {
     fn get(&self) -> Option<KeptPlan> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
     }
 
     fn keep(&self, plan: Option<KeptPlan>) {
@@ -176,10 +196,14 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Cuts with another plant in place of the machine's own. Plan, limits and periods stay those of the machine.
+    /// Cuts with another plant in place of the machine's own. Plan, limits and periods stay those
+    /// of the machine.
     #[must_use]
     pub const fn plant(self, plant: PlantMaker<'a>) -> Self {
-        Self { plant: Some(plant), ..self }
+        Self {
+            plant: Some(plant),
+            ..self
+        }
     }
 
     /// Sets the number of laps. All but the last are practice; only the last lap gives rows and the
@@ -189,10 +213,14 @@ impl<'a> Run<'a> {
         Self { laps, ..self }
     }
 
-    /// Holds the offset of a controller in the loop within the acceleration that the axes can have beside the plan.
+    /// Holds the offset of a controller in the loop within the acceleration that the axes can have
+    /// beside the plan.
     #[must_use]
     pub const fn within_drives(self) -> Self {
-        Self { within_drives: true, ..self }
+        Self {
+            within_drives: true,
+            ..self
+        }
     }
 
     /// With bounds on the speed, place by place.
@@ -210,7 +238,10 @@ impl<'a> Run<'a> {
     /// Without the compensation of the machine: as a control cuts that gets the program alone.
     #[must_use]
     pub const fn uncompensated(self) -> Self {
-        Self { compensates: false, ..self }
+        Self {
+            compensates: false,
+            ..self
+        }
     }
 
     /// With one who is told of the plan of the last lap.
@@ -219,10 +250,14 @@ impl<'a> Run<'a> {
         Self { plan_sink, ..self }
     }
 
-    /// With the plan of other cuts along the same path and within the same limits, which is not made again.
+    /// With the plan of other cuts along the same path and within the same limits, which is not
+    /// made again.
     #[must_use]
     pub const fn sharing(self, memory: &'a PlanCache) -> Self {
-        Self { memory: Some(memory), ..self }
+        Self {
+            memory: Some(memory),
+            ..self
+        }
     }
 
     /// Ended by this one.
@@ -231,7 +266,8 @@ impl<'a> Run<'a> {
         Self { watch, ..self }
     }
 
-    /// Cuts a path that is in memory, with a controller that begins anew; every row of the last lap goes to every sink.
+    /// Cuts a path that is in memory, with a controller that begins anew; every row of the last lap
+    /// goes to every sink.
     ///
     /// # Errors
     /// A machine without sensible limits, a sink that takes no more, or an end from outside.
@@ -241,7 +277,11 @@ impl<'a> Run<'a> {
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
-        self.cut(|| Ok(Box::new(steps.iter().cloned().map(Ok))), controller, sinks)
+        self.cut(
+            || Ok(Box::new(steps.iter().cloned().map(Ok))),
+            controller,
+            sinks,
+        )
     }
 
     /// As [`Run::cut_steps`], for a path that is read anew for each lap.
@@ -269,9 +309,18 @@ impl<'a> Run<'a> {
         controller.reset();
         for lap in 1..self.laps {
             // Noise differs from lap to lap, so a controller cannot gain from learning it.
-            let seed = self.machine.noise.seed.wrapping_add(u64::from(lap) << LAP_SEED_SHIFT);
+            let seed = self
+                .machine
+                .noise
+                .seed
+                .wrapping_add(u64::from(lap) << LAP_SEED_SHIFT);
             let practice = self.machine.with_noise_seed(seed);
-            let practising = Run { machine: &practice, plan_sink: None, memory, ..*self };
+            let practising = Run {
+                machine: &practice,
+                plan_sink: None,
+                memory,
+                ..*self
+            };
             practising.lap(&mut paths, controller, &mut [])?;
             controller.next_lap();
         }
@@ -288,17 +337,25 @@ impl<'a> Run<'a> {
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
-        let mut result = self.laps_of(|| Ok(LapPaths::Paired(aligned.steps())), controller, sinks)?;
+        let mut result =
+            self.laps_of(|| Ok(LapPaths::Paired(aligned.steps())), controller, sinks)?;
         result.uncut_mm = result.uncut_mm.max(aligned.left_out_mm);
         Ok(result)
     }
 
     fn constraints(&self) -> Constraints {
-        Constraints { speed_caps: self.caps.cloned(), ..Constraints::from(self.machine) }
+        Constraints {
+            speed_caps: self.caps.cloned(),
+            ..Constraints::from(self.machine)
+        }
     }
 
     fn plan_of<'p>(&self, paths: LapPaths<'p>) -> Result<Plan<'p>, LimitsError> {
-        let (constraints, planner, plc) = (self.constraints(), self.stages.planner, Plc::from(self.machine));
+        let (constraints, planner, plc) = (
+            self.constraints(),
+            self.stages.planner,
+            Plc::from(self.machine),
+        );
         match paths {
             LapPaths::One(steps) => Plan::new(steps, &constraints, planner, plc),
             LapPaths::Paired(steps) => Plan::of_paired(steps, &constraints, planner, plc),
@@ -315,11 +372,19 @@ impl<'a> Run<'a> {
             Some(kept) => Plan::again(&kept),
             None => {
                 let plan = self.plan_of(paths()?)?;
-                if self.memory.is_some() { plan.keeping() } else { plan }
+                if self.memory.is_some() {
+                    plan.keeping()
+                } else {
+                    plan
+                }
             }
         };
         let mut reference = Reference::new(plan.told_to(self.plan_sink));
-        let known = self.machine.compensated.as_ref().filter(|_| self.compensates);
+        let known = self
+            .machine
+            .compensated
+            .as_ref()
+            .filter(|_| self.compensates);
         let known = known.map(|known| Box::new(known.of_first::<N>()));
         let setup = LapSetup {
             machine: self.machine,
@@ -353,7 +418,10 @@ mod tests {
 
     impl Controller<2> for Seen {
         fn schedule(&self) -> Schedule {
-            Schedule { servo_periods: 1, preview: 0 }
+            Schedule {
+                servo_periods: 1,
+                preview: 0,
+            }
         }
 
         fn reset(&mut self) {
@@ -374,15 +442,23 @@ mod tests {
 
     #[test]
     fn laps_differ_in_their_noise_and_in_nothing_else() {
-        let circle =
-            Reader::from_text("circle.ngc", "G17 G21 G90 G61 F3000\nG2 X0 Y0 I10 J0\nM2\n", Settings::default());
-        let steps = path_steps(circle.unwrap().map(Result::unwrap)).collect::<Result<Vec<_>, _>>().unwrap();
+        let circle = Reader::from_text(
+            "circle.ngc",
+            "G17 G21 G90 G61 F3000\nG2 X0 Y0 I10 J0\nM2\n",
+            Settings::default(),
+        );
+        let steps = path_steps(circle.unwrap().map(Result::unwrap))
+            .collect::<Result<Vec<_>, _>>()
+            .unwrap();
         let quiet = Machine::load("tnv40".as_ref()).unwrap();
         let mut noisy = quiet.clone();
         noisy.axes[0].encoder_noise_um = 1.0;
         let laps = |machine: &Machine| {
             let mut seen = Seen::default();
-            Run::on(machine).laps(3).cut_steps(&steps, &mut seen, &mut []).unwrap();
+            Run::on(machine)
+                .laps(3)
+                .cut_steps(&steps, &mut seen, &mut [])
+                .unwrap();
             seen.0
         };
         let [a, b, c] = laps(&quiet).try_into().unwrap();
@@ -393,9 +469,14 @@ mod tests {
 
     #[test]
     fn a_plant_that_is_given_takes_the_place_of_the_machines_own_and_gets_the_seed_of_each_lap() {
-        let circle =
-            Reader::from_text("circle.ngc", "G17 G21 G90 G61 F3000\nG2 X0 Y0 I10 J0\nM2\n", Settings::default());
-        let steps = path_steps(circle.unwrap().map(Result::unwrap)).collect::<Result<Vec<_>, _>>().unwrap();
+        let circle = Reader::from_text(
+            "circle.ngc",
+            "G17 G21 G90 G61 F3000\nG2 X0 Y0 I10 J0\nM2\n",
+            Settings::default(),
+        );
+        let steps = path_steps(circle.unwrap().map(Result::unwrap))
+            .collect::<Result<Vec<_>, _>>()
+            .unwrap();
         let mut machine = Machine::load("tnv40".as_ref()).unwrap();
         machine.axes[0].encoder_noise_um = 1.0;
         let laps = |run: Run<'_>| {
@@ -405,10 +486,20 @@ mod tests {
         };
         let heavy = Machine::load("heavy".as_ref()).unwrap();
         let of = |machine: &Machine, start_mm: [f64; 3], seed: u64| -> Box<dyn Mechanism> {
-            Box::new(Plant::<2>::with_seed(machine, [start_mm[0], start_mm[1]], seed))
+            Box::new(Plant::<2>::with_seed(
+                machine,
+                [start_mm[0], start_mm[1]],
+                seed,
+            ))
         };
         let own = laps(Run::on(&machine));
-        assert_eq!(own, laps(Run::on(&machine).plant(&|start_mm, seed| of(&machine, start_mm, seed))));
-        assert_ne!(own, laps(Run::on(&machine).plant(&|start_mm, seed| of(&heavy, start_mm, seed))));
+        assert_eq!(
+            own,
+            laps(Run::on(&machine).plant(&|start_mm, seed| of(&machine, start_mm, seed)))
+        );
+        assert_ne!(
+            own,
+            laps(Run::on(&machine).plant(&|start_mm, seed| of(&heavy, start_mm, seed)))
+        );
     }
 }

@@ -1,8 +1,9 @@
 //! The machine: position servo, drive and mechanics of each axis.
 //!
-//! Each axis follows the law of [`feedwright_control::axis`] under the load of a disturbance, D sin(2 pi f t), with D and f of the
-//! machine file. The command is held for one servo period; t, and with it the disturbance, is taken at the start of each mechanics
-//! period; the axis starts at rest.
+//! Each axis follows the law of [`feedwright_control::axis`] under the load of a disturbance, D
+//! sin(2 pi f t), with D and f of the machine file. The command is held for one servo period; t,
+//! and with it the disturbance, is taken at the start of each mechanics period; the axis starts at
+//! rest.
 //!
 //! A machine file may add what a real axis has on top, each in its own file:
 //!
@@ -15,11 +16,12 @@
 //! | `plant/nonideal.rs` | an axis with all of it |
 //! | `plant/gap.rs` | backlash that a geometry states of an axis without a screw |
 //!
-//! What a controller may have to predict of a drive and of friction stands in [`feedwright_control::axis`], the geometry that no encoder
-//! sees in [`feedwright_control::KnownGeometry`].
+//! What a controller may have to predict of a drive and of friction stands in
+//! [`feedwright_control::axis`], the geometry that no encoder sees in
+//! [`feedwright_control::KnownGeometry`].
 //!
-//! Source: Lee, Cho and Jeon (2005), section 4, Table 1 and Fig. 6; the values that the paper leaves open stand, with their reasons, in
-//! the machine file.
+//! Source: Lee, Cho and Jeon (2005), section 4, Table 1 and Fig. 6; the values that the paper
+//! leaves open stand, with their reasons, in the machine file.
 
 mod noise;
 mod drive;
@@ -64,8 +66,8 @@ impl<const N: usize> Measurement<N> {
     }
 }
 
-/// What the closed loop moves: a [`Plant`], or a machine of other equations in its place. It has three axes; a run of two uses the
-/// first two.
+/// What the closed loop moves: a [`Plant`], or a machine of other equations in its place. It has
+/// three axes; a run of two uses the first two.
 pub trait Mechanism {
     /// One servo period at the position command `command_mm`.
     fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3>;
@@ -107,7 +109,8 @@ pub struct Plant<const N: usize> {
     added_nm: [f64; N],
     /// The motors.
     states: [AxisState; N],
-    /// What a rigid axis with an ideal drive and encoder does not have; none where no axis has any of it.
+    /// What a rigid axis with an ideal drive and encoder does not have; none where no axis has any
+    /// of it.
     nonideal: Option<Box<[NonidealAxis; N]>>,
     /// Geometry that no encoder sees; none where there is no error in it.
     geometry: Option<Box<KnownGeometry<N>>>,
@@ -116,14 +119,17 @@ pub struct Plant<const N: usize> {
 }
 
 impl<const N: usize> Plant<N> {
-    /// The first N axes of a machine, at rest with the joints at `start_mm`; its random numbers are by the seed of its file.
+    /// The first N axes of a machine, at rest with the joints at `start_mm`; its random numbers are
+    /// by the seed of its file.
     pub fn new(machine: &Machine, start_mm: [f64; N]) -> Self {
         Self::with_seed(machine, start_mm, machine.noise.seed)
     }
 
     /// As [`Self::new`], with random numbers by another seed.
     pub fn with_seed(machine: &Machine, start_mm: [f64; N], seed: u64) -> Self {
-        let each = |value: fn(&Axis) -> f64| -> [f64; N] { std::array::from_fn(|i| value(machine.axis(i))) };
+        let each = |value: fn(&Axis) -> f64| -> [f64; N] {
+            std::array::from_fn(|i| value(machine.axis(i)))
+        };
         let laws: [AxisLaw; N] = machine.law();
         let disturbance_rad_s = each(|a| TAU * a.disturbance_hz);
         let periods = machine.period.periods();
@@ -143,16 +149,22 @@ impl<const N: usize> Plant<N> {
             added_nm: [0.0; N],
             states,
             nonideal: nonideal.then(|| {
-                Box::new(std::array::from_fn(|i| NonidealAxis::new(machine, i, &laws[i], states[i].angle_rad, seed)))
+                Box::new(std::array::from_fn(|i| {
+                    NonidealAxis::new(machine, i, &laws[i], states[i].angle_rad, seed)
+                }))
             }),
-            gap: geometry.as_ref().and_then(|known| TableGap::new(machine, known, start_mm)).map(Box::new),
+            gap: geometry
+                .as_ref()
+                .and_then(|known| TableGap::new(machine, known, start_mm))
+                .map(Box::new),
             geometry,
             seed,
         }
     }
 
-    /// The machine becomes another one in mid-cut, as where a workpiece is loaded. Its whole state goes on: angles, speeds, errors, time,
-    /// noise, and what is on its way to the drive or from the encoder. Leads and periods are to be the same.
+    /// The machine becomes another one in mid-cut, as where a workpiece is loaded. Its whole state
+    /// goes on: angles, speeds, errors, time, noise, and what is on its way to the drive or from
+    /// the encoder. Leads and periods are to be the same.
     pub fn change_to(&mut self, machine: &Machine) {
         let before = std::mem::replace(self, Self::with_seed(machine, self.joint_mm(), self.seed));
         self.period = before.period;
@@ -160,24 +172,34 @@ impl<const N: usize> Plant<N> {
         if let (Some(gap), Some(before)) = (&mut self.gap, &before.gap) {
             gap.take_over(before);
         }
-        let Some(nonideal) = &mut self.nonideal else { return };
+        let Some(nonideal) = &mut self.nonideal else {
+            return;
+        };
         for (i, axis) in nonideal.iter_mut().enumerate() {
-            axis.take_over(before.nonideal.as_ref().map(|nonideal| &nonideal[i]), &before.states[i]);
+            axis.take_over(
+                before.nonideal.as_ref().map(|nonideal| &nonideal[i]),
+                &before.states[i],
+            );
         }
     }
 
-    /// A blow: torque impulses that act at once, N m s at the motor shaft. They act on the table where the screw gives, as loads do.
+    /// A blow: torque impulses that act at once, N m s at the motor shaft. They act on the table
+    /// where the screw gives, as loads do.
     pub fn push(&mut self, impulse_nm_s: [f64; N]) {
         for (i, impulse_nm_s) in impulse_nm_s.into_iter().enumerate() {
-            let pushed = self.nonideal.as_mut().is_some_and(|nonideal| nonideal[i].push_table(impulse_nm_s));
+            let pushed = self
+                .nonideal
+                .as_mut()
+                .is_some_and(|nonideal| nonideal[i].push_table(impulse_nm_s));
             if !pushed {
                 self.states[i].speed_rad_s += impulse_nm_s / self.laws[i].parameters.inertia_kg_m2;
             }
         }
     }
 
-    /// Adds a torque from now on, N m at the motor shaft, in place of the one that was added before: a positive one pushes the axis in its
-    /// positive direction. It acts where loads do, on the table where the screw gives.
+    /// Adds a torque from now on, N m at the motor shaft, in place of the one that was added
+    /// before: a positive one pushes the axis in its positive direction. It acts where loads do, on
+    /// the table where the screw gives.
     pub fn add_torque(&mut self, added_nm: [f64; N]) {
         self.added_nm = added_nm;
     }
@@ -210,7 +232,9 @@ impl<const N: usize> Plant<N> {
 
     fn tool_mm(&self, joint_mm: [f64; N]) -> [f64; N] {
         let table_mm = self.gap.as_ref().map_or(joint_mm, |gap| gap.table_mm());
-        self.geometry.as_ref().map_or(joint_mm, |geometry| geometry.tool_mm(table_mm))
+        self.geometry
+            .as_ref()
+            .map_or(joint_mm, |geometry| geometry.tool_mm(table_mm))
     }
 
     /// Travel of the table for angles at the motor shafts, mm.
@@ -220,7 +244,9 @@ impl<const N: usize> Plant<N> {
 
     /// The position as it is measured, rad at the motor shaft.
     fn measured_rad(&self) -> [f64; N] {
-        let Some(nonideal) = &self.nonideal else { return self.states.map(|state| state.angle_rad) };
+        let Some(nonideal) = &self.nonideal else {
+            return self.states.map(|state| state.angle_rad);
+        };
         let counter = self.counter();
         std::array::from_fn(|i| nonideal[i].measured_rad(&self.states[i], counter))
     }
@@ -242,7 +268,12 @@ impl<const N: usize> Plant<N> {
         let joint_mm = self.joint_mm();
         self.gap.iter_mut().for_each(|gap| gap.follow(joint_mm));
         let measured_mm = self.in_mm(self.measured_rad());
-        Measurement { position_mm: self.tool_mm(joint_mm), joint_mm, measured_mm, torque_nm }
+        Measurement {
+            position_mm: self.tool_mm(joint_mm),
+            joint_mm,
+            measured_mm,
+            torque_nm,
+        }
     }
 
     /// Advances time by `periods` servo periods in which nothing moves. Speeds and angles stay; the
@@ -274,7 +305,9 @@ impl<const N: usize> Plant<N> {
         let mut disturbance_turn = self.disturbance_turn;
         let (mut torque_nm, counter) = ([0.0; N], self.counter());
         let t_s = self.period as f64 * self.periods.servo_s;
-        let Some(nonideal) = &mut self.nonideal else { return torque_nm };
+        let Some(nonideal) = &mut self.nonideal else {
+            return torque_nm;
+        };
         for (i, axis) in nonideal.iter_mut().enumerate() {
             let law = &self.laws[i];
             let command_rad = command_mm[i] * law.parameters.rad_per_mm;
@@ -284,7 +317,10 @@ impl<const N: usize> Plant<N> {
             }
         }
         for substep in 0..self.periods.mechanics_per_servo {
-            let moment = Moment { substep, counter: counter + u64::from(substep) };
+            let moment = Moment {
+                substep,
+                counter: counter + u64::from(substep),
+            };
             for (i, axis) in nonideal.iter_mut().enumerate() {
                 let load_nm = self.disturbance_nm[i] * disturbance[i][1] - self.added_nm[i];
                 torque_nm[i] = axis.advance(&self.laws[i], &mut self.states[i], moment, load_nm);
@@ -294,7 +330,8 @@ impl<const N: usize> Plant<N> {
         torque_nm
     }
 
-    /// The PD position loop of ideal axes: reference speed of the motor, rad/s, held for the servo period.
+    /// The PD position loop of ideal axes: reference speed of the motor, rad/s, held for the servo
+    /// period.
     fn position_loop(&mut self, command_mm: [f64; N]) -> [f64; N] {
         std::array::from_fn(|i| {
             let law = &self.laws[i];
@@ -303,8 +340,8 @@ impl<const N: usize> Plant<N> {
         })
     }
 
-    /// cos and sin of the disturbance's phase at the start of the servo period: exact there, turned from substep to
-    /// substep within it.
+    /// cos and sin of the disturbance's phase at the start of the servo period: exact there, turned
+    /// from substep to substep within it.
     fn disturbance_at_start(&self) -> [[f64; 2]; N] {
         let t_s = self.period as f64 * self.periods.servo_s;
         self.disturbance_rad_s.map(|w| cos_sin(w * t_s))

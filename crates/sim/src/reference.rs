@@ -1,7 +1,8 @@
-//! Reference: the point of the planned path at each plan time, and the point of the programmed path nearest to a given point.
+//! Reference: the point of the planned path at each plan time, and the point of the programmed path
+//! nearest to a given point.
 //!
-//! Plan time `tau` runs in seconds from 0 at the start of the program. [`Reference`] reads as much of the program as it is
-//! asked for, keeps what has not been forgotten, and looks up.
+//! Plan time `tau` runs in seconds from 0 at the start of the program. [`Reference`] reads as much
+//! of the program as it is asked for, keeps what has not been forgotten, and looks up.
 //!
 //! | File | What |
 //! |---|---|
@@ -14,8 +15,8 @@ mod kept;
 use feedwright_gcode::canon::Canon;
 use feedwright_plan::vector::sub;
 use feedwright_plan::{
-    Constraints, FEED_PLANNERS, KeptPlan, LimitsError, PathError, Phase, Piece, Pieces, Plan, Planned, Plc, Step,
-    Steps, TimedEvent, signed_distance_mm,
+    Constraints, FEED_PLANNERS, KeptPlan, LimitsError, PathError, Phase, Piece, Pieces, Plan,
+    Planned, Plc, Step, Steps, TimedEvent, signed_distance_mm,
 };
 use kept::KeptPath;
 use std::collections::VecDeque;
@@ -57,7 +58,8 @@ pub struct Foot {
     pub line: u32,
     /// Distance, mm.
     pub distance_mm: f64,
-    /// [Distance with a sign](signed_distance_mm): positive where the other point lies left of travel in the XY plane.
+    /// [Distance with a sign](signed_distance_mm): positive where the other point lies left of
+    /// travel in the XY plane.
     pub signed_mm: f64,
     /// Whether the motion cuts.
     pub cutting: bool,
@@ -67,8 +69,9 @@ pub struct Foot {
 
 /// The plan of a program, looked up by plan time.
 ///
-/// Everything that is looked up depends on the program, the limits and the arguments only, not on earlier calls, as long as
-/// it has not been forgotten. Without [`Reference::forget_before`], what has been read stays in memory.
+/// Everything that is looked up depends on the program, the limits and the arguments only, not on
+/// earlier calls, as long as it has not been forgotten. Without [`Reference::forget_before`], what
+/// has been read stays in memory.
 pub struct Reference<'p> {
     plan: Plan<'p>,
     kept: KeptPath,
@@ -81,7 +84,13 @@ pub struct Reference<'p> {
 impl<'p> Reference<'p> {
     /// The reference of a plan.
     pub fn new(plan: Plan<'p>) -> Self {
-        Self { plan, kept: KeptPath::default(), events: VecDeque::new(), planned_s: 0.0, ended: false }
+        Self {
+            plan,
+            kept: KeptPath::default(),
+            events: VecDeque::new(),
+            planned_s: 0.0,
+            ended: false,
+        }
     }
 
     /// All of the plan, where it was [kept](Plan::keeping) and read to its end.
@@ -98,7 +107,10 @@ impl<'p> Reference<'p> {
         source: impl IntoIterator<Item = Canon, IntoIter: Send + 'p>,
         constraints: impl Into<Constraints>,
     ) -> Result<Self, LimitsError> {
-        Self::planned(Box::new(Pieces::new(source.into_iter())), &constraints.into())
+        Self::planned(
+            Box::new(Pieces::new(source.into_iter())),
+            &constraints.into(),
+        )
     }
 
     /// As [`Reference::of_program`], for a path that is given as steps.
@@ -113,31 +125,40 @@ impl<'p> Reference<'p> {
     }
 
     fn planned(steps: Steps<'p>, constraints: &Constraints) -> Result<Self, LimitsError> {
-        Ok(Self::new(Plan::new(steps, constraints, &FEED_PLANNERS[0], Plc::default())?))
+        Ok(Self::new(Plan::new(
+            steps,
+            constraints,
+            &FEED_PLANNERS[0],
+            Plc::default(),
+        )?))
     }
 
-    /// Where the reference is at `tau_s`; before the start (or what has been forgotten) at the first point, behind the end
-    /// at the last.
+    /// Where the reference is at `tau_s`; before the start (or what has been forgotten) at the
+    /// first point, behind the end at the last.
     #[inline]
     pub fn at(&mut self, tau_s: f64) -> Sample {
         self.read_until(tau_s);
         self.kept.at(tau_s)
     }
 
-    /// The point of the path nearest to `point_mm` among those that the reference passes from `tau_lo_s` to `tau_hi_s`.
+    /// The point of the path nearest to `point_mm` among those that the reference passes from
+    /// `tau_lo_s` to `tau_hi_s`.
     #[inline]
     pub fn nearest(&mut self, point_mm: [f64; 3], tau_lo_s: f64, tau_hi_s: f64) -> Foot {
         self.read_until(tau_hi_s);
-        self.kept.nearest(point_mm, tau_lo_s, tau_hi_s.max(tau_lo_s))
+        self.kept
+            .nearest(point_mm, tau_lo_s, tau_hi_s.max(tau_lo_s))
     }
 
-    /// The point of the path at arc length `s_mm`, seen from `point_mm`; of what has been read and not forgotten.
+    /// The point of the path at arc length `s_mm`, seen from `point_mm`; of what has been read and
+    /// not forgotten.
     #[inline]
     pub fn at_length(&self, point_mm: [f64; 3], s_mm: f64) -> Foot {
         self.kept.nearest_along(point_mm, s_mm, s_mm)
     }
 
-    /// The point of the path nearest to `point_mm` between two arc lengths; of what has been read and not forgotten.
+    /// The point of the path nearest to `point_mm` between two arc lengths; of what has been read
+    /// and not forgotten.
     #[inline]
     pub fn nearest_along(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> Foot {
         self.kept.nearest_along(point_mm, lo_mm, hi_mm.max(lo_mm))
@@ -155,7 +176,8 @@ impl<'p> Reference<'p> {
         self.ended.then_some(self.planned_s)
     }
 
-    /// Reads the whole program and returns its plan time, s. What is read stays in memory: not for endless programs.
+    /// Reads the whole program and returns its plan time, s. What is read stays in memory: not for
+    /// endless programs.
     pub fn read_to_end_s(&mut self) -> f64 {
         self.read_until(f64::INFINITY);
         self.planned_s
@@ -169,7 +191,11 @@ impl<'p> Reference<'p> {
     /// Takes the next event that happens at `until_s` or before, in order.
     pub fn next_event(&mut self, until_s: f64) -> Option<TimedEvent> {
         self.read_until(until_s);
-        if self.events.front()?.tau_s <= until_s { self.events.pop_front() } else { None }
+        if self.events.front()?.tau_s <= until_s {
+            self.events.pop_front()
+        } else {
+            None
+        }
     }
 
     /// Drops what ends before `tau_s`: pieces, phases, and events that were not taken.
@@ -185,8 +211,8 @@ impl<'p> Reference<'p> {
         self.kept.kept()
     }
 
-    /// Reads until all phases up to `tau_s` are known, and at least the first: what comes before the start, NaN too, looks at
-    /// that one.
+    /// Reads until all phases up to `tau_s` are known, and at least the first: what comes before
+    /// the start, NaN too, looks at that one.
     #[inline]
     fn read_until(&mut self, tau_s: f64) {
         let tau_s = tau_s.max(0.0);

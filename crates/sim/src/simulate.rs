@@ -38,8 +38,8 @@ use lost_motion::LostMotion;
 pub use tick_times::TickTimes;
 use uncut::Uncut;
 
-/// A stable loop of gain Kp lags by v / Kp. Where the command is this many times the lag of a rapid away, or
-/// [`LOST_MM`] where that is more, the tool does not follow any more.
+/// A stable loop of gain Kp lags by v / Kp. Where the command is this many times the lag of a rapid
+/// away, or [`LOST_MM`] where that is more, the tool does not follow any more.
 const LOST_LAGS: f64 = 4.0;
 /// As [`LOST_LAGS`], for loops so stiff that they hardly lag, mm.
 const LOST_MM: f64 = 2.0;
@@ -62,7 +62,8 @@ pub struct RunResult {
     pub faded_out: Option<FadedOut>,
     /// All that changed of what corrects the command, in order.
     pub transitions: Vec<Transition>,
-    /// Part of the cutting time in which the controller was in the loop, and whether it was at the end.
+    /// Part of the cutting time in which the controller was in the loop, and whether it was at the
+    /// end.
     pub engaged_share: f64,
     /// See above.
     pub engaged_at_end: bool,
@@ -70,9 +71,11 @@ pub struct RunResult {
     pub time_s: f64,
     /// When the tool has arrived there, s.
     pub arrival_s: f64,
-    /// The contour error without the geometry that no encoder sees; none where the machine has no such geometry.
+    /// The contour error without the geometry that no encoder sees; none where the machine has no
+    /// such geometry.
     pub joint_error: Option<JointError>,
-    /// The uncut path: the largest distance from a programmed point to what the tool did in the time that it has for it, mm.
+    /// The uncut path: the largest distance from a programmed point to what the tool did in the
+    /// time that it has for it, mm.
     pub uncut_mm: f64,
     /// The most register entries that one contour error estimate looked at.
     pub most_entries: usize,
@@ -101,7 +104,8 @@ impl From<Cancelled> for Stopped {
     }
 }
 
-/// Makes the machine of a lap, at rest with its joints at the given place, mm, and with random numbers by the given seed.
+/// Makes the machine of a lap, at rest with its joints at the given place, mm, and with random
+/// numbers by the given seed.
 pub type PlantMaker<'a> = &'a dyn Fn([f64; 3], u64) -> Box<dyn Mechanism>;
 
 /// What a lap is cut on.
@@ -117,8 +121,8 @@ pub(crate) struct LapSetup<'a, const N: usize> {
     pub(crate) within_drives: bool,
 }
 
-/// Cuts the whole reference, one lap; every row goes to every sink. The controller is as the caller has it: at its beginning, or
-/// with what it learnt in the laps before.
+/// Cuts the whole reference, one lap; every row goes to every sink. The controller is as the caller
+/// has it: at its beginning, or with what it learnt in the laps before.
 ///
 /// # Errors
 /// What a sink says when it takes no more, or an end from outside.
@@ -161,7 +165,8 @@ struct ClosedLoop<'a, const N: usize> {
     /// When the command has ended.
     ended_s: Option<f64>,
     last_tau_s: f64,
-    /// What corrects the command: the last fade, whether the controller is in the loop, and of which axes it goes by what it learned.
+    /// What corrects the command: the last fade, whether the controller is in the loop, and of
+    /// which axes it goes by what it learned.
     fade: Option<Fade>,
     engaged: bool,
     learned: [bool; N],
@@ -171,23 +176,47 @@ struct ClosedLoop<'a, const N: usize> {
 
 impl<'a, const N: usize> ClosedLoop<'a, N> {
     /// At rest at the start of the path.
-    fn new(setup: LapSetup<'a, N>, reference: &mut Reference<'_>, controller: &dyn Controller<N>) -> Self {
-        let LapSetup { machine, plant, known, within_drives } = setup;
+    fn new(
+        setup: LapSetup<'a, N>,
+        reference: &mut Reference<'_>,
+        controller: &dyn Controller<N>,
+    ) -> Self {
+        let LapSetup {
+            machine,
+            plant,
+            known,
+            within_drives,
+        } = setup;
         let joints = Joints { known };
         let servo_s = machine.period.servo_s;
         let slowest_s = 1.0 / machine.slowest_kp_1_s();
         let at_mm = reference.at(0.0).position_mm;
         let start_mm = joints.at(at_mm);
-        let fade_mm_s2 = (0..N).map(|i| machine.correction_accel_mm_s2(i)).fold(f64::INFINITY, f64::min);
+        let fade_mm_s2 = (0..N)
+            .map(|i| machine.correction_accel_mm_s2(i))
+            .fold(f64::INFINITY, f64::min);
         let uncrossed_mm = uncrossed_mm(known, controller);
         // What makes up for lost motion and the correction share one acceleration.
-        let share = if uncrossed_mm.iter().any(|mm| *mm > 0.0) { 0.5 } else { 1.0 };
+        let share = if uncrossed_mm.iter().any(|mm| *mm > 0.0) {
+            0.5
+        } else {
+            1.0
+        };
         let turning_mm_s2: [f64; N] = std::array::from_fn(|i| machine.turning_accel_mm_s2(i));
-        let lead_mm_s2 = std::array::from_fn(|i| share * machine.correction_accel_mm_s2(i).min(turning_mm_s2[i]));
+        let lead_mm_s2 = std::array::from_fn(|i| {
+            share * machine.correction_accel_mm_s2(i).min(turning_mm_s2[i])
+        });
         let limits = &machine.limits;
         let bounds = Bounds::new(limits.max_deviation_mm, limits.rapid_mm_s, fade_mm_s2);
-        let engaged_mm_s2 = if within_drives { machine.engaged_accel_mm_s2() } else { machine.owners_accel_mm_s2() };
-        let bounds = Bounds { engaged_mm_s2: share * engaged_mm_s2, ..bounds.feed_rise(limits.max_feed_rise_percent) };
+        let engaged_mm_s2 = if within_drives {
+            machine.engaged_accel_mm_s2()
+        } else {
+            machine.owners_accel_mm_s2()
+        };
+        let bounds = Bounds {
+            engaged_mm_s2: share * engaged_mm_s2,
+            ..bounds.feed_rise(limits.max_feed_rise_percent)
+        };
         let plant: Box<dyn Mechanism> = match plant {
             Some(make) => make(tool_of(start_mm), machine.noise.seed),
             None => Box::new(Plant::<N>::new(machine, start_mm)),
@@ -202,7 +231,8 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
             feed_periods: controller.schedule().servo_periods.max(1),
             tick: Tick::new(servo_s, controller.schedule(), bounds),
             foot: FootTracker::new(machine, at_mm),
-            joint_error: (known.is_some() || plant.has_geometry()).then(|| JointErrorMeter::new(machine, at_mm)),
+            joint_error: (known.is_some() || plant.has_geometry())
+                .then(|| JointErrorMeter::new(machine, at_mm)),
             plant,
             uncut: Uncut::new(settled_periods(machine), at_mm),
             seen_mm: start_mm,
@@ -216,8 +246,8 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         }
     }
 
-    /// Cuts servo period `n`, and says how many on the next to simulate is: more than one in a long rest. None where the lap
-    /// is over.
+    /// Cuts servo period `n`, and says how many on the next to simulate is: more than one in a long
+    /// rest. None where the lap is over.
     fn servo_period(
         &mut self,
         n: u64,
@@ -234,15 +264,34 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
             return Ok(None);
         }
         let sample = reference.at(setpoint.tau_s);
-        let tau_s = reference.end_s().map_or(setpoint.tau_s, |end_s| setpoint.tau_s.min(end_s));
-        // A command that a correction holds beside the end of the path is not where the tool is to rest.
-        // And where the encoders say so: what they do not see is not waited for.
+        let tau_s = reference
+            .end_s()
+            .map_or(setpoint.tau_s, |end_s| setpoint.tau_s.min(end_s));
+        // A command that a correction holds beside the end of the path is not where the tool is to
+        // rest. And where the encoders say so: what they do not see is not waited for.
         let to_go_mm = distance(measurement.joint_mm, self.joints.at(sample.position_mm));
-        let foot = self.foot.foot(reference, tau_s, sample.s_mm, tool_of(measurement.position_mm));
-        let lead_mm = Axes { reference, joints: self.joints, lost_motion: self.lost_motion }.lead_mm(setpoint.tau_s);
+        let foot = self.foot.foot(
+            reference,
+            tau_s,
+            sample.s_mm,
+            tool_of(measurement.position_mm),
+        );
+        let lead_mm = Axes {
+            reference,
+            joints: self.joints,
+            lost_motion: self.lost_motion,
+        }
+        .lead_mm(setpoint.tau_s);
         let row = Row {
             corrected_mm: self.joints.tool(sub(setpoint.command_mm, lead_mm)),
-            ..row(t_s, &setpoint, &measurement, &sample, &foot, to_go_mm <= ARRIVED_MM)
+            ..row(
+                t_s,
+                &setpoint,
+                &measurement,
+                &sample,
+                &foot,
+                to_go_mm <= ARRIVED_MM,
+            )
         };
         if row.cutting {
             self.cut[usize::from(self.tick.state() == State::Engaged)] += 1;
@@ -257,7 +306,12 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         }
         self.uncut.row(&row);
         if let Some(meter) = &mut self.joint_error {
-            meter.row(reference, tau_s, self.joints.tool(measurement.joint_mm), &row);
+            meter.row(
+                reference,
+                tau_s,
+                self.joints.tool(measurement.joint_mm),
+                &row,
+            );
         }
         reference.forget_before(tau_s - self.kept_s);
         if let Some(ended_s) = self.ended_s
@@ -266,7 +320,11 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
             self.run.arrival_s = t_s + self.servo_s;
             return Ok(None);
         }
-        let left_out = if sample.resting { self.left_out(reference, setpoint.tau_s) } else { 0 };
+        let left_out = if sample.resting {
+            self.left_out(reference, setpoint.tau_s)
+        } else {
+            0
+        };
         self.tick.skip(left_out);
         self.plant.skip(left_out);
         Ok(Some(1 + left_out))
@@ -282,11 +340,27 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
     ) -> Setpoint<N> {
         let began = watch.clock();
         let setpoint = {
-            let Self { tick, joints, lost_motion, seen_mm, .. } = self;
-            tick.step(&mut Axes { reference, joints: *joints, lost_motion: *lost_motion }, controller, *seen_mm)
+            let Self {
+                tick,
+                joints,
+                lost_motion,
+                seen_mm,
+                ..
+            } = self;
+            tick.step(
+                &mut Axes {
+                    reference,
+                    joints: *joints,
+                    lost_motion: *lost_motion,
+                },
+                controller,
+                *seen_mm,
+            )
         };
         if setpoint.decided {
-            self.run.ticks.add(watch.clock().saturating_sub(began).as_nanos());
+            self.run
+                .ticks
+                .add(watch.clock().saturating_sub(began).as_nanos());
             self.run.most_entries = self.run.most_entries.max(self.tick.contour().entries);
             self.note_changes(t_s, setpoint.tau_s, reference, controller);
         }
@@ -302,19 +376,39 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
     }
 
     /// Notes what has changed of what corrects the command.
-    fn note_changes(&mut self, t_s: f64, tau_s: f64, reference: &mut Reference<'_>, controller: &dyn Controller<N>) {
-        let (fade, engaged, learned) = (self.tick.fade(), self.tick.state() == State::Engaged, controller.learned());
+    fn note_changes(
+        &mut self,
+        t_s: f64,
+        tau_s: f64,
+        reference: &mut Reference<'_>,
+        controller: &dyn Controller<N>,
+    ) {
+        let (fade, engaged, learned) = (
+            self.tick.fade(),
+            self.tick.state() == State::Engaged,
+            controller.learned(),
+        );
         if (fade, engaged, learned) == (self.fade, self.engaged, self.learned) {
             return;
         }
         let line = reference.at(tau_s).line;
-        let of =
-            |change| Transition { at_s: t_s, line, change, axis: None, cause: None, found_um: None, limit_um: None };
+        let of = |change| Transition {
+            at_s: t_s,
+            line,
+            change,
+            axis: None,
+            cause: None,
+            found_um: None,
+            limit_um: None,
+        };
         if let Some(left) = fade.filter(|_| fade != self.fade) {
             let cause = left.cause.words();
             self.run.faded_out = Some(FadedOut { at_s: t_s, cause });
-            let [found_um, limit_um] = [left.evidence.map(|e| e.found_mm), left.evidence.map(|e| e.limit_mm)]
-                .map(|mm| mm.map(|mm| 1e3 * mm).filter(|um| um.is_finite()));
+            let [found_um, limit_um] = [
+                left.evidence.map(|e| e.found_mm),
+                left.evidence.map(|e| e.limit_mm),
+            ]
+            .map(|mm| mm.map(|mm| 1e3 * mm).filter(|um| um.is_finite()));
             self.run.transitions.push(Transition {
                 cause: Some(cause),
                 found_um,
@@ -325,10 +419,20 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         if engaged && !self.engaged {
             self.run.transitions.push(of(CorrectionChange::Returned));
         }
-        for (axis, (now, before)) in ['x', 'y', 'z'].into_iter().zip(learned.into_iter().zip(self.learned)) {
+        for (axis, (now, before)) in ['x', 'y', 'z']
+            .into_iter()
+            .zip(learned.into_iter().zip(self.learned))
+        {
             if now != before {
-                let change = if now { CorrectionChange::Learned } else { CorrectionChange::Given };
-                self.run.transitions.push(Transition { axis: Some(axis), ..of(change) });
+                let change = if now {
+                    CorrectionChange::Learned
+                } else {
+                    CorrectionChange::Given
+                };
+                self.run.transitions.push(Transition {
+                    axis: Some(axis),
+                    ..of(change)
+                });
             }
         }
         (self.fade, self.engaged, self.learned) = (fade, engaged, learned);
@@ -348,14 +452,25 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
     }
 
     fn left_out(&self, reference: &mut Reference<'_>, tau_s: f64) -> u64 {
-        rests::left_out(reference, tau_s, self.servo_s, self.feed_periods, settled_s(self.machine))
+        rests::left_out(
+            reference,
+            tau_s,
+            self.servo_s,
+            self.feed_periods,
+            settled_s(self.machine),
+        )
     }
 
     fn finish(self) -> RunResult {
         let [out, within] = self.cut;
         RunResult {
-            engaged_share: if out + within == 0 { 1.0 } else { within as f64 / (out + within) as f64 },
-            engaged_at_end: self.run.outcome == Outcome::Completed && self.tick.state() == State::Engaged,
+            engaged_share: if out + within == 0 {
+                1.0
+            } else {
+                within as f64 / (out + within) as f64
+            },
+            engaged_at_end: self.run.outcome == Outcome::Completed
+                && self.tick.state() == State::Engaged,
             joint_error: self.joint_error.as_ref().map(JointErrorMeter::finish),
             uncut_mm: self.uncut.finish(ARRIVED_MM),
             ..self.run
@@ -391,13 +506,21 @@ fn row<const N: usize>(
         torque_nm: tool_of(measurement.torque_nm),
         foot_mm: foot.position_mm,
         tangent: foot.tangent,
-        contour_error_mm: if N == 2 { foot.signed_mm } else { foot.distance_mm },
+        contour_error_mm: if N == 2 {
+            foot.signed_mm
+        } else {
+            foot.distance_mm
+        },
     }
 }
 
 /// When plan time passed `end_s` between the last servo period and this one.
 fn crossing(t_s: f64, servo_s: f64, last_tau_s: f64, tau_s: f64, end_s: f64) -> f64 {
-    if tau_s > last_tau_s { t_s - servo_s * (tau_s - end_s) / (tau_s - last_tau_s) } else { t_s }
+    if tau_s > last_tau_s {
+        t_s - servo_s * (tau_s - end_s) / (tau_s - last_tau_s)
+    } else {
+        t_s
+    }
 }
 
 /// Between the tool and the joints, by the geometry that the control knows.
@@ -415,11 +538,15 @@ impl<const N: usize> Joints<'_, N> {
 
     /// Where the tool is then, mm.
     fn tool(&self, joints_mm: [f64; N]) -> Vector {
-        tool_of(self.known.map_or(joints_mm, |known| known.tool_mm(joints_mm)))
+        tool_of(
+            self.known
+                .map_or(joints_mm, |known| known.tool_mm(joints_mm)),
+        )
     }
 }
 
-/// The planned path as the tick sees it: the joints, ahead by the lost motion that the controller does not cross itself.
+/// The planned path as the tick sees it: the joints, ahead by the lost motion that the controller
+/// does not cross itself.
 struct Axes<'a, 'p, 'k, const N: usize> {
     reference: &'a mut Reference<'p>,
     joints: Joints<'k, N>,
@@ -429,28 +556,54 @@ struct Axes<'a, 'p, 'k, const N: usize> {
 impl<const N: usize> Axes<'_, '_, '_, N> {
     /// By how much the joints are ahead, mm.
     fn lead_mm(&mut self, tau_s: f64) -> [f64; N] {
-        let Self { reference, lost_motion, .. } = self;
+        let Self {
+            reference,
+            lost_motion,
+            ..
+        } = self;
         lost_motion.lead_mm(tau_s, |at_s| joints_of(reference.at(at_s).position_mm))
     }
 }
 
 impl<const N: usize> feedwright_control::KnotSource<N> for Axes<'_, '_, '_, N> {
     fn knot(&mut self, tau_s: f64) -> Knot<N> {
-        let Sample { position_mm, tangent, feed_mm_s, rapid, .. } = self.reference.at(tau_s);
-        let tool =
-            Knot { position_mm: joints_of(position_mm), tangent: joints_of(tangent), feed_mm_s, cutting: !rapid };
-        let Some(known) = self.joints.known else { return tool };
+        let Sample {
+            position_mm,
+            tangent,
+            feed_mm_s,
+            rapid,
+            ..
+        } = self.reference.at(tau_s);
+        let tool = Knot {
+            position_mm: joints_of(position_mm),
+            tangent: joints_of(tangent),
+            feed_mm_s,
+            cutting: !rapid,
+        };
+        let Some(known) = self.joints.known else {
+            return tool;
+        };
         let joints = known.joint_knot(&tool);
         let lead_mm = self.lead_mm(tau_s);
-        Knot { position_mm: std::array::from_fn(|i| joints.position_mm[i] + lead_mm[i]), ..joints }
+        Knot {
+            position_mm: std::array::from_fn(|i| joints.position_mm[i] + lead_mm[i]),
+            ..joints
+        }
     }
 }
 
-/// Lost motion that is known, mm; none where the controller leads the motor by its own model of the screw.
-fn uncrossed_mm<const N: usize>(known: Option<&KnownGeometry<N>>, controller: &dyn Controller<N>) -> [f64; N] {
+/// Lost motion that is known, mm; none where the controller leads the motor by its own model of the
+/// screw.
+fn uncrossed_mm<const N: usize>(
+    known: Option<&KnownGeometry<N>>,
+    controller: &dyn Controller<N>,
+) -> [f64; N] {
     let Some(known) = known else { return [0.0; N] };
     let axes = controller.known();
-    let crosses = |i: usize| axes.as_ref().is_some_and(|axes| axes[i].transmission != TransmissionParameters::RIGID);
+    let crosses = |i: usize| {
+        axes.as_ref()
+            .is_some_and(|axes| axes[i].transmission != TransmissionParameters::RIGID)
+    };
     let lost_mm = known.backlash_mm();
     std::array::from_fn(|i| if crosses(i) { 0.0 } else { lost_mm[i] })
 }

@@ -1,4 +1,5 @@
-//! Files of TOML text, read value by value with every fault at its place: what machine files and model files have in common.
+//! Files of TOML text, read value by value with every fault at its place: what machine files and
+//! model files have in common.
 //!
 //! | File | What |
 //! |---|---|
@@ -37,10 +38,15 @@ pub fn document(text: &str) -> Result<Document<'_>, Vec<Fault>> {
         Ok(document)
     } else {
         let more = syntax_errors.len().saturating_sub(MAX_SYNTAX_FAULTS);
-        let mut faults: Vec<Fault> =
-            syntax_errors.iter().take(MAX_SYNTAX_FAULTS).map(|error| syntax_fault(error, text)).collect();
+        let mut faults: Vec<Fault> = syntax_errors
+            .iter()
+            .take(MAX_SYNTAX_FAULTS)
+            .map(|error| syntax_fault(error, text))
+            .collect();
         if let Some(last) = faults.last_mut().filter(|_| more > 0) {
-            last.hint = Some(format!("{more} more places are not TOML: was another file meant?"));
+            last.hint = Some(format!(
+                "{more} more places are not TOML: was another file meant?"
+            ));
         }
         Err(faults)
     }
@@ -49,7 +55,12 @@ pub fn document(text: &str) -> Result<Document<'_>, Vec<Fault>> {
 fn syntax_fault(error: &toml::de::Error, text: &str) -> Fault {
     let at = error.span().unwrap_or(0..0);
     let at = at.start.min(text.len())..at.end.min(text.len());
-    Fault { at, label: "here", message: format!("not TOML: {}", error.message()), hint: None }
+    Fault {
+        at,
+        label: "here",
+        message: format!("not TOML: {}", error.message()),
+        hint: None,
+    }
 }
 
 /// Reads a file of text.
@@ -62,15 +73,30 @@ pub fn read_text(kind: &'static Kind, path: &Path) -> Result<String, FileError> 
         bytes.extend_from_slice(input::standard_input().map_err(unreadable)?);
     } else {
         let file = std::fs::File::open(path).map_err(unreadable)?;
-        file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+        file.take(MAX_FILE_BYTES + 1)
+            .read_to_end(&mut bytes)
+            .map_err(unreadable)?;
     }
     if bytes.len() as u64 > MAX_FILE_BYTES {
-        return Err(FileError::TooLarge { kind, path: path.to_owned(), limit_bytes: MAX_FILE_BYTES, hint: kind.is });
+        return Err(FileError::TooLarge {
+            kind,
+            path: path.to_owned(),
+            limit_bytes: MAX_FILE_BYTES,
+            hint: kind.is,
+        });
     }
     String::from_utf8(bytes).map_err(|error| {
         let offset = error.utf8_error().valid_up_to();
-        let hint = format!("a {} is TOML text in UTF-8; was another file meant?", kind.name);
-        FileError::NotText { path: path.to_owned(), offset, byte: error.as_bytes()[offset], hint }
+        let hint = format!(
+            "a {} is TOML text in UTF-8; was another file meant?",
+            kind.name
+        );
+        FileError::NotText {
+            path: path.to_owned(),
+            offset,
+            byte: error.as_bytes()[offset],
+            hint,
+        }
     })
 }
 

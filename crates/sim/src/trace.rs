@@ -28,9 +28,11 @@ pub struct Row {
     pub line: u32,
     /// Planned feedrate at `s_mm`, mm/s.
     pub feed_plan_mm_s: f64,
-    /// Programmed feedrate at the foot, mm/s; 0 on a rapid, and where it is not known. No column of `--trace`.
+    /// Programmed feedrate at the foot, mm/s; 0 on a rapid, and where it is not known. No column of
+    /// `--trace`.
     pub programmed_mm_s: f64,
-    /// Whether the tool is where the program cuts: not on a rapid, and not at rest where it has arrived.
+    /// Whether the tool is where the program cuts: not on a rapid, and not at rest where it has
+    /// arrived.
     pub cutting: bool,
     /// What the command does.
     pub commanded: Commanded,
@@ -38,7 +40,8 @@ pub struct Row {
     pub path_mm: [f64; 3],
     /// Position command of this servo period, as the servo drive gets it.
     pub cmd_mm: [f64; 3],
-    /// Where the geometry that the control compensates puts the tool with the joints at `cmd_mm`; without any, `cmd_mm`.
+    /// Where the geometry that the control compensates puts the tool with the joints at `cmd_mm`;
+    /// without any, `cmd_mm`.
     pub corrected_mm: [f64; 3],
     /// True position of the tool at the end of this servo period.
     pub act_mm: [f64; 3],
@@ -48,7 +51,8 @@ pub struct Row {
     pub foot_mm: [f64; 3],
     /// Unit tangent of the path at the foot, in the direction of travel.
     pub tangent: [f64; 3],
-    /// Contour error of `act_mm`, mm: from the foot, in the plane [signed](feedwright_plan::signed_distance_mm), magnitude in space.
+    /// Contour error of `act_mm`, mm: from the foot, in the plane
+    /// [signed](feedwright_plan::signed_distance_mm), magnitude in space.
     pub contour_error_mm: f64,
 }
 
@@ -147,8 +151,14 @@ impl Transition {
         match self.change {
             CorrectionChange::Left => format!("out of the loop{because}"),
             CorrectionChange::Returned => "in the loop again".to_owned(),
-            CorrectionChange::Learned => format!("goes by what it learned of {}", self.axis.unwrap_or_default()),
-            CorrectionChange::Given => format!("goes by the given model of {} again", self.axis.unwrap_or_default()),
+            CorrectionChange::Learned => format!(
+                "goes by what it learned of {}",
+                self.axis.unwrap_or_default()
+            ),
+            CorrectionChange::Given => format!(
+                "goes by the given model of {} again",
+                self.axis.unwrap_or_default()
+            ),
         }
     }
 }
@@ -161,7 +171,8 @@ pub trait Sink {
     /// Where the sink writes to a file that takes no more.
     fn row(&mut self, row: &Row) -> std::io::Result<()>;
 
-    /// Takes an event of the program, at the time at which the command came to it, before the rows from then on.
+    /// Takes an event of the program, at the time at which the command came to it, before the rows
+    /// from then on.
     ///
     /// # Errors
     /// As [`Sink::row`].

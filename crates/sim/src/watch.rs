@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use thiserror::Error;
 
-/// Is told of the progress of long work, from any of its threads, and is asked whether it shall go on.
+/// Is told of the progress of long work, from any of its threads, and is asked whether it shall go
+/// on.
 ///
 /// Work of one stage has a number of steps; it is asked at least every second of a core's time.
 pub trait Watch: Sync {
@@ -24,7 +25,8 @@ pub trait Watch: Sync {
         false
     }
 
-    /// Time since a fixed moment, which times the ticks. Without a clock they count as taking no time.
+    /// Time since a fixed moment, which times the ticks. Without a clock they count as taking no
+    /// time.
     fn clock(&self) -> Duration {
         Duration::ZERO
     }
@@ -34,7 +36,11 @@ pub trait Watch: Sync {
     /// # Errors
     /// [`Cancelled`].
     fn check(&self) -> Result<(), Cancelled> {
-        if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+        if self.is_cancelled() {
+            Err(Cancelled)
+        } else {
+            Ok(())
+        }
     }
 }
 
@@ -65,7 +71,8 @@ impl<'a> StageSteps<'a> {
         self.done = done;
     }
 
-    /// Does work that tells stages of its own: each of them fills the stage from here up to the part `to`.
+    /// Does work that tells stages of its own: each of them fills the stage from here up to the
+    /// part `to`.
     pub fn filled<T>(&mut self, to: f64, work: impl FnOnce(&dyn Watch) -> T) -> T {
         let most = ((to * STEPS as f64) as u64).clamp(self.done, STEPS) - self.done;
         let part = StagePart {

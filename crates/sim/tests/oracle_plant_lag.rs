@@ -1,13 +1,15 @@
-//! The plant against closed forms of its lag on a straight line: what feedforward, latencies, friction, cogging and noise do to it.
+//! The plant against closed forms of its lag on a straight line: what feedforward, latencies,
+//! friction, cogging and noise do to it.
 //!
-//! At constant speed v, under a torque T that the speed loop has to hold, both in rad of the motor, the law of an axis gives
+//! At constant speed v, under a torque T that the speed loop has to hold, both in rad of the motor,
+//! the law of an axis gives
 //!
 //! ```text
 //! lag = ((1 - fv) v + T / Kv) / Kp - v d,     (1 - fa) J a / (Kv Kp) more at an acceleration a
 //! ```
 //!
-//! with d the latency of the measurement; the delay of the drive and its filter move nothing that is constant, and with an integral in the
-//! speed loop T is nothing.
+//! with d the latency of the measurement; the delay of the drive and its filter move nothing that
+//! is constant, and with an integral in the speed loop T is nothing.
 
 use feedwright_sim::{Axis, Machine, Plant};
 
@@ -17,14 +19,18 @@ const SPEED_MM_S: f64 = 20.0;
 fn machine(change: impl Fn(&mut Axis)) -> Machine {
     let mut machine = Machine::load("tnv40".as_ref()).unwrap();
     let mut axis = machine.axes[0];
-    (axis.viscous_friction_nm_s, axis.coulomb_friction_nm, axis.disturbance_nm) = (0.0, 0.0, 0.0);
+    (
+        axis.viscous_friction_nm_s,
+        axis.coulomb_friction_nm,
+        axis.disturbance_nm,
+    ) = (0.0, 0.0, 0.0);
     change(&mut axis);
     machine.axes = vec![axis; 2];
     machine
 }
 
-/// How far the tool is behind the command, um, at the start of each servo period of a second, after one to settle. x goes by
-/// `way_mm`, y by its negative.
+/// How far the tool is behind the command, um, at the start of each servo period of a second, after
+/// one to settle. x goes by `way_mm`, y by its negative.
 fn lags_um(machine: &Machine, way_mm: impl Fn(f64) -> f64) -> [Vec<f64>; 2] {
     let mut plant = Plant::<2>::new(machine, [0.0; 2]);
     let (mut at_mm, mut lags_um) = ([0.0; 2], [vec![], vec![]]);
@@ -50,23 +56,34 @@ fn yields_um(axis: &Axis, torque_nm: f64) -> f64 {
 
 fn near(found: &[f64], wanted: f64, most: f64) {
     for value in found {
-        assert!((value - wanted).abs() <= most, "{value} um, {wanted} um wanted");
+        assert!(
+            (value - wanted).abs() <= most,
+            "{value} um, {wanted} um wanted"
+        );
     }
 }
 
 #[test]
 fn feedforward_takes_its_part_of_the_lag_and_latency_gives_some_back() {
-    for (part, measured_late_s, drive_late_s) in
-        [(0.0, 0.0, 0.0), (0.5, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0013, 0.0), (0.9, 0.003, 0.0), (0.3, 0.001, 0.0017)]
-    {
+    for (part, measured_late_s, drive_late_s) in [
+        (0.0, 0.0, 0.0),
+        (0.5, 0.0, 0.0),
+        (1.0, 0.0, 0.0),
+        (0.0, 0.0013, 0.0),
+        (0.9, 0.003, 0.0),
+        (0.3, 0.001, 0.0017),
+    ] {
         for corner_hz in [0.0, 300.0] {
             let machine = machine(|axis| {
                 axis.velocity_feedforward = part;
                 axis.torque_filter_hz = corner_hz;
                 (axis.measurement_delay_s, axis.drive_delay_s) = (measured_late_s, drive_late_s);
             });
-            let wanted = SPEED_MM_S * 1e3 * ((1.0 - part) / machine.axes[0].kp_1_s - measured_late_s);
-            at_speed_um(&machine).iter().for_each(|lags| near(lags, wanted, 1e-3));
+            let wanted =
+                SPEED_MM_S * 1e3 * ((1.0 - part) / machine.axes[0].kp_1_s - measured_late_s);
+            at_speed_um(&machine)
+                .iter()
+                .for_each(|lags| near(lags, wanted, 1e-3));
         }
     }
 }
@@ -76,13 +93,20 @@ fn acceleration_feedforward_takes_its_part_of_what_the_inertia_costs() {
     // c = a t^2 / 2: the lag grows with the speed, and what two machines differ by is constant.
     let acceleration_mm_s2 = 30.0;
     let lags = |part: f64| {
-        lags_um(&machine(|axis| axis.acceleration_feedforward = part), |t_s| 0.5 * acceleration_mm_s2 * t_s * t_s)
+        lags_um(
+            &machine(|axis| axis.acceleration_feedforward = part),
+            |t_s| 0.5 * acceleration_mm_s2 * t_s * t_s,
+        )
     };
     let (without, axis) = (lags(0.0), machine(|_| {}).axes[0]);
     let torque_nm = axis.inertia_kg_m2 * acceleration_mm_s2 * axis.rad_per_mm();
     for part in [0.4, 1.0] {
         for (lags, without) in lags(part).iter().zip(&without) {
-            let less: Vec<f64> = without.iter().zip(lags).map(|(without, with)| without - with).collect();
+            let less: Vec<f64> = without
+                .iter()
+                .zip(lags)
+                .map(|(without, with)| without - with)
+                .collect();
             near(&less, yields_um(&axis, part * torque_nm), 1e-3);
         }
     }
@@ -90,17 +114,26 @@ fn acceleration_feedforward_takes_its_part_of_what_the_inertia_costs() {
 
 #[test]
 fn a_window_of_the_speed_takes_what_the_speed_is_seen_late_by_from_the_lag() {
-    // The loop sees w - L a: lag = (v + (J / Kv - L) a) / Kp, with L half of what the window is longer than a mechanics period.
+    // The loop sees w - L a: lag = (v + (J / Kv - L) a) / Kp, with L half of what the window is
+    // longer than a mechanics period.
     let acceleration_mm_s2 = 30.0;
     let lags = |window_s: f64, is_held: bool| {
         let machine = machine(|axis| (axis.speed_window_s, axis.speed_held) = (window_s, is_held));
         lags_um(&machine, |t_s| 0.5 * acceleration_mm_s2 * t_s * t_s)
     };
     let (kp_1_s, without) = (machine(|_| ()).axes[0].kp_1_s, lags(0.0, false));
-    for (window_s, is_held, late_s) in [(0.00305, false, 0.001_475), (0.002, true, 0.0014), (0.0, true, 0.000_45)] {
+    for (window_s, is_held, late_s) in [
+        (0.00305, false, 0.001_475),
+        (0.002, true, 0.0014),
+        (0.0, true, 0.000_45),
+    ] {
         let wanted_um = 1e3 * acceleration_mm_s2 * late_s / kp_1_s;
         for (with, without) in lags(window_s, is_held).iter().zip(&without) {
-            let taken: Vec<f64> = without.iter().zip(with).map(|(without, with)| without - with).collect();
+            let taken: Vec<f64> = without
+                .iter()
+                .zip(with)
+                .map(|(without, with)| without - with)
+                .collect();
             near(&taken, wanted_um, 0.01 * wanted_um);
         }
     }
@@ -132,15 +165,22 @@ fn friction_costs_its_level_each_way_and_an_integral_takes_it() {
         let [x, y] = at_speed_um(&machine);
         near(&x, free_um + yields_um(axis, 0.35), 1e-3);
         near(&y, free_um + yields_um(axis, 0.25), 1e-3);
-        at_speed_um(&with_friction(0.02)).iter().for_each(|lags| near(lags, free_um, 1e-3));
+        at_speed_um(&with_friction(0.02))
+            .iter()
+            .for_each(|lags| near(lags, free_um, 1e-3));
         // At the Stribeck speed it is Fs / e more.
         let slow = lags_um(&machine, |t_s| 2.0 * t_s);
-        near(&slow[0], 2e3 / axis.kp_1_s + yields_um(axis, 0.35 + 0.1 * (-1.0_f64).exp()), 2e-3);
+        near(
+            &slow[0],
+            2e3 / axis.kp_1_s + yields_um(axis, 0.35 + 0.1 * (-1.0_f64).exp()),
+            2e-3,
+        );
     }
 }
 
-/// So slow that the loop yields as to a constant torque: at a tenth of a turn a second, and 5 waves to a turn, the phase goes from pi to
-/// 2 pi for x and from -pi to -2 pi for y: the sine has its least for x and its most for y. A lag of first order at Kp takes 0.2 % of it.
+/// So slow that the loop yields as to a constant torque: at a tenth of a turn a second, and 5 waves
+/// to a turn, the phase goes from pi to 2 pi for x and from -pi to -2 pi for y: the sine has its
+/// least for x and its most for y. A lag of first order at Kp takes 0.2 % of it.
 #[test]
 fn cogging_and_ripple_are_waves_over_the_turn() {
     let largest = |lags: &[f64]| lags.iter().copied().fold(f64::MIN, f64::max);
@@ -149,16 +189,25 @@ fn cogging_and_ripple_are_waves_over_the_turn() {
     let axis = cogging.axes[0];
     let (free_um, yields) = (1e3 / axis.kp_1_s, yields_um(&axis, 0.04));
     for lags in lags_um(&cogging, |t_s| t_s) {
-        assert!((largest(&lags) - (free_um + yields)).abs() < 0.005 * yields, "{} {free_um} {yields}", largest(&lags));
+        assert!(
+            (largest(&lags) - (free_um + yields)).abs() < 0.005 * yields,
+            "{} {free_um} {yields}",
+            largest(&lags)
+        );
     }
     // Ripple is in proportion to the torque: what is to be T is T / (1 + r sin) at the drive.
-    let ripple = machine(|axis| (axis.ripple, axis.ripple_per_rev, axis.viscous_friction_nm_s) = (0.1, 5.0, 0.5));
+    let ripple = machine(|axis| {
+        (axis.ripple, axis.ripple_per_rev, axis.viscous_friction_nm_s) = (0.1, 5.0, 0.5);
+    });
     let yields = yields_um(&axis, 0.5 * axis.rad_per_mm());
     let [x, y] = lags_um(&ripple, |t_s| t_s);
     let [most, wanted] = [largest(&x), free_um + yields / 0.9];
     assert!((most - wanted).abs() < 0.005 * yields, "{most} {wanted}");
     let [fewest, wanted] = [least(&y), free_um + yields / 1.1];
-    assert!((fewest - wanted).abs() < 0.005 * yields, "{fewest} {wanted}");
+    assert!(
+        (fewest - wanted).abs() < 0.005 * yields,
+        "{fewest} {wanted}"
+    );
 }
 
 #[test]
@@ -169,15 +218,23 @@ fn slow_torque_noise_moves_the_tool_by_what_the_loop_yields() {
     let mut square = 0.0;
     for seed in 0..400 {
         let mut plant = Plant::<2>::with_seed(&noisy, [0.0; 2], seed);
-        let last = (0..300).map(|_| plant.step([0.0; 2]).position_mm).last().unwrap();
+        let last = (0..300)
+            .map(|_| plant.step([0.0; 2]).position_mm)
+            .last()
+            .unwrap();
         square += (last[0] * 1e3).powi(2) / 400.0;
     }
     let wanted = yields_um(&noisy.axes[0], 0.1);
-    assert!((square.sqrt() - wanted).abs() < 0.14 * wanted, "{} {wanted}", square.sqrt());
+    assert!(
+        (square.sqrt() - wanted).abs() < 0.14 * wanted,
+        "{} {wanted}",
+        square.sqrt()
+    );
 }
 
-/// A command that is late moves everything behind it by whole servo periods: the machine does to the bit what one without the delay does
-/// with a plan that is so much later. Disturbance, noise and encoder stay in their own time.
+/// A command that is late moves everything behind it by whole servo periods: the machine does to
+/// the bit what one without the delay does with a plan that is so much later. Disturbance, noise
+/// and encoder stay in their own time.
 #[test]
 fn a_late_command_is_a_plan_that_is_later_by_whole_servo_periods() {
     let course_mm = |n: u32| {
@@ -189,12 +246,19 @@ fn a_late_command_is_a_plan_that_is_later_by_whole_servo_periods() {
         for late in [1, 2, 3, 8] {
             let mut machine = prompt.clone();
             let delay_s = f64::from(late) * machine.period.servo_s;
-            machine.axes.iter_mut().for_each(|axis| axis.command_delay_s = delay_s);
-            let [mut delayed, mut plain] = [&machine, &prompt].map(|machine| Plant::<2>::new(machine, [0.0; 2]));
+            machine
+                .axes
+                .iter_mut()
+                .for_each(|axis| axis.command_delay_s = delay_s);
+            let [mut delayed, mut plain] =
+                [&machine, &prompt].map(|machine| Plant::<2>::new(machine, [0.0; 2]));
             for n in 0_u32..600 {
                 let later_mm = n.checked_sub(late).map_or([0.0; 2], course_mm);
                 let (found, wanted) = (delayed.step(course_mm(n)), plain.step(later_mm));
-                assert_eq!(found, wanted, "{name}, {late} servo periods late, servo period {n}");
+                assert_eq!(
+                    found, wanted,
+                    "{name}, {late} servo periods late, servo period {n}"
+                );
             }
         }
     }

@@ -1,4 +1,5 @@
-//! Splines against numbers made by `oracle_data/spline.py`, and the butterfly against the literature.
+//! Splines against numbers made by `oracle_data/spline.py`, and the butterfly against the
+//! literature.
 
 use crate::programs::{BLEND, LIMITS, Random, distance};
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Motion, MotionKind, Shape, Spline};
@@ -10,7 +11,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().expect("array").iter().map(|x| x.as_f64().expect("number")).collect()
+    value
+        .as_array()
+        .expect("array")
+        .iter()
+        .map(|x| x.as_f64().expect("number"))
+        .collect()
 }
 
 fn vector(value: &Value) -> [f64; 3] {
@@ -19,7 +25,12 @@ fn vector(value: &Value) -> [f64; 3] {
 }
 
 fn points(value: &Value) -> Vec<[f64; 3]> {
-    value.as_array().expect("array").iter().map(vector).collect()
+    value
+        .as_array()
+        .expect("array")
+        .iter()
+        .map(vector)
+        .collect()
 }
 
 fn motion(spline: Spline, start_mm: [f64; 3], end_mm: [f64; 3]) -> Canon {
@@ -60,19 +71,41 @@ fn splines_agree_with_25_digits() {
         assert_eq!(pieces.len(), 1, "{name}");
         let curve = &pieces[0].curve;
         let length = case["length_mm"].as_f64().unwrap();
-        assert!((curve.length_mm() - length).abs() < 1e-9, "{name}: {} {length}", curve.length_mm());
+        assert!(
+            (curve.length_mm() - length).abs() < 1e-9,
+            "{name}: {} {length}",
+            curve.length_mm()
+        );
         for sample in case["samples"].as_array().unwrap() {
             let s_mm = sample["s_mm"].as_f64().unwrap();
             let at = curve.at(s_mm);
-            assert!(distance(at.position_mm, vector(&sample["position_mm"])) < 1e-9, "{name} {s_mm}");
-            assert!(distance(at.tangent, vector(&sample["tangent"])) < 1e-9, "{name} {s_mm}");
+            assert!(
+                distance(at.position_mm, vector(&sample["position_mm"])) < 1e-9,
+                "{name} {s_mm}"
+            );
+            assert!(
+                distance(at.tangent, vector(&sample["tangent"])) < 1e-9,
+                "{name} {s_mm}"
+            );
             let curvature = sample["curvature_1_mm"].as_f64().unwrap();
-            assert!((curve.curvature(s_mm) / curvature - 1.0).abs() < 1e-8, "{name} {s_mm}");
+            assert!(
+                (curve.curvature(s_mm) / curvature - 1.0).abs() < 1e-8,
+                "{name} {s_mm}"
+            );
             let derivatives = curve.derivatives(s_mm);
-            let [second, third] = [vector(&sample["second_1_mm"]), vector(&sample["third_1_mm2"])];
+            let [second, third] = [
+                vector(&sample["second_1_mm"]),
+                vector(&sample["third_1_mm2"]),
+            ];
             let size = distance(third, [0.0; 3]);
-            assert!(distance(derivatives.second_1_mm, second) < 1e-8 * curvature, "{name} {s_mm} {derivatives:?}");
-            assert!(distance(derivatives.third_1_mm2, third) < 1e-7 * size, "{name} {s_mm} {derivatives:?} {third:?}");
+            assert!(
+                distance(derivatives.second_1_mm, second) < 1e-8 * curvature,
+                "{name} {s_mm} {derivatives:?}"
+            );
+            assert!(
+                distance(derivatives.third_1_mm2, third) < 1e-7 * size,
+                "{name} {s_mm} {derivatives:?} {third:?}"
+            );
         }
     }
 }
@@ -85,7 +118,8 @@ fn ends(spline: &Spline) -> ([f64; 3], [f64; 3]) {
         }
         let part = |over: f64, under: f64| if under > 0.0 { over / under } else { 0.0 };
         part(u - knots[i], knots[i + p] - knots[i]) * basis(i, p - 1, u, knots, span)
-            + part(knots[i + p + 1] - u, knots[i + p + 1] - knots[i + 1]) * basis(i + 1, p - 1, u, knots, span)
+            + part(knots[i + p + 1] - u, knots[i + p + 1] - knots[i + 1])
+                * basis(i + 1, p - 1, u, knots, span)
     }
     let count = spline.control_mm.len();
     let at = |u: f64, span: usize| {
@@ -99,12 +133,15 @@ fn ends(spline: &Spline) -> ([f64; 3], [f64; 3]) {
         }
         [0, 1, 2].map(|k| sum[k] / sum[3])
     };
-    (at(spline.knots[spline.degree], spline.degree), at(spline.knots[count], count - 1))
+    (
+        at(spline.knots[spline.degree], spline.degree),
+        at(spline.knots[count], count - 1),
+    )
 }
 
 fn butterfly() -> Option<Spline> {
-    let path =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus/curves/butterfly_nurbs_degree3_51cp.json");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../../shared/corpus/curves/butterfly_nurbs_degree3_51cp.json");
     let Ok(text) = std::fs::read_to_string(&path) else {
         eprintln!("SKIPPED: {} is missing", path.display());
         return None;
@@ -130,7 +167,8 @@ fn butterfly_has_its_published_length_and_curvature() {
             sharpest = sharpest.max(piece.curve.curvature(piece.length_mm * f64::from(i) * 1e-6));
         }
     }
-    // Published with three digits behind the point, cut off rather than rounded; chords extrapolated give 382.8595583.
+    // Published with three digits behind the point, cut off rather than rounded; chords
+    // extrapolated give 382.8595583.
     assert!((length - 382.859).abs() < 1e-3, "{length}");
     assert!((length - 382.859_558_3).abs() < 1e-7, "{length}");
     assert!((sharpest - 43.25).abs() < 0.01, "{sharpest}");
@@ -147,28 +185,57 @@ fn butterfly_keeps_the_normal_limit_and_its_feet() {
     let mut random = Random(4);
     for _ in 0..50_000 {
         let here = reference.at(random.between(0.0, end_s));
-        let piece = &pieces[pieces.partition_point(|piece| piece.s_mm <= here.s_mm).max(1) - 1];
+        let piece = &pieces[pieces
+            .partition_point(|piece| piece.s_mm <= here.s_mm)
+            .max(1)
+            - 1];
         let normal = here.feed_mm_s.powi(2) * piece.curve.curvature(here.s_mm - piece.s_mm);
         assert!(normal <= 400.0 * 1.001, "{normal} at {}", here.s_mm);
     }
     for _ in 0..300 {
         let tau = random.between(0.0, end_s);
-        let point = reference.at(tau).position_mm.map(|x| x + random.between(-0.02, 0.02));
+        let point = reference
+            .at(tau)
+            .position_mm
+            .map(|x| x + random.between(-0.02, 0.02));
         let foot = reference.nearest(point, tau - 0.05, tau + 0.05);
         let brute = (0..=20_000)
-            .map(|i| distance(reference.at(tau - 0.05 + 5e-6 * f64::from(i)).position_mm, point))
+            .map(|i| {
+                distance(
+                    reference.at(tau - 0.05 + 5e-6 * f64::from(i)).position_mm,
+                    point,
+                )
+            })
             .fold(f64::INFINITY, f64::min);
-        assert!(foot.distance_mm <= brute + 1e-12, "{} {brute}", foot.distance_mm);
-        assert!(foot.distance_mm >= brute - 50.0 * 5e-6, "{} {brute}", foot.distance_mm);
+        assert!(
+            foot.distance_mm <= brute + 1e-12,
+            "{} {brute}",
+            foot.distance_mm
+        );
+        assert!(
+            foot.distance_mm >= brute - 50.0 * 5e-6,
+            "{} {brute}",
+            foot.distance_mm
+        );
     }
 }
 
-/// Point of a rational B-spline by de Boor's corner cutting in homogeneous coordinates, from the words of the program.
+/// Point of a rational B-spline by de Boor's corner cutting in homogeneous coordinates, from the
+/// words of the program.
 fn de_boor(order: usize, knots: &[f64], points: &[[f64; 3]], u: f64) -> [f64; 3] {
     let degree = order - 1;
-    let span = (degree..points.len()).rev().find(|&i| knots[i] <= u && knots[i] < knots[i + 1]).expect("a span");
+    let span = (degree..points.len())
+        .rev()
+        .find(|&i| knots[i] <= u && knots[i] < knots[i + 1])
+        .expect("a span");
     let mut cut: Vec<[f64; 3]> = (span - degree..=span)
-        .map(|i| [points[i][0] * points[i][2], points[i][1] * points[i][2], points[i][2]])
+        .map(|i| {
+            [
+                points[i][0] * points[i][2],
+                points[i][1] * points[i][2],
+                points[i][2],
+            ]
+        })
         .collect();
     for level in 1..=degree {
         for j in (level..=degree).rev() {
@@ -179,24 +246,43 @@ fn de_boor(order: usize, knots: &[f64], points: &[[f64; 3]], u: f64) -> [f64; 3]
             }
         }
     }
-    [cut[degree][0] / cut[degree][2], cut[degree][1] / cut[degree][2], 0.0]
+    [
+        cut[degree][0] / cut[degree][2],
+        cut[degree][1] / cut[degree][2],
+        0.0,
+    ]
 }
 
-/// G5, G5.1, G5.2 and G6.2 as read from a program: points of the curve that the words define lie on the path, and the path is as
-/// long as the chords through them.
+/// G5, G5.1, G5.2 and G6.2 as read from a program: points of the curve that the words define lie on
+/// the path, and the path is as long as the chords through them.
 #[test]
 fn splines_of_a_program_are_the_curves_of_their_words() {
     // Order, knots, and x, y, weight of the control points, worked out by hand from the program.
     type Curve = (&'static str, usize, &'static [f64], &'static [[f64; 3]]);
     const BEZIER_3: &[f64] = &[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
     const CURVES: &[Curve] = &[
-        ("G5 X10 Y5 I3 J6 P-4 Q1", 4, BEZIER_3, &[[0.0, 0.0, 1.0], [3.0, 6.0, 1.0], [6.0, 6.0, 1.0], [10.0, 5.0, 1.0]]),
+        (
+            "G5 X10 Y5 I3 J6 P-4 Q1",
+            4,
+            BEZIER_3,
+            &[
+                [0.0, 0.0, 1.0],
+                [3.0, 6.0, 1.0],
+                [6.0, 6.0, 1.0],
+                [10.0, 5.0, 1.0],
+            ],
+        ),
         (
             // Without I and J it goes on in the direction of the curve before.
             "G5 X22 Y3 P-3 Q-5",
             4,
             BEZIER_3,
-            &[[10.0, 5.0, 1.0], [14.0, 4.0, 1.0], [19.0, -2.0, 1.0], [22.0, 3.0, 1.0]],
+            &[
+                [10.0, 5.0, 1.0],
+                [14.0, 4.0, 1.0],
+                [19.0, -2.0, 1.0],
+                [22.0, 3.0, 1.0],
+            ],
         ),
         (
             "G5.1 X30 Y5 I2 J8",
@@ -208,13 +294,25 @@ fn splines_of_a_program_are_the_curves_of_their_words() {
             "G5.2 X33 Y12 P1.5\nX40 Y15 P0.7\nX45 Y2 P2\nX52 Y4 P1\nG5.3",
             3,
             &[0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 3.0, 3.0],
-            &[[30.0, 5.0, 1.0], [33.0, 12.0, 1.5], [40.0, 15.0, 0.7], [45.0, 2.0, 2.0], [52.0, 4.0, 1.0]],
+            &[
+                [30.0, 5.0, 1.0],
+                [33.0, 12.0, 1.5],
+                [40.0, 15.0, 0.7],
+                [45.0, 2.0, 2.0],
+                [52.0, 4.0, 1.0],
+            ],
         ),
         (
             "G6.2 P4 K0 X52 Y4 R1\nK0 X55 Y14 R0.6\nK0 X60 Y12 R3\nK0 X66 Y0 R1\nK0.3 X70 Y3 R2\nG6.2 K2\nG6.2 K2\nG6.2 K2\nG6.2 K2",
             4,
             &[0.0, 0.0, 0.0, 0.0, 0.3, 2.0, 2.0, 2.0, 2.0],
-            &[[52.0, 4.0, 1.0], [55.0, 14.0, 0.6], [60.0, 12.0, 3.0], [66.0, 0.0, 1.0], [70.0, 3.0, 2.0]],
+            &[
+                [52.0, 4.0, 1.0],
+                [55.0, 14.0, 0.6],
+                [60.0, 12.0, 3.0],
+                [66.0, 0.0, 1.0],
+                [70.0, 3.0, 2.0],
+            ],
         ),
     ];
     const SAMPLES: u32 = 20_000;

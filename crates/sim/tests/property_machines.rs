@@ -1,5 +1,5 @@
-//! Machines with a soft screw, late drives and coarse encoders stay machines: they follow a slow line, and what is measured
-//! is what the encoder can show.
+//! Machines with a soft screw, late drives and coarse encoders stay machines: they follow a slow
+//! line, and what is measured is what the encoder can show.
 
 use feedwright_sim::{Machine, Plant, Transmission};
 use proptest::prelude::*;
@@ -56,7 +56,8 @@ const REAL: [&str; 3] = ["workshop", "stiff", "router"];
 #[test]
 fn real_machines_follow_a_slow_line_whatever_the_seed() {
     for name in REAL {
-        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("machines/{name}.toml"));
+        let file =
+            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("machines/{name}.toml"));
         let machine = Machine::read(&file).unwrap();
         assert_eq!((machine.name.as_str(), machine.axis_count()), (name, 3));
         for seed in 0..5 {
@@ -68,7 +69,10 @@ fn real_machines_follow_a_slow_line_whatever_the_seed() {
                 let measured = plant.step([command_mm, -command_mm, 0.5 * command_mm]);
                 for (axis, part) in [1.0, -1.0, 0.5].into_iter().enumerate() {
                     let off_mm = part * command_mm - measured.joint_mm[axis];
-                    assert!(off_mm.abs() <= lag_mm + 0.05, "{name}, seed {seed}, {n}: {off_mm} mm");
+                    assert!(
+                        off_mm.abs() <= lag_mm + 0.05,
+                        "{name}, seed {seed}, {n}: {off_mm} mm"
+                    );
                 }
             }
         }
@@ -78,10 +82,15 @@ fn real_machines_follow_a_slow_line_whatever_the_seed() {
 #[test]
 fn every_value_of_a_real_machine_has_a_reason() {
     for name in REAL {
-        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("machines/{name}.toml"));
+        let file =
+            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("machines/{name}.toml"));
         for (number, line) in std::fs::read_to_string(file).unwrap().lines().enumerate() {
             if line.contains(" = ") && !line.contains('"') && !line.starts_with('#') {
-                assert!(line.contains(" # "), "{name}, line {} has no reason: {line}", number + 1);
+                assert!(
+                    line.contains(" # "),
+                    "{name}, line {} has no reason: {line}",
+                    number + 1
+                );
             }
         }
     }
@@ -95,11 +104,24 @@ fn files_that_build_upon_each_other_are_refused() {
         std::fs::write(folder.path().join(name), text).unwrap();
     };
     write("a.toml", "b.toml");
-    for (base, name) in [("a.toml", "b.toml"), ("b.toml", "b.toml"), ("../x/a.toml", "b.toml")] {
-        let base = base.replace("../x", &format!("../{}", folder.path().file_name().unwrap().display()));
+    for (base, name) in [
+        ("a.toml", "b.toml"),
+        ("b.toml", "b.toml"),
+        ("../x/a.toml", "b.toml"),
+    ] {
+        let base = base.replace(
+            "../x",
+            &format!("../{}", folder.path().file_name().unwrap().display()),
+        );
         write(name, &base);
-        let circular = format!("{:?}", Machine::read(&folder.path().join("a.toml")).unwrap_err());
-        assert!(circular.contains("builds upon this machine in turn"), "{base}: {circular}");
+        let circular = format!(
+            "{:?}",
+            Machine::read(&folder.path().join("a.toml")).unwrap_err()
+        );
+        assert!(
+            circular.contains("builds upon this machine in turn"),
+            "{base}: {circular}"
+        );
     }
 }
 
@@ -114,15 +136,25 @@ fn a_file_upon_a_base_has_what_it_does_not_say() {
     let faults = |text: &str| Machine::parse("x.toml", text).unwrap_err();
     let words = "name = \"a\"\ndescription = \"b\"\nsource = \"c\"\n";
     let chained = Machine::parse("x.toml", &format!("base = \"heavy\"\n{words}")).unwrap();
-    assert_eq!((&chained.axes, &chained.limits), (&heavy.axes, &heavy.limits));
+    assert_eq!(
+        (&chained.axes, &chained.limits),
+        (&heavy.axes, &heavy.limits)
+    );
     for name in ["heavy.toml", "heavy", "tnv40.toml"] {
-        let named_as_its_base = Machine::parse(name, &format!("base = \"heavy\"\n{words}")).unwrap();
+        let named_as_its_base =
+            Machine::parse(name, &format!("base = \"heavy\"\n{words}")).unwrap();
         assert_eq!(named_as_its_base.axes, heavy.axes, "{name}");
     }
     let unknown = faults(&format!("base = \"tnv4\"\n{words}"));
-    assert_eq!(unknown.to_string().split(';').next(), Some("no machine is called 'tnv4'"));
+    assert_eq!(
+        unknown.to_string().split(';').next(),
+        Some("no machine is called 'tnv4'")
+    );
     let fast = faults(&format!(
         "base = \"tnv40\"\n{words}[axis.x.transmission]\ntable_share = 0.5\nresonance_hz = 900\ndamping_ratio = 0.1\nbacklash_um = 0\n"
     ));
-    assert!(format!("{fast:?}").contains("mechanics_s has to be"), "{fast:?}");
+    assert!(
+        format!("{fast:?}").contains("mechanics_s has to be"),
+        "{fast:?}"
+    );
 }

@@ -25,7 +25,12 @@ fn point() -> impl Strategy<Value = [f64; 3]> {
 fn shape() -> impl Strategy<Value = Shape> {
     let plane = prop::sample::select(vec![Plane::Xy, Plane::Zx, Plane::Yz]);
     let turns = prop::sample::select(vec![0, 1, -1, 2, -7, i32::MAX, i32::MIN]);
-    let spline = (1usize..5, prop::collection::vec(point(), 1..8), prop::collection::vec(number(), 1..16), 0u32..3);
+    let spline = (
+        1usize..5,
+        prop::collection::vec(point(), 1..8),
+        prop::collection::vec(number(), 1..16),
+        0u32..3,
+    );
     prop_oneof![
         2 => Just(Shape::Line),
         3 => (plane, point(), turns).prop_map(|(plane, center_mm, turns)| Shape::Arc { plane, center_mm, turns }),
@@ -45,18 +50,35 @@ fn corner() -> impl Strategy<Value = Corner> {
     prop::sample::select(vec![
         Corner::ExactStop,
         Corner::ExactPath,
-        Corner::Continuous { tolerance_mm: None, merge_mm: None },
-        Corner::Continuous { tolerance_mm: Some(0.01), merge_mm: None },
+        Corner::Continuous {
+            tolerance_mm: None,
+            merge_mm: None,
+        },
+        Corner::Continuous {
+            tolerance_mm: Some(0.01),
+            merge_mm: None,
+        },
     ])
 }
 
 /// Motions that join, each with its own oddities.
 fn program() -> impl Strategy<Value = Vec<Canon>> {
-    let motion = (point(), shape(), number(), corner(), any::<bool>(), number());
+    let motion = (
+        point(),
+        shape(),
+        number(),
+        corner(),
+        any::<bool>(),
+        number(),
+    );
     (point(), prop::collection::vec(motion, 1..12)).prop_map(|(mut here, motions)| {
         let mut canon = Vec::new();
         for (end_mm, shape, feed, corner, rapid, seconds) in motions {
-            let kind = if rapid { MotionKind::Rapid } else { MotionKind::Feed };
+            let kind = if rapid {
+                MotionKind::Rapid
+            } else {
+                MotionKind::Feed
+            };
             let (start_mm, end_mm) = match &shape {
                 Shape::Spline(spline) => (here, spline.control_mm[spline.control_mm.len() - 1]),
                 _ => (here, end_mm),
@@ -73,7 +95,10 @@ fn program() -> impl Strategy<Value = Vec<Canon>> {
                 others: AuxiliaryAxes::default(),
             }));
             if seconds > 40.0 {
-                canon.push(Canon::Event(Event { line: 2, kind: EventKind::Dwell { seconds } }));
+                canon.push(Canon::Event(Event {
+                    line: 2,
+                    kind: EventKind::Dwell { seconds },
+                }));
             }
             here = end_mm;
         }

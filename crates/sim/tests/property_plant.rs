@@ -1,4 +1,5 @@
-//! Whatever a machine file may say: a second of it is simulated without a panic. What is tuned badly diverges; that is a result.
+//! Whatever a machine file may say: a second of it is simulated without a panic. What is tuned
+//! badly diverges; that is a result.
 
 use feedwright_control::position_gains_1_s;
 use feedwright_sim::machine_keys as keys;
@@ -10,7 +11,8 @@ use proptest::prelude::*;
 /// Mechanics periods in a second of a case, at the most: a run of all cases is to end.
 const MOST_PERIODS: f64 = 20_000.0;
 
-/// A value of a range: one of its ends, zero where that is in it, or one within, evenly in its logarithm.
+/// A value of a range: one of its ends, zero where that is in it, or one within, evenly in its
+/// logarithm.
 fn value([least, most]: [f64; 2], choice: u8, part: f64) -> f64 {
     let within_zero = least <= 0.0 && most >= 0.0;
     match choice {
@@ -20,7 +22,11 @@ fn value([least, most]: [f64; 2], choice: u8, part: f64) -> f64 {
         _ => {
             let small = if least > 0.0 { least } else { most * 1e-9 };
             let size = small * (most / small).powf(part);
-            if least < 0.0 && choice.is_multiple_of(2) { -size } else { size }
+            if least < 0.0 && choice.is_multiple_of(2) {
+                -size
+            } else {
+                size
+            }
         }
     }
 }
@@ -33,15 +39,27 @@ fn set<T>(keys: &[Key<T>], part: &mut T, choices: &[(u8, f64)]) {
     }
 }
 
-/// A machine whose values of all kinds are drawn from all over their ranges, or those alone that tnv40 leaves out, so that it does not
-/// diverge at once; none where they do not go together.
-fn machine(choices: &[(u8, f64)], per_servo: u32, has_screw: bool, is_sound: bool) -> Option<Machine> {
+/// A machine whose values of all kinds are drawn from all over their ranges, or those alone that
+/// tnv40 leaves out, so that it does not diverge at once; none where they do not go together.
+fn machine(
+    choices: &[(u8, f64)],
+    per_servo: u32,
+    has_screw: bool,
+    is_sound: bool,
+) -> Option<Machine> {
     let mut machine = Machine::load("tnv40".as_ref()).unwrap();
-    let servo_s = value([1e-5, 0.1], choices[0].0, choices[0].1).max(f64::from(per_servo) / MOST_PERIODS);
+    let servo_s =
+        value([1e-5, 0.1], choices[0].0, choices[0].1).max(f64::from(per_servo) / MOST_PERIODS);
     machine.period.servo_s = servo_s;
     machine.period.mechanics_s = servo_s / f64::from(per_servo);
     for (i, axis) in machine.axes.iter_mut().enumerate() {
-        let rotated: Vec<(u8, f64)> = choices.iter().cycle().skip(1 + 7 * i).take(choices.len()).copied().collect();
+        let rotated: Vec<(u8, f64)> = choices
+            .iter()
+            .cycle()
+            .skip(1 + 7 * i)
+            .take(choices.len())
+            .copied()
+            .collect();
         let sound = *axis;
         set(keys::AXIS, axis, &rotated);
         if is_sound {
@@ -55,21 +73,36 @@ fn machine(choices: &[(u8, f64)], per_servo: u32, has_screw: bool, is_sound: boo
         axis.kp_1_s = axis.kp_1_s.clamp(least_1_s, most_1_s);
         let most_nm = axis.coulomb_friction_nm;
         axis.coulomb_asymmetry_nm = axis.coulomb_asymmetry_nm.max(-most_nm).min(most_nm);
-        (axis.jitter_s, axis.drive_delay_s) = (axis.jitter_s.min(servo_s), axis.drive_delay_s.min(50.0 * servo_s));
+        (axis.jitter_s, axis.drive_delay_s) = (
+            axis.jitter_s.min(servo_s),
+            axis.drive_delay_s.min(50.0 * servo_s),
+        );
         axis.command_delay_s = axis.command_delay_s.min(8.0 * servo_s);
         axis.measurement_delay_s = axis.measurement_delay_s.min(50.0 * servo_s);
-        let needed =
-            [&mut axis.signal_period_um, &mut axis.stribeck_mm_s, &mut axis.cogging_per_rev, &mut axis.ripple_per_rev];
-        needed.into_iter().for_each(|value| *value = value.max(1e-9));
+        let needed = [
+            &mut axis.signal_period_um,
+            &mut axis.stribeck_mm_s,
+            &mut axis.cogging_per_rev,
+            &mut axis.ripple_per_rev,
+        ];
+        needed
+            .into_iter()
+            .for_each(|value| *value = value.max(1e-9));
         axis.transmission = has_screw.then(|| {
             let mut transmission = Transmission::default();
             set(keys::TRANSMISSION, &mut transmission, &rotated);
-            transmission.resonance_hz = transmission.resonance_hz.min(0.005 / machine.period.mechanics_s).max(0.1);
+            transmission.resonance_hz = transmission
+                .resonance_hz
+                .min(0.005 / machine.period.mechanics_s)
+                .max(0.1);
             transmission
         });
         // The mechanics period has to follow viscous friction, too.
-        let braked_kg_m2 = axis.inertia_kg_m2 * axis.transmission.map_or(1.0, |screw| screw.table_share);
-        axis.viscous_friction_nm_s = axis.viscous_friction_nm_s.min(0.999 * braked_kg_m2 / machine.period.mechanics_s);
+        let braked_kg_m2 =
+            axis.inertia_kg_m2 * axis.transmission.map_or(1.0, |screw| screw.table_share);
+        axis.viscous_friction_nm_s = axis
+            .viscous_friction_nm_s
+            .min(0.999 * braked_kg_m2 / machine.period.mechanics_s);
     }
     set(keys::GEOMETRY, &mut machine.geometry, &choices[3..]);
     machine.noise.seed = choices[0].1.to_bits() >> 11;
@@ -86,7 +119,8 @@ proptest! {
         has_screw in any::<bool>(), is_sound in any::<bool>()
     ) {
         let Some(machine) = machine(&choices, per_servo, has_screw, is_sound) else {
-            // A screw that the mechanics period cannot follow is refused; everything else has to be a machine.
+            // A screw that the mechanics period cannot follow is refused; everything else has to be
+            // a machine.
             prop_assert!(has_screw, "a machine without a screw was refused");
             return Ok(());
         };
@@ -114,10 +148,19 @@ proptest! {
 fn the_values_lie_within_their_ranges_and_at_their_ends() {
     for key in keys::AXIS {
         let [least, most] = key.range;
-        let values: Vec<f64> =
-            (0..12).flat_map(|choice| [0.0, 0.5, 0.999].map(|part| value(key.range, choice, part))).collect();
-        assert!(values.iter().all(|value| (least..=most).contains(value)), "{}: {values:?}", key.name);
-        assert!(values.contains(&least) && values.contains(&most), "{}", key.name);
+        let values: Vec<f64> = (0..12)
+            .flat_map(|choice| [0.0, 0.5, 0.999].map(|part| value(key.range, choice, part)))
+            .collect();
+        assert!(
+            values.iter().all(|value| (least..=most).contains(value)),
+            "{}: {values:?}",
+            key.name
+        );
+        assert!(
+            values.contains(&least) && values.contains(&most),
+            "{}",
+            key.name
+        );
     }
 }
 
@@ -129,7 +172,9 @@ fn measured(machine: &Machine, at: impl Fn(&mut Plant<2>)) -> Vec<[f64; 2]> {
         if n == periods / 2 {
             at(&mut plant);
         }
-        plant.step([10.0, -7.0].map(|mm_s: f64| mm_s * n as f64 * machine.period.servo_s)).measured_mm
+        plant
+            .step([10.0, -7.0].map(|mm_s: f64| mm_s * n as f64 * machine.period.servo_s))
+            .measured_mm
     };
     (0..periods).map(step).collect()
 }
@@ -142,10 +187,21 @@ fn a_machine_that_becomes_itself_goes_on_as_it_was_and_one_that_becomes_another_
             continue;
         }
         let mut heavy = machine.clone();
-        heavy.axes.iter_mut().for_each(|axis| axis.inertia_kg_m2 *= 2.0);
+        heavy
+            .axes
+            .iter_mut()
+            .for_each(|axis| axis.inertia_kg_m2 *= 2.0);
         let same = measured(&machine, |_| {});
-        assert_eq!(same, measured(&machine, |plant| plant.change_to(&machine)), "{name}");
-        assert_ne!(same, measured(&machine, |plant| plant.change_to(&heavy)), "{name}");
+        assert_eq!(
+            same,
+            measured(&machine, |plant| plant.change_to(&machine)),
+            "{name}"
+        );
+        assert_ne!(
+            same,
+            measured(&machine, |plant| plant.change_to(&heavy)),
+            "{name}"
+        );
     }
 }
 
@@ -171,7 +227,12 @@ fn a_blow_gives_the_axis_its_impulse() {
     for (i, impulse_nm_s) in impulse_nm_s.into_iter().enumerate() {
         let axis = machine.axis(i);
         let free_mm = impulse_nm_s / axis.inertia_kg_m2 * seconds / axis.rad_per_mm();
-        // Backlash and a swinging screw: the table is within some hundredths of a millimeter of the center of mass.
-        assert!((moved_mm[i] - free_mm).abs() < 0.02, "{i}: {} mm, {free_mm} mm expected", moved_mm[i]);
+        // Backlash and a swinging screw: the table is within some hundredths of a millimeter of the
+        // center of mass.
+        assert!(
+            (moved_mm[i] - free_mm).abs() < 0.02,
+            "{i}: {} mm, {free_mm} mm expected",
+            moved_mm[i]
+        );
     }
 }

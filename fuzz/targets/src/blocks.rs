@@ -1,10 +1,12 @@
-//! Blocks of models: bytes as they come with a checksum that fits, and axes and weights with numbers at the ends of their ranges.
+//! Blocks of models: bytes as they come with a checksum that fits, and axes and weights with
+//! numbers at the ends of their ranges.
 
 use std::f64::consts::TAU;
 
 use feedwright_control::{
-    AxisErrors, AxisKnowledge, ContourIdentifier, DriveParameters, ErrorTable, FEED_PERIODS_S, IdentifiedAxes,
-    Identifier, KnownGeometry, LoopDelays, MAX_WEIGHT, ModelBlock, Parameters, Periods, Trained,
+    AxisErrors, AxisKnowledge, ContourIdentifier, DriveParameters, ErrorTable, FEED_PERIODS_S,
+    IdentifiedAxes, Identifier, KnownGeometry, LoopDelays, MAX_WEIGHT, ModelBlock, Parameters,
+    Periods, Trained,
 };
 
 use crate::draw::Draw;
@@ -12,13 +14,22 @@ use crate::draw::Draw;
 /// Servo period of a usual machine, s.
 pub(crate) const SERVO_S: f64 = 0.001;
 /// Servo and mechanics periods of blocks, s.
-const PERIODS_S: &[[f64; 2]] =
-    &[[1e-3, 1e-4], [1e-3, 1e-3], [2e-3, 1e-4], [1e-3, 1e-5], [1e-5, 1e-5], [0.1, 0.1], [0.1, 1e-4], [1e-3, 1e-7]];
+const PERIODS_S: &[[f64; 2]] = &[
+    [1e-3, 1e-4],
+    [1e-3, 1e-3],
+    [2e-3, 1e-4],
+    [1e-3, 1e-5],
+    [1e-5, 1e-5],
+    [0.1, 0.1],
+    [0.1, 1e-4],
+    [1e-3, 1e-7],
+];
 
 /// Length of the checksum at the end of a block.
 pub(crate) const CHECKSUM_BYTES: usize = 4;
 
-/// Axes with the numbers of the machine of Lee, Cho and Jeon (2005), with delays and an integral of the speed loop.
+/// Axes with the numbers of the machine of Lee, Cho and Jeon (2005), with delays and an integral of
+/// the speed loop.
 pub(crate) fn known_axes<const N: usize>() -> IdentifiedAxes<N> {
     let parameters = Parameters {
         rad_per_mm: TAU / 10.0,
@@ -31,11 +42,31 @@ pub(crate) fn known_axes<const N: usize>() -> IdentifiedAxes<N> {
         coulomb_friction_nm: 0.2,
         coulomb_smoothing_rad_s: 0.05,
     };
-    let periods = Periods { servo_s: SERVO_S, mechanics_s: 0.0001, mechanics_per_servo: 10 };
-    let delays = LoopDelays { command_s: 0.0, drive_s: 0.001, measurement_s: 0.0005 };
-    let drive = DriveParameters { speed_integral_s: 0.02, ..AxisKnowledge::NOTHING.drive };
-    let axis = AxisKnowledge { parameters, periods, delays, drive, ..AxisKnowledge::NOTHING };
-    IdentifiedAxes { mechanics_s: periods.mechanics_s, axes: [axis; N] }
+    let periods = Periods {
+        servo_s: SERVO_S,
+        mechanics_s: 0.0001,
+        mechanics_per_servo: 10,
+    };
+    let delays = LoopDelays {
+        command_s: 0.0,
+        drive_s: 0.001,
+        measurement_s: 0.0005,
+    };
+    let drive = DriveParameters {
+        speed_integral_s: 0.02,
+        ..AxisKnowledge::NOTHING.drive
+    };
+    let axis = AxisKnowledge {
+        parameters,
+        periods,
+        delays,
+        drive,
+        ..AxisKnowledge::NOTHING
+    };
+    IdentifiedAxes {
+        mechanics_s: periods.mechanics_s,
+        axes: [axis; N],
+    }
 }
 
 /// A block of axes: usual ones of which some numbers are anything in their ranges.
@@ -56,7 +87,12 @@ pub(crate) fn absurd<const N: usize>(draw: &mut Draw) -> Vec<u8> {
             };
         }
     }
-    written(&ModelBlock { servo_s, feed_period_s: 0.005, trained: Trained::Axes(axes), geometry: None })
+    written(&ModelBlock {
+        servo_s,
+        feed_period_s: 0.005,
+        trained: Trained::Axes(axes),
+        geometry: None,
+    })
 }
 
 /// A block of an identifier of the contour error, its weights anything in their range.
@@ -75,7 +111,12 @@ pub(crate) fn contour<const N: usize>(draw: &mut Draw) -> Vec<u8> {
     let [least_s, most_s] = FEED_PERIODS_S;
     let feed_period_s = draw.pick(&[0.005, 0.001, least_s, most_s]);
     let trained = Trained::Contour(identifier);
-    written(&ModelBlock { servo_s: draw.pick(PERIODS_S)[0], feed_period_s, trained, geometry: None })
+    written(&ModelBlock {
+        servo_s: draw.pick(PERIODS_S)[0],
+        feed_period_s,
+        trained,
+        geometry: None,
+    })
 }
 
 fn written<const N: usize>(block: &ModelBlock<N>) -> Vec<u8> {
@@ -86,7 +127,11 @@ fn written<const N: usize>(block: &ModelBlock<N>) -> Vec<u8> {
 
 /// Bytes as a block with the header of a kind and the checksum that fits them.
 pub(crate) fn with_checksum(draw: &mut Draw) -> Vec<u8> {
-    let [format, kind, axes] = [draw.pick(&[2_u32, 3, 4]), draw.pick(&[1, 2, 3]), draw.pick(&[2, 3])];
+    let [format, kind, axes] = [
+        draw.pick(&[2_u32, 3, 4]),
+        draw.pick(&[1, 2, 3]),
+        draw.pick(&[2, 3]),
+    ];
     let mut content = b"FWMODEL\0".to_vec();
     let numbers = (draw.rest().len() / 8) as u32;
     for whole in [format, kind, axes, numbers.saturating_sub(2)] {
@@ -107,12 +152,21 @@ pub(crate) fn valid<const N: usize>(is_contour: bool) -> Vec<u8> {
     if is_contour {
         let mut identifier = ContourIdentifier::<N>::NULL;
         identifier.weights(&mut |_, group| {
-            group.iter_mut().zip(0..).for_each(|(weight, k)| *weight = 0.1 * (f64::from(k % 7) - 3.0));
+            group
+                .iter_mut()
+                .zip(0..)
+                .for_each(|(weight, k)| *weight = 0.1 * (f64::from(k % 7) - 3.0));
         });
         block.trained = Trained::Contour(identifier);
     } else {
         let (scale, pitch_mm, pitch_rad_per_mm) = (1e-5, 0.002, 0.6);
-        let axis = AxisErrors { scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad: 1.0, backlash_mm: 0.0 };
+        let axis = AxisErrors {
+            scale,
+            pitch_mm,
+            pitch_rad_per_mm,
+            pitch_phase_rad: 1.0,
+            backlash_mm: 0.0,
+        };
         let geometry = KnownGeometry::new([axis; N], [2e-5, -1e-5, 1e-5]);
         let table = ErrorTable::new([[-10.0, 0.001], [0.0, 0.0], [30.0, -0.002]]);
         block.geometry = table.ok().map(|table| geometry.with_table(0, 1, table));
@@ -142,12 +196,19 @@ fn sealed(mut content: Vec<u8>) -> Vec<u8> {
 /// CRC-32 of IEEE 802.3, bit by bit.
 fn crc_32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |crc, byte| {
-        (0..8).fold(crc ^ u32::from(*byte), |crc, _| (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg()))
+        (0..8).fold(crc ^ u32::from(*byte), |crc, _| {
+            (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg())
+        })
     })
 }
 
 /// Reads a block: what is accepted is written as bytes that read as the same.
 pub(crate) fn read<const N: usize>(bytes: &[u8]) {
-    let Ok(block) = ModelBlock::<N>::from_bytes(bytes) else { return };
-    assert_eq!(ModelBlock::from_bytes(&written(&block)).as_ref(), Ok(&block));
+    let Ok(block) = ModelBlock::<N>::from_bytes(bytes) else {
+        return;
+    };
+    assert_eq!(
+        ModelBlock::from_bytes(&written(&block)).as_ref(),
+        Ok(&block)
+    );
 }

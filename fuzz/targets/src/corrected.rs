@@ -1,4 +1,5 @@
-//! A corrected program, read again: it has the motions that were checked, ends where the original ends, and stays as near to it as the machine allows.
+//! A corrected program, read again: it has the motions that were checked, ends where the original
+//! ends, and stays as near to it as the machine allows.
 
 use feedwright::{CorrectJob, TARGETS, deterministic};
 use feedwright_gcode::Program;
@@ -22,7 +23,11 @@ const PERIODS_S: [f64; 2] = [0.005, 0.001];
 fn machine() -> Option<Machine> {
     let mut machine = deterministic(&Machine::load("tnv40".as_ref()).ok()?);
     let [servo_s, mechanics_s] = PERIODS_S;
-    machine.period = Period { servo_s, mechanics_s, mechanics_per_servo: 5 };
+    machine.period = Period {
+        servo_s,
+        mechanics_s,
+        mechanics_per_servo: 5,
+    };
     Some(machine)
 }
 
@@ -79,14 +84,27 @@ pub(crate) fn run(data: &[u8]) {
     let text = part(&mut draw);
     let original = programs::read(text.as_bytes(), None);
     let Some(machine) = machine() else { return };
-    let (Some(wanted), false) = (chords(&original), original.is_empty()) else { return };
+    let (Some(wanted), false) = (chords(&original), original.is_empty()) else {
+        return;
+    };
     let largest_mm = machine.limits.max_deviation_mm;
-    let job = CorrectJob::new(Program::from_text("part.ngc", text.clone()), machine, target);
+    let job = CorrectJob::new(
+        Program::from_text("part.ngc", text.clone()),
+        machine,
+        target,
+    );
     let Ok(outcome) = job.run(&()) else { return };
-    let Some(corrected) = outcome.program() else { return };
+    let Some(corrected) = outcome.program() else {
+        return;
+    };
     let again = programs::read(corrected.as_bytes(), None);
-    assert!(!again.is_empty(), "the corrected program has mistakes:\n{text}\n{corrected}");
-    let Some(written) = chords(&again) else { return };
+    assert!(
+        !again.is_empty(),
+        "the corrected program has mistakes:\n{text}\n{corrected}"
+    );
+    let Some(written) = chords(&again) else {
+        return;
+    };
     let step_mm = 10.0_f64.powi(1 - target.decimals as i32);
     if let (Some(end), Some(wanted_end)) = (written.points.last(), wanted.points.last()) {
         assert!(
@@ -96,6 +114,9 @@ pub(crate) fn run(data: &[u8]) {
     }
     for point in &written.points {
         let off_mm = wanted.distance(*point);
-        assert!(off_mm <= largest_mm + step_mm, "{off_mm} mm off at {point:?}:\n{text}\n{corrected}");
+        assert!(
+            off_mm <= largest_mm + step_mm,
+            "{off_mm} mm off at {point:?}:\n{text}\n{corrected}"
+        );
     }
 }

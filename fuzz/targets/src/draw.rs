@@ -1,4 +1,5 @@
-//! Decisions from the bytes of a fuzzer: a mutation of a byte changes one decision, and not the grammar.
+//! Decisions from the bytes of a fuzzer: a mutation of a byte changes one decision, and not the
+//! grammar.
 
 /// Bytes that decisions are taken from. Where they end, every decision is the first.
 pub(crate) struct Draw<'a> {
@@ -20,7 +21,9 @@ impl<'a> Draw<'a> {
     }
 
     pub(crate) fn byte(&mut self) -> u8 {
-        let Some((first, rest)) = self.rest.split_first() else { return 0 };
+        let Some((first, rest)) = self.rest.split_first() else {
+            return 0;
+        };
         self.rest = rest;
         *first
     }
@@ -53,7 +56,14 @@ impl<'a> Draw<'a> {
     pub(crate) fn double(&mut self) -> f64 {
         match self.byte() {
             0..=63 => 0.0,
-            64..=127 => self.pick(&[f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, f64::MIN_POSITIVE, -0.0]),
+            64..=127 => self.pick(&[
+                f64::NAN,
+                f64::INFINITY,
+                f64::NEG_INFINITY,
+                f64::MAX,
+                f64::MIN_POSITIVE,
+                -0.0,
+            ]),
             _ => f64::from_bits(u64::from_le_bytes(std::array::from_fn(|_| self.byte()))),
         }
     }

@@ -1,4 +1,5 @@
-//! Files of machines, geometries and models: text as it comes, and valid files of which some values are others.
+//! Files of machines, geometries and models: text as it comes, and valid files of which some values
+//! are others.
 
 use std::fmt::Write;
 
@@ -46,7 +47,9 @@ fn spoilt(draw: &mut Draw, text: &str) -> String {
     }
     for _ in 0..=draw.below(SPOILT) {
         let at = usize::from(u16::from_le_bytes([draw.byte(), draw.byte()])) % lines.len();
-        let key = lines[at].split_once('=').map(|(key, _)| key.trim().to_owned());
+        let key = lines[at]
+            .split_once('=')
+            .map(|(key, _)| key.trim().to_owned());
         match (draw.below(8), key) {
             (0, _) => lines[at].clear(),
             (1, _) => lines[at] = lines[at].repeat(2),
@@ -64,10 +67,15 @@ fn spoilt(draw: &mut Draw, text: &str) -> String {
 
 /// A message of a refusal has no character that commands a terminal.
 fn assert_inert(message: &str) {
-    assert!(!message.contains(|c| feedwright_gcode::is_hidden(c) && c != '\n'), "{}", message.escape_debug());
+    assert!(
+        !message.contains(|c| feedwright_gcode::is_hidden(c) && c != '\n'),
+        "{}",
+        message.escape_debug()
+    );
 }
 
-/// Reads a file of any kind. What is accepted is written as a file that is accepted and says the same.
+/// Reads a file of any kind. What is accepted is written as a file that is accepted and says the
+/// same.
 pub(crate) fn read(data: &[u8]) {
     let mut draw = Draw::new(data);
     let kind = draw.below(6);
@@ -84,7 +92,8 @@ pub(crate) fn read(data: &[u8]) {
     match Machine::parse("m.toml", &made) {
         Ok(machine) => {
             let text = machine.text();
-            let again = Machine::parse("again.toml", &text).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
+            let again = Machine::parse("again.toml", &text)
+                .unwrap_or_else(|error| panic!("{error:?}\n{text}"));
             assert_eq!(again.fingerprint(), machine.fingerprint(), "{text}");
         }
         Err(error) => assert_inert(&error.to_string()),
@@ -92,7 +101,8 @@ pub(crate) fn read(data: &[u8]) {
     match Model::parse("m.model.toml", &made) {
         Ok(model) => {
             let text = model.text();
-            let again = Model::parse("again", &text).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
+            let again =
+                Model::parse("again", &text).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
             assert!(again.block(None) == model.block(None), "{text}");
         }
         Err(error) => assert_inert(&error.to_string()),
@@ -107,15 +117,33 @@ fn draw_name(data: &[u8]) -> &'static str {
 }
 
 fn machine_text(name: &str) -> String {
-    Machine::load(name.as_ref()).map(|machine| machine.text()).unwrap_or_default()
+    Machine::load(name.as_ref())
+        .map(|machine| machine.text())
+        .unwrap_or_default()
 }
 
 /// The model file of axes that a block may have; empty where it may not have them.
 fn model_text(draw: &mut Draw) -> String {
-    let Ok(block) = ModelBlock::<2>::from_bytes(&blocks::absurd::<2>(draw)) else { return String::new() };
-    let Trained::Axes(axes) = block.trained else { return String::new() };
-    let recording = Recording { servo_s: block.servo_s, feed_period_s: block.feed_period_s, stretches: Vec::new() };
-    let trained = TrainedAxes { axes, estimates: Vec::new(), fit_um: 0.1, samples: 100 };
-    let origin = Origin { source: "fuzz".to_owned(), date: "2026-01-01".to_owned() };
+    let Ok(block) = ModelBlock::<2>::from_bytes(&blocks::absurd::<2>(draw)) else {
+        return String::new();
+    };
+    let Trained::Axes(axes) = block.trained else {
+        return String::new();
+    };
+    let recording = Recording {
+        servo_s: block.servo_s,
+        feed_period_s: block.feed_period_s,
+        stretches: Vec::new(),
+    };
+    let trained = TrainedAxes {
+        axes,
+        estimates: Vec::new(),
+        fit_um: 0.1,
+        samples: 100,
+    };
+    let origin = Origin {
+        source: "fuzz".to_owned(),
+        date: "2026-01-01".to_owned(),
+    };
     Model::of_axes(&recording, &trained, origin).text()
 }

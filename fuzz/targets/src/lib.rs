@@ -11,7 +11,8 @@
 //! | [`planner`] | phases join; velocity, acceleration and jerk of every axis and the tolerance of the path hold |
 //! | [`tick`] | any accepted model, plant and pins: commands and feedback are finite, commands near the path |
 //!
-//! `just fuzz MINUTES` runs all of them. `tests/suite.rs` replays the seeds and what the fuzzer found.
+//! `just fuzz MINUTES` runs all of them. `tests/suite.rs` replays the seeds and what the fuzzer
+//! found.
 
 mod draw;
 mod programs;
@@ -65,10 +66,18 @@ pub fn expressions(data: &[u8]) {
     for k in 1..6 {
         let _ = writeln!(text, "#{k}={}", draw.number(9.0));
     }
-    let _ = writeln!(text, "#27=[{expression}]\n#28=[[{expression}]]\nG1 X[#27]\nG1 X[#28]\nM2");
+    let _ = writeln!(
+        text,
+        "#27=[{expression}]\n#28=[[{expression}]]\nG1 X[#27]\nG1 X[#28]\nM2"
+    );
     let steps = programs::read(text.as_bytes(), dialect);
-    let ends =
-        steps.iter().filter_map(|step| if let Canon::Motion(motion) = step { Some(motion.end_mm[0]) } else { None });
+    let ends = steps.iter().filter_map(|step| {
+        if let Canon::Motion(motion) = step {
+            Some(motion.end_mm[0])
+        } else {
+            None
+        }
+    });
     let ends: Vec<f64> = ends.collect();
     assert!(ends.len() < 2 || ends[0] == ends[1], "{ends:?}\n{text}");
 }
@@ -113,12 +122,18 @@ pub fn planner(data: &[u8]) {
 
 /// The servo thread.
 pub fn tick(data: &[u8]) {
-    let Some((first, rest)) = data.split_first() else { return };
-    let _ = if first % 2 == 1 { tick::run::<3>(rest) } else { tick::run::<2>(rest) };
+    let Some((first, rest)) = data.split_first() else {
+        return;
+    };
+    let _ = if first % 2 == 1 {
+        tick::run::<3>(rest)
+    } else {
+        tick::run::<2>(rest)
+    };
 }
 
-/// The beginnings of inputs of [`tick`] that together run every change of one byte, and every end, of valid blocks. The bytes behind
-/// are the plant and the pins.
+/// The beginnings of inputs of [`tick`] that together run every change of one byte, and every end,
+/// of valid blocks. The bytes behind are the plant and the pins.
 pub fn damaged_blocks() -> impl Iterator<Item = [u8; 6]> {
     tick::damaged_blocks::<2>().chain(tick::damaged_blocks::<3>())
 }

@@ -18,7 +18,19 @@ const HEADS: &[&str] = &[
     "\u{feff}t,x.cmd,x.act",
     "t,t,t",
 ];
-const CELLS: &[&str] = &["", "nan", "inf", "-", "1e400", "x", "1,5", "\"1\"", "\u{1b}[31m", "0x1p3", "1_000"];
+const CELLS: &[&str] = &[
+    "",
+    "nan",
+    "inf",
+    "-",
+    "1e400",
+    "x",
+    "1,5",
+    "\"1\"",
+    "\u{1b}[31m",
+    "0x1p3",
+    "1_000",
+];
 const COLUMNS: &[&str] = &[
     "",
     "t=0,x.cmd=1,x.act=2",
@@ -42,7 +54,9 @@ fn table(draw: &mut Draw) -> Vec<u8> {
     for row in 0..rows {
         let at_s = f64::from(row) * step_s;
         let mut cells = vec![format!("{at_s}")];
-        cells.extend((1..columns).map(|k| format!("{:.5}", 20.0 * (20.0 * at_s - 0.01 * k as f64).sin())));
+        cells.extend(
+            (1..columns).map(|k| format!("{:.5}", 20.0 * (20.0 * at_s - 0.01 * k as f64).sin())),
+        );
         if !draw.is_empty() && draw.below(32) == 0 {
             let at = usize::from(draw.byte()) % cells.len();
             match draw.below(4) {
@@ -65,12 +79,31 @@ fn matlab(draw: &mut Draw) -> Vec<u8> {
     for _ in 0..=draw.below(4) {
         let values = u32::from(draw.byte()) * 4;
         let mut body = Vec::new();
-        element(&mut body, 6, &[u8::from(draw.below(8) != 0) * 6, 0, 0, 0, 0, 0, 0, 0]);
-        let rows = if draw.below(8) == 0 { u32::MAX >> draw.below(32) } else { values };
-        element(&mut body, 5, &[rows.to_le_bytes(), 1_u32.to_le_bytes()].concat());
-        element(&mut body, 1, draw.pick(&["t", "qg", "qm", "vir", "x_cmd", "\u{1b}"]).as_bytes());
+        element(
+            &mut body,
+            6,
+            &[u8::from(draw.below(8) != 0) * 6, 0, 0, 0, 0, 0, 0, 0],
+        );
+        let rows = if draw.below(8) == 0 {
+            u32::MAX >> draw.below(32)
+        } else {
+            values
+        };
+        element(
+            &mut body,
+            5,
+            &[rows.to_le_bytes(), 1_u32.to_le_bytes()].concat(),
+        );
+        element(
+            &mut body,
+            1,
+            draw.pick(&["t", "qg", "qm", "vir", "x_cmd", "\u{1b}"])
+                .as_bytes(),
+        );
         let slope = draw.number(1e-3);
-        let content: Vec<u8> = (0..values).flat_map(|k| (f64::from(k) * slope).to_le_bytes()).collect();
+        let content: Vec<u8> = (0..values)
+            .flat_map(|k| (f64::from(k) * slope).to_le_bytes())
+            .collect();
         element(&mut body, draw.pick(&[9, 7, 5, 200]), &content);
         if draw.below(8) == 0 {
             body.truncate(body.len() / 2);
@@ -86,7 +119,12 @@ fn matlab(draw: &mut Draw) -> Vec<u8> {
 }
 
 fn wrapped(kind: u32, content: &[u8]) -> Vec<u8> {
-    [&kind.to_le_bytes()[..], &(content.len() as u32).to_le_bytes(), content].concat()
+    [
+        &kind.to_le_bytes()[..],
+        &(content.len() as u32).to_le_bytes(),
+        content,
+    ]
+    .concat()
 }
 
 /// An element, padded to eight bytes.
@@ -105,19 +143,40 @@ pub(crate) fn read(data: &[u8]) {
         2 => matlab(&mut draw),
         _ => draw.rest().to_vec(),
     };
-    match Log::from_reader(Path::new("f.log"), &bytes[..], bytes.len() as u64, &columns, &()) {
+    match Log::from_reader(
+        Path::new("f.log"),
+        &bytes[..],
+        bytes.len() as u64,
+        &columns,
+        &(),
+    ) {
         Ok(log) => {
-            assert!(log.sample_time_s > 0.0 && log.sample_time_s.is_finite(), "{}", log.sample_time_s);
+            assert!(
+                log.sample_time_s > 0.0 && log.sample_time_s.is_finite(),
+                "{}",
+                log.sample_time_s
+            );
             for axis in &log.axes {
                 assert_eq!(axis.command_mm.len(), axis.actual_mm.len());
-                assert!(log.stretches.iter().all(|stretch| stretch.end <= axis.command_mm.len()));
-                let within = log.stretches.iter().flat_map(|stretch| &axis.command_mm[stretch.clone()]);
+                assert!(
+                    log.stretches
+                        .iter()
+                        .all(|stretch| stretch.end <= axis.command_mm.len())
+                );
+                let within = log
+                    .stretches
+                    .iter()
+                    .flat_map(|stretch| &axis.command_mm[stretch.clone()]);
                 assert!(within.copied().all(f64::is_finite), "{}", axis.name);
             }
         }
         Err(error) => {
             let message = error.to_string();
-            assert!(!message.contains(|c| feedwright_gcode::is_hidden(c) && c != '\n'), "{}", message.escape_debug());
+            assert!(
+                !message.contains(|c| feedwright_gcode::is_hidden(c) && c != '\n'),
+                "{}",
+                message.escape_debug()
+            );
         }
     }
 }

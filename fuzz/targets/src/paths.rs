@@ -26,7 +26,12 @@ impl Chords {
         if self.points.is_empty() {
             self.points.push(motion.start_mm);
         }
-        if let Shape::Arc { plane, center_mm, turns } = &motion.shape {
+        if let Shape::Arc {
+            plane,
+            center_mm,
+            turns,
+        } = &motion.shape
+        {
             let [a, b, n] = plane.axes();
             let polar = |point: Point| {
                 let [x, y] = [point[a] - center_mm[a], point[b] - center_mm[b]];
@@ -37,7 +42,9 @@ impl Chords {
             let part_rad = (sense * (to - from)).rem_euclid(TAU);
             let is_full = part_rad < FULL_TURN_RAD || TAU - part_rad < FULL_TURN_RAD;
             let rad = if is_full { TAU } else { part_rad } + TAU * f64::from(turns.abs() - 1);
-            let count = (rad * (r0.max(r1) / (8.0 * CHORD_MM)).sqrt()).ceil().clamp(1.0, MOST_CHORDS);
+            let count = (rad * (r0.max(r1) / (8.0 * CHORD_MM)).sqrt())
+                .ceil()
+                .clamp(1.0, MOST_CHORDS);
             for i in 1..count as u32 {
                 let part = f64::from(i) / count;
                 let (r, turned) = (r0 + part * (r1 - r0), from + sense * part * rad);
@@ -53,7 +60,10 @@ impl Chords {
 
     /// Least distance of a point from the path, mm.
     pub(crate) fn distance(&self, point: Point) -> f64 {
-        self.points.windows(2).map(|pair| from_chord(point, pair[0], pair[1])).fold(f64::INFINITY, f64::min)
+        self.points
+            .windows(2)
+            .map(|pair| from_chord(point, pair[0], pair[1]))
+            .fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -66,6 +76,10 @@ fn from_chord(point: Point, a: Point, b: Point) -> f64 {
     let along: Point = std::array::from_fn(|k| b[k] - a[k]);
     let square: f64 = along.iter().map(|part| part * part).sum();
     let dot: f64 = (0..3).map(|k| along[k] * (point[k] - a[k])).sum();
-    let part = if square > 0.0 { (dot / square).clamp(0.0, 1.0) } else { 0.0 };
+    let part = if square > 0.0 {
+        (dot / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
     distance(point, std::array::from_fn(|k| a[k] + part * along[k]))
 }

@@ -1,4 +1,5 @@
-//! Plans of any program: phases that join, within velocity, acceleration and jerk of every axis, and within the tolerance of the path.
+//! Plans of any program: phases that join, within velocity, acceleration and jerk of every axis,
+//! and within the tolerance of the path.
 
 use std::fmt::Write;
 
@@ -10,7 +11,8 @@ use crate::draw::Draw;
 use crate::paths::{CHORD_MM, Chords};
 use crate::programs;
 
-/// Rounding of positions (mm), velocities (mm/s) and accelerations (mm/s2) where phases join: each is an integral of jerks over times near 1e-7 s.
+/// Rounding of positions (mm), velocities (mm/s) and accelerations (mm/s2) where phases join: each
+/// is an integral of jerks over times near 1e-7 s.
 const JOIN: [f64; 3] = [1e-6, 1e-4, 1e-1];
 /// Relative rounding of a limit.
 const ROUNDING: f64 = 1e-6;
@@ -49,29 +51,49 @@ fn part(draw: &mut Draw) -> String {
 /// Plans a part.
 pub(crate) fn run(data: &[u8]) {
     let mut draw = Draw::new(data);
-    let Ok(machine) = Machine::load(draw.pick(&["workshop", "router"]).as_ref()) else { return };
+    let Ok(machine) = Machine::load(draw.pick(&["workshop", "router"]).as_ref()) else {
+        return;
+    };
     let tolerance_um = draw.pick(TOLERANCES_UM);
     let machine = machine.planned_by_axes(tolerance_um);
     let text = part(&mut draw);
     let steps = programs::read(text.as_bytes(), None);
     let (mut path, mut tolerance_mm) = (Chords::default(), 1e-3 * tolerance_um);
     for step in &steps {
-        let Canon::Motion(motion) = step else { continue };
+        let Canon::Motion(motion) = step else {
+            continue;
+        };
         if matches!(motion.shape, Shape::Spline(_)) || motion.others.axes.is_some() {
             return;
         }
-        if let Corner::Continuous { tolerance_mm: Some(stated_mm), .. } = motion.corner {
+        if let Corner::Continuous {
+            tolerance_mm: Some(stated_mm),
+            ..
+        } = motion.corner
+        {
             tolerance_mm = tolerance_mm.max(stated_mm);
         }
         path.add(motion);
     }
     let constraints = Constraints::from(&machine);
     let stages = Stages::of(&machine);
-    let Ok(plan) = Plan::new(path_steps(steps), &constraints, stages.planner, Plc::default()) else { return };
+    let Ok(plan) = Plan::new(
+        path_steps(steps),
+        &constraints,
+        stages.planner,
+        Plc::default(),
+    ) else {
+        return;
+    };
     let mut last: Option<AxisMotion> = None;
     for planned in plan.take(PHASES) {
-        let Planned::Phase(phase) = planned else { continue };
-        assert!(phase.duration_s >= 0.0 && phase.duration_s.is_finite(), "{phase:?}\n{text}");
+        let Planned::Phase(phase) = planned else {
+            continue;
+        };
+        assert!(
+            phase.duration_s >= 0.0 && phase.duration_s.is_finite(),
+            "{phase:?}\n{text}"
+        );
         let Some(motion) = phase.motion else {
             last = None;
             continue;
@@ -83,7 +105,10 @@ pub(crate) fn run(data: &[u8]) {
         for place in 0..=PLACES {
             let at = motion.after(phase.duration_s * f64::from(place) / f64::from(PLACES));
             let off_mm = path.distance(at.position_mm);
-            assert!(off_mm <= tolerance_mm * (1.0 + 1e-3) + CHORD_MM, "{off_mm} mm off at {at:?}\n{text}");
+            assert!(
+                off_mm <= tolerance_mm * (1.0 + 1e-3) + CHORD_MM,
+                "{off_mm} mm off at {at:?}\n{text}"
+            );
         }
         last = Some(motion.after(phase.duration_s));
     }
@@ -97,7 +122,10 @@ fn joins(before: &AxisMotion, after: &AxisMotion, text: &str) {
     ];
     for ((a, b), most) in pairs.into_iter().zip(JOIN) {
         let gap = (0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, f64::max);
-        assert!(gap <= most, "a gap of {gap} between {before:?} and {after:?}\n{text}");
+        assert!(
+            gap <= most,
+            "a gap of {gap} between {before:?} and {after:?}\n{text}"
+        );
     }
 }
 
@@ -111,7 +139,10 @@ fn check(phase: &Phase, motion: &AxisMotion, constraints: &Constraints, text: &s
                 at.accel_mm_s2[k].abs() / axis.accel_mm_s2,
                 at.jerk_mm_s3[k].abs() / axis.jerk_mm_s3,
             ];
-            assert!(used.iter().all(|share| *share <= 1.0 + ROUNDING), "axis {k} uses {used:?} in {phase:?}\n{text}");
+            assert!(
+                used.iter().all(|share| *share <= 1.0 + ROUNDING),
+                "axis {k} uses {used:?} in {phase:?}\n{text}"
+            );
         }
     }
 }

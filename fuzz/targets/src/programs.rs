@@ -1,4 +1,5 @@
-//! Programs: text as it comes, and text of a grammar, which the reader does not refuse in its first line.
+//! Programs: text as it comes, and text of a grammar, which the reader does not refuse in its first
+//! line.
 
 use std::fmt::Write;
 
@@ -7,7 +8,8 @@ use feedwright_gcode::{DIALECTS, Dialect, Reader, Settings};
 
 use crate::draw::Draw;
 
-/// Lines without a motion, motions, and calls within each other: a program ends within milliseconds.
+/// Lines without a motion, motions, and calls within each other: a program ends within
+/// milliseconds.
 const IDLE_LINES: u64 = 2_000;
 const MOTIONS: u64 = 2_000;
 const DEPTH: usize = 20;
@@ -20,13 +22,15 @@ const LEVELS: u8 = 4;
 
 const WORDS: &str = "XYZABCUVWIJKRPQLDEFHST";
 const CODES: &[&str] = &[
-    "G0", "G1", "G2", "G3", "G4", "G5", "G5.1", "G5.2", "G5.3", "G7", "G8", "G10", "G12", "G16", "G15", "G17", "G18",
-    "G19", "G20", "G21", "G28", "G28.1", "G30", "G33", "G33.1", "G38.2", "G40", "G41", "G42", "G41.1", "G42.1", "G43",
-    "G43.1", "G43.2", "G49", "G50", "G51", "G52", "G53", "G54", "G55", "G59.3", "G54.1", "G61", "G61.1", "G64", "G65",
-    "G66", "G67", "G68", "G69", "G70", "G71", "G71.1", "G72", "G73", "G74", "G75", "G76", "G80", "G81", "G82", "G83",
-    "G84", "G85", "G86", "G87", "G88", "G89", "G90", "G91", "G90.1", "G91.1", "G92", "G92.1", "G92.2", "G92.3", "G93",
-    "G94", "G95", "G96", "G97", "G98", "G99", "G150", "G184", "M0", "M1", "M2", "M3", "M5", "M6", "M19", "M30", "M48",
-    "M52", "M61", "M62", "M66", "M67", "M70", "M72", "M82", "M83", "M97", "M98", "M99", "M101", "M117", "M198", "M600",
+    "G0", "G1", "G2", "G3", "G4", "G5", "G5.1", "G5.2", "G5.3", "G7", "G8", "G10", "G12", "G16",
+    "G15", "G17", "G18", "G19", "G20", "G21", "G28", "G28.1", "G30", "G33", "G33.1", "G38.2",
+    "G40", "G41", "G42", "G41.1", "G42.1", "G43", "G43.1", "G43.2", "G49", "G50", "G51", "G52",
+    "G53", "G54", "G55", "G59.3", "G54.1", "G61", "G61.1", "G64", "G65", "G66", "G67", "G68",
+    "G69", "G70", "G71", "G71.1", "G72", "G73", "G74", "G75", "G76", "G80", "G81", "G82", "G83",
+    "G84", "G85", "G86", "G87", "G88", "G89", "G90", "G91", "G90.1", "G91.1", "G92", "G92.1",
+    "G92.2", "G92.3", "G93", "G94", "G95", "G96", "G97", "G98", "G99", "G150", "G184", "M0", "M1",
+    "M2", "M3", "M5", "M6", "M19", "M30", "M48", "M52", "M61", "M62", "M66", "M67", "M70", "M72",
+    "M82", "M83", "M97", "M98", "M99", "M101", "M117", "M198", "M600",
 ];
 const LITERALS: &[&str] = &[
     "%",
@@ -79,8 +83,15 @@ const LITERALS: &[&str] = &[
 
 /// A program that has lines as a control has them, some of them spoilt.
 pub(crate) fn program(draw: &mut Draw) -> String {
-    let mut text =
-        String::from(draw.pick(&["G21 G90 F600\n", "G20 G91 F10\n", "%\nO1 (A)\nG21\n", "", "%\n", "$H\n", "M82\n"]));
+    let mut text = String::from(draw.pick(&[
+        "G21 G90 F600\n",
+        "G20 G91 F10\n",
+        "%\nO1 (A)\nG21\n",
+        "",
+        "%\n",
+        "$H\n",
+        "M82\n",
+    ]));
     let mut labels = Vec::new();
     while !draw.is_empty() && text.len() < 4_000 {
         line(draw, &mut text, &mut labels);
@@ -118,7 +129,11 @@ fn line(draw: &mut Draw, text: &mut String, labels: &mut Vec<(usize, &'static st
 
 fn word(draw: &mut Draw, text: &mut String) {
     // What most motions have comes most.
-    let letter = if draw.below(2) == 0 { draw.pick(b"XYZ") } else { draw.pick(WORDS.as_bytes()) };
+    let letter = if draw.below(2) == 0 {
+        draw.pick(b"XYZ")
+    } else {
+        draw.pick(WORDS.as_bytes())
+    };
     text.push(' ');
     text.push(char::from(letter));
     if draw.below(8) == 0 {
@@ -148,7 +163,11 @@ fn o_word(draw: &mut Draw, text: &mut String, labels: &mut Vec<(usize, &'static 
             labels.push((number, end));
         }
         (None, Some((inner, _))) if draw.below(2) == 0 => {
-            let _ = write!(text, "o{inner} {}", draw.pick(&["break", "continue", "else", "elseif [1]", "return"]));
+            let _ = write!(
+                text,
+                "o{inner} {}",
+                draw.pick(&["break", "continue", "else", "elseif [1]", "return"])
+            );
         }
         (None, _) => {
             if let Some((inner, end)) = labels.pop() {
@@ -160,10 +179,14 @@ fn o_word(draw: &mut Draw, text: &mut String, labels: &mut Vec<(usize, &'static 
 
 /// An expression with at most so many levels.
 pub(crate) fn expression(draw: &mut Draw, text: &mut String, levels: u8) {
-    const OPERATORS: &[&str] =
-        &["+", "-", "*", "/", "**", " MOD ", " AND ", " OR ", " XOR ", " EQ ", " NE ", " GT ", " GE ", " LT ", " LE "];
-    const FUNCTIONS: &[&str] =
-        &["ABS", "ACOS", "ASIN", "COS", "EXP", "FIX", "FUP", "LN", "ROUND", "SIN", "SQRT", "TAN", "-", "+", "ATAN"];
+    const OPERATORS: &[&str] = &[
+        "+", "-", "*", "/", "**", " MOD ", " AND ", " OR ", " XOR ", " EQ ", " NE ", " GT ",
+        " GE ", " LT ", " LE ",
+    ];
+    const FUNCTIONS: &[&str] = &[
+        "ABS", "ACOS", "ASIN", "COS", "EXP", "FIX", "FUP", "LN", "ROUND", "SIN", "SQRT", "TAN",
+        "-", "+", "ATAN",
+    ];
     match if levels == 0 { 0 } else { draw.below(8) } {
         0 | 1 => {
             let _ = write!(text, "{}", draw.number(50.0));
@@ -171,7 +194,15 @@ pub(crate) fn expression(draw: &mut Draw, text: &mut String, levels: u8) {
         2 => {
             let _ = write!(text, "#{}", draw.below(12));
         }
-        3 => text.push_str(draw.pick(&["#<a>", "#5220", "EXISTS[#<b>]", "EXISTS[#99999]", "#[2]", "##1", "#5399"])),
+        3 => text.push_str(draw.pick(&[
+            "#<a>",
+            "#5220",
+            "EXISTS[#<b>]",
+            "EXISTS[#99999]",
+            "#[2]",
+            "##1",
+            "#5399",
+        ])),
         4 => {
             let function = draw.pick(FUNCTIONS);
             text.push_str(function);
@@ -211,18 +242,24 @@ pub(crate) fn settings(dialect: Option<Dialect>) -> Settings {
     }
 }
 
-/// Reads a program and checks what it comes to: finite numbers within the machine's reach, motions that meet, messages without controls.
+/// Reads a program and checks what it comes to: finite numbers within the machine's reach, motions
+/// that meet, messages without controls.
 pub(crate) fn read(text: &[u8], dialect: Option<Dialect>) -> Vec<Canon> {
     let settings = settings(dialect);
     let limit_mm = settings.coordinate_limit_mm;
-    let Ok(mut reader) = Reader::from_text("part.ngc", text, settings) else { return Vec::new() };
+    let Ok(mut reader) = Reader::from_text("part.ngc", text, settings) else {
+        return Vec::new();
+    };
     let (mut steps, mut faulty) = (Vec::new(), false);
     let mut last_mm: Option<[f64; 3]> = None;
     for step in reader.by_ref().take(TAKEN) {
         let step = match step {
             Ok(step) => step,
             Err(fault) => {
-                assert!(!fault.to_string().contains(feedwright_gcode::is_hidden), "{fault:?}");
+                assert!(
+                    !fault.to_string().contains(feedwright_gcode::is_hidden),
+                    "{fault:?}"
+                );
                 faulty = true;
                 continue;
             }
@@ -231,7 +268,9 @@ pub(crate) fn read(text: &[u8], dialect: Option<Dialect>) -> Vec<Canon> {
             check(motion, limit_mm);
             // Behind a mistake the reader goes on from where it thinks it is.
             if let (Some(last), false) = (last_mm, faulty) {
-                let gap = (0..3).map(|k| (last[k] - motion.start_mm[k]).abs()).fold(0.0, f64::max);
+                let gap = (0..3)
+                    .map(|k| (last[k] - motion.start_mm[k]).abs())
+                    .fold(0.0, f64::max);
                 assert!(gap <= MEET_MM, "a gap of {gap} mm before {motion:?}");
             }
             last_mm = Some(motion.end_mm);
@@ -244,15 +283,33 @@ pub(crate) fn read(text: &[u8], dialect: Option<Dialect>) -> Vec<Canon> {
 fn check(motion: &Motion, limit_mm: f64) {
     let reach = |points: &[[f64; 3]]| points.iter().flatten().all(|mm| mm.abs() <= 4.0 * limit_mm);
     assert!(reach(&[motion.start_mm, motion.end_mm]), "{motion:?}");
-    assert!(motion.feed_mm_s.is_finite() && motion.feed_mm_s >= 0.0, "{motion:?}");
+    assert!(
+        motion.feed_mm_s.is_finite() && motion.feed_mm_s >= 0.0,
+        "{motion:?}"
+    );
     match &motion.shape {
         Shape::Line => {}
-        Shape::Arc { center_mm, turns, .. } => {
-            assert!(center_mm.iter().all(|mm| mm.is_finite()) && *turns != 0, "{motion:?}");
+        Shape::Arc {
+            center_mm, turns, ..
+        } => {
+            assert!(
+                center_mm.iter().all(|mm| mm.is_finite()) && *turns != 0,
+                "{motion:?}"
+            );
         }
         Shape::Spline(spline) => {
-            assert!(spline.knots.iter().chain(&spline.weights).all(|number| number.is_finite()), "{motion:?}");
-            assert!(spline.control_mm.iter().flatten().all(|mm| mm.is_finite()), "{motion:?}");
+            assert!(
+                spline
+                    .knots
+                    .iter()
+                    .chain(&spline.weights)
+                    .all(|number| number.is_finite()),
+                "{motion:?}"
+            );
+            assert!(
+                spline.control_mm.iter().flatten().all(|mm| mm.is_finite()),
+                "{motion:?}"
+            );
         }
     }
 }
@@ -260,5 +317,7 @@ fn check(motion: &Motion, limit_mm: f64) {
 /// A dialect, or the choice of the reader.
 pub(crate) fn dialect(draw: &mut Draw) -> Option<Dialect> {
     let at = usize::from(draw.byte());
-    DIALECTS.get(at % (DIALECTS.len() + 1)).map(|(_, dialect)| *dialect)
+    DIALECTS
+        .get(at % (DIALECTS.len() + 1))
+        .map(|(_, dialect)| *dialect)
 }

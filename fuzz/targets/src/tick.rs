@@ -1,4 +1,5 @@
-//! The servo thread with any model that is accepted, a plant that does as it likes, and pins with any number on them.
+//! The servo thread with any model that is accepted, a plant that does as it likes, and pins with
+//! any number on them.
 
 use feedwright_servo::compensation::{Compensation, MachinePlace};
 use feedwright_servo::limits::LinkLimits;
@@ -10,15 +11,18 @@ use feedwright_servo::through::Through;
 use crate::blocks;
 use crate::draw::Draw;
 
-/// Servo periods of rest at the beginning: a geometry comes into force, and behind it the link takes its delay up.
+/// Servo periods of rest at the beginning: a geometry comes into force, and behind it the link
+/// takes its delay up.
 const REST: usize = 400;
-/// Servo periods behind it: three times the longest delay, and the time in which the supervisor judges.
+/// Servo periods behind it: three times the longest delay, and the time in which the supervisor
+/// judges.
 const PERIODS: usize = 400;
 /// Number of the choice of a damaged block.
 const DAMAGED: u8 = 3;
 /// Those of a model that is refused: commands are passed on.
 const REFUSED_PERIODS: usize = 40;
-/// Farthest that the drive's command may be from the path of the commands, mm: the largest deviation that can be set.
+/// Farthest that the drive's command may be from the path of the commands, mm: the largest
+/// deviation that can be set.
 const DEVIATION_MM: f64 = 10.0;
 /// The path between two commands is a curve there and a chord here, mm.
 const ROUND_MM: f64 = 1e-3;
@@ -36,17 +40,31 @@ pub(crate) fn run<const N: usize>(data: &[u8]) -> usize {
     };
     blocks::read::<N>(&bytes);
     let model = model_of::<N>(&bytes);
-    let servo_s = model.as_ref().map_or(blocks::SERVO_S, |model| model.servo_s());
-    let mut compensation = Compensation::new(if model.is_ok() { geometry_of(&bytes) } else { None });
+    let servo_s = model
+        .as_ref()
+        .map_or(blocks::SERVO_S, |model| model.servo_s());
+    let mut compensation = Compensation::new(if model.is_ok() {
+        geometry_of(&bytes)
+    } else {
+        None
+    });
     compensation.runs_at(servo_s);
-    let first = if model.is_ok() { 0 } else { REST + PERIODS - REFUSED_PERIODS };
+    let first = if model.is_ok() {
+        0
+    } else {
+        REST + PERIODS - REFUSED_PERIODS
+    };
     let mut servo = Servo::new(model);
     if servo.runs_at(servo_s) != LinkFault::None {
         compensation.refuse();
     }
     let mut world = World {
         limits: LinkLimits::DEFAULT,
-        place: MachinePlace { zero_mm: [0.0; N], is_known: true, is_wanted: true },
+        place: MachinePlace {
+            zero_mm: [0.0; N],
+            is_known: true,
+            is_wanted: true,
+        },
         plant: SimulatedMachine::new(&blocks::known_axes(), 1),
         command_mm: [0.0; N],
         largest_mm: 0.0,
@@ -55,23 +73,38 @@ pub(crate) fn run<const N: usize>(data: &[u8]) -> usize {
     };
     let mut corrected = 0;
     for n in first..REST + PERIODS {
-        let inputs = compensation.joints(&world.inputs(&mut draw, n, servo_s), &world.place, &world.limits);
+        let inputs = compensation.joints(
+            &world.inputs(&mut draw, n, servo_s),
+            &world.place,
+            &world.limits,
+        );
         world.hear(&inputs);
         let outputs = servo.step(&inputs, &world.limits);
         world.check(n, &outputs);
-        let (tool_mm, _) = compensation.tool(outputs.feedback_mm, outputs.through, &inputs.through.carries);
-        assert!(tool_mm.iter().all(|mm| mm.is_finite()), "{n}: feedback {tool_mm:?}");
+        let (tool_mm, _) = compensation.tool(
+            outputs.feedback_mm,
+            outputs.through,
+            &inputs.through.carries,
+        );
+        assert!(
+            tool_mm.iter().all(|mm| mm.is_finite()),
+            "{n}: feedback {tool_mm:?}"
+        );
         world.plant.step(outputs.drive_mm, inputs.powered, 1.0);
         corrected += usize::from(outputs.correction_mm != [0.0; N]);
     }
     corrected
 }
 
-/// Inputs of [`crate::tick`] that run a block which [`blocks::damaged`] makes: each byte of each kind changed in each way, and each end.
+/// Inputs of [`crate::tick`] that run a block which [`blocks::damaged`] makes: each byte of each
+/// kind changed in each way, and each end.
 pub(crate) fn damaged_blocks<const N: usize>() -> impl Iterator<Item = [u8; 6]> {
     [0, 1].into_iter().flat_map(|kind| {
         let valid = blocks::valid::<N>(kind == 1);
-        assert!(model_of::<N>(&valid).is_ok(), "the block that is damaged is valid");
+        assert!(
+            model_of::<N>(&valid).is_ok(),
+            "the block that is damaged is valid"
+        );
         let places = 0..(valid.len() - blocks::CHECKSUM_BYTES) as u16;
         places.flat_map(move |at| {
             let [low, high] = at.to_le_bytes();
@@ -136,15 +169,25 @@ impl<const N: usize> World<N> {
     fn hear(&mut self, inputs: &LinkInputs<N>) {
         // A place whose distance overflows is not heard.
         let is_heard = |mm: &[f64; N]| mm.iter().map(|mm| mm * mm).sum::<f64>().is_finite();
-        self.path_mm.extend(Some(inputs.command_mm).filter(is_heard));
-        for mm in [inputs.command_mm, inputs.actual_mm].iter().filter(|mm| is_heard(mm)) {
-            self.largest_mm = mm.iter().fold(self.largest_mm, |largest, mm| largest.max(mm.abs()));
+        self.path_mm
+            .extend(Some(inputs.command_mm).filter(is_heard));
+        for mm in [inputs.command_mm, inputs.actual_mm]
+            .iter()
+            .filter(|mm| is_heard(mm))
+        {
+            self.largest_mm = mm
+                .iter()
+                .fold(self.largest_mm, |largest, mm| largest.max(mm.abs()));
         }
     }
 
     /// Sets a pin to anything.
     fn set(&mut self, draw: &mut Draw) {
-        let value = if draw.below(2) == 0 { draw.double() } else { draw.number(400.0).abs() };
+        let value = if draw.below(2) == 0 {
+            draw.double()
+        } else {
+            draw.number(400.0).abs()
+        };
         match draw.below(9) {
             0 => self.limits.delay_s = value,
             1 => self.limits.deviation_mm = value,
@@ -160,28 +203,60 @@ impl<const N: usize> World<N> {
 
     /// Distance of a place from the path.
     fn off_the_path_mm(&self, place_mm: [f64; N]) -> f64 {
-        let difference = |a: [f64; N], b: [f64; N]| -> [f64; N] { std::array::from_fn(|k| a[k] - b[k]) };
+        let difference =
+            |a: [f64; N], b: [f64; N]| -> [f64; N] { std::array::from_fn(|k| a[k] - b[k]) };
         let product = |a: [f64; N], b: [f64; N]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let to_chord = |from: [f64; N], to: [f64; N]| {
             let (chord, way) = (difference(to, from), difference(place_mm, from));
-            let along = (product(chord, way) / product(chord, chord).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            let along = (product(chord, way) / product(chord, chord).max(f64::MIN_POSITIVE))
+                .clamp(0.0, 1.0);
             let off: [f64; N] = std::array::from_fn(|k| way[k] - along * chord[k]);
             product(off, off).sqrt()
         };
-        let ends = self.path_mm.iter().zip(self.path_mm.iter().skip(1).chain(self.path_mm.last()));
-        ends.map(|(from, to)| to_chord(*from, *to)).fold(f64::INFINITY, f64::min)
+        let ends = self
+            .path_mm
+            .iter()
+            .zip(self.path_mm.iter().skip(1).chain(self.path_mm.last()));
+        ends.map(|(from, to)| to_chord(*from, *to))
+            .fold(f64::INFINITY, f64::min)
     }
 
     fn check(&self, n: usize, outputs: &LinkOutputs<N>) {
-        let LinkOutputs { drive_mm, feedback_mm, correction_mm, rate, adaptive_feed, link, .. } = outputs;
+        let LinkOutputs {
+            drive_mm,
+            feedback_mm,
+            correction_mm,
+            rate,
+            adaptive_feed,
+            link,
+            ..
+        } = outputs;
         let numbers = drive_mm.iter().chain(feedback_mm).chain(correction_mm);
-        assert!(numbers.chain([rate, adaptive_feed]).all(|number| number.is_finite()), "{n}: {outputs:?}");
+        assert!(
+            numbers
+                .chain([rate, adaptive_feed])
+                .all(|number| number.is_finite()),
+            "{n}: {outputs:?}"
+        );
         let rounding_mm = ROUNDING * (1.0 + self.largest_mm);
-        // Along the path a correction may be longer. A drive without power is told to be where it is.
-        let off_mm = if *link == Link::Off { 0.0 } else { self.off_the_path_mm(*drive_mm) };
-        assert!(off_mm <= DEVIATION_MM + ROUND_MM + rounding_mm, "{n}: {off_mm} mm from the path: {outputs:?}");
-        let farthest = drive_mm.iter().fold(0.0_f64, |farthest, mm| farthest.max(mm.abs()));
-        assert!(farthest <= self.largest_mm + DEVIATION_MM + rounding_mm, "{n}: {farthest} mm: {outputs:?}");
+        // Along the path a correction may be longer. A drive without power is told to be where it
+        // is.
+        let off_mm = if *link == Link::Off {
+            0.0
+        } else {
+            self.off_the_path_mm(*drive_mm)
+        };
+        assert!(
+            off_mm <= DEVIATION_MM + ROUND_MM + rounding_mm,
+            "{n}: {off_mm} mm from the path: {outputs:?}"
+        );
+        let farthest = drive_mm
+            .iter()
+            .fold(0.0_f64, |farthest, mm| farthest.max(mm.abs()));
+        assert!(
+            farthest <= self.largest_mm + DEVIATION_MM + rounding_mm,
+            "{n}: {farthest} mm: {outputs:?}"
+        );
         assert!((0.0..=1.0).contains(adaptive_feed), "{n}: {adaptive_feed}");
     }
 }
@@ -194,9 +269,16 @@ mod tests {
     fn both_kinds_of_models_correct_while_nothing_is_spoilt() {
         // The paper's controller has to pass its trial first.
         for (kind, least) in [(0, PERIODS / 2), (1, PERIODS / 4)] {
-            // The last bit of the first weight, or of the mechanics period; nothing is spoilt from where the bytes end.
-            let [two, three] = [run::<2>(&[DAMAGED, kind, 40, 0, 1]), run::<3>(&[DAMAGED, kind, 40, 0, 1])];
-            assert!(two > least && three > least, "{kind}: corrected in {two} and {three} periods");
+            // The last bit of the first weight, or of the mechanics period; nothing is spoilt from
+            // where the bytes end.
+            let [two, three] = [
+                run::<2>(&[DAMAGED, kind, 40, 0, 1]),
+                run::<3>(&[DAMAGED, kind, 40, 0, 1]),
+            ];
+            assert!(
+                two > least && three > least,
+                "{kind}: corrected in {two} and {three} periods"
+            );
         }
     }
 }

@@ -27,7 +27,10 @@ fn bytes(seed: u64) -> Vec<u8> {
         let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         mixed ^ (mixed >> 31)
     };
-    (0..BYTES / 8).map(word).flat_map(u64::to_le_bytes).collect()
+    (0..BYTES / 8)
+        .map(word)
+        .flat_map(u64::to_le_bytes)
+        .collect()
 }
 
 #[test]
@@ -49,8 +52,11 @@ fn every_target_holds_on_its_seeds_and_on_what_the_fuzzer_found() {
 fn asked() -> Option<(String, Range<u64>)> {
     let asked = std::env::var("FEEDWRIGHT_FUZZ").ok()?;
     let parts: Vec<&str> = asked.split_whitespace().collect();
-    let [target, first, count] = parts[..] else { panic!("FEEDWRIGHT_FUZZ is \"{asked}\", not TARGET FIRST COUNT") };
-    let [first, count]: [u64; 2] = [first, count].map(|number| number.parse().expect("a whole number"));
+    let [target, first, count] = parts[..] else {
+        panic!("FEEDWRIGHT_FUZZ is \"{asked}\", not TARGET FIRST COUNT")
+    };
+    let [first, count]: [u64; 2] =
+        [first, count].map(|number| number.parse().expect("a whole number"));
     Some((target.to_owned(), first..first + count))
 }
 
@@ -72,10 +78,12 @@ fn every_target_holds_on_drawn_bytes() {
     }
 }
 
-/// The suite tries one of so many damaged blocks. The number is prime, so that all bytes and changes come up.
+/// The suite tries one of so many damaged blocks. The number is prime, so that all bytes and
+/// changes come up.
 const DAMAGED_STRIDE: u64 = 2003;
 
-/// Every end, and a part of the changes; with `FEEDWRIGHT_FUZZ="damaged FIRST COUNT"`, all of a stretch of them.
+/// Every end, and a part of the changes; with `FEEDWRIGHT_FUZZ="damaged FIRST COUNT"`, all of a
+/// stretch of them.
 #[test]
 fn a_model_with_a_changed_byte_is_refused_or_keeps_commands_finite_and_near_the_path() {
     let stretch = match asked() {
@@ -86,7 +94,12 @@ fn a_model_with_a_changed_byte_is_refused_or_keeps_commands_finite_and_near_the_
     let mut ran = 0;
     for (n, damaged) in (0..).zip(damaged_blocks()) {
         let is_end = damaged[5] == 0;
-        if stretch.as_ref().map_or(is_end || n % DAMAGED_STRIDE == 0, |stretch| stretch.contains(&n)) {
+        if stretch
+            .as_ref()
+            .map_or(is_end || n % DAMAGED_STRIDE == 0, |stretch| {
+                stretch.contains(&n)
+            })
+        {
             println!("damaged {n}");
             tick(&[&damaged[..], &bytes(n)].concat());
             ran += 1;

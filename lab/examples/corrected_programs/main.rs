@@ -3,22 +3,21 @@
 //!
 //! Each program is corrected for `generic` on each machine. The machine then cuts the uncorrected
 //! and the corrected program without feedback, over [`CUTS`] phases of its disturbance and seeds of
-//! its noise. Errors are those by encoders, to the original path: scale, pitch and squareness, which
-//! no encoder sees, are zero.
+//! its noise. Errors are those by encoders, to the original path: scale, pitch and squareness,
+//! which no encoder sees, are zero.
 //!
 //! What repeats from cut to cut is the mean of the error vectors of all cuts in a servo period. Its
 //! square is less by a [`CUTS`]-th of the variance over the cuts, which is what the mean keeps of
 //! the rest. Ratios compare what repeats. The rest is the standard deviation over the cuts of the
-//! corrected program: no program can remove it. Some effects repeat, but no model knows their phase:
-//! cogging, ripple and errors within a period of the encoder. The ratios in brackets leave them out:
-//! those are of one cut of each program by the machine without them.
+//! corrected program: no program can remove it. Some effects repeat, but no model knows their
+//! phase: cogging, ripple and errors within a period of the encoder. The ratios in brackets leave
+//! them out: those are of one cut of each program by the machine without them.
 //!
 //! With `--drawn SEED` the programs are drawn from that seed (`kinds.rs`), `--count N` of each kind
-//! that there is. With `--corpus FOLDER`
-//! N programs are drawn from the files of that folder, among those that cut in X, Y or Z alone and
-//! cut for no more than [`LONGEST_S`] at their feedrates. With `--wrong` the correction uses a model
-//! whose inertia, friction and speed-loop gain are 20 % off, each up or down. With `--one-wrong` only
-//! one of them is off.
+//! that there is. With `--corpus FOLDER` N programs are drawn from the files of that folder, among
+//! those that cut in X, Y or Z alone and cut for no more than [`LONGEST_S`] at their feedrates.
+//! With `--wrong` the correction uses a model whose inertia, friction and speed-loop gain are 20 %
+//! off, each up or down. With `--one-wrong` only one of them is off.
 
 mod kinds;
 
@@ -61,7 +60,8 @@ impl Sink for Errors {
         if self.skipped > 0 {
             self.skipped -= 1;
         } else {
-            self.rows.push(row.cutting.then(|| sub(row.foot_mm, row.act_mm)));
+            self.rows
+                .push(row.cutting.then(|| sub(row.foot_mm, row.act_mm)));
         }
         Ok(())
     }
@@ -81,9 +81,14 @@ struct Measured {
 }
 
 fn steps(text: &str, dialect: Dialect) -> Vec<Step> {
-    let settings = Settings { dialect: Some(dialect), ..Settings::default() };
+    let settings = Settings {
+        dialect: Some(dialect),
+        ..Settings::default()
+    };
     let reader = Reader::from_text("part.ngc", text, settings).expect("a program");
-    Pieces::new(reader.map_while(Result::ok)).map_while(Result::ok).collect()
+    Pieces::new(reader.map_while(Result::ok))
+        .map_while(Result::ok)
+        .collect()
 }
 
 /// Cuts a program over phases of the disturbance and seeds of the noise.
@@ -96,9 +101,21 @@ fn measured(machine: &Machine, original: &[Step], program: &[Step], axes: usize)
         let phase_s = cut as f64 / CUTS as f64 / machine.axes[0].disturbance_hz.max(1.0);
         let periods = (phase_s / servo_s).round();
         let stages = TARGETS[0].stages(&machine);
-        let exported = ExportedCut { machine: &machine, error: None, stages, original, axes, watch: &() };
-        let mut errors = Errors { skipped: periods as usize, rows: Vec::new() };
-        let now = exported.once(program, periods * servo_s, &mut [&mut errors]).expect("a cut");
+        let exported = ExportedCut {
+            machine: &machine,
+            error: None,
+            stages,
+            original,
+            axes,
+            watch: &(),
+        };
+        let mut errors = Errors {
+            skipped: periods as usize,
+            rows: Vec::new(),
+        };
+        let now = exported
+            .once(program, periods * servo_s, &mut [&mut errors])
+            .expect("a cut");
         (measured.time_s, measured.blocks) = (now.time_s, now.blocks);
         measured.uncut_um = now.uncut_um.max(measured.uncut_um);
         cuts.push(errors.rows);
@@ -110,10 +127,19 @@ fn measured(machine: &Machine, original: &[Step], program: &[Step], axes: usize)
         if errors.len() < cuts.len() {
             continue;
         }
-        let mean: Vector = std::array::from_fn(|i| errors.iter().map(|error| error[i]).sum::<f64>() / CUTS as f64);
-        let variance = errors.iter().map(|error| norm(sub(*error, mean)).powi(2)).sum::<f64>() / (CUTS - 1) as f64;
+        let mean: Vector =
+            std::array::from_fn(|i| errors.iter().map(|error| error[i]).sum::<f64>() / CUTS as f64);
+        let variance = errors
+            .iter()
+            .map(|error| norm(sub(*error, mean)).powi(2))
+            .sum::<f64>()
+            / (CUTS - 1) as f64;
         measured.max_um = measured.max_um.max(1e3 * norm(mean));
-        (squares, variances, count) = (squares + norm(mean).powi(2), variances + variance, count + 1.0);
+        (squares, variances, count) = (
+            squares + norm(mean).powi(2),
+            variances + variance,
+            count + 1.0,
+        );
     }
     measured.rest_um = 1e3 * (variances / count).sqrt();
     measured.rms_um = 1e3 * ((squares - variances / CUTS as f64).max(0.0) / count).sqrt();
@@ -122,11 +148,20 @@ fn measured(machine: &Machine, original: &[Step], program: &[Step], axes: usize)
 
 /// A machine whose encoders see all of it.
 fn seen_by_encoders(machine: &Machine) -> Machine {
-    let axis = |axis: &Axis| Axis { scale_um_m: 0.0, pitch_error_um: 0.0, ..*axis };
-    Machine { axes: machine.axes.iter().map(axis).collect(), geometry: Squareness::default(), ..machine.clone() }
+    let axis = |axis: &Axis| Axis {
+        scale_um_m: 0.0,
+        pitch_error_um: 0.0,
+        ..*axis
+    };
+    Machine {
+        axes: machine.axes.iter().map(axis).collect(),
+        geometry: Squareness::default(),
+        ..machine.clone()
+    }
 }
 
-/// The machine with inertia, friction and gain of the speed loop times these factors; gains of the position loop, feedforward and delays stay.
+/// The machine with inertia, friction and gain of the speed loop times these factors; gains of the
+/// position loop, feedforward and delays stay.
 fn wrong(machine: &Machine, factors: [f64; 3]) -> Machine {
     let factor = |which: usize| factors[which];
     let axis = |axis: &Axis| Axis {
@@ -137,21 +172,30 @@ fn wrong(machine: &Machine, factors: [f64; 3]) -> Machine {
         kv_nm_s_per_rad: axis.kv_nm_s_per_rad * factor(2),
         ..*axis
     };
-    Machine { axes: machine.axes.iter().map(axis).collect(), ..machine.clone() }
+    Machine {
+        axes: machine.axes.iter().map(axis).collect(),
+        ..machine.clone()
+    }
 }
 
 /// Every one of the three 20 % off, up or down.
 fn all_wrong() -> Vec<[f64; 3]> {
-    (0..8).map(|way| [0, 1, 2].map(|bit: usize| if way >> bit & 1 == 1 { 1.2 } else { 0.8 })).collect()
+    (0..8)
+        .map(|way| [0, 1, 2].map(|bit: usize| if way >> bit & 1 == 1 { 1.2 } else { 0.8 }))
+        .collect()
 }
 
 /// One of the three 20 % off, up or down.
 fn one_wrong() -> Vec<[f64; 3]> {
-    let one = |which: usize, factor: f64| std::array::from_fn(|k| if k == which { factor } else { 1.0 });
-    (0..3).flat_map(|which| [one(which, 0.8), one(which, 1.2)]).collect()
+    let one =
+        |which: usize, factor: f64| std::array::from_fn(|k| if k == which { factor } else { 1.0 });
+    (0..3)
+        .flat_map(|which| [one(which, 0.8), one(which, 1.2)])
+        .collect()
 }
 
-/// Ratios of corrected to original: RMS, largest error, time, and the first two of what a model knows.
+/// Ratios of corrected to original: RMS, largest error, time, and the first two of what a model
+/// knows.
 type Ratios = [f64; 5];
 
 /// Corrects a program, cuts both and prints a line. None where no program was written.
@@ -172,7 +216,11 @@ fn line(name: &str, machine: &Machine, text: &str, believed: Option<Machine>) ->
         }
     };
     let Some(corrected) = outcome.program() else {
-        println!("{:<9} {name:<32} not written: {}", machine.name, outcome.refusal.clone().unwrap_or_default());
+        println!(
+            "{:<9} {name:<32} not written: {}",
+            machine.name,
+            outcome.refusal.clone().unwrap_or_default()
+        );
         return None;
     };
     // What is written out of a Fanuc program need not look like one.
@@ -182,7 +230,14 @@ fn line(name: &str, machine: &Machine, text: &str, believed: Option<Machine>) ->
     let known = |program: &[Step]| {
         let machine = deterministic(machine);
         let stages = TARGETS[0].stages(&machine);
-        let cut = ExportedCut { machine: &machine, error: None, stages, original: &original, axes, watch: &() };
+        let cut = ExportedCut {
+            machine: &machine,
+            error: None,
+            stages,
+            original: &original,
+            axes,
+            watch: &(),
+        };
         cut.once(program, 0.0, &mut []).expect("a cut")
     };
     let (known_was, known_is) = (known(&original), known(&corrected));
@@ -214,21 +269,35 @@ fn line(name: &str, machine: &Machine, text: &str, believed: Option<Machine>) ->
         outcome.stretches,
     );
     for stretch in &outcome.unchanged {
-        println!("          lines {} to {}: {}", stretch.lines[0], stretch.lines[1], stretch.reason);
+        println!(
+            "          lines {} to {}: {}",
+            stretch.lines[0], stretch.lines[1], stretch.reason
+        );
     }
     Some(ratios)
 }
 
-/// Prints the median, the 90 % and the largest of ratios; programs that were not written count as 1.
+/// Prints the median, the 90 % and the largest of ratios; programs that were not written count
+/// as 1.
 fn print_spread(name: &str, ratios: &[Option<Ratios>]) {
     print!("{name:<42}");
-    for (which, what) in ["RMS", "largest", "time", "(RMS)", "(largest)"].into_iter().enumerate() {
-        let mut of: Vec<f64> = ratios.iter().map(|ratios| ratios.map_or(1.0, |ratios| ratios[which])).collect();
+    for (which, what) in ["RMS", "largest", "time", "(RMS)", "(largest)"]
+        .into_iter()
+        .enumerate()
+    {
+        let mut of: Vec<f64> = ratios
+            .iter()
+            .map(|ratios| ratios.map_or(1.0, |ratios| ratios[which]))
+            .collect();
         of.sort_by(f64::total_cmp);
         let at = |part: f64| of[((of.len() - 1) as f64 * part).round() as usize];
         print!("  {what} {:.3} {:.3} {:.3}", at(0.5), at(0.9), at(1.0));
     }
-    println!("  ({} of {} written)", ratios.iter().flatten().count(), ratios.len());
+    println!(
+        "  ({} of {} written)",
+        ratios.iter().flatten().count(),
+        ratios.len()
+    );
 }
 
 /// The value behind an option of the command line.
@@ -239,21 +308,35 @@ fn value<'a>(arguments: &'a [String], option: &str) -> Option<&'a str> {
 
 /// Whether a program can be cut: X, Y or Z alone, in a time that is not too long.
 fn is_cut(text: &str) -> bool {
-    let Ok(summary) = Program::from_text("part.ngc", text).check(Settings::default()) else { return false };
+    let Ok(summary) = Program::from_text("part.ngc", text).check(Settings::default()) else {
+        return false;
+    };
     let time_s = |step: &Step| match step {
         Step::Piece(piece) if piece.cutting => piece.length_mm / piece.feed_mm_s,
         _ => 0.0,
     };
     summary.feed_mm > 0.0
         && !summary.moves_others
-        && steps(text, summary.dialect.0).iter().map(time_s).sum::<f64>() <= LONGEST_S
+        && steps(text, summary.dialect.0)
+            .iter()
+            .map(time_s)
+            .sum::<f64>()
+            <= LONGEST_S
 }
 
 /// A file as a program: group, name and text.
 fn program_of(path: &Path) -> (String, String, String) {
-    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let name = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
     let text = std::fs::read(path).expect("a file");
-    ("files".to_owned(), name, String::from_utf8_lossy(&text).into_owned())
+    (
+        "files".to_owned(),
+        name,
+        String::from_utf8_lossy(&text).into_owned(),
+    )
 }
 
 /// As many programs as that, drawn from the files of a folder.
@@ -261,7 +344,11 @@ fn drawn_files(folder: &Path, seed: u64, count: usize) -> Vec<(String, String, S
     let found = FilesToCheck::find(&[folder.to_owned()]);
     let programs = found.files.iter().map(|path| program_of(path));
     let mut fitting: Vec<_> = programs.filter(|(_, _, text)| is_cut(text)).collect();
-    println!("{} programs that can be cut are in {}", fitting.len(), folder.display());
+    println!(
+        "{} programs that can be cut are in {}",
+        fitting.len(),
+        folder.display()
+    );
     fitting.shuffle(&mut Xoshiro256PlusPlus::seed_from_u64(seed));
     fitting.truncate(count);
     fitting
@@ -272,7 +359,8 @@ fn programs(arguments: &[String], files: &[String]) -> Vec<(String, String, Stri
     let parts = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../parts"));
     if let Some(seed) = value(arguments, "--drawn") {
         let seed: u64 = seed.parse().expect("a seed");
-        let count: u64 = value(arguments, "--count").map_or(3, |count| count.parse().expect("a count"));
+        let count: u64 =
+            value(arguments, "--count").map_or(3, |count| count.parse().expect("a count"));
         if let Some(folder) = value(arguments, "--corpus") {
             return drawn_files(folder.as_ref(), seed, count as usize);
         }
@@ -288,18 +376,27 @@ fn programs(arguments: &[String], files: &[String]) -> Vec<(String, String, Stri
     if !files.is_empty() {
         return files.iter().map(|path| program_of(path.as_ref())).collect();
     }
-    let paths: Vec<PathBuf> =
-        ["circle", "ellipse", "eight", "star", "square"].map(|name| parts.join(name).with_extension("ngc")).to_vec();
+    let paths: Vec<PathBuf> = ["circle", "ellipse", "eight", "star", "square"]
+        .map(|name| parts.join(name).with_extension("ngc"))
+        .to_vec();
     let own = OWN.map(|(name, text)| ("files".to_owned(), name.to_owned(), text.to_owned()));
-    paths.iter().map(|path| program_of(path)).chain(own).collect()
+    paths
+        .iter()
+        .map(|path| program_of(path))
+        .chain(own)
+        .collect()
 }
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let is_value = |k: usize| k > 0 && ["--drawn", "--count", "--corpus"].contains(&arguments[k - 1].as_str());
+    let is_value =
+        |k: usize| k > 0 && ["--drawn", "--count", "--corpus"].contains(&arguments[k - 1].as_str());
     let plain = (0..arguments.len()).filter(|&k| !arguments[k].starts_with("--") && !is_value(k));
     let plain: Vec<String> = plain.map(|k| arguments[k].clone()).collect();
-    let machines = plain.first().cloned().unwrap_or_else(|| "tnv40,stiff,workshop".to_owned());
+    let machines = plain
+        .first()
+        .cloned()
+        .unwrap_or_else(|| "tnv40,stiff,workshop".to_owned());
     let given = |wanted: &str| arguments.iter().any(|argument| argument == wanted);
     let programs = programs(&arguments, &plain[1.min(plain.len())..]);
     println!(
@@ -330,7 +427,10 @@ fn main() {
             }
         }
         for (group, ratios) in &groups {
-            print_spread(&format!("{} {group}: 50 %, 90 %, all:", machine.name), ratios);
+            print_spread(
+                &format!("{} {group}: 50 %, 90 %, all:", machine.name),
+                ratios,
+            );
         }
     }
 }

@@ -23,7 +23,8 @@ pub(crate) struct NoiseKind {
     pub(crate) levels: [f64; LEVELS],
 }
 
-/// All kinds. The values of examples/03_realism/machines, where reasons stand beside them, lie within the levels.
+/// All kinds. The values of examples/03_realism/machines, where reasons stand beside them, lie
+/// within the levels.
 pub(crate) const KINDS: [NoiseKind; 6] = [
     NoiseKind {
         name: "white",
@@ -83,7 +84,9 @@ impl NoiseKind {
 
     /// The machine with a level of it on both axes.
     pub(crate) fn machine(&self, level: f64) -> Result<Machine, MachineError> {
-        let Self { key, more, unit, .. } = self;
+        let Self {
+            key, more, unit, ..
+        } = self;
         let name = self.machine_name(level);
         let [x, y] = ["x", "y"].map(|axis| format!("[axis.{axis}]\n{key} = {level:?}\n{more}"));
         let text = format!(

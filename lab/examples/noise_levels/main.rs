@@ -17,7 +17,9 @@ use std::process::ExitCode;
 
 use feedwright::Entry;
 use feedwright::command::{Console, with_console};
-use feedwright_lab::{CONTROLLERS, Comparison, ComparisonOptions, Kept, Knowledge, Tuning, Workpiece, compare};
+use feedwright_lab::{
+    CONTROLLERS, Comparison, ComparisonOptions, Kept, Knowledge, Tuning, Workpiece, compare,
+};
 use feedwright_sim::Machine;
 use levels::{BASE, KINDS, LEVELS};
 use miette::miette;
@@ -30,16 +32,20 @@ const CONTOURS: [&str; 4] = ["circle", "eight", "star", "square"];
 const SEED: u64 = 1;
 /// Noise seeds of each cut; the searches have another.
 const NOISE_SEEDS: u32 = 3;
-const USAGE: &str = "usage: noise_levels FOLDER [LEVELS [defaults]], with 1 to 5 levels of each kind";
+const USAGE: &str =
+    "usage: noise_levels FOLDER [LEVELS [defaults]], with 1 to 5 levels of each kind";
 
 fn main() -> ExitCode {
     let code = |(): ()| ExitCode::SUCCESS;
-    with_console(false, true, |console| run(console).map(code).map_err(|error| miette!("{error}")))
+    with_console(false, true, |console| {
+        run(console).map(code).map_err(|error| miette!("{error}"))
+    })
 }
 
 fn run(console: &Console) -> Result<(), Failure> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let (folder, levels, tuning) = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+    let (folder, levels, tuning) = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..]
+    {
         [folder] => (folder, LEVELS, Tuning::Search),
         [folder, levels] => (folder, count(levels)?, Tuning::Search),
         [folder, levels, "defaults"] => (folder, count(levels)?, Tuning::Defaults),
@@ -51,14 +57,21 @@ fn run(console: &Console) -> Result<(), Failure> {
     let comparison = compare(&options, &kept, &bar);
     bar.clear();
     // It claims nothing.
-    let comparison = Comparison { claims: vec![], ..comparison? };
+    let comparison = Comparison {
+        claims: vec![],
+        ..comparison?
+    };
     write(Path::new(folder), &comparison)?;
     kept.complete();
     Ok(())
 }
 
 fn count(levels: &str) -> Result<usize, Failure> {
-    Ok(levels.parse().ok().filter(|levels| (1..=LEVELS).contains(levels)).ok_or(USAGE)?)
+    Ok(levels
+        .parse()
+        .ok()
+        .filter(|levels| (1..=LEVELS).contains(levels))
+        .ok_or(USAGE)?)
 }
 
 /// Every controller on every machine.
@@ -70,8 +83,10 @@ fn options(levels: usize, tuning: Tuning) -> Result<ComparisonOptions, Failure> 
             machines.push(kind.machine(kind.levels[k])?);
         }
     }
-    let controllers: Option<Vec<&'static Entry>> =
-        show::CONTROLLERS.into_iter().map(|name| CONTROLLERS.find(name)).collect();
+    let controllers: Option<Vec<&'static Entry>> = show::CONTROLLERS
+        .into_iter()
+        .map(|name| CONTROLLERS.find(name))
+        .collect();
     let mut workpieces = Workpiece::contours();
     workpieces.retain(|workpiece| CONTOURS.contains(&workpiece.name.as_str()));
     Ok(ComparisonOptions {
@@ -93,7 +108,9 @@ fn options(levels: usize, tuning: Tuning) -> Result<ComparisonOptions, Failure> 
 fn spread(levels: usize) -> Vec<usize> {
     match levels {
         1 => vec![LEVELS / 2],
-        _ => (0..levels).map(|k| k * (LEVELS - 1) / (levels - 1)).collect(),
+        _ => (0..levels)
+            .map(|k| k * (LEVELS - 1) / (levels - 1))
+            .collect(),
     }
 }
 

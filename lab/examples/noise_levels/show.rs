@@ -1,4 +1,5 @@
-//! What the study shows of its comparison: the table of its README and a figure for each kind of noise.
+//! What the study shows of its comparison: the table of its README and a figure for each kind of
+//! noise.
 
 use std::fmt::Write;
 use std::ops::Range;
@@ -9,8 +10,13 @@ use feedwright_lab::{Comparison, LIMIT};
 use crate::levels::{BASE, KINDS, NoiseKind};
 
 /// Uncorrected, two peers, the default, and the limit.
-pub(crate) const CONTROLLERS: [&str; 5] =
-    [BASELINE, "feedforward-cross-coupled", "kalman-disturbance", "lqg-identified", LIMIT];
+pub(crate) const CONTROLLERS: [&str; 5] = [
+    BASELINE,
+    "feedforward-cross-coupled",
+    "kalman-disturbance",
+    "lqg-identified",
+    LIMIT,
+];
 /// The comparison as it is kept, without plots and claims.
 pub(crate) const COMPARISON: &str = "noise.json";
 /// The document of the table.
@@ -33,28 +39,51 @@ struct Level {
 /// None where it was not cut, or not to its end.
 fn level(comparison: &Comparison, machine: &str, controller: &str) -> Option<Level> {
     let rms_um = comparison.controlled_rms_over_contours_um(machine, controller)?;
-    let its = comparison.rows.iter().filter(|row| row.machine == machine && row.controller == controller);
-    Some(Level { rms_um, lost: its.map(|row| row.lost).sum() })
+    let its = comparison
+        .rows
+        .iter()
+        .filter(|row| row.machine == machine && row.controller == controller);
+    Some(Level {
+        rms_um,
+        lost: its.map(|row| row.lost).sum(),
+    })
 }
 
 /// The levels of a kind that were cut.
 fn levels_cut(comparison: &Comparison, kind: &NoiseKind) -> Vec<(f64, String)> {
-    let named = kind.levels.iter().map(|&level| (level, kind.machine_name(level)));
+    let named = kind
+        .levels
+        .iter()
+        .map(|&level| (level, kind.machine_name(level)));
     let machines = comparison.machines();
-    named.filter(|(_, machine)| machines.contains(&machine.as_str())).collect()
+    named
+        .filter(|(_, machine)| machines.contains(&machine.as_str()))
+        .collect()
 }
 
 /// One line for each level of each kind, one column for each controller.
 pub(crate) fn table(comparison: &Comparison) -> Result<String, std::fmt::Error> {
     let mut table = String::from("| RMS over all contours, µm | |");
-    CONTROLLERS.iter().try_for_each(|controller| write!(table, " {controller} |"))?;
+    CONTROLLERS
+        .iter()
+        .try_for_each(|controller| write!(table, " {controller} |"))?;
     writeln!(table, "\n|---|--:|{}", "--:|".repeat(CONTROLLERS.len()))?;
     line(&mut table, comparison, "without noise", "0", BASE)?;
     for kind in &KINDS {
         for (k, (size, machine)) in levels_cut(comparison, kind).into_iter().enumerate() {
-            let unit = if kind.unit == "1" { String::new() } else { format!(" {}", kind.unit) };
+            let unit = if kind.unit == "1" {
+                String::new()
+            } else {
+                format!(" {}", kind.unit)
+            };
             let name = if k == 0 { kind.level } else { "" };
-            line(&mut table, comparison, name, &format!("{size}{unit}"), &machine)?;
+            line(
+                &mut table,
+                comparison,
+                name,
+                &format!("{size}{unit}"),
+                &machine,
+            )?;
         }
     }
     writeln!(table, "\n{}", made(comparison))?;
@@ -70,10 +99,19 @@ fn made(comparison: &Comparison) -> String {
         format!("peers were tuned in {evaluations} evaluations")
     };
     let machines = comparison.machines().len();
-    format!("{machines} machines, {} noise seeds; {tuned}.", comparison.noise_seeds)
+    format!(
+        "{machines} machines, {} noise seeds; {tuned}.",
+        comparison.noise_seeds
+    )
 }
 
-fn line(table: &mut String, comparison: &Comparison, kind: &str, size: &str, machine: &str) -> std::fmt::Result {
+fn line(
+    table: &mut String,
+    comparison: &Comparison,
+    kind: &str,
+    size: &str,
+    machine: &str,
+) -> std::fmt::Result {
     write!(table, "| {kind} | {size} |")?;
     for controller in CONTROLLERS {
         match level(comparison, machine, controller) {
@@ -87,28 +125,50 @@ fn line(table: &mut String, comparison: &Comparison, kind: &str, size: &str, mac
 
 /// Where in the text of the document the table stands.
 pub(crate) fn place(text: &str) -> Result<Range<usize>, String> {
-    let start = text.find(BEGIN).ok_or_else(|| format!("{DOCUMENT} has no line {BEGIN}"))? + BEGIN.len();
-    let length = text[start..].find(END).ok_or_else(|| format!("{DOCUMENT} has no line {END}"))?;
+    let start = text
+        .find(BEGIN)
+        .ok_or_else(|| format!("{DOCUMENT} has no line {BEGIN}"))?
+        + BEGIN.len();
+    let length = text[start..]
+        .find(END)
+        .ok_or_else(|| format!("{DOCUMENT} has no line {END}"))?;
     Ok(start..start + length)
 }
 
-/// Name and drawing of the figure of each kind: the error of each controller over the level. All have the same vertical axis.
+/// Name and drawing of the figure of each kind: the error of each controller over the level. All
+/// have the same vertical axis.
 pub(crate) fn figures(comparison: &Comparison) -> Vec<(String, String)> {
     let curves: Vec<Vec<Polyline>> = KINDS.iter().map(|kind| curves(comparison, kind)).collect();
     let points = || curves.iter().flatten().flat_map(|curve| &curve.points);
     let y_range = range(points().map(|point| point[1]));
     let named = KINDS.iter().zip(&curves).map(|(kind, curves)| {
-        let unit = if kind.unit == "1" { String::new() } else { format!(" [{}]", kind.unit) };
+        let unit = if kind.unit == "1" {
+            String::new()
+        } else {
+            format!(" [{}]", kind.unit)
+        };
         let panel = Panel {
             x_title: format!("{}{unit}", capitalized(kind.level)),
             y_title: "RMS contour error [µm]".to_owned(),
             curves: curves.clone(),
             powers_of_ten: true,
-            x_range: range(curves.iter().flat_map(|curve| &curve.points).map(|point| point[0])),
+            x_range: range(
+                curves
+                    .iter()
+                    .flat_map(|curve| &curve.points)
+                    .map(|point| point[0]),
+            ),
             y_range,
             ..Panel::default()
         };
-        (format!("{}.svg", kind.name), Figure { panels: vec![panel], ..Figure::default() }.to_svg())
+        (
+            format!("{}.svg", kind.name),
+            Figure {
+                panels: vec![panel],
+                ..Figure::default()
+            }
+            .to_svg(),
+        )
     });
     named.collect()
 }
@@ -117,7 +177,8 @@ fn curves(comparison: &Comparison, kind: &NoiseKind) -> Vec<Polyline> {
     let levels = levels_cut(comparison, kind);
     let curve = |(k, controller): (usize, &str)| {
         let at = |(size, machine): &(f64, String)| {
-            let rms_um = level(comparison, machine, controller).map_or(f64::NAN, |level| level.rms_um);
+            let rms_um =
+                level(comparison, machine, controller).map_or(f64::NAN, |level| level.rms_um);
             [size.log10(), rms_um.log10()]
         };
         let (label, line) = match controller {
@@ -125,7 +186,12 @@ fn curves(comparison: &Comparison, kind: &NoiseKind) -> Vec<Polyline> {
             LIMIT => (format!("{controller}, the limit"), LineStyle::Dashed),
             _ => (controller.to_owned(), LineStyle::Solid),
         };
-        Polyline { label, points: levels.iter().map(at).collect(), line, color: COLORS[k].to_owned() }
+        Polyline {
+            label,
+            points: levels.iter().map(at).collect(),
+            line,
+            color: COLORS[k].to_owned(),
+        }
     };
     CONTROLLERS.into_iter().enumerate().map(curve).collect()
 }
@@ -133,11 +199,15 @@ fn curves(comparison: &Comparison, kind: &NoiseKind) -> Vec<Polyline> {
 /// With a margin; what is not finite does not count.
 fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     let finite = values.filter(|value| value.is_finite());
-    let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
+    let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
+        [low.min(v), high.max(v)]
+    });
     (low <= high).then_some([low - MARGIN, high + MARGIN])
 }
 
 fn capitalized(text: &str) -> String {
     let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    letters.next().map_or_else(String::new, |first| {
+        first.to_uppercase().chain(letters).collect()
+    })
 }

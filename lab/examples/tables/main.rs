@@ -1,5 +1,5 @@
-//! Regenerates the tables of docs/results.md and of examples/*/README.md in their places: `just tables`, which makes
-//! the comparisons first.
+//! Regenerates the tables of docs/results.md and of examples/*/README.md in their places: `just
+//! tables`, which makes the comparisons first.
 
 mod table;
 
@@ -12,7 +12,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         let path = root().join(place.file);
         let text = std::fs::read_to_string(&path)?;
         let old = place.find(&text)?;
-        std::fs::write(&path, [&text[..old.start], &place.table, &text[old.end..]].concat())?;
+        std::fs::write(
+            &path,
+            [&text[..old.start], &place.table, &text[old.end..]].concat(),
+        )?;
         println!("{}, {}\n{}", place.file, place.name, place.table);
     }
     Ok(())

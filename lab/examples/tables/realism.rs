@@ -1,4 +1,5 @@
-//! The tables of what real axes have: held-out work on machines with noise, and what each imperfection costs each controller.
+//! The tables of what real axes have: held-out work on machines with noise, and what each
+//! imperfection costs each controller.
 
 use std::fmt::Write;
 
@@ -31,7 +32,12 @@ const SHOWN: &[&str] = &[
 
 /// Those of them that were cut.
 fn shown(comparison: &Comparison) -> Vec<&'static str> {
-    let was_cut = |controller: &&str| comparison.rows.iter().any(|row| row.controller == *controller);
+    let was_cut = |controller: &&str| {
+        comparison
+            .rows
+            .iter()
+            .any(|row| row.controller == *controller)
+    };
     SHOWN.iter().copied().filter(was_cut).collect()
 }
 
@@ -63,22 +69,41 @@ fn over_all(
         median_um: median(each_um.clone())?,
         tool_um: median(comparison.on_contours(machine, controller, |row| row.rms_um)?)?,
         rms_um: quadratic_mean(each_um),
-        max_um: comparison.on_contours(machine, controller, max)?.into_iter().fold(0.0, f64::max),
+        max_um: comparison
+            .on_contours(machine, controller, max)?
+            .into_iter()
+            .fold(0.0, f64::max),
     })
 }
 
-/// One line for each controller, one column for each machine: errors by encoders over all work, and the median at the tool.
+/// One line for each controller, one column for each machine: errors by encoders over all work, and
+/// the median at the tool.
 pub(super) fn held_out(comparison: &Comparison) -> Result<String> {
     let machines = comparison.machines();
     let mut table = String::new();
-    heading(&mut table, "median RMS / at the tool / RMS of all / max, \u{b5}m", &machines)?;
+    heading(
+        &mut table,
+        "median RMS / at the tool / RMS of all / max, \u{b5}m",
+        &machines,
+    )?;
     for controller in shown(comparison) {
         write!(table, "| {controller} |")?;
         for machine in &machines {
-            let numbers = [ComparisonRow::controlled_rms_um, ComparisonRow::controlled_max_um];
+            let numbers = [
+                ComparisonRow::controlled_rms_um,
+                ComparisonRow::controlled_max_um,
+            ];
             match over_all(comparison, machine, controller, numbers) {
-                Some(OverAll { median_um, tool_um, rms_um, max_um }) => {
-                    write!(table, " {median_um:.2} / {tool_um:.2} / {rms_um:.2} / {max_um:.1} |")?;
+                Some(OverAll {
+                    median_um,
+                    tool_um,
+                    rms_um,
+                    max_um,
+                }) => {
+                    write!(
+                        table,
+                        " {median_um:.2} / {tool_um:.2} / {rms_um:.2} / {max_um:.1} |"
+                    )?;
                 }
                 None => write!(table, " lost |")?,
             }

@@ -8,7 +8,9 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use feedwright::{BASELINE, Knows};
-use feedwright_lab::{CONTROLLERS, Claimed, Comparison, ComparisonRow, Numbers, each_once, experiment};
+use feedwright_lab::{
+    CONTROLLERS, Claimed, Comparison, ComparisonRow, Numbers, each_once, experiment,
+};
 use feedwright_sim::Machine;
 
 /// The machine of the paper.
@@ -44,21 +46,41 @@ pub(crate) fn root() -> PathBuf {
 
 /// A comparison as it is kept.
 pub(crate) fn comparison(file: &str) -> Result<Comparison> {
-    Ok(Comparison::read(&std::fs::read_to_string(root().join(file))?)?)
+    Ok(Comparison::read(&std::fs::read_to_string(
+        root().join(file),
+    )?)?)
 }
 
 impl Place {
     /// The tables that show the comparisons.
     pub(crate) fn results() -> Result<Vec<Self>> {
-        let [comparison, held_out, imperfections] =
-            [comparison(COMPARISON)?, comparison(HELD_OUT)?, comparison(IMPERFECTIONS)?];
-        let results = |name, table| Self { file: "docs/results.md", name, table };
-        let realism = |name, table| Self { file: "examples/03_realism/README.md", name, table };
-        let study = |name, table| Self { file: "examples/02_contours/README.md", name, table };
+        let [comparison, held_out, imperfections] = [
+            comparison(COMPARISON)?,
+            comparison(HELD_OUT)?,
+            comparison(IMPERFECTIONS)?,
+        ];
+        let results = |name, table| Self {
+            file: "docs/results.md",
+            name,
+            table,
+        };
+        let realism = |name, table| Self {
+            file: "examples/03_realism/README.md",
+            name,
+            table,
+        };
+        let study = |name, table| Self {
+            file: "examples/02_contours/README.md",
+            name,
+            table,
+        };
         Ok(vec![
             results("contours", contours(&comparison, SHOWN)?),
             results("held-out work", realism::held_out(&held_out)?),
-            study("contours", contours(&comparison, &controllers(&comparison))?),
+            study(
+                "contours",
+                contours(&comparison, &controllers(&comparison))?,
+            ),
             study("machines", machines(&comparison)?),
             study("tuned", tuned(&comparison)?),
             study("claims", claims(&comparison)?),
@@ -72,14 +94,23 @@ impl Place {
 
     /// The experiment of the paper, seed by seed.
     pub(crate) fn paper() -> Result<Self> {
-        Ok(Self { file: "examples/01_paper_circle/README.md", name: "seeds", table: paper()? })
+        Ok(Self {
+            file: "examples/01_paper_circle/README.md",
+            name: "seeds",
+            table: paper()?,
+        })
     }
 
     /// Where in the text of the document the table stands.
     pub(crate) fn find(&self, text: &str) -> Result<Range<usize>> {
         let before = format!("<!-- table of {}, made by `just tables` -->\n", self.name);
-        let start = text.find(&before).ok_or_else(|| format!("{} has no line {before}", self.file))? + before.len();
-        let length = text[start..].find(END).ok_or_else(|| format!("{} has no line {END}", self.file))?;
+        let start = text
+            .find(&before)
+            .ok_or_else(|| format!("{} has no line {before}", self.file))?
+            + before.len();
+        let length = text[start..]
+            .find(END)
+            .ok_or_else(|| format!("{} has no line {END}", self.file))?;
         Ok(start..start + length)
     }
 }
@@ -102,11 +133,19 @@ const SHOWN: &[&str] = &[
 ];
 
 fn controllers(comparison: &Comparison) -> Vec<&str> {
-    let nominal = comparison.rows.iter().filter(|row| row.machine == comparison.nominal);
+    let nominal = comparison
+        .rows
+        .iter()
+        .filter(|row| row.machine == comparison.nominal);
     each_once(nominal.map(|row| &row.controller))
 }
 
-fn find<'a>(comparison: &'a Comparison, contour: &str, machine: &str, controller: &str) -> Result<&'a ComparisonRow> {
+fn find<'a>(
+    comparison: &'a Comparison,
+    contour: &str,
+    machine: &str,
+    controller: &str,
+) -> Result<&'a ComparisonRow> {
     let row = comparison.row(contour, machine, controller);
     Ok(row.ok_or_else(|| format!("{COMPARISON} has no {controller} on {contour} and {machine}"))?)
 }
@@ -114,12 +153,15 @@ fn find<'a>(comparison: &'a Comparison, contour: &str, machine: &str, controller
 /// Of a table in Markdown: the first two lines.
 fn heading(table: &mut String, first: &str, columns: &[&str]) -> Result<()> {
     write!(table, "| {first} |")?;
-    columns.iter().try_for_each(|column| write!(table, " {column} |"))?;
+    columns
+        .iter()
+        .try_for_each(|column| write!(table, " {column} |"))?;
     writeln!(table, "\n|---|{}", "--:|".repeat(columns.len()))?;
     Ok(())
 }
 
-/// One line for each controller, one column for each contour, on the nominal machine: RMS and largest error.
+/// One line for each controller, one column for each contour, on the nominal machine: RMS and
+/// largest error.
 fn contours(comparison: &Comparison, controllers: &[&str]) -> Result<String> {
     let contours = comparison.contours();
     let mut table = String::new();
@@ -143,7 +185,9 @@ fn contours(comparison: &Comparison, controllers: &[&str]) -> Result<String> {
 fn machines(comparison: &Comparison) -> Result<String> {
     let over_all = |machine: &str, controller: &str| {
         let rms_um = comparison.rms_over_contours_um(machine, controller);
-        rms_um.ok_or_else(|| format!("{COMPARISON} has not every contour of {controller} on {machine}"))
+        rms_um.ok_or_else(|| {
+            format!("{COMPARISON} has not every contour of {controller} on {machine}")
+        })
     };
     let mut table = String::new();
     let columns = ["uncorrected", "best of those without model"];
@@ -155,7 +199,10 @@ fn machines(comparison: &Comparison) -> Result<String> {
                 peers.push((over_all(machine, entry.name)?, entry.name));
             }
         }
-        let (rms_um, name) = peers.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).ok_or("there are no peers")?;
+        let (rms_um, name) = peers
+            .into_iter()
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .ok_or("there are no peers")?;
         let open = over_all(machine, BASELINE)?;
         writeln!(table, "| {machine} | {open:.2} | {rms_um:.2} ({name}) |")?;
     }
@@ -170,7 +217,11 @@ fn tuned(comparison: &Comparison) -> Result<String> {
     for tuned in &comparison.tuned {
         let (controller, machine, words) = (&tuned.controller, &tuned.machine, tuned.words());
         let errors = format!("{:.3} | {:.2}", tuned.rms_um, tuned.open_um);
-        writeln!(table, "| {controller} | {machine} | {} | {errors} | {words} |", tuned.cuts)?;
+        writeln!(
+            table,
+            "| {controller} | {machine} | {} | {errors} | {words} |",
+            tuned.cuts
+        )?;
     }
     Ok(table)
 }
@@ -180,15 +231,31 @@ const NAMED: usize = 6;
 
 /// One line for each claim: on how many contours and machines it holds, and where it does not.
 fn claims(comparison: &Comparison) -> Result<String> {
-    let mut table = String::from("| claim | limit | holds | worst | falls short on |\n|---|--:|--:|--:|---|\n");
-    for Claimed { claim, limit, unit, held, of, worst, short } in &comparison.claims {
+    let mut table =
+        String::from("| claim | limit | holds | worst | falls short on |\n|---|--:|--:|--:|---|\n");
+    for Claimed {
+        claim,
+        limit,
+        unit,
+        held,
+        of,
+        worst,
+        short,
+    } in &comparison.claims
+    {
         let unit = unit.replace("um", "\u{b5}m");
-        let place = |(contour, machine, value): &(String, String, f64)| format!("{contour} on {machine} ({value:.2})");
+        let place = |(contour, machine, value): &(String, String, f64)| {
+            format!("{contour} on {machine} ({value:.2})")
+        };
         let mut places: Vec<String> = short.iter().take(NAMED).map(place).collect();
         if let more @ 1.. = short.len().saturating_sub(NAMED) {
             places.push(format!("and {more} more"));
         }
-        writeln!(table, "| {claim} | {limit} {unit} | {held} of {of} | {worst:.3} | {} |", places.join(", "))?;
+        writeln!(
+            table,
+            "| {claim} | {limit} {unit} | {held} of {of} | {worst:.3} | {} |",
+            places.join(", ")
+        )?;
     }
     Ok(table)
 }
@@ -198,7 +265,11 @@ fn tolerance(comparison: &Comparison) -> Result<String> {
     let rows = &comparison.at_tolerance;
     let contours = each_once(rows.iter().map(|row| &row.contour));
     let mut table = String::new();
-    heading(&mut table, "feedrate in mm/s, time against uncorrected", &contours)?;
+    heading(
+        &mut table,
+        "feedrate in mm/s, time against uncorrected",
+        &contours,
+    )?;
     for controller in each_once(rows.iter().map(|row| &row.controller)) {
         write!(table, "| {controller} |")?;
         for contour in &contours {
@@ -214,7 +285,11 @@ fn tolerance(comparison: &Comparison) -> Result<String> {
 
 /// One line for each seed.
 fn paper() -> Result<String> {
-    let paper = experiment(&Machine::load(MACHINE.as_ref())?, &(1..=SEEDS).collect::<Vec<_>>(), &())?;
+    let paper = experiment(
+        &Machine::load(MACHINE.as_ref())?,
+        &(1..=SEEDS).collect::<Vec<_>>(),
+        &(),
+    )?;
     let mut table = String::from(
         "| seed | fit | uncorrected | magnitude only, same time | magnitude only, same rho | two-dimensional | RMS ratio | max ratio \
          | time ratio | exact gradient |\n|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",

@@ -24,8 +24,8 @@ use paper::PaperArgs;
 
 /// The laboratory of feedwright: compare methods, and repeat the experiments of the paper
 ///
-/// It has the published controllers beside those of feedwright, work that no setting was tuned on, and the experiments of Lee, Cho and
-/// Jeon (2005).
+/// It has the published controllers beside those of feedwright, work that no setting was tuned on,
+/// and the experiments of Lee, Cho and Jeon (2005).
 #[derive(Debug, Parser)]
 #[command(name = "feedwright-lab", version, propagate_version = true, max_term_width = COLUMNS, after_long_help = AFTER)]
 pub(crate) struct Cli {

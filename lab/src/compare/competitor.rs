@@ -11,27 +11,37 @@ use crate::peers::CONTROLLERS;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Knowledge {
-    /// All that its kind may have: the machine's parameters, an identification on the machine, or nothing.
+    /// All that its kind may have: the machine's parameters, an identification on the machine, or
+    /// nothing.
     Own,
-    /// Inertia and friction as they are found from a recording of the machine; values that are tuned with the exact ones.
+    /// Inertia and friction as they are found from a recording of the machine; values that are
+    /// tuned with the exact ones.
     Identified,
-    /// Inertia that is 20 % too low and friction that is 20 % too high; values that are tuned with the exact ones.
+    /// Inertia that is 20 % too low and friction that is 20 % too high; values that are tuned with
+    /// the exact ones.
     TwentyPercentOff,
     /// An identification on the nominal machine, and the values that are tuned there.
     Unseen,
-    /// What a log of the machine tells, the settings of its drives too; values that are tuned with the exact ones.
+    /// What a log of the machine tells, the settings of its drives too; values that are tuned with
+    /// the exact ones.
     Log,
 }
 
-/// Inertia that is believed where parameters are 20 % off, as a part of the true one. Opposite to friction, so that the two errors
-/// of the torque do not cancel each other where an axis speeds up.
+/// Inertia that is believed where parameters are 20 % off, as a part of the true one. Opposite to
+/// friction, so that the two errors of the torque do not cancel each other where an axis speeds up.
 const INERTIA_BELIEVED: f64 = 0.8;
 /// The same of friction.
 const FRICTION_BELIEVED: f64 = 1.2;
 
 impl Knowledge {
     /// All kinds, in the order of the table.
-    pub const ALL: [Self; 5] = [Self::Own, Self::Identified, Self::TwentyPercentOff, Self::Unseen, Self::Log];
+    pub const ALL: [Self; 5] = [
+        Self::Own,
+        Self::Identified,
+        Self::TwentyPercentOff,
+        Self::Unseen,
+        Self::Log,
+    ];
 
     /// What stands behind the name of the controller.
     pub const fn suffix(self) -> &'static str {
@@ -50,7 +60,9 @@ impl Knowledge {
             Self::Own => true,
             Self::Identified | Self::TwentyPercentOff => entry.knows == Knows::ExactModel,
             Self::Unseen => entry.knows == Knows::Identified,
-            Self::Log => entry.knows == Knows::ExactModel || entry.identifier == Some(IdentifierKind::Axes),
+            Self::Log => {
+                entry.knows == Knows::ExactModel || entry.identifier == Some(IdentifierKind::Axes)
+            }
         }
     }
 }
@@ -67,15 +79,26 @@ pub struct Competitor {
 impl Competitor {
     /// The controller of a row of the table, with all that its kind may know.
     pub const fn own(entry: &'static Entry) -> Self {
-        Self { entry, knowledge: Knowledge::Own }
+        Self {
+            entry,
+            knowledge: Knowledge::Own,
+        }
     }
 
     /// Returns all competitors on a machine, in the order of the table. The nominal machine has no
     /// competitors with [`Knowledge::Unseen`].
-    pub(super) fn all(controllers: &[&'static Entry], known: &[Knowledge], is_nominal: bool) -> Vec<Self> {
-        let here = known.iter().filter(|&&knowledge| knowledge != Knowledge::Unseen || !is_nominal);
+    pub(super) fn all(
+        controllers: &[&'static Entry],
+        known: &[Knowledge],
+        is_nominal: bool,
+    ) -> Vec<Self> {
+        let here = known
+            .iter()
+            .filter(|&&knowledge| knowledge != Knowledge::Unseen || !is_nominal);
         here.flat_map(|&knowledge| {
-            let suited = controllers.iter().filter(move |entry| knowledge.is_for(entry));
+            let suited = controllers
+                .iter()
+                .filter(move |entry| knowledge.is_for(entry));
             suited.map(move |&entry| Self { entry, knowledge })
         })
         .collect()
@@ -88,13 +111,18 @@ impl Competitor {
 
     /// The competitor of that name.
     pub fn find(name: &str) -> Option<Self> {
-        let with = |knowledge: Knowledge| Some((CONTROLLERS.find(name.strip_suffix(knowledge.suffix())?)?, knowledge));
+        let with = |knowledge: Knowledge| {
+            Some((
+                CONTROLLERS.find(name.strip_suffix(knowledge.suffix())?)?,
+                knowledge,
+            ))
+        };
         let (entry, knowledge) = Knowledge::ALL.into_iter().find_map(with)?;
         Some(Self { entry, knowledge })
     }
 
-    /// Makes it for a machine. Recordings for an identification are made with the noise seed that the machine has here. One whose
-    /// parameters cannot be identified there stays uncorrected.
+    /// Makes it for a machine. Recordings for an identification are made with the noise seed that
+    /// the machine has here. One whose parameters cannot be identified there stays uncorrected.
     pub(super) fn make(
         &self,
         machine: &Machine,
@@ -103,23 +131,36 @@ impl Competitor {
         tuned: Option<&Tuned>,
     ) -> Box<dyn Controller<2>> {
         let set = tuned.map_or(Vec::new(), |tuned| tuned.settings(self.entry));
-        let choices = Choices { seed, set, ..Choices::default() };
+        let choices = Choices {
+            seed,
+            set,
+            ..Choices::default()
+        };
         // The periods of the control are never a secret.
-        let unseen = Machine { period: machine.period, ..nominal.clone() };
+        let unseen = Machine {
+            period: machine.period,
+            ..nominal.clone()
+        };
         let told = match self.knowledge {
             Knowledge::Log => recorded_machine(machine, 2, seed, &()).map(|(told, _)| told),
             Knowledge::Unseen => Ok(unseen),
             _ => Ok(machine.clone()),
         };
-        let Ok(known) = &told else { return Box::new(Uncorrected) };
+        let Ok(known) = &told else {
+            return Box::new(Uncorrected);
+        };
         let mut setup = Setup::new(known, &choices);
         match self.knowledge {
             Knowledge::TwentyPercentOff => {
                 setup.known = setup.known.misjudged(INERTIA_BELIEVED, FRICTION_BELIEVED);
             }
-            Knowledge::Identified if setup.identify_parameters::<2>().is_err() => return Box::new(Uncorrected),
+            Knowledge::Identified if setup.identify_parameters::<2>().is_err() => {
+                return Box::new(Uncorrected);
+            }
             // What a drive is set to is read off it, wherever its axis was identified.
-            Knowledge::Unseen if self.entry.identifier == Some(IdentifierKind::Axes) => setup.known = machine.known(),
+            Knowledge::Unseen if self.entry.identifier == Some(IdentifierKind::Axes) => {
+                setup.known = machine.known();
+            }
             Knowledge::Own | Knowledge::Identified | Knowledge::Unseen | Knowledge::Log => {}
         }
         Make::<2>::make(self.entry, &mut setup)
@@ -139,11 +180,18 @@ mod tests {
         for (i, competitor) in all.iter().enumerate() {
             let name = competitor.name();
             let found = Competitor::find(&name).unwrap();
-            assert_eq!((found.entry, found.knowledge), (competitor.entry, competitor.knowledge));
+            assert_eq!(
+                (found.entry, found.knowledge),
+                (competitor.entry, competitor.knowledge)
+            );
             assert!(all[..i].iter().all(|other| other.name() != name), "{name}");
         }
         let nominal = Competitor::all(&controllers, &Knowledge::ALL, true);
-        assert!(nominal.iter().all(|competitor| competitor.knowledge != Knowledge::Unseen));
+        assert!(
+            nominal
+                .iter()
+                .all(|competitor| competitor.knowledge != Knowledge::Unseen)
+        );
         assert!(Competitor::find("uncorrected+30%off").is_none());
     }
 }

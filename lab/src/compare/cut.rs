@@ -22,14 +22,21 @@ impl Cut {
         self.run.outcome == Outcome::Completed && self.run.faded_out.is_none()
     }
 
-    /// RMS contour error without the geometry that no encoder sees, um: what a controller can do something about.
+    /// RMS contour error without the geometry that no encoder sees, um: what a controller can do
+    /// something about.
     pub(super) fn joint_rms_um(&self) -> f64 {
-        self.run.joint_error.map_or_else(|| self.statistics.rms_um(), |joints| joints.rms_mm * 1e3)
+        self.run
+            .joint_error
+            .map_or_else(|| self.statistics.rms_um(), |joints| joints.rms_mm * 1e3)
     }
 }
 
 /// Cuts a workpiece, after as many laps of practice as the controller needs.
-pub(super) fn cut(workpiece: &Workpiece, controller: &mut dyn Controller<2>, run: Run<'_>) -> Result<Cut, RunError> {
+pub(super) fn cut(
+    workpiece: &Workpiece,
+    controller: &mut dyn Controller<2>,
+    run: Run<'_>,
+) -> Result<Cut, RunError> {
     let mut statistics = Statistics::new();
     let run = run.cut_steps(&workpiece.steps, controller, &mut [&mut statistics])?;
     Ok(Cut { statistics, run })
@@ -41,7 +48,9 @@ impl CutNumbers {
             time_s: run.time_s,
             rms_um: statistics.rms_um(),
             max_um: statistics.max_um(),
-            joint_um: run.joint_error.map(|joints| [joints.rms_mm, joints.max_mm].map(|mm| mm * 1e3)),
+            joint_um: run
+                .joint_error
+                .map(|joints| [joints.rms_mm, joints.max_mm].map(|mm| mm * 1e3)),
             uncut_um: run.uncut_mm * 1e3,
             max_deviation_um: statistics.max_deviation_um(),
             accel_mm_s2: statistics.max_command_accel_mm_s2(),
@@ -66,10 +75,15 @@ pub(super) fn row(
     let mut measured = Vec::with_capacity(seeds.len());
     for &seed in seeds {
         let machine = machine.with_noise_seed(seed);
-        let run = Run::on(&machine).laps(competitor.entry.laps).sharing(plan).watched(watch);
+        let run = Run::on(&machine)
+            .laps(competitor.entry.laps)
+            .sharing(plan)
+            .watched(watch);
         measured.push(CutNumbers::of(&cut(workpiece, controller, run)?));
     }
-    Ok(ComparisonRow::new(workpiece, machine, competitor, &measured))
+    Ok(ComparisonRow::new(
+        workpiece, machine, competitor, &measured,
+    ))
 }
 
 /// The noise seeds of a machine.

@@ -1,7 +1,9 @@
-//! Held-out work: contours turned and scaled, and programs in the plane, by seeds that were drawn after everything was tuned.
+//! Held-out work: contours turned and scaled, and programs in the plane, by seeds that were drawn
+//! after everything was tuned.
 //!
-//! The seeds are kept with the date of the draw and a fingerprint of all settings that can be tuned: defaults, searched ranges, and the
-//! recorded values. Where a setting has changed since, the work is held out no more, and a test asks for new seeds.
+//! The seeds are kept with the date of the draw and a fingerprint of all settings that can be
+//! tuned: defaults, searched ranges, and the recorded values. Where a setting has changed since,
+//! the work is held out no more, and a test asks for new seeds.
 use feedwright::{BASELINE, Choices, Make, Setup};
 use feedwright_sim::{Machine, Outcome, Run, RunError};
 use serde::{Deserialize, Serialize};
@@ -16,7 +18,8 @@ use crate::peers::{CONTROLLERS, RECORDED};
 const PROGRAMS: usize = 11;
 /// Of one family at the most: all of those in the plane have a place.
 const OF_A_FAMILY: usize = 2;
-/// Machining time of a program on [`MACHINE`], s: long enough for the tool to meet something, short enough for all machines and seeds.
+/// Machining time of a program on [`MACHINE`], s: long enough for the tool to meet something, short
+/// enough for all machines and seeds.
 const TIME_S: [f64; 2] = [4.0, 8.0];
 /// Where that is measured.
 const MACHINE: &str = "tnv40";
@@ -37,7 +40,8 @@ pub struct HeldOutSeeds {
 impl HeldOutSeeds {
     /// Those that are kept with the program.
     pub fn recorded() -> Self {
-        serde_json::from_str(include_str!("held_out_seeds.json")).expect("the recorded seeds are read by a test")
+        serde_json::from_str(include_str!("held_out_seeds.json"))
+            .expect("the recorded seeds are read by a test")
     }
 
     /// Draws seeds, counting from `first`.
@@ -50,7 +54,11 @@ impl HeldOutSeeds {
         let mut seeds = Vec::new();
         for seed in first + CONTOURS.len() as u64.. {
             let drawn = programs::program(seed);
-            let family = drawn.name.rsplit_once('-').map_or("", |(family, _)| family).to_owned();
+            let family = drawn
+                .name
+                .rsplit_once('-')
+                .map_or("", |(family, _)| family)
+                .to_owned();
             let full = families.iter().filter(|other| **other == family).count() >= OF_A_FAMILY;
             if !full && suits(&drawn)? {
                 families.push(family);
@@ -60,24 +68,37 @@ impl HeldOutSeeds {
                 break;
             }
         }
-        Ok(Self { drawn: date, settings: settings_fingerprint(), contours, programs: seeds })
+        Ok(Self {
+            drawn: date,
+            settings: settings_fingerprint(),
+            contours,
+            programs: seeds,
+        })
     }
 
     /// What they stand for.
     pub fn workpieces(&self) -> Vec<Workpiece> {
-        let contours = CONTOURS.iter().zip(&self.contours).map(|(contour, &seed)| Workpiece {
-            name: format!("{}-{seed}", contour.name),
-            smooth: contour.is_smooth(),
-            held_out: true,
-            steps: contour
-                .placed_steps(placement(seed), FEED_MM_S, CORNER)
-                .expect("a contour has a path wherever it is"),
-        });
+        let contours = CONTOURS
+            .iter()
+            .zip(&self.contours)
+            .map(|(contour, &seed)| Workpiece {
+                name: format!("{}-{seed}", contour.name),
+                smooth: contour.is_smooth(),
+                held_out: true,
+                steps: contour
+                    .placed_steps(placement(seed), FEED_MM_S, CORNER)
+                    .expect("a contour has a path wherever it is"),
+            });
         let programs = self.programs.iter().map(|&seed| {
             let drawn = programs::program(seed);
-            let steps =
-                steps(&drawn.name, &drawn.text).expect("only programs with a path are recorded, which a test holds");
-            Workpiece { name: drawn.name, smooth: false, held_out: true, steps }
+            let steps = steps(&drawn.name, &drawn.text)
+                .expect("only programs with a path are recorded, which a test holds");
+            Workpiece {
+                name: drawn.name,
+                smooth: false,
+                held_out: true,
+                steps,
+            }
         });
         contours.chain(programs).collect()
     }
@@ -85,28 +106,40 @@ impl HeldOutSeeds {
 
 /// Whether a program stays in the plane, and takes neither too short nor too long.
 fn suits(drawn: &programs::RandomProgram) -> Result<bool, RunError> {
-    let in_plane = drawn.text.lines().all(|line| line.starts_with('(') || !line.contains('Z'));
-    let Some(steps) = steps(&drawn.name, &drawn.text).filter(|_| in_plane) else { return Ok(false) };
+    let in_plane = drawn
+        .text
+        .lines()
+        .all(|line| line.starts_with('(') || !line.contains('Z'));
+    let Some(steps) = steps(&drawn.name, &drawn.text).filter(|_| in_plane) else {
+        return Ok(false);
+    };
     let machine = Machine::load(MACHINE.as_ref()).expect("it is built in");
     let choices = Choices::default();
-    let open = CONTROLLERS.find(BASELINE).expect("the baseline is in the table");
+    let open = CONTROLLERS
+        .find(BASELINE)
+        .expect("the baseline is in the table");
     let mut controller = Make::<2>::make(open, &mut Setup::new(&machine, &choices));
     let run = Run::on(&machine).cut_steps(&steps, &mut *controller, &mut [])?;
     Ok(run.outcome == Outcome::Completed && (TIME_S[0]..=TIME_S[1]).contains(&run.time_s))
 }
 
-/// What of the program can be tuned: defaults and searched ranges of all controllers, and the recorded values.
+/// What of the program can be tuned: defaults and searched ranges of all controllers, and the
+/// recorded values.
 pub fn settings_fingerprint() -> String {
     let controllers: Vec<_> = CONTROLLERS
         .iter()
         .map(|entry| {
             let parameters = entry.parameters.iter();
-            let values: Vec<_> = parameters.map(|p| (p.name, p.default, p.searched)).collect();
+            let values: Vec<_> = parameters
+                .map(|p| (p.name, p.default, p.searched))
+                .collect();
             (entry.name, values)
         })
         .collect();
     let content = serde_json::json!([controllers, RECORDED]);
-    blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
+    blake3::hash(content.to_string().as_bytes())
+        .to_hex()
+        .to_string()
 }
 
 #[cfg(test)]
@@ -117,11 +150,19 @@ mod tests {
     fn the_recorded_seeds_are_what_a_draw_from_the_first_gives() {
         let recorded = HeldOutSeeds::recorded();
         let drawn = HeldOutSeeds::draw(recorded.contours[0], recorded.drawn.clone()).unwrap();
-        assert_eq!((&drawn.contours, &drawn.programs), (&recorded.contours, &recorded.programs));
+        assert_eq!(
+            (&drawn.contours, &drawn.programs),
+            (&recorded.contours, &recorded.programs)
+        );
         let workpieces = recorded.workpieces();
         assert_eq!(workpieces.len(), CONTOURS.len() + PROGRAMS);
         for (i, workpiece) in workpieces.iter().enumerate() {
-            assert!(workpiece.held_out && workpieces[..i].iter().all(|other| other.name != workpiece.name));
+            assert!(
+                workpiece.held_out
+                    && workpieces[..i]
+                        .iter()
+                        .all(|other| other.name != workpiece.name)
+            );
         }
     }
 

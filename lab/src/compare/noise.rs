@@ -13,7 +13,11 @@ pub(super) fn reported(machine: &Machine, seed: u64, count: u32) -> Vec<u64> {
         return vec![of_file];
     }
     let first = seed.wrapping_mul(u64::from(MAX_SEEDS) + 1).wrapping_add(1);
-    (0..).map(|k| first.wrapping_add(k)).filter(|&other| other != of_file).take(count.max(1) as usize).collect()
+    (0..)
+        .map(|k| first.wrapping_add(k))
+        .filter(|&other| other != of_file)
+        .take(count.max(1) as usize)
+        .collect()
 }
 
 #[cfg(test)]
@@ -28,7 +32,14 @@ mod tests {
         noisy.axes[1].encoder_noise_um = 0.1;
         let all = reported(&noisy, 1, 6);
         assert_eq!(all, [1002, 1003, 1004, 1005, 1006, 1007]);
-        assert_eq!(reported(&noisy.with_noise_seed(1003), 1, 3), [1002, 1004, 1005]);
-        assert!(reported(&noisy, 2, 6).iter().all(|seed| !all.contains(seed)));
+        assert_eq!(
+            reported(&noisy.with_noise_seed(1003), 1, 3),
+            [1002, 1004, 1005]
+        );
+        assert!(
+            reported(&noisy, 2, 6)
+                .iter()
+                .all(|seed| !all.contains(seed))
+        );
     }
 }

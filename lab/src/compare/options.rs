@@ -47,7 +47,11 @@ pub struct ComparisonOptions {
 impl ComparisonOptions {
     /// All competitors on a machine, in the order of the table.
     pub fn competitors(&self, machine: &Machine) -> Vec<Competitor> {
-        Competitor::all(&self.controllers, &self.knowledge, machine.name == self.nominal.name)
+        Competitor::all(
+            &self.controllers,
+            &self.knowledge,
+            machine.name == self.nominal.name,
+        )
     }
 
     /// Whether parameters of a controller are set.
@@ -66,9 +70,10 @@ impl ComparisonOptions {
             _ if self.is_set(entry) => Some(Tuned::set(&machine.name, entry, &self.set)),
             Tuning::Search => None,
             Tuning::Defaults => Some(Tuned::defaults(&machine.name, entry)),
-            Tuning::Known(known) => {
-                known.iter().find(|tuned| tuned.machine == machine.name && tuned.controller == entry.name).cloned()
-            }
+            Tuning::Known(known) => known
+                .iter()
+                .find(|tuned| tuned.machine == machine.name && tuned.controller == entry.name)
+                .cloned(),
         }
     }
 
@@ -76,16 +81,24 @@ impl ComparisonOptions {
     pub fn to_search(&self) -> Vec<(String, &'static str)> {
         let on = |machine: &'_ Machine| {
             let name = machine.name.clone();
-            let searched = self.controllers.iter().filter(|entry| self.has_values(entry));
+            let searched = self
+                .controllers
+                .iter()
+                .filter(|entry| self.has_values(entry));
             let open = searched.filter(|entry| self.given(machine, entry).is_none());
-            open.map(|entry| (name.clone(), entry.name)).collect::<Vec<_>>()
+            open.map(|entry| (name.clone(), entry.name))
+                .collect::<Vec<_>>()
         };
         self.machines.iter().flat_map(on).collect()
     }
 
     /// What the result depends on, apart from the program.
     pub fn fingerprint(&self) -> String {
-        let workpieces: Vec<_> = self.workpieces.iter().map(|w| (&w.name, format!("{:?}", w.steps))).collect();
+        let workpieces: Vec<_> = self
+            .workpieces
+            .iter()
+            .map(|w| (&w.name, format!("{:?}", w.steps)))
+            .collect();
         let machine = |machine: &Machine| (machine.name.clone(), machine.fingerprint());
         let machines: Vec<_> = self.machines.iter().map(machine).collect();
         let names: Vec<_> = self.controllers.iter().map(|entry| entry.name).collect();
@@ -107,6 +120,8 @@ impl ComparisonOptions {
             self.set,
             self.at_tolerance
         ]);
-        blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
+        blake3::hash(content.to_string().as_bytes())
+            .to_hex()
+            .to_string()
     }
 }

@@ -1,7 +1,9 @@
-//! The file of a comparison: what tables and figures of the documents are made of. One line for each controller on a machine,
-//! with a number for each contour; ratios follow from the lines of the uncorrected cut.
+//! The file of a comparison: what tables and figures of the documents are made of. One line for
+//! each controller on a machine, with a number for each contour; ratios follow from the lines of
+//! the uncorrected cut.
 //!
-//! The other columns of the table (uncut path, torque and more) are printed, and claimed in [`super::verdict`], and not kept.
+//! The other columns of the table (uncut path, torque and more) are printed, and claimed in
+//! [`super::verdict`], and not kept.
 
 use feedwright::BASELINE;
 use serde::{Deserialize, Serialize};
@@ -49,7 +51,9 @@ struct ResultsFile {
 impl RowsLine {
     fn of(rows: &[&ComparisonRow]) -> Self {
         let each = |number: fn(&ComparisonRow) -> f64| rows.iter().map(|row| number(row)).collect();
-        let joint = |number: fn(&ComparisonRow) -> Option<f64>| rows.iter().filter_map(|row| number(row)).collect();
+        let joint = |number: fn(&ComparisonRow) -> Option<f64>| {
+            rows.iter().filter_map(|row| number(row)).collect()
+        };
         let lost: Vec<u32> = rows.iter().map(|row| row.lost).collect();
         let diverged: Vec<bool> = rows.iter().map(|row| !row.completed).collect();
         Self {
@@ -60,8 +64,16 @@ impl RowsLine {
             max_um: each(|row| row.max_um),
             joint_rms_um: joint(|row| row.joint_rms_um),
             joint_max_um: joint(|row| row.joint_max_um),
-            lost: if lost.iter().any(|&lost| lost > 0) { lost } else { vec![] },
-            diverged: if diverged.contains(&true) { diverged } else { vec![] },
+            lost: if lost.iter().any(|&lost| lost > 0) {
+                lost
+            } else {
+                vec![]
+            },
+            diverged: if diverged.contains(&true) {
+                diverged
+            } else {
+                vec![]
+            },
         }
     }
 
@@ -85,7 +97,10 @@ impl RowsLine {
 
 /// A list with an item a line.
 fn lines<T: Serialize>(items: impl IntoIterator<Item = T>) -> String {
-    let items: Vec<String> = items.into_iter().map(|item| json!(item).to_string()).collect();
+    let items: Vec<String> = items
+        .into_iter()
+        .map(|item| json!(item).to_string())
+        .collect();
     format!("[\n{}\n]", items.join(",\n"))
 }
 
@@ -93,10 +108,23 @@ impl Comparison {
     /// The text of the file.
     pub fn text(&self) -> String {
         let rows = self.machines().into_iter().flat_map(|machine| {
-            let here: Vec<&ComparisonRow> = self.rows.iter().filter(|row| row.machine == machine).collect();
+            let here: Vec<&ComparisonRow> = self
+                .rows
+                .iter()
+                .filter(|row| row.machine == machine)
+                .collect();
             let controllers = each_once(here.iter().map(|row| &row.controller));
-            let of = |controller| here.iter().copied().filter(|row| row.controller == controller).collect::<Vec<_>>();
-            controllers.into_iter().map(of).map(|rows| RowsLine::of(&rows)).collect::<Vec<_>>()
+            let of = |controller| {
+                here.iter()
+                    .copied()
+                    .filter(|row| row.controller == controller)
+                    .collect::<Vec<_>>()
+            };
+            controllers
+                .into_iter()
+                .map(of)
+                .map(|rows| RowsLine::of(&rows))
+                .collect::<Vec<_>>()
         });
         format!(
             "{{\"nominal\":{},\"seed\":{},\"noise_seeds\":{},\"contours\":{},\n\"tuned\":{},\n\"rows\":{},\n\"claims\":{},\n\"at_tolerance\":{}}}\n",
@@ -111,21 +139,40 @@ impl Comparison {
         )
     }
 
-    /// Reads such a file. What it does not have is 0 or empty: the verdicts, and columns of the rows.
+    /// Reads such a file. What it does not have is 0 or empty: the verdicts, and columns of the
+    /// rows.
     ///
     /// # Errors
     /// A text that is no such file.
     pub fn read(text: &str) -> serde_json::Result<Self> {
-        let ResultsFile { nominal, seed, noise_seeds, contours, tuned, rows: found, claims, at_tolerance } =
-            serde_json::from_str(text)?;
+        let ResultsFile {
+            nominal,
+            seed,
+            noise_seeds,
+            contours,
+            tuned,
+            rows: found,
+            claims,
+            at_tolerance,
+        } = serde_json::from_str(text)?;
         let mut rows = Vec::new();
         for (i, contour) in contours.iter().enumerate() {
             for line in &found {
-                let of_base = |base: &&RowsLine| base.machine == line.machine && base.controller == BASELINE;
+                let of_base =
+                    |base: &&RowsLine| base.machine == line.machine && base.controller == BASELINE;
                 let base = found.iter().find(of_base).map(|base| base.row(i, contour));
                 rows.push(against(line.row(i, contour), base.as_ref()));
             }
         }
-        Ok(Self { nominal, seed, noise_seeds, tuned, rows, verdicts: vec![], claims, at_tolerance })
+        Ok(Self {
+            nominal,
+            seed,
+            noise_seeds,
+            tuned,
+            rows,
+            verdicts: vec![],
+            claims,
+            at_tolerance,
+        })
     }
 }

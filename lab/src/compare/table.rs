@@ -15,7 +15,8 @@ pub(super) struct CutNumbers {
     pub(super) time_s: f64,
     pub(super) rms_um: f64,
     pub(super) max_um: f64,
-    /// RMS and largest contour error of the joints, um; none where the machine has no geometry that no encoder sees.
+    /// RMS and largest contour error of the joints, um; none where the machine has no geometry that
+    /// no encoder sees.
     pub(super) joint_um: Option<[f64; 2]>,
     pub(super) uncut_um: f64,
     pub(super) max_deviation_um: f64,
@@ -44,15 +45,18 @@ pub struct ComparisonRow {
     pub max_um: f64,
     /// The lowest and the highest of all noise seeds, um.
     pub max_spread_um: [f64; 2],
-    /// RMS contour error without the geometry that no encoder sees, um; none where the machine has no such geometry.
+    /// RMS contour error without the geometry that no encoder sees, um; none where the machine has
+    /// no such geometry.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joint_rms_um: Option<f64>,
     /// The largest, um.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joint_max_um: Option<f64>,
-    /// Uncut path: largest distance from a programmed point to what the tool did in the time that it has for it, um. Of all seeds.
+    /// Uncut path: largest distance from a programmed point to what the tool did in the time that
+    /// it has for it, um. Of all seeds.
     pub uncut_um: f64,
-    /// Largest distance of the command from the point of the path of the same instant, um. Of all seeds.
+    /// Largest distance of the command from the point of the path of the same instant, um. Of all
+    /// seeds.
     pub max_deviation_um: f64,
     /// Largest acceleration of the command of any axis, mm/s2. Of all seeds.
     pub accel_mm_s2: f64,
@@ -66,11 +70,13 @@ pub struct ComparisonRow {
     pub max_ratio: f64,
     /// Noise seeds that it was cut with.
     pub seeds: u32,
-    /// With how many of them it was not cut to its end, or the supervisor took the controller out of the loop.
+    /// With how many of them it was not cut to its end, or the supervisor took the controller out
+    /// of the loop.
     pub lost: u32,
     /// Whether it was cut to its end with all of them.
     pub completed: bool,
-    /// Why the supervisor took the controller out of the loop, where it did, with the first of them.
+    /// Why the supervisor took the controller out of the loop, where it did, with the first of
+    /// them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub faded_out: Option<String>,
 }
@@ -83,13 +89,19 @@ impl ComparisonRow {
         competitor: &Competitor,
         measured: &[CutNumbers],
     ) -> Self {
-        let spread = |number: fn(&CutNumbers) -> f64| median_and_spread(measured.iter().map(number));
-        let worst = |number: fn(&CutNumbers) -> f64| measured.iter().map(number).fold(0.0, f64::max);
+        let spread =
+            |number: fn(&CutNumbers) -> f64| median_and_spread(measured.iter().map(number));
+        let worst =
+            |number: fn(&CutNumbers) -> f64| measured.iter().map(number).fold(0.0, f64::max);
         let joint = |k: usize| {
-            let all: Option<Vec<f64>> = measured.iter().map(|cut| cut.joint_um.map(|um| um[k])).collect();
+            let all: Option<Vec<f64>> = measured
+                .iter()
+                .map(|cut| cut.joint_um.map(|um| um[k]))
+                .collect();
             all.map(|um| median_and_spread(um).0)
         };
-        let ((rms_um, rms_spread_um), (max_um, max_spread_um)) = (spread(|cut| cut.rms_um), spread(|cut| cut.max_um));
+        let ((rms_um, rms_spread_um), (max_um, max_spread_um)) =
+            (spread(|cut| cut.rms_um), spread(|cut| cut.max_um));
         Self {
             contour: workpiece.name.clone(),
             machine: machine.name.clone(),
@@ -109,9 +121,15 @@ impl ComparisonRow {
             rms_ratio: 1.0,
             max_ratio: 1.0,
             seeds: measured.len() as u32,
-            lost: measured.iter().filter(|cut| !cut.completed || cut.faded_out.is_some()).count() as u32,
+            lost: measured
+                .iter()
+                .filter(|cut| !cut.completed || cut.faded_out.is_some())
+                .count() as u32,
             completed: measured.iter().all(|cut| cut.completed),
-            faded_out: measured.iter().find_map(|cut| cut.faded_out).map(str::to_owned),
+            faded_out: measured
+                .iter()
+                .find_map(|cut| cut.faded_out)
+                .map(str::to_owned),
         }
     }
 
@@ -127,7 +145,11 @@ impl ComparisonRow {
 
     /// What became of it, where it is not just an end: in words.
     pub fn note(&self) -> Option<String> {
-        let of = if self.seeds > 1 { format!(" with {} of {} seeds", self.lost, self.seeds) } else { String::new() };
+        let of = if self.seeds > 1 {
+            format!(" with {} of {} seeds", self.lost, self.seeds)
+        } else {
+            String::new()
+        };
         match (self.completed, &self.faded_out) {
             (false, _) => Some(format!("diverged{of}")),
             (true, Some(cause)) => Some(format!("left the loop{of}: {cause}")),
@@ -141,7 +163,9 @@ pub(super) fn in_order(cuts: &[ComparisonRow], options: &ComparisonOptions) -> V
     let mut rows = Vec::with_capacity(cuts.len());
     for workpiece in &options.workpieces {
         for machine in &options.machines {
-            let here = cuts.iter().filter(|row| row.contour == workpiece.name && row.machine == machine.name);
+            let here = cuts
+                .iter()
+                .filter(|row| row.contour == workpiece.name && row.machine == machine.name);
             let base = here.clone().find(|row| row.controller == BASELINE);
             rows.extend(here.map(|row| against(row.clone(), base)));
         }
@@ -181,16 +205,28 @@ mod tests {
 
     #[test]
     fn a_row_has_medians_of_errors_the_worst_of_all_else_and_counts_what_was_lost() {
-        let cut =
-            |rms_um: f64, uncut_um: f64| CutNumbers { rms_um, uncut_um, completed: true, ..CutNumbers::default() };
+        let cut = |rms_um: f64, uncut_um: f64| CutNumbers {
+            rms_um,
+            uncut_um,
+            completed: true,
+            ..CutNumbers::default()
+        };
         let mut measured = vec![cut(3.0, 7.0), cut(1.0, 9.0), cut(2.0, 8.0)];
         let workpiece = &Workpiece::contours()[0];
         let machine = Machine::load("tnv40".as_ref()).unwrap();
         let competitor = Competitor::own(CONTROLLERS.find(BASELINE).unwrap());
-        let row = |measured: &[CutNumbers]| ComparisonRow::new(workpiece, &machine, &competitor, measured);
+        let row = |measured: &[CutNumbers]| {
+            ComparisonRow::new(workpiece, &machine, &competitor, measured)
+        };
         let sound = row(&measured);
-        assert_eq!((sound.rms_um, sound.rms_spread_um, sound.uncut_um), (2.0, [1.0, 3.0], 9.0));
-        assert_eq!((sound.seeds, sound.lost, sound.completed, sound.note()), (3, 0, true, None));
+        assert_eq!(
+            (sound.rms_um, sound.rms_spread_um, sound.uncut_um),
+            (2.0, [1.0, 3.0], 9.0)
+        );
+        assert_eq!(
+            (sound.seeds, sound.lost, sound.completed, sound.note()),
+            (3, 0, true, None)
+        );
         assert_eq!((sound.joint_rms_um, sound.controlled_rms_um()), (None, 2.0));
         measured[1].completed = false;
         measured[2].faded_out = Some("why");

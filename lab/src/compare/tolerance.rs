@@ -1,4 +1,5 @@
-//! The machining time at which a controller just holds a tolerance: the feedrate is raised until it does not.
+//! The machining time at which a controller just holds a tolerance: the feedrate is raised until it
+//! does not.
 
 use feedwright::BASELINE;
 use feedwright_control::Controller;
@@ -25,8 +26,9 @@ pub struct AtTolerance {
     pub contour: String,
     /// Controller.
     pub controller: String,
-    /// Fastest programmed feedrate at which the largest contour error holds the tolerance, mm/s; the machine's highest where
-    /// it holds at that too, nothing where it does not hold at the slowest.
+    /// Fastest programmed feedrate at which the largest contour error holds the tolerance, mm/s;
+    /// the machine's highest where it holds at that too, nothing where it does not hold at the
+    /// slowest.
     pub feed_mm_s: Option<f64>,
     /// Machining time there, s.
     pub time_s: Option<f64>,
@@ -36,8 +38,16 @@ pub struct AtTolerance {
 
 /// The smooth contours among the workpieces.
 pub(super) fn contours(options: &ComparisonOptions) -> Vec<&'static Contour> {
-    let named = |name: &str| CONTOURS.iter().find(|contour| contour.name == name && contour.is_smooth());
-    options.workpieces.iter().filter_map(|workpiece| named(&workpiece.name)).collect()
+    let named = |name: &str| {
+        CONTOURS
+            .iter()
+            .find(|contour| contour.name == name && contour.is_smooth())
+    };
+    options
+        .workpieces
+        .iter()
+        .filter_map(|workpiece| named(&workpiece.name))
+        .collect()
 }
 
 /// What a controller comes to on a contour; the ratio is still open.
@@ -50,9 +60,17 @@ pub(super) fn raised(
     watch: &dyn Watch,
 ) -> Result<AtTolerance, RunError> {
     // One noise seed is enough for a feedrate.
-    let seed = seeds(machine, options).first().copied().unwrap_or(machine.noise.seed);
+    let seed = seeds(machine, options)
+        .first()
+        .copied()
+        .unwrap_or(machine.noise.seed);
     let machine = machine.with_noise_seed(seed);
-    let best = fastest(contour, Run::on(&machine).laps(competitor.entry.laps).watched(watch), controller, &machine)?;
+    let best = fastest(
+        contour,
+        Run::on(&machine).laps(competitor.entry.laps).watched(watch),
+        controller,
+        &machine,
+    )?;
     Ok(AtTolerance {
         contour: contour.name.to_owned(),
         controller: competitor.name(),
@@ -64,9 +82,16 @@ pub(super) fn raised(
 
 /// Ratios filled in.
 pub(super) fn against_baseline(mut found: Vec<AtTolerance>) -> Vec<AtTolerance> {
-    let open: Vec<_> = found.iter().filter(|row| row.controller == BASELINE).cloned().collect();
+    let open: Vec<_> = found
+        .iter()
+        .filter(|row| row.controller == BASELINE)
+        .cloned()
+        .collect();
     for row in &mut found {
-        let base = open.iter().find(|base| base.contour == row.contour).and_then(|base| base.time_s);
+        let base = open
+            .iter()
+            .find(|base| base.contour == row.contour)
+            .and_then(|base| base.time_s);
         row.time_ratio = row.time_s.zip(base).map(|(time_s, base)| time_s / base);
     }
     found
@@ -79,7 +104,8 @@ struct Holding {
     time_s: f64,
 }
 
-/// The fastest that is found, by bisection: nothing where the tolerance does not hold at the slowest.
+/// The fastest that is found, by bisection: nothing where the tolerance does not hold at the
+/// slowest.
 fn fastest(
     contour: &Contour,
     run: Run<'_>,
@@ -87,17 +113,30 @@ fn fastest(
     machine: &Machine,
 ) -> Result<Option<Holding>, RunError> {
     let mut holding = |feed_mm_s: f64| -> Result<Option<Holding>, RunError> {
-        let steps = contour.steps(feed_mm_s, CORNER).expect("the feedrate is one");
-        let workpiece = Workpiece { name: contour.name.to_owned(), smooth: true, held_out: false, steps };
+        let steps = contour
+            .steps(feed_mm_s, CORNER)
+            .expect("the feedrate is one");
+        let workpiece = Workpiece {
+            name: contour.name.to_owned(),
+            smooth: true,
+            held_out: false,
+            steps,
+        };
         let cut = cut(&workpiece, controller, run)?;
-        let holds = cut.run.outcome == Outcome::Completed && cut.statistics.max_um() <= TOLERANCE_UM;
-        Ok(holds.then_some(Holding { feed_mm_s, time_s: cut.run.time_s }))
+        let holds =
+            cut.run.outcome == Outcome::Completed && cut.statistics.max_um() <= TOLERANCE_UM;
+        Ok(holds.then_some(Holding {
+            feed_mm_s,
+            time_s: cut.run.time_s,
+        }))
     };
     let highest = machine.limits.max_feed_mm_s;
     if let Some(at_highest) = holding(highest)? {
         return Ok(Some(at_highest));
     }
-    let Some(mut best) = holding(SLOWEST_MM_S)? else { return Ok(None) };
+    let Some(mut best) = holding(SLOWEST_MM_S)? else {
+        return Ok(None);
+    };
     let (mut low, mut high) = (libm::log(SLOWEST_MM_S), libm::log(highest));
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);

@@ -15,7 +15,8 @@ pub struct Tuned {
     pub values: Vec<TunedValue>,
     /// Evaluations that the search took; 0 where nothing was searched.
     pub cuts: u64,
-    /// RMS contour error at these values over what it was searched on, um; 0 where nothing was searched.
+    /// RMS contour error at these values over what it was searched on, um; 0 where nothing was
+    /// searched.
     pub rms_um: f64,
     /// RMS contour error of the uncorrected cut over the same work, um; 0 where nothing was
     /// searched.
@@ -60,11 +61,18 @@ impl RangeEnd {
 impl Tuned {
     /// The defaults.
     pub fn defaults(machine: &str, entry: &Entry) -> Self {
-        let value = |name: &str, value| TunedValue { name: name.to_owned(), value, at_end: None };
+        let value = |name: &str, value| TunedValue {
+            name: name.to_owned(),
+            value,
+            at_end: None,
+        };
         Self {
             machine: machine.to_owned(),
             controller: entry.name.to_owned(),
-            values: entry.searched().map(|(p, _)| value(p.name, p.default)).collect(),
+            values: entry
+                .searched()
+                .map(|(p, _)| value(p.name, p.default))
+                .collect(),
             cuts: 0,
             rms_um: 0.0,
             open_um: 0.0,
@@ -78,7 +86,11 @@ impl Tuned {
         for set in set.iter().filter(|set| set.controller == entry.name) {
             match tuned.values.iter_mut().find(|value| value.name == set.name) {
                 Some(value) => value.value = set.value,
-                None => tuned.values.push(TunedValue { name: set.name.to_owned(), value: set.value, at_end: None }),
+                None => tuned.values.push(TunedValue {
+                    name: set.name.to_owned(),
+                    value: set.value,
+                    at_end: None,
+                }),
             }
         }
         tuned
@@ -88,15 +100,22 @@ impl Tuned {
     pub fn settings(&self, entry: &'static Entry) -> Vec<Setting> {
         let setting = |value: &TunedValue| {
             let name = entry.parameter(&value.name)?.name;
-            Some(Setting { controller: entry.name, name, value: value.value })
+            Some(Setting {
+                controller: entry.name,
+                name,
+                value: value.value,
+            })
         };
         self.values.iter().filter_map(setting).collect()
     }
 
-    /// Names and values in words, to four digits; `(low end)` behind one that is at an end of its range.
+    /// Names and values in words, to four digits; `(low end)` behind one that is at an end of its
+    /// range.
     pub fn words(&self) -> String {
         let value = |value: &TunedValue| {
-            let end = value.at_end.map_or(String::new(), |end| format!(" ({})", end.word()));
+            let end = value
+                .at_end
+                .map_or(String::new(), |end| format!(" ({})", end.word()));
             format!("{} {}{end}", value.name, to_four_digits(value.value))
         };
         let mut words: Vec<String> = self.values.iter().map(value).collect();

@@ -42,14 +42,43 @@ const LEAST_GAIN: f64 = 0.01;
 ///
 /// # Errors
 /// Where the machine has no sensible limits.
-pub fn search(entry: &'static Entry, machine: &Machine, seed: u64, watch: &dyn Watch) -> Result<Tuned, RunError> {
+pub fn search(
+    entry: &'static Entry,
+    machine: &Machine,
+    seed: u64,
+    watch: &dyn Watch,
+) -> Result<Tuned, RunError> {
     let workpieces = Workpiece::tuning();
-    let base = CONTROLLERS.find(BASELINE).expect("the baseline is in the table");
-    let open = Evaluation { rms_um: f64::INFINITY, time_s: f64::INFINITY, sound: true };
+    let base = CONTROLLERS
+        .find(BASELINE)
+        .expect("the baseline is in the table");
+    let open = Evaluation {
+        rms_um: f64::INFINITY,
+        time_s: f64::INFINITY,
+        sound: true,
+    };
     let plans: Vec<_> = workpieces.iter().map(|_| PlanCache::default()).collect();
     let (workpieces, plans) = (&workpieces, &plans);
-    let open = Trial { entry: base, machine, workpieces, plans, seed, watch, open }.evaluate(&[])?;
-    Trial { entry, machine, workpieces, plans, seed, watch, open }.search()
+    let open = Trial {
+        entry: base,
+        machine,
+        workpieces,
+        plans,
+        seed,
+        watch,
+        open,
+    }
+    .evaluate(&[])?;
+    Trial {
+        entry,
+        machine,
+        workpieces,
+        plans,
+        seed,
+        watch,
+        open,
+    }
+    .search()
 }
 
 struct Trial<'a> {
@@ -83,7 +112,10 @@ struct Candidate {
 impl Trial<'_> {
     fn search(&self) -> Result<Tuned, RunError> {
         let parameters: Vec<_> = self.entry.searched().collect();
-        let default: Vec<f64> = parameters.iter().map(|(parameter, range)| place(*range, parameter.default)).collect();
+        let default: Vec<f64> = parameters
+            .iter()
+            .map(|(parameter, range)| place(*range, parameter.default))
+            .collect();
         let scattered = (1..=SCATTERED * parameters.len()).map(|i| halton(i, parameters.len()));
         let mut points = self.costs(std::iter::once(default).chain(scattered).collect())?;
         let mut cuts = points.len() as u64;
@@ -95,7 +127,10 @@ impl Trial<'_> {
                 let mut around = self.costs(neighbours(&best.place, step))?;
                 cuts += around.len() as u64;
                 around.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-                if around.first().is_none_or(|nearest| nearest.cost >= best.cost) {
+                if around
+                    .first()
+                    .is_none_or(|nearest| nearest.cost >= best.cost)
+                {
                     break;
                 }
                 best = around.swap_remove(0);
@@ -104,11 +139,14 @@ impl Trial<'_> {
         }
         let settings = self.settings(&best.place);
         let found = self.evaluate(&settings)?;
-        let values = settings.iter().zip(&best.place).map(|(setting, &place)| TunedValue {
-            name: setting.name.to_owned(),
-            value: setting.value,
-            at_end: end_of(place),
-        });
+        let values = settings
+            .iter()
+            .zip(&best.place)
+            .map(|(setting, &place)| TunedValue {
+                name: setting.name.to_owned(),
+                value: setting.value,
+                at_end: end_of(place),
+            });
         Ok(Tuned {
             machine: self.machine.name.clone(),
             controller: self.entry.name.to_owned(),
@@ -121,27 +159,50 @@ impl Trial<'_> {
     }
 
     fn costs(&self, places: Vec<Vec<f64>>) -> Result<Vec<Candidate>, RunError> {
-        places.into_par_iter().map(|place| Ok(Candidate { cost: self.cost(&place)?, place })).collect()
+        places
+            .into_par_iter()
+            .map(|place| {
+                Ok(Candidate {
+                    cost: self.cost(&place)?,
+                    place,
+                })
+            })
+            .collect()
     }
 
     fn cost(&self, place: &[f64]) -> Result<f64, RunError> {
         let found = self.evaluate(&self.settings(place))?;
         let longer = (found.time_s / self.open.time_s - 1.0).max(0.0);
-        Ok(if found.sound { found.rms_um * (1.0 + TIME_PRICE * longer) } else { f64::INFINITY })
+        Ok(if found.sound {
+            found.rms_um * (1.0 + TIME_PRICE * longer)
+        } else {
+            f64::INFINITY
+        })
     }
 
     fn evaluate(&self, settings: &[Setting]) -> Result<Evaluation, RunError> {
-        let choices = Choices { seed: self.seed, set: settings.to_vec(), ..Choices::default() };
+        let choices = Choices {
+            seed: self.seed,
+            set: settings.to_vec(),
+            ..Choices::default()
+        };
         let mut controller = Make::<2>::make(self.entry, &mut Setup::new(self.machine, &choices));
-        let run = Run::on(self.machine).laps(self.entry.laps).watched(self.watch);
-        let (mut each_um, mut time_s, mut sound) = (Vec::with_capacity(self.workpieces.len()), 0.0, true);
+        let run = Run::on(self.machine)
+            .laps(self.entry.laps)
+            .watched(self.watch);
+        let (mut each_um, mut time_s, mut sound) =
+            (Vec::with_capacity(self.workpieces.len()), 0.0, true);
         for (workpiece, plan) in self.workpieces.iter().zip(self.plans) {
             let cut = cut(workpiece, &mut *controller, run.sharing(plan))?;
             each_um.push(cut.joint_rms_um());
             time_s += cut.run.time_s;
             sound &= cut.is_sound();
         }
-        Ok(Evaluation { rms_um: quadratic_mean(each_um), time_s, sound })
+        Ok(Evaluation {
+            rms_um: quadratic_mean(each_um),
+            time_s,
+            sound,
+        })
     }
 
     /// The values of the parameters that are searched, at a point of the unit cube.
@@ -158,12 +219,20 @@ impl Trial<'_> {
 
 /// The value at a place from 0 to 1 of a range.
 fn value_at([low, high]: [f64; 2], at: f64) -> f64 {
-    if low > 0.0 { low * libm::pow(high / low, at) } else { low + at * (high - low) }
+    if low > 0.0 {
+        low * libm::pow(high / low, at)
+    } else {
+        low + at * (high - low)
+    }
 }
 
 /// The place of a value.
 fn place([low, high]: [f64; 2], value: f64) -> f64 {
-    if low > 0.0 { libm::log(value / low) / libm::log(high / low) } else { (value - low) / (high - low) }
+    if low > 0.0 {
+        libm::log(value / low) / libm::log(high / low)
+    } else {
+        (value - low) / (high - low)
+    }
 }
 
 /// The end of its range at which a place is.
@@ -201,7 +270,12 @@ fn halton(i: usize, dimensions: usize) -> Vec<f64> {
         }
         sum
     };
-    BASES.into_iter().cycle().take(dimensions).map(digit_reversed).collect()
+    BASES
+        .into_iter()
+        .cycle()
+        .take(dimensions)
+        .map(digit_reversed)
+        .collect()
 }
 
 #[cfg(test)]
@@ -220,9 +294,20 @@ mod tests {
     #[test]
     fn the_halton_sequence_is_the_published_one() {
         let first: Vec<Vec<f64>> = (1..=4).map(|i| halton(i, 2)).collect();
-        let expected = [[0.5, 1.0 / 3.0], [0.25, 2.0 / 3.0], [0.75, 1.0 / 9.0], [0.125, 4.0 / 9.0]];
+        let expected = [
+            [0.5, 1.0 / 3.0],
+            [0.25, 2.0 / 3.0],
+            [0.75, 1.0 / 9.0],
+            [0.125, 4.0 / 9.0],
+        ];
         for (point, expected) in first.iter().zip(expected) {
-            assert!(point.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{point:?}");
+            assert!(
+                point
+                    .iter()
+                    .zip(expected)
+                    .all(|(a, b)| (a - b).abs() < 1e-15),
+                "{point:?}"
+            );
         }
     }
 
@@ -232,25 +317,57 @@ mod tests {
         let workpieces = Workpiece::tuning();
         // Its defaults take a third longer than uncorrected, which the search may not.
         let entry = CONTROLLERS.find("fuzzy-feedrate").unwrap();
-        let nothing = Evaluation { rms_um: f64::INFINITY, time_s: f64::INFINITY, sound: true };
+        let nothing = Evaluation {
+            rms_um: f64::INFINITY,
+            time_s: f64::INFINITY,
+            sound: true,
+        };
         let plans: Vec<_> = workpieces.iter().map(|_| PlanCache::default()).collect();
         let evaluate = |entry: &'static Entry, settings: &[Setting]| {
             let (machine, workpieces, plans) = (&machine, &workpieces, &plans);
-            let trial = Trial { entry, machine, workpieces, plans, seed: 1, watch: &(), open: nothing };
+            let trial = Trial {
+                entry,
+                machine,
+                workpieces,
+                plans,
+                seed: 1,
+                watch: &(),
+                open: nothing,
+            };
             trial.evaluate(settings).unwrap()
         };
         let open = evaluate(CONTROLLERS.find(BASELINE).unwrap(), &[]);
-        let cost = |found: Evaluation| found.rms_um * (1.0 + 10.0 * (found.time_s / open.time_s - 1.0).max(0.0));
-        let defaults = cost(evaluate(entry, &Tuned::defaults("tnv40", entry).settings(entry)));
+        let cost = |found: Evaluation| {
+            found.rms_um * (1.0 + 10.0 * (found.time_s / open.time_s - 1.0).max(0.0))
+        };
+        let defaults = cost(evaluate(
+            entry,
+            &Tuned::defaults("tnv40", entry).settings(entry),
+        ));
         let tuned = search(entry, &machine, 1, &()).unwrap();
         let found = evaluate(entry, &tuned.settings(entry));
-        assert!(cost(found) < defaults, "{} of {defaults}: {tuned:?}", cost(found));
-        assert!(cost(found) <= open.rms_um * (1.0 + 1e-9), "{} of {open:?}: {tuned:?}", cost(found));
-        assert_eq!((tuned.rms_um, tuned.open_um), (found.rms_um, open.rms_um), "{tuned:?}");
+        assert!(
+            cost(found) < defaults,
+            "{} of {defaults}: {tuned:?}",
+            cost(found)
+        );
+        assert!(
+            cost(found) <= open.rms_um * (1.0 + 1e-9),
+            "{} of {open:?}: {tuned:?}",
+            cost(found)
+        );
+        assert_eq!(
+            (tuned.rms_um, tuned.open_um),
+            (found.rms_um, open.rms_um),
+            "{tuned:?}"
+        );
         // Where speed along the path alone is to do it, there is nothing to gain in the same time.
         assert!(tuned.switched_off, "{tuned:?}");
         for ((parameter, [low, high]), value) in entry.searched().zip(&tuned.values) {
-            assert!(parameter.name == value.name && (low..=high).contains(&value.value), "{tuned:?}");
+            assert!(
+                parameter.name == value.name && (low..=high).contains(&value.value),
+                "{tuned:?}"
+            );
         }
         assert_eq!(tuned, search(entry, &machine, 1, &()).unwrap());
     }
@@ -259,7 +376,12 @@ mod tests {
     fn a_place_at_an_end_of_its_range_is_told() {
         assert_eq!(
             [0.0, 0.005, 0.5, 1.0].map(end_of),
-            [Some(RangeEnd::Low), Some(RangeEnd::Low), None, Some(RangeEnd::High)]
+            [
+                Some(RangeEnd::Low),
+                Some(RangeEnd::Low),
+                None,
+                Some(RangeEnd::High)
+            ]
         );
     }
 }

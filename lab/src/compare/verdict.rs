@@ -48,7 +48,8 @@ pub struct Verdict {
 pub const ALL_WORK: &str = "all work";
 /// What a control without corrections has today: feedforward as machines are delivered.
 pub const DELIVERED: &str = "feedforward-as-delivered";
-/// The peer that knows all that can be known, statistics of the noise included: a bound on what can be reached, not a competitor.
+/// The peer that knows all that can be known, statistics of the noise included: a bound on what can
+/// be reached, not a competitor.
 pub const LIMIT: &str = "lqg-preview";
 /// The same where there is no noise: it has the exact model and unlimited computing time.
 const NOISELESS_LIMIT: &str = "model-predictive";
@@ -71,8 +72,16 @@ const SQUARE: &str = "square";
 const RMS_SQUARE: Claim = Claim("RMS of the square", 0.03, "um");
 const MAX_SQUARE: Claim = Claim("max of the square", 0.5, "um");
 // On other machines without noise.
-const RMS_UNSEEN: Claim = Claim("RMS, unseen machine, against the best peer without model", 0.5, "");
-const RMS_IDENTIFIED: Claim = Claim("RMS, identified machine, against the best peer without model", 0.25, "");
+const RMS_UNSEEN: Claim = Claim(
+    "RMS, unseen machine, against the best peer without model",
+    0.5,
+    "",
+);
+const RMS_IDENTIFIED: Claim = Claim(
+    "RMS, identified machine, against the best peer without model",
+    0.25,
+    "",
+);
 // On machines with noise.
 const NOISY_BEST_PEER: Claim = Claim("RMS under noise against the best peer", 0.5, "");
 const NOISY_OFF: Claim = Claim("RMS under noise against parameters 20 % off", 0.4, "");
@@ -102,7 +111,12 @@ impl Claim {
     }
 
     /// The ratio of a number of two rows.
-    fn ratio(&self, row: &ComparisonRow, against: &ComparisonRow, number: fn(&ComparisonRow) -> f64) -> Verdict {
+    fn ratio(
+        &self,
+        row: &ComparisonRow,
+        against: &ComparisonRow,
+        number: fn(&ComparisonRow) -> f64,
+    ) -> Verdict {
         self.of(row, &against.controller, number(row) / number(against))
     }
 
@@ -111,7 +125,12 @@ impl Claim {
     }
 
     /// The difference of a number of two rows.
-    fn above(&self, row: &ComparisonRow, against: &ComparisonRow, number: fn(&ComparisonRow) -> f64) -> Verdict {
+    fn above(
+        &self,
+        row: &ComparisonRow,
+        against: &ComparisonRow,
+        number: fn(&ComparisonRow) -> f64,
+    ) -> Verdict {
         self.of(row, &against.controller, number(row) - number(against))
     }
 }
@@ -124,11 +143,23 @@ struct RowsHere<'a> {
 /// All claims that the rows can bear out.
 pub(super) fn verdicts(rows: &[ComparisonRow], options: &ComparisonOptions) -> Vec<Verdict> {
     let mut verdicts = Vec::new();
-    let workpiece = |name: &str| options.workpieces.iter().find(|workpiece| workpiece.name == name);
+    let workpiece = |name: &str| {
+        options
+            .workpieces
+            .iter()
+            .find(|workpiece| workpiece.name == name)
+    };
     for here in rows.chunk_by(|a, b| a.contour == b.contour && a.machine == b.machine) {
-        let cell = RowsHere { rows: here.iter().collect() };
-        let (Some(ours), Some(workpiece)) = (cell.named(BEST), workpiece(&here[0].contour)) else { continue };
-        let is_noisy = options.machines.iter().any(|machine| machine.name == ours.machine && machine.is_noisy());
+        let cell = RowsHere {
+            rows: here.iter().collect(),
+        };
+        let (Some(ours), Some(workpiece)) = (cell.named(BEST), workpiece(&here[0].contour)) else {
+            continue;
+        };
+        let is_noisy = options
+            .machines
+            .iter()
+            .any(|machine| machine.name == ours.machine && machine.is_noisy());
         match (ours.machine == options.nominal.name, is_noisy) {
             (_, true) => verdicts.extend(cell.under_noise(ours)),
             (true, false) if workpiece.smooth => verdicts.extend(cell.without_corners(ours)),
@@ -139,22 +170,39 @@ pub(super) fn verdicts(rows: &[ComparisonRow], options: &ComparisonOptions) -> V
         if workpiece.held_out {
             verdicts.extend(cell.held_out(ours));
         }
-        verdicts.extend(cell.named(DELIVERED).map(|base| PEAK_TORQUE.ratio(ours, base, |row| row.peak_torque_nm)));
+        verdicts.extend(
+            cell.named(DELIVERED)
+                .map(|base| PEAK_TORQUE.ratio(ours, base, |row| row.peak_torque_nm)),
+        );
     }
-    for machine in options.machines.iter().filter(|machine| machine.is_noisy() && options.workpieces.len() > 1) {
+    for machine in options
+        .machines
+        .iter()
+        .filter(|machine| machine.is_noisy() && options.workpieces.len() > 1)
+    {
         let means = over_all_work(rows, &machine.name);
-        let cell = RowsHere { rows: means.iter().collect() };
-        verdicts.extend(cell.named(BEST).into_iter().flat_map(|ours| cell.under_noise(ours)));
+        let cell = RowsHere {
+            rows: means.iter().collect(),
+        };
+        verdicts.extend(
+            cell.named(BEST)
+                .into_iter()
+                .flat_map(|ours| cell.under_noise(ours)),
+        );
     }
     verdicts
 }
 
 /// The square of the nominal machine.
 fn square(ours: &ComparisonRow) -> [Verdict; 2] {
-    [RMS_SQUARE.of(ours, "", ours.rms_um), MAX_SQUARE.of(ours, "", ours.max_um)]
+    [
+        RMS_SQUARE.of(ours, "", ours.rms_um),
+        MAX_SQUARE.of(ours, "", ours.max_um),
+    ]
 }
 
-/// For each controller of a machine a row with the quadratic means over all work, and whether all was completed.
+/// For each controller of a machine a row with the quadratic means over all work, and whether all
+/// was completed.
 fn over_all_work(rows: &[ComparisonRow], machine: &str) -> Vec<ComparisonRow> {
     let on = || rows.iter().filter(|row| row.machine == machine);
     let mean_of = |controller: &str| {
@@ -169,12 +217,18 @@ fn over_all_work(rows: &[ComparisonRow], machine: &str) -> Vec<ComparisonRow> {
             ..its[0].clone()
         }
     };
-    each_once(on().map(|row| &row.controller)).into_iter().map(mean_of).collect()
+    each_once(on().map(|row| &row.controller))
+        .into_iter()
+        .map(mean_of)
+        .collect()
 }
 
 impl<'a> RowsHere<'a> {
     fn named(&self, controller: &str) -> Option<&'a ComparisonRow> {
-        self.rows.iter().copied().find(|row| row.controller == controller)
+        self.rows
+            .iter()
+            .copied()
+            .find(|row| row.controller == controller)
     }
 
     fn with(&self, controller: &str, knowledge: Knowledge) -> Option<&'a ComparisonRow> {
@@ -186,21 +240,37 @@ impl<'a> RowsHere<'a> {
             RMS_UNCORRECTED.of(ours, BASELINE, ours.rms_ratio),
             MAX_UNCORRECTED.of(ours, BASELINE, ours.max_ratio),
         ];
-        verdicts.extend(self.best_without_model().map(|peer| RMS_BEST_PEER.rms(ours, peer)));
-        verdicts.extend(self.named(NOISELESS_LIMIT).map(|bound| RMS_EXACT_MODEL.rms(ours, bound)));
+        verdicts.extend(
+            self.best_without_model()
+                .map(|peer| RMS_BEST_PEER.rms(ours, peer)),
+        );
+        verdicts.extend(
+            self.named(NOISELESS_LIMIT)
+                .map(|bound| RMS_EXACT_MODEL.rms(ours, bound)),
+        );
         verdicts
     }
 
     fn elsewhere(&self, ours: &ComparisonRow) -> Vec<Verdict> {
-        let Some(peer) = self.best_without_model() else { return Vec::new() };
-        let unseen = self.with(BEST, Knowledge::Unseen).map(|unseen| RMS_UNSEEN.rms(unseen, peer));
-        unseen.into_iter().chain([RMS_IDENTIFIED.rms(ours, peer)]).collect()
+        let Some(peer) = self.best_without_model() else {
+            return Vec::new();
+        };
+        let unseen = self
+            .with(BEST, Knowledge::Unseen)
+            .map(|unseen| RMS_UNSEEN.rms(unseen, peer));
+        unseen
+            .into_iter()
+            .chain([RMS_IDENTIFIED.rms(ours, peer)])
+            .collect()
     }
 
     fn under_noise(&self, ours: &ComparisonRow) -> Vec<Verdict> {
         let peer = self.best(&[Knows::Nothing, Knows::Identified, Knows::ExactModel]);
         let off = self.with(FEEDFORWARD_WITH_FEEDBACK, Knowledge::TwentyPercentOff);
-        let mut verdicts: Vec<Verdict> = peer.map(|peer| NOISY_BEST_PEER.rms(ours, peer)).into_iter().collect();
+        let mut verdicts: Vec<Verdict> = peer
+            .map(|peer| NOISY_BEST_PEER.rms(ours, peer))
+            .into_iter()
+            .collect();
         verdicts.extend(off.map(|off| NOISY_OFF.rms(ours, off)));
         verdicts.extend(self.named(LIMIT).map(|limit| NOISY_LIMIT.rms(ours, limit)));
         verdicts
@@ -208,11 +278,17 @@ impl<'a> RowsHere<'a> {
 
     fn held_out(&self, ours: &ComparisonRow) -> Vec<Verdict> {
         let mut verdicts = vec![HELD_OUT_LOST.of(ours, "", f64::from(ours.lost))];
-        for other in [BASELINE, DELIVERED].into_iter().filter_map(|name| self.named(name)) {
+        for other in [BASELINE, DELIVERED]
+            .into_iter()
+            .filter_map(|name| self.named(name))
+        {
             verdicts.push(HELD_OUT_RMS.above(ours, other, ComparisonRow::controlled_rms_um));
             verdicts.push(HELD_OUT_MAX.above(ours, other, ComparisonRow::controlled_max_um));
         }
-        verdicts.extend(self.named(BASELINE).map(|open| HELD_OUT_UNCUT.above(ours, open, |row| row.uncut_um)));
+        verdicts.extend(
+            self.named(BASELINE)
+                .map(|open| HELD_OUT_UNCUT.above(ours, open, |row| row.uncut_um)),
+        );
         verdicts
     }
 
@@ -224,7 +300,8 @@ impl<'a> RowsHere<'a> {
     /// own machine. The limit and the default are no peers.
     fn peers(&self, known: &[Knows]) -> impl Iterator<Item = &'a ComparisonRow> {
         self.rows.iter().copied().filter(|row| {
-            let own = Competitor::find(&row.controller).is_some_and(|peer| peer.knowledge == Knowledge::Own);
+            let own = Competitor::find(&row.controller)
+                .is_some_and(|peer| peer.knowledge == Knowledge::Own);
             let is_other = own && row.controller != BEST && row.controller != LIMIT;
             is_other && row.completed && knows(row).is_some_and(|knows| known.contains(&knows))
         })
@@ -233,7 +310,8 @@ impl<'a> RowsHere<'a> {
     /// The best of these, uncorrected among them; none where the uncorrected cut is alone.
     fn best(&self, known: &[Knows]) -> Option<&'a ComparisonRow> {
         self.peers(known).find(|row| row.controller != BASELINE)?;
-        self.peers(known).min_by(|a, b| a.controlled_rms_um().total_cmp(&b.controlled_rms_um()))
+        self.peers(known)
+            .min_by(|a, b| a.controlled_rms_um().total_cmp(&b.controlled_rms_um()))
     }
 }
 

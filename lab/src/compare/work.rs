@@ -13,7 +13,10 @@ use crate::contour::CONTOURS;
 /// Feedrate of the contours, mm/s.
 pub const FEED_MM_S: f64 = 50.0;
 /// How corners of the contours are taken: at the speed that the machine's limits allow.
-pub(crate) const CORNER: Corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
+pub(crate) const CORNER: Corner = Corner::Continuous {
+    tolerance_mm: None,
+    merge_mm: None,
+};
 
 /// The parts in the XY plane that come with the program.
 const PARTS: [(&str, &str); 6] = [
@@ -52,7 +55,9 @@ impl Workpiece {
                 name: contour.name.to_owned(),
                 smooth: contour.is_smooth(),
                 held_out: false,
-                steps: contour.steps(FEED_MM_S, CORNER).expect("the built-in contours have a path"),
+                steps: contour
+                    .steps(FEED_MM_S, CORNER)
+                    .expect("the built-in contours have a path"),
             })
             .collect()
     }
@@ -62,11 +67,17 @@ impl Workpiece {
         let mut all = Self::contours();
         all.retain(|workpiece| TUNING_CONTOURS.contains(&workpiece.name.as_str()));
         let tips = steps("tips", TIPS).expect("the tips have a path, which a test holds");
-        all.push(Self { name: "tips".to_owned(), smooth: false, held_out: false, steps: tips });
+        all.push(Self {
+            name: "tips".to_owned(),
+            smooth: false,
+            held_out: false,
+            steps: tips,
+        });
         all
     }
 
-    /// What everything may be tuned on: the contours, and the parts in the plane that come with the program.
+    /// What everything may be tuned on: the contours, and the parts in the plane that come with the
+    /// program.
     pub fn development() -> Vec<Self> {
         let part = |(name, text): &(&str, &str)| Self {
             name: (*name).to_owned(),
@@ -74,7 +85,10 @@ impl Workpiece {
             held_out: false,
             steps: steps(name, text).expect("the parts have a path, which a test holds"),
         };
-        Self::contours().into_iter().chain(PARTS.iter().map(part)).collect()
+        Self::contours()
+            .into_iter()
+            .chain(PARTS.iter().map(part))
+            .collect()
     }
 
     /// A program, read by `settings` as it is elsewhere.
@@ -83,14 +97,29 @@ impl Workpiece {
     /// A program with mistakes, one that leaves the XY plane, or one without a path.
     pub fn program(file: &Path, settings: gcode::Settings) -> Result<Self, PartError> {
         let program = gcode::Program::in_file(file);
-        let summary = program.check(settings.clone()).map_err(feedwright::JobError::from)?;
+        let summary = program
+            .check(settings.clone())
+            .map_err(feedwright::JobError::from)?;
         if summary.moves[2] {
-            return Err(PartError::LeavesPlane { part: file.to_owned() });
+            return Err(PartError::LeavesPlane {
+                part: file.to_owned(),
+            });
         }
-        let steps = program.reader(settings).map_err(feedwright::JobError::from)?.map_while(Result::ok);
+        let steps = program
+            .reader(settings)
+            .map_err(feedwright::JobError::from)?
+            .map_while(Result::ok);
         let steps: Result<Vec<Step>, PathError> = Pieces::new(steps).collect();
-        let steps = steps.map_err(|fault| feedwright::JobError::Path { part: program.name(), fault })?;
-        Ok(Self { name: program.file_name(), smooth: false, held_out: false, steps })
+        let steps = steps.map_err(|fault| feedwright::JobError::Path {
+            part: program.name(),
+            fault,
+        })?;
+        Ok(Self {
+            name: program.file_name(),
+            smooth: false,
+            held_out: false,
+            steps,
+        })
     }
 }
 
@@ -98,7 +127,9 @@ impl Workpiece {
 pub(super) fn steps(name: &str, text: &str) -> Option<Vec<Step>> {
     let canon = gcode::Reader::from_text(name, text, gcode::Settings::default()).ok()?;
     let canon: Result<Vec<_>, _> = canon.collect();
-    Pieces::new(canon.ok()?.into_iter()).collect::<Result<_, _>>().ok()
+    Pieces::new(canon.ok()?.into_iter())
+        .collect::<Result<_, _>>()
+        .ok()
 }
 
 /// Why a program cannot be compared on.
@@ -123,7 +154,10 @@ mod tests {
 
     #[test]
     fn controllers_are_tuned_on_a_smooth_contour_on_corners_and_on_tips() {
-        let names: Vec<String> = Workpiece::tuning().into_iter().map(|workpiece| workpiece.name).collect();
+        let names: Vec<String> = Workpiece::tuning()
+            .into_iter()
+            .map(|workpiece| workpiece.name)
+            .collect();
         assert_eq!(names, ["eight", "square", "tips"]);
     }
 
@@ -132,10 +166,19 @@ mod tests {
         let all = Workpiece::development();
         assert_eq!(all.len(), CONTOURS.len() + PARTS.len());
         for (i, workpiece) in all.iter().enumerate() {
-            assert!(all[..i].iter().all(|other| other.name != workpiece.name), "{}", workpiece.name);
+            assert!(
+                all[..i].iter().all(|other| other.name != workpiece.name),
+                "{}",
+                workpiece.name
+            );
             for step in &workpiece.steps {
                 if let Step::Piece(piece) = step {
-                    assert_eq!(piece.curve.at(piece.length_mm).position_mm[2], 0.0, "{}", workpiece.name);
+                    assert_eq!(
+                        piece.curve.at(piece.length_mm).position_mm[2],
+                        0.0,
+                        "{}",
+                        workpiece.name
+                    );
                 }
             }
         }

@@ -11,5 +11,8 @@ const SCALE: [f64; 2] = [0.5, 1.5];
 /// The placement of a seed; the same on every platform.
 pub fn placement(seed: u64) -> Placement {
     let mut random = Random::new(seed);
-    Placement { scale: random.by_ratio(SCALE), turn_rad: random.between([-PI, PI]) }
+    Placement {
+        scale: random.by_ratio(SCALE),
+        turn_rad: random.between([-PI, PI]),
+    }
 }

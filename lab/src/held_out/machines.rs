@@ -1,4 +1,5 @@
-//! Machines drawn at random: `tnv40` with other loops, accelerations, masses, friction, encoders and delays.
+//! Machines drawn at random: `tnv40` with other loops, accelerations, masses, friction, encoders
+//! and delays.
 //!
 //! Each axis has a position loop of gain Kp around a speed loop of bandwidth a = (Kv + Bv) / J. The
 //! dead time T of the loop is the drive delay plus one and a half servo periods:
@@ -29,13 +30,14 @@ use super::variant::{AXES, Variant};
 const BASE: &str = "tnv40";
 /// Least phase margin of a position loop, degrees: textbooks ask for 30 to 60.
 pub const PHASE_MARGIN_DEG: f64 = 40.0;
-/// Time within which the answer to a blow has to die away, s, and to what part: a screw of 40 Hz with a damping ratio of 0.02 does so by
-/// itself.
+/// Time within which the answer to a blow has to die away, s, and to what part: a screw of 40 Hz
+/// with a damping ratio of 0.02 does so by itself.
 const QUIET_S: f64 = 0.5;
 const QUIET: f64 = 0.1;
 /// Range of the position loops' gain, 1/s.
 const KP_1_S: [f64; 2] = [25.0, 150.0];
-/// Range of the speed loops' bandwidth, in gains of the position loop: cascades are tuned with 2 to 6.
+/// Range of the speed loops' bandwidth, in gains of the position loop: cascades are tuned with 2
+/// to 6.
 const SPEED_LOOP: [f64; 2] = [2.0, 6.0];
 /// Range of accelerations along and across the path, mm/s2.
 const ACCEL_MM_S2: [f64; 2] = [100.0, 4000.0];
@@ -59,7 +61,8 @@ pub enum Class {
     Any,
     /// Without encoder steps and without delay.
     Rigid,
-    /// As all of them, with what real axes have beside their loops: ball screw, friction, motor, drive, noise, servo period.
+    /// As all of them, with what real axes have beside their loops: ball screw, friction, motor,
+    /// drive, noise, servo period.
     Realistic,
 }
 
@@ -69,7 +72,9 @@ pub fn machine(seed: u64, class: Class) -> Variant {
     loop {
         let mut variant = draw(&mut random, seed, class);
         if class == Class::Realistic {
-            let Ok(machine) = variant.machine() else { continue };
+            let Ok(machine) = variant.machine() else {
+                continue;
+            };
             variant = realistic::with_imperfections(variant, &machine.axes, &mut random);
         }
         if variant.machine().is_ok_and(|machine| is_stable(&machine)) {
@@ -82,14 +87,25 @@ fn draw(random: &mut Random, seed: u64, class: Class) -> Variant {
     let base = Machine::load(BASE.as_ref()).expect("the base is built in");
     let mut variant = Variant::of(BASE, format!("random-{seed}"));
     let [along, across] = [random.by_ratio(ACCEL_MM_S2), random.by_ratio(ACCEL_MM_S2)];
-    variant = variant.with("limits", "tangential_accel_mm_s2", along).with("limits", "normal_accel_mm_s2", across);
+    variant = variant
+        .with("limits", "tangential_accel_mm_s2", along)
+        .with("limits", "normal_accel_mm_s2", across);
     let (kp_1_s, speed_loop) = (random.by_ratio(KP_1_S), random.by_ratio(SPEED_LOOP));
     // One machine in two has equal axes, as it should.
     let unlike = random.one_in(2);
-    let other = |random: &mut Random| if unlike { random.by_ratio([1.0 / UNLIKE, UNLIKE]) } else { 1.0 };
+    let other = |random: &mut Random| {
+        if unlike {
+            random.by_ratio([1.0 / UNLIKE, UNLIKE])
+        } else {
+            1.0
+        }
+    };
     let inertia = random.by_ratio(FACTOR);
     let friction = [random.by_ratio(FACTOR), random.by_ratio(FACTOR)];
-    let disturbance = [random.by_ratio(DISTURBANCE_NM), random.by_ratio(DISTURBANCE_HZ)];
+    let disturbance = [
+        random.by_ratio(DISTURBANCE_NM),
+        random.by_ratio(DISTURBANCE_HZ),
+    ];
     let torque = random.by_ratio(TORQUE);
     for (i, table) in AXES.into_iter().enumerate() {
         let mut axis = *base.axis(i);
@@ -110,31 +126,39 @@ fn draw(random: &mut Random, seed: u64, class: Class) -> Variant {
             .with(table, "disturbance_hz", axis.disturbance_hz)
             .with(table, "torque_limit_nm", rounded(torque * needed_nm));
     }
-    let late = [random.by_ratio(ENCODER_UM), rounded(random.between([0.0, DELAY_S]))];
+    let late = [
+        random.by_ratio(ENCODER_UM),
+        rounded(random.between([0.0, DELAY_S])),
+    ];
     let has = [!random.one_in(3), !random.one_in(3)];
     let keys = ["encoder_step_um", "drive_delay_s"];
     let wanted = (0..2).filter(|&i| has[i] && class != Class::Rigid);
     wanted.fold(variant, |variant, i| variant.with_axes(keys[i], late[i]))
 }
 
-/// Torque that the plan may ask of an axis: the largest acceleration and the jump at corners that the position loop passes
-/// on, against friction and disturbance, N m.
+/// Torque that the plan may ask of an axis: the largest acceleration and the jump at corners that
+/// the position loop passes on, against friction and disturbance, N m.
 fn torque_of_plan_nm(axis: &Axis, machine: &Machine, accel_mm_s2: f64) -> f64 {
     let rad_per_mm = TAU / axis.lead_mm_per_rev;
     let jump_mm_s2 = machine.limits.corner_jump_mm_s * axis.kp_1_s;
-    let friction_nm = axis.coulomb_friction_nm + axis.viscous_friction_nm_s * machine.limits.rapid_mm_s * rad_per_mm;
+    let friction_nm = axis.coulomb_friction_nm
+        + axis.viscous_friction_nm_s * machine.limits.rapid_mm_s * rad_per_mm;
     axis.inertia_kg_m2 * (accel_mm_s2 + jump_mm_s2) * rad_per_mm + friction_nm + axis.disturbance_nm
 }
 
 /// Whether every position loop has its phase margin, and what the formula leaves out dies away.
 pub fn is_stable(machine: &Machine) -> bool {
     let is_simple = |axis: &Axis| axis.transmission.is_none() && axis.speed_integral_s == 0.0;
-    machine.axes.iter().all(|axis| phase_margin_deg(axis, machine.period.servo_s) >= PHASE_MARGIN_DEG)
+    machine
+        .axes
+        .iter()
+        .all(|axis| phase_margin_deg(axis, machine.period.servo_s) >= PHASE_MARGIN_DEG)
         && (machine.axes.iter().all(is_simple) || dies_away(machine))
 }
 
-/// Whether a blow dies away in every axis: after [`QUIET_S`] the table stays within [`QUIET`] of its largest deviation. The axes are
-/// simulated without friction, backlash, steps and noise: what is left is linear, and the least damped.
+/// Whether a blow dies away in every axis: after [`QUIET_S`] the table stays within [`QUIET`] of
+/// its largest deviation. The axes are simulated without friction, backlash, steps and noise: what
+/// is left is linear, and the least damped.
 fn dies_away(machine: &Machine) -> bool {
     let mut linear = machine.clone();
     for axis in &mut linear.axes {
@@ -158,14 +182,20 @@ fn dies_away(machine: &Machine) -> bool {
     }
     let mut plant = Plant::<3>::new(&linear, [0.0; 3]);
     // A hundredth of a turn a second: far below the torque limit.
-    plant.push(std::array::from_fn(|i| 0.01 * TAU * linear.axis(i).inertia_kg_m2));
+    plant.push(std::array::from_fn(|i| {
+        0.01 * TAU * linear.axis(i).inertia_kg_m2
+    }));
     let [mut most_mm, mut late_mm] = [[0.0_f64; 3]; 2];
     let periods = (2.0 * QUIET_S / machine.period.servo_s) as u32;
     for n in 0..periods {
         let at_mm = plant.step([0.0; 3]).joint_mm;
         for i in 0..3 {
             most_mm[i] = most_mm[i].max(at_mm[i].abs());
-            late_mm[i] = if 2 * n < periods { 0.0 } else { late_mm[i].max(at_mm[i].abs()) };
+            late_mm[i] = if 2 * n < periods {
+                0.0
+            } else {
+                late_mm[i].max(at_mm[i].abs())
+            };
         }
     }
     (0..3).all(|i| late_mm[i] <= QUIET * most_mm[i])
@@ -195,15 +225,30 @@ mod tests {
             let made = variant.machine().expect("a machine file without faults");
             assert!(is_stable(&made), "{}", variant.text());
             assert_eq!(variant, machine(seed, Class::Any));
-            assert!(made.axes.iter().all(|axis| (KP_1_S[0]..=KP_1_S[1]).contains(&axis.kp_1_s)), "{}", variant.text());
+            assert!(
+                made.axes
+                    .iter()
+                    .all(|axis| (KP_1_S[0]..=KP_1_S[1]).contains(&axis.kp_1_s)),
+                "{}",
+                variant.text()
+            );
         }
-        assert_ne!(machine(1, Class::Any).changes, machine(2, Class::Any).changes);
+        assert_ne!(
+            machine(1, Class::Any).changes,
+            machine(2, Class::Any).changes
+        );
     }
 
     #[test]
     fn rigid_ones_have_neither_steps_nor_delay_and_most_others_do() {
-        let late = |machine: Machine| machine.axis(0).encoder_step_um > 0.0 || machine.axis(0).drive_delay_s > 0.0;
-        let count = |class| (0..SEEDS).filter(|&seed| late(machine(seed, class).machine().expect("valid"))).count();
+        let late = |machine: Machine| {
+            machine.axis(0).encoder_step_um > 0.0 || machine.axis(0).drive_delay_s > 0.0
+        };
+        let count = |class| {
+            (0..SEEDS)
+                .filter(|&seed| late(machine(seed, class).machine().expect("valid")))
+                .count()
+        };
         assert_eq!(count(Class::Rigid), 0);
         assert!(count(Class::Any) > SEEDS as usize / 2);
     }
@@ -220,11 +265,18 @@ mod tests {
             })
             .collect();
         let part = |has: &dyn Fn(&Axis) -> bool| {
-            machines.iter().filter(|machine| has(machine.axis(1))).count() as f64 / SEEDS as f64
+            machines
+                .iter()
+                .filter(|machine| has(machine.axis(1)))
+                .count() as f64
+                / SEEDS as f64
         };
         let parts = [
             part(&|axis| axis.transmission.is_some()),
-            part(&|axis| axis.transmission.is_some_and(|screw| screw.backlash_um > 0.0)),
+            part(&|axis| {
+                axis.transmission
+                    .is_some_and(|screw| screw.backlash_um > 0.0)
+            }),
             part(&|axis| axis.speed_integral_s > 0.0),
             part(&|axis| axis.velocity_feedforward > 0.0),
             part(&|axis| axis.cogging_nm > 0.0),
@@ -234,9 +286,19 @@ mod tests {
             part(&|axis| axis.drive_delay_s > 0.0),
             part(&|axis| axis.encoder_noise_um > 0.0),
         ];
-        assert!(parts.iter().all(|part| (0.1..0.9).contains(part)), "{parts:?}");
+        assert!(
+            parts.iter().all(|part| (0.1..0.9).contains(part)),
+            "{parts:?}"
+        );
         for servo_s in [0.0005, 0.001, 0.002] {
-            assert!(machines.iter().filter(|machine| machine.period.servo_s == servo_s).count() > 20, "{servo_s} s");
+            assert!(
+                machines
+                    .iter()
+                    .filter(|machine| machine.period.servo_s == servo_s)
+                    .count()
+                    > 20,
+                "{servo_s} s"
+            );
         }
     }
 
@@ -245,12 +307,19 @@ mod tests {
         for name in ["workshop", "stiff", "router", "soft"] {
             let mut machine = Machine::load(name.as_ref()).expect("built in");
             assert!(is_stable(&machine), "{name}");
-            (machine.axes[1].speed_integral_s, machine.axes[1].torque_filter_hz) = (0.0005, 50.0);
-            assert!(!is_stable(&machine), "{name} with an integral time of 0.5 ms behind a filter of 50 Hz");
+            (
+                machine.axes[1].speed_integral_s,
+                machine.axes[1].torque_filter_hz,
+            ) = (0.0005, 50.0);
+            assert!(
+                !is_stable(&machine),
+                "{name} with an integral time of 0.5 ms behind a filter of 50 Hz"
+            );
         }
     }
 
-    /// A pure integrator has 90 degrees less its delay; a speed loop as fast as its crossover takes 45 more.
+    /// A pure integrator has 90 degrees less its delay; a speed loop as fast as its crossover takes
+    /// 45 more.
     #[test]
     fn the_phase_margin_is_that_of_the_closed_form() {
         let mut axis = *Machine::load(BASE.as_ref()).expect("built in").axis(0);

@@ -1,4 +1,5 @@
-//! Programs drawn at random, a few seconds of machining each, in families: what is cut, and what has been cut badly.
+//! Programs drawn at random, a few seconds of machining each, in families: what is cut, and what
+//! has been cut badly.
 
 use std::f64::consts::{PI, TAU};
 
@@ -15,17 +16,50 @@ pub struct Family {
 
 /// All of them.
 pub const FAMILIES: [Family; 11] = [
-    Family { name: "polyline", write: polyline },
-    Family { name: "arcs", write: arcs },
-    Family { name: "cam", write: cam },
-    Family { name: "spikes", write: spikes },
-    Family { name: "battlement", write: battlement },
-    Family { name: "slots", write: slots },
-    Family { name: "letters", write: letters },
-    Family { name: "circles", write: circles },
-    Family { name: "helix", write: helix },
-    Family { name: "pocket", write: pocket },
-    Family { name: "retraced", write: retraced },
+    Family {
+        name: "polyline",
+        write: polyline,
+    },
+    Family {
+        name: "arcs",
+        write: arcs,
+    },
+    Family {
+        name: "cam",
+        write: cam,
+    },
+    Family {
+        name: "spikes",
+        write: spikes,
+    },
+    Family {
+        name: "battlement",
+        write: battlement,
+    },
+    Family {
+        name: "slots",
+        write: slots,
+    },
+    Family {
+        name: "letters",
+        write: letters,
+    },
+    Family {
+        name: "circles",
+        write: circles,
+    },
+    Family {
+        name: "helix",
+        write: helix,
+    },
+    Family {
+        name: "pocket",
+        write: pocket,
+    },
+    Family {
+        name: "retraced",
+        write: retraced,
+    },
 ];
 
 /// Time of one part of a program, s.
@@ -58,10 +92,14 @@ pub fn program(seed: u64) -> RandomProgram {
         writer.begin_part(time_s);
         (family.write)(&mut writer);
     }
-    RandomProgram { name, text: writer.finish() }
+    RandomProgram {
+        name,
+        text: writer.finish(),
+    }
 }
 
-/// Between two parts: a rapid, and perhaps a dwell, a tool change, another feedrate, a motion without a corner.
+/// Between two parts: a rapid, and perhaps a dwell, a tool change, another feedrate, a motion
+/// without a corner.
 fn interruption(writer: &mut ProgramWriter) {
     match writer.random.whole(0, 7) {
         0 => writer.say("T1 M6"),
@@ -99,7 +137,14 @@ fn arcs(writer: &mut ProgramWriter) {
         // At least a tenth of a millimetre, or four decimals are no circle.
         let sweep = writer.random.by_ratio([0.2, 3.0]) * (3.0 / radius_mm).min(1.0);
         let to_center = heading + side * 0.5 * PI;
-        writer.arc([radius_mm * libm::cos(to_center), radius_mm * libm::sin(to_center)], side * sweep, 0.0);
+        writer.arc(
+            [
+                radius_mm * libm::cos(to_center),
+                radius_mm * libm::sin(to_center),
+            ],
+            side * sweep,
+            0.0,
+        );
         heading += side * sweep;
     }
 }
@@ -108,13 +153,24 @@ fn arcs(writer: &mut ProgramWriter) {
 fn cam(writer: &mut ProgramWriter) {
     let chord_mm = writer.random.by_ratio([0.02, 0.5]);
     let noise_mm = writer.random.by_ratio([0.0005, 0.02]);
-    let waves = [0, 1, 2].map(|_| (writer.random.by_ratio([2.0, 40.0]), writer.random.between([-1.2, 1.2])));
+    let waves = [0, 1, 2].map(|_| {
+        (
+            writer.random.by_ratio([2.0, 40.0]),
+            writer.random.between([-1.2, 1.2]),
+        )
+    });
     let [x0, y0, z] = writer.at_mm();
     let (mut s_mm, mut at) = (0.0, [x0, y0]);
     while writer.goes_on() {
         s_mm += chord_mm * writer.random.between([0.7, 1.3]);
-        let heading: f64 = waves.iter().map(|(length_mm, turn)| turn * libm::sin(TAU * s_mm / length_mm)).sum();
-        at = [at[0] + chord_mm * libm::cos(heading), at[1] + chord_mm * libm::sin(heading)];
+        let heading: f64 = waves
+            .iter()
+            .map(|(length_mm, turn)| turn * libm::sin(TAU * s_mm / length_mm))
+            .sum();
+        at = [
+            at[0] + chord_mm * libm::cos(heading),
+            at[1] + chord_mm * libm::sin(heading),
+        ];
         let [dx, dy] = [0, 1].map(|_| writer.random.between([-noise_mm, noise_mm]));
         writer.line([at[0] + dx, at[1] + dy, z]);
     }
@@ -133,7 +189,10 @@ fn spikes(writer: &mut ProgramWriter) {
 
 /// Up, along, down, along: legs that are shorter than the lag.
 fn battlement(writer: &mut ProgramWriter) {
-    let [high_mm, long_mm] = [writer.random.by_ratio([0.1, 2.0]), writer.random.by_ratio([0.1, 2.0])];
+    let [high_mm, long_mm] = [
+        writer.random.by_ratio([0.1, 2.0]),
+        writer.random.by_ratio([0.1, 2.0]),
+    ];
     let run_in_mm = writer.random.by_ratio([0.5, 10.0]);
     writer.by(run_in_mm, 0.0);
     while writer.goes_on() {
@@ -147,7 +206,10 @@ fn battlement(writer: &mut ProgramWriter) {
 
 /// Narrow slots with round ends, side by side.
 fn slots(writer: &mut ProgramWriter) {
-    let [long_mm, wide_mm] = [writer.random.by_ratio([0.5, 10.0]), writer.random.by_ratio([0.1, 2.0])];
+    let [long_mm, wide_mm] = [
+        writer.random.by_ratio([0.5, 10.0]),
+        writer.random.by_ratio([0.1, 2.0]),
+    ];
     while writer.goes_on() {
         writer.by(long_mm, 0.0);
         writer.arc([0.0, 0.5 * wide_mm], PI, 0.0);
@@ -156,23 +218,50 @@ fn slots(writer: &mut ProgramWriter) {
     }
 }
 
-/// Strokes of letters in a box of 1 by 2: where they begin, then straight to a place, or half round to it (left or right).
+/// Strokes of letters in a box of 1 by 2: where they begin, then straight to a place, or half round
+/// to it (left or right).
 const LETTERS: [&[Stroke]; 6] = [
     // L
-    &[Stroke { from: [0.0, 2.0], to: &[([0.0, 0.0], 0.0), ([1.0, 0.0], 0.0)] }],
+    &[Stroke {
+        from: [0.0, 2.0],
+        to: &[([0.0, 0.0], 0.0), ([1.0, 0.0], 0.0)],
+    }],
     // S
-    &[Stroke { from: [1.0, 2.0], to: &[([0.5, 2.0], 0.0), ([0.5, 1.0], 1.0), ([0.5, 0.0], -1.0), ([0.0, 0.0], 0.0)] }],
+    &[Stroke {
+        from: [1.0, 2.0],
+        to: &[
+            ([0.5, 2.0], 0.0),
+            ([0.5, 1.0], 1.0),
+            ([0.5, 0.0], -1.0),
+            ([0.0, 0.0], 0.0),
+        ],
+    }],
     // D
-    &[Stroke { from: [0.0, 0.0], to: &[([0.0, 2.0], 0.0), ([0.0, 0.0], -1.0)] }],
+    &[Stroke {
+        from: [0.0, 0.0],
+        to: &[([0.0, 2.0], 0.0), ([0.0, 0.0], -1.0)],
+    }],
     // A
     &[
-        Stroke { from: [0.0, 0.0], to: &[([0.5, 2.0], 0.0), ([1.0, 0.0], 0.0)] },
-        Stroke { from: [0.25, 1.0], to: &[([0.75, 1.0], 0.0)] },
+        Stroke {
+            from: [0.0, 0.0],
+            to: &[([0.5, 2.0], 0.0), ([1.0, 0.0], 0.0)],
+        },
+        Stroke {
+            from: [0.25, 1.0],
+            to: &[([0.75, 1.0], 0.0)],
+        },
     ],
     // B
-    &[Stroke { from: [0.0, 0.0], to: &[([0.0, 2.0], 0.0), ([0.0, 1.0], -1.0), ([0.0, 0.0], -1.0)] }],
+    &[Stroke {
+        from: [0.0, 0.0],
+        to: &[([0.0, 2.0], 0.0), ([0.0, 1.0], -1.0), ([0.0, 0.0], -1.0)],
+    }],
     // N
-    &[Stroke { from: [0.0, 0.0], to: &[([0.0, 2.0], 0.0), ([1.0, 0.0], 0.0), ([1.0, 2.0], 0.0)] }],
+    &[Stroke {
+        from: [0.0, 0.0],
+        to: &[([0.0, 2.0], 0.0), ([1.0, 0.0], 0.0), ([1.0, 2.0], 0.0)],
+    }],
 ];
 
 struct Stroke {
@@ -216,7 +305,10 @@ fn circles(writer: &mut ProgramWriter) {
 
 /// Down in turns.
 fn helix(writer: &mut ProgramWriter) {
-    let (radius_mm, pitch_mm) = (writer.random.by_ratio([0.5, 10.0]), writer.random.by_ratio([0.05, 2.0]));
+    let (radius_mm, pitch_mm) = (
+        writer.random.by_ratio([0.5, 10.0]),
+        writer.random.by_ratio([0.05, 2.0]),
+    );
     let sweep = writer.random.sign() * TAU;
     while writer.goes_on() {
         writer.arc([-radius_mm, 0.0], sweep, -pitch_mm);
@@ -227,7 +319,10 @@ fn helix(writer: &mut ProgramWriter) {
 
 /// Rectangles from within outwards, layer by layer.
 fn pocket(writer: &mut ProgramWriter) {
-    let (over_mm, deep_mm) = (writer.random.by_ratio([0.1, 2.0]), writer.random.by_ratio([0.05, 1.0]));
+    let (over_mm, deep_mm) = (
+        writer.random.by_ratio([0.1, 2.0]),
+        writer.random.by_ratio([0.05, 1.0]),
+    );
     let rings = writer.random.whole(2, 6);
     let [x, y, _] = writer.at_mm();
     while writer.goes_on() {
@@ -253,7 +348,10 @@ fn retraced(writer: &mut ProgramWriter) {
     while writer.goes_on() {
         let mut passed = vec![writer.at_mm()];
         for _ in 0..writer.random.whole(1, 6) {
-            let (leg_mm, heading) = (writer.random.by_ratio([0.1, 5.0]), writer.random.between([-PI, PI]));
+            let (leg_mm, heading) = (
+                writer.random.by_ratio([0.1, 5.0]),
+                writer.random.between([-PI, PI]),
+            );
             writer.by(leg_mm * libm::cos(heading), leg_mm * libm::sin(heading));
             passed.push(writer.at_mm());
         }
@@ -272,7 +370,8 @@ mod tests {
     const SEEDS: u64 = 400;
 
     fn read(drawn: &RandomProgram) -> Summary {
-        let reader = Reader::from_text(&drawn.name, drawn.text.as_str(), Settings::default()).expect("a program");
+        let reader = Reader::from_text(&drawn.name, drawn.text.as_str(), Settings::default())
+            .expect("a program");
         summarize(reader).unwrap_or_else(|error| panic!("{}\n{error:?}", drawn.text))
     }
 
@@ -282,10 +381,22 @@ mod tests {
         for seed in 0..SEEDS {
             let drawn = program(seed);
             let summary = read(&drawn);
-            let family = FAMILIES.iter().position(|family| drawn.name.starts_with(family.name)).expect("a family");
+            let family = FAMILIES
+                .iter()
+                .position(|family| drawn.name.starts_with(family.name))
+                .expect("a family");
             seen[family] += 1;
-            assert!(summary.motions >= 1 && summary.feed_mm > 0.0, "{}", drawn.text);
-            assert_eq!(summary.moves[2], ["helix", "pocket"].contains(&FAMILIES[family].name), "{}", drawn.text);
+            assert!(
+                summary.motions >= 1 && summary.feed_mm > 0.0,
+                "{}",
+                drawn.text
+            );
+            assert_eq!(
+                summary.moves[2],
+                ["helix", "pocket"].contains(&FAMILIES[family].name),
+                "{}",
+                drawn.text
+            );
         }
         assert!(seen.iter().all(|&count| count > 5), "{seen:?}");
     }
@@ -299,7 +410,9 @@ mod tests {
     /// So that thousands of them can be cut.
     #[test]
     fn programs_are_short() {
-        let lines: usize = (0..SEEDS).map(|seed| program(seed).text.lines().count()).sum();
+        let lines: usize = (0..SEEDS)
+            .map(|seed| program(seed).text.lines().count())
+            .sum();
         assert!(lines < 300 * SEEDS as usize, "{lines} lines");
     }
 }

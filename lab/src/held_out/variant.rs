@@ -1,4 +1,5 @@
-//! A machine as what differs from a built-in one: a list of changes, and the machine file that they make.
+//! A machine as what differs from a built-in one: a list of changes, and the machine file that they
+//! make.
 //!
 //! The list is what can be drawn at random.
 
@@ -34,13 +35,18 @@ pub const AXES: [&str; 3] = ["axis.x", "axis.y", "axis.z"];
 impl Variant {
     /// The base itself under another name.
     pub fn of(base: &'static str, name: impl Into<String>) -> Self {
-        Self { base, name: name.into(), changes: Vec::new() }
+        Self {
+            base,
+            name: name.into(),
+            changes: Vec::new(),
+        }
     }
 
     /// With one more change; in place of an earlier one of the same key.
     #[must_use]
     pub fn with(mut self, table: &'static str, key: &'static str, value: f64) -> Self {
-        self.changes.retain(|change| (change.table, change.key) != (table, key));
+        self.changes
+            .retain(|change| (change.table, change.key) != (table, key));
         self.changes.push(Change { table, key, value });
         self
     }
@@ -48,12 +54,17 @@ impl Variant {
     /// With the same change in every axis.
     #[must_use]
     pub fn with_axes(self, key: &'static str, value: f64) -> Self {
-        AXES.iter().fold(self, |variant, table| variant.with(table, key, value))
+        AXES.iter()
+            .fold(self, |variant, table| variant.with(table, key, value))
     }
 
     /// The machine file.
     pub fn text(&self) -> String {
-        let changed = if self.changes.is_empty() { "as it is" } else { "with the changes below" };
+        let changed = if self.changes.is_empty() {
+            "as it is"
+        } else {
+            "with the changes below"
+        };
         let mut text = format!(
             "base = \"{base}\"\nname = \"{}\"\ndescription = \"{base} {changed}\"\nsource = \"generated\"\n",
             self.name,
@@ -68,7 +79,9 @@ impl Variant {
         for table in tables {
             // Writing to a string does not fail.
             let _ = writeln!(text, "\n[{table}]");
-            for Change { key, value, .. } in self.changes.iter().filter(|change| change.table == table) {
+            for Change { key, value, .. } in
+                self.changes.iter().filter(|change| change.table == table)
+            {
                 let _ = writeln!(text, "{key} = {value:?}");
             }
         }
@@ -91,20 +104,37 @@ mod tests {
     #[test]
     fn changes_are_those_of_the_machine_and_nothing_else_is() {
         let base = Machine::load("tnv40".as_ref()).expect("built in");
-        let variant = Variant::of("tnv40", "odd").with_axes("kp_1_s", 40.0).with("axis.y", "kp_1_s", 60.0).with(
-            "limits",
-            "normal_accel_mm_s2",
-            1000.0,
-        );
+        let variant = Variant::of("tnv40", "odd")
+            .with_axes("kp_1_s", 40.0)
+            .with("axis.y", "kp_1_s", 60.0)
+            .with("limits", "normal_accel_mm_s2", 1000.0);
         let machine = variant.machine().expect("valid");
-        assert_eq!((machine.axis(0).kp_1_s, machine.axis(1).kp_1_s, machine.axis(2).kp_1_s), (40.0, 60.0, 40.0));
+        assert_eq!(
+            (
+                machine.axis(0).kp_1_s,
+                machine.axis(1).kp_1_s,
+                machine.axis(2).kp_1_s
+            ),
+            (40.0, 60.0, 40.0)
+        );
         assert_eq!(machine.limits.normal_accel_mm_s2, 1000.0);
         assert_eq!(machine.axis(0).inertia_kg_m2, base.axis(0).inertia_kg_m2);
-        assert_eq!(Variant::of("tnv40", "same").machine().expect("valid").fingerprint(), base.fingerprint());
+        assert_eq!(
+            Variant::of("tnv40", "same")
+                .machine()
+                .expect("valid")
+                .fingerprint(),
+            base.fingerprint()
+        );
     }
 
     #[test]
     fn a_key_that_there_is_none_of_is_refused() {
-        assert!(Variant::of("tnv40", "odd").with("limits", "no_such_key", 1.0).machine().is_err());
+        assert!(
+            Variant::of("tnv40", "odd")
+                .with("limits", "no_such_key", 1.0)
+                .machine()
+                .is_err()
+        );
     }
 }

@@ -7,12 +7,12 @@
 //! F    = dE/de + c (dq/de)^2 de/dt                                 force on the table; r F is the torque on the motor
 //! ```
 //!
-//! r travel for a turn, m/rad; b half of the backlash, m; s the length over which a flank comes to bear, m; k stiffness, N/m; k3
-//! hardening, N/m^3; c damping, N s/m. Without backlash q = e.
+//! r travel for a turn, m/rad; b half of the backlash, m; s the length over which a flank comes to
+//! bear, m; k stiffness, N/m; k3 hardening, N/m^3; c damping, N s/m. Without backlash q = e.
 //!
-//! Source: Altintas, Verl, Brecher, Uriarte and Pritschow (2011), Machine tool feed drives, for stiffness, backlash and their sizes; a
-//! spring with a cubic part as Duffing's (1918). That the energy is a function of q makes the spring conservative whatever the
-//! backlash.
+//! Source: Altintas, Verl, Brecher, Uriarte and Pritschow (2011), Machine tool feed drives, for
+//! stiffness, backlash and their sizes; a spring with a cubic part as Duffing's (1918). That the
+//! energy is a function of q makes the spring conservative whatever the backlash.
 
 use serde::Serialize;
 
@@ -49,16 +49,21 @@ impl BallScrew {
         }
         let (half_m, edge2) = (0.5 * self.backlash_m, self.edge_m * self.edge_m);
         let root = |at_m: f64| (at_m * at_m + edge2).sqrt();
-        let ([low, high], [low_root, high_root]) =
-            ([lead_m - half_m, lead_m + half_m], [root(lead_m - half_m), root(lead_m + half_m)]);
+        let ([low, high], [low_root, high_root]) = (
+            [lead_m - half_m, lead_m + half_m],
+            [root(lead_m - half_m), root(lead_m + half_m)],
+        );
         [
             lead_m + 0.5 * (low_root - high_root),
             1.0 + 0.5 * (low / low_root - high / high_root),
-            0.5 * edge2 * (1.0 / (low_root * low_root * low_root) - 1.0 / (high_root * high_root * high_root)),
+            0.5 * edge2
+                * (1.0 / (low_root * low_root * low_root)
+                    - 1.0 / (high_root * high_root * high_root)),
         ]
     }
 
-    /// Force on the table where the nut is ahead of it by `lead_m`, and runs away from it at `rate_m_s`.
+    /// Force on the table where the nut is ahead of it by `lead_m`, and runs away from it at
+    /// `rate_m_s`.
     pub(super) fn force(&self, lead_m: f64, rate_m_s: f64) -> ScrewForce {
         let [bending, first, second] = self.bending(lead_m);
         let square = bending * bending;
@@ -79,9 +84,17 @@ impl BallScrew {
         let (mut low_m, mut high_m) = (0.0, self.backlash_m + load_n.abs() / self.stiffness_n_m);
         for _ in 0..80 {
             let middle_m = 0.5 * (low_m + high_m);
-            if self.force(middle_m, 0.0).force_n < load_n.abs() { low_m = middle_m } else { high_m = middle_m }
+            if self.force(middle_m, 0.0).force_n < load_n.abs() {
+                low_m = middle_m;
+            } else {
+                high_m = middle_m;
+            }
         }
-        if load_n == 0.0 { 0.0 } else { high_m.copysign(load_n) }
+        if load_n == 0.0 {
+            0.0
+        } else {
+            high_m.copysign(load_n)
+        }
     }
 
     /// Energy in the spring, J.

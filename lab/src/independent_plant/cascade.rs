@@ -10,10 +10,12 @@
 //! U     += Tc wc R (i_ref - i) + (u - u*) Tc R / L  current loop, once a period Tc
 //! ```
 //!
-//! wc bandwidth of the current loop, rad/s, with the zero of its controller on the pole of the winding (R, L).
+//! wc bandwidth of the current loop, rad/s, with the zero of its controller on the pole of the
+//! winding (R, L).
 //!
-//! Source: Gross, Hamann and Wiegaertner (2001), Electrical feed drives in automation, for the cascade and its settings; Astrom and
-//! Hagglund (2006), Advanced PID control, section 3.5, for the reset by back-calculation.
+//! Source: Gross, Hamann and Wiegaertner (2001), Electrical feed drives in automation, for the
+//! cascade and its settings; Astrom and Hagglund (2006), Advanced PID control, section 3.5, for the
+//! reset by back-calculation.
 
 use serde::Serialize;
 
@@ -25,7 +27,8 @@ use super::position_sensor::Late;
 pub struct DriveCascade {
     /// Period of the current loop, s.
     pub current_s: f64,
-    /// Periods of the current loop in one of the drive, and of the drive in one of the bus, which is the servo period.
+    /// Periods of the current loop in one of the drive, and of the drive in one of the bus, which
+    /// is the servo period.
     pub periods: [u32; 2],
     /// Bandwidth of the current loop, rad/s.
     pub current_rad_s: f64,
@@ -103,21 +106,34 @@ impl CascadeState {
         let drive_s = cascade.drive_s();
         let [command_rad, command_rad_s] = self.bus.pass(input.command);
         let [seen_rad, motor_rad] = input.seen_rad;
-        let part = if cascade.speed_filter_s > 0.0 { 1.0 - libm::exp(-drive_s / cascade.speed_filter_s) } else { 1.0 };
-        self.speed_rad_s += part * ((motor_rad - self.motor_before_rad) / drive_s - self.speed_rad_s);
+        let part = if cascade.speed_filter_s > 0.0 {
+            1.0 - libm::exp(-drive_s / cascade.speed_filter_s)
+        } else {
+            1.0
+        };
+        self.speed_rad_s +=
+            part * ((motor_rad - self.motor_before_rad) / drive_s - self.speed_rad_s);
         self.motor_before_rad = motor_rad;
-        let reference_rad_s = cascade.kp_1_s * (command_rad - seen_rad) + cascade.velocity_feedforward * command_rad_s;
+        let reference_rad_s = cascade.kp_1_s * (command_rad - seen_rad)
+            + cascade.velocity_feedforward * command_rad_s;
         let proportional_a = cascade.speed_gain_a_s * (reference_rad_s - self.speed_rad_s);
         let wanted_a = proportional_a + self.speed_integral_a;
         let [_, limit_a] = cascade.limits;
         self.current_ref_a = wanted_a.clamp(-limit_a, limit_a);
-        self.speed_integral_a += drive_s / cascade.speed_integral_s * (proportional_a + self.current_ref_a - wanted_a);
+        self.speed_integral_a +=
+            drive_s / cascade.speed_integral_s * (proportional_a + self.current_ref_a - wanted_a);
     }
 
     /// Current loop: the voltage, V.
-    pub(super) fn volts(&mut self, cascade: &DriveCascade, motor: &WoundMotor, current_a: f64) -> f64 {
+    pub(super) fn volts(
+        &mut self,
+        cascade: &DriveCascade,
+        motor: &WoundMotor,
+        current_a: f64,
+    ) -> f64 {
         let error_a = self.current_ref_a - current_a;
-        let wanted_v = cascade.current_rad_s * motor.inductance_h * error_a + self.voltage_integral_v;
+        let wanted_v =
+            cascade.current_rad_s * motor.inductance_h * error_a + self.voltage_integral_v;
         let [limit_v, _] = cascade.limits;
         let volts = wanted_v.clamp(-limit_v, limit_v);
         let reset_v = (volts - wanted_v) * motor.resistance_ohm / motor.inductance_h;

@@ -7,7 +7,8 @@
 //! lag                          (1 - f) / Kp + command delay: following error over speed, as recorded, where the integral has settled
 //! ```
 //!
-//! Delays are absolute; the law of `crates/control/src/axis.rs` holds its reference for a servo period beside its delay.
+//! Delays are absolute; the law of `crates/control/src/axis.rs` holds its reference for a servo
+//! period beside its delay.
 
 use serde::Serialize;
 
@@ -33,12 +34,23 @@ pub struct LinearPart {
 impl LinearPart {
     /// Of an axis.
     pub fn of(axis: &IndependentAxis) -> Self {
-        let IndependentAxis { feed, cascade, encoder, scale, .. } = axis;
+        let IndependentAxis {
+            feed,
+            cascade,
+            encoder,
+            scale,
+            ..
+        } = axis;
         let inertia = feed.inertia_kg_m2();
         let gain = cascade.speed_gain_a_s * feed.motor.torque_nm_a;
-        let viscous = feed.motor.friction.viscous + feed.screw.travel_m_rad.powi(2) * feed.table.friction.viscous;
+        let viscous = feed.motor.friction.viscous
+            + feed.screw.travel_m_rad.powi(2) * feed.table.friction.viscous;
         let (servo_s, drive_s) = (cascade.servo_s(), cascade.drive_s());
-        let line_s = if cascade.interpolates { servo_s - drive_s } else { 0.5 * (servo_s - drive_s) };
+        let line_s = if cascade.interpolates {
+            servo_s - drive_s
+        } else {
+            0.5 * (servo_s - drive_s)
+        };
         let command_delay_s = f64::from(cascade.bus_periods) * drive_s + line_s;
         let late_s = f64::from(scale.as_ref().unwrap_or(encoder).late_periods) * drive_s;
         Self {

@@ -6,12 +6,14 @@
 //! F     = s0 z + s1 exp(-(v / vs)^2) dz/dt + s2 v
 //! ```
 //!
-//! z is the bending of the bristles, m or rad; s0 their stiffness, N/m or N m/rad; s1 their damping, N s/m or N m s/rad; s2 the
-//! viscous friction; Fc and Fs the Coulomb and the break-away level, N or N m; vs the Stribeck speed, m/s or rad/s; d the part by which
-//! friction is higher in the positive direction and lower in the negative.
+//! z is the bending of the bristles, m or rad; s0 their stiffness, N/m or N m/rad; s1 their
+//! damping, N s/m or N m s/rad; s2 the viscous friction; Fc and Fs the Coulomb and the break-away
+//! level, N or N m; vs the Stribeck speed, m/s or rad/s; d the part by which friction is higher in
+//! the positive direction and lower in the negative.
 //!
-//! Source: Canudas de Wit, Olsson, Astrom and Lischinsky (1995), A new model for control of systems with friction, eqs. 1 to 4, with a
-//! damping s1 that goes with the speed as they propose so that friction stays passive.
+//! Source: Canudas de Wit, Olsson, Astrom and Lischinsky (1995), A new model for control of systems
+//! with friction, eqs. 1 to 4, with a damping s1 that goes with the speed as they propose so that
+//! friction stays passive.
 
 use serde::Serialize;
 
@@ -50,11 +52,19 @@ pub(super) struct Bristles {
 }
 
 impl LuGre {
-    /// Friction whose bristles bend by `bending` at the Coulomb level, with bristles damped by twice the root of stiffness times `mass`.
+    /// Friction whose bristles bend by `bending` at the Coulomb level, with bristles damped by
+    /// twice the root of stiffness times `mass`.
     pub fn new(coulomb: f64, stiction: f64, stribeck: f64, bending: f64, mass: f64) -> Self {
         let stiffness = coulomb / bending;
         let damping = 2.0 * (stiffness * mass).sqrt();
-        Self { stiffness, damping, coulomb, break_away: stiction * coulomb, stribeck, ..Self::default() }
+        Self {
+            stiffness,
+            damping,
+            coulomb,
+            break_away: stiction * coulomb,
+            stribeck,
+            ..Self::default()
+        }
     }
 
     /// The level at which it breaks away in the direction of a sign, N or N m.
@@ -62,7 +72,8 @@ impl LuGre {
         self.break_away * (1.0 + self.asymmetry * sign)
     }
 
-    /// Bending at the end of a step by the trapezoidal rule, from the bending and its rate at the beginning.
+    /// Bending at the end of a step by the trapezoidal rule, from the bending and its rate at the
+    /// beginning.
     pub(super) fn bent(&self, bending: f64, rate: f64, speed: f64, half_s: f64) -> f64 {
         (bending + half_s * (rate + speed)) / (1.0 + half_s * self.decay(speed)[0])
     }
@@ -79,14 +90,22 @@ impl LuGre {
         let level = (self.coulomb + stribeck) * side;
         let slope = -2.0 * ratio / self.stribeck * stribeck * side;
         let decay = self.stiffness * speed.abs() / level;
-        [decay, self.stiffness * sign / level - decay * slope / level, near]
+        [
+            decay,
+            self.stiffness * sign / level - decay * slope / level,
+            near,
+        ]
     }
 
     /// Friction at a speed and a bending.
     pub(super) fn at(&self, speed: f64, bending: f64) -> Bristles {
         let [decay, slope, near] = self.decay(speed);
         if self.coulomb <= 0.0 {
-            return Bristles { force: self.viscous * speed, force_by_speed: self.viscous, ..Bristles::default() };
+            return Bristles {
+                force: self.viscous * speed,
+                force_by_speed: self.viscous,
+                ..Bristles::default()
+            };
         }
         let rate = speed - decay * bending;
         let damping = self.damping * near;
@@ -115,8 +134,10 @@ impl LuGre {
 }
 
 impl Bristles {
-    /// What the friction at the end of a step changes by with the speed there, the bending following by the trapezoidal rule.
+    /// What the friction at the end of a step changes by with the speed there, the bending
+    /// following by the trapezoidal rule.
     pub(super) fn slope(&self, half_s: f64) -> f64 {
-        self.force_by_speed + self.force_by_bending * half_s * self.rate_by_speed / (1.0 + half_s * self.decay)
+        self.force_by_speed
+            + self.force_by_bending * half_s * self.rate_by_speed / (1.0 + half_s * self.decay)
     }
 }

@@ -6,8 +6,9 @@
 //! | `knee-mill` | retrofitted mill on dovetail ways: heavy, much friction that sticks, some backlash |
 //! | `machining-center` | preloaded screws, scales on the tables, fast loops behind a bus with interpolation |
 //!
-//! Sizes are those of such machines in data sheets of motors, screws and guideways; no number was chosen by a result. A drawn machine is
-//! one of the three with every number drawn within [`DRAWN`] of it or of each other.
+//! Sizes are those of such machines in data sheets of motors, screws and guideways; no number was
+//! chosen by a result. A drawn machine is one of the three with every number drawn within [`DRAWN`]
+//! of it or of each other.
 
 use std::f64::consts::TAU;
 
@@ -25,8 +26,8 @@ use crate::held_out::random::Random;
 /// Names of the machines.
 pub const INDEPENDENT_MACHINES: [&str; 3] = ["bench-router", "knee-mill", "machining-center"];
 
-/// Factors by which numbers of a drawn machine differ from those of the machine that it is drawn around: masses and stiffness, loop
-/// settings, friction and backlash.
+/// Factors by which numbers of a drawn machine differ from those of the machine that it is drawn
+/// around: masses and stiffness, loop settings, friction and backlash.
 pub const DRAWN: [[f64; 2]; 3] = [[0.7, 1.4], [0.75, 1.3], [0.5, 1.8]];
 
 /// Period of all current loops: 16 kHz.
@@ -84,10 +85,12 @@ struct AxisSpec {
     integral_s: f64,
     feedforward: f64,
     speed_filter_s: f64,
-    /// Periods of the current loop in one of the drive, and of that in a servo period; of the drive by which a command is late.
+    /// Periods of the current loop in one of the drive, and of that in a servo period; of the drive
+    /// by which a command is late.
     periods: [u32; 3],
     interpolates: bool,
-    /// Step, signal period and error of the motor's encoder, um, and of the scale, where there is one.
+    /// Step, signal period and error of the motor's encoder, um, and of the scale, where there is
+    /// one.
     encoder_um: [f64; 3],
     scale_um: Option<[f64; 3]>,
     late_periods: u32,
@@ -187,8 +190,15 @@ const MACHINING_CENTER: AxisSpec = AxisSpec {
 impl IndependentMachine {
     /// One of [`INDEPENDENT_MACHINES`] by its name.
     pub fn named(name: &str) -> Option<Self> {
-        let number = INDEPENDENT_MACHINES.iter().position(|known| *known == name)?;
-        Some(Self::made(name.to_owned(), number, &mut Random::new(number as u64 + 1), false))
+        let number = INDEPENDENT_MACHINES
+            .iter()
+            .position(|known| *known == name)?;
+        Some(Self::made(
+            name.to_owned(),
+            number,
+            &mut Random::new(number as u64 + 1),
+            false,
+        ))
     }
 
     /// One drawn around them by a seed: the same on every platform.
@@ -202,17 +212,35 @@ impl IndependentMachine {
     /// Phases are drawn in any case: nobody knows where an axis was homed.
     fn made(name: String, number: usize, random: &mut Random, differs: bool) -> Self {
         let (kind, limits, mut specs) = [
-            ("router", [60.0, 50.0, 250.0, 8000.0], three(&ROUTER, [0.75, 0.4], 25.0)),
-            ("workshop", [100.0, 60.0, 500.0, 20_000.0], three(&KNEE_MILL, [0.6, 1.4], 700.0)),
-            ("stiff", [400.0, 150.0, 2500.0, 60_000.0], three(&MACHINING_CENTER, [1.3, 0.9], 1500.0)),
+            (
+                "router",
+                [60.0, 50.0, 250.0, 8000.0],
+                three(&ROUTER, [0.75, 0.4], 25.0),
+            ),
+            (
+                "workshop",
+                [100.0, 60.0, 500.0, 20_000.0],
+                three(&KNEE_MILL, [0.6, 1.4], 700.0),
+            ),
+            (
+                "stiff",
+                [400.0, 150.0, 2500.0, 60_000.0],
+                three(&MACHINING_CENTER, [1.3, 0.9], 1500.0),
+            ),
         ][number];
         if differs {
             specs.iter_mut().for_each(|spec| differ(spec, random));
         }
-        Self { name, kind, limits, axes: specs.map(|spec| axis(&spec, random)) }
+        Self {
+            name,
+            kind,
+            limits,
+            axes: specs.map(|spec| axis(&spec, random)),
+        }
     }
 
-    /// What is known of it before anything is recorded: limits of its control, nominal settings of its drives, data sheets.
+    /// What is known of it before anything is recorded: limits of its control, nominal settings of
+    /// its drives, data sheets.
     ///
     /// # Errors
     /// None, where the built-in machines are read.
@@ -243,7 +271,11 @@ impl IndependentMachine {
             name: self.name.clone(),
             description: format!("data sheet of {}", self.name),
             source: "lab/src/independent_plant/machines.rs".to_owned(),
-            period: Period { servo_s, mechanics_s: 0.1 * servo_s, mechanics_per_servo: 10 },
+            period: Period {
+                servo_s,
+                mechanics_s: 0.1 * servo_s,
+                mechanics_per_servo: 10,
+            },
             limits: Limits {
                 rapid_mm_s,
                 max_feed_mm_s,
@@ -264,26 +296,79 @@ impl IndependentMachine {
 
 /// The axes of a machine: y and z have so much of the mass of x, and z carries a load.
 fn three(x: &AxisSpec, mass: [f64; 2], load_n: f64) -> [AxisSpec; 3] {
-    let other = |part: f64| AxisSpec { mass_kg: part * x.mass_kg, asymmetry: -x.asymmetry, ..*x };
-    [*x, other(mass[0]), AxisSpec { load_n, ..other(mass[1]) }]
+    let other = |part: f64| AxisSpec {
+        mass_kg: part * x.mass_kg,
+        asymmetry: -x.asymmetry,
+        ..*x
+    };
+    [
+        *x,
+        other(mass[0]),
+        AxisSpec {
+            load_n,
+            ..other(mass[1])
+        },
+    ]
 }
 
 /// Draws every number that differs from machine to machine.
 fn differ(spec: &mut AxisSpec, random: &mut Random) {
     let [solid, set, rough] = DRAWN;
     let mut by = |values: &mut [&mut f64], range| {
-        values.iter_mut().for_each(|value| **value *= random.by_ratio(range));
+        values
+            .iter_mut()
+            .for_each(|value| **value *= random.by_ratio(range));
     };
-    let AxisSpec { resonance, coulomb, stiction, ripple, cogging, viscous, .. } = spec;
-    by(&mut [&mut resonance[0], &mut spec.rotor_kg_m2, &mut spec.mass_kg], solid);
-    by(&mut [&mut spec.kp_1_s, &mut spec.speed_loop_1_s, &mut spec.integral_s], set);
+    let AxisSpec {
+        resonance,
+        coulomb,
+        stiction,
+        ripple,
+        cogging,
+        viscous,
+        ..
+    } = spec;
+    by(
+        &mut [&mut resonance[0], &mut spec.rotor_kg_m2, &mut spec.mass_kg],
+        solid,
+    );
+    by(
+        &mut [
+            &mut spec.kp_1_s,
+            &mut spec.speed_loop_1_s,
+            &mut spec.integral_s,
+        ],
+        set,
+    );
     let [motor, table] = coulomb;
-    by(&mut [motor, table, &mut spec.by_weight, &mut spec.backlash_um, &mut spec.lead_error_um], rough);
+    by(
+        &mut [
+            motor,
+            table,
+            &mut spec.by_weight,
+            &mut spec.backlash_um,
+            &mut spec.lead_error_um,
+        ],
+        rough,
+    );
     let [_, stribeck, bending] = stiction;
-    by(&mut [stribeck, bending, &mut ripple[0], &mut cogging[0]], rough);
+    by(
+        &mut [stribeck, bending, &mut ripple[0], &mut cogging[0]],
+        rough,
+    );
     let [motor, table] = viscous;
-    by(&mut [motor, table, &mut resonance[1], &mut spec.swing[0]], rough);
-    by(&mut [&mut spec.encoder_um[2], &mut spec.asymmetry, &mut spec.load_n], rough);
+    by(
+        &mut [motor, table, &mut resonance[1], &mut spec.swing[0]],
+        rough,
+    );
+    by(
+        &mut [
+            &mut spec.encoder_um[2],
+            &mut spec.asymmetry,
+            &mut spec.load_n,
+        ],
+        rough,
+    );
     spec.feedforward = (spec.feedforward * random.between([0.9, 1.05])).min(1.0);
     spec.periods[2] = random.whole(1, 2 * spec.periods[2]);
     if random.one_in(2) {
@@ -301,8 +386,18 @@ fn axis(spec: &AxisSpec, random: &mut Random) -> IndependentAxis {
     let [motor_nm, guide_n] = spec.coulomb;
     let guide_n = guide_n + spec.by_weight * spec.mass_kg * GRAVITY_M_S2;
     let friction = |coulomb: f64, per: f64, viscous: f64, mass: f64| {
-        let bristles = LuGre::new(coulomb, stiction, 1e-3 * stribeck_mm_s * per, 1e-6 * bending_um * per, mass);
-        LuGre { viscous, asymmetry: spec.asymmetry, ..bristles }
+        let bristles = LuGre::new(
+            coulomb,
+            stiction,
+            1e-3 * stribeck_mm_s * per,
+            1e-6 * bending_um * per,
+            mass,
+        );
+        LuGre {
+            viscous,
+            asymmetry: spec.asymmetry,
+            ..bristles
+        }
     };
     let angular = TAU * spec.resonance[0];
     let stiffness_n_m = spec.mass_kg * angular * angular;
@@ -314,7 +409,12 @@ fn axis(spec: &AxisSpec, random: &mut Random) -> IndependentAxis {
             ripple: [spec.ripple[0], spec.ripple[1], phase()],
             cogging: [spec.cogging[0], spec.cogging[1], phase()],
             inertia_kg_m2: spec.rotor_kg_m2,
-            friction: friction(motor_nm, 1.0 / travel_m_rad, spec.viscous[0], spec.rotor_kg_m2),
+            friction: friction(
+                motor_nm,
+                1.0 / travel_m_rad,
+                spec.viscous[0],
+                spec.rotor_kg_m2,
+            ),
         },
         screw: BallScrew {
             travel_m_rad,
@@ -340,7 +440,13 @@ fn axis(spec: &AxisSpec, random: &mut Random) -> IndependentAxis {
     };
     let (encoder, scale) = (sensor(spec.encoder_um), spec.scale_um.map(&mut sensor));
     let cascade = cascade(spec, inertia);
-    IndependentAxis { feed, cascade, encoder, scale, lead_error: [1e-3 * spec.lead_error_um, phase()] }
+    IndependentAxis {
+        feed,
+        cascade,
+        encoder,
+        scale,
+        lead_error: [1e-3 * spec.lead_error_um, phase()],
+    }
 }
 
 /// The drive of a specification, set to the inertia.
@@ -369,9 +475,16 @@ mod tests {
     #[test]
     fn machines_are_the_same_again_differ_from_each_other_and_have_data_sheets_that_read_back() {
         let named = INDEPENDENT_MACHINES.map(|name| IndependentMachine::named(name).unwrap());
-        let all: Vec<IndependentMachine> = named.into_iter().chain((0..20).map(IndependentMachine::drawn)).collect();
+        let all: Vec<IndependentMachine> = named
+            .into_iter()
+            .chain((0..20).map(IndependentMachine::drawn))
+            .collect();
         for (i, machine) in all.iter().enumerate() {
-            assert!(all[..i].iter().all(|other| other.axes != machine.axes && other.name != machine.name));
+            assert!(
+                all[..i]
+                    .iter()
+                    .all(|other| other.axes != machine.axes && other.name != machine.name)
+            );
             let sheet = machine.sheet().unwrap();
             assert_eq!(Machine::parse("sheet.toml", &sheet.text()).unwrap(), sheet);
         }

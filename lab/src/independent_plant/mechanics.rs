@@ -8,18 +8,22 @@
 //! K(theta)     = Kt (1 + k sin(nk theta + pk)),   m(x) = m0 (1 + a sin(x / l + p))
 //! ```
 //!
-//! i current, A; u voltage, V; w and theta speed and angle of the motor, rad/s and rad; v and x of the table, m/s and m; F force of the
-//! screw (`ball_screw.rs`), N; Fm and Ft friction at motor and table (`lugre.rs`), N m and N; Tc cogging, N m; W load, N, such as the
-//! weight of a spindle; m(x) the mass that moves, kg, which depends on the position where a cable chain is laid down or a gantry is
-//! turned. The equation of the table is Lagrange's, so that its energy m v^2 / 2 is conserved. Phases of cogging, ripple and mass
-//! depend on where the axis was homed, and are known to nobody.
+//! i current, A; u voltage, V; w and theta speed and angle of the motor, rad/s and rad; v and x of
+//! the table, m/s and m; F force of the screw (`ball_screw.rs`), N; Fm and Ft friction at motor and
+//! table (`lugre.rs`), N m and N; Tc cogging, N m; W load, N, such as the weight of a spindle; m(x)
+//! the mass that moves, kg, which depends on the position where a cable chain is laid down or a
+//! gantry is turned. The equation of the table is Lagrange's, so that its energy m v^2 / 2 is
+//! conserved. Phases of cogging, ripple and mass depend on where the axis was homed, and are known
+//! to nobody.
 //!
-//! Integrated by the implicit trapezoidal rule, y1 = y0 + h / 2 (f(y0) + f(y1)), under a held voltage. It is of second order, A-stable,
-//! and leaves the energy of a linear spring alone. Angle, position, current and bristles at the end of a step follow in closed form
-//! from the two speeds there; these are found by Newton's method.
+//! Integrated by the implicit trapezoidal rule, y1 = y0 + h / 2 (f(y0) + f(y1)), under a held
+//! voltage. It is of second order, A-stable, and leaves the energy of a linear spring alone. Angle,
+//! position, current and bristles at the end of a step follow in closed form from the two speeds
+//! there; these are found by Newton's method.
 //!
-//! Source: Altintas (2012), Manufacturing Automation, section 5.3, for motor and drive; Hairer, Norsett and Wanner (1993), Solving
-//! Ordinary Differential Equations I, section II.7, for the trapezoidal rule.
+//! Source: Altintas (2012), Manufacturing Automation, section 5.3, for motor and drive; Hairer,
+//! Norsett and Wanner (1993), Solving Ordinary Differential Equations I, section II.7, for the
+//! trapezoidal rule.
 
 use serde::Serialize;
 
@@ -28,7 +32,8 @@ use super::lugre::LuGre;
 
 /// Most rounds of Newton's method; two or three are usual.
 const MOST_ROUNDS: usize = 20;
-/// Corrections of the speeds, rad/s and m/s, with which it has come to its end: the next would be their square.
+/// Corrections of the speeds, rad/s and m/s, with which it has come to its end: the next would be
+/// their square.
 const SMALL: [f64; 2] = [1e-8, 1e-11];
 
 /// A direct-current motor, or a servo motor in the coordinates of its rotor.
@@ -91,7 +96,8 @@ pub struct FeedState {
     pub bristles: [f64; 2],
 }
 
-/// Rates of a state, and what those of the speeds change by with the speeds, the rest of the state following by the trapezoidal rule.
+/// Rates of a state, and what those of the speeds change by with the speeds, the rest of the state
+/// following by the trapezoidal rule.
 struct Rates {
     current_a_s: f64,
     speeds: [f64; 2],
@@ -109,7 +115,10 @@ impl WoundMotor {
     /// Torque constant at an angle, N m/A, and its derivative by the angle.
     fn constant(&self, angle_rad: f64) -> [f64; 2] {
         let [ripple, slope] = wave(self.ripple, angle_rad);
-        [self.torque_nm_a * ripple + self.torque_nm_a, self.torque_nm_a * slope]
+        [
+            self.torque_nm_a * ripple + self.torque_nm_a,
+            self.torque_nm_a * slope,
+        ]
     }
 
     /// Torque at a current, N m.
@@ -132,15 +141,29 @@ impl GuidedTable {
 }
 
 impl FeedAxis {
-    /// At rest with the motor at an angle or, where `table_m` is given, with the table at a position; the load is carried.
+    /// At rest with the motor at an angle or, where `table_m` is given, with the table at a
+    /// position; the load is carried.
     pub(super) fn at_rest(&self, place_m: f64, is_table: bool) -> FeedState {
-        let Self { motor, screw, table } = self;
+        let Self {
+            motor,
+            screw,
+            table,
+        } = self;
         let lead_m = screw.lead_under(table.load_n);
-        let (nut_m, table_m) = if is_table { (place_m + lead_m, place_m) } else { (place_m, place_m - lead_m) };
+        let (nut_m, table_m) = if is_table {
+            (place_m + lead_m, place_m)
+        } else {
+            (place_m, place_m - lead_m)
+        };
         let motor_rad = nut_m / screw.travel_m_rad;
         let held_nm = screw.travel_m_rad * table.load_n + wave(motor.cogging, motor_rad)[0];
         let current_a = held_nm / motor.constant(motor_rad)[0];
-        FeedState { current_a, motor_rad, table_m, ..FeedState::default() }
+        FeedState {
+            current_a,
+            motor_rad,
+            table_m,
+            ..FeedState::default()
+        }
     }
 
     /// The state one step later under a held voltage.
@@ -152,12 +175,16 @@ impl FeedAxis {
         let mut state = self.following(from, &rates, speeds, volts, half_s);
         for _ in 0..MOST_ROUNDS {
             let end = self.rates(&state, volts, half_s);
-            let left: [f64; 2] =
-                std::array::from_fn(|i| speeds[i] - start[i] - half_s * (rates.speeds[i] + end.speeds[i]));
+            let left: [f64; 2] = std::array::from_fn(|i| {
+                speeds[i] - start[i] - half_s * (rates.speeds[i] + end.speeds[i])
+            });
             let [[a, b], [c, d]] = end.slopes.map(|row| row.map(|slope| -half_s * slope));
             let (a, d) = (1.0 + a, 1.0 + d);
             let determinant = a * d - b * c;
-            let change = [(d * left[0] - b * left[1]) / determinant, (a * left[1] - c * left[0]) / determinant];
+            let change = [
+                (d * left[0] - b * left[1]) / determinant,
+                (a * left[1] - c * left[0]) / determinant,
+            ];
             speeds = [speeds[0] - change[0], speeds[1] - change[1]];
             state = self.following(from, &rates, speeds, volts, half_s);
             if change[0].abs() <= SMALL[0] && change[1].abs() <= SMALL[1] {
@@ -168,54 +195,99 @@ impl FeedAxis {
     }
 
     /// The state at the end of a step whose speeds there are these.
-    fn following(&self, from: &FeedState, rates: &Rates, speeds: [f64; 2], volts: f64, half_s: f64) -> FeedState {
+    fn following(
+        &self,
+        from: &FeedState,
+        rates: &Rates,
+        speeds: [f64; 2],
+        volts: f64,
+        half_s: f64,
+    ) -> FeedState {
         let Self { motor, table, .. } = self;
         let [motor_rad_s, table_m_s] = speeds;
         let motor_rad = from.motor_rad + half_s * (from.motor_rad_s + motor_rad_s);
         let table_m = from.table_m + half_s * (from.table_m_s + table_m_s);
         let drop_v = volts - motor.constant(motor_rad)[0] * motor_rad_s;
-        let current_a = (from.current_a + half_s * (rates.current_a_s + drop_v / motor.inductance_h))
+        let current_a = (from.current_a
+            + half_s * (rates.current_a_s + drop_v / motor.inductance_h))
             / (1.0 + half_s * motor.resistance_ohm / motor.inductance_h);
-        let bent = |i: usize, friction: &LuGre| friction.bent(from.bristles[i], rates.bristles[i], speeds[i], half_s);
+        let bent = |i: usize, friction: &LuGre| {
+            friction.bent(from.bristles[i], rates.bristles[i], speeds[i], half_s)
+        };
         let bristles = [bent(0, &motor.friction), bent(1, &table.friction)];
-        FeedState { current_a, motor_rad_s, motor_rad, table_m_s, table_m, bristles }
+        FeedState {
+            current_a,
+            motor_rad_s,
+            motor_rad,
+            table_m_s,
+            table_m,
+            bristles,
+        }
     }
 
     /// Rates of a state.
     fn rates(&self, state: &FeedState, volts: f64, half_s: f64) -> Rates {
-        let Self { motor, screw, table } = self;
-        let FeedState { current_a, motor_rad_s: w, motor_rad, table_m_s: v, table_m, bristles } = *state;
+        let Self {
+            motor,
+            screw,
+            table,
+        } = self;
+        let FeedState {
+            current_a,
+            motor_rad_s: w,
+            motor_rad,
+            table_m_s: v,
+            table_m,
+            bristles,
+        } = *state;
         let travel = screw.travel_m_rad;
         let [constant, constant_slope] = motor.constant(motor_rad);
         let [cogging, cogging_slope] = wave(motor.cogging, motor_rad);
         let force = screw.force(travel * motor_rad - table_m, travel * w - v);
         let by_nut = half_s * force.slopes[0] + force.slopes[1];
-        let [at_motor, at_table] = [motor.friction.at(w, bristles[0]), table.friction.at(v, bristles[1])];
+        let [at_motor, at_table] = [
+            motor.friction.at(w, bristles[0]),
+            table.friction.at(v, bristles[1]),
+        ];
         let [mass, mass_slope, mass_bend] = table.mass(table_m);
 
         let electrical = 1.0 + half_s * motor.resistance_ohm / motor.inductance_h;
-        let current_slope = -half_s * (constant + constant_slope * half_s * w) / (motor.inductance_h * electrical);
+        let current_slope =
+            -half_s * (constant + constant_slope * half_s * w) / (motor.inductance_h * electrical);
         let torque_nm = constant * current_a - cogging - travel * force.force_n - at_motor.force;
-        let torque_slope = half_s * (constant_slope * current_a - cogging_slope) + constant * current_slope
+        let torque_slope = half_s * (constant_slope * current_a - cogging_slope)
+            + constant * current_slope
             - travel * travel * by_nut
             - at_motor.slope(half_s);
         let pull_n = force.force_n - at_table.force - table.load_n - 0.5 * mass_slope * v * v;
         let table_m_s2 = pull_n / mass;
-        let pull_slope = -by_nut - at_table.slope(half_s) - mass_slope * v - 0.5 * half_s * mass_bend * v * v;
+        let pull_slope =
+            -by_nut - at_table.slope(half_s) - mass_slope * v - 0.5 * half_s * mass_bend * v * v;
         Rates {
-            current_a_s: (volts - motor.resistance_ohm * current_a - constant * w) / motor.inductance_h,
+            current_a_s: (volts - motor.resistance_ohm * current_a - constant * w)
+                / motor.inductance_h,
             speeds: [torque_nm / motor.inertia_kg_m2, table_m_s2],
             bristles: [at_motor.rate, at_table.rate],
             slopes: [
-                [torque_slope / motor.inertia_kg_m2, travel * by_nut / motor.inertia_kg_m2],
-                [travel * by_nut / mass, (pull_slope - half_s * mass_slope * table_m_s2) / mass],
+                [
+                    torque_slope / motor.inertia_kg_m2,
+                    travel * by_nut / motor.inertia_kg_m2,
+                ],
+                [
+                    travel * by_nut / mass,
+                    (pull_slope - half_s * mass_slope * table_m_s2) / mass,
+                ],
             ],
         }
     }
 
     /// Energy that is stored in motion, springs, bristles, winding, cogging and height, J.
     pub fn energy_j(&self, state: &FeedState) -> f64 {
-        let Self { motor, screw, table } = self;
+        let Self {
+            motor,
+            screw,
+            table,
+        } = self;
         let [amplitude_nm, per_rad, phase_rad] = motor.cogging;
         let cogging_j = if amplitude_nm == 0.0 {
             0.0
@@ -234,11 +306,18 @@ impl FeedAxis {
 
     /// What friction, damping and the winding take of it, W.
     pub fn loss_w(&self, state: &FeedState) -> f64 {
-        let Self { motor, screw, table } = self;
+        let Self {
+            motor,
+            screw,
+            table,
+        } = self;
         motor.resistance_ohm * state.current_a.powi(2)
             + motor.friction.loss_w(state.motor_rad_s, state.bristles[0])
             + table.friction.loss_w(state.table_m_s, state.bristles[1])
-            + screw.loss_w(self.nut_lead_m(state), screw.travel_m_rad * state.motor_rad_s - state.table_m_s)
+            + screw.loss_w(
+                self.nut_lead_m(state),
+                screw.travel_m_rad * state.motor_rad_s - state.table_m_s,
+            )
     }
 
     /// Force of the screw on the table, N.

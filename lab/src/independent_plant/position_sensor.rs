@@ -4,10 +4,12 @@
 //! shown(x) = step round((x + A sin(2 pi x / P + p)) / step)
 //! ```
 //!
-//! A amplitude of the error within a signal period P (interpolation, or sub-divisional, error), p its phase, which depends on where the
-//! axis was homed. The drive gets it some of its periods late.
+//! A amplitude of the error within a signal period P (interpolation, or sub-divisional, error), p
+//! its phase, which depends on where the axis was homed. The drive gets it some of its periods
+//! late.
 //!
-//! Source: DIN 32876 and ISO 230-2 for the terms; Alejandre and Artes (2004), Machine tool errors caused by optical linear encoders.
+//! Source: DIN 32876 and ISO 230-2 for the terms; Alejandre and Artes (2004), Machine tool errors
+//! caused by optical linear encoders.
 
 use std::f64::consts::TAU;
 
@@ -37,7 +39,11 @@ impl PositionSensor {
             self.error_mm * libm::sin(TAU * at_mm / self.period_mm + self.phase_rad)
         };
         let seen_mm = at_mm + error_mm;
-        if self.step_mm > 0.0 { self.step_mm * (seen_mm / self.step_mm).round() } else { seen_mm }
+        if self.step_mm > 0.0 {
+            self.step_mm * (seen_mm / self.step_mm).round()
+        } else {
+            seen_mm
+        }
     }
 }
 
@@ -51,12 +57,17 @@ pub(super) struct Late<T> {
 impl<T: Copy> Late<T> {
     /// By so many periods; until then it is this value.
     pub(super) fn new(periods: u32, value: T) -> Self {
-        Self { values: vec![value; periods as usize], next: 0 }
+        Self {
+            values: vec![value; periods as usize],
+            next: 0,
+        }
     }
 
     /// Puts in a value, and takes out the one of as many periods ago.
     pub(super) fn pass(&mut self, value: T) -> T {
-        let Some(kept) = self.values.get_mut(self.next) else { return value };
+        let Some(kept) = self.values.get_mut(self.next) else {
+            return value;
+        };
         let before = std::mem::replace(kept, value);
         self.next = (self.next + 1) % self.values.len();
         before

@@ -1,4 +1,5 @@
-//! What cuts by wrong models came to: a row for each machine of a model and each controller, and ours beside the best of the others.
+//! What cuts by wrong models came to: a row for each machine of a model and each controller, and
+//! ours beside the best of the others.
 
 use serde::Serialize;
 
@@ -21,7 +22,8 @@ pub struct MismatchGroup {
     pub worse: usize,
     /// Cuts that ended without the controller in the loop, or not at all.
     pub lost: usize,
-    /// RMS contour error from the third second of motion on, over that of the same controller on the variant that changes nothing.
+    /// RMS contour error from the third second of motion on, over that of the same controller on
+    /// the variant that changes nothing.
     pub later_ratio: Option<Quantiles>,
 }
 
@@ -60,10 +62,18 @@ impl MismatchSummary {
     /// Of these rows; `ours` is one of their controllers.
     pub fn of(rows: Vec<SweepRow>, ours: &str) -> Self {
         let groups = groups(&rows);
-        let verdicts =
-            groups.iter().filter(|group| group.controller == ours).map(|group| group.beside(&groups)).collect();
+        let verdicts = groups
+            .iter()
+            .filter(|group| group.controller == ours)
+            .map(|group| group.beside(&groups))
+            .collect();
         let (own, peer_rows) = rows.into_iter().partition(|row| row.controller == ours);
-        Self { ours: SweepSummary::of(own), groups, verdicts, peer_rows }
+        Self {
+            ours: SweepSummary::of(own),
+            groups,
+            verdicts,
+            peer_rows,
+        }
     }
 }
 
@@ -76,7 +86,10 @@ fn groups(rows: &[SweepRow]) -> Vec<MismatchGroup> {
             names.push(name);
         }
     }
-    names.into_iter().filter_map(|name| MismatchGroup::of(name, rows)).collect()
+    names
+        .into_iter()
+        .filter_map(|name| MismatchGroup::of(name, rows))
+        .collect()
 }
 
 /// Machine of the model.
@@ -86,11 +99,15 @@ fn model(row: &SweepRow) -> &str {
 
 impl MismatchGroup {
     fn of((of_model, controller): (&str, &str), rows: &[SweepRow]) -> Option<Self> {
-        let is_of = |row: &&SweepRow| row.is_judged() && model(row) == of_model && row.controller == controller;
+        let is_of = |row: &&SweepRow| {
+            row.is_judged() && model(row) == of_model && row.controller == controller
+        };
         let cuts: Vec<&SweepRow> = rows.iter().filter(is_of).collect();
         let same = same_name(of_model);
         let later_ratio = |row: &&SweepRow| {
-            let of_same = cuts.iter().find(|other| other.machine == same && other.program == row.program)?;
+            let of_same = cuts
+                .iter()
+                .find(|other| other.machine == same && other.program == row.program)?;
             Some(row.corrected.later_rms_um? / of_same.corrected.later_rms_um?)
         };
         let others = cuts.iter().copied().filter(|row| row.machine != same);
@@ -99,17 +116,28 @@ impl MismatchGroup {
             model: of_model.to_owned(),
             controller: controller.to_owned(),
             rms_ratio: Quantiles::of(cuts.iter().map(|row| row.rms_ratio()).collect())?,
-            worse: faults.iter().filter(|faults| faults.iter().any(|fault| *fault != Failure::Lost)).count(),
-            lost: faults.iter().filter(|faults| faults.contains(&Failure::Lost)).count(),
+            worse: faults
+                .iter()
+                .filter(|faults| faults.iter().any(|fault| *fault != Failure::Lost))
+                .count(),
+            lost: faults
+                .iter()
+                .filter(|faults| faults.contains(&Failure::Lost))
+                .count(),
             later_ratio: Quantiles::of(others.filter_map(|row| later_ratio(&row)).collect()),
         })
     }
 
     /// Beside the best of the others by the same models.
     fn beside(&self, all: &[Self]) -> MismatchVerdict {
-        let others = all.iter().filter(|group| group.model == self.model && group.controller != self.controller);
+        let others = all
+            .iter()
+            .filter(|group| group.model == self.model && group.controller != self.controller);
         let best = others.min_by(|a, b| a.rms_ratio.median.total_cmp(&b.rms_ratio.median));
-        let (median, peer_median) = (self.rms_ratio.median, best.map(|best| best.rms_ratio.median));
+        let (median, peer_median) = (
+            self.rms_ratio.median,
+            best.map(|best| best.rms_ratio.median),
+        );
         MismatchVerdict {
             model: self.model.clone(),
             ours: self.controller.clone(),
@@ -128,7 +156,12 @@ mod tests {
 
     /// Uncorrected 10 um; RMS of the corrected cut, and of what is left of it later on.
     fn row(model: &str, variant: &str, controller: &str, [rms_um, later_um]: [f64; 2]) -> SweepRow {
-        let figures = |rms_um, later_rms_um| Figures { rms_um, max_um: rms_um, later_rms_um, ..Figures::default() };
+        let figures = |rms_um, later_rms_um| Figures {
+            rms_um,
+            max_um: rms_um,
+            later_rms_um,
+            ..Figures::default()
+        };
         SweepRow {
             program: "p".to_owned(),
             machine: format!("{model}-{variant}"),
@@ -152,19 +185,47 @@ mod tests {
             row("a-b", "same", "ours", [5.0, 1.0]),
         ];
         rows[2].corrected.lost = Some("faded".to_owned());
-        let MismatchSummary { ours, groups, verdicts, peer_rows } = MismatchSummary::of(rows, "ours");
-        let names: Vec<_> = groups.iter().map(|group| (group.model.as_str(), group.controller.as_str())).collect();
+        let MismatchSummary {
+            ours,
+            groups,
+            verdicts,
+            peer_rows,
+        } = MismatchSummary::of(rows, "ours");
+        let names: Vec<_> = groups
+            .iter()
+            .map(|group| (group.model.as_str(), group.controller.as_str()))
+            .collect();
         assert_eq!(names, [("a", "ours"), ("a", "peer"), ("a-b", "ours")]);
-        let [own, peer, other] = &groups[..] else { unreachable!("three names") };
-        let ratios = |group: &MismatchGroup| (group.rms_ratio.cuts, group.rms_ratio.median, group.rms_ratio.largest);
+        let [own, peer, other] = &groups[..] else {
+            unreachable!("three names")
+        };
+        let ratios = |group: &MismatchGroup| {
+            (
+                group.rms_ratio.cuts,
+                group.rms_ratio.median,
+                group.rms_ratio.largest,
+            )
+        };
         assert_eq!((ratios(own), ratios(peer)), ((3, 0.3, 1.1), (3, 0.4, 0.9)));
-        assert_eq!(([own.worse, own.lost], [peer.worse, peer.lost]), ([1, 1], [0, 0]));
-        let later = |group: &MismatchGroup| group.later_ratio.map(|ratio| (ratio.cuts, ratio.median));
-        // Of ours the cut on "ti" was too short; the peer has 8 / 2 and 3 / 2, and the upper one is the median of two.
-        assert_eq!((later(own), later(peer), later(other)), (Some((1, 3.0)), Some((2, 4.0)), None));
+        assert_eq!(
+            ([own.worse, own.lost], [peer.worse, peer.lost]),
+            ([1, 1], [0, 0])
+        );
+        let later =
+            |group: &MismatchGroup| group.later_ratio.map(|ratio| (ratio.cuts, ratio.median));
+        // Of ours the cut on "ti" was too short; the peer has 8 / 2 and 3 / 2, and the upper one is
+        // the median of two.
+        assert_eq!(
+            (later(own), later(peer), later(other)),
+            (Some((1, 3.0)), Some((2, 4.0)), None)
+        );
         assert_eq!((ours.judged, ours.worse, peer_rows.len()), (4, 2, 3));
-        let beside = |verdict: &MismatchVerdict| (verdict.median, verdict.peer.clone(), verdict.peer_median);
-        assert_eq!(beside(&verdicts[0]), (0.3, Some("peer".to_owned()), Some(0.4)));
+        let beside =
+            |verdict: &MismatchVerdict| (verdict.median, verdict.peer.clone(), verdict.peer_median);
+        assert_eq!(
+            beside(&verdicts[0]),
+            (0.3, Some("peer".to_owned()), Some(0.4))
+        );
         assert!((verdicts[0].ratio.unwrap_or_default() - 0.75).abs() < 1e-12);
         assert_eq!(beside(&verdicts[1]), (0.5, None, None));
     }

@@ -1,4 +1,5 @@
-//! One program on one machine: uncorrected, and with controllers that were made for the machine or for another one.
+//! One program on one machine: uncorrected, and with controllers that were made for the machine or
+//! for another one.
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -6,13 +7,16 @@ use std::sync::Arc;
 use feedwright::CutErrors;
 use feedwright::{BASELINE, Choices, Entry, Make, Setup, Statistics, UNCORRECTED};
 use feedwright_control::Controller;
-use feedwright_sim::{Cancelled, Commanded, Machine, Outcome, PlanCache, Row, Run, RunError, RunResult, Sink, Watch};
+use feedwright_sim::{
+    Cancelled, Commanded, Machine, Outcome, PlanCache, Row, Run, RunError, RunResult, Sink, Watch,
+};
 use serde::{Deserialize, Serialize};
 
 use super::SweepOptions;
 use super::program::SweepProgram;
 
-/// Motion after which rows count for [`Figures::later_rms_um`], s: a controller that learns while it cuts has learned by then.
+/// Motion after which rows count for [`Figures::later_rms_um`], s: a controller that learns while
+/// it cuts has learned by then.
 const LATER_S: f64 = 2.0;
 /// Cutting time that they need to have, s: less is a corner or two.
 const LEAST_LATER_S: f64 = 1.0;
@@ -26,10 +30,12 @@ pub struct Figures {
     pub rms_um: f64,
     /// Largest contour error, um.
     pub max_um: f64,
-    /// Uncut path: the largest distance of a point of the path from what the tool did around its time, um.
+    /// Uncut path: the largest distance of a point of the path from what the tool did around its
+    /// time, um.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncut_um: Option<f64>,
-    /// RMS contour error from the third second of motion on, um; none where less than a second of cutting is left then.
+    /// RMS contour error from the third second of motion on, um; none where less than a second of
+    /// cutting is left then.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub later_rms_um: Option<f64>,
     /// Part of the cutting time during which the controller was in the loop.
@@ -43,28 +49,49 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// What the verdict looks at, of all that a run says about itself: the one place that knows where it stands.
+    /// What the verdict looks at, of all that a run says about itself: the one place that knows
+    /// where it stands.
     pub(crate) fn of(run: &RunResult, statistics: &Statistics, entry: &Entry) -> Self {
         // The uncorrected cut has nothing that could be taken out of the loop.
-        let left = run.faded_out.filter(|_| entry.name != BASELINE && !run.engaged_at_end);
+        let left = run
+            .faded_out
+            .filter(|_| entry.name != BASELINE && !run.engaged_at_end);
         let lost = match (run.outcome, left) {
             (Outcome::Diverged { at_s }, _) => Some(format!("the loop diverged at {at_s:.3} s")),
-            (Outcome::Completed, Some(left)) => Some(format!("uncorrected from {:.3} s on: {}", left.at_s, left.cause)),
+            (Outcome::Completed, Some(left)) => Some(format!(
+                "uncorrected from {:.3} s on: {}",
+                left.at_s, left.cause
+            )),
             (Outcome::Completed, None) => None,
         };
         let [rms_um, max_um] = [statistics.rms_um(), statistics.max_um()];
         let (uncut_um, engaged_share) = (Some(run.uncut_mm * 1e3), Some(run.engaged_share));
-        Self { rms_um, max_um, uncut_um, later_rms_um: None, engaged_share, lost, time_s: run.time_s }
+        Self {
+            rms_um,
+            max_um,
+            uncut_um,
+            later_rms_um: None,
+            engaged_share,
+            lost,
+            time_s: run.time_s,
+        }
     }
 
     /// The errors that decide whether one cut is worse than another.
     pub(super) const fn errors(&self) -> CutErrors {
-        CutErrors { rms_um: self.rms_um, max_um: self.max_um, uncut_um: self.uncut_um }
+        CutErrors {
+            rms_um: self.rms_um,
+            max_um: self.max_um,
+            uncut_um: self.uncut_um,
+        }
     }
 
     /// A cut that did not end.
     pub(crate) fn failed(why: &str) -> Self {
-        Self { lost: Some(why.to_owned()), ..Self::default() }
+        Self {
+            lost: Some(why.to_owned()),
+            ..Self::default()
+        }
     }
 }
 
@@ -81,7 +108,8 @@ pub struct SweepRow {
     /// Controller.
     #[serde(default)]
     pub controller: String,
-    /// Whether the machine is rigid, without encoder steps and without delay: no noise, nothing that comes late.
+    /// Whether the machine is rigid, without encoder steps and without delay: no noise, nothing
+    /// that comes late.
     pub rigid: bool,
     /// Uncorrected.
     pub uncorrected: Figures,
@@ -89,11 +117,13 @@ pub struct SweepRow {
     pub corrected: Figures,
 }
 
-/// Whether no axis has a compliant transmission, an encoder step, command delay or drive delay. Encoder noise
-/// and measurement delay are not checked.
+/// Whether no axis has a compliant transmission, an encoder step, command delay or drive delay.
+/// Encoder noise and measurement delay are not checked.
 pub(crate) fn is_rigid(machine: &Machine) -> bool {
     machine.axes.iter().all(|axis| {
-        axis.transmission.is_none() && axis.encoder_step_um == 0.0 && axis.drive_delay_s + axis.command_delay_s == 0.0
+        axis.transmission.is_none()
+            && axis.encoder_step_um == 0.0
+            && axis.drive_delay_s + axis.command_delay_s == 0.0
     })
 }
 
@@ -141,10 +171,26 @@ pub struct Cutter {
 impl Cutter {
     /// By a machine; nothing is identified yet.
     pub fn new(model: &Arc<Machine>, options: &SweepOptions) -> Self {
-        let entries: Vec<_> = [&UNCORRECTED].into_iter().chain(options.controllers.iter().copied()).collect();
-        let choices = Choices { seed: options.seed, set: options.set_for(model), ..Choices::default() };
-        let (plane, space) = (entries.iter().map(|_| None).collect(), entries.iter().map(|_| None).collect());
-        Self { model: model.clone(), choices, entries, plane, space }
+        let entries: Vec<_> = [&UNCORRECTED]
+            .into_iter()
+            .chain(options.controllers.iter().copied())
+            .collect();
+        let choices = Choices {
+            seed: options.seed,
+            set: options.set_for(model),
+            ..Choices::default()
+        };
+        let (plane, space) = (
+            entries.iter().map(|_| None).collect(),
+            entries.iter().map(|_| None).collect(),
+        );
+        Self {
+            model: model.clone(),
+            choices,
+            entries,
+            plane,
+            space,
+        }
     }
 
     /// Whether it is by this machine.
@@ -153,13 +199,37 @@ impl Cutter {
     }
 
     /// Cuts a program once, uncorrected (way 0) or with one of the controllers.
-    fn cut(&mut self, way: usize, program: &SweepProgram, run: Run<'_>, servo_s: f64) -> Result<Figures, Cancelled> {
-        let Self { model, choices, entries, plane, space } = self;
+    fn cut(
+        &mut self,
+        way: usize,
+        program: &SweepProgram,
+        run: Run<'_>,
+        servo_s: f64,
+    ) -> Result<Figures, Cancelled> {
+        let Self {
+            model,
+            choices,
+            entries,
+            plane,
+            space,
+        } = self;
         let mut setup = Setup::new(model, choices);
         match program.axes {
-            2 => once(&mut plane[way], entries[way], &mut setup, program, (run, servo_s)),
+            2 => once(
+                &mut plane[way],
+                entries[way],
+                &mut setup,
+                program,
+                (run, servo_s),
+            ),
             _ if model.axis_count() < 3 => Ok(Figures::failed("the machine has no Z")),
-            _ => once(&mut space[way], entries[way], &mut setup, program, (run, servo_s)),
+            _ => once(
+                &mut space[way],
+                entries[way],
+                &mut setup,
+                program,
+                (run, servo_s),
+            ),
         }
     }
 
@@ -210,10 +280,22 @@ where
 {
     let done = catch_unwind(AssertUnwindSafe(|| {
         let controller = made.get_or_insert_with(|| Make::make(entry, setup));
-        let (mut statistics, mut later) = (Statistics::new(), LaterError { servo_s, ..Default::default() });
+        let (mut statistics, mut later) = (
+            Statistics::new(),
+            LaterError {
+                servo_s,
+                ..Default::default()
+            },
+        );
         let sinks: &mut [&mut dyn Sink] = &mut [&mut statistics, &mut later];
-        match run.laps(entry.laps).cut_steps(&program.steps, &mut **controller, sinks) {
-            Ok(run) => Ok(Figures { later_rms_um: later.rms_um(), ..Figures::of(&run, &statistics, entry) }),
+        match run
+            .laps(entry.laps)
+            .cut_steps(&program.steps, &mut **controller, sinks)
+        {
+            Ok(run) => Ok(Figures {
+                later_rms_um: later.rms_um(),
+                ..Figures::of(&run, &statistics, entry)
+            }),
             Err(RunError::Cancelled(cancelled)) => Err(cancelled),
             Err(error) => Ok(Figures::failed(&error.to_string())),
         }
@@ -235,25 +317,48 @@ mod tests {
     #[test]
     fn a_circle_is_cut_better_with_the_controllers_than_without() {
         let machine = Arc::new(Machine::load("tnv40".as_ref()).expect("built in"));
-        let length = Length { machine: &machine, limit_s: 10.0 };
-        let program = SweepProgram::from_text("circle", "G21 F1200\nG2 X0 Y0 I5 J0\nM2\n", length).expect("a program");
+        let length = Length {
+            machine: &machine,
+            limit_s: 10.0,
+        };
+        let program = SweepProgram::from_text("circle", "G21 F1200\nG2 X0 Y0 I5 J0\nM2\n", length)
+            .expect("a program");
         let best = CONTROLLERS.find(BEST).expect("in the table");
         let options = SweepOptions::of(vec![best, &DISTURBANCE_OBSERVER]);
-        let rows = Cutter::new(&machine, &options).rows(&program, &machine, &()).expect("nobody ends it");
+        let rows = Cutter::new(&machine, &options)
+            .rows(&program, &machine, &())
+            .expect("nobody ends it");
         let names: Vec<&str> = rows.iter().map(|row| row.controller.as_str()).collect();
         assert_eq!(names, [BEST, DISTURBANCE_OBSERVER.name]);
-        assert!(rows[0].rigid && rows[0].corrected.rms_um < 0.1 * rows[0].uncorrected.rms_um, "{rows:?}");
-        assert_eq!((&rows[0].corrected.lost, rows[0].corrected.engaged_share), (&None, Some(1.0)));
+        assert!(
+            rows[0].rigid && rows[0].corrected.rms_um < 0.1 * rows[0].uncorrected.rms_um,
+            "{rows:?}"
+        );
+        assert_eq!(
+            (&rows[0].corrected.lost, rows[0].corrected.engaged_share),
+            (&None, Some(1.0))
+        );
         assert_eq!(rows[0].uncorrected, rows[1].uncorrected);
-        assert!(rows[0].corrected != rows[1].corrected && rows[1].corrected.rms_um < rows[1].uncorrected.rms_um);
+        assert!(
+            rows[0].corrected != rows[1].corrected
+                && rows[1].corrected.rms_um < rows[1].uncorrected.rms_um
+        );
     }
 
     #[test]
     fn the_later_error_is_that_of_cutting_rows_from_the_third_second_of_motion_on() {
         let later = |seconds: f64| {
-            let mut later = LaterError { servo_s: 0.001, ..Default::default() };
+            let mut later = LaterError {
+                servo_s: 0.001,
+                ..Default::default()
+            };
             let mut rows = |commanded, cutting, error_mm, count: u32| {
-                let row = Row { commanded, cutting, contour_error_mm: error_mm, ..Row::AT_REST };
+                let row = Row {
+                    commanded,
+                    cutting,
+                    contour_error_mm: error_mm,
+                    ..Row::AT_REST
+                };
                 (0..count).for_each(|_| later.row(&row).expect("nothing is written"));
             };
             // A second of rest, two of motion, then a rapid, and cutting with 3 and 4 um.

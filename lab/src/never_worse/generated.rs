@@ -11,7 +11,8 @@ use super::program::{Length, SweepProgram};
 use crate::held_out::machines::{self, Class};
 use crate::held_out::{Variant, programs};
 
-/// Machining time of a program beyond which the rest is left out, s: a feedrate of 100 mm/min makes a long path last.
+/// Machining time of a program beyond which the rest is left out, s: a feedrate of 100 mm/min makes
+/// a long path last.
 pub(crate) const LIMIT_S: f64 = 30.0;
 /// Seeds of programs and machines are below this, so that people can read them out.
 const SEEDS: u64 = 1_000_000_000;
@@ -32,7 +33,12 @@ pub struct Generated {
 ///
 /// # Errors
 /// Fails if a generated program is rejected, which is a fault of the generator.
-pub fn draw(seed: u64, count: usize, for_each: usize, class: Class) -> Result<Vec<Generated>, JobError> {
+pub fn draw(
+    seed: u64,
+    count: usize,
+    for_each: usize,
+    class: Class,
+) -> Result<Vec<Generated>, JobError> {
     let mut seeds = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut all = Vec::with_capacity(count);
     while all.len() < count {
@@ -40,10 +46,21 @@ pub fn draw(seed: u64, count: usize, for_each: usize, class: Class) -> Result<Ve
         let machine = Arc::new(variant.machine().expect("only valid machines are drawn"));
         for _ in 0..for_each {
             let drawn = programs::program(seeds.random_range(0..SEEDS));
-            let length = Length { machine: &machine, limit_s: LIMIT_S };
+            let length = Length {
+                machine: &machine,
+                limit_s: LIMIT_S,
+            };
             let program = Arc::new(SweepProgram::from_text(&drawn.name, &drawn.text, length)?);
-            let job = SweepJob { program, machine: machine.clone(), model: machine.clone() };
-            all.push(Generated { text: drawn.text, variant: variant.clone(), job });
+            let job = SweepJob {
+                program,
+                machine: machine.clone(),
+                model: machine.clone(),
+            };
+            all.push(Generated {
+                text: drawn.text,
+                variant: variant.clone(),
+                job,
+            });
         }
     }
     all.truncate(count);
@@ -59,10 +76,16 @@ mod tests {
         let few = draw(3, 5, 2, Class::Any).expect("programs");
         let many = draw(3, 8, 2, Class::Any).expect("programs");
         for (a, b) in few.iter().zip(&many) {
-            assert_eq!((&a.text, &a.variant, &a.job.program.key), (&b.text, &b.variant, &b.job.program.key));
+            assert_eq!(
+                (&a.text, &a.variant, &a.job.program.key),
+                (&b.text, &b.variant, &b.job.program.key)
+            );
         }
         assert!(Arc::ptr_eq(&few[0].job.machine, &few[1].job.machine));
         assert_ne!(few[1].job.machine, few[2].job.machine);
-        assert!(many.iter().all(|made| made.job.program.machining_s <= 2.0 * LIMIT_S));
+        assert!(
+            many.iter()
+                .all(|made| made.job.program.machining_s <= 2.0 * LIMIT_S)
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! The machines of the sweep: the built-in ones that differ in kind, and `tnv40` with one thing changed at a time.
+//! The machines of the sweep: the built-in ones that differ in kind, and `tnv40` with one thing
+//! changed at a time.
 
 use feedwright_sim::{Machine, MachineError};
 
@@ -26,7 +27,10 @@ const UNLIKE: f64 = 1.5;
 /// None as long as the changes are within the ranges of a machine file, which a test holds.
 pub(crate) fn machines() -> Result<Vec<Machine>, MachineError> {
     let built_in = BUILT_IN_MACHINES.map(|name| Machine::load(name.as_ref()));
-    built_in.into_iter().chain(variants().iter().map(Variant::machine)).collect()
+    built_in
+        .into_iter()
+        .chain(variants().iter().map(Variant::machine))
+        .collect()
 }
 
 fn variants() -> Vec<Variant> {
@@ -39,10 +43,19 @@ fn variants() -> Vec<Variant> {
         let along = named(format!("accel{accel}")).with("limits", "tangential_accel_mm_s2", accel);
         along.with("limits", "normal_accel_mm_s2", accel)
     }));
-    all.extend(ENCODER_UM.map(|step| named(format!("encoder{step}um")).with_axes("encoder_step_um", step)));
-    all.extend(DELAY_MS.map(|delay| named(format!("delay{delay}ms")).with_axes("drive_delay_s", delay * 1e-3)));
+    all.extend(
+        ENCODER_UM.map(|step| named(format!("encoder{step}um")).with_axes("encoder_step_um", step)),
+    );
+    all.extend(
+        DELAY_MS
+            .map(|delay| named(format!("delay{delay}ms")).with_axes("drive_delay_s", delay * 1e-3)),
+    );
     all.push(named("unlike-gain".to_owned()).with("axis.y", "kp_1_s", UNLIKE * y.kp_1_s));
-    all.push(named("unlike-inertia".to_owned()).with("axis.y", "inertia_kg_m2", UNLIKE * y.inertia_kg_m2));
+    all.push(named("unlike-inertia".to_owned()).with(
+        "axis.y",
+        "inertia_kg_m2",
+        UNLIKE * y.inertia_kg_m2,
+    ));
     all
 }
 
@@ -53,7 +66,10 @@ mod tests {
     #[test]
     fn all_are_machines_and_no_name_comes_twice() {
         let machines = machines().expect("all are valid");
-        let mut names: Vec<&str> = machines.iter().map(|machine| machine.name.as_str()).collect();
+        let mut names: Vec<&str> = machines
+            .iter()
+            .map(|machine| machine.name.as_str())
+            .collect();
         assert_eq!(names.len(), 19);
         names.sort_unstable();
         names.dedup();

@@ -1,5 +1,5 @@
-//! A program as it is cut: read once, its path shared by all machines, long ones shortened to the first part of their
-//! machining time.
+//! A program as it is cut: read once, its path shared by all machines, long ones shortened to the
+//! first part of their machining time.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -7,7 +7,9 @@ use std::sync::mpsc;
 
 use feedwright::JobError;
 use feedwright_gcode::{ReadError, Reader, Settings, summarize};
-use feedwright_plan::{Constraints, FEED_PLANNERS, LimitsError, PathError, Pieces, Plan, Planned, Plc, Step, Steps};
+use feedwright_plan::{
+    Constraints, FEED_PLANNERS, LimitsError, PathError, Pieces, Plan, Planned, Plc, Step, Steps,
+};
 use feedwright_sim::Machine;
 
 /// A program, ready to be cut on any machine.
@@ -51,10 +53,18 @@ impl SweepProgram {
     /// # Errors
     /// As [`SweepProgram::read`].
     pub fn from_text(name: &str, text: &str, length: Length<'_>) -> Result<Self, JobError> {
-        Self::new(name.to_owned(), || Reader::from_text(name, text, Settings::default()), length)
+        Self::new(
+            name.to_owned(),
+            || Reader::from_text(name, text, Settings::default()),
+            length,
+        )
     }
 
-    fn new(name: String, open: impl Fn() -> Result<Reader, ReadError>, length: Length<'_>) -> Result<Self, JobError> {
+    fn new(
+        name: String,
+        open: impl Fn() -> Result<Reader, ReadError>,
+        length: Length<'_>,
+    ) -> Result<Self, JobError> {
         let summary = summarize(open()?)?;
         let axes = if summary.moves[2] { 3 } else { 2 };
         let steps = Box::new(Pieces::new(open()?.map_while(Result::ok)));
@@ -62,8 +72,20 @@ impl SweepProgram {
         if let Some(fault) = planned.fault {
             return Err(JobError::Path { part: name, fault });
         }
-        let Part { steps, time_s: machining_s, shortened, .. } = planned;
-        Ok(Self { name, axes, machining_s, shortened, key: key(axes, &steps), steps })
+        let Part {
+            steps,
+            time_s: machining_s,
+            shortened,
+            ..
+        } = planned;
+        Ok(Self {
+            name,
+            axes,
+            machining_s,
+            shortened,
+            key: key(axes, &steps),
+            steps,
+        })
     }
 }
 
@@ -75,12 +97,15 @@ struct Part {
     fault: Option<PathError>,
 }
 
-/// Plans the path until its time is over, and keeps it as far as the end of the motion that is under way then.
+/// Plans the path until its time is over, and keeps it as far as the end of the motion that is
+/// under way then.
 fn planned(steps: Steps<'_>, length: Length<'_>) -> Result<Part, LimitsError> {
     let (keep, kept) = mpsc::channel();
     let mut ended = false;
     let read = steps.map(move |step| step.map(|step| first_part(step, length.limit_s, &mut ended)));
-    let read = read.take_while(|step| !matches!(step, Ok(None))).filter_map(Result::transpose);
+    let read = read
+        .take_while(|step| !matches!(step, Ok(None)))
+        .filter_map(Result::transpose);
     let read = read.inspect(move |step| {
         if let Ok(step) = step {
             // The other end is there as long as the plan is.
@@ -88,7 +113,12 @@ fn planned(steps: Steps<'_>, length: Length<'_>) -> Result<Part, LimitsError> {
         }
     });
     let constraints = Constraints::from(length.machine);
-    let mut plan = Plan::new(Box::new(read), &constraints, &FEED_PLANNERS[0], Plc::from(length.machine))?;
+    let mut plan = Plan::new(
+        Box::new(read),
+        &constraints,
+        &FEED_PLANNERS[0],
+        Plc::from(length.machine),
+    )?;
     let (mut time_s, mut last) = (0.0, None);
     for planned in &mut plan {
         if let Planned::Phase(phase) = planned {
@@ -108,15 +138,23 @@ fn planned(steps: Steps<'_>, length: Length<'_>) -> Result<Part, LimitsError> {
         pieces += u64::from(matches!(step, Step::Piece(_)));
         is_within
     };
-    Ok(Part { steps: kept.into_iter().take_while(within).collect(), time_s, shortened: last.is_some(), fault })
+    Ok(Part {
+        steps: kept.into_iter().take_while(within).collect(),
+        time_s,
+        shortened: last.is_some(),
+        fault,
+    })
 }
 
-/// A step, or the first part of a motion that takes longer than the limit by itself and ends the path.
+/// A step, or the first part of a motion that takes longer than the limit by itself and ends the
+/// path.
 fn first_part(step: Step, limit_s: f64, ended: &mut bool) -> Option<Step> {
     if *ended {
         return None;
     }
-    let Step::Piece(mut piece) = step else { return Some(step) };
+    let Step::Piece(mut piece) = step else {
+        return Some(step);
+    };
     // Curves are looked up by arc length: a shorter one is the same curve, left earlier.
     let most_mm = piece.feed_mm_s * limit_s;
     if piece.cutting && piece.length_mm > most_mm {
@@ -148,13 +186,24 @@ mod tests {
 
     fn program(limit_s: f64) -> SweepProgram {
         let machine = Machine::load("tnv40".as_ref()).expect("built in");
-        SweepProgram::from_text("lines", TEXT, Length { machine: &machine, limit_s }).expect("a program")
+        SweepProgram::from_text(
+            "lines",
+            TEXT,
+            Length {
+                machine: &machine,
+                limit_s,
+            },
+        )
+        .expect("a program")
     }
 
     #[test]
     fn a_long_program_is_cut_for_the_first_part_of_its_time() {
         let (whole, part) = (program(600.0), program(1.5));
-        assert!(!whole.shortened && (5.0..6.0).contains(&whole.machining_s), "{whole:?}");
+        assert!(
+            !whole.shortened && (5.0..6.0).contains(&whole.machining_s),
+            "{whole:?}"
+        );
         assert!(part.shortened && part.machining_s > 1.5, "{part:?}");
         assert!(part.steps.len() < whole.steps.len(), "{part:?}");
         assert_ne!(part.key, whole.key);
@@ -163,9 +212,16 @@ mod tests {
     #[test]
     fn a_motion_that_takes_longer_than_the_limit_is_left_early() {
         let machine = Machine::load("tnv40".as_ref()).expect("built in");
-        let length = Length { machine: &machine, limit_s: 10.0 };
-        let slow = SweepProgram::from_text("slow", "G21 F60\nG2 X0 Y0 I5 J0\nG1 X10\nM2\n", length).expect("a program");
-        assert!(slow.shortened && (9.9..10.5).contains(&slow.machining_s), "{slow:?}");
+        let length = Length {
+            machine: &machine,
+            limit_s: 10.0,
+        };
+        let slow = SweepProgram::from_text("slow", "G21 F60\nG2 X0 Y0 I5 J0\nG1 X10\nM2\n", length)
+            .expect("a program");
+        assert!(
+            slow.shortened && (9.9..10.5).contains(&slow.machining_s),
+            "{slow:?}"
+        );
         assert_eq!(slow.steps.len(), 1);
     }
 
@@ -177,7 +233,10 @@ mod tests {
     #[test]
     fn a_program_with_mistakes_is_refused() {
         let machine = Machine::load("tnv40".as_ref()).expect("built in");
-        let length = Length { machine: &machine, limit_s: 1.0 };
+        let length = Length {
+            machine: &machine,
+            limit_s: 1.0,
+        };
         assert!(SweepProgram::from_text("wrong", "G1 X[oops\nM2\n", length).is_err());
         assert!(SweepProgram::from_text("still", "M2\n", length).is_err());
     }

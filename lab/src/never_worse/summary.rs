@@ -27,7 +27,8 @@ impl Quantiles {
     /// None of nothing.
     pub fn of(mut values: Vec<f64>) -> Option<Self> {
         values.sort_by(f64::total_cmp);
-        let quantile = |part: f64| values[((part * values.len() as f64) as usize).min(values.len() - 1)];
+        let quantile =
+            |part: f64| values[((part * values.len() as f64) as usize).min(values.len() - 1)];
         let of = || Self {
             cuts: values.len(),
             median: quantile(0.5),
@@ -64,7 +65,8 @@ pub struct SweepSummary {
     pub by_fault: Vec<(Failure, usize)>,
     /// RMS contour error over the uncorrected one, all judged cuts.
     pub rms_ratio: Option<Quantiles>,
-    /// The same on rigid machines without encoder steps and delay, where the uncorrected cut is above [`UNCORRECTED_UM`].
+    /// The same on rigid machines without encoder steps and delay, where the uncorrected cut is
+    /// above [`UNCORRECTED_UM`].
     pub rms_ratio_rigid: Option<Quantiles>,
     /// Median of the part of the time during which the controller was in the loop.
     pub engaged_share: Option<f64>,
@@ -77,26 +79,55 @@ pub struct SweepSummary {
 impl SweepSummary {
     /// Of these rows.
     pub fn of(rows: Vec<SweepRow>) -> Self {
-        let judge = |row: SweepRow| Judged { faults: row.faults(), severity: row.severity(), row };
+        let judge = |row: SweepRow| Judged {
+            faults: row.faults(),
+            severity: row.severity(),
+            row,
+        };
         let mut rows: Vec<Judged> = rows.into_iter().map(judge).collect();
-        let machining_s = rows.iter().map(|judged| judged.row.uncorrected.time_s).sum();
+        let machining_s = rows
+            .iter()
+            .map(|judged| judged.row.uncorrected.time_s)
+            .sum();
         // Stable: equals stay in order.
         rows.sort_by(|a, b| {
-            let by_severity =
-                if a.faults.is_empty() { std::cmp::Ordering::Equal } else { b.severity.total_cmp(&a.severity) };
-            a.faults.is_empty().cmp(&b.faults.is_empty()).then(by_severity)
+            let by_severity = if a.faults.is_empty() {
+                std::cmp::Ordering::Equal
+            } else {
+                b.severity.total_cmp(&a.severity)
+            };
+            a.faults
+                .is_empty()
+                .cmp(&b.faults.is_empty())
+                .then(by_severity)
         });
-        let judged: Vec<&Judged> = rows.iter().filter(|judged| judged.row.is_judged()).collect();
-        let having = |fault: Failure| judged.iter().filter(|judged| judged.faults.contains(&fault)).count();
+        let judged: Vec<&Judged> = rows
+            .iter()
+            .filter(|judged| judged.row.is_judged())
+            .collect();
+        let having = |fault: Failure| {
+            judged
+                .iter()
+                .filter(|judged| judged.faults.contains(&fault))
+                .count()
+        };
         let ratios = |wanted: &dyn Fn(&SweepRow) -> bool| {
-            let ratios = judged.iter().filter(|judged| wanted(&judged.row)).map(|judged| judged.row.rms_ratio());
+            let ratios = judged
+                .iter()
+                .filter(|judged| wanted(&judged.row))
+                .map(|judged| judged.row.rms_ratio());
             Quantiles::of(ratios.collect())
         };
-        let shares = judged.iter().filter_map(|judged| judged.row.corrected.engaged_share);
+        let shares = judged
+            .iter()
+            .filter_map(|judged| judged.row.corrected.engaged_share);
         Self {
             judged: judged.len(),
             not_judged: rows.len() - judged.len(),
-            worse: judged.iter().filter(|judged| !judged.faults.is_empty()).count(),
+            worse: judged
+                .iter()
+                .filter(|judged| !judged.faults.is_empty())
+                .count(),
             by_fault: Failure::ALL.map(|fault| (fault, having(fault))).to_vec(),
             rms_ratio: ratios(&|_| true),
             rms_ratio_rigid: ratios(&|row| row.rigid && row.uncorrected.rms_um > UNCORRECTED_UM),
@@ -114,19 +145,43 @@ mod tests {
 
     #[test]
     fn failures_come_first_and_the_worst_of_them_foremost() {
-        let rows =
-            vec![row([10.0, 20.0], [0.1, 0.2]), row([10.0, 20.0], [11.0, 20.0]), row([10.0, 20.0], [10.0, 400.0])];
+        let rows = vec![
+            row([10.0, 20.0], [0.1, 0.2]),
+            row([10.0, 20.0], [11.0, 20.0]),
+            row([10.0, 20.0], [10.0, 400.0]),
+        ];
         let summary = SweepSummary::of(rows);
         assert_eq!((summary.judged, summary.worse), (3, 2));
-        let maxima: Vec<f64> = summary.rows.iter().map(|judged| judged.row.corrected.max_um).collect();
+        let maxima: Vec<f64> = summary
+            .rows
+            .iter()
+            .map(|judged| judged.row.corrected.max_um)
+            .collect();
         assert_eq!(maxima, [400.0, 20.0, 0.2]);
-        assert_eq!(summary.by_fault, [(Failure::Rms, 1), (Failure::Max, 1), (Failure::Uncut, 0), (Failure::Lost, 0)]);
+        assert_eq!(
+            summary.by_fault,
+            [
+                (Failure::Rms, 1),
+                (Failure::Max, 1),
+                (Failure::Uncut, 0),
+                (Failure::Lost, 0)
+            ]
+        );
     }
 
     #[test]
     fn quantiles_are_those_of_the_sorted_values() {
-        let quantiles = Quantiles::of((1..=100).rev().map(f64::from).collect()).expect("there are values");
-        assert_eq!((quantiles.median, quantiles.p90, quantiles.p99, quantiles.largest), (51.0, 91.0, 100.0, 100.0));
+        let quantiles =
+            Quantiles::of((1..=100).rev().map(f64::from).collect()).expect("there are values");
+        assert_eq!(
+            (
+                quantiles.median,
+                quantiles.p90,
+                quantiles.p99,
+                quantiles.largest
+            ),
+            (51.0, 91.0, 100.0, 100.0)
+        );
         assert_eq!(Quantiles::of(Vec::new()), None);
     }
 }

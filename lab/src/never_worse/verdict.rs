@@ -48,18 +48,31 @@ impl SweepRow {
             Failure::Max => max.is_worse(),
             Failure::Uncut => uncut.is_worse(),
         };
-        if self.is_judged() { Failure::ALL.into_iter().filter(is_fault).collect() } else { Vec::new() }
+        if self.is_judged() {
+            Failure::ALL.into_iter().filter(is_fault).collect()
+        } else {
+            Vec::new()
+        }
     }
 
     /// RMS error, largest error and uncut path, compared with the uncorrected cut.
     fn changes(&self) -> [ErrorChange; 3] {
-        self.corrected.errors().compared_with(&self.uncorrected.errors())
+        self.corrected
+            .errors()
+            .compared_with(&self.uncorrected.errors())
     }
 
     /// How bad it is: the largest of the excesses, at least 1 where it is lost.
     pub fn severity(&self) -> f64 {
-        let lost = if self.corrected.lost.is_some() { 1.0 } else { 0.0 };
-        self.changes().iter().map(ErrorChange::excess).fold(lost, f64::max)
+        let lost = if self.corrected.lost.is_some() {
+            1.0
+        } else {
+            0.0
+        };
+        self.changes()
+            .iter()
+            .map(ErrorChange::excess)
+            .fold(lost, f64::max)
     }
 
     /// RMS contour error over the uncorrected one.
@@ -77,7 +90,12 @@ pub(super) mod tests {
 
     /// A row of these figures: RMS and largest error, um.
     pub(crate) fn row(open: [f64; 2], corrected: [f64; 2]) -> SweepRow {
-        let figures = |[rms_um, max_um]: [f64; 2]| Figures { rms_um, max_um, time_s: 1.0, ..Figures::default() };
+        let figures = |[rms_um, max_um]: [f64; 2]| Figures {
+            rms_um,
+            max_um,
+            time_s: 1.0,
+            ..Figures::default()
+        };
         SweepRow {
             program: "p".to_owned(),
             machine: "m".to_owned(),

@@ -26,7 +26,8 @@ impl Sink for Curves {
         self.tool.push([row.act_mm[0], row.act_mm[1]]);
         if let Some(last) = self.last.replace(*row) {
             let [dx, dy] = [0, 1].map(|i| row.cmd_mm[i] - last.cmd_mm[i]);
-            self.feed.push([row.t_s, libm::hypot(dx, dy) / (row.t_s - last.t_s)]);
+            self.feed
+                .push([row.t_s, libm::hypot(dx, dy) / (row.t_s - last.t_s)]);
         }
         Ok(())
     }

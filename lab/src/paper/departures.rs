@@ -1,9 +1,11 @@
-//! What the paper prints and this repository does otherwise, one departure at a time and all at once, and draws of what the paper
-//! leaves open.
+//! What the paper prints and this repository does otherwise, one departure at a time and all at
+//! once, and draws of what the paper leaves open.
 //!
-//! The network of the paper has `f(x) = tanh(x)`, and eqs 9 and 10 have the factor 1/4 of `f(x) = tanh(x/2)`. A network of tanh(x)
-//! with weights W is one of tanh(x/2) with weights 2 W. Back-propagation with step s on the first is back-propagation with step 4 s
-//! on the second, and the printed factor makes the error term four times smaller. So that variant needs no other network.
+//! The network of the paper has `f(x) = tanh(x)`, and eqs 9 and 10 have the factor 1/4 of `f(x) =
+//! tanh(x/2)`. A network of tanh(x) with weights W is one of tanh(x/2) with weights 2 W.
+//! Back-propagation with step s on the first is back-propagation with step 4 s on the second, and
+//! the printed factor makes the error term four times smaller. So that variant needs no other
+//! network.
 
 use feedwright_control::{InvertingSettings, TimeTerm};
 use feedwright_ident::{Excitation, Training};
@@ -14,7 +16,8 @@ use serde::Serialize;
 use super::{Bench, Numbers};
 use crate::held_out::random::Random;
 
-/// Derivative gain of a position loop that is PD, dimensionless: 5 % of the change of an error goes into the reference speed.
+/// Derivative gain of a position loop that is PD, dimensionless: 5 % of the change of an error goes
+/// into the reference speed.
 const PD_GAIN: f64 = 0.05;
 
 /// What a cut of the circle is made with.
@@ -69,7 +72,12 @@ const DEPARTURES: [Departure; 7] = [
         printed: "PD position loop",
         taken: "P, Kd = 0",
         reason: "Kd is not printed; here 0.05",
-        apply: |case| case.machine.axes.iter_mut().for_each(|axis| axis.kd = PD_GAIN),
+        apply: |case| {
+            case.machine
+                .axes
+                .iter_mut()
+                .for_each(|axis| axis.kd = PD_GAIN);
+        },
     },
     Departure {
         printed: "P'(k+1) = P'(k) + F T alone",
@@ -126,11 +134,24 @@ pub(crate) fn departures(
         let [printed, taken, reason] = [printed, taken, reason].map(str::to_owned);
         let (uncorrected, worst, mean) = over_seeds(case, seeds, watch)?;
         watch.advance(1);
-        Ok::<_, RunError>(DepartureResult { printed, taken, reason, uncorrected, worst, mean })
+        Ok::<_, RunError>(DepartureResult {
+            printed,
+            taken,
+            reason,
+            uncorrected,
+            worst,
+            mean,
+        })
     };
     let mut rows = vec![row("", "everything as taken", "", &taken())?];
     let mut all = taken();
-    for Departure { printed, taken: instead, reason, apply } in &DEPARTURES {
+    for Departure {
+        printed,
+        taken: instead,
+        reason,
+        apply,
+    } in &DEPARTURES
+    {
         let mut case = taken();
         apply(&mut case);
         apply(&mut all);
@@ -138,18 +159,33 @@ pub(crate) fn departures(
     }
     rows.push(row("everything", "nothing", "", &all)?);
     all.settings.inversion.time_term = TimeTerm::PrintedSign;
-    rows.push(row("everything", "the denominator of (10) as in (9)", "", &all)?);
+    rows.push(row(
+        "everything",
+        "the denominator of (10) as in (9)",
+        "",
+        &all,
+    )?);
     Ok(rows)
 }
 
 /// The uncorrected cut, and the worst and the mean of two-dimensional control.
-fn over_seeds(case: &PaperCase, seeds: &[u64], watch: &dyn Watch) -> Result<(Numbers, Numbers, Numbers), RunError> {
-    let bench = Bench { machine: &case.machine, watch };
+fn over_seeds(
+    case: &PaperCase,
+    seeds: &[u64],
+    watch: &dyn Watch,
+) -> Result<(Numbers, Numbers, Numbers), RunError> {
+    let bench = Bench {
+        machine: &case.machine,
+        watch,
+    };
     let cut = |&seed: &u64| {
         let net = bench.train_on(&case.excitation, &case.training, seed).net;
         bench.cut_two_dimensional(&net, case.settings)
     };
-    let cuts = seeds.par_iter().map(cut).collect::<Result<Vec<Numbers>, _>>()?;
+    let cuts = seeds
+        .par_iter()
+        .map(cut)
+        .collect::<Result<Vec<Numbers>, _>>()?;
     let over = |join: fn(f64, f64) -> f64, scale: f64| {
         let of = |number: fn(&Numbers) -> f64| scale * cuts.iter().map(number).fold(0.0, join);
         Numbers {
@@ -160,7 +196,11 @@ fn over_seeds(case: &PaperCase, seeds: &[u64], watch: &dyn Watch) -> Result<(Num
             completed: cuts.iter().all(|cut| cut.completed),
         }
     };
-    Ok((bench.cut_uncorrected()?, over(f64::max, 1.0), over(|a, b| a + b, 1.0 / cuts.len() as f64)))
+    Ok((
+        bench.cut_uncorrected()?,
+        over(f64::max, 1.0),
+        over(|a, b| a + b, 1.0 / cuts.len() as f64),
+    ))
 }
 
 /// A draw of what the paper leaves open, and what came of it.
@@ -192,7 +232,11 @@ pub(crate) struct Draw {
 ///
 /// # Errors
 /// As [`experiment`](super::experiment).
-pub(crate) fn draws(machine: &Machine, count: u64, watch: &dyn Watch) -> Result<Vec<Draw>, RunError> {
+pub(crate) fn draws(
+    machine: &Machine,
+    count: u64,
+    watch: &dyn Watch,
+) -> Result<Vec<Draw>, RunError> {
     watch.begin("drawing what the paper leaves open", count);
     let seeds: Vec<u64> = (1..=count).collect();
     let one = |&seed: &u64| {
@@ -213,8 +257,16 @@ fn drawn(machine: &Machine, seed: u64, watch: &dyn Watch) -> Result<Draw, RunErr
         axis.disturbance_nm *= disturbance;
         axis.disturbance_hz = disturbance_hz;
     }
-    let bench = Bench { machine: &machine, watch };
-    let excitation = Excitation { laps, feed_mm_s, offset_mm, ..Excitation::paper() };
+    let bench = Bench {
+        machine: &machine,
+        watch,
+    };
+    let excitation = Excitation {
+        laps,
+        feed_mm_s,
+        offset_mm,
+        ..Excitation::paper()
+    };
     let net = bench.train_on(&excitation, &Training::default(), seed).net;
     let mut settings = InvertingSettings::DEFAULT;
     settings.inversion.eta = eta;
@@ -239,7 +291,10 @@ pub(crate) fn quantile(draws: &[Draw], of: fn(&Draw) -> f64, part: f64) -> f64 {
     let mut values: Vec<f64> = draws.iter().map(of).collect();
     values.sort_by(f64::total_cmp);
     let rank = (part * values.len() as f64).ceil() as usize;
-    values.get(rank.clamp(1, values.len().max(1)) - 1).copied().unwrap_or(f64::NAN)
+    values
+        .get(rank.clamp(1, values.len().max(1)) - 1)
+        .copied()
+        .unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]

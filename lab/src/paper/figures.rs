@@ -1,4 +1,5 @@
-//! Figures 7 to 10 of Lee, Cho and Jeon (2005), from cuts of the circle with the identifier of one seed.
+//! Figures 7 to 10 of Lee, Cho and Jeon (2005), from cuts of the circle with the identifier of one
+//! seed.
 
 use feedwright::{COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline};
 use feedwright_control::{Controller, Gradient, InvertingSettings, TwoDimensional, Uncorrected};
@@ -9,8 +10,8 @@ use super::{Bench, Numbers, RADIUS_MM, magnitude_only, with_gradient, with_rho};
 
 /// The weights of Fig. 7: from none to the paper's choice.
 const RHO_OF_FIGURE_7: [f64; 4] = [0.0, 0.0001, 0.001, 0.01];
-/// Enlargement of the deviation in Fig. 10. At the paper's 500 a deviation of 25 um is drawn longer than the radius of the
-/// circle, and the tool's path turns inside out.
+/// Enlargement of the deviation in Fig. 10. At the paper's 500 a deviation of 25 um is drawn longer
+/// than the radius of the circle, and the tool's path turns inside out.
 const ENLARGEMENT: f64 = 50.0;
 
 /// A cut and what it came to.
@@ -23,7 +24,11 @@ struct Drawn {
 ///
 /// # Errors
 /// As [`experiment`](super::experiment).
-pub(crate) fn figures(machine: &Machine, seed: u64, watch: &dyn Watch) -> Result<Vec<CaptionedFigure>, RunError> {
+pub(crate) fn figures(
+    machine: &Machine,
+    seed: u64,
+    watch: &dyn Watch,
+) -> Result<Vec<CaptionedFigure>, RunError> {
     watch.begin("drawing", 1);
     let bench = Bench { machine, watch };
     let net = bench.train(seed).net;
@@ -63,7 +68,12 @@ fn figure_7(magnitude: &Drawn, time_only: &[Drawn]) -> CaptionedFigure {
     }
     let times: Vec<String> = time_only
         .iter()
-        .map(|drawn| format!("{:.2} s and {:.1} µm", drawn.numbers.time_s, drawn.numbers.max_um))
+        .map(|drawn| {
+            format!(
+                "{:.2} s and {:.1} µm",
+                drawn.numbers.time_s, drawn.numbers.max_um
+            )
+        })
         .collect();
     captioned(
         "Figure 7",
@@ -85,17 +95,33 @@ fn figure_8(open: &Drawn, magnitude: &Drawn, same_rho: &Drawn, both: &Drawn) -> 
             error("two-dimensional", both, 2, LineStyle::Solid),
         ]
     };
-    let (at, time) = (magnitude.numbers.rho.unwrap_or_default(), magnitude.numbers.time_s);
+    let (at, time) = (
+        magnitude.numbers.rho.unwrap_or_default(),
+        magnitude.numbers.time_s,
+    );
     captioned(
         "Figure 8",
         &format!(
             "Contour error of both methods. (a) In the same machining time, {time:.3} s (magnitude only at rho = {at:.5}): \
              RMS {:.2} against {:.2} µm, max {:.1} against {:.1} µm. (b) At the same rho.",
-            both.numbers.rms_um, magnitude.numbers.rms_um, both.numbers.max_um, magnitude.numbers.max_um
+            both.numbers.rms_um,
+            magnitude.numbers.rms_um,
+            both.numbers.max_um,
+            magnitude.numbers.max_um
         ),
         vec![
-            panel("(a) same machining time", "Time [s]", "Contour error [µm]", curves(magnitude, "magnitude only")),
-            panel("(b) same rho", "Time [s]", "Contour error [µm]", curves(same_rho, "magnitude only")),
+            panel(
+                "(a) same machining time",
+                "Time [s]",
+                "Contour error [µm]",
+                curves(magnitude, "magnitude only"),
+            ),
+            panel(
+                "(b) same rho",
+                "Time [s]",
+                "Contour error [µm]",
+                curves(same_rho, "magnitude only"),
+            ),
         ],
     )
 }
@@ -121,7 +147,14 @@ fn figure_9(open: &Drawn, magnitude: &Drawn, both: &Drawn) -> CaptionedFigure {
 }
 
 fn figure_10(open: &Drawn, magnitude: &Drawn, both: &Drawn) -> CaptionedFigure {
-    let programmed = || curve("programmed path", open.curves.path.clone(), 0, LineStyle::Thin);
+    let programmed = || {
+        curve(
+            "programmed path",
+            open.curves.path.clone(),
+            0,
+            LineStyle::Thin,
+        )
+    };
     let view = |title: &str, drawn: &Drawn| Panel {
         equal_axes: true,
         ..panel(
@@ -130,14 +163,22 @@ fn figure_10(open: &Drawn, magnitude: &Drawn, both: &Drawn) -> CaptionedFigure {
             "Y [mm]",
             vec![
                 programmed(),
-                curve("command", enlarged(&drawn.curves.command), 2, LineStyle::Solid),
+                curve(
+                    "command",
+                    enlarged(&drawn.curves.command),
+                    2,
+                    LineStyle::Solid,
+                ),
                 curve("tool", enlarged(&drawn.curves.tool), 1, LineStyle::Dashed),
             ],
         )
     };
     CaptionedFigure {
         figure: Figure {
-            panels: vec![view("(a) magnitude only", magnitude), view("(b) two-dimensional", both)],
+            panels: vec![
+                view("(a) magnitude only", magnitude),
+                view("(b) two-dimensional", both),
+            ],
             columns: 2,
             aspect: 1.0,
         },
@@ -170,7 +211,12 @@ fn error(label: &str, drawn: &Drawn, color: usize, line: LineStyle) -> Polyline 
 }
 
 fn curve(label: &str, points: Vec<[f64; 2]>, color: usize, line: LineStyle) -> Polyline {
-    Polyline { label: label.to_owned(), points, line, color: COLORS[color % COLORS.len()].to_owned() }
+    Polyline {
+        label: label.to_owned(),
+        points,
+        line,
+        color: COLORS[color % COLORS.len()].to_owned(),
+    }
 }
 
 fn panel(title: &str, x_title: &str, y_title: &str, curves: Vec<Polyline>) -> Panel {
@@ -185,7 +231,10 @@ fn panel(title: &str, x_title: &str, y_title: &str, curves: Vec<Polyline>) -> Pa
 
 fn captioned(number: &str, caption: &str, panels: Vec<Panel>) -> CaptionedFigure {
     CaptionedFigure {
-        figure: Figure { panels, ..Figure::default() },
+        figure: Figure {
+            panels,
+            ..Figure::default()
+        },
         number: number.to_owned(),
         caption: caption.to_owned(),
     }

@@ -1,4 +1,5 @@
-//! The closed position loop of an axis from command to position, sampled once a servo period, and the filter that inverts it.
+//! The closed position loop of an axis from command to position, sampled once a servo period, and
+//! the filter that inverts it.
 //!
 //! The model of an axis without Coulomb friction and limits is linear. Its states are the motor,
 //! the integral of the speed loop and the torque filter. The position loop sends a reference speed
@@ -10,10 +11,10 @@
 //! x / c = z^-n B / A                       B = Nv (K + fv (1 - z^-1) / Ts) + Nu fa J ((1 - z^-1) / Ts)^2,   A = D + Nm K
 //! ```
 //!
-//! n is the number of servo periods by which the position loop has commands late. xm is the position one measurement delay ago, and Nm is its N for v. The axis model itself is
-//! simulated to find h. Zeros of B well inside the unit circle are canceled. So are zeros inside it
-//! with a positive real part, whose inverse does not ring. For the other zeros only the phase is
-//! canceled.
+//! n is the number of servo periods by which the position loop has commands late. xm is the
+//! position one measurement delay ago, and Nm is its N for v. The axis model itself is simulated to
+//! find h. Zeros of B well inside the unit circle are canceled. So are zeros inside it with a
+//! positive real part, whose inverse does not ring. For the other zeros only the phase is canceled.
 //!
 //! Source: Tomizuka (1987), "Zero phase error tracking algorithm for digital control"; D by Faddeev
 //! and LeVerrier, Gantmacher (1959), The Theory of Matrices, chapter IV; zeros as eigenvalues of
@@ -26,7 +27,9 @@
 //! 1e-4 of the position.
 //!
 //! Symbols: as in [`feedwright_control::axis::drive`]. Polynomials are in ascending powers of z^-1.
-use feedwright_control::{AxisLaw, AxisState, DriveLaw, DriveParameters, DriveReference, DriveState, Parameters};
+use feedwright_control::{
+    AxisLaw, AxisState, DriveLaw, DriveParameters, DriveReference, DriveState, Parameters,
+};
 use feedwright_sim::{KnownAxis, Period};
 use nalgebra::{ComplexField, DMatrix, SMatrix, Schur};
 
@@ -34,9 +37,11 @@ use crate::peers::zero_phase::Filter;
 
 /// States: angle and speed of the motor, integral of the speed loop, torque behind the filter.
 const STATES: usize = 4;
-/// Longest delays, both ways together, servo periods: with them the filter has as many weights as it may have.
+/// Longest delays, both ways together, servo periods: with them the filter has as many weights as
+/// it may have.
 const MAX_DELAY_PERIODS: u32 = 40;
-/// A zero on the side that rings is cancelled within this circle: what it leaves is gone to a thousandth in ten periods.
+/// A zero on the side that rings is cancelled within this circle: what it leaves is gone to a
+/// thousandth in ten periods.
 const SOON_GONE: f64 = 0.5;
 /// Coefficients below this part of the largest are rounding.
 const ROUNDING: f64 = 1e-12;
@@ -45,10 +50,13 @@ const ROUNDS: usize = 1000;
 
 type Complex = nalgebra::Complex<f64>;
 
-/// The filter that inverts the closed loop of an axis, with other nominal parameters; none where it has no inverse.
+/// The filter that inverts the closed loop of an axis, with other nominal parameters; none where it
+/// has no inverse.
 pub(super) fn inverting(axis: &KnownAxis, nominal: &Parameters, period: &Period) -> Option<Filter> {
     let (numerator, denominator) = ClosedAxis::new(axis, nominal, period).transfer(nominal);
-    let largest = numerator.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    let largest = numerator
+        .iter()
+        .fold(0.0_f64, |most, value| most.max(value.abs()));
     let is_there = |value: &f64| value.abs() > ROUNDING * largest;
     let late = numerator.iter().position(is_there)?;
     let last = numerator.iter().rposition(is_there)?;
@@ -61,7 +69,11 @@ pub(super) fn inverting(axis: &KnownAxis, nominal: &Parameters, period: &Period)
     let ahead = axis.delays.command_periods(period.servo_s) + late + mirrored.len();
     let mut mirror = with_zeros(&mirrored);
     mirror.reverse();
-    Filter::of_loop(&times(&denominator, &mirror), u32::try_from(ahead).ok()?, &with_zeros(&cancelled))
+    Filter::of_loop(
+        &times(&denominator, &mirror),
+        u32::try_from(ahead).ok()?,
+        &with_zeros(&cancelled),
+    )
 }
 
 /// The linear part of an axis with its drive.
@@ -71,15 +83,23 @@ struct ClosedAxis {
     parameters: DriveParameters,
     /// Delays of the drive and of the measurement, mechanics periods.
     late: [u32; 2],
-    /// Torque of the drive's acceleration feedforward for a change of the commanded speed, N m s/rad.
+    /// Torque of the drive's acceleration feedforward for a change of the commanded speed, N m
+    /// s/rad.
     torque_for_change: f64,
 }
 
 impl ClosedAxis {
     fn new(axis: &KnownAxis, nominal: &Parameters, period: &Period) -> Self {
-        let linear = Parameters { torque_limit_nm: f64::INFINITY, coulomb_friction_nm: 0.0, ..*nominal };
+        let linear = Parameters {
+            torque_limit_nm: f64::INFINITY,
+            coulomb_friction_nm: 0.0,
+            ..*nominal
+        };
         let law = AxisLaw::new(linear, period.periods());
-        let parameters = DriveParameters { speed_limit_rad_s: 0.0, ..axis.drive };
+        let parameters = DriveParameters {
+            speed_limit_rad_s: 0.0,
+            ..axis.drive
+        };
         let longest = MAX_DELAY_PERIODS / 2 * period.mechanics_per_servo;
         // A float that is not a number saturates to zero here.
         let late = |delay_s: f64| ((delay_s / period.mechanics_s).round() as u32).min(longest);
@@ -89,36 +109,56 @@ impl ClosedAxis {
             parameters,
             late: [axis.delays.drive_s, axis.delays.measurement_s].map(late),
             // What the drive is set to, whatever the inertia is taken for.
-            torque_for_change: parameters.acceleration_feedforward * axis.nominal.inertia_kg_m2 / period.servo_s,
+            torque_for_change: parameters.acceleration_feedforward * axis.nominal.inertia_kg_m2
+                / period.servo_s,
         }
     }
 
     /// One mechanics period.
     fn substep(&self, reference: DriveReference, axis: &mut AxisState, drive: &mut DriveState) {
-        let torque_nm = self.drive.torque_nm(&self.law, reference, axis.speed_rad_s, drive);
-        self.law.accelerate(torque_nm - self.law.friction_nm(axis.speed_rad_s, 0.0), axis);
+        let torque_nm = self
+            .drive
+            .torque_nm(&self.law, reference, axis.speed_rad_s, drive);
+        self.law.accelerate(
+            torque_nm - self.law.friction_nm(axis.speed_rad_s, 0.0),
+            axis,
+        );
     }
 
-    /// What becomes of each state over a servo period, as columns; a state that the drive does not have is zero.
+    /// What becomes of each state over a servo period, as columns; a state that the drive does not
+    /// have is zero.
     fn columns(&self) -> [[f64; STATES]; STATES] {
-        let (is_integral, is_filter) = (self.parameters.speed_integral_s > 0.0, self.parameters.torque_filter_hz > 0.0);
+        let (is_integral, is_filter) = (
+            self.parameters.speed_integral_s > 0.0,
+            self.parameters.torque_filter_hz > 0.0,
+        );
         let is_there = [true, true, is_integral, is_filter];
         std::array::from_fn(|j| {
             if !is_there[j] {
                 return [0.0; STATES];
             }
             let unit: [f64; STATES] = std::array::from_fn(|i| if i == j { 1.0 } else { 0.0 });
-            let mut axis = AxisState { angle_rad: unit[0], speed_rad_s: unit[1], ..AxisState::default() };
+            let mut axis = AxisState {
+                angle_rad: unit[0],
+                speed_rad_s: unit[1],
+                ..AxisState::default()
+            };
             let mut drive = DriveState::AT_REST;
             drive.correct(unit[2], unit[3]);
             for _ in 0..self.law.periods.mechanics_per_servo {
                 self.substep(DriveReference::default(), &mut axis, &mut drive);
             }
-            [axis.angle_rad, axis.speed_rad_s, drive.integral_nm(), drive.filtered_nm()]
+            [
+                axis.angle_rad,
+                axis.speed_rad_s,
+                drive.integral_nm(),
+                drive.filtered_nm(),
+            ]
         })
     }
 
-    /// N of a reference that lasts a servo period, with positions that are `ago` mechanics periods old.
+    /// N of a reference that lasts a servo period, with positions that are `ago` mechanics periods
+    /// old.
     fn numerator(&self, reference: DriveReference, characteristic: &[f64], ago: u32) -> Vec<f64> {
         let per_servo = self.law.periods.mechanics_per_servo;
         let [drive_late, _] = self.late;
@@ -130,7 +170,15 @@ impl ClosedAxis {
                 positions_rad.push(axis.angle_rad);
             }
             let acts = (drive_late..drive_late + per_servo).contains(&n);
-            self.substep(if acts { reference } else { DriveReference::default() }, &mut axis, &mut drive);
+            self.substep(
+                if acts {
+                    reference
+                } else {
+                    DriveReference::default()
+                },
+                &mut axis,
+                &mut drive,
+            );
         }
         // The rest of the product is zero: D ends the response of the states.
         let mut product = times(characteristic, &positions_rad);
@@ -142,15 +190,27 @@ impl ClosedAxis {
     fn transfer(&self, nominal: &Parameters) -> (Vec<f64>, Vec<f64>) {
         let servo_s = self.law.periods.servo_s;
         let characteristic = characteristic(&self.columns());
-        let speed = DriveReference { speed_rad_s: 1.0, torque_nm: 0.0 };
-        let torque = DriveReference { speed_rad_s: 0.0, torque_nm: self.torque_for_change / servo_s };
+        let speed = DriveReference {
+            speed_rad_s: 1.0,
+            torque_nm: 0.0,
+        };
+        let torque = DriveReference {
+            speed_rad_s: 0.0,
+            torque_nm: self.torque_for_change / servo_s,
+        };
         let [_, measured_late] = self.late;
         let loop_gain = [nominal.kp_1_s + nominal.kd / servo_s, -nominal.kd / servo_s];
         let fed_1_s = self.parameters.velocity_feedforward / servo_s;
         let asked = [loop_gain[0] + fed_1_s, loop_gain[1] - fed_1_s];
         let of_speed = times(&self.numerator(speed, &characteristic, 0), &asked);
-        let of_torque = times(&self.numerator(torque, &characteristic, 0), &[1.0, -2.0, 1.0]);
-        let fed_back = times(&self.numerator(speed, &characteristic, measured_late), &loop_gain);
+        let of_torque = times(
+            &self.numerator(torque, &characteristic, 0),
+            &[1.0, -2.0, 1.0],
+        );
+        let fed_back = times(
+            &self.numerator(speed, &characteristic, measured_late),
+            &loop_gain,
+        );
         (sum(&of_speed, &of_torque), sum(&characteristic, &fed_back))
     }
 }
@@ -170,14 +230,18 @@ fn characteristic(columns: &[[f64; STATES]; STATES]) -> Vec<f64> {
 fn times(a: &[f64], b: &[f64]) -> Vec<f64> {
     let mut product = vec![0.0; a.len() + b.len() - 1];
     for (i, x) in a.iter().enumerate() {
-        b.iter().zip(&mut product[i..]).for_each(|(y, to)| *to += x * y);
+        b.iter()
+            .zip(&mut product[i..])
+            .for_each(|(y, to)| *to += x * y);
     }
     product
 }
 
 fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
     let at = |values: &[f64], i: usize| values.get(i).copied().unwrap_or(0.0);
-    (0..a.len().max(b.len())).map(|i| at(a, i) + at(b, i)).collect()
+    (0..a.len().max(b.len()))
+        .map(|i| at(a, i) + at(b, i))
+        .collect()
 }
 
 /// The polynomial that begins with 1 and has these zeros in z, which come in conjugate pairs.
@@ -190,10 +254,14 @@ fn with_zeros(zeros: &[Complex]) -> Vec<f64> {
             polynomial[i] -= zero * before;
         }
     }
-    polynomial.into_iter().map(|coefficient| coefficient.re).collect()
+    polynomial
+        .into_iter()
+        .map(|coefficient| coefficient.re)
+        .collect()
 }
 
-/// The zeros in z of a polynomial in z^-1 whose first and last coefficients are not zero: the eigenvalues of its companion matrix.
+/// The zeros in z of a polynomial in z^-1 whose first and last coefficients are not zero: the
+/// eigenvalues of its companion matrix.
 fn zeros(polynomial: &[f64]) -> Option<Vec<Complex>> {
     let (first, order) = (polynomial[0], polynomial.len() - 1);
     if order == 0 {
@@ -212,7 +280,8 @@ mod tests {
     use super::*;
     use feedwright_sim::{Axis, Known, Machine};
 
-    /// Rounding of a few hundred products of positions of about 1 rad, and zeros of a polynomial that has two near 0.9.
+    /// Rounding of a few hundred products of positions of about 1 rad, and zeros of a polynomial
+    /// that has two near 0.9.
     const TOLERANCE: f64 = 1e-9;
     /// Tolerance with acceleration feedforward, a speed-loop integral and a measurement delay. Only
     /// then the transfer function is approximate: see the departures.
@@ -220,7 +289,10 @@ mod tests {
 
     fn known(change: impl Fn(Axis) -> Axis) -> Known {
         let mut machine = Machine::load("tnv40".as_ref()).unwrap();
-        machine.axes.iter_mut().for_each(|axis| *axis = change(*axis));
+        machine
+            .axes
+            .iter_mut()
+            .for_each(|axis| *axis = change(*axis));
         machine.known()
     }
 
@@ -229,17 +301,29 @@ mod tests {
         let axis = known.axis(0);
         let linear = ClosedAxis::new(axis, &axis.nominal, &known.period);
         let (mut motor, mut drive) = (AxisState::default(), DriveState::AT_REST);
-        let (per_servo, [drive_late, measured_late]) = (known.period.mechanics_per_servo as usize, linear.late);
+        let (per_servo, [drive_late, measured_late]) =
+            (known.period.mechanics_per_servo as usize, linear.late);
         let (mut course_rad, mut sent, mut positions_rad) = (Vec::new(), Vec::new(), Vec::new());
         for command_rad in commands_rad {
             positions_rad.push(motor.angle_rad);
             course_rad.push(motor.angle_rad);
             let before = course_rad.len() - 1;
-            let measured_rad = before.checked_sub(measured_late as usize).map_or(0.0, |at| course_rad[at]);
+            let measured_rad = before
+                .checked_sub(measured_late as usize)
+                .map_or(0.0, |at| course_rad[at]);
             course_rad.pop();
-            sent.push(linear.drive.position_loop(&linear.law, *command_rad, measured_rad, &mut motor, &mut drive));
+            sent.push(linear.drive.position_loop(
+                &linear.law,
+                *command_rad,
+                measured_rad,
+                &mut motor,
+                &mut drive,
+            ));
             for _ in 0..per_servo {
-                let acts = course_rad.len().checked_sub(drive_late as usize).map(|at| sent[at / per_servo]);
+                let acts = course_rad
+                    .len()
+                    .checked_sub(drive_late as usize)
+                    .map(|at| sent[at / per_servo]);
                 course_rad.push(motor.angle_rad);
                 linear.substep(acts.unwrap_or_default(), &mut motor, &mut drive);
             }
@@ -259,44 +343,99 @@ mod tests {
         let machines = [
             known(|axis| axis),
             known(full),
-            known(|axis| Axis { measurement_delay_s: 0.0006, acceleration_feedforward: 0.7, kd: 0.02, ..full(axis) }),
-            known(|axis| Axis { acceleration_feedforward: 0.7, kd: 0.02, ..full(axis) }),
-            known(|axis| Axis { measurement_delay_s: 0.0006, ..full(axis) }),
+            known(|axis| Axis {
+                measurement_delay_s: 0.0006,
+                acceleration_feedforward: 0.7,
+                kd: 0.02,
+                ..full(axis)
+            }),
+            known(|axis| Axis {
+                acceleration_feedforward: 0.7,
+                kd: 0.02,
+                ..full(axis)
+            }),
+            known(|axis| Axis {
+                measurement_delay_s: 0.0006,
+                ..full(axis)
+            }),
             known(|axis| Axis {
                 measurement_delay_s: 0.0006,
                 acceleration_feedforward: 0.7,
                 speed_integral_s: 0.0,
                 ..full(axis)
             }),
-            known(|axis| Axis { speed_integral_s: 0.0, torque_filter_hz: 0.0, ..full(axis) }),
+            known(|axis| Axis {
+                speed_integral_s: 0.0,
+                torque_filter_hz: 0.0,
+                ..full(axis)
+            }),
         ];
         for known in machines {
             let axis = known.axis(0);
-            let (numerator, denominator) = ClosedAxis::new(axis, &axis.nominal, &known.period).transfer(&axis.nominal);
+            let (numerator, denominator) =
+                ClosedAxis::new(axis, &axis.nominal, &known.period).transfer(&axis.nominal);
             // The first command is where the axis rests: before it nothing was commanded.
-            let commands_rad: Vec<f64> =
-                (0..200).map(|n| if n == 0 { 0.0 } else { libm::sin(0.37 * f64::from(n * n)) }).collect();
+            let commands_rad: Vec<f64> = (0..200)
+                .map(|n| {
+                    if n == 0 {
+                        0.0
+                    } else {
+                        libm::sin(0.37 * f64::from(n * n))
+                    }
+                })
+                .collect();
             let positions_rad = stepped_rad(&known, &commands_rad);
-            let back = |values: &[f64], k: usize, j: usize| k.checked_sub(j).map_or(0.0, |at| values[at]);
+            let back =
+                |values: &[f64], k: usize, j: usize| k.checked_sub(j).map_or(0.0, |at| values[at]);
             for k in 0..commands_rad.len() {
-                let left: f64 = denominator.iter().enumerate().map(|(j, a)| a * back(&positions_rad, k, j)).sum();
-                let right: f64 = numerator.iter().enumerate().map(|(j, b)| b * back(&commands_rad, k, j)).sum();
-                let DriveParameters { acceleration_feedforward: fed, speed_integral_s: integral_s, .. } = axis.drive;
+                let left: f64 = denominator
+                    .iter()
+                    .enumerate()
+                    .map(|(j, a)| a * back(&positions_rad, k, j))
+                    .sum();
+                let right: f64 = numerator
+                    .iter()
+                    .enumerate()
+                    .map(|(j, b)| b * back(&commands_rad, k, j))
+                    .sum();
+                let DriveParameters {
+                    acceleration_feedforward: fed,
+                    speed_integral_s: integral_s,
+                    ..
+                } = axis.drive;
                 let is_exact = fed * integral_s * axis.delays.measurement_s == 0.0;
                 let tolerance = if is_exact { TOLERANCE } else { SEEN_LATE };
-                assert!((left - right).abs() < tolerance, "{:?}, {k}: {left} {right}", axis.drive);
+                assert!(
+                    (left - right).abs() < tolerance,
+                    "{:?}, {k}: {left} {right}",
+                    axis.drive
+                );
             }
-            assert!(positions_rad.iter().any(|position_rad| position_rad.abs() > 0.01));
+            assert!(
+                positions_rad
+                    .iter()
+                    .any(|position_rad| position_rad.abs() > 0.01)
+            );
         }
     }
 
     #[test]
     fn zeros_are_found_again() {
-        let wanted = [[0.95, 0.0], [0.9, 0.1], [0.9, -0.1], [-0.97, 0.0], [-7.0, 0.0], [0.002, 0.0]];
+        let wanted = [
+            [0.95, 0.0],
+            [0.9, 0.1],
+            [0.9, -0.1],
+            [-0.97, 0.0],
+            [-7.0, 0.0],
+            [0.002, 0.0],
+        ];
         let wanted = wanted.map(|[re, im]| Complex::new(re, im));
         let found = zeros(&with_zeros(&wanted)).unwrap();
         for zero in wanted {
-            let nearest = found.iter().map(|other| (zero - other).modulus()).fold(f64::MAX, f64::min);
+            let nearest = found
+                .iter()
+                .map(|other| (zero - other).modulus())
+                .fold(f64::MAX, f64::min);
             assert!(nearest < TOLERANCE, "{zero:?}: {found:?}");
         }
     }

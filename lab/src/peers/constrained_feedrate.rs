@@ -1,36 +1,44 @@
-//! The feedrate of least time whose predicted contour error stays within what is allowed, by nonlinear programming.
+//! The feedrate of least time whose predicted contour error stays within what is allowed, by
+//! nonlinear programming.
 //!
-//! The path is divided into lines of equal plan time T. Line i is cut at r_i times its planned feedrate:
+//! The path is divided into lines of equal plan time T. Line i is cut at r_i times its planned
+//! feedrate:
 //!
 //! ```text
 //! minimize  sum_i T / r_i     subject to  eps_i(r) <= allowed,   slowest <= r_i <= 1
 //! ```
 //!
-//! eps_i is the distance of the tool from the lines at the end of line i, predicted by a linear model of each axis. On a line the
-//! reference speed v is constant, so the following error e and the speed w have a closed form:
+//! eps_i is the distance of the tool from the lines at the end of line i, predicted by a linear
+//! model of each axis. On a line the reference speed v is constant, so the following error e and
+//! the speed w have a closed form:
 //!
 //! ```text
 //! e' = v - w,   w' = b (c (kp e + f v) - w),   b = (kv + B) / J,   c = kv / (kv + B)
 //! ```
 //!
-//! with f the part of the speed that the drive feeds forward. With `y = ln r`, both `ln eps` and the time are nearly linear in y
-//! over one step, so the problem is solved by sequential quadratic programming (Wilson 1963): the constraints are linearized by
-//! differences, and the quadratic problem is solved in its dual, one multiplier after another (Hildreth 1957). The acceleration
+//! with f the part of the speed that the drive feeds forward. With `y = ln r`, both `ln eps` and
+//! the time are nearly linear in y over one step, so the problem is solved by sequential quadratic
+//! programming (Wilson 1963): the constraints are linearized by differences, and the quadratic
+//! problem is solved in its dual, one multiplier after another (Hildreth 1957). The acceleration
 //! that the machine allows along the path then bounds the change of the feedrate from line to line.
 //!
-//! Source: Imamura and Kaufman (1989), "Feedrate optimization for machine tool control subject to contour error constraints".
+//! Source: Imamura and Kaufman (1989), "Feedrate optimization for machine tool control subject to
+//! contour error constraints".
 //!
-//! The paper was not at hand. Lee, Cho and Jeon (2005) say of it: nonlinear programming, and an ellipse divided into several
-//! lines. Reconstructed here: the lines for any path, the model, and the solver. The plan needs the whole path in advance, which
-//! one lap of practice records; nothing is measured in it.
+//! The paper was not at hand. Lee, Cho and Jeon (2005) say of it: nonlinear programming, and an
+//! ellipse divided into several lines. Reconstructed here: the lines for any path, the model, and
+//! the solver. The plan needs the whole path in advance, which one lap of practice records; nothing
+//! is measured in it.
 use feedwright_control::vector::{add_scaled, bounded, dot, norm, scale, sub};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
-/// Plan time of a line, s: at 50 mm/s on a circle of 10 mm the path is 0.8 um beside the middle of such a line, in 10 ms 3 um.
+/// Plan time of a line, s: at 50 mm/s on a circle of 10 mm the path is 0.8 um beside the middle of
+/// such a line, in 10 ms 3 um.
 pub(super) const LINE_S: f64 = 0.005;
 /// Longest program that is divided, s; the rest is cut as planned.
 const LONGEST_S: f64 = 120.0;
-/// Lines after which a line no longer acts on the tool: 0.16 s, eight time constants of a position loop of 50 1/s.
+/// Lines after which a line no longer acts on the tool: 0.16 s, eight time constants of a position
+/// loop of 50 1/s.
 const MEMORY: usize = 32;
 /// Steps of the outer method, passes over the multipliers, and the longest step in `ln r`.
 const STEPS: usize = 20;
@@ -59,10 +67,14 @@ pub(super) struct LaggingAxis {
 impl LaggingAxis {
     /// Following error and speed after `for_s` on a line at `v` mm/s.
     fn after(&self, [error_mm, speed_mm_s]: [f64; 2], v: f64, for_s: f64) -> [f64; 2] {
-        let (b, stiffness) = (self.bandwidth_1_s, self.bandwidth_1_s * self.reached * self.kp_1_s);
+        let (b, stiffness) = (
+            self.bandwidth_1_s,
+            self.bandwidth_1_s * self.reached * self.kp_1_s,
+        );
         let steady_mm = (v / self.reached - self.fed_forward * v) / self.kp_1_s;
         let [e, w] = [error_mm - steady_mm, speed_mm_s - v];
-        // The exponential of [[0, -1], [stiffness, -b]]: half its trace is -b / 2, and the rest squared is `square`.
+        // The exponential of [[0, -1], [stiffness, -b]]: half its trace is -b / 2, and the rest
+        // squared is `square`.
         let (half, square) = (0.5 * b, 0.25 * b * b - stiffness);
         let root = libm::sqrt(square.abs());
         let decay = libm::exp(-half * for_s);
@@ -92,8 +104,12 @@ pub(super) struct Settings {
 
 impl Settings {
     /// Half of the error that the linear part of tnv40 makes on a circle of 10 mm at 50 mm/s.
-    pub(super) const DEFAULT: Self =
-        Self { servo_periods: 5, allowed_mm: 0.006, slowest: 0.4, acceleration_mm_s2: 100.0 };
+    pub(super) const DEFAULT: Self = Self {
+        servo_periods: 5,
+        allowed_mm: 0.006,
+        slowest: 0.4,
+        acceleration_mm_s2: 100.0,
+    };
 }
 
 /// The lines, and the rates at which they are cut.
@@ -112,7 +128,13 @@ impl<const N: usize> ConstrainedFeedrate<N> {
     pub(super) fn new(settings: Settings, axes: [LaggingAxis; N], servo_s: f64) -> Self {
         let period_s = f64::from(settings.servo_periods.max(1)) * servo_s;
         let lines = (LONGEST_S / period_s) as usize;
-        Self { settings, axes, period_s, ends_mm: Vec::with_capacity(lines), rates: Vec::new() }
+        Self {
+            settings,
+            axes,
+            period_s,
+            ends_mm: Vec::with_capacity(lines),
+            rates: Vec::new(),
+        }
     }
 
     fn line(&self, tau_s: f64) -> usize {
@@ -122,7 +144,10 @@ impl<const N: usize> ConstrainedFeedrate<N> {
 
 impl<const N: usize> Controller<N> for ConstrainedFeedrate<N> {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: self.settings.servo_periods.max(1), preview: 0 }
+        Schedule {
+            servo_periods: self.settings.servo_periods.max(1),
+            preview: 0,
+        }
     }
 
     /// Forgets the path.
@@ -134,8 +159,12 @@ impl<const N: usize> Controller<N> for ConstrainedFeedrate<N> {
     /// Plans the path that was recorded.
     fn next_lap(&mut self) {
         if self.rates.is_empty() {
-            self.rates =
-                DividedPath { ends_mm: &self.ends_mm, axes: &self.axes, period_s: self.period_s }.plan(&self.settings);
+            self.rates = DividedPath {
+                ends_mm: &self.ends_mm,
+                axes: &self.axes,
+                period_s: self.period_s,
+            }
+            .plan(&self.settings);
         }
     }
 
@@ -175,16 +204,23 @@ impl<const N: usize> DividedPath<'_, N> {
     fn cut(&self, line: usize, state: &ServoStates<N>, log_rate: f64) -> (ServoStates<N>, f64) {
         let for_s = self.period_s * libm::exp(-log_rate);
         let v = scale(1.0 / for_s, self.chord_mm(line));
-        let state: ServoStates<N> = std::array::from_fn(|i| self.axes[i].after(state[i], v[i], for_s));
+        let state: ServoStates<N> =
+            std::array::from_fn(|i| self.axes[i].after(state[i], v[i], for_s));
         let tool_mm = sub(self.ends_mm[line + 1], state.map(|[error_mm, _]| error_mm));
         let near = line.saturating_sub(MEMORY)..(line + 2).min(self.count());
-        let nearest_mm = near.map(|near| self.distance_mm(near, tool_mm)).fold(f64::INFINITY, f64::min);
+        let nearest_mm = near
+            .map(|near| self.distance_mm(near, tool_mm))
+            .fold(f64::INFINITY, f64::min);
         (state, libm::log(nearest_mm.max(LEAST_MM)))
     }
 
     fn distance_mm(&self, line: usize, tool_mm: [f64; N]) -> f64 {
         let (chord_mm, from_mm) = (self.chord_mm(line), sub(tool_mm, self.ends_mm[line]));
-        let part = bounded(dot(from_mm, chord_mm) / dot(chord_mm, chord_mm).max(f64::MIN_POSITIVE), 0.0, 1.0);
+        let part = bounded(
+            dot(from_mm, chord_mm) / dot(chord_mm, chord_mm).max(f64::MIN_POSITIVE),
+            0.0,
+            1.0,
+        );
         norm(add_scaled(from_mm, -part, chord_mm))
     }
 
@@ -205,10 +241,23 @@ impl<const N: usize> DividedPath<'_, N> {
         let mut log_rates = vec![0.0; self.count()];
         for _ in 0..STEPS {
             let (states, errors) = self.cut_all(&log_rates);
-            let over: Vec<f64> = errors.iter().map(|error| error - libm::log(settings.allowed_mm)).collect();
-            let step = self.quadratic_step(&log_rates, &self.slopes(&log_rates, &states, &errors), &over, least);
-            let largest = step.iter().fold(0.0_f64, |largest, step| largest.max(step.abs()));
-            log_rates.iter_mut().zip(&step).for_each(|(log_rate, step)| *log_rate += step);
+            let over: Vec<f64> = errors
+                .iter()
+                .map(|error| error - libm::log(settings.allowed_mm))
+                .collect();
+            let step = self.quadratic_step(
+                &log_rates,
+                &self.slopes(&log_rates, &states, &errors),
+                &over,
+                least,
+            );
+            let largest = step
+                .iter()
+                .fold(0.0_f64, |largest, step| largest.max(step.abs()));
+            log_rates
+                .iter_mut()
+                .zip(&step)
+                .for_each(|(log_rate, step)| *log_rate += step);
             if largest < DIFFERENCE {
                 break;
             }
@@ -218,8 +267,14 @@ impl<const N: usize> DividedPath<'_, N> {
         rates
     }
 
-    /// Derivative of the error at the end of each line to the rates of itself and of those before it, the nearest first.
-    fn slopes(&self, log_rates: &[f64], states: &[ServoStates<N>], errors: &[f64]) -> Vec<[f64; MEMORY]> {
+    /// Derivative of the error at the end of each line to the rates of itself and of those before
+    /// it, the nearest first.
+    fn slopes(
+        &self,
+        log_rates: &[f64],
+        states: &[ServoStates<N>],
+        errors: &[f64],
+    ) -> Vec<[f64; MEMORY]> {
         let mut slopes = vec![[0.0; MEMORY]; errors.len()];
         for changed in (0..errors.len()).filter(|&line| self.is_moving(line)) {
             let mut state = states[changed];
@@ -233,26 +288,49 @@ impl<const N: usize> DividedPath<'_, N> {
         slopes
     }
 
-    /// The step that makes the time least where the constraints are linear: with `t = 1 / r` the time of a line in planned ones, its
-    /// derivative is `-t` and its second derivative `t`. Lines of rest stay as they are.
-    fn quadratic_step(&self, log_rates: &[f64], slopes: &[[f64; MEMORY]], over: &[f64], least: f64) -> Vec<f64> {
+    /// The step that makes the time least where the constraints are linear: with `t = 1 / r` the
+    /// time of a line in planned ones, its derivative is `-t` and its second derivative `t`. Lines
+    /// of rest stay as they are.
+    fn quadratic_step(
+        &self,
+        log_rates: &[f64],
+        slopes: &[[f64; MEMORY]],
+        over: &[f64],
+        least: f64,
+    ) -> Vec<f64> {
         let bounds = |line: usize| {
             let log_rate: f64 = log_rates[line];
-            [(least - log_rate).max(-LONGEST_STEP), (-log_rate).min(LONGEST_STEP)]
+            [
+                (least - log_rate).max(-LONGEST_STEP),
+                (-log_rate).min(LONGEST_STEP),
+            ]
         };
-        let moving: Vec<bool> = (0..log_rates.len()).map(|line| self.is_moving(line)).collect();
-        let weight: Vec<f64> = log_rates.iter().map(|log_rate| libm::exp(-log_rate)).collect();
+        let moving: Vec<bool> = (0..log_rates.len())
+            .map(|line| self.is_moving(line))
+            .collect();
+        let weight: Vec<f64> = log_rates
+            .iter()
+            .map(|log_rate| libm::exp(-log_rate))
+            .collect();
         // What all multipliers take from the step of each line, before its bounds.
-        let (mut pressed, mut multipliers) = (vec![0.0; log_rates.len()], vec![0.0_f64; over.len()]);
+        let (mut pressed, mut multipliers) =
+            (vec![0.0; log_rates.len()], vec![0.0_f64; over.len()]);
         let step = |line: usize, pressed: f64| {
             let [low, high] = bounds(line);
-            if moving[line] { bounded(1.0 - pressed / weight[line], low, high) } else { 0.0 }
+            if moving[line] {
+                bounded(1.0 - pressed / weight[line], low, high)
+            } else {
+                0.0
+            }
         };
         for _ in 0..PASSES {
             for (line, slopes) in slopes.iter().enumerate() {
                 let reach = (line + 1).min(MEMORY);
                 let lines = || (0..reach).map(|back| (line - back, slopes[back]));
-                let left = over[line] + lines().map(|(at, slope)| slope * step(at, pressed[at])).sum::<f64>();
+                let left = over[line]
+                    + lines()
+                        .map(|(at, slope)| slope * step(at, pressed[at]))
+                        .sum::<f64>();
                 let curvature: f64 = lines().map(|(at, slope)| slope * slope / weight[at]).sum();
                 let change = (left / curvature.max(f64::MIN_POSITIVE)).max(-multipliers[line]);
                 if change != 0.0 && change.is_finite() {
@@ -261,12 +339,16 @@ impl<const N: usize> DividedPath<'_, N> {
                 }
             }
         }
-        (0..log_rates.len()).map(|line| step(line, pressed[line])).collect()
+        (0..log_rates.len())
+            .map(|line| step(line, pressed[line]))
+            .collect()
     }
 
     /// Slows lines down until the feedrate changes no faster than the machine may.
     fn hold_acceleration(&self, rates: &mut [f64], acceleration_mm_s2: f64) {
-        let planned: Vec<f64> = (0..self.count()).map(|line| norm(self.chord_mm(line)) / self.period_s).collect();
+        let planned: Vec<f64> = (0..self.count())
+            .map(|line| norm(self.chord_mm(line)) / self.period_s)
+            .collect();
         let hold = |rates: &mut [f64], line: usize, neighbor: usize| {
             if planned[line] > 0.0 {
                 let beside = rates[neighbor] * planned[neighbor];
@@ -290,7 +372,12 @@ impl<const N: usize> DividedPath<'_, N> {
 mod tests {
     use super::*;
 
-    const AXIS: LaggingAxis = LaggingAxis { kp_1_s: 50.0, bandwidth_1_s: 197.0, reached: 0.98, fed_forward: 0.0 };
+    const AXIS: LaggingAxis = LaggingAxis {
+        kp_1_s: 50.0,
+        bandwidth_1_s: 197.0,
+        reached: 0.98,
+        fed_forward: 0.0,
+    };
     const SERVO_S: f64 = 0.001;
     /// Half axes 20 and 10 mm at 50 mm/s, by arc length to 1 % of a line.
     fn ellipse() -> Vec<[f64; 2]> {
@@ -306,39 +393,77 @@ mod tests {
 
     #[test]
     fn the_closed_form_is_what_small_steps_come_to() {
-        for (bandwidth_1_s, fed_forward) in [(150.0, 0.0), (197.0, 0.0), (200.0 / 0.98 * 0.98, 0.95), (900.0, 0.5)] {
-            let axis = LaggingAxis { bandwidth_1_s, fed_forward, ..AXIS };
+        for (bandwidth_1_s, fed_forward) in [
+            (150.0, 0.0),
+            (197.0, 0.0),
+            (200.0 / 0.98 * 0.98, 0.95),
+            (900.0, 0.5),
+        ] {
+            let axis = LaggingAxis {
+                bandwidth_1_s,
+                fed_forward,
+                ..AXIS
+            };
             let found = axis.after([0.3, -20.0], 40.0, 0.02);
             let (mut e, mut w) = (0.3, -20.0);
             let steps = 200_000;
             for _ in 0..steps {
-                let of_w = bandwidth_1_s * (axis.reached * (axis.kp_1_s * e + fed_forward * 40.0) - w);
+                let of_w =
+                    bandwidth_1_s * (axis.reached * (axis.kp_1_s * e + fed_forward * 40.0) - w);
                 e += 0.02 / f64::from(steps) * (40.0 - w);
                 w += 0.02 / f64::from(steps) * of_w;
             }
             // Euler's steps of 0.1 us are off by some 1e-5 of what decays.
-            assert!((found[0] - e).abs() < 1e-4 && (found[1] - w).abs() < 1e-2, "{axis:?}: {found:?} {e} {w}");
+            assert!(
+                (found[0] - e).abs() < 1e-4 && (found[1] - w).abs() < 1e-2,
+                "{axis:?}: {found:?} {e} {w}"
+            );
         }
     }
 
     #[test]
     fn the_feedrate_is_the_highest_that_holds_what_is_allowed() {
         let ends_mm = ellipse();
-        let lines = DividedPath { ends_mm: &ends_mm, axes: &[AXIS; 2], period_s: 5.0 * SERVO_S };
-        let settings = Settings { acceleration_mm_s2: 1e9, slowest: 0.1, ..Settings::DEFAULT };
+        let lines = DividedPath {
+            ends_mm: &ends_mm,
+            axes: &[AXIS; 2],
+            period_s: 5.0 * SERVO_S,
+        };
+        let settings = Settings {
+            acceleration_mm_s2: 1e9,
+            slowest: 0.1,
+            ..Settings::DEFAULT
+        };
         let rates: Vec<f64> = lines.plan(&settings);
-        let errors = |rates: &[f64]| lines.cut_all(&rates.iter().map(|rate| libm::log(*rate)).collect::<Vec<_>>()).1;
+        let errors = |rates: &[f64]| {
+            lines
+                .cut_all(
+                    &rates
+                        .iter()
+                        .map(|rate| libm::log(*rate))
+                        .collect::<Vec<_>>(),
+                )
+                .1
+        };
         let limit = libm::log(settings.allowed_mm);
         let worst = errors(&rates).into_iter().fold(f64::NEG_INFINITY, f64::max);
         assert!(worst < limit + 0.01, "{}", libm::exp(worst));
-        let open = errors(&vec![1.0; rates.len()]).into_iter().fold(f64::NEG_INFINITY, f64::max);
-        assert!(open > limit + 0.5, "there is nothing to hold: {}", libm::exp(open));
+        let open = errors(&vec![1.0; rates.len()])
+            .into_iter()
+            .fold(f64::NEG_INFINITY, f64::max);
+        assert!(
+            open > limit + 0.5,
+            "there is nothing to hold: {}",
+            libm::exp(open)
+        );
         // Faster anywhere is too fast somewhere, away from the end, which nothing after it bounds.
         for line in 0..rates.len() - MEMORY {
             if rates[line] < 0.99 {
                 let mut faster = rates.clone();
                 faster[line] = (1.2 * rates[line]).min(1.0);
-                let worst = errors(&faster).into_iter().fold(f64::NEG_INFINITY, f64::max);
+                let worst = errors(&faster)
+                    .into_iter()
+                    .fold(f64::NEG_INFINITY, f64::max);
                 assert!(worst > limit, "line {line} at {}", rates[line]);
             }
         }
@@ -347,12 +472,22 @@ mod tests {
     #[test]
     fn the_feedrate_changes_no_faster_than_the_machine_may() {
         let ends_mm = ellipse();
-        let lines = DividedPath { ends_mm: &ends_mm, axes: &[AXIS; 2], period_s: 5.0 * SERVO_S };
-        let rates = lines.plan(&Settings { allowed_mm: 0.002, ..Settings::DEFAULT });
+        let lines = DividedPath {
+            ends_mm: &ends_mm,
+            axes: &[AXIS; 2],
+            period_s: 5.0 * SERVO_S,
+        };
+        let rates = lines.plan(&Settings {
+            allowed_mm: 0.002,
+            ..Settings::DEFAULT
+        });
         for pair in rates.windows(2) {
             let [before, after] = [pair[0] * 50.0, pair[1] * 50.0];
             // 100 mm/s2 over a line of 0.25 mm; lines differ by 1 %.
-            assert!((after * after - before * before).abs() < 2.0 * 100.0 * 0.25 * 1.05, "{before} {after}");
+            assert!(
+                (after * after - before * before).abs() < 2.0 * 100.0 * 0.25 * 1.05,
+                "{before} {after}"
+            );
         }
     }
 }

@@ -6,15 +6,17 @@
 //! P'(k)  = P*(k) + c(k)
 //! ```
 //!
-//! Source: Lee and Jeon (1999), whose estimator over the shift register of references is `contour_error`, as far
-//! as Lee, Cho and Jeon (2005) tell of it: the contour error is estimated in each period and the position command
-//! compensated by it.
+//! Source: Lee and Jeon (1999), whose estimator over the shift register of references is
+//! `contour_error`, as far as Lee, Cho and Jeon (2005) tell of it: the contour error is estimated
+//! in each period and the position command compensated by it.
 //!
-//! Chosen here, for the law of the compensator was not to be had: the compensation accumulates, because one that is equal
-//! to the error leaves half of it; rate g and filter Tf are tuned; c and f turn with the path, so that the droop in a
-//! circle is one constant error and not a wave on two axes.
+//! Chosen here, for the law of the compensator was not to be had: the compensation accumulates,
+//! because one that is equal to the error leaves half of it; rate g and filter Tf are tuned; c and
+//! f turn with the path, so that the droop in a circle is one constant error and not a wave on two
+//! axes.
 //!
-//! Departure: while the supervisor holds the command back, the accumulation starts from what it let through.
+//! Departure: while the supervisor holds the command back, the accumulation starts from what it let
+//! through.
 
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{Window, carried};
@@ -31,8 +33,12 @@ pub(super) struct Settings {
 }
 
 impl Settings {
-    /// Just below the 50 1/s of a position loop, a filter of one servo period: found by hand on the circle.
-    pub(super) const DEFAULT: Self = Self { rate_1_s: 40.0, filter_s: 0.001 };
+    /// Just below the 50 1/s of a position loop, a filter of one servo period: found by hand on the
+    /// circle.
+    pub(super) const DEFAULT: Self = Self {
+        rate_1_s: 40.0,
+        filter_s: 0.001,
+    };
 }
 
 /// Real-time contour error compensation.
@@ -46,13 +52,20 @@ pub(super) struct ContourCompensation<const N: usize> {
 impl<const N: usize> ContourCompensation<N> {
     /// With these settings.
     pub(super) fn new(settings: Settings) -> Self {
-        Self { settings, filtered_mm: [0.0; N], tangent: None }
+        Self {
+            settings,
+            filtered_mm: [0.0; N],
+            tangent: None,
+        }
     }
 }
 
 impl<const N: usize> Controller<N> for ContourCompensation<N> {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: 1, preview: 0 }
+        Schedule {
+            servo_periods: 1,
+            preview: 0,
+        }
     }
 
     fn reset(&mut self) {
@@ -74,7 +87,14 @@ impl<const N: usize> Controller<N> for ContourCompensation<N> {
         self.tangent = Some(tangent);
         let part = period_s / (period_s + self.settings.filter_s);
         self.filtered_mm = add_scaled(self.filtered_mm, part, sub(error_mm, self.filtered_mm));
-        Command::straight(1.0, add_scaled(offset_mm, self.settings.rate_1_s * period_s, self.filtered_mm))
+        Command::straight(
+            1.0,
+            add_scaled(
+                offset_mm,
+                self.settings.rate_1_s * period_s,
+                self.filtered_mm,
+            ),
+        )
     }
 }
 
@@ -90,20 +110,32 @@ pub(super) mod tests {
     impl KnotSource<2> for Circle {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             let (sin, cos) = (libm::sin(5.0 * tau_s), libm::cos(5.0 * tau_s));
-            Knot { position_mm: [10.0 - 10.0 * cos, 10.0 * sin], tangent: [sin, cos], feed_mm_s: 50.0, cutting: true }
+            Knot {
+                position_mm: [10.0 - 10.0 * cos, 10.0 * sin],
+                tangent: [sin, cos],
+                feed_mm_s: 50.0,
+                cutting: true,
+            }
         }
     }
 
     /// Error of the radius after 2 s, mm.
     fn droop_mm(mut controller: impl Controller<2>) -> f64 {
-        norm(sub(cut(&mut Circle, &mut controller, [0.0; 2], 2000), [10.0, 0.0])) - 10.0
+        norm(sub(
+            cut(&mut Circle, &mut controller, [0.0; 2], 2000),
+            [10.0, 0.0],
+        )) - 10.0
     }
 
     #[test]
     fn the_droop_of_a_circle_is_one_constant_error_and_vanishes() {
-        // Radius of a first-order lag with the time constant T at the angular speed w: R / sqrt(1 + (w T)^2).
+        // Radius of a first-order lag with the time constant T at the angular speed w: R / sqrt(1 +
+        // (w T)^2).
         let open = droop_mm(Uncorrected);
-        assert!((open - (10.0 / libm::sqrt(1.01) - 10.0)).abs() < 1e-3, "{open}");
+        assert!(
+            (open - (10.0 / libm::sqrt(1.01) - 10.0)).abs() < 1e-3,
+            "{open}"
+        );
         let compensated = droop_mm(ContourCompensation::new(Settings::DEFAULT));
         assert!(compensated.abs() < 2e-4, "{compensated}");
     }

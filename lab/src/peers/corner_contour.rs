@@ -1,25 +1,32 @@
-//! An additional reference contour at corners, from linear models of the axes; away from corners the reference is the path.
+//! An additional reference contour at corners, from linear models of the axes; away from corners
+//! the reference is the path.
 //!
 //! ```text
 //! r(t) = p(t) + g(d) (p'(t) / kp + p''(t) / (kp w))       w: bandwidth of the speed loop, 1/s
 //! g(d) = 1 for |d| <= h,   s(2 - |d| / h) for h < |d| < 2 h,   0 beyond       s(x) = 3 x^2 - 2 x^3
 //! ```
 //!
-//! with p the path, r the reference and d the time to the nearest corner, s. The bracket is the reference that a linear axis
-//! follows without error, so the reference runs past the corner before it turns, and the tool does not cut the corner. On the
-//! lines beside the corner the addition lies along the path. It fades in and out there and makes no contour error.
+//! with p the path, r the reference and d the time to the nearest corner, s. The bracket is the
+//! reference that a linear axis follows without error, so the reference runs past the corner before
+//! it turns, and the tool does not cut the corner. On the lines beside the corner the addition lies
+//! along the path. It fades in and out there and makes no contour error.
 //!
-//! Source: Yang (1993), "Optimal feedrate control strategy for high-speed high-accuracy corner motions".
+//! Source: Yang (1993), "Optimal feedrate control strategy for high-speed high-accuracy corner
+//! motions".
 //!
-//! The paper was not at hand. Lee, Cho and Jeon (2005) say of it: an analytic method sets an additional reference contour, the
-//! models are simplified linear equations, and only corners are treated. Reconstructed here: the addition as the inverse of the
-//! linear axis ([`Feedforward`] without friction, which also knows the delays and the feedforward of a drive), and the weight g.
-//! The optimal feedrate of its title is left to the feed planner, which bounds the speed at a corner.
+//! The paper was not at hand. Lee, Cho and Jeon (2005) say of it: an analytic method sets an
+//! additional reference contour, the models are simplified linear equations, and only corners are
+//! treated. Reconstructed here: the addition as the inverse of the linear axis ([`Feedforward`]
+//! without friction, which also knows the delays and the feedforward of a drive), and the weight g.
+//! The optimal feedrate of its title is left to the feed planner, which bounds the speed at a
+//! corner.
 use feedwright_control::vector::{dot, scale, smooth_step};
-use feedwright_control::{Command, Controller, Feedforward, MAX_PREVIEW, Measured, Schedule, Window};
+use feedwright_control::{
+    Command, Controller, Feedforward, MAX_PREVIEW, Measured, Schedule, Window,
+};
 
-/// Cosine of the turn between two knots beyond which there is a corner between them: a curve turns so far (0.1 rad) in a servo
-/// period only where its radius is below ten steps.
+/// Cosine of the turn between two knots beyond which there is a corner between them: a curve turns
+/// so far (0.1 rad) in a servo period only where its radius is below ten steps.
 const CORNER_COSINE: f64 = 0.995;
 
 /// The additional contour.
@@ -35,7 +42,12 @@ pub(super) struct CornerContour<const N: usize> {
 impl<const N: usize> CornerContour<N> {
     /// From the inverse of the linear axes, with its whole weight within `reach_s` of a corner.
     pub(super) fn new(inverse: Feedforward<N>, reach_s: f64, servo_s: f64) -> Self {
-        Self { inverse, reach_s, servo_s, whole_mm: [0.0; N] }
+        Self {
+            inverse,
+            reach_s,
+            servo_s,
+            whole_mm: [0.0; N],
+        }
     }
 
     /// Weight of the addition at the next servo period, 0 to 1.
@@ -47,7 +59,9 @@ impl<const N: usize> CornerContour<N> {
         };
         let nearest = (0..farthest).find(|&away| is_corner(away) || is_corner(-away));
         let away_s = |periods: i32| f64::from(periods) * self.servo_s;
-        nearest.map_or(0.0, |periods| smooth_step((2.0 - away_s(periods) / self.reach_s).clamp(0.0, 1.0)))
+        nearest.map_or(0.0, |periods| {
+            smooth_step((2.0 - away_s(periods) / self.reach_s).clamp(0.0, 1.0))
+        })
     }
 }
 
@@ -55,7 +69,10 @@ impl<const N: usize> Controller<N> for CornerContour<N> {
     fn schedule(&self) -> Schedule {
         let own = libm::ceil(2.0 * self.reach_s / self.servo_s).min(MAX_PREVIEW) as u32;
         let inverse = self.inverse.schedule();
-        Schedule { preview: inverse.preview.max(own), ..inverse }
+        Schedule {
+            preview: inverse.preview.max(own),
+            ..inverse
+        }
     }
 
     fn reset(&mut self) {
@@ -70,7 +87,10 @@ impl<const N: usize> Controller<N> for CornerContour<N> {
     }
 
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
-        let alone = Window { offset_mm: self.whole_mm, ..*window };
+        let alone = Window {
+            offset_mm: self.whole_mm,
+            ..*window
+        };
         self.whole_mm = self.inverse.command(&alone, measured).offset_mm;
         Command::straight(1.0, scale(self.weight(window), self.whole_mm))
     }
@@ -94,14 +114,30 @@ mod tests {
     impl KnotSource<2> for Corner {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             let [x, y] = [tau_s.min(CORNER_S), (tau_s - CORNER_S).max(0.0)].map(|t_s| 50.0 * t_s);
-            let tangent = if tau_s < CORNER_S { [1.0, 0.0] } else { [0.0, 1.0] };
-            Knot { position_mm: [x, y], tangent, feed_mm_s: 50.0, cutting: true }
+            let tangent = if tau_s < CORNER_S {
+                [1.0, 0.0]
+            } else {
+                [0.0, 1.0]
+            };
+            Knot {
+                position_mm: [x, y],
+                tangent,
+                feed_mm_s: 50.0,
+                cutting: true,
+            }
         }
     }
 
     fn contour() -> CornerContour<2> {
-        let gains = Gains { friction: 0.0, ..Gains::EXACT };
-        CornerContour::new(Feedforward::new([inverse(axis(0.0, 0.0)); 2], [gains; 2]), REACH_S, SERVO_S)
+        let gains = Gains {
+            friction: 0.0,
+            ..Gains::EXACT
+        };
+        CornerContour::new(
+            Feedforward::new([inverse(axis(0.0, 0.0)); 2], [gains; 2]),
+            REACH_S,
+            SERVO_S,
+        )
     }
 
     #[test]
@@ -122,7 +158,10 @@ mod tests {
     #[test]
     fn a_curve_without_a_corner_gets_none() {
         commands(&mut Circle, &mut contour(), SERVO_S, |n, command_mm| {
-            assert!(norm(sub(command_mm, Circle.knot(n as f64 * SERVO_S).position_mm)) < 1e-12, "{n}");
+            assert!(
+                norm(sub(command_mm, Circle.knot(n as f64 * SERVO_S).position_mm)) < 1e-12,
+                "{n}"
+            );
         });
     }
 }

@@ -1,4 +1,5 @@
-//! Cross-coupled control: the contour error through a PID controller, added to the command across the path.
+//! Cross-coupled control: the contour error through a PID controller, added to the command across
+//! the path.
 //!
 //! ```text
 //! u = Kp e + Ki integral(e dt) + Kd de/dt        e: contour error, desired minus actual
@@ -30,7 +31,8 @@ use feedwright_control::{Window, carried};
 
 use feedwright_control::{Command, Controller, Measured, Schedule};
 
-/// Time constant of the filter of the derivative, s: two servo periods of 1 ms, below what a speed loop follows.
+/// Time constant of the filter of the derivative, s: two servo periods of 1 ms, below what a speed
+/// loop follows.
 const DERIVATIVE_S: f64 = 0.002;
 /// A command that differs by more than this from what was asked was held back, mm.
 const HELD_BACK_MM: f64 = 1e-9;
@@ -49,7 +51,11 @@ pub(super) struct Settings {
 impl Settings {
     /// Ki / Kp cancels the pole of a position loop of 50 1/s. Kp / Kd cancels the pole of a speed
     /// loop of 200 1/s.
-    pub(super) const DEFAULT: Self = Self { kp: 4.0, ki_1_s: 200.0, kd_s: 0.02 };
+    pub(super) const DEFAULT: Self = Self {
+        kp: 4.0,
+        ki_1_s: 200.0,
+        kd_s: 0.02,
+    };
 }
 
 /// Cross-coupled control.
@@ -71,13 +77,21 @@ struct LastError<const N: usize> {
 impl<const N: usize> CrossCoupled<N> {
     /// With these gains.
     pub(super) fn new(settings: Settings) -> Self {
-        Self { settings, integral_mm_s: [0.0; N], derivative_mm_s: [0.0; N], last: None }
+        Self {
+            settings,
+            integral_mm_s: [0.0; N],
+            derivative_mm_s: [0.0; N],
+            last: None,
+        }
     }
 }
 
 impl<const N: usize> Controller<N> for CrossCoupled<N> {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: 1, preview: 0 }
+        Schedule {
+            servo_periods: 1,
+            preview: 0,
+        }
     }
 
     fn reset(&mut self) {
@@ -96,8 +110,13 @@ impl<const N: usize> Controller<N> for CrossCoupled<N> {
             let before_mm = carried(last.error_mm, last.tangent, tangent);
             self.integral_mm_s = carried(self.integral_mm_s, last.tangent, tangent);
             self.derivative_mm_s = carried(self.derivative_mm_s, last.tangent, tangent);
-            let missing_mm_s = add_scaled(sub(error_mm, before_mm), -period_s, self.derivative_mm_s);
-            self.derivative_mm_s = add_scaled(self.derivative_mm_s, 1.0 / (period_s + DERIVATIVE_S), missing_mm_s);
+            let missing_mm_s =
+                add_scaled(sub(error_mm, before_mm), -period_s, self.derivative_mm_s);
+            self.derivative_mm_s = add_scaled(
+                self.derivative_mm_s,
+                1.0 / (period_s + DERIVATIVE_S),
+                missing_mm_s,
+            );
             held_back = norm(sub(window.offset_mm, last.asked_mm)) > HELD_BACK_MM;
         }
         let grows = dot(error_mm, self.integral_mm_s) > 0.0;
@@ -106,8 +125,16 @@ impl<const N: usize> Controller<N> for CrossCoupled<N> {
         }
         let Settings { kp, ki_1_s, kd_s } = self.settings;
         let slow_mm = add_scaled([0.0; N], ki_1_s, self.integral_mm_s);
-        let offset_mm = add_scaled(add_scaled(slow_mm, kp, error_mm), kd_s, self.derivative_mm_s);
-        self.last = Some(LastError { error_mm, tangent, asked_mm: offset_mm });
+        let offset_mm = add_scaled(
+            add_scaled(slow_mm, kp, error_mm),
+            kd_s,
+            self.derivative_mm_s,
+        );
+        self.last = Some(LastError {
+            error_mm,
+            tangent,
+            asked_mm: offset_mm,
+        });
         Command::straight(1.0, offset_mm)
     }
 }
@@ -142,8 +169,15 @@ pub(super) mod tests {
                 offset_mm_s: [0.0; 2],
             };
             let contour = estimator.estimate(&window, tool_mm);
-            let measured = Measured { position_mm: tool_mm, contour };
-            let pulled_to_mm = add_scaled(add_scaled(window.now().position_mm, 1.0, offset_mm), 1.0, load_mm);
+            let measured = Measured {
+                position_mm: tool_mm,
+                contour,
+            };
+            let pulled_to_mm = add_scaled(
+                add_scaled(window.now().position_mm, 1.0, offset_mm),
+                1.0,
+                load_mm,
+            );
             offset_mm = controller.command(&window, &measured).offset_mm;
             tool_mm = add_scaled(tool_mm, 1.0 - libm::exp(-0.05), sub(pulled_to_mm, tool_mm));
         }
@@ -155,14 +189,30 @@ pub(super) mod tests {
 
     impl KnotSource<2> for Line {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
-            Knot { position_mm: [50.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0, cutting: true }
+            Knot {
+                position_mm: [50.0 * tau_s, 0.0],
+                tangent: [1.0, 0.0],
+                feed_mm_s: 50.0,
+                cutting: true,
+            }
         }
     }
 
     #[test]
     fn the_proportional_part_leaves_its_share_and_the_integral_nothing() {
-        let rests_at_mm = |settings: Settings| cut(&mut Line, &mut CrossCoupled::new(settings), [0.0, 0.02], 1000)[1];
-        let proportional = rests_at_mm(Settings { kp: 3.0, ki_1_s: 0.0, kd_s: 0.0 });
+        let rests_at_mm = |settings: Settings| {
+            cut(
+                &mut Line,
+                &mut CrossCoupled::new(settings),
+                [0.0, 0.02],
+                1000,
+            )[1]
+        };
+        let proportional = rests_at_mm(Settings {
+            kp: 3.0,
+            ki_1_s: 0.0,
+            kd_s: 0.0,
+        });
         assert!((proportional - 0.02 / 4.0).abs() < 1e-9, "{proportional}");
         assert!(rests_at_mm(Settings::DEFAULT).abs() < 1e-9);
     }

@@ -1,5 +1,5 @@
-//! Cross-coupled control with an adaptive feedrate: the contour error goes across the path into the command, and the feedrate is as
-//! high as keeps it within what is allowed.
+//! Cross-coupled control with an adaptive feedrate: the contour error goes across the path into the
+//! command, and the feedrate is as high as keeps it within what is allowed.
 //!
 //! ```text
 //! e     = theta v                                       v: rate; e: size of the contour error
@@ -7,14 +7,17 @@
 //! v     = allowed / theta,   slowest <= v <= 1
 //! ```
 //!
-//! Source: Chuang and Liu (1996), "Techniques in cross-coupled digital adaptive feedrate control for multiaxis machine tools".
+//! Source: Chuang and Liu (1996), "Techniques in cross-coupled digital adaptive feedrate control
+//! for multiaxis machine tools".
 //!
-//! The paper was not at hand. Lee, Cho and Jeon (2005) say of it: the relationship between feedrate and contour error is linear.
-//! Its title says: cross-coupled control and a digital adaptive feedrate work together. Reconstructed here: both laws. The
-//! compensation is the PID of [`super::cross_coupled`]. The slope theta is estimated by a first-order filter, which forgets over Tf,
-//! because curvature and load change along the path.
+//! The paper was not at hand. Lee, Cho and Jeon (2005) say of it: the relationship between feedrate
+//! and contour error is linear. Its title says: cross-coupled control and a digital adaptive
+//! feedrate work together. Reconstructed here: both laws. The compensation is the PID of
+//! [`super::cross_coupled`]. The slope theta is estimated by a first-order filter, which forgets
+//! over Tf, because curvature and load change along the path.
 //!
-//! Departures: the feed is never above the programmed one, and changes within the acceleration that the machine allows along the path.
+//! Departures: the feed is never above the programmed one, and changes within the acceleration that
+//! the machine allows along the path.
 use feedwright_control::Window;
 use feedwright_control::vector::{bounded, norm};
 use feedwright_control::{Command, Controller, Measured, Schedule};
@@ -36,10 +39,14 @@ pub(super) struct Settings {
 }
 
 impl Settings {
-    /// About what cross-coupled control alone leaves of a circle of 10 mm at 50 mm/s on tnv40, so that it slows down in sharper curves;
-    /// two time constants of a position loop of 50 1/s.
-    pub(super) const DEFAULT: Self =
-        Self { allowed_mm: 0.5e-3, filter_s: 0.04, slowest: 0.4, acceleration_mm_s2: 100.0 };
+    /// About what cross-coupled control alone leaves of a circle of 10 mm at 50 mm/s on tnv40, so
+    /// that it slows down in sharper curves; two time constants of a position loop of 50 1/s.
+    pub(super) const DEFAULT: Self = Self {
+        allowed_mm: 0.5e-3,
+        filter_s: 0.04,
+        slowest: 0.4,
+        acceleration_mm_s2: 100.0,
+    };
 }
 
 /// Cross-coupled control with an adaptive feedrate.
@@ -55,7 +62,12 @@ pub(super) struct CrossCoupledFeedrate<const N: usize> {
 impl<const N: usize> CrossCoupledFeedrate<N> {
     /// With these settings, on top of cross-coupled control.
     pub(super) fn new(settings: Settings, cross_coupled: CrossCoupled<N>) -> Self {
-        Self { settings, cross_coupled, at_full_feed_mm: 0.0, rate: 1.0 }
+        Self {
+            settings,
+            cross_coupled,
+            at_full_feed_mm: 0.0,
+            rate: 1.0,
+        }
     }
 }
 
@@ -70,16 +82,29 @@ impl<const N: usize> Controller<N> for CrossCoupledFeedrate<N> {
     }
 
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
-        let Settings { allowed_mm, filter_s, slowest, acceleration_mm_s2 } = self.settings;
+        let Settings {
+            allowed_mm,
+            filter_s,
+            slowest,
+            acceleration_mm_s2,
+        } = self.settings;
         let error_mm = norm(measured.contour.vector_mm);
         if error_mm.is_finite() {
             let period_s = window.feed_period_s;
             let missing_mm = error_mm / self.rate - self.at_full_feed_mm;
             self.at_full_feed_mm += period_s / (period_s + filter_s) * missing_mm;
             let wanted = allowed_mm / self.at_full_feed_mm.max(f64::MIN_POSITIVE);
-            self.rate = eased(self.rate, bounded(wanted, slowest, 1.0), acceleration_mm_s2, window);
+            self.rate = eased(
+                self.rate,
+                bounded(wanted, slowest, 1.0),
+                acceleration_mm_s2,
+                window,
+            );
         }
-        Command { rate: self.rate, ..self.cross_coupled.command(window, measured) }
+        Command {
+            rate: self.rate,
+            ..self.cross_coupled.command(window, measured)
+        }
     }
 }
 
@@ -89,14 +114,25 @@ mod tests {
     use crate::peers::cross_coupled;
     use feedwright_control::{ContourError, Knot, Preview, Register};
 
-    const SETTINGS: Settings = Settings { allowed_mm: 0.004, ..Settings::DEFAULT };
+    const SETTINGS: Settings = Settings {
+        allowed_mm: 0.004,
+        ..Settings::DEFAULT
+    };
 
-    /// The rates over two seconds, at 50 mm/s, where the error is `at_full_feed_mm` times the square of the rate; without compensation.
+    /// The rates over two seconds, at 50 mm/s, where the error is `at_full_feed_mm` times the
+    /// square of the rate; without compensation.
     fn rates(settings: Settings, at_full_feed_mm: f64) -> [f64; 2000] {
-        let none = cross_coupled::Settings { kp: 0.0, ki_1_s: 0.0, kd_s: 0.0 };
+        let none = cross_coupled::Settings {
+            kp: 0.0,
+            ki_1_s: 0.0,
+            kd_s: 0.0,
+        };
         let mut controller = CrossCoupledFeedrate::<2>::new(settings, CrossCoupled::new(none));
         let mut register = Register::default();
-        register.push(Knot { feed_mm_s: 50.0, ..Knot::REST });
+        register.push(Knot {
+            feed_mm_s: 50.0,
+            ..Knot::REST
+        });
         let window = Window {
             register: &register,
             preview: &Preview::new(0.001),
@@ -107,8 +143,19 @@ mod tests {
         };
         let mut rate = 1.0;
         core::array::from_fn(|_| {
-            let contour = ContourError { vector_mm: [0.0, at_full_feed_mm * rate * rate], ..ContourError::NONE };
-            rate = controller.command(&window, &Measured { position_mm: [0.0; 2], contour }).rate;
+            let contour = ContourError {
+                vector_mm: [0.0, at_full_feed_mm * rate * rate],
+                ..ContourError::NONE
+            };
+            rate = controller
+                .command(
+                    &window,
+                    &Measured {
+                        position_mm: [0.0; 2],
+                        contour,
+                    },
+                )
+                .rate;
             rate
         })
     }
@@ -128,7 +175,10 @@ mod tests {
     #[test]
     fn the_feed_changes_no_faster_than_the_machine_may() {
         // 100 mm/s2 over 1 ms of 50 mm/s.
-        let steps = rates(SETTINGS, 1.0).windows(2).map(|pair| pair[0] - pair[1]).fold(0.0, f64::max);
+        let steps = rates(SETTINGS, 1.0)
+            .windows(2)
+            .map(|pair| pair[0] - pair[1])
+            .fold(0.0, f64::max);
         assert!((steps - 0.002).abs() < 1e-12, "{steps}");
     }
 }

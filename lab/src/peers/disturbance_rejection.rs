@@ -1,34 +1,39 @@
-//! Feedforward, and an observer of each axis that finds what the nominal servo does not explain and takes it out of the command:
-//! what controllers with a constant-gain observer have in common. They differ in how its gains are found.
+//! Feedforward, and an observer of each axis that finds what the nominal servo does not explain and
+//! takes it out of the command: what controllers with a constant-gain observer have in common. They
+//! differ in how its gains are found.
 //!
-//! A sampled axis under the reference speed u, the friction f that the feedforward makes up for, and an unknown d that acts as a
-//! reference speed, with what is measured as y:
+//! A sampled axis under the reference speed u, the friction f that the feedforward makes up for,
+//! and an unknown d that acts as a reference speed, with what is measured as y:
 //!
 //! ```text
 //! x(k+1) = x + gamma w + delta (u - f + d)     w(k+1) = alpha w + beta (u - f + d)     d(k+1) = d
 //! u(k)   = kp e(k) + kd (e(k) - e(k-1)) / Ts,   e = c - y
 //! ```
 //!
-//! is observed by `xi(k+1) = A xi + B (u - f) + L (y - x)`, and the feedforward is asked to carry d: for such an axis, the command is
-//! less by `d / (kp + kd / Ts)`. The estimate is held to what the drive can: beyond, it is the torque limit that the nominal servo
-//! does not explain.
+//! is observed by `xi(k+1) = A xi + B (u - f) + L (y - x)`, and the feedforward is asked to carry
+//! d: for such an axis, the command is less by `d / (kp + kd / Ts)`. The estimate is held to what
+//! the drive can: beyond, it is the torque limit that the nominal servo does not explain.
 //!
-//! What a drive has beside is in u: its own feedforward, the time until u acts and y is there, and the integral of its speed loop,
-//! for which no estimate is needed, since the integral of the speed is the position:
+//! What a drive has beside is in u: its own feedforward, the time until u acts and y is there, and
+//! the integral of its speed loop, for which no estimate is needed, since the integral of the speed
+//! is the position:
 //!
 //! ```text
 //! u_act(k) = u(k - n) + i(k) + Ts (u(k - n) - w) / 2 Ti     i(k) = i(k-1) + (Ts u(k-1-n) - (y(k) - y(k-1))) / Ti
 //! ```
 //!
-//! with n the delays of drive and encoder in servo periods; between whole ones, the mean of both, weighted. So position, speed and
-//! disturbance are as late as the encoder. The torque filter is left out.
+//! with n the delays of drive and encoder in servo periods; between whole ones, the mean of both,
+//! weighted. So position, speed and disturbance are as late as the encoder. The torque filter is
+//! left out.
 //!
-//! Symbols: x position, mm; w speed, u reference speed, f friction and d disturbance as reference speeds, mm/s; c command, mm;
-//! Ts servo period, s.
+//! Symbols: x position, mm; w speed, u reference speed, f friction and d disturbance as reference
+//! speeds, mm/s; c command, mm; Ts servo period, s.
 //!
-//! Source: Johnson (1971), "Accommodation of external disturbances in linear regulator and servomechanism problems".
+//! Source: Johnson (1971), "Accommodation of external disturbances in linear regulator and
+//! servomechanism problems".
 //!
-//! Departures: the drive takes positions, so that the estimate acts through the position loop and not as a torque.
+//! Departures: the drive takes positions, so that the estimate acts through the position loop and
+//! not as a torque.
 use feedwright_control::Window;
 use feedwright_control::vector::{add_scaled, bounded, norm};
 use feedwright_control::{Command, CommandQueue, Controller, Feedforward, Measured, Schedule};
@@ -43,7 +48,8 @@ const KEPT_PERIODS: usize = 48;
 pub(super) struct ObservedDrive {
     /// Part of the command's speed that it feeds forward.
     pub velocity_feedforward: f64,
-    /// Reference speed that is worth the torque which it feeds forward for a second difference of the command, 1/s.
+    /// Reference speed that is worth the torque which it feeds forward for a second difference of
+    /// the command, 1/s.
     pub torque_1_s: f64,
     /// Integral time of the speed loop, s.
     pub speed_integral_s: f64,
@@ -86,7 +92,8 @@ struct AxisObserver {
     commands: CommandQueue,
     /// Error of the position loop at the last servo period, mm.
     error_mm: f64,
-    /// Command and measured position of the last servo period, mm, and how far the command had moved.
+    /// Command and measured position of the last servo period, mm, and how far the command had
+    /// moved.
     last_mm: Option<[f64; 2]>,
     moved_mm: f64,
     /// The newest first.
@@ -116,23 +123,39 @@ impl AxisObserver {
 
     /// At rest where the tool is.
     fn start(&mut self, measured_mm: f64) {
-        *self = Self { position_mm: measured_mm, ..Self::new(self.of, self.servo_s) };
+        *self = Self {
+            position_mm: measured_mm,
+            ..Self::new(self.of, self.servo_s)
+        };
     }
 
-    /// Goes on by a servo period that begins with sending this command and with this position, against this friction.
+    /// Goes on by a servo period that begins with sending this command and with this position,
+    /// against this friction.
     fn go_on(&mut self, command_mm: f64, friction_mm_s: f64, measured_mm: f64) {
-        let SampledAxis { alpha, beta, gamma_s, delta_s, .. } = self.of.axis;
+        let SampledAxis {
+            alpha,
+            beta,
+            gamma_s,
+            delta_s,
+            ..
+        } = self.of.axis;
         if self.last_mm.is_none() {
             self.commands = CommandQueue::resting(self.of.drive.command_periods, command_mm);
         }
         let command_mm = self.commands.pass(command_mm);
         self.send(command_mm, measured_mm);
-        let SentReference { speed_mm_s: asked_mm_s, torque_mm_s } = self.arrived();
+        let SentReference {
+            speed_mm_s: asked_mm_s,
+            torque_mm_s,
+        } = self.arrived();
         let beside_mm_s = torque_mm_s + self.integrated(asked_mm_s, measured_mm);
         self.last_mm = Some([command_mm, measured_mm]);
         let innovation_mm = measured_mm - self.position_mm;
         let [l1, l2, l3] = self.of.gains;
-        let (w, driven_mm_s) = (self.speed_mm_s, asked_mm_s + beside_mm_s - friction_mm_s + self.disturbance_mm_s);
+        let (w, driven_mm_s) = (
+            self.speed_mm_s,
+            asked_mm_s + beside_mm_s - friction_mm_s + self.disturbance_mm_s,
+        );
         self.position_mm += gamma_s * w + delta_s * driven_mm_s + l1 * innovation_mm;
         self.speed_mm_s = alpha * w + beta * driven_mm_s + l2 * innovation_mm;
         let disturbance_mm_s = self.disturbance_mm_s + l3 * innovation_mm;
@@ -145,7 +168,9 @@ impl AxisObserver {
         let error_mm = command_mm - measured_mm;
         let fed_back_mm_s = kp_1_s * error_mm + kd * (error_mm - self.error_mm) / self.servo_s;
         self.error_mm = error_mm;
-        let moved_mm = self.last_mm.map_or(0.0, |[before_mm, _]| command_mm - before_mm);
+        let moved_mm = self
+            .last_mm
+            .map_or(0.0, |[before_mm, _]| command_mm - before_mm);
         let change_mm = moved_mm - self.moved_mm;
         self.moved_mm = moved_mm;
         self.sent.copy_within(..KEPT_PERIODS - 1, 1);
@@ -161,7 +186,12 @@ impl AxisObserver {
         let periods = self.of.drive.delay_s / self.servo_s;
         let whole = libm::floor(periods);
         // A float that is not a number saturates to zero here.
-        let at = |age: usize| self.sent.get(age.min(KEPT_PERIODS - 1)).copied().unwrap_or_default();
+        let at = |age: usize| {
+            self.sent
+                .get(age.min(KEPT_PERIODS - 1))
+                .copied()
+                .unwrap_or_default()
+        };
         let (newer, part) = (at(whole as usize), periods - whole);
         if part > 0.0 {
             let older = at(whole as usize + 1);
@@ -181,7 +211,9 @@ impl AxisObserver {
         if time_s <= 0.0 {
             return 0.0;
         }
-        let moved_mm = self.last_mm.map_or(0.0, |[_, before_mm]| measured_mm - before_mm);
+        let moved_mm = self
+            .last_mm
+            .map_or(0.0, |[_, before_mm]| measured_mm - before_mm);
         self.integral_mm_s += (self.acted_mm_s * self.servo_s - moved_mm) / time_s;
         self.acted_mm_s = asked_mm_s;
         self.integral_mm_s + 0.5 * self.servo_s * (asked_mm_s - self.speed_mm_s) / time_s
@@ -199,14 +231,28 @@ pub(super) struct DisturbanceRejection<const N: usize> {
 impl<const N: usize> DisturbanceRejection<N> {
     /// Behind a feedforward, for these axes.
     pub(super) fn new(feedforward: Feedforward<N>, axes: [ObservedAxis; N], servo_s: f64) -> Self {
-        Self { feedforward, observers: axes.map(|axis| AxisObserver::new(axis, servo_s)), started: false }
+        Self {
+            feedforward,
+            observers: axes.map(|axis| AxisObserver::new(axis, servo_s)),
+            started: false,
+        }
     }
 
     /// The command of the next servo period on a path that runs at `rate` times the planned feed.
     pub(super) fn command_at(&mut self, window: &Window<'_, N>, rate: f64) -> Command<N> {
-        let load_mm_s = self.observers.each_ref().map(|observer| -observer.disturbance_mm_s);
-        let at_mm = |after_s: f64| window.at(rate * (window.feed_period_s + after_s)).position_mm;
-        Command::straight(rate, self.feedforward.lead_mm(at_mm, window.offset_mm, load_mm_s))
+        let load_mm_s = self
+            .observers
+            .each_ref()
+            .map(|observer| -observer.disturbance_mm_s);
+        let at_mm = |after_s: f64| {
+            window
+                .at(rate * (window.feed_period_s + after_s))
+                .position_mm
+        };
+        Command::straight(
+            rate,
+            self.feedforward.lead_mm(at_mm, window.offset_mm, load_mm_s),
+        )
     }
 }
 
@@ -218,13 +264,17 @@ impl<const N: usize> Controller<N> for DisturbanceRejection<N> {
     fn reset(&mut self) {
         self.started = false;
         self.feedforward.reset();
-        self.observers.iter_mut().for_each(|observer| observer.start(0.0));
+        self.observers
+            .iter_mut()
+            .for_each(|observer| observer.start(0.0));
     }
 
     /// Advances each observer by one servo period. Without a measured position it resets them and
     /// the feedforward, because the motion of the tool in between is unknown.
     fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
-        let position_mm = measured.map(|measured| measured.position_mm).filter(|mm| norm(*mm).is_finite());
+        let position_mm = measured
+            .map(|measured| measured.position_mm)
+            .filter(|mm| norm(*mm).is_finite());
         let Some(position_mm) = position_mm else {
             self.reset();
             return;
@@ -241,7 +291,12 @@ impl<const N: usize> Controller<N> for DisturbanceRejection<N> {
     }
 
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
-        self.feedforward.command_against(window, self.observers.each_ref().map(|observer| -observer.disturbance_mm_s))
+        self.feedforward.command_against(
+            window,
+            self.observers
+                .each_ref()
+                .map(|observer| -observer.disturbance_mm_s),
+        )
     }
 }
 
@@ -255,11 +310,18 @@ pub(super) mod tests {
     pub(in super::super) fn axis(kd: f64) -> SampledAxis {
         let alpha = libm::exp(-200.0 * SERVO_S);
         let gamma_s = (1.0 - alpha) / 200.0;
-        SampledAxis { alpha, beta: 1.0 - alpha, gamma_s, delta_s: SERVO_S - gamma_s, kp_1_s: 50.0, kd }
+        SampledAxis {
+            alpha,
+            beta: 1.0 - alpha,
+            gamma_s,
+            delta_s: SERVO_S - gamma_s,
+            kp_1_s: 50.0,
+            kd,
+        }
     }
 
-    /// Position and estimate after a second at rest at 0 under a disturbance of 3 mm/s and a friction of 1 mm/s that is known, with
-    /// and without taking the estimate out.
+    /// Position and estimate after a second at rest at 0 under a disturbance of 3 mm/s and a
+    /// friction of 1 mm/s that is known, with and without taking the estimate out.
     fn after_a_second(of: ObservedAxis, take_out: bool) -> (f64, f64) {
         let model = of.axis;
         let mut observer = AxisObserver::new(of, SERVO_S);
@@ -275,29 +337,55 @@ pub(super) mod tests {
             let carried = derivative / (model.kp_1_s + derivative) * offset_mm;
             let fed_forward = 1.0 / (model.kp_1_s + derivative);
             let taken_out = -observer.disturbance_mm_s / (model.kp_1_s + derivative);
-            offset_mm = if take_out { taken_out + carried + fed_forward } else { 0.0 };
+            offset_mm = if take_out {
+                taken_out + carried + fed_forward
+            } else {
+                0.0
+            };
         }
         (x, observer.disturbance_mm_s)
     }
 
     /// What gains have to do for a constant disturbance.
-    pub(in super::super) fn a_constant_disturbance_is_found_and_taken_out(gains: impl Fn(&SampledAxis) -> [f64; 3]) {
+    pub(in super::super) fn a_constant_disturbance_is_found_and_taken_out(
+        gains: impl Fn(&SampledAxis) -> [f64; 3],
+    ) {
         for kd in [0.0, 0.02] {
             let axis = axis(kd);
-            let of = ObservedAxis { axis, drive: ObservedDrive::default(), limit_mm_s: 100.0, gains: gains(&axis) };
+            let of = ObservedAxis {
+                axis,
+                drive: ObservedDrive::default(),
+                limit_mm_s: 100.0,
+                gains: gains(&axis),
+            };
             let (error_mm, found_mm_s) = after_a_second(of, true);
-            assert!(error_mm.abs() < 1e-9 && (found_mm_s - 3.0).abs() < 1e-7, "kd {kd}: {error_mm} {found_mm_s}");
+            assert!(
+                error_mm.abs() < 1e-9 && (found_mm_s - 3.0).abs() < 1e-7,
+                "kd {kd}: {error_mm} {found_mm_s}"
+            );
             let (error_mm, found_mm_s) = after_a_second(of, false);
-            assert!((error_mm - 2.0 / 50.0).abs() < 1e-9 && (found_mm_s - 3.0).abs() < 1e-7, "kd {kd}: {error_mm}");
+            assert!(
+                (error_mm - 2.0 / 50.0).abs() < 1e-9 && (found_mm_s - 3.0).abs() < 1e-7,
+                "kd {kd}: {error_mm}"
+            );
         }
     }
 
     #[test]
     fn no_more_is_believed_than_the_drive_can() {
         let drive = ObservedDrive::default();
-        let of = ObservedAxis { axis: axis(0.0), drive, limit_mm_s: 5.0, gains: [0.5, 50.0, 10.0] };
+        let of = ObservedAxis {
+            axis: axis(0.0),
+            drive,
+            limit_mm_s: 5.0,
+            gains: [0.5, 50.0, 10.0],
+        };
         let mut observer = AxisObserver::new(of, SERVO_S);
         (0..100).for_each(|_| observer.go_on(0.0, 0.0, 100.0));
-        assert!(observer.disturbance_mm_s.abs() == 5.0, "{}", observer.disturbance_mm_s);
+        assert!(
+            observer.disturbance_mm_s.abs() == 5.0,
+            "{}",
+            observer.disturbance_mm_s
+        );
     }
 }

@@ -2,13 +2,14 @@
 
 use feedwright_control::vector::add_scaled;
 use feedwright_control::{
-    AxisInverse, AxisLaw, ContourError, Controller, KnotSource, Measured, Parameters, Periods, Preview, Register,
-    Window,
+    AxisInverse, AxisLaw, ContourError, Controller, KnotSource, Measured, Parameters, Periods,
+    Preview, Register, Window,
 };
 
 const SERVO_S: f64 = 0.001;
 
-/// The commands of a controller that decides in each servo period, does not measure, and is not held to any bound.
+/// The commands of a controller that decides in each servo period, does not measure, and is not
+/// held to any bound.
 pub(super) fn commands(
     reference: &mut dyn KnotSource<2>,
     controller: &mut dyn Controller<2>,
@@ -18,7 +19,10 @@ pub(super) fn commands(
     let (mut register, mut preview) = (Register::default(), Preview::new(servo_s));
     let schedule = controller.schedule();
     assert_eq!(schedule.servo_periods, 1);
-    let measured = Measured { position_mm: [0.0; 2], contour: ContourError::NONE };
+    let measured = Measured {
+        position_mm: [0.0; 2],
+        contour: ContourError::NONE,
+    };
     let mut offset_mm = [0.0; 2];
     for n in 0..1000 {
         let tau_s = n as f64 * servo_s;
@@ -54,6 +58,10 @@ pub(super) fn axis(kd: f64, coulomb_friction_nm: f64) -> Parameters {
 
 /// An axis that is nothing beside, whose mechanics period is a thousandth of the servo period.
 pub(super) fn inverse(axis: Parameters) -> AxisInverse {
-    let periods = Periods { servo_s: SERVO_S, mechanics_s: 1e-3 * SERVO_S, mechanics_per_servo: 1000 };
+    let periods = Periods {
+        servo_s: SERVO_S,
+        mechanics_s: 1e-3 * SERVO_S,
+        mechanics_per_servo: 1000,
+    };
     AxisInverse::plain(AxisLaw::new(axis, periods))
 }

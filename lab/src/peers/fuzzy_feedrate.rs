@@ -1,4 +1,5 @@
-//! Fuzzy adaptive feedrate: slower where the contour error is large or grows; the geometry stays on the path.
+//! Fuzzy adaptive feedrate: slower where the contour error is large or grows; the geometry stays on
+//! the path.
 //!
 //! ```text
 //!   slow down by       error falls  steady  rises
@@ -7,16 +8,18 @@
 //!   error large            3/4         1       1          rate = 1 - (1 - slowest) slow down
 //! ```
 //!
-//! Source: Tsai and others (1995), "DSP-based motion control by H-infinity axis-controller and fuzzy adaptive feedrate"; here its
-//! second half alone, [`super::h_infinity`] has both.
+//! Source: Tsai and others (1995), "DSP-based motion control by H-infinity axis-controller and
+//! fuzzy adaptive feedrate"; here its second half alone, [`super::h_infinity`] has both.
 //!
-//! The paper was not at hand. Lee, Cho and Jeon (2005) say of it: a fuzzy adaptive feedrate. Chosen here: contour error and its
-//! change as inputs; three triangular sets on either, which overlap by half and saturate at `error_mm` and `change_mm_s`; the nine
-//! rules above, inferred by the product, with the mean of the centers as the output. Every rule of the table is then met exactly,
-//! and the surface is monotonic in both inputs, which inference by the minimum does not grant.
+//! The paper was not at hand. Lee, Cho and Jeon (2005) say of it: a fuzzy adaptive feedrate. Chosen
+//! here: contour error and its change as inputs; three triangular sets on either, which overlap by
+//! half and saturate at `error_mm` and `change_mm_s`; the nine rules above, inferred by the
+//! product, with the mean of the centers as the output. Every rule of the table is then met
+//! exactly, and the surface is monotonic in both inputs, which inference by the minimum does not
+//! grant.
 //!
-//! Departures: the feed is never above the programmed one; the factor changes within the acceleration that the machine allows
-//! along the path.
+//! Departures: the feed is never above the programmed one; the factor changes within the
+//! acceleration that the machine allows along the path.
 
 use feedwright_control::Window;
 use feedwright_control::vector::{bounded, norm};
@@ -45,8 +48,13 @@ pub(super) struct Settings {
 
 impl Settings {
     /// Large is what a machine of the class shows at full feed in a circle of 10 mm radius.
-    pub(super) const DEFAULT: Self =
-        Self { servo_periods: 10, error_mm: 0.02, change_mm_s: 1.0, slowest: 0.4, acceleration_mm_s2: 100.0 };
+    pub(super) const DEFAULT: Self = Self {
+        servo_periods: 10,
+        error_mm: 0.02,
+        change_mm_s: 1.0,
+        slowest: 0.4,
+        acceleration_mm_s2: 100.0,
+    };
 
     /// The rate that the rules give for an error and its change.
     pub(super) fn rate(&self, error_mm: f64, change_mm_s: f64) -> f64 {
@@ -69,7 +77,12 @@ fn memberships(x: f64) -> [f64; 3] {
 }
 
 /// The wanted rate, or as near to it as this acceleration along the path allows in a feed period.
-pub(super) fn eased<const N: usize>(rate: f64, wanted: f64, acceleration_mm_s2: f64, window: &Window<'_, N>) -> f64 {
+pub(super) fn eased<const N: usize>(
+    rate: f64,
+    wanted: f64,
+    acceleration_mm_s2: f64,
+    window: &Window<'_, N>,
+) -> f64 {
     let feed_mm_s = window.now().feed_mm_s.max(f64::MIN_POSITIVE);
     let step = acceleration_mm_s2 * window.feed_period_s / feed_mm_s;
     bounded(wanted, rate - step, rate + step)
@@ -86,13 +99,20 @@ pub(super) struct FuzzyFeedrate {
 impl FuzzyFeedrate {
     /// With these settings.
     pub(super) fn new(settings: Settings) -> Self {
-        Self { settings, error_mm: None, rate: 1.0 }
+        Self {
+            settings,
+            error_mm: None,
+            rate: 1.0,
+        }
     }
 }
 
 impl<const N: usize> Controller<N> for FuzzyFeedrate {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: self.settings.servo_periods, preview: 0 }
+        Schedule {
+            servo_periods: self.settings.servo_periods,
+            preview: 0,
+        }
     }
 
     fn reset(&mut self) {
@@ -102,7 +122,9 @@ impl<const N: usize> Controller<N> for FuzzyFeedrate {
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
         let error_mm = norm(measured.contour.vector_mm);
         if error_mm.is_finite() {
-            let change_mm_s = self.error_mm.map_or(0.0, |last_mm| (error_mm - last_mm) / window.feed_period_s);
+            let change_mm_s = self
+                .error_mm
+                .map_or(0.0, |last_mm| (error_mm - last_mm) / window.feed_period_s);
             let wanted = self.settings.rate(error_mm, change_mm_s);
             self.rate = eased(self.rate, wanted, self.settings.acceleration_mm_s2, window);
             self.error_mm = Some(error_mm);
@@ -121,8 +143,14 @@ mod tests {
     fn every_rule_is_met_where_it_alone_holds() {
         for (i, row) in RULES.iter().enumerate() {
             for (j, slow_down) in row.iter().enumerate() {
-                let rate = SETTINGS.rate(0.5 * i as f64 * SETTINGS.error_mm, (j as f64 - 1.0) * SETTINGS.change_mm_s);
-                assert!((rate - (1.0 - (1.0 - SETTINGS.slowest) * slow_down)).abs() < 1e-12, "{i} {j}: {rate}");
+                let rate = SETTINGS.rate(
+                    0.5 * i as f64 * SETTINGS.error_mm,
+                    (j as f64 - 1.0) * SETTINGS.change_mm_s,
+                );
+                assert!(
+                    (rate - (1.0 - (1.0 - SETTINGS.slowest) * slow_down)).abs() < 1e-12,
+                    "{i} {j}: {rate}"
+                );
             }
         }
     }
@@ -133,8 +161,14 @@ mod tests {
         for i in 0..40 {
             for j in -20..20 {
                 let rate = at(i, j);
-                assert!(at(i + 1, j) <= rate + 1e-12 && at(i, j + 1) <= rate + 1e-12, "{i} {j}");
-                assert!((SETTINGS.slowest - 1e-12..=1.0).contains(&rate), "{i} {j}: {rate}");
+                assert!(
+                    at(i + 1, j) <= rate + 1e-12 && at(i, j + 1) <= rate + 1e-12,
+                    "{i} {j}"
+                );
+                assert!(
+                    (SETTINGS.slowest - 1e-12..=1.0).contains(&rate),
+                    "{i} {j}: {rate}"
+                );
             }
         }
     }
@@ -143,8 +177,14 @@ mod tests {
     fn memberships_are_a_partition() {
         for x in [-2.0, -1.0, -0.3, 0.0, 0.7, 1.0, 9.0] {
             let degrees = memberships(x);
-            assert!(degrees.iter().all(|d| (0.0..=1.0).contains(d)), "{x}: {degrees:?}");
-            assert!((degrees.iter().sum::<f64>() - 1.0).abs() < 1e-15, "{x}: {degrees:?}");
+            assert!(
+                degrees.iter().all(|d| (0.0..=1.0).contains(d)),
+                "{x}: {degrees:?}"
+            );
+            assert!(
+                (degrees.iter().sum::<f64>() - 1.0).abs() < 1e-15,
+                "{x}: {degrees:?}"
+            );
         }
     }
 }

@@ -1,22 +1,26 @@
-//! The H-infinity filter of position, speed and disturbance of each axis, and with it the axis controller of Tsai and others.
+//! The H-infinity filter of position, speed and disturbance of each axis, and with it the axis
+//! controller of Tsai and others.
 //!
-//! The observer of [`super::disturbance_rejection`] gets the gains that bound the error of the disturbance in the worst case: over
-//! all drifts, torques and encoder errors, its energy is at most gamma^2 times theirs, each divided by its size in [`AxisNoise`].
+//! The observer of [`super::disturbance_rejection`] gets the gains that bound the error of the
+//! disturbance in the worst case: over all drifts, torques and encoder errors, its energy is at
+//! most gamma^2 times theirs, each divided by its size in [`AxisNoise`].
 //!
 //! ```text
 //! P(k+1) = A M A' + Q     M = (P^-1 + c c' / s^2 - d d' / (gamma q)^2)^-1     L = A M c / s^2
 //! ```
 //!
-//! with A, Q, q and s of [`super::kalman_disturbance`], c = (1, 0, 0) and d = (0, 0, 1). The least gamma for which M stays positive
-//! is found by bisection; the filter runs at a multiple of it. Without bound on gamma it is the Kalman filter.
+//! with A, Q, q and s of [`super::kalman_disturbance`], c = (1, 0, 0) and d = (0, 0, 1). The least
+//! gamma for which M stays positive is found by bisection; the filter runs at a multiple of it.
+//! Without bound on gamma it is the Kalman filter.
 //!
-//! Source: Shaked and Theodor (1992), "H-infinity optimal estimation: a tutorial"; Simon (2006), "Optimal state estimation", for
-//! the filter. Tsai and others (1995), "DSP-based motion control by H-infinity axis-controller and fuzzy adaptive feedrate", for
-//! the controller.
+//! Source: Shaked and Theodor (1992), "H-infinity optimal estimation: a tutorial"; Simon (2006),
+//! "Optimal state estimation", for the filter. Tsai and others (1995), "DSP-based motion control by
+//! H-infinity axis-controller and fuzzy adaptive feedrate", for the controller.
 //!
-//! The paper of 1995 was not at hand. Known of it: an H-infinity controller of each axis and a fuzzy adaptive feedrate work
-//! together. Reconstructed here: the axis controller. The drive keeps its loops and takes positions, so that the H-infinity part
-//! is the worst-case estimate of friction and load, which is taken out of the command behind feedforward of velocity and
+//! The paper of 1995 was not at hand. Known of it: an H-infinity controller of each axis and a
+//! fuzzy adaptive feedrate work together. Reconstructed here: the axis controller. The drive keeps
+//! its loops and takes positions, so that the H-infinity part is the worst-case estimate of
+//! friction and load, which is taken out of the command behind feedforward of velocity and
 //! acceleration.
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
@@ -25,7 +29,8 @@ use super::fuzzy_feedrate::FuzzyFeedrate;
 use super::kalman_disturbance::{AxisNoise, minus_product, predicted};
 use super::zero_phase::SampledAxis;
 
-/// Iterations of the Riccati equation: a pole of 10 rad/s has after 4 s, at a servo period of 1 ms, left e^-80 of its error.
+/// Iterations of the Riccati equation: a pole of 10 rad/s has after 4 s, at a servo period of 1 ms,
+/// left e^-80 of its error.
 const ITERATIONS: u32 = 4_000;
 /// Halvings of the interval of `ln gamma`, from no bound that matters to none that holds.
 const HALVINGS: u32 = 30;
@@ -38,7 +43,11 @@ pub(super) fn gains(axis: &SampledAxis, noise: &AxisNoise, gamma_ratio: f64) -> 
     let [mut low, mut high] = GAMMAS.map(libm::log);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        if gains_at(axis, noise, libm::exp(middle)).is_some() { high = middle } else { low = middle }
+        if gains_at(axis, noise, libm::exp(middle)).is_some() {
+            high = middle;
+        } else {
+            low = middle;
+        }
     }
     gains_at(axis, noise, gamma_ratio * libm::exp(high)).unwrap_or_default()
 }
@@ -80,7 +89,12 @@ pub(super) struct FuzzyHInfinity<const N: usize> {
 impl<const N: usize> FuzzyHInfinity<N> {
     /// Of the two parts.
     pub(super) fn new(axes: DisturbanceRejection<N>, fuzzy: FuzzyFeedrate) -> Self {
-        Self { axes, fuzzy, wait: 0, rate: 1.0 }
+        Self {
+            axes,
+            fuzzy,
+            wait: 0,
+            rate: 1.0,
+        }
     }
 }
 
@@ -102,7 +116,10 @@ impl<const N: usize> Controller<N> for FuzzyHInfinity<N> {
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
         let periods = Controller::<N>::schedule(&self.fuzzy).servo_periods.max(1);
         if self.wait == 0 {
-            let rules = Window { feed_period_s: f64::from(periods) * window.feed_period_s, ..*window };
+            let rules = Window {
+                feed_period_s: f64::from(periods) * window.feed_period_s,
+                ..*window
+            };
             (self.wait, self.rate) = (periods, self.fuzzy.command(&rules, measured).rate);
         }
         self.wait -= 1;
@@ -118,21 +135,33 @@ mod tests {
 
     #[test]
     fn a_constant_disturbance_is_found_and_taken_out() {
-        rejection::a_constant_disturbance_is_found_and_taken_out(|axis| gains(axis, &AxisNoise::DEFAULT, GAMMA_RATIO));
+        rejection::a_constant_disturbance_is_found_and_taken_out(|axis| {
+            gains(axis, &AxisNoise::DEFAULT, GAMMA_RATIO)
+        });
     }
 
     #[test]
     fn without_a_bound_on_the_worst_case_it_is_the_kalman_filter() {
         let (axis, noise) = (rejection::axis(0.0), AxisNoise::DEFAULT);
-        let [found, expected] = [gains_at(&axis, &noise, 1e6).unwrap(), kalman_disturbance::gains(&axis, &noise)];
+        let [found, expected] = [
+            gains_at(&axis, &noise, 1e6).unwrap(),
+            kalman_disturbance::gains(&axis, &noise),
+        ];
         for (found, expected) in found.iter().zip(expected) {
             assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
         }
     }
 
-    /// Largest gain from a source to the error of the disturbance, each over its size, at any frequency.
+    /// Largest gain from a source to the error of the disturbance, each over its size, at any
+    /// frequency.
     fn worst_gain(axis: &SampledAxis, noise: &AxisNoise, gains: [f64; 3]) -> f64 {
-        let SampledAxis { alpha, beta, gamma_s, delta_s, .. } = *axis;
+        let SampledAxis {
+            alpha,
+            beta,
+            gamma_s,
+            delta_s,
+            ..
+        } = *axis;
         let [l1, l2, l3] = gains;
         let sources = [
             [0.0, 0.0, noise.drift_mm_s],
@@ -157,12 +186,16 @@ mod tests {
             let z = nalgebra::Complex::new(libm::cos(angle), libm::sin(angle));
             let inverse = system(z).try_inverse().unwrap();
             let squares = sources.iter().map(|source| {
-                let source = nalgebra::Vector3::from_iterator(source.iter().map(|x| nalgebra::Complex::from(*x)));
+                let source = nalgebra::Vector3::from_iterator(
+                    source.iter().map(|x| nalgebra::Complex::from(*x)),
+                );
                 (inverse * source)[2].norm_sqr()
             });
             libm::sqrt(squares.sum())
         };
-        (1..3000).map(|n| at(libm::pow(10.0, -4.0 + 4.497 * f64::from(n) / 3000.0))).fold(0.0, f64::max)
+        (1..3000)
+            .map(|n| at(libm::pow(10.0, -4.0 + 4.497 * f64::from(n) / 3000.0)))
+            .fold(0.0, f64::max)
             / noise.drift_mm_s
     }
 

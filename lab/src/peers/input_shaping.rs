@@ -1,5 +1,5 @@
-//! Input shaping: the path is run through a sequence of impulses that leaves no vibration at a resonance, in front of feedforward of
-//! velocity, acceleration and friction.
+//! Input shaping: the path is run through a sequence of impulses that leaves no vibration at a
+//! resonance, in front of feedforward of velocity, acceleration and friction.
 //!
 //! ```text
 //! Td = 1 / (f sqrt(1 - zeta^2))     K = exp(-zeta pi / sqrt(1 - zeta^2))
@@ -8,17 +8,20 @@
 //! s(t) = sum_i w_i r(t + tm - t_i)      tm = sum_i w_i t_i
 //! ```
 //!
-//! The second sequence also leaves the derivative of the vibration by the frequency at zero. The reference r is taken ahead of time
-//! by the mean tm of the delays, which the preview has: what moves steadily is not late. What remains is that the path is rounded: a
-//! circle by about `R (omega Td / 4)^2 / 2`.
+//! The second sequence also leaves the derivative of the vibration by the frequency at zero. The
+//! reference r is taken ahead of time by the mean tm of the delays, which the preview has: what
+//! moves steadily is not late. What remains is that the path is rounded: a circle by about `R
+//! (omega Td / 4)^2 / 2`.
 //!
-//! Symbols: f frequency of the damped resonance's undamped twin, Hz; zeta its damping ratio; w_i weights, t_i delays of the impulses, s.
+//! Symbols: f frequency of the damped resonance's undamped twin, Hz; zeta its damping ratio; w_i
+//! weights, t_i delays of the impulses, s.
 //!
-//! Source: Singer and Seering (1990), "Preshaping command inputs to reduce system vibration"; zero vibration with two impulses goes back
-//! to Smith (1957), "Posicast".
+//! Source: Singer and Seering (1990), "Preshaping command inputs to reduce system vibration"; zero
+//! vibration with two impulses goes back to Smith (1957), "Posicast".
 //!
-//! Departures: the shaped reference goes through the inverse dynamics of `feedforward`, because a shaper alone leaves the lag
-//! of the position loops as it is. Not the delay but its mean is taken off.
+//! Departures: the shaped reference goes through the inverse dynamics of `feedforward`, because a
+//! shaper alone leaves the lag of the position loops as it is. Not the delay but its mean is taken
+//! off.
 
 use feedwright_control::vector::{add_scaled, sub};
 use feedwright_control::{Preview, Window};
@@ -32,13 +35,19 @@ pub(super) struct Settings {
     pub frequency_hz: f64,
     /// Its damping ratio; 0 to 0.9.
     pub damping_ratio: f64,
-    /// Two impulses leave no vibration at the frequency, three next to none about it, and take twice the time.
+    /// Two impulses leave no vibration at the frequency, three next to none about it, and take
+    /// twice the time.
     pub impulses: u32,
 }
 
 impl Settings {
-    /// Between the 60 Hz of a table on a soft ball screw whose motor is held and the 85 Hz at which both swing freely.
-    pub(super) const DEFAULT: Self = Self { frequency_hz: 70.0, damping_ratio: 0.02, impulses: 2 };
+    /// Between the 60 Hz of a table on a soft ball screw whose motor is held and the 85 Hz at which
+    /// both swing freely.
+    pub(super) const DEFAULT: Self = Self {
+        frequency_hz: 70.0,
+        damping_ratio: 0.02,
+        impulses: 2,
+    };
 }
 
 /// An impulse of the shaper.
@@ -55,29 +64,51 @@ struct Shaper([Impulse; 3]);
 
 impl Shaper {
     fn new(settings: &Settings) -> Self {
-        let Settings { frequency_hz, damping_ratio, impulses } = *settings;
+        let Settings {
+            frequency_hz,
+            damping_ratio,
+            impulses,
+        } = *settings;
         let root = libm::sqrt(1.0 - damping_ratio * damping_ratio);
         let half_s = 0.5 / (frequency_hz * root);
         let k = libm::exp(-damping_ratio * core::f64::consts::PI / root);
-        let [first, second, third] = if impulses > 2 { [1.0, 2.0 * k, k * k] } else { [1.0, k, 0.0] };
+        let [first, second, third] = if impulses > 2 {
+            [1.0, 2.0 * k, k * k]
+        } else {
+            [1.0, k, 0.0]
+        };
         let sum = first + second + third;
         let mean_s = (second * half_s + third * 2.0 * half_s) / sum;
-        let impulse = |weight: f64, at_s: f64| Impulse { weight: weight / sum, ahead_s: mean_s - at_s };
-        Self([impulse(first, 0.0), impulse(second, half_s), impulse(third, 2.0 * half_s)])
+        let impulse = |weight: f64, at_s: f64| Impulse {
+            weight: weight / sum,
+            ahead_s: mean_s - at_s,
+        };
+        Self([
+            impulse(first, 0.0),
+            impulse(second, half_s),
+            impulse(third, 2.0 * half_s),
+        ])
     }
 
     /// The shaped reference at a plan time; rest stays at rest to the bit.
     fn at<const N: usize>(&self, preview: &Preview<N>, tau_s: f64) -> [f64; N] {
         let here_mm = preview.at(tau_s).position_mm;
         let moved = |sum_mm, impulse: &Impulse| {
-            add_scaled(sum_mm, impulse.weight, sub(preview.at(tau_s + impulse.ahead_s).position_mm, here_mm))
+            add_scaled(
+                sum_mm,
+                impulse.weight,
+                sub(preview.at(tau_s + impulse.ahead_s).position_mm, here_mm),
+            )
         };
         add_scaled(here_mm, 1.0, self.0.iter().fold([0.0; N], moved))
     }
 
     /// How far ahead it looks, s.
     fn ahead_s(&self) -> f64 {
-        self.0.iter().map(|impulse| impulse.ahead_s).fold(0.0, f64::max)
+        self.0
+            .iter()
+            .map(|impulse| impulse.ahead_s)
+            .fold(0.0, f64::max)
     }
 }
 
@@ -96,27 +127,37 @@ impl<const N: usize> InputShaping<N> {
         let Schedule { preview, .. } = feedforward.schedule();
         let ahead = libm::ceil(f64::from(preview) + shaper.ahead_s() / servo_s).min(MAX_PREVIEW);
         // A float that is not a number saturates to zero here.
-        Self { feedforward, shaper, preview: ahead as u32 }
+        Self {
+            feedforward,
+            shaper,
+            preview: ahead as u32,
+        }
     }
 }
 
 impl<const N: usize> Controller<N> for InputShaping<N> {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: 1, preview: self.preview }
+        Schedule {
+            servo_periods: 1,
+            preview: self.preview,
+        }
     }
 
     fn reset(&mut self) {
         self.feedforward.reset();
     }
 
-    /// The command of the next servo period leads the shaped reference as feedforward alone leads the path.
+    /// The command of the next servo period leads the shaped reference as feedforward alone leads
+    /// the path.
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let next_s = window.tau_s + window.feed_period_s;
         let shaper = self.shaper;
         let shaped = |tau_s: f64| shaper.at(window.preview, tau_s);
         let beside_mm = |tau_s: f64| sub(shaped(tau_s), window.preview.at(tau_s).position_mm);
         let last_mm = sub(window.offset_mm, beside_mm(window.tau_s));
-        let lead_mm = self.feedforward.lead_mm(|after_s| shaped(next_s + after_s), last_mm, [0.0; N]);
+        let lead_mm =
+            self.feedforward
+                .lead_mm(|after_s| shaped(next_s + after_s), last_mm, [0.0; N]);
         Command::straight(1.0, add_scaled(lead_mm, 1.0, beside_mm(next_s)))
     }
 }
@@ -138,7 +179,11 @@ mod tests {
         let zeta = settings.damping_ratio;
         let rad_s = core::f64::consts::TAU * frequency_hz;
         let Shaper(impulses) = Shaper::new(settings);
-        let last_s = impulses.iter().filter(|i| i.weight > 0.0).map(|i| -i.ahead_s).fold(f64::MIN, f64::max);
+        let last_s = impulses
+            .iter()
+            .filter(|i| i.weight > 0.0)
+            .map(|i| -i.ahead_s)
+            .fold(f64::MIN, f64::max);
         let (mut sin, mut cos) = (0.0, 0.0);
         for Impulse { weight, ahead_s } in impulses {
             let since_s = last_s + ahead_s;
@@ -152,9 +197,14 @@ mod tests {
     #[test]
     fn no_vibration_is_left_at_the_resonance_and_with_three_impulses_next_to_none_about_it() {
         for damping_ratio in [0.0, 0.02, 0.3] {
-            let [zv, zvd] = [2, 3].map(|impulses| Settings { frequency_hz: 70.0, damping_ratio, impulses });
+            let [zv, zvd] = [2, 3].map(|impulses| Settings {
+                frequency_hz: 70.0,
+                damping_ratio,
+                impulses,
+            });
             assert!(left(&zv, 70.0) < 1e-12 && left(&zvd, 70.0) < 1e-12);
-            // Off by a part d of the frequency, two impulses leave pi d / 2 of an undamped vibration, three its square.
+            // Off by a part d of the frequency, two impulses leave pi d / 2 of an undamped
+            // vibration, three its square.
             let [one, squared] = [zv, zvd].map(|settings| left(&settings, 71.4));
             if damping_ratio == 0.0 {
                 let off = 0.02 * core::f64::consts::FRAC_PI_2;
@@ -163,35 +213,63 @@ mod tests {
                     "{one} {squared}"
                 );
             }
-            assert!(squared < 0.1 * one && one > 1e-3, "{damping_ratio}: {one} {squared}");
+            assert!(
+                squared < 0.1 * one && one > 1e-3,
+                "{damping_ratio}: {one} {squared}"
+            );
         }
     }
 
     /// A shaper before loops that follow without any lag: its command is the shaped path.
-    fn shaped(path: &mut dyn KnotSource<2>, settings: &Settings, each: impl FnMut(usize, [f64; 2])) {
-        let nothing = Gains { velocity: 0.0, acceleration: 0.0, friction: 0.0 };
-        let mut controller =
-            InputShaping::new(Feedforward::new([inverse(axis(0.02, 0.2)); 2], [nothing; 2]), settings, SERVO_S);
+    fn shaped(
+        path: &mut dyn KnotSource<2>,
+        settings: &Settings,
+        each: impl FnMut(usize, [f64; 2]),
+    ) {
+        let nothing = Gains {
+            velocity: 0.0,
+            acceleration: 0.0,
+            friction: 0.0,
+        };
+        let mut controller = InputShaping::new(
+            Feedforward::new([inverse(axis(0.02, 0.2)); 2], [nothing; 2]),
+            settings,
+            SERVO_S,
+        );
         commands(path, &mut controller, SERVO_S, each);
     }
 
     #[test]
     fn a_steady_motion_is_not_late_and_a_circle_loses_what_its_impulses_are_apart() {
         for impulses in [2, 3] {
-            let settings = Settings { frequency_hz: 40.0, damping_ratio: 0.1, impulses };
+            let settings = Settings {
+                frequency_hz: 40.0,
+                damping_ratio: 0.1,
+                impulses,
+            };
             shaped(&mut Line, &settings, |n, [x, _]| {
                 if n > 100 {
-                    assert!((x - 50.0 * n as f64 * SERVO_S).abs() < 1e-12 * 50.0, "{n}: {x}");
+                    assert!(
+                        (x - 50.0 * n as f64 * SERVO_S).abs() < 1e-12 * 50.0,
+                        "{n}: {x}"
+                    );
                 }
             });
         }
         // Two equal impulses, Td / 2 apart: R cos(omega Td / 4).
-        let settings = Settings { frequency_hz: 40.0, damping_ratio: 0.0, impulses: 2 };
+        let settings = Settings {
+            frequency_hz: 40.0,
+            damping_ratio: 0.0,
+            impulses: 2,
+        };
         let mut seen = 0;
         shaped(&mut Circle, &settings, |n, at| {
             if n > 100 {
                 let radius = norm(sub(at, [10.0, 0.0]));
-                assert!((radius - 10.0 * libm::cos(5.0 / 160.0)).abs() < 1e-8, "{n}: {radius}");
+                assert!(
+                    (radius - 10.0 * libm::cos(5.0 / 160.0)).abs() < 1e-8,
+                    "{n}: {radius}"
+                );
                 seen += 1;
             }
         });

@@ -1,23 +1,25 @@
-//! Iterative learning control on the contour error: the same part is cut lap after lap, and each lap begins with the
-//! offsets that the errors of the last one call for.
+//! Iterative learning control on the contour error: the same part is cut lap after lap, and each
+//! lap begins with the offsets that the errors of the last one call for.
 //!
 //! ```text
 //! o_{j+1}(k) = Q [ o_j(k) + L eps_j(k + lead) ]
 //! ```
 //!
-//! k counts decisions, eps is the vector from the tool to the path, L the learning gain, and the lead makes up for the lag
-//! of the loop. Q is a low-pass without phase (the Butterworth filter of second order, once forward and once backward):
-//! it leaves alone what the loop cannot follow, where the learning would diverge.
+//! k counts decisions, eps is the vector from the tool to the path, L the learning gain, and the
+//! lead makes up for the lag of the loop. Q is a low-pass without phase (the Butterworth filter of
+//! second order, once forward and once backward): it leaves alone what the loop cannot follow,
+//! where the learning would diverge.
 //!
-//! Source: Arimoto, Kawamura and Miyazaki (1984), "Bettering operation of robots by learning"; on the contour error:
-//! Barton and Alleyne (2008), "A cross-coupled iterative learning control design for precision motion control".
+//! Source: Arimoto, Kawamura and Miyazaki (1984), "Bettering operation of robots by learning"; on
+//! the contour error: Barton and Alleyne (2008), "A cross-coupled iterative learning control design
+//! for precision motion control".
 //!
-//! Departures: the contour error is learned alone, without the following error of each axis beside it; a proportional
-//! law with a lead in place of a derivative.
+//! Departures: the contour error is learned alone, without the following error of each axis beside
+//! it; a proportional law with a lead in place of a derivative.
 //!
-//! It needs the same part several times: laps of practice, each behind a [`Controller::next_lap`], before the one that counts.
-//! What repeats from lap to lap is learned whatever it is: a simulated disturbance that begins at the same phase in every lap
-//! too, which flatters the method.
+//! It needs the same part several times: laps of practice, each behind a [`Controller::next_lap`],
+//! before the one that counts. What repeats from lap to lap is learned whatever it is: a simulated
+//! disturbance that begins at the same phase in every lap too, which flatters the method.
 
 use feedwright_control::vector::{add_scaled, norm};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
@@ -51,13 +53,15 @@ const CUT_OFF_HZ: Parameter = Parameter::number(
 /// Of every row, whatever its laps.
 pub(super) const PARAMETERS: [Parameter; 3] = [GAIN, LEAD_S, CUT_OFF_HZ];
 
-/// The end of a program is followed until the tool has arrived; its errors are learned for as long, s.
+/// The end of a program is followed until the tool has arrived; its errors are learned for as long,
+/// s.
 const ARRIVAL_S: f64 = 0.25;
 
 /// Longest program of which all is learned, s; behind it the last offset stays.
 const LONGEST_S: f64 = 120.0;
 
-/// A cut-off is below this part of the sampling frequency, just short of its half; beyond, there is nothing to take away.
+/// A cut-off is below this part of the sampling frequency, just short of its half; beyond, there is
+/// nothing to take away.
 const HIGHEST_CUT_OFF: f64 = 0.49;
 
 /// Settings of the learning.
@@ -74,9 +78,15 @@ pub(super) struct Settings {
 }
 
 impl Settings {
-    /// For a loop of 50 1/s: the lead is its time constant, and Q ends below the bandwidth of a speed loop of 200 1/s.
-    /// Of the settings tried on circle, star, square and figure-eight the one with the smallest RMS errors on most.
-    pub(super) const DEFAULT: Self = Self { servo_periods: 1, gain: 1.0, lead_s: 0.02, cut_off_hz: 30.0 };
+    /// For a loop of 50 1/s: the lead is its time constant, and Q ends below the bandwidth of a
+    /// speed loop of 200 1/s. Of the settings tried on circle, star, square and figure-eight the
+    /// one with the smallest RMS errors on most.
+    pub(super) const DEFAULT: Self = Self {
+        servo_periods: 1,
+        gain: 1.0,
+        lead_s: 0.02,
+        cut_off_hz: 30.0,
+    };
 }
 
 /// The learning controller: table of offsets, and the errors of the lap under way.
@@ -93,10 +103,18 @@ pub(super) struct IterativeLearning<const N: usize> {
 impl<const N: usize> IterativeLearning<N> {
     /// Before the first lap, at a servo period of `servo_s`; all memory is taken here.
     pub(super) fn new(settings: Settings, servo_s: f64) -> Self {
-        let settings = Settings { servo_periods: settings.servo_periods.max(1), ..settings };
+        let settings = Settings {
+            servo_periods: settings.servo_periods.max(1),
+            ..settings
+        };
         let period_s = f64::from(settings.servo_periods) * servo_s;
         let decisions = ((LONGEST_S + ARRIVAL_S) / period_s).ceil() as usize;
-        Self { settings, servo_s, offsets_mm: vec![[0.0; N]; decisions], errors_mm: vec![[0.0; N]; decisions] }
+        Self {
+            settings,
+            servo_s,
+            offsets_mm: vec![[0.0; N]; decisions],
+            errors_mm: vec![[0.0; N]; decisions],
+        }
     }
 
     fn period_s(&self) -> f64 {
@@ -111,7 +129,10 @@ impl<const N: usize> IterativeLearning<N> {
 
 impl<const N: usize> Controller<N> for IterativeLearning<N> {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: self.settings.servo_periods, preview: 1 }
+        Schedule {
+            servo_periods: self.settings.servo_periods,
+            preview: 1,
+        }
     }
 
     /// Forgets all that was learned.
@@ -144,15 +165,21 @@ impl<const N: usize> Controller<N> for IterativeLearning<N> {
 
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let now = self.decision(window.tau_s);
-        let offset_mm = self.offsets_mm.get(now + 1).or(self.offsets_mm.last()).copied().unwrap_or([0.0; N]);
+        let offset_mm = self
+            .offsets_mm
+            .get(now + 1)
+            .or(self.offsets_mm.last())
+            .copied()
+            .unwrap_or([0.0; N]);
         Command::straight(1.0, offset_mm)
     }
 }
 
 /// Low-pass without phase, in place: half is left at `cut_off`, a part of the sampling frequency.
 ///
-/// Butterworth of second order by the bilinear transform, as in Oppenheim and Schafer, "Discrete-time signal processing",
-/// section 7.2; before the first and behind the last value the sequence goes on as it was there.
+/// Butterworth of second order by the bilinear transform, as in Oppenheim and Schafer,
+/// "Discrete-time signal processing", section 7.2; before the first and behind the last value the
+/// sequence goes on as it was there.
 fn smooth<const N: usize>(values: &mut [[f64; N]], cut_off: f64) {
     if cut_off >= HIGHEST_CUT_OFF {
         return;
@@ -160,13 +187,18 @@ fn smooth<const N: usize>(values: &mut [[f64; N]], cut_off: f64) {
     let k = libm::tan(std::f64::consts::PI * cut_off);
     let root = std::f64::consts::SQRT_2 * k;
     let scale = 1.0 / (1.0 + root + k * k);
-    let (b, a1, a2) = (k * k * scale, 2.0 * (k * k - 1.0) * scale, (1.0 - root + k * k) * scale);
+    let (b, a1, a2) = (
+        k * k * scale,
+        2.0 * (k * k - 1.0) * scale,
+        (1.0 - root + k * k) * scale,
+    );
     let pass = |values: &mut dyn Iterator<Item = &mut [f64; N]>| {
         let mut past: Option<[[f64; N]; 4]> = None;
         for value in values {
             let x = *value;
             let [x1, x2, y1, y2] = past.unwrap_or([x; 4]);
-            *value = std::array::from_fn(|i| b * (x[i] + 2.0 * x1[i] + x2[i]) - a1 * y1[i] - a2 * y2[i]);
+            *value =
+                std::array::from_fn(|i| b * (x[i] + 2.0 * x1[i] + x2[i]) - a1 * y1[i] - a2 * y2[i]);
             past = Some([x, x1, *value, y1]);
         }
     };
@@ -192,13 +224,23 @@ mod tests {
             let angle = 10.0 * s * s * (3.0 - 2.0 * s);
             let (sin, cos) = libm::sincos(angle);
             let feed_mm_s = 10.0 * 10.0 * 6.0 * s * (1.0 - s) / PROGRAM_S;
-            Knot { position_mm: [10.0 * (1.0 - cos), 10.0 * sin], tangent: [sin, cos], feed_mm_s, cutting: true }
+            Knot {
+                position_mm: [10.0 * (1.0 - cos), 10.0 * sin],
+                tangent: [sin, cos],
+                feed_mm_s,
+                cutting: true,
+            }
         }
     }
 
-    /// One lap with two first-order loops of 50 1/s and 45 1/s: RMS of the distance from the circle, mm.
+    /// One lap with two first-order loops of 50 1/s and 45 1/s: RMS of the distance from the
+    /// circle, mm.
     fn lap(controller: &mut IterativeLearning<2>) -> f64 {
-        let mut tick = Tick::new(SERVO_S, controller.schedule(), Bounds::new(0.5, 400.0, 400.0));
+        let mut tick = Tick::new(
+            SERVO_S,
+            controller.schedule(),
+            Bounds::new(0.5, 400.0, 400.0),
+        );
         let mut tool_mm = [0.0; 2];
         let mut squares = 0.0;
         let periods = (PROGRAM_S / SERVO_S) as u32;
@@ -217,13 +259,20 @@ mod tests {
         let mut controller = IterativeLearning::new(Settings::DEFAULT, SERVO_S);
         let first_mm = lap(&mut controller);
         let again_mm = lap(&mut controller);
-        assert_eq!(first_mm.to_bits(), again_mm.to_bits(), "nothing is learned before the next lap");
+        assert_eq!(
+            first_mm.to_bits(),
+            again_mm.to_bits(),
+            "nothing is learned before the next lap"
+        );
         let mut laps_mm = vec![first_mm];
         for _ in 1..10 {
             controller.next_lap();
             laps_mm.push(lap(&mut controller));
         }
-        assert!(laps_mm[1] < 0.5 * laps_mm[0] && laps_mm[9] < 0.05 * laps_mm[0], "{laps_mm:?}");
+        assert!(
+            laps_mm[1] < 0.5 * laps_mm[0] && laps_mm[9] < 0.05 * laps_mm[0],
+            "{laps_mm:?}"
+        );
         controller.reset();
         assert_eq!(lap(&mut controller).to_bits(), first_mm.to_bits());
     }
@@ -231,18 +280,29 @@ mod tests {
     #[test]
     fn the_low_pass_leaves_half_at_its_cut_off_and_turns_no_phase() {
         for (hz, part) in [(0.0, 1.0), (20.0, 0.5), (200.0, 0.0)] {
-            let wave = |k: usize| libm::cos(std::f64::consts::TAU * hz * (k as f64 - 1000.0) * SERVO_S);
+            let wave =
+                |k: usize| libm::cos(std::f64::consts::TAU * hz * (k as f64 - 1000.0) * SERVO_S);
             let mut values: Vec<[f64; 1]> = (0..2001).map(|k| [wave(k)]).collect();
             smooth(&mut values, 20.0 * SERVO_S);
             for k in 500..1500 {
-                assert!((values[k][0] - part * wave(k)).abs() < 1e-4, "{hz} Hz at {k}: {}", values[k][0]);
+                assert!(
+                    (values[k][0] - part * wave(k)).abs() < 1e-4,
+                    "{hz} Hz at {k}: {}",
+                    values[k][0]
+                );
             }
         }
     }
 
     #[test]
     fn absurd_settings_and_measurements_learn_nothing_absurd() {
-        let mut long = IterativeLearning::<2>::new(Settings { lead_s: 1e9, ..Settings::DEFAULT }, SERVO_S);
+        let mut long = IterativeLearning::<2>::new(
+            Settings {
+                lead_s: 1e9,
+                ..Settings::DEFAULT
+            },
+            SERVO_S,
+        );
         lap(&mut long);
         long.next_lap();
         assert!(lap(&mut long).is_finite());

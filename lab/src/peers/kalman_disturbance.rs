@@ -1,29 +1,34 @@
-//! The Kalman filter of position, speed and disturbance of each axis: what is estimated as a disturbance is taken out of the command
-//! behind feedforward of velocity, acceleration and friction.
+//! The Kalman filter of position, speed and disturbance of each axis: what is estimated as a
+//! disturbance is taken out of the command behind feedforward of velocity, acceleration and
+//! friction.
 //!
-//! The observer of [`super::disturbance_rejection`] gets the gains that make its errors least where the disturbance wanders by
-//! `q` a servo period, the torque trembles by `t`, both as reference speeds, and the encoder by `s`:
+//! The observer of [`super::disturbance_rejection`] gets the gains that make its errors least where
+//! the disturbance wanders by `q` a servo period, the torque trembles by `t`, both as reference
+//! speeds, and the encoder by `s`:
 //!
 //! ```text
 //! P = A (P - K P_x) A' + Q     K = P_x' / (P_xx + s^2)     L = A K     Q = t^2 b b' + q^2 d d'
 //! A = [ 1 gamma delta;  0 alpha beta;  0 0 1 ]     b = (delta, beta, 0)     d = (0, 0, 1)
 //! ```
 //!
-//! with P the covariance of the prediction and P_x its first row. The gains depend on the ratios of q, t and s alone.
+//! with P the covariance of the prediction and P_x its first row. The gains depend on the ratios of
+//! q, t and s alone.
 //!
 //! Symbols: q, t mm/s; s mm; alpha to delta those of [`SampledAxis`].
 //!
-//! Source: Erkorkmaz and Altintas (2001), "High speed CNC system design. Part III: high speed tracking and contouring control
-//! of feed drives": position, speed and disturbance from a Kalman filter, disturbance cancelled, dynamics of the loop and expected
-//! friction compensated ahead.
+//! Source: Erkorkmaz and Altintas (2001), "High speed CNC system design. Part III: high speed
+//! tracking and contouring control of feed drives": position, speed and disturbance from a Kalman
+//! filter, disturbance cancelled, dynamics of the loop and expected friction compensated ahead.
 //!
-//! Departures: theirs is the loop, closed over the estimates by pole placement; here the drive has a loop of its own, and takes positions.
-//! The dynamics are compensated by `feedforward`, and the friction is smoothed Coulomb friction.
+//! Departures: theirs is the loop, closed over the estimates by pole placement; here the drive has
+//! a loop of its own, and takes positions. The dynamics are compensated by `feedforward`, and the
+//! friction is smoothed Coulomb friction.
 
 use super::zero_phase::SampledAxis;
 
-/// Iterations of the Riccati equation. Its error falls by the square of the slowest pole each time: one of 1 rad/s, slower than
-/// any that is of use, has after 20 s, at a servo period of 1 ms, left e^-40 of it.
+/// Iterations of the Riccati equation. Its error falls by the square of the slowest pole each time:
+/// one of 1 rad/s, slower than any that is of use, has after 20 s, at a servo period of 1 ms, left
+/// e^-40 of it.
 const ITERATIONS: u32 = 20_000;
 
 /// What is taken to be unknown of an axis, as standard deviations for each servo period.
@@ -38,10 +43,15 @@ pub(super) struct AxisNoise {
 }
 
 impl AxisNoise {
-    /// An encoder of 1 um, whose error is spread evenly over its step, a drift with which a reversal is found in a few servo periods,
-    /// and next to no white torque: circle of 10 mm at 50 mm/s, um RMS by the drift, on tnv40 0.05 0.35, 0.2 0.24, 1 0.17, 5 0.12,
-    /// with encoder steps and a late drive (`coarse`) 0.2 0.33, 1 0.28.
-    pub(super) const DEFAULT: Self = Self { drift_mm_s: 1.0, torque_mm_s: 0.01, encoder_mm: 0.29e-3 };
+    /// An encoder of 1 um, whose error is spread evenly over its step, a drift with which a
+    /// reversal is found in a few servo periods, and next to no white torque: circle of 10 mm at 50
+    /// mm/s, um RMS by the drift, on tnv40 0.05 0.35, 0.2 0.24, 1 0.17, 5 0.12, with encoder steps
+    /// and a late drive (`coarse`) 0.2 0.33, 1 0.28.
+    pub(super) const DEFAULT: Self = Self {
+        drift_mm_s: 1.0,
+        torque_mm_s: 0.01,
+        encoder_mm: 0.29e-3,
+    };
 }
 
 /// Gains of the filter in its steady state.
@@ -54,7 +64,12 @@ pub(super) fn gains(axis: &SampledAxis, noise: &AxisNoise) -> [f64; 3] {
     for _ in 0..ITERATIONS {
         let [of_position, ..] = covariance;
         let filtered = of_position.map(|p| p / (of_position[0] + encoder));
-        (gains, covariance) = predicted(axis, noise, filtered, minus_product(covariance, filtered, of_position));
+        (gains, covariance) = predicted(
+            axis,
+            noise,
+            filtered,
+            minus_product(covariance, filtered, of_position),
+        );
     }
     gains
 }
@@ -66,7 +81,13 @@ pub(super) fn predicted(
     correction: [f64; 3],
     covariance: [[f64; 3]; 3],
 ) -> ([f64; 3], [[f64; 3]; 3]) {
-    let SampledAxis { alpha, beta, gamma_s, delta_s, .. } = *axis;
+    let SampledAxis {
+        alpha,
+        beta,
+        gamma_s,
+        delta_s,
+        ..
+    } = *axis;
     let through = |[x, w, d]: [f64; 3]| [x + gamma_s * w + delta_s * d, alpha * w + beta * d, d];
     let [drift, torque] = [noise.drift_mm_s, noise.torque_mm_s].map(|sigma| sigma * sigma);
     let added = [
@@ -74,7 +95,13 @@ pub(super) fn predicted(
         [torque * delta_s * beta, torque * beta * beta, 0.0],
         [0.0, 0.0, drift],
     ];
-    (through(correction), plus(transposed(transposed(covariance.map(through)).map(through)), added))
+    (
+        through(correction),
+        plus(
+            transposed(transposed(covariance.map(through)).map(through)),
+            added,
+        ),
+    )
 }
 
 /// `m - a b'`.
@@ -99,31 +126,64 @@ mod tests {
 
     #[test]
     fn a_constant_disturbance_is_found_and_taken_out() {
-        rejection::a_constant_disturbance_is_found_and_taken_out(|axis| gains(axis, &AxisNoise::DEFAULT));
+        rejection::a_constant_disturbance_is_found_and_taken_out(|axis| {
+            gains(axis, &AxisNoise::DEFAULT)
+        });
     }
 
     #[test]
     fn of_a_mass_the_poles_lie_as_those_of_butterworth() {
-        // Three integrators from the drift to the position, sampled fast: s^3 + 2 w s^2 + 2 w^2 s + w^3, w^3 = b q / (s Ts^2).
+        // Three integrators from the drift to the position, sampled fast: s^3 + 2 w s^2 + 2 w^2 s +
+        // w^3, w^3 = b q / (s Ts^2).
         let b = 0.2;
-        let axis =
-            SampledAxis { alpha: 1.0, beta: b, gamma_s: SERVO_S, delta_s: 0.5 * b * SERVO_S, kp_1_s: 50.0, kd: 0.0 };
+        let axis = SampledAxis {
+            alpha: 1.0,
+            beta: b,
+            gamma_s: SERVO_S,
+            delta_s: 0.5 * b * SERVO_S,
+            kp_1_s: 50.0,
+            kd: 0.0,
+        };
         let rad_s: f64 = 2.0;
         let encoder_mm = 1e-3;
         let drift_mm_s = rad_s.powi(3) * encoder_mm * SERVO_S * SERVO_S / b;
-        let [l1, l2, l3] = gains(&axis, &AxisNoise { drift_mm_s, torque_mm_s: 0.0, encoder_mm });
+        let [l1, l2, l3] = gains(
+            &axis,
+            &AxisNoise {
+                drift_mm_s,
+                torque_mm_s: 0.0,
+                encoder_mm,
+            },
+        );
         let found = [l1 / SERVO_S, l2 / SERVO_S, l3 * b / (SERVO_S * SERVO_S)];
-        for (found, expected) in found.iter().zip([2.0 * rad_s, 2.0 * rad_s * rad_s, rad_s.powi(3)]) {
+        for (found, expected) in found
+            .iter()
+            .zip([2.0 * rad_s, 2.0 * rad_s * rad_s, rad_s.powi(3)])
+        {
             // Sampling is off by w Ts, 0.2 %, in each.
-            assert!((found / expected - 1.0).abs() < 0.01, "{found}, not {expected}");
+            assert!(
+                (found / expected - 1.0).abs() < 0.01,
+                "{found}, not {expected}"
+            );
         }
     }
 
-    /// Variances of the errors of position, speed and disturbance under any gains: P = (A - L C) P (A - L C)' + Q + L s^2 L'.
+    /// Variances of the errors of position, speed and disturbance under any gains: P = (A - L C) P
+    /// (A - L C)' + Q + L s^2 L'.
     fn variances(axis: &SampledAxis, noise: &AxisNoise, gains: [f64; 3]) -> [f64; 3] {
-        let SampledAxis { alpha, beta, gamma_s, delta_s, .. } = *axis;
+        let SampledAxis {
+            alpha,
+            beta,
+            gamma_s,
+            delta_s,
+            ..
+        } = *axis;
         let [l1, l2, l3] = gains;
-        let step = [[1.0 - l1, gamma_s, delta_s], [-l2, alpha, beta], [-l3, 0.0, 1.0]];
+        let step = [
+            [1.0 - l1, gamma_s, delta_s],
+            [-l2, alpha, beta],
+            [-l3, 0.0, 1.0],
+        ];
         let sources = [
             [noise.torque_mm_s * delta_s, noise.torque_mm_s * beta, 0.0],
             [0.0, 0.0, noise.drift_mm_s],
@@ -152,7 +212,10 @@ mod tests {
                 other[changed] *= factor;
                 let variances = variances(&axis, &noise, other);
                 for i in 0..3 {
-                    assert!(variances[i] > least[i] * (1.0 + 1e-9), "{changed} {factor}: {variances:?} {least:?}");
+                    assert!(
+                        variances[i] > least[i] * (1.0 + 1e-9),
+                        "{changed} {factor}: {variances:?} {least:?}"
+                    );
                 }
             }
         }

@@ -1,10 +1,10 @@
-//! How each controller of the laboratory is made from what is known of a machine: one function for each row, or for several that
-//! differ in their laps alone.
+//! How each controller of the laboratory is made from what is known of a machine: one function for
+//! each row, or for several that differ in their laps alone.
 
 use feedwright::{Setup, Values, offset_bounds};
 use feedwright_control::{
-    AxisInverse, AxisLaw, AxisState, Controller, DriveParameters, Feedforward, Gains, LoopDelays, LqgPreview,
-    LqgSettings, Parameters,
+    AxisInverse, AxisLaw, AxisState, Controller, DriveParameters, Feedforward, Gains, LoopDelays,
+    LqgPreview, LqgSettings, Parameters,
 };
 use feedwright_sim::{Known, KnownAxis, Period};
 
@@ -26,7 +26,10 @@ use super::model_predictive::{self, ModelPredictive};
 use super::sum::Sum;
 use super::zero_phase::{Filter, SampledAxis, ZeroPhase};
 
-pub(super) fn cross_coupled<const N: usize>(_: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+pub(super) fn cross_coupled<const N: usize>(
+    _: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
     Box::new(pid::<N>(values))
 }
 
@@ -39,7 +42,10 @@ fn pid<const N: usize>(values: &Values) -> CrossCoupled<N> {
     })
 }
 
-pub(super) fn cross_coupled_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+pub(super) fn cross_coupled_feedrate<const N: usize>(
+    setup: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
     let settings = cross_coupled_feedrate::Settings {
         allowed_mm: values.number("allowed_mm"),
         filter_s: values.number("filter_s"),
@@ -49,19 +55,30 @@ pub(super) fn cross_coupled_feedrate<const N: usize>(setup: &mut Setup<'_>, valu
     Box::new(CrossCoupledFeedrate::new(settings, pid::<N>(values)))
 }
 
-pub(super) fn contour_compensation<const N: usize>(_: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let settings =
-        contour_compensation::Settings { rate_1_s: values.number("rate_1_s"), filter_s: values.number("filter_s") };
+pub(super) fn contour_compensation<const N: usize>(
+    _: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
+    let settings = contour_compensation::Settings {
+        rate_1_s: values.number("rate_1_s"),
+        filter_s: values.number("filter_s"),
+    };
     Box::new(ContourCompensation::new(settings))
 }
 
-pub(super) fn fuzzy_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+pub(super) fn fuzzy_feedrate<const N: usize>(
+    setup: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
     Box::new(fuzzy(setup, values))
 }
 
 fn fuzzy(setup: &Setup<'_>, values: &Values) -> FuzzyFeedrate {
     FuzzyFeedrate::new(fuzzy_feedrate::Settings {
-        servo_periods: setup.known.period.servo_periods(fuzzy_feedrate::FEED_PERIOD_S),
+        servo_periods: setup
+            .known
+            .period
+            .servo_periods(fuzzy_feedrate::FEED_PERIOD_S),
         error_mm: values.number("error_mm"),
         change_mm_s: values.number("change_mm_s"),
         slowest: values.number("slowest"),
@@ -69,24 +86,59 @@ fn fuzzy(setup: &Setup<'_>, values: &Values) -> FuzzyFeedrate {
     })
 }
 
-pub(super) fn fuzzy_h_infinity<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let noise = AxisNoise { drift_mm_s: values.number("drift_mm_s"), ..AxisNoise::DEFAULT };
+pub(super) fn fuzzy_h_infinity<const N: usize>(
+    setup: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
+    let noise = AxisNoise {
+        drift_mm_s: values.number("drift_mm_s"),
+        ..AxisNoise::DEFAULT
+    };
     let gamma_ratio = values.number("gamma_ratio");
-    let feedforward = feedforward_with::<N>(setup, Gains { friction: 0.0, ..Gains::EXACT });
-    let axes = observed_axes(&setup.known, |axis| h_infinity::gains(axis, &noise, gamma_ratio));
+    let feedforward = feedforward_with::<N>(
+        setup,
+        Gains {
+            friction: 0.0,
+            ..Gains::EXACT
+        },
+    );
+    let axes = observed_axes(&setup.known, |axis| {
+        h_infinity::gains(axis, &noise, gamma_ratio)
+    });
     let rejection = DisturbanceRejection::new(feedforward, axes, setup.known.period.servo_s);
     Box::new(FuzzyHInfinity::new(rejection, fuzzy(setup, values)))
 }
 
-pub(super) fn corner_contour<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let [velocity, acceleration] = ["velocity_gain", "acceleration_gain"].map(|name| values.number(name));
-    let inverse = feedforward_with::<N>(setup, Gains { velocity, acceleration, friction: 0.0 });
-    Box::new(CornerContour::new(inverse, values.number("reach_s"), setup.known.period.servo_s))
+pub(super) fn corner_contour<const N: usize>(
+    setup: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
+    let [velocity, acceleration] =
+        ["velocity_gain", "acceleration_gain"].map(|name| values.number(name));
+    let inverse = feedforward_with::<N>(
+        setup,
+        Gains {
+            velocity,
+            acceleration,
+            friction: 0.0,
+        },
+    );
+    Box::new(CornerContour::new(
+        inverse,
+        values.number("reach_s"),
+        setup.known.period.servo_s,
+    ))
 }
 
-pub(super) fn constrained_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+pub(super) fn constrained_feedrate<const N: usize>(
+    setup: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
     let settings = constrained_feedrate::Settings {
-        servo_periods: setup.known.period.servo_periods(constrained_feedrate::LINE_S),
+        servo_periods: setup
+            .known
+            .period
+            .servo_periods(constrained_feedrate::LINE_S),
         allowed_mm: values.number("allowed_mm"),
         slowest: values.number("slowest"),
         acceleration_mm_s2: setup.known.limits.tangential_accel_mm_s2,
@@ -100,27 +152,49 @@ pub(super) fn constrained_feedrate<const N: usize>(setup: &mut Setup<'_>, values
             fed_forward: drive.velocity_feedforward,
         }
     });
-    Box::new(ConstrainedFeedrate::<N>::new(settings, axes, setup.known.period.servo_s))
+    Box::new(ConstrainedFeedrate::<N>::new(
+        settings,
+        axes,
+        setup.known.period.servo_s,
+    ))
 }
 
 /// Feedforward of all three parts, by their gains.
 fn full_feedforward<const N: usize>(setup: &Setup<'_>, values: &Values) -> Feedforward<N> {
     let [velocity, acceleration, friction] =
         ["velocity_gain", "acceleration_gain", "friction_gain"].map(|name| values.number(name));
-    feedforward_with(setup, Gains { velocity, acceleration, friction })
+    feedforward_with(
+        setup,
+        Gains {
+            velocity,
+            acceleration,
+            friction,
+        },
+    )
 }
 
-/// The part of it that controls have as they are delivered: it is set by the inertia and the gains of the loops, and knows of no
-/// delay, integral or filter. A drive that feeds forward by itself was delivered with that, and gets no more: there this is uncorrected.
+/// The part of it that controls have as they are delivered: it is set by the inertia and the gains
+/// of the loops, and knows of no delay, integral or filter. A drive that feeds forward by itself
+/// was delivered with that, and gets no more: there this is uncorrected.
 pub(super) fn feedforward_as_delivered<const N: usize>(
     setup: &mut Setup<'_>,
     values: &Values,
 ) -> Box<dyn Controller<N>> {
-    let [velocity, acceleration] = ["velocity_gain", "acceleration_gain"].map(|name| values.number(name));
+    let [velocity, acceleration] =
+        ["velocity_gain", "acceleration_gain"].map(|name| values.number(name));
     let axes = setup.known.law().map(AxisInverse::plain);
     let gains = setup.known.axes::<N>().map(|KnownAxis { drive, .. }| {
-        let feeds_forward = drive.velocity_feedforward > 0.0 || drive.acceleration_feedforward > 0.0;
-        if feeds_forward { Gains::NONE } else { Gains { velocity, acceleration, friction: 0.0 } }
+        let feeds_forward =
+            drive.velocity_feedforward > 0.0 || drive.acceleration_feedforward > 0.0;
+        if feeds_forward {
+            Gains::NONE
+        } else {
+            Gains {
+                velocity,
+                acceleration,
+                friction: 0.0,
+            }
+        }
     });
     Box::new(Feedforward::<N>::new(axes, gains))
 }
@@ -129,7 +203,10 @@ pub(super) fn feedforward_cross_coupled<const N: usize>(
     setup: &mut Setup<'_>,
     values: &Values,
 ) -> Box<dyn Controller<N>> {
-    Box::new(Sum::<_, _, N>::new(full_feedforward::<N>(setup, values), pid::<N>(values)))
+    Box::new(Sum::<_, _, N>::new(
+        full_feedforward::<N>(setup, values),
+        pid::<N>(values),
+    ))
 }
 
 /// Feedforward of so much of each part.
@@ -137,23 +214,43 @@ fn feedforward_with<const N: usize>(setup: &Setup<'_>, gains: Gains) -> Feedforw
     Feedforward::new(setup.known.inverse(), [gains; N])
 }
 
-pub(super) fn input_shaping<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+pub(super) fn input_shaping<const N: usize>(
+    setup: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
     let settings = input_shaping::Settings {
         frequency_hz: values.number("frequency_hz"),
         damping_ratio: values.number("damping_ratio"),
         impulses: values.whole("impulses") as u32,
     };
     let feedforward = feedforward_with::<N>(setup, Gains::EXACT);
-    Box::new(InputShaping::new(feedforward, &settings, setup.known.period.servo_s))
+    Box::new(InputShaping::new(
+        feedforward,
+        &settings,
+        setup.known.period.servo_s,
+    ))
 }
 
-pub(super) fn zero_phase<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+pub(super) fn zero_phase<const N: usize>(
+    setup: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
     Box::new(inverse::<N>(setup, values))
 }
 
-pub(super) fn zero_phase_friction<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let friction = Gains { velocity: 0.0, acceleration: 0.0, friction: values.number("friction_gain") };
-    Box::new(Sum::<_, _, N>::new(inverse::<N>(setup, values), feedforward_with::<N>(setup, friction)))
+pub(super) fn zero_phase_friction<const N: usize>(
+    setup: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
+    let friction = Gains {
+        velocity: 0.0,
+        acceleration: 0.0,
+        friction: values.number("friction_gain"),
+    };
+    Box::new(Sum::<_, _, N>::new(
+        inverse::<N>(setup, values),
+        feedforward_with::<N>(setup, friction),
+    ))
 }
 
 /// The inverse of the closed loop, with scales on its lag and its inertia.
@@ -163,88 +260,176 @@ fn inverse<const N: usize>(setup: &Setup<'_>, values: &Values) -> ZeroPhase<N> {
     let plain: [SampledAxis; N] = sampled_axes(known, [lag_scale, inertia_scale]);
     let filters = std::array::from_fn(|i| {
         let axis = known.axis(i);
-        let filter = if axis.drive == DriveParameters::default() && axis.delays == LoopDelays::default() {
-            None
-        } else {
-            closed_loop::inverting(axis, &scaled(&axis.nominal, [lag_scale, inertia_scale]), &known.period)
-        };
+        let filter =
+            if axis.drive == DriveParameters::default() && axis.delays == LoopDelays::default() {
+                None
+            } else {
+                closed_loop::inverting(
+                    axis,
+                    &scaled(&axis.nominal, [lag_scale, inertia_scale]),
+                    &known.period,
+                )
+            };
         filter.unwrap_or_else(|| Filter::new(&plain[i], servo_s))
     });
-    ZeroPhase::new(filters, plain.iter().map(SampledAxis::lag_s).fold(0.0, f64::max), servo_s)
+    ZeroPhase::new(
+        filters,
+        plain.iter().map(SampledAxis::lag_s).fold(0.0, f64::max),
+        servo_s,
+    )
 }
 
 /// With other lag and other inertia.
 fn scaled(nominal: &Parameters, [lag_scale, inertia_scale]: [f64; 2]) -> Parameters {
     let inertia_kg_m2 = inertia_scale * nominal.inertia_kg_m2;
-    Parameters { kp_1_s: nominal.kp_1_s / lag_scale, inertia_kg_m2, ..*nominal }
+    Parameters {
+        kp_1_s: nominal.kp_1_s / lag_scale,
+        inertia_kg_m2,
+        ..*nominal
+    }
 }
 
 /// The linear part of every axis, with scales on its lag and its inertia.
 fn sampled_axes<const N: usize>(known: &Known, scales: [f64; 2]) -> [SampledAxis; N] {
-    known.axes().map(|KnownAxis { nominal, .. }| sampled(&scaled(&nominal, scales), &known.period))
+    known
+        .axes()
+        .map(|KnownAxis { nominal, .. }| sampled(&scaled(&nominal, scales), &known.period))
 }
 
-pub(super) fn disturbance_observer<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+pub(super) fn disturbance_observer<const N: usize>(
+    setup: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
     let (bandwidth_hz, servo_s) = (values.number("bandwidth_hz"), setup.known.period.servo_s);
-    let feedforward = feedforward_with::<N>(setup, Gains { friction: 0.0, ..Gains::EXACT });
+    let feedforward = feedforward_with::<N>(
+        setup,
+        Gains {
+            friction: 0.0,
+            ..Gains::EXACT
+        },
+    );
     let gains = |axis: &SampledAxis| disturbance_observer::gains(axis, bandwidth_hz, servo_s);
-    Box::new(DisturbanceRejection::new(feedforward, observed_axes(&setup.known, gains), servo_s))
+    Box::new(DisturbanceRejection::new(
+        feedforward,
+        observed_axes(&setup.known, gains),
+        servo_s,
+    ))
 }
 
-pub(super) fn kalman_disturbance<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+pub(super) fn kalman_disturbance<const N: usize>(
+    setup: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
     let noise = AxisNoise {
         drift_mm_s: values.number("drift_mm_s"),
         torque_mm_s: values.number("torque_noise_mm_s"),
         ..AxisNoise::DEFAULT
     };
-    let feedforward = feedforward_with::<N>(setup, Gains { friction: values.number("friction_gain"), ..Gains::EXACT });
+    let feedforward = feedforward_with::<N>(
+        setup,
+        Gains {
+            friction: values.number("friction_gain"),
+            ..Gains::EXACT
+        },
+    );
     let axes = observed_axes(&setup.known, |axis| kalman_disturbance::gains(axis, &noise));
-    Box::new(DisturbanceRejection::new(feedforward, axes, setup.known.period.servo_s))
+    Box::new(DisturbanceRejection::new(
+        feedforward,
+        axes,
+        setup.known.period.servo_s,
+    ))
 }
 
-/// Observers of every axis, with these gains. No more is believed than the reference speed that asks the drive for all that it has.
-fn observed_axes<const N: usize>(known: &Known, gains: impl Fn(&SampledAxis) -> [f64; 3]) -> [ObservedAxis; N] {
+/// Observers of every axis, with these gains. No more is believed than the reference speed that
+/// asks the drive for all that it has.
+fn observed_axes<const N: usize>(
+    known: &Known,
+    gains: impl Fn(&SampledAxis) -> [f64; 3],
+) -> [ObservedAxis; N] {
     let axes: [SampledAxis; N] = sampled_axes(known, [1.0; 2]);
     std::array::from_fn(|i| {
-        let KnownAxis { nominal, drive, delays, .. } = *known.axis(i);
+        let KnownAxis {
+            nominal,
+            drive,
+            delays,
+            ..
+        } = *known.axis(i);
         let limit_mm_s = nominal.torque_limit_nm / (nominal.kv_nm_s_per_rad * nominal.rad_per_mm);
         let fed_nm_s2 = drive.acceleration_feedforward * nominal.inertia_kg_m2;
         let drive = ObservedDrive {
             velocity_feedforward: drive.velocity_feedforward,
-            torque_1_s: fed_nm_s2 / (nominal.kv_nm_s_per_rad * known.period.servo_s * known.period.servo_s),
+            torque_1_s: fed_nm_s2
+                / (nominal.kv_nm_s_per_rad * known.period.servo_s * known.period.servo_s),
             speed_integral_s: drive.speed_integral_s,
             delay_s: delays.drive_s + delays.measurement_s,
             command_periods: delays.command_periods(known.period.servo_s),
         };
-        ObservedAxis { axis: axes[i], drive, limit_mm_s, gains: gains(&axes[i]) }
+        ObservedAxis {
+            axis: axes[i],
+            drive,
+            limit_mm_s,
+            gains: gains(&axes[i]),
+        }
     })
 }
 
 /// The linear part of an axis over one servo period, as the plant integrates it.
 pub(super) fn sampled(axis: &Parameters, period: &Period) -> SampledAxis {
-    let linear = Parameters { torque_limit_nm: f64::INFINITY, coulomb_friction_nm: 0.0, ..*axis };
+    let linear = Parameters {
+        torque_limit_nm: f64::INFINITY,
+        coulomb_friction_nm: 0.0,
+        ..*axis
+    };
     let law = AxisLaw::new(linear, period.periods());
     let over = |speed_rad_s: f64, reference_rad_s: f64| {
-        let mut state = AxisState { speed_rad_s, ..AxisState::default() };
+        let mut state = AxisState {
+            speed_rad_s,
+            ..AxisState::default()
+        };
         for _ in 0..period.mechanics_per_servo {
             let w = state.speed_rad_s;
-            law.accelerate(law.torque_nm(reference_rad_s, w) - law.friction_nm(w, 0.0), &mut state);
+            law.accelerate(
+                law.torque_nm(reference_rad_s, w) - law.friction_nm(w, 0.0),
+                &mut state,
+            );
         }
         (state.speed_rad_s, state.angle_rad)
     };
     let ((alpha, gamma_s), (beta, delta_s)) = (over(1.0, 0.0), over(0.0, 1.0));
-    SampledAxis { alpha, beta, gamma_s, delta_s, kp_1_s: axis.kp_1_s, kd: axis.kd }
+    SampledAxis {
+        alpha,
+        beta,
+        gamma_s,
+        delta_s,
+        kp_1_s: axis.kp_1_s,
+        kd: axis.kd,
+    }
 }
 
-pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+pub(super) fn model_predictive<const N: usize>(
+    setup: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
     let mut horizon = HorizonSettings::<N>::DEFAULT;
     (horizon.knots, horizon.rate_weight) = (values.whole("knots"), values.number("rate_weight_s2"));
     horizon.limits = CorrectionLimits::of(&setup.known);
-    let servo_periods = setup.known.period.servo_periods(values.number("feed_period_s"));
-    Box::new(ModelPredictive::new(&setup.known, model_predictive::Settings { servo_periods, horizon }))
+    let servo_periods = setup
+        .known
+        .period
+        .servo_periods(values.number("feed_period_s"));
+    Box::new(ModelPredictive::new(
+        &setup.known,
+        model_predictive::Settings {
+            servo_periods,
+            horizon,
+        },
+    ))
 }
 
-pub(super) fn lqg_preview<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+pub(super) fn lqg_preview<const N: usize>(
+    setup: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
     let settings = LqgSettings {
         control_weight_s2: values.number("control_weight_s2"),
         bounds: offset_bounds(&setup.known),
@@ -253,7 +438,10 @@ pub(super) fn lqg_preview<const N: usize>(setup: &mut Setup<'_>, values: &Values
     Box::new(LqgPreview::new(setup.truth::<N>(), settings))
 }
 
-pub(super) fn iterative_learning<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+pub(super) fn iterative_learning<const N: usize>(
+    setup: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
     let settings = iterative_learning::Settings {
         gain: values.number("gain"),
         lead_s: values.number("lead_s"),

@@ -1,13 +1,16 @@
 //! Model-predictive contouring with the exact model of the machine, solved to convergence.
 //!
-//! A [`horizon`] over a model that is the machine itself: its servo law, inertia, friction,
-//! period by period, with its drive, its delays and its friction. The model is as late as the encoder: its position is what is
-//! measured, and a reference acts on it both delays after it was sent. What is not known of a machine it does not know: the disturbance
-//! is predicted from what the model missed, as everywhere. It is what an identified model could reach if it were perfect and the control had all the time of
-//! the world; it allocates nothing, but takes too long for a servo thread.
+//! A [`horizon`] over a model that is the machine itself: its servo law, inertia, friction, period
+//! by period, with its drive, its delays and its friction. The model is as late as the encoder: its
+//! position is what is measured, and a reference acts on it both delays after it was sent. What is
+//! not known of a machine it does not know: the disturbance is predicted from what the model
+//! missed, as everywhere. It is what an identified model could reach if it were perfect and the
+//! control had all the time of the world; it allocates nothing, but takes too long for a servo
+//! thread.
 //!
-//! Source: Lam, Manzie and Good (2010), "Model predictive contouring control", for the contour error over a horizon; the
-//! progress along the path stays as planned here, since a time bought with error is not compared.
+//! Source: Lam, Manzie and Good (2010), "Model predictive contouring control", for the contour
+//! error over a horizon; the progress along the path stays as planned here, since a time bought
+//! with error is not compared.
 
 mod least_squares;
 mod residual;
@@ -15,8 +18,9 @@ pub(crate) mod horizon;
 
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{
-    AxisLaw, AxisState, Command, CommandQueue, Controller, DriveLaw, DriveParameters, DriveReference, DriveState,
-    FrictionLaw, FrictionParameters, Measured, Parameters, Schedule, Window, friction_signs,
+    AxisLaw, AxisState, Command, CommandQueue, Controller, DriveLaw, DriveParameters,
+    DriveReference, DriveState, FrictionLaw, FrictionParameters, Measured, Parameters, Schedule,
+    Window, friction_signs,
 };
 use feedwright_sim::{Known, KnownAxis};
 
@@ -25,7 +29,8 @@ use residual::{DisturbanceForecast, Residual, ResidualSettings};
 
 /// Steps of Gauss and Newton, at most.
 const MAX_STEPS: usize = 20;
-/// Converged: no acceleration of the offset changes by more, mm/s^2; a tenth of a micrometre per second in a feed period.
+/// Converged: no acceleration of the offset changes by more, mm/s^2; a tenth of a micrometre per
+/// second in a feed period.
 const CONVERGED_MM_S2: f64 = 0.05;
 
 /// Settings of the controller.
@@ -66,8 +71,8 @@ impl<const N: usize> ModelPredictive<N> {
         }
     }
 
-    /// The tool is where it is measured; its speed is the model's, which forgets its errors within the time constant of the
-    /// speed loop.
+    /// The tool is where it is measured; its speed is the model's, which forgets its errors within
+    /// the time constant of the speed loop.
     fn take_in(&mut self, window: &Window<'_, N>, position_mm: [f64; N]) {
         if !norm(position_mm).is_finite() {
             return;
@@ -85,7 +90,8 @@ impl<const N: usize> ModelPredictive<N> {
                 let command_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
                 let error_mm = sub(command_mm, position_mm);
                 for (i, (axis, error_mm)) in self.model.axes.iter_mut().zip(error_mm).enumerate() {
-                    axis.state.commands = CommandQueue::resting(axis.state.commands.periods(), command_mm[i]);
+                    axis.state.commands =
+                        CommandQueue::resting(axis.state.commands.periods(), command_mm[i]);
                     axis.state.motor.angle_rad = position_mm[i] * axis.law.parameters.rad_per_mm;
                     axis.state.motor.error_rad = error_mm * axis.law.parameters.rad_per_mm;
                 }
@@ -99,7 +105,10 @@ impl<const N: usize> ModelPredictive<N> {
 
 impl<const N: usize> Controller<N> for ModelPredictive<N> {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: self.settings.servo_periods, preview: self.settings.horizon.knots as u32 }
+        Schedule {
+            servo_periods: self.settings.servo_periods,
+            preview: self.settings.horizon.knots as u32,
+        }
     }
 
     fn reset(&mut self) {
@@ -162,7 +171,8 @@ impl<const N: usize> Exact<N> {
         let axes: [ExactAxis; N] = std::array::from_fn(|i| ExactAxis::new(laws[i], known.axis(i)));
         let response_s: [f64; N] = laws.map(|law| 1.0 / law.parameters.kp_1_s);
         // What the drive feeds forward of the speed does not wait for an error.
-        let lag_s = |i: usize| (1.0 - known.axis(i).drive.velocity_feedforward).max(0.0) * response_s[i];
+        let lag_s =
+            |i: usize| (1.0 - known.axis(i).drive.velocity_feedforward).max(0.0) * response_s[i];
         let lag_s = (0..N).map(lag_s).sum::<f64>() / N as f64;
         Self {
             axes,
@@ -177,7 +187,8 @@ impl<const N: usize> Exact<N> {
 
     fn tool_mm(&self) -> [f64; N] {
         std::array::from_fn(|i| {
-            self.axes[i].state.motor.angle_rad / self.axes[i].law.parameters.rad_per_mm + self.prediction_error_mm[i]
+            self.axes[i].state.motor.angle_rad / self.axes[i].law.parameters.rad_per_mm
+                + self.prediction_error_mm[i]
         })
     }
 }
@@ -197,7 +208,10 @@ impl<const N: usize> Predictor<N> for Exact<N> {
         stretch: &CommandedPeriod<N>,
         sensitivity: &mut Sensitivity<N>,
     ) -> [f64; N] {
-        let offset = Command { bend_mm: stretch.bend_mm(), ..Command::straight(1.0, stretch.offset_mm[1]) };
+        let offset = Command {
+            bend_mm: stretch.bend_mm(),
+            ..Command::straight(1.0, stretch.offset_mm[1])
+        };
         for phase in 0..self.servo_periods {
             let ahead = stretch.period as u32 * self.servo_periods + phase;
             let path_mm = window.at(f64::from(ahead) * self.servo_s).position_mm;
@@ -211,18 +225,20 @@ impl<const N: usize> Predictor<N> for Exact<N> {
         for i in 0..N {
             self.prediction_error_mm[i] += self.residual[i].next_mm();
             for knot in 0..=stretch.period {
-                sensitivity[knot][i] =
-                    self.axes[i].slopes[knot].motor.angle_rad / self.axes[i].law.parameters.rad_per_mm;
+                sensitivity[knot][i] = self.axes[i].slopes[knot].motor.angle_rad
+                    / self.axes[i].law.parameters.rad_per_mm;
             }
         }
         self.tool_mm()
     }
 }
 
-/// Servo periods of references under way that are kept: 20 ms each way at 1 ms, the most of a machine file, and some.
+/// Servo periods of references under way that are kept: 20 ms each way at 1 ms, the most of a
+/// machine file, and some.
 const KEPT_PERIODS: usize = 48;
 
-/// What of an axis moves on: its motor, its drive, and references that are on their way, the newest first.
+/// What of an axis moves on: its motor, its drive, and references that are on their way, the newest
+/// first.
 #[derive(Debug, Clone, Copy)]
 struct Moving {
     /// Commands on their way to the position loop, mm.
@@ -264,7 +280,10 @@ struct ExactAxis {
 
 impl ExactAxis {
     fn new(law: AxisLaw, known: &KnownAxis) -> Self {
-        let unlimited = Parameters { torque_limit_nm: f64::INFINITY, ..law.parameters };
+        let unlimited = Parameters {
+            torque_limit_nm: f64::INFINITY,
+            ..law.parameters
+        };
         let linear = AxisLaw::new(unlimited, law.periods);
         let time_s = known.drive.speed_integral_s;
         let longest = (KEPT_PERIODS as u32 - 2) * law.periods.mechanics_per_servo;
@@ -272,9 +291,23 @@ impl ExactAxis {
         let at_rest = Moving::at_rest(known.delays.command_periods(law.periods.servo_s));
         Self {
             drive: DriveLaw::new(&law, known.drive),
-            friction: (known.friction != FrictionParameters::default()).then(|| FrictionLaw::new(&law, known.friction)),
-            linear: (linear, DriveLaw::new(&linear, DriveParameters { speed_limit_rad_s: 0.0, ..known.drive })),
-            integral_nm_rad: if time_s > 0.0 { law.parameters.kv_nm_s_per_rad / time_s } else { 0.0 },
+            friction: (known.friction != FrictionParameters::default())
+                .then(|| FrictionLaw::new(&law, known.friction)),
+            linear: (
+                linear,
+                DriveLaw::new(
+                    &linear,
+                    DriveParameters {
+                        speed_limit_rad_s: 0.0,
+                        ..known.drive
+                    },
+                ),
+            ),
+            integral_nm_rad: if time_s > 0.0 {
+                law.parameters.kv_nm_s_per_rad / time_s
+            } else {
+                0.0
+            },
             // A float that is not a number saturates to zero here.
             late: (late.round() as u32).min(longest),
             law,
@@ -283,22 +316,31 @@ impl ExactAxis {
         }
     }
 
-    /// The motor is where it is measured; the integral of its speed loop has summed up what was missed.
+    /// The motor is where it is measured; the integral of its speed loop has summed up what was
+    /// missed.
     fn take_in(&mut self, position_mm: f64) {
         let angle_rad = position_mm * self.law.parameters.rad_per_mm;
         let missed_rad = angle_rad - self.state.motor.angle_rad;
         self.state.motor.angle_rad = angle_rad;
-        self.state.drive.correct(-self.integral_nm_rad * missed_rad, 0.0);
+        self.state
+            .drive
+            .correct(-self.integral_nm_rad * missed_rad, 0.0);
     }
 
-    /// One servo period at a command that moves by `moved_s2` mm for an acceleration of 1 mm/s^2 in each of the knots up to `knot`.
+    /// One servo period at a command that moves by `moved_s2` mm for an acceleration of 1 mm/s^2 in
+    /// each of the knots up to `knot`.
     fn advance(&mut self, command_mm: f64, moved_s2: &[f64; MAX_KNOTS], knot: usize) {
         let rad_per_mm = self.law.parameters.rad_per_mm;
         let send = |law: &AxisLaw, drive: &DriveLaw, moved_mm: f64, state: &mut Moving| {
             let moved_mm = state.commands.pass(moved_mm);
             let position_rad = state.motor.angle_rad;
-            let reference =
-                drive.position_loop(law, moved_mm * rad_per_mm, position_rad, &mut state.motor, &mut state.drive);
+            let reference = drive.position_loop(
+                law,
+                moved_mm * rad_per_mm,
+                position_rad,
+                &mut state.motor,
+                &mut state.drive,
+            );
             state.sent.rotate_right(1);
             state.sent[0] = reference;
         };
@@ -321,12 +363,18 @@ impl ExactAxis {
     fn substep(&mut self, age: usize, knot: usize) {
         let (law, state) = (&self.law, &mut self.state);
         let w = state.motor.speed_rad_s;
-        let torque_nm = self.drive.torque_nm(law, state.sent[age], w, &mut state.drive);
+        let torque_nm = self
+            .drive
+            .torque_nm(law, state.sent[age], w, &mut state.drive);
         let coulomb = match &self.friction {
             Some(friction) => {
                 let inverse_inertia = 1.0 / law.parameters.inertia_kg_m2;
-                state.motor.speed_rad_s =
-                    friction.speed_after_rad_s(torque_nm, inverse_inertia, w, &mut state.presliding_nm);
+                state.motor.speed_rad_s = friction.speed_after_rad_s(
+                    torque_nm,
+                    inverse_inertia,
+                    w,
+                    &mut state.presliding_nm,
+                );
                 state.motor.angle_rad += law.periods.mechanics_s * state.motor.speed_rad_s;
                 0.0
             }
@@ -337,14 +385,21 @@ impl ExactAxis {
             }
         };
         // The Coulomb slope of a friction model with presliding is taken as in sliding: zero.
-        let sign = if self.friction.is_some() { 1.0 } else { coulomb };
+        let sign = if self.friction.is_some() {
+            1.0
+        } else {
+            coulomb
+        };
         let [gain, damping] = law.slopes_nm_s(torque_nm, sign);
         let (linear, linear_drive) = &self.linear;
         for slope in self.slopes.iter_mut().take(knot + 1) {
             let w = slope.motor.speed_rad_s;
             let held_nm_s = damping - gain;
-            let torque_nm =
-                if gain > 0.0 { linear_drive.torque_nm(linear, slope.sent[age], w, &mut slope.drive) } else { 0.0 };
+            let torque_nm = if gain > 0.0 {
+                linear_drive.torque_nm(linear, slope.sent[age], w, &mut slope.drive)
+            } else {
+                0.0
+            };
             linear.accelerate(torque_nm - held_nm_s * w, &mut slope.motor);
         }
     }

@@ -5,7 +5,10 @@ use feedwright_control::LqgSettings;
 
 use super::kalman_disturbance::AxisNoise;
 use super::model_predictive::horizon::{HorizonSettings, MAX_KNOTS};
-use super::{constrained_feedrate, cross_coupled, cross_coupled_feedrate, fuzzy_feedrate, h_infinity, input_shaping};
+use super::{
+    constrained_feedrate, cross_coupled, cross_coupled_feedrate, fuzzy_feedrate, h_infinity,
+    input_shaping,
+};
 
 // Of the limit.
 pub(super) const CONTROL_WEIGHT: Parameter = Parameter::number(
@@ -15,8 +18,8 @@ pub(super) const CONTROL_WEIGHT: Parameter = Parameter::number(
     Some([1e-11, 1e-3]),
     "weight of the reference speed against the error, s^2: a low one rings between servo periods, a high one leaves the error",
 );
-// Of cross-coupled control. Beyond the gains that the reasons name the loop is still stable on smooth paths, but catches the tool in
-// acute corners; what a machine can bear differs.
+// Of cross-coupled control. Beyond the gains that the reasons name the loop is still stable on
+// smooth paths, but catches the tool in acute corners; what a machine can bear differs.
 pub(super) const CROSS_COUPLED_KP: Parameter = Parameter::number(
     "kp",
     cross_coupled::Settings::DEFAULT.kp,
@@ -38,14 +41,34 @@ pub(super) const CROSS_COUPLED_KD: Parameter = Parameter::number(
     Some([1e-5, 0.5]),
     "gain of its derivative, which damps: beyond 0.03 the tool is caught in acute corners",
 );
-// The same behind a feedforward, which leaves it a tenth of the error: on a noisy encoder next to no gain may be best.
-pub(super) const BEHIND_KP: Parameter = Parameter { searched: Some([0.01, 60.0]), ..CROSS_COUPLED_KP };
-pub(super) const BEHIND_KI: Parameter = Parameter { searched: Some([0.01, 1e4]), ..CROSS_COUPLED_KI };
-pub(super) const BEHIND_KD: Parameter = Parameter { searched: Some([1e-6, 0.5]), ..CROSS_COUPLED_KD };
-pub(super) const LAG_SCALE: Parameter =
-    Parameter::number("lag_scale", 1.0, [0.01, 10.0], Some([0.1, 1.5]), EXACT_REASON);
-pub(super) const INERTIA_SCALE: Parameter =
-    Parameter::number("inertia_scale", 1.0, [0.01, 10.0], Some([0.2, 3.0]), EXACT_REASON);
+// The same behind a feedforward, which leaves it a tenth of the error: on a noisy encoder next to
+// no gain may be best.
+pub(super) const BEHIND_KP: Parameter = Parameter {
+    searched: Some([0.01, 60.0]),
+    ..CROSS_COUPLED_KP
+};
+pub(super) const BEHIND_KI: Parameter = Parameter {
+    searched: Some([0.01, 1e4]),
+    ..CROSS_COUPLED_KI
+};
+pub(super) const BEHIND_KD: Parameter = Parameter {
+    searched: Some([1e-6, 0.5]),
+    ..CROSS_COUPLED_KD
+};
+pub(super) const LAG_SCALE: Parameter = Parameter::number(
+    "lag_scale",
+    1.0,
+    [0.01, 10.0],
+    Some([0.1, 1.5]),
+    EXACT_REASON,
+);
+pub(super) const INERTIA_SCALE: Parameter = Parameter::number(
+    "inertia_scale",
+    1.0,
+    [0.01, 10.0],
+    Some([0.2, 3.0]),
+    EXACT_REASON,
+);
 pub(super) const EXACT_REASON: &str =
     "1 is what the exact model calls for; another makes up for a model that is not exact";
 // Of the feedrate that adapts to the contour error.
@@ -114,7 +137,8 @@ pub(super) const GAMMA_RATIO: Parameter = Parameter::number(
     Some([1.01, 20.0]),
     "worst case that is allowed, as a multiple of the least possible: near 1 the observer is fast and noisy, a large one is Kalman's",
 );
-// Of the Kalman filter, in servo periods and against an encoder of 1 um: of all three noises the ratios alone count.
+// Of the Kalman filter, in servo periods and against an encoder of 1 um: of all three noises the
+// ratios alone count.
 pub(super) const DRIFT: Parameter = Parameter::number(
     "drift_mm_s",
     AxisNoise::DEFAULT.drift_mm_s,

@@ -26,7 +26,8 @@ use feedwright_control::vector::{add_scaled, sub};
 
 use feedwright_control::{Command, Controller, Measured, Schedule};
 
-/// Two controllers that decide in every servo period at the planned feed; the second may not bend its offset.
+/// Two controllers that decide in every servo period at the planned feed; the second may not bend
+/// its offset.
 #[derive(Debug, Clone)]
 pub(super) struct Sum<A, B, const N: usize> {
     first: A,
@@ -38,14 +39,21 @@ pub(super) struct Sum<A, B, const N: usize> {
 impl<A: Controller<N>, B: Controller<N>, const N: usize> Sum<A, B, N> {
     /// Of these two.
     pub(super) fn new(first: A, second: B) -> Self {
-        Self { first, second, asked_mm: [[0.0; N]; 2] }
+        Self {
+            first,
+            second,
+            asked_mm: [[0.0; N]; 2],
+        }
     }
 }
 
 impl<A: Controller<N>, B: Controller<N>, const N: usize> Controller<N> for Sum<A, B, N> {
     fn schedule(&self) -> Schedule {
         let (first, second) = (self.first.schedule(), self.second.schedule());
-        Schedule { servo_periods: 1, preview: first.preview.max(second.preview) }
+        Schedule {
+            servo_periods: 1,
+            preview: first.preview.max(second.preview),
+        }
     }
 
     fn reset(&mut self) {
@@ -65,7 +73,10 @@ impl<A: Controller<N>, B: Controller<N>, const N: usize> Controller<N> for Sum<A
 
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
         let [first_mm, second_mm] = self.asked_mm;
-        let without = |part_mm| Window { offset_mm: sub(window.offset_mm, part_mm), ..*window };
+        let without = |part_mm| Window {
+            offset_mm: sub(window.offset_mm, part_mm),
+            ..*window
+        };
         let first = self.first.command(&without(second_mm), measured);
         let second = self.second.command(&without(first_mm), measured);
         self.asked_mm = [first.offset_mm, second.offset_mm];
@@ -91,26 +102,46 @@ mod tests {
 
     #[test]
     fn the_parts_of_a_feedforward_add_up_to_all_of_it() {
-        let friction = Gains { velocity: 0.0, acceleration: 0.0, friction: 1.0 };
-        let rest = Gains { friction: 0.0, ..Gains::EXACT };
+        let friction = Gains {
+            velocity: 0.0,
+            acceleration: 0.0,
+            friction: 1.0,
+        };
+        let rest = Gains {
+            friction: 0.0,
+            ..Gains::EXACT
+        };
         for kd in [0.0, 0.05] {
             let (mut whole_mm, mut worst_mm, mut largest_mm) = ([[0.0; 2]; 1000], 0.0_f64, 0.0_f64);
-            commands(&mut Circle, &mut feedforward(Gains::EXACT, kd), SERVO_S, |n, mm| whole_mm[n] = mm);
+            commands(
+                &mut Circle,
+                &mut feedforward(Gains::EXACT, kd),
+                SERVO_S,
+                |n, mm| whole_mm[n] = mm,
+            );
             let mut sum = Sum::new(feedforward(rest, kd), feedforward(friction, kd));
             commands(&mut Circle, &mut sum, SERVO_S, |n, mm| {
                 worst_mm = worst_mm.max(norm(sub(mm, whole_mm[n])));
-                largest_mm = largest_mm.max(norm(sub(mm, Circle.knot(n as f64 * SERVO_S).position_mm)));
+                largest_mm =
+                    largest_mm.max(norm(sub(mm, Circle.knot(n as f64 * SERVO_S).position_mm)));
             });
-            assert!(worst_mm < 1e-12 && largest_mm > 0.9, "kd {kd}: {worst_mm} of {largest_mm}");
+            assert!(
+                worst_mm < 1e-12 && largest_mm > 0.9,
+                "kd {kd}: {worst_mm} of {largest_mm}"
+            );
         }
     }
 
-    /// A first controller whose offset runs along the path, as a feedforward's does: 1 mm, and no contour error.
+    /// A first controller whose offset runs along the path, as a feedforward's does: 1 mm, and no
+    /// contour error.
     struct Ahead;
 
     impl Controller<2> for Ahead {
         fn schedule(&self) -> Schedule {
-            Schedule { servo_periods: 1, preview: 0 }
+            Schedule {
+                servo_periods: 1,
+                preview: 0,
+            }
         }
 
         fn reset(&mut self) {}
@@ -122,12 +153,28 @@ mod tests {
 
     #[test]
     fn an_offset_along_the_path_is_no_contour_error() {
-        let settings = Settings { kp: 3.0, ki_1_s: 0.0, kd_s: 0.0 };
+        let settings = Settings {
+            kp: 3.0,
+            ki_1_s: 0.0,
+            kd_s: 0.0,
+        };
         let mut sum = Sum::new(Ahead, CrossCoupled::new(settings));
         let [x_mm, y_mm] = cut(&mut Line, &mut sum, [0.0, 0.02], 1000);
-        // Alone, the second leaves a quarter of the error across the path (1 / (1 + kp)), and the first takes up a lag of 20 periods.
-        let [lagging_mm, alone_mm] = cut(&mut Line, &mut CrossCoupled::new(settings), [0.0, 0.02], 1000);
-        assert!((y_mm - 0.005).abs() < 1e-9 && (y_mm - alone_mm).abs() < 1e-12, "{y_mm} {alone_mm}");
-        assert!((x_mm - lagging_mm - 1.0).abs() < 1e-9, "{x_mm} {lagging_mm}");
+        // Alone, the second leaves a quarter of the error across the path (1 / (1 + kp)), and the
+        // first takes up a lag of 20 periods.
+        let [lagging_mm, alone_mm] = cut(
+            &mut Line,
+            &mut CrossCoupled::new(settings),
+            [0.0, 0.02],
+            1000,
+        );
+        assert!(
+            (y_mm - 0.005).abs() < 1e-9 && (y_mm - alone_mm).abs() < 1e-12,
+            "{y_mm} {alone_mm}"
+        );
+        assert!(
+            (x_mm - lagging_mm - 1.0).abs() < 1e-9,
+            "{x_mm} {lagging_mm}"
+        );
     }
 }

@@ -1,5 +1,5 @@
-//! Zero phase error tracking control: the closed position loop of each axis, inverted as far as it can be, in each servo
-//! period.
+//! Zero phase error tracking control: the closed position loop of each axis, inverted as far as it
+//! can be, in each servo period.
 //!
 //! With the reference speed held for a servo period, an axis is `w(k+1) = alpha w + beta w_ref`,
 //! `x(k+1) = x + gamma w + delta w_ref`, and the closed loop from command c to position x
@@ -10,8 +10,9 @@
 //! A  = (1 - z^-1)(1 - alpha z^-1) + z^-1 B+ B-
 //! ```
 //!
-//! The zero -epsilon / delta of a sampled mass lies near -1: its inverse rings at half the sampling frequency. A and B+
-//! are cancelled; of B- only the phase is, by its mirror image B-(z), which looks one period ahead:
+//! The zero -epsilon / delta of a sampled mass lies near -1: its inverse rings at half the sampling
+//! frequency. A and B+ are cancelled; of B- only the phase is, by its mirror image B-(z), which
+//! looks one period ahead:
 //!
 //! ```text
 //! c(k) = A(z^-1) B-(z) / (B+(z^-1) B-(1)^2)  r(k+1)
@@ -19,9 +20,9 @@
 //!
 //! so that x / r = |B-|^2 / B-(1)^2 is real at every frequency and 1 at standstill.
 //!
-//! A drive that has more than a P speed loop (integral, feedforward of its own, delays, torque filter) has a loop of higher order,
-//! with several zeros and a delay of d periods: whoever makes the filter of it gives A B-, with the zeros of B- mirrored, and B+
-//! ([`Filter::of_loop`]).
+//! A drive that has more than a P speed loop (integral, feedforward of its own, delays, torque
+//! filter) has a loop of higher order, with several zeros and a delay of d periods: whoever makes
+//! the filter of it gives A B-, with the zeros of B- mirrored, and B+ ([`Filter::of_loop`]).
 //!
 //! ```text
 //! x / c = z^-d B+ B- / A          c(k) = A(z^-1) B-(z) / (B+(z^-1) B-(1)^2)  r(k+d)
@@ -36,7 +37,8 @@ use feedwright_control::vector::add_scaled;
 
 use feedwright_control::{Command, Controller, MAX_PREVIEW, Measured, Schedule, preview};
 
-/// One axis between two servo periods: the effect of its speed and of the reference speed that is held.
+/// One axis between two servo periods: the effect of its speed and of the reference speed that is
+/// held.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SampledAxis {
     /// Speed left of a unit of speed.
@@ -53,9 +55,11 @@ pub(super) struct SampledAxis {
     pub kd: f64,
 }
 
-/// Most weights of the reference: 40 periods of delay, and the order of a loop and of its mirrored zeros.
+/// Most weights of the reference: 40 periods of delay, and the order of a loop and of its mirrored
+/// zeros.
 pub(super) const MAX_WEIGHTS: usize = 64;
-/// Most zeros that are cancelled: three of a sampled drive with integral and filter, one of a part of a period of delay, two of feedforward.
+/// Most zeros that are cancelled: three of a sampled drive with integral and filter, one of a part
+/// of a period of delay, two of feedforward.
 pub(super) const MAX_CANCELLED: usize = 6;
 
 /// The filter of one axis.
@@ -65,7 +69,8 @@ pub(super) struct Filter {
     weights: [f64; MAX_WEIGHTS],
     ahead: u32,
     taps: usize,
-    /// Of the commands before: 1 - B+, and what is left for the reference, B+(1). Of a drive without more, q and 1 - q.
+    /// Of the commands before: 1 - B+, and what is left for the reference, B+(1). Of a drive
+    /// without more, q and 1 - q.
     feedback: [f64; MAX_CANCELLED],
     direct: f64,
 }
@@ -73,18 +78,45 @@ pub(super) struct Filter {
 impl Filter {
     /// For an axis with a P speed loop and nothing beside, with a servo period of `servo_s`.
     pub(super) fn new(axis: &SampledAxis, servo_s: f64) -> Self {
-        let SampledAxis { alpha, beta, gamma_s, delta_s: d, kp_1_s, kd } = *axis;
+        let SampledAxis {
+            alpha,
+            beta,
+            gamma_s,
+            delta_s: d,
+            kp_1_s,
+            kd,
+        } = *axis;
         let e = gamma_s * beta - alpha * d;
         let gain = kp_1_s + kd / servo_s;
         let pole = kd / (servo_s * gain);
-        let a = [1.0, gain * d - 1.0 - alpha, alpha + gain * (e - pole * d), -gain * pole * e];
+        let a = [
+            1.0,
+            gain * d - 1.0 - alpha,
+            alpha + gain * (e - pole * d),
+            -gain * pole * e,
+        ];
         let sum = (d + e) * (a[0] + a[1] + a[2] + a[3]);
-        let of_reference = [e * a[0], d * a[0] + e * a[1], d * a[1] + e * a[2], d * a[2] + e * a[3], d * a[3]];
+        let of_reference = [
+            e * a[0],
+            d * a[0] + e * a[1],
+            d * a[1] + e * a[2],
+            d * a[2] + e * a[3],
+            d * a[3],
+        ];
         let mut weights = [0.0; MAX_WEIGHTS];
-        weights.iter_mut().zip(of_reference).for_each(|(to, weight)| *to = weight / sum);
+        weights
+            .iter_mut()
+            .zip(of_reference)
+            .for_each(|(to, weight)| *to = weight / sum);
         let mut feedback = [0.0; MAX_CANCELLED];
         feedback[0] = pole;
-        Self { weights, ahead: 2, taps: of_reference.len(), feedback, direct: 1.0 - pole }
+        Self {
+            weights,
+            ahead: 2,
+            taps: of_reference.len(),
+            feedback,
+            direct: 1.0 - pole,
+        }
     }
 
     /// Makes the filter of any loop. `of_reference` is A B- with the zeros of B- mirrored, on any
@@ -96,14 +128,30 @@ impl Filter {
     pub(super) fn of_loop(of_reference: &[f64], ahead: u32, cancelled: &[f64]) -> Option<Self> {
         let (_, before) = cancelled.split_first()?;
         let (sum, direct): (f64, f64) = (of_reference.iter().sum(), cancelled.iter().sum());
-        let finite = sum.abs() > 0.0 && of_reference.iter().chain(cancelled).all(|value| (value / sum).is_finite());
+        let finite = sum.abs() > 0.0
+            && of_reference
+                .iter()
+                .chain(cancelled)
+                .all(|value| (value / sum).is_finite());
         if !finite || of_reference.len() > MAX_WEIGHTS || before.len() > MAX_CANCELLED {
             return None;
         }
         let (mut weights, mut feedback) = ([0.0; MAX_WEIGHTS], [0.0; MAX_CANCELLED]);
-        weights.iter_mut().zip(of_reference).for_each(|(to, weight)| *to = weight / sum);
-        feedback.iter_mut().zip(before).for_each(|(to, value)| *to = -value);
-        Some(Self { weights, ahead, taps: of_reference.len(), feedback, direct })
+        weights
+            .iter_mut()
+            .zip(of_reference)
+            .for_each(|(to, weight)| *to = weight / sum);
+        feedback
+            .iter_mut()
+            .zip(before)
+            .for_each(|(to, value)| *to = -value);
+        Some(Self {
+            weights,
+            ahead,
+            taps: of_reference.len(),
+            feedback,
+            direct,
+        })
     }
 
     /// Weights of the reference, the first one the furthest ahead.
@@ -115,13 +163,22 @@ impl Filter {
     /// commands, the last one first. `at_mm(n)` is the reference n periods after the command.
     /// Computing with offsets from the reference keeps rest at rest to the bit.
     #[inline]
-    fn offset_mm(&self, commanded_mm: impl Iterator<Item = f64>, at_mm: impl Fn(f64) -> f64) -> f64 {
+    fn offset_mm(
+        &self,
+        commanded_mm: impl Iterator<Item = f64>,
+        at_mm: impl Fn(f64) -> f64,
+    ) -> f64 {
         let here_mm = at_mm(0.0);
         let after = |tap: usize| f64::from(self.ahead) - tap as f64;
         let weights = self.weights().iter().enumerate();
-        let filtered: f64 = weights.map(|(tap, weight)| weight * (at_mm(after(tap)) - here_mm)).sum();
+        let filtered: f64 = weights
+            .map(|(tap, weight)| weight * (at_mm(after(tap)) - here_mm))
+            .sum();
         let feedback = self.feedback.iter().zip(commanded_mm);
-        feedback.map(|(part, command_mm)| part * (command_mm - here_mm)).sum::<f64>() + self.direct * filtered
+        feedback
+            .map(|(part, command_mm)| part * (command_mm - here_mm))
+            .sum::<f64>()
+            + self.direct * filtered
     }
 }
 
@@ -137,10 +194,15 @@ pub(super) struct ZeroPhase<const N: usize> {
 impl<const N: usize> ZeroPhase<N> {
     /// Of these filters, for loops that lag by up to `lag_s`.
     pub(super) fn new(filters: [Filter; N], lag_s: f64, servo_s: f64) -> Self {
-        // The plain filter looks two periods ahead, which is within the differences that every preview has.
+        // The plain filter looks two periods ahead, which is within the differences that every
+        // preview has.
         let more = filters.iter().map(|filter| filter.ahead).fold(2, u32::max) - 2;
         let preview = (preview(lag_s, servo_s) + more).min(MAX_PREVIEW as u32);
-        Self { filters, preview, commanded_mm: None }
+        Self {
+            filters,
+            preview,
+            commanded_mm: None,
+        }
     }
 }
 
@@ -153,7 +215,10 @@ impl SampledAxis {
 
 impl<const N: usize> Controller<N> for ZeroPhase<N> {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: 1, preview: self.preview }
+        Schedule {
+            servo_periods: 1,
+            preview: self.preview,
+        }
     }
 
     fn reset(&mut self) {
@@ -176,7 +241,12 @@ impl<const N: usize> Controller<N> for ZeroPhase<N> {
         let [newest_mm, ..] = commanded_mm;
         *newest_mm = command_mm;
         let offset_mm = core::array::from_fn(|i| {
-            let at_mm = |ahead: f64| window.preview.at(next_s + ahead * window.servo_s()).position_mm[i];
+            let at_mm = |ahead: f64| {
+                window
+                    .preview
+                    .at(next_s + ahead * window.servo_s())
+                    .position_mm[i]
+            };
             self.filters[i].offset_mm(commanded_mm.iter().map(|command_mm| command_mm[i]), at_mm)
         });
         Command::straight(1.0, offset_mm)
@@ -196,7 +266,14 @@ mod tests {
     fn axis(kd: f64) -> SampledAxis {
         let alpha = libm::exp(-200.0 * SERVO_S);
         let gamma_s = (1.0 - alpha) / 200.0;
-        SampledAxis { alpha, beta: 1.0 - alpha, gamma_s, delta_s: SERVO_S - gamma_s, kp_1_s: 50.0, kd }
+        SampledAxis {
+            alpha,
+            beta: 1.0 - alpha,
+            gamma_s,
+            delta_s: SERVO_S - gamma_s,
+            kp_1_s: 50.0,
+            kd,
+        }
     }
 
     /// 20 mm/s and a tenth of a millimetre at `rad_s` across it.
@@ -208,32 +285,46 @@ mod tests {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             let t_s = tau_s.max(0.0);
             let y = AMPLITUDE_MM * libm::sin(self.rad_s * t_s);
-            Knot { position_mm: [20.0 * t_s, y], tangent: [1.0, 0.0], feed_mm_s: 20.0, cutting: true }
+            Knot {
+                position_mm: [20.0 * t_s, y],
+                tangent: [1.0, 0.0],
+                feed_mm_s: 20.0,
+                cutting: true,
+            }
         }
     }
 
-    /// Drives two linear axes for a second; calls `each` with the time and the tool at the end of each servo period.
+    /// Drives two linear axes for a second; calls `each` with the time and the tool at the end of
+    /// each servo period.
     fn drive(kd: f64, rad_s: f64, mut each: impl FnMut(f64, [f64; 2])) {
         let model = axis(kd);
-        let mut controller = ZeroPhase::new([Filter::new(&model, SERVO_S); 2], model.lag_s(), SERVO_S);
+        let mut controller =
+            ZeroPhase::new([Filter::new(&model, SERVO_S); 2], model.lag_s(), SERVO_S);
         let (mut tool_mm, mut speed, mut last_mm) = ([0.0; 2], [0.0; 2], [0.0; 2]);
-        commands(&mut Wave { rad_s }, &mut controller, SERVO_S, |n, command_mm| {
-            for i in 0..2 {
-                let error_mm = command_mm[i] - tool_mm[i];
-                let reference = model.kp_1_s * error_mm + model.kd * (error_mm - last_mm[i]) / SERVO_S;
-                last_mm[i] = error_mm;
-                tool_mm[i] += model.gamma_s * speed[i] + model.delta_s * reference;
-                speed[i] = model.alpha * speed[i] + model.beta * reference;
-            }
-            each((n + 1) as f64 * SERVO_S, tool_mm);
-        });
+        commands(
+            &mut Wave { rad_s },
+            &mut controller,
+            SERVO_S,
+            |n, command_mm| {
+                for i in 0..2 {
+                    let error_mm = command_mm[i] - tool_mm[i];
+                    let reference =
+                        model.kp_1_s * error_mm + model.kd * (error_mm - last_mm[i]) / SERVO_S;
+                    last_mm[i] = error_mm;
+                    tool_mm[i] += model.gamma_s * speed[i] + model.delta_s * reference;
+                    speed[i] = model.alpha * speed[i] + model.beta * reference;
+                }
+                each((n + 1) as f64 * SERVO_S, tool_mm);
+            },
+        );
     }
 
     #[test]
     fn the_loop_has_no_phase_and_the_gain_of_the_zero() {
         for kd in [0.0, 0.05] {
             for rad_s in [10.0, 60.0, 300.0] {
-                // A sine and a cosine, fitted to the last half second by least squares: it need not hold whole periods.
+                // A sine and a cosine, fitted to the last half second by least squares: it need not
+                // hold whole periods.
                 let (mut ss, mut sc, mut cc, mut ys, mut yc) = (0.0, 0.0, 0.0, 0.0, 0.0);
                 drive(kd, rad_s, |t_s, tool_mm| {
                     if t_s > 0.5 {
@@ -247,12 +338,26 @@ mod tests {
                 });
                 let det = ss * cc - sc * sc;
                 let (in_phase, quadrature) = ((ys * cc - yc * sc) / det, (yc * ss - ys * sc) / det);
-                let SampledAxis { alpha, beta, gamma_s, delta_s, .. } = axis(kd);
+                let SampledAxis {
+                    alpha,
+                    beta,
+                    gamma_s,
+                    delta_s,
+                    ..
+                } = axis(kd);
                 let epsilon = gamma_s * beta - alpha * delta_s;
-                let zero = delta_s * delta_s + epsilon * epsilon + 2.0 * delta_s * epsilon * libm::cos(rad_s * SERVO_S);
+                let zero = delta_s * delta_s
+                    + epsilon * epsilon
+                    + 2.0 * delta_s * epsilon * libm::cos(rad_s * SERVO_S);
                 let gain = zero / ((delta_s + epsilon) * (delta_s + epsilon));
-                assert!((in_phase / AMPLITUDE_MM - gain).abs() < 1e-6, "{rad_s} rad/s, kd {kd}: {in_phase}");
-                assert!((quadrature / AMPLITUDE_MM).abs() < 1e-6, "{rad_s} rad/s, kd {kd}: {quadrature}");
+                assert!(
+                    (in_phase / AMPLITUDE_MM - gain).abs() < 1e-6,
+                    "{rad_s} rad/s, kd {kd}: {in_phase}"
+                );
+                assert!(
+                    (quadrature / AMPLITUDE_MM).abs() < 1e-6,
+                    "{rad_s} rad/s, kd {kd}: {quadrature}"
+                );
             }
         }
     }
@@ -261,7 +366,11 @@ mod tests {
     fn a_ramp_is_followed_exactly() {
         drive(0.0, 0.0, |t_s, tool_mm| {
             if t_s > 0.9 {
-                assert!((tool_mm[0] - 20.0 * t_s).abs() < 1e-9, "{t_s} s: {} mm", tool_mm[0]);
+                assert!(
+                    (tool_mm[0] - 20.0 * t_s).abs() < 1e-9,
+                    "{t_s} s: {} mm",
+                    tool_mm[0]
+                );
             }
         });
     }

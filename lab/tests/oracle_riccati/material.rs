@@ -1,10 +1,13 @@
-//! The problem of one tick: the circle of the rig, a tool that is off it, and a plan that is half way.
+//! The problem of one tick: the circle of the rig, a tool that is off it, and a plan that is half
+//! way.
 
 use std::cell::RefCell;
 
 use feedwright_control::vector::add_scaled;
 use feedwright_control::{Knot, KnotSource, Preview, Register, Window};
-use feedwright_lab::{Accelerations, CorrectionLimits, GaussNewton, HorizonProblem, HorizonSettings, MAX_KNOTS};
+use feedwright_lab::{
+    Accelerations, CorrectionLimits, GaussNewton, HorizonProblem, HorizonSettings, MAX_KNOTS,
+};
 
 use super::model::{Servo, Slopes};
 
@@ -22,7 +25,11 @@ impl<const N: usize> KnotSource<N> for Helix {
         let (sin, cos) = (5.0 * tau_s).sin_cos();
         // 50 mm/s in all: 48 around and 14 down.
         let (around, down) = if N == 2 { (1.0, 0.0) } else { (0.96, -0.28) };
-        let place = [10.0 * around * sin, 10.0 * around * (1.0 - cos), 50.0 * down * tau_s];
+        let place = [
+            10.0 * around * sin,
+            10.0 * around * (1.0 - cos),
+            50.0 * down * tau_s,
+        ];
         let tangent = [around * cos, around * sin, down];
         Knot {
             position_mm: std::array::from_fn(|axis| place[axis]),
@@ -58,14 +65,33 @@ impl<const N: usize> Material<N> {
         }
         let mut preview = Preview::new(SERVO_S);
         preview.fill(&mut Helix, 0.299, 0.15);
-        let limits = CorrectionLimits { acceleration_mm_s2: [most_mm_s2; N], ..CorrectionLimits::NONE };
-        let settings = HorizonSettings { knots, limits, ..HorizonSettings::DEFAULT };
+        let limits = CorrectionLimits {
+            acceleration_mm_s2: [most_mm_s2; N],
+            ..CorrectionLimits::NONE
+        };
+        let settings = HorizonSettings {
+            knots,
+            limits,
+            ..HorizonSettings::DEFAULT
+        };
         let planned_mm_s2 = PLANNED_MM_S2.min(most_mm_s2);
         let plan = std::array::from_fn(|knot| {
-            let planned = |axis| if knot < knots { planned_mm_s2 * ((3 * knot + 5 * axis) as f64).sin() } else { 0.0 };
+            let planned = |axis| {
+                if knot < knots {
+                    planned_mm_s2 * ((3 * knot + 5 * axis) as f64).sin()
+                } else {
+                    0.0
+                }
+            };
             std::array::from_fn(planned)
         });
-        Self { slopes: RefCell::new([[[0.0; 5]; N]; MAX_KNOTS]), register, preview, settings, plan }
+        Self {
+            slopes: RefCell::new([[[0.0; 5]; N]; MAX_KNOTS]),
+            register,
+            preview,
+            settings,
+            plan,
+        }
     }
 
     /// Rolls the plan out and returns the problem and the slopes of each knot.
@@ -98,7 +124,10 @@ impl<const N: usize> Material<N> {
 
 /// The largest difference of two plans, as a share of the largest acceleration.
 pub(crate) fn difference<const N: usize>(a: &Accelerations<N>, b: &Accelerations<N>) -> f64 {
-    let largest = a.as_flattened().iter().fold(0.0_f64, |most, a| most.max(a.abs()));
+    let largest = a
+        .as_flattened()
+        .iter()
+        .fold(0.0_f64, |most, a| most.max(a.abs()));
     let pairs = a.as_flattened().iter().zip(b.as_flattened());
     pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs())) / largest
 }

@@ -10,7 +10,8 @@ use feedwright_control::vector::{add_scaled, scale, sub};
 use feedwright_control::{Delays, FEED_SCALE_MM_S, INPUTS, Inputs, Window};
 use feedwright_lab::{CommandedPeriod, MAX_KNOTS, Predictor, Sensitivity};
 
-/// Derivative of the growth of the following error to the inputs, knot by knot, mm for an input of 1.
+/// Derivative of the growth of the following error to the inputs, knot by knot, mm for an input
+/// of 1.
 pub(crate) type Slopes<const N: usize> = [Inputs<N>; MAX_KNOTS];
 
 /// L of a position loop like that of tnv40, mm.
@@ -25,7 +26,8 @@ const BENDS: [f64; INPUTS] = [0.9, -0.6, 0.4, 1.1, -0.8];
 pub(crate) struct Servo<'a, const N: usize> {
     delays: Delays<N>,
     slopes: &'a RefCell<Slopes<N>>,
-    /// Derivative of the following error to the acceleration of each knot, s^2: now and one knot ago.
+    /// Derivative of the following error to the acceleration of each knot, s^2: now and one knot
+    /// ago.
     following_s2: [[[f64; N]; MAX_KNOTS]; 2],
 }
 
@@ -34,11 +36,23 @@ impl<'a, const N: usize> Servo<'a, N> {
     pub(crate) fn new(slopes: &'a RefCell<Slopes<N>>) -> Self {
         let mut one = [0.0; N];
         one[0] = 1.0;
-        let delays = Delays { feed: [one; 2], error: [one; 2] };
-        Self { delays, slopes, following_s2: [[[0.0; N]; MAX_KNOTS]; 2] }
+        let delays = Delays {
+            feed: [one; 2],
+            error: [one; 2],
+        };
+        Self {
+            delays,
+            slopes,
+            following_s2: [[[0.0; N]; MAX_KNOTS]; 2],
+        }
     }
 
-    fn feel(&mut self, slopes: &Inputs<N>, stretch: &CommandedPeriod<N>, sensitivity: &mut Sensitivity<N>) {
+    fn feel(
+        &mut self,
+        slopes: &Inputs<N>,
+        stretch: &CommandedPeriod<N>,
+        sensitivity: &mut Sensitivity<N>,
+    ) {
         let [following_s2, before_s2] = &mut self.following_s2;
         for knot in 0..=stretch.period {
             let gained = [0, 1, 2].map(|back| gained_s(stretch, knot, back) / FEED_SCALE_MM_S);
@@ -54,7 +68,8 @@ impl<'a, const N: usize> Servo<'a, N> {
     }
 }
 
-/// How fast an acceleration of 1 mm/s^2 in a knot makes the offset on the mean of the feed period `back` before this one, s.
+/// How fast an acceleration of 1 mm/s^2 in a knot makes the offset on the mean of the feed period
+/// `back` before this one, s.
 fn gained_s<const N: usize>(stretch: &CommandedPeriod<N>, knot: usize, back: usize) -> f64 {
     match stretch.period.cmp(&(knot + back)) {
         std::cmp::Ordering::Less => 0.0,
@@ -68,7 +83,13 @@ fn grown_with_slopes<const N: usize>(inputs: &Inputs<N>) -> ([f64; N], Inputs<N>
     let (mut grown_mm, mut slopes) = ([0.0; N], [[0.0; INPUTS]; N]);
     for axis in 0..N {
         let bends = BENDS.map(|bend| bend * (1.0 + 0.3 * axis as f64));
-        let sum = |weights: &[f64; INPUTS]| weights.iter().zip(&inputs[axis]).map(|(w, i)| w * i).sum::<f64>();
+        let sum = |weights: &[f64; INPUTS]| {
+            weights
+                .iter()
+                .zip(&inputs[axis])
+                .map(|(w, i)| w * i)
+                .sum::<f64>()
+        };
         let (sin, cos) = sum(&bends).sin_cos();
         grown_mm[axis] = sum(&LINEAR) + BENT_MM * sin;
         slopes[axis] = std::array::from_fn(|input| LINEAR[input] + BENT_MM * cos * bends[input]);
@@ -90,7 +111,10 @@ impl<const N: usize> Predictor<N> for Servo<'_, N> {
         sensitivity: &mut Sensitivity<N>,
     ) -> [f64; N] {
         let [from_mm, to_mm] = stretch.command_mm;
-        let feed = scale(1.0 / (window.feed_period_s * FEED_SCALE_MM_S), sub(to_mm, from_mm));
+        let feed = scale(
+            1.0 / (window.feed_period_s * FEED_SCALE_MM_S),
+            sub(to_mm, from_mm),
+        );
         let (grown_mm, slopes) = grown_with_slopes(&self.delays.inputs(feed));
         self.slopes.borrow_mut()[stretch.period] = slopes;
         self.feel(&slopes, stretch, sensitivity);

@@ -38,7 +38,8 @@ const MAX_PLACES: usize = 3 * PLACES;
 
 type Vector = [f64; MAX_PLACES];
 
-/// Both solutions are exact but for rounding, which the condition of the equations makes larger: it comes to 1.4e-9.
+/// Both solutions are exact but for rounding, which the condition of the equations makes larger: it
+/// comes to 1.4e-9.
 pub(crate) const AGREEMENT: f64 = 3e-9;
 
 /// How far the recursion and Gauss-Newton are apart, as a share of the largest acceleration.
@@ -56,7 +57,10 @@ pub(crate) struct Riccati<const N: usize> {
 
 impl<const N: usize> Default for Riccati<N> {
     fn default() -> Self {
-        Self { gains: [[[0.0; MAX_PLACES]; N]; MAX_KNOTS], offsets: [[0.0; N]; MAX_KNOTS] }
+        Self {
+            gains: [[[0.0; MAX_PLACES]; N]; MAX_KNOTS],
+            offsets: [[0.0; N]; MAX_KNOTS],
+        }
     }
 }
 
@@ -79,10 +83,13 @@ impl<const N: usize> Riccati<N> {
             pay_errors(problem, knot, &mut square, &mut line);
             let step = PlanStep::new(&slopes[knot], problem.knot_s);
             // [A B]'P [A B], from one side, then from the other: P is symmetric.
-            square[..places].iter_mut().for_each(|row| *row = step.pull(row));
+            square[..places]
+                .iter_mut()
+                .for_each(|row| *row = step.pull(row));
             let mut turned = [[0.0; MAX_PLACES]; MAX_PLACES];
             for (place, row) in turned[..places].iter_mut().enumerate() {
-                let column = core::array::from_fn(|r| if r < places { square[r][place] } else { 0.0 });
+                let column =
+                    core::array::from_fn(|r| if r < places { square[r][place] } else { 0.0 });
                 *row = step.pull(&column);
             }
             square = turned;
@@ -144,7 +151,12 @@ fn pay_errors<const N: usize>(
     for (d, direction) in end.directions.iter().enumerate() {
         let weight = problem.error_weight(knot, d).powi(2);
         // The tool is at o - e.
-        let ways = |axis: usize| [(axis * PLACES + OFFSET, direction[axis]), (axis * PLACES + E, -direction[axis])];
+        let ways = |axis: usize| {
+            [
+                (axis * PLACES + OFFSET, direction[axis]),
+                (axis * PLACES + E, -direction[axis]),
+            ]
+        };
         for (r, way) in (0..N).flat_map(ways) {
             line[r] += weight * way * end.off_mm[d];
             for (c, other) in (0..N).flat_map(ways) {
@@ -164,11 +176,18 @@ fn pay_errors<const N: usize>(
 }
 
 /// What the offset behind the last knot costs: o + lag v.
-fn pay_end<const N: usize>(problem: &HorizonProblem<N>, square: &mut [Vector; MAX_PLACES], line: &mut Vector) {
+fn pay_end<const N: usize>(
+    problem: &HorizonProblem<N>,
+    square: &mut [Vector; MAX_PLACES],
+    line: &mut Vector,
+) {
     let end = &problem.ends[problem.knots - 1];
     let weight = END_WEIGHT * END_WEIGHT;
     for axis in 0..N {
-        let ways = [(axis * PLACES + OFFSET, 1.0), (axis * PLACES + SPEED, problem.lag_s)];
+        let ways = [
+            (axis * PLACES + OFFSET, 1.0),
+            (axis * PLACES + SPEED, problem.lag_s),
+        ];
         let behind_mm = end.offset_mm[axis] + problem.lag_s * end.offset_mm_s[axis];
         for (r, way) in ways {
             line[r] += weight * way * behind_mm;
@@ -195,7 +214,8 @@ fn pay_accelerations<const N: usize>(
     }
 }
 
-/// A(k) and B(k): one feed period of every axis, lengths in mm, speeds in mm/s, accelerations in mm/s^2.
+/// A(k) and B(k): one feed period of every axis, lengths in mm, speeds in mm/s, accelerations in
+/// mm/s^2.
 struct PlanStep<const N: usize> {
     /// What e(k+1) takes of F(k), F(k-1), F(k-2), e(k), e(k-1).
     of: [[f64; INPUTS]; N],
@@ -238,8 +258,18 @@ impl<const N: usize> PlanStep<N> {
             let [f0, f1, f2, e0, e1] = self.of[axis];
             let at = axis * PLACES;
             let feed = x[at + SPEED] + 0.5 * self.period_s * x[at + INPUT];
-            let inputs = [feed, x[at + F], x[at + F_BEFORE], x[at + E], x[at + E_BEFORE]];
-            pushed[at + E] = [f0, f1, f2, e0, e1].iter().zip(inputs).map(|(of, x)| of * x).sum();
+            let inputs = [
+                feed,
+                x[at + F],
+                x[at + F_BEFORE],
+                x[at + E],
+                x[at + E_BEFORE],
+            ];
+            pushed[at + E] = [f0, f1, f2, e0, e1]
+                .iter()
+                .zip(inputs)
+                .map(|(of, x)| of * x)
+                .sum();
             pushed[at + E_BEFORE] = x[at + E];
             pushed[at + F] = feed;
             pushed[at + F_BEFORE] = x[at + F];

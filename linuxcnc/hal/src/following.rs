@@ -18,8 +18,8 @@ pub struct CJoint {
     ferror_mm: f64,
 }
 
-/// The least MIN_FERROR of each joint with the longest delay, by a model; 0 where it has no axes, or a
-/// joint no limits. Before the thread runs.
+/// The least MIN_FERROR of each joint with the longest delay, by a model; 0 where it has no axes,
+/// or a joint no limits. Before the thread runs.
 ///
 /// # Safety
 /// There are so many bytes at `bytes`; the others are what they are declared to be.
@@ -33,16 +33,26 @@ pub unsafe extern "C" fn feedwright_min_ferror(
 ) {
     // SAFETY: as the caller promises.
     let bytes = unsafe { model(bytes, length) };
-    *min_ferror_mm = if joints == 2 { least::<2>(bytes, limits) } else { least::<3>(bytes, limits) };
+    *min_ferror_mm = if joints == 2 {
+        least::<2>(bytes, limits)
+    } else {
+        least::<3>(bytes, limits)
+    };
 }
 
 fn least<const N: usize>(bytes: &[u8], limits: &[CJoint; 3]) -> [f64; 3] {
     let [_, delay_s] = DELAYS_S;
-    let of = |&CJoint { speed_mm_s, acceleration_mm_s2, ferror_mm }: &CJoint| JointLimits {
+    let of = |&CJoint {
+                  speed_mm_s,
+                  acceleration_mm_s2,
+                  ferror_mm,
+              }: &CJoint| JointLimits {
         speed_mm_s,
         acceleration_mm_s2,
         ferror_mm,
     };
     let joints = core::array::from_fn(|i| limits.get(i).map_or(JointLimits::NONE, of));
-    axes_of::<N>(bytes).map_or([0.0; 3], |axes| three(least_min_ferror_mm(&axes, joints, delay_s)))
+    axes_of::<N>(bytes).map_or([0.0; 3], |axes| {
+        three(least_min_ferror_mm(&axes, joints, delay_s))
+    })
 }

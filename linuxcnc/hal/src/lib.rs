@@ -1,5 +1,6 @@
-//! The C interface of [`feedwright_servo`], of which `feedwright.h` is made: memory comes from the caller, nothing is allocated, and a panic
-//! ends in a function of the caller, which does not come back here.
+//! The C interface of [`feedwright_servo`], of which `feedwright.h` is made: memory comes from the
+//! caller, nothing is allocated, and a panic ends in a function of the caller, which does not come
+//! back here.
 //!
 //! | Function | When |
 //! |---|---|

@@ -16,7 +16,9 @@ pub(crate) enum TwoOrThree<A, B> {
 /// # Safety
 /// `memory` is null, or points to `bytes` bytes that nothing else uses.
 pub(crate) unsafe fn put<T>(memory: *mut T, bytes: usize, make: impl FnOnce() -> T) -> bool {
-    let Some(memory) = NonNull::new(memory) else { return false };
+    let Some(memory) = NonNull::new(memory) else {
+        return false;
+    };
     if bytes < size_of::<T>() || !memory.is_aligned() {
         return false;
     }

@@ -31,17 +31,33 @@ pub unsafe extern "C" fn feedwright_plant_new(
     // SAFETY: as the caller promises.
     let bytes = unsafe { model(bytes, length) };
     if joints == 2 {
-        let Ok(machine) = axes_of(bytes) else { return false };
+        let Ok(machine) = axes_of(bytes) else {
+            return false;
+        };
         // SAFETY: as the caller promises.
-        unsafe { put(memory, memory_bytes, || CPlant(TwoOrThree::Two(made(bytes, &machine, seed)))) }
+        unsafe {
+            put(memory, memory_bytes, || {
+                CPlant(TwoOrThree::Two(made(bytes, &machine, seed)))
+            })
+        }
     } else {
-        let Ok(machine) = axes_of(bytes) else { return false };
+        let Ok(machine) = axes_of(bytes) else {
+            return false;
+        };
         // SAFETY: as the caller promises.
-        unsafe { put(memory, memory_bytes, || CPlant(TwoOrThree::Three(made(bytes, &machine, seed)))) }
+        unsafe {
+            put(memory, memory_bytes, || {
+                CPlant(TwoOrThree::Three(made(bytes, &machine, seed)))
+            })
+        }
     }
 }
 
-fn made<const N: usize>(bytes: &[u8], machine: &IdentifiedAxes<N>, seed: u64) -> SimulatedMachine<N> {
+fn made<const N: usize>(
+    bytes: &[u8],
+    machine: &IdentifiedAxes<N>,
+    seed: u64,
+) -> SimulatedMachine<N> {
     SimulatedMachine::new(machine, seed).with_geometry(geometry_of(bytes))
 }
 

@@ -30,8 +30,8 @@ pub const FEEDWRIGHT_GEOMETRY: u32 = 128;
 pub const FEEDWRIGHT_HOMED: u32 = 256;
 /// Values that pass through at the most.
 pub const FEEDWRIGHT_CHANNELS: usize = 6;
-/// What a channel carries, in four bits of `carries` for each, the first in the lowest: this for a joint, this and 1 + n for a second motor of the
-/// corrected joint n, 0 for a signal.
+/// What a channel carries, in four bits of `carries` for each, the first in the lowest: this for a
+/// joint, this and 1 + n for a second motor of the corrected joint n, 0 for a signal.
 pub const FEEDWRIGHT_JOINT: u32 = 1;
 /// What [`feedwright_servo_new`] returns where it made nothing.
 pub const FEEDWRIGHT_NOT_MADE: u32 = 255;
@@ -47,7 +47,8 @@ pub struct CInputs {
     actual_mm: [f64; 3],
     /// Motor offsets: motor position less position of the joint.
     offset_mm: [f64; 3],
-    /// Delay of the command, 0.008 to 0.015. A setting out of its range is refused; the last good one stays in force.
+    /// Delay of the command, 0.008 to 0.015. A setting out of its range is refused; the last good
+    /// one stays in force.
     delay_s: f64,
     /// Largest distance of the drive's command from the path.
     deviation_mm: f64,
@@ -55,7 +56,8 @@ pub struct CInputs {
     speed_mm_s: f64,
     /// Acceleration of an offset that fades; 0 is without limit.
     correction_mm_s2: f64,
-    /// Acceleration of an offset in the loop; 0 is without limit. A correction that needs more leaves the loop.
+    /// Acceleration of an offset in the loop; 0 is without limit. A correction that needs more
+    /// leaves the loop.
     engaged_mm_s2: f64,
     /// What 1 of the requested feedrate stands for, 0.1 to 1.
     adaptive_scale: f64,
@@ -80,16 +82,19 @@ pub struct COutputs {
     correction_mm: [f64; 3],
     /// Offsets of the joints' commands from those of the control, by the geometry.
     geometry_mm: [f64; 3],
-    /// Commands of the drives of what passes through, and what the control takes for the actual positions.
+    /// Commands of the drives of what passes through, and what the control takes for the actual
+    /// positions.
     through_drive: [f64; FEEDWRIGHT_CHANNELS],
     through_feedback: [f64; FEEDWRIGHT_CHANNELS],
     /// Distance of the actual position from the path.
     contour_error_mm: f64,
     /// The same without the correction, by the model.
     without_mm: f64,
-    /// Feedrate that the control is asked for, as a multiple of its own in the scale that is set, 0 to 1.
+    /// Feedrate that the control is asked for, as a multiple of its own in the scale that is set, 0
+    /// to 1.
     adaptive_feed: f64,
-    /// What the supervisor found when it took the correction out of the loop last, and what it may be; 0 where nothing was compared.
+    /// What the supervisor found when it took the correction out of the loop last, and what it may
+    /// be; 0 where nothing was compared.
     found_mm: f64,
     limit_mm: f64,
     /// 0 amplifiers off, 1 without delay, 2 delayed, 3 the correction fades, 4 it is in the loop.
@@ -104,7 +109,8 @@ pub struct COutputs {
     holds_feed: u32,
     /// Whether a motion that follows a spindle would be without delay.
     is_settled: u32,
-    /// How often the supervisor has taken the correction out of the loop since the delay was taken up.
+    /// How often the supervisor has taken the correction out of the loop since the delay was taken
+    /// up.
     times_out: u32,
     /// Joints that are corrected by what was learned while they moved: 1, 2 and 4.
     learned: u32,
@@ -136,8 +142,8 @@ pub extern "C" fn feedwright_servo_layout() -> usize {
     size_of::<CInputs>() << 16 | size_of::<COutputs>()
 }
 
-/// A new link of two or three joints, with or without a model; the fault that it begins with, or [`FEEDWRIGHT_NOT_MADE`] where the memory is
-/// none for it.
+/// A new link of two or three joints, with or without a model; the fault that it begins with, or
+/// [`FEEDWRIGHT_NOT_MADE`] where the memory is none for it.
 ///
 /// # Safety
 /// There are so many bytes at `memory`, which nobody else uses, and so many at `bytes`.
@@ -160,15 +166,30 @@ pub unsafe extern "C" fn feedwright_servo_new(
         })
     };
     // SAFETY: as the caller promises.
-    if unsafe { put(memory, memory_bytes, make) } { fault } else { FEEDWRIGHT_NOT_MADE }
+    if unsafe { put(memory, memory_bytes, make) } {
+        fault
+    } else {
+        FEEDWRIGHT_NOT_MADE
+    }
 }
 
 fn made<const N: usize>(bytes: &[u8], fault: &mut u32) -> Guarded<N> {
     let model = model_of(bytes);
-    *fault = model.as_ref().err().map_or(0, |refused| number(LinkFault::Model(*refused)));
+    *fault = model
+        .as_ref()
+        .err()
+        .map_or(0, |refused| number(LinkFault::Model(*refused)));
     // A model that is refused compensates nothing.
-    let geometry = if model.is_ok() { geometry_of(bytes) } else { None };
-    Guarded { compensation: Compensation::new(geometry), servo: Servo::new(model), play_out: PlayOut::new() }
+    let geometry = if model.is_ok() {
+        geometry_of(bytes)
+    } else {
+        None
+    };
+    Guarded {
+        compensation: Compensation::new(geometry),
+        servo: Servo::new(model),
+        play_out: PlayOut::new(),
+    }
 }
 
 /// Tells the servo period of the thread, before the first step; the fault that there is then.
@@ -188,19 +209,28 @@ pub unsafe extern "C" fn feedwright_servo_runs_at(servo: &mut CServo, servo_s: f
 /// # Safety
 /// `servo` was made by [`feedwright_servo_new`]; the others are what they are declared to be.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn feedwright_servo_step(servo: &mut CServo, inputs: &CInputs, outputs: &mut COutputs) {
+pub unsafe extern "C" fn feedwright_servo_step(
+    servo: &mut CServo,
+    inputs: &CInputs,
+    outputs: &mut COutputs,
+) {
     *outputs = match &mut servo.0 {
         TwoOrThree::Two(guarded) => guarded.step(inputs),
         TwoOrThree::Three(guarded) => guarded.step(inputs),
     };
 }
 
-/// One servo period in place of [`feedwright_servo_step`], once that has panicked: plays out its delay, without a correction.
+/// One servo period in place of [`feedwright_servo_step`], once that has panicked: plays out its
+/// delay, without a correction.
 ///
 /// # Safety
 /// `servo` was made by [`feedwright_servo_new`]; the others are what they are declared to be.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn feedwright_servo_play_out(servo: &mut CServo, inputs: &CInputs, outputs: &mut COutputs) {
+pub unsafe extern "C" fn feedwright_servo_play_out(
+    servo: &mut CServo,
+    inputs: &CInputs,
+    outputs: &mut COutputs,
+) {
     *outputs = match &mut servo.0 {
         TwoOrThree::Two(guarded) => guarded.play_out(inputs),
         TwoOrThree::Three(guarded) => guarded.play_out(inputs),
@@ -213,9 +243,25 @@ impl CInputs {
     }
 
     fn limits(&self) -> LinkLimits {
-        let CInputs { delay_s, deviation_mm, speed_mm_s, correction_mm_s2, engaged_mm_s2, adaptive_scale, .. } = *self;
+        let CInputs {
+            delay_s,
+            deviation_mm,
+            speed_mm_s,
+            correction_mm_s2,
+            engaged_mm_s2,
+            adaptive_scale,
+            ..
+        } = *self;
         let speed_alone = self.is(FEEDWRIGHT_SPEED_ALONE);
-        LinkLimits { delay_s, deviation_mm, speed_mm_s, correction_mm_s2, engaged_mm_s2, adaptive_scale, speed_alone }
+        LinkLimits {
+            delay_s,
+            deviation_mm,
+            speed_mm_s,
+            correction_mm_s2,
+            engaged_mm_s2,
+            adaptive_scale,
+            speed_alone,
+        }
     }
 
     fn place<const N: usize>(&self) -> MachinePlace<N> {
@@ -236,7 +282,11 @@ impl CInputs {
         LinkInputs {
             command_mm: first(self.command_mm),
             actual_mm: first(self.actual_mm),
-            through: Through { command, actual, carries: core::array::from_fn(carries) },
+            through: Through {
+                command,
+                actual,
+                carries: core::array::from_fn(carries),
+            },
             powered: self.is(FEEDWRIGHT_POWERED),
             enabled: self.is(FEEDWRIGHT_ENABLED),
             direct: self.is(FEEDWRIGHT_DIRECT),
@@ -260,11 +310,16 @@ impl<const N: usize> Guarded<N> {
 
     fn step(&mut self, inputs: &CInputs) -> COutputs {
         let limits = inputs.limits();
-        let of = self.compensation.joints(&inputs.link(), &inputs.place(), &limits);
+        let of = self
+            .compensation
+            .joints(&inputs.link(), &inputs.place(), &limits);
         let outputs = self.servo.step(&of, &limits);
-        let (feedback_mm, through) = self.compensation.tool(outputs.feedback_mm, outputs.through, &of.through.carries);
+        let (feedback_mm, through) =
+            self.compensation
+                .tool(outputs.feedback_mm, outputs.through, &of.through.carries);
         let found = outputs.left.and_then(|left| left.evidence);
-        self.play_out.keep(&of, outputs.drive_mm, outputs.delay_periods);
+        self.play_out
+            .keep(&of, outputs.drive_mm, outputs.delay_periods);
         COutputs {
             drive_mm: three(outputs.drive_mm),
             feedback_mm: three(feedback_mm),
@@ -285,16 +340,24 @@ impl<const N: usize> Guarded<N> {
             is_settled: u32::from(outputs.is_settled),
             times_out: outputs.left.map_or(0, |left| left.count),
             latched: u32::from(outputs.latched),
-            learned: outputs.learned.iter().rev().fold(0, |bits, learned| 2 * bits + u32::from(*learned)),
+            learned: outputs
+                .learned
+                .iter()
+                .rev()
+                .fold(0, |bits, learned| 2 * bits + u32::from(*learned)),
             compensates: u32::from(self.compensation.compensates()),
         }
     }
 
     fn play_out(&mut self, inputs: &CInputs) -> COutputs {
         let powered = inputs.is(FEEDWRIGHT_POWERED);
-        let of = self.compensation.joints(&inputs.link(), &inputs.place(), &inputs.limits());
+        let of = self
+            .compensation
+            .joints(&inputs.link(), &inputs.place(), &inputs.limits());
         let out = self.play_out.step(&of);
-        let (feedback_mm, through) = self.compensation.tool(out.feedback_mm, out.through, &of.through.carries);
+        let (feedback_mm, through) =
+            self.compensation
+                .tool(out.feedback_mm, out.through, &of.through.carries);
         let is_settled = out.delay_periods == 0;
         COutputs {
             drive_mm: three(out.drive_mm),

@@ -1,4 +1,5 @@
-//! The geometry of the machine between the control and the link: the control has the tool, the link has the joints.
+//! The geometry of the machine between the control and the link: the control has the tool, the link
+//! has the joints.
 //!
 //! ```text
 //! t = m - z                    tool that the control asks for, from its motor command m and the motor offset z of homing
@@ -7,13 +8,15 @@
 //! f' = T(f - z - r) + z        feedback of the link f as the control gets it; T is the map itself
 //! ```
 //!
-//! Command and feedback always have the same map, so that a joint that is where it has to be is where it was asked to be. The
-//! following error stays what it is in the joints, to within what the geometry stretches it. A geometry comes into force while the
-//! position of every axis is known: before homing, nobody knows where on its screw an axis is. Where it comes into force or leaves,
-//! and where homing changes z, r takes over what o was, with its speed, and fades to zero within an acceleration. With the amplifiers
-//! off nothing moves, and nothing fades.
+//! Command and feedback always have the same map, so that a joint that is where it has to be is
+//! where it was asked to be. The following error stays what it is in the joints, to within what the
+//! geometry stretches it. A geometry comes into force while the position of every axis is known:
+//! before homing, nobody knows where on its screw an axis is. Where it comes into force or leaves,
+//! and where homing changes z, r takes over what o was, with its speed, and fades to zero within an
+//! acceleration. With the amplifiers off nothing moves, and nothing fades.
 //!
-//! The second motor of an axis gets the o of its axis, and its feedback loses what that of its axis loses.
+//! The second motor of an axis gets the o of its axis, and its feedback loses what that of its axis
+//! loses.
 
 use feedwright_control::KnownGeometry;
 use feedwright_control::vector::{add_scaled, norm, scale, sub};
@@ -77,7 +80,12 @@ impl<const N: usize> Compensation<N> {
     }
 
     /// The inputs of the link in a servo period: the commands are those of the joints.
-    pub fn joints(&mut self, inputs: &LinkInputs<N>, place: &MachinePlace<N>, limits: &LinkLimits) -> LinkInputs<N> {
+    pub fn joints(
+        &mut self,
+        inputs: &LinkInputs<N>,
+        place: &MachinePlace<N>,
+        limits: &LinkLimits,
+    ) -> LinkInputs<N> {
         if self.geometry.is_none() {
             return *inputs;
         }
@@ -90,11 +98,15 @@ impl<const N: usize> Compensation<N> {
             Carries::Signal | Carries::Joint => None,
         };
         let through = inputs.through.command;
-        let command: [f64; CHANNELS] =
-            core::array::from_fn(|i| offset(i).map_or(through[i], |offset_mm| through[i] + offset_mm));
+        let command: [f64; CHANNELS] = core::array::from_fn(|i| {
+            offset(i).map_or(through[i], |offset_mm| through[i] + offset_mm)
+        });
         LinkInputs {
             command_mm: add_scaled(inputs.command_mm, 1.0, self.offset_mm),
-            through: Through { command, ..inputs.through },
+            through: Through {
+                command,
+                ..inputs.through
+            },
             ..*inputs
         }
     }
@@ -102,7 +114,11 @@ impl<const N: usize> Compensation<N> {
     /// Goes on to the command of this servo period.
     fn advance(&mut self, inputs: &LinkInputs<N>, place: &MachinePlace<N>) {
         let has_zero = norm(place.zero_mm).is_finite();
-        let zero_mm = if has_zero { place.zero_mm } else { self.zero_mm };
+        let zero_mm = if has_zero {
+            place.zero_mm
+        } else {
+            self.zero_mm
+        };
         let is_in_force = place.is_known && place.is_wanted && has_zero;
         let changes = is_in_force != self.is_in_force || zero_mm != self.zero_mm;
         (self.is_in_force, self.zero_mm) = (is_in_force, zero_mm);
@@ -120,7 +136,11 @@ impl<const N: usize> Compensation<N> {
         }
         let offset_mm = add_scaled(wanted_mm, 1.0, self.fading.value_mm());
         // Without power nothing is on its way.
-        self.before_mm = if inputs.powered { self.offset_mm } else { offset_mm };
+        self.before_mm = if inputs.powered {
+            self.offset_mm
+        } else {
+            offset_mm
+        };
         (self.offset_mm, self.command_mm) = (offset_mm, inputs.command_mm);
     }
 
@@ -142,16 +162,23 @@ impl<const N: usize> Compensation<N> {
         mut through: PassedThrough,
         carries: &[Carries; CHANNELS],
     ) -> ([f64; N], PassedThrough) {
-        let Some(geometry) = &self.geometry else { return (feedback_mm, through) };
+        let Some(geometry) = &self.geometry else {
+            return (feedback_mm, through);
+        };
         let plain_mm = sub(feedback_mm, self.fading.value_mm());
         let tool_mm = if self.is_in_force {
-            add_scaled(geometry.tool_mm(sub(plain_mm, self.zero_mm)), 1.0, self.zero_mm)
+            add_scaled(
+                geometry.tool_mm(sub(plain_mm, self.zero_mm)),
+                1.0,
+                self.zero_mm,
+            )
         } else {
             plain_mm
         };
         for (feedback, carries) in through.feedback.iter_mut().zip(carries) {
             if let Carries::Tandem(axis) = carries
-                && let (Some(joint_mm), Some(tool_mm)) = (feedback_mm.get(*axis), tool_mm.get(*axis))
+                && let (Some(joint_mm), Some(tool_mm)) =
+                    (feedback_mm.get(*axis), tool_mm.get(*axis))
             {
                 *feedback -= joint_mm - tool_mm;
             }

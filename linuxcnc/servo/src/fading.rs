@@ -15,11 +15,17 @@ pub struct Fading<const N: usize> {
 
 impl<const N: usize> Fading<N> {
     /// Nothing left to fade.
-    pub const NONE: Self = Self { value_mm: [0.0; N], speed_mm_s: [0.0; N] };
+    pub const NONE: Self = Self {
+        value_mm: [0.0; N],
+        speed_mm_s: [0.0; N],
+    };
 
     /// From here on, with these speeds, mm/s.
     pub fn from(value_mm: [f64; N], speed_mm_s: [f64; N]) -> Self {
-        Self { value_mm, speed_mm_s }
+        Self {
+            value_mm,
+            speed_mm_s,
+        }
     }
 
     /// From here on, at rest.
@@ -34,7 +40,10 @@ impl<const N: usize> Fading<N> {
 
     /// Shifts the numbers, mm; their speeds stay.
     pub fn shift(&mut self, by_mm: [f64; N]) {
-        self.value_mm.iter_mut().zip(by_mm).for_each(|(value_mm, by_mm)| *value_mm += by_mm);
+        self.value_mm
+            .iter_mut()
+            .zip(by_mm)
+            .for_each(|(value_mm, by_mm)| *value_mm += by_mm);
     }
 
     /// Advances by a servo period, with an acceleration of at most `most_mm_s2`.

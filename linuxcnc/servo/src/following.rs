@@ -1,20 +1,22 @@
-//! The following error that the control sees of a joint that speeds up to its highest speed and brakes
-//! to rest, by its model, without a correction.
+//! The following error that the control sees of a joint that speeds up to its highest speed and
+//! brakes to rest, by its model, without a correction.
 //!
 //! ```text
 //! e(n) = c(n - D) - a(n)           what the control compares with max(MIN_FERROR, FERROR |v(n)| / speed), v(n) of c(n)
 //! ```
 //!
-//! The limit follows the speed of the command now, the error that of D servo periods ago: the error is largest against its limit while the
-//! command brakes. An axis with the time constant T lags by `A T^2` where a braking of A ends, and by up to `A T (T + D)` where that of its
-//! control has ended.
+//! The limit follows the speed of the command now, the error that of D servo periods ago: the error
+//! is largest against its limit while the command brakes. An axis with the time constant T lags by
+//! `A T^2` where a braking of A ends, and by up to `A T (T + D)` where that of its control has
+//! ended.
 
 use feedwright_control::IdentifiedAxes;
 use feedwright_control::vector::bounded;
 
 use crate::plant::SimulatedMachine;
 
-/// Time at the highest speed, and at rest behind the braking, s: ten time constants of a usual position loop.
+/// Time at the highest speed, and at rest behind the braking, s: ten time constants of a usual
+/// position loop.
 const STEADY_S: f64 = 0.2;
 /// Longest time of speeding up that is simulated, s.
 const MOST_RAMP_S: f64 = 5.0;
@@ -30,14 +32,17 @@ pub struct JointLimits {
     pub ferror_mm: f64,
 }
 
-/// Returns the least MIN_FERROR of each joint with which it is not stopped, mm, with a command `delay_s`
-/// late; 0 for a joint without limits.
+/// Returns the least MIN_FERROR of each joint with which it is not stopped, mm, with a command
+/// `delay_s` late; 0 for a joint without limits.
 pub fn least_min_ferror_mm<const N: usize>(
     machine: &IdentifiedAxes<N>,
     joints: [JointLimits; N],
     delay_s: f64,
 ) -> [f64; N] {
-    let servo_s = machine.axes.first().map_or(0.001, |axis| axis.periods.servo_s);
+    let servo_s = machine
+        .axes
+        .first()
+        .map_or(0.001, |axis| axis.periods.servo_s);
     let ramps_s = joints.map(|joint| ramp_s(&joint));
     let most_s = 2.0 * (ramps_s.into_iter().fold(0.0, f64::max) + STEADY_S);
     let delay = libm::round(delay_s / servo_s);
@@ -51,7 +56,9 @@ pub fn least_min_ferror_mm<const N: usize>(
         for (i, least_mm) in least_mm.iter_mut().enumerate() {
             let error_mm = (late_mm[i] - measured_mm[i]).abs();
             let [_, speed_mm_s] = now[i];
-            if joints[i].is_set() && error_mm > joints[i].ferror_mm * speed_mm_s / joints[i].speed_mm_s {
+            if joints[i].is_set()
+                && error_mm > joints[i].ferror_mm * speed_mm_s / joints[i].speed_mm_s
+            {
                 *least_mm = least_mm.max(error_mm);
             }
         }
@@ -62,28 +69,51 @@ pub fn least_min_ferror_mm<const N: usize>(
 
 impl JointLimits {
     /// A joint without limits.
-    pub const NONE: Self = Self { speed_mm_s: 0.0, acceleration_mm_s2: 0.0, ferror_mm: 0.0 };
+    pub const NONE: Self = Self {
+        speed_mm_s: 0.0,
+        acceleration_mm_s2: 0.0,
+        ferror_mm: 0.0,
+    };
 
     fn is_set(&self) -> bool {
-        [self.speed_mm_s, self.acceleration_mm_s2, self.ferror_mm].into_iter().all(|x| x > 0.0 && x.is_finite())
+        [self.speed_mm_s, self.acceleration_mm_s2, self.ferror_mm]
+            .into_iter()
+            .all(|x| x > 0.0 && x.is_finite())
     }
 }
 
 /// Time of speeding up, s.
 fn ramp_s(joint: &JointLimits) -> f64 {
-    if joint.is_set() { (joint.speed_mm_s / joint.acceleration_mm_s2).min(MOST_RAMP_S) } else { 0.0 }
+    if joint.is_set() {
+        (joint.speed_mm_s / joint.acceleration_mm_s2).min(MOST_RAMP_S)
+    } else {
+        0.0
+    }
 }
 
 /// Position and speed of each command at a time, mm and mm/s.
-fn motion<const N: usize>(joints: &[JointLimits; N], ramps_s: &[f64; N], t_s: f64) -> [[f64; 2]; N] {
+fn motion<const N: usize>(
+    joints: &[JointLimits; N],
+    ramps_s: &[f64; N],
+    t_s: f64,
+) -> [[f64; 2]; N] {
     core::array::from_fn(|i| {
         let (ramp_s, t_s) = (ramps_s[i], t_s.max(0.0));
-        let most_mm_s = ramp_s * if joints[i].is_set() { joints[i].acceleration_mm_s2 } else { 0.0 };
+        let most_mm_s = ramp_s
+            * if joints[i].is_set() {
+                joints[i].acceleration_mm_s2
+            } else {
+                0.0
+            };
         let up_s = t_s.min(ramp_s);
         let down_s = bounded(t_s - ramp_s - STEADY_S, 0.0, ramp_s);
         let steady_s = bounded(t_s - ramp_s, 0.0, STEADY_S);
         // An axis without a ramp does not move.
-        let per_s = if ramp_s > 0.0 { most_mm_s / ramp_s } else { 0.0 };
+        let per_s = if ramp_s > 0.0 {
+            most_mm_s / ramp_s
+        } else {
+            0.0
+        };
         let ramps_mm = 0.5 * per_s * (up_s * up_s - down_s * down_s) + most_mm_s * down_s;
         [ramps_mm + most_mm_s * steady_s, per_s * (up_s - down_s)]
     })
@@ -93,7 +123,11 @@ fn motion<const N: usize>(joints: &[JointLimits; N], ramps_s: &[f64; N], t_s: f6
 mod tests {
     use super::*;
 
-    const JOINT: JointLimits = JointLimits { speed_mm_s: 200.0, acceleration_mm_s2: 2000.0, ferror_mm: 10.0 };
+    const JOINT: JointLimits = JointLimits {
+        speed_mm_s: 200.0,
+        acceleration_mm_s2: 2000.0,
+        ferror_mm: 10.0,
+    };
 
     #[test]
     fn the_motion_goes_up_to_its_speed_and_comes_to_rest() {

@@ -1,4 +1,5 @@
-//! The commands that were received lately, and the path that they make: positions alone, no program.
+//! The commands that were received lately, and the path that they make: positions alone, no
+//! program.
 //!
 //! ```text
 //! v(k) = (p(k+1) - p(k-1)) / 2 T                   where the path is smooth at k
@@ -6,8 +7,9 @@
 //! v(k) = (p(k+1) - p(k)) / T                       where a corner lies before it
 //! ```
 //!
-//! A corner is a chord that differs from both its neighbours, or a point between two straight stretches. Source: central differences as of
-//! Catmull and Rom (1974), "A class of local interpolating splines".
+//! A corner is a chord that differs from both its neighbours, or a point between two straight
+//! stretches. Source: central differences as of Catmull and Rom (1974), "A class of local
+//! interpolating splines".
 
 use feedwright_control::vector::{add_scaled, dot, norm, scale, sub};
 use feedwright_control::{Knot, KnotSource};
@@ -70,11 +72,19 @@ impl<const N: usize> History<N> {
         let length_mm = norm(chord);
         let is_first = self.count == 0;
         let moved = !is_first && length_mm > SAME_PLACE_MM;
-        let direction = if moved { scale(1.0 / length_mm, chord) } else { last.direction };
+        let direction = if moved {
+            scale(1.0 / length_mm, chord)
+        } else {
+            last.direction
+        };
         let is_moving = moved || (!is_first && through.has_moved(&last.through));
         self.at_rest = if is_moving { 0 } else { self.at_rest + 1 };
-        self.received[(self.count % KEPT as u64) as usize] =
-            Received { position_mm, direction, cutting, through: through.command };
+        self.received[(self.count % KEPT as u64) as usize] = Received {
+            position_mm,
+            direction,
+            cutting,
+            through: through.command,
+        };
         self.count += 1;
     }
 
@@ -99,7 +109,9 @@ impl<const N: usize> History<N> {
     }
 
     fn at(&self, number: u64) -> &Received<N> {
-        let held = number.min(self.newest()).max(self.count.saturating_sub(KEPT as u64));
+        let held = number
+            .min(self.newest())
+            .max(self.count.saturating_sub(KEPT as u64));
         &self.received[(held % KEPT as u64) as usize]
     }
 
@@ -107,15 +119,25 @@ impl<const N: usize> History<N> {
     pub fn knot(&self, number: u64, servo_s: f64) -> Knot<N> {
         let here = *self.at(number);
         let p = |ahead: i64| self.position_mm(number.saturating_add_signed(ahead));
-        let [before, into, out, after] = [[-1, -2], [0, -1], [1, 0], [2, 1]].map(|[to, from]| sub(p(to), p(from)));
+        let [before, into, out, after] =
+            [[-1, -2], [0, -1], [1, 0], [2, 1]].map(|[to, from]| sub(p(to), p(from)));
         let moved_mm = match corner(before, into, out, after) {
             CornerSide::None => scale(0.5, add_scaled(into, 1.0, out)),
             CornerSide::Ahead => into,
             CornerSide::Behind => out,
         };
         let length_mm = norm(moved_mm);
-        let tangent = if length_mm > SAME_PLACE_MM { scale(1.0 / length_mm, moved_mm) } else { here.direction };
-        Knot { position_mm: here.position_mm, tangent, feed_mm_s: length_mm / servo_s, cutting: here.cutting }
+        let tangent = if length_mm > SAME_PLACE_MM {
+            scale(1.0 / length_mm, moved_mm)
+        } else {
+            here.direction
+        };
+        Knot {
+            position_mm: here.position_mm,
+            tangent,
+            feed_mm_s: length_mm / servo_s,
+            cutting: here.cutting,
+        }
     }
 }
 
@@ -128,7 +150,12 @@ enum CornerSide {
     Behind,
 }
 
-fn corner<const N: usize>(before: [f64; N], into: [f64; N], out: [f64; N], after: [f64; N]) -> CornerSide {
+fn corner<const N: usize>(
+    before: [f64; N],
+    into: [f64; N],
+    out: [f64; N],
+    after: [f64; N],
+) -> CornerSide {
     let turn = turn(into, out);
     if turn < 1.0 - TURN_COSINE {
         return CornerSide::None;
@@ -148,7 +175,11 @@ fn corner<const N: usize>(before: [f64; N], into: [f64; N], out: [f64; N], after
 /// 1 less the cosine of the angle between two chords; 0 where one has no length.
 fn turn<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
     let length = norm(a) * norm(b);
-    if length > SAME_PLACE_MM * SAME_PLACE_MM { 1.0 - dot(a, b) / length } else { 0.0 }
+    if length > SAME_PLACE_MM * SAME_PLACE_MM {
+        1.0 - dot(a, b) / length
+    } else {
+        0.0
+    }
 }
 
 /// The history as a path over time that begins at one of its commands.
@@ -166,7 +197,8 @@ impl<const N: usize> KnotSource<N> for Delayed<'_, N> {
     fn knot(&mut self, tau_s: f64) -> Knot<N> {
         // A float that is not a number, or below zero, saturates to 0.
         let periods = libm::round(tau_s / self.servo_s) as u64;
-        self.history.knot(self.first.saturating_add(periods), self.servo_s)
+        self.history
+            .knot(self.first.saturating_add(periods), self.servo_s)
     }
 }
 
@@ -176,14 +208,17 @@ mod tests {
 
     fn of(points: impl IntoIterator<Item = [f64; 2]>) -> History<2> {
         let mut history = History::EMPTY;
-        points.into_iter().for_each(|point| history.push(point, &Through::NONE, true));
+        points
+            .into_iter()
+            .for_each(|point| history.push(point, &Through::NONE, true));
         history
     }
 
     #[test]
     fn the_velocity_of_a_circle_is_that_of_central_differences() {
         let angle = |k: u32| 0.005 * f64::from(k);
-        let history = of((0..100).map(|k| [10.0 * libm::cos(angle(k)), 10.0 * libm::sin(angle(k))]));
+        let history =
+            of((0..100).map(|k| [10.0 * libm::cos(angle(k)), 10.0 * libm::sin(angle(k))]));
         for k in 5..95 {
             let knot = history.knot(u64::from(k), 0.001);
             // The chord over two periods is 2 R sin(w T), across the radius.
@@ -196,15 +231,28 @@ mod tests {
     fn a_corner_between_two_commands_leaves_both_sides_straight() {
         let points = (0..10).map(|k| [0.05 * f64::from(k) - 0.47, 0.0]);
         let history = of(points.chain((0..10).map(|k| [0.0, 0.03 + 0.05 * f64::from(k)])));
-        assert_eq!((0..10).map(|k| history.knot(k, 0.001).tangent[0]).fold(2.0, f64::min), 1.0);
-        assert_eq!((10..18).map(|k| history.knot(k, 0.001).tangent[1]).fold(2.0, f64::min), 1.0);
+        assert_eq!(
+            (0..10)
+                .map(|k| history.knot(k, 0.001).tangent[0])
+                .fold(2.0, f64::min),
+            1.0
+        );
+        assert_eq!(
+            (10..18)
+                .map(|k| history.knot(k, 0.001).tangent[1])
+                .fold(2.0, f64::min),
+            1.0
+        );
     }
 
     #[test]
     fn at_rest_it_looks_where_it_went_and_what_is_forgotten_is_the_oldest() {
         let history = of((0..2000).map(|k| [0.0, f64::from(k.min(1990))]));
         let knot = history.knot(1998, 0.001);
-        assert_eq!((knot.tangent, knot.feed_mm_s, history.at_rest()), ([0.0, 1.0], 0.0, 9));
+        assert_eq!(
+            (knot.tangent, knot.feed_mm_s, history.at_rest()),
+            ([0.0, 1.0], 0.0, 9)
+        );
         assert_eq!(history.position_mm(0), [0.0, 1744.0]);
     }
 }

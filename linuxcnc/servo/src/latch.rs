@@ -1,12 +1,16 @@
-//! Keeps the correction out once the same cause has taken it out of the loop twice, until the operator resets it.
+//! Keeps the correction out once the same cause has taken it out of the loop twice, until the
+//! operator resets it.
 //!
-//! A wrong model fails in every corner. Each time, the supervisor lets the correction back in after a while, and the axes are moved off the path
-//! and back. The second time, waiting shows nothing new: somebody has to look at the machine or at the model.
+//! A wrong model fails in every corner. Each time, the supervisor lets the correction back in after
+//! a while, and the axes are moved off the path and back. The second time, waiting shows nothing
+//! new: somebody has to look at the machine or at the model.
 //!
-//! The count begins anew where the correction has held for [`FORGIVEN_S`] of motion, where another cause takes it out, and the first time that each
-//! axis goes by what it learned in motion: the earlier faults were those of another model. With twice the inertia from one servo period to the
-//! next, a circle takes the correction out twice before both axes have learned, and never again. A lost position is nobody's fault and does not
-//! count. The reset is a correction that is switched off and on again, or amplifiers that were off.
+//! The count begins anew where the correction has held for [`FORGIVEN_S`] of motion, where another
+//! cause takes it out, and the first time that each axis goes by what it learned in motion: the
+//! earlier faults were those of another model. With twice the inertia from one servo period to the
+//! next, a circle takes the correction out twice before both axes have learned, and never again. A
+//! lost position is nobody's fault and does not count. The reset is a correction that is switched
+//! off and on again, or amplifiers that were off.
 
 use feedwright_control::{Cause, FORGIVEN_S, Fade};
 
@@ -28,10 +32,16 @@ pub(crate) struct Latch<const N: usize> {
 
 impl<const N: usize> Latch<N> {
     /// Nothing has taken the correction out.
-    pub(crate) const OPEN: Self = Self { cause: None, times: 0, learned: [false; N], count: 0, held_s: 0.0 };
+    pub(crate) const OPEN: Self = Self {
+        cause: None,
+        times: 0,
+        learned: [false; N],
+        count: 0,
+        held_s: 0.0,
+    };
 
-    /// Takes in a servo period: the last fade of the supervisor, the axes that go by what they learned, and the time for which the correction
-    /// was in the loop in motion, s.
+    /// Takes in a servo period: the last fade of the supervisor, the axes that go by what they
+    /// learned, and the time for which the correction was in the loop in motion, s.
     pub(crate) fn take_in(&mut self, left: Option<Fade>, learned: [bool; N], held_s: f64) {
         self.held_s += held_s;
         let count = left.map_or(0, |left| left.count);
@@ -45,7 +55,10 @@ impl<const N: usize> Latch<N> {
                 (*known, self.times) = (true, 0);
             }
         }
-        let Some(cause) = left.map(|left| left.cause).filter(|cause| is_new && *cause != Cause::LostFeedback) else {
+        let Some(cause) = left
+            .map(|left| left.cause)
+            .filter(|cause| is_new && *cause != Cause::LostFeedback)
+        else {
             return;
         };
         let again = self.cause == Some(cause) && self.held_s <= FORGIVEN_S;
@@ -55,7 +68,10 @@ impl<const N: usize> Latch<N> {
 
     /// Lets the correction in again. The last fade stays the one that was taken in.
     pub(crate) fn reset(&mut self) {
-        *self = Self { count: self.count, ..Self::OPEN };
+        *self = Self {
+            count: self.count,
+            ..Self::OPEN
+        };
     }
 
     /// Returns the cause that keeps the correction out; none while it may come back.
@@ -83,7 +99,12 @@ mod tests {
     }
 
     fn latch_fade(count: u32, cause: Cause) -> Option<Fade> {
-        (count > 0).then_some(Fade { cause, evidence: None, decision: 0, count })
+        (count > 0).then_some(Fade {
+            cause,
+            evidence: None,
+            decision: 0,
+            count,
+        })
     }
 
     #[test]
@@ -94,10 +115,26 @@ mod tests {
             (&[(Harmful, 1.0), (Harmful, 1.0)], Some(Harmful)),
             (&[(Harmful, 1.0), (Harmful, 5.1)], None),
             (&[(Harmful, 9.0), (Harmful, 4.9)], Some(Harmful)),
-            (&[(Harmful, 1.0), (WrongPredictions, 1.0), (Harmful, 1.0)], None),
-            (&[(Harmful, 1.0), (LostFeedback, 1.0), (Harmful, 1.0)], Some(Harmful)),
-            (&[(LostFeedback, 1.0), (LostFeedback, 1.0), (LostFeedback, 1.0)], None),
-            (&[(Harmful, 1.0), (Harmful, 1.0), (WrongPredictions, 9.0)], Some(Harmful)),
+            (
+                &[(Harmful, 1.0), (WrongPredictions, 1.0), (Harmful, 1.0)],
+                None,
+            ),
+            (
+                &[(Harmful, 1.0), (LostFeedback, 1.0), (Harmful, 1.0)],
+                Some(Harmful),
+            ),
+            (
+                &[
+                    (LostFeedback, 1.0),
+                    (LostFeedback, 1.0),
+                    (LostFeedback, 1.0),
+                ],
+                None,
+            ),
+            (
+                &[(Harmful, 1.0), (Harmful, 1.0), (WrongPredictions, 9.0)],
+                Some(Harmful),
+            ),
         ] {
             assert_eq!(after(faults).latched(), latched, "{faults:?}");
         }

@@ -1,4 +1,5 @@
-//! The numbers that can be set while the thread runs, and their ranges. Nothing else of the link reads them before they are checked here.
+//! The numbers that can be set while the thread runs, and their ranges. Nothing else of the link
+//! reads them before they are checked here.
 //!
 //! | Setting | Range |
 //! |---|---|
@@ -8,19 +9,23 @@
 //! | acceleration of a correction that fades, and of one in the loop | 1 to 1,000,000 mm/s2; 0 is without limit |
 //! | scale of the feedrate that is asked for | 0.1 to 1 |
 //!
-//! A number out of its range is refused, and so is what is not a number: the last good one stays in force.
+//! A number out of its range is refused, and so is what is not a number: the last good one stays in
+//! force.
 
-/// Delays that can be set, s: below, the inverse of a drive that is late has nothing to look at; above, it sees no more than it needs.
+/// Delays that can be set, s: below, the inverse of a drive that is late has nothing to look at;
+/// above, it sees no more than it needs.
 pub const DELAYS_S: [f64; 2] = [0.008, 0.015];
 /// Ranges of the others. Wider ones serve no machine, and their squares stay far from overflow.
 const DEVIATIONS_MM: [f64; 2] = [0.0, 10.0];
 const SPEEDS_MM_S: [f64; 2] = [1.0, 1e4];
 const ACCELERATIONS_MM_S2: [f64; 2] = [1.0, UNLIMITED_MM_S2];
 const ADAPTIVE_SCALES: [f64; 2] = [0.1, 1.0];
-/// What stands for no limit of the correction's acceleration, mm/s2: a leap within a servo period of 1 ms at the speed of a rapid.
+/// What stands for no limit of the correction's acceleration, mm/s2: a leap within a servo period
+/// of 1 ms at the speed of a rapid.
 pub const UNLIMITED_MM_S2: f64 = 1e6;
 
-/// What can be set. The delay and [`Self::speed_alone`] are taken over where the delay is taken up, all others at once.
+/// What can be set. The delay and [`Self::speed_alone`] are taken over where the delay is taken up,
+/// all others at once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkLimits {
     /// Delay of the command, s.
@@ -31,7 +36,8 @@ pub struct LinkLimits {
     pub speed_mm_s: f64,
     /// Acceleration with which an offset fades, mm/s2; 0 is without limit.
     pub correction_mm_s2: f64,
-    /// Acceleration of an offset in the loop, of each axis, mm/s2; 0 is without limit. Of a correction that needs more, less is commanded.
+    /// Acceleration of an offset in the loop, of each axis, mm/s2; 0 is without limit. Of a
+    /// correction that needs more, less is commanded.
     pub engaged_mm_s2: f64,
     /// Multiple of the feedrate of now that a request of 1 stands for.
     pub adaptive_scale: f64,
@@ -81,16 +87,45 @@ impl LinkLimits {
             }
         };
         check(Setting::Delay, asked.delay_s, DELAYS_S, &mut self.delay_s);
-        check(Setting::Deviation, asked.deviation_mm, DEVIATIONS_MM, &mut self.deviation_mm);
-        check(Setting::Speed, asked.speed_mm_s, SPEEDS_MM_S, &mut self.speed_mm_s);
-        let asked_mm_s2 = if unlimited { UNLIMITED_MM_S2 } else { asked.correction_mm_s2 };
-        check(Setting::CorrectionAcceleration, asked_mm_s2, ACCELERATIONS_MM_S2, &mut self.correction_mm_s2);
+        check(
+            Setting::Deviation,
+            asked.deviation_mm,
+            DEVIATIONS_MM,
+            &mut self.deviation_mm,
+        );
+        check(
+            Setting::Speed,
+            asked.speed_mm_s,
+            SPEEDS_MM_S,
+            &mut self.speed_mm_s,
+        );
+        let asked_mm_s2 = if unlimited {
+            UNLIMITED_MM_S2
+        } else {
+            asked.correction_mm_s2
+        };
+        check(
+            Setting::CorrectionAcceleration,
+            asked_mm_s2,
+            ACCELERATIONS_MM_S2,
+            &mut self.correction_mm_s2,
+        );
         if asked.engaged_mm_s2 == 0.0 {
             self.engaged_mm_s2 = 0.0;
         } else {
-            check(Setting::Acceleration, asked.engaged_mm_s2, ACCELERATIONS_MM_S2, &mut self.engaged_mm_s2);
+            check(
+                Setting::Acceleration,
+                asked.engaged_mm_s2,
+                ACCELERATIONS_MM_S2,
+                &mut self.engaged_mm_s2,
+            );
         }
-        check(Setting::AdaptiveScale, asked.adaptive_scale, ADAPTIVE_SCALES, &mut self.adaptive_scale);
+        check(
+            Setting::AdaptiveScale,
+            asked.adaptive_scale,
+            ADAPTIVE_SCALES,
+            &mut self.adaptive_scale,
+        );
         self.speed_alone = asked.speed_alone;
         refused
     }
@@ -117,7 +152,9 @@ mod tests {
 
     #[test]
     fn a_number_out_of_its_range_is_refused_and_the_last_good_one_stays() {
-        use Setting::{Acceleration, AdaptiveScale, CorrectionAcceleration, Delay, Deviation, Speed};
+        use Setting::{
+            Acceleration, AdaptiveScale, CorrectionAcceleration, Delay, Deviation, Speed,
+        };
         for (setting, good, bad) in [
             (Delay, 0.012, [0.0, 0.0079, 0.0151]),
             (Deviation, 0.0, [-1.0, -1e-9, 11.0]),
@@ -129,8 +166,15 @@ mod tests {
             let mut in_force = LinkLimits::DEFAULT;
             assert_eq!(in_force.take_over(&with(setting, good)), None);
             assert_eq!(in_force, with(setting, good));
-            for value in bad.into_iter().chain([f64::NAN, f64::INFINITY, f64::NEG_INFINITY]) {
-                assert_eq!(in_force.take_over(&with(setting, value)), Some(setting), "{value}");
+            for value in bad
+                .into_iter()
+                .chain([f64::NAN, f64::INFINITY, f64::NEG_INFINITY])
+            {
+                assert_eq!(
+                    in_force.take_over(&with(setting, value)),
+                    Some(setting),
+                    "{value}"
+                );
                 assert_eq!(in_force, with(setting, good), "{value}");
             }
         }
@@ -139,7 +183,10 @@ mod tests {
     #[test]
     fn an_acceleration_of_zero_is_without_limit() {
         let mut in_force = LinkLimits::DEFAULT;
-        assert_eq!(in_force.take_over(&with(Setting::CorrectionAcceleration, 0.0)), None);
+        assert_eq!(
+            in_force.take_over(&with(Setting::CorrectionAcceleration, 0.0)),
+            None
+        );
         assert_eq!(in_force.correction_mm_s2, UNLIMITED_MM_S2);
     }
 }

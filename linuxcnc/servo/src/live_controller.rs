@@ -1,16 +1,17 @@
-//! The controllers that can stand in the link, by the kind of the model: the regulator of identified axes, or the paper's two.
+//! The controllers that can stand in the link, by the kind of the model: the regulator of
+//! identified axes, or the paper's two.
 
 use feedwright_control::{
-    Bounds, Command, Controller, FaultEvidence, IDENTIFIED_WEIGHT, InvertingSettings, LqgPreview, LqgSettings,
-    MagnitudeOnly, Measured, OffsetBounds, Schedule, TwoDimensional, Window,
+    Bounds, Command, Controller, FaultEvidence, IDENTIFIED_WEIGHT, InvertingSettings, LqgPreview,
+    LqgSettings, MagnitudeOnly, Measured, OffsetBounds, Schedule, TwoDimensional, Window,
 };
 
 use crate::machine::{LinkModel, TrainedContour};
 
 /// A controller in the link, and the feedrate that it asks the control for.
 ///
-/// A controller that changes the feedrate says so to the control, whose planner goes by it. Here time is what the control makes of it, and goes
-/// on as it is.
+/// A controller that changes the feedrate says so to the control, whose planner goes by it. Here
+/// time is what the control makes of it, and goes on as it is.
 #[derive(Debug, Clone)]
 pub struct LiveController<const N: usize> {
     kind: Kind<N>,
@@ -39,7 +40,8 @@ impl<const N: usize> Inversion<N> {
     fn new(contour: &TrainedContour<N>) -> Self {
         let settings = InvertingSettings {
             // A float that is not a number, or below zero, saturates to 0.
-            servo_periods: (libm::round(contour.feed_period_s / contour.servo_s) as u32).clamp(1, MOST_PERIODS),
+            servo_periods: (libm::round(contour.feed_period_s / contour.servo_s) as u32)
+                .clamp(1, MOST_PERIODS),
             is_planned_elsewhere: true,
             ..InvertingSettings::DEFAULT
         };
@@ -51,16 +53,25 @@ impl<const N: usize> Inversion<N> {
     }
 
     fn chosen(&self) -> &dyn Controller<N> {
-        if self.speed_alone { &self.magnitude } else { &self.both }
+        if self.speed_alone {
+            &self.magnitude
+        } else {
+            &self.both
+        }
     }
 
     fn chosen_mut(&mut self) -> &mut dyn Controller<N> {
-        if self.speed_alone { &mut self.magnitude } else { &mut self.both }
+        if self.speed_alone {
+            &mut self.magnitude
+        } else {
+            &mut self.both
+        }
     }
 }
 
-/// Response time of the speed loops, s, for the trial of `two-dimensional`: its model does not state the axes. The speed loops of the machine
-/// files of this repository respond within 2 to 12 ms, `tnv40` within 6.
+/// Response time of the speed loops, s, for the trial of `two-dimensional`: its model does not
+/// state the axes. The speed loops of the machine files of this repository respond within 2 to 12
+/// ms, `tnv40` within 6.
 const RESPONSE_S: f64 = 0.006;
 /// Servo periods between decisions that a link keeps commands for.
 const MOST_PERIODS: u32 = 100;
@@ -70,8 +81,12 @@ impl<const N: usize> LiveController<N> {
     pub fn new(model: &LinkModel<N>, servo_s: f64) -> Self {
         let kind = match model {
             LinkModel::Axes(identified) => {
-                let settings = LqgSettings::identified(IDENTIFIED_WEIGHT, servo_s, OffsetBounds::NONE);
-                let settings = LqgSettings { is_known: false, ..settings };
+                let settings =
+                    LqgSettings::identified(IDENTIFIED_WEIGHT, servo_s, OffsetBounds::NONE);
+                let settings = LqgSettings {
+                    is_known: false,
+                    ..settings
+                };
                 Kind::Regulator(LqgPreview::new(identified.axes, settings))
             }
             LinkModel::Contour(contour) => Kind::Inversion(Inversion::new(contour)),
@@ -82,7 +97,10 @@ impl<const N: usize> LiveController<N> {
     /// Holds the offset to these bounds, where the supervisor alone does not.
     pub fn hold_to(&mut self, bounds: &Bounds) {
         if let Kind::Regulator(regulator) = &mut self.kind {
-            regulator.hold_to(OffsetBounds { largest_mm: bounds.deviation_mm, fastest_mm_s: bounds.speed_mm_s });
+            regulator.hold_to(OffsetBounds {
+                largest_mm: bounds.deviation_mm,
+                fastest_mm_s: bounds.speed_mm_s,
+            });
         }
     }
 
@@ -112,7 +130,10 @@ impl<const N: usize> LiveController<N> {
         match &self.kind {
             Kind::Regulator(_) => 1,
             Kind::Inversion(inversion) => {
-                let Schedule { servo_periods, preview } = inversion.chosen().schedule();
+                let Schedule {
+                    servo_periods,
+                    preview,
+                } = inversion.chosen().schedule();
                 u64::from(servo_periods) * u64::from(preview)
             }
         }
@@ -123,7 +144,10 @@ impl<const N: usize> LiveController<N> {
     /// preview.
     pub fn schedule_within(&self, ahead: u32) -> Schedule {
         match &self.kind {
-            Kind::Regulator(_) => Schedule { servo_periods: 1, preview: ahead },
+            Kind::Regulator(_) => Schedule {
+                servo_periods: 1,
+                preview: ahead,
+            },
             Kind::Inversion(inversion) => inversion.chosen().schedule(),
         }
     }
@@ -186,6 +210,9 @@ impl<const N: usize> Controller<N> for LiveController<N> {
         let is_asked_for = asked.rate.is_finite();
         self.rate = if is_asked_for { asked.rate } else { 1.0 };
         // What is not a number is for the supervisor to see.
-        Command { rate: if is_asked_for { 1.0 } else { asked.rate }, ..asked }
+        Command {
+            rate: if is_asked_for { 1.0 } else { asked.rate },
+            ..asked
+        }
     }
 }

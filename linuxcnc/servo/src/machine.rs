@@ -1,6 +1,8 @@
 //! What is read from a model file.
 
-use feedwright_control::{BlockError, ContourIdentifier, IdentifiedAxes, KnownGeometry, ModelBlock, Trained};
+use feedwright_control::{
+    BlockError, ContourIdentifier, IdentifiedAxes, KnownGeometry, ModelBlock, Trained,
+};
 
 /// Why a model cannot be used here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,16 +55,27 @@ const PERIOD_TOLERANCE: f64 = 1e-3;
 /// What is wrong with them.
 pub fn model_of<const N: usize>(bytes: &[u8]) -> Result<LinkModel<N>, Refused> {
     let block = ModelBlock::from_bytes(bytes).map_err(Refused::Block)?;
-    let ModelBlock { servo_s, feed_period_s, trained, .. } = block;
+    let ModelBlock {
+        servo_s,
+        feed_period_s,
+        trained,
+        ..
+    } = block;
     match trained {
         Trained::Axes(axes) => Ok(LinkModel::Axes(axes)),
-        Trained::Contour(identifier) => Ok(LinkModel::Contour(TrainedContour { identifier, servo_s, feed_period_s })),
+        Trained::Contour(identifier) => Ok(LinkModel::Contour(TrainedContour {
+            identifier,
+            servo_s,
+            feed_period_s,
+        })),
     }
 }
 
 /// The geometry in these bytes; none where there is none, or no model.
 pub fn geometry_of<const N: usize>(bytes: &[u8]) -> Option<KnownGeometry<N>> {
-    ModelBlock::from_bytes(bytes).ok().and_then(|block| block.geometry)
+    ModelBlock::from_bytes(bytes)
+        .ok()
+        .and_then(|block| block.geometry)
 }
 
 /// The axes in these bytes.

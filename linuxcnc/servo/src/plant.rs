@@ -1,21 +1,24 @@
-//! A simulated machine: the servo axes of [`feedwright_control::AxisLaw`], each with what a model file has of it.
+//! A simulated machine: the servo axes of [`feedwright_control::AxisLaw`], each with what a model
+//! file has of it.
 //!
-//! Loops, inertia, friction, delays, the drive's feedforward and filter, the disturbance, cogging, broadband torque, and the encoder's noise
-//! and step are those of the file. The tool is where the geometry of the file has it. Two masses and jitter are not in a model file, and not here.
+//! Loops, inertia, friction, delays, the drive's feedforward and filter, the disturbance, cogging,
+//! broadband torque, and the encoder's noise and step are those of the file. The tool is where the
+//! geometry of the file has it. Two masses and jitter are not in a model file, and not here.
 //!
 //! ```text
 //! load = D sin(W t) + x                  t at the start of a mechanics period; x(c+1) = a x(c) + s sqrt(1 - a^2) n(c), a = exp(-dt / T)
 //! y    = q round((angle + s n) / q)      what the encoder shows
 //! ```
 //!
-//! Random numbers n: sums of twelve 16-bit parts of SplitMix64, which are nearly normal. Source: Steele, Lea and Flood (2014), "Fast
-//! splittable pseudorandom number generators".
+//! Random numbers n: sums of twelve 16-bit parts of SplitMix64, which are nearly normal. Source:
+//! Steele, Lea and Flood (2014), "Fast splittable pseudorandom number generators".
 
 use core::f64::consts::TAU;
 
 use feedwright_control::{
-    AxisKnowledge, AxisLaw, AxisState, AxisStatistics, CommandQueue, DriveLaw, DriveReference, DriveState, FrictionLaw,
-    FrictionParameters, IdentifiedAxes, KnownGeometry, friction_signs, sin,
+    AxisKnowledge, AxisLaw, AxisState, AxisStatistics, CommandQueue, DriveLaw, DriveReference,
+    DriveState, FrictionLaw, FrictionParameters, IdentifiedAxes, KnownGeometry, friction_signs,
+    sin,
 };
 
 /// References and positions that are kept, servo periods: 20 ms each way at 1 ms, and some.
@@ -37,13 +40,26 @@ impl<const N: usize> SimulatedMachine<N> {
         for (i, axis) in axes.iter_mut().enumerate() {
             axis.noise.state ^= splitmix(seed.wrapping_add(i as u64));
         }
-        Self { axes, geometry: None, period: 0 }
+        Self {
+            axes,
+            geometry: None,
+            period: 0,
+        }
     }
 
     /// The same axes, without noise and disturbance.
     pub fn without_noise(machine: &IdentifiedAxes<N>) -> Self {
-        let quiet = |axis| SimulatedAxis::new(AxisKnowledge { statistics: AxisStatistics::NOTHING, ..axis });
-        Self { axes: machine.axes.map(quiet), geometry: None, period: 0 }
+        let quiet = |axis| {
+            SimulatedAxis::new(AxisKnowledge {
+                statistics: AxisStatistics::NOTHING,
+                ..axis
+            })
+        };
+        Self {
+            axes: machine.axes.map(quiet),
+            geometry: None,
+            period: 0,
+        }
     }
 
     /// With this geometry, or none.
@@ -54,7 +70,10 @@ impl<const N: usize> SimulatedMachine<N> {
 
     /// Stands at a place.
     pub fn place(&mut self, position_mm: [f64; N]) {
-        self.axes.iter_mut().zip(position_mm).for_each(|(axis, mm)| axis.place(mm));
+        self.axes
+            .iter_mut()
+            .zip(position_mm)
+            .for_each(|(axis, mm)| axis.place(mm));
     }
 
     /// Advances by one servo period under a command, with the inertia of the model times `inertia`.
@@ -78,12 +97,18 @@ impl<const N: usize> SimulatedMachine<N> {
 
     /// Where the tool is, mm.
     pub fn tool_mm(&self) -> [f64; N] {
-        self.geometry.as_ref().map_or(self.position_mm(), |geometry| geometry.tool_mm(self.position_mm()))
+        self.geometry
+            .as_ref()
+            .map_or(self.position_mm(), |geometry| {
+                geometry.tool_mm(self.position_mm())
+            })
     }
 
     /// Where the control has it, mm.
     pub fn measured_mm(&self) -> [f64; N] {
-        self.axes.each_ref().map(|axis| axis.arrived_rad / axis.law.parameters.rad_per_mm)
+        self.axes
+            .each_ref()
+            .map(|axis| axis.arrived_rad / axis.law.parameters.rad_per_mm)
     }
 
     /// Torque of each motor at the end of the servo period, N m.
@@ -110,7 +135,8 @@ struct SimulatedAxis {
     commands: CommandQueue,
     /// References on their way to the drive, the newest first.
     sent: [DriveReference; KEPT],
-    /// Angles that the encoder has shown, the newest first, each at the moment from which it is there at the start of a servo period.
+    /// Angles that the encoder has shown, the newest first, each at the moment from which it is
+    /// there at the start of a servo period.
     shown_rad: [f64; KEPT],
     arrived_rad: f64,
     noise: NoiseSource,
@@ -137,7 +163,10 @@ impl SimulatedAxis {
             torque_nm: 0.0,
             broadband_nm: 0.0,
             kept,
-            commands: CommandQueue::resting(known.delays.command_periods(known.periods.servo_s), 0.0),
+            commands: CommandQueue::resting(
+                known.delays.command_periods(known.periods.servo_s),
+                0.0,
+            ),
             sent: [DriveReference::default(); KEPT],
             shown_rad: [0.0; KEPT],
             arrived_rad: 0.0,
@@ -151,7 +180,10 @@ impl SimulatedAxis {
 
     fn place(&mut self, position_mm: f64) {
         let angle_rad = position_mm * self.law.parameters.rad_per_mm;
-        self.state = AxisState { angle_rad, ..AxisState::default() };
+        self.state = AxisState {
+            angle_rad,
+            ..AxisState::default()
+        };
         (self.drive_state, self.presliding_nm, self.torque_nm) = (DriveState::AT_REST, 0.0, 0.0);
         self.commands = CommandQueue::resting(self.commands.periods(), angle_rad);
         self.sent = [DriveReference::default(); KEPT];
@@ -174,13 +206,23 @@ impl SimulatedAxis {
     fn turn(&mut self, command_mm: f64, inertia: f64, period: u64) {
         self.load(inertia);
         let periods = self.known.periods;
-        let command_rad = self.commands.pass(command_mm * self.law.parameters.rad_per_mm);
-        let reference =
-            self.drive.position_loop(&self.law, command_rad, self.arrived_rad, &mut self.state, &mut self.drive_state);
+        let command_rad = self
+            .commands
+            .pass(command_mm * self.law.parameters.rad_per_mm);
+        let reference = self.drive.position_loop(
+            &self.law,
+            command_rad,
+            self.arrived_rad,
+            &mut self.state,
+            &mut self.drive_state,
+        );
         self.sent.copy_within(..KEPT - 1, 1);
         self.sent[0] = reference;
         let late = |delay_s: f64| libm::round(delay_s / periods.mechanics_s) as u32;
-        let (drive_late, shown_late) = (late(self.known.delays.drive_s), late(self.known.delays.measurement_s));
+        let (drive_late, shown_late) = (
+            late(self.known.delays.drive_s),
+            late(self.known.delays.measurement_s),
+        );
         let per_servo = periods.mechanics_per_servo.max(1);
         // An angle is taken where it is a delay before the start of a servo period.
         let takes_at = (per_servo - shown_late % per_servo) % per_servo;
@@ -191,13 +233,24 @@ impl SimulatedAxis {
             // So long before the end of this servo period was sent what acts now.
             let ago = (drive_late + per_servo - 1 - substep) / per_servo;
             let acting = self.sent.get(ago as usize).copied().unwrap_or_default();
-            self.mechanics(acting, (period as f64) * periods.servo_s + f64::from(substep) * periods.mechanics_s);
+            self.mechanics(
+                acting,
+                (period as f64) * periods.servo_s + f64::from(substep) * periods.mechanics_s,
+            );
         }
         if takes_at == 0 {
             self.show();
         }
-        let whole = if takes_at == 0 { shown_late / per_servo } else { shown_late.div_ceil(per_servo) - 1 };
-        self.arrived_rad = self.shown_rad.get(whole as usize).copied().unwrap_or(self.arrived_rad);
+        let whole = if takes_at == 0 {
+            shown_late / per_servo
+        } else {
+            shown_late.div_ceil(per_servo) - 1
+        };
+        self.arrived_rad = self
+            .shown_rad
+            .get(whole as usize)
+            .copied()
+            .unwrap_or(self.arrived_rad);
     }
 
     /// The encoder is read.
@@ -206,9 +259,14 @@ impl SimulatedAxis {
         let angle_rad = self.state.angle_rad;
         let interpolation_rad = statistics.interpolation_rad
             * sin(statistics.signal_per_rad * angle_rad + statistics.interpolation_phase_rad);
-        let seen_rad = angle_rad + interpolation_rad + statistics.encoder_noise_rad * self.noise.normal();
+        let seen_rad =
+            angle_rad + interpolation_rad + statistics.encoder_noise_rad * self.noise.normal();
         let step_rad = statistics.encoder_step_rad;
-        let shown_rad = if step_rad > 0.0 { step_rad * libm::round(seen_rad / step_rad) } else { seen_rad };
+        let shown_rad = if step_rad > 0.0 {
+            step_rad * libm::round(seen_rad / step_rad)
+        } else {
+            seen_rad
+        };
         self.shown_rad.copy_within(..KEPT - 1, 1);
         self.shown_rad[0] = shown_rad;
     }
@@ -221,15 +279,21 @@ impl SimulatedAxis {
         let step_nm = statistics.torque_noise_nm * libm::sqrt(1.0 - self.kept * self.kept);
         self.broadband_nm = self.kept * self.broadband_nm + step_nm * self.noise.normal();
         let (angle_rad, w) = (self.state.angle_rad, self.state.speed_rad_s);
-        let cogging_nm =
-            statistics.cogging_nm * sin(statistics.cogging_per_rev * angle_rad + statistics.cogging_phase_rad);
-        self.torque_nm = self.drive.torque_nm(law, reference, w, &mut self.drive_state);
+        let cogging_nm = statistics.cogging_nm
+            * sin(statistics.cogging_per_rev * angle_rad + statistics.cogging_phase_rad);
+        self.torque_nm = self
+            .drive
+            .torque_nm(law, reference, w, &mut self.drive_state);
         let forces_nm = self.torque_nm + cogging_nm - disturbance_nm - self.broadband_nm;
         match &self.friction {
             Some(friction) => {
                 let inverse_inertia = 1.0 / law.parameters.inertia_kg_m2;
-                self.state.speed_rad_s =
-                    friction.speed_after_rad_s(forces_nm, inverse_inertia, w, &mut self.presliding_nm);
+                self.state.speed_rad_s = friction.speed_after_rad_s(
+                    forces_nm,
+                    inverse_inertia,
+                    w,
+                    &mut self.presliding_nm,
+                );
                 self.state.angle_rad += law.periods.mechanics_s * self.state.speed_rad_s;
             }
             None => {
@@ -257,7 +321,10 @@ impl NoiseSource {
         for _ in 0..3 {
             self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
             let bits = splitmix(self.state);
-            sum += [0, 16, 32, 48].iter().map(|shift| (bits >> shift & 0xffff) as i64).sum::<i64>();
+            sum += [0, 16, 32, 48]
+                .iter()
+                .map(|shift| (bits >> shift & 0xffff) as i64)
+                .sum::<i64>();
         }
         // Twelve times the mean of 16 bits.
         (sum - 393_210) as f64 / 65536.0

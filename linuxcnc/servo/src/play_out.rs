@@ -4,8 +4,8 @@
 //! drive = c(n - D) + o     o: the offset at the failure, which fades to zero
 //! ```
 //!
-//! The delay D ends where the command has rested for longer than it: nothing leaps. This state is apart from that of the link, so that a
-//! failure in the link leaves it whole.
+//! The delay D ends where the command has rested for longer than it: nothing leaps. This state is
+//! apart from that of the link, so that a failure in the link leaves it whole.
 
 use feedwright_control::vector::{add_scaled, norm, sub};
 
@@ -74,7 +74,8 @@ impl<const N: usize> PlayOut<N> {
         self.servo_s = servo_s;
     }
 
-    /// Keeps what a servo period of the link came to: its inputs, its drive's command and its delay.
+    /// Keeps what a servo period of the link came to: its inputs, its drive's command and its
+    /// delay.
     pub fn keep(&mut self, inputs: &LinkInputs<N>, drive_mm: [f64; N], delay_periods: u32) {
         self.push(inputs);
         (self.drive_mm, self.delay) = (drive_mm, u64::from(delay_periods));
@@ -115,7 +116,11 @@ impl<const N: usize> PlayOut<N> {
         let drive_mm = add_scaled(path_mm, 1.0, self.offset.value_mm());
         let before = (self.delay > 0).then(|| self.history.through(self.delayed()));
         let through = self.through.passed(before, self.offset.value_mm());
-        self.out(drive_mm, add_scaled(self.command_mm, 1.0, sub(self.actual_mm, path_mm)), through)
+        self.out(
+            drive_mm,
+            add_scaled(self.command_mm, 1.0, sub(self.actual_mm, path_mm)),
+            through,
+        )
     }
 
     /// Number of the command that is due.
@@ -130,8 +135,19 @@ impl<const N: usize> PlayOut<N> {
         self.history.position_mm(self.delayed())
     }
 
-    fn out(&self, drive_mm: [f64; N], feedback_mm: [f64; N], through: PassedThrough) -> PlayedOut<N> {
+    fn out(
+        &self,
+        drive_mm: [f64; N],
+        feedback_mm: [f64; N],
+        through: PassedThrough,
+    ) -> PlayedOut<N> {
         let delay_periods = self.delay as u32;
-        PlayedOut { drive_mm, feedback_mm, correction_mm: self.offset.value_mm(), through, delay_periods }
+        PlayedOut {
+            drive_mm,
+            feedback_mm,
+            correction_mm: self.offset.value_mm(),
+            through,
+            delay_periods,
+        }
     }
 }

@@ -13,12 +13,12 @@
 //! position.
 //!
 //! Within a program, a probing motion begins sooner behind a cut than the delay. The link then asks
-//! the control to hold its feed ([`LinkOutputs::holds_feed`]) until the delay is given up, and again
-//! behind it until the delay is taken up. A motion that follows a spindle takes no hold: it has to
-//! wait for [`LinkOutputs::is_settled`].
+//! the control to hold its feed ([`LinkOutputs::holds_feed`]) until the delay is given up, and
+//! again behind it until the delay is taken up. A motion that follows a spindle takes no hold: it
+//! has to wait for [`LinkOutputs::is_settled`].
 //!
-//! Once the same cause has taken the correction out of the loop twice, it stays out until it is switched off and on again, or the
-//! amplifiers were off: `latch.rs`.
+//! Once the same cause has taken the correction out of the loop twice, it stays out until it is
+//! switched off and on again, or the amplifiers were off: `latch.rs`.
 //!
 //! | Link | Drive gets |
 //! |---|---|
@@ -37,13 +37,15 @@ use crate::live_controller::LiveController;
 use crate::machine::{self, LinkModel, Refused};
 use crate::through::{PassedThrough, Through};
 
-/// A spindle is followed until the command has rested for so long since its index was awaited, s: it begins to move with the index.
+/// A spindle is followed until the command has rested for so long since its index was awaited, s:
+/// it begins to move with the index.
 const FOLLOWED_S: f64 = 0.5;
-/// The delay is taken up behind a probing motion once the command has rested for longer than this, s:
-/// five time constants of a usual position loop. After 0.013 s, an axis of `tnv40` that stopped from
-/// 25 mm/s has 84 um to go, which the model takes for a wrong prediction.
+/// The delay is taken up behind a probing motion once the command has rested for longer than this,
+/// s: five time constants of a usual position loop. After 0.013 s, an axis of `tnv40` that stopped
+/// from 25 mm/s has 84 um to go, which the model takes for a wrong prediction.
 const SETTLES_S: f64 = 0.1;
-/// A command that still moves so long after its feed was to be held will not be held, s: braking from 100 mm/s within 2,000 mm/s2.
+/// A command that still moves so long after its feed was to be held will not be held, s: braking
+/// from 100 mm/s within 2,000 mm/s2.
 const HELD_S: f64 = 0.05;
 /// Servo period where there is no model, s; nothing but the time of rest depends on it.
 const WITHOUT_MODEL_S: f64 = 0.001;
@@ -55,7 +57,10 @@ const LEAP: f64 = 2.0;
 const MOST_PERIODS: u64 = 128;
 
 /// A tick that is not used yet.
-const AT_REST: Schedule = Schedule { servo_periods: 1, preview: 0 };
+const AT_REST: Schedule = Schedule {
+    servo_periods: 1,
+    preview: 0,
+};
 
 /// What comes from the control and the drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,9 +107,11 @@ pub enum LinkFault {
     Faded(Cause),
     /// The command was not a number; the last that was one is held.
     Command,
-    /// This number is out of its range; the last one that was not stays in force, and so does the correction.
+    /// This number is out of its range; the last one that was not stays in force, and so does the
+    /// correction.
     Setting(Setting),
-    /// A motion that probes or follows a spindle is delayed: the control did not hold its feed, or did not wait.
+    /// A motion that probes or follows a spindle is delayed: the control did not hold its feed, or
+    /// did not wait.
     NotHeld,
 }
 
@@ -135,7 +142,8 @@ pub struct LinkOutputs<const N: usize> {
     pub saturated: bool,
     /// Why there is no correction now.
     pub fault: LinkFault,
-    /// When, why and how often the supervisor has taken the correction out of the loop since the delay was taken up.
+    /// When, why and how often the supervisor has taken the correction out of the loop since the
+    /// delay was taken up.
     pub left: Option<Fade>,
     /// Whether the correction stays out until it is reset: the same cause took it out twice.
     pub latched: bool,
@@ -166,8 +174,8 @@ pub struct Servo<const N: usize> {
     excess: Fading<1>,
     /// Remaining offset that fades without a correction.
     residual: Fading<N>,
-    /// Whether the delay was given up for a motion that probes, and servo periods in which the command
-    /// has moved although it was to be held.
+    /// Whether the delay was given up for a motion that probes, and servo periods in which the
+    /// command has moved although it was to be held.
     yielded: bool,
     not_held: u64,
     actual_mm: [f64; N],
@@ -243,7 +251,11 @@ impl<const N: usize> Servo<N> {
             }
             (self.command_mm, self.heard) = (inputs.command_mm, true);
         }
-        let mut outputs = if inputs.powered && self.heard { self.on(inputs, told) } else { self.off(told) };
+        let mut outputs = if inputs.powered && self.heard {
+            self.on(inputs, told)
+        } else {
+            self.off(told)
+        };
         outputs.adaptive_feed = bounded(self.limits.adaptive_scale * outputs.rate, 0.0, 1.0);
         if !inputs.enabled {
             self.latch.reset();
@@ -261,14 +273,20 @@ impl<const N: usize> Servo<N> {
         outputs
     }
 
-    /// Takes over what is set. A deviation that changes is reached within the acceleration of a fade; a lower one from where the offset is.
+    /// Takes over what is set. A deviation that changes is reached within the acceleration of a
+    /// fade; a lower one from where the offset is.
     fn take_over(&mut self, limits: &LinkLimits) -> Option<Setting> {
         let (last_mm, before_mm) = (self.limits.deviation_mm, self.deviation_mm());
         let refused = self.limits.take_over(limits);
         let set_mm = self.limits.deviation_mm;
-        let from_mm = if set_mm < last_mm { before_mm.min(self.offset_mm.max(set_mm)) } else { before_mm };
+        let from_mm = if set_mm < last_mm {
+            before_mm.min(self.offset_mm.max(set_mm))
+        } else {
+            before_mm
+        };
         if self.link == Link::Delayed {
-            self.excess.shift([(from_mm - set_mm) - (before_mm - last_mm)]);
+            self.excess
+                .shift([(from_mm - set_mm) - (before_mm - last_mm)]);
         } else {
             self.excess = Fading::NONE;
         }
@@ -283,15 +301,30 @@ impl<const N: usize> Servo<N> {
     }
 
     fn bounds(&self) -> Bounds {
-        let LinkLimits { speed_mm_s, correction_mm_s2: fade_mm_s2, engaged_mm_s2, .. } = self.limits;
-        let engaged_mm_s2 = if engaged_mm_s2 == 0.0 { f64::INFINITY } else { engaged_mm_s2 };
-        Bounds { fade_mm_s2, engaged_mm_s2, ..Bounds::new(self.deviation_mm(), speed_mm_s, 0.0) }
+        let LinkLimits {
+            speed_mm_s,
+            correction_mm_s2: fade_mm_s2,
+            engaged_mm_s2,
+            ..
+        } = self.limits;
+        let engaged_mm_s2 = if engaged_mm_s2 == 0.0 {
+            f64::INFINITY
+        } else {
+            engaged_mm_s2
+        };
+        Bounds {
+            fade_mm_s2,
+            engaged_mm_s2,
+            ..Bounds::new(self.deviation_mm(), speed_mm_s, 0.0)
+        }
     }
 
     fn on(&mut self, inputs: &LinkInputs<N>, told: bool) -> LinkOutputs<N> {
         self.choose(inputs);
-        self.history.push(self.command_mm, &self.through, inputs.cutting);
-        self.residual.step(self.servo_s, self.limits.correction_mm_s2);
+        self.history
+            .push(self.command_mm, &self.through, inputs.cutting);
+        self.residual
+            .step(self.servo_s, self.limits.correction_mm_s2);
         let mut outputs = match self.link {
             Link::Delayed => self.delayed(inputs),
             Link::Off | Link::Direct => self.direct(),
@@ -309,9 +342,15 @@ impl<const N: usize> Servo<N> {
         let rested = self.history.at_rest();
         outputs.is_settled = !is_delayed || rested > u64::from(self.delay) + NEWER;
         let gives_up = is_delayed && inputs.probing && !inputs.direct;
-        let takes_up = self.link == Link::Direct && self.yielded && !(inputs.probing || inputs.direct || self.follows);
+        let takes_up = self.link == Link::Direct
+            && self.yielded
+            && !(inputs.probing || inputs.direct || self.follows);
         outputs.holds_feed = gives_up || takes_up;
-        self.not_held = if !outputs.holds_feed { 0 } else { self.not_held + u64::from(rested == 0) };
+        self.not_held = if !outputs.holds_feed {
+            0
+        } else {
+            self.not_held + u64::from(rested == 0)
+        };
         let late = self.not_held as f64 * self.servo_s > HELD_S;
         // Without a hold there is no rest to take it up in.
         self.yielded &= !(takes_up && late);
@@ -331,19 +370,40 @@ impl<const N: usize> Servo<N> {
         if let Ok(controller) = &mut self.controller {
             controller.forget_machine();
         }
-        let fault = if told || !self.heard { self.refused() } else { LinkFault::Command };
+        let fault = if told || !self.heard {
+            self.refused()
+        } else {
+            LinkFault::Command
+        };
         let through = self.through.off();
-        LinkOutputs { drive_mm: self.actual_mm, feedback_mm: self.actual_mm, through, fault, ..self.nothing() }
+        LinkOutputs {
+            drive_mm: self.actual_mm,
+            feedback_mm: self.actual_mm,
+            through,
+            fault,
+            ..self.nothing()
+        }
     }
 
     /// Takes the delay up or gives it up, where that can be.
     fn choose(&mut self, inputs: &LinkInputs<N>) {
         let rested = self.history.at_rest();
-        self.unasked = if inputs.spindle { 0 } else { self.unasked.saturating_add(1) };
-        self.follows =
-            inputs.spindle || (self.follows && (rested.min(self.unasked) as f64) * self.servo_s < FOLLOWED_S);
+        self.unasked = if inputs.spindle {
+            0
+        } else {
+            self.unasked.saturating_add(1)
+        };
+        self.follows = inputs.spindle
+            || (self.follows && (rested.min(self.unasked) as f64) * self.servo_s < FOLLOWED_S);
         let is_direct = inputs.direct || inputs.probing || self.follows || self.controller.is_err();
-        match (self.link, if is_direct { Link::Direct } else { Link::Delayed }) {
+        match (
+            self.link,
+            if is_direct {
+                Link::Direct
+            } else {
+                Link::Delayed
+            },
+        ) {
             // What was commanded before is not the past of this motion.
             (Link::Off, _) => {
                 self.link = Link::Direct;
@@ -362,19 +422,29 @@ impl<const N: usize> Servo<N> {
 
     /// Servo periods of rest before the delay is taken up.
     fn rest_to_take_up(&self) -> u64 {
-        let settles = if self.yielded { libm::round(SETTLES_S / self.servo_s) as u64 } else { 0 };
+        let settles = if self.yielded {
+            libm::round(SETTLES_S / self.servo_s) as u64
+        } else {
+            0
+        };
         (self.periods() + NEWER).max(settles)
     }
 
     /// Servo periods in the delay that is set, and no fewer than the controller looks ahead.
     fn periods(&self) -> u64 {
-        let looks_ahead = self.controller.as_ref().map_or(0, LiveController::looks_ahead);
-        (libm::round(self.limits.delay_s / self.servo_s) as u64).max(looks_ahead + NEWER + 1).min(MOST_PERIODS)
+        let looks_ahead = self
+            .controller
+            .as_ref()
+            .map_or(0, LiveController::looks_ahead);
+        (libm::round(self.limits.delay_s / self.servo_s) as u64)
+            .max(looks_ahead + NEWER + 1)
+            .min(MOST_PERIODS)
     }
 
     fn take_up(&mut self) {
         let (delay, bounds) = (self.periods(), self.bounds());
-        // The command that is pushed next is the newest; the preview looks a knot further than it is asked to.
+        // The command that is pushed next is the newest; the preview looks a knot further than it
+        // is asked to.
         let ahead = (delay - NEWER - 1) as u32;
         let schedule = match &mut self.controller {
             Ok(controller) => {
@@ -391,7 +461,10 @@ impl<const N: usize> Servo<N> {
 
     /// That the model was refused, if it was.
     fn refused(&self) -> LinkFault {
-        self.controller.as_ref().err().map_or(LinkFault::None, |refused| LinkFault::Model(*refused))
+        self.controller
+            .as_ref()
+            .err()
+            .map_or(LinkFault::None, |refused| LinkFault::Model(*refused))
     }
 
     /// No correction.
@@ -438,24 +511,38 @@ impl<const N: usize> Servo<N> {
 
     fn delayed(&mut self, inputs: &LinkInputs<N>) -> LinkOutputs<N> {
         let bounds = self.bounds();
-        let Ok(controller) = &mut self.controller else { return self.direct() };
+        let Ok(controller) = &mut self.controller else {
+            return self.direct();
+        };
         controller.hold_to(&bounds);
         self.tick.hold_to(bounds);
-        self.tick.allow(inputs.enabled && self.latch.latched().is_none());
-        // Until no part of it is ahead any more: what no machine can follow says nothing of the law.
+        self.tick
+            .allow(inputs.enabled && self.latch.latched().is_none());
+        // Until no part of it is ahead any more: what no machine can follow says nothing of the
+        // law.
         if self.since_leap <= u64::from(self.delay) {
             controller.reset();
         }
-        let mut path = Delayed { history: &self.history, first: self.first, servo_s: self.servo_s };
+        let mut path = Delayed {
+            history: &self.history,
+            first: self.first,
+            servo_s: self.servo_s,
+        };
         let setpoint = self.tick.step(&mut path, controller, inputs.actual_mm);
         let path_mm = setpoint.path.position_mm;
         let offset_mm = sub(setpoint.command_mm, path_mm);
         self.offset_mm = norm(offset_mm);
         let (state, left) = (self.tick.state(), self.tick.fade());
         let holds = state == State::Engaged && setpoint.path.feed_mm_s > 0.0;
-        self.latch.take_in(left, controller.learned(), if holds { self.servo_s } else { 0.0 });
+        self.latch.take_in(
+            left,
+            controller.learned(),
+            if holds { self.servo_s } else { 0.0 },
+        );
         let correction_mm = add_scaled(offset_mm, 1.0, self.residual.value_mm());
-        let before = self.history.through(self.history.newest().saturating_sub(u64::from(self.delay)));
+        let before = self
+            .history
+            .through(self.history.newest().saturating_sub(u64::from(self.delay)));
         let is_out = inputs.enabled && state != State::Engaged;
         let cause = left.filter(|_| is_out).map(|left| left.cause);
         LinkOutputs {
@@ -465,7 +552,11 @@ impl<const N: usize> Servo<N> {
             through: self.through.passed(Some(before), correction_mm),
             contour_error_mm: known(norm(self.tick.contour().vector_mm)),
             without_mm: known(self.tick.without_mm()),
-            rate: if state == State::Engaged { controller.rate() } else { 1.0 },
+            rate: if state == State::Engaged {
+                controller.rate()
+            } else {
+                1.0
+            },
             adaptive_feed: 1.0,
             link: Link::Delayed,
             state,

@@ -1,12 +1,13 @@
-//! Values that are delayed as the corrected axes are, and otherwise stay as they are: rotary joints, second motors, signals of a program.
+//! Values that are delayed as the corrected axes are, and otherwise stay as they are: rotary
+//! joints, second motors, signals of a program.
 //!
 //! ```text
 //! drive    = c(n - D) + o     o: the correction of the axis that the channel is in tandem with; none otherwise
 //! feedback = c(n) + (a - c(n - D))
 //! ```
 //!
-//! The delay D, and whether there is one, are those of the link. It changes only while the command rests; that of a joint counts, that of
-//! a signal does not.
+//! The delay D, and whether there is one, are those of the link. It changes only while the command
+//! rests; that of a joint counts, that of a signal does not.
 
 /// Channels at the most.
 pub const CHANNELS: usize = 6;
@@ -44,13 +45,20 @@ pub struct PassedThrough {
 
 impl Through {
     /// No channels.
-    pub const NONE: Self =
-        Self { command: [0.0; CHANNELS], actual: [0.0; CHANNELS], carries: [Carries::Signal; CHANNELS] };
+    pub const NONE: Self = Self {
+        command: [0.0; CHANNELS],
+        actual: [0.0; CHANNELS],
+        carries: [Carries::Signal; CHANNELS],
+    };
 
-    /// Takes over what is a number, and keeps the last one of what is not. Returns whether every command is a number.
+    /// Takes over what is a number, and keeps the last one of what is not. Returns whether every
+    /// command is a number.
     pub fn hear(&mut self, inputs: &Self) -> bool {
         let take = |kept: &mut [f64; CHANNELS], heard: [f64; CHANNELS]| {
-            kept.iter_mut().zip(heard).filter(|(_, heard)| heard.is_finite()).for_each(|(kept, heard)| *kept = heard);
+            kept.iter_mut()
+                .zip(heard)
+                .filter(|(_, heard)| heard.is_finite())
+                .for_each(|(kept, heard)| *kept = heard);
         };
         take(&mut self.command, inputs.command);
         take(&mut self.actual, inputs.actual);
@@ -66,20 +74,30 @@ impl Through {
 
     /// While the amplifiers are off.
     pub fn off(&self) -> PassedThrough {
-        PassedThrough { drive: self.actual, feedback: self.actual }
+        PassedThrough {
+            drive: self.actual,
+            feedback: self.actual,
+        }
     }
 
     /// With the commands of the delay before, or without a delay, and the corrections of the axes.
-    pub fn passed<const N: usize>(&self, before: Option<[f64; CHANNELS]>, correction_mm: [f64; N]) -> PassedThrough {
+    pub fn passed<const N: usize>(
+        &self,
+        before: Option<[f64; CHANNELS]>,
+        correction_mm: [f64; N],
+    ) -> PassedThrough {
         let passed = before.unwrap_or(self.command);
         let offset = |i: usize| match self.carries[i] {
             Carries::Tandem(axis) => correction_mm.get(axis).copied(),
             Carries::Signal | Carries::Joint => None,
         };
         PassedThrough {
-            drive: core::array::from_fn(|i| offset(i).map_or(passed[i], |offset| passed[i] + offset)),
-            feedback: before
-                .map_or(self.actual, |before| core::array::from_fn(|i| self.command[i] + (self.actual[i] - before[i]))),
+            drive: core::array::from_fn(|i| {
+                offset(i).map_or(passed[i], |offset| passed[i] + offset)
+            }),
+            feedback: before.map_or(self.actual, |before| {
+                core::array::from_fn(|i| self.command[i] + (self.actual[i] - before[i]))
+            }),
         }
     }
 }

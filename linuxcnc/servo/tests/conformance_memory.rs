@@ -1,8 +1,11 @@
-//! The C interface of `hal/` as C calls it. It refuses memory that is too small, not aligned or null, and bytes that are no
-//! model. What it makes runs in exactly the bytes that it asked for. `just miri` runs this file in Miri, which stops at every
-//! access beyond them.
+//! The C interface of `hal/` as C calls it. It refuses memory that is too small, not aligned or
+//! null, and bytes that are no model. What it makes runs in exactly the bytes that it asked for.
+//! `just miri` runs this file in Miri, which stops at every access beyond them.
 
-#![expect(unreachable_pub, reason = "the sources of a library, of which these tests call a part")]
+#![expect(
+    unreachable_pub,
+    reason = "the sources of a library, of which these tests call a part"
+)]
 
 #[path = "../../hal/src/following.rs"]
 mod following;
@@ -24,10 +27,13 @@ use feedwright_control::{ContourIdentifier, IdentifiedAxes, Identifier, ModelBlo
 use following::{CJoint, feedwright_min_ferror};
 use plant::{CPlant, feedwright_plant_bytes, feedwright_plant_new, feedwright_plant_step};
 use servo::{CInputs, COutputs, CServo};
-use servo::{FEEDWRIGHT_CUTTING, FEEDWRIGHT_ENABLED, FEEDWRIGHT_JOINT, FEEDWRIGHT_NOT_MADE, FEEDWRIGHT_POWERED};
 use servo::{
-    feedwright_servo_bytes, feedwright_servo_layout, feedwright_servo_new, feedwright_servo_play_out,
-    feedwright_servo_runs_at, feedwright_servo_step,
+    FEEDWRIGHT_CUTTING, FEEDWRIGHT_ENABLED, FEEDWRIGHT_JOINT, FEEDWRIGHT_NOT_MADE,
+    FEEDWRIGHT_POWERED,
+};
+use servo::{
+    feedwright_servo_bytes, feedwright_servo_layout, feedwright_servo_new,
+    feedwright_servo_play_out, feedwright_servo_runs_at, feedwright_servo_step,
 };
 
 /// Servo periods: rest until the delay is taken up, and as many in motion.
@@ -55,7 +61,10 @@ struct Outputs {
 
 /// A model of axes.
 fn block<const N: usize>() -> Vec<u8> {
-    let axes = IdentifiedAxes { mechanics_s: 1e-4, axes: [axis::axis(); N] };
+    let axes = IdentifiedAxes {
+        mechanics_s: 1e-4,
+        axes: [axis::axis(); N],
+    };
     written(Trained::<N>::Axes(axes))
 }
 
@@ -68,7 +77,12 @@ fn contour<const N: usize>() -> Vec<u8> {
 
 fn written<const N: usize>(trained: Trained<N>) -> Vec<u8> {
     let mut bytes = Vec::new();
-    let model = ModelBlock { servo_s: SERVO_S, feed_period_s: 0.005, trained, geometry: None };
+    let model = ModelBlock {
+        servo_s: SERVO_S,
+        feed_period_s: 0.005,
+        trained,
+        geometry: None,
+    };
     model.to_bytes(|more| bytes.extend_from_slice(more));
     bytes
 }
@@ -78,7 +92,13 @@ fn link(joints: u32, bytes: &[u8]) -> (Box<MaybeUninit<CServo>>, u32) {
     let mut memory = Box::new_uninit();
     // SAFETY: the memory and the bytes are there.
     let fault = unsafe {
-        feedwright_servo_new(memory.as_mut_ptr(), feedwright_servo_bytes(), joints, bytes.as_ptr(), bytes.len())
+        feedwright_servo_new(
+            memory.as_mut_ptr(),
+            feedwright_servo_bytes(),
+            joints,
+            bytes.as_ptr(),
+            bytes.len(),
+        )
     };
     assert_ne!(fault, FEEDWRIGHT_NOT_MADE);
     (memory, fault)
@@ -88,7 +108,10 @@ fn link(joints: u32, bytes: &[u8]) -> (Box<MaybeUninit<CServo>>, u32) {
 fn steps(memory: &mut MaybeUninit<CServo>, fails: bool) -> Outputs {
     // SAFETY: `link` made it.
     let servo = unsafe { memory.assume_init_mut() };
-    let mut outputs = Outputs { numbers: [f64::NAN; RESULTS], whole: [u32::MAX; 10] };
+    let mut outputs = Outputs {
+        numbers: [f64::NAN; RESULTS],
+        whole: [u32::MAX; 10],
+    };
     let mut drive_mm = [0.0; 3];
     for n in 0..PERIODS {
         let mut numbers = [0.0; NUMBERS];
@@ -100,18 +123,28 @@ fn steps(memory: &mut MaybeUninit<CServo>, fails: bool) -> Outputs {
         numbers[4] = if n % 7 == 3 { f64::NAN } else { numbers[4] };
         numbers[15] = moved;
         let flags = FEEDWRIGHT_POWERED | FEEDWRIGHT_ENABLED | FEEDWRIGHT_CUTTING;
-        let inputs = Inputs { numbers, flags, carries: FEEDWRIGHT_JOINT | 0xF0 };
+        let inputs = Inputs {
+            numbers,
+            flags,
+            carries: FEEDWRIGHT_JOINT | 0xF0,
+        };
         // SAFETY: the layouts are the same, as the sizes say that the library tells.
         unsafe {
-            let (inputs, outputs) =
-                (&*(&raw const inputs).cast::<CInputs>(), &mut *(&raw mut outputs).cast::<COutputs>());
+            let (inputs, outputs) = (
+                &*(&raw const inputs).cast::<CInputs>(),
+                &mut *(&raw mut outputs).cast::<COutputs>(),
+            );
             if fails {
                 feedwright_servo_play_out(servo, inputs, outputs);
             } else {
                 feedwright_servo_step(servo, inputs, outputs);
             }
         }
-        assert!(outputs.numbers.iter().all(|number| number.is_finite()), "{n}: {:?}", outputs.numbers);
+        assert!(
+            outputs.numbers.iter().all(|number| number.is_finite()),
+            "{n}: {:?}",
+            outputs.numbers
+        );
         drive_mm.copy_from_slice(&outputs.numbers[..3]);
     }
     outputs
@@ -119,7 +152,10 @@ fn steps(memory: &mut MaybeUninit<CServo>, fails: bool) -> Outputs {
 
 #[test]
 fn a_caller_lays_out_what_the_library_does() {
-    assert_eq!(feedwright_servo_layout(), size_of::<Inputs>() << 16 | size_of::<Outputs>());
+    assert_eq!(
+        feedwright_servo_layout(),
+        size_of::<Inputs>() << 16 | size_of::<Outputs>()
+    );
 }
 
 #[test]
@@ -133,11 +169,34 @@ fn memory_that_is_none_for_it_is_refused() {
     let (needs, plant_needs) = (feedwright_servo_bytes(), feedwright_plant_bytes());
     // SAFETY: what is no memory for it is not written to; the last one is.
     unsafe {
-        assert_eq!(feedwright_servo_new(null_mut(), needs, 2, bytes, length), FEEDWRIGHT_NOT_MADE);
-        assert_eq!(feedwright_servo_new(odd, needs, 2, bytes, length), FEEDWRIGHT_NOT_MADE);
-        assert_eq!(feedwright_servo_new(good, needs - 1, 2, bytes, length), FEEDWRIGHT_NOT_MADE);
-        assert!(!feedwright_plant_new(null_mut(), plant_needs, 2, bytes, length, 1));
-        assert!(!feedwright_plant_new(good.cast(), plant_needs - 1, 2, bytes, length, 1));
+        assert_eq!(
+            feedwright_servo_new(null_mut(), needs, 2, bytes, length),
+            FEEDWRIGHT_NOT_MADE
+        );
+        assert_eq!(
+            feedwright_servo_new(odd, needs, 2, bytes, length),
+            FEEDWRIGHT_NOT_MADE
+        );
+        assert_eq!(
+            feedwright_servo_new(good, needs - 1, 2, bytes, length),
+            FEEDWRIGHT_NOT_MADE
+        );
+        assert!(!feedwright_plant_new(
+            null_mut(),
+            plant_needs,
+            2,
+            bytes,
+            length,
+            1
+        ));
+        assert!(!feedwright_plant_new(
+            good.cast(),
+            plant_needs - 1,
+            2,
+            bytes,
+            length,
+            1
+        ));
         assert_eq!(feedwright_servo_new(good, needs, 2, bytes, length), 0);
     }
 }
@@ -149,10 +208,22 @@ fn a_model_that_is_none_leaves_a_link_that_passes_commands_on() {
     // SAFETY: a null pointer may stand for a missing model, and the memory is there.
     unsafe {
         let mut memory = Box::new_uninit();
-        let fault = feedwright_servo_new(memory.as_mut_ptr(), feedwright_servo_bytes(), 2, null_mut(), 4096);
+        let fault = feedwright_servo_new(
+            memory.as_mut_ptr(),
+            feedwright_servo_bytes(),
+            2,
+            null_mut(),
+            4096,
+        );
         assert_eq!(fault, 1);
         assert_eq!(steps(&mut memory, false).numbers[6..9], [0.0; 3]);
-        feedwright_min_ferror(null_mut(), 4096, 3, &*[0.0; 9].as_ptr().cast::<[CJoint; 3]>(), &mut limits);
+        feedwright_min_ferror(
+            null_mut(),
+            4096,
+            3,
+            &*[0.0; 9].as_ptr().cast::<[CJoint; 3]>(),
+            &mut limits,
+        );
     }
     assert_eq!(limits, [0.0; 3]);
     for length in (0..whole.len()).step_by(if cfg!(miri) { 97 } else { 1 }) {
@@ -166,13 +237,21 @@ fn a_model_that_is_none_leaves_a_link_that_passes_commands_on() {
 
 #[test]
 fn two_and_three_joints_run_in_the_bytes_that_they_ask_for() {
-    for (joints, bytes, of_errors) in [(2, block::<2>(), contour::<2>()), (3, block::<3>(), contour::<3>())] {
+    for (joints, bytes, of_errors) in [
+        (2, block::<2>(), contour::<2>()),
+        (3, block::<3>(), contour::<3>()),
+    ] {
         let (mut memory, fault) = link(joints, if cfg!(miri) { &of_errors } else { &bytes });
         // SAFETY: `link` made it.
-        let at_another_period = unsafe { feedwright_servo_runs_at(memory.assume_init_mut(), SERVO_S) };
+        let at_another_period =
+            unsafe { feedwright_servo_runs_at(memory.assume_init_mut(), SERVO_S) };
         assert_eq!((fault, at_another_period), (0, 0));
         let outputs = steps(&mut memory, false);
-        assert!(cfg!(miri) || outputs.whole[0] >= 2, "it is delayed: {:?}", outputs.whole);
+        assert!(
+            cfg!(miri) || outputs.whole[0] >= 2,
+            "it is delayed: {:?}",
+            outputs.whole
+        );
         assert_eq!(steps(&mut memory, true).whole[1], 14);
         let mut plant = Box::<CPlant>::new_uninit();
         let [mut tool_mm, mut measured_mm, mut torque_nm] = [[f64::NAN; 3]; 3];
@@ -199,7 +278,12 @@ fn two_and_three_joints_run_in_the_bytes_that_they_ask_for() {
                 );
             }
         }
-        assert!([tool_mm, measured_mm, torque_nm].as_flattened().iter().all(|number| number.is_finite()));
+        assert!(
+            [tool_mm, measured_mm, torque_nm]
+                .as_flattened()
+                .iter()
+                .all(|number| number.is_finite())
+        );
         assert!(tool_mm[0] > 0.0, "{tool_mm:?}");
     }
 }

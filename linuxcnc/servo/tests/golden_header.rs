@@ -1,4 +1,5 @@
-//! `components/feedwright.h` is what the library of `hal/` declares: made anew where FEEDWRIGHT_UPDATE_DOCUMENTS is set.
+//! `components/feedwright.h` is what the library of `hal/` declares: made anew where
+//! FEEDWRIGHT_UPDATE_DOCUMENTS is set.
 
 use std::path::Path;
 

@@ -1,5 +1,6 @@
-//! Evidence for the correction counts only while the commanded path moves, and a cause that comes back latches: on `tnv40` with the model of
-//! `workshop`, whose drives have feedforward, friction and an integral that `tnv40` has not.
+//! Evidence for the correction counts only while the commanded path moves, and a cause that comes
+//! back latches: on `tnv40` with the model of `workshop`, whose drives have feedforward, friction
+//! and an integral that `tnv40` has not.
 
 #[path = "common/axis.rs"]
 mod axis;
@@ -12,7 +13,8 @@ mod paths;
 use std::f64::consts::TAU;
 
 use feedwright_control::{
-    AxisKnowledge, AxisStatistics, DriveParameters, FrictionParameters, IdentifiedAxes, LoopDelays, State,
+    AxisKnowledge, AxisStatistics, DriveParameters, FrictionParameters, IdentifiedAxes, LoopDelays,
+    State,
 };
 use feedwright_servo::machine::LinkModel;
 use feedwright_servo::plant::SimulatedMachine;
@@ -22,13 +24,14 @@ use axis::axis;
 use common::{LIMITS, SERVO_S, cutting};
 use paths::{ACCELERATION_MM_S2, FEED_MM_S, way_mm};
 
-/// Servo periods of a rest, and of rest until the tool has settled: the delay, and nine time constants of the position loop.
+/// Servo periods of a rest, and of rest until the tool has settled: the delay, and nine time
+/// constants of the position loop.
 const REST: usize = 2000;
 const SETTLED: usize = 200;
 /// Largest distance of a tool at rest from the command, um. Uncorrected, it is 0.7 um.
 const AT_REST_UM: f64 = 2.0;
-/// Servo periods of a test, the one in which the machine changes, and the one, at rest, in which it is repaired and the operator resets the
-/// correction.
+/// Servo periods of a test, the one in which the machine changes, and the one, at rest, in which it
+/// is repaired and the operator resets the correction.
 const PERIODS: usize = 14_000;
 const CHANGES: usize = 3_000;
 const RESET: usize = 8_000;
@@ -37,26 +40,43 @@ const RAD_PER_MM: f64 = TAU / 10.0;
 /// X and Y of `tnv40`.
 fn tnv40() -> IdentifiedAxes<2> {
     let inertia_and_friction = [[0.0103, 0.0336, 0.2], [0.012, 0.0308, 0.3]];
-    let axes = inertia_and_friction.map(|[inertia_kg_m2, viscous_friction_nm_s, coulomb_friction_nm]| {
-        let mut axis =
-            AxisKnowledge { delays: LoopDelays { command_s: 0.0, drive_s: 0.0, measurement_s: 0.0 }, ..axis() };
-        axis.parameters.inertia_kg_m2 = inertia_kg_m2;
-        axis.parameters.viscous_friction_nm_s = viscous_friction_nm_s;
-        axis.parameters.coulomb_friction_nm = coulomb_friction_nm;
-        axis.statistics.disturbance_nm = 0.1;
-        axis.statistics.disturbance_rad_s = 25.0 * TAU;
-        axis
-    });
-    IdentifiedAxes { mechanics_s: axes[0].periods.mechanics_s, axes }
+    let axes = inertia_and_friction.map(
+        |[inertia_kg_m2, viscous_friction_nm_s, coulomb_friction_nm]| {
+            let mut axis = AxisKnowledge {
+                delays: LoopDelays {
+                    command_s: 0.0,
+                    drive_s: 0.0,
+                    measurement_s: 0.0,
+                },
+                ..axis()
+            };
+            axis.parameters.inertia_kg_m2 = inertia_kg_m2;
+            axis.parameters.viscous_friction_nm_s = viscous_friction_nm_s;
+            axis.parameters.coulomb_friction_nm = coulomb_friction_nm;
+            axis.statistics.disturbance_nm = 0.1;
+            axis.statistics.disturbance_rad_s = 25.0 * TAU;
+            axis
+        },
+    );
+    IdentifiedAxes {
+        mechanics_s: axes[0].periods.mechanics_s,
+        axes,
+    }
 }
 
 /// X and Y of `workshop`.
 fn workshop() -> IdentifiedAxes<2> {
     let mut machine = tnv40();
     let of_axis = [(0.02, 0.02, 0.06), (0.024, -0.03, 0.09)];
-    for (axis, (speed_integral_s, coulomb_asymmetry_nm, stribeck_nm)) in machine.axes.iter_mut().zip(of_axis) {
-        let drive =
-            DriveParameters { speed_integral_s, velocity_feedforward: 0.95, torque_filter_hz: 1000.0, ..axis.drive };
+    for (axis, (speed_integral_s, coulomb_asymmetry_nm, stribeck_nm)) in
+        machine.axes.iter_mut().zip(of_axis)
+    {
+        let drive = DriveParameters {
+            speed_integral_s,
+            velocity_feedforward: 0.95,
+            torque_filter_hz: 1000.0,
+            ..axis.drive
+        };
         let friction = FrictionParameters {
             coulomb_asymmetry_nm,
             stribeck_nm,
@@ -75,18 +95,27 @@ fn workshop() -> IdentifiedAxes<2> {
             cogging_per_rev: 24.0,
             ..axis.statistics
         };
-        *axis = AxisKnowledge { drive, friction, statistics, ..*axis };
+        *axis = AxisKnowledge {
+            drive,
+            friction,
+            statistics,
+            ..*axis
+        };
         axis.delays.drive_s = 0.001;
     }
     machine
 }
 
-/// Commands of rests, and between them turns of a circle of 10 mm or the sides of a square of 20 mm.
+/// Commands of rests, and between them turns of a circle of 10 mm or the sides of a square of 20
+/// mm.
 fn commands(square: bool) -> impl Fn(usize) -> [f64; 2] {
     let length_mm = if square { 20.0 } else { TAU * 10.0 };
     let periods = ((length_mm / FEED_MM_S + FEED_MM_S / ACCELERATION_MM_S2) / SERVO_S) as usize + 1;
     move |n| {
-        let way_mm = way_mm((n % (REST + periods)).saturating_sub(REST) as f64 * SERVO_S, length_mm);
+        let way_mm = way_mm(
+            (n % (REST + periods)).saturating_sub(REST) as f64 * SERVO_S,
+            length_mm,
+        );
         if square {
             match n / (REST + periods) % 4 {
                 0 => [way_mm, 0.0],
@@ -116,7 +145,10 @@ fn cut(
     command_mm: impl Fn(usize) -> [f64; 2],
     change: impl Fn(usize, &mut LinkInputs<2>),
 ) -> Vec<Period> {
-    let (mut plant, mut servo) = (SimulatedMachine::new(&tnv40(), 1), Servo::new(Ok(LinkModel::Axes(model))));
+    let (mut plant, mut servo) = (
+        SimulatedMachine::new(&tnv40(), 1),
+        Servo::new(Ok(LinkModel::Axes(model))),
+    );
     servo.runs_at(SERVO_S);
     let (mut rested, mut last_mm) = (0, command_mm(0));
     (0..PERIODS)
@@ -129,19 +161,32 @@ fn cut(
             let outputs = servo.step(&inputs, &LIMITS);
             plant.step(outputs.drive_mm, inputs.powered, inertia(n));
             let tool_mm = plant.position_mm();
-            Period { outputs, rested, off_um: 1e3 * (tool_mm[0] - command_mm[0]).hypot(tool_mm[1] - command_mm[1]) }
+            Period {
+                outputs,
+                rested,
+                off_um: 1e3 * (tool_mm[0] - command_mm[0]).hypot(tool_mm[1] - command_mm[1]),
+            }
         })
         .collect()
 }
 
 /// How often the correction came into the loop.
 fn times_in(periods: &[Period]) -> usize {
-    let engaged = |period: &Period| period.outputs.link == Link::Delayed && period.outputs.state == State::Engaged;
-    periods.windows(2).filter(|pair| !engaged(&pair[0]) && engaged(&pair[1])).count()
+    let engaged = |period: &Period| {
+        period.outputs.link == Link::Delayed && period.outputs.state == State::Engaged
+    };
+    periods
+        .windows(2)
+        .filter(|pair| !engaged(&pair[0]) && engaged(&pair[1]))
+        .count()
 }
 
 fn largest_at_rest_um(periods: &[Period]) -> f64 {
-    periods.iter().filter(|period| period.rested > SETTLED).map(|period| period.off_um).fold(0.0, f64::max)
+    periods
+        .iter()
+        .filter(|period| period.rested > SETTLED)
+        .map(|period| period.off_um)
+        .fold(0.0, f64::max)
 }
 
 #[test]
@@ -149,25 +194,53 @@ fn by_the_model_of_another_machine_the_axes_stand_where_the_command_does() {
     for square in [false, true] {
         let periods = cut(workshop(), |_| 1.0, commands(square), |_, _| {});
         let (most_um, times) = (largest_at_rest_um(&periods), times_in(&periods));
-        println!("square: {square}; at rest {most_um:.2} um off the command; {times} times in the loop");
-        assert!(most_um < AT_REST_UM, "square: {square}; {most_um:.2} um, {times} times in the loop");
+        println!(
+            "square: {square}; at rest {most_um:.2} um off the command; {times} times in the loop"
+        );
+        assert!(
+            most_um < AT_REST_UM,
+            "square: {square}; {most_um:.2} um, {times} times in the loop"
+        );
     }
 }
 
-/// The sides of a square with the right model, on a machine that is three times as heavy after a while, until [`RESET`].
+/// The sides of a square with the right model, on a machine that is three times as heavy after a
+/// while, until [`RESET`].
 fn heavy_for_a_while(change: impl Fn(usize, &mut LinkInputs<2>)) -> Vec<Period> {
-    cut(tnv40(), |n| if (CHANGES..RESET).contains(&n) { 3.0 } else { 1.0 }, commands(true), change)
+    cut(
+        tnv40(),
+        |n| {
+            if (CHANGES..RESET).contains(&n) {
+                3.0
+            } else {
+                1.0
+            }
+        },
+        commands(true),
+        change,
+    )
 }
 
 #[test]
 fn a_cause_that_comes_back_keeps_the_correction_out() {
     let periods = heavy_for_a_while(|_, _| {});
-    let first = periods.iter().position(|period| period.outputs.latched).expect("a cause that comes back latches");
-    let left = periods[first].outputs.left.expect("the supervisor took it out");
+    let first = periods
+        .iter()
+        .position(|period| period.outputs.latched)
+        .expect("a cause that comes back latches");
+    let left = periods[first]
+        .outputs
+        .left
+        .expect("the supervisor took it out");
     println!("latched in servo period {first} by {left:?}");
     assert!(first < RESET && left.count > 1, "{first} {left:?}");
     for (n, period) in periods.iter().enumerate().skip(first) {
-        let LinkOutputs { state, fault, latched, .. } = period.outputs;
+        let LinkOutputs {
+            state,
+            fault,
+            latched,
+            ..
+        } = period.outputs;
         let is_out = latched && state != State::Engaged && fault == LinkFault::Faded(left.cause);
         assert!(is_out, "{n}: {latched} {state:?} {fault:?}");
     }
@@ -175,14 +248,22 @@ fn a_cause_that_comes_back_keeps_the_correction_out() {
 
 #[test]
 fn a_correction_that_is_switched_off_and_on_or_was_without_power_comes_back() {
-    let resets: [fn(&mut LinkInputs<2>); 2] = [|inputs| inputs.enabled = false, |inputs| inputs.powered = false];
+    let resets: [fn(&mut LinkInputs<2>); 2] = [
+        |inputs| inputs.enabled = false,
+        |inputs| inputs.powered = false,
+    ];
     for reset in resets {
         let periods = heavy_for_a_while(|n, inputs| {
             if n == RESET {
                 reset(inputs);
             }
         });
-        assert!(periods[RESET - 1].outputs.latched && periods[RESET..].iter().all(|period| !period.outputs.latched));
+        assert!(
+            periods[RESET - 1].outputs.latched
+                && periods[RESET..]
+                    .iter()
+                    .all(|period| !period.outputs.latched)
+        );
         assert!(times_in(&periods[RESET..]) > 0);
         let LinkOutputs { state, fault, .. } = periods[PERIODS - 1].outputs;
         assert_eq!((state, fault), (State::Engaged, LinkFault::None));
@@ -193,8 +274,16 @@ fn a_correction_that_is_switched_off_and_on_or_was_without_power_comes_back() {
 fn a_delay_that_is_given_up_and_taken_up_again_resets_nothing() {
     let periods = heavy_for_a_while(|n, inputs| inputs.direct = (RESET..RESET + 500).contains(&n));
     let behind = &periods[RESET..];
-    assert!(behind.iter().any(|period| period.outputs.link == Link::Direct));
-    assert!(behind.iter().all(|period| period.outputs.latched && period.outputs.fault != LinkFault::None));
+    assert!(
+        behind
+            .iter()
+            .any(|period| period.outputs.link == Link::Direct)
+    );
+    assert!(
+        behind
+            .iter()
+            .all(|period| period.outputs.latched && period.outputs.fault != LinkFault::None)
+    );
     assert_eq!(times_in(behind), 0);
 }
 
@@ -210,6 +299,12 @@ fn a_position_that_is_lost_again_and_again_latches_nothing() {
             }
         },
     );
-    let times = periods[PERIODS - 1].outputs.left.map_or(0, |left| left.count);
-    assert!(times > 3 && periods.iter().all(|period| !period.outputs.latched), "{times} times out");
+    let times = periods[PERIODS - 1]
+        .outputs
+        .left
+        .map_or(0, |left| left.count);
+    assert!(
+        times > 3 && periods.iter().all(|period| !period.outputs.latched),
+        "{times} times out"
+    );
 }

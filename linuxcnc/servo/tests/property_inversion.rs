@@ -1,4 +1,5 @@
-//! The paper's controllers in the link: what they ask of feedrate and geometry, whatever the identifier has learnt.
+//! The paper's controllers in the link: what they ask of feedrate and geometry, whatever the
+//! identifier has learnt.
 
 #[path = "common/inputs.rs"]
 mod common;
@@ -25,7 +26,9 @@ const RATES: [f64; 2] = [0.5, 1.2];
 fn sequence(seed: u64, size: f64) -> impl FnMut() -> f64 {
     let mut state = seed;
     move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         size * ((state >> 33) as f64 / f64::from(1_u32 << 30) - 1.0)
     }
 }
@@ -34,9 +37,22 @@ fn sequence(seed: u64, size: f64) -> impl FnMut() -> f64 {
 fn drawn(seed: u64, size: f64) -> LinkModel<2> {
     let mut next = sequence(seed, size);
     let mut identifier = ContourIdentifier::<2>::NULL;
-    identifier.hidden.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|weight| *weight = next());
-    identifier.output.as_flattened_mut().iter_mut().for_each(|weight| *weight = next());
-    LinkModel::Contour(TrainedContour { identifier, servo_s: SERVO_S, feed_period_s: FEED_PERIOD_S })
+    identifier
+        .hidden
+        .as_flattened_mut()
+        .as_flattened_mut()
+        .iter_mut()
+        .for_each(|weight| *weight = next());
+    identifier
+        .output
+        .as_flattened_mut()
+        .iter_mut()
+        .for_each(|weight| *weight = next());
+    LinkModel::Contour(TrainedContour {
+        identifier,
+        servo_s: SERVO_S,
+        feed_period_s: FEED_PERIOD_S,
+    })
 }
 
 /// Rest, a turn of a circle of 10 mm, rest.
@@ -47,7 +63,11 @@ fn command_mm(n: usize) -> [f64; 2] {
 }
 
 /// What the link makes of a turn; the axes follow with a time constant of 20 ms.
-fn turn(model: LinkModel<2>, limits: &LinkLimits, change: impl Fn(usize, &mut LinkInputs<2>)) -> Vec<LinkOutputs<2>> {
+fn turn(
+    model: LinkModel<2>,
+    limits: &LinkLimits,
+    change: impl Fn(usize, &mut LinkInputs<2>),
+) -> Vec<LinkOutputs<2>> {
     let (mut servo, mut actual_mm) = (Servo::new(Ok(model)), [0.0; 2]);
     servo.runs_at(SERVO_S);
     (0..TURN + 3 * REST)
@@ -70,13 +90,29 @@ fn whatever_was_learnt_feedrate_and_geometry_keep_their_bounds() {
             let periods = turn(drawn(seed, size), &LIMITS, |_, _| {});
             for pair in periods.windows(2) {
                 let outputs = &pair[1];
-                assert!(outputs.rate >= RATES[0] && outputs.rate <= RATES[1], "{seed} {size}: rate {}", outputs.rate);
+                assert!(
+                    outputs.rate >= RATES[0] && outputs.rate <= RATES[1],
+                    "{seed} {size}: rate {}",
+                    outputs.rate
+                );
                 let [x, y] = outputs.correction_mm;
-                assert!(x.hypot(y) < 2.0 * LIMITS.deviation_mm, "{seed} {size}: offset {x} {y}");
-                let step = (0..2).map(|i| (outputs.drive_mm[i] - pair[0].drive_mm[i]).abs()).fold(0.0, f64::max);
-                assert!(step < 2.0 * LIMITS.speed_mm_s * SERVO_S, "{seed} {size}: the drive's command leapt by {step}");
+                assert!(
+                    x.hypot(y) < 2.0 * LIMITS.deviation_mm,
+                    "{seed} {size}: offset {x} {y}"
+                );
+                let step = (0..2)
+                    .map(|i| (outputs.drive_mm[i] - pair[0].drive_mm[i]).abs())
+                    .fold(0.0, f64::max);
+                assert!(
+                    step < 2.0 * LIMITS.speed_mm_s * SERVO_S,
+                    "{seed} {size}: the drive's command leapt by {step}"
+                );
             }
-            assert_eq!(periods[periods.len() - 1].rate, 1.0, "{seed} {size}: at rest");
+            assert_eq!(
+                periods[periods.len() - 1].rate,
+                1.0,
+                "{seed} {size}: at rest"
+            );
         }
     }
 }
@@ -84,19 +120,26 @@ fn whatever_was_learnt_feedrate_and_geometry_keep_their_bounds() {
 /// RMS and largest contour error of the actual position, um.
 fn error_um(periods: &[LinkOutputs<2>]) -> [f64; 2] {
     let errors_um = periods.iter().map(|period| 1e3 * period.contour_error_mm);
-    let [squares, largest] = errors_um.fold([0.0_f64; 2], |[sum, most], um| [sum + um * um, most.max(um)]);
+    let [squares, largest] = errors_um.fold([0.0_f64; 2], |[sum, most], um| {
+        [sum + um * um, most.max(um)]
+    });
     [(squares / periods.len() as f64).sqrt(), largest]
 }
 
 #[test]
 fn whatever_was_learnt_the_cut_is_no_worse_than_without_correction() {
-    let off_um = error_um(&turn(drawn(0, 0.0), &LIMITS, |_, inputs| inputs.enabled = false));
+    let off_um = error_um(&turn(drawn(0, 0.0), &LIMITS, |_, inputs| {
+        inputs.enabled = false;
+    }));
     for seed in 0..20 {
         for size in [0.1, 1.0, 100.0] {
             let on_um = error_um(&turn(drawn(seed, size), &LIMITS, |_, _| {}));
             println!("{seed:2} {size:5} {on_um:6.2?} of {off_um:6.2?} um");
             for i in 0..2 {
-                assert!(on_um[i] <= off_um[i] + NO_WORSE_UM[i], "{seed} {size}: {on_um:?} um, {off_um:?} without");
+                assert!(
+                    on_um[i] <= off_um[i] + NO_WORSE_UM[i],
+                    "{seed} {size}: {on_um:?} um, {off_um:?} without"
+                );
             }
         }
     }
@@ -110,9 +153,21 @@ fn the_feedrate_falls_where_the_identifier_predicts_an_error_that_grows_with_it(
         identifier.hidden[axis][0][axis] = 1.0;
         identifier.output[axis][axis] = 1.0;
     }
-    let model = LinkModel::Contour(TrainedContour { identifier, servo_s: SERVO_S, feed_period_s: FEED_PERIOD_S });
+    let model = LinkModel::Contour(TrainedContour {
+        identifier,
+        servo_s: SERVO_S,
+        feed_period_s: FEED_PERIOD_S,
+    });
     // It predicts more than the axes do: a wide limit keeps it in the loop.
-    let periods = turn(model, &LinkLimits { speed_alone: true, deviation_mm: 5.0, ..LIMITS }, |_, _| {});
+    let periods = turn(
+        model,
+        &LinkLimits {
+            speed_alone: true,
+            deviation_mm: 5.0,
+            ..LIMITS
+        },
+        |_, _| {},
+    );
     let cut = &periods[REST + TURN / 4..REST + 3 * TURN / 4];
     let fastest = cut.iter().map(|period| period.rate).fold(0.0, f64::max);
     assert!(fastest < 1.0, "{fastest} of the feedrate was requested");
@@ -121,22 +176,40 @@ fn the_feedrate_falls_where_the_identifier_predicts_an_error_that_grows_with_it(
 #[test]
 fn the_delay_is_what_a_decision_looks_ahead() {
     let periods = turn(drawn(1, 0.0), &LIMITS, |_, _| {});
-    let delayed: Vec<_> = periods.iter().enumerate().filter(|(_, period)| period.link == Link::Delayed).collect();
+    let delayed: Vec<_> = periods
+        .iter()
+        .enumerate()
+        .filter(|(_, period)| period.link == Link::Delayed)
+        .collect();
     assert!(delayed.len() > TURN);
     for (n, period) in delayed {
         assert_eq!(period.delay_periods, 13);
         // Nothing that is learnt, nothing that is moved.
-        let off = (0..2).map(|i| (period.drive_mm[i] - command_mm(n - 13)[i]).abs()).fold(0.0, f64::max);
+        let off = (0..2)
+            .map(|i| (period.drive_mm[i] - command_mm(n - 13)[i]).abs())
+            .fold(0.0, f64::max);
         assert!(off < ROUNDING_MM, "{n}: {off}");
     }
 }
 
 #[test]
 fn with_the_speed_alone_the_geometry_stays_on_the_path() {
-    let limits = LinkLimits { speed_alone: true, ..LIMITS };
+    let limits = LinkLimits {
+        speed_alone: true,
+        ..LIMITS
+    };
     let periods = turn(drawn(3, 1.0), &limits, |_, _| {});
-    assert!(periods.iter().all(|period| period.correction_mm.iter().all(|mm| mm.abs() < ROUNDING_MM)));
-    assert!(periods.iter().any(|period| (period.rate - 1.0).abs() > 1e-4), "no feedrate was asked for");
+    assert!(
+        periods
+            .iter()
+            .all(|period| period.correction_mm.iter().all(|mm| mm.abs() < ROUNDING_MM))
+    );
+    assert!(
+        periods
+            .iter()
+            .any(|period| (period.rate - 1.0).abs() > 1e-4),
+        "no feedrate was asked for"
+    );
 }
 
 #[test]
@@ -155,14 +228,30 @@ fn what_is_not_a_number_goes_no_further() {
         for which in 0..2 {
             let periods = turn(drawn(5, 1.0), &LIMITS, |n, inputs| {
                 if (500..520).contains(&n) {
-                    let into = if which == 0 { &mut inputs.command_mm } else { &mut inputs.actual_mm };
+                    let into = if which == 0 {
+                        &mut inputs.command_mm
+                    } else {
+                        &mut inputs.actual_mm
+                    };
                     into[n % 2] = spoilt;
                 }
             });
-            for LinkOutputs { drive_mm, feedback_mm, correction_mm, contour_error_mm, without_mm, rate, .. } in periods
+            for LinkOutputs {
+                drive_mm,
+                feedback_mm,
+                correction_mm,
+                contour_error_mm,
+                without_mm,
+                rate,
+                ..
+            } in periods
             {
                 let all = drive_mm.into_iter().chain(feedback_mm).chain(correction_mm);
-                assert!(all.chain([contour_error_mm, without_mm, rate]).all(f64::is_finite), "{spoilt} {which}");
+                assert!(
+                    all.chain([contour_error_mm, without_mm, rate])
+                        .all(f64::is_finite),
+                    "{spoilt} {which}"
+                );
             }
         }
     }

@@ -1,4 +1,5 @@
-//! Settings that change while the machine cuts: a number that is none has no effect, and a lower deviation takes effect at once.
+//! Settings that change while the machine cuts: a number that is none has no effect, and a lower
+//! deviation takes effect at once.
 
 #[path = "common/axis.rs"]
 mod axis;
@@ -25,18 +26,37 @@ type Spoilt = (&'static str, Setting, fn(&mut LinkLimits, f64));
 
 const SPOILT: [Spoilt; 6] = [
     ("delay", Setting::Delay, |limits, x| limits.delay_s = x),
-    ("deviation", Setting::Deviation, |limits, x| limits.deviation_mm = x),
+    ("deviation", Setting::Deviation, |limits, x| {
+        limits.deviation_mm = x;
+    }),
     ("speed", Setting::Speed, |limits, x| limits.speed_mm_s = x),
-    ("acceleration", Setting::CorrectionAcceleration, |limits, x| limits.correction_mm_s2 = x),
-    ("acceleration in the loop", Setting::Acceleration, |limits, x| limits.engaged_mm_s2 = x),
-    ("scale", Setting::AdaptiveScale, |limits, x| limits.adaptive_scale = x),
+    (
+        "acceleration",
+        Setting::CorrectionAcceleration,
+        |limits, x| limits.correction_mm_s2 = x,
+    ),
+    (
+        "acceleration in the loop",
+        Setting::Acceleration,
+        |limits, x| limits.engaged_mm_s2 = x,
+    ),
+    ("scale", Setting::AdaptiveScale, |limits, x| {
+        limits.adaptive_scale = x;
+    }),
 ];
 
 #[test]
 fn a_number_that_is_none_changes_nothing_and_is_told() {
     let good = turn(Ok(machine()), &LIMITS, |_, _| {});
     for (name, setting, spoil) in SPOILT {
-        for value in [-1.0, -400.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
+        for value in [
+            -1.0,
+            -400.0,
+            f64::NAN,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            1e300,
+        ] {
             for from in [0, CHANGED] {
                 let spoilt = from..CHANGED + 200;
                 let limits = |n: usize| {
@@ -49,10 +69,18 @@ fn a_number_that_is_none_changes_nothing_and_is_told() {
                 let periods = turn_on(&machine(), Ok(machine()), limits, |_, _| {});
                 for (n, (period, good)) in periods.iter().zip(&good).enumerate() {
                     let outputs = &period.outputs;
-                    let [came_to, good] = [period, good].map(|of| (of.inputs, of.outputs.drive_mm, of.tool_mm));
+                    let [came_to, good] =
+                        [period, good].map(|of| (of.inputs, of.outputs.drive_mm, of.tool_mm));
                     assert_eq!(came_to, good, "{name} {value}, from {from}: {n}");
-                    assert_eq!(outputs.adaptive_feed, 1.0, "{name} {value}, from {from}: {n}");
-                    let told = if spoilt.contains(&n) { LinkFault::Setting(setting) } else { LinkFault::None };
+                    assert_eq!(
+                        outputs.adaptive_feed, 1.0,
+                        "{name} {value}, from {from}: {n}"
+                    );
+                    let told = if spoilt.contains(&n) {
+                        LinkFault::Setting(setting)
+                    } else {
+                        LinkFault::None
+                    };
                     assert_eq!(outputs.fault, told, "{name} {value}, from {from}: {n}");
                 }
             }
@@ -60,7 +88,8 @@ fn a_number_that_is_none_changes_nothing_and_is_told() {
     }
 }
 
-/// Farthest that the drive's command goes in a servo period, mm: a correction within the widest limits of this test.
+/// Farthest that the drive's command goes in a servo period, mm: a correction within the widest
+/// limits of this test.
 const STEP_MM: f64 = 0.2;
 
 #[test]
@@ -105,7 +134,10 @@ fn jolt_mm_s(periods: &[Period]) -> f64 {
         let at = |k: usize| three[k].outputs.drive_mm[i];
         (at(2) - 2.0 * at(1) + at(0)) / SERVO_S
     };
-    periods.windows(3).map(|three| second(three, 0).hypot(second(three, 1))).fold(0.0, f64::max)
+    periods
+        .windows(3)
+        .map(|three| second(three, 0).hypot(second(three, 1)))
+        .fold(0.0, f64::max)
 }
 
 #[test]
@@ -114,15 +146,44 @@ fn a_lower_deviation_takes_effect_in_the_cut_and_nothing_leaps() {
     let cut = CHANGED..SETTLE + TURN;
     let wanted_mm = free[cut.clone()].iter().map(off_mm).fold(0.0, f64::max);
     for deviation_mm in [0.008, 0.004, 0.0] {
-        assert!(wanted_mm > 2.0 * deviation_mm, "the limit does not bind: {wanted_mm}");
-        let limits = |n: usize| if n < CHANGED { LIMITS } else { LinkLimits { deviation_mm, ..LIMITS } };
+        assert!(
+            wanted_mm > 2.0 * deviation_mm,
+            "the limit does not bind: {wanted_mm}"
+        );
+        let limits = |n: usize| {
+            if n < CHANGED {
+                LIMITS
+            } else {
+                LinkLimits {
+                    deviation_mm,
+                    ..LIMITS
+                }
+            }
+        };
         let periods = turn_on(&machine(), Ok(machine()), limits, |_, _| {});
         let reached = CHANGED + (REACHED_S / SERVO_S) as usize;
-        let off_mm = periods[reached..cut.end].iter().map(off_mm).fold(0.0, f64::max);
-        assert!(off_mm <= deviation_mm + ROUND_MM, "{deviation_mm}: {off_mm}");
-        let [with, without] = [&periods, &free].map(|periods| jolt_mm_s(&periods[CHANGED - 10..reached]));
-        assert!(periods.iter().all(|period| period.outputs.fault == LinkFault::None), "{deviation_mm}");
-        println!("{deviation_mm}: {off_mm} of {wanted_mm}, speed changes by {with} of {without} mm/s");
-        assert!(with <= without + 2.0 * LIMITS.correction_mm_s2 * SERVO_S, "{deviation_mm}: {with} {without}");
+        let off_mm = periods[reached..cut.end]
+            .iter()
+            .map(off_mm)
+            .fold(0.0, f64::max);
+        assert!(
+            off_mm <= deviation_mm + ROUND_MM,
+            "{deviation_mm}: {off_mm}"
+        );
+        let [with, without] =
+            [&periods, &free].map(|periods| jolt_mm_s(&periods[CHANGED - 10..reached]));
+        assert!(
+            periods
+                .iter()
+                .all(|period| period.outputs.fault == LinkFault::None),
+            "{deviation_mm}"
+        );
+        println!(
+            "{deviation_mm}: {off_mm} of {wanted_mm}, speed changes by {with} of {without} mm/s"
+        );
+        assert!(
+            with <= without + 2.0 * LIMITS.correction_mm_s2 * SERVO_S,
+            "{deviation_mm}: {with} {without}"
+        );
     }
 }

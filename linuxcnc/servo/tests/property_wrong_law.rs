@@ -1,5 +1,6 @@
-//! By the law of another machine the link is never worse than without a correction, and by the right one far better: on paths that begin where the machine
-//! stands, without any motion before in which a law could prove itself.
+//! By the law of another machine the link is never worse than without a correction, and by the
+//! right one far better: on paths that begin where the machine stands, without any motion before in
+//! which a law could prove itself.
 
 #[path = "common/axis.rs"]
 mod axis;
@@ -21,7 +22,8 @@ use paths::{REST, circle, commands, eight, error_mm, star};
 /// What is no worse, um: RMS and largest; and what is left by the right law, of both.
 const NO_WORSE_UM: [f64; 2] = [0.05, 1.0];
 const LEFT: [f64; 2] = [0.05, 0.2];
-/// A drive that is asked for so much of its 30 N m is spent, N m; and how many times as large its largest error may be then.
+/// A drive that is asked for so much of its 30 N m is spent, N m; and how many times as large its
+/// largest error may be then.
 const SPENT_NM: f64 = 27.0;
 const SPENT: f64 = 1.2;
 
@@ -31,7 +33,10 @@ type Change = fn(&mut AxisKnowledge);
 /// Two axes alike, with the numbers of the machine of Lee, Cho and Jeon (2005).
 fn machine() -> Machine {
     let axis = axis();
-    IdentifiedAxes { mechanics_s: axis.periods.mechanics_s, axes: [axis; 2] }
+    IdentifiedAxes {
+        mechanics_s: axis.periods.mechanics_s,
+        axes: [axis; 2],
+    }
 }
 
 fn changed(change: Change) -> Machine {
@@ -49,15 +54,25 @@ struct Cut {
 }
 
 fn cut(real: &Machine, inertia: f64, points: &[[f64; 2]], enabled: bool) -> Cut {
-    let (mut plant, mut servo) = (SimulatedMachine::new(real, 1), Servo::new(Ok(LinkModel::Axes(machine()))));
+    let (mut plant, mut servo) = (
+        SimulatedMachine::new(real, 1),
+        Servo::new(Ok(LinkModel::Axes(machine()))),
+    );
     servo.runs_at(SERVO_S);
-    let (mut near, mut squares, mut largest, mut largest_nm, mut told) = (0, Vec::new(), 0.0_f64, 0.0_f64, Vec::new());
+    let (mut near, mut squares, mut largest, mut largest_nm, mut told) =
+        (0, Vec::new(), 0.0_f64, 0.0_f64, Vec::new());
     let commands = commands(points);
     for (n, command_mm) in commands.iter().enumerate() {
-        let inputs = LinkInputs { enabled, ..cutting(*command_mm, plant.measured_mm()) };
+        let inputs = LinkInputs {
+            enabled,
+            ..cutting(*command_mm, plant.measured_mm())
+        };
         let outputs = servo.step(&inputs, &LIMITS);
         plant.step(outputs.drive_mm, true, inertia);
-        largest_nm = plant.torque_nm().iter().fold(largest_nm, |most, nm| most.max(nm.abs()));
+        largest_nm = plant
+            .torque_nm()
+            .iter()
+            .fold(largest_nm, |most, nm| most.max(nm.abs()));
         if !told.contains(&outputs.fault) {
             told.push(outputs.fault);
         }
@@ -68,7 +83,11 @@ fn cut(real: &Machine, inertia: f64, points: &[[f64; 2]], enabled: bool) -> Cut 
         }
     }
     let rms_um = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
-    Cut { error_um: [rms_um, largest], largest_nm, told }
+    Cut {
+        error_um: [rms_um, largest],
+        largest_nm,
+        told,
+    }
 }
 
 /// Programs that bend late, early and all the time.
@@ -81,7 +100,12 @@ fn by_the_right_law_a_cut_that_begins_where_the_machine_stands_is_corrected() {
     for (name, points) in programs() {
         let [off, on] = [false, true].map(|enabled| cut(&machine(), 1.0, &points, enabled));
         for i in 0..2 {
-            assert!(on.error_um[i] < LEFT[i] * off.error_um[i], "{name}: {:?} of {:?}", on.error_um, off.error_um);
+            assert!(
+                on.error_um[i] < LEFT[i] * off.error_um[i],
+                "{name}: {:?} of {:?}",
+                on.error_um,
+                off.error_um
+            );
         }
         assert_eq!(on.told, [LinkFault::None], "{name}");
     }
@@ -97,19 +121,50 @@ fn by_the_law_of_another_machine_nothing_is_worse() {
         ("2 times as heavy", |_| {}, 2.0),
         ("1.3 times as heavy", |_| {}, 1.3),
         ("half as heavy", |_| {}, 0.5),
-        ("10 % more gain of position", |axis| axis.parameters.kp_1_s *= 1.1, 1.0),
-        ("10 % less gain of position", |axis| axis.parameters.kp_1_s *= 0.9, 1.0),
-        ("20 % more gain of position", |axis| axis.parameters.kp_1_s *= 1.2, 1.0),
-        ("40 % less gain of speed", |axis| axis.parameters.kv_nm_s_per_rad *= 0.6, 1.0),
-        ("twice the friction", |axis| axis.parameters.coulomb_friction_nm *= 2.0, 1.0),
+        (
+            "10 % more gain of position",
+            |axis| axis.parameters.kp_1_s *= 1.1,
+            1.0,
+        ),
+        (
+            "10 % less gain of position",
+            |axis| axis.parameters.kp_1_s *= 0.9,
+            1.0,
+        ),
+        (
+            "20 % more gain of position",
+            |axis| axis.parameters.kp_1_s *= 1.2,
+            1.0,
+        ),
+        (
+            "40 % less gain of speed",
+            |axis| axis.parameters.kv_nm_s_per_rad *= 0.6,
+            1.0,
+        ),
+        (
+            "twice the friction",
+            |axis| axis.parameters.coulomb_friction_nm *= 2.0,
+            1.0,
+        ),
     ];
     let mut worse = 0;
     for (how, change, inertia) in wrong {
         for (name, points) in programs() {
-            let [off, on] = [false, true].map(|enabled| cut(&changed(change), inertia, &points, enabled));
-            println!("{how:30} {name:8} {:7.2?} of {:7.2?} {:?}", on.error_um, off.error_um, on.told);
+            let [off, on] =
+                [false, true].map(|enabled| cut(&changed(change), inertia, &points, enabled));
+            println!(
+                "{how:30} {name:8} {:7.2?} of {:7.2?} {:?}",
+                on.error_um, off.error_um, on.told
+            );
             // A machine whose drives have no torque left as it is swings further at its corners.
-            let most = [1.0, if off.largest_nm > SPENT_NM { SPENT } else { 1.0 }];
+            let most = [
+                1.0,
+                if off.largest_nm > SPENT_NM {
+                    SPENT
+                } else {
+                    1.0
+                },
+            ];
             let no_worse = |i: usize| on.error_um[i] <= most[i] * off.error_um[i] + NO_WORSE_UM[i];
             worse += usize::from(!(no_worse(0) && no_worse(1)));
         }

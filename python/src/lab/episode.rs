@@ -1,4 +1,5 @@
-//! A run that waits for its actions: on a thread of its own, which does not touch the interpreter while it waits.
+//! A run that waits for its actions: on a thread of its own, which does not touch the interpreter
+//! while it waits.
 //!
 //! ```text
 //! caller --- action ---> run          channel; its end ends the run
@@ -51,7 +52,11 @@ struct ErrorSink(Rc<Cell<ErrorSums>>);
 impl Sink for ErrorSink {
     fn row(&mut self, row: &Row) -> io::Result<()> {
         if row.cutting {
-            let ErrorSums { rows, sum_um2, max_um } = self.0.get();
+            let ErrorSums {
+                rows,
+                sum_um2,
+                max_um,
+            } = self.0.get();
             let error_um = 1e3 * row.contour_error_mm.abs();
             self.0.set(ErrorSums {
                 rows: rows + 1,
@@ -86,8 +91,15 @@ impl<const N: usize> Controller<N> for Waiting {
         if self.raised.is_over() {
             return Command::AS_PLANNED;
         }
-        let seen = Box::new(SeenWindow::of(window, Some(measured), self.schedule.preview));
-        let sent = self.shown.send(EpisodeMessage::Window(seen, self.errors.take())).is_ok();
+        let seen = Box::new(SeenWindow::of(
+            window,
+            Some(measured),
+            self.schedule.preview,
+        ));
+        let sent = self
+            .shown
+            .send(EpisodeMessage::Window(seen, self.errors.take()))
+            .is_ok();
         match self.actions.recv() {
             Ok((rate, offset_mm)) if sent => Command::straight(rate, of_three(offset_mm)),
             _ => {
@@ -126,20 +138,36 @@ impl EpisodeWork {
         errors: &Rc<Cell<ErrorSums>>,
     ) -> Result<String, Report> {
         let job = &self.task.job;
-        let watch = GuardedWatch { watch: &(), raised: self.raised.clone() };
+        let watch = GuardedWatch {
+            watch: &(),
+            raised: self.raised.clone(),
+        };
         let checked = job.check()?;
         let axes = checked.axes();
         // Where nobody waits any more, the first window ends the run.
-        let _ = shown.send(EpisodeMessage::Known(Box::new(self.task.known(axes)?), axes));
+        let _ = shown.send(EpisodeMessage::Known(
+            Box::new(self.task.known(axes)?),
+            axes,
+        ));
         let (schedule, raised) = (self.schedule, self.raised.clone());
-        let waiting = Waiting { schedule, shown: shown.clone(), actions, errors: errors.clone(), raised };
+        let waiting = Waiting {
+            schedule,
+            shown: shown.clone(),
+            actions,
+            errors: errors.clone(),
+            raised,
+        };
         let once = Once(RefCell::new(Some(waiting)));
-        let plant = self
-            .term
-            .as_ref()
-            .map(|term| move |start_mm: [f64; 3], seed: u64| term.plant(&job.machine, axes, start_mm, seed));
+        let plant = self.term.as_ref().map(|term| {
+            move |start_mm: [f64; 3], seed: u64| term.plant(&job.machine, axes, start_mm, seed)
+        });
         let plant = plant.as_ref().map(|plant| plant as _);
-        let guests = Guests { plane: Some(&once), space: Some(&once), plant, ..Guests::default() };
+        let guests = Guests {
+            plane: Some(&once),
+            space: Some(&once),
+            plant,
+            ..Guests::default()
+        };
         let (mut sink, mut end) = (ErrorSink(errors.clone()), self.raised.clone());
         watch.check()?;
         let outcome = checked.run_with(guests, &mut [&mut sink, &mut end], &watch)?;
@@ -147,8 +175,13 @@ impl EpisodeWork {
     }
 }
 
-/// What `advance` returns: the window, then rows, mean square and largest error since the last one, then the figures at the end.
-type Advanced<'py> = (Option<Bound<'py, PythonWindow>>, (u32, f64, f64), Option<Bound<'py, PyAny>>);
+/// What `advance` returns: the window, then rows, mean square and largest error since the last one,
+/// then the figures at the end.
+type Advanced<'py> = (
+    Option<Bound<'py, PythonWindow>>,
+    (u32, f64, f64),
+    Option<Bound<'py, PyAny>>,
+);
 
 /// A run that waits for its actions.
 #[pyclass(module = "feedwright.lab")]
@@ -175,17 +208,30 @@ impl Episode {
         let schedule = schedule(servo_periods, preview)?;
         let task = LabTask::new(program, machine, &options).map_err(|error| exception(&error))?;
         let raised = Raised::default();
-        let work = EpisodeWork { task, schedule, term: options.plant_term(py, &raised), raised: raised.clone() };
+        let work = EpisodeWork {
+            task,
+            schedule,
+            term: options.plant_term(py, &raised),
+            raised: raised.clone(),
+        };
         let (shown, told) = channel();
         let (actions, asked) = channel();
-        let thread = thread::Builder::new().name("feedwright episode".to_owned()).spawn(move || {
-            let errors = Rc::new(Cell::new(ErrorSums::default()));
-            let end = work.cut(&shown, asked, &errors);
-            // Where nobody waits any more, nobody asks for the figures.
-            let _ = shown.send(EpisodeMessage::End(end, errors.take()));
-        })?;
-        let mut episode =
-            Self { told: Mutex::new(told), actions: Some(actions), thread: Some(thread), raised, axes: 0, known: None };
+        let thread = thread::Builder::new()
+            .name("feedwright episode".to_owned())
+            .spawn(move || {
+                let errors = Rc::new(Cell::new(ErrorSums::default()));
+                let end = work.cut(&shown, asked, &errors);
+                // Where nobody waits any more, nobody asks for the figures.
+                let _ = shown.send(EpisodeMessage::End(end, errors.take()));
+            })?;
+        let mut episode = Self {
+            told: Mutex::new(told),
+            actions: Some(actions),
+            thread: Some(thread),
+            raised,
+            axes: 0,
+            known: None,
+        };
         if let EpisodeMessage::Known(known, axes) = episode.wait(py)? {
             episode.axes = axes;
             episode.known = Some(super::task::told(py, &known, axes)?.unbind());
@@ -200,19 +246,43 @@ impl Episode {
         self.axes
     }
 
-    /// Does what an action says, a multiple of the planned feedrate and an offset, until the next decision. Without one it goes to the first.
+    /// Does what an action says, a multiple of the planned feedrate and an offset, until the next
+    /// decision. Without one it goes to the first.
     #[pyo3(signature = (action=None))]
-    fn advance<'py>(&mut self, py: Python<'py>, action: Option<(f64, Bound<'py, PyAny>)>) -> PyResult<Advanced<'py>> {
-        let Some(actions) = &self.actions else { return Err(exception(&miette!("the episode is over: reset it"))) };
+    fn advance<'py>(
+        &mut self,
+        py: Python<'py>,
+        action: Option<(f64, Bound<'py, PyAny>)>,
+    ) -> PyResult<Advanced<'py>> {
+        let Some(actions) = &self.actions else {
+            return Err(exception(&miette!("the episode is over: reset it")));
+        };
         if let Some((rate, offset)) = action {
             // Where the run has ended, its end is what is told.
-            let _ = actions.send((rate, numbers(&offset, self.axes, "the offset of an action")?));
+            let _ = actions.send((
+                rate,
+                numbers(&offset, self.axes, "the offset of an action")?,
+            ));
         }
-        let mean = |errors: ErrorSums| (errors.rows, errors.sum_um2 / f64::from(errors.rows.max(1)), errors.max_um);
+        let mean = |errors: ErrorSums| {
+            (
+                errors.rows,
+                errors.sum_um2 / f64::from(errors.rows.max(1)),
+                errors.max_um,
+            )
+        };
         match self.wait(py)? {
             EpisodeMessage::Window(seen, errors) => {
-                let Some(axes) = &self.known else { return Err(exception(&miette!("the episode has not begun"))) };
-                let window = Bound::new(py, PythonWindow { seen: *seen, axes: axes.clone_ref(py) })?;
+                let Some(axes) = &self.known else {
+                    return Err(exception(&miette!("the episode has not begun")));
+                };
+                let window = Bound::new(
+                    py,
+                    PythonWindow {
+                        seen: *seen,
+                        axes: axes.clone_ref(py),
+                    },
+                )?;
                 Ok((Some(window), mean(errors), None))
             }
             EpisodeMessage::End(Ok(results), errors) => {
@@ -239,10 +309,18 @@ impl Episode {
     /// What the run tells next; raises what a signal or the code of the caller raises.
     fn wait(&self, py: Python<'_>) -> PyResult<EpisodeMessage> {
         loop {
-            let told = py.detach(|| self.told.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(EVERY));
+            let told = py.detach(|| {
+                self.told
+                    .lock()
+                    .unwrap_or_else(PoisonError::into_inner)
+                    .recv_timeout(EVERY)
+            });
             match told {
                 Ok(EpisodeMessage::End(end, errors)) => {
-                    return self.raised.take().map_or(Ok(EpisodeMessage::End(end, errors)), Err);
+                    return self
+                        .raised
+                        .take()
+                        .map_or(Ok(EpisodeMessage::End(end, errors)), Err);
                 }
                 Ok(told) => return Ok(told),
                 Err(RecvTimeoutError::Timeout) => py.check_signals()?,

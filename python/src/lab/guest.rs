@@ -21,8 +21,13 @@ pub(super) fn numbers(value: &Bound<'_, PyAny>, axes: usize, what: &str) -> PyRe
         _ => value.extract().ok(),
     };
     match given {
-        Some(given) if given.len() == axes => Ok(std::array::from_fn(|i| given.get(i).copied().unwrap_or(0.0))),
-        _ => Err(exception(&miette!("{what} must be {axes} numbers, one for each axis, and is {}", value.repr()?))),
+        Some(given) if given.len() == axes => Ok(std::array::from_fn(|i| {
+            given.get(i).copied().unwrap_or(0.0)
+        })),
+        _ => Err(exception(&miette!(
+            "{what} must be {axes} numbers, one for each axis, and is {}",
+            value.repr()?
+        ))),
     }
 }
 
@@ -35,7 +40,10 @@ pub(super) fn schedule(servo_periods: u32, preview: u32) -> PyResult<Schedule> {
             "servo_periods is {servo_periods} and preview is {preview}: that is {reach} servo periods ahead"
         )));
     }
-    Ok(Schedule { servo_periods, preview })
+    Ok(Schedule {
+        servo_periods,
+        preview,
+    })
 }
 
 /// A controller that is an object of Python.
@@ -50,7 +58,8 @@ pub(super) struct PythonController {
 }
 
 impl PythonController {
-    /// Of an object, which is told what is known of the axes before it says how far it wants to see.
+    /// Of an object, which is told what is known of the axes before it says how far it wants to
+    /// see.
     pub(super) fn new(
         object: &Bound<'_, PyAny>,
         axes: &Bound<'_, PyTuple>,
@@ -66,7 +75,9 @@ impl PythonController {
             schedule: schedule(number("servo_periods")?, number("preview")?)?,
             reset: method("reset")?,
             command: method("command")?,
-            observe: object.getattr_opt("observe")?.map(|method| method.unbind().into()),
+            observe: object
+                .getattr_opt("observe")?
+                .map(|method| method.unbind().into()),
             axes: axes.clone().unbind().into(),
             raised,
         })
@@ -79,7 +90,13 @@ impl PythonController {
         measured: Option<&Measured<N>>,
     ) -> PyResult<Bound<'py, PythonWindow>> {
         let seen = SeenWindow::of(window, measured, self.schedule.preview);
-        Bound::new(py, PythonWindow { seen, axes: self.axes.clone_ref(py) })
+        Bound::new(
+            py,
+            PythonWindow {
+                seen,
+                axes: self.axes.clone_ref(py),
+            },
+        )
     }
 }
 
@@ -132,15 +149,36 @@ pub(super) struct PlantTerm {
 
 impl PlantTerm {
     /// The plant of a machine with this term.
-    pub(super) fn plant(&self, machine: &Machine, axes: usize, start_mm: [f64; 3], seed: u64) -> Box<dyn Mechanism> {
+    pub(super) fn plant(
+        &self,
+        machine: &Machine,
+        axes: usize,
+        start_mm: [f64; 3],
+        seed: u64,
+    ) -> Box<dyn Mechanism> {
         match axes {
-            2 => Box::new(PlantWithTerm::<2>::new(self.clone(), machine, start_mm, seed)),
-            _ => Box::new(PlantWithTerm::<3>::new(self.clone(), machine, start_mm, seed)),
+            2 => Box::new(PlantWithTerm::<2>::new(
+                self.clone(),
+                machine,
+                start_mm,
+                seed,
+            )),
+            _ => Box::new(PlantWithTerm::<3>::new(
+                self.clone(),
+                machine,
+                start_mm,
+                seed,
+            )),
         }
     }
 
     /// The torque of the next servo period, N m.
-    fn torque_nm<const N: usize>(&self, position_mm: [f64; N], speed_mm_s: [f64; N], t_s: f64) -> [f64; N] {
+    fn torque_nm<const N: usize>(
+        &self,
+        position_mm: [f64; N],
+        speed_mm_s: [f64; N],
+        t_s: f64,
+    ) -> [f64; N] {
         let torque_nm = self.raised.call(|py| {
             let arguments = (vector(py, &position_mm), vector(py, &speed_mm_s), t_s);
             let answer = self.function.bind(py).call1(arguments)?;
@@ -148,7 +186,10 @@ impl PlantTerm {
             if torque_nm.iter().all(|torque| torque.is_finite()) {
                 return Ok(torque_nm);
             }
-            Err(exception(&miette!("plant_term returned {} N m at {t_s} s, which no axis can have", answer.repr()?)))
+            Err(exception(&miette!(
+                "plant_term returned {} N m at {t_s} s, which no axis can have",
+                answer.repr()?
+            )))
         });
         of_three(torque_nm.unwrap_or([0.0; 3]))
     }
@@ -167,14 +208,23 @@ impl<const N: usize> PlantWithTerm<N> {
     fn new(term: PlantTerm, machine: &Machine, start_mm: [f64; 3], seed: u64) -> Self {
         let joint_mm = of_three(start_mm);
         let plant = Plant::with_seed(machine, joint_mm, seed);
-        Self { plant, term, servo_s: machine.period.servo_s, periods: 0, joint_mm }
+        Self {
+            plant,
+            term,
+            servo_s: machine.period.servo_s,
+            periods: 0,
+            joint_mm,
+        }
     }
 }
 
 impl<const N: usize> Mechanism for PlantWithTerm<N> {
     fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3> {
         let t_s = self.periods as f64 * self.servo_s;
-        self.plant.add_torque(self.term.torque_nm(self.joint_mm, self.plant.joint_mm_s(), t_s));
+        self.plant.add_torque(
+            self.term
+                .torque_nm(self.joint_mm, self.plant.joint_mm_s(), t_s),
+        );
         self.periods += 1;
         let moved = Mechanism::step(&mut self.plant, command_mm);
         self.joint_mm = of_three(moved.joint_mm);

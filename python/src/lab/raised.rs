@@ -20,7 +20,11 @@ impl Raised {
 
     /// Ends the run with what was raised; the first counts.
     pub(super) fn raise(&self, error: PyErr) {
-        self.0.1.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+        self.0
+            .1
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .get_or_insert(error);
         self.end();
     }
 
@@ -30,10 +34,15 @@ impl Raised {
 
     /// What was raised, if anything.
     pub(super) fn take(&self) -> Option<PyErr> {
-        self.0.1.lock().unwrap_or_else(PoisonError::into_inner).take()
+        self.0
+            .1
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .take()
     }
 
-    /// Calls code of the caller; none where it raised, or the interpreter is gone. Nothing is called any more then.
+    /// Calls code of the caller; none where it raised, or the interpreter is gone. Nothing is
+    /// called any more then.
     pub(super) fn call<T>(&self, call: impl FnOnce(Python<'_>) -> PyResult<T>) -> Option<T> {
         if self.is_over() {
             return None;
@@ -49,7 +58,11 @@ impl Raised {
 /// Ends a cut in the servo period in which something was raised.
 impl Sink for Raised {
     fn row(&mut self, _: &Row) -> io::Result<()> {
-        if self.is_over() { Err(io::Error::other("the code of the caller ended the run")) } else { Ok(()) }
+        if self.is_over() {
+            Err(io::Error::other("the code of the caller ended the run"))
+        } else {
+            Ok(())
+        }
     }
 }
 

@@ -1,4 +1,5 @@
-//! What a controller in Python sees: the window and the measurement of the library, as copies that outlive the feed period.
+//! What a controller in Python sees: the window and the measurement of the library, as copies that
+//! outlive the feed period.
 
 use feedwright::control::{Knot, Measured, Window};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
@@ -19,7 +20,9 @@ pub(super) fn of_three<const N: usize>(vector: [f64; 3]) -> [f64; N] {
 pub(super) fn vector<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArray1<f64>> {
     let array = PyArray1::from_slice(py, values);
     // Nobody else has it yet.
-    let _ = array.try_readwrite().map(numpy::PyReadwriteArray::make_nonwriteable);
+    let _ = array
+        .try_readwrite()
+        .map(numpy::PyReadwriteArray::make_nonwriteable);
     array
 }
 
@@ -91,9 +94,20 @@ pub(crate) struct SeenWindow {
 
 impl SeenWindow {
     /// Of a window with so many feed periods of preview.
-    pub(super) fn of<const N: usize>(window: &Window<'_, N>, measured: Option<&Measured<N>>, preview: u32) -> Self {
-        let knots: Vec<Knot<N>> =
-            (0..=preview as usize).map(|ahead| if ahead == 0 { window.now() } else { window.ahead(ahead) }).collect();
+    pub(super) fn of<const N: usize>(
+        window: &Window<'_, N>,
+        measured: Option<&Measured<N>>,
+        preview: u32,
+    ) -> Self {
+        let knots: Vec<Knot<N>> = (0..=preview as usize)
+            .map(|ahead| {
+                if ahead == 0 {
+                    window.now()
+                } else {
+                    window.ahead(ahead)
+                }
+            })
+            .collect();
         Self {
             axes: N,
             plan_s: window.tau_s,

@@ -16,9 +16,13 @@ use super::raised::Raised;
 use crate::files::{PythonMachine, PythonProgram};
 
 /// The controllers that have a name.
-const TABLE: Controllers = if cfg!(feature = "peers") { feedwright_lab::CONTROLLERS } else { feedwright::CONTROLLERS };
-/// Inertia and friction that are believed where the knowledge is wrong, as parts of the true ones: opposite, so that the two errors of the
-/// torque do not cancel each other where an axis speeds up.
+const TABLE: Controllers = if cfg!(feature = "peers") {
+    feedwright_lab::CONTROLLERS
+} else {
+    feedwright::CONTROLLERS
+};
+/// Inertia and friction that are believed where the knowledge is wrong, as parts of the true ones:
+/// opposite, so that the two errors of the torque do not cancel each other where an axis speeds up.
 const BELIEVED: [f64; 2] = [0.8, 1.2];
 
 /// Seed of recordings and trainings: a machine is identified once, whatever the noise of the cut.
@@ -49,9 +53,16 @@ pub(crate) struct LabOptions {
 fn entry(name: &str, knows: Knows, laps: u32) -> &'static Entry {
     static ENTRIES: Mutex<Vec<&'static Entry>> = Mutex::new(Vec::new());
     let taken = TABLE.find(name).is_some();
-    let name = if taken { format!("{name} in Python") } else { name.to_owned() };
+    let name = if taken {
+        format!("{name} in Python")
+    } else {
+        name.to_owned()
+    };
     let mut entries = ENTRIES.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(entry) = entries.iter().find(|entry| (entry.name, entry.knows, entry.laps) == (&name, knows, laps)) {
+    if let Some(entry) = entries
+        .iter()
+        .find(|entry| (entry.name, entry.knows, entry.laps) == (&name, knows, laps))
+    {
         return entry;
     }
     let entry: &'static Entry = Box::leak(Box::new(Entry {
@@ -87,15 +98,23 @@ where
     }
 }
 
-/// What a recording of a machine tells, made once: with the noise of its file, whatever the noise of the cut.
+/// What a recording of a machine tells, made once: with the noise of its file, whatever the noise
+/// of the cut.
 fn identified(machine: &Machine, axes: usize) -> Result<Known> {
     static FOUND: Mutex<VecDeque<(String, Known)>> = Mutex::new(VecDeque::new());
     let kept = || FOUND.lock().unwrap_or_else(PoisonError::into_inner);
-    let key = format!("{axes} axes of {}, noise {}", machine.fingerprint(), machine.noise.seed);
+    let key = format!(
+        "{axes} axes of {}, noise {}",
+        machine.fingerprint(),
+        machine.noise.seed
+    );
     if let Some((_, known)) = kept().iter().find(|(of, _)| *of == key) {
         return Ok(known.clone());
     }
-    let choices = Choices { seed: RECORDING_SEED, ..Choices::default() };
+    let choices = Choices {
+        seed: RECORDING_SEED,
+        ..Choices::default()
+    };
     let mut setup = Setup::new(machine, &choices);
     match axes {
         2 => setup.identify_parameters::<2>().into_diagnostic()?,
@@ -119,31 +138,63 @@ pub(super) struct LabTask {
 }
 
 impl LabTask {
-    pub(super) fn new(program: &PythonProgram, machine: &PythonMachine, options: &LabOptions) -> Result<Self> {
+    pub(super) fn new(
+        program: &PythonProgram,
+        machine: &PythonMachine,
+        options: &LabOptions,
+    ) -> Result<Self> {
         let knows = match options.knowledge.as_str() {
             "exact" | "wrong" => Knows::ExactModel,
             "identified" => Knows::Identified,
-            other => return Err(miette!("knowledge is '{other}'; there are exact, identified, wrong")),
+            other => {
+                return Err(miette!(
+                    "knowledge is '{other}'; there are exact, identified, wrong"
+                ));
+            }
         };
-        let noisy = options.seed.map_or_else(|| machine.machine.clone(), |seed| machine.machine.with_noise_seed(seed));
+        let noisy = options.seed.map_or_else(
+            || machine.machine.clone(),
+            |seed| machine.machine.with_noise_seed(seed),
+        );
         let mut job = Job::new(program.program.clone(), noisy);
         job.machine_file.clone_from(&machine.file);
-        let made = options.of_library.as_deref().map(|name| find(name, TABLE)).transpose()?;
-        // A planner's cut needs a name of its own, also where the cut beside it has the same controller.
+        let made = options
+            .of_library
+            .as_deref()
+            .map(|name| find(name, TABLE))
+            .transpose()?;
+        // A planner's cut needs a name of its own, also where the cut beside it has the same
+        // controller.
         let as_it_is = made.filter(|_| options.feeds_mm_s.is_none());
         let laps = made.map_or(1, |made| made.laps);
         job.controller = as_it_is.unwrap_or_else(|| entry(&options.name, knows, laps));
-        job.against = options.against.as_deref().map_or(Ok(job.controller), |name| find(name, TABLE))?;
+        job.against = options
+            .against
+            .as_deref()
+            .map_or(Ok(job.controller), |name| find(name, TABLE))?;
         job.feed_mm_s = options.feed_mm_s;
         let made = made.unwrap_or(job.controller);
         let both = [made, job.against];
         let set = settings(&options.settings, TABLE, Some(made), &both)?;
-        job.choices = Choices { seed: RECORDING_SEED, set, ..Choices::default() };
-        let recorded = both.into_iter().filter_map(|entry| Some((entry, TABLE.recorded(&machine.machine, entry)?)));
-        job.choices.take_recorded(recorded.collect::<Vec<_>>().into_iter());
+        job.choices = Choices {
+            seed: RECORDING_SEED,
+            set,
+            ..Choices::default()
+        };
+        let recorded = both
+            .into_iter()
+            .filter_map(|entry| Some((entry, TABLE.recorded(&machine.machine, entry)?)));
+        job.choices
+            .take_recorded(recorded.collect::<Vec<_>>().into_iter());
         job.reader = program.settings.clone();
         let (feeds_mm_s, knowledge) = (options.feeds_mm_s.clone(), options.knowledge.clone());
-        Ok(Self { job, made, feeds_mm_s, machine: machine.machine.clone(), knowledge })
+        Ok(Self {
+            job,
+            made,
+            feeds_mm_s,
+            machine: machine.machine.clone(),
+            knowledge,
+        })
     }
 
     /// What is known of the machine where so many axes are controlled.
@@ -157,13 +208,18 @@ impl LabTask {
 
     /// The controller of the library that is asked for, with what is known.
     pub(super) fn informed(&self, known: &Known) -> Informed<'_> {
-        Informed { task: self, known: known.clone() }
+        Informed {
+            task: self,
+            known: known.clone(),
+        }
     }
 
     /// The figures of a run.
     pub(super) fn results(&self, outcome: &JobOutcome) -> Result<String> {
         let mut results = Vec::new();
-        outcome.write_json(&self.job, &mut results).into_diagnostic()?;
+        outcome
+            .write_json(&self.job, &mut results)
+            .into_diagnostic()?;
         String::from_utf8(results).into_diagnostic()
     }
 }
@@ -171,15 +227,24 @@ impl LabTask {
 impl LabOptions {
     pub(super) fn plant_term(&self, py: Python<'_>, raised: &Raised) -> Option<PlantTerm> {
         let function = self.plant_term.as_ref()?.clone_ref(py).into();
-        Some(PlantTerm { function, raised: raised.clone() })
+        Some(PlantTerm {
+            function,
+            raised: raised.clone(),
+        })
     }
 }
 
 /// What is known of each axis, by name: a mapping that cannot be changed.
-pub(super) fn told<'py>(py: Python<'py>, known: &Known, axes: usize) -> PyResult<Bound<'py, PyTuple>> {
+pub(super) fn told<'py>(
+    py: Python<'py>,
+    known: &Known,
+    axes: usize,
+) -> PyResult<Bound<'py, PyTuple>> {
     let read_only = py.import("types")?.getattr("MappingProxyType")?;
     let axis = |i: usize| {
-        let mut axis = known.axis(i).with_statistics(known.period.periods(), AxisStatistics::NOTHING);
+        let mut axis = known
+            .axis(i)
+            .with_statistics(known.period.periods(), AxisStatistics::NOTHING);
         let numbers = PyDict::new(py);
         for number in AxisKnowledge::NUMBERS {
             numbers.set_item(number.name, *(number.of)(&mut axis))?;

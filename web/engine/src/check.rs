@@ -9,7 +9,8 @@ use crate::request::{Outputs, Request, json};
 
 /// Most points of a path that is drawn: 16 MB.
 const MOST_POINTS: usize = 1_000_000;
-/// Angle between two points of a curve, radians: a chord of a circle as large as a screen leaves it by half a pixel.
+/// Angle between two points of a curve, radians: a chord of a circle as large as a screen leaves it
+/// by half a pixel.
 const TURN: f64 = 0.08;
 /// Most points of a piece.
 const MOST_OF_PIECE: f64 = 256.0;
@@ -17,9 +18,13 @@ const MOST_OF_PIECE: f64 = 256.0;
 pub(crate) fn check(request: &mut Request) -> miette::Result<Outputs> {
     let program = request.take_program();
     let mut answer = match program.check(Settings::default()) {
-        Ok(summary) => json!({ "findings": findings(&summary.warnings), "amounts_to": amounts_to(&summary) }),
+        Ok(summary) => {
+            json!({ "findings": findings(&summary.warnings), "amounts_to": amounts_to(&summary) })
+        }
         Err(CheckError::Read(error)) => return Err(error.into()),
-        Err(CheckError::Faults(faults)) => json!({ "findings": findings(&faults), "amounts_to": null }),
+        Err(CheckError::Faults(faults)) => {
+            json!({ "findings": findings(&faults), "amounts_to": null })
+        }
     };
     let path = Path::of(&program)?;
     answer["is_whole"] = path.is_whole.into();
@@ -69,7 +74,12 @@ struct Path {
 
 impl Path {
     fn of(program: &Program) -> miette::Result<Self> {
-        let mut path = Self { points: Vec::new(), kinds: Vec::new(), count: 0, is_whole: true };
+        let mut path = Self {
+            points: Vec::new(),
+            kinds: Vec::new(),
+            count: 0,
+            is_whole: true,
+        };
         let mut faults = 0;
         let canon = program.reader(Settings::default())?;
         let canon = canon.map_while(|step| step.inspect_err(|_| faults += 1).ok());
@@ -92,15 +102,23 @@ impl Path {
             self.point(piece.start_mm, 2 * piece.line);
         }
         let turn = piece.curve.curvature(0.5 * piece.length_mm) * piece.length_mm;
-        let chords = if piece.curve.is_straight() { 1.0 } else { (turn / TURN).ceil().clamp(2.0, MOST_OF_PIECE) };
+        let chords = if piece.curve.is_straight() {
+            1.0
+        } else {
+            (turn / TURN).ceil().clamp(2.0, MOST_OF_PIECE)
+        };
         for chord in 1..=chords as u32 {
             let s_mm = piece.length_mm * f64::from(chord) / chords;
-            self.point(piece.curve.at(s_mm).position_mm, 2 * piece.line + u32::from(piece.cutting));
+            self.point(
+                piece.curve.at(s_mm).position_mm,
+                2 * piece.line + u32::from(piece.cutting),
+            );
         }
     }
 
     fn point(&mut self, position_mm: [f64; 3], kind: u32) {
-        self.points.extend(position_mm.iter().flat_map(|mm| (*mm as f32).to_le_bytes()));
+        self.points
+            .extend(position_mm.iter().flat_map(|mm| (*mm as f32).to_le_bytes()));
         self.kinds.extend(kind.to_le_bytes());
         self.count += 1;
     }

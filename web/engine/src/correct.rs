@@ -9,7 +9,8 @@ use crate::request::{Outputs, Request, figure, json};
 pub(crate) fn correct(request: &mut Request) -> miette::Result<Outputs> {
     let target = match &request.target {
         None => &TARGETS[0],
-        Some(name) => TargetControl::find(name).ok_or_else(|| miette::miette!("no control is called '{name}'"))?,
+        Some(name) => TargetControl::find(name)
+            .ok_or_else(|| miette::miette!("no control is called '{name}'"))?,
     };
     let mut job = CorrectJob::new(request.take_program(), request.machine()?, target);
     job.file_error = CorrectJob::usual_file_error(request.is_machine_text());
@@ -29,7 +30,13 @@ pub(crate) fn correct(request: &mut Request) -> miette::Result<Outputs> {
 
 /// A row of the table of `correct`.
 fn figures(name: &str, figures: &ExportedFigures) -> Value {
-    let ExportedFigures { rms_um, max_um, time_s, blocks, .. } = figures;
+    let ExportedFigures {
+        rms_um,
+        max_um,
+        time_s,
+        blocks,
+        ..
+    } = figures;
     json!({
         "name": name,
         "time_s": figure(*time_s, 3),

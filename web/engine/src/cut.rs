@@ -1,7 +1,10 @@
 //! A cut without a correction and one with a controller.
 
 use feedwright::sim::{Sink, TraceWriter, Transition};
-use feedwright::{CONTROLLERS, Choices, Job, LimitBand, ReportedRun, take_recorded_model, write_html, write_html_data};
+use feedwright::{
+    CONTROLLERS, Choices, Job, LimitBand, ReportedRun, take_recorded_model, write_html,
+    write_html_data,
+};
 use miette::IntoDiagnostic;
 use serde_json::{Value, json};
 
@@ -25,22 +28,38 @@ pub(crate) fn run(request: &mut Request) -> miette::Result<Outputs> {
     let squares = (0..3).map(|axis| (summary.box_mm[1][axis] - summary.box_mm[0][axis]).powi(2));
     let mut drawn = PageCut::new(squares.sum::<f64>().sqrt() / POINTS_ON_DIAGONAL);
     let checked = job.check_read(summary)?;
-    let mut trace = request.rows.then(|| TraceWriter::new(Vec::new(), axes)).transpose().into_diagnostic()?;
+    let mut trace = request
+        .rows
+        .then(|| TraceWriter::new(Vec::new(), axes))
+        .transpose()
+        .into_diagnostic()?;
     let mut sinks: Vec<&mut dyn Sink> = vec![&mut drawn];
     sinks.extend(trace.iter_mut().map(|trace| trace as &mut dyn Sink));
     let outcome = checked.run(&mut sinks, &watch)?;
     drawn.flush();
     let mut results = Vec::new();
     outcome.write_json(&job, &mut results).into_diagnostic()?;
-    let rows = trace.map(TraceWriter::finish).transpose().into_diagnostic()?.unwrap_or_default();
+    let rows = trace
+        .map(TraceWriter::finish)
+        .transpose()
+        .into_diagnostic()?
+        .unwrap_or_default();
     let [mut page, mut drawings] = [const { Vec::new() }; 2];
     if request.page {
         write_html(&mut page, &outcome.report).into_diagnostic()?;
         write_html_data(&mut drawings, &outcome.report).into_diagnostic()?;
     }
     let table: Vec<_> = outcome.report.runs.iter().map(figures).collect();
-    let remarks = outcome.without_identification.iter().map(ToString::to_string);
-    let remarks = outcome.warnings.iter().map(ToString::to_string).chain(remarks).collect::<Vec<_>>();
+    let remarks = outcome
+        .without_identification
+        .iter()
+        .map(ToString::to_string);
+    let remarks = outcome
+        .warnings
+        .iter()
+        .map(ToString::to_string)
+        .chain(remarks)
+        .collect::<Vec<_>>();
     let told = json!({
         "runs": table,
         "remarks": remarks,
@@ -51,7 +70,8 @@ pub(crate) fn run(request: &mut Request) -> miette::Result<Outputs> {
     Ok(vec![results, rows, page, json(&told), drawings])
 }
 
-/// The settings and the model that the command takes by default: from a log of the machine, where the controller goes by one.
+/// The settings and the model that the command takes by default: from a log of the machine, where
+/// the controller goes by one.
 fn as_in_the_command(
     job: &mut Job,
     request: &Request,
@@ -60,11 +80,18 @@ fn as_in_the_command(
     watch: &PageWatch,
 ) -> miette::Result<()> {
     job.with_limits = true;
-    job.machine_file = request.is_machine_text().then(|| request.machine_name.clone());
-    job.choices = Choices { tries: true, ..job.choices.clone() };
+    job.machine_file = request
+        .is_machine_text()
+        .then(|| request.machine_name.clone());
+    job.choices = Choices {
+        tries: true,
+        ..job.choices.clone()
+    };
     let recorded = [job.controller, job.against].into_iter();
-    let recorded = recorded.filter_map(|entry| Some((entry, CONTROLLERS.recorded(&job.machine, entry)?)));
-    job.choices.take_recorded(recorded.collect::<Vec<_>>().into_iter());
+    let recorded =
+        recorded.filter_map(|entry| Some((entry, CONTROLLERS.recorded(&job.machine, entry)?)));
+    job.choices
+        .take_recorded(recorded.collect::<Vec<_>>().into_iter());
     let machine = job.machine.clone();
     take_recorded_model(job, &machine, axes, day.to_owned(), watch)?;
     Ok(())

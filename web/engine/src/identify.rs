@@ -12,10 +12,18 @@ use crate::page::PageWatch;
 use crate::request::{Outputs, Request, json};
 
 pub(crate) fn identify(request: &Request) -> miette::Result<Outputs> {
-    let (watch, name, bytes) = (PageWatch::default(), Path::new(&request.name), request.program.as_slice());
+    let (watch, name, bytes) = (
+        PageWatch::default(),
+        Path::new(&request.name),
+        request.program.as_slice(),
+    );
     let log = Log::from_reader(name, bytes, bytes.len() as u64, &Columns::default(), &watch)?;
     let findings: Vec<String> = log.findings.iter().map(ToString::to_string).collect();
-    let identified = LogJob { name: request.name.clone(), ..LogJob::default() }.run(log, &watch)?;
+    let identified = LogJob {
+        name: request.name.clone(),
+        ..LogJob::default()
+    }
+    .run(log, &watch)?;
     let stem = name.file_stem().unwrap_or_default().to_string_lossy();
     let text = machine_text(&identified, &stem);
     Machine::parse(&format!("{stem}.toml"), &text)?;

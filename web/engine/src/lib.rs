@@ -17,8 +17,8 @@
 //! | `identify` | numbers of the axes, as JSON | the machine file | the page of the identification | | |
 //! | `lists` | machines, controllers and controls, as JSON | | | | |
 //!
-//! The module imports functions of the page, such as `page.progress` and `page.cut`: see `page`. It has
-//! no files, no clock and no threads.
+//! The module imports functions of the page, such as `page.progress` and `page.cut`: see `page`. It
+//! has no files, no clock and no threads.
 
 mod page;
 mod request;
@@ -38,7 +38,11 @@ struct Buffers {
     outputs: Outputs,
 }
 
-static BUFFERS: Mutex<Buffers> = Mutex::new(Buffers { input: Vec::new(), program: Vec::new(), outputs: Vec::new() });
+static BUFFERS: Mutex<Buffers> = Mutex::new(Buffers {
+    input: Vec::new(),
+    program: Vec::new(),
+    outputs: Vec::new(),
+});
 
 fn with_buffers<T>(act: impl FnOnce(&mut Buffers) -> T) -> T {
     act(&mut BUFFERS.lock().unwrap_or_else(PoisonError::into_inner))
@@ -69,8 +73,12 @@ fn room(buffer: &mut Vec<u8>, bytes: usize) -> usize {
 #[expect(unsafe_code, reason = "the attribute exports the function")]
 #[unsafe(no_mangle)]
 pub extern "C" fn run() -> u32 {
-    let (input, program) =
-        with_buffers(|buffers| (std::mem::take(&mut buffers.input), std::mem::take(&mut buffers.program)));
+    let (input, program) = with_buffers(|buffers| {
+        (
+            std::mem::take(&mut buffers.input),
+            std::mem::take(&mut buffers.program),
+        )
+    });
     let (outputs, succeeded) = match answer(&input, program) {
         Ok(outputs) => (outputs, 1),
         Err(error) => (vec![told(&error).into_bytes()], 0),
@@ -83,7 +91,12 @@ pub extern "C" fn run() -> u32 {
 #[expect(unsafe_code, reason = "the attribute exports the function")]
 #[unsafe(no_mangle)]
 pub extern "C" fn at(output: usize) -> usize {
-    with_buffers(|buffers| buffers.outputs.get(output).map_or(0, |bytes| bytes.as_ptr() as usize))
+    with_buffers(|buffers| {
+        buffers
+            .outputs
+            .get(output)
+            .map_or(0, |bytes| bytes.as_ptr() as usize)
+    })
 }
 
 /// Bytes of an output.
@@ -94,7 +107,8 @@ pub extern "C" fn length(output: usize) -> usize {
 }
 
 fn answer(input: &[u8], program: Vec<u8>) -> miette::Result<Outputs> {
-    let mut request: Request = serde_json::from_slice(input).map_err(|error| miette::miette!("{error}"))?;
+    let mut request: Request =
+        serde_json::from_slice(input).map_err(|error| miette::miette!("{error}"))?;
     request.program = program;
     feedwright::keep_in(&page::PageTexts);
     match request.task {
@@ -108,7 +122,14 @@ fn answer(input: &[u8], program: Vec<u8>) -> miette::Result<Outputs> {
 
 /// An error, the errors that belong to it, and the remedy.
 fn told(error: &miette::Report) -> String {
-    let related = error.related().into_iter().flatten().map(|fault| format!("\n{fault}"));
+    let related = error
+        .related()
+        .into_iter()
+        .flatten()
+        .map(|fault| format!("\n{fault}"));
     let hint = error.help().map(|hint| format!("\nhint: {hint}"));
-    std::iter::once(error.to_string()).chain(related).chain(hint).collect()
+    std::iter::once(error.to_string())
+        .chain(related)
+        .chain(hint)
+        .collect()
 }

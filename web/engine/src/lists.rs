@@ -10,10 +10,16 @@ pub(crate) fn lists() -> miette::Result<Outputs> {
     let mut machines = Vec::new();
     for (name, text) in BUILT_IN_MACHINES {
         let machine = Machine::parse(&format!("{name}.toml"), text)?;
-        machines.push(json!({ "name": name, "about": machine.description, "axes": machine.axis_count() }));
+        machines.push(
+            json!({ "name": name, "about": machine.description, "axes": machine.axis_count() }),
+        );
     }
-    let controllers = CONTROLLERS.iter().map(|entry| json!({ "name": entry.name, "about": entry.summary }));
-    let controls = TARGETS.iter().map(|target| json!({ "name": target.name, "about": target.about }));
+    let controllers = CONTROLLERS
+        .iter()
+        .map(|entry| json!({ "name": entry.name, "about": entry.summary }));
+    let controls = TARGETS
+        .iter()
+        .map(|target| json!({ "name": target.name, "about": target.about }));
     Ok(vec![json(&json!({
         "version": env!("CARGO_PKG_VERSION"),
         "machines": machines,

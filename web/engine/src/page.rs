@@ -1,4 +1,5 @@
-//! What the page is told while a request is answered, and what it keeps for the next one, through functions that the module imports.
+//! What the page is told while a request is answered, and what it keeps for the next one, through
+//! functions that the module imports.
 
 use std::io;
 use std::sync::{Mutex, PoisonError};
@@ -8,7 +9,10 @@ use feedwright::sim::{Row, Sink, Watch};
 
 #[cfg(target_arch = "wasm32")]
 mod imports {
-    #[expect(unsafe_code, reason = "the attribute names where the functions come from")]
+    #[expect(
+        unsafe_code,
+        reason = "the attribute names where the functions come from"
+    )]
     #[link(wasm_import_module = "page")]
     unsafe extern "C" {
         /// A stage has come so far: its name as text in the memory of the module, and thousandths.
@@ -53,7 +57,12 @@ pub(crate) struct PageWatch(Mutex<Stage>);
 impl Watch for PageWatch {
     fn begin(&self, stage: &str, steps: u64) {
         let mut now = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        *now = Stage { name: stage.to_owned(), steps: steps.max(1), done: 0, told: 0 };
+        *now = Stage {
+            name: stage.to_owned(),
+            steps: steps.max(1),
+            done: 0,
+            told: 0,
+        };
         imports::progress(now.name.as_ptr() as usize, now.name.len(), 0);
     }
 
@@ -63,7 +72,11 @@ impl Watch for PageWatch {
         let thousandths = (1000 * now.done / now.steps.max(1)).min(1000);
         if thousandths >= now.told + STEP {
             now.told = thousandths;
-            imports::progress(now.name.as_ptr() as usize, now.name.len(), thousandths as u32);
+            imports::progress(
+                now.name.as_ptr() as usize,
+                now.name.len(),
+                thousandths as u32,
+            );
         }
     }
 }
@@ -73,13 +86,19 @@ pub(crate) struct PageTexts;
 
 impl KeptTexts for PageTexts {
     fn read(&self, name: &str) -> Option<String> {
-        let mut text = vec![0; usize::try_from(imports::find(name.as_ptr() as usize, name.len())).ok()?];
+        let mut text =
+            vec![0; usize::try_from(imports::find(name.as_ptr() as usize, name.len())).ok()?];
         imports::take(text.as_mut_ptr() as usize);
         String::from_utf8(text).ok()
     }
 
     fn write(&self, name: &str, text: &str) {
-        imports::keep(name.as_ptr() as usize, name.len(), text.as_ptr() as usize, text.len());
+        imports::keep(
+            name.as_ptr() as usize,
+            name.len(),
+            text.as_ptr() as usize,
+            text.len(),
+        );
     }
 }
 
@@ -98,7 +117,11 @@ pub(crate) struct PageCut {
 impl PageCut {
     /// Points that are `apart_mm` apart at least.
     pub(crate) fn new(apart_mm: f64) -> Self {
-        Self { apart_mm, last_mm: [f64::INFINITY; 3], points: Vec::with_capacity(POINTS) }
+        Self {
+            apart_mm,
+            last_mm: [f64::INFINITY; 3],
+            points: Vec::with_capacity(POINTS),
+        }
     }
 
     /// Tells the page of the last points.
@@ -110,13 +133,21 @@ impl PageCut {
 
 impl Sink for PageCut {
     fn row(&mut self, row: &Row) -> io::Result<()> {
-        let squares = row.act_mm.iter().zip(self.last_mm).map(|(now, last)| (now - last) * (now - last));
+        let squares = row
+            .act_mm
+            .iter()
+            .zip(self.last_mm)
+            .map(|(now, last)| (now - last) * (now - last));
         if squares.sum::<f64>() < self.apart_mm * self.apart_mm {
             return Ok(());
         }
         self.last_mm = row.act_mm;
         let [x, y, z] = row.act_mm.map(|mm| mm as f32);
-        let error_um = if row.cutting { 1e3 * row.contour_error_mm as f32 } else { f32::NAN };
+        let error_um = if row.cutting {
+            1e3 * row.contour_error_mm as f32
+        } else {
+            f32::NAN
+        };
         self.points.push([x, y, z, error_um]);
         if self.points.len() == POINTS {
             self.flush();

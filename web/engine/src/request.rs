@@ -52,8 +52,8 @@ pub(crate) struct Request {
     /// Seed of the recording that a controller identifies the machine from; 1 as in the command.
     #[serde(default = "first_seed")]
     pub(crate) seed: u64,
-    /// The day, year-month-day, for the model that a log of the machine tells, as the command has it by default; none goes by the exact
-    /// settings of the drives.
+    /// The day, year-month-day, for the model that a log of the machine tells, as the command has
+    /// it by default; none goes by the exact settings of the drives.
     pub(crate) recorded_on: Option<String>,
     /// Whether the rows are wanted.
     #[serde(default)]
@@ -98,15 +98,22 @@ impl Request {
     /// # Errors
     /// A name that no controller has.
     pub(crate) fn controller(&self) -> miette::Result<Option<&'static Entry>> {
-        let find =
-            |name: &String| CONTROLLERS.find(name).ok_or_else(|| miette::miette!("no controller is called '{name}'"));
+        let find = |name: &String| {
+            CONTROLLERS
+                .find(name)
+                .ok_or_else(|| miette::miette!("no controller is called '{name}'"))
+        };
         self.controller.as_ref().map(find).transpose()
     }
 }
 
 /// A number of a table, as the command prints it.
 pub(crate) fn figure(value: f64, decimals: usize) -> String {
-    if value.is_finite() { format!("{value:.decimals$}") } else { "-".to_owned() }
+    if value.is_finite() {
+        format!("{value:.decimals$}")
+    } else {
+        "-".to_owned()
+    }
 }
 
 /// As JSON.

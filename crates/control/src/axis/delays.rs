@@ -1,17 +1,21 @@
-//! Delays of the loops of an axis, and the queue of commands before a position loop that is in the drive.
+//! Delays of the loops of an axis, and the queue of commands before a position loop that is in the
+//! drive.
 //!
 //! ```text
 //! c(m) is sent at m Ts; the position loop has it at (m + n) Ts          n = round(command delay / Ts), at most 8
 //! ```
 //!
-//! A drive that closes the position loop itself gets its commands over a bus, one to three bus cycles late. A synchronous bus delays
-//! by whole cycles, so n is a whole number of servo periods; put any rest into the drive delay. The position comes back over the same
-//! bus. The control sees only the round trip: an axis whose commands are late by i periods and whose positions by j behaves, from
-//! outside, as one whose commands are late by i + j. One number is therefore enough.
+//! A drive that closes the position loop itself gets its commands over a bus, one to three bus
+//! cycles late. A synchronous bus delays by whole cycles, so n is a whole number of servo periods;
+//! put any rest into the drive delay. The position comes back over the same bus. The control sees
+//! only the round trip: an axis whose commands are late by i periods and whose positions by j
+//! behaves, from outside, as one whose commands are late by i + j. One number is therefore enough.
 //!
-//! Source: Franklin, Powell and Workman (1998), Digital Control of Dynamic Systems, chapter 4, for delays of whole periods.
+//! Source: Franklin, Powell and Workman (1998), Digital Control of Dynamic Systems, chapter 4, for
+//! delays of whole periods.
 
-/// Most servo periods by which commands are late: the controller looks one servo period ahead for each. A bus takes one to three.
+/// Most servo periods by which commands are late: the controller looks one servo period ahead for
+/// each. A bus takes one to three.
 pub const MAX_COMMAND_PERIODS: usize = 8;
 
 /// How late commands, references and positions are, s.
@@ -44,10 +48,14 @@ pub struct CommandQueue {
 impl CommandQueue {
     /// A queue of so many servo periods; all commands so far were this one.
     pub fn resting(periods: usize, command: f64) -> Self {
-        Self { sent: [command; MAX_COMMAND_PERIODS + 1], periods: periods.min(MAX_COMMAND_PERIODS) }
+        Self {
+            sent: [command; MAX_COMMAND_PERIODS + 1],
+            periods: periods.min(MAX_COMMAND_PERIODS),
+        }
     }
 
-    /// A queue of so many servo periods on an even motion: `next` is the command that is sent next, `change` the one over a servo period.
+    /// A queue of so many servo periods on an even motion: `next` is the command that is sent next,
+    /// `change` the one over a servo period.
     pub fn moving(periods: usize, next: f64, change: f64) -> Self {
         let mut queue = Self::resting(periods, next);
         let ago = (1..).zip(&mut queue.sent);
@@ -63,7 +71,10 @@ impl CommandQueue {
     /// The same commands, late by another number of servo periods.
     #[must_use]
     pub fn with_periods(self, periods: usize) -> Self {
-        Self { periods: periods.min(MAX_COMMAND_PERIODS), ..self }
+        Self {
+            periods: periods.min(MAX_COMMAND_PERIODS),
+            ..self
+        }
     }
 
     /// Sends a command. Returns the one that the position loop has now.
@@ -91,8 +102,14 @@ mod tests {
             let mut queue = CommandQueue::resting(periods, 5.0);
             for sent in 0..20_u32 {
                 let arrived = queue.pass(f64::from(sent));
-                let wanted = (sent as usize).checked_sub(periods).map_or(5.0, |sent| sent as f64);
-                assert_eq!((arrived, queue.arrived()), (wanted, wanted), "{periods} periods, command {sent}");
+                let wanted = (sent as usize)
+                    .checked_sub(periods)
+                    .map_or(5.0, |sent| sent as f64);
+                assert_eq!(
+                    (arrived, queue.arrived()),
+                    (wanted, wanted),
+                    "{periods} periods, command {sent}"
+                );
             }
         }
     }
@@ -100,12 +117,24 @@ mod tests {
     #[test]
     fn an_even_motion_has_been_commanded_until_now() {
         let mut queue = CommandQueue::moving(3, 7.0, 2.0);
-        assert_eq!([7.0, 9.0, 11.0, 13.0].map(|command| queue.pass(command)), [1.0, 3.0, 5.0, 7.0]);
+        assert_eq!(
+            [7.0, 9.0, 11.0, 13.0].map(|command| queue.pass(command)),
+            [1.0, 3.0, 5.0, 7.0]
+        );
     }
 
     #[test]
     fn delays_are_rounded_to_whole_servo_periods_and_bounded() {
-        let periods = |command_s| LoopDelays { command_s, ..LoopDelays::default() }.command_periods(0.001);
-        assert_eq!([0.0, 0.0004, 0.0019, 0.003, 0.02, -1.0, f64::NAN].map(periods), [0, 0, 2, 3, 8, 0, 0]);
+        let periods = |command_s| {
+            LoopDelays {
+                command_s,
+                ..LoopDelays::default()
+            }
+            .command_periods(0.001)
+        };
+        assert_eq!(
+            [0.0, 0.0004, 0.0019, 0.003, 0.02, -1.0, f64::NAN].map(periods),
+            [0, 0, 2, 3, 8, 0, 0]
+        );
     }
 }

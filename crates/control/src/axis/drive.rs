@@ -1,4 +1,5 @@
-//! What a servo drive has beside the P speed loop: an integral part, feedforward, a speed limit, a torque filter, a window of the speed.
+//! What a servo drive has beside the P speed loop: an integral part, feedforward, a speed limit, a
+//! torque filter, a window of the speed.
 //!
 //! ```text
 //! w_ref = Kp e + Kd (e - e_prev) / Ts + fv v                    position loop, once a servo period Ts
@@ -10,19 +11,23 @@
 //! y    += (1 - exp(-2 pi f dt)) (u - y)                         torque filter: y reaches the motor
 //! ```
 //!
-//! Anti-windup by clamping: where u is at its limit and d pushes it further, I stays as it is. Both w_ref and u_ff go from the
-//! control to the drive, as velocity offset and torque offset do. What is zero is not there.
+//! Anti-windup by clamping: where u is at its limit and d pushes it further, I stays as it is. Both
+//! w_ref and u_ff go from the control to the drive, as velocity offset and torque offset do. What
+//! is zero is not there.
 //!
-//! Symbols: c command at the motor, rad; fv, fa parts of the nominal feedforward, 1 being all of it; W speed limit, rad/s; Ti
-//! integral time, s; f corner of the filter, Hz; T window of the speed, s; the others as in [`super`].
+//! Symbols: c command at the motor, rad; fv, fa parts of the nominal feedforward, 1 being all of
+//! it; W speed limit, rad/s; Ti integral time, s; f corner of the filter, Hz; T window of the
+//! speed, s; the others as in [`super`].
 //!
-//! A drive that takes the speed from positions, (x(t) - x(t - T)) / T, sees its mean over the window, late by L. A lag of first order that
-//! is as late stands in for the mean, which would need as many positions as the window has mechanics periods. Both see a speed that grows
-//! evenly the same.
+//! A drive that takes the speed from positions, (x(t) - x(t - T)) / T, sees its mean over the
+//! window, late by L. A lag of first order that is as late stands in for the mean, which would need
+//! as many positions as the window has mechanics periods. Both see a speed that grows evenly the
+//! same.
 //!
-//! Source: PI loop and clamping as in Åström and Hägglund (2006), Advanced PID Control, sections 3.2 and 3.5; feedforward as in
-//! Altintas (2012), Manufacturing Automation, section 5; offsets as in IEC 61800-7-201 (CiA 402), objects 60B1h and 60B2h; the
-//! filter is the exact step of a first-order lag under a held input, Franklin, Powell and Workman (1998), section 4.3.
+//! Source: PI loop and clamping as in Åström and Hägglund (2006), Advanced PID Control, sections
+//! 3.2 and 3.5; feedforward as in Altintas (2012), Manufacturing Automation, section 5; offsets as
+//! in IEC 61800-7-201 (CiA 402), objects 60B1h and 60B2h; the filter is the exact step of a
+//! first-order lag under a held input, Franklin, Powell and Workman (1998), section 4.3.
 
 use core::f64::consts::TAU;
 
@@ -41,7 +46,8 @@ pub struct DriveParameters {
     pub torque_filter_hz: f64,
     /// Highest reference speed, rad/s.
     pub speed_limit_rad_s: f64,
-    /// Time over which the drive takes the speed from positions, s; no more than a mechanics period is the speed itself.
+    /// Time over which the drive takes the speed from positions, s; no more than a mechanics period
+    /// is the speed itself.
     pub speed_window_s: f64,
 }
 
@@ -62,7 +68,11 @@ impl DriveParameters {
 /// Gain of the torque filter, k: the share of the step to a new torque that it makes in one
 /// mechanics period. It is 1, which is no filter, unless the corner frequency is above 0.
 fn filter_part(corner_hz: f64, mechanics_s: f64) -> f64 {
-    if corner_hz > 0.0 { 1.0 - libm::exp(-TAU * corner_hz * mechanics_s) } else { 1.0 }
+    if corner_hz > 0.0 {
+        1.0 - libm::exp(-TAU * corner_hz * mechanics_s)
+    } else {
+        1.0
+    }
 }
 
 /// What goes from the position loop to the drive.
@@ -92,8 +102,13 @@ pub struct DriveState {
 
 impl DriveState {
     /// Before the first command.
-    pub const AT_REST: Self =
-        Self { commanded_rad: None, commanded_rad_s: 0.0, integral_nm: 0.0, filtered_nm: 0.0, seen_rad_s: None };
+    pub const AT_REST: Self = Self {
+        commanded_rad: None,
+        commanded_rad_s: 0.0,
+        integral_nm: 0.0,
+        filtered_nm: 0.0,
+        seen_rad_s: None,
+    };
 
     /// Integral of the speed loop, N m.
     pub fn integral_nm(&self) -> f64 {
@@ -132,27 +147,52 @@ impl DriveLaw {
     /// Of an axis; a filter is the exact step over a mechanics period.
     pub fn new(law: &AxisLaw, parameters: DriveParameters) -> Self {
         let dt_s = law.periods.mechanics_s;
-        let DriveParameters { speed_integral_s: time_s, torque_filter_hz, .. } = parameters;
+        let DriveParameters {
+            speed_integral_s: time_s,
+            torque_filter_hz,
+            ..
+        } = parameters;
         let gain = law.parameters.kv_nm_s_per_rad;
         let late_s = parameters.speed_late_s(dt_s);
         Self {
             parameters,
             plain: parameters == DriveParameters::default(),
-            torque_for_change: parameters.acceleration_feedforward * law.parameters.inertia_kg_m2 / law.periods.servo_s,
-            integral_gain: if time_s > 0.0 { gain * dt_s / time_s } else { 0.0 },
+            torque_for_change: parameters.acceleration_feedforward * law.parameters.inertia_kg_m2
+                / law.periods.servo_s,
+            integral_gain: if time_s > 0.0 {
+                gain * dt_s / time_s
+            } else {
+                0.0
+            },
             filter: filter_part(torque_filter_hz, dt_s),
             seeing: (late_s > 0.0).then(|| dt_s / (dt_s + late_s)),
         }
     }
 
-    /// What the drive remembers, and what it was sent, where the axis has gone at a speed for long, which takes this torque.
-    pub fn moving(&self, law: &AxisLaw, speed_rad_s: f64, torque_nm: f64) -> (DriveState, DriveReference) {
+    /// What the drive remembers, and what it was sent, where the axis has gone at a speed for long,
+    /// which takes this torque.
+    pub fn moving(
+        &self,
+        law: &AxisLaw,
+        speed_rad_s: f64,
+        torque_nm: f64,
+    ) -> (DriveState, DriveReference) {
         let integrates = self.integral_gain > 0.0;
         let integral_nm = if integrates { torque_nm } else { 0.0 };
         let missing_rad_s = (torque_nm - integral_nm) / law.parameters.kv_nm_s_per_rad;
-        let state =
-            DriveState { commanded_rad_s: speed_rad_s, integral_nm, filtered_nm: torque_nm, ..DriveState::AT_REST };
-        (state, DriveReference { speed_rad_s: speed_rad_s + missing_rad_s, torque_nm: 0.0 })
+        let state = DriveState {
+            commanded_rad_s: speed_rad_s,
+            integral_nm,
+            filtered_nm: torque_nm,
+            ..DriveState::AT_REST
+        };
+        (
+            state,
+            DriveReference {
+                speed_rad_s: speed_rad_s + missing_rad_s,
+                torque_nm: 0.0,
+            },
+        )
     }
 
     /// The position loop with its feedforward takes in a command and the position, rad.
@@ -167,7 +207,10 @@ impl DriveLaw {
     ) -> DriveReference {
         let speed_rad_s = law.position_loop(command_rad - position_rad, axis);
         if self.plain {
-            return DriveReference { speed_rad_s, torque_nm: 0.0 };
+            return DriveReference {
+                speed_rad_s,
+                torque_nm: 0.0,
+            };
         }
         let since = |before_rad: f64| (command_rad - before_rad) / law.periods.servo_s;
         let commanded_rad_s = state.commanded_rad.map_or(state.commanded_rad_s, since);
@@ -179,9 +222,16 @@ impl DriveLaw {
         }
     }
 
-    /// One mechanics period of the speed loop at a speed of the motor: the torque that reaches the motor, N m. Not a number stays none.
+    /// One mechanics period of the speed loop at a speed of the motor: the torque that reaches the
+    /// motor, N m. Not a number stays none.
     #[inline]
-    pub fn torque_nm(&self, law: &AxisLaw, reference: DriveReference, speed_rad_s: f64, state: &mut DriveState) -> f64 {
+    pub fn torque_nm(
+        &self,
+        law: &AxisLaw,
+        reference: DriveReference,
+        speed_rad_s: f64,
+        state: &mut DriveState,
+    ) -> f64 {
         if self.plain {
             law.torque_nm(reference.speed_rad_s, speed_rad_s)
         } else {
@@ -190,10 +240,19 @@ impl DriveLaw {
     }
 
     /// As [`Self::torque_nm`], of a drive that is more than a P speed loop.
-    fn regulated_nm(&self, law: &AxisLaw, reference: DriveReference, speed_rad_s: f64, state: &mut DriveState) -> f64 {
+    fn regulated_nm(
+        &self,
+        law: &AxisLaw,
+        reference: DriveReference,
+        speed_rad_s: f64,
+        state: &mut DriveState,
+    ) -> f64 {
         let most_rad_s = self.parameters.speed_limit_rad_s;
-        let wanted_rad_s =
-            if most_rad_s > 0.0 { within(reference.speed_rad_s, most_rad_s) } else { reference.speed_rad_s };
+        let wanted_rad_s = if most_rad_s > 0.0 {
+            within(reference.speed_rad_s, most_rad_s)
+        } else {
+            reference.speed_rad_s
+        };
         let error_rad_s = wanted_rad_s - self.seen_rad_s(speed_rad_s, state);
         let proportional_nm = law.parameters.kv_nm_s_per_rad * error_rad_s + reference.torque_nm;
         let limit_nm = law.parameters.torque_limit_nm;
@@ -210,9 +269,12 @@ impl DriveLaw {
     /// The speed as the drive sees it.
     #[inline]
     fn seen_rad_s(&self, speed_rad_s: f64, state: &mut DriveState) -> f64 {
-        let Some(part) = self.seeing else { return speed_rad_s };
-        let seen_rad_s =
-            state.seen_rad_s.map_or(speed_rad_s, |seen_rad_s| seen_rad_s + part * (speed_rad_s - seen_rad_s));
+        let Some(part) = self.seeing else {
+            return speed_rad_s;
+        };
+        let seen_rad_s = state.seen_rad_s.map_or(speed_rad_s, |seen_rad_s| {
+            seen_rad_s + part * (speed_rad_s - seen_rad_s)
+        });
         state.seen_rad_s = Some(seen_rad_s);
         seen_rad_s
     }
@@ -235,7 +297,14 @@ mod tests {
             coulomb_friction_nm: 0.0,
             coulomb_smoothing_rad_s: 0.5,
         };
-        AxisLaw::new(parameters, Periods { servo_s: 0.001, mechanics_s: 1e-6, mechanics_per_servo: 1000 })
+        AxisLaw::new(
+            parameters,
+            Periods {
+                servo_s: 0.001,
+                mechanics_s: 1e-6,
+                mechanics_per_servo: 1000,
+            },
+        )
     }
 
     /// Speed after a step of the reference by 1 rad/s, under a constant load.
@@ -244,7 +313,10 @@ mod tests {
         let drive = DriveLaw::new(&law, parameters);
         let (mut axis, mut state) = (AxisState::default(), DriveState::default());
         for _ in 0..libm::round(time_s / law.periods.mechanics_s) as u64 {
-            let reference = DriveReference { speed_rad_s: 1.0, torque_nm: 0.0 };
+            let reference = DriveReference {
+                speed_rad_s: 1.0,
+                torque_nm: 0.0,
+            };
             let torque_nm = drive.torque_nm(&law, reference, axis.speed_rad_s, &mut state);
             law.accelerate(torque_nm - load_nm, &mut axis);
         }
@@ -253,15 +325,25 @@ mod tests {
 
     #[test]
     fn a_pi_loop_answers_a_step_as_its_differential_equation_does() {
-        // J w'' + Kv w' + Kv / Ti w = Kv / Ti + Kv step': with J 0.01, Kv 2, Ti 20 ms: poles (s + 100)^2, numerator 200 s + 1e4,
-        // so w = 1 - e^(-100 t) (1 - 100 t); a constant load L adds -L / J t e^(-100 t).
-        let pi = DriveParameters { speed_integral_s: 0.02, ..DriveParameters::default() };
+        // J w'' + Kv w' + Kv / Ti w = Kv / Ti + Kv step': with J 0.01, Kv 2, Ti 20 ms: poles (s +
+        // 100)^2, numerator 200 s + 1e4, so w = 1 - e^(-100 t) (1 - 100 t); a constant load L adds
+        // -L / J t e^(-100 t).
+        let pi = DriveParameters {
+            speed_integral_s: 0.02,
+            ..DriveParameters::default()
+        };
         for time_s in [0.003, 0.01, 0.02, 0.05] {
             let decay = libm::exp(-100.0 * time_s);
             let free = 1.0 - decay * (1.0 - 100.0 * time_s);
-            assert!((speed_rad_s(pi, 0.0, time_s) - free).abs() < 1e-4, "{time_s}");
+            assert!(
+                (speed_rad_s(pi, 0.0, time_s) - free).abs() < 1e-4,
+                "{time_s}"
+            );
             let loaded = free - 0.5 / 0.01 * time_s * decay;
-            assert!((speed_rad_s(pi, 0.5, time_s) - loaded).abs() < 2e-4, "{time_s}");
+            assert!(
+                (speed_rad_s(pi, 0.5, time_s) - loaded).abs() < 2e-4,
+                "{time_s}"
+            );
         }
         // Without the integral the load is left: L / Kv.
         assert!((speed_rad_s(DriveParameters::default(), 0.5, 0.2) - 0.75).abs() < 1e-6);
@@ -270,24 +352,49 @@ mod tests {
     #[test]
     fn the_integral_does_not_wind_up_at_the_torque_limit() {
         let law = law();
-        let drive = DriveLaw::new(&law, DriveParameters { speed_integral_s: 0.02, ..DriveParameters::default() });
+        let drive = DriveLaw::new(
+            &law,
+            DriveParameters {
+                speed_integral_s: 0.02,
+                ..DriveParameters::default()
+            },
+        );
         let mut state = DriveState::default();
-        let asked = |speed_rad_s| DriveReference { speed_rad_s, torque_nm: 0.0 };
+        let asked = |speed_rad_s| DriveReference {
+            speed_rad_s,
+            torque_nm: 0.0,
+        };
         // 1 s against a stop: unlimited, the integral would come to 2 * 100 / 0.02 = 10,000 N m.
         (0..1_000_000).for_each(|_| {
             assert_eq!(drive.torque_nm(&law, asked(100.0), 0.0, &mut state), 30.0);
         });
         assert!(state.integral_nm.abs() <= 30.0, "{}", state.integral_nm);
-        assert!(drive.torque_nm(&law, asked(-20.0), 0.0, &mut state) < 0.0, "the torque turns with the error");
-        assert!(drive.torque_nm(&law, asked(f64::NAN), 0.0, &mut state).is_nan());
+        assert!(
+            drive.torque_nm(&law, asked(-20.0), 0.0, &mut state) < 0.0,
+            "the torque turns with the error"
+        );
+        assert!(
+            drive
+                .torque_nm(&law, asked(f64::NAN), 0.0, &mut state)
+                .is_nan()
+        );
     }
 
     #[test]
     fn the_filter_is_a_lag_of_first_order() {
         let law = law();
-        let drive = DriveLaw::new(&law, DriveParameters { torque_filter_hz: 200.0, ..DriveParameters::default() });
+        let drive = DriveLaw::new(
+            &law,
+            DriveParameters {
+                torque_filter_hz: 200.0,
+                ..DriveParameters::default()
+            },
+        );
         let mut state = DriveState::default();
-        let reference = DriveReference { speed_rad_s: 1.0, torque_nm: 0.0 };
+        let reference = DriveReference {
+            speed_rad_s: 1.0,
+            torque_nm: 0.0,
+        };
         for step in 1..=5000_u32 {
             let torque_nm = drive.torque_nm(&law, reference, 0.0, &mut state);
             let wanted_nm = 2.0 * (1.0 - libm::exp(-TAU * 200.0 * f64::from(step) * 1e-6));
@@ -298,18 +405,28 @@ mod tests {
     #[test]
     fn feedforward_is_the_commands_speed_and_the_torque_for_its_acceleration() {
         let law = law();
-        let parameters =
-            DriveParameters { velocity_feedforward: 0.9, acceleration_feedforward: 0.5, ..DriveParameters::default() };
+        let parameters = DriveParameters {
+            velocity_feedforward: 0.9,
+            acceleration_feedforward: 0.5,
+            ..DriveParameters::default()
+        };
         let drive = DriveLaw::new(&law, parameters);
         let (mut axis, mut state) = (AxisState::default(), DriveState::default());
         // c = a t^2 / 2 with a = 40 rad/s^2: at t = n Ts the backward difference is a (n - 1/2) Ts.
         for n in 0..100_u32 {
             let t_s = f64::from(n) * 1e-3;
             let command_rad = 20.0 * t_s * t_s;
-            let reference = drive.position_loop(&law, command_rad, command_rad, &mut axis, &mut state);
+            let reference =
+                drive.position_loop(&law, command_rad, command_rad, &mut axis, &mut state);
             if n > 1 {
-                assert!((reference.speed_rad_s - 0.9 * 40.0 * (t_s - 0.5e-3)).abs() < 1e-9, "{n}");
-                assert!((reference.torque_nm - 0.5 * 0.01 * 40.0).abs() < 1e-9, "{n}");
+                assert!(
+                    (reference.speed_rad_s - 0.9 * 40.0 * (t_s - 0.5e-3)).abs() < 1e-9,
+                    "{n}"
+                );
+                assert!(
+                    (reference.torque_nm - 0.5 * 0.01 * 40.0).abs() < 1e-9,
+                    "{n}"
+                );
             }
         }
     }
@@ -317,22 +434,40 @@ mod tests {
     #[test]
     fn a_speed_that_grows_evenly_is_seen_late_by_half_the_window() {
         let law = law();
-        let drive = DriveLaw::new(&law, DriveParameters { speed_window_s: 0.003, ..DriveParameters::default() });
+        let drive = DriveLaw::new(
+            &law,
+            DriveParameters {
+                speed_window_s: 0.003,
+                ..DriveParameters::default()
+            },
+        );
         let mut state = DriveState::default();
         let (at_rest, dt_s) = (DriveReference::default(), law.periods.mechanics_s);
         let mut torque_nm = 0.0;
         for n in 0..30_000_u32 {
-            torque_nm = drive.torque_nm(&law, at_rest, -(3.0 + 100.0 * dt_s * f64::from(n)), &mut state);
+            torque_nm = drive.torque_nm(
+                &law,
+                at_rest,
+                -(3.0 + 100.0 * dt_s * f64::from(n)),
+                &mut state,
+            );
         }
         let late_s = (3.0 + 100.0 * dt_s * 29_999.0 - 0.5 * torque_nm) / 100.0;
         assert!((late_s - 0.5 * (0.003 - dt_s)).abs() < 1e-9, "{late_s}");
         let (moving, _) = drive.moving(&law, 3.0, 0.0);
-        assert_eq!(drive.torque_nm(&law, at_rest, 3.0, &mut { moving }), -6.0, "it has gone at that speed for long");
+        assert_eq!(
+            drive.torque_nm(&law, at_rest, 3.0, &mut { moving }),
+            -6.0,
+            "it has gone at that speed for long"
+        );
     }
 
     #[test]
     fn the_reference_keeps_to_the_speed_limit() {
-        let limited = DriveParameters { speed_limit_rad_s: 0.6, ..DriveParameters::default() };
+        let limited = DriveParameters {
+            speed_limit_rad_s: 0.6,
+            ..DriveParameters::default()
+        };
         assert!((speed_rad_s(limited, 0.0, 0.2) - 0.6).abs() < 1e-9);
     }
 
@@ -342,9 +477,15 @@ mod tests {
         let drive = DriveLaw::new(&law, DriveParameters::default());
         let mut state = DriveState::default();
         for speed_rad_s in [0.1, -3.0, 100.0] {
-            let reference = DriveReference { speed_rad_s, torque_nm: 0.0 };
+            let reference = DriveReference {
+                speed_rad_s,
+                torque_nm: 0.0,
+            };
             let torque_nm = drive.torque_nm(&law, reference, 0.3, &mut state);
-            assert_eq!(torque_nm.to_bits(), law.torque_nm(speed_rad_s, 0.3).to_bits());
+            assert_eq!(
+                torque_nm.to_bits(),
+                law.torque_nm(speed_rad_s, 0.3).to_bits()
+            );
         }
     }
 
@@ -367,7 +508,10 @@ mod tests {
             // Its first command is one of that speed.
             let (mut axis, mut first) = (AxisState::default(), state);
             let reference = drive.position_loop(&law, 0.6, 0.6, &mut axis, &mut first);
-            assert_eq!(reference.speed_rad_s, 30.0 * parameters.velocity_feedforward);
+            assert_eq!(
+                reference.speed_rad_s,
+                30.0 * parameters.velocity_feedforward
+            );
         }
     }
 }

@@ -1,4 +1,5 @@
-//! Friction as machines have it: another level each way, more of it at low speed, and a way before it slides.
+//! Friction as machines have it: another level each way, more of it at low speed, and a way before
+//! it slides.
 //!
 //! ```text
 //! g(w, d) = Fc + Fa d + Fs exp(-(w / ws)^2)             level, N m, of a motion in the direction d = -1, 1
@@ -6,11 +7,12 @@
 //! F = B w + f,  df/dt = S (w - |w| f / g),  S = (Fc + Fs) / z         with it
 //! ```
 //!
-//! The second is LuGre's model without its bristles' damping, which is Dahl's where there is no Stribeck part: a spring S that
-//! gives way as it comes to the level, over the deflection z.
+//! The second is LuGre's model without its bristles' damping, which is Dahl's where there is no
+//! Stribeck part: a spring S that gives way as it comes to the level, over the deflection z.
 //!
-//! Over a mechanics period dt of constant w, f has a closed form, which is what is integrated; the speed takes it implicitly,
-//! linearised about w = 0, so that a spring stiffer than dt could follow is stable:
+//! Over a mechanics period dt of constant w, f has a closed form, which is what is integrated; the
+//! speed takes it implicitly, linearised about w = 0, so that a spring stiffer than dt could follow
+//! is stable:
 //!
 //! ```text
 //! a  = w + dt / J (forces - B w - f),   d = sgn a
@@ -18,19 +20,22 @@
 //! f' = d g + (f - d g) exp(-S |w'| dt / g)
 //! ```
 //!
-//! Symbols: Fc Coulomb friction; Fa its asymmetry; Fs what the breakaway torque has above it; ws Stribeck speed, rad/s; z
-//! presliding deflection, rad at the motor shaft; B viscous friction; w_s speed over which friction turns its sign.
+//! Symbols: Fc Coulomb friction; Fa its asymmetry; Fs what the breakaway torque has above it; ws
+//! Stribeck speed, rad/s; z presliding deflection, rad at the motor shaft; B viscous friction; w_s
+//! speed over which friction turns its sign.
 //!
-//! Source: Dahl (1968), A solid friction model; Canudas de Wit, Olsson, Åström and Lischinsky (1995), A new model for control of
-//! systems with friction, eqs 1 to 4; Armstrong-Hélouvry, Dupont and Canudas de Wit (1994), a survey, for asymmetry and the
-//! Stribeck curve; the linearly implicit step is Rosenbrock's, Hairer and Wanner (1996), section IV.7.
+//! Source: Dahl (1968), A solid friction model; Canudas de Wit, Olsson, Åström and Lischinsky
+//! (1995), A new model for control of systems with friction, eqs 1 to 4; Armstrong-Hélouvry, Dupont
+//! and Canudas de Wit (1994), a survey, for asymmetry and the Stribeck curve; the linearly implicit
+//! step is Rosenbrock's, Hairer and Wanner (1996), section IV.7.
 
 use core::array::from_fn;
 
 use super::AxisLaw;
 use crate::activation::{exp, tanh};
 
-/// Least level as a part of Fc + Fs: an asymmetry as large as the Coulomb friction leaves none, by which nothing can be divided.
+/// Least level as a part of Fc + Fs: an asymmetry as large as the Coulomb friction leaves none, by
+/// which nothing can be divided.
 const LEAST_LEVEL: f64 = 1e-9;
 /// Beyond this e^-x is nothing beside 1; what it is there.
 const FORGOTTEN: f64 = 40.0;
@@ -41,7 +46,8 @@ const SATURATED: f64 = 20.0;
 /// Friction beside the Coulomb and viscous friction of [`super::Parameters`]; zero is without.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct FrictionParameters {
-    /// What the Coulomb friction is higher in the positive direction, and lower in the negative, N m.
+    /// What the Coulomb friction is higher in the positive direction, and lower in the negative, N
+    /// m.
     pub coulomb_asymmetry_nm: f64,
     /// What friction has at rest above the Coulomb friction, N m.
     pub stribeck_nm: f64,
@@ -67,7 +73,12 @@ pub struct FrictionLaw {
 impl FrictionLaw {
     /// Of an axis, beside what its own parameters have of friction.
     pub fn new(law: &AxisLaw, parameters: FrictionParameters) -> Self {
-        let FrictionParameters { stribeck_nm, stribeck_rad_s, presliding_rad, .. } = parameters;
+        let FrictionParameters {
+            stribeck_nm,
+            stribeck_rad_s,
+            presliding_rad,
+            ..
+        } = parameters;
         let breakaway_nm = law.parameters.coulomb_friction_nm + stribeck_nm;
         Self {
             parameters,
@@ -75,13 +86,22 @@ impl FrictionLaw {
             viscous_nm_s: law.parameters.viscous_friction_nm_s,
             coulomb_nm: law.parameters.coulomb_friction_nm,
             inverse_smoothing_s: law.inverse_smoothing_s,
-            inverse_stribeck_s: if stribeck_rad_s > 0.0 { 1.0 / stribeck_rad_s } else { 0.0 },
-            stiffness_nm_rad: if presliding_rad > 0.0 { (breakaway_nm / presliding_rad).min(f64::MAX) } else { 0.0 },
+            inverse_stribeck_s: if stribeck_rad_s > 0.0 {
+                1.0 / stribeck_rad_s
+            } else {
+                0.0
+            },
+            stiffness_nm_rad: if presliding_rad > 0.0 {
+                (breakaway_nm / presliding_rad).min(f64::MAX)
+            } else {
+                0.0
+            },
             least_nm: LEAST_LEVEL * breakaway_nm,
         }
     }
 
-    /// Speed behind a mechanics period under forces without friction, N m at the shaft; `presliding_nm` is f.
+    /// Speed behind a mechanics period under forces without friction, N m at the shaft;
+    /// `presliding_nm` is f.
     #[inline]
     pub fn speed_after_rad_s(
         &self,
@@ -91,11 +111,18 @@ impl FrictionLaw {
         presliding_nm: &mut f64,
     ) -> f64 {
         let presliding_nm = core::array::from_mut(presliding_nm);
-        let [after] = Self::speeds_after_rad_s(&[self], [forces_nm], [inverse_inertia], [speed_rad_s], presliding_nm);
+        let [after] = Self::speeds_after_rad_s(
+            &[self],
+            [forces_nm],
+            [inverse_inertia],
+            [speed_rad_s],
+            presliding_nm,
+        );
         after
     }
 
-    /// The same of several masses at once: a processor has the exponentials of two or four of them in the time of one.
+    /// The same of several masses at once: a processor has the exponentials of two or four of them
+    /// in the time of one.
     #[inline]
     pub fn speeds_after_rad_s<const L: usize>(
         laws: &[&Self; L],
@@ -114,7 +141,12 @@ impl FrictionLaw {
         }
         if slides_at_once.iter().any(|at_once| *at_once) {
             return from_fn(|i| {
-                laws[i].speed_after_rad_s(forces_nm[i], inverse_inertia[i], speeds[i], &mut presliding_nm[i])
+                laws[i].speed_after_rad_s(
+                    forces_nm[i],
+                    inverse_inertia[i],
+                    speeds[i],
+                    &mut presliding_nm[i],
+                )
             });
         }
         let free: [f64; L] = from_fn(|i| speeds[i] + steps[i] * (left_nm[i] - presliding_nm[i]));
@@ -127,14 +159,17 @@ impl FrictionLaw {
         });
         let sliding_nm: [f64; L] = from_fn(|i| directions[i] * levels_nm[i]);
         if *presliding_nm != sliding_nm {
-            let left: [f64; L] =
-                decays(from_fn(|i| laws[i].stiffness_nm_rad * after[i].abs() * laws[i].dt_s / levels_nm[i]));
-            *presliding_nm = from_fn(|i| sliding_nm[i] + (presliding_nm[i] - sliding_nm[i]) * left[i]);
+            let left: [f64; L] = decays(from_fn(|i| {
+                laws[i].stiffness_nm_rad * after[i].abs() * laws[i].dt_s / levels_nm[i]
+            }));
+            *presliding_nm =
+                from_fn(|i| sliding_nm[i] + (presliding_nm[i] - sliding_nm[i]) * left[i]);
         }
         after
     }
 
-    /// The mean of the friction without its viscous part over a time at a constant speed that is forced upon the axis, N m.
+    /// The mean of the friction without its viscous part over a time at a constant speed that is
+    /// forced upon the axis, N m.
     #[inline]
     pub fn along_nm(&self, speed_rad_s: f64, time_s: f64, presliding_nm: &mut f64) -> f64 {
         if self.stiffness_nm_rad == 0.0 {
@@ -148,8 +183,16 @@ impl FrictionLaw {
         let beyond_nm = *presliding_nm - sliding_nm;
         *presliding_nm = sliding_nm + beyond_nm * left;
         // The mean of e^-x from 0 to `slid`; of a short way its series, which does not cancel.
-        let mean = if slid < 1e-4 { 1.0 - 0.5 * slid } else { (1.0 - left) / slid };
-        if slid == 0.0 { *presliding_nm } else { sliding_nm + beyond_nm * mean }
+        let mean = if slid < 1e-4 {
+            1.0 - 0.5 * slid
+        } else {
+            (1.0 - left) / slid
+        };
+        if slid == 0.0 {
+            *presliding_nm
+        } else {
+            sliding_nm + beyond_nm * mean
+        }
     }
 
     /// Level at a speed, in a direction from -1 to 1, N m.
@@ -160,28 +203,48 @@ impl FrictionLaw {
     }
 
     #[inline]
-    fn levels_nm<const L: usize>(laws: &[&Self; L], speeds_rad_s: &[f64; L], directions: &[f64; L]) -> [f64; L] {
+    fn levels_nm<const L: usize>(
+        laws: &[&Self; L],
+        speeds_rad_s: &[f64; L],
+        directions: &[f64; L],
+    ) -> [f64; L] {
         let stribeck_nm = laws.map(|law| law.parameters.stribeck_nm);
         let mut low_nm = [0.0; L];
         if stribeck_nm.iter().any(|nm| *nm > 0.0) {
             let ratios: [f64; L] = from_fn(|i| speeds_rad_s[i] * laws[i].inverse_stribeck_s);
             let left = decays(ratios.map(|ratio| ratio * ratio));
-            low_nm = from_fn(|i| if stribeck_nm[i] > 0.0 { stribeck_nm[i] * left[i] } else { 0.0 });
+            low_nm = from_fn(|i| {
+                if stribeck_nm[i] > 0.0 {
+                    stribeck_nm[i] * left[i]
+                } else {
+                    0.0
+                }
+            });
         }
-        from_fn(|i| laws[i].coulomb_nm + laws[i].parameters.coulomb_asymmetry_nm * directions[i] + low_nm[i])
+        from_fn(|i| {
+            laws[i].coulomb_nm + laws[i].parameters.coulomb_asymmetry_nm * directions[i] + low_nm[i]
+        })
     }
 }
 
 /// tanh(x), which most of the time is 1 or -1 to the last bit.
 #[inline]
 fn signs<const L: usize>(x: [f64; L]) -> [f64; L] {
-    if x.iter().all(|x| x.abs() >= SATURATED) { x.map(|x| f64::copysign(1.0, x)) } else { tanh(x) }
+    if x.iter().all(|x| x.abs() >= SATURATED) {
+        x.map(|x| f64::copysign(1.0, x))
+    } else {
+        tanh(x)
+    }
 }
 
 /// e^-x of what is not negative.
 #[inline]
 fn decays<const L: usize>(x: [f64; L]) -> [f64; L] {
-    if x.iter().all(|x| *x >= FORGOTTEN) { [LEAST_DECAY; L] } else { x.map(|x| exp(-x.min(FORGOTTEN))) }
+    if x.iter().all(|x| *x >= FORGOTTEN) {
+        [LEAST_DECAY; L]
+    } else {
+        x.map(|x| exp(-x.min(FORGOTTEN)))
+    }
 }
 
 #[inline]
@@ -197,18 +260,36 @@ mod tests {
 
     #[test]
     fn several_masses_at_once_are_each_as_it_is_alone() {
-        let stribeck = FrictionParameters { stribeck_nm: 0.1, stribeck_rad_s: 1.0, ..DAHL };
-        let sliding = FrictionParameters { presliding_rad: 0.0, ..stribeck };
-        for parameters in [[DAHL, stribeck], [sliding, FrictionParameters::default()], [stribeck, sliding]] {
+        let stribeck = FrictionParameters {
+            stribeck_nm: 0.1,
+            stribeck_rad_s: 1.0,
+            ..DAHL
+        };
+        let sliding = FrictionParameters {
+            presliding_rad: 0.0,
+            ..stribeck
+        };
+        for parameters in [
+            [DAHL, stribeck],
+            [sliding, FrictionParameters::default()],
+            [stribeck, sliding],
+        ] {
             let laws = parameters.map(|parameters| friction(0.2, 1e-4, parameters));
             let (mut speeds, mut presliding) = ([0.0, 3.0], [0.0, 0.1]);
             for step in 0..5000_u32 {
                 let forces = [0.5, 0.3].map(|nm| nm * libm::sin(0.003 * f64::from(step)));
                 let mut alone = presliding;
-                let each: [f64; 2] =
-                    from_fn(|i| laws[i].speed_after_rad_s(forces[i], 1.0 / J, speeds[i], &mut alone[i]));
+                let each: [f64; 2] = from_fn(|i| {
+                    laws[i].speed_after_rad_s(forces[i], 1.0 / J, speeds[i], &mut alone[i])
+                });
                 let laws = laws.each_ref();
-                speeds = FrictionLaw::speeds_after_rad_s(&laws, forces, [1.0 / J; 2], speeds, &mut presliding);
+                speeds = FrictionLaw::speeds_after_rad_s(
+                    &laws,
+                    forces,
+                    [1.0 / J; 2],
+                    speeds,
+                    &mut presliding,
+                );
                 assert_eq!((speeds, presliding), (each, alone), "{step}");
             }
         }
@@ -236,21 +317,33 @@ mod tests {
             coulomb_friction_nm: coulomb_nm,
             coulomb_smoothing_rad_s: 1e-4,
         };
-        let periods = Periods { servo_s: 0.001, mechanics_s, mechanics_per_servo: 10 };
+        let periods = Periods {
+            servo_s: 0.001,
+            mechanics_s,
+            mechanics_per_servo: 10,
+        };
         FrictionLaw::new(&AxisLaw::new(law, periods), parameters)
     }
 
-    const DAHL: FrictionParameters =
-        FrictionParameters { coulomb_asymmetry_nm: 0.0, stribeck_nm: 0.0, stribeck_rad_s: 0.0, presliding_rad: 0.01 };
+    const DAHL: FrictionParameters = FrictionParameters {
+        coulomb_asymmetry_nm: 0.0,
+        stribeck_nm: 0.0,
+        stribeck_rad_s: 0.0,
+        presliding_rad: 0.01,
+    };
 
-    /// Friction, N m, of a motion that a speed of `rad_s` is forced upon for a time; by what it takes to keep the speed.
+    /// Friction, N m, of a motion that a speed of `rad_s` is forced upon for a time; by what it
+    /// takes to keep the speed.
     fn friction_at(law: &FrictionLaw, rad_s: f64, steps: u32, mut presliding_nm: f64) -> f64 {
         let mut found_nm = 0.0;
         for _ in 0..steps {
             let before_nm = presliding_nm;
             let after = law.speed_after_rad_s(before_nm, 1.0 / J, rad_s, &mut presliding_nm);
-            found_nm =
-                if law.stiffness_nm_rad > 0.0 { presliding_nm } else { (rad_s - after) * J / law.dt_s + before_nm };
+            found_nm = if law.stiffness_nm_rad > 0.0 {
+                presliding_nm
+            } else {
+                (rad_s - after) * J / law.dt_s + before_nm
+            };
         }
         found_nm
     }
@@ -263,9 +356,15 @@ mod tests {
             let steps = libm::round(way_rad / (0.5 * 1e-6)) as u32;
             let decayed = libm::exp(-way_rad / 0.01);
             let rising = friction_at(&law, 0.5, steps, 0.0);
-            assert!((rising - 0.2 * (1.0 - decayed)).abs() < 1e-6, "{way_rad}: {rising}");
+            assert!(
+                (rising - 0.2 * (1.0 - decayed)).abs() < 1e-6,
+                "{way_rad}: {rising}"
+            );
             let turned = friction_at(&law, -0.5, steps, 0.2);
-            assert!((turned - (-0.2 + 0.4 * decayed)).abs() < 1e-6, "{way_rad}: {turned}");
+            assert!(
+                (turned - (-0.2 + 0.4 * decayed)).abs() < 1e-6,
+                "{way_rad}: {turned}"
+            );
         }
     }
 
@@ -278,7 +377,14 @@ mod tests {
             presliding_rad: 0.0,
         };
         for presliding_rad in [0.0, 0.001] {
-            let law = friction(0.2, 1e-4, FrictionParameters { presliding_rad, ..parameters });
+            let law = friction(
+                0.2,
+                1e-4,
+                FrictionParameters {
+                    presliding_rad,
+                    ..parameters
+                },
+            );
             for speed in [0.5, -0.5, 2.0, -2.0, 20.0, -20.0_f64] {
                 let ratio = speed / 2.0;
                 let wanted = f64::copysign(0.2 + 0.1 * libm::exp(-ratio * ratio), speed) + 0.03;
@@ -290,7 +396,8 @@ mod tests {
 
     #[test]
     fn within_the_presliding_it_is_a_spring() {
-        // f = S x for small x: J x'' = -S x swings at sqrt(S / J) from a push of 1e-4 rad/s, which deflects by z / 4000.
+        // f = S x for small x: J x'' = -S x swings at sqrt(S / J) from a push of 1e-4 rad/s, which
+        // deflects by z / 4000.
         let law = friction(0.2, 1e-6, DAHL);
         let (mut speed, mut presliding, mut crossings) = (1e-4, 0.0, 0);
         let mut first_s = 0.0;
@@ -307,22 +414,34 @@ mod tests {
             speed = after;
         }
         let found_rad_s = core::f64::consts::TAU * f64::from(crossings - 1) / (last_s - first_s);
-        assert!((found_rad_s - libm::sqrt(0.2 / 0.01 / J)).abs() < 0.01 * found_rad_s, "{found_rad_s}");
+        assert!(
+            (found_rad_s - libm::sqrt(0.2 / 0.01 / J)).abs() < 0.01 * found_rad_s,
+            "{found_rad_s}"
+        );
     }
 
     #[test]
     fn a_spring_that_no_period_follows_holds_and_lets_go_at_the_breakaway_torque() {
         // S dt^2 / J = 2e5: an explicit step would be unstable from 4 on.
-        let stiff = FrictionParameters { presliding_rad: 1e-9, stribeck_nm: 0.1, stribeck_rad_s: 1.0, ..DAHL };
+        let stiff = FrictionParameters {
+            presliding_rad: 1e-9,
+            stribeck_nm: 0.1,
+            stribeck_rad_s: 1.0,
+            ..DAHL
+        };
         let law = friction(0.1, 1e-4, stiff);
         let (mut speed, mut presliding, mut way) = (0.0, 0.0, 0.0);
         for step in 0..20_000_u32 {
             let force = 0.19 * libm::sin(0.01 * f64::from(step));
             speed = law.speed_after_rad_s(force, 1.0 / J, speed, &mut presliding);
             way += 1e-4 * speed;
-            assert!((presliding - force).abs() < 0.01 && f64::abs(way) < 1e-6, "{step}: {presliding} {way}");
+            assert!(
+                (presliding - force).abs() < 0.01 && f64::abs(way) < 1e-6,
+                "{step}: {presliding} {way}"
+            );
         }
-        (0..1000).for_each(|_| speed = law.speed_after_rad_s(0.22, 1.0 / J, speed, &mut presliding));
+        (0..1000)
+            .for_each(|_| speed = law.speed_after_rad_s(0.22, 1.0 / J, speed, &mut presliding));
         assert!(speed > 0.1, "{speed}");
     }
 
@@ -341,7 +460,10 @@ mod tests {
             let (mut speed, mut presliding) = (0.0, 0.0);
             for force in [0.0, 1.0, -1e3, 0.0, 1e-9] {
                 speed = law.speed_after_rad_s(force, 1.0 / J, speed, &mut presliding);
-                assert!(speed.is_finite() && presliding.is_finite(), "{coulomb} {stribeck} {zone}");
+                assert!(
+                    speed.is_finite() && presliding.is_finite(),
+                    "{coulomb} {stribeck} {zone}"
+                );
             }
         }
     }

@@ -34,8 +34,8 @@
 //! The linear parts superpose: the leads for velocity alone and for friction alone, each with its
 //! own integral, sum to the lead for both.
 //!
-//! Where commands reach the position loop n servo periods late ([`super::delays`]), c(m) = r(m + n) + o(m + n): the same lead, over the
-//! reference n servo periods ahead.
+//! Where commands reach the position loop n servo periods late ([`super::delays`]), c(m) = r(m +
+//! n) + o(m + n): the same lead, over the reference n servo periods ahead.
 //!
 //! Symbols: r reference, o lead, mm; J inertia; B viscous friction; Kv, Ti speed loop; fv, fa
 //! feedforward of the drive; g gains of the parts, where 1 is full compensation; the others as in
@@ -56,7 +56,8 @@ use super::friction::{FrictionLaw, FrictionParameters};
 use crate::activation::tanh;
 use crate::vector::bounded;
 
-/// Steps in a servo period along which friction that has a memory is taken: at 0.1 ms the breakaway over 10 um at 50 mm/s is two steps.
+/// Steps in a servo period along which friction that has a memory is taken: at 0.1 ms the breakaway
+/// over 10 um at 50 mm/s is two steps.
 const FRICTION_STEPS: u32 = 10;
 
 /// How much of each part is fed forward; 1 is the exact model.
@@ -72,9 +73,17 @@ pub struct Gains {
 
 impl Gains {
     /// The exact model.
-    pub const EXACT: Self = Self { velocity: 1.0, acceleration: 1.0, friction: 1.0 };
+    pub const EXACT: Self = Self {
+        velocity: 1.0,
+        acceleration: 1.0,
+        friction: 1.0,
+    };
     /// Nothing at all: the axis lags as it does.
-    pub const NONE: Self = Self { velocity: 0.0, acceleration: 0.0, friction: 0.0 };
+    pub const NONE: Self = Self {
+        velocity: 0.0,
+        acceleration: 0.0,
+        friction: 0.0,
+    };
 }
 
 /// What an axis needs that its loops do not ask for, mm/s of reference speed.
@@ -107,7 +116,8 @@ pub struct AxisInverse {
     presliding_nm: f64,
     /// Friction that was last made up for, mm/s of reference speed.
     friction_mm_s: f64,
-    /// Integral of the speed loop, mm/s of reference speed, before the period that was last asked for, and what was missing in that.
+    /// Integral of the speed loop, mm/s of reference speed, before the period that was last asked
+    /// for, and what was missing in that.
     integral_mm_s: f64,
     missing: Missing,
     /// Lead of the period before that.
@@ -116,12 +126,18 @@ pub struct AxisInverse {
 
 impl AxisInverse {
     /// Of an axis.
-    pub fn new(law: AxisLaw, drive: DriveParameters, friction: FrictionParameters, delays: LoopDelays) -> Self {
+    pub fn new(
+        law: AxisLaw,
+        drive: DriveParameters,
+        friction: FrictionParameters,
+        delays: LoopDelays,
+    ) -> Self {
         Self {
             law,
             drive,
             delays,
-            friction: (friction != FrictionParameters::default()).then(|| FrictionLaw::new(&law, friction)),
+            friction: (friction != FrictionParameters::default())
+                .then(|| FrictionLaw::new(&law, friction)),
             filter_lag_s: drive.filter_lag_s(law.periods.mechanics_s),
             speed_late_s: drive.speed_late_s(law.periods.mechanics_s),
             presliding_nm: 0.0,
@@ -133,15 +149,32 @@ impl AxisInverse {
     }
 
     /// Inverts another law from now on, with what it remembers.
-    pub fn follow(&mut self, law: AxisLaw, drive: DriveParameters, friction: FrictionParameters, delays: LoopDelays) {
-        let Self { friction, filter_lag_s, speed_late_s, .. } = Self::new(law, drive, friction, delays);
+    pub fn follow(
+        &mut self,
+        law: AxisLaw,
+        drive: DriveParameters,
+        friction: FrictionParameters,
+        delays: LoopDelays,
+    ) {
+        let Self {
+            friction,
+            filter_lag_s,
+            speed_late_s,
+            ..
+        } = Self::new(law, drive, friction, delays);
         (self.law, self.drive, self.delays) = (law, drive, delays);
-        (self.friction, self.filter_lag_s, self.speed_late_s) = (friction, filter_lag_s, speed_late_s);
+        (self.friction, self.filter_lag_s, self.speed_late_s) =
+            (friction, filter_lag_s, speed_late_s);
     }
 
     /// Of an axis that has nothing beside its law.
     pub fn plain(law: AxisLaw) -> Self {
-        Self::new(law, DriveParameters::default(), FrictionParameters::default(), LoopDelays::default())
+        Self::new(
+            law,
+            DriveParameters::default(),
+            FrictionParameters::default(),
+            LoopDelays::default(),
+        )
     }
 
     /// The law that it inverts.
@@ -162,7 +195,8 @@ impl AxisInverse {
         1.0 / parameters.kp_1_s + parameters.inertia_kg_m2 / parameters.kv_nm_s_per_rad
     }
 
-    /// How far beyond the moment at which the position loop has a command the motion is looked at, s, but for the differences.
+    /// How far beyond the moment at which the position loop has a command the motion is looked at,
+    /// s, but for the differences.
     pub fn ahead_s(&self) -> f64 {
         self.delays.drive_s + self.filter_lag_s
     }
@@ -188,21 +222,35 @@ impl AxisInverse {
     /// `last_mm` is the actual lead of the command in the period before. `load_mm_s` is a load that
     /// the drive carries in addition, as a reference speed, mm/s.
     #[inline]
-    pub fn lead_mm(&mut self, gains: Gains, at_mm: impl Fn(f64) -> f64, last_mm: f64, load_mm_s: f64) -> f64 {
+    pub fn lead_mm(
+        &mut self,
+        gains: Gains,
+        at_mm: impl Fn(f64) -> f64,
+        last_mm: f64,
+        load_mm_s: f64,
+    ) -> f64 {
         let (late_s, servo_s) = (self.command_delay_s(), self.law.periods.servo_s);
         if late_s == 0.0 {
             return self.prompt_lead_mm(gains, at_mm, last_mm, load_mm_s);
         }
-        // What the reference moves by until the position loop has the command: it grows with the speed.
+        // What the reference moves by until the position loop has the command: it grows with the
+        // speed.
         let moves_mm = |from_s: f64| gains.velocity * (at_mm(from_s + late_s) - at_mm(from_s));
         let last_mm = last_mm - moves_mm(-servo_s);
-        let lead_mm = self.prompt_lead_mm(gains, |after_s| at_mm(after_s + late_s), last_mm, load_mm_s);
+        let lead_mm =
+            self.prompt_lead_mm(gains, |after_s| at_mm(after_s + late_s), last_mm, load_mm_s);
         lead_mm + moves_mm(0.0)
     }
 
     /// The same over the reference at the moment at which the position loop has the command.
     #[inline]
-    fn prompt_lead_mm(&mut self, gains: Gains, at_mm: impl Fn(f64) -> f64, last_mm: f64, load_mm_s: f64) -> f64 {
+    fn prompt_lead_mm(
+        &mut self,
+        gains: Gains,
+        at_mm: impl Fn(f64) -> f64,
+        last_mm: f64,
+        load_mm_s: f64,
+    ) -> f64 {
         let servo_s = self.law.periods.servo_s;
         self.take_in(last_mm);
         let own = self.without_lead(&at_mm);
@@ -219,8 +267,9 @@ impl AxisInverse {
         needed_mm_s / ((1.0 + within) * (parameters.kp_1_s + change_1_s) + torque_1_s)
     }
 
-    /// Reference speed, mm/s, with which the speed loop follows the motion over the period in which the reference acts that is sent at
-    /// the beginning of `at_mm`, from an integral and a friction of the presliding spring that are known there, N m.
+    /// Reference speed, mm/s, with which the speed loop follows the motion over the period in which
+    /// the reference acts that is sent at the beginning of `at_mm`, from an integral and a friction
+    /// of the presliding spring that are known there, N m.
     pub fn reference_mm_s(
         &mut self,
         at_mm: impl Fn(f64) -> f64,
@@ -228,40 +277,51 @@ impl AxisInverse {
         load_mm_s: f64,
     ) -> f64 {
         self.presliding_nm = presliding_nm;
-        let Missing { speed_mm_s, torque_mm_s } = self.missing(Gains::EXACT, &at_mm, [0.0; 2], load_mm_s);
+        let Missing {
+            speed_mm_s,
+            torque_mm_s,
+        } = self.missing(Gains::EXACT, &at_mm, [0.0; 2], load_mm_s);
         let [within, _] = self.integral_gains();
         let parameters = &self.law.parameters;
         let integral_mm_s = integral_nm / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm);
         speed_mm_s + (torque_mm_s - integral_mm_s) / (1.0 + within)
     }
 
-    /// What the integral has become in the period that was asked for last, with the lead that it really had.
+    /// What the integral has become in the period that was asked for last, with the lead that it
+    /// really had.
     #[inline]
     fn take_in(&mut self, last_mm: f64) {
         let [_, over] = self.integral_gains();
         if over > 0.0 {
             let Self { law, drive, .. } = self;
             let change_1_s = (law.parameters.kd + drive.velocity_feedforward) / law.periods.servo_s;
-            let asked_mm_s = law.parameters.kp_1_s * last_mm + change_1_s * (last_mm - self.lead_before_mm);
-            let limit = law.parameters.torque_limit_nm / (law.parameters.kv_nm_s_per_rad * law.parameters.rad_per_mm);
+            let asked_mm_s =
+                law.parameters.kp_1_s * last_mm + change_1_s * (last_mm - self.lead_before_mm);
+            let limit = law.parameters.torque_limit_nm
+                / (law.parameters.kv_nm_s_per_rad * law.parameters.rad_per_mm);
             let integral_mm_s = self.integral_mm_s + over * (asked_mm_s - self.missing.speed_mm_s);
             self.integral_mm_s = bounded(integral_mm_s, -limit, limit);
         }
     }
 
-    /// What the integral makes of an error of the speed that lasts for a servo period: its mean within, and its end.
+    /// What the integral makes of an error of the speed that lasts for a servo period: its mean
+    /// within, and its end.
     #[inline]
     fn integral_gains(&self) -> [f64; 2] {
         let time_s = self.drive.speed_integral_s;
         if time_s > 0.0 {
             let periods = &self.law.periods;
-            [0.5 * (periods.servo_s + periods.mechanics_s) / time_s, periods.servo_s / time_s]
+            [
+                0.5 * (periods.servo_s + periods.mechanics_s) / time_s,
+                periods.servo_s / time_s,
+            ]
         } else {
             [0.0; 2]
         }
     }
 
-    /// Torque of the drive's acceleration feedforward for a second difference of the lead, as a reference speed, 1/s.
+    /// Torque of the drive's acceleration feedforward for a second difference of the lead, as a
+    /// reference speed, 1/s.
     #[inline]
     fn torque_for_lead_1_s(&self) -> f64 {
         let (parameters, servo_s) = (&self.law.parameters, self.law.periods.servo_s);
@@ -279,12 +339,17 @@ impl AxisInverse {
     ) -> Missing {
         let (parameters, mechanics_s) = (self.law.parameters, self.law.periods.mechanics_s);
         let turning = self.motion(at_mm, self.delays.drive_s);
-        let torque = if self.filter_lag_s > 0.0 { self.motion(at_mm, self.ahead_s()) } else { turning };
+        let torque = if self.filter_lag_s > 0.0 {
+            self.motion(at_mm, self.ahead_s())
+        } else {
+            turning
+        };
         let late_s = mechanics_s + self.speed_late_s;
         let early_mm_s = gains.acceleration * late_s * turning.acceleration_mm_s2;
-        let inertia_kg_m2 = parameters.inertia_kg_m2 - parameters.viscous_friction_nm_s * mechanics_s;
-        self.friction_mm_s =
-            gains.friction * self.friction_nm(torque) / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm);
+        let inertia_kg_m2 =
+            parameters.inertia_kg_m2 - parameters.viscous_friction_nm_s * mechanics_s;
+        self.friction_mm_s = gains.friction * self.friction_nm(torque)
+            / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm);
         let linear = gains.acceleration * (inertia_kg_m2 * torque.acceleration_mm_s2 - fed_nm_s)
             + gains.velocity * parameters.viscous_friction_nm_s * torque.speed_mm_s;
         Missing {
@@ -296,24 +361,31 @@ impl AxisInverse {
     #[inline]
     fn motion(&self, at_mm: &impl Fn(f64) -> f64, after_s: f64) -> ReferenceMotion {
         let servo_s = self.law.periods.servo_s;
-        let [before, here, after, beyond] = [-1.0, 0.0, 1.0, 2.0].map(|n: f64| at_mm(after_s + n * servo_s));
+        let [before, here, after, beyond] =
+            [-1.0, 0.0, 1.0, 2.0].map(|n: f64| at_mm(after_s + n * servo_s));
         ReferenceMotion {
             speed_mm_s: (after - here) / servo_s,
             acceleration_mm_s2: ((beyond - here) - (after - before)) / (2.0 * servo_s * servo_s),
         }
     }
 
-    /// What the loops ask for where the command is the reference: reference speed, mm/s, and torque for a rad/mm, N m s.
+    /// What the loops ask for where the command is the reference: reference speed, mm/s, and torque
+    /// for a rad/mm, N m s.
     #[inline]
     fn without_lead(&self, at_mm: &impl Fn(f64) -> f64) -> [f64; 2] {
         let servo_s = self.law.periods.servo_s;
-        let DriveParameters { velocity_feedforward, acceleration_feedforward, .. } = self.drive;
+        let DriveParameters {
+            velocity_feedforward,
+            acceleration_feedforward,
+            ..
+        } = self.drive;
         let late_s = self.delays.measurement_s;
         let (mut asked_mm_s, mut fed_nm_s) = (0.0, 0.0);
         if late_s > 0.0 {
-            let [here_mm, before_mm] = [0.0, -servo_s].map(|after_s| at_mm(after_s) - at_mm(after_s - late_s));
-            asked_mm_s +=
-                self.law.parameters.kp_1_s * here_mm + self.law.parameters.kd * (here_mm - before_mm) / servo_s;
+            let [here_mm, before_mm] =
+                [0.0, -servo_s].map(|after_s| at_mm(after_s) - at_mm(after_s - late_s));
+            asked_mm_s += self.law.parameters.kp_1_s * here_mm
+                + self.law.parameters.kd * (here_mm - before_mm) / servo_s;
         }
         if velocity_feedforward > 0.0 || acceleration_feedforward > 0.0 {
             let [here, before, earlier] = [0.0, -1.0, -2.0].map(|n: f64| at_mm(n * servo_s));

@@ -1,6 +1,8 @@
-//! What a controller is given of an axis: the law, what drive and friction have beside, delays, and statistics of its noise.
+//! What a controller is given of an axis: the law, what drive and friction have beside, delays, and
+//! statistics of its noise.
 //!
-//! Where it comes from is another matter: a machine file, an identification, or the simulation itself.
+//! Where it comes from is another matter: a machine file, an identification, or the simulation
+//! itself.
 
 use super::delays::LoopDelays;
 use super::drive::DriveParameters;
@@ -42,7 +44,11 @@ impl AxisKnowledge {
             coulomb_friction_nm: 0.0,
             coulomb_smoothing_rad_s: 0.0,
         },
-        periods: Periods { servo_s: 0.001, mechanics_s: 0.001, mechanics_per_servo: 1 },
+        periods: Periods {
+            servo_s: 0.001,
+            mechanics_s: 0.001,
+            mechanics_per_servo: 1,
+        },
         drive: DriveParameters {
             speed_integral_s: 0.0,
             velocity_feedforward: 0.0,
@@ -58,7 +64,11 @@ impl AxisKnowledge {
             presliding_rad: 0.0,
         },
         transmission: TransmissionParameters::RIGID,
-        delays: LoopDelays { command_s: 0.0, drive_s: 0.0, measurement_s: 0.0 },
+        delays: LoopDelays {
+            command_s: 0.0,
+            drive_s: 0.0,
+            measurement_s: 0.0,
+        },
         statistics: AxisStatistics::NOTHING,
     };
 
@@ -67,58 +77,132 @@ impl AxisKnowledge {
         AxisLaw::new(self.parameters, self.periods)
     }
 
-    /// What is stored of it, in this order: all but the periods. Ranges are those of a machine file, and keep out what cannot be
-    /// computed with.
+    /// What is stored of it, in this order: all but the periods. Ranges are those of a machine
+    /// file, and keep out what cannot be computed with.
     pub const NUMBERS: &[Number] = &[
-        Number::within("rad_per_mm", "rad/mm", 1e-3, 1e3, |axis| &mut axis.parameters.rad_per_mm),
-        Number::within("kp_1_s", "1/s", 1e-3, 1e5, |axis| &mut axis.parameters.kp_1_s),
+        Number::within("rad_per_mm", "rad/mm", 1e-3, 1e3, |axis| {
+            &mut axis.parameters.rad_per_mm
+        }),
+        Number::within("kp_1_s", "1/s", 1e-3, 1e5, |axis| {
+            &mut axis.parameters.kp_1_s
+        }),
         Number::within("kd", "", 0.0, 1e3, |axis| &mut axis.parameters.kd),
-        Number::within("kv_nm_s_per_rad", "N m s/rad", 1e-9, 1e6, |axis| &mut axis.parameters.kv_nm_s_per_rad),
-        Number::within("torque_limit_nm", "N m", 1e-6, 1e6, |axis| &mut axis.parameters.torque_limit_nm),
-        Number::or_none("speed_integral_s", "s", 1e-6, 10.0, |axis| &mut axis.drive.speed_integral_s),
-        Number::within("velocity_feedforward", "", 0.0, 2.0, |axis| &mut axis.drive.velocity_feedforward),
-        Number::within("acceleration_feedforward", "", 0.0, 1e3, |axis| &mut axis.drive.acceleration_feedforward),
-        Number::or_none("torque_filter_hz", "Hz", 1e-3, 1e5, |axis| &mut axis.drive.torque_filter_hz),
-        Number::or_none("speed_limit_rad_s", "rad/s", 1e-5, 1e7, |axis| &mut axis.drive.speed_limit_rad_s),
-        Number::newer("speed_window_s", "s", 0.2, |axis| &mut axis.drive.speed_window_s),
-        Number::within("drive_delay_s", "s", 0.0, 0.02, |axis| &mut axis.delays.drive_s),
-        Number::within("measurement_delay_s", "s", 0.0, 0.02, |axis| &mut axis.delays.measurement_s),
-        Number::within("inertia_kg_m2", "kg m2", 1e-9, 1e3, |axis| &mut axis.parameters.inertia_kg_m2),
+        Number::within("kv_nm_s_per_rad", "N m s/rad", 1e-9, 1e6, |axis| {
+            &mut axis.parameters.kv_nm_s_per_rad
+        }),
+        Number::within("torque_limit_nm", "N m", 1e-6, 1e6, |axis| {
+            &mut axis.parameters.torque_limit_nm
+        }),
+        Number::or_none("speed_integral_s", "s", 1e-6, 10.0, |axis| {
+            &mut axis.drive.speed_integral_s
+        }),
+        Number::within("velocity_feedforward", "", 0.0, 2.0, |axis| {
+            &mut axis.drive.velocity_feedforward
+        }),
+        Number::within("acceleration_feedforward", "", 0.0, 1e3, |axis| {
+            &mut axis.drive.acceleration_feedforward
+        }),
+        Number::or_none("torque_filter_hz", "Hz", 1e-3, 1e5, |axis| {
+            &mut axis.drive.torque_filter_hz
+        }),
+        Number::or_none("speed_limit_rad_s", "rad/s", 1e-5, 1e7, |axis| {
+            &mut axis.drive.speed_limit_rad_s
+        }),
+        Number::newer("speed_window_s", "s", 0.2, |axis| {
+            &mut axis.drive.speed_window_s
+        }),
+        Number::within("drive_delay_s", "s", 0.0, 0.02, |axis| {
+            &mut axis.delays.drive_s
+        }),
+        Number::within("measurement_delay_s", "s", 0.0, 0.02, |axis| {
+            &mut axis.delays.measurement_s
+        }),
+        Number::within("inertia_kg_m2", "kg m2", 1e-9, 1e3, |axis| {
+            &mut axis.parameters.inertia_kg_m2
+        }),
         Number::within("viscous_friction_nm_s", "N m s/rad", 0.0, 1e4, |axis| {
             &mut axis.parameters.viscous_friction_nm_s
         }),
-        Number::within("coulomb_friction_nm", "N m", 0.0, 1e5, |axis| &mut axis.parameters.coulomb_friction_nm),
+        Number::within("coulomb_friction_nm", "N m", 0.0, 1e5, |axis| {
+            &mut axis.parameters.coulomb_friction_nm
+        }),
         Number::within("coulomb_smoothing_rad_s", "rad/s", 1e-6, 1e3, |axis| {
             &mut axis.parameters.coulomb_smoothing_rad_s
         }),
-        Number::within("coulomb_asymmetry_nm", "N m", -1e5, 1e5, |axis| &mut axis.friction.coulomb_asymmetry_nm),
-        Number::within("stribeck_nm", "N m", 0.0, 1e5, |axis| &mut axis.friction.stribeck_nm),
-        Number::or_none("stribeck_rad_s", "rad/s", 1e-6, 1e7, |axis| &mut axis.friction.stribeck_rad_s),
-        Number::or_none("presliding_rad", "rad", 1e-12, 1e4, |axis| &mut axis.friction.presliding_rad),
-        Number::or_none("table_share", "", 0.01, 0.99, |axis| &mut axis.transmission.table_share),
-        Number::or_none("resonance_rad_s", "rad/s", 1e-1, 1e6, |axis| &mut axis.transmission.resonance_rad_s),
-        Number::within("damping_ratio", "", 0.0, 1.0, |axis| &mut axis.transmission.damping_ratio),
-        Number::within("backlash_rad", "rad", 0.0, 1e3, |axis| &mut axis.transmission.backlash_rad),
-        Number::within("encoder_noise_rad", "rad", 0.0, 1e3, |axis| &mut axis.statistics.encoder_noise_rad),
-        Number::within("encoder_step_rad", "rad", 0.0, 1e3, |axis| &mut axis.statistics.encoder_step_rad),
-        Number::within("interpolation_rad", "rad", 0.0, 1e3, |axis| &mut axis.statistics.interpolation_rad),
+        Number::within("coulomb_asymmetry_nm", "N m", -1e5, 1e5, |axis| {
+            &mut axis.friction.coulomb_asymmetry_nm
+        }),
+        Number::within("stribeck_nm", "N m", 0.0, 1e5, |axis| {
+            &mut axis.friction.stribeck_nm
+        }),
+        Number::or_none("stribeck_rad_s", "rad/s", 1e-6, 1e7, |axis| {
+            &mut axis.friction.stribeck_rad_s
+        }),
+        Number::or_none("presliding_rad", "rad", 1e-12, 1e4, |axis| {
+            &mut axis.friction.presliding_rad
+        }),
+        Number::or_none("table_share", "", 0.01, 0.99, |axis| {
+            &mut axis.transmission.table_share
+        }),
+        Number::or_none("resonance_rad_s", "rad/s", 1e-1, 1e6, |axis| {
+            &mut axis.transmission.resonance_rad_s
+        }),
+        Number::within("damping_ratio", "", 0.0, 1.0, |axis| {
+            &mut axis.transmission.damping_ratio
+        }),
+        Number::within("backlash_rad", "rad", 0.0, 1e3, |axis| {
+            &mut axis.transmission.backlash_rad
+        }),
+        Number::within("encoder_noise_rad", "rad", 0.0, 1e3, |axis| {
+            &mut axis.statistics.encoder_noise_rad
+        }),
+        Number::within("encoder_step_rad", "rad", 0.0, 1e3, |axis| {
+            &mut axis.statistics.encoder_step_rad
+        }),
+        Number::within("interpolation_rad", "rad", 0.0, 1e3, |axis| {
+            &mut axis.statistics.interpolation_rad
+        }),
         Number::within("interpolation_phase_rad", "rad", -10.0, 10.0, |axis| {
             &mut axis.statistics.interpolation_phase_rad
         }),
-        Number::within("signal_per_rad", "1/rad", 0.0, 1e9, |axis| &mut axis.statistics.signal_per_rad),
-        Number::within("torque_noise_nm", "N m", 0.0, 1e5, |axis| &mut axis.statistics.torque_noise_nm),
-        Number::or_none("torque_noise_s", "s", 1e-9, 10.0, |axis| &mut axis.statistics.torque_noise_s),
-        Number::within("disturbance_nm", "N m", 0.0, 1e5, |axis| &mut axis.statistics.disturbance_nm),
-        Number::within("disturbance_rad_s", "rad/s", 0.0, 1e6, |axis| &mut axis.statistics.disturbance_rad_s),
-        Number::within("disturbance_wander", "", 0.0, 0.5, |axis| &mut axis.statistics.disturbance_wander),
-        Number::within("cogging_nm", "N m", 0.0, 1e5, |axis| &mut axis.statistics.cogging_nm),
-        Number::within("cogging_phase_rad", "rad", -10.0, 10.0, |axis| &mut axis.statistics.cogging_phase_rad),
-        Number::within("cogging_per_rev", "1/rev", 0.0, 1e4, |axis| &mut axis.statistics.cogging_per_rev),
-        Number { format: 3, ..Number::newer("command_delay_s", "s", 0.02, |axis| &mut axis.delays.command_s) },
+        Number::within("signal_per_rad", "1/rad", 0.0, 1e9, |axis| {
+            &mut axis.statistics.signal_per_rad
+        }),
+        Number::within("torque_noise_nm", "N m", 0.0, 1e5, |axis| {
+            &mut axis.statistics.torque_noise_nm
+        }),
+        Number::or_none("torque_noise_s", "s", 1e-9, 10.0, |axis| {
+            &mut axis.statistics.torque_noise_s
+        }),
+        Number::within("disturbance_nm", "N m", 0.0, 1e5, |axis| {
+            &mut axis.statistics.disturbance_nm
+        }),
+        Number::within("disturbance_rad_s", "rad/s", 0.0, 1e6, |axis| {
+            &mut axis.statistics.disturbance_rad_s
+        }),
+        Number::within("disturbance_wander", "", 0.0, 0.5, |axis| {
+            &mut axis.statistics.disturbance_wander
+        }),
+        Number::within("cogging_nm", "N m", 0.0, 1e5, |axis| {
+            &mut axis.statistics.cogging_nm
+        }),
+        Number::within("cogging_phase_rad", "rad", -10.0, 10.0, |axis| {
+            &mut axis.statistics.cogging_phase_rad
+        }),
+        Number::within("cogging_per_rev", "1/rev", 0.0, 1e4, |axis| {
+            &mut axis.statistics.cogging_per_rev
+        }),
+        Number {
+            format: 3,
+            ..Number::newer("command_delay_s", "s", 0.02, |axis| {
+                &mut axis.delays.command_s
+            })
+        },
     ];
 
-    /// Whether a command can follow the drive. Where its damping is below 0.3, the acceleration feedforward makes of an offset one that rings, and takes all
-    /// the torque: random machines with 0.7 of it and no velocity feedforward came to 2 mm where 6 um were left uncorrected.
+    /// Whether a command can follow the drive. Where its damping is below 0.3, the acceleration
+    /// feedforward makes of an offset one that rings, and takes all the torque: random machines
+    /// with 0.7 of it and no velocity feedforward came to 2 mm where 6 um were left uncorrected.
     pub fn is_followed(&self) -> bool {
         self.command_damping() >= LEAST_DAMPING
     }
@@ -129,10 +213,14 @@ impl AxisKnowledge {
     /// w = kp (c - x) + F c' + (J A / Kv) c''      zeta = F / (2 (kp J A / Kv)^(1/2))
     /// ```
     ///
-    /// with the position gain kp, the velocity feedforward F and the acceleration feedforward A. Infinite without A. Where it is low, the command rings.
+    /// with the position gain kp, the velocity feedforward F and the acceleration feedforward A.
+    /// Infinite without A. Where it is low, the command rings.
     fn command_damping(&self) -> f64 {
-        let Self { parameters, drive, .. } = self;
-        let added_s = parameters.inertia_kg_m2 * drive.acceleration_feedforward / parameters.kv_nm_s_per_rad;
+        let Self {
+            parameters, drive, ..
+        } = self;
+        let added_s =
+            parameters.inertia_kg_m2 * drive.acceleration_feedforward / parameters.kv_nm_s_per_rad;
         if added_s > 0.0 {
             drive.velocity_feedforward / (2.0 * libm::sqrt(parameters.kp_1_s * added_s))
         } else {
@@ -142,22 +230,27 @@ impl AxisKnowledge {
 
     /// Whether each of its numbers is within its range.
     pub fn is_possible(mut self) -> bool {
-        Self::NUMBERS.iter().all(|number| number.holds(*(number.of)(&mut self)))
+        Self::NUMBERS
+            .iter()
+            .all(|number| number.holds(*(number.of)(&mut self)))
     }
 }
 
 /// Damping of a command that follows a drive, at the least.
 const LEAST_DAMPING: f64 = 0.3;
 
-/// Smallest gain of a position loop, 1/s. An axis with it takes 9 s to come within 1 % of a new position, and is 33 mm behind at 1 m/min; the
-/// slowest machine tools have ten times this gain. A gain in 1/ms, or one of a controller whose output is in volts, is usually smaller.
+/// Smallest gain of a position loop, 1/s. An axis with it takes 9 s to come within 1 % of a new
+/// position, and is 33 mm behind at 1 m/min; the slowest machine tools have ten times this gain. A
+/// gain in 1/ms, or one of a controller whose output is in volts, is usually smaller.
 const LEAST_POSITION_GAIN_1_S: f64 = 0.5;
 
-/// Product of position gain Kp and servo period T from which on the loop diverges. With a drive that follows at once an error e becomes (1 - Kp T) e
-/// within a period, which diverges from 2 on. A drive of first order keeps the loop stable up to 4.1, where its time constant is T / 3.7.
+/// Product of position gain Kp and servo period T from which on the loop diverges. With a drive
+/// that follows at once an error e becomes (1 - Kp T) e within a period, which diverges from 2 on.
+/// A drive of first order keeps the loop stable up to 4.1, where its time constant is T / 3.7.
 const DIVERGING_GAIN: f64 = 5.0;
 
-/// Range of the position gain in a loop with this servo period, 1/s. A gain outside is of another unit or of another loop.
+/// Range of the position gain in a loop with this servo period, 1/s. A gain outside is of another
+/// unit or of another loop.
 pub fn position_gains_1_s(servo_s: f64) -> [f64; 2] {
     [LEAST_POSITION_GAIN_1_S, DIVERGING_GAIN / servo_s]
 }
@@ -175,9 +268,11 @@ pub struct Number {
     /// this part. Other values below the range are rejected, so that nothing is divided by a tiny
     /// number.
     pub or_none: bool,
-    /// Whether a model file may leave it out, as those do that were written before there was such a number. It is zero then.
+    /// Whether a model file may leave it out, as those do that were written before there was such a
+    /// number. It is zero then.
     pub optional: bool,
-    /// Format of a model block from which on the block has this number. An earlier block leaves it zero.
+    /// Format of a model block from which on the block has this number. An earlier block leaves it
+    /// zero.
     pub format: u32,
     /// The field.
     pub of: fn(&mut AxisKnowledge) -> &mut f64,
@@ -186,16 +281,42 @@ pub struct Number {
 type Field = fn(&mut AxisKnowledge) -> &mut f64;
 
 impl Number {
-    const fn within(name: &'static str, unit: &'static str, least: f64, most: f64, of: Field) -> Self {
-        Self { name, unit, range: [least, most], or_none: false, optional: false, format: 2, of }
+    const fn within(
+        name: &'static str,
+        unit: &'static str,
+        least: f64,
+        most: f64,
+        of: Field,
+    ) -> Self {
+        Self {
+            name,
+            unit,
+            range: [least, most],
+            or_none: false,
+            optional: false,
+            format: 2,
+            of,
+        }
     }
 
-    const fn or_none(name: &'static str, unit: &'static str, least: f64, most: f64, of: Field) -> Self {
-        Self { or_none: true, ..Self::within(name, unit, least, most, of) }
+    const fn or_none(
+        name: &'static str,
+        unit: &'static str,
+        least: f64,
+        most: f64,
+        of: Field,
+    ) -> Self {
+        Self {
+            or_none: true,
+            ..Self::within(name, unit, least, most, of)
+        }
     }
 
     const fn newer(name: &'static str, unit: &'static str, most: f64, of: Field) -> Self {
-        Self { optional: true, ..Self::within(name, unit, 0.0, most, of) }
+        Self {
+            optional: true,
+            ..Self::within(name, unit, 0.0, most, of)
+        }
     }
 
     /// Whether it may have this value. What is not a number it may not have.

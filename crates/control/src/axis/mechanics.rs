@@ -1,6 +1,8 @@
-//! A mechanics period of an axis under given torques: motor, table where the ball screw gives, friction.
+//! A mechanics period of an axis under given torques: motor, table where the ball screw gives,
+//! friction.
 //!
-//! What simulates a machine, what estimates one and what runs freely to identify one step their masses by this and nothing else.
+//! What simulates a machine, what estimates one and what runs freely to identify one step their
+//! masses by this and nothing else.
 
 use core::array::from_fn;
 
@@ -38,8 +40,15 @@ impl MechanicsState {
     /// At a speed, motor and table alike.
     pub fn moving(angle_rad: f64, speed_rad_s: f64) -> Self {
         Self {
-            motor: AxisState { angle_rad, speed_rad_s, ..AxisState::default() },
-            table: TableState { angle_rad, speed_rad_s },
+            motor: AxisState {
+                angle_rad,
+                speed_rad_s,
+                ..AxisState::default()
+            },
+            table: TableState {
+                angle_rad,
+                speed_rad_s,
+            },
             presliding_nm: 0.0,
         }
     }
@@ -47,11 +56,20 @@ impl MechanicsState {
 
 impl MechanicsLaw {
     /// Of an axis with this friction and this screw.
-    pub fn new(law: &AxisLaw, friction: FrictionParameters, transmission: TransmissionParameters) -> Self {
+    pub fn new(
+        law: &AxisLaw,
+        friction: FrictionParameters,
+        transmission: TransmissionParameters,
+    ) -> Self {
         Self {
             law: *law,
-            friction: (friction != FrictionParameters::default()).then(|| FrictionLaw::new(law, friction)),
-            transmission: TransmissionLaw::new(law.parameters.inertia_kg_m2, law.periods.mechanics_s, transmission),
+            friction: (friction != FrictionParameters::default())
+                .then(|| FrictionLaw::new(law, friction)),
+            transmission: TransmissionLaw::new(
+                law.parameters.inertia_kg_m2,
+                law.periods.mechanics_s,
+                transmission,
+            ),
             inverse_inertia: 1.0 / law.parameters.inertia_kg_m2,
         }
     }
@@ -67,14 +85,20 @@ impl MechanicsLaw {
         match &self.friction {
             Some(friction) => {
                 let [forces_nm, inverse, speed_rad_s] = self.push(state, motor_nm, load_nm);
-                let after = friction.speed_after_rad_s(forces_nm, inverse, speed_rad_s, &mut state.presliding_nm);
+                let after = friction.speed_after_rad_s(
+                    forces_nm,
+                    inverse,
+                    speed_rad_s,
+                    &mut state.presliding_nm,
+                );
                 self.go_on(state, after);
             }
             None => self.advance_smoothly(state, motor_nm, load_nm),
         }
     }
 
-    /// The same of several axes without a load, in about the time of one: the processor works on the others while the friction of one is computed.
+    /// The same of several axes without a load, in about the time of one: the processor works on
+    /// the others while the friction of one is computed.
     #[inline]
     pub fn advance_abreast<const L: usize>(
         laws: &[&Self; L],
@@ -82,7 +106,11 @@ impl MechanicsLaw {
         motor_nm: [f64; L],
     ) {
         let all_slide = laws.iter().all(|law| law.friction.is_some());
-        let Some(first) = laws.first().and_then(|law| law.friction.as_ref()).filter(|_| all_slide) else {
+        let Some(first) = laws
+            .first()
+            .and_then(|law| law.friction.as_ref())
+            .filter(|_| all_slide)
+        else {
             (0..L).for_each(|i| laws[i].advance(states[i], motor_nm[i], 0.0));
             return;
         };
@@ -90,23 +118,38 @@ impl MechanicsLaw {
         let mut presliding_nm: [f64; L] = from_fn(|i| states[i].presliding_nm);
         let frictions = laws.map(|law| law.friction.as_ref().unwrap_or(first));
         let [forces_nm, inverse, speeds] = from_fn(|k| pushed.map(|pushed| pushed[k]));
-        let after = FrictionLaw::speeds_after_rad_s(&frictions, forces_nm, inverse, speeds, &mut presliding_nm);
+        let after = FrictionLaw::speeds_after_rad_s(
+            &frictions,
+            forces_nm,
+            inverse,
+            speeds,
+            &mut presliding_nm,
+        );
         for i in 0..L {
             states[i].presliding_nm = presliding_nm[i];
             laws[i].go_on(states[i], after[i]);
         }
     }
 
-    /// What pushes the mass that slides, N m, one over its inertia and its speed: the table, and the motor where the screw is rigid.
+    /// What pushes the mass that slides, N m, one over its inertia and its speed: the table, and
+    /// the motor where the screw is rigid.
     #[inline]
     fn push(&self, state: &mut MechanicsState, motor_nm: f64, load_nm: f64) -> [f64; 3] {
         let MechanicsState { motor, table, .. } = state;
         let Some(screw) = &self.transmission else {
             return [motor_nm - load_nm, self.inverse_inertia, motor.speed_rad_s];
         };
-        let through_nm = screw.torque_nm(motor.angle_rad - table.angle_rad, motor.speed_rad_s - table.speed_rad_s);
-        motor.speed_rad_s += self.law.periods.mechanics_s * screw.inverse_motor_inertia * (motor_nm - through_nm);
-        [through_nm - load_nm, screw.inverse_table_inertia, table.speed_rad_s]
+        let through_nm = screw.torque_nm(
+            motor.angle_rad - table.angle_rad,
+            motor.speed_rad_s - table.speed_rad_s,
+        );
+        motor.speed_rad_s +=
+            self.law.periods.mechanics_s * screw.inverse_motor_inertia * (motor_nm - through_nm);
+        [
+            through_nm - load_nm,
+            screw.inverse_table_inertia,
+            table.speed_rad_s,
+        ]
     }
 
     /// The way of a mechanics period, at the end of which what slides has a speed.
@@ -117,7 +160,10 @@ impl MechanicsLaw {
         if self.transmission.is_none() {
             motor.speed_rad_s = after_rad_s;
             motor.angle_rad += dt_s * after_rad_s;
-            *table = TableState { angle_rad: motor.angle_rad, speed_rad_s: motor.speed_rad_s };
+            *table = TableState {
+                angle_rad: motor.angle_rad,
+                speed_rad_s: motor.speed_rad_s,
+            };
         } else {
             table.speed_rad_s = after_rad_s;
             motor.angle_rad += dt_s * motor.speed_rad_s;
@@ -130,13 +176,22 @@ impl MechanicsLaw {
     fn advance_smoothly(&self, state: &mut MechanicsState, motor_nm: f64, load_nm: f64) {
         if self.transmission.is_none() {
             let motor = &mut state.motor;
-            self.law.accelerate(motor_nm - (self.friction_nm(motor.speed_rad_s) + load_nm), motor);
-            state.table = TableState { angle_rad: motor.angle_rad, speed_rad_s: motor.speed_rad_s };
+            self.law.accelerate(
+                motor_nm - (self.friction_nm(motor.speed_rad_s) + load_nm),
+                motor,
+            );
+            state.table = TableState {
+                angle_rad: motor.angle_rad,
+                speed_rad_s: motor.speed_rad_s,
+            };
             return;
         }
         let [pushed_nm, inverse, speed_rad_s] = self.push(state, motor_nm, 0.0);
         let load_nm = self.friction_nm(speed_rad_s) + load_nm;
-        self.go_on(state, speed_rad_s + self.law.periods.mechanics_s * inverse * (pushed_nm - load_nm));
+        self.go_on(
+            state,
+            speed_rad_s + self.law.periods.mechanics_s * inverse * (pushed_nm - load_nm),
+        );
     }
 
     /// Viscous and Coulomb friction alone, N m.
@@ -164,11 +219,23 @@ mod tests {
             coulomb_friction_nm,
             coulomb_smoothing_rad_s: 0.5,
         };
-        AxisLaw::new(parameters, Periods { servo_s: 0.001, mechanics_s: 1e-5, mechanics_per_servo: 100 })
+        AxisLaw::new(
+            parameters,
+            Periods {
+                servo_s: 0.001,
+                mechanics_s: 1e-5,
+                mechanics_per_servo: 100,
+            },
+        )
     }
 
     fn screw(resonance_rad_s: f64) -> TransmissionParameters {
-        TransmissionParameters { table_share: 0.4, resonance_rad_s, damping_ratio: 0.05, backlash_rad: 0.0 }
+        TransmissionParameters {
+            table_share: 0.4,
+            resonance_rad_s,
+            damping_ratio: 0.05,
+            backlash_rad: 0.0,
+        }
     }
 
     /// After a tenth of a second under 1 N m at the motor and 0.3 N m against the table.
@@ -180,11 +247,17 @@ mod tests {
 
     #[test]
     fn several_axes_at_once_are_each_as_it_is_alone() {
-        let dahl = FrictionParameters { presliding_rad: 0.001, ..FrictionParameters::default() };
+        let dahl = FrictionParameters {
+            presliding_rad: 0.001,
+            ..FrictionParameters::default()
+        };
         let of = |friction, transmission| MechanicsLaw::new(&law(0.2), friction, transmission);
         let none = FrictionParameters::default();
         for laws in [
-            [of(dahl, screw(300.0)), of(dahl, TransmissionParameters::RIGID)],
+            [
+                of(dahl, screw(300.0)),
+                of(dahl, TransmissionParameters::RIGID),
+            ],
             [of(dahl, screw(300.0)), of(none, screw(200.0))],
         ] {
             let mut alone = [MechanicsState::at_rest(0.0); 2];
@@ -202,17 +275,32 @@ mod tests {
     fn a_stiff_screw_is_as_a_rigid_one() {
         for coulomb_nm in [0.0, 0.2] {
             let law = law(coulomb_nm);
-            let rigid = driven(&MechanicsLaw::new(&law, FrictionParameters::default(), TransmissionParameters::RIGID));
-            let stiff = driven(&MechanicsLaw::new(&law, FrictionParameters::default(), screw(5e3)));
+            let rigid = driven(&MechanicsLaw::new(
+                &law,
+                FrictionParameters::default(),
+                TransmissionParameters::RIGID,
+            ));
+            let stiff = driven(&MechanicsLaw::new(
+                &law,
+                FrictionParameters::default(),
+                screw(5e3),
+            ));
             let (a, b) = (rigid.motor.speed_rad_s, stiff.motor.speed_rad_s);
             assert!((a - b).abs() < 2e-3 * a, "{a} {b}");
-            assert_eq!([rigid.table.angle_rad, rigid.table.speed_rad_s], [rigid.motor.angle_rad, a]);
+            assert_eq!(
+                [rigid.table.angle_rad, rigid.table.speed_rad_s],
+                [rigid.motor.angle_rad, a]
+            );
         }
     }
 
     #[test]
     fn both_masses_together_have_the_momentum_that_the_torques_gave() {
-        let state = driven(&MechanicsLaw::new(&law(0.0), FrictionParameters::default(), screw(300.0)));
+        let state = driven(&MechanicsLaw::new(
+            &law(0.0),
+            FrictionParameters::default(),
+            screw(300.0),
+        ));
         let momentum = 0.006 * state.motor.speed_rad_s + 0.004 * state.table.speed_rad_s;
         assert!((momentum - 0.7 * 0.1).abs() < 1e-9, "{momentum}");
     }

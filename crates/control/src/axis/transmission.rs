@@ -32,12 +32,23 @@ pub struct TransmissionParameters {
 
 impl TransmissionParameters {
     /// A screw that does not give.
-    pub const RIGID: Self = Self { table_share: 0.0, resonance_rad_s: 0.0, damping_ratio: 0.0, backlash_rad: 0.0 };
+    pub const RIGID: Self = Self {
+        table_share: 0.0,
+        resonance_rad_s: 0.0,
+        damping_ratio: 0.0,
+        backlash_rad: 0.0,
+    };
 
-    /// What the friction of both directions winds the screw of an axis up, rad: 2 Fc / k. 0 where it is rigid.
+    /// What the friction of both directions winds the screw of an axis up, rad: 2 Fc / k. 0 where
+    /// it is rigid.
     pub fn windup_rad(&self, inertia_kg_m2: f64, coulomb_friction_nm: f64) -> f64 {
-        let stiffness_nm_rad = inertia_kg_m2 * self.table_share * self.resonance_rad_s * self.resonance_rad_s;
-        if stiffness_nm_rad > 0.0 { 2.0 * coulomb_friction_nm / stiffness_nm_rad } else { 0.0 }
+        let stiffness_nm_rad =
+            inertia_kg_m2 * self.table_share * self.resonance_rad_s * self.resonance_rad_s;
+        if stiffness_nm_rad > 0.0 {
+            2.0 * coulomb_friction_nm / stiffness_nm_rad
+        } else {
+            0.0
+        }
     }
 }
 
@@ -67,16 +78,29 @@ pub struct TransmissionLaw {
     pub resonance_rad_s: f64,
 }
 
-/// Most that the two masses may turn against each other in a mechanics period, rad: from 2 on the integration is unstable.
+/// Most that the two masses may turn against each other in a mechanics period, rad: from 2 on the
+/// integration is unstable.
 const MOST_PHASE_RAD: f64 = 1.0;
 
 impl TransmissionLaw {
-    /// Of an axis with this inertia, kg m2; none where the screw is rigid, or so stiff that no mechanics period could follow it.
-    pub fn new(inertia_kg_m2: f64, mechanics_s: f64, parameters: TransmissionParameters) -> Option<Self> {
-        let TransmissionParameters { table_share, resonance_rad_s, damping_ratio, backlash_rad } = parameters;
+    /// Of an axis with this inertia, kg m2; none where the screw is rigid, or so stiff that no
+    /// mechanics period could follow it.
+    pub fn new(
+        inertia_kg_m2: f64,
+        mechanics_s: f64,
+        parameters: TransmissionParameters,
+    ) -> Option<Self> {
+        let TransmissionParameters {
+            table_share,
+            resonance_rad_s,
+            damping_ratio,
+            backlash_rad,
+        } = parameters;
         let table_kg_m2 = inertia_kg_m2 * table_share;
         let free_rad_s = resonance_rad_s / libm::sqrt(1.0 - table_share);
-        let gives = table_share > 0.0 && resonance_rad_s > 0.0 && free_rad_s * mechanics_s <= MOST_PHASE_RAD;
+        let gives = table_share > 0.0
+            && resonance_rad_s > 0.0
+            && free_rad_s * mechanics_s <= MOST_PHASE_RAD;
         gives.then(|| Self {
             inverse_motor_inertia: 1.0 / (inertia_kg_m2 - table_kg_m2),
             inverse_table_inertia: 1.0 / table_kg_m2,
@@ -121,8 +145,16 @@ mod tests {
 
     fn soft(backlash_rad: f64) -> (TransmissionLaw, TransmissionParameters) {
         let resonance_rad_s = TAU * 60.0;
-        let screw = TransmissionParameters { table_share: 0.5, resonance_rad_s, damping_ratio: 0.02, backlash_rad };
-        (TransmissionLaw::new(INERTIA_KG_M2, DT_S, screw).expect("it is not rigid"), screw)
+        let screw = TransmissionParameters {
+            table_share: 0.5,
+            resonance_rad_s,
+            damping_ratio: 0.02,
+            backlash_rad,
+        };
+        (
+            TransmissionLaw::new(INERTIA_KG_M2, DT_S, screw).expect("it is not rigid"),
+            screw,
+        )
     }
 
     #[test]
@@ -130,9 +162,18 @@ mod tests {
         let (_, screw) = soft(0.0);
         for rigid in [
             TransmissionParameters::RIGID,
-            TransmissionParameters { table_share: 0.0, ..screw },
-            TransmissionParameters { resonance_rad_s: 0.0, ..screw },
-            TransmissionParameters { resonance_rad_s: 1e6, ..screw },
+            TransmissionParameters {
+                table_share: 0.0,
+                ..screw
+            },
+            TransmissionParameters {
+                resonance_rad_s: 0.0,
+                ..screw
+            },
+            TransmissionParameters {
+                resonance_rad_s: 1e6,
+                ..screw
+            },
         ] {
             assert_eq!(TransmissionLaw::new(INERTIA_KG_M2, DT_S, rigid), None);
         }
@@ -142,10 +183,15 @@ mod tests {
     fn the_table_rings_at_the_frequency_and_with_the_damping_that_are_named() {
         let (law, screw) = soft(0.0);
         // The table swings against the held motor, from a twist of a milliradian.
-        let mut table = TableState { angle_rad: 1e-3, speed_rad_s: 0.0 };
+        let mut table = TableState {
+            angle_rad: 1e-3,
+            speed_rad_s: 0.0,
+        };
         let (mut upward, mut peaks, mut before) = (Vec::new(), Vec::new(), table.angle_rad);
         for step in 0..50_000 {
-            table.speed_rad_s += DT_S * law.inverse_table_inertia * law.torque_nm(-table.angle_rad, -table.speed_rad_s);
+            table.speed_rad_s += DT_S
+                * law.inverse_table_inertia
+                * law.torque_nm(-table.angle_rad, -table.speed_rad_s);
             table.angle_rad += DT_S * table.speed_rad_s;
             if before < 0.0 && table.angle_rad >= 0.0 {
                 upward.push(step);
@@ -160,12 +206,19 @@ mod tests {
         let period_s = f64::from(upward[periods] - upward[0]) * DT_S / periods as f64;
         let undamped = libm::sqrt(1.0 - screw.damping_ratio * screw.damping_ratio);
         let damped_hz = screw.resonance_rad_s / TAU * undamped;
-        assert!((1.0 / period_s - damped_hz).abs() < 0.01 * damped_hz, "{} Hz", 1.0 / period_s);
-        // Logarithmic decrement, from peak to peak: 2 pi zeta / sqrt(1 - zeta^2). At zero twist the flanks part: while
-        // they pull they are let go, which costs the least bit of damping.
+        assert!(
+            (1.0 / period_s - damped_hz).abs() < 0.01 * damped_hz,
+            "{} Hz",
+            1.0 / period_s
+        );
+        // Logarithmic decrement, from peak to peak: 2 pi zeta / sqrt(1 - zeta^2). At zero twist the
+        // flanks part: while they pull they are let go, which costs the least bit of damping.
         let decrement = libm::log(peaks[0] / peaks[5]) / 5.0;
         let expected = TAU * screw.damping_ratio / undamped;
-        assert!((decrement - expected).abs() < 0.1 * expected, "{decrement} {expected}");
+        assert!(
+            (decrement - expected).abs() < 0.1 * expected,
+            "{decrement} {expected}"
+        );
     }
 
     #[test]
@@ -173,9 +226,14 @@ mod tests {
         let (law, screw) = soft(BACKLASH_RAD);
         let half_gap_rad = 0.5 * BACKLASH_RAD;
         for twist in [-1e-4, 0.0, 0.1, half_gap_rad * 0.999] {
-            assert_eq!(law.torque_nm(twist, 0.0) != 0.0, twist.abs() > half_gap_rad, "{twist}");
+            assert_eq!(
+                law.torque_nm(twist, 0.0) != 0.0,
+                twist.abs() > half_gap_rad,
+                "{twist}"
+            );
         }
-        let stiffness = screw.table_share * INERTIA_KG_M2 * screw.resonance_rad_s * screw.resonance_rad_s;
+        let stiffness =
+            screw.table_share * INERTIA_KG_M2 * screw.resonance_rad_s * screw.resonance_rad_s;
         let torque = law.torque_nm(half_gap_rad + 1e-3, 0.0);
         assert!((torque - stiffness * 1e-3).abs() < 1e-9, "{torque}");
     }

@@ -1,8 +1,10 @@
 //! Velocity, acceleration and friction feedforward with the exact model of the machine.
 //!
-//! The drive takes position commands only, so the inverse dynamics go into the position command: each axis leads the reference as
-//! [`crate::axis::inverse`] has it, with what its drive feeds forward by itself, the integral of its speed loop, its delays, its
-//! torque filter and its friction. What the drive does by itself is not done twice. Cogging and ripple of the motor are not known here.
+//! The drive takes position commands only, so the inverse dynamics go into the position command:
+//! each axis leads the reference as [`crate::axis::inverse`] has it, with what its drive feeds
+//! forward by itself, the integral of its speed loop, its delays, its torque filter and its
+//! friction. What the drive does by itself is not done twice. Cogging and ripple of the motor are
+//! not known here.
 //!
 //! For an axis that is no more than a position loop, a P speed loop and smoothed Coulomb friction:
 //!
@@ -12,16 +14,17 @@
 //! c(m)     = r(m) + e(m)
 //! ```
 //!
-//! with gains g of 1 for the exact model, w the mean speed of the reference over the servo period that begins at m Ts, and a its mean
-//! acceleration. The speed is taken half a period after the command because the command is held: this is the zero-order hold's
-//! delay, compensated.
+//! with gains g of 1 for the exact model, w the mean speed of the reference over the servo period
+//! that begins at m Ts, and a its mean acceleration. The speed is taken half a period after the
+//! command because the command is held: this is the zero-order hold's delay, compensated.
 //!
-//! Source: Masory (1986), "Improving contouring accuracy of NC/CNC systems with additional velocity feed forward loop";
-//! friction as in Armstrong-Helouvry, Dupont and Canudas de Wit (1994), "A survey of models, analysis tools and
-//! compensation methods for the control of machines with friction".
+//! Source: Masory (1986), "Improving contouring accuracy of NC/CNC systems with additional velocity
+//! feed forward loop"; friction as in Armstrong-Helouvry, Dupont and Canudas de Wit (1994), "A
+//! survey of models, analysis tools and compensation methods for the control of machines with
+//! friction".
 //!
-//! Departures: the feedforward enters before the position loop instead of after it. The offset that it makes is mostly
-//! along the path, 1 mm at 50 mm/s and 50 1/s.
+//! Departures: the feedforward enters before the position loop instead of after it. The offset that
+//! it makes is mostly along the path, 1 mm at 50 mm/s and 50 1/s.
 
 use super::{Controller, Schedule};
 use crate::axis::inverse::AxisInverse;
@@ -31,12 +34,13 @@ use crate::window::Window;
 
 /// Preview behind the command of the next servo period that the differences need, servo periods.
 const DIFFERENCES: f64 = 3.0;
-/// The supervisor knows the path as far as the preview goes, and the command leads by the lag of the loop: this many
-/// lags leave room for a command that leads a slowing motion.
+/// The supervisor knows the path as far as the preview goes, and the command leads by the lag of
+/// the loop: this many lags leave room for a command that leads a slowing motion.
 const PREVIEW_LAGS: f64 = 3.0;
 /// Of the `PREVIEW_KNOTS`; the others reach behind.
 pub const MAX_PREVIEW: f64 = 240.0;
-/// Periods of friction that are kept for an observer: the longest delays of a machine file, 20 ms each way, at a servo period of 1 ms.
+/// Periods of friction that are kept for an observer: the longest delays of a machine file, 20 ms
+/// each way, at a servo period of 1 ms.
 const KEPT_PERIODS: usize = 48;
 
 /// Preview for a command that leads the path by the lag of a loop, servo periods.
@@ -51,7 +55,8 @@ pub struct Feedforward<const N: usize> {
     axes: [AxisInverse; N],
     gains: [Gains; N],
     preview: u32,
-    /// Friction that was made up for in the last periods, the newest first, mm/s of reference speed.
+    /// Friction that was made up for in the last periods, the newest first, mm/s of reference
+    /// speed.
     friction_mm_s: [[f64; N]; KEPT_PERIODS],
 }
 
@@ -59,20 +64,42 @@ impl<const N: usize> Feedforward<N> {
     /// For these axes, with so much of each part.
     pub fn new(axes: [AxisInverse; N], gains: [Gains; N]) -> Self {
         let most = |of: fn(&AxisInverse) -> f64| axes.iter().map(of).fold(0.0, f64::max);
-        let servo_s = axes.iter().map(|axis| axis.law().periods.servo_s).fold(f64::INFINITY, f64::min);
-        let late = libm::ceil(most(|axis| axis.command_delay_s() + axis.ahead_s()) / servo_s).min(MAX_PREVIEW);
+        let servo_s = axes
+            .iter()
+            .map(|axis| axis.law().periods.servo_s)
+            .fold(f64::INFINITY, f64::min);
+        let late = libm::ceil(most(|axis| axis.command_delay_s() + axis.ahead_s()) / servo_s)
+            .min(MAX_PREVIEW);
         // A float that is not a number saturates to zero here.
-        let preview = (preview(most(AxisInverse::lag_s), servo_s) + late as u32).min(MAX_PREVIEW as u32);
-        Self { axes, gains, preview, friction_mm_s: [[0.0; N]; KEPT_PERIODS] }
+        let preview =
+            (preview(most(AxisInverse::lag_s), servo_s) + late as u32).min(MAX_PREVIEW as u32);
+        Self {
+            axes,
+            gains,
+            preview,
+            friction_mm_s: [[0.0; N]; KEPT_PERIODS],
+        }
     }
 
     /// Returns the required lead of a servo period's command over a reference, mm. Call it once per
     /// servo period. `at_mm` gives the reference at a time after the start of the period, s.
     /// `last_mm` is the lead in the last period. `load_mm_s` is a load, as a reference speed, mm/s.
-    pub fn lead_mm(&mut self, at_mm: impl Fn(f64) -> [f64; N], last_mm: [f64; N], load_mm_s: [f64; N]) -> [f64; N] {
+    pub fn lead_mm(
+        &mut self,
+        at_mm: impl Fn(f64) -> [f64; N],
+        last_mm: [f64; N],
+        load_mm_s: [f64; N],
+    ) -> [f64; N] {
         let gains = self.gains;
         let mut lead_mm = [0.0; N];
-        let axes = self.axes.iter_mut().zip(gains).zip(last_mm).zip(load_mm_s).zip(&mut lead_mm).enumerate();
+        let axes = self
+            .axes
+            .iter_mut()
+            .zip(gains)
+            .zip(last_mm)
+            .zip(load_mm_s)
+            .zip(&mut lead_mm)
+            .enumerate();
         for (i, ((((axis, gains), last_mm), load_mm_s), lead_mm)) in axes {
             // Every axis has its reference, which the linker cannot see.
             let at_mm = |after_s| at_mm(after_s).get(i).copied().unwrap_or_default();
@@ -92,14 +119,17 @@ impl<const N: usize> Feedforward<N> {
         Command::straight(1.0, self.lead_mm(at_mm, window.offset_mm, load_mm_s))
     }
 
-    /// The part of the reference speed that makes up for Coulomb friction in the servo period at whose start the position was that is
-    /// measured now, mm/s.
+    /// The part of the reference speed that makes up for Coulomb friction in the servo period at
+    /// whose start the position was that is measured now, mm/s.
     pub fn friction_mm_s(&self) -> [f64; N] {
         core::array::from_fn(|i| {
             let axis = &self.axes[i];
             // A float that is not a number saturates to zero here.
             let age = libm::round(axis.late_s() / axis.law().periods.servo_s) as usize;
-            let of_axes = self.friction_mm_s.get(age.min(KEPT_PERIODS - 1)).unwrap_or(&[0.0; N]);
+            let of_axes = self
+                .friction_mm_s
+                .get(age.min(KEPT_PERIODS - 1))
+                .unwrap_or(&[0.0; N]);
             of_axes[i]
         })
     }
@@ -107,7 +137,10 @@ impl<const N: usize> Feedforward<N> {
 
 impl<const N: usize> Controller<N> for Feedforward<N> {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: 1, preview: self.preview }
+        Schedule {
+            servo_periods: 1,
+            preview: self.preview,
+        }
     }
 
     fn reset(&mut self) {
@@ -139,11 +172,17 @@ pub(super) mod tests {
     impl KnotSource<2> for Parabola {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             let t_s = tau_s.max(0.0);
-            Knot { position_mm: [15.0 * t_s * t_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 30.0 * t_s, cutting: true }
+            Knot {
+                position_mm: [15.0 * t_s * t_s, 0.0],
+                tangent: [1.0, 0.0],
+                feed_mm_s: 30.0 * t_s,
+                cutting: true,
+            }
         }
     }
 
-    /// The commands of a controller that decides in each servo period, does not measure, and is not held to any bound.
+    /// The commands of a controller that decides in each servo period, does not measure, and is not
+    /// held to any bound.
     fn commands(
         reference: &mut dyn KnotSource<2>,
         controller: &mut dyn Controller<2>,
@@ -153,7 +192,10 @@ pub(super) mod tests {
         let (mut register, mut preview) = (Register::default(), Preview::new(servo_s));
         let schedule = controller.schedule();
         assert_eq!(schedule.servo_periods, 1);
-        let measured = Measured { position_mm: [0.0; 2], contour: ContourError::NONE };
+        let measured = Measured {
+            position_mm: [0.0; 2],
+            contour: ContourError::NONE,
+        };
         let mut offset_mm = [0.0; 2];
         for n in 0..1000 {
             let tau_s = n as f64 * servo_s;
@@ -189,22 +231,29 @@ pub(super) mod tests {
 
     /// An axis that is nothing beside, whose mechanics period is a thousandth of the servo period.
     fn inverse(axis: Parameters) -> AxisInverse {
-        let periods = Periods { servo_s: SERVO_S, mechanics_s: 1e-3 * SERVO_S, mechanics_per_servo: 1000 };
+        let periods = Periods {
+            servo_s: SERVO_S,
+            mechanics_s: 1e-3 * SERVO_S,
+            mechanics_per_servo: 1000,
+        };
         AxisInverse::plain(AxisLaw::new(axis, periods))
     }
 
-    /// Following error along the parabola at the end of a second, mm; the mechanics in steps of 1 us.
+    /// Following error along the parabola at the end of a second, mm; the mechanics in steps of 1
+    /// us.
     fn error_mm(axis: &Parameters, gains: Gains) -> f64 {
         let mut controller = Feedforward::new([inverse(*axis); 2], [gains; 2]);
         let (mut angle_rad, mut speed_rad_s, mut last_rad) = (0.0, 0.0, 0.0);
         let step_s = 1e-3 * SERVO_S;
         commands(&mut Parabola, &mut controller, SERVO_S, |_, command_mm| {
             let error_rad = command_mm[0] * axis.rad_per_mm - angle_rad;
-            let reference_rad_s = axis.kp_1_s * error_rad + axis.kd * (error_rad - last_rad) / SERVO_S;
+            let reference_rad_s =
+                axis.kp_1_s * error_rad + axis.kd * (error_rad - last_rad) / SERVO_S;
             last_rad = error_rad;
             for _ in 0..1000 {
                 let [sign] = tanh([speed_rad_s / axis.coulomb_smoothing_rad_s]);
-                let load_nm = axis.viscous_friction_nm_s * speed_rad_s + axis.coulomb_friction_nm * sign;
+                let load_nm =
+                    axis.viscous_friction_nm_s * speed_rad_s + axis.coulomb_friction_nm * sign;
                 let torque_nm = axis.kv_nm_s_per_rad * (reference_rad_s - speed_rad_s);
                 let change_rad_s = step_s * (torque_nm - load_nm) / axis.inertia_kg_m2;
                 // Trapezoidal, so that the step adds no travel of its own.
@@ -227,18 +276,32 @@ pub(super) mod tests {
     fn coulomb_friction_at_speed_is_fed_forward_exactly() {
         let missed_mm = error_mm(&axis(0.0, 0.2), Gains::EXACT);
         assert!(missed_mm.abs() < 1e-6, "{missed_mm} mm");
-        let without_mm = error_mm(&axis(0.0, 0.2), Gains { friction: 0.0, ..Gains::EXACT });
+        let without_mm = error_mm(
+            &axis(0.0, 0.2),
+            Gains {
+                friction: 0.0,
+                ..Gains::EXACT
+            },
+        );
         let friction_mm = 0.2 / (2.0 * 50.0 * 0.6);
         assert!((without_mm - friction_mm).abs() < 1e-6, "{without_mm} mm");
     }
 
     #[test]
     fn without_any_gain_the_tool_lags_by_the_loop() {
-        let off = Gains { velocity: 0.0, acceleration: 0.0, friction: 0.0 };
-        // e = (w + (J a + B w) / kv) / kp, of the speed one lag of the loop, 2.5 % of the second, ago.
+        let off = Gains {
+            velocity: 0.0,
+            acceleration: 0.0,
+            friction: 0.0,
+        };
+        // e = (w + (J a + B w) / kv) / kp, of the speed one lag of the loop, 2.5 % of the second,
+        // ago.
         let speed_mm_s = 30.0;
         let lag_mm = (speed_mm_s * 1.015 + 0.005 * 30.0) / 50.0;
         let missed_mm = error_mm(&axis(0.0, 0.0), off);
-        assert!((missed_mm - lag_mm).abs() < 0.05 * lag_mm, "{missed_mm} mm, not {lag_mm} mm");
+        assert!(
+            (missed_mm - lag_mm).abs() < 0.05 * lag_mm,
+            "{missed_mm} mm, not {lag_mm} mm"
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! What the controllers that invert the paper's identifier share: learn, invert, and turn the result into a command.
+//! What the controllers that invert the paper's identifier share: learn, invert, and turn the
+//! result into a command.
 //!
 //! ```text
 //! F(0)(k)   = (P*(tau + T) - P*(tau)) / T
@@ -6,14 +7,15 @@
 //! P'(k+1)   = P'(k) + F(k) T
 //! ```
 //!
-//! Source: Lee, Cho and Jeon (2005), section 3 and Fig. 5. The anchoring of F(0) to the original path keeps P' from
-//! drifting: the part of F - F(0) along F(0) changes the speed, the part across it the offset P' - P*, and nothing else
-//! moves either. Over a horizon, [`InvertingSettings::knots`], each knot has its F(0) from the preview, all F are inverted together
-//! and the first is commanded.
+//! Source: Lee, Cho and Jeon (2005), section 3 and Fig. 5. The anchoring of F(0) to the original
+//! path keeps P' from drifting: the part of F - F(0) along F(0) changes the speed, the part across
+//! it the offset P' - P*, and nothing else moves either. Over a horizon,
+//! [`InvertingSettings::knots`], each knot has its F(0) from the preview, all F are inverted
+//! together and the first is commanded.
 //!
-//! Departures: between two knots the command follows the path instead of its chord (at 50 mm/s, 10 ms and a radius of
-//! 10 mm the chord alone misses the path by 3 um); rates and offsets are limited; offsets that lie along the path, or
-//! where the tool rests, leak away.
+//! Departures: between two knots the command follows the path instead of its chord (at 50 mm/s, 10
+//! ms and a radius of 10 mm the chord alone misses the path by 3 um); rates and offsets are
+//! limited; offsets that lie along the path, or where the tool rests, leak away.
 
 use core::marker::PhantomData;
 
@@ -40,12 +42,13 @@ pub struct InvertingSettings {
     pub inversion: inversion::InversionSettings,
     /// Step of back-propagation while cutting, scaled units; 0 (frozen) to 0.5.
     pub learning_step: f64,
-    /// Part of the offset along the path that is taken back in each feed period; 0 to 1. The paper has none.
+    /// Part of the offset along the path that is taken back in each feed period; 0 to 1. The paper
+    /// has none.
     pub tangential_leak: f64,
     /// Slowest and fastest the controller may run, as a multiple of the planned feedrate.
     pub rate_range: [f64; 2],
-    /// Whether another planner is told the rate and goes by it later: the path ahead is then what will be commanded, and the rate is no
-    /// part of this feed period.
+    /// Whether another planner is told the rate and goes by it later: the path ahead is then what
+    /// will be commanded, and the rate is no part of this feed period.
     pub is_planned_elsewhere: bool,
 }
 
@@ -69,14 +72,17 @@ impl InvertingSettings {
     };
 }
 
-/// Below this planned feedrate, mm/s, the machine is held to the plan: at rest there is no direction to correct in.
+/// Below this planned feedrate, mm/s, the machine is held to the plan: at rest there is no
+/// direction to correct in.
 const MIN_FEED_MM_S: f64 = 0.05;
 
-/// Part of the offset along the path that is taken back in each feed period. Offsets are made across the path; where the
-/// path has turned since, what is left of them along it corrects nothing, and without this the tool would end a circle
-/// of 10 mm radius a tenth of a millimetre short.
+/// Part of the offset along the path that is taken back in each feed period. Offsets are made
+/// across the path; where the path has turned since, what is left of them along it corrects
+/// nothing, and without this the tool would end a circle of 10 mm radius a tenth of a millimetre
+/// short.
 const TANGENTIAL_LEAK: f64 = 0.05;
-/// Part of the offset that is taken back in each feed period at rest: a tool at rest has no error to correct.
+/// Part of the offset that is taken back in each feed period at rest: a tool at rest has no error
+/// to correct.
 const REST_LEAK: f64 = 0.3;
 
 /// How a controller inverts: the only thing in which the members differ.
@@ -90,8 +96,8 @@ pub trait Invert {
     );
 }
 
-/// A controller that inverts an identifier of the contour error, usually the paper's. Between ticks it keeps the identifier, the delays, and what was asked
-/// for last.
+/// A controller that inverts an identifier of the contour error, usually the paper's. Between ticks
+/// it keeps the identifier, the delays, and what was asked for last.
 #[derive(Debug, Clone)]
 pub struct Inverting<const N: usize, I, D = ContourIdentifier<N>> {
     trained: D,
@@ -107,8 +113,13 @@ pub struct Inverting<const N: usize, I, D = ContourIdentifier<N>> {
 }
 
 impl<const N: usize, I, D: ContourModel<N>> Inverting<N, I, D> {
-    /// Creates a controller with an identifier that is trained on the machine. Each member of the family has its own public constructors.
-    pub(super) fn new(trained: D, settings: InvertingSettings, tried_response_s: Option<f64>) -> Self {
+    /// Creates a controller with an identifier that is trained on the machine. Each member of the
+    /// family has its own public constructors.
+    pub(super) fn new(
+        trained: D,
+        settings: InvertingSettings,
+        tried_response_s: Option<f64>,
+    ) -> Self {
         Self {
             net: trained.clone(),
             trained,
@@ -131,7 +142,10 @@ impl<const N: usize, I, D: ContourModel<N>> Inverting<N, I, D> {
 
 impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<N, I, D> {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: self.settings.servo_periods, preview: self.knots() as u32 }
+        Schedule {
+            servo_periods: self.settings.servo_periods,
+            preview: self.knots() as u32,
+        }
     }
 
     fn reset(&mut self) {
@@ -142,21 +156,32 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
         self.trial = self.tried_response_s.map(CorrectionTrial::new);
     }
 
-    /// One step of back-propagation on the last command and its outcome, then both move into the delays.
-    /// In a trial, on the error that the whole correction would have left, and without the step.
+    /// One step of back-propagation on the last command and its outcome, then both move into the
+    /// delays. In a trial, on the error that the whole correction would have left, and without the
+    /// step.
     fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
         let Some(measured) = measured else { return };
-        let error_mm = self.trial.as_mut().map_or(measured.contour.vector_mm, |trial| trial.observe(window, measured));
+        let error_mm = self
+            .trial
+            .as_mut()
+            .map_or(measured.contour.vector_mm, |trial| {
+                trial.observe(window, measured)
+            });
         if !norm(error_mm).is_finite() {
             return;
         }
         let is_followed = self.trial.as_ref().is_none_or(CorrectionTrial::is_whole);
-        let step = if is_followed { self.settings.learning_step } else { 0.0 };
+        let step = if is_followed {
+            self.settings.learning_step
+        } else {
+            0.0
+        };
         if let Some(inputs) = self.last {
             let error = error_mm.map(|e| e / D::ERROR_SCALE_MM);
             let cost = self.net.learn(&inputs, error, step);
             self.prediction_error_mm = D::ERROR_SCALE_MM * libm::sqrt(2.0 * cost);
-            // As every feedrate, this one comes in mm/s: the delays then hold what a recording of it would give.
+            // As every feedrate, this one comes in mm/s: the delays then hold what a recording of
+            // it would give.
             let feed_mm_s = inputs.map(|axis| axis[0] * FEED_SCALE_MM_S);
             self.delays.push(seen_feed(feed_mm_s), error);
         }
@@ -168,9 +193,14 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
 
     /// Inverts from the planned feedrate and turns the result into a rate and a new offset.
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
-        let offset_mm = self.trial.as_ref().map_or(window.offset_mm, CorrectionTrial::wanted_mm);
+        let offset_mm = self
+            .trial
+            .as_ref()
+            .map_or(window.offset_mm, CorrectionTrial::wanted_mm);
         let wanted = self.wanted(window, offset_mm);
-        self.trial.as_mut().map_or(wanted, |trial| trial.follow(wanted))
+        self.trial
+            .as_mut()
+            .map_or(wanted, |trial| trial.follow(wanted))
     }
 }
 
@@ -178,7 +208,10 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Inverting<N, I, D> {
     /// The command that goes on from an offset.
     fn wanted(&mut self, window: &Window<'_, N>, offset_mm: [f64; N]) -> Command<N> {
         let period_s = window.feed_period_s;
-        let planned = scale(1.0 / period_s, sub(window.ahead(1).position_mm, window.now().position_mm));
+        let planned = scale(
+            1.0 / period_s,
+            sub(window.ahead(1).position_mm, window.now().position_mm),
+        );
         let planned_feed = norm(planned);
         let inputs = self.delays.inputs(seen_feed(planned));
         if planned_feed < MIN_FEED_MM_S {
@@ -188,7 +221,10 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Inverting<N, I, D> {
         let mut feeds = [inputs.map(|axis| axis[0]); MAX_KNOTS];
         let feeds = &mut feeds[..self.knots()];
         for (knot, feed) in feeds.iter_mut().enumerate().skip(1) {
-            let stretch_mm = sub(window.ahead(knot + 1).position_mm, window.ahead(knot).position_mm);
+            let stretch_mm = sub(
+                window.ahead(knot + 1).position_mm,
+                window.ahead(knot).position_mm,
+            );
             *feed = scale(1.0 / (period_s * FEED_SCALE_MM_S), stretch_mm);
         }
         I::invert(&self.net, &inputs, feeds, &self.settings.inversion);
@@ -198,11 +234,18 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Inverting<N, I, D> {
         let across = add_scaled(change, -along, direction);
         let [slowest, fastest] = self.settings.rate_range;
         let rate = bounded(1.0 + along / planned_feed, slowest, fastest);
-        let commanded = if self.settings.is_planned_elsewhere { 1.0 } else { rate };
+        let commanded = if self.settings.is_planned_elsewhere {
+            1.0
+        } else {
+            rate
+        };
         let feed = add_scaled(across, commanded, planned);
         self.last = Some(self.delays.inputs(seen_feed(feed)));
         let stale = self.settings.tangential_leak * dot(offset_mm, direction);
-        Command::straight(rate, add_scaled(add_scaled(offset_mm, period_s, across), -stale, direction))
+        Command::straight(
+            rate,
+            add_scaled(add_scaled(offset_mm, period_s, across), -stale, direction),
+        )
     }
 }
 
@@ -220,13 +263,21 @@ mod tests {
     impl KnotSource<2> for Circle {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             let (sin, cos) = (libm::sin(5.0 * tau_s), libm::cos(5.0 * tau_s));
-            Knot { position_mm: [10.0 - 10.0 * cos, 10.0 * sin], tangent: [sin, cos], feed_mm_s: 50.0, cutting: true }
+            Knot {
+                position_mm: [10.0 - 10.0 * cos, 10.0 * sin],
+                tangent: [sin, cos],
+                feed_mm_s: 50.0,
+                cutting: true,
+            }
         }
     }
 
     /// Twenty commands on a circle, each with an error after it.
     fn commands(knots: usize, gradient: Gradient) -> [Command<2>; 20] {
-        let mut settings = InvertingSettings { knots, ..InvertingSettings::DEFAULT };
+        let mut settings = InvertingSettings {
+            knots,
+            ..InvertingSettings::DEFAULT
+        };
         settings.inversion.gradient = gradient;
         let mut controller = TwoDimensional::untried(sample().0, settings);
         let (mut register, mut preview) = (Register::default(), Preview::new(0.001));
@@ -234,7 +285,11 @@ mod tests {
         core::array::from_fn(|k| {
             let tau_s = 0.01 * k as f64;
             register.push(Circle.knot(tau_s));
-            preview.fill(&mut Circle, tau_s, 0.01 * f64::from(controller.schedule().preview));
+            preview.fill(
+                &mut Circle,
+                tau_s,
+                0.01 * f64::from(controller.schedule().preview),
+            );
             let window = Window {
                 register: &register,
                 preview: &preview,
@@ -246,7 +301,10 @@ mod tests {
             let vector_mm = [0.02 * libm::sin(tau_s), 0.03];
             let measured = Measured {
                 position_mm: sub(window.now().position_mm, vector_mm),
-                contour: ContourError { vector_mm, ..ContourError::NONE },
+                contour: ContourError {
+                    vector_mm,
+                    ..ContourError::NONE
+                },
             };
             controller.observe(&window, Some(&measured));
             let command = controller.command(&window, &measured);
@@ -257,9 +315,16 @@ mod tests {
 
     #[test]
     fn with_the_printed_gradient_further_knots_change_nothing_and_with_the_exact_one_they_do() {
-        assert_eq!(commands(1, Gradient::Printed), commands(5, Gradient::Printed));
+        assert_eq!(
+            commands(1, Gradient::Printed),
+            commands(5, Gradient::Printed)
+        );
         let (one, five) = (commands(1, Gradient::Exact), commands(5, Gradient::Exact));
-        assert!(one.iter().zip(&five).all(|(one, five)| one.offset_mm != five.offset_mm));
+        assert!(
+            one.iter()
+                .zip(&five)
+                .all(|(one, five)| one.offset_mm != five.offset_mm)
+        );
     }
 
     #[test]
@@ -267,12 +332,22 @@ mod tests {
         let schedule = |servo_periods, knots| {
             TwoDimensional::untried(
                 sample().0,
-                InvertingSettings { servo_periods, knots, ..InvertingSettings::DEFAULT },
+                InvertingSettings {
+                    servo_periods,
+                    knots,
+                    ..InvertingSettings::DEFAULT
+                },
             )
             .schedule()
             .preview
         };
-        assert_eq!([schedule(10, 1), schedule(10, 5), schedule(10, 99)], [1, 5, 20]);
-        assert_eq!([schedule(100, 20), schedule(10, 0), schedule(0, 3)], [2, 1, 3]);
+        assert_eq!(
+            [schedule(10, 1), schedule(10, 5), schedule(10, 99)],
+            [1, 5, 20]
+        );
+        assert_eq!(
+            [schedule(100, 20), schedule(10, 0), schedule(0, 3)],
+            [2, 1, 3]
+        );
     }
 }

@@ -1,23 +1,28 @@
-//! The limit: linear-quadratic-Gaussian control with preview, by everything that can be known of the machine.
+//! The limit: linear-quadratic-Gaussian control with preview, by everything that can be known of
+//! the machine.
 //!
 //! ```text
 //! v = v_r - G (x - x_r)        x by a Kalman filter, G of a linear-quadratic regulator, v_r the exact inverse along the reference ahead
 //! ```
 //!
-//! It knows what the peers know, and the statistics of the noise, the amplitude, the frequency and the wandering of the disturbance,
-//! cogging and interpolation error with their phases; the random numbers, and the phase of the disturbance, it does not. It decides in
-//! every servo period, within it. Nobody has all this: it says how much of an error nobody can take away.
+//! It knows what the peers know, and the statistics of the noise, the amplitude, the frequency and
+//! the wandering of the disturbance, cogging and interpolation error with their phases; the random
+//! numbers, and the phase of the disturbance, it does not. It decides in every servo period, within
+//! it. Nobody has all this: it says how much of an error nobody can take away.
 //!
-//! What acts at the motor is the reference speed v of the speed loop: the command is solved for it, with the position that is measured,
-//! so that noise goes through the position loop only as far as the filter lets it. v_r carries friction (stepped from where it is
-//! estimated to be), cogging, the integral of the speed loop, and what the reference needs, [`reference_mm_s`](crate::axis::inverse::AxisInverse::reference_mm_s). The regulator
-//! is that of the axis without integral and filter; the loads that the filter finds are among its states. Ripple is in the estimate
-//! and not in v_r. Where the ball screw gives, it is the table that is held on the reference: the motor's is ahead by the twist, and both masses
-//! are states.
+//! What acts at the motor is the reference speed v of the speed loop: the command is solved for it,
+//! with the position that is measured, so that noise goes through the position loop only as far as
+//! the filter lets it. v_r carries friction (stepped from where it is estimated to be), cogging,
+//! the integral of the speed loop, and what the reference needs,
+//! [`reference_mm_s`](crate::axis::inverse::AxisInverse::reference_mm_s). The regulator is that of
+//! the axis without integral and filter; the loads that the filter finds are among its states.
+//! Ripple is in the estimate and not in v_r. Where the ball screw gives, it is the table that is
+//! held on the reference: the motor's is ahead by the twist, and both masses are states.
 //!
-//! Where the position loop is in the drive, it has a command n servo periods late. The axis then first looks ahead by these n periods, by the
-//! law and the commands on their way, and decides for the moment at which the position loop has the command. The tool is behind the plan by
-//! n servo periods more, as it is without any correction.
+//! Where the position loop is in the drive, it has a command n servo periods late. The axis then
+//! first looks ahead by these n periods, by the law and the commands on their way, and decides for
+//! the moment at which the position loop has the command. The tool is behind the plan by n servo
+//! periods more, as it is without any correction.
 //!
 //! | File | What |
 //! |---|---|
@@ -34,10 +39,12 @@
 //! | `lqg_preview/learning.rs` | what the law gets wrong, learned while the axis moves |
 //! | `lqg_preview/regulated_axis.rs` | an axis: filter, regulator and inverse |
 //!
-//! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, chapters 7 and 8; Tomizuka and Rosenthal (1979),
-//! "On the optimal digital state vector feedback controller with integral and preview actions".
+//! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, chapters 7 and 8;
+//! Tomizuka and Rosenthal (1979), "On the optimal digital state vector feedback controller with
+//! integral and preview actions".
 //!
-//! Departures: the part of the preview is the inverse of the known law, with which a reference is followed at no cost.
+//! Departures: the part of the preview is the inverse of the known law, with which a reference is
+//! followed at no cost.
 
 mod control_weight;
 mod riccati;
@@ -73,7 +80,8 @@ const DIFFERENCES: f64 = 3.0;
 /// An offset that differs by less from what was asked for is that, mm.
 const FOLLOWED_MM: f64 = 1e-4;
 
-/// For so long a lost position is taken to be as the law says, s: a free run of it. Where it is there again and further from that, mm, everything begins anew.
+/// For so long a lost position is taken to be as the law says, s: a free run of it. Where it is
+/// there again and further from that, mm, everything begins anew.
 const FORESEEN_S: f64 = 0.03;
 const FORESEEN_MM: f64 = 0.05;
 
@@ -125,8 +133,13 @@ impl<const N: usize> LqgPreview<N> {
     fn seen_alone_mm2(&self, window: &Window<'_, N>, position_mm: [f64; N]) -> Option<[f64; 2]> {
         let mut seen_mm2 = [0.0; 2];
         for (i, (axis, position_mm)) in self.axes.iter().zip(position_mm).enumerate() {
-            let there_mm = window.at(-self.lag_s - axis.known().delays.measurement_s).position_mm;
-            let off_mm = [position_mm - axis.alone_mm(), position_mm - there_mm.get(i).copied().unwrap_or(0.0)];
+            let there_mm = window
+                .at(-self.lag_s - axis.known().delays.measurement_s)
+                .position_mm;
+            let off_mm = [
+                position_mm - axis.alone_mm(),
+                position_mm - there_mm.get(i).copied().unwrap_or(0.0),
+            ];
             seen_mm2 = add_scaled(seen_mm2, 1.0, off_mm.map(|mm| mm * mm));
         }
         (window.now().feed_mm_s > 0.0).then_some(seen_mm2)
@@ -150,7 +163,11 @@ impl<const N: usize> LqgPreview<N> {
             return;
         }
         let here_mm = window.now().position_mm;
-        for (axis, (offset_mm, here_mm)) in self.axes.iter_mut().zip(window.offset_mm.into_iter().zip(here_mm)) {
+        for (axis, (offset_mm, here_mm)) in self
+            .axes
+            .iter_mut()
+            .zip(window.offset_mm.into_iter().zip(here_mm))
+        {
             axis.foresee(offset_mm, here_mm);
         }
         self.asked_mm = [0.0; N];
@@ -170,31 +187,41 @@ impl<const N: usize> LqgPreview<N> {
 
     /// By how much the last position was not expected, mm.
     fn missed_mm(&self) -> f64 {
-        norm(self.axes.each_ref().map(|axis| axis.moved_and_missed_mm()[1]))
+        norm(
+            self.axes
+                .each_ref()
+                .map(|axis| axis.moved_and_missed_mm()[1]),
+        )
     }
 
     /// Takes in what comes to be known of the reference.
     fn look_ahead(&mut self, window: &Window<'_, N>) {
         let servo_s = window.servo_s();
         let end_s = f64::from(self.preview) * servo_s;
-        let knots_mm = feasible::BEFORE_END_S.map(|before_s| window.at(end_s - before_s).position_mm);
+        let knots_mm =
+            feasible::BEFORE_END_S.map(|before_s| window.at(end_s - before_s).position_mm);
         let beyond = self.axes.iter().enumerate().any(|(i, axis)| {
             let of_axis = |position_mm: [f64; N]| position_mm.get(i).copied().unwrap_or(0.0);
             feasible::is_beyond(axis.law(), knots_mm.map(of_axis))
         });
-        self.feasibility.take_in(beyond, end_s + self.lag_s, servo_s);
+        self.feasibility
+            .take_in(beyond, end_s + self.lag_s, servo_s);
     }
 
     /// Speed of the machine on the path, so far behind it, mm/s.
     fn lagging_mm_s(&self, window: &Window<'_, N>) -> [f64; N] {
-        let behind_mm = [-self.lag_s, -self.lag_s - window.servo_s()].map(|after_s| window.at(after_s).position_mm);
+        let behind_mm = [-self.lag_s, -self.lag_s - window.servo_s()]
+            .map(|after_s| window.at(after_s).position_mm);
         scale(1.0 / window.servo_s(), sub(behind_mm[0], behind_mm[1]))
     }
 }
 
 impl<const N: usize> Controller<N> for LqgPreview<N> {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: 1, preview: self.preview }
+        Schedule {
+            servo_periods: 1,
+            preview: self.preview,
+        }
     }
 
     fn acts_at_once(&self) -> bool {
@@ -206,27 +233,47 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         self.know_nothing();
     }
 
-    /// Without a position for longer than it can be foreseen it begins anew: what the tool does meanwhile nobody knows.
+    /// Without a position for longer than it can be foreseen it begins anew: what the tool does
+    /// meanwhile nobody knows.
     fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
-        let position_mm = measured.map(|measured| measured.position_mm).filter(|mm| norm(*mm).is_finite());
+        let position_mm = measured
+            .map(|measured| measured.position_mm)
+            .filter(|mm| norm(*mm).is_finite());
         let Some(position_mm) = position_mm else {
             self.foresee(window);
             return;
         };
         let begins = self.axes.iter().any(AxisLqg::begins);
-        let speed_mm_s = if begins { self.lagging_mm_s(window) } else { [0.0; N] };
-        let measured_axes = window.offset_mm.into_iter().zip(position_mm).zip(speed_mm_s);
+        let speed_mm_s = if begins {
+            self.lagging_mm_s(window)
+        } else {
+            [0.0; N]
+        };
+        let measured_axes = window
+            .offset_mm
+            .into_iter()
+            .zip(position_mm)
+            .zip(speed_mm_s);
         let mut turned = false;
-        let is_alone = self.first_use.as_ref().is_some_and(|first_use| !first_use.is_shown());
+        let is_alone = self
+            .first_use
+            .as_ref()
+            .is_some_and(|first_use| !first_use.is_shown());
         let is_likely = self.axes.iter().any(AxisLqg::is_learned);
-        for (axis, ((offset_mm, position_mm), speed_mm_s)) in self.axes.iter_mut().zip(measured_axes) {
+        for (axis, ((offset_mm, position_mm), speed_mm_s)) in
+            self.axes.iter_mut().zip(measured_axes)
+        {
             turned |= axis.observe(offset_mm, position_mm, speed_mm_s, [is_alone, is_likely]);
         }
         if core::mem::replace(&mut self.lost_s, 0.0) > 0.0 && self.missed_mm() > FORESEEN_MM {
             self.begin_anew();
             return;
         }
-        let seen_mm2 = if is_alone { self.seen_alone_mm2(window, position_mm) } else { None };
+        let seen_mm2 = if is_alone {
+            self.seen_alone_mm2(window, position_mm)
+        } else {
+            None
+        };
         if let Some(first_use) = &mut self.first_use {
             first_use.take_in(seen_mm2, window.feed_period_s);
             if turned {
@@ -241,14 +288,30 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
             let path_mm = window.now().position_mm;
             let mut open_mm = [0.0; N];
             for (i, (axis, open_mm)) in self.axes.iter().zip(&mut open_mm).enumerate() {
-                let at_mm = |late_s: f64| window.at(-self.lag_s - late_s).position_mm.get(i).copied().unwrap_or(0.0);
+                let at_mm = |late_s: f64| {
+                    window
+                        .at(-self.lag_s - late_s)
+                        .position_mm
+                        .get(i)
+                        .copied()
+                        .unwrap_or(0.0)
+                };
                 *open_mm = axis.open_off_mm(at_mm);
             }
             let by_noise_mm2 = self.axes.iter().map(AxisLqg::by_noise_mm2).sum();
             let moves = window.now().feed_mm_s > 0.0;
-            let shown = Shown { missed_mm, open_mm, by_noise_mm2, path_mm, moves };
+            let shown = Shown {
+                missed_mm,
+                open_mm,
+                by_noise_mm2,
+                path_mm,
+                moves,
+            };
             let followed = norm(sub(window.offset_mm, self.asked_mm)) <= FOLLOWED_MM;
-            validity.take_in_step(OneStep::sum(self.axes.iter().map(AxisLqg::step)), window.feed_period_s);
+            validity.take_in_step(
+                OneStep::sum(self.axes.iter().map(AxisLqg::step)),
+                window.feed_period_s,
+            );
             validity.take_in(&shown, followed, window.feed_period_s);
             if validity.has_machine_changed() {
                 self.axes.iter_mut().for_each(AxisLqg::doubt);
@@ -259,7 +322,11 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
     /// Infinite where the law is wrong, or no command follows it.
     fn prediction_error_mm(&self) -> f64 {
         let is_followed = self.axes.iter().all(|axis| axis.known().is_followed());
-        if self.validity.as_ref().is_some_and(|validity| validity.is_wrong() || !is_followed) {
+        if self
+            .validity
+            .as_ref()
+            .is_some_and(|validity| validity.is_wrong() || !is_followed)
+        {
             return f64::INFINITY;
         }
         self.missed_mm()
@@ -278,13 +345,20 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
     }
 
     fn moved_mm(&self) -> Option<[f64; N]> {
-        Some(self.axes.each_ref().map(|axis| axis.moved_and_missed_mm()[0]))
+        Some(
+            self.axes
+                .each_ref()
+                .map(|axis| axis.moved_and_missed_mm()[0]),
+        )
     }
 
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let here_mm = window.now().position_mm;
         let (mut offset_mm, lag_s) = ([0.0; N], self.lag_s);
-        let trusted = self.validity.as_ref().map_or(Trusted::FULLY, Validity::trusted);
+        let trusted = self
+            .validity
+            .as_ref()
+            .map_or(Trusted::FULLY, Validity::trusted);
         self.look_ahead(window);
         let open = self.feasibility.open();
         for (i, (axis, offset_mm)) in self.axes.iter_mut().zip(&mut offset_mm).enumerate() {
@@ -296,7 +370,11 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         }
         self.asked_mm = offset_mm;
         let share = self.first_use.as_ref().map_or(1.0, FirstUse::share);
-        let offset_mm = if share < 1.0 { scale(share, offset_mm) } else { offset_mm };
+        let offset_mm = if share < 1.0 {
+            scale(share, offset_mm)
+        } else {
+            offset_mm
+        };
         Command::straight(1.0, offset_mm)
     }
 }

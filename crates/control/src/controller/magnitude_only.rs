@@ -1,4 +1,5 @@
-//! The paper's baseline: the same inversion on the magnitude of the feedrate; the geometry stays on the path.
+//! The paper's baseline: the same inversion on the magnitude of the feedrate; the geometry stays on
+//! the path.
 //!
 //! Source: Yoon and Jeon (2000), as described in Lee, Cho and Jeon (2005), sections 1 and 4.
 
@@ -10,11 +11,22 @@ use crate::inversion::{self, Gradient};
 pub type MagnitudeOnly<const N: usize> = Inverting<N, Magnitude>;
 
 impl<const N: usize, D: ContourModel<N>> Inverting<N, Magnitude, D> {
-    /// Creates the controller with the exact gradient, whichever gradient `settings` state. The printed gradient has the opposite sign: it
-    /// stands in for a Jacobian across the path, and no part of this command is across.
+    /// Creates the controller with the exact gradient, whichever gradient `settings` state. The
+    /// printed gradient has the opposite sign: it stands in for a Jacobian across the path, and no
+    /// part of this command is across.
     pub fn exact(trained: D, settings: InvertingSettings) -> Self {
-        let inversion = inversion::InversionSettings { gradient: Gradient::Exact, ..settings.inversion };
-        Self::new(trained, InvertingSettings { inversion, ..settings }, None)
+        let inversion = inversion::InversionSettings {
+            gradient: Gradient::Exact,
+            ..settings.inversion
+        };
+        Self::new(
+            trained,
+            InvertingSettings {
+                inversion,
+                ..settings
+            },
+            None,
+        )
     }
 }
 

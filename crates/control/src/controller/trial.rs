@@ -1,7 +1,9 @@
-//! The trial of a correction: it enters the loop when the measured errors show that it helps, and leaves when they show harm.
+//! The trial of a correction: it enters the loop when the measured errors show that it helps, and
+//! leaves when they show harm.
 //!
-//! Out of the loop the controller decides on an offset that nobody commands. What it would leave follows from the measured
-//! error and the linear servo G. Its lag L is the time by which the tool is behind, its response M what is known of the speed loop:
+//! Out of the loop the controller decides on an offset that nobody commands. What it would leave
+//! follows from the measured error and the linear servo G. Its lag L is the time by which the tool
+//! is behind, its response M what is known of the speed loop:
 //!
 //! ```text
 //! G        = 1 / (1 + L s + L M s^2)
@@ -11,19 +13,24 @@
 //! W(n+1)   = W(n) (1 + b r)             wealth of a bet on r > 0; W(0) = 1
 //! ```
 //!
-//! with the squares summed over a block of decisions. If the correction does not help, that is if r has no positive mean given
-//! the past, W reaches 1/alpha with probability alpha at most (Ville 1939). So a wrong gain or a wrong sign enters the loop with
-//! that probability. Each further trial has half of alpha; all trials of a cut together err with at most 2 alpha.
+//! with the squares summed over a block of decisions. If the correction does not help, that is if r
+//! has no positive mean given the past, W reaches 1/alpha with probability alpha at most (Ville
+//! 1939). So a wrong gain or a wrong sign enters the loop with that probability. Each further trial
+//! has half of alpha; all trials of a cut together err with at most 2 alpha.
 //!
-//! While W grows from 1 to 1/alpha, the share `ln W / ln(1/alpha)` of the offset is commanded. Behind that all of it is.
+//! While W grows from 1 to 1/alpha, the share `ln W / ln(1/alpha)` of the offset is commanded.
+//! Behind that all of it is.
 //!
-//! In the loop the same bet is made on r < 0, decision by decision, with its wealth held above 1 (a CUSUM, Page 1954). If it
-//! reaches 1/alpha, the offset goes back to the path and the next trial begins.
+//! In the loop the same bet is made on r < 0, decision by decision, with its wealth held above 1 (a
+//! CUSUM, Page 1954). If it reaches 1/alpha, the offset goes back to the path and the next trial
+//! begins.
 //!
-//! Source: Waudby-Smith and Ramdas (2024), "Estimating means of bounded random variables by betting".
+//! Source: Waudby-Smith and Ramdas (2024), "Estimating means of bounded random variables by
+//! betting".
 //!
-//! Departures: errors of successive blocks are correlated through G. A block is as long as the time constant of a usual position
-//! loop, so that a third of what was in the last block is left in it. The error rate is therefore nominal.
+//! Departures: errors of successive blocks are correlated through G. A block is as long as the time
+//! constant of a usual position loop, so that a third of what was in the last block is left in it.
+//! The error rate is therefore nominal.
 
 use super::{Command, Measured};
 use crate::vector::{add_scaled, bounded, dot, norm, reject, scale, sub};
@@ -53,17 +60,30 @@ struct FeltOffset<const N: usize> {
 }
 
 impl<const N: usize> FeltOffset<N> {
-    const NONE: Self = Self { last_mm: [0.0; N], felt_mm: [0.0; N], felt_mm_s: [0.0; N] };
+    const NONE: Self = Self {
+        last_mm: [0.0; N],
+        felt_mm: [0.0; N],
+        felt_mm_s: [0.0; N],
+    };
 
-    /// Goes on by a feed period at whose end the offset is `offset_mm`, in implicit steps of a servo period.
-    fn go_on(&mut self, offset_mm: [f64; N], window: &Window<'_, N>, [lag_s, response_s]: [f64; 2]) {
+    /// Goes on by a feed period at whose end the offset is `offset_mm`, in implicit steps of a
+    /// servo period.
+    fn go_on(
+        &mut self,
+        offset_mm: [f64; N],
+        window: &Window<'_, N>,
+        [lag_s, response_s]: [f64; 2],
+    ) {
         let step_s = window.servo_s();
         // A float that is not a number saturates to zero here.
         let steps = libm::round(window.feed_period_s / step_s).max(1.0) as u32;
         let change_mm = scale(1.0 / f64::from(steps), sub(offset_mm, self.last_mm));
         let denominator_s2 = lag_s * response_s + lag_s * step_s + step_s * step_s;
         for n in 1..=steps {
-            let ahead_mm = sub(add_scaled(self.last_mm, f64::from(n), change_mm), self.felt_mm);
+            let ahead_mm = sub(
+                add_scaled(self.last_mm, f64::from(n), change_mm),
+                self.felt_mm,
+            );
             let momentum = scale(lag_s * response_s / denominator_s2, self.felt_mm_s);
             self.felt_mm_s = add_scaled(momentum, step_s / denominator_s2, ahead_mm);
             self.felt_mm = add_scaled(self.felt_mm, step_s, self.felt_mm_s);
@@ -130,14 +150,25 @@ impl<const N: usize> CorrectionTrial<N> {
             self.wanted_mm = window.offset_mm;
         }
         let index = measured.contour.index;
-        let times_s = [f64::from(index.min(0).unsigned_abs()) * window.servo_s(), self.response_s];
+        let times_s = [
+            f64::from(index.min(0).unsigned_abs()) * window.servo_s(),
+            self.response_s,
+        ];
         self.commanded.go_on(window.offset_mm, window, times_s);
         self.wanted.go_on(self.wanted_mm, window, times_s);
         let tangent = window.knot(index).tangent;
         let open_mm = add_scaled(error_mm, 1.0, reject(self.commanded.felt_mm, tangent));
-        let with_mm = if self.is_whole() { error_mm } else { sub(open_mm, reject(self.wanted.felt_mm, tangent)) };
+        let with_mm = if self.is_whole() {
+            error_mm
+        } else {
+            sub(open_mm, reject(self.wanted.felt_mm, tangent))
+        };
         if norm(open_mm).is_finite() && norm(with_mm).is_finite() && window.knot(index).cutting {
-            self.judge(dot(open_mm, open_mm), dot(with_mm, with_mm), dot(error_mm, error_mm));
+            self.judge(
+                dot(open_mm, open_mm),
+                dot(with_mm, with_mm),
+                dot(error_mm, error_mm),
+            );
         }
         with_mm
     }
@@ -151,12 +182,18 @@ impl<const N: usize> CorrectionTrial<N> {
         if self.is_whole() {
             return wanted;
         }
-        Command::straight(1.0 + self.share * (wanted.rate - 1.0), scale(self.share, wanted.offset_mm))
+        Command::straight(
+            1.0 + self.share * (wanted.rate - 1.0),
+            scale(self.share, wanted.offset_mm),
+        )
     }
 
-    /// Bets on a decision: the squares of the errors without the correction, with all of it, and as it is.
+    /// Bets on a decision: the squares of the errors without the correction, with all of it, and as
+    /// it is.
     fn judge(&mut self, open_mm2: f64, with_mm2: f64, now_mm2: f64) {
-        let gained = |open_mm2: f64, with_mm2: f64| (open_mm2 - with_mm2) / (open_mm2 + with_mm2 + NOISE_MM * NOISE_MM);
+        let gained = |open_mm2: f64, with_mm2: f64| {
+            (open_mm2 - with_mm2) / (open_mm2 + with_mm2 + NOISE_MM * NOISE_MM)
+        };
         if self.engaged {
             self.harm = (self.harm * (1.0 - BET * gained(open_mm2, now_mm2))).max(1.0);
             if self.harm >= 1.0 / ALPHA {
@@ -200,8 +237,9 @@ mod tests {
     const SERVO_S: f64 = 0.001;
     const LAG_KNOTS: u32 = 20;
 
-    /// Shares of a controller that wants `gain` times the error without it as its offset, over two seconds in which that error is
-    /// `open_mm` at each decision; the tool feels `real` times the offset of the trial's own servo.
+    /// Shares of a controller that wants `gain` times the error without it as its offset, over two
+    /// seconds in which that error is `open_mm` at each decision; the tool feels `real` times the
+    /// offset of the trial's own servo.
     fn shares(gain: f64, real: f64, open_mm: impl Fn(u32) -> f64) -> [f64; 200] {
         let (mut register, mut preview) = (Register::default(), Preview::new(SERVO_S));
         let (mut trial, mut felt) = (CorrectionTrial::<2>::new(0.005), FeltOffset::<2>::NONE);
@@ -221,13 +259,25 @@ mod tests {
                 offset_mm,
                 offset_mm_s: [0.0; 2],
             };
-            felt.go_on(offset_mm, &window, [f64::from(LAG_KNOTS.min(10 * decision)) * SERVO_S, 0.005]);
+            felt.go_on(
+                offset_mm,
+                &window,
+                [f64::from(LAG_KNOTS.min(10 * decision)) * SERVO_S, 0.005],
+            );
             let vector_mm = [0.0, open_mm(decision) - real * felt.felt_mm[1]];
             let index = -(LAG_KNOTS.min(10 * decision) as i32);
-            let measured =
-                Measured { position_mm: [0.0; 2], contour: ContourError { vector_mm, index, ..ContourError::NONE } };
+            let measured = Measured {
+                position_mm: [0.0; 2],
+                contour: ContourError {
+                    vector_mm,
+                    index,
+                    ..ContourError::NONE
+                },
+            };
             trial.observe(&window, &measured);
-            offset_mm = trial.follow(Command::straight(1.0, [0.0, gain * open_mm(decision)])).offset_mm;
+            offset_mm = trial
+                .follow(Command::straight(1.0, [0.0, gain * open_mm(decision)]))
+                .offset_mm;
             trial.share
         })
     }
@@ -240,7 +290,10 @@ mod tests {
     #[test]
     fn what_helps_enters_within_a_third_of_a_second_and_stays() {
         let shares = shares(1.0, 1.0, slow);
-        assert!(shares[0] == 0.0 && shares[33..].iter().all(|share| *share == 1.0), "{shares:?}");
+        assert!(
+            shares[0] == 0.0 && shares[33..].iter().all(|share| *share == 1.0),
+            "{shares:?}"
+        );
     }
 
     #[test]
@@ -250,7 +303,8 @@ mod tests {
         // Until the tool has followed, even three times the error makes it smaller.
         let large = shares(3.0, 1.0, slow);
         assert!(
-            large[..20].iter().all(|share| *share < 0.5) && large[20..].iter().all(|share| *share == 0.0),
+            large[..20].iter().all(|share| *share < 0.5)
+                && large[20..].iter().all(|share| *share == 0.0),
             "{large:?}"
         );
     }
@@ -262,14 +316,20 @@ mod tests {
         let whole = shares.iter().position(|share| *share == 1.0);
         let left = whole.and_then(|from| shares[from..].iter().position(|share| *share < 1.0));
         assert!(left.is_none_or(|decisions| decisions <= 10), "{shares:?}");
-        assert!(shares.iter().filter(|share| **share == 1.0).count() < 20, "{shares:?}");
+        assert!(
+            shares.iter().filter(|share| **share == 1.0).count() < 20,
+            "{shares:?}"
+        );
     }
 
     #[test]
     fn of_corrections_that_neither_help_nor_harm_few_enter() {
-        // An offset of the size of the error that has nothing to do with it: r has no positive mean.
+        // An offset of the size of the error that has nothing to do with it: r has no positive
+        // mean.
         let entered = (0..200_u32).filter(|seed| {
-            let mut state = u64::from(*seed).wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(1);
+            let mut state = u64::from(*seed)
+                .wrapping_mul(0x9E37_79B9_7F4A_7C15)
+                .wrapping_add(1);
             let noise: [f64; 200] = core::array::from_fn(|_| {
                 state ^= state << 13;
                 state ^= state >> 7;

@@ -1,4 +1,5 @@
-//! The paper's controller: both components of the feedrate, by inversion of the identifier; see [`super::inverting`].
+//! The paper's controller: both components of the feedrate, by inversion of the identifier; see
+//! [`super::inverting`].
 //!
 //! Source: Lee, Cho and Jeon (2005), section 3.
 
@@ -10,14 +11,15 @@ use crate::inversion;
 pub type TwoDimensional<const N: usize> = Inverting<N, BothComponents>;
 
 impl<const N: usize, D: ContourModel<N>> Inverting<N, BothComponents, D> {
-    /// Creates the controller for a machine: the correction enters the loop once the measured errors show that it helps; see
-    /// `controller/trial.rs`. `response_s` is the response time of the slowest speed loop, s.
+    /// Creates the controller for a machine: the correction enters the loop once the measured
+    /// errors show that it helps; see `controller/trial.rs`. `response_s` is the response time of
+    /// the slowest speed loop, s.
     pub fn on_trial(trained: D, settings: InvertingSettings, response_s: f64) -> Self {
         Self::new(trained, settings, Some(response_s))
     }
 
-    /// Creates the controller of the paper, which corrects from the first decision on, whether that helps or not. It serves to repeat
-    /// the paper's figures.
+    /// Creates the controller of the paper, which corrects from the first decision on, whether that
+    /// helps or not. It serves to repeat the paper's figures.
     pub fn untried(trained: D, settings: InvertingSettings) -> Self {
         Self::new(trained, settings, None)
     }

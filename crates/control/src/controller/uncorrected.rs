@@ -10,7 +10,10 @@ pub struct Uncorrected;
 
 impl<const N: usize> Controller<N> for Uncorrected {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: 1, preview: 0 }
+        Schedule {
+            servo_periods: 1,
+            preview: 0,
+        }
     }
 
     fn reset(&mut self) {}

@@ -6,7 +6,8 @@
 //! | 3 | squareness of y to x, z to x and z to y, rad |
 //! | N^2 tables | row by row, the errors of a coordinate over each joint: number of points, 0 without a table, then position and error (mm) of each |
 //!
-//! Backlash depends on the direction of travel and is not part of the map: it is not among the numbers.
+//! Backlash depends on the direction of travel and is not part of the map: it is not among the
+//! numbers.
 
 use super::{AxisErrors, ErrorTable, GeometryFault, KnownGeometry, TABLE_POINTS};
 
@@ -14,8 +15,16 @@ impl<const N: usize> KnownGeometry<N> {
     /// Hands over its numbers in their order.
     pub(crate) fn numbers(&self, mut each: impl FnMut(f64)) {
         for axis in &self.axes {
-            let AxisErrors { scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad, .. } = *axis;
-            [scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad].into_iter().for_each(&mut each);
+            let AxisErrors {
+                scale,
+                pitch_mm,
+                pitch_rad_per_mm,
+                pitch_phase_rad,
+                ..
+            } = *axis;
+            [scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad]
+                .into_iter()
+                .for_each(&mut each);
         }
         self.squareness_rad.into_iter().for_each(&mut each);
         for table in self.tables.iter().flatten() {
@@ -27,15 +36,25 @@ impl<const N: usize> KnownGeometry<N> {
         }
     }
 
-    /// The geometry of the numbers that `next` returns, one after another, and whether it can be compensated.
+    /// The geometry of the numbers that `next` returns, one after another, and whether it can be
+    /// compensated.
     ///
     /// # Errors
     /// The first error of `next`.
-    pub(crate) fn from_numbers<E>(mut next: impl FnMut() -> Result<f64, E>) -> Result<Result<Self, GeometryFault>, E> {
+    pub(crate) fn from_numbers<E>(
+        mut next: impl FnMut() -> Result<f64, E>,
+    ) -> Result<Result<Self, GeometryFault>, E> {
         let mut found = Self::new([AxisErrors::default(); N], [0.0; 3]);
         for axis in &mut found.axes {
-            let [scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad] = [next()?, next()?, next()?, next()?];
-            *axis = AxisErrors { scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad, backlash_mm: 0.0 };
+            let [scale, pitch_mm, pitch_rad_per_mm, pitch_phase_rad] =
+                [next()?, next()?, next()?, next()?];
+            *axis = AxisErrors {
+                scale,
+                pitch_mm,
+                pitch_rad_per_mm,
+                pitch_phase_rad,
+                backlash_mm: 0.0,
+            };
         }
         found.squareness_rad = [next()?, next()?, next()?];
         for table in found.tables.as_flattened_mut() {
@@ -88,8 +107,13 @@ mod tests {
     }
 
     fn geometry() -> KnownGeometry<2> {
-        let axis =
-            AxisErrors { scale: 1e-5, pitch_mm: 0.002, pitch_rad_per_mm: 0.6, pitch_phase_rad: 1.0, backlash_mm: 0.0 };
+        let axis = AxisErrors {
+            scale: 1e-5,
+            pitch_mm: 0.002,
+            pitch_rad_per_mm: 0.6,
+            pitch_phase_rad: 1.0,
+            backlash_mm: 0.0,
+        };
         let table = ErrorTable::new([[-10.0, 0.001], [0.0, 0.0], [30.0, -0.002]]).unwrap();
         KnownGeometry::new([axis, AxisErrors::default()], [2e-5, 0.0, 0.0]).with_table(0, 1, table)
     }
@@ -98,7 +122,10 @@ mod tests {
     fn a_geometry_comes_back_to_the_bit_without_its_backlash() {
         assert_eq!(numbers(&geometry()).len(), 2 * 4 + 3 + 4 + 6);
         assert_eq!(read(&numbers(&geometry())), Ok(Ok(geometry())));
-        assert_eq!(read(&numbers(&geometry().with_backlash([0.01; 2]))), Ok(Ok(geometry())));
+        assert_eq!(
+            read(&numbers(&geometry().with_backlash([0.01; 2]))),
+            Ok(Ok(geometry()))
+        );
     }
 
     #[test]
@@ -112,11 +139,17 @@ mod tests {
             numbers[at] = number;
             read(&numbers)
         };
-        assert!(matches!(with(0, 0.06), Ok(Err(GeometryFault::Slope { axis: 0, .. }))));
+        assert!(matches!(
+            with(0, 0.06),
+            Ok(Err(GeometryFault::Slope { axis: 0, .. }))
+        ));
         assert_eq!(with(3, f64::NAN), Ok(Err(GeometryFault::NotFinite)));
         // The counts of the tables are behind the eight numbers of the axes and the three angles.
         for count in [0.5, -1.0, 257.0, f64::INFINITY, f64::NAN] {
-            assert!(matches!(with(12, count), Ok(Err(GeometryFault::Points(_)))), "{count}");
+            assert!(
+                matches!(with(12, count), Ok(Err(GeometryFault::Points(_)))),
+                "{count}"
+            );
         }
         assert_eq!(with(12, 1.0), Ok(Err(GeometryFault::Points(1))));
         assert_eq!(with(15, -20.0), Ok(Err(GeometryFault::Order(1))));

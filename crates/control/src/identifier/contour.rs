@@ -1,4 +1,5 @@
-//! The paper's identifier (NNI): predicts the contour error of each axis from the feedrates and the errors before.
+//! The paper's identifier (NNI): predicts the contour error of each axis from the feedrates and the
+//! errors before.
 //!
 //! ```text
 //! eps_o = f(net_o)                                                                             (3)
@@ -7,10 +8,12 @@
 //! E_n   = 1/2 sum_o (eps_o - eps_hat_o)^2                                                      (6)
 //! ```
 //!
-//! Inputs of each axis: F(k), F(k-1), F(k-2), eps(k-1), eps(k-2). F(k) is the feedrate from knot k to k+1, eps(k) the
-//! contour error (desired minus actual) where that motion ends. f is [`crate::activation::bipolar_sigmoid`].
+//! Inputs of each axis: F(k), F(k-1), F(k-2), eps(k-1), eps(k-2). F(k) is the feedrate from knot k
+//! to k+1, eps(k) the contour error (desired minus actual) where that motion ends. f is
+//! [`crate::activation::bipolar_sigmoid`].
 //!
-//! Source: Lee, Cho and Jeon (2005), section 3.2, Fig. 4, eqs 3 to 6. Departure: N axes instead of two.
+//! Source: Lee, Cho and Jeon (2005), section 3.2, Fig. 4, eqs 3 to 6. Departure: N axes instead of
+//! two.
 //!
 //! | paper   | code         | unit                    |
 //! |---------|--------------|-------------------------|
@@ -43,7 +46,10 @@ pub struct Forward<const N: usize> {
 impl<const N: usize> Identifier<N> for ContourIdentifier<N> {
     const KIND: IdentifierKind = IdentifierKind::Contour;
     const ERROR_SCALE_MM: f64 = ERROR_SCALE_MM;
-    const NULL: Self = Self { hidden: [[[0.0; HIDDEN]; INPUTS]; N], output: [[0.0; HIDDEN]; N] };
+    const NULL: Self = Self {
+        hidden: [[[0.0; HIDDEN]; INPUTS]; N],
+        output: [[0.0; HIDDEN]; N],
+    };
 
     fn weights(&mut self, each: &mut impl FnMut(&'static str, &mut [f64])) {
         each("hidden", self.hidden.as_flattened_mut().as_flattened_mut());
@@ -53,7 +59,10 @@ impl<const N: usize> Identifier<N> for ContourIdentifier<N> {
 
 impl<const N: usize> ContourModel<N> for ContourIdentifier<N> {
     type Forward = Forward<N>;
-    const AT_REST: Forward<N> = Forward { hidden: [0.0; HIDDEN], error: [0.0; N] };
+    const AT_REST: Forward<N> = Forward {
+        hidden: [0.0; HIDDEN],
+        error: [0.0; N],
+    };
 
     #[inline]
     fn forward(&self, inputs: &Inputs<N>) -> Forward<N> {
@@ -74,15 +83,21 @@ impl<const N: usize> ContourModel<N> for ContourIdentifier<N> {
         core::array::from_fn(|o| {
             let output_slope = slope(forward.error[o]);
             core::array::from_fn(|axis| {
-                let Some(weights) = self.hidden[axis].get(input) else { return 0.0 };
-                output_slope * (0..HIDDEN).map(|j| self.output[o][j] * hidden_slope[j] * weights[j]).sum::<f64>()
+                let Some(weights) = self.hidden[axis].get(input) else {
+                    return 0.0;
+                };
+                output_slope
+                    * (0..HIDDEN)
+                        .map(|j| self.output[o][j] * hidden_slope[j] * weights[j])
+                        .sum::<f64>()
             })
         })
     }
 
     /// One step of back-propagation: down the gradient of eq. 6. Returns E_n before the step.
     ///
-    /// A step that is not finite is left out, so that a lost measurement cannot destroy the weights.
+    /// A step that is not finite is left out, so that a lost measurement cannot destroy the
+    /// weights.
     #[inline]
     fn learn(&mut self, inputs: &Inputs<N>, error: [f64; N], step: f64) -> f64 {
         let forward = self.predict(inputs);
@@ -145,7 +160,10 @@ impl<const N: usize> ContourIdentifier<N> {
                 net_o[o] += self.output[o][j] * hidden[j];
             }
         }
-        Forward { hidden, error: bipolar_sigmoid(net_o) }
+        Forward {
+            hidden,
+            error: bipolar_sigmoid(net_o),
+        }
     }
 
     /// d eps_hat_o / d F_axis(k), indexed by o and axis: the chain rule through eqs 3 to 5.
@@ -182,7 +200,8 @@ pub(crate) mod tests {
 
     /// Weights and inputs from it.
     pub(crate) fn sample_of(mut next: impl FnMut() -> f64) -> (ContourIdentifier<2>, Inputs<2>) {
-        let hidden = core::array::from_fn(|_| core::array::from_fn(|_| core::array::from_fn(|_| next())));
+        let hidden =
+            core::array::from_fn(|_| core::array::from_fn(|_| core::array::from_fn(|_| next())));
         let output = core::array::from_fn(|_| core::array::from_fn(|_| next()));
         let inputs = core::array::from_fn(|_| core::array::from_fn(|_| 2.0 * next()));
         (ContourIdentifier { hidden, output }, inputs)

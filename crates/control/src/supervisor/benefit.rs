@@ -1,12 +1,14 @@
-//! Whether the correction does any good: the contour error as it is against what it would be without.
+//! Whether the correction does any good: the contour error as it is against what it would be
+//! without.
 //!
 //! ```text
 //! eps: of the tool p     eps_open: of p - g     g: by how much the offset has moved the tool
 //! ```
 //!
-//! g is the controller's own, from its model; of one without a model, the offset behind a lag of first order with the time by
-//! which the tool is behind. Both errors are taken as mean squares and as largest values over the last [`MEMORY_S`]. The model
-//! may be wrong by some per cent, so that g is no better than that: harm counts where it is beyond doubt.
+//! g is the controller's own, from its model; of one without a model, the offset behind a lag of
+//! first order with the time by which the tool is behind. Both errors are taken as mean squares and
+//! as largest values over the last [`MEMORY_S`]. The model may be wrong by some per cent, so that g
+//! is no better than that: harm counts where it is beyond doubt.
 
 use crate::command::FaultEvidence;
 use crate::contour_error::{ContourError, locate};
@@ -54,8 +56,8 @@ impl<const N: usize> Benefit<N> {
         self.open_mm
     }
 
-    /// Takes in the error at a decision; `moved_mm` is g, where the controller knows it. What is harm, if anything is: the root mean square, or a
-    /// single error.
+    /// Takes in the error at a decision; `moved_mm` is g, where the controller knows it. What is
+    /// harm, if anything is: the root mean square, or a single error.
     pub(super) fn harm(
         &mut self,
         window: &Window<'_, N>,
@@ -69,7 +71,11 @@ impl<const N: usize> Benefit<N> {
         let open = locate(window, open_mm, contour.index, reach);
         let part = (window.feed_period_s / MEMORY_S).min(1.0);
         // On a rapid nothing is cut, and nothing is harm.
-        let vector_mm = if window.knot(contour.index).cutting { contour.vector_mm } else { [0.0; N] };
+        let vector_mm = if window.knot(contour.index).cutting {
+            contour.vector_mm
+        } else {
+            [0.0; N]
+        };
         let square = dot(vector_mm, vector_mm);
         self.open_mm = norm(open.vector_mm);
         let open_peak_mm = self.open_mm + DOUBT * norm(g_mm);
@@ -77,13 +83,26 @@ impl<const N: usize> Benefit<N> {
         self.square_mm2 += part * (square - self.square_mm2);
         self.open_square_mm2 += part * (open_square - self.open_square_mm2);
         self.open_peak_mm = (self.open_peak_mm * (1.0 - 0.5 * part)).max(open_peak_mm);
-        let [least_mm2, times] = if moved_mm.is_none() { [GUESSED_MM2, GUESSED] } else { [MIN_MM2, CERTAIN] };
+        let [least_mm2, times] = if moved_mm.is_none() {
+            [GUESSED_MM2, GUESSED]
+        } else {
+            [MIN_MM2, CERTAIN]
+        };
         let allowed_mm2 = least_mm2 + times * self.open_square_mm2;
-        let (error_mm, peak_mm) = (norm(vector_mm), MIN_PEAK_MM + CERTAIN_PEAK * self.open_peak_mm);
+        let (error_mm, peak_mm) = (
+            norm(vector_mm),
+            MIN_PEAK_MM + CERTAIN_PEAK * self.open_peak_mm,
+        );
         if self.square_mm2 > allowed_mm2 {
-            Some(FaultEvidence { found_mm: libm::sqrt(self.square_mm2), limit_mm: libm::sqrt(allowed_mm2) })
+            Some(FaultEvidence {
+                found_mm: libm::sqrt(self.square_mm2),
+                limit_mm: libm::sqrt(allowed_mm2),
+            })
         } else if moved_mm.is_some() && error_mm > peak_mm {
-            Some(FaultEvidence { found_mm: error_mm, limit_mm: peak_mm })
+            Some(FaultEvidence {
+                found_mm: error_mm,
+                limit_mm: peak_mm,
+            })
         } else {
             None
         }
@@ -110,12 +129,14 @@ mod tests {
     const SERVO_S: f64 = 0.001;
     const PERIOD_S: f64 = 0.003;
 
-    /// Harm after a second in which the tool is at `error_mm` beside the path, and the offset has moved it by `moved_mm`.
+    /// Harm after a second in which the tool is at `error_mm` beside the path, and the offset has
+    /// moved it by `moved_mm`.
     fn after_a_second(error_mm: f64, moved_mm: f64) -> bool {
         after(1000, |_| [error_mm, moved_mm])
     }
 
-    /// Harm after so many servo periods; in each the tool is `place_mm[0]` beside the path, and the offset has moved it by `place_mm[1]`, mm.
+    /// Harm after so many servo periods; in each the tool is `place_mm[0]` beside the path, and the
+    /// offset has moved it by `place_mm[1]`, mm.
     fn after(periods: u32, place_mm: impl Fn(u32) -> [f64; 2]) -> bool {
         let (mut register, mut preview) = (Register::default(), Preview::new(SERVO_S));
         let mut benefit = Benefit::NONE;
@@ -128,10 +149,23 @@ mod tests {
             if n.is_multiple_of(3) && n > 30 {
                 let (offset_mm, offset_mm_s) = ([0.0; 2], [0.0; 2]);
                 let (register, preview) = (&register, &preview);
-                let window = Window { register, preview, tau_s, feed_period_s: PERIOD_S, offset_mm, offset_mm_s };
+                let window = Window {
+                    register,
+                    preview,
+                    tau_s,
+                    feed_period_s: PERIOD_S,
+                    offset_mm,
+                    offset_mm_s,
+                };
                 let tool_mm = [50.0 * tau_s, error_mm];
-                let contour = ContourError { vector_mm: [0.0, -error_mm], index: 0, ..ContourError::NONE };
-                harm = benefit.harm(&window, tool_mm, &contour, Some([0.0, moved_mm])).is_some();
+                let contour = ContourError {
+                    vector_mm: [0.0, -error_mm],
+                    index: 0,
+                    ..ContourError::NONE
+                };
+                harm = benefit
+                    .harm(&window, tool_mm, &contour, Some([0.0, moved_mm]))
+                    .is_some();
             }
         }
         harm

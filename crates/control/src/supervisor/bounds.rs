@@ -7,7 +7,8 @@
 //! | acceleration | of the offset, and of the feed against the plan | the speed within [`TAKE_UP_S`] |
 //! | rate | of plan time | [`SLOWEST`] to [`FASTEST`], or what the feed may rise by |
 //!
-//! An offset along the path is none from the path. The path is known as chords between the knots of the window.
+//! An offset along the path is none from the path. The path is known as chords between the knots of
+//! the window.
 
 use crate::command::Command;
 use crate::contour_error::locate;
@@ -18,14 +19,15 @@ use crate::window::Window;
 const SLOWEST: f64 = 0.1;
 /// Fastest where nobody says otherwise: no command leaps.
 const FASTEST: f64 = 3.0;
-/// Time in which the correction may take up the highest speed it is allowed, s. Feedforward of the exact model takes as
-/// little at a corner; of what leaps more, no machine could follow any.
+/// Time in which the correction may take up the highest speed it is allowed, s. Feedforward of the
+/// exact model takes as little at a corner; of what leaps more, no machine could follow any.
 const TAKE_UP_S: f64 = 0.001;
 /// An offset is braked with half of this part of the acceleration that is allowed: 2 is all of it.
 const BRAKES: f64 = 1.2;
 /// Parts of the way of the offset in a feed period at which its deviation is looked at.
 const ON_THE_WAY: [f64; 3] = [0.75, 0.5, 0.25];
-/// The bound of the deviation may move the command by this many times the highest speed of the offset.
+/// The bound of the deviation may move the command by this many times the highest speed of the
+/// offset.
 const MAX_TAKEN_BACK: f64 = 2.0;
 /// Offsets closer than this differ by rounding only, mm.
 const SAME_MM: f64 = 1e-12;
@@ -39,8 +41,9 @@ pub struct Bounds {
     pub deviation_mm: f64,
     /// Speed of the offset, mm/s.
     pub speed_mm_s: f64,
-    /// Acceleration of the offset and, along the path, of the feed against the planned, mm/s2, of any controller. Its jerk is
-    /// bounded with it: the acceleration changes only from one feed period to the next, by no more than twice this.
+    /// Acceleration of the offset and, along the path, of the feed against the planned, mm/s2, of
+    /// any controller. Its jerk is bounded with it: the acceleration changes only from one feed
+    /// period to the next, by no more than twice this.
     pub acceleration_mm_s2: f64,
     /// Acceleration of an offset that fades, mm/s2.
     pub fade_mm_s2: f64,
@@ -51,7 +54,8 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// For a machine whose rapid motions run at `rapid_mm_s` and whose corrections accelerate by `correction_mm_s2`.
+    /// For a machine whose rapid motions run at `rapid_mm_s` and whose corrections accelerate by
+    /// `correction_mm_s2`.
     pub fn new(deviation_mm: f64, rapid_mm_s: f64, correction_mm_s2: f64) -> Self {
         let acceleration_mm_s2 = rapid_mm_s / TAKE_UP_S;
         let fade_mm_s2 = correction_mm_s2;
@@ -65,9 +69,13 @@ impl Bounds {
         }
     }
 
-    /// The next step towards an offset that is due, within the owner's acceleration: as fast as it can be braked there. What takes no more than that is
-    /// followed to the bit.
-    pub(super) fn accelerated_mm<const N: usize>(&self, window: &Window<'_, N>, due_mm: [f64; N]) -> [f64; N] {
+    /// The next step towards an offset that is due, within the owner's acceleration: as fast as it
+    /// can be braked there. What takes no more than that is followed to the bit.
+    pub(super) fn accelerated_mm<const N: usize>(
+        &self,
+        window: &Window<'_, N>,
+        due_mm: [f64; N],
+    ) -> [f64; N] {
         let period_s = window.feed_period_s;
         let most_mm_s = self.engaged_mm_s2 * period_s;
         let mut offset_mm = due_mm;
@@ -75,9 +83,11 @@ impl Bounds {
         for (offset_mm, (from_mm, from_mm_s)) in offset_mm.iter_mut().zip(from) {
             let way_mm = *offset_mm - from_mm;
             if (way_mm / period_s - from_mm_s).abs() > most_mm_s {
-                let closing_mm_s = libm::sqrt(BRAKES * self.engaged_mm_s2 * way_mm.abs()).min(way_mm.abs() / period_s);
+                let closing_mm_s = libm::sqrt(BRAKES * self.engaged_mm_s2 * way_mm.abs())
+                    .min(way_mm.abs() / period_s);
                 let change_mm_s = libm::copysign(closing_mm_s, way_mm) - from_mm_s;
-                *offset_mm = from_mm + period_s * (from_mm_s + bounded(change_mm_s, -most_mm_s, most_mm_s));
+                *offset_mm =
+                    from_mm + period_s * (from_mm_s + bounded(change_mm_s, -most_mm_s, most_mm_s));
             }
         }
         offset_mm
@@ -85,11 +95,15 @@ impl Bounds {
 
     /// With at most `percent` above the planned feedrate.
     pub fn feed_rise(self, percent: Option<f64>) -> Self {
-        Self { fastest: percent.map_or(FASTEST, |percent| 1.0 + percent / 100.0), ..self }
+        Self {
+            fastest: percent.map_or(FASTEST, |percent| 1.0 + percent / 100.0),
+            ..self
+        }
     }
 
-    /// The command within the bounds, `last_rate` being the rate until now. An offset that is there at once is one from the path as it is now, any
-    /// other from where it leads to in a feed period.
+    /// The command within the bounds, `last_rate` being the rate until now. An offset that is there
+    /// at once is one from the path as it is now, any other from where it leads to in a feed
+    /// period.
     pub(super) fn hold<const N: usize>(
         &self,
         window: &Window<'_, N>,
@@ -98,20 +112,37 @@ impl Bounds {
         at_once: bool,
     ) -> Command<N> {
         let period_s = window.feed_period_s;
-        let Self { deviation_mm, speed_mm_s, acceleration_mm_s2, fastest, .. } = *self;
-        // One that acts at once may step as far in a shorter period as in the time in which a correction takes up its speed, and may stop
-        // at once.
-        let longer = if at_once { (TAKE_UP_S / period_s).max(1.0) } else { 1.0 };
+        let Self {
+            deviation_mm,
+            speed_mm_s,
+            acceleration_mm_s2,
+            fastest,
+            ..
+        } = *self;
+        // One that acts at once may step as far in a shorter period as in the time in which a
+        // correction takes up its speed, and may stop at once.
+        let longer = if at_once {
+            (TAKE_UP_S / period_s).max(1.0)
+        } else {
+            1.0
+        };
         let velocity = scale(1.0 / period_s, sub(wanted.offset_mm, window.offset_mm));
         let velocity = if at_once && norm(velocity) <= norm(window.offset_mm_s) {
             velocity
         } else {
-            let change = limit_norm(sub(velocity, window.offset_mm_s), longer * longer * acceleration_mm_s2 * period_s);
+            let change = limit_norm(
+                sub(velocity, window.offset_mm_s),
+                longer * longer * acceleration_mm_s2 * period_s,
+            );
             add_scaled(window.offset_mm_s, 1.0, change)
         };
         let velocity = limit_norm(velocity, longer * speed_mm_s);
         let step = acceleration_mm_s2 * period_s / window.now().feed_mm_s.max(f64::MIN_POSITIVE);
-        let rate = bounded(bounded(wanted.rate, SLOWEST, fastest), last_rate - step, last_rate + step);
+        let rate = bounded(
+            bounded(wanted.rate, SLOWEST, fastest),
+            last_rate - step,
+            last_rate + step,
+        );
         // Where nothing binds, the offset is the controller's to the bit.
         let free = add_scaled(window.offset_mm, period_s, velocity);
         let same = norm(sub(free, wanted.offset_mm)) <= SAME_MM;
@@ -126,17 +157,29 @@ impl Bounds {
             return Command { rate, ..wanted };
         }
         // What the path takes back comes on top, but not without bound.
-        let step_mm = limit_norm(sub(near_mm, window.offset_mm), MAX_TAKEN_BACK * longer * speed_mm_s * period_s);
+        let step_mm = limit_norm(
+            sub(near_mm, window.offset_mm),
+            MAX_TAKEN_BACK * longer * speed_mm_s * period_s,
+        );
         Command::straight(rate, add_scaled(window.offset_mm, 1.0, step_mm))
     }
 
-    /// The offset moves along a line, the path perhaps not: on the way it may be too far where neither end is. Its end then
-    /// moves towards the path, and the step is no longer than it may be.
-    fn near_on_the_way<const N: usize>(&self, window: &Window<'_, N>, ahead_s: f64, end_mm: [f64; N]) -> [f64; N] {
+    /// The offset moves along a line, the path perhaps not: on the way it may be too far where
+    /// neither end is. Its end then moves towards the path, and the step is no longer than it may
+    /// be.
+    fn near_on_the_way<const N: usize>(
+        &self,
+        window: &Window<'_, N>,
+        ahead_s: f64,
+        end_mm: [f64; N],
+    ) -> [f64; N] {
         let mut near_mm = end_mm;
         for part in ON_THE_WAY {
             let there_mm = add_scaled(window.offset_mm, part, sub(near_mm, window.offset_mm));
-            let back_mm = sub(near_the_path(window, part * ahead_s, there_mm, self.deviation_mm), there_mm);
+            let back_mm = sub(
+                near_the_path(window, part * ahead_s, there_mm, self.deviation_mm),
+                there_mm,
+            );
             if norm(back_mm) > 0.0 {
                 near_mm = add_scaled(near_mm, 1.0 / part, back_mm);
             }
@@ -144,28 +187,42 @@ impl Bounds {
         if near_mm == end_mm {
             return end_mm;
         }
-        let step_mm = limit_norm(sub(near_mm, window.offset_mm), self.speed_mm_s * window.feed_period_s);
+        let step_mm = limit_norm(
+            sub(near_mm, window.offset_mm),
+            self.speed_mm_s * window.feed_period_s,
+        );
         let near_mm = add_scaled(window.offset_mm, 1.0, step_mm);
         near_the_path(window, ahead_s, near_mm, self.deviation_mm)
     }
 }
 
-/// The offset `ahead_s` from now in plan time, taken back towards the path where the command would be further from it than
-/// `limit_mm`. An offset along the path is none from the path.
-fn near_the_path<const N: usize>(window: &Window<'_, N>, ahead_s: f64, offset_mm: [f64; N], limit_mm: f64) -> [f64; N] {
+/// The offset `ahead_s` from now in plan time, taken back towards the path where the command would
+/// be further from it than `limit_mm`. An offset along the path is none from the path.
+fn near_the_path<const N: usize>(
+    window: &Window<'_, N>,
+    ahead_s: f64,
+    offset_mm: [f64; N],
+    limit_mm: f64,
+) -> [f64; N] {
     if norm(offset_mm) <= limit_mm {
         return offset_mm;
     }
     let next = window.preview.at(window.tau_s + ahead_s);
     // Beyond the knots that the window holds nobody knows where the path is.
     let [oldest, farthest] = window.range();
-    let known = window.knot(if dot(offset_mm, next.tangent) < 0.0 { oldest } else { farthest });
+    let known = window.knot(if dot(offset_mm, next.tangent) < 0.0 {
+        oldest
+    } else {
+        farthest
+    });
     let known_mm = norm(sub(known.position_mm, next.position_mm));
     let offset_mm = limit_norm(offset_mm, known_mm.max(limit_mm));
     let command_mm = add_scaled(next.position_mm, 1.0, offset_mm);
     let lead_s = dot(offset_mm, next.tangent) / next.feed_mm_s;
-    // Near rest the lead says nothing, and the point of the same instant is on the path, too: what is found must be nearer.
-    let guesses = [ahead_s + lead_s, ahead_s].map(|guess_s| way_to_the_path(window, command_mm, guess_s));
+    // Near rest the lead says nothing, and the point of the same instant is on the path, too: what
+    // is found must be nearer.
+    let guesses =
+        [ahead_s + lead_s, ahead_s].map(|guess_s| way_to_the_path(window, command_mm, guess_s));
     let nearer = |a: [f64; N], b: [f64; N]| if norm(b) < norm(a) { b } else { a };
     let back_mm = guesses.into_iter().fold(scale(-1.0, offset_mm), nearer);
     let too_far_mm = norm(back_mm) - limit_mm;
@@ -176,7 +233,11 @@ fn near_the_path<const N: usize>(window: &Window<'_, N>, ahead_s: f64, offset_mm
 }
 
 /// From a command to the nearest point of the path, looked for from a time after now on.
-fn way_to_the_path<const N: usize>(window: &Window<'_, N>, command_mm: [f64; N], guess_s: f64) -> [f64; N] {
+fn way_to_the_path<const N: usize>(
+    window: &Window<'_, N>,
+    command_mm: [f64; N],
+    guess_s: f64,
+) -> [f64; N] {
     // A float that is too large, or not a number, saturates; the window clamps it.
     let near = libm::round(guess_s / window.servo_s()) as i32;
     let mut nearest = locate(window, command_mm, near, 0);

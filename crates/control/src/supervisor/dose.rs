@@ -7,27 +7,33 @@
 //! d <- d - Ts / 5 ms d           where the owner's acceleration keeps the command from it
 //! ```
 //!
-//! p scales what is asked for now: an offset that was frozen and taken back would still be there after its corner has passed. On the way out o is
-//! no more than the way back of the last offset has (`supervisor/fade.rs`): what is asked for may be what does the harm.
+//! p scales what is asked for now: an offset that was frozen and taken back would still be there
+//! after its corner has passed. On the way out o is no more than the way back of the last offset
+//! has (`supervisor/fade.rs`): what is asked for may be what does the harm.
 //!
 //! Where an axis goes by another law from now on, its d is 1 again, and stays that for 50 ms.
 //!
-//! d keeps the loop stable at the bound: a controller whose command is cut off asks for more and more, and the axis swings. With less of the
-//! offset the loop is that of the axis by itself, which is stable. A controller that asks for more than there is all the time ends
-//! where its offset just fits in.
+//! d keeps the loop stable at the bound: a controller whose command is cut off asks for more and
+//! more, and the axis swings. With less of the offset the loop is that of the axis by itself, which
+//! is stable. A controller that asks for more than there is all the time ends where its offset just
+//! fits in.
 //!
-//! Source: s(p) is at most 6 o / T^2 steep in its slope; for d, the reduction of a gain at a bound, as in Hanus, Kinnaert and Henrotte
-//! (1987), "Conditioning technique, a general anti-windup and bumpless transfer method", Automatica 23(6), in a form of our own.
+//! Source: s(p) is at most 6 o / T^2 steep in its slope; for d, the reduction of a gain at a bound,
+//! as in Hanus, Kinnaert and Henrotte (1987), "Conditioning technique, a general anti-windup and
+//! bumpless transfer method", Automatica 23(6), in a form of our own.
 
 use crate::vector::{bounded, norm, smooth_step};
 
-/// A correction that acts at once takes at least this long to come and to go, s: twice the time constant of a usual position loop.
+/// A correction that acts at once takes at least this long to come and to go, s: twice the time
+/// constant of a usual position loop.
 const LEAST_S: f64 = 0.04;
-/// An offset that is kept from what is due by no more than this is followed, mm: what is harm in the mean (`supervisor/benefit.rs`). With 2 um
-/// workshop leaves 8.9 um on the star in place of 0.29.
+/// An offset that is kept from what is due by no more than this is followed, mm: what is harm in
+/// the mean (`supervisor/benefit.rs`). With 2 um workshop leaves 8.9 um on the star in place of
+/// 0.29.
 const BEHIND_MM: f64 = 0.005;
-/// Times in which d falls and rises, s. What did not fit at the beginning of a block is small at its end, where it would have to vanish: with a
-/// rise in 2 s two of 24 cuts within a limit are worse than uncorrected, with this one is, by 2.4 um in its largest error
+/// Times in which d falls and rises, s. What did not fit at the beginning of a block is small at
+/// its end, where it would have to vanish: with a rise in 2 s two of 24 cuts within a limit are
+/// worse than uncorrected, with this one is, by 2.4 um in its largest error
 /// (`linuxcnc/servo/tests/property_acceleration_limit.rs`).
 const FALLS_S: f64 = 0.005;
 const RISES_S: f64 = 5.0;
@@ -49,10 +55,16 @@ pub(super) struct Dose<const N: usize> {
 
 impl<const N: usize> Dose<N> {
     /// All of it.
-    pub(super) const ALL: Self =
-        Self { part: 1.0, take_up_s: LEAST_S, dose: [1.0; N], learned: [false; N], spared_s: [0.0; N] };
+    pub(super) const ALL: Self = Self {
+        part: 1.0,
+        take_up_s: LEAST_S,
+        dose: [1.0; N],
+        learned: [false; N],
+        spared_s: [0.0; N],
+    };
 
-    /// An axis that goes by another law from now on begins anew: what did not fit was asked for by a law that was wrong.
+    /// An axis that goes by another law from now on begins anew: what did not fit was asked for by
+    /// a law that was wrong.
     pub(super) fn learn(&mut self, learned: [bool; N]) {
         for axis in 0..N {
             if learned[axis] != self.learned[axis] {
@@ -62,7 +74,8 @@ impl<const N: usize> Dose<N> {
         self.learned = learned;
     }
 
-    /// The correction comes or goes from now on; the offset that it asks for is this, and its acceleration is at most `fade_mm_s2` then.
+    /// The correction comes or goes from now on; the offset that it asks for is this, and its
+    /// acceleration is at most `fade_mm_s2` then.
     pub(super) fn turn(&mut self, asked_mm: [f64; N], fade_mm_s2: f64) {
         self.take_up_s = libm::sqrt(6.0 * norm(asked_mm) / fade_mm_s2).max(LEAST_S);
     }
@@ -87,7 +100,9 @@ impl<const N: usize> Dose<N> {
 
     /// By how much the offset was kept from what was due in a period, mm.
     pub(super) fn take_in(&mut self, behind_mm: [f64; N], period_s: f64) {
-        for ((dose, spared_s), behind_mm) in self.dose.iter_mut().zip(&mut self.spared_s).zip(behind_mm) {
+        for ((dose, spared_s), behind_mm) in
+            self.dose.iter_mut().zip(&mut self.spared_s).zip(behind_mm)
+        {
             *spared_s = (*spared_s - period_s).max(0.0);
             if *spared_s > 0.0 {
                 continue;
@@ -113,10 +128,17 @@ mod tests {
     #[test]
     fn an_offset_that_does_not_fit_is_reduced_and_comes_back_when_it_does() {
         let mut dose = Dose::ALL;
-        assert_eq!(dose.of([0.1], true, PERIOD_S), [0.1], "all of it, to the bit");
+        assert_eq!(
+            dose.of([0.1], true, PERIOD_S),
+            [0.1],
+            "all of it, to the bit"
+        );
         (0..20).for_each(|_| dose.take_in([1.0], PERIOD_S));
         let [reduced_mm] = dose.of([0.1], true, PERIOD_S);
-        assert!(dose.is_reduced() && (0.001..0.0013).contains(&reduced_mm), "{reduced_mm}");
+        assert!(
+            dose.is_reduced() && (0.001..0.0013).contains(&reduced_mm),
+            "{reduced_mm}"
+        );
         (0..100_000).for_each(|_| dose.take_in([0.0], PERIOD_S));
         assert_eq!(dose.of([0.1], true, PERIOD_S), [0.1]);
         assert!(!dose.is_reduced());
@@ -129,10 +151,17 @@ mod tests {
             dose.none();
             dose.turn([offset_mm], fade_mm_s2);
             let mut way_mm = [0.0; 1000];
-            way_mm.iter_mut().for_each(|at_mm| [*at_mm] = dose.of([offset_mm], true, PERIOD_S));
-            let bends = way_mm.windows(3).map(|o| ((o[2] - 2.0 * o[1] + o[0]) / (PERIOD_S * PERIOD_S)).abs());
+            way_mm
+                .iter_mut()
+                .for_each(|at_mm| [*at_mm] = dose.of([offset_mm], true, PERIOD_S));
+            let bends = way_mm
+                .windows(3)
+                .map(|o| ((o[2] - 2.0 * o[1] + o[0]) / (PERIOD_S * PERIOD_S)).abs());
             let bend_mm_s2 = bends.fold(0.0, f64::max);
-            assert!(bend_mm_s2 <= 1.01 * fade_mm_s2, "{offset_mm} {fade_mm_s2}: {bend_mm_s2}");
+            assert!(
+                bend_mm_s2 <= 1.01 * fade_mm_s2,
+                "{offset_mm} {fade_mm_s2}: {bend_mm_s2}"
+            );
             assert!(way_mm.is_sorted() && way_mm[999] == offset_mm);
         }
     }

@@ -1,16 +1,19 @@
-//! The live state machine: when a correction is in the loop, when it leaves, and when it comes back.
+//! The live state machine: when a correction is in the loop, when it leaves, and when it comes
+//! back.
 //!
 //! ```text
 //! Shadow --good for the wait--> Engaged --bad--> Fading --offset at rest--> Shadow
 //! ```
 //!
-//! In Shadow and Fading the controller goes on deciding and learning, from what is commanded and measured, and nobody follows
-//! it. *Good* is a position that is there, predictions that hold with a margin (hysteresis), and a correction that would do no
-//! harm, for `GOOD_S` in a row. The first wait after a fault is `FIRST_WAIT_S`; each further one of the same making takes
-//! twice as long, and a correction that has held for `FORGIVEN_S` begins anew.
+//! In Shadow and Fading the controller goes on deciding and learning, from what is commanded and
+//! measured, and nobody follows it. *Good* is a position that is there, predictions that hold with
+//! a margin (hysteresis), and a correction that would do no harm, for `GOOD_S` in a row. The first
+//! wait after a fault is `FIRST_WAIT_S`; each further one of the same making takes twice as long,
+//! and a correction that has held for `FORGIVEN_S` begins anew.
 //!
-//! `GOOD_S` and `FORGIVEN_S` count only while the commanded path moves: a machine at rest confirms every model. Bad evidence counts at
-//! any time. A controller that was switched off without bad evidence comes back without new good evidence.
+//! `GOOD_S` and `FORGIVEN_S` count only while the commanded path moves: a machine at rest confirms
+//! every model. Bad evidence counts at any time. A controller that was switched off without bad
+//! evidence comes back without new good evidence.
 
 use crate::command::FaultEvidence;
 
@@ -19,7 +22,8 @@ const GOOD_S: f64 = 0.1;
 /// The least time out of the loop, s, at first and at the most.
 const FIRST_WAIT_S: f64 = 0.2;
 const LONGEST_WAIT_S: f64 = 3.2;
-/// Motion in the loop without a fault, s, after which earlier faults no longer count. Below, the next fault adds to them.
+/// Motion in the loop without a fault, s, after which earlier faults no longer count. Below, the
+/// next fault adds to them.
 pub const FORGIVEN_S: f64 = 5.0;
 
 /// Where a correction is.
@@ -94,7 +98,8 @@ pub(super) struct Engagement {
     decisions: u64,
     /// The last fade.
     fade: Option<Fade>,
-    /// Time in the loop, or out of it, s; motion in the loop, and motion in which everything has been good, s.
+    /// Time in the loop, or out of it, s; motion in the loop, and motion in which everything has
+    /// been good, s.
     for_s: f64,
     held_s: f64,
     good_s: f64,
@@ -123,11 +128,26 @@ impl Engagement {
 
     /// Goes on by a decision.
     pub(super) fn go_on(&mut self, seen: &DecisionInputs) -> State {
-        let DecisionInputs { allowed, bad, good, over, moves, period_s } = *seen;
+        let DecisionInputs {
+            allowed,
+            bad,
+            good,
+            over,
+            moves,
+            period_s,
+        } = *seen;
         let moved_s = if moves { period_s } else { 0.0 };
         self.for_s += period_s;
-        self.held_s = if self.state == State::Engaged { self.held_s + moved_s } else { 0.0 };
-        self.good_s = if good && bad.is_none() { self.good_s + moved_s } else { 0.0 };
+        self.held_s = if self.state == State::Engaged {
+            self.held_s + moved_s
+        } else {
+            0.0
+        };
+        self.good_s = if good && bad.is_none() {
+            self.good_s + moved_s
+        } else {
+            0.0
+        };
         match (self.state, bad) {
             (State::Engaged, Some((cause, evidence))) => self.fail(cause, evidence),
             (State::Engaged, None) if !allowed => self.leave(),
@@ -149,7 +169,12 @@ impl Engagement {
             self.wait_s = (2.0 * self.wait_s).min(LONGEST_WAIT_S);
         }
         let count = self.fade.map_or(0, |fade| fade.count).saturating_add(1);
-        self.fade = Some(Fade { cause, evidence, decision: self.decisions, count });
+        self.fade = Some(Fade {
+            cause,
+            evidence,
+            decision: self.decisions,
+            count,
+        });
         self.leave();
         self.good_s = 0.0;
     }
@@ -168,7 +193,14 @@ mod tests {
     /// A decision in motion with this fault of a controller whose offset has come to rest.
     fn goes_on(engagement: &mut Engagement, cause: Option<Cause>, good: bool, over: bool) -> State {
         let bad = cause.map(|cause| (cause, None));
-        engagement.go_on(&DecisionInputs { allowed: true, bad, good, over, moves: true, period_s: PERIOD_S })
+        engagement.go_on(&DecisionInputs {
+            allowed: true,
+            bad,
+            good,
+            over,
+            moves: true,
+            period_s: PERIOD_S,
+        })
     }
 
     /// A decision at rest with this fault.
@@ -186,15 +218,23 @@ mod tests {
 
     /// Decisions until a controller that is good from now on is back.
     fn until_back(engagement: &mut Engagement) -> u32 {
-        (1..10_000).find(|_| goes_on(engagement, None, true, true) == State::Engaged).expect("it comes back")
+        (1..10_000)
+            .find(|_| goes_on(engagement, None, true, true) == State::Engaged)
+            .expect("it comes back")
     }
 
     #[test]
     fn it_leaves_at_once_and_is_back_within_a_second_of_a_first_fault() {
         let mut engagement = Engagement::START;
-        assert_eq!(goes_on(&mut engagement, Some(Cause::LostFeedback), false, false), State::Fading);
+        assert_eq!(
+            goes_on(&mut engagement, Some(Cause::LostFeedback), false, false),
+            State::Fading
+        );
         for _ in 0..30 {
-            assert_eq!(goes_on(&mut engagement, Some(Cause::LostFeedback), false, false), State::Fading);
+            assert_eq!(
+                goes_on(&mut engagement, Some(Cause::LostFeedback), false, false),
+                State::Fading
+            );
         }
         assert_eq!(goes_on(&mut engagement, None, true, true), State::Shadow);
         assert!(f64::from(until_back(&mut engagement)) * PERIOD_S < 0.5);
@@ -220,7 +260,10 @@ mod tests {
     #[test]
     fn at_rest_it_leaves_at_once_and_comes_back_in_motion() {
         let mut engagement = Engagement::START;
-        assert_eq!(rests(&mut engagement, Some(Cause::WrongPredictions)), State::Fading);
+        assert_eq!(
+            rests(&mut engagement, Some(Cause::WrongPredictions)),
+            State::Fading
+        );
         assert!((0..10_000).all(|_| rests(&mut engagement, None) == State::Shadow));
         assert!(f64::from(until_back(&mut engagement)) * PERIOD_S < GOOD_S + 2.0 * PERIOD_S);
     }
@@ -242,7 +285,10 @@ mod tests {
         let mut engagement = Engagement::START;
         goes_on(&mut engagement, Some(Cause::WrongPredictions), false, true);
         for n in 0..5000 {
-            assert_ne!(goes_on(&mut engagement, None, n % 10 != 0, true), State::Engaged);
+            assert_ne!(
+                goes_on(&mut engagement, None, n % 10 != 0, true),
+                State::Engaged
+            );
         }
     }
 
@@ -250,11 +296,20 @@ mod tests {
     fn what_is_not_wanted_leaves_without_a_fault_and_comes_back_when_it_is() {
         let mut engagement = Engagement::START;
         let mut asked = |allowed| {
-            let inputs =
-                DecisionInputs { allowed, bad: None, good: true, over: true, moves: false, period_s: PERIOD_S };
+            let inputs = DecisionInputs {
+                allowed,
+                bad: None,
+                good: true,
+                over: true,
+                moves: false,
+                period_s: PERIOD_S,
+            };
             engagement.go_on(&inputs)
         };
-        assert_eq!([true, false, false].map(&mut asked), [State::Engaged, State::Fading, State::Shadow]);
+        assert_eq!(
+            [true, false, false].map(&mut asked),
+            [State::Engaged, State::Fading, State::Shadow]
+        );
         assert!((0..1000).all(|_| asked(false) == State::Shadow));
         assert_eq!(asked(true), State::Engaged);
         assert_eq!(engagement.fade(), None);

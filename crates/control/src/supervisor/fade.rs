@@ -4,12 +4,13 @@
 //! v(o) = min(o / T, sqrt(c A o))     a = (v - v(o)) / dt, at most A
 //! ```
 //!
-//! towards zero, in each axis: near the plan the offset decays with the time constant T, further away it brakes along the
-//! parabola that A allows, with a margin c.
+//! towards zero, in each axis: near the plan the offset decays with the time constant T, further
+//! away it brakes along the parabola that A allows, with a margin c.
 
 use crate::vector::bounded;
 
-/// T, s: twice that of a usual position loop, so that the tool follows without a transient of its own.
+/// T, s: twice that of a usual position loop, so that the tool follows without a transient of its
+/// own.
 const TIME_S: f64 = 0.03;
 /// c: 2 is all that A allows.
 const MARGIN: f64 = 1.2;
@@ -17,12 +18,16 @@ const MARGIN: f64 = 1.2;
 const NONE_MM: f64 = 1e-6;
 const NONE_MM_S: f64 = 1e-3;
 
-/// The acceleration of the next period, mm/s^2, at most `most_mm_s2`, of an offset in one axis that fades
-/// to zero.
+/// The acceleration of the next period, mm/s^2, at most `most_mm_s2`, of an offset in one axis that
+/// fades to zero.
 #[inline]
 pub fn fade_acceleration(offset_mm: f64, offset_mm_s: f64, period_s: f64, most_mm_s2: f64) -> f64 {
     let wanted_mm_s = wanted_mm_s(offset_mm, most_mm_s2);
-    bounded((wanted_mm_s - offset_mm_s) / period_s, -most_mm_s2, most_mm_s2)
+    bounded(
+        (wanted_mm_s - offset_mm_s) / period_s,
+        -most_mm_s2,
+        most_mm_s2,
+    )
 }
 
 /// The speed that an offset is to have on its way.
@@ -33,8 +38,9 @@ fn wanted_mm_s(offset_mm: f64, most_mm_s2: f64) -> f64 {
     if offset_mm > 0.0 { -speed } else { speed }
 }
 
-/// The speed with which an offset begins its way that has come where it is in one step: that of the step is none that it has to go on
-/// with, unless it leads back to the plan and can be braked there.
+/// The speed with which an offset begins its way that has come where it is in one step: that of the
+/// step is none that it has to go on with, unless it leads back to the plan and can be braked
+/// there.
 #[inline]
 pub(super) fn begins_mm_s(offset_mm: f64, stepped_mm_s: f64, most_mm_s2: f64) -> f64 {
     let wanted_mm_s = wanted_mm_s(offset_mm, most_mm_s2);
@@ -59,7 +65,8 @@ mod tests {
             assert_eq!(begins_mm_s(offset, -wanted, most), 0.0);
             assert_eq!(begins_mm_s(offset, 100.0 * wanted, most), wanted);
             assert_eq!(begins_mm_s(offset, 0.5 * wanted, most), 0.5 * wanted);
-            let (mut o, mut v): (f64, f64) = (offset, begins_mm_s(offset, 300.0 * offset.signum(), most));
+            let (mut o, mut v): (f64, f64) =
+                (offset, begins_mm_s(offset, 300.0 * offset.signum(), most));
             for _ in 0..2000 {
                 let a = fade_acceleration(o, v, 0.001, most);
                 (o, v) = (o + 0.001 * (v + 0.0005 * a), v + 0.001 * a);
@@ -73,7 +80,13 @@ mod tests {
     #[test]
     fn an_offset_comes_to_rest_at_zero_within_the_acceleration_whatever_its_speed() {
         let period_s = 0.003;
-        for (offset, speed) in [(0.5, 0.0), (0.5, 10.0), (-0.02, 3.0), (1e-3, -8.0), (0.0, 0.0)] {
+        for (offset, speed) in [
+            (0.5, 0.0),
+            (0.5, 10.0),
+            (-0.02, 3.0),
+            (1e-3, -8.0),
+            (0.0, 0.0),
+        ] {
             for most in [50.0, 400.0, 4000.0] {
                 let (mut o, mut v) = (offset, speed);
                 let mut farthest = 0.0_f64;
@@ -86,7 +99,10 @@ mod tests {
                 }
                 assert!(is_over([o], [v]), "{offset} {speed} {most}: {o} {v}");
                 let coasts = speed * speed / (2.0 * most) + speed.abs() * period_s;
-                assert!(farthest <= offset.abs() + 1.5 * coasts + 1e-3, "{offset} {speed} {most}: {farthest}");
+                assert!(
+                    farthest <= offset.abs() + 1.5 * coasts + 1e-3,
+                    "{offset} {speed} {most}: {farthest}"
+                );
             }
         }
     }

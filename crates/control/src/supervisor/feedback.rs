@@ -4,11 +4,12 @@ use crate::vector::{norm, sub};
 
 /// A position that has not changed at all for so long while the command moved is frozen, s.
 const FROZEN_S: f64 = 0.012;
-/// The command moves where it is so far from where it was when the position changed last, mm: what comes before breaks loose no tool. Its way does not
-/// count, but where it leads to: a correction that holds a tool back goes to and fro.
+/// The command moves where it is so far from where it was when the position changed last, mm: what
+/// comes before breaks loose no tool. Its way does not count, but where it leads to: a correction
+/// that holds a tool back goes to and fro.
 const STIRRED_MM: f64 = 0.02;
-/// So far has the command come by then, mm: the loop of a machine that follows at all has broken its tool loose, and moved it
-/// by more than an encoder step of a few micrometres.
+/// So far has the command come by then, mm: the loop of a machine that follows at all has broken
+/// its tool loose, and moved it by more than an encoder step of a few micrometres.
 const FROZEN_MM: f64 = 0.12;
 /// No tool moves faster than this many times the highest speed.
 const LEAP: f64 = 2.0;
@@ -27,12 +28,27 @@ pub(crate) struct Feedback<const N: usize> {
 }
 
 impl<const N: usize> Feedback<N> {
-    pub(crate) const NONE: Self = Self { last_mm: None, since: 0, still_s: 0.0, commanded_mm: None, lost: false };
+    pub(crate) const NONE: Self = Self {
+        last_mm: None,
+        since: 0,
+        still_s: 0.0,
+        commanded_mm: None,
+        lost: false,
+    };
 
-    /// Takes in the position at the start of a servo period of `servo_s`, at which the command was at `command_mm`.
+    /// Takes in the position at the start of a servo period of `servo_s`, at which the command was
+    /// at `command_mm`.
     #[inline]
-    pub(crate) fn take_in(&mut self, position_mm: [f64; N], command_mm: [f64; N], servo_s: f64, most_mm_s: f64) {
-        let moved_mm = self.last_mm.map_or(0.0, |last_mm| norm(sub(position_mm, last_mm)));
+    pub(crate) fn take_in(
+        &mut self,
+        position_mm: [f64; N],
+        command_mm: [f64; N],
+        servo_s: f64,
+        most_mm_s: f64,
+    ) {
+        let moved_mm = self
+            .last_mm
+            .map_or(0.0, |last_mm| norm(sub(position_mm, last_mm)));
         self.since = self.since.saturating_add(1);
         let can_mm = LEAP * most_mm_s * servo_s * f64::from(self.since);
         let there = moved_mm <= can_mm && norm(position_mm).is_finite();
@@ -44,7 +60,10 @@ impl<const N: usize> Feedback<N> {
             (self.still_s, self.commanded_mm) = (0.0, None);
         }
         // One that comes to where the tool rests goes no further.
-        let since_mm = norm(sub(command_mm, *self.commanded_mm.get_or_insert(command_mm)));
+        let since_mm = norm(sub(
+            command_mm,
+            *self.commanded_mm.get_or_insert(command_mm),
+        ));
         let way_mm = since_mm.min(norm(sub(command_mm, position_mm)));
         self.still_s += if way_mm > STIRRED_MM { servo_s } else { 0.0 };
         self.lost |= !there || (self.still_s > FROZEN_S && way_mm > FROZEN_MM);
@@ -80,11 +99,15 @@ mod tests {
     fn every_fault_is_seen_within_twenty_milliseconds_and_no_other() {
         assert_eq!(seen_after(|_, position_mm| position_mm), None);
         assert_eq!(seen_after(|_, _| f64::NAN), Some(0));
-        assert_eq!(seen_after(|n, position_mm| if n == 100 { f64::INFINITY } else { position_mm }), Some(0));
+        assert_eq!(
+            seen_after(|n, position_mm| if n == 100 { f64::INFINITY } else { position_mm }),
+            Some(0)
+        );
         assert_eq!(seen_after(|_, position_mm| position_mm + 1.0), Some(0));
         let frozen = seen_after(|_, _| 0.8).expect("a frozen position is seen");
         assert!(frozen <= 17, "{frozen}");
-        // A machine that lags far behind starts: its first encoder step is 16 ms after the command, which is 0.2 mm away by then.
+        // A machine that lags far behind starts: its first encoder step is 16 ms after the command,
+        // which is 0.2 mm away by then.
         let mut feedback = Feedback::<1>::NONE;
         for n in 0..16 {
             feedback.take_in([0.0], [8e-4 * f64::from(n * n)], 0.001, 400.0);
@@ -93,7 +116,12 @@ mod tests {
         // A correction goes to and fro to hold the tool back while the path begins.
         let mut feedback = Feedback::<1>::NONE;
         for n in 0..40 {
-            feedback.take_in([0.0], [if n % 4 < 2 { 0.015 } else { -0.015 }], 0.001, 400.0);
+            feedback.take_in(
+                [0.0],
+                [if n % 4 < 2 { 0.015 } else { -0.015 }],
+                0.001,
+                400.0,
+            );
             assert!(!feedback.take_lost(), "{n}");
         }
         // The command comes to rest where the tool is, from behind it.
@@ -102,6 +130,9 @@ mod tests {
             assert!(!feedback.take_lost(), "{n}");
         }
         // Steps of 1 um.
-        assert_eq!(seen_after(|_, position_mm| libm::round(position_mm * 1e3) * 1e-3), None);
+        assert_eq!(
+            seen_after(|_, position_mm| libm::round(position_mm * 1e3) * 1e-3),
+            None
+        );
     }
 }

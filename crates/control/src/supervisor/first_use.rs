@@ -1,4 +1,5 @@
-//! What a law has to show on a machine before it is used there for the first time, in motion without a correction.
+//! What a law has to show on a machine before it is used there for the first time, in motion
+//! without a correction.
 //!
 //! ```text
 //! m  measured position less that of the axes by their law alone, simulated along the same path
@@ -7,14 +8,17 @@
 //! <m^2> <= <d^2> / 4      after 20 ms of motion, where <d^2> > (2 um)^2 + 20 s^2: the law is used
 //! ```
 //!
-//! d is what a correction takes away, and m what it leaves: by a law that predicts half of d a correction takes away half of it at least. s^2 is
-//! what noise makes of a position. The test needs motion that changes its speed: along a straight line d is zero.
+//! d is what a correction takes away, and m what it leaves: by a law that predicts half of d a
+//! correction takes away half of it at least. s^2 is what noise makes of a position. The test needs
+//! motion that changes its speed: along a straight line d is zero.
 //!
-//! A law that has not shown this is not used. A learned law that takes its place has to show the same. Then the correction comes in within
+//! A law that has not shown this is not used. A learned law that takes its place has to show the
+//! same. Then the correction comes in within
 //! [`IN_S`]: with 0.065 s a helix and a figure of eight that begin where the machine stands are cut within 2.1 and 6 um, with 0.1 s the helix within
 //! 3.9, with 0.03 s the eight within 17, since the axis is then ahead of where it is to be.
 //!
-//! Source: a simulation without feedback compared with the measurement as in Ljung (1999), System Identification, section 16.6; the share is our own.
+//! Source: a simulation without feedback compared with the measurement as in Ljung (1999), System
+//! Identification, section 16.6; the share is our own.
 
 use crate::vector::bounded;
 
@@ -45,12 +49,22 @@ impl FirstUse {
     /// Nothing yet, where noise makes so much of a position, mm^2.
     pub(crate) fn new(noise_mm2: f64) -> Self {
         let least_mm2 = LEAST_MM2 + BEYOND_NOISE * noise_mm2;
-        Self { least_mm2, moved_s: 0.0, missed_mm2: 0.0, distance_mm2: 0.0, is_shown: false, share: 0.0 }
+        Self {
+            least_mm2,
+            moved_s: 0.0,
+            missed_mm2: 0.0,
+            distance_mm2: 0.0,
+            is_shown: false,
+            share: 0.0,
+        }
     }
 
     /// Nothing any more.
     pub(crate) fn forget(&mut self) {
-        *self = Self { least_mm2: self.least_mm2, ..Self::new(0.0) };
+        *self = Self {
+            least_mm2: self.least_mm2,
+            ..Self::new(0.0)
+        };
     }
 
     /// The law is another one from now on.
@@ -62,8 +76,14 @@ impl FirstUse {
 
     /// A servo period, with m^2 and d^2 where the machine moves.
     pub(crate) fn take_in(&mut self, seen_mm2: Option<[f64; 2]>, servo_s: f64) {
-        self.share = bounded(self.share + if self.is_shown { servo_s / IN_S } else { 0.0 }, 0.0, 1.0);
-        let Some([missed_mm2, distance_mm2]) = seen_mm2.filter(|_| !self.is_shown) else { return };
+        self.share = bounded(
+            self.share + if self.is_shown { servo_s / IN_S } else { 0.0 },
+            0.0,
+            1.0,
+        );
+        let Some([missed_mm2, distance_mm2]) = seen_mm2.filter(|_| !self.is_shown) else {
+            return;
+        };
         self.moved_s += servo_s;
         // At first the mean of all.
         let part = servo_s / self.moved_s.min(MEMORY_S);
@@ -110,7 +130,11 @@ mod tests {
             (5000, [f64::NAN, 0.1, 0.0], false),
             (5000, [0.0, f64::NAN, 0.0], false),
         ] {
-            assert_eq!(after(periods, seen_mm).is_shown(), is_shown, "{periods} {seen_mm:?}");
+            assert_eq!(
+                after(periods, seen_mm).is_shown(),
+                is_shown,
+                "{periods} {seen_mm:?}"
+            );
         }
     }
 
@@ -124,6 +148,9 @@ mod tests {
         let mut refuted = after(1000, [0.1, 0.1, 0.0]);
         refuted.begin_law();
         (0..21).for_each(|_| refuted.take_in(Some([0.0, 0.01]), SERVO_S));
-        assert!(refuted.is_shown(), "what the law before it missed does not count");
+        assert!(
+            refuted.is_shown(),
+            "what the law before it missed does not count"
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! Whether a servo period went as the law said: what the law gets wrong at once, long before it leads anywhere else.
+//! Whether a servo period went as the law said: what the law gets wrong at once, long before it
+//! leads anywhere else.
 //!
 //! ```text
 //! n  innovation: measured less expected a servo period before
@@ -8,22 +9,28 @@
 //! <n^2> > (0.1 um)^2 + 16 S + (1.5 p)^2     over the last 5 ms: it does not go as the law said
 //! ```
 //!
-//! Along a plan a drive that is 2 ms late misses a hundredth of its following error in 30 ms, and goes as the law says. Within a servo period
-//! what it does has nothing to do with what the law says: there the loop swings. Loads are what the filter makes of such innovations, and
-//! feeding them back is the fast part of the loop: they are not taken up there. A straight line shows nothing again, so that the law is believed
-//! four times later each time that it was found out. Of a force that nobody foresees the test does not tell it: such a force is answered by the slow
+//! Along a plan a drive that is 2 ms late misses a hundredth of its following error in 30 ms, and
+//! goes as the law says. Within a servo period what it does has nothing to do with what the law
+//! says: there the loop swings. Loads are what the filter makes of such innovations, and feeding
+//! them back is the fast part of the loop: they are not taken up there. A straight line shows
+//! nothing again, so that the law is believed four times later each time that it was found out. Of
+//! a force that nobody foresees the test does not tell it: such a force is answered by the slow
 //! part alone.
 //!
-//! By the law of tnv40 on tnv40 with drives that are 1 and 2 ms late the circle was cut with 31 and 32 um RMS where the uncorrected cut leaves 13 and 9; now with
-//! 0.9 and 1.8, and the square with jumps at its corners with 0.3 of 2.1 and 0.8 of 1.7. With 0.8 p it leaves 4.0 um of 5.3 on the circle with twice
-//! the inertia, with 1.5 p 0.6; with 2 p the square 2 ms late is worse than uncorrected.
+//! By the law of tnv40 on tnv40 with drives that are 1 and 2 ms late the circle was cut with 31 and
+//! 32 um RMS where the uncorrected cut leaves 13 and 9; now with 0.9 and 1.8, and the square with
+//! jumps at its corners with 0.3 of 2.1 and 0.8 of 1.7. With 0.8 p it leaves 4.0 um of 5.3 on the
+//! circle with twice the inertia, with 1.5 p 0.6; with 2 p the square 2 ms late is worse than
+//! uncorrected.
 //!
-//! Source: the mean square of innovations against what is predicted for it is the usual test of a filter, Bar-Shalom, Li and Kirubarajan (2001),
-//! Estimation with Applications to Tracking and Navigation, section 5.4; p, and what follows from it, are our own.
+//! Source: the mean square of innovations against what is predicted for it is the usual test of a
+//! filter, Bar-Shalom, Li and Kirubarajan (2001), Estimation with Applications to Tracking and
+//! Navigation, section 5.4; p, and what follows from it, are our own.
 
 use crate::vector::{bounded, smooth_step};
 
-/// What may always be unexpected, mm^2 (0.1 um): the filter does not know the loads yet where it begins.
+/// What may always be unexpected, mm^2 (0.1 um): the filter does not know the loads yet where it
+/// begins.
 pub(crate) const LEAST_MM2: f64 = 1e-8;
 /// Standard deviations of what the statistics say, and the part of p.
 const DEVIATIONS: f64 = 4.0;
@@ -34,7 +41,8 @@ const MEMORY_S: f64 = 0.005;
 pub(crate) const RUN_S: f64 = 0.03;
 /// Time after which a law is not trusted at all, s.
 pub(crate) const TO_DOUBT_S: f64 = 0.005;
-/// Time of the contrary after which it is in full, s: so many times longer each time that loads were let go, up to the longest.
+/// Time of the contrary after which it is in full, s: so many times longer each time that loads
+/// were let go, up to the longest.
 const TO_TRUST_S: f64 = 0.3;
 const LONGER: f64 = 4.0;
 const LONGEST_S: f64 = 20.0;
@@ -54,7 +62,11 @@ pub(crate) struct OneStep {
 
 impl OneStep {
     /// Nothing.
-    pub(crate) const NONE: Self = Self { missed_mm2: 0.0, expected_mm2: 0.0, pushed_mm2: 0.0 };
+    pub(crate) const NONE: Self = Self {
+        missed_mm2: 0.0,
+        expected_mm2: 0.0,
+        pushed_mm2: 0.0,
+    };
 
     /// Of all axes.
     pub(crate) fn sum(axes: impl Iterator<Item = Self>) -> Self {
@@ -83,13 +95,21 @@ pub(crate) struct Course {
 
 impl Course {
     /// Nothing is known to the contrary.
-    pub(crate) const AS_SAID: Self = Self { mean: OneStep::NONE, loads: 1.0, to_trust_s: TO_TRUST_S };
+    pub(crate) const AS_SAID: Self = Self {
+        mean: OneStep::NONE,
+        loads: 1.0,
+        to_trust_s: TO_TRUST_S,
+    };
 
     /// A servo period.
     pub(crate) fn take_in(&mut self, step: OneStep, servo_s: f64) {
         let part = (servo_s / MEMORY_S).min(1.0);
         self.mean = self.mean.with(part, step).with(-part, self.mean);
-        let change = if self.is_as_said() { servo_s / self.to_trust_s } else { -servo_s / TO_DOUBT_S };
+        let change = if self.is_as_said() {
+            servo_s / self.to_trust_s
+        } else {
+            -servo_s / TO_DOUBT_S
+        };
         let loads = bounded(self.loads + change, 0.0, 1.0);
         if self.loads >= 0.5 && loads < 0.5 {
             self.to_trust_s = (LONGER * self.to_trust_s).min(LONGEST_S);
@@ -99,8 +119,15 @@ impl Course {
 
     /// Whether it goes as the law says; what is not a number does not.
     pub(crate) fn is_as_said(&self) -> bool {
-        let OneStep { missed_mm2, expected_mm2, pushed_mm2 } = self.mean;
-        missed_mm2 <= LEAST_MM2 + DEVIATIONS * DEVIATIONS * expected_mm2 + PUSHED_SHARE * PUSHED_SHARE * pushed_mm2
+        let OneStep {
+            missed_mm2,
+            expected_mm2,
+            pushed_mm2,
+        } = self.mean;
+        missed_mm2
+            <= LEAST_MM2
+                + DEVIATIONS * DEVIATIONS * expected_mm2
+                + PUSHED_SHARE * PUSHED_SHARE * pushed_mm2
     }
 
     /// Time after which a law is trusted, s.
@@ -120,13 +147,18 @@ mod tests {
 
     const SERVO_S: f64 = 0.001;
 
-    fn after(course: &mut Course, periods: u32, [missed_mm, expected_mm, pushed_mm]: [f64; 3]) -> bool {
+    fn after(
+        course: &mut Course,
+        periods: u32,
+        [missed_mm, expected_mm, pushed_mm]: [f64; 3],
+    ) -> bool {
         let step = OneStep {
             missed_mm2: missed_mm * missed_mm,
             expected_mm2: expected_mm * expected_mm,
             pushed_mm2: pushed_mm * pushed_mm,
         };
-        (0..periods).for_each(|_| course.take_in(OneStep::sum([step, OneStep::NONE].into_iter()), SERVO_S));
+        (0..periods)
+            .for_each(|_| course.take_in(OneStep::sum([step, OneStep::NONE].into_iter()), SERVO_S));
         course.is_as_said()
     }
 
@@ -147,7 +179,11 @@ mod tests {
             (f64::NAN, 1.0, 1.0, false),
         ] {
             let given = [missed_mm, expected_mm, pushed_mm];
-            assert_eq!(after(&mut Course::AS_SAID.clone(), 100, given), as_said, "{given:?}");
+            assert_eq!(
+                after(&mut Course::AS_SAID.clone(), 100, given),
+                as_said,
+                "{given:?}"
+            );
         }
     }
 
@@ -162,7 +198,10 @@ mod tests {
             after(&mut course, periods / 2, [0.0; 3]);
             let half = course.loads();
             after(&mut course, periods / 2 + 50, [0.0; 3]);
-            assert!((half - 0.5).abs() < 0.1 && course.loads() == 1.0, "{to_trust_s} s: {half}");
+            assert!(
+                (half - 0.5).abs() < 0.1 && course.loads() == 1.0,
+                "{to_trust_s} s: {half}"
+            );
         }
     }
 }

@@ -8,10 +8,13 @@
 //! c falls below c0 / 2, comes to 0.9 c0, and the law holds for 60 ms from there; or it holds for T at 0.9 c0
 //! ```
 //!
-//! By a law with three times the inertia every corner is wrong, and every straight line in between right: taken for right there, it did
-//! harm in each corner anew. On a circle, where c is the same all the time, time is the proof: T is 60 ms at first, and four times as long each time that the
-//! law was wrong again, up to 1 s. With 1 s from the beginning a law by which friction is twice as large leaves 15.5 um on a circle in place of 0.9, since the
-//! first 60 ms of a motion miss a larger part of the following error than all that follows. A shock on a straight line needs no more than the time.
+//! By a law with three times the inertia every corner is wrong, and every straight line in between
+//! right: taken for right there, it did harm in each corner anew. On a circle, where c is the same
+//! all the time, time is the proof: T is 60 ms at first, and four times as long each time that the
+//! law was wrong again, up to 1 s. With 1 s from the beginning a law by which friction is twice as
+//! large leaves 15.5 um on a circle in place of 0.9, since the first 60 ms of a motion miss a
+//! larger part of the following error than all that follows. A shock on a straight line needs no
+//! more than the time.
 //!
 //! These times count only while the path moves: at rest every model holds.
 
@@ -40,15 +43,29 @@ struct ProofTrial {
 }
 
 impl ProofTrial {
-    const BEGUN: Self = Self { calm: false, since_s: None, at_as_much_s: 0.0 };
+    const BEGUN: Self = Self {
+        calm: false,
+        since_s: None,
+        at_as_much_s: 0.0,
+    };
 
-    /// Takes in a servo period of motion with a c, of a model that was wrong at c0. Returns whether the model has held for long enough.
-    fn holds_through(&mut self, change_mm_s: f64, wrong_mm_s: f64, needs_s: f64, servo_s: f64) -> bool {
+    /// Takes in a servo period of motion with a c, of a model that was wrong at c0. Returns whether
+    /// the model has held for long enough.
+    fn holds_through(
+        &mut self,
+        change_mm_s: f64,
+        wrong_mm_s: f64,
+        needs_s: f64,
+        servo_s: f64,
+    ) -> bool {
         let as_much = change_mm_s >= AS_MUCH * wrong_mm_s;
         self.calm |= change_mm_s < LITTLE * wrong_mm_s;
         self.at_as_much_s += if as_much { servo_s } else { 0.0 };
         let begins = (as_much && self.calm) || wrong_mm_s < NO_CHANGE_MM_S;
-        self.since_s = self.since_s.map(|since_s| since_s + servo_s).or(begins.then_some(0.0));
+        self.since_s = self
+            .since_s
+            .map(|since_s| since_s + servo_s)
+            .or(begins.then_some(0.0));
         self.since_s > Some(TO_SHOW_S) || self.at_as_much_s > needs_s
     }
 }
@@ -80,7 +97,8 @@ impl<const N: usize> Proof<N> {
         trial: ProofTrial::BEGUN,
     };
 
-    /// Takes in a servo period in which the model is wrong, or holds; at rest it shows nothing that it holds.
+    /// Takes in a servo period in which the model is wrong, or holds; at rest it shows nothing that
+    /// it holds.
     pub(super) fn take_in(&mut self, path_mm: [f64; N], moves: bool, wrong: bool, servo_s: f64) {
         let part = (servo_s / MEAN_S).min(1.0);
         let mut change_mm_s = 0.0;
@@ -98,7 +116,11 @@ impl<const N: usize> Proof<N> {
             self.wrong_mm_s = self.wrong_mm_s.max(self.lately_mm_s);
         } else if self.needed && !moves {
             self.trial.calm |= change_mm_s < LITTLE * self.wrong_mm_s;
-        } else if self.needed && self.trial.holds_through(change_mm_s, self.wrong_mm_s, self.needs_s, servo_s) {
+        } else if self.needed
+            && self
+                .trial
+                .holds_through(change_mm_s, self.wrong_mm_s, self.needs_s, servo_s)
+        {
             (self.needed, self.wrong_mm_s) = (false, 0.0);
             self.needs_s = (AGAIN * self.needs_s).min(MOST_S);
         }
@@ -116,7 +138,8 @@ mod tests {
 
     const SERVO_S: f64 = 0.001;
 
-    /// Along a line whose speed goes from 0 to 50 mm/s within 25 ms, 0.4 s each; `wrong` by the servo period.
+    /// Along a line whose speed goes from 0 to 50 mm/s within 25 ms, 0.4 s each; `wrong` by the
+    /// servo period.
     fn goes(corners: usize, wrong: impl Fn(usize) -> bool) -> Proof<1> {
         let mut proof = Proof::NOT_NEEDED;
         let mut x_mm = 0.0;
@@ -130,8 +153,14 @@ mod tests {
     #[test]
     fn a_law_that_fails_where_the_speed_changes_has_to_hold_there() {
         assert!(!goes(1, |_| false).is_needed());
-        assert!(goes(1, |n| (10..40).contains(&n)).is_needed(), "the straight line behind is no proof");
-        assert!(!goes(2, |n| (10..40).contains(&n)).is_needed(), "it has held through the second corner");
+        assert!(
+            goes(1, |n| (10..40).contains(&n)).is_needed(),
+            "the straight line behind is no proof"
+        );
+        assert!(
+            !goes(2, |n| (10..40).contains(&n)).is_needed(),
+            "it has held through the second corner"
+        );
         assert!(goes(3, |n| (10..40).contains(&(n % 400))).is_needed());
     }
 
@@ -154,7 +183,10 @@ mod tests {
         };
         for expected_s in [0.06, 0.24, 0.96, 1.0, 1.0] {
             let held_s = holds_for();
-            assert!((held_s - expected_s).abs() < 3.0 * SERVO_S, "{held_s} {expected_s}");
+            assert!(
+                (held_s - expected_s).abs() < 3.0 * SERVO_S,
+                "{held_s} {expected_s}"
+            );
         }
     }
 

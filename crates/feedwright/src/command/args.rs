@@ -51,8 +51,9 @@ use help::{grouped, shown_options};
 
 /// Predict the contour error of a CNC program on a machine, and correct it
 ///
-/// feedwright reads a G-code program and a machine file, simulates the cut servo period by servo period, and shows how far the tool
-/// leaves the programmed path, and where. Then it corrects the command.
+/// feedwright reads a G-code program and a machine file, simulates the cut servo period by servo
+/// period, and shows how far the tool leaves the programmed path, and where. Then it corrects the
+/// command.
 #[derive(Debug, Parser)]
 #[command(name = "feedwright", version, propagate_version = true, disable_version_flag = true, max_term_width = COLUMNS, after_long_help = AFTER)]
 pub(crate) struct Cli {
@@ -76,10 +77,11 @@ pub struct CommonArgs {
     /// auto colours on a terminal, unless NO_COLOR is set or TERM is dumb.
     #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = ColorWhen::Auto, help_heading = EVERYWHERE, hide_short_help = true)]
     pub color: ColorWhen,
-    /// Units of what is printed: metric (mm, um) or inch (in, thousandths of an inch). The pages of `run` and `advise` follow; JSON and figures stay metric.
+    /// Units of what is printed: metric (mm, um) or inch (in, thousandths of an inch). The pages of
+    /// `run` and `advise` follow; JSON and figures stay metric.
     ///
-    /// Contour errors are in thousandths with three decimals: drawings state tolerances in thousandths, and the last decimal is a
-    /// millionth, about 0.025 um.
+    /// Contour errors are in thousandths with three decimals: drawings state tolerances in
+    /// thousandths, and the last decimal is a millionth, about 0.025 um.
     #[arg(long, global = true, value_name = "UNITS", value_enum, default_value_t = LengthUnits::Metric, help_heading = EVERYWHERE)]
     pub units: LengthUnits,
     /// Print help with all options
@@ -128,7 +130,8 @@ pub(crate) enum CommandArgs {
     Canon(CanonArgs),
     /// Start the laboratory, where it is installed
     ///
-    /// The laboratory is a command of its own, `feedwright-lab`, which is installed beside this one or on the PATH.
+    /// The laboratory is a command of its own, `feedwright-lab`, which is installed beside this one
+    /// or on the PATH.
     #[command(disable_help_flag = true)]
     Lab(LabArgs),
     Block(BlockArgs),
@@ -154,8 +157,8 @@ pub(crate) struct MachinesArgs {
 
 /// Show what is kept between runs, or remove it
 ///
-/// Identified models are kept, so that the next run with the same machine begins at once. What was used longest ago is removed when the
-/// store is full. Several runs may use it at once.
+/// Identified models are kept, so that the next run with the same machine begins at once. What was
+/// used longest ago is removed when the store is full. Several runs may use it at once.
 #[derive(Debug, Args)]
 #[command(after_long_help = "Example:\n  feedwright cache --clear")]
 pub(crate) struct CacheArgs {
@@ -183,23 +186,32 @@ pub fn parse<T: Parser>() -> T {
     parse_from(&std::env::args_os().collect::<Vec<_>>())
 }
 
-/// Reads a command line, whose first argument is the name of the command; help, version and mistakes of it end the process.
+/// Reads a command line, whose first argument is the name of the command; help, version and
+/// mistakes of it end the process.
 pub(crate) fn parse_from<T: Parser>(arguments: &[OsString]) -> T {
     let color = color_said(arguments);
     set_color(color);
     let command = command::<T>(color, arguments);
-    let matches = command.try_get_matches_from(arguments).unwrap_or_else(|error| leave::<T>(color, arguments, error));
+    let matches = command
+        .try_get_matches_from(arguments)
+        .unwrap_or_else(|error| leave::<T>(color, arguments, error));
     if let Ok(Some(units)) = matches.try_get_one::<LengthUnits>("units") {
         set_units(*units);
     }
     T::from_arg_matches(&matches).unwrap_or_else(|error| leave::<T>(color, arguments, error))
 }
 
-/// Ends the process with help, or with what is wrong with the command line: that of the same command line without what is hidden
-/// in it, because clap quotes its words.
+/// Ends the process with help, or with what is wrong with the command line: that of the same
+/// command line without what is hidden in it, because clap quotes its words.
 fn leave<T: CommandFactory>(color: ColorWhen, arguments: &[OsString], error: clap::Error) -> ! {
-    let shown = arguments.iter().map(|argument| visible(&argument.to_string_lossy()).into_owned());
-    command::<T>(color, arguments).try_get_matches_from(shown).err().unwrap_or(error).exit()
+    let shown = arguments
+        .iter()
+        .map(|argument| visible(&argument.to_string_lossy()).into_owned());
+    command::<T>(color, arguments)
+        .try_get_matches_from(shown)
+        .err()
+        .unwrap_or(error)
+        .exit()
 }
 
 /// The command with its help as the terminal shows it.
@@ -210,21 +222,36 @@ fn command<T: CommandFactory>(color: ColorWhen, arguments: &[OsString]) -> Comma
         ColorWhen::Auto if is_dumb() => ColorChoice::Never,
         ColorWhen::Auto => ColorChoice::Auto,
     };
-    let wants_all =
-        arguments.iter().skip(1).take_while(|argument| *argument != "--").any(|argument| argument == "--help-all");
+    let wants_all = arguments
+        .iter()
+        .skip(1)
+        .take_while(|argument| *argument != "--")
+        .any(|argument| argument == "--help-all");
     let command = shown_options(grouped(T::command()), wants_all).color(color);
-    if io::stdout().is_terminal() { command } else { command.term_width(columns().min(COLUMNS)) }
+    if io::stdout().is_terminal() {
+        command
+    } else {
+        command.term_width(columns().min(COLUMNS))
+    }
 }
 
 /// What `--color` says, before the command line is read: its mistakes are coloured, too.
 fn color_said(arguments: &[OsString]) -> ColorWhen {
-    let arguments: Vec<String> = arguments.iter().map(|argument| argument.to_string_lossy().into_owned()).collect();
+    let arguments: Vec<String> = arguments
+        .iter()
+        .map(|argument| argument.to_string_lossy().into_owned())
+        .collect();
     let of_option = |(at, argument): (usize, &String)| match argument.as_str() {
         "--color" => arguments.get(at + 1).cloned(),
         argument => argument.strip_prefix("--color=").map(str::to_owned),
     };
-    let said = arguments.iter().take_while(|argument| *argument != "--").enumerate().find_map(of_option);
-    said.and_then(|said| ColorWhen::from_str(&said, false).ok()).unwrap_or_default()
+    let said = arguments
+        .iter()
+        .take_while(|argument| *argument != "--")
+        .enumerate()
+        .find_map(of_option);
+    said.and_then(|said| ColorWhen::from_str(&said, false).ok())
+        .unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -238,9 +265,16 @@ mod tests {
 
     #[test]
     fn color_is_known_before_the_rest_is_read() {
-        let said = |words: &str| color_said(&words.split(' ').map(OsString::from).collect::<Vec<_>>());
+        let said =
+            |words: &str| color_said(&words.split(' ').map(OsString::from).collect::<Vec<_>>());
         assert_eq!(said("feedwright run --color always x"), ColorWhen::Always);
         assert_eq!(said("feedwright --color=never"), ColorWhen::Never);
-        assert_eq!([said("feedwright -- --color=never"), said("feedwright --color pink")], [ColorWhen::Auto; 2]);
+        assert_eq!(
+            [
+                said("feedwright -- --color=never"),
+                said("feedwright --color pink")
+            ],
+            [ColorWhen::Auto; 2]
+        );
     }
 }

@@ -8,7 +8,8 @@ use crate::command::message::{INTERRUPTED, interrupted as tell_interrupted};
 use crate::command::progress::Bar;
 use crate::output::exit_without_files;
 
-/// Signals that follow each other faster are one: some shells send it to the process and to its group.
+/// Signals that follow each other faster are one: some shells send it to the process and to its
+/// group.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Time in which work that was interrupted may end by itself.
@@ -23,11 +24,15 @@ pub struct Console {
 impl Console {
     /// Ctrl-C ends the process at once.
     pub(crate) fn new(quiet: bool) -> Self {
-        Self { quiet, interrupted: Arc::default() }
+        Self {
+            quiet,
+            interrupted: Arc::default(),
+        }
     }
 
-    /// From here on Ctrl-C, or a request to terminate, ends the work at the next chance, so that no file is left half-written. Work that
-    /// has no such chance within [`GRACE`] ends with the process; so does all work at another signal, [`PATIENCE`] later or more.
+    /// From here on Ctrl-C, or a request to terminate, ends the work at the next chance, so that no
+    /// file is left half-written. Work that has no such chance within [`GRACE`] ends with the
+    /// process; so does all work at another signal, [`PATIENCE`] later or more.
     pub(crate) fn listen(&self) {
         let interrupted = self.interrupted.clone();
         let mut first: Option<Instant> = None;

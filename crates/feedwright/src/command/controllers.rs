@@ -16,7 +16,8 @@ pub fn find(name: &str, table: Controllers) -> Result<&'static Entry> {
     })
 }
 
-/// What `--set` asks for, of controllers that take part; names without a controller are those of `of`.
+/// What `--set` asks for, of controllers that take part; names without a controller are those of
+/// `of`.
 pub fn settings(
     texts: &[String],
     table: Controllers,
@@ -26,7 +27,10 @@ pub fn settings(
     let mut settings: Vec<Setting> = Vec::new();
     for text in texts {
         let setting = Setting::parse(text, of, table)?;
-        if !take_part.iter().any(|entry| entry.name == setting.controller) {
+        if !take_part
+            .iter()
+            .any(|entry| entry.name == setting.controller)
+        {
             let names: Vec<&str> = take_part.iter().map(|entry| entry.name).collect();
             return Err(miette!(
                 help = format!("controllers that do: {}", names.join(", ")),
@@ -34,7 +38,10 @@ pub fn settings(
                 setting.controller
             ));
         }
-        if settings.iter().any(|other| (other.controller, other.name) == (setting.controller, setting.name)) {
+        if settings
+            .iter()
+            .any(|other| (other.controller, other.name) == (setting.controller, setting.name))
+        {
             return Err(miette!(
                 help = "leave one of them out",
                 "--set {text}: {} of {} is set twice",

@@ -1,4 +1,5 @@
-//! What several commands take from their arguments: the control, the machine's error and model, and what they tell of a corrected program.
+//! What several commands take from their arguments: the control, the machine's error and model, and
+//! what they tell of a corrected program.
 
 use std::ffi::OsStr;
 use std::io::{self, Write};
@@ -14,14 +15,17 @@ use crate::command::progress::Bar;
 use crate::command::terminal::wrapped;
 use crate::compensation::{GeometryChoice, NamedGeometry};
 use crate::correct::feed_overrides::override_sentence;
-use crate::correct::{CorrectJob, CorrectOutcome, FileAssumption, TARGETS, TargetControl, UnchangedStretch};
+use crate::correct::{
+    CorrectJob, CorrectOutcome, FileAssumption, TARGETS, TargetControl, UnchangedStretch,
+};
 use crate::job::Job;
 use crate::recorded_model::{fitting_machines, take_recorded_model};
 
 /// Largest tolerance that is no slip of the unit, um.
 const MAX_TOLERANCE_UM: f64 = 1e6;
 
-/// Largest error of a machine file that `--file-error` takes, %: beyond it, a file says too little of a machine.
+/// Largest error of a machine file that `--file-error` takes, %: beyond it, a file says too little
+/// of a machine.
 const MAX_FILE_ERROR: f64 = 50.0;
 
 /// Unchanged stretches that are listed for each reason.
@@ -31,7 +35,8 @@ const LISTED: usize = 6;
 pub(crate) fn control(name: &str) -> Result<&'static TargetControl> {
     TargetControl::find(name).ok_or_else(|| {
         let names: Vec<&str> = TARGETS.iter().map(|target| target.name).collect();
-        let near = nearest(name, &names).map_or_else(String::new, |near| format!("did you mean '{near}'? "));
+        let near = nearest(name, &names)
+            .map_or_else(String::new, |near| format!("did you mean '{near}'? "));
         miette!(
             help = format!("{near}'{}' suits a control that is not listed", names[0]),
             "--for: no control is called '{name}'; there are {}",
@@ -47,7 +52,10 @@ pub(crate) fn compensation(args: &GeometryArgs) -> Result<GeometryChoice> {
         None => GeometryChoice::Machine,
         Some(path) => {
             let geometry = GeometryFile::read(path)?;
-            GeometryChoice::File(Box::new(NamedGeometry { name: input::name(path), geometry }))
+            GeometryChoice::File(Box::new(NamedGeometry {
+                name: input::name(path),
+                geometry,
+            }))
         }
     })
 }
@@ -68,7 +76,8 @@ pub(crate) fn check_tolerance(tolerance_um: Option<f64>) -> Result<()> {
 /// # Errors
 /// A percentage below 0 or above [`MAX_FILE_ERROR`].
 pub(crate) fn file_error(percent: Option<f64>, machine: &OsStr) -> Result<f64> {
-    let percent = percent.unwrap_or_else(|| 100.0 * CorrectJob::usual_file_error(is_machine_path(machine.as_ref())));
+    let percent = percent
+        .unwrap_or_else(|| 100.0 * CorrectJob::usual_file_error(is_machine_path(machine.as_ref())));
     if (0.0..=MAX_FILE_ERROR).contains(&percent) {
         return Ok(percent / 100.0);
     }
@@ -80,7 +89,12 @@ pub(crate) fn file_error(percent: Option<f64>, machine: &OsStr) -> Result<f64> {
 
 /// What was changed, and why nothing is written.
 pub(crate) fn print_correction(out: &mut dyn Write, outcome: &CorrectOutcome) -> io::Result<()> {
-    let CorrectOutcome { stretches, stretches_changed, rounds, .. } = outcome;
+    let CorrectOutcome {
+        stretches,
+        stretches_changed,
+        rounds,
+        ..
+    } = outcome;
     let changed = format!(
         "{stretches_changed} of {stretches} stretches between corners were changed, found in {rounds} simulated cuts"
     );
@@ -98,7 +112,11 @@ pub(crate) fn print_correction(out: &mut dyn Write, outcome: &CorrectOutcome) ->
         writeln!(out, "loops and subroutines are written out")?;
     }
     match &outcome.refusal {
-        Some(refusal) => writeln!(out, "{}", wrapped(&format!("no corrected program: {refusal}"), 2))?,
+        Some(refusal) => writeln!(
+            out,
+            "{}",
+            wrapped(&format!("no corrected program: {refusal}"), 2)
+        )?,
         None => return Ok(()),
     }
     match &outcome.hint {
@@ -107,10 +125,19 @@ pub(crate) fn print_correction(out: &mut dyn Write, outcome: &CorrectOutcome) ->
     }
 }
 
-/// Gives the controller of a job its [recorded model](crate::take_recorded_model), and the job `band` machines that fit the log as well;
-/// returns what is to be said of the model. The machine is as its file has it, whatever limits the job plans with.
-pub(crate) fn take_model(job: &mut Job, machine: &Machine, axes: usize, band: usize, bar: &Bar) -> Result<Vec<String>> {
-    let Some(doubts) = take_recorded_model(job, machine, axes, today()?, bar)? else { return Ok(vec![]) };
+/// Gives the controller of a job its [recorded model](crate::take_recorded_model), and the job
+/// `band` machines that fit the log as well; returns what is to be said of the model. The machine
+/// is as its file has it, whatever limits the job plans with.
+pub(crate) fn take_model(
+    job: &mut Job,
+    machine: &Machine,
+    axes: usize,
+    band: usize,
+    bar: &Bar,
+) -> Result<Vec<String>> {
+    let Some(doubts) = take_recorded_model(job, machine, axes, today()?, bar)? else {
+        return Ok(vec![]);
+    };
     if band > 0 {
         job.fitting = fitting_machines(machine, axes, job.choices.seed, band, bar)?;
     }

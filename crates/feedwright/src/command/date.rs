@@ -1,8 +1,8 @@
-//! Today's date, as year-month-day in UTC: from the system's clock, or from `SOURCE_DATE_EPOCH` where a build that is to be
-//! repeated to the byte has set that.
+//! Today's date, as year-month-day in UTC: from the system's clock, or from `SOURCE_DATE_EPOCH`
+//! where a build that is to be repeated to the byte has set that.
 //!
-//! Source: `SOURCE_DATE_EPOCH` as <https://reproducible-builds.org/specs/source-date-epoch/> has it; the date of a day as in the
-//! proleptic Gregorian calendar, whose 400 years have 146,097 days.
+//! Source: `SOURCE_DATE_EPOCH` as <https://reproducible-builds.org/specs/source-date-epoch/> has
+//! it; the date of a day as in the proleptic Gregorian calendar, whose 400 years have 146,097 days.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -23,7 +23,9 @@ const LATEST_S: u64 = 253_402_300_799;
 /// # Errors
 /// A `SOURCE_DATE_EPOCH` that is no time.
 pub fn today() -> Result<String, EpochError> {
-    let now_s = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    let now_s = SystemTime::now()
+        .duration_since(UNIX_EPOCH)
+        .map_or(0, |since| since.as_secs());
     let set = std::env::var_os("SOURCE_DATE_EPOCH").map(|text| text.to_string_lossy().into_owned());
     Ok(date(set.map_or(Ok(now_s), |text| seconds(&text))?))
 }
@@ -83,7 +85,14 @@ mod tests {
 
     #[test]
     fn what_is_no_time_is_refused() {
-        for text in ["", "yesterday", "-1", "1.5", "253402300800", "99999999999999999999"] {
+        for text in [
+            "",
+            "yesterday",
+            "-1",
+            "1.5",
+            "253402300800",
+            "99999999999999999999",
+        ] {
             assert!(seconds(text).is_err(), "{text}");
         }
         assert_eq!(seconds("1700000000"), Ok(1_700_000_000));

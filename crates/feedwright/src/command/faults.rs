@@ -8,9 +8,16 @@ use crate::job::JobError;
 
 /// The message of an error, those of the errors that belong to it, and the remedy.
 pub fn fault_text(report: &Report) -> String {
-    let related = report.related().into_iter().flatten().map(|fault| format!("\n{fault}"));
+    let related = report
+        .related()
+        .into_iter()
+        .flatten()
+        .map(|fault| format!("\n{fault}"));
     let hint = report.help().map(|hint| format!("\nhint: {hint}"));
-    std::iter::once(report.to_string()).chain(related).chain(hint).collect()
+    std::iter::once(report.to_string())
+        .chain(related)
+        .chain(hint)
+        .collect()
 }
 
 /// All mistakes of an error, at least one.
@@ -18,8 +25,17 @@ pub fn fault_findings(report: &Report) -> Vec<Value> {
     if let Some(JobError::Faults { faults, .. }) = report.downcast_ref() {
         return faults.iter().map(mistake_json).collect();
     }
-    let related: Vec<Value> = report.related().into_iter().flatten().map(|fault| placed(fault, report)).collect();
-    if related.is_empty() { vec![placed(report.as_ref(), report)] } else { related }
+    let related: Vec<Value> = report
+        .related()
+        .into_iter()
+        .flatten()
+        .map(|fault| placed(fault, report))
+        .collect();
+    if related.is_empty() {
+        vec![placed(report.as_ref(), report)]
+    } else {
+        related
+    }
 }
 
 /// A mistake or a warning of a program.
@@ -40,7 +56,9 @@ pub fn mistake_json(found: &Mistake) -> Value {
 fn placed(fault: &dyn Diagnostic, within: &Report) -> Value {
     let source = fault.source_code().or_else(|| within.source_code());
     let label = fault.labels().and_then(|mut labels| labels.next());
-    let place = source.zip(label).and_then(|(source, label)| source.read_span(label.inner(), 0, 0).ok());
+    let place = source
+        .zip(label)
+        .and_then(|(source, label)| source.read_span(label.inner(), 0, 0).ok());
     json!({
         "file": place.as_ref().and_then(|place| place.name()),
         "severity": "error",

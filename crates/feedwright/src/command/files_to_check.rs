@@ -1,4 +1,5 @@
-//! The files that `feedwright check` is asked about: folders become the programs in them, and no file comes twice.
+//! The files that `feedwright check` is asked about: folders become the programs in them, and no
+//! file comes twice.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -29,7 +30,10 @@ impl FilesToCheck {
             if argument.is_dir() {
                 found.folder(argument);
             } else if !found.add(argument) {
-                found.remarks.push(format!("{}: named before, checked once", argument.display()));
+                found.remarks.push(format!(
+                    "{}: named before, checked once",
+                    argument.display()
+                ));
             }
         }
         found
@@ -51,28 +55,45 @@ impl FilesToCheck {
         let before = self.files.len();
         let mut left_out = LeftOut::default();
         if let Err((path, error)) = self.walk(folder, 0, &mut left_out) {
-            self.faults.push(format!("{}: the folder cannot be read: {error}", path.display()));
+            self.faults.push(format!(
+                "{}: the folder cannot be read: {error}",
+                path.display()
+            ));
             return;
         }
         let programs = self.files.len() - before;
         let name = folder.display();
         if programs == 0 && left_out.before == 0 {
             let endings = ENDINGS.map(|ending| format!(".{ending}")).join(" ");
-            self.faults.push(format!("{name}: the folder holds no program; the endings are {endings}"));
+            self.faults.push(format!(
+                "{name}: the folder holds no program; the endings are {endings}"
+            ));
             return;
         }
         let skipped = left_out.skipped();
         if !skipped.is_empty() {
-            self.remarks.push(format!("{name}: {programs} programs; left out: {skipped}"));
+            self.remarks
+                .push(format!("{name}: {programs} programs; left out: {skipped}"));
         }
     }
 
-    fn walk(&mut self, folder: &Path, depth: usize, left_out: &mut LeftOut) -> Result<(), (PathBuf, io::Error)> {
+    fn walk(
+        &mut self,
+        folder: &Path,
+        depth: usize,
+        left_out: &mut LeftOut,
+    ) -> Result<(), (PathBuf, io::Error)> {
         let fault = |error| (folder.to_owned(), error);
         if depth > MAX_DEPTH {
-            return Err(fault(io::Error::other(format!("more than {MAX_DEPTH} folders inside each other"))));
+            return Err(fault(io::Error::other(format!(
+                "more than {MAX_DEPTH} folders inside each other"
+            ))));
         }
-        let mut entries: Vec<_> = folder.read_dir().map_err(fault)?.collect::<Result<_, _>>().map_err(fault)?;
+        let mut entries: Vec<_> = folder
+            .read_dir()
+            .map_err(fault)?
+            .collect::<Result<_, _>>()
+            .map_err(fault)?;
         entries.sort_by_key(std::fs::DirEntry::file_name);
         for entry in entries {
             let path = entry.path();
@@ -101,13 +122,25 @@ struct LeftOut {
 
 impl LeftOut {
     fn skipped(&self) -> String {
-        let counts = [(self.endings, "other endings"), (self.links, "linked folders"), (self.before, "named before")];
-        let told = counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{what} {count}"));
+        let counts = [
+            (self.endings, "other endings"),
+            (self.links, "linked folders"),
+            (self.before, "named before"),
+        ];
+        let told = counts
+            .iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, what)| format!("{what} {count}"));
         told.collect::<Vec<_>>().join(", ")
     }
 }
 
 fn is_program(file: &Path) -> bool {
-    let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    ENDINGS.iter().any(|known| known.eq_ignore_ascii_case(ending))
+    let ending = file
+        .extension()
+        .and_then(|ending| ending.to_str())
+        .unwrap_or_default();
+    ENDINGS
+        .iter()
+        .any(|known| known.eq_ignore_ascii_case(ending))
 }

@@ -1,4 +1,5 @@
-//! What `check` has found, for other programs: JSON, SARIF 2.1.0 for code scanning, and the annotations of GitHub's workflows.
+//! What `check` has found, for other programs: JSON, SARIF 2.1.0 for code scanning, and the
+//! annotations of GitHub's workflows.
 
 use feedwright_gcode::{Diagnostic, Severity, visible};
 use miette::Report;
@@ -46,7 +47,9 @@ impl Finding {
         Self {
             file: file.to_owned(),
             is_error: true,
-            code: report.code().map_or_else(|| "file".to_owned(), |code| code.to_string()),
+            code: report
+                .code()
+                .map_or_else(|| "file".to_owned(), |code| code.to_string()),
             line: 0,
             column: 0,
             span: 0,
@@ -79,9 +82,16 @@ impl Finding {
             place += &format!(",line={}", self.line);
         }
         if self.line > 0 && self.column > 0 {
-            place += &format!(",col={},endColumn={}", self.column, self.column + self.span.max(1) - 1);
+            place += &format!(
+                ",col={},endColumn={}",
+                self.column,
+                self.column + self.span.max(1) - 1
+            );
         }
-        let told = self.hint.as_ref().map_or_else(String::new, |hint| format!("\nhint: {hint}"));
+        let told = self
+            .hint
+            .as_ref()
+            .map_or_else(String::new, |hint| format!("\nhint: {hint}"));
         format!(
             "::{} {place},title={}::{}",
             self.level(),
@@ -91,7 +101,10 @@ impl Finding {
     }
 
     fn sarif(&self) -> Value {
-        let text = self.hint.as_ref().map_or_else(String::new, |hint| format!("\nhint: {hint}"));
+        let text = self
+            .hint
+            .as_ref()
+            .map_or_else(String::new, |hint| format!("\nhint: {hint}"));
         let mut place = json!({ "artifactLocation": { "uri": uri(&self.file) } });
         if self.line > 0 {
             let mut region = json!({ "startLine": self.line });
@@ -112,7 +125,10 @@ impl Finding {
 
 /// A log of SARIF with all findings.
 pub(crate) fn sarif(findings: &[Finding]) -> Value {
-    let mut rules: Vec<&str> = findings.iter().map(|finding| finding.code.as_str()).collect();
+    let mut rules: Vec<&str> = findings
+        .iter()
+        .map(|finding| finding.code.as_str())
+        .collect();
     rules.sort_unstable();
     rules.dedup();
     json!({
@@ -134,13 +150,25 @@ pub(crate) fn sarif(findings: &[Finding]) -> Value {
 /// A file's name as a relative or absolute reference of URIs.
 fn uri(file: &str) -> String {
     let keeps = |byte: &u8| byte.is_ascii_alphanumeric() || b"-._~/".contains(byte);
-    let spelled = |byte: u8| if keeps(&byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") };
+    let spelled = |byte: u8| {
+        if keeps(&byte) {
+            char::from(byte).to_string()
+        } else {
+            format!("%{byte:02X}")
+        }
+    };
     let path: String = file.bytes().map(spelled).collect();
-    if path.starts_with('/') { format!("file://{path}") } else { path }
+    if path.starts_with('/') {
+        format!("file://{path}")
+    } else {
+        path
+    }
 }
 
 fn github_text(text: &str) -> String {
-    text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A")
+    text.replace('%', "%25")
+        .replace('\r', "%0D")
+        .replace('\n', "%0A")
 }
 
 fn github_property(text: &str) -> String {
@@ -178,8 +206,17 @@ mod tests {
         let result = &log["runs"][0]["results"][0];
         let place = &result["locations"][0]["physicalLocation"];
         assert_eq!(place["artifactLocation"]["uri"], "a%20b%2Cc.ngc");
-        assert_eq!((&place["region"]["startColumn"], &place["region"]["endColumn"]), (&4.into(), &6.into()));
-        assert_eq!((&result["ruleId"], &result["level"]), (&"gcode::feed".into(), &"error".into()));
+        assert_eq!(
+            (
+                &place["region"]["startColumn"],
+                &place["region"]["endColumn"]
+            ),
+            (&4.into(), &6.into())
+        );
+        assert_eq!(
+            (&result["ruleId"], &result["level"]),
+            (&"gcode::feed".into(), &"error".into())
+        );
         assert_eq!(uri("/tmp/x.ngc"), "file:///tmp/x.ngc");
     }
 }

@@ -1,4 +1,5 @@
-//! Faults of one kind that repeat in a program: the first ones are told, and how many more there are.
+//! Faults of one kind that repeat in a program: the first ones are told, and how many more there
+//! are.
 
 use feedwright_gcode::Diagnostic;
 use miette::Report;
@@ -9,19 +10,29 @@ use crate::job::JobError;
 /// Faults of one kind that are told.
 const TOLD: usize = 3;
 
-/// The faults with those left out that repeat others of the same kind more than [`TOLD`] times; the last that is told counts them.
+/// The faults with those left out that repeat others of the same kind more than [`TOLD`] times; the
+/// last that is told counts them.
 pub(crate) fn folded(faults: &[Diagnostic]) -> Vec<Diagnostic> {
     let mut told: Vec<Diagnostic> = Vec::new();
     for (at, fault) in faults.iter().enumerate() {
-        let alike = |other: &&Diagnostic| (other.code, other.severity) == (fault.code, fault.severity);
+        let alike =
+            |other: &&Diagnostic| (other.code, other.severity) == (fault.code, fault.severity);
         let before = faults[..at].iter().filter(alike).count();
         if before >= TOLD {
             continue;
         }
         let mut fault = fault.clone();
-        let rest: Vec<u32> = faults[at + 1..].iter().filter(alike).map(|other| other.line).collect();
+        let rest: Vec<u32> = faults[at + 1..]
+            .iter()
+            .filter(alike)
+            .map(|other| other.line)
+            .collect();
         if let (true, [first, ..], [.., last]) = (before + 1 == TOLD, &rest[..], &rest[..]) {
-            let lines = if first == last { format!("line {first}") } else { format!("lines {first} to {last}") };
+            let lines = if first == last {
+                format!("line {first}")
+            } else {
+                format!("lines {first} to {last}")
+            };
             fault.message += &format!("; and {} more like it, {lines}", rest.len());
         }
         told.push(fault);
@@ -41,9 +52,13 @@ struct FoldedFaults {
 /// The report with repeated mistakes left out; none where it has none.
 pub(crate) fn folded_report(report: &Report) -> Option<Report> {
     match report.downcast_ref::<JobError>() {
-        Some(error @ JobError::Faults { faults, .. }) => {
-            Some(FoldedFaults { text: error.to_string(), faults: folded(faults) }.into())
-        }
+        Some(error @ JobError::Faults { faults, .. }) => Some(
+            FoldedFaults {
+                text: error.to_string(),
+                faults: folded(faults),
+            }
+            .into(),
+        ),
         _ => None,
     }
 }
@@ -57,13 +72,23 @@ mod tests {
     fn repeated_faults_are_counted_and_others_are_told() {
         let lines: String = (0..9).map(|_| "G555\n").collect();
         let Err(CheckError::Faults(faults)) =
-            Program::from_text("a.ngc", format!("{lines}G1 X1 F100 Q\nM2\n")).check(Settings::default())
+            Program::from_text("a.ngc", format!("{lines}G1 X1 F100 Q\nM2\n"))
+                .check(Settings::default())
         else {
             panic!("the program has faults")
         };
         let told = folded(&faults);
-        assert_eq!(told.iter().map(|fault| fault.line).collect::<Vec<_>>(), [1, 2, 3, 10]);
-        assert!(told[2].message.ends_with("; and 6 more like it, lines 4 to 9"), "{}", told[2].message);
+        assert_eq!(
+            told.iter().map(|fault| fault.line).collect::<Vec<_>>(),
+            [1, 2, 3, 10]
+        );
+        assert!(
+            told[2]
+                .message
+                .ends_with("; and 6 more like it, lines 4 to 9"),
+            "{}",
+            told[2].message
+        );
         assert!(!told[1].message.contains("more") && !told[3].message.contains("more"));
         assert_eq!(folded(&faults[..3]), faults[..3]);
     }

@@ -1,5 +1,6 @@
-//! What the component `feedwright` of a running LinuxCNC does: the values of its pins, 25 times a second. LinuxCNC's `halcmd` reads them, as a
-//! process of its own that only ever gets the command `show pin`. Nothing is read while no page asks.
+//! What the component `feedwright` of a running LinuxCNC does: the values of its pins, 25 times a
+//! second. LinuxCNC's `halcmd` reads them, as a process of its own that only ever gets the command
+//! `show pin`. Nothing is read while no page asks.
 
 use std::collections::{HashMap, VecDeque};
 use std::io::{self, BufRead, BufReader, Write};
@@ -23,9 +24,9 @@ const KEPT: usize = 1500;
 /// What the faults are in words, as the component installs it.
 const FAULTS: &str = "/usr/share/feedwright/faults.h";
 
-const NOT_RUNNING: &str = "LinuxCNC does not run on this computer. Start it, and this page goes on.";
-const NOT_LOADED: &str =
-    "LinuxCNC runs without the component feedwright. 'feedwright linuxcnc setup' says how to add it to your machine.";
+const NOT_RUNNING: &str =
+    "LinuxCNC does not run on this computer. Start it, and this page goes on.";
+const NOT_LOADED: &str = "LinuxCNC runs without the component feedwright. 'feedwright linuxcnc setup' says how to add it to your machine.";
 const STUCK: &str = "halcmd does not answer. Start LinuxCNC again.";
 
 /// Reads the pins while pages ask for them.
@@ -68,7 +69,11 @@ impl HalWatch {
             now: Value::Null,
             trouble: None,
         };
-        let watch = Arc::new(Self { unit_mm, fault_words: fault_words(), recent: Mutex::new(recent) });
+        let watch = Arc::new(Self {
+            unit_mm,
+            fault_words: fault_words(),
+            recent: Mutex::new(recent),
+        });
         let reader = Arc::clone(&watch);
         thread::Builder::new().spawn(move || reader.read_on(Some(halcmd)))?;
         Ok(watch)
@@ -79,8 +84,16 @@ impl HalWatch {
         let mut recent = self.recent();
         recent.asked = Instant::now();
         let first = recent.next - recent.rows.len() as u64;
-        let rows: Vec<_> = recent.rows.iter().skip(from.saturating_sub(first) as usize).collect();
-        let trouble = if recent.tried.elapsed() > LATE { Some(STUCK) } else { recent.trouble.as_deref() };
+        let rows: Vec<_> = recent
+            .rows
+            .iter()
+            .skip(from.saturating_sub(first) as usize)
+            .collect();
+        let trouble = if recent.tried.elapsed() > LATE {
+            Some(STUCK)
+        } else {
+            recent.trouble.as_deref()
+        };
         json!({ "next": recent.next, "rows": rows, "now": recent.now, "trouble": trouble })
     }
 
@@ -118,9 +131,13 @@ impl HalWatch {
 
     fn keep(&self, pins: &Pins) {
         let pin = |name: &str| pins.get(name).copied().unwrap_or(0.0);
-        let vector = |name: &str, factor: f64| [0, 1, 2].map(|axis| factor * pin(&format!("{name}-{axis}")));
+        let vector =
+            |name: &str, factor: f64| [0, 1, 2].map(|axis| factor * pin(&format!("{name}-{axis}")));
         let cause = pin("cause") as usize;
-        let words = self.fault_words.get(cause).map_or_else(|| format!("cause {cause}"), Clone::clone);
+        let words = self
+            .fault_words
+            .get(cause)
+            .map_or_else(|| format!("cause {cause}"), Clone::clone);
         let now = json!({
             "state": pin("state"),
             "enable": pin("enable") != 0.0,
@@ -133,7 +150,9 @@ impl HalWatch {
         let errors = ["contour-error", "contour-error-without"].map(|name| 1e3 * pin(name));
         let mut recent = self.recent();
         let t_s = recent.began.elapsed().as_secs_f64();
-        recent.rows.push_back([t_s, x, y, z, errors[0], errors[1], pin("state")]);
+        recent
+            .rows
+            .push_back([t_s, x, y, z, errors[0], errors[1], pin("state")]);
         if recent.rows.len() > KEPT {
             recent.rows.pop_front();
         }
@@ -158,7 +177,12 @@ fn read(halcmd: &mut Option<Halcmd>) -> Result<Pins, String> {
     if pins.contains_key("state") {
         return Ok(pins);
     }
-    Err(if show("motion.")?.is_empty() { NOT_RUNNING } else { NOT_LOADED }.to_owned())
+    Err(if show("motion.")?.is_empty() {
+        NOT_RUNNING
+    } else {
+        NOT_LOADED
+    }
+    .to_owned())
 }
 
 /// The program, waiting for commands.
@@ -171,13 +195,25 @@ struct Halcmd {
 impl Halcmd {
     fn start() -> io::Result<Self> {
         let mut command = Command::new("halcmd");
-        command.args(["-s", "-f"]).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+        command
+            .args(["-s", "-f"])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null());
         let mut child = command.spawn()?;
-        let (commands, answers) = (child.stdin.take(), child.stdout.take().ok_or(io::ErrorKind::BrokenPipe)?);
-        Ok(Self { child, commands, answers: BufReader::new(answers) })
+        let (commands, answers) = (
+            child.stdin.take(),
+            child.stdout.take().ok_or(io::ErrorKind::BrokenPipe)?,
+        );
+        Ok(Self {
+            child,
+            commands,
+            answers: BufReader::new(answers),
+        })
     }
 
-    /// The pins of a component. An answer ends with an empty line; a line is `OWNER TYPE DIRECTION VALUE NAME` and what it is connected to.
+    /// The pins of a component. An answer ends with an empty line; a line is `OWNER TYPE DIRECTION
+    /// VALUE NAME` and what it is connected to.
     fn show(&mut self, component: &str) -> io::Result<Pins> {
         let commands = self.commands.as_mut().ok_or(io::ErrorKind::BrokenPipe)?;
         commands.write_all(format!("show pin {component}\n").as_bytes())?;
@@ -189,7 +225,9 @@ impl Halcmd {
                 return Err(io::ErrorKind::UnexpectedEof.into());
             }
             let words: Vec<_> = line.split_whitespace().collect();
-            let &[_, _, _, value, name, ..] = words.as_slice() else { return Ok(pins) };
+            let &[_, _, _, value, name, ..] = words.as_slice() else {
+                return Ok(pins);
+            };
             let value = match value {
                 "TRUE" => Some(1.0),
                 "FALSE" => Some(0.0),
@@ -213,6 +251,16 @@ impl Drop for Halcmd {
 /// The causes in words, by number; none where the component is not installed here.
 fn fault_words() -> Vec<String> {
     let text = std::fs::read_to_string(FAULTS).unwrap_or_default();
-    let list = text.split_once("words[] = {").and_then(|(_, rest)| rest.split_once("};")).map_or("", |(list, _)| list);
-    list.lines().filter_map(|line| line.trim().strip_prefix('"')?.strip_suffix("\",").map(str::to_owned)).collect()
+    let list = text
+        .split_once("words[] = {")
+        .and_then(|(_, rest)| rest.split_once("};"))
+        .map_or("", |(list, _)| list);
+    list.lines()
+        .filter_map(|line| {
+            line.trim()
+                .strip_prefix('"')?
+                .strip_suffix("\",")
+                .map(str::to_owned)
+        })
+        .collect()
 }

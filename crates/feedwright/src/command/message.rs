@@ -6,11 +6,14 @@ use std::process::ExitCode;
 
 use feedwright_sim::{Machine, Stages};
 use miette::{
-    Diagnostic, GraphicalReportHandler, GraphicalTheme, Report, Result, ThemeCharacters, ThemeStyles, miette,
+    Diagnostic, GraphicalReportHandler, GraphicalTheme, Report, Result, ThemeCharacters,
+    ThemeStyles, miette,
 };
 
 use crate::command::folded::folded_report;
-use crate::command::terminal::{is_stderr_colored, shows_unicode, text_columns, without_hidden, wrapped};
+use crate::command::terminal::{
+    is_stderr_colored, shows_unicode, text_columns, without_hidden, wrapped,
+};
 
 /// The result is out of tolerance.
 pub const OUT_OF_TOLERANCE: u8 = 1;
@@ -33,7 +36,8 @@ pub(crate) fn interrupted() -> ExitCode {
     ExitCode::from(INTERRUPTED)
 }
 
-/// The exit code after something was printed on stdout. A reader that went away (`| head`) has seen enough: no error.
+/// The exit code after something was printed on stdout. A reader that went away (`| head`) has seen
+/// enough: no error.
 pub fn printed(result: io::Result<()>, code: ExitCode) -> Result<ExitCode> {
     match result {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
@@ -48,9 +52,13 @@ pub fn remark(text: &str) {
     eprintln!("{}", wrapped(text, 2));
 }
 
-/// Tells which limits of the axes are assumed, where a planner needs some that the machine file does not have.
+/// Tells which limits of the axes are assumed, where a planner needs some that the machine file
+/// does not have.
 pub(crate) fn tell_assumed_limits(machine: &Machine, stages: Stages) {
-    if let Some(text) = machine.assumed_axis_limits().filter(|_| stages.planner.needs_axes) {
+    if let Some(text) = machine
+        .assumed_axis_limits()
+        .filter(|_| stages.planner.needs_axes)
+    {
         remark(&text);
     }
 }
@@ -65,17 +73,30 @@ pub(crate) fn tell(report: &Report) {
     show(report);
 }
 
-/// Plain text where stderr shows no colours, ASCII where it shows no more. Causes that the message tells already are not told twice.
+/// Plain text where stderr shows no colours, ASCII where it shows no more. Causes that the message
+/// tells already are not told twice.
 fn show(report: &Report) {
-    let characters = if shows_unicode() { ThemeCharacters::unicode() } else { ThemeCharacters::ascii() };
-    let styles = if is_stderr_colored() { ThemeStyles::ansi() } else { ThemeStyles::none() };
+    let characters = if shows_unicode() {
+        ThemeCharacters::unicode()
+    } else {
+        ThemeCharacters::ascii()
+    };
+    let styles = if is_stderr_colored() {
+        ThemeStyles::ansi()
+    } else {
+        ThemeStyles::none()
+    };
     let theme = GraphicalTheme { characters, styles };
     let mut handler = GraphicalReportHandler::new_themed(theme)
         .with_width(text_columns())
         .with_links(false)
         .with_word_splitter(textwrap::WordSplitter::NoHyphenation);
     let message = report.to_string();
-    if report.chain().skip(1).all(|cause| message.contains(&cause.to_string())) {
+    if report
+        .chain()
+        .skip(1)
+        .all(|cause| message.contains(&cause.to_string()))
+    {
         handler = handler.without_cause_chain();
     }
     let mut text = String::new();
@@ -106,8 +127,15 @@ impl<'a> VisibleReport<'a> {
         Self {
             of: report,
             cause: VisibleCause::of(report.source()),
-            related: report.related().into_iter().flatten().map(Self::of).collect(),
-            inner: report.diagnostic_source().map(|inner| Box::new(Self::of(inner))),
+            related: report
+                .related()
+                .into_iter()
+                .flatten()
+                .map(Self::of)
+                .collect(),
+            inner: report
+                .diagnostic_source()
+                .map(|inner| Box::new(Self::of(inner))),
         }
     }
 }
@@ -115,7 +143,10 @@ impl<'a> VisibleReport<'a> {
 impl VisibleCause {
     fn of(cause: Option<&(dyn std::error::Error + 'static)>) -> Option<Box<Self>> {
         let cause = cause?;
-        Some(Box::new(Self { text: without_hidden(&cause.to_string()), cause: Self::of(cause.source()) }))
+        Some(Box::new(Self {
+            text: without_hidden(&cause.to_string()),
+            cause: Self::of(cause.source()),
+        }))
     }
 }
 
@@ -153,7 +184,9 @@ impl Diagnostic for VisibleReport<'_> {
     }
 
     fn help<'b>(&'b self) -> Option<Box<dyn fmt::Display + 'b>> {
-        self.of.help().map(|help| Box::new(without_hidden(&help.to_string())) as Box<dyn fmt::Display>)
+        self.of
+            .help()
+            .map(|help| Box::new(without_hidden(&help.to_string())) as Box<dyn fmt::Display>)
     }
 
     fn source_code(&self) -> Option<&dyn miette::SourceCode> {
@@ -165,7 +198,10 @@ impl Diagnostic for VisibleReport<'_> {
     }
 
     fn related<'b>(&'b self) -> Option<Box<dyn Iterator<Item = &'b dyn Diagnostic> + 'b>> {
-        let related = self.related.iter().map(|related| related as &dyn Diagnostic);
+        let related = self
+            .related
+            .iter()
+            .map(|related| related as &dyn Diagnostic);
         (!self.related.is_empty()).then(|| Box::new(related) as _)
     }
 
@@ -177,9 +213,13 @@ impl Diagnostic for VisibleReport<'_> {
 /// miette labels a remedy `help:` without a way to choose; ours are hints.
 fn with_hints(text: &str) -> String {
     let label = |line: &str| match line.split_once("  help: ") {
-        // The label stands at the start of its line, perhaps behind a colour; program text may contain anything.
+        // The label stands at the start of its line, perhaps behind a colour; program text may
+        // contain anything.
         Some((before, rest)) if before.trim().is_empty() || before.starts_with('\u{1b}') => {
-            format!("{before}  hint: {}", rest.strip_prefix("hint: ").unwrap_or(rest))
+            format!(
+                "{before}  hint: {}",
+                rest.strip_prefix("hint: ").unwrap_or(rest)
+            )
         }
         _ => line.to_owned(),
     };

@@ -7,8 +7,9 @@
 //! http://127.0.0.1:PORT/SECRET/hal/0       what the machine does, from reading 0 on
 //! ```
 //!
-//! No request names a place in the file system. A page of another site can send requests here, but it neither knows the secret nor has the
-//! right `Host` (a name that is rebound to this computer) and `Origin`.
+//! No request names a place in the file system. A page of another site can send requests here, but
+//! it neither knows the secret nor has the right `Host` (a name that is rebound to this computer)
+//! and `Origin`.
 
 use std::collections::hash_map::RandomState;
 use std::fs::File;
@@ -28,12 +29,32 @@ use super::hal_watch::HalWatch;
 /// Name, type and bytes of each file of the page; none where it was not built (`web/page`).
 #[cfg(has_page)]
 const PAGE: &[(&str, &str, &[u8])] = &[
-    ("", "text/html; charset=utf-8", include_bytes!("../../assets/app/index.html")),
-    ("app.css", "text/css; charset=utf-8", include_bytes!("../../assets/app/app.css")),
-    ("app.js", "text/javascript; charset=utf-8", include_bytes!("../../assets/app/app.js")),
-    ("engine.js", "text/javascript; charset=utf-8", include_bytes!("../../assets/app/engine.js")),
+    (
+        "",
+        "text/html; charset=utf-8",
+        include_bytes!("../../assets/app/index.html"),
+    ),
+    (
+        "app.css",
+        "text/css; charset=utf-8",
+        include_bytes!("../../assets/app/app.css"),
+    ),
+    (
+        "app.js",
+        "text/javascript; charset=utf-8",
+        include_bytes!("../../assets/app/app.js"),
+    ),
+    (
+        "engine.js",
+        "text/javascript; charset=utf-8",
+        include_bytes!("../../assets/app/engine.js"),
+    ),
     // The page inflates it: as a type of its own no server or browser does so before.
-    ("engine.wasm.gz", "application/octet-stream", include_bytes!("../../assets/app/engine.wasm.gz")),
+    (
+        "engine.wasm.gz",
+        "application/octet-stream",
+        include_bytes!("../../assets/app/engine.wasm.gz"),
+    ),
 ];
 #[cfg(not(has_page))]
 const PAGE: &[(&str, &str, &[u8])] = &[];
@@ -41,7 +62,8 @@ const PAGE: &[(&str, &str, &[u8])] = &[];
 /// Whether this command has the page.
 pub(crate) const HAS_PAGE: bool = !PAGE.is_empty();
 
-/// Headers of every answer. Frames of other sites cannot show the page; its own policy stands in `index.html`.
+/// Headers of every answer. Frames of other sites cannot show the page; its own policy stands in
+/// `index.html`.
 const HEADERS: &str = "Content-Security-Policy: frame-ancestors 'none'\r\nX-Content-Type-Options: nosniff\r\n\
     Referrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\nCache-Control: no-store\r\nConnection: close\r\n";
 
@@ -53,7 +75,8 @@ const REQUEST_BYTES: usize = 16 * 1024;
 const FILE_BYTES: u64 = 512 * 1024 * 1024;
 /// A connection that takes no byte of an answer for longer is closed.
 const IDLE: Duration = Duration::from_secs(10);
-/// A request must be complete within this time. Browsers send theirs at once, and connect again if an early connection was closed.
+/// A request must be complete within this time. Browsers send theirs at once, and connect again if
+/// an early connection was closed.
 const REQUEST_TIME: Duration = Duration::from_secs(2);
 
 /// An answer: status, type and body.
@@ -86,7 +109,15 @@ impl PageServer {
         // Keyed with random numbers of the operating system; the key stays in here.
         let key = RandomState::new();
         let secret = format!("{:016x}{:016x}", key.hash_one(0), key.hash_one(1));
-        Ok(Self { listener, site: Arc::new(Site { port, secret, files, hal }) })
+        Ok(Self {
+            listener,
+            site: Arc::new(Site {
+                port,
+                secret,
+                files,
+                hal,
+            }),
+        })
     }
 
     /// Where the page is.
@@ -114,13 +145,21 @@ impl Site {
         if stream.set_write_timeout(Some(IDLE)).is_err() {
             return;
         }
-        let Ok(request) = read_head(&mut InTime { stream: &stream, until: Instant::now() + REQUEST_TIME }) else {
+        let Ok(request) = read_head(&mut InTime {
+            stream: &stream,
+            until: Instant::now() + REQUEST_TIME,
+        }) else {
             return;
         };
-        let (status, kind, body) = request.map_or_else(|| told("400 Bad Request"), |request| self.answer(&request));
+        let (status, kind, body) =
+            request.map_or_else(|| told("400 Bad Request"), |request| self.answer(&request));
         let length = body.len();
-        let head = format!("HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\n{HEADERS}\r\n");
-        let _ = stream.write_all(head.as_bytes()).and_then(|()| stream.write_all(&body));
+        let head = format!(
+            "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\n{HEADERS}\r\n"
+        );
+        let _ = stream
+            .write_all(head.as_bytes())
+            .and_then(|()| stream.write_all(&body));
     }
 
     fn answer(&self, request: &str) -> Answer {
@@ -136,15 +175,22 @@ impl Site {
         }
         let headers: Vec<_> = lines.filter_map(|line| line.split_once(':')).collect();
         let named = |name: &str| {
-            let of_name = headers.iter().filter(move |(header, _)| header.eq_ignore_ascii_case(name));
+            let of_name = headers
+                .iter()
+                .filter(move |(header, _)| header.eq_ignore_ascii_case(name));
             of_name.map(|(_, value)| value.trim()).collect::<Vec<_>>()
         };
         let host = format!("127.0.0.1:{}", self.port);
-        if named("host") != [host.as_str()] || named("origin").iter().any(|origin| *origin != format!("http://{host}"))
+        if named("host") != [host.as_str()]
+            || named("origin")
+                .iter()
+                .any(|origin| *origin != format!("http://{host}"))
         {
             return told("403 Forbidden");
         }
-        let secret = target.strip_prefix('/').and_then(|path| path.split_once('/'));
+        let secret = target
+            .strip_prefix('/')
+            .and_then(|path| path.split_once('/'));
         match secret.filter(|(secret, _)| *secret == self.secret) {
             Some((_, path)) => self.file(path),
             None => told("403 Forbidden"),
@@ -157,14 +203,29 @@ impl Site {
             return ("200 OK", kind, bytes.to_vec());
         }
         if path == "files.json" {
-            let names: Vec<_> = self.files.iter().map(|file| file.file_name().unwrap_or_default()).collect();
+            let names: Vec<_> = self
+                .files
+                .iter()
+                .map(|file| file.file_name().unwrap_or_default())
+                .collect();
             let names: Vec<_> = names.iter().map(|name| name.to_string_lossy()).collect();
             let served = json!({ "files": names, "hal": self.hal.is_some() });
-            return ("200 OK", "application/json", served.to_string().into_bytes());
+            return (
+                "200 OK",
+                "application/json",
+                served.to_string().into_bytes(),
+            );
         }
-        let number = |folder: &str| path.strip_prefix(folder).and_then(|number| number.parse::<u32>().ok());
+        let number = |folder: &str| {
+            path.strip_prefix(folder)
+                .and_then(|number| number.parse::<u32>().ok())
+        };
         if let (Some(hal), Some(from)) = (&self.hal, number("hal/")) {
-            return ("200 OK", "application/json", hal.since(from.into()).to_string().into_bytes());
+            return (
+                "200 OK",
+                "application/json",
+                hal.since(from.into()).to_string().into_bytes(),
+            );
         }
         let Some(file) = number("files/").and_then(|number| self.files.get(number as usize)) else {
             return told("404 Not Found");
@@ -183,7 +244,11 @@ fn content(path: &PathBuf) -> io::Result<Vec<u8>> {
     }
     let mut bytes = Vec::new();
     File::open(path)?.take(FILE_BYTES).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 == FILE_BYTES { Err(io::ErrorKind::FileTooLarge.into()) } else { Ok(bytes) }
+    if bytes.len() as u64 == FILE_BYTES {
+        Err(io::ErrorKind::FileTooLarge.into())
+    } else {
+        Ok(bytes)
+    }
 }
 
 /// An answer that says no more than its status.
@@ -234,7 +299,12 @@ mod tests {
         let file = tempfile::Builder::new().suffix(".ngc").tempfile().unwrap();
         std::fs::write(file.path(), "G1\n").unwrap();
         let (_, path) = file.keep().unwrap();
-        Site { port: 99, secret: "abc".to_owned(), files: vec![path], hal: None }
+        Site {
+            port: 99,
+            secret: "abc".to_owned(),
+            files: vec![path],
+            hal: None,
+        }
     }
 
     fn status(request: &str) -> String {
@@ -245,8 +315,17 @@ mod tests {
     fn the_page_is_for_its_own_host_origin_and_secret() {
         let get = |path: &str, headers: &str| status(&format!("GET {path} HTTP/1.1\n{headers}"));
         assert_eq!(get("/abc/", "Host: 127.0.0.1:99"), "200");
-        assert_eq!(get("/abc/app.js", "host: 127.0.0.1:99\nOrigin: http://127.0.0.1:99"), "200");
-        assert_eq!(get("/abc/", "Host: 127.0.0.1:99\nOrigin: http://example.org"), "403");
+        assert_eq!(
+            get(
+                "/abc/app.js",
+                "host: 127.0.0.1:99\nOrigin: http://127.0.0.1:99"
+            ),
+            "200"
+        );
+        assert_eq!(
+            get("/abc/", "Host: 127.0.0.1:99\nOrigin: http://example.org"),
+            "403"
+        );
         assert_eq!(get("/abc/", "Host: 127.0.0.1:99\nOrigin: null"), "403");
         assert_eq!(get("/abc/", "Host: example.org:99"), "403");
         assert_eq!(get("/abc/", "Host: 127.0.0.1:99\nHost: example.org"), "403");
@@ -281,7 +360,9 @@ mod tests {
         assert_eq!(read_head(&mut io::repeat(b'a')).unwrap(), None);
         assert_eq!(read_head(&mut &b"GET / HTTP/1.1\r\n"[..]).unwrap(), None);
         assert_eq!(
-            read_head(&mut &b"GET / HTTP/1.1\r\nA: b\r\n\r\nbody"[..]).unwrap().unwrap(),
+            read_head(&mut &b"GET / HTTP/1.1\r\nA: b\r\n\r\nbody"[..])
+                .unwrap()
+                .unwrap(),
             "GET / HTTP/1.1\r\nA: b"
         );
     }

@@ -1,6 +1,7 @@
 //! A progress bar on stderr, where stderr is a terminal.
 //!
-//! A thread of its own draws the bar ten times a second: a stage shows when it begins, even if its first step takes long.
+//! A thread of its own draws the bar ten times a second: a stage shows when it begins, even if its
+//! first step takes long.
 
 use std::fmt::Write;
 use std::sync::Arc;
@@ -26,26 +27,40 @@ pub struct Bar {
 impl Bar {
     /// Where stderr is no terminal, or one without a cursor, nothing is drawn.
     pub(crate) fn new(quiet: bool, steps: u64, interrupted: Arc<AtomicBool>) -> Self {
-        let bar = if quiet || is_dumb() { ProgressBar::hidden() } else { ProgressBar::new(steps) };
+        let bar = if quiet || is_dumb() {
+            ProgressBar::hidden()
+        } else {
+            ProgressBar::new(steps)
+        };
         Self::on(bar, interrupted)
     }
 
     fn on(bar: ProgressBar, interrupted: Arc<AtomicBool>) -> Self {
         // A template that is written here parses. Writing to a line does not fail.
-        if let Ok(style) = ProgressStyle::with_template("{msg:32!} {wide_bar} {done:>5} {left:>14}") {
+        if let Ok(style) = ProgressStyle::with_template("{msg:32!} {wide_bar} {done:>5} {left:>14}")
+        {
             let style = style
                 .with_key("done", |state: &ProgressState, out: &mut dyn Write| {
                     let _ = out.write_str(&done(state.pos(), state.len().unwrap_or(0)));
                 })
                 .with_key("left", |state: &ProgressState, out: &mut dyn Write| {
-                    let _ = out.write_str(&left(state.eta(), state.pos(), state.len().unwrap_or(0)));
+                    let _ =
+                        out.write_str(&left(state.eta(), state.pos(), state.len().unwrap_or(0)));
                 });
-            bar.set_style(if shows_unicode() { style } else { style.progress_chars("#> ") });
+            bar.set_style(if shows_unicode() {
+                style
+            } else {
+                style.progress_chars("#> ")
+            });
         }
         if !bar.is_hidden() {
             bar.enable_steady_tick(DRAWN_EACH);
         }
-        Self { bar, interrupted, began: Instant::now() }
+        Self {
+            bar,
+            interrupted,
+            began: Instant::now(),
+        }
     }
 
     pub fn say(&self, message: impl Into<String>) {
@@ -62,7 +77,8 @@ impl Bar {
     }
 }
 
-/// How much of a stage is done; nothing before its first step, as a stage may have no other. 100 % stands for the end alone.
+/// How much of a stage is done; nothing before its first step, as a stage may have no other. 100 %
+/// stands for the end alone.
 fn done(done: u64, steps: u64) -> String {
     match done {
         0 => String::new(),
@@ -161,7 +177,10 @@ mod tests {
     fn a_stage_shows_before_its_first_step_though_the_one_before_was_drawn_just_now() {
         let terminal = Kept::default();
         let target = ProgressDrawTarget::term_like(Box::new(terminal.clone()));
-        let bar = Bar::on(ProgressBar::with_draw_target(Some(0), target), Arc::default());
+        let bar = Bar::on(
+            ProgressBar::with_draw_target(Some(0), target),
+            Arc::default(),
+        );
         bar.begin("cutting, uncorrected", 1000);
         (0..999).for_each(|_| bar.advance(1));
         bar.begin("identifying mine", 1000);
@@ -173,14 +192,25 @@ mod tests {
         };
         assert!(shows("identifying mine"), "{terminal:?}");
         let text = terminal.0.lock().unwrap().clone();
-        assert!(!text.contains("100 %") && !text[text.find("identifying").unwrap()..].contains('%'), "{text}");
+        assert!(
+            !text.contains("100 %") && !text[text.find("identifying").unwrap()..].contains('%'),
+            "{text}"
+        );
         bar.advance(370);
         assert!(shows("37 %"), "{terminal:?}");
     }
 
     #[test]
     fn a_stage_is_done_when_all_of_its_steps_are() {
-        assert_eq!([done(0, 1000), done(1, 1000), done(999, 1000), done(1000, 1000)], ["", "0 %", "99 %", "100 %"]);
+        assert_eq!(
+            [
+                done(0, 1000),
+                done(1, 1000),
+                done(999, 1000),
+                done(1000, 1000)
+            ],
+            ["", "0 %", "99 %", "100 %"]
+        );
     }
 
     #[test]

@@ -13,13 +13,15 @@ use crate::command::terminal::is_inch;
 use crate::inches::in_inches;
 use crate::output::{OutputFiles, is_standard_output};
 
-/// Refuses the standard input for two things at once, and says so where a person has to type it. `inputs` are options and files.
+/// Refuses the standard input for two things at once, and says so where a person has to type it.
+/// `inputs` are options and files.
 pub(crate) fn check_inputs<'a>(
     console: &Console,
     inputs: impl IntoIterator<Item = (&'a str, Option<&'a Path>)>,
 ) -> Result<()> {
-    let standard =
-        |(name, path): (&'a str, Option<&'a Path>)| path.filter(|path| is_standard_input(path)).map(|_| name);
+    let standard = |(name, path): (&'a str, Option<&'a Path>)| {
+        path.filter(|path| is_standard_input(path)).map(|_| name)
+    };
     let names: Vec<&str> = inputs.into_iter().filter_map(standard).collect();
     if let [first, second, ..] = names[..] {
         return Err(miette!(
@@ -43,8 +45,17 @@ pub(crate) struct ProgramInputs<'a> {
 
 impl<'a> ProgramInputs<'a> {
     /// Those that these arguments name.
-    pub(crate) fn of(part: &'a Path, machine: &'a (impl AsRef<OsStr> + ?Sized), reader: &'a ReaderArgs) -> Self {
-        Self { part, machine: Path::new(machine), tools: reader.tool_table.as_deref(), geometry: None }
+    pub(crate) fn of(
+        part: &'a Path,
+        machine: &'a (impl AsRef<OsStr> + ?Sized),
+        reader: &'a ReaderArgs,
+    ) -> Self {
+        Self {
+            part,
+            machine: Path::new(machine),
+            tools: reader.tool_table.as_deref(),
+            geometry: None,
+        }
     }
 
     /// The same with a geometry file, where there is one.
@@ -54,14 +65,26 @@ impl<'a> ProgramInputs<'a> {
 
     /// As [`check_inputs`].
     pub(crate) fn check(&self, console: &Console) -> Result<()> {
-        let named = [("the program", Some(self.part)), ("--machine", Some(self.machine))];
-        check_inputs(console, named.into_iter().chain([("--tool-table", self.tools), ("--geometry", self.geometry)]))
+        let named = [
+            ("the program", Some(self.part)),
+            ("--machine", Some(self.machine)),
+        ];
+        check_inputs(
+            console,
+            named
+                .into_iter()
+                .chain([("--tool-table", self.tools), ("--geometry", self.geometry)]),
+        )
     }
 
     /// Outputs that are none of these files.
     pub(crate) fn outputs(&self) -> OutputFiles {
         let machine = Some(self.machine).filter(|path| is_machine_path(path));
-        OutputFiles::new([Some(self.part), machine, self.tools, self.geometry].into_iter().flatten())
+        OutputFiles::new(
+            [Some(self.part), machine, self.tools, self.geometry]
+                .into_iter()
+                .flatten(),
+        )
     }
 }
 
@@ -74,7 +97,11 @@ pub fn make_folder(folder: &Path) -> Result<()> {
             }
             _ => "name a folder in a place that can be written to",
         };
-        miette!(help = help, "cannot make the folder {}: {error}", folder.display())
+        miette!(
+            help = help,
+            "cannot make the folder {}: {error}",
+            folder.display()
+        )
     })
 }
 
@@ -85,7 +112,14 @@ pub fn tables<'a>(outputs: impl IntoIterator<Item = Option<&'a Path>>) -> Box<dy
     } else {
         Box::new(io::stdout().lock())
     };
-    if is_inch() { Box::new(InchLines { out, line: Vec::new() }) } else { out }
+    if is_inch() {
+        Box::new(InchLines {
+            out,
+            line: Vec::new(),
+        })
+    } else {
+        out
+    }
 }
 
 /// Writes lines with their lengths in inches.
@@ -107,13 +141,22 @@ impl Write for InchLines {
 
     fn flush(&mut self) -> io::Result<()> {
         let line = std::mem::take(&mut self.line);
-        self.out.write_all(in_inches(&String::from_utf8_lossy(&line)).as_bytes())?;
+        self.out
+            .write_all(in_inches(&String::from_utf8_lossy(&line)).as_bytes())?;
         self.out.flush()
     }
 }
 
 /// Tells which files there are now; what went to the standard output is no file.
-pub fn tell_written<'a>(out: &mut dyn Write, outputs: impl IntoIterator<Item = Option<&'a Path>>) -> io::Result<()> {
-    let files = outputs.into_iter().flatten().filter(|path| !is_standard_output(path));
-    files.into_iter().try_for_each(|path| writeln!(out, "wrote {}", input::name(path)))
+pub fn tell_written<'a>(
+    out: &mut dyn Write,
+    outputs: impl IntoIterator<Item = Option<&'a Path>>,
+) -> io::Result<()> {
+    let files = outputs
+        .into_iter()
+        .flatten()
+        .filter(|path| !is_standard_output(path));
+    files
+        .into_iter()
+        .try_for_each(|path| writeln!(out, "wrote {}", input::name(path)))
 }

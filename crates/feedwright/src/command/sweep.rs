@@ -1,7 +1,8 @@
 //! Sweeps: many jobs of `run`, each result a file of its own.
 //!
-//! A job's result is stored under the hash of everything that it follows from. Any number of processes on any number of computers
-//! may therefore work on one folder: what is there is not computed again, and no process waits for another.
+//! A job's result is stored under the hash of everything that it follows from. Any number of
+//! processes on any number of computers may therefore work on one folder: what is there is not
+//! computed again, and no process waits for another.
 //!
 //! | File | What |
 //! |---|---|
@@ -35,14 +36,23 @@ pub struct JobDone {
 /// Does a job, unless its result is in the store.
 ///
 /// # Errors
-/// A file that cannot be read, a result that cannot be written, or an end from outside: nothing is stored, and the job may be done
-/// again. The mistakes of a program, a machine or a model are a result.
+/// A file that cannot be read, a result that cannot be written, or an end from outside: nothing is
+/// stored, and the job may be done again. The mistakes of a program, a machine or a model are a
+/// result.
 pub fn do_job(store: &ResultStore, job: &ListedJob, watch: &dyn Watch) -> Result<JobDone> {
     let address = job.address()?;
     if let Some(result) = store.get(&address) {
-        return Ok(JobDone { address, found: true, error: job_spec::error_of(&result) });
+        return Ok(JobDone {
+            address,
+            found: true,
+            error: job_spec::error_of(&result),
+        });
     }
     let result = job.result(&address, watch)?;
     store.put(&address, &result)?;
-    Ok(JobDone { address, found: false, error: job_spec::error_of(&result) })
+    Ok(JobDone {
+        address,
+        found: false,
+        error: job_spec::error_of(&result),
+    })
 }

@@ -1,4 +1,5 @@
-//! Tables that fit the terminal: where there is no room, the least important columns are left out, and the table says so.
+//! Tables that fit the terminal: where there is no room, the least important columns are left out,
+//! and the table says so.
 
 use std::borrow::Cow;
 use std::io::{self, Write};
@@ -18,12 +19,18 @@ pub struct TableColumn {
 impl TableColumn {
     /// One that is always there.
     pub const fn new(heading: &'static str) -> Self {
-        Self { heading: Cow::Borrowed(heading), importance: 0 }
+        Self {
+            heading: Cow::Borrowed(heading),
+            importance: 0,
+        }
     }
 
     /// One that may be left out, those of the highest number first.
     pub const fn optional(heading: &'static str, importance: u8) -> Self {
-        Self { heading: Cow::Borrowed(heading), importance }
+        Self {
+            heading: Cow::Borrowed(heading),
+            importance,
+        }
     }
 }
 
@@ -45,7 +52,11 @@ enum TableRow {
 
 /// A number for a cell; `-` if it is not known.
 pub(crate) fn figure(value: f64, decimals: usize) -> String {
-    if value.is_finite() { format!("{value:.decimals$}") } else { "-".to_owned() }
+    if value.is_finite() {
+        format!("{value:.decimals$}")
+    } else {
+        "-".to_owned()
+    }
 }
 
 /// Names are no longer; what is cut off is their beginning.
@@ -54,12 +65,20 @@ const MOST_NAME: usize = 44;
 impl ConsoleTable {
     /// Without rows.
     pub fn new(columns: Vec<TableColumn>) -> Self {
-        Self { columns, rows: Vec::new() }
+        Self {
+            columns,
+            rows: Vec::new(),
+        }
     }
 
     /// Adds a row, a cell for each column.
     pub fn row(&mut self, cells: Vec<String>) {
-        self.rows.push(TableRow::Cells(cells.iter().map(|cell| visible(cell).into_owned()).collect()));
+        self.rows.push(TableRow::Cells(
+            cells
+                .iter()
+                .map(|cell| visible(cell).into_owned())
+                .collect(),
+        ));
     }
 
     /// Adds a remark to the last row.
@@ -69,7 +88,8 @@ impl ConsoleTable {
 
     /// Begins a part of the table.
     pub fn section(&mut self, name: String) {
-        self.rows.push(TableRow::Section(visible(&name).into_owned()));
+        self.rows
+            .push(TableRow::Section(visible(&name).into_owned()));
     }
 
     /// Prints it for the terminal.
@@ -78,17 +98,26 @@ impl ConsoleTable {
     }
 
     fn print_within(&self, out: &mut dyn Write, room: usize) -> io::Result<()> {
-        if is_inch() { self.in_inches().print_metric(out, room) } else { self.print_metric(out, room) }
+        if is_inch() {
+            self.in_inches().print_metric(out, room)
+        } else {
+            self.print_metric(out, room)
+        }
     }
 
     /// The table with lengths in inches.
     fn in_inches(&self) -> Self {
-        let headings: Vec<(String, Option<f64>)> =
-            self.columns.iter().map(|column| heading_in_inches(&column.heading)).collect();
+        let headings: Vec<(String, Option<f64>)> = self
+            .columns
+            .iter()
+            .map(|column| heading_in_inches(&column.heading))
+            .collect();
         let cells = |cells: &Vec<String>| {
             let pairs = cells.iter().zip(&headings);
             pairs
-                .map(|(cell, (_, factor))| factor.map_or_else(|| cell.clone(), |factor| cell_in_inches(cell, factor)))
+                .map(|(cell, (_, factor))| {
+                    factor.map_or_else(|| cell.clone(), |factor| cell_in_inches(cell, factor))
+                })
                 .collect()
         };
         let row = |row: &TableRow| match row {
@@ -112,11 +141,19 @@ impl ConsoleTable {
         // Two blanks between the columns where there is room.
         let wanted = shown.iter().map(|&i| widths[i] + 2).sum::<usize>() - 2;
         let widths: Vec<usize> = if wanted <= room {
-            widths.iter().enumerate().map(|(i, width)| if i == 0 { *width } else { width + 1 }).collect()
+            widths
+                .iter()
+                .enumerate()
+                .map(|(i, width)| if i == 0 { *width } else { width + 1 })
+                .collect()
         } else {
             widths
         };
-        let others: usize = shown.iter().filter(|&&i| i > 0).map(|&i| widths[i] + 1).sum();
+        let others: usize = shown
+            .iter()
+            .filter(|&&i| i > 0)
+            .map(|&i| widths[i] + 1)
+            .sum();
         let name = widths[0].min(room.saturating_sub(others).max(8));
         if !matches!(self.rows.first(), Some(TableRow::Section(_))) {
             self.heading(out, &self.columns[0].heading, name, &shown, &widths)?;
@@ -124,12 +161,23 @@ impl ConsoleTable {
         for row in &self.rows {
             match row {
                 TableRow::Cells(cells) => {
-                    let numbers: String =
-                        shown.iter().filter(|&&i| i > 0).map(|&i| format!(" {:>1$}", cells[i], widths[i])).collect();
-                    writeln!(out, "{}", format!("{:<name$}{numbers}", end_of(&cells[0], name)).trim_end())?;
+                    let numbers: String = shown
+                        .iter()
+                        .filter(|&&i| i > 0)
+                        .map(|&i| format!(" {:>1$}", cells[i], widths[i]))
+                        .collect();
+                    writeln!(
+                        out,
+                        "{}",
+                        format!("{:<name$}{numbers}", end_of(&cells[0], name)).trim_end()
+                    )?;
                 }
                 TableRow::Remark(text) => {
-                    writeln!(out, "{}", crate::command::terminal::wrapped(&format!("  {text}"), 2))?;
+                    writeln!(
+                        out,
+                        "{}",
+                        crate::command::terminal::wrapped(&format!("  {text}"), 2)
+                    )?;
                 }
                 TableRow::Section(title) => {
                     writeln!(out)?;
@@ -137,8 +185,10 @@ impl ConsoleTable {
                 }
             }
         }
-        let left_out: Vec<&str> =
-            (0..self.columns.len()).filter(|i| !shown.contains(i)).map(|i| &*self.columns[i].heading).collect();
+        let left_out: Vec<&str> = (0..self.columns.len())
+            .filter(|i| !shown.contains(i))
+            .map(|i| &*self.columns[i].heading)
+            .collect();
         if !left_out.is_empty() {
             let text = format!(
                 "no room for the columns {}: a wider terminal, or COLUMNS=160, shows them",
@@ -157,14 +207,25 @@ impl ConsoleTable {
         shown: &[usize],
         widths: &[usize],
     ) -> io::Result<()> {
-        let others: String =
-            shown.iter().filter(|&&i| i > 0).map(|&i| format!(" {:>1$}", self.columns[i].heading, widths[i])).collect();
-        writeln!(out, "{}", format!("{:<width$}{others}", end_of(name, width)).trim_end())
+        let others: String = shown
+            .iter()
+            .filter(|&&i| i > 0)
+            .map(|&i| format!(" {:>1$}", self.columns[i].heading, widths[i]))
+            .collect();
+        writeln!(
+            out,
+            "{}",
+            format!("{:<width$}{others}", end_of(name, width)).trim_end()
+        )
     }
 
     /// Widths that the columns want.
     fn widths(&self) -> Vec<usize> {
-        let mut widths: Vec<usize> = self.columns.iter().map(|column| column.heading.chars().count()).collect();
+        let mut widths: Vec<usize> = self
+            .columns
+            .iter()
+            .map(|column| column.heading.chars().count())
+            .collect();
         for row in &self.rows {
             match row {
                 TableRow::Cells(cells) => {
@@ -185,8 +246,13 @@ impl ConsoleTable {
         let mut shown: Vec<usize> = (0..self.columns.len()).collect();
         let wanted = |shown: &[usize]| shown.iter().map(|&i| widths[i] + 1).sum::<usize>() - 1;
         while wanted(&shown) > room {
-            let least = shown.iter().copied().filter(|&i| self.columns[i].importance > 0);
-            let Some(least) = least.max_by_key(|&i| self.columns[i].importance) else { break };
+            let least = shown
+                .iter()
+                .copied()
+                .filter(|&i| self.columns[i].importance > 0);
+            let Some(least) = least.max_by_key(|&i| self.columns[i].importance) else {
+                break;
+            };
             shown.retain(|&i| i != least);
         }
         shown
@@ -199,7 +265,10 @@ fn end_of(text: &str, width: usize) -> String {
     if letters <= width {
         return text.to_owned();
     }
-    format!("..{}", text.chars().skip(letters + 2 - width).collect::<String>())
+    format!(
+        "..{}",
+        text.chars().skip(letters + 2 - width).collect::<String>()
+    )
 }
 
 #[cfg(test)]
@@ -213,22 +282,40 @@ mod tests {
             TableColumn::optional("time s", 1),
             TableColumn::optional("torque", 2),
         ]);
-        table.row(["a-name-of-some-length", "1.25", "100.000", "3"].map(str::to_owned).to_vec());
+        table.row(
+            ["a-name-of-some-length", "1.25", "100.000", "3"]
+                .map(str::to_owned)
+                .to_vec(),
+        );
         table.row(["b", "10000.25", "1.000", "3"].map(str::to_owned).to_vec());
         let mut out = Vec::new();
-        table.print_within(&mut out, room).expect("memory takes all");
+        table
+            .print_within(&mut out, room)
+            .expect("memory takes all");
         String::from_utf8(out).expect("text")
     }
 
     #[test]
     fn the_least_important_columns_go_first_and_names_last() {
         let wide = printed(80);
-        assert_eq!(wide.lines().next(), Some("                         RMS um   time s  torque"));
+        assert_eq!(
+            wide.lines().next(),
+            Some("                         RMS um   time s  torque")
+        );
         assert!(!wide.contains("no room"), "{wide}");
         let narrow = printed(40);
-        assert!(!narrow.contains("100.000      3") && narrow.contains("no room for the columns torque"), "{narrow}");
+        assert!(
+            !narrow.contains("100.000      3") && narrow.contains("no room for the columns torque"),
+            "{narrow}"
+        );
         let tiny = printed(20);
-        assert!(tiny.contains("..me-length     1.25") && tiny.contains("columns time s, torque"), "{tiny}");
-        assert!(tiny.lines().take(3).all(|line| line.chars().count() <= 20), "{tiny}");
+        assert!(
+            tiny.contains("..me-length     1.25") && tiny.contains("columns time s, torque"),
+            "{tiny}"
+        );
+        assert!(
+            tiny.lines().take(3).all(|line| line.chars().count() <= 20),
+            "{tiny}"
+        );
     }
 }

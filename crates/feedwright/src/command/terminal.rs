@@ -55,7 +55,11 @@ pub(crate) fn is_inch() -> bool {
 
 /// Units of the page that is written.
 pub(crate) fn page_units() -> PageUnits {
-    if is_inch() { PageUnits::Inch } else { PageUnits::Metric }
+    if is_inch() {
+        PageUnits::Inch
+    } else {
+        PageUnits::Metric
+    }
 }
 
 /// As `--color` says, from when the command line is read.
@@ -87,7 +91,10 @@ pub(crate) fn shows_unicode() -> bool {
     if is_dumb() {
         return false;
     }
-    let named = ["LC_ALL", "LC_CTYPE", "LANG"].iter().filter_map(std::env::var_os).find(|value| !value.is_empty());
+    let named = ["LC_ALL", "LC_CTYPE", "LANG"]
+        .iter()
+        .filter_map(std::env::var_os)
+        .find(|value| !value.is_empty());
     let is_utf8 = named.is_some_and(|name| {
         let name = name.to_string_lossy().to_ascii_lowercase();
         name.contains("utf-8") || name.contains("utf8")
@@ -98,10 +105,16 @@ pub(crate) fn shows_unicode() -> bool {
 /// Columns of the terminal: the value of COLUMNS if it is a number, otherwise the actual width.
 /// Returns 80 without a terminal or below [`LEAST_COLUMNS`].
 pub(crate) fn columns() -> usize {
-    let said = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+    let said = std::env::var("COLUMNS")
+        .ok()
+        .and_then(|columns| columns.parse().ok());
     let there = || terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
     let columns: usize = said.or_else(there).unwrap_or(COLUMNS);
-    if columns < LEAST_COLUMNS { COLUMNS } else { columns }
+    if columns < LEAST_COLUMNS {
+        COLUMNS
+    } else {
+        columns
+    }
 }
 
 /// How reasons of the libraries begin the line of their remedy.
@@ -109,7 +122,10 @@ const REMEDY: &str = "\n  hint: ";
 
 /// A message without what is hidden in it; the line of its remedy stays one.
 pub(super) fn without_hidden(text: &str) -> String {
-    text.split(REMEDY).map(visible).collect::<Vec<_>>().join(REMEDY)
+    text.split(REMEDY)
+        .map(visible)
+        .collect::<Vec<_>>()
+        .join(REMEDY)
 }
 
 /// Columns of text that is read line by line.
@@ -131,14 +147,27 @@ pub fn wrapped(text: &str, indent: usize) -> String {
 
 /// A text in the units that `--units` asks for.
 pub(crate) fn in_units(text: &str) -> Cow<'_, str> {
-    if is_inch() { Cow::Owned(in_inches(text)) } else { Cow::Borrowed(text) }
+    if is_inch() {
+        Cow::Owned(in_inches(text))
+    } else {
+        Cow::Borrowed(text)
+    }
 }
 
 /// `text` with ASCII in place of the signs that the report uses.
 pub(crate) fn ascii(text: &str) -> String {
-    const SIGNS: [(char, &str); 7] =
-        [('µ', "u"), ('→', "->"), ('−', "-"), ('–', "-"), ('²', "2"), ('×', "x"), ('±', "+-")];
-    SIGNS.iter().fold(text.to_owned(), |text, (sign, plain)| text.replace(*sign, plain))
+    const SIGNS: [(char, &str); 7] = [
+        ('µ', "u"),
+        ('→', "->"),
+        ('−', "-"),
+        ('–', "-"),
+        ('²', "2"),
+        ('×', "x"),
+        ('±', "+-"),
+    ];
+    SIGNS.iter().fold(text.to_owned(), |text, (sign, plain)| {
+        text.replace(*sign, plain)
+    })
 }
 
 /// Stands for a blank at which no line ends.
@@ -149,8 +178,11 @@ fn with_units(text: &str) -> String {
     let mut before = ' ';
     let mut rest = text.chars().peekable();
     while let Some(c) = rest.next() {
-        let is_unit =
-            c == ' ' && before.is_ascii_digit() && rest.peek().is_some_and(|c| c.is_ascii_alphabetic() || *c == '%');
+        let is_unit = c == ' '
+            && before.is_ascii_digit()
+            && rest
+                .peek()
+                .is_some_and(|c| c.is_ascii_alphabetic() || *c == '%');
         kept.push(if is_unit { KEPT } else { c });
         before = c;
     }

@@ -56,16 +56,31 @@ pub(super) const IDENTIFIED_WEIGHT: Parameter = Parameter::number(
 ).of_unit("servo periods squared");
 // Parts of what the exact model calls for, and scales of its parameters.
 /// Share of the velocity feedforward.
-pub const VELOCITY_GAIN: Parameter =
-    Parameter::number("velocity_gain", Gains::EXACT.velocity, [0.0, 10.0], Some([0.1, 1.5]), EXACT_REASON)
-        .of_unit("times the feedforward of the exact model");
+pub const VELOCITY_GAIN: Parameter = Parameter::number(
+    "velocity_gain",
+    Gains::EXACT.velocity,
+    [0.0, 10.0],
+    Some([0.1, 1.5]),
+    EXACT_REASON,
+)
+.of_unit("times the feedforward of the exact model");
 /// Share of the acceleration feedforward.
-pub const ACCELERATION_GAIN: Parameter =
-    Parameter::number("acceleration_gain", Gains::EXACT.acceleration, [0.0, 10.0], Some([0.0, 2.0]), EXACT_REASON)
-        .of_unit("times the feedforward of the exact model");
+pub const ACCELERATION_GAIN: Parameter = Parameter::number(
+    "acceleration_gain",
+    Gains::EXACT.acceleration,
+    [0.0, 10.0],
+    Some([0.0, 2.0]),
+    EXACT_REASON,
+)
+.of_unit("times the feedforward of the exact model");
 /// Share of the friction feedforward.
-pub const FRICTION_GAIN: Parameter =
-    Parameter::number("friction_gain", Gains::EXACT.friction, [0.0, 10.0], Some([0.0, 4.0]), EXACT_REASON)
-        .of_unit("times the feedforward of the exact model");
+pub const FRICTION_GAIN: Parameter = Parameter::number(
+    "friction_gain",
+    Gains::EXACT.friction,
+    [0.0, 10.0],
+    Some([0.0, 4.0]),
+    EXACT_REASON,
+)
+.of_unit("times the feedforward of the exact model");
 pub(super) const EXACT_REASON: &str =
     "1 is what the exact model calls for; another makes up for a model that is not exact";

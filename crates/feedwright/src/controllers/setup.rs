@@ -1,11 +1,11 @@
 //! What a controller is made from: what is known of its machine, and a trained model.
 //!
-//! The machine itself stays in here: what makes a controller gets no hold of it, and cannot tell it what only the simulation
-//! knows. A training sees a recording of it.
+//! The machine itself stays in here: what makes a controller gets no hold of it, and cannot tell it
+//! what only the simulation knows. A training sees a recording of it.
 use feedwright_control::{AxisKnowledge, ContourIdentifier, IdentifiedAxes, IdentifierKind};
 use feedwright_ident::{
-    AxisEstimate, AxisRecordings, DriveSettings, Excitation, Model, NotIdentified, Origin, TrainedAxes, Training,
-    an_identifier, identify_axis,
+    AxisEstimate, AxisRecordings, DriveSettings, Excitation, Model, NotIdentified, Origin,
+    TrainedAxes, Training, an_identifier, identify_axis,
 };
 use feedwright_sim::{Known, KnownAxis, Machine};
 use miette::Diagnostic;
@@ -89,7 +89,9 @@ pub enum ModelMisfit {
         cause: NotIdentified,
     },
     /// The model was trained for another period.
-    #[error("the model was trained for a {period} of {found_s} s, and that of {of} is {needed_s} s")]
+    #[error(
+        "the model was trained for a {period} of {found_s} s, and that of {of} is {needed_s} s"
+    )]
     Period {
         /// Servo period or feed period.
         period: &'static str,
@@ -138,7 +140,9 @@ impl CutsUncorrected {
     /// Which controller.
     pub fn controller(&self) -> &'static str {
         match self {
-            Self::NothingIdentified { controller, .. } | Self::Unsuited { controller, .. } => controller,
+            Self::NothingIdentified { controller, .. } | Self::Unsuited { controller, .. } => {
+                controller
+            }
         }
     }
 }
@@ -151,7 +155,13 @@ impl Entry {
     ///
     /// # Errors
     /// The first thing that does not suit.
-    pub fn suits(&self, model: &Model, known: &Known, axes: usize, choices: &Choices) -> Result<(), ModelMisfit> {
+    pub fn suits(
+        &self,
+        model: &Model,
+        known: &Known,
+        axes: usize,
+        choices: &Choices,
+    ) -> Result<(), ModelMisfit> {
         let controller = self.name;
         let needed = self.identifier.ok_or_else(|| self.no_identifier())?;
         let anew = format!(
@@ -159,17 +169,42 @@ impl Entry {
         );
         if model.kind() != needed {
             let (found, needed) = (an_identifier(model.kind()), an_identifier(needed));
-            return Err(ModelMisfit::Kind { controller, found, needed, hint: anew });
+            return Err(ModelMisfit::Kind {
+                controller,
+                found,
+                needed,
+                hint: anew,
+            });
         }
         if model.axes() != axes {
-            return Err(ModelMisfit::Axes { found: model.axes(), needed: axes, hint: anew });
+            return Err(ModelMisfit::Axes {
+                found: model.axes(),
+                needed: axes,
+                hint: anew,
+            });
         }
         let period = |period, of, found_s: f64, needed_s: f64, hint: String| {
             let same = (found_s - needed_s).abs() <= SAME_PERIOD * needed_s;
-            if same { Ok(()) } else { Err(ModelMisfit::Period { period, of, found_s, needed_s, hint }) }
+            if same {
+                Ok(())
+            } else {
+                Err(ModelMisfit::Period {
+                    period,
+                    of,
+                    found_s,
+                    needed_s,
+                    hint,
+                })
+            }
         };
         let (servo_s, feed_period_s) = (known.period.servo_s, self.feed_period_s(known, choices));
-        period("servo period", "the machine", model.period().servo_s, servo_s, anew.clone())?;
+        period(
+            "servo period",
+            "the machine",
+            model.period().servo_s,
+            servo_s,
+            anew.clone(),
+        )?;
         let found_s = model.period().feed_period_s;
         let hint = match self.parameter("feed_period_s") {
             Some(_) => format!("--set feed_period_s={found_s} takes that of the model; {anew}"),
@@ -179,13 +214,22 @@ impl Entry {
     }
 
     fn no_identifier(&self) -> ModelMisfit {
-        let others = CONTROLLERS.iter().filter(|entry| entry.identifier.is_some()).map(|entry| entry.name);
-        let hint =
-            format!("leave --model out, or choose a controller that does: {}", others.collect::<Vec<_>>().join(", "));
-        ModelMisfit::NoIdentifier { controller: self.name, hint }
+        let others = CONTROLLERS
+            .iter()
+            .filter(|entry| entry.identifier.is_some())
+            .map(|entry| entry.name);
+        let hint = format!(
+            "leave --model out, or choose a controller that does: {}",
+            others.collect::<Vec<_>>().join(", ")
+        );
+        ModelMisfit::NoIdentifier {
+            controller: self.name,
+            hint,
+        }
     }
 
-    /// Time between decisions of one that uses an identifier, s. One that cannot be set to another decides in each servo period.
+    /// Time between decisions of one that uses an identifier, s. One that cannot be set to another
+    /// decides in each servo period.
     fn feed_period_s(&self, known: &Known, choices: &Choices) -> f64 {
         if self.parameter("feed_period_s").is_none() {
             return known.period.servo_s;
@@ -198,25 +242,47 @@ impl Entry {
 impl<'a> Setup<'a> {
     /// For a machine, which is recorded where a model has to be trained.
     pub fn new(machine: &'a Machine, choices: &'a Choices) -> Self {
-        Self { known: machine.known(), choices, machine, model: None, progress: None, found: None }
+        Self {
+            known: machine.known(),
+            choices,
+            machine,
+            model: None,
+            progress: None,
+            found: None,
+        }
     }
 
     /// Tells of the progress of a training, 0 to 1.
     pub fn telling(self, progress: &'a mut dyn FnMut(f64)) -> Self {
-        Self { progress: Some(progress), ..self }
+        Self {
+            progress: Some(progress),
+            ..self
+        }
     }
 
     /// What is to be told of a controller that was made from this and cuts uncorrected.
     pub fn remark(&self, entry: &Entry) -> Option<CutsUncorrected> {
         let (controller, machine) = (entry.name, self.machine.name.clone());
         if self.is_unsuited(entry) {
-            let hint =
-                entry.parameters.first().map(|parameter| format!("--set {}={}", parameter.name, parameter.default));
+            let hint = entry
+                .parameters
+                .first()
+                .map(|parameter| format!("--set {}={}", parameter.name, parameter.default));
             let hint = format!("{} cuts with it all the same", hint.unwrap_or_default());
-            return Some(CutsUncorrected::Unsuited { controller, machine, hint });
+            return Some(CutsUncorrected::Unsuited {
+                controller,
+                machine,
+                hint,
+            });
         }
-        let Some(Err(cause)) = &self.found else { return None };
-        Some(CutsUncorrected::NothingIdentified { controller, machine, cause: *cause })
+        let Some(Err(cause)) = &self.found else {
+            return None;
+        };
+        Some(CutsUncorrected::NothingIdentified {
+            controller,
+            machine,
+            cause: *cause,
+        })
     }
 
     /// Whether a controller cuts uncorrected because it does not suit the machine.
@@ -224,7 +290,8 @@ impl<'a> Setup<'a> {
         self.choices.unsuited.iter().any(|name| name == entry.name)
     }
 
-    /// What was found of each axis by the last training of a model of axes, or why nothing was; none where there was none.
+    /// What was found of each axis by the last training of a model of axes, or why nothing was;
+    /// none where there was none.
     pub fn found(&self) -> Option<&Result<Vec<AxisEstimate>, NotIdentified>> {
         self.found.as_ref()
     }
@@ -235,12 +302,20 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// What is true of the axes of the machine: for the limit alone. A screw with a scale on the table counts as rigid.
+    /// What is true of the axes of the machine: for the limit alone. A screw with a scale on the
+    /// table counts as rigid.
     pub fn truth<const N: usize>(&self) -> [AxisKnowledge; N] {
         let (periods, statistics) = (self.known.period.periods(), self.machine.statistics::<N>());
         std::array::from_fn(|i| {
-            let axis = KnownAxis { transmission: self.machine.axis(i).transmission(), ..*self.known.axis(i) };
-            let axis = if axis.scale_on_table { *self.known.axis(i) } else { axis };
+            let axis = KnownAxis {
+                transmission: self.machine.axis(i).transmission(),
+                ..*self.known.axis(i)
+            };
+            let axis = if axis.scale_on_table {
+                *self.known.axis(i)
+            } else {
+                axis
+            };
             axis.with_statistics(periods, statistics[i])
         })
     }
@@ -249,14 +324,19 @@ impl<'a> Setup<'a> {
     ///
     /// # Errors
     /// A model that does not suit it.
-    pub(super) fn take(&mut self, model: &'a Model, entry: &Entry, axes: usize) -> Result<(), ModelMisfit> {
+    pub(super) fn take(
+        &mut self,
+        model: &'a Model,
+        entry: &Entry,
+        axes: usize,
+    ) -> Result<(), ModelMisfit> {
         entry.suits(model, &self.known, axes, self.choices)?;
         self.model = Some(model);
         Ok(())
     }
 
-    /// Takes inertia and friction of the first N axes from a recording of the machine, in place of those of its data sheets; what its
-    /// drives are set to stays known.
+    /// Takes inertia and friction of the first N axes from a recording of the machine, in place of
+    /// those of its data sheets; what its drives are set to stays known.
     ///
     /// # Errors
     /// A machine that does not move so that its parameters show.
@@ -266,14 +346,19 @@ impl<'a> Setup<'a> {
         let found = |i: usize| {
             let axis = self.known.axis(i);
             let settings = DriveSettings::of(axis, &self.known.period);
-            Ok(identify_axis(&recording, i, &settings)?.parameters.believed(axis, &settings))
+            Ok(identify_axis(&recording, i, &settings)?
+                .parameters
+                .believed(axis, &settings))
         };
         let axes = (0..N).map(found).collect::<Result<Vec<_>, _>>()?;
-        self.known = self.known.with_axes(|i, known| axes.get(i).copied().unwrap_or(*known));
+        self.known = self
+            .known
+            .with_axes(|i, known| axes.get(i).copied().unwrap_or(*known));
         Ok(())
     }
 
-    /// The identified axes; none where the machine does not move so that they show, see [`Self::found`].
+    /// The identified axes; none where the machine does not move so that they show, see
+    /// [`Self::found`].
     pub(super) fn axes<const N: usize>(&mut self) -> Option<IdentifiedAxes<N>> {
         self.model.and_then(Model::identified_axes).or_else(|| {
             let recordings = AxisRecordings::of(self.machine, self.choices.seed);
@@ -284,19 +369,36 @@ impl<'a> Setup<'a> {
     }
 
     /// Records the machine and identifies its axes, or finds them kept.
-    fn train_axes<const N: usize>(&mut self) -> Result<(AxisRecordings<N>, TrainedAxes<N>), NotIdentified> {
+    fn train_axes<const N: usize>(
+        &mut self,
+    ) -> Result<(AxisRecordings<N>, TrainedAxes<N>), NotIdentified> {
         let recordings = AxisRecordings::of(self.machine, self.choices.seed);
         let trained = identified_axes(&recordings, &self.machine.known(), &self.known);
-        self.found = Some(trained.as_ref().map(|trained| trained.estimates.clone()).map_err(|cause| *cause));
+        self.found = Some(
+            trained
+                .as_ref()
+                .map(|trained| trained.estimates.clone())
+                .map_err(|cause| *cause),
+        );
         Ok((recordings, trained?))
     }
 
     /// An identifier of the contour error for decisions each `feed_period_s`.
     pub(super) fn contour<const N: usize>(&mut self, feed_period_s: f64) -> ContourIdentifier<N> {
         self.model.and_then(Model::contour).unwrap_or_else(|| {
-            let excitation = Excitation { feed_period_s, ..Excitation::general() };
+            let excitation = Excitation {
+                feed_period_s,
+                ..Excitation::general()
+            };
             let (machine, seed) = (self.machine, self.choices.seed);
-            identified(machine, &excitation, &Training::default(), seed, &mut |part| self.tell(part)).net
+            identified(
+                machine,
+                &excitation,
+                &Training::default(),
+                seed,
+                &mut |part| self.tell(part),
+            )
+            .net
         })
     }
 
@@ -306,16 +408,29 @@ impl<'a> Setup<'a> {
     /// # Errors
     /// Fails if the controller uses no model, if `axes` is not 2 or 3, if the machine has fewer
     /// axes, or if its axes cannot be identified.
-    pub fn train(&mut self, entry: &Entry, axes: usize, date: String) -> Result<Model, ModelMisfit> {
+    pub fn train(
+        &mut self,
+        entry: &Entry,
+        axes: usize,
+        date: String,
+    ) -> Result<Model, ModelMisfit> {
         let has = self.machine.axis_count();
         match axes {
             2 => self.train_for::<2>(entry, date),
             3 if has >= 3 => self.train_for::<3>(entry, date),
-            _ => Err(ModelMisfit::NoSuchAxes { machine: self.machine.name.clone(), has, asked: axes }),
+            _ => Err(ModelMisfit::NoSuchAxes {
+                machine: self.machine.name.clone(),
+                has,
+                asked: axes,
+            }),
         }
     }
 
-    fn train_for<const N: usize>(&mut self, entry: &Entry, date: String) -> Result<Model, ModelMisfit> {
+    fn train_for<const N: usize>(
+        &mut self,
+        entry: &Entry,
+        date: String,
+    ) -> Result<Model, ModelMisfit> {
         let kind = entry.identifier.ok_or_else(|| entry.no_identifier())?;
         let feed_period_s = entry.feed_period_s(&self.known, self.choices);
         let seed = self.choices.seed;
@@ -323,16 +438,27 @@ impl<'a> Setup<'a> {
         let origin = Origin { source, date };
         Ok(match kind {
             IdentifierKind::Axes => {
-                let not_identified = |cause| ModelMisfit::NotIdentified { machine: self.machine.name.clone(), cause };
+                let not_identified = |cause| ModelMisfit::NotIdentified {
+                    machine: self.machine.name.clone(),
+                    cause,
+                };
                 let (recordings, trained) = self.train_axes::<N>().map_err(not_identified)?;
                 Model::of_axes(&recordings.joined(), &trained, origin)
             }
             IdentifierKind::Contour => {
-                let excitation = Excitation { feed_period_s, ..Excitation::general() };
+                let excitation = Excitation {
+                    feed_period_s,
+                    ..Excitation::general()
+                };
                 let (recording, rng) = excitation.record::<N>(self.machine, seed);
-                let trained = crate::identifier_cache::trained(&recording, &Training::default(), rng, &mut |part| {
-                    self.tell(part);
-                });
+                let trained = crate::identifier_cache::trained(
+                    &recording,
+                    &Training::default(),
+                    rng,
+                    &mut |part| {
+                        self.tell(part);
+                    },
+                );
                 Model::of_contour(&recording, &trained, origin)
             }
         })
@@ -347,19 +473,43 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_controller_that_was_identified_names_its_kind_and_trains_a_model_that_suits_it_and_no_other_kind() {
+    fn every_controller_that_was_identified_names_its_kind_and_trains_a_model_that_suits_it_and_no_other_kind()
+     {
         let machine = Machine::load("tnv40".as_ref()).unwrap();
         let choices = Choices::default();
-        let contour =
-            Setup::new(&machine, &choices).train(CONTROLLERS.find("two-dimensional").unwrap(), 2, "today".to_owned());
-        let axes =
-            Setup::new(&machine, &choices).train(CONTROLLERS.find("lqg-identified").unwrap(), 2, "today".to_owned());
-        for (model, kind) in [(contour.unwrap(), IdentifierKind::Contour), (axes.unwrap(), IdentifierKind::Axes)] {
+        let contour = Setup::new(&machine, &choices).train(
+            CONTROLLERS.find("two-dimensional").unwrap(),
+            2,
+            "today".to_owned(),
+        );
+        let axes = Setup::new(&machine, &choices).train(
+            CONTROLLERS.find("lqg-identified").unwrap(),
+            2,
+            "today".to_owned(),
+        );
+        for (model, kind) in [
+            (contour.unwrap(), IdentifierKind::Contour),
+            (axes.unwrap(), IdentifierKind::Axes),
+        ] {
             for entry in CONTROLLERS {
-                assert_eq!(entry.identifier.is_some(), entry.knows == Knows::Identified, "{}", entry.name);
+                assert_eq!(
+                    entry.identifier.is_some(),
+                    entry.knows == Knows::Identified,
+                    "{}",
+                    entry.name
+                );
                 let suits = entry.suits(&model, &machine.known(), 2, &choices);
-                assert_eq!(suits.is_ok(), entry.identifier == Some(kind), "{}: {suits:?}", entry.name);
-                assert!(entry.suits(&model, &machine.known(), 3, &choices).is_err(), "{}", entry.name);
+                assert_eq!(
+                    suits.is_ok(),
+                    entry.identifier == Some(kind),
+                    "{}: {suits:?}",
+                    entry.name
+                );
+                assert!(
+                    entry.suits(&model, &machine.known(), 3, &choices).is_err(),
+                    "{}",
+                    entry.name
+                );
             }
         }
     }
@@ -378,19 +528,37 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_is_identified_the_training_fails_and_the_controller_tells_that_it_cuts_uncorrected() {
+    fn where_nothing_is_identified_the_training_fails_and_the_controller_tells_that_it_cuts_uncorrected()
+     {
         let mut machine = Machine::load("tnv40".as_ref()).unwrap();
-        // The loop takes longer to settle than the excitation lasts; with long servo periods its recording is short.
+        // The loop takes longer to settle than the excitation lasts; with long servo periods its
+        // recording is short.
         machine.axes.iter_mut().for_each(|axis| axis.kp_1_s = 0.1);
-        machine.period = Period { servo_s: 0.01, mechanics_s: 0.001, mechanics_per_servo: 10 };
-        let (choices, entry) = (Choices::default(), CONTROLLERS.find("lqg-identified").unwrap());
+        machine.period = Period {
+            servo_s: 0.01,
+            mechanics_s: 0.001,
+            mechanics_per_servo: 10,
+        };
+        let (choices, entry) = (
+            Choices::default(),
+            CONTROLLERS.find("lqg-identified").unwrap(),
+        );
         let mut setup = Setup::new(&machine, &choices);
-        let refused = setup.train(entry, 2, "today".to_owned()).unwrap_err().to_string();
-        assert!(refused.starts_with("the axes of `tnv40` cannot be identified: 0 stretches are longer"), "{refused}");
+        let refused = setup
+            .train(entry, 2, "today".to_owned())
+            .unwrap_err()
+            .to_string();
+        assert!(
+            refused.starts_with("the axes of `tnv40` cannot be identified: 0 stretches are longer"),
+            "{refused}"
+        );
         let mut setup = Setup::new(&machine, &choices);
         assert_eq!(setup.remark(entry), None);
         let _ = super::super::Make::<2>::make(entry, &mut setup);
         let told = setup.remark(entry).unwrap().to_string();
-        assert!(told.starts_with("lqg-identified cuts uncorrected: the axes of `tnv40` cannot"), "{told}");
+        assert!(
+            told.starts_with("lqg-identified cuts uncorrected: the axes of `tnv40` cannot"),
+            "{told}"
+        );
     }
 }

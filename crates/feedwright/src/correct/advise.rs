@@ -1,8 +1,11 @@
-//! At which feed a tolerance is held: by the program as it is, by the corrected program, and with a controller that sees the tool.
+//! At which feed a tolerance is held: by the program as it is, by the corrected program, and with a
+//! controller that sees the tool.
 //!
-//! The program is cut with all its feedrates at factors that go up and down by the root of two, until it is within the tolerance. Where the error
-//! passes the tolerance the factor is interpolated, over logarithms, and a cut at that factor shows that it holds; it is lowered until one does. The same errors,
-//! stretch by stretch, give each stretch a factor of its own, and a cut with all of them shows that they hold together.
+//! The program is cut with all its feedrates at factors that go up and down by the root of two,
+//! until it is within the tolerance. Where the error passes the tolerance the factor is
+//! interpolated, over logarithms, and a cut at that factor shows that it holds; it is lowered until
+//! one does. The same errors, stretch by stretch, give each stretch a factor of its own, and a cut
+//! with all of them shows that they hold together.
 
 mod feed_cuts;
 mod feed_search;
@@ -46,7 +49,8 @@ pub struct AdviseJob {
     pub tolerance_um: f64,
     /// Settings of the reader.
     pub reader: Settings,
-    /// Standard deviation of each value of the machine, as a fraction of it; 0 where it is exact. As [`CorrectJob::file_error`](super::CorrectJob).
+    /// Standard deviation of each value of the machine, as a fraction of it; 0 where it is exact.
+    /// As [`CorrectJob::file_error`](super::CorrectJob).
     pub file_error: f64,
 }
 
@@ -104,7 +108,8 @@ pub struct NearestCut {
     pub lines: [u32; 2],
     /// Where on that stretch it is.
     pub place: ErrorPlace,
-    /// The fastest factor that holds beside the ends of the stretches, where the tool comes from rest or goes there.
+    /// The fastest factor that holds beside the ends of the stretches, where the tool comes from
+    /// rest or goes there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub beside_ends: Option<FeedCut>,
 }
@@ -116,7 +121,8 @@ pub struct StretchAdvice {
     pub lines: [u32; 2],
     /// Largest programmed feedrate, mm/s.
     pub feed_mm_s: f64,
-    /// Largest feedrate that holds, mm/s, in each of [`WAYS`]; none where the least that was cut does not.
+    /// Largest feedrate that holds, mm/s, in each of [`WAYS`]; none where the least that was cut
+    /// does not.
     pub holds_mm_s: [Option<f64>; 3],
     /// Where none does: what comes nearest.
     pub nearest: [Option<NearestFeed>; 3],
@@ -166,8 +172,14 @@ impl Advice {
 }
 
 impl AdviseJob {
-    /// Asks for the feedrates of a program that hold a tolerance: on a control, and with the default controller.
-    pub fn new(program: Program, machine: Machine, target: &'static TargetControl, tolerance_um: f64) -> Self {
+    /// Asks for the feedrates of a program that hold a tolerance: on a control, and with the
+    /// default controller.
+    pub fn new(
+        program: Program,
+        machine: Machine,
+        target: &'static TargetControl,
+        tolerance_um: f64,
+    ) -> Self {
         Self {
             program,
             machine,
@@ -184,22 +196,37 @@ impl AdviseJob {
     /// Finds the feedrates.
     ///
     /// # Errors
-    /// A program with mistakes or without a feed motion, more axes than the machine has, a geometry that cannot be compensated, or an end from outside.
+    /// A program with mistakes or without a feed motion, more axes than the machine has, a geometry
+    /// that cannot be compensated, or an end from outside.
     pub fn run(&self, watch: &dyn Watch) -> Result<Advice, JobError> {
         watch.begin("reading the program", 1);
         let summary = self.program.check(self.reader.clone())?;
         let axes = axes_that_move(&self.program, &summary, &self.machine)?;
         let source = SourceProgram::read(&self.program, &self.reader, None)?;
-        let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
+        let warnings = summary
+            .warnings
+            .iter()
+            .cloned()
+            .chain(summary.uncontrolled())
+            .collect();
         let compensated = self.compensation.on(&self.machine, summary.box_mm)?;
         let file = FileModel::uncertain(&compensated, axes, self.file_error);
-        let machine = file.as_ref().map_or(compensated, |file| file.machine.clone());
-        let job = Self { machine, ..self.clone() };
+        let machine = file
+            .as_ref()
+            .map_or(compensated, |file| file.machine.clone());
+        let job = Self {
+            machine,
+            ..self.clone()
+        };
         let found = match axes {
             2 => job.of_axes::<2>(&source, file.as_ref(), watch),
             _ => job.of_axes::<3>(&source, file.as_ref(), watch),
         };
-        Ok(Advice { warnings, assumed: file.map(|file| file.assumption), ..found? })
+        Ok(Advice {
+            warnings,
+            assumed: file.map(|file| file.assumption),
+            ..found?
+        })
     }
 
     fn of_axes<const N: usize>(
@@ -215,9 +242,12 @@ impl AdviseJob {
         let feeds: Vec<f64> = stretches(&parts).map(feed_mm_s).collect();
         let largest_mm_s = feeds.iter().copied().fold(0.0, f64::max);
         if largest_mm_s == 0.0 {
-            return Err(JobError::NothingToCut { part: self.program.name() });
+            return Err(JobError::NothingToCut {
+                part: self.program.name(),
+            });
         }
-        let mut steps = (self.controller.identifier.is_some()).then(|| identifying(&self.machine, watch));
+        let mut steps =
+            (self.controller.identifier.is_some()).then(|| identifying(&self.machine, watch));
         let mut progress = |part: f64| steps.iter_mut().for_each(|steps| steps.reach(part));
         let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
         let controller = Make::<N>::make(self.controller, &mut setup);
@@ -235,20 +265,28 @@ impl AdviseJob {
         let (mut ways, mut found) = (Vec::new(), Vec::new());
         for way in WAYS {
             let of_way = format!("cutting, {}", way.name(self.controller.name));
-            let mut search =
-                FeedSearch { bench: &mut bench, way, progress: StageSteps::begin(watch, &of_way), done: 0.0 };
-            let (advice, of_stretches) =
-                search.advice(most, self.tolerance_um).map_err(|error| JobError::of_run(&self.program, error))?;
+            let mut search = FeedSearch {
+                bench: &mut bench,
+                way,
+                progress: StageSteps::begin(watch, &of_way),
+                done: 0.0,
+            };
+            let (advice, of_stretches) = search
+                .advice(most, self.tolerance_um)
+                .map_err(|error| JobError::of_run(&self.program, error))?;
             ways.push(advice);
             found.push(of_stretches);
         }
         let of_stretch = |(k, stretch): (usize, &SmoothStretch)| StretchAdvice {
             lines: lines_of(stretch),
             feed_mm_s: feeds[k],
-            holds_mm_s: [0, 1, 2].map(|way: usize| found[way][k].holds.map(|factor| factor * feeds[k])),
+            holds_mm_s: [0, 1, 2]
+                .map(|way: usize| found[way][k].holds.map(|factor| factor * feeds[k])),
             nearest: [0, 1, 2].map(|way: usize| found[way][k].nearest(feeds[k])),
         };
-        let least_mm_s = stretches(&parts).flat_map(|stretch| &stretch.motions).map(|motion| motion.feed_mm_s);
+        let least_mm_s = stretches(&parts)
+            .flat_map(|stretch| &stretch.motions)
+            .map(|motion| motion.feed_mm_s);
         Ok(Advice {
             control: self.target.name,
             planner: self.target.stages(&self.machine).planner.name,
@@ -276,7 +314,11 @@ impl CutWay {
 
 /// Largest feedrate of a stretch, mm/s.
 fn feed_mm_s(stretch: &SmoothStretch) -> f64 {
-    stretch.motions.iter().map(|motion| motion.feed_mm_s).fold(0.0, f64::max)
+    stretch
+        .motions
+        .iter()
+        .map(|motion| motion.feed_mm_s)
+        .fold(0.0, f64::max)
 }
 
 impl NearestCut {
@@ -290,7 +332,11 @@ impl NearestCut {
             ErrorPlace::Way => format!("on lines {first} to {last}"),
         };
         let percent = |cut: &FeedCut| 100.0 * cut.factor.unwrap_or(1.0);
-        let nearest = format!("at no feed: {:.1} {um} at {:.0} %, {place}", self.cut.max_um, percent(&self.cut));
+        let nearest = format!(
+            "at no feed: {:.1} {um} at {:.0} %, {place}",
+            self.cut.max_um,
+            percent(&self.cut)
+        );
         match &self.beside_ends {
             Some(cut) => {
                 let mm_min = 0.6 * percent(cut) * largest_mm_s;
@@ -326,7 +372,8 @@ impl NearestCut {
 }
 
 impl StretchAdvice {
-    /// The feedrate that holds in one of [`WAYS`], mm/min or in/min: in brackets where it holds beside the ends of the stretch only.
+    /// The feedrate that holds in one of [`WAYS`], mm/min or in/min: in brackets where it holds
+    /// beside the ends of the stretch only.
     pub fn cell(&self, way: usize, units: PageUnits) -> String {
         let per_minute = |mm_s: f64| units.fixed(60.0 * mm_s, 0);
         let beside_ends = self.nearest[way].and_then(|nearest| nearest.beside_ends_mm_s);
@@ -337,9 +384,14 @@ impl StretchAdvice {
         }
     }
 
-    /// The error that no feedrate takes back, and where it is, with a sign for micrometres; none where each way holds at some feedrate.
+    /// The error that no feedrate takes back, and where it is, with a sign for micrometres; none
+    /// where each way holds at some feedrate.
     pub fn remark(&self, um: &str) -> Option<String> {
-        let largest = self.nearest.iter().flatten().max_by(|a, b| a.max_um.total_cmp(&b.max_um))?;
+        let largest = self
+            .nearest
+            .iter()
+            .flatten()
+            .max_by(|a, b| a.max_um.total_cmp(&b.max_um))?;
         let place = match largest.place {
             ErrorPlace::Start => "start",
             ErrorPlace::End => "end",
@@ -361,8 +413,10 @@ fn with_factors(program: &[ProgramPart], factors: &[f64], most_mm_s: f64) -> Vec
         ProgramPart::Kept(step) => ProgramPart::Kept(step.clone()),
         ProgramPart::Stretch(stretch) => {
             let factor = factors.next().copied().unwrap_or(1.0);
-            let motion =
-                |motion: &Motion| Motion { feed_mm_s: (factor * motion.feed_mm_s).min(most_mm_s), ..motion.clone() };
+            let motion = |motion: &Motion| Motion {
+                feed_mm_s: (factor * motion.feed_mm_s).min(most_mm_s),
+                ..motion.clone()
+            };
             ProgramPart::Stretch(SmoothStretch {
                 motions: stretch.motions.iter().map(motion).collect(),
                 ..stretch.clone()

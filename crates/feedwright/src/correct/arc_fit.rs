@@ -20,7 +20,8 @@
 use feedwright_gcode::canon::{Plane, Shape};
 use feedwright_plan::vector::{Vector, add_scaled, distance, dot, sub};
 
-/// Tangents that differ by less meet without a corner, rad: half of what feed planners take for one.
+/// Tangents that differ by less meet without a corner, rad: half of what feed planners take for
+/// one.
 const TANGENT_RAD: f64 = 5e-4;
 /// An arc turns by no more, rad: at half a turn its centre would be anybody's guess.
 const MOST_RAD: f64 = 3.0;
@@ -28,8 +29,8 @@ const MOST_RAD: f64 = 3.0;
 const STRAIGHT_MM: f64 = 2e4;
 /// An arc of a smaller radius is straight, mm: its centre is only as good as its printed digits.
 const POINT_MM: f64 = 0.02;
-/// An arc between ends that are closer is straight, mm: four printed steps in inches. Rounded to steps, its end could come to lie before its start, and
-/// the arc would be a full turn.
+/// An arc between ends that are closer is straight, mm: four printed steps in inches. Rounded to
+/// steps, its end could come to lie before its start, and the arc would be a full turn.
 const LEAST_MM: f64 = 1e-4;
 /// Lengths in the plane up to this count as zero, mm.
 const NO_WAY_MM: f64 = 1e-6;
@@ -81,7 +82,11 @@ pub struct ArcFit<'a> {
 impl<'a> ArcFit<'a> {
     /// A fit of these points within a tolerance, written with `steps_per_mm` steps in a millimetre.
     pub const fn new(points: &'a [FitPoint], tolerance_mm: f64, steps_per_mm: f64) -> Self {
-        Self { points, tolerance_mm, steps_per_mm }
+        Self {
+            points,
+            tolerance_mm,
+            steps_per_mm,
+        }
     }
 
     /// The motions, from the first point to the last.
@@ -108,7 +113,9 @@ impl<'a> ArcFit<'a> {
         let one = self.search(from, |to| self.single(from, to));
         let two = self.search(from, |to| self.biarc(from, to));
         match (one, two) {
-            (Some((one, arc)), Some((two, _))) if TWO_FOR_ONE * (one - from) >= two - from => (one, vec![arc]),
+            (Some((one, arc)), Some((two, _))) if TWO_FOR_ONE * (one - from) >= two - from => {
+                (one, vec![arc])
+            }
             (_, Some((two, arcs))) => (two, arcs.to_vec()),
             (Some((one, arc)), None) => (one, vec![arc]),
             (None, None) => (from + 1, vec![self.straight(from, from + 1)]),
@@ -118,8 +125,12 @@ impl<'a> ArcFit<'a> {
     /// The furthest point that `fits`, by doubling and halving.
     fn search<T>(&self, from: usize, fits: impl Fn(usize) -> Option<T>) -> Option<(usize, T)> {
         let feed_mm_s = self.points[from].feed_mm_s;
-        let changes = self.points[from + 1..].iter().position(|point| point.feed_mm_s != feed_mm_s);
-        let last = changes.map_or(self.points.len() - 1, |k| from + 1 + k).min(from + MOST_POINTS);
+        let changes = self.points[from + 1..]
+            .iter()
+            .position(|point| point.feed_mm_s != feed_mm_s);
+        let last = changes
+            .map_or(self.points.len() - 1, |k| from + 1 + k)
+            .min(from + MOST_POINTS);
         let (mut best, mut good, mut bad) = (None, from, last + 1);
         let mut step = 1;
         while good < last {
@@ -183,7 +194,10 @@ impl<'a> ArcFit<'a> {
     }
 
     fn straight(&self, from: usize, to: usize) -> FitArc {
-        FitArc::straight(self.printed(self.points[from].at_mm), self.printed(self.points[to].at_mm))
+        FitArc::straight(
+            self.printed(self.points[from].at_mm),
+            self.printed(self.points[to].at_mm),
+        )
     }
 
     /// The arc from `start_mm` with a tangent there to `end_mm`, straight where it hardly bends.
@@ -200,18 +214,34 @@ impl<'a> ArcFit<'a> {
         {
             return FitArc::straight(start_mm, end_mm);
         }
-        let center_mm = [start_mm[0] + radius_mm * normal[0], start_mm[1] + radius_mm * normal[1]];
+        let center_mm = [
+            start_mm[0] + radius_mm * normal[0],
+            start_mm[1] + radius_mm * normal[1],
+        ];
         let length_mm = libm::hypot(radius_mm * sweep_rad, end_mm[2] - start_mm[2]);
-        FitArc { start_mm, end_mm, radius_mm: Some(radius_mm), center_mm, sweep_rad, length_mm }
+        FitArc {
+            start_mm,
+            end_mm,
+            radius_mm: Some(radius_mm),
+            center_mm,
+            sweep_rad,
+            length_mm,
+        }
     }
 
     /// Whether arcs pass all points between two, and none turns too far.
     fn passes(&self, arcs: &[FitArc], from: usize, to: usize) -> bool {
         let gentle = |arc: &FitArc| arc.sweep_rad.abs() < MOST_RAD;
-        let passed = |point: &FitPoint| arcs.iter().any(|arc| arc.distance_mm(point.at_mm) <= self.tolerance_mm);
+        let passed = |point: &FitPoint| {
+            arcs.iter()
+                .any(|arc| arc.distance_mm(point.at_mm) <= self.tolerance_mm)
+        };
         // An arc of many turns' worth of points may come near all of them and still not go along.
         let way_mm: f64 = arcs.iter().map(|arc| arc.length_mm).sum();
-        let points_mm: f64 = self.points[from..=to].windows(2).map(|pair| distance(pair[0].at_mm, pair[1].at_mm)).sum();
+        let points_mm: f64 = self.points[from..=to]
+            .windows(2)
+            .map(|pair| distance(pair[0].at_mm, pair[1].at_mm))
+            .sum();
         arcs.iter().all(gentle)
             && way_mm < 1.1 * points_mm + self.tolerance_mm
             && self.points[from + 1..to].iter().all(passed)
@@ -219,10 +249,16 @@ impl<'a> ArcFit<'a> {
 
     /// As the reader gives it in G17.
     fn shape(&self, arc: &FitArc) -> Shape {
-        let Some(radius_mm) = arc.radius_mm else { return Shape::Line };
+        let Some(radius_mm) = arc.radius_mm else {
+            return Shape::Line;
+        };
         let [i, j] = [0, 1].map(|k| self.print(arc.center_mm[k] - arc.start_mm[k]));
         let center_mm = [arc.start_mm[0] + i, arc.start_mm[1] + j, arc.start_mm[2]];
-        Shape::Arc { plane: Plane::Xy, center_mm, turns: if radius_mm > 0.0 { 1 } else { -1 } }
+        Shape::Arc {
+            plane: Plane::Xy,
+            center_mm,
+            turns: if radius_mm > 0.0 { 1 } else { -1 },
+        }
     }
 
     fn print(&self, value: f64) -> f64 {
@@ -239,49 +275,101 @@ impl FitMotion {
     pub(super) fn in_plane(self, plane: Plane) -> Self {
         let along = |of_plane: Vector| {
             let mut place = [0.0; 3];
-            plane.axes().into_iter().zip(of_plane).for_each(|(axis, value)| place[axis] = value);
+            plane
+                .axes()
+                .into_iter()
+                .zip(of_plane)
+                .for_each(|(axis, value)| place[axis] = value);
             place
         };
         let shape = match self.shape {
-            Shape::Arc { center_mm, turns, .. } => Shape::Arc { plane, center_mm: along(center_mm), turns },
+            Shape::Arc {
+                center_mm, turns, ..
+            } => Shape::Arc {
+                plane,
+                center_mm: along(center_mm),
+                turns,
+            },
             shape => shape,
         };
-        Self { start_mm: along(self.start_mm), end_mm: along(self.end_mm), shape, ..self }
+        Self {
+            start_mm: along(self.start_mm),
+            end_mm: along(self.end_mm),
+            shape,
+            ..self
+        }
     }
 }
 
 impl FitArc {
     fn straight(start_mm: Vector, end_mm: Vector) -> Self {
         let length_mm = distance(start_mm, end_mm);
-        Self { start_mm, end_mm, radius_mm: None, center_mm: [0.0; 2], sweep_rad: 0.0, length_mm }
+        Self {
+            start_mm,
+            end_mm,
+            radius_mm: None,
+            center_mm: [0.0; 2],
+            sweep_rad: 0.0,
+            length_mm,
+        }
     }
 
     /// The same the other way.
     fn reversed(self) -> Self {
-        let Self { start_mm, end_mm, radius_mm, sweep_rad, .. } = self;
-        Self { start_mm: end_mm, end_mm: start_mm, radius_mm: radius_mm.map(|r| -r), sweep_rad: -sweep_rad, ..self }
+        let Self {
+            start_mm,
+            end_mm,
+            radius_mm,
+            sweep_rad,
+            ..
+        } = self;
+        Self {
+            start_mm: end_mm,
+            end_mm: start_mm,
+            radius_mm: radius_mm.map(|r| -r),
+            sweep_rad: -sweep_rad,
+            ..self
+        }
     }
 
     /// Tangent at its end, where it has `tangent` at its start.
     fn end_tangent(&self, tangent: [f64; 2]) -> [f64; 2] {
         if self.radius_mm.is_none() {
-            let way = [self.end_mm[0] - self.start_mm[0], self.end_mm[1] - self.start_mm[1]];
+            let way = [
+                self.end_mm[0] - self.start_mm[0],
+                self.end_mm[1] - self.start_mm[1],
+            ];
             let length = libm::hypot(way[0], way[1]);
-            return if length > NO_WAY_MM { way.map(|x| x / length) } else { tangent };
+            return if length > NO_WAY_MM {
+                way.map(|x| x / length)
+            } else {
+                tangent
+            };
         }
         let (sin, cos) = libm::sincos(self.sweep_rad);
-        [tangent[0] * cos - tangent[1] * sin, tangent[0] * sin + tangent[1] * cos]
+        [
+            tangent[0] * cos - tangent[1] * sin,
+            tangent[0] * sin + tangent[1] * cos,
+        ]
     }
 
     fn distance_mm(&self, point_mm: Vector) -> f64 {
         let Some(radius_mm) = self.radius_mm else {
-            let (way, to_point) = (sub(self.end_mm, self.start_mm), sub(point_mm, self.start_mm));
+            let (way, to_point) = (
+                sub(self.end_mm, self.start_mm),
+                sub(point_mm, self.start_mm),
+            );
             let square = dot(way, way);
-            let part = if square > 0.0 { (dot(to_point, way) / square).clamp(0.0, 1.0) } else { 0.0 };
+            let part = if square > 0.0 {
+                (dot(to_point, way) / square).clamp(0.0, 1.0)
+            } else {
+                0.0
+            };
             return distance(point_mm, add_scaled(self.start_mm, part, way));
         };
         let from_center = |at: Vector| [at[0] - self.center_mm[0], at[1] - self.center_mm[1]];
-        let turned = turn_rad(from_center(self.start_mm), from_center(point_mm)) * radius_mm.signum();
+        let turned =
+            turn_rad(from_center(self.start_mm), from_center(point_mm)) * radius_mm.signum();
         let part = (turned / self.sweep_rad.abs()).clamp(0.0, 1.0);
         let place = if part <= 0.0 {
             self.start_mm
@@ -291,7 +379,11 @@ impl FitArc {
             let [x, y] = from_center(point_mm);
             let scale = radius_mm.abs() / libm::hypot(x, y);
             let z_mm = self.start_mm[2] + part * (self.end_mm[2] - self.start_mm[2]);
-            [self.center_mm[0] + scale * x, self.center_mm[1] + scale * y, z_mm]
+            [
+                self.center_mm[0] + scale * x,
+                self.center_mm[1] + scale * y,
+                z_mm,
+            ]
         };
         distance(place, point_mm)
     }
@@ -312,7 +404,11 @@ mod tests {
             .map(|k| {
                 let part = k as f64 / count as f64;
                 let (sin, cos) = libm::sincos(part * std::f64::consts::TAU);
-                FitPoint { at_mm: [5.0 * cos, 5.0 * sin, rise_mm * part], tangent: [-sin, cos], feed_mm_s: 10.0 }
+                FitPoint {
+                    at_mm: [5.0 * cos, 5.0 * sin, rise_mm * part],
+                    tangent: [-sin, cos],
+                    feed_mm_s: 10.0,
+                }
             })
             .collect()
     }
@@ -321,11 +417,18 @@ mod tests {
     fn a_plunge_that_is_a_step_aside_has_no_arc() {
         let point = |k: u32| {
             let aside_mm = f64::from(k % 2) * 2e-5;
-            FitPoint { at_mm: [1.0, 1.0 + aside_mm, -0.1 * f64::from(k)], tangent: [1.0, 0.0], feed_mm_s: 10.0 }
+            FitPoint {
+                at_mm: [1.0, 1.0 + aside_mm, -0.1 * f64::from(k)],
+                tangent: [1.0, 0.0],
+                feed_mm_s: 10.0,
+            }
         };
         let points: Vec<FitPoint> = (0..20).map(point).collect();
         let motions = ArcFit::new(&points, 1e-3, 1e5).motions();
-        assert!(motions.iter().all(|motion| motion.shape == Shape::Line), "{motions:?}");
+        assert!(
+            motions.iter().all(|motion| motion.shape == Shape::Line),
+            "{motions:?}"
+        );
     }
 
     #[test]
@@ -333,7 +436,11 @@ mod tests {
         for rise_mm in [0.0, 5.0] {
             let points = helix(rise_mm, 1000);
             let motions = ArcFit::new(&points, 1e-3, 1e5).motions();
-            assert!(motions.len() <= 4, "{} blocks for a rise of {rise_mm} mm: {motions:?}", motions.len());
+            assert!(
+                motions.len() <= 4,
+                "{} blocks for a rise of {rise_mm} mm: {motions:?}",
+                motions.len()
+            );
         }
     }
 }

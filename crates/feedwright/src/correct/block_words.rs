@@ -7,8 +7,8 @@ use feedwright_gcode::{Dialect, ModesInForce};
 
 use super::target::TargetControl;
 
-/// Decimals of a feedrate in units a minute: of one from 10 on, and of the smallest. A feedrate below 10 has as many digits as one
-/// above, so that it is printed to within 0.05 %.
+/// Decimals of a feedrate in units a minute: of one from 10 on, and of the smallest. A feedrate
+/// below 10 has as many digits as one above, so that it is printed to within 0.05 %.
 const FEED_DECIMALS: [usize; 2] = [2, 6];
 
 /// Printed steps of a tolerance in its unit: in inches, they are some nanometers.
@@ -28,13 +28,26 @@ pub(super) struct BlockWords<'a> {
 fn number(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let text = text.trim_end_matches('0');
-    let text = if text.ends_with('.') { format!("{text}0") } else { text.to_owned() };
-    if text == "-0.0" { "0.0".to_owned() } else { text }
+    let text = if text.ends_with('.') {
+        format!("{text}0")
+    } else {
+        text.to_owned()
+    };
+    if text == "-0.0" {
+        "0.0".to_owned()
+    } else {
+        text
+    }
 }
 
 impl<'a> BlockWords<'a> {
     pub(super) const fn new(target: &'a TargetControl, modes: Option<&'a ModesInForce>) -> Self {
-        Self { target, modes, feed: String::new(), plane: Plane::Xy }
+        Self {
+            target,
+            modes,
+            feed: String::new(),
+            plane: Plane::Xy,
+        }
     }
 
     fn unit_mm(&self) -> f64 {
@@ -42,17 +55,23 @@ impl<'a> BlockWords<'a> {
     }
 
     fn to_program(&self, machine_mm: [f64; 3]) -> [f64; 3] {
-        let program_mm = self.modes.map_or(machine_mm, |modes| modes.to_program(machine_mm));
+        let program_mm = self
+            .modes
+            .map_or(machine_mm, |modes| modes.to_program(machine_mm));
         program_mm.map(|value| value / self.unit_mm())
     }
 
-    /// The block of a motion; none of one that no block of straight lines and arcs can say, empty where nothing moves.
+    /// The block of a motion; none of one that no block of straight lines and arcs can say, empty
+    /// where nothing moves.
     pub(super) fn motion(&mut self, motion: &Motion) -> Option<String> {
         if !motion.others.is_none() {
             return None;
         }
         let decimals = self.target.decimals_of(self.unit_mm());
-        let (start, end) = (self.to_program(motion.start_mm), self.to_program(motion.end_mm));
+        let (start, end) = (
+            self.to_program(motion.start_mm),
+            self.to_program(motion.end_mm),
+        );
         let print = |value: f64| number(value, decimals);
         let mut in_plane: &[usize] = &[];
         let mut text = match (&motion.shape, motion.kind) {
@@ -67,7 +86,11 @@ impl<'a> BlockWords<'a> {
                 let code = if *turns > 0 { "G3" } else { "G2" };
                 let changes = self.plane != *plane;
                 self.plane = *plane;
-                if changes { format!("{} {code}", plane_word(*plane)) } else { code.to_owned() }
+                if changes {
+                    format!("{} {code}", plane_word(*plane))
+                } else {
+                    code.to_owned()
+                }
             }
             _ => return None,
         };
@@ -79,7 +102,12 @@ impl<'a> BlockWords<'a> {
         if let Shape::Arc { center_mm, .. } = &motion.shape {
             let center = self.to_program(*center_mm);
             for &axis in in_plane {
-                let _ = write!(text, " {}{}", ['I', 'J', 'K'][axis], print(center[axis] - start[axis]));
+                let _ = write!(
+                    text,
+                    " {}{}",
+                    ['I', 'J', 'K'][axis],
+                    print(center[axis] - start[axis])
+                );
             }
         } else if !text.contains(' ') {
             return Some(String::new());
@@ -94,7 +122,8 @@ impl<'a> BlockWords<'a> {
         Some(text)
     }
 
-    /// The block behind the last motion that puts G17 in force again, where an arc had another plane.
+    /// The block behind the last motion that puts G17 in force again, where an arc had another
+    /// plane.
     pub(super) fn plane_back(&self) -> Option<String> {
         (self.plane != Plane::Xy).then(|| plane_word(Plane::Xy).to_owned())
     }
@@ -109,15 +138,23 @@ pub(super) const fn plane_word(plane: Plane) -> &'static str {
     }
 }
 
-/// Words that take corners in this way, in a unit of length and in the words of a dialect. Only LinuxCNC takes tolerances, and grbl has no words for it.
+/// Words that take corners in this way, in a unit of length and in the words of a dialect. Only
+/// LinuxCNC takes tolerances, and grbl has no words for it.
 pub(super) fn corner_words(corner: Corner, unit_mm: f64, dialect: Dialect) -> String {
     let length = |mm: f64| (mm / unit_mm * TOLERANCE_STEPS).round() / TOLERANCE_STEPS;
     match (corner, dialect) {
         (Corner::ExactStop, _) => "G61.1".to_owned(),
         (Corner::ExactPath, _) => "G61".to_owned(),
         (_, Dialect::Grbl) => String::new(),
-        (Corner::Continuous { tolerance_mm: Some(tolerance_mm), merge_mm }, Dialect::LinuxCnc) => {
-            let merge = merge_mm.map_or_else(String::new, |merge_mm| format!(" Q{}", length(merge_mm)));
+        (
+            Corner::Continuous {
+                tolerance_mm: Some(tolerance_mm),
+                merge_mm,
+            },
+            Dialect::LinuxCnc,
+        ) => {
+            let merge =
+                merge_mm.map_or_else(String::new, |merge_mm| format!(" Q{}", length(merge_mm)));
             format!("G64 P{}{merge}", length(tolerance_mm))
         }
         (Corner::Continuous { .. }, _) => "G64".to_owned(),
@@ -135,7 +172,11 @@ pub(super) fn feed_number(feed_mm_s: f64, unit_mm: f64) -> String {
 /// A rest of so long.
 pub(super) fn dwell(seconds: f64, dialect: Dialect) -> String {
     let milliseconds = dialect.is_fanuc() || dialect == Dialect::Printer;
-    if milliseconds { format!("G4 P{}", (seconds * 1e3).round()) } else { format!("G4 P{}", number(seconds, 4)) }
+    if milliseconds {
+        format!("G4 P{}", (seconds * 1e3).round())
+    } else {
+        format!("G4 P{}", number(seconds, 4))
+    }
 }
 
 /// The block of an event; none of one that a block cannot say, empty where it needs none.
@@ -145,12 +186,16 @@ pub(super) fn event(kind: &EventKind, dialect: Dialect) -> Option<String> {
         EventKind::SpindleSpeed { rpm } => format!("S{rpm}"),
         EventKind::MCode { code: 2 | 30, .. } => String::new(),
         EventKind::MCode { code, p, q } => {
-            let word =
-                |letter, value: &Option<f64>| value.map_or_else(String::new, |value| format!(" {letter}{value}"));
+            let word = |letter, value: &Option<f64>| {
+                value.map_or_else(String::new, |value| format!(" {letter}{value}"))
+            };
             format!("M{code}{}{}", word('P', p), word('Q', q))
         }
         EventKind::ToolSelect { tool } => format!("T{tool}"),
-        EventKind::Message { text } => format!("(MSG, {})", text.trim().replace(['(', ')', '\n', '\r'], " ")),
+        EventKind::Message { text } => format!(
+            "(MSG, {})",
+            text.trim().replace(['(', ')', '\n', '\r'], " ")
+        ),
         EventKind::ProgramEnd => "M2".to_owned(),
         EventKind::SpindleSync { .. } | EventKind::Probe => return None,
     })

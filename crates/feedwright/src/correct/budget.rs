@@ -2,10 +2,11 @@
 
 /// A stretch may take longer by this fraction of its programmed time and by [`STRETCH_DWELLS`].
 const MORE_TIME: f64 = 0.065;
-/// Extra time that a stretch may take, in dwells: the rests of both of its ends and as much again, if the
-/// others leave it that.
+/// Extra time that a stretch may take, in dwells: the rests of both of its ends and as much again,
+/// if the others leave it that.
 const STRETCH_DWELLS: f64 = 3.0;
-/// Extra time that a program may take for itself and for each stretch that is not a detail, in dwells.
+/// Extra time that a program may take for itself and for each stretch that is not a detail, in
+/// dwells.
 const MORE_DWELLS: f64 = 1.5;
 /// A program may take longer by this fraction of its time, rests and rapids included: with one
 /// stretch, and with several. Where it takes longer, its rests get shorter.
@@ -28,8 +29,8 @@ const MANY_MORE: f64 = 20.0;
 /// A stretch that takes fewer time constants of the position loop than this is a detail.
 const DETAIL: f64 = 12.5;
 /// A program may have the original number of blocks times this factor, plus [`PROGRAM_MORE`]
-/// blocks, plus [`STRETCH_MORE`] blocks for each stretch that is not a detail; or [`MANY_1_S`] blocks
-/// per second where that is more.
+/// blocks, plus [`STRETCH_MORE`] blocks for each stretch that is not a detail; or [`MANY_1_S`]
+/// blocks per second where that is more.
 const PROGRAM_BLOCKS: f64 = 1.15;
 const PROGRAM_MORE: f64 = 30.0;
 const STRETCH_MORE: f64 = 15.0;
@@ -57,7 +58,8 @@ impl StretchBudget {
     /// How many blocks count as few, and how many it may have at all.
     pub(super) fn most_blocks(&self) -> [f64; 2] {
         let blocks = self.blocks as f64;
-        let few = FEW_BLOCKS * blocks + (FEW_MORE_1 * self.time_s / self.loop_s).clamp(FEW_MORE[0], FEW_MORE[1]);
+        let few = FEW_BLOCKS * blocks
+            + (FEW_MORE_1 * self.time_s / self.loop_s).clamp(FEW_MORE[0], FEW_MORE[1]);
         let many = (MANY_BLOCKS * blocks).max(MANY_1_S * self.time_s + MANY_MORE);
         [few, if self.is_detail() { few } else { few.max(many) }]
     }
@@ -65,7 +67,11 @@ impl StretchBudget {
     /// How many it may have where fewer would do.
     pub(super) fn most_fine_blocks(&self) -> f64 {
         let chords = self.lines > CHORDS && 2 * self.lines > self.blocks;
-        if chords { self.blocks as f64 } else { self.most_blocks()[0] }
+        if chords {
+            self.blocks as f64
+        } else {
+            self.most_blocks()[0]
+        }
     }
 
     /// How long it may take, s.
@@ -95,9 +101,17 @@ pub(super) struct StretchCost {
 /// Indices of the details to give up so that the program keeps its limits on blocks and time. The
 /// details with the least gain per block come first. `other_motions` is the number of motions
 /// outside of the stretches.
-pub(super) fn details_to_give_up(costs: &[StretchCost], other_motions: usize, dwell_s: f64) -> Vec<usize> {
+pub(super) fn details_to_give_up(
+    costs: &[StretchCost],
+    other_motions: usize,
+    dwell_s: f64,
+) -> Vec<usize> {
     let larger = costs.iter().filter(|cost| !cost.budget.is_detail()).count() as f64;
-    let all = other_motions as f64 + costs.iter().map(|cost| cost.budget.blocks as f64).sum::<f64>();
+    let all = other_motions as f64
+        + costs
+            .iter()
+            .map(|cost| cost.budget.blocks as f64)
+            .sum::<f64>();
     let programmed_s: f64 = costs.iter().map(|cost| cost.budget.time_s).sum();
     let blocks = PROGRAM_BLOCKS * all + PROGRAM_MORE + STRETCH_MORE * larger;
     let mut room = blocks.max(MANY_1_S * programmed_s) - all;
@@ -106,8 +120,9 @@ pub(super) fn details_to_give_up(costs: &[StretchCost], other_motions: usize, dw
         (room, room_s) = (room - cost.blocks, room_s - cost.time_s);
     }
     let worth = |k: usize| costs[k].gain_mm2.unwrap_or(0.0) / costs[k].blocks.max(1.0);
-    let mut order: Vec<usize> =
-        (0..costs.len()).filter(|&k| costs[k].gain_mm2.is_some() && costs[k].budget.is_detail()).collect();
+    let mut order: Vec<usize> = (0..costs.len())
+        .filter(|&k| costs[k].gain_mm2.is_some() && costs[k].budget.is_detail())
+        .collect();
     order.sort_by(|&a, &b| worth(a).total_cmp(&worth(b)));
     let mut given_up = Vec::new();
     for k in order {
@@ -120,12 +135,17 @@ pub(super) fn details_to_give_up(costs: &[StretchCost], other_motions: usize, dw
     given_up
 }
 
-/// Indices of the stretches to give up so that a program takes `more_s` less: those that `may` be given up, with the least gain for
-/// their time first.
-pub(super) fn slow_to_give_up(costs: &[StretchCost], more_s: f64, may: impl Fn(usize) -> bool) -> Vec<usize> {
+/// Indices of the stretches to give up so that a program takes `more_s` less: those that `may` be
+/// given up, with the least gain for their time first.
+pub(super) fn slow_to_give_up(
+    costs: &[StretchCost],
+    more_s: f64,
+    may: impl Fn(usize) -> bool,
+) -> Vec<usize> {
     let worth = |k: usize| costs[k].gain_mm2.unwrap_or(0.0) / costs[k].time_s;
-    let mut order: Vec<usize> =
-        (0..costs.len()).filter(|&k| costs[k].gain_mm2.is_some() && costs[k].time_s > 0.0 && may(k)).collect();
+    let mut order: Vec<usize> = (0..costs.len())
+        .filter(|&k| costs[k].gain_mm2.is_some() && costs[k].time_s > 0.0 && may(k))
+        .collect();
     order.sort_by(|&a, &b| worth(a).total_cmp(&worth(b)));
     let mut saved_s = 0.0;
     order.retain(|&k| {
@@ -142,41 +162,97 @@ mod tests {
 
     #[test]
     fn details_of_the_least_gain_for_a_block_are_given_up_until_there_is_room() {
-        let detail = StretchBudget { time_s: 0.01, blocks: 1, lines: 1, loop_s: 0.02 };
-        let cost = |gain_mm2: f64| StretchCost { budget: detail, blocks: 20.0, time_s: 0.01, gain_mm2: Some(gain_mm2) };
+        let detail = StretchBudget {
+            time_s: 0.01,
+            blocks: 1,
+            lines: 1,
+            loop_s: 0.02,
+        };
+        let cost = |gain_mm2: f64| StretchCost {
+            budget: detail,
+            blocks: 20.0,
+            time_s: 0.01,
+            gain_mm2: Some(gain_mm2),
+        };
         // Three details and room for 30 blocks and a little: one of 20 may stay.
-        assert_eq!(details_to_give_up(&[cost(2.0), cost(1.0), cost(3.0)], 0, 0.05), [1, 0]);
-        let larger = StretchBudget { time_s: 1.0, ..detail };
-        let costs = [StretchCost { budget: larger, ..cost(1.0) }, cost(1.0)];
+        assert_eq!(
+            details_to_give_up(&[cost(2.0), cost(1.0), cost(3.0)], 0, 0.05),
+            [1, 0]
+        );
+        let larger = StretchBudget {
+            time_s: 1.0,
+            ..detail
+        };
+        let costs = [
+            StretchCost {
+                budget: larger,
+                ..cost(1.0)
+            },
+            cost(1.0),
+        ];
         assert_eq!(details_to_give_up(&costs, 0, 0.05), [0; 0]);
     }
 
     #[test]
     fn slow_stretches_are_given_up_until_the_time_is_saved() {
-        let budget = StretchBudget { time_s: 10.0, blocks: 1, lines: 1, loop_s: 0.02 };
-        let cost = |time_s: f64, gain_mm2: f64| StretchCost { budget, blocks: 0.0, time_s, gain_mm2: Some(gain_mm2) };
-        let costs = [cost(1.0, 4.0), cost(2.0, 2.0), cost(1.0, 3.0), cost(-1.0, 1.0), cost(1.0, 0.1)];
+        let budget = StretchBudget {
+            time_s: 10.0,
+            blocks: 1,
+            lines: 1,
+            loop_s: 0.02,
+        };
+        let cost = |time_s: f64, gain_mm2: f64| StretchCost {
+            budget,
+            blocks: 0.0,
+            time_s,
+            gain_mm2: Some(gain_mm2),
+        };
+        let costs = [
+            cost(1.0, 4.0),
+            cost(2.0, 2.0),
+            cost(1.0, 3.0),
+            cost(-1.0, 1.0),
+            cost(1.0, 0.1),
+        ];
         assert_eq!(slow_to_give_up(&costs, 2.5, |k| k != 4), [1, 2]);
         assert_eq!(slow_to_give_up(&costs, 0.0, |_| true), [0; 0]);
     }
 
     #[test]
     fn a_program_may_take_its_share_longer_and_twice_that_with_several_stretches() {
-        assert_eq!([false, true].map(|several| program_more_s(200.0, several)), [9.0, 18.0]);
+        assert_eq!(
+            [false, true].map(|several| program_more_s(200.0, several)),
+            [9.0, 18.0]
+        );
     }
 
     #[test]
     fn a_stretch_may_take_its_share_and_three_dwells_longer() {
-        let stretch = StretchBudget { time_s: 2.0, blocks: 1, lines: 1, loop_s: 0.02 };
+        let stretch = StretchBudget {
+            time_s: 2.0,
+            blocks: 1,
+            lines: 1,
+            loop_s: 0.02,
+        };
         // 2.13 s and 0.12 s.
-        assert!((stretch.most_s(0.04) - 2.25).abs() < 1e-12, "{}", stretch.most_s(0.04));
+        assert!(
+            (stretch.most_s(0.04) - 2.25).abs() < 1e-12,
+            "{}",
+            stretch.most_s(0.04)
+        );
     }
 
     #[test]
     fn details_are_given_up_until_the_program_takes_no_more_than_its_share_of_time_longer() {
-        // The program takes 10.4 s. It may take 6.5 % longer, and 1.5 dwells of 0.04 s for itself and for its larger stretch:
-        // 0.796 s in all. The larger stretch takes 0.14 s of that, so three details of 0.2 s each may stay.
-        let stretch = |time_s: f64| StretchBudget { time_s, blocks: 1, lines: 1, loop_s: 0.02 };
+        // The program takes 10.4 s. It may take 6.5 % longer, and 1.5 dwells of 0.04 s for itself
+        // and for its larger stretch: 0.796 s in all. The larger stretch takes 0.14 s of that, so
+        // three details of 0.2 s each may stay.
+        let stretch = |time_s: f64| StretchBudget {
+            time_s,
+            blocks: 1,
+            lines: 1,
+            loop_s: 0.02,
+        };
         let cost = |time_s: f64, more_s: f64, gain_mm2: f64| StretchCost {
             budget: stretch(time_s),
             blocks: 0.0,

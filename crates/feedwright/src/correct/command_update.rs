@@ -1,13 +1,15 @@
 //! A better command from the errors of a simulated cut.
 //!
-//! With `e` from the tool to its foot on the path, and the [lags](super::loop_lag) of the axes, the command becomes
+//! With `e` from the tool to its foot on the path, and the [lags](super::loop_lag) of the axes, the
+//! command becomes
 //!
 //! ```text
 //! c + e + T1 e' + T2 e'',
 //! ```
 //!
-//! what the loop turns into `e` more of the tool. `e` is smoothed by a Gaussian first: a command that shakes is slow on the other
-//! control and tears at the machine. At the ends of a stretch the change fades out, so that it starts and ends where the program says.
+//! what the loop turns into `e` more of the tool. `e` is smoothed by a Gaussian first: a command
+//! that shakes is slow on the other control and tears at the machine. At the ends of a stretch the
+//! change fades out, so that it starts and ends where the program says.
 
 use std::ops::Range;
 
@@ -42,7 +44,9 @@ fn smoothed(values: &[Vector], sigma: f64) -> Vec<Vector> {
     if reach < 1 || values.is_empty() {
         return values.to_vec();
     }
-    let weights: Vec<f64> = (-reach..=reach).map(|k| libm::exp(-0.5 * (k as f64 / sigma).powi(2))).collect();
+    let weights: Vec<f64> = (-reach..=reach)
+        .map(|k| libm::exp(-0.5 * (k as f64 / sigma).powi(2)))
+        .collect();
     let sum: f64 = weights.iter().sum();
     let last = values.len() as isize - 1;
     (0..=last)
@@ -59,22 +63,45 @@ fn smoothed(values: &[Vector], sigma: f64) -> Vec<Vector> {
         .collect()
 }
 
-/// Smooths a sequence between two ends that stay where they are: beyond them it is mirrored at the end.
+/// Smooths a sequence between two ends that stay where they are: beyond them it is mirrored at the
+/// end.
 fn pinned_smooth(values: &[Vector], ends_mm: [Vector; 2], sigma: f64) -> Vec<Vector> {
     let reach = (3.0 * sigma).ceil() as usize;
     let mirrored = |value: &Vector, end: Vector| std::array::from_fn(|i| 2.0 * end[i] - value[i]);
-    let mut long: Vec<Vector> = values.iter().take(reach).rev().map(|v| mirrored(v, ends_mm[0])).collect();
+    let mut long: Vec<Vector> = values
+        .iter()
+        .take(reach)
+        .rev()
+        .map(|v| mirrored(v, ends_mm[0]))
+        .collect();
     let lead = long.len();
     long.extend(values);
-    long.extend(values.iter().rev().take(reach).map(|v| mirrored(v, ends_mm[1])));
+    long.extend(
+        values
+            .iter()
+            .rev()
+            .take(reach)
+            .map(|v| mirrored(v, ends_mm[1])),
+    );
     let once = smoothed(&long, sigma);
-    let left: Vec<Vector> = long.iter().zip(&once).map(|(value, smooth)| sub(*value, *smooth)).collect();
+    let left: Vec<Vector> = long
+        .iter()
+        .zip(&once)
+        .map(|(value, smooth)| sub(*value, *smooth))
+        .collect();
     let more = smoothed(&left, sigma);
-    (lead..lead + values.len()).map(|n| std::array::from_fn(|i| once[n][i] + more[n][i])).collect()
+    (lead..lead + values.len())
+        .map(|n| std::array::from_fn(|i| once[n][i] + more[n][i]))
+        .collect()
 }
 
 /// The change of the command in the servo periods of a range, from the errors of the cut around it.
-fn changes(rows: &[CutRow], range: Range<usize>, lags: &[LoopLag], settings: &UpdateSettings) -> Vec<Vector> {
+fn changes(
+    rows: &[CutRow],
+    range: Range<usize>,
+    lags: &[LoopLag],
+    settings: &UpdateSettings,
+) -> Vec<Vector> {
     let sigma = settings.smoothing_s / settings.servo_s;
     let margin = (3.0 * sigma).ceil() as usize + 1;
     let from = range.start.saturating_sub(margin);
@@ -83,19 +110,25 @@ fn changes(rows: &[CutRow], range: Range<usize>, lags: &[LoopLag], settings: &Up
     let errors = smoothed(&errors, sigma);
     let last = errors.len().saturating_sub(1);
     let change = |n: usize| -> Vector {
-        let (before, here, next) = (errors[n.saturating_sub(1)], errors[n], errors[(n + 1).min(last)]);
+        let (before, here, next) = (
+            errors[n.saturating_sub(1)],
+            errors[n],
+            errors[(n + 1).min(last)],
+        );
         std::array::from_fn(|i| {
             let Some(lag) = lags.get(i) else { return 0.0 };
             let first = (next[i] - before[i]) / (2.0 * settings.servo_s);
-            let second = (next[i] - 2.0 * here[i] + before[i]) / (settings.servo_s * settings.servo_s);
+            let second =
+                (next[i] - 2.0 * here[i] + before[i]) / (settings.servo_s * settings.servo_s);
             here[i] + lag.first_s * first + lag.second_s2 * second
         })
     };
     range.map(|n| change(n - from)).collect()
 }
 
-/// The points of a new command for a stretch that was commanded in the rows of `range`, from one end of the stretch to the other, along the
-/// axes of the stretch's plane; none where the command would leave the path by more than it may.
+/// The points of a new command for a stretch that was commanded in the rows of `range`, from one
+/// end of the stretch to the other, along the axes of the stretch's plane; none where the command
+/// would leave the path by more than it may.
 pub(super) fn new_command(
     rows: &[CutRow],
     range: Range<usize>,
@@ -120,8 +153,13 @@ pub(super) fn new_command(
         })
         .collect();
     let ends_mm = [stretch.start_mm(), stretch.end_mm()];
-    let wanted = pinned_smooth(&wanted, ends_mm, settings.command_smoothing_s / settings.servo_s);
-    let leaves = |(at_mm, row): (&Vector, &CutRow)| distance(*at_mm, row.path_mm) > settings.most_mm;
+    let wanted = pinned_smooth(
+        &wanted,
+        ends_mm,
+        settings.command_smoothing_s / settings.servo_s,
+    );
+    let leaves =
+        |(at_mm, row): (&Vector, &CutRow)| distance(*at_mm, row.path_mm) > settings.most_mm;
     if wanted.iter().zip(rows).any(leaves) {
         return None;
     }
@@ -133,21 +171,38 @@ pub(super) fn new_command(
 }
 
 /// Points that are not too near to each other, with their tangents.
-fn thinned(wanted: &[Vector], rows: &[CutRow], stretch: &SmoothStretch, least_mm: f64) -> Vec<FitPoint> {
+fn thinned(
+    wanted: &[Vector],
+    rows: &[CutRow],
+    stretch: &SmoothStretch,
+    least_mm: f64,
+) -> Vec<FitPoint> {
     let axes = stretch.plane().axes();
     let along = |place: Vector| axes.map(|axis| place[axis]);
     let [start_mm, end_mm] = [stretch.start_mm(), stretch.end_mm()].map(along);
-    let point = |at_mm: Vector, feed_mm_s: f64| FitPoint { at_mm, tangent: [0.0; 2], feed_mm_s };
+    let point = |at_mm: Vector, feed_mm_s: f64| FitPoint {
+        at_mm,
+        tangent: [0.0; 2],
+        feed_mm_s,
+    };
     let mut points = vec![point(start_mm, stretch.motions[0].feed_mm_s)];
     let half = wanted.len() / 2;
-    for (n, (at_mm, row)) in wanted.iter().map(|at_mm| along(*at_mm)).zip(rows).enumerate() {
+    for (n, (at_mm, row)) in wanted
+        .iter()
+        .map(|at_mm| along(*at_mm))
+        .zip(rows)
+        .enumerate()
+    {
         let near = |other: Vector| distance(other, at_mm) < least_mm;
         if near(points[points.len() - 1].at_mm) || n > half && near(end_mm) {
             continue;
         }
         points.push(point(at_mm, row.feed_mm_s));
     }
-    points.push(point(end_mm, stretch.motions[stretch.motions.len() - 1].feed_mm_s));
+    points.push(point(
+        end_mm,
+        stretch.motions[stretch.motions.len() - 1].feed_mm_s,
+    ));
     set_tangents(&mut points, stretch.directions().map(along));
     points
 }
@@ -165,7 +220,11 @@ fn set_tangents(points: &mut [FitPoint], directions: [Vector; 2]) {
         };
         let flat = norm([way[0], way[1]]);
         let is_flat = flat > 1e-3 * norm(way);
-        points[n].tangent = if is_flat { [way[0] / flat, way[1] / flat] } else { [0.0; 2] };
+        points[n].tangent = if is_flat {
+            [way[0] / flat, way[1] / flat]
+        } else {
+            [0.0; 2]
+        };
     }
 }
 

@@ -1,7 +1,9 @@
-//! A program as the other control would cut it: planned as it plans, without feedback, measured against the original.
+//! A program as the other control would cut it: planned as it plans, without feedback, measured
+//! against the original.
 //!
-//! What disturbs has another phase, and noise other random numbers, each time a part is cut. So it is cut several times, with a rest before the start
-//! that is another part of a period of the disturbance, and with other seeds.
+//! What disturbs has another phase, and noise other random numbers, each time a part is cut. So it
+//! is cut several times, with a rest before the start that is another part of a period of the
+//! disturbance, and with other seeds.
 use std::ops::Range;
 
 use feedwright_control::Uncorrected;
@@ -9,8 +11,8 @@ use feedwright_gcode::canon::{Event, EventKind};
 use feedwright_plan::vector::{Vector, add_scaled, sub};
 use feedwright_plan::{AlignedPaths, Step};
 use feedwright_sim::{
-    Commanded, Machine, Measurement, Mechanism, Outcome, PlanCache, Plant, PlantMaker, Row, Run, RunError, RunResult,
-    Sink, Stages, Watch,
+    Commanded, Machine, Measurement, Mechanism, Outcome, PlanCache, Plant, PlantMaker, Row, Run,
+    RunError, RunResult, Sink, Stages, Watch,
 };
 use serde::{Deserialize, Serialize};
 
@@ -22,11 +24,13 @@ use crate::report::harm::{CutErrors, MAX_UM};
 /// Cuts of a machine that disturbs or has noise.
 const CUTS: u32 = 4;
 
-/// A corrected program is no better than the uncorrected program if its RMS error is not smaller by this share, nor its largest error by
-/// [`MAX_UM`], by which it varies with noise. A smaller gain does not pay for a longer program.
+/// A corrected program is no better than the uncorrected program if its RMS error is not smaller by
+/// this share, nor its largest error by [`MAX_UM`], by which it varies with noise. A smaller gain
+/// does not pay for a longer program.
 pub(super) const LEAST_GAIN: f64 = 0.02;
 
-/// What a program comes to, cut without feedback. Errors and time of a cut that diverged are not a number, null in JSON.
+/// What a program comes to, cut without feedback. Errors and time of a cut that diverged are not a
+/// number, null in JSON.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ExportedFigures {
     /// Contour error against the original: quadratic mean of the RMS over the cuts, um.
@@ -50,19 +54,26 @@ impl ExportedFigures {
     /// Without those of a cut that diverged: they would be those of its beginning.
     const fn of_whole(mut self) -> Self {
         if !self.completed {
-            (self.rms_um, self.max_um, self.uncut_um, self.time_s) = (f64::NAN, f64::NAN, f64::NAN, f64::NAN);
+            (self.rms_um, self.max_um, self.uncut_um, self.time_s) =
+                (f64::NAN, f64::NAN, f64::NAN, f64::NAN);
         }
         self
     }
 
-    /// Whether this program gains too little to replace the uncorrected one, though it need not be worse.
+    /// Whether this program gains too little to replace the uncorrected one, though it need not be
+    /// worse.
     pub(super) fn is_no_better_than(&self, uncorrected: &Self) -> bool {
-        self.rms_um > (1.0 - LEAST_GAIN) * uncorrected.rms_um && self.max_um > uncorrected.max_um - MAX_UM
+        self.rms_um > (1.0 - LEAST_GAIN) * uncorrected.rms_um
+            && self.max_um > uncorrected.max_um - MAX_UM
     }
 
     /// The errors that decide whether one program is worse than another.
     pub(super) const fn errors(&self) -> CutErrors {
-        CutErrors { rms_um: self.rms_um, max_um: self.max_um, uncut_um: Some(self.uncut_um) }
+        CutErrors {
+            rms_um: self.rms_um,
+            max_um: self.max_um,
+            uncut_um: Some(self.uncut_um),
+        }
     }
 }
 
@@ -93,7 +104,14 @@ const MOST_ROWS: usize = 10_000_000;
 /// Refuses a cut that takes longer than its rows can be kept.
 pub(super) fn check_rows(time_s: f64, servo_s: f64) -> Result<(), RunError> {
     let most_s = MOST_ROWS as f64 * servo_s;
-    if time_s > most_s { Err(RunError::TooLong { most_periods: MOST_ROWS, most_s }) } else { Ok(()) }
+    if time_s > most_s {
+        Err(RunError::TooLong {
+            most_periods: MOST_ROWS,
+            most_s,
+        })
+    } else {
+        Ok(())
+    }
 }
 
 /// Keeps the rows of a cut.
@@ -106,7 +124,11 @@ pub(super) struct CutRows<'a> {
 
 impl<'a> CutRows<'a> {
     pub(super) const fn new(original: &'a [Step]) -> Self {
-        Self { rows: Vec::new(), original, own_mm: f64::NEG_INFINITY..f64::INFINITY }
+        Self {
+            rows: Vec::new(),
+            original,
+            own_mm: f64::NEG_INFINITY..f64::INFINITY,
+        }
     }
 
     /// What is wrong with a cut that could not be kept.
@@ -114,12 +136,21 @@ impl<'a> CutRows<'a> {
         if self.rows.len() < MOST_ROWS {
             return error;
         }
-        RunError::TooLong { most_periods: MOST_ROWS, most_s: MOST_ROWS as f64 * servo_s }
+        RunError::TooLong {
+            most_periods: MOST_ROWS,
+            most_s: MOST_ROWS as f64 * servo_s,
+        }
     }
 
     /// Feedrate of the original at an arc length, where it cuts.
     fn feed_mm_s(&self, s_mm: f64) -> Option<f64> {
-        let before = |step: &Step| if let Step::Piece(piece) = step { piece.s_mm <= s_mm } else { true };
+        let before = |step: &Step| {
+            if let Step::Piece(piece) = step {
+                piece.s_mm <= s_mm
+            } else {
+                true
+            }
+        };
         // Events stand between pieces and do not disturb the order.
         let mut index = self.original.partition_point(before);
         while index > 0 {
@@ -137,15 +168,25 @@ impl Sink for CutRows<'_> {
         if self.rows.len() >= MOST_ROWS {
             return Err(std::io::ErrorKind::OutOfMemory.into());
         }
-        let feed_mm_s = self.feed_mm_s(row.s_mm).or_else(|| self.rows.last().map(|last| last.feed_mm_s));
+        let feed_mm_s = self
+            .feed_mm_s(row.s_mm)
+            .or_else(|| self.rows.last().map(|last| last.feed_mm_s));
         self.rows.push(CutRow {
             t_s: row.t_s,
-            line: if row.commanded == Commanded::Rest { 0 } else { row.line },
+            line: if row.commanded == Commanded::Rest {
+                0
+            } else {
+                row.line
+            },
             commanded: row.commanded,
             cutting: row.cutting,
             own: self.own_mm.contains(&row.s_mm),
             cmd_mm: row.cmd_mm,
-            error_mm: if row.cutting { sub(row.foot_mm, row.act_mm) } else { [0.0; 3] },
+            error_mm: if row.cutting {
+                sub(row.foot_mm, row.act_mm)
+            } else {
+                [0.0; 3]
+            },
             path_mm: row.path_mm,
             feed_mm_s: feed_mm_s.unwrap_or(0.0),
         });
@@ -168,7 +209,8 @@ struct ExportedProgress<'a> {
 impl Sink for ExportedProgress<'_> {
     fn row(&mut self, row: &Row) -> std::io::Result<()> {
         // A float that is not a number saturates to zero here.
-        let done = ((CUT_STEPS as f64 * row.s_mm / self.length_mm) as u64).clamp(self.done, CUT_STEPS);
+        let done =
+            ((CUT_STEPS as f64 * row.s_mm / self.length_mm) as u64).clamp(self.done, CUT_STEPS);
         if done > self.done {
             self.watch.advance(done - self.done);
             self.done = done;
@@ -178,7 +220,15 @@ impl Sink for ExportedProgress<'_> {
 }
 
 pub(super) fn length_mm(path: &[Step]) -> f64 {
-    path.iter().map(|step| if let Step::Piece(piece) = step { piece.length_mm } else { 0.0 }).sum()
+    path.iter()
+        .map(|step| {
+            if let Step::Piece(piece) = step {
+                piece.length_mm
+            } else {
+                0.0
+            }
+        })
+        .sum()
 }
 
 /// The machine of one cut, and how long it rests before.
@@ -189,13 +239,21 @@ pub(super) struct CutPhase {
 
 /// A program behind a rest.
 pub(super) fn waited(program: &[Step], wait_s: f64) -> Vec<Step> {
-    let wait = Step::Event(Event { line: 0, kind: EventKind::Dwell { seconds: wait_s } });
-    std::iter::once(wait).chain(program.iter().cloned()).collect()
+    let wait = Step::Event(Event {
+        line: 0,
+        kind: EventKind::Dwell { seconds: wait_s },
+    });
+    std::iter::once(wait)
+        .chain(program.iter().cloned())
+        .collect()
 }
 
 /// Motions of a path; an arc of more than half a turn counts as it is planned.
 fn path_steps(program: &[Step]) -> u64 {
-    program.iter().filter(|step| matches!(step, Step::Piece(_))).count() as u64
+    program
+        .iter()
+        .filter(|step| matches!(step, Step::Piece(_)))
+        .count() as u64
 }
 
 /// A program beside the original.
@@ -230,15 +288,26 @@ impl ExportedCut<'_> {
         stage: &str,
         workers: &Workers,
     ) -> Result<ExportedFigures, RunError> {
-        let mut figures =
-            ExportedFigures { completed: true, blocks: path_steps(program), ..ExportedFigures::default() };
+        let mut figures = ExportedFigures {
+            completed: true,
+            blocks: path_steps(program),
+            ..ExportedFigures::default()
+        };
         let phases = self.phases();
         let mut square_sum_um2 = 0.0;
         self.watch.begin(stage, CUT_STEPS * phases.len() as u64);
-        let threads = if program.len() > SHARED_STEPS { 1 } else { usize::MAX };
+        let threads = if program.len() > SHARED_STEPS {
+            1
+        } else {
+            usize::MAX
+        };
         let all = workers.each(stage, phases.len(), threads, |phase| {
             let CutPhase { machine, wait_s } = &phases[phase];
-            let mut progress = ExportedProgress { watch: self.watch, length_mm: length_mm(self.original), done: 0 };
+            let mut progress = ExportedProgress {
+                watch: self.watch,
+                length_mm: length_mm(self.original),
+                done: 0,
+            };
             ExportedCut { machine, ..*self }.once(program, *wait_s, &mut [&mut progress])
         })?;
         for (phase, now) in all.into_iter().enumerate() {
@@ -256,13 +325,35 @@ impl ExportedCut<'_> {
 
     /// What differs from cut to cut.
     pub(super) fn phases(&self) -> Vec<CutPhase> {
-        let disturbs = self.machine.axes.iter().any(|axis| axis.disturbance_nm > 0.0);
-        let cuts = if disturbs || self.machine.is_noisy() { CUTS } else { 1 };
-        let slowest_hz = self.machine.axes.iter().map(|axis| axis.disturbance_hz).fold(f64::INFINITY, f64::min);
+        let disturbs = self
+            .machine
+            .axes
+            .iter()
+            .any(|axis| axis.disturbance_nm > 0.0);
+        let cuts = if disturbs || self.machine.is_noisy() {
+            CUTS
+        } else {
+            1
+        };
+        let slowest_hz = self
+            .machine
+            .axes
+            .iter()
+            .map(|axis| axis.disturbance_hz)
+            .fold(f64::INFINITY, f64::min);
         let phase = |cut: u32| {
             let part = f64::from(cut) / f64::from(cuts);
-            let wait_s = if disturbs && slowest_hz > 0.0 { part / slowest_hz } else { 0.0 };
-            CutPhase { machine: self.machine.with_noise_seed(self.machine.noise.seed.wrapping_add(cut.into())), wait_s }
+            let wait_s = if disturbs && slowest_hz > 0.0 {
+                part / slowest_hz
+            } else {
+                0.0
+            };
+            CutPhase {
+                machine: self
+                    .machine
+                    .with_noise_seed(self.machine.noise.seed.wrapping_add(cut.into())),
+                wait_s,
+            }
         };
         (0..cuts).map(phase).collect()
     }
@@ -282,7 +373,8 @@ impl ExportedCut<'_> {
         }
     }
 
-    /// What one cut comes to, after a rest; its time is that without the rest. The rows go to sinks, those of the rest too.
+    /// What one cut comes to, after a rest; its time is that without the rest. The rows go to
+    /// sinks, those of the rest too.
     ///
     /// # Errors
     /// As [`ExportedCut::figures`].
@@ -313,7 +405,9 @@ impl ExportedCut<'_> {
     pub(super) fn programmed_s(&self, stop_s: f64) -> f64 {
         let limits = &self.machine.limits;
         let time_s = |step: &Step| match step {
-            Step::Piece(piece) if piece.cutting => stop_s + piece.length_mm / piece.feed_mm_s.min(limits.max_feed_mm_s),
+            Step::Piece(piece) if piece.cutting => {
+                stop_s + piece.length_mm / piece.feed_mm_s.min(limits.max_feed_mm_s)
+            }
             Step::Piece(piece) => stop_s + piece.length_mm / limits.rapid_mm_s,
             Step::Event(_) | Step::Rest(_) => stop_s,
         };
@@ -321,12 +415,20 @@ impl ExportedCut<'_> {
     }
 
     /// Cuts a program once; the rows go to sinks.
-    pub(super) fn cut(&self, program: &[Step], sinks: &mut [&mut dyn Sink]) -> Result<RunResult, RunError> {
+    pub(super) fn cut(
+        &self,
+        program: &[Step],
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
         self.cut_along(&AlignedPaths::new(self.original, program), sinks)
     }
 
     /// The same of a program beside the original.
-    fn cut_along(&self, aligned: &AlignedPaths, sinks: &mut [&mut dyn Sink]) -> Result<RunResult, RunError> {
+    fn cut_along(
+        &self,
+        aligned: &AlignedPaths,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
         let plan = PlanCache::default();
         let error_mm = match self.error {
             Some(error) => error.along(&self.track(aligned, &plan)?),
@@ -334,9 +436,17 @@ impl ExportedCut<'_> {
         };
         let beside = |start_mm: [f64; 3], seed: u64| -> Box<dyn Mechanism> {
             let plant = Plant::<3>::with_seed(self.machine, start_mm, seed);
-            Box::new(BesideModel { plant, error_mm: error_mm.clone(), period: 0 })
+            Box::new(BesideModel {
+                plant,
+                error_mm: error_mm.clone(),
+                period: 0,
+            })
         };
-        let plant: Option<PlantMaker<'_>> = if self.error.is_some() { Some(&beside) } else { None };
+        let plant: Option<PlantMaker<'_>> = if self.error.is_some() {
+            Some(&beside)
+        } else {
+            None
+        };
         self.run(aligned, &plan, plant, sinks)
     }
 
@@ -348,8 +458,15 @@ impl ExportedCut<'_> {
         plant: Option<PlantMaker<'_>>,
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
-        let run = Run::on(self.machine).uncompensated().stages(self.stages).watched(self.watch);
-        let run = if self.error.is_some() { run.sharing(plan) } else { run };
+        let run = Run::on(self.machine)
+            .uncompensated()
+            .stages(self.stages)
+            .watched(self.watch);
+        let run = if self.error.is_some() {
+            run.sharing(plan)
+        } else {
+            run
+        };
         let run = plant.map_or(run, |plant| run.plant(plant));
         match self.axes {
             2 => run.cut_aligned::<2>(aligned, &mut Uncorrected, sinks),
@@ -360,21 +477,38 @@ impl ExportedCut<'_> {
     /// The command of a program, servo period by servo period.
     fn track(&self, aligned: &AlignedPaths, plan: &PlanCache) -> Result<PathTrack, RunError> {
         let servo_s = self.machine.period.servo_s;
-        let mut track = PathTrack { sample_s: servo_s, ..PathTrack::default() };
+        let mut track = PathTrack {
+            sample_s: servo_s,
+            ..PathTrack::default()
+        };
         self.walk(aligned, plan, &mut KeptTrack { track: &mut track })?;
         Ok(track)
     }
 
     /// The rows of a machine whose tool is where the command is.
-    fn walk(&self, aligned: &AlignedPaths, plan: &PlanCache, sink: &mut dyn Sink) -> Result<(), RunError> {
+    fn walk(
+        &self,
+        aligned: &AlignedPaths,
+        plan: &PlanCache,
+        sink: &mut dyn Sink,
+    ) -> Result<(), RunError> {
         let ideal = |_: [f64; 3], _: u64| -> Box<dyn Mechanism> { Box::new(IdealMachine) };
-        self.run(aligned, plan, Some(&ideal), &mut [sink]).map(|_| ())
+        self.run(aligned, plan, Some(&ideal), &mut [sink])
+            .map(|_| ())
     }
 
-    /// Servo periods that are simulated until the end of each line, up to `lines`, as the control plans a program.
+    /// Servo periods that are simulated until the end of each line, up to `lines`, as the control
+    /// plans a program.
     pub(super) fn periods(&self, program: &[Step], lines: usize) -> Result<Vec<u64>, RunError> {
-        let mut kept = LinePeriods { until: vec![0; lines], periods: 0 };
-        self.walk(&AlignedPaths::new(program, program), &PlanCache::default(), &mut kept)?;
+        let mut kept = LinePeriods {
+            until: vec![0; lines],
+            periods: 0,
+        };
+        self.walk(
+            &AlignedPaths::new(program, program),
+            &PlanCache::default(),
+            &mut kept,
+        )?;
         let mut before = 0;
         for until in &mut kept.until {
             before = before.max(*until);
@@ -389,7 +523,12 @@ struct IdealMachine;
 
 impl Mechanism for IdealMachine {
     fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3> {
-        Measurement { position_mm: command_mm, joint_mm: command_mm, measured_mm: command_mm, torque_nm: [0.0; 3] }
+        Measurement {
+            position_mm: command_mm,
+            joint_mm: command_mm,
+            measured_mm: command_mm,
+            torque_nm: [0.0; 3],
+        }
     }
 
     fn skip(&mut self, _: u64) {}
@@ -410,9 +549,15 @@ impl Sink for KeptTrack<'_> {
         if period >= MOST_ROWS {
             return Err(std::io::ErrorKind::OutOfMemory.into());
         }
-        if let (Some(&s_mm), Some(&command_mm)) = (self.track.s_mm.last(), self.track.command_mm.last()) {
-            self.track.s_mm.resize(period.max(self.track.s_mm.len()), s_mm);
-            self.track.command_mm.resize(period.max(self.track.command_mm.len()), command_mm);
+        if let (Some(&s_mm), Some(&command_mm)) =
+            (self.track.s_mm.last(), self.track.command_mm.last())
+        {
+            self.track
+                .s_mm
+                .resize(period.max(self.track.s_mm.len()), s_mm);
+            self.track
+                .command_mm
+                .resize(period.max(self.track.command_mm.len()), command_mm);
         }
         self.track.s_mm.push(row.s_mm);
         self.track.command_mm.push(row.cmd_mm);
@@ -429,7 +574,11 @@ struct LinePeriods {
 impl Sink for LinePeriods {
     fn row(&mut self, row: &Row) -> std::io::Result<()> {
         self.periods += 1;
-        if let Some(until) = self.until.get_mut(row.line as usize).filter(|_| row.commanded != Commanded::Rest) {
+        if let Some(until) = self
+            .until
+            .get_mut(row.line as usize)
+            .filter(|_| row.commanded != Commanded::Rest)
+        {
             *until = self.periods;
         }
         Ok(())
@@ -446,10 +595,20 @@ struct BesideModel {
 
 impl Mechanism for BesideModel {
     fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3> {
-        let Measurement { position_mm, joint_mm, measured_mm, torque_nm } = self.plant.step(command_mm);
+        let Measurement {
+            position_mm,
+            joint_mm,
+            measured_mm,
+            torque_nm,
+        } = self.plant.step(command_mm);
         self.period += 1;
         // A position is that at the end of the period.
-        let error_mm = self.error_mm.get(self.period).or(self.error_mm.last()).copied().unwrap_or_default();
+        let error_mm = self
+            .error_mm
+            .get(self.period)
+            .or(self.error_mm.last())
+            .copied()
+            .unwrap_or_default();
         let with = |at_mm| add_scaled(at_mm, 1.0, error_mm);
         Measurement {
             position_mm: with(position_mm),

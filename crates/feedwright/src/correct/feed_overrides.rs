@@ -1,7 +1,10 @@
-//! Feed overrides at which a corrected program is better than the uncorrected one, and those at which it is worse.
+//! Feed overrides at which a corrected program is better than the uncorrected one, and those at
+//! which it is worse.
 //!
-//! A program compensates the lag at its own speeds. An override changes the speed of feed motions, and with it the lag. Rapids and dwells keep their
-//! times. Both programs are planned and cut again with each feedrate times the override, once for each: noise and disturbance are the same in both.
+//! A program compensates the lag at its own speeds. An override changes the speed of feed motions,
+//! and with it the lag. Rapids and dwells keep their times. Both programs are planned and cut again
+//! with each feedrate times the override, once for each: noise and disturbance are the same in
+//! both.
 
 use feedwright_plan::Step;
 use feedwright_sim::RunError;
@@ -11,7 +14,8 @@ use super::exported::{ExportedCut, ExportedFigures};
 use super::kept_work::Workers;
 use crate::report::harm::{Harm, harm};
 
-/// Overrides at which the programs are cut, %: those that operators use to run a program in, and to hurry.
+/// Overrides at which the programs are cut, %: those that operators use to run a program in, and to
+/// hurry.
 const OVERRIDES: [u32; 6] = [50, 75, 90, 100, 110, 120];
 
 /// Comparison of a corrected program with the uncorrected one.
@@ -48,12 +52,19 @@ impl OverrideFigures {
         } else {
             OverrideVerdict::Better
         };
-        Self { percent, verdict, uncorrected, as_exported }
+        Self {
+            percent,
+            verdict,
+            uncorrected,
+            as_exported,
+        }
     }
 
     /// The RMS error where that is worse, or else the first error that is.
     fn harm(&self) -> Option<Harm> {
-        harm(&self.uncorrected.errors(), &self.as_exported.errors()).first().copied()
+        harm(&self.uncorrected.errors(), &self.as_exported.errors())
+            .first()
+            .copied()
     }
 }
 
@@ -67,9 +78,15 @@ impl ExportedCut<'_> {
     ) -> Result<Vec<OverrideFigures>, RunError> {
         let most = self.machine.limits.max_feed_mm_s / largest_feed_mm_s(programs[0]);
         let factor = |percent: u32| f64::from(percent) / 100.0;
-        let overrides: Vec<u32> =
-            OVERRIDES.into_iter().filter(|&percent| percent <= 100 || factor(percent) <= most).collect();
-        let others: Vec<u32> = overrides.iter().copied().filter(|&percent| percent != 100).collect();
+        let overrides: Vec<u32> = OVERRIDES
+            .into_iter()
+            .filter(|&percent| percent <= 100 || factor(percent) <= most)
+            .collect();
+        let others: Vec<u32> = overrides
+            .iter()
+            .copied()
+            .filter(|&percent| percent != 100)
+            .collect();
         let stage = "cutting at other feed overrides";
         self.watch.begin(stage, 2 * others.len() as u64);
         let cuts = workers.each(stage, 2 * others.len(), usize::MAX, |k| {
@@ -80,7 +97,11 @@ impl ExportedCut<'_> {
         })?;
         let mut pairs = cuts.chunks_exact(2).map(|pair| [pair[0], pair[1]]);
         let figures = |&percent: &u32| {
-            let pair = if percent == 100 { Some(known) } else { pairs.next() };
+            let pair = if percent == 100 {
+                Some(known)
+            } else {
+                pairs.next()
+            };
             pair.map(|pair| OverrideFigures::new(percent, pair))
         };
         Ok(overrides.iter().filter_map(figures).collect())
@@ -116,16 +137,28 @@ fn with_override(program: &[Step], factor: f64) -> Vec<Step> {
 
 /// Neighboring overrides with the same verdict, %: first and last of each run.
 fn runs(cuts: &[OverrideFigures], verdict: OverrideVerdict) -> Vec<[u32; 2]> {
-    let same = cuts.chunk_by(|a, b| a.verdict == b.verdict).filter(|run| run[0].verdict == verdict);
-    same.map(|run| [run[0].percent, run[run.len() - 1].percent]).collect()
+    let same = cuts
+        .chunk_by(|a, b| a.verdict == b.verdict)
+        .filter(|run| run[0].verdict == verdict);
+    same.map(|run| [run[0].percent, run[run.len() - 1].percent])
+        .collect()
 }
 
-const WORDS: [(OverrideVerdict, &str); 3] =
-    [(OverrideVerdict::Better, "better"), (OverrideVerdict::NoBetter, "no better"), (OverrideVerdict::Worse, "worse")];
+const WORDS: [(OverrideVerdict, &str); 3] = [
+    (OverrideVerdict::Better, "better"),
+    (OverrideVerdict::NoBetter, "no better"),
+    (OverrideVerdict::Worse, "worse"),
+];
 
 /// The comment in the head of a program, short enough for every control.
 pub(super) fn override_note(cuts: &[OverrideFigures]) -> String {
-    let one = |[first, last]: [u32; 2]| if first == last { first.to_string() } else { format!("{first}-{last}") };
+    let one = |[first, last]: [u32; 2]| {
+        if first == last {
+            first.to_string()
+        } else {
+            format!("{first}-{last}")
+        }
+    };
     let all = WORDS.iter().filter_map(|&(verdict, word)| {
         let runs: Vec<String> = runs(cuts, verdict).into_iter().map(one).collect();
         (!runs.is_empty()).then(|| format!("{word} at {} %", runs.join(", ")))
@@ -136,19 +169,41 @@ pub(super) fn override_note(cuts: &[OverrideFigures]) -> String {
 /// The same in a sentence, with the errors where it is worst; none of no cuts.
 pub(crate) fn override_sentence(cuts: &[OverrideFigures]) -> Option<String> {
     let one = |[first, last]: [u32; 2]| {
-        if first == last { format!("at {first} %") } else { format!("from {first} % to {last} %") }
+        if first == last {
+            format!("at {first} %")
+        } else {
+            format!("from {first} % to {last} %")
+        }
     };
     let all = WORDS.iter().filter_map(|&(verdict, word)| {
         let runs: Vec<String> = runs(cuts, verdict).into_iter().map(one).collect();
         (!runs.is_empty()).then(|| format!("{word} {}", runs.join(" and ")))
     });
     let all = all.collect::<Vec<_>>().join(", ");
-    let worse = || cuts.iter().filter_map(|cut| Some((cut.percent, cut.harm()?)));
-    let largest = worse().max_by(|(_, a), (_, b)| (a.after_um - a.before_um).total_cmp(&(b.after_um - b.before_um)));
-    let errors = largest.map_or_else(String::new, |(percent, Harm { what, before_um, after_um })| {
-        let at = if worse().count() > 1 { format!(" at {percent} %") } else { String::new() };
-        format!(" ({what} {after_um:.2} um{at}, uncorrected {before_um:.2} um)")
-    });
+    let worse = || {
+        cuts.iter()
+            .filter_map(|cut| Some((cut.percent, cut.harm()?)))
+    };
+    let largest = worse()
+        .max_by(|(_, a), (_, b)| (a.after_um - a.before_um).total_cmp(&(b.after_um - b.before_um)));
+    let errors = largest.map_or_else(
+        String::new,
+        |(
+            percent,
+            Harm {
+                what,
+                before_um,
+                after_um,
+            },
+        )| {
+            let at = if worse().count() > 1 {
+                format!(" at {percent} %")
+            } else {
+                String::new()
+            };
+            format!(" ({what} {after_um:.2} um{at}, uncorrected {before_um:.2} um)")
+        },
+    );
     (!all.is_empty()).then(|| format!("feed override: {all}{errors}"))
 }
 
@@ -157,7 +212,8 @@ mod tests {
     use super::*;
     use crate::TARGETS;
 
-    /// Cuts at all overrides with these largest errors of the corrected program, um; the uncorrected one has 10 um.
+    /// Cuts at all overrides with these largest errors of the corrected program, um; the
+    /// uncorrected one has 10 um.
     fn cuts(max_um: [f64; 6]) -> Vec<OverrideFigures> {
         let figures = |max_um: f64| {
             let mut figures = ExportedFigures::default();
@@ -165,13 +221,17 @@ mod tests {
             figures
         };
         let all = OVERRIDES.into_iter().zip(max_um);
-        all.map(|(percent, um)| OverrideFigures::new(percent, [figures(10.0), figures(um)])).collect()
+        all.map(|(percent, um)| OverrideFigures::new(percent, [figures(10.0), figures(um)]))
+            .collect()
     }
 
     #[test]
     fn overrides_of_the_same_verdict_are_one_range_and_the_worst_has_its_errors() {
         let cuts = cuts([30.0, 12.0, 10.0, 2.0, 2.0, 5.0]);
-        assert_eq!(override_note(&cuts), "feed override: better at 100-120 %; no better at 90 %; worse at 50-75 %");
+        assert_eq!(
+            override_note(&cuts),
+            "feed override: better at 100-120 %; no better at 90 %; worse at 50-75 %"
+        );
         assert_eq!(
             override_sentence(&cuts).as_deref(),
             Some(
@@ -184,7 +244,11 @@ mod tests {
 
     #[test]
     fn the_note_fits_in_a_line_of_every_control() {
-        let columns = TARGETS.iter().map(|target| target.columns).min().unwrap_or_default();
+        let columns = TARGETS
+            .iter()
+            .map(|target| target.columns)
+            .min()
+            .unwrap_or_default();
         for case in 0..3_usize.pow(6) {
             let um = std::array::from_fn(|k| [2.0, 10.0, 30.0][case / 3_usize.pow(k as u32) % 3]);
             let note = format!("({})", override_note(&cuts(um)));

@@ -1,4 +1,5 @@
-//! The machine that a machine file most probably describes, and others that it may describe as well.
+//! The machine that a machine file most probably describes, and others that it may describe as
+//! well.
 //!
 //! Values of a machine file are typed in or estimated. Their error `s` counts as normal, in natural
 //! logarithms, each value of each axis by itself. Builders match the axes that interpolate: the
@@ -27,15 +28,16 @@
 use feedwright_sim::{AXIS_NAMES, Axis, Machine};
 use serde::Serialize;
 
-/// Standard deviation of a value of a machine file, as a fraction of it, where the user states none.
+/// Standard deviation of a value of a machine file, as a fraction of it, where the user states
+/// none.
 pub(crate) const FILE_ERROR: f64 = 0.1;
 /// Two axes whose values differ by more standard deviations are different: 1 of 1000 pairs that
 /// are equal differ by as much.
 const BY_CHANCE: f64 = 3.29;
 /// Plausible machines.
 const RUNS: usize = 8;
-/// Column of the orthogonal array for friction, and for the speed loop of each axis; the first three
-/// are for [`MATCHED`].
+/// Column of the orthogonal array for friction, and for the speed loop of each axis; the first
+/// three are for [`MATCHED`].
 const FRICTION_COLUMN: usize = 4;
 const SPEED_LOOP_COLUMNS: [usize; 3] = [5, 6, 7];
 
@@ -86,7 +88,12 @@ const ANY: [f64; 2] = [0.0, f64::INFINITY];
 
 /// Values that builders match.
 const MATCHED: [MatchedValue; 3] = [
-    MatchedValue { name: "kp_1_s", of: |axis| &mut axis.kp_1_s, usual: ANY, column: 1 },
+    MatchedValue {
+        name: "kp_1_s",
+        of: |axis| &mut axis.kp_1_s,
+        usual: ANY,
+        column: 1,
+    },
     MatchedValue {
         name: "velocity_feedforward",
         of: |axis| &mut axis.velocity_feedforward,
@@ -103,25 +110,39 @@ const MATCHED: [MatchedValue; 3] = [
 
 /// Sign of a column of the orthogonal array in a run.
 const fn sign(run: usize, column: usize) -> f64 {
-    if (run & column).count_ones().is_multiple_of(2) { 1.0 } else { -1.0 }
+    if (run & column).count_ones().is_multiple_of(2) {
+        1.0
+    } else {
+        -1.0
+    }
 }
 
 impl MatchedValue {
-    /// Gives all axes the most probable value: the geometric mean of theirs, or the nearer end of what is usual.
+    /// Gives all axes the most probable value: the geometric mean of theirs, or the nearer end of
+    /// what is usual.
     fn match_axes(&self, axes: &mut [Axis], file_error: f64) {
-        let logs: f64 = axes.iter_mut().map(|axis| libm::log(*(self.of)(axis))).sum();
+        let logs: f64 = axes
+            .iter_mut()
+            .map(|axis| libm::log(*(self.of)(axis)))
+            .sum();
         let mean = libm::exp(logs / axes.len() as f64);
         let usual = mean.clamp(self.usual[0], self.usual[1]);
         let by_chance = BY_CHANCE * file_error / (axes.len() as f64).sqrt();
-        let value = if libm::log(usual / mean).abs() < by_chance { usual } else { mean };
+        let value = if libm::log(usual / mean).abs() < by_chance {
+            usual
+        } else {
+            mean
+        };
         axes.iter_mut().for_each(|axis| *(self.of)(axis) = value);
     }
 
-    /// The value one standard deviation further, up or down; `sd` is the one by the file, as a fraction.
+    /// The value one standard deviation further, up or down; `sd` is the one by the file, as a
+    /// fraction.
     fn moved(&self, value: f64, sd: f64, sign: f64) -> f64 {
         let [least, most] = self.usual;
         if most.is_finite() && (least..=most).contains(&value) {
-            // A uniform distribution has a standard deviation of its width over the square root of 12.
+            // A uniform distribution has a standard deviation of its width over the square root
+            // of 12.
             let sd = (sd * value).min((most - least) / 12.0_f64.sqrt());
             return (value + sign * sd).clamp(least, most);
         }
@@ -135,19 +156,30 @@ impl FileModel {
         (file_error > 0.0).then(|| Self::new(file, axes, file_error))
     }
 
-    /// The machine of a file whose values have this standard deviation, as a fraction; `axes` of them move.
+    /// The machine of a file whose values have this standard deviation, as a fraction; `axes` of
+    /// them move.
     pub(super) fn new(file: &Machine, axes: usize, file_error: f64) -> Self {
         let mut machine = file.clone();
         let mut mistaken = file.clone();
-        let mut assumption = FileAssumption { file_error, values: Vec::new(), different: Vec::new() };
+        let mut assumption = FileAssumption {
+            file_error,
+            values: Vec::new(),
+            different: Vec::new(),
+        };
         let axes = axes.min(machine.axes.len());
         for value in &MATCHED {
-            let typed: Vec<f64> = machine.axes[..axes].iter_mut().map(|axis| *(value.of)(axis)).collect();
-            let (least, most) = typed.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(*v), b.max(*v)));
+            let typed: Vec<f64> = machine.axes[..axes]
+                .iter_mut()
+                .map(|axis| *(value.of)(axis))
+                .collect();
+            let (least, most) = typed
+                .iter()
+                .fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(*v), b.max(*v)));
             if most == 0.0 {
                 continue;
             }
-            let differ = least <= 0.0 || libm::log(most / least) > BY_CHANCE * file_error * std::f64::consts::SQRT_2;
+            let differ = least <= 0.0
+                || libm::log(most / least) > BY_CHANCE * file_error * std::f64::consts::SQRT_2;
             if differ {
                 assumption.different.push(value.name);
                 if least > 0.0 {
@@ -159,13 +191,27 @@ impl FileModel {
                 for machine in [&mut machine, &mut mistaken] {
                     value.match_axes(&mut machine.axes[..axes], file_error);
                 }
-                let assumed = machine.axes[..axes].iter_mut().map(|axis| *(value.of)(axis)).collect();
-                assumption.values.push(AssumedValue { value: value.name, file: typed, assumed });
+                let assumed = machine.axes[..axes]
+                    .iter_mut()
+                    .map(|axis| *(value.of)(axis))
+                    .collect();
+                assumption.values.push(AssumedValue {
+                    value: value.name,
+                    file: typed,
+                    assumed,
+                });
             }
         }
-        let plausible = (0..RUNS).map(|run| plausible(&machine, axes, file_error, run)).collect();
+        let plausible = (0..RUNS)
+            .map(|run| plausible(&machine, axes, file_error, run))
+            .collect();
         let mistaken = (!assumption.different.is_empty()).then_some(mistaken);
-        Self { machine, plausible, mistaken, assumption }
+        Self {
+            machine,
+            plausible,
+            mistaken,
+            assumption,
+        }
     }
 }
 
@@ -180,7 +226,10 @@ fn plausible(machine: &Machine, axes: usize, file_error: f64, run: usize) -> Mac
             *now = value.moved(*now, common, sign(run, value.column));
         }
         // What counts of inertia and gain of the speed loop is their ratio.
-        axis.inertia_kg_m2 *= times(std::f64::consts::SQRT_2 * file_error, SPEED_LOOP_COLUMNS[i % 3]);
+        axis.inertia_kg_m2 *= times(
+            std::f64::consts::SQRT_2 * file_error,
+            SPEED_LOOP_COLUMNS[i % 3],
+        );
         let friction = times(file_error, FRICTION_COLUMN);
         axis.coulomb_friction_nm *= friction;
         axis.viscous_friction_nm_s *= friction;
@@ -194,17 +243,28 @@ impl FileAssumption {
     /// What was assumed, as a sentence.
     pub(crate) fn sentence(&self) -> String {
         let list = |value: &AssumedValue| {
-            let typed: Vec<String> =
-                AXIS_NAMES.iter().zip(&value.file).map(|(axis, file)| format!("{axis} {file:.4}")).collect();
-            format!("{} is taken as {:.4} ({} in the file)", value.value, value.assumed[0], typed.join(", "))
+            let typed: Vec<String> = AXIS_NAMES
+                .iter()
+                .zip(&value.file)
+                .map(|(axis, file)| format!("{axis} {file:.4}"))
+                .collect();
+            format!(
+                "{} is taken as {:.4} ({} in the file)",
+                value.value,
+                value.assumed[0],
+                typed.join(", ")
+            )
         };
         let mut parts = vec![format!(
             "assumed: values of the machine file have a standard deviation of {:.0} % (--file-error), and the loops of its axes are matched",
             100.0 * self.file_error
         )];
         parts.extend(self.values.iter().map(list));
-        parts
-            .extend(self.different.iter().map(|value| format!("{value} differs between the axes by more than chance")));
+        parts.extend(
+            self.different
+                .iter()
+                .map(|value| format!("{value} differs between the axes by more than chance")),
+        );
         parts.join("; ")
     }
 }
@@ -224,9 +284,16 @@ mod tests {
         let built_in = Machine::load("workshop".as_ref()).expect("built in");
         let file = file(|_| {});
         for (was, is) in built_in.axes.iter().zip(&file.machine.axes) {
-            assert_eq!((was.parameters(), was.drive(), was.friction()), (is.parameters(), is.drive(), is.friction()));
+            assert_eq!(
+                (was.parameters(), was.drive(), was.friction()),
+                (is.parameters(), is.drive(), is.friction())
+            );
         }
-        assert!(file.assumption.values.is_empty() && file.mistaken.is_none(), "{:?}", file.assumption);
+        assert!(
+            file.assumption.values.is_empty() && file.mistaken.is_none(),
+            "{:?}",
+            file.assumption
+        );
     }
 
     #[test]
@@ -238,7 +305,10 @@ mod tests {
         }
         let far = file(|machine| machine.axes[0].kp_1_s = 100.0);
         assert_eq!(far.assumption.different, ["kp_1_s"]);
-        assert_eq!([far.machine.axes[0].kp_1_s, far.machine.axes[1].kp_1_s], [100.0, 50.0]);
+        assert_eq!(
+            [far.machine.axes[0].kp_1_s, far.machine.axes[1].kp_1_s],
+            [100.0, 50.0]
+        );
         let mistaken = far.mistaken.expect("another machine");
         assert!((mistaken.axes[0].kp_1_s - mistaken.axes[1].kp_1_s).abs() < 1e-9);
     }
@@ -246,9 +316,17 @@ mod tests {
     #[test]
     fn feedforward_that_is_unusual_by_chance_counts_as_usual() {
         for (typed, assumed) in [(1.1, 1.0), (0.8, 0.9), (0.95, 0.95), (0.5, 0.5)] {
-            let file = file(|machine| machine.axes.iter_mut().for_each(|axis| axis.velocity_feedforward = typed));
+            let file = file(|machine| {
+                machine
+                    .axes
+                    .iter_mut()
+                    .for_each(|axis| axis.velocity_feedforward = typed);
+            });
             let is = [0, 1].map(|i| file.machine.axes[i].velocity_feedforward);
-            assert!(is.iter().all(|is| (is - assumed).abs() < 1e-12), "{typed}: {is:?}");
+            assert!(
+                is.iter().all(|is| (is - assumed).abs() < 1e-12),
+                "{typed}: {is:?}"
+            );
         }
     }
 
@@ -256,14 +334,26 @@ mod tests {
     fn plausible_machines_are_one_standard_deviation_off_in_every_direction_by_itself() {
         let file = file(|_| {});
         let logs = |of: fn(&Axis) -> f64, i: usize| -> Vec<f64> {
-            file.plausible.iter().map(|machine| libm::log(of(&machine.axes[i]) / of(&file.machine.axes[i]))).collect()
+            file.plausible
+                .iter()
+                .map(|machine| libm::log(of(&machine.axes[i]) / of(&file.machine.axes[i])))
+                .collect()
         };
         let gains = logs(|axis| axis.kp_1_s, 0);
         let loops = [0, 1].map(|i| logs(|axis| axis.inertia_kg_m2, i));
-        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / a.len() as f64;
+        let product = |a: &[f64], b: &[f64]| {
+            a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / a.len() as f64
+        };
         assert!((product(&gains, &gains) - 0.005).abs() < 1e-12, "{gains:?}");
-        assert!((product(&loops[0], &loops[0]) - 0.02).abs() < 1e-12, "{loops:?}");
-        for (a, b) in [(&gains, &loops[0]), (&gains, &loops[1]), (&loops[0], &loops[1])] {
+        assert!(
+            (product(&loops[0], &loops[0]) - 0.02).abs() < 1e-12,
+            "{loops:?}"
+        );
+        for (a, b) in [
+            (&gains, &loops[0]),
+            (&gains, &loops[1]),
+            (&loops[0], &loops[1]),
+        ] {
             assert!(product(a, b).abs() < 1e-12);
         }
     }

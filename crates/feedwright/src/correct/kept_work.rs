@@ -24,8 +24,7 @@ use crate::checked_json::{checked, with_check};
 
 /// Raised whenever the same work has another result.
 const FORMAT: u32 = 2;
-const ABOUT: &str =
-    "finished parts of a feedwright correct that has not ended; the same command goes on with them; may be deleted";
+const ABOUT: &str = "finished parts of a feedwright correct that has not ended; the same command goes on with them; may be deleted";
 
 /// How often, and after which wait, a lock is tried that another process holds.
 const LOCK_TRIES: u32 = 20;
@@ -95,7 +94,13 @@ pub(super) struct Workers {
 impl Workers {
     /// Keeps nothing.
     pub(super) fn new(threads: usize) -> Self {
-        Self { threads, found: HashMap::new(), file: Mutex::new(None), fault: None, is_lost: AtomicBool::new(false) }
+        Self {
+            threads,
+            found: HashMap::new(),
+            file: Mutex::new(None),
+            fault: None,
+            is_lost: AtomicBool::new(false),
+        }
     }
 
     /// Keeps finished parts in a file, and goes on with those that it has; `work` is a hash of all
@@ -108,14 +113,26 @@ impl Workers {
             work: work.to_owned(),
         };
         match opened(path, &head) {
-            Ok((found, file, fault)) => Self { found, file: Mutex::new(Some(file)), fault, ..Self::new(threads) },
-            Err(fault) => Self { fault: Some(fault), ..Self::new(threads) },
+            Ok((found, file, fault)) => Self {
+                found,
+                file: Mutex::new(Some(file)),
+                fault,
+                ..Self::new(threads)
+            },
+            Err(fault) => Self {
+                fault: Some(fault),
+                ..Self::new(threads)
+            },
         }
     }
 
     /// What is wrong with the file, where something is.
     pub(super) fn fault(&self) -> Option<KeptFault> {
-        self.fault.or_else(|| self.is_lost.load(Ordering::Relaxed).then_some(KeptFault::Unwritable))
+        self.fault.or_else(|| {
+            self.is_lost
+                .load(Ordering::Relaxed)
+                .then_some(KeptFault::Unwritable)
+        })
     }
 
     /// The results of `count` parts in their order, whatever the number of threads, which is up to
@@ -135,7 +152,8 @@ impl Workers {
         E: Send,
     {
         let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
-        let results: Mutex<Vec<Option<Result<T, E>>>> = Mutex::new((0..count).map(|_| None).collect());
+        let results: Mutex<Vec<Option<Result<T, E>>>> =
+            Mutex::new((0..count).map(|_| None).collect());
         let run = || loop {
             let part = next.fetch_add(1, Ordering::Relaxed);
             if part >= count || failed.load(Ordering::Relaxed) {
@@ -151,7 +169,12 @@ impl Workers {
             }
             run();
         });
-        results.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().flatten().collect()
+        results
+            .into_inner()
+            .unwrap_or_else(PoisonError::into_inner)
+            .into_iter()
+            .flatten()
+            .collect()
     }
 
     /// The result of a part, from the file where it is there.
@@ -160,14 +183,20 @@ impl Workers {
         name: &str,
         work: impl FnOnce() -> Result<T, E>,
     ) -> Result<T, E> {
-        let found = self.found.get(name).and_then(|text| serde_json::from_str::<KeptPart<T>>(text).ok());
+        let found = self
+            .found
+            .get(name)
+            .and_then(|text| serde_json::from_str::<KeptPart<T>>(text).ok());
         if let Some(found) = found {
             return Ok(found.result);
         }
         let result = work()?;
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(open) = file.as_mut() {
-            let part = KeptPart { part: name.to_owned(), result: &result };
+            let part = KeptPart {
+                part: name.to_owned(),
+                result: &result,
+            };
             if append(open, &part).is_err() {
                 *file = None;
                 self.is_lost.store(true, Ordering::Relaxed);
@@ -190,14 +219,20 @@ pub(super) fn keeps_parts(path: &Path) -> bool {
 /// # Errors
 /// A file that cannot be removed.
 pub(super) fn forget(path: &Path) -> std::io::Result<()> {
-    if keeps_parts(path) { std::fs::remove_file(path) } else { Ok(()) }
+    if keeps_parts(path) {
+        std::fs::remove_file(path)
+    } else {
+        Ok(())
+    }
 }
 
 /// Puts a line behind the others; where it does not fit, none of it stays.
 fn append(file: &mut File, line: &impl Serialize) -> std::io::Result<()> {
     let end = file.seek(SeekFrom::End(0))?;
     let line = format!("{}\n", with_check(&serde_json::to_string(line)?));
-    let written = file.write_all(line.as_bytes()).and_then(|()| file.sync_data());
+    let written = file
+        .write_all(line.as_bytes())
+        .and_then(|()| file.sync_data());
     written.inspect_err(|_| {
         // What cannot be taken back is found by its checksum.
         let _ = file.set_len(end);
@@ -213,18 +248,27 @@ type OpenedParts = (HashMap<String, String>, File, Option<KeptFault>);
 /// A file of something else, and one that cannot be had.
 fn opened(path: &Path, head: &KeptHead) -> Result<OpenedParts, KeptFault> {
     let unwritable = |_: std::io::Error| KeptFault::Unwritable;
-    let mut file =
-        File::options().read(true).write(true).create(true).truncate(false).open(path).map_err(unwritable)?;
+    let mut file = File::options()
+        .read(true)
+        .write(true)
+        .create(true)
+        .truncate(false)
+        .open(path)
+        .map_err(unwritable)?;
     lock(&file).map_err(|_| KeptFault::Unwritable)?;
     let mut text = String::new();
-    file.read_to_string(&mut text).map_err(|_| KeptFault::Foreign)?;
+    file.read_to_string(&mut text)
+        .map_err(|_| KeptFault::Foreign)?;
     let first = text.split_inclusive('\n').next().unwrap_or_default();
     let begun = KeptHead::of(first).filter(|_| first.ends_with('\n'));
     let is_ours = begun.as_ref().is_some_and(|begun| begun.about == ABOUT);
     if !is_ours && !text.is_empty() && !is_torn_head(&text) {
         return Err(KeptFault::Foreign);
     }
-    let mut fault = begun.as_ref().filter(|begun| *begun != head).map(|_| KeptFault::OtherWork);
+    let mut fault = begun
+        .as_ref()
+        .filter(|begun| *begun != head)
+        .map(|_| KeptFault::OtherWork);
     let mut found = HashMap::new();
     let mut good = 0;
     if is_ours && fault.is_none() {
@@ -247,7 +291,8 @@ fn opened(path: &Path, head: &KeptHead) -> Result<OpenedParts, KeptFault> {
     Ok((found, file, fault))
 }
 
-/// Locks a file for this run. A process that is just being started holds what was locked before for a moment.
+/// Locks a file for this run. A process that is just being started holds what was locked before for
+/// a moment.
 fn lock(file: &File) -> Result<(), TryLockError> {
     for _ in 0..LOCK_TRIES {
         if file.try_lock().is_ok() {
@@ -266,7 +311,9 @@ fn is_torn_head(text: &str) -> bool {
 }
 
 fn name_of(part: &str) -> Option<String> {
-    serde_json::from_str::<KeptPart<serde::de::IgnoredAny>>(part).ok().map(|part| part.part)
+    serde_json::from_str::<KeptPart<serde::de::IgnoredAny>>(part)
+        .ok()
+        .map(|part| part.part)
 }
 
 /// Hashes what is printed.
@@ -299,7 +346,10 @@ mod tests {
             anew.fetch_add(1, Ordering::Relaxed);
             Ok::<f64, ()>(1.0 / (3.0 + part as f64))
         };
-        (workers.each("piece", 3, threads, part).unwrap(), anew.into_inner())
+        (
+            workers.each("piece", 3, threads, part).unwrap(),
+            anew.into_inner(),
+        )
     }
 
     #[test]
@@ -324,8 +374,16 @@ mod tests {
         let line_ends: Vec<usize> = (0..whole.len()).filter(|&at| whole[at] == b'\n').collect();
         for length in 0..whole.len() {
             std::fs::write(&path, &whole[..length]).unwrap();
-            let finished = line_ends.iter().filter(|&&end| end < length).count().saturating_sub(1);
-            assert_eq!(done(&path, "a", 1), (all.clone(), 3 - finished), "{length} bytes");
+            let finished = line_ends
+                .iter()
+                .filter(|&&end| end < length)
+                .count()
+                .saturating_sub(1);
+            assert_eq!(
+                done(&path, "a", 1),
+                (all.clone(), 3 - finished),
+                "{length} bytes"
+            );
             assert_eq!(std::fs::read(&path).unwrap(), whole, "{length} bytes");
         }
     }
@@ -357,7 +415,10 @@ mod tests {
         assert_eq!(fault("b"), Some(KeptFault::OtherWork));
         std::fs::write(&path, "G0 X1\n").unwrap();
         assert_eq!(fault("b"), Some(KeptFault::Foreign));
-        assert_eq!(Workers::keeping(1, folder.path(), "a").fault(), Some(KeptFault::Unwritable));
+        assert_eq!(
+            Workers::keeping(1, folder.path(), "a").fault(),
+            Some(KeptFault::Unwritable)
+        );
     }
 
     #[test]

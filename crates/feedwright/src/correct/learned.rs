@@ -1,14 +1,17 @@
-//! What logs of cuts of the part tell of the machine, for the next correction: iterative learning from part to part.
+//! What logs of cuts of the part tell of the machine, for the next correction: iterative learning
+//! from part to part.
 //!
-//! Each log is the cut of a program: the original, or one that was corrected before. The log has that program's command, so its text is
-//! not needed.
+//! Each log is the cut of a program: the original, or one that was corrected before. The log has
+//! that program's command, so its text is not needed.
 //!
 //! 1. The log is checked and aligned with the original by its command (`part_record.rs`).
-//! 2. The [values of the model](model_fit) are corrected as far as the logs show them: what was seen at one command then holds at another.
-//! 3. What the model still does not say is laid over the path. [What of it repeats](repeats) is added to the simulated tool.
+//! 2. The [values of the model](model_fit) are corrected as far as the logs show them: what was
+//!    seen at one command then holds at another.
+//! 3. What the model still does not say is laid over the path. [What of it repeats](repeats) is
+//!    added to the simulated tool.
 //!
-//! The correction then goes by the simulated tool as before. What it predicts has a band: values of the model that are as likely, and what
-//! did not repeat.
+//! The correction then goes by the simulated tool as before. What it predicts has a band: values of
+//! the model that are as likely, and what did not repeat.
 //!
 //! Source: iterative learning control (Bristow, Tharayil and Alleyne 2006).
 //!
@@ -44,8 +47,8 @@ use repeats::repeating;
 
 /// Seed of the example of noise.
 const SEED: u64 = 0x5eed;
-/// What a model leaves across the path may be so much of the contour error that it explains, and this beside, um. Beyond it, a log
-/// tells nothing.
+/// What a model leaves across the path may be so much of the contour error that it explains, and
+/// this beside, um. Beyond it, a log tells nothing.
 const MOST_LEFT: f64 = 0.7;
 const MOST_LEFT_UM: f64 = 0.5;
 /// A cut of the program that takes longer or shorter by this part than it was planned is told.
@@ -110,7 +113,8 @@ impl LearnedLog {
     /// Whether the control took another time for the program than is planned.
     #[cfg(feature = "command")]
     pub(crate) fn takes_another_time(&self) -> bool {
-        self.program == CutProgram::Original && (self.time_s / self.planned_s - 1.0).abs() > SAME_TIME
+        self.program == CutProgram::Original
+            && (self.time_s / self.planned_s - 1.0).abs() > SAME_TIME
     }
 }
 
@@ -139,33 +143,82 @@ impl LoggedProgram<'_> {
     ///
     /// # Errors
     /// The name of a log that tells nothing, and why.
-    pub(super) fn learned(&self, logs: &[MeasuredLog]) -> Result<LearnedMachine, (String, LearnError)> {
+    pub(super) fn learned(
+        &self,
+        logs: &[MeasuredLog],
+    ) -> Result<LearnedMachine, (String, LearnError)> {
         let record = |log: &MeasuredLog| {
-            let record = PartRecord::of(log, self.machine, self.stages, self.original, self.axes, self.watch);
+            let record = PartRecord::of(
+                log,
+                self.machine,
+                self.stages,
+                self.original,
+                self.axes,
+                self.watch,
+            );
             record.map_err(|error| (log.name.clone(), error))
         };
         let records = logs.iter().map(record).collect::<Result<Vec<_>, _>>()?;
-        let all = || logs.iter().map(|log| log.name.as_str()).collect::<Vec<_>>().join(", ");
-        let fit = fit(self.machine, &records, self.axes, self.watch).map_err(|error| (all(), error))?;
-        let outcomes = self.outcomes(&records, &fit).map_err(|error| (all(), error))?;
-        // A corrected part has less error than the noise of its log: the largest error of all counts.
+        let all = || {
+            logs.iter()
+                .map(|log| log.name.as_str())
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        let fit =
+            fit(self.machine, &records, self.axes, self.watch).map_err(|error| (all(), error))?;
+        let outcomes = self
+            .outcomes(&records, &fit)
+            .map_err(|error| (all(), error))?;
+        // A corrected part has less error than the noise of its log: the largest error of all
+        // counts.
         let error = |log: &LearnedLog| (log.rms_um.powi(2) - log.missed_um.powi(2)).max(0.0).sqrt();
         let error_um = outcomes.iter().map(error).fold(0.0, f64::max);
-        if let Some(log) = outcomes.iter().find(|log| log.missed_um > MOST_LEFT * error_um + MOST_LEFT_UM) {
-            return Err((log.log.clone(), LearnError::TooNoisy { rest_um: log.missed_um, error_um }));
+        if let Some(log) = outcomes
+            .iter()
+            .find(|log| log.missed_um > MOST_LEFT * error_um + MOST_LEFT_UM)
+        {
+            return Err((
+                log.log.clone(),
+                LearnError::TooNoisy {
+                    rest_um: log.missed_um,
+                    error_um,
+                },
+            ));
         }
         // The cut that is nearest to the next is the best.
-        let best = (0..records.len()).min_by(|&a, &b| records[a].rms_mm.total_cmp(&records[b].rms_mm)).unwrap_or(0);
+        let best = (0..records.len())
+            .min_by(|&a, &b| records[a].rms_mm.total_cmp(&records[b].rms_mm))
+            .unwrap_or(0);
         let (error, apart) = placed(&records, &fit, best);
         let rows = &records[best].cut.rows;
-        let [repeats_um, rest_um] = [&error.error_mm, &apart].map(|error_mm| across_um(rows, error_mm));
-        let outcome = LearnedOutcome { logs: outcomes, values: fit.values, repeats_um, rest_um, predicted: None };
-        Ok(LearnedMachine { machine: fit.machine, likely: fit.likely, error, outcome })
+        let [repeats_um, rest_um] =
+            [&error.error_mm, &apart].map(|error_mm| across_um(rows, error_mm));
+        let outcome = LearnedOutcome {
+            logs: outcomes,
+            values: fit.values,
+            repeats_um,
+            rest_um,
+            predicted: None,
+        };
+        Ok(LearnedMachine {
+            machine: fit.machine,
+            likely: fit.likely,
+            error,
+            outcome,
+        })
     }
 
-    fn outcomes(&self, records: &[PartRecord], fit: &ModelFit) -> Result<Vec<LearnedLog>, LearnError> {
+    fn outcomes(
+        &self,
+        records: &[PartRecord],
+        fit: &ModelFit,
+    ) -> Result<Vec<LearnedLog>, LearnError> {
         let steps = Box::new(self.original.iter().cloned().map(Ok));
-        let mut reference = self.stages.reference(steps, self.machine).map_err(LearnError::Limits)?;
+        let mut reference = self
+            .stages
+            .reference(steps, self.machine)
+            .map_err(LearnError::Limits)?;
         let end_s = reference.read_to_end_s();
         let file = deterministic(self.machine);
         let mut outcome = |n: usize, record: &PartRecord| {
@@ -184,7 +237,12 @@ impl LoggedProgram<'_> {
             let ratio = record.cut.sample_s / self.machine.period.servo_s;
             let model = followed(&file, record, samples, None);
             let late = fit.late_s[n] / record.cut.sample_s;
-            let missed = |k: usize| sub(record.cut.actual_mm[k], at(&model, (k as f64 + late) * ratio));
+            let missed = |k: usize| {
+                sub(
+                    record.cut.actual_mm[k],
+                    at(&model, (k as f64 + late) * ratio),
+                )
+            };
             let missed: Vec<Vector> = (first..samples).map(missed).collect();
             LearnedLog {
                 log: record.name.clone(),
@@ -199,7 +257,11 @@ impl LoggedProgram<'_> {
                 missed_um: across_um(&record.cut.rows, &fit.left_mm[n][first..]),
             }
         };
-        Ok(records.iter().enumerate().map(|(n, record)| outcome(n, record)).collect())
+        Ok(records
+            .iter()
+            .enumerate()
+            .map(|(n, record)| outcome(n, record))
+            .collect())
     }
 }
 
@@ -214,7 +276,8 @@ fn across_um(rows: &[Row], vectors_mm: &[Vector]) -> f64 {
     1e3 * (f64::max(sum, 0.0) / f64::max(count, 1.0)).sqrt()
 }
 
-/// What the fit leaves of all records, laid over the samples of the best: what repeats of it, and what does not in the best.
+/// What the fit leaves of all records, laid over the samples of the best: what repeats of it, and
+/// what does not in the best.
 fn placed(records: &[PartRecord], fit: &ModelFit, best: usize) -> (PlaceError, Vec<Vector>) {
     let track = |record: &PartRecord| PathTrack {
         sample_s: record.cut.sample_s,
@@ -227,11 +290,25 @@ fn placed(records: &[PartRecord], fit: &ModelFit, best: usize) -> (PlaceError, V
         if n == best {
             return left(n);
         }
-        PlaceError { track: track(&records[n]), error_mm: left(n) }.along(&here)
+        PlaceError {
+            track: track(&records[n]),
+            error_mm: left(n),
+        }
+        .along(&here)
     };
     let all: Vec<Vec<Vector>> = (0..records.len()).map(beside).collect();
     let noise = noise_of(&fit.machine, &records[best], SEED).split_off(records[best].cut.first);
     let error_mm = repeating(&all, &noise);
-    let apart = left(best).iter().zip(&error_mm).map(|(left, repeats)| add_scaled(*left, -1.0, *repeats)).collect();
-    (PlaceError { track: here, error_mm }, apart)
+    let apart = left(best)
+        .iter()
+        .zip(&error_mm)
+        .map(|(left, repeats)| add_scaled(*left, -1.0, *repeats))
+        .collect();
+    (
+        PlaceError {
+            track: here,
+            error_mm,
+        },
+        apart,
+    )
 }

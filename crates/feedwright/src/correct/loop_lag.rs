@@ -1,11 +1,13 @@
-//! How an axis lags behind its command: two terms of the series of its closed loop, as its simulation shows them.
+//! How an axis lags behind its command: two terms of the series of its closed loop, as its
+//! simulation shows them.
 //!
 //! ```text
 //! X(s) = (1 - T1 s + (T1^2 - T2) s^2 - ...) C(s),    so    C = (1 + T1 s + T2 s^2 + ...) X
 //! ```
 //!
-//! A position loop without feedforward has T1 = 1 / Kp and T2 = J / (Kp Kv); feedforward takes part of both away, a delay adds to them.
-//! The axis is asked for `a t^2 / 2` without friction, and then is `a t^2 / 2 - T1 a t + (T1^2 - T2) a`.
+//! A position loop without feedforward has T1 = 1 / Kp and T2 = J / (Kp Kv); feedforward takes part
+//! of both away, a delay adds to them. The axis is asked for `a t^2 / 2` without friction, and then
+//! is `a t^2 / 2 - T1 a t + (T1^2 - T2) a`.
 
 use feedwright_sim::{Axis, Machine, Plant};
 
@@ -36,7 +38,10 @@ pub(super) fn loop_lags<const N: usize>(machine: &Machine) -> [LoopLag; N] {
         transmission: None,
         ..*axis
     };
-    let free = Machine { axes: machine.axes.iter().map(axis).collect(), ..super::nominal::deterministic(machine) };
+    let free = Machine {
+        axes: machine.axes.iter().map(axis).collect(),
+        ..super::nominal::deterministic(machine)
+    };
     let slowest_1_s = free.slowest_kp_1_s();
     let servo_s = free.period.servo_s;
     let periods = (TEST_TIME_CONSTANTS / slowest_1_s / servo_s).ceil();
@@ -74,11 +79,18 @@ mod tests {
         let [x, y] = loop_lags::<2>(&machine);
         let servo_s = machine.period.servo_s;
         for (lag, axis) in [x, y].iter().zip(&machine.axes) {
-            // Held for a servo period, the command is late by half of it; the tool is looked at a period later.
+            // Held for a servo period, the command is late by half of it; the tool is looked at a
+            // period later.
             let first_s = 1.0 / axis.kp_1_s + 0.5 * servo_s - servo_s;
-            assert!((lag.first_s / first_s - 1.0).abs() < 0.03, "{lag:?} {first_s}");
+            assert!(
+                (lag.first_s / first_s - 1.0).abs() < 0.03,
+                "{lag:?} {first_s}"
+            );
             let second_s2 = axis.inertia_kg_m2 / (axis.kp_1_s * axis.kv_nm_s_per_rad);
-            assert!((lag.second_s2 / second_s2 - 1.0).abs() < 0.3, "{lag:?} {second_s2}");
+            assert!(
+                (lag.second_s2 / second_s2 - 1.0).abs() < 0.3,
+                "{lag:?} {second_s2}"
+            );
         }
     }
 

@@ -46,8 +46,14 @@ mod tests {
         assert!(machine.is_noisy() && !nominal.is_noisy());
         assert_eq!(nominal.geometry, Squareness::default());
         for (was, is) in machine.axes.iter().zip(&nominal.axes) {
-            assert_eq!((is.parameters(), is.drive(), is.friction()), (was.parameters(), was.drive(), was.friction()));
-            assert_eq!((is.disturbance_nm, is.scale_um_m, is.cogging_nm), (0.0, 0.0, 0.0));
+            assert_eq!(
+                (is.parameters(), is.drive(), is.friction()),
+                (was.parameters(), was.drive(), was.friction())
+            );
+            assert_eq!(
+                (is.disturbance_nm, is.scale_um_m, is.cogging_nm),
+                (0.0, 0.0, 0.0)
+            );
         }
     }
 }

@@ -108,9 +108,14 @@ impl fmt::Display for UnwrittenProgram {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line(UnwritableLine { line, what, .. }) => {
-                write!(f, "line {line} has {what}, which a program without loops and subroutines cannot say here")
+                write!(
+                    f,
+                    "line {line} has {what}, which a program without loops and subroutines cannot say here"
+                )
             }
-            Self::Columns(columns) => write!(f, "blocks of it are longer than {columns} characters"),
+            Self::Columns(columns) => {
+                write!(f, "blocks of it are longer than {columns} characters")
+            }
             Self::Text(fault) => fault.fmt(f),
         }
     }
@@ -119,11 +124,15 @@ impl fmt::Display for UnwrittenProgram {
 impl CorrectOutcome {
     /// The text of the corrected program, where it is better.
     pub fn program(&self) -> Option<&str> {
-        self.written.as_ref().filter(|_| self.refusal.is_none()).map(|written| written.text.as_str())
+        self.written
+            .as_ref()
+            .filter(|_| self.refusal.is_none())
+            .map(|written| written.text.as_str())
     }
 }
 
-/// Why a corrected program is not to be used: by the figures of the uncorrected program and of its text, or by what keeps it from being written.
+/// Why a corrected program is not to be used: by the figures of the uncorrected program and of its
+/// text, or by what keeps it from being written.
 pub(super) fn refusal(
     uncorrected: &ExportedFigures,
     corrected: Option<&ExportedFigures>,
@@ -134,7 +143,10 @@ pub(super) fn refusal(
         return Some("the servo loop is unstable".to_owned());
     }
     if changed == 0 {
-        return Some("no stretch of the program gets better by another command, for the reasons above".to_owned());
+        return Some(
+            "no stretch of the program gets better by another command, for the reasons above"
+                .to_owned(),
+        );
     }
     if let Some(fault) = unwritten {
         return Some(format!("the corrected program cannot be written: {fault}"));
@@ -142,7 +154,10 @@ pub(super) fn refusal(
     let corrected = corrected?;
     let worse = harm(&uncorrected.errors(), &corrected.errors());
     if !worse.is_empty() {
-        return Some(format!("it is worse than the uncorrected program ({})", listed(&worse)));
+        return Some(format!(
+            "it is worse than the uncorrected program ({})",
+            listed(&worse)
+        ));
     }
     corrected.is_no_better_than(uncorrected).then(|| {
         format!(
@@ -163,22 +178,41 @@ mod tests {
 
     fn figures([rms_um, max_um, uncut_um]: [f64; 3]) -> ExportedFigures {
         let mut figures = ExportedFigures::default();
-        (figures.rms_um, figures.max_um, figures.uncut_um, figures.completed) = (rms_um, max_um, uncut_um, true);
+        (
+            figures.rms_um,
+            figures.max_um,
+            figures.uncut_um,
+            figures.completed,
+        ) = (rms_um, max_um, uncut_um, true);
         figures
     }
 
     /// Why a program with these errors, um, is refused in place of one with 10, 40 and 2 um.
     fn refused(corrected: [f64; 3]) -> Option<String> {
-        refusal(&figures([10.0, 40.0, 2.0]), Some(&figures(corrected)), 1, None)
+        refusal(
+            &figures([10.0, 40.0, 2.0]),
+            Some(&figures(corrected)),
+            1,
+            None,
+        )
     }
 
     #[test]
     fn a_program_that_is_worse_in_any_error_is_refused() {
         assert_eq!(refused([1.0, 40.9, 2.9]), None);
         for (corrected, why) in [
-            ([10.1, 4.0, 0.0], "it is worse than the uncorrected program (RMS 10.10 um for 10.00)"),
-            ([1.0, 41.1, 0.0], "it is worse than the uncorrected program (max 41.10 um for 40.00)"),
-            ([1.0, 4.0, 3.1], "it is worse than the uncorrected program (uncut 3.10 um for 2.00)"),
+            (
+                [10.1, 4.0, 0.0],
+                "it is worse than the uncorrected program (RMS 10.10 um for 10.00)",
+            ),
+            (
+                [1.0, 41.1, 0.0],
+                "it is worse than the uncorrected program (max 41.10 um for 40.00)",
+            ),
+            (
+                [1.0, 4.0, 3.1],
+                "it is worse than the uncorrected program (uncut 3.10 um for 2.00)",
+            ),
             (
                 [1.0, 41.1, f64::NAN],
                 "it is worse than the uncorrected program (max 41.10 um for 40.00, uncut NaN um for 2.00)",
@@ -201,9 +235,19 @@ mod tests {
     fn a_program_that_is_lost_or_was_not_changed_is_refused() {
         let mut lost = figures([1.0, 4.0, 2.0]);
         lost.completed = false;
-        let refused = |corrected, changed| refusal(&figures([10.0, 40.0, 2.0]), Some(corrected), changed, None);
-        assert_eq!(refused(&lost, 1).as_deref(), Some("the servo loop is unstable"));
-        assert_eq!(refusal(&lost, None, 0, None).as_deref(), Some("the servo loop is unstable"));
-        assert!(refused(&figures([1.0, 4.0, 2.0]), 0).is_some_and(|why| why.starts_with("no stretch")));
+        let refused = |corrected, changed| {
+            refusal(&figures([10.0, 40.0, 2.0]), Some(corrected), changed, None)
+        };
+        assert_eq!(
+            refused(&lost, 1).as_deref(),
+            Some("the servo loop is unstable")
+        );
+        assert_eq!(
+            refusal(&lost, None, 0, None).as_deref(),
+            Some("the servo loop is unstable")
+        );
+        assert!(
+            refused(&figures([1.0, 4.0, 2.0]), 0).is_some_and(|why| why.starts_with("no stretch"))
+        );
     }
 }

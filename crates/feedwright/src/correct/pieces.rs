@@ -57,7 +57,10 @@ pub(super) struct ProgramPiece {
 impl ProgramPiece {
     /// All steps of a program as one piece.
     pub(super) const fn whole(steps: usize) -> Self {
-        Self { own: 0..steps, cut: 0..steps }
+        Self {
+            own: 0..steps,
+            cut: 0..steps,
+        }
     }
 }
 
@@ -67,14 +70,21 @@ pub(super) fn splits(pieces: &[ProgramPiece]) -> Vec<usize> {
 }
 
 /// The pieces of a program, of about `periods` servo periods each, as the control plans it.
-pub(super) fn pieces(cut: &ExportedCut<'_>, program: &[Canon], periods: u64) -> Result<Vec<ProgramPiece>, RunError> {
+pub(super) fn pieces(
+    cut: &ExportedCut<'_>,
+    program: &[Canon],
+    periods: u64,
+) -> Result<Vec<ProgramPiece>, RunError> {
     let servo_s = cut.machine.period.servo_s;
     let whole = WHOLE_PIECES * periods;
     if cut.programmed_s(STOP_S) <= whole as f64 * servo_s {
         return Ok(vec![ProgramPiece::whole(program.len())]);
     }
     let numbered = program.iter().enumerate().map(|(step, canon)| match canon {
-        Canon::Motion(motion) => Canon::Motion(Motion { line: step as u32, ..motion.clone() }),
+        Canon::Motion(motion) => Canon::Motion(Motion {
+            line: step as u32,
+            ..motion.clone()
+        }),
         Canon::Event(event) => Canon::Event(event.clone()),
     });
     let numbered: Vec<Step> = Pieces::new(numbered).collect::<Result<_, _>>()?;
@@ -85,7 +95,11 @@ pub(super) fn pieces(cut: &ExportedCut<'_>, program: &[Canon], periods: u64) -> 
     let lead = (lead_s(cut.machine) / servo_s).ceil() as u64;
     let begins = begins(program, &until, periods);
     let ends = begins.iter().skip(1).copied().chain([program.len()]);
-    Ok(begins.iter().zip(ends).map(|(&from, to)| with_leads(from..to, &until, lead)).collect())
+    Ok(begins
+        .iter()
+        .zip(ends)
+        .map(|(&from, to)| with_leads(from..to, &until, lead))
+        .collect())
 }
 
 /// How long a lead is, s.
@@ -99,9 +113,14 @@ fn lead_s(machine: &Machine) -> f64 {
 fn with_leads(own: Range<usize>, until: &[u64], lead: u64) -> ProgramPiece {
     let before = |step: usize| if step == 0 { 0 } else { until[step - 1] };
     let (from, to) = (before(own.start), before(own.end));
-    let first = until.partition_point(|&until| until + lead < from).min(own.start.saturating_sub(1));
+    let first = until
+        .partition_point(|&until| until + lead < from)
+        .min(own.start.saturating_sub(1));
     let last = until.partition_point(|&until| until < to + lead) + 1;
-    ProgramPiece { cut: first..last.max(own.end + 1).min(until.len()), own }
+    ProgramPiece {
+        cut: first..last.max(own.end + 1).min(until.len()),
+        own,
+    }
 }
 
 /// The first steps of all pieces.
@@ -110,7 +129,11 @@ fn begins(program: &[Canon], until: &[u64], periods: u64) -> Vec<usize> {
     let mut step = 0;
     for part in parts(program, &[]) {
         corner[step] = true;
-        step += if let ProgramPart::Stretch(stretch) = part { stretch.motions.len() } else { 1 };
+        step += if let ProgramPart::Stretch(stretch) = part {
+            stretch.motions.len()
+        } else {
+            1
+        };
     }
     let all = until.last().copied().unwrap_or(0);
     let mut begins = vec![0];
@@ -121,7 +144,8 @@ fn begins(program: &[Canon], until: &[u64], periods: u64) -> Vec<usize> {
         let last = (until.partition_point(|&until| until <= latest) + 1).min(program.len());
         // Where a single step is longer than all that, the piece ends behind it.
         let best = (first..last.max(first + 1)).filter(|&step| step < program.len());
-        let Some(best) = best.max_by(|&a, &b| fitness(program, &corner, a).total_cmp(&fitness(program, &corner, b)))
+        let Some(best) = best
+            .max_by(|&a, &b| fitness(program, &corner, a).total_cmp(&fitness(program, &corner, b)))
         else {
             break;
         };
@@ -141,7 +165,9 @@ fn fitness(program: &[Canon], corner: &[bool], step: usize) -> f64 {
         _ if corner[step] => 1.0,
         (Canon::Motion(last), Canon::Motion(next)) => {
             let is_straight = last.shape == Shape::Line && next.shape == Shape::Line;
-            let turn_rad = directions(last).zip(directions(next)).map_or(0.0, |(last, next)| angle(last[1], next[0]));
+            let turn_rad = directions(last)
+                .zip(directions(next))
+                .map_or(0.0, |(last, next)| angle(last[1], next[0]));
             f64::from(u8::from(is_straight)) - 1.0 - turn_rad
         }
         _ => 0.0,
@@ -161,8 +187,13 @@ pub(super) fn rounds_of_pieces(
     if pieces.len() == 1 {
         return rounds(cut, parts, target, file, &JudgedPart::whole(parts));
     }
-    cut.watch.begin(&format!("correcting in {} pieces", pieces.len()), STEPS * pieces.len() as u64);
-    let all = workers.each("piece", pieces.len(), usize::MAX, |k| program.rounds(k, cut, target, file))?;
+    cut.watch.begin(
+        &format!("correcting in {} pieces", pieces.len()),
+        STEPS * pieces.len() as u64,
+    );
+    let all = workers.each("piece", pieces.len(), usize::MAX, |k| {
+        program.rounds(k, cut, target, file)
+    })?;
     let mut whole = RoundsResult::default();
     for piece in all {
         whole.commands.extend(piece.commands);
@@ -187,7 +218,10 @@ impl LongProgram<'_> {
     /// Whether it has several stretches, before it is split.
     fn of_several(&self) -> bool {
         let splits = splits(self.pieces);
-        stretches(self.parts).filter(|stretch| !is_parted(stretch, &splits)).nth(1).is_some()
+        stretches(self.parts)
+            .filter(|stretch| !is_parted(stretch, &splits))
+            .nth(1)
+            .is_some()
     }
 
     /// Finds commands for the stretches of a piece, as far as they are in it.
@@ -202,24 +236,47 @@ impl LongProgram<'_> {
         let (from, steps) = (piece.cut.start, &self.steps[piece.cut.clone()]);
         let own = piece.own.start - from..piece.own.end - from;
         let original = steps_of(steps)?;
-        let watch = PieceWatch { of_all: cut.watch, done: AtomicU64::new(0) };
+        let watch = PieceWatch {
+            of_all: cut.watch,
+            done: AtomicU64::new(0),
+        };
         let parts = parts(steps, &[]);
-        let count =
-            |is: &dyn Fn(&[usize; 2]) -> bool| stretches(&parts).take_while(|stretch| is(&stretch.steps)).count();
+        let count = |is: &dyn Fn(&[usize; 2]) -> bool| {
+            stretches(&parts)
+                .take_while(|stretch| is(&stretch.steps))
+                .count()
+        };
         let inside = count(&|[_, last]| *last < own.start)..count(&|[first, _]| *first < own.end);
-        let until_mm = |step: usize| Ok::<f64, RunError>(length_mm(&steps_of(&steps[..step])?) - AT_END_MM);
+        let until_mm =
+            |step: usize| Ok::<f64, RunError>(length_mm(&steps_of(&steps[..step])?) - AT_END_MM);
         let path_mm = until_mm(own.start)?..until_mm(own.end)?;
-        let judged = JudgedPart { stretches: inside.clone(), path_mm, of_several: self.of_several() };
-        let cut = ExportedCut { original: &original, watch: &watch, ..*cut };
+        let judged = JudgedPart {
+            stretches: inside.clone(),
+            path_mm,
+            of_several: self.of_several(),
+        };
+        let cut = ExportedCut {
+            original: &original,
+            watch: &watch,
+            ..*cut
+        };
         let mut found = rounds(&cut, &parts, target, file, &judged)?;
-        cut.watch.advance(STEPS.saturating_sub(watch.done.load(Ordering::Relaxed)));
+        cut.watch
+            .advance(STEPS.saturating_sub(watch.done.load(Ordering::Relaxed)));
         let seams = [own.start, own.end].map(|step| seam(steps, step));
-        for (k, stretch) in stretches(&parts).enumerate().filter(|(k, _)| inside.contains(k)) {
+        for (k, stretch) in stretches(&parts)
+            .enumerate()
+            .filter(|(k, _)| inside.contains(k))
+        {
             let [begins, ends] = [stretch.steps[0] < own.start, stretch.steps[1] >= own.end];
             let sides = [seams[0].filter(|_| begins), seams[1].filter(|_| ends)];
-            let Some(command) = found.commands[k].take() else { continue };
+            let Some(command) = found.commands[k].take() else {
+                continue;
+            };
             found.commands[k] = within(command, sides);
-            found.reasons[k] = found.commands[k].is_none().then_some(UnchangedReason::LeavesPath);
+            found.reasons[k] = found.commands[k]
+                .is_none()
+                .then_some(UnchangedReason::LeavesPath);
         }
         Ok(RoundsResult {
             commands: found.commands[inside.clone()].to_vec(),

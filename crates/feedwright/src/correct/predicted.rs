@@ -9,15 +9,21 @@ use super::nominal::deterministic;
 
 /// Standard deviations of the model's values in the band.
 const DEVIATIONS: f64 = 2.0;
-/// Part by which what does not repeat differs from cut to cut in the band, and the part for what fits and planners leave.
+/// Part by which what does not repeat differs from cut to cut in the band, and the part for what
+/// fits and planners leave.
 const REST: f64 = 0.3;
 const FIT: f64 = 0.25;
-/// A program that was cut is replaced where the next is predicted to have less RMS error by this part.
+/// A program that was cut is replaced where the next is predicted to have less RMS error by this
+/// part.
 const LEAST_GAIN: f64 = 0.1;
 
 /// A machine without the errors that its encoders do not see.
 fn as_encoders_see(machine: &Machine) -> Machine {
-    let axis = |axis: &Axis| Axis { scale_um_m: 0.0, pitch_error_um: 0.0, ..*axis };
+    let axis = |axis: &Axis| Axis {
+        scale_um_m: 0.0,
+        pitch_error_um: 0.0,
+        ..*axis
+    };
     Machine {
         axes: machine.axes.iter().map(axis).collect(),
         geometry: Squareness::default(),
@@ -33,8 +39,13 @@ pub(super) fn learned_outcome(
     cut: &ExportedCut<'_>,
     program: Option<&[Step]>,
 ) -> Result<LearnedOutcome, RunError> {
-    let predicted = program.map(|program| predicted_cut(learned, cut, program)).transpose()?;
-    Ok(LearnedOutcome { predicted, ..learned.outcome.clone() })
+    let predicted = program
+        .map(|program| predicted_cut(learned, cut, program))
+        .transpose()?;
+    Ok(LearnedOutcome {
+        predicted,
+        ..learned.outcome.clone()
+    })
 }
 
 /// The next cut at the encoders:
@@ -43,14 +54,28 @@ pub(super) fn learned_outcome(
 /// RMS^2 = q^2 + r^2,    q^2 (1 - 0.25)^2 + r^2 (1 - 0.3)^2  to  q^2 (1 + 0.25)^2 + 2^2 v + r^2 (1 + 0.3)^2
 /// ```
 ///
-/// with `q` of the simulated cut, `r` of what does not repeat in the logs, and `v`, by which the mean of `q^2` grows over values of the
-/// model that are as likely.
-fn predicted_cut(learned: &LearnedMachine, cut: &ExportedCut<'_>, program: &[Step]) -> Result<PredictedCut, RunError> {
+/// with `q` of the simulated cut, `r` of what does not repeat in the logs, and `v`, by which the
+/// mean of `q^2` grows over values of the model that are as likely.
+fn predicted_cut(
+    learned: &LearnedMachine,
+    cut: &ExportedCut<'_>,
+    program: &[Step],
+) -> Result<PredictedCut, RunError> {
     let seen = as_encoders_see(&learned.machine);
-    let ExportedFigures { max_um, .. } = ExportedCut { machine: &seen, ..*cut }.figures(program)?;
+    let ExportedFigures { max_um, .. } = ExportedCut {
+        machine: &seen,
+        ..*cut
+    }
+    .figures(program)?;
     let square_um2 = |machine: &Machine| -> Result<f64, RunError> {
         let machine = deterministic(&as_encoders_see(machine));
-        Ok(ExportedCut { machine: &machine, ..*cut }.once(program, 0.0, &mut [])?.rms_um.powi(2))
+        Ok(ExportedCut {
+            machine: &machine,
+            ..*cut
+        }
+        .once(program, 0.0, &mut [])?
+        .rms_um
+        .powi(2))
     };
     let best = square_um2(&learned.machine)?;
     let mut more = 0.0;
@@ -62,13 +87,25 @@ fn predicted_cut(learned: &LearnedMachine, cut: &ExportedCut<'_>, program: &[Ste
     let wide = DEVIATIONS * DEVIATIONS * more.max(0.0);
     let band_um = [end(-1.0).sqrt(), (end(1.0) + wide).sqrt()];
     let repeats_um = (best * (1.0 + FIT).powi(2) + wide).sqrt();
-    Ok(PredictedCut { rms_um: (best + rest).sqrt(), band_um, repeats_um, max_um })
+    Ok(PredictedCut {
+        rms_um: (best + rest).sqrt(),
+        band_um,
+        repeats_um,
+        max_um,
+    })
 }
 
 /// Why the next cut is not told to be better than what the logs are of.
 pub(super) fn no_gain(learned: &LearnedOutcome, uncorrected: &ExportedFigures) -> Option<String> {
-    let PredictedCut { rms_um, repeats_um, .. } = learned.predicted?;
-    let of = |program: CutProgram| learned.logs.iter().filter(move |log| log.program == program);
+    let PredictedCut {
+        rms_um, repeats_um, ..
+    } = learned.predicted?;
+    let of = |program: CutProgram| {
+        learned
+            .logs
+            .iter()
+            .filter(move |log| log.program == program)
+    };
     let least = |a: &&LearnedLog, b: &&LearnedLog| a.rms_um.total_cmp(&b.rms_um);
     if let Some(best) = of(CutProgram::Corrected).min_by(least)
         && rms_um > (1.0 - LEAST_GAIN) * best.rms_um
@@ -78,9 +115,13 @@ pub(super) fn no_gain(learned: &LearnedOutcome, uncorrected: &ExportedFigures) -
             best.rms_um, best.log
         ));
     }
-    let original_um = of(CutProgram::Original).min_by(least).map_or(uncorrected.rms_um, |log| log.rms_um);
+    let original_um = of(CutProgram::Original)
+        .min_by(least)
+        .map_or(uncorrected.rms_um, |log| log.rms_um);
     // What does not repeat is in both.
-    let original_um = (original_um.powi(2) - learned.rest_um.powi(2)).max(0.0).sqrt();
+    let original_um = (original_um.powi(2) - learned.rest_um.powi(2))
+        .max(0.0)
+        .sqrt();
     (repeats_um >= original_um).then(|| {
         format!(
             "the logs do not tell whether it is better: of the error that repeats, up to RMS {repeats_um:.2} um may be left, and the original \
@@ -106,26 +147,42 @@ mod tests {
             model_missed_um: 1.0,
             missed_um: 0.1,
         };
-        let predicted = Some(PredictedCut { rms_um, band_um: [0.0; 2], repeats_um, max_um: 3.0 * rms_um });
+        let predicted = Some(PredictedCut {
+            rms_um,
+            band_um: [0.0; 2],
+            repeats_um,
+            max_um: 3.0 * rms_um,
+        });
         let logs = logs.iter().map(log).collect();
-        LearnedOutcome { logs, values: Vec::new(), repeats_um: 0.0, rest_um: 6.0, predicted }
+        LearnedOutcome {
+            logs,
+            values: Vec::new(),
+            repeats_um: 0.0,
+            rest_um: 6.0,
+            predicted,
+        }
     }
 
     #[test]
     fn a_program_is_written_only_where_what_may_be_left_is_less_and_it_gains() {
         let mut uncorrected = ExportedFigures::default();
         (uncorrected.rms_um, uncorrected.completed) = (9.0, true);
-        let why =
-            |logs: &[(CutProgram, f64)], rms_um, repeats_um| no_gain(&learned(logs, rms_um, repeats_um), &uncorrected);
+        let why = |logs: &[(CutProgram, f64)], rms_um, repeats_um| {
+            no_gain(&learned(logs, rms_um, repeats_um), &uncorrected)
+        };
         let (original, corrected) = ((CutProgram::Original, 10.0), (CutProgram::Corrected, 7.0));
         // Of 10 um, 6 um do not repeat, and 8 um do.
         assert_eq!(why(&[original], 6.1, 7.9), None);
-        assert!(why(&[original], 6.1, 8.1).is_some_and(|why| why.contains("do not tell") && why.contains("8.00 um")));
+        assert!(
+            why(&[original], 6.1, 8.1)
+                .is_some_and(|why| why.contains("do not tell") && why.contains("8.00 um"))
+        );
         // Without a log of the original, what is predicted of it counts.
         assert!(why(&[corrected], 6.1, 6.8).is_some_and(|why| why.contains("6.71 um")));
         assert_eq!(why(&[original, corrected], 6.2, 3.0), None);
         assert!(
-            why(&[original, corrected], 6.7, 3.0).is_some_and(|why| why.contains("as good: RMS 7.00 um in cut.csv"))
+            why(&[original, corrected], 6.7, 3.0)
+                .is_some_and(|why| why.contains("as good: RMS 7.00 um in cut.csv"))
         );
     }
 }

@@ -1,9 +1,10 @@
 //! The text of a corrected program.
 //!
-//! Where every line of the original is carried out once and in its order, all lines stay but those of the stretches that have another
-//! command: comments, cycles, rapids, tool changes and line numbers are the original's, and new blocks are written in the coordinates,
-//! the unit and the modes of their place. Otherwise (loops, subroutines, jumps) the program is [expanded](super::expanded_text). What is written is
-//! read again by [`super::verified`].
+//! Where every line of the original is carried out once and in its order, all lines stay but those
+//! of the stretches that have another command: comments, cycles, rapids, tool changes and line
+//! numbers are the original's, and new blocks are written in the coordinates, the unit and the
+//! modes of their place. Otherwise (loops, subroutines, jumps) the program is
+//! [expanded](super::expanded_text). What is written is read again by [`super::verified`].
 
 use std::collections::BTreeMap;
 
@@ -39,7 +40,8 @@ struct LineEdit {
     behind: Vec<String>,
 }
 
-/// Words that the next line that moves has to say itself, since a line that said them has been replaced.
+/// Words that the next line that moves has to say itself, since a line that said them has been
+/// replaced.
 #[derive(Debug, Default)]
 struct NeededWords {
     code: bool,
@@ -56,7 +58,8 @@ pub(super) fn line_of(step: &Canon) -> usize {
 /// Why the lines of the original cannot stay.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum UnkeptLines {
-    /// They are not carried out in their order, the control does not run their macros, or lines between corrected ones cannot stay alone.
+    /// They are not carried out in their order, the control does not run their macros, or lines
+    /// between corrected ones cannot stay alone.
     Program,
     /// Lines of these stretches, which have another command, cannot be taken apart.
     Stretches(Vec<usize>),
@@ -73,16 +76,21 @@ impl TextParts<'_> {
     /// # Errors
     /// What stands against it.
     pub(super) fn kept(&self) -> Result<String, UnkeptLines> {
-        let runs =
-            self.target.runs_macros_of(self.source.dialect) || !self.source.lines.iter().any(|line| has_macros(line));
+        let runs = self.target.runs_macros_of(self.source.dialect)
+            || !self.source.lines.iter().any(|line| has_macros(line));
         if !runs || !self.source.steps.is_sorted_by_key(line_of) {
             return Err(UnkeptLines::Program);
         }
         let mut edits: BTreeMap<usize, LineEdit> = BTreeMap::new();
         let all: Vec<&SmoothStretch> = stretches(self.parts).collect();
         // A stretch as it is programmed has an edit where the command before it needs a rest.
-        let of_command =
-            |number: usize| if self.commands[number].is_some() { number } else { number.saturating_sub(1) };
+        let of_command = |number: usize| {
+            if self.commands[number].is_some() {
+                number
+            } else {
+                number.saturating_sub(1)
+            }
+        };
         let mut unkept: Vec<usize> = (0..all.len())
             .filter(|&number| self.edit(all[number], number, &mut edits).is_none())
             .map(of_command)
@@ -95,39 +103,71 @@ impl TextParts<'_> {
     }
 
     /// Adds what happens to the lines of a stretch; none where they cannot be taken apart.
-    fn edit(&self, stretch: &SmoothStretch, number: usize, edits: &mut BTreeMap<usize, LineEdit>) -> Option<()> {
+    fn edit(
+        &self,
+        stretch: &SmoothStretch,
+        number: usize,
+        edits: &mut BTreeMap<usize, LineEdit>,
+    ) -> Option<()> {
         let rests = dwells(stretch, self.commands, number, self.rests_s);
         if let Some(command) = &self.commands[number] {
             if let (Some(approach), Some((step, _))) = (&command.approach, &stretch.rapid) {
-                edits.insert(self.begins(*step)?, self.replaced([*step; 2], approach, [None; 2])?);
+                edits.insert(
+                    self.begins(*step)?,
+                    self.replaced([*step; 2], approach, [None; 2])?,
+                );
             }
             let edit = if command.motions == stretch.motions {
                 let [text, behind] = rests.map(|rest| self.rest(rest));
-                LineEdit { to: line_of(&self.source.steps[stretch.steps[1]]), text, stay: true, behind }
+                LineEdit {
+                    to: line_of(&self.source.steps[stretch.steps[1]]),
+                    text,
+                    stay: true,
+                    behind,
+                }
             } else {
                 self.replaced(stretch.steps, &command.motions, rests)?
             };
             edits.insert(self.begins(stretch.steps[0])?, edit);
         } else if rests[0].is_some() {
             let from = self.begins(stretch.steps[0])?;
-            edits.insert(from, LineEdit { to: from - 1, text: self.rest(rests[0]), ..LineEdit::default() });
+            edits.insert(
+                from,
+                LineEdit {
+                    to: from - 1,
+                    text: self.rest(rests[0]),
+                    ..LineEdit::default()
+                },
+            );
         }
         Some(())
     }
 
     /// The line of a rest, where there is one.
     fn rest(&self, seconds: Option<f64>) -> Vec<String> {
-        seconds.map(|seconds| dwell(seconds, self.dialect())).into_iter().collect()
+        seconds
+            .map(|seconds| dwell(seconds, self.dialect()))
+            .into_iter()
+            .collect()
     }
 
-    /// The line on which a step begins: the line of its motion, or the first line of its curve. None if a line of the curve cannot be taken apart.
+    /// The line on which a step begins: the line of its motion, or the first line of its curve.
+    /// None if a line of the curve cannot be taken apart.
     fn begins(&self, step: usize) -> Option<usize> {
         let steps = &self.source.steps;
         let ends = line_of(&steps[step]);
-        if !matches!(&steps[step], Canon::Motion(Motion { shape: Shape::Spline(_), .. })) {
+        if !matches!(
+            &steps[step],
+            Canon::Motion(Motion {
+                shape: Shape::Spline(_),
+                ..
+            })
+        ) {
             return Some(ends);
         }
-        let before = step.checked_sub(1).map_or(0, |before| line_of(&steps[before]));
+        let before = step
+            .checked_sub(1)
+            .map_or(0, |before| line_of(&steps[before]));
         for line in before + 1..=ends {
             if PartedLine::parse(self.source.lines.get(line - 1)?)?.collects_curve() {
                 return Some(line);
@@ -151,7 +191,10 @@ impl TextParts<'_> {
             if edit.stay {
                 self.copy(from..next, &mut needs, &mut text)?;
             } else if edit.to >= from {
-                needs = NeededWords { code: true, feed: true };
+                needs = NeededWords {
+                    code: true,
+                    feed: true,
+                };
             }
             text.extend(edit.behind);
         }
@@ -160,8 +203,14 @@ impl TextParts<'_> {
         Some(joined(&text))
     }
 
-    /// Lines as they are; the first that moves gets its code, and its feedrate, where the one that said it has gone.
-    fn copy(&self, lines: std::ops::Range<usize>, needs: &mut NeededWords, text: &mut Vec<String>) -> Option<()> {
+    /// Lines as they are; the first that moves gets its code, and its feedrate, where the one that
+    /// said it has gone.
+    fn copy(
+        &self,
+        lines: std::ops::Range<usize>,
+        needs: &mut NeededWords,
+        text: &mut Vec<String>,
+    ) -> Option<()> {
         for number in lines {
             let mut copied = self.source.lines.get(number - 1)?.clone();
             if let Some(feed_mm_s) = self.source.feed_mm_s {
@@ -216,7 +265,10 @@ impl TextParts<'_> {
             return None;
         }
         self.steps_of(line).find_map(|step| match step {
-            Canon::Event(Event { kind: EventKind::Dwell { seconds }, .. }) => Some(*seconds),
+            Canon::Event(Event {
+                kind: EventKind::Dwell { seconds },
+                ..
+            }) => Some(*seconds),
             _ => None,
         })
     }
@@ -224,14 +276,18 @@ impl TextParts<'_> {
     /// A feedrate as an F word of a line says it.
     fn feed(&self, feed_mm_s: f64, line: usize) -> String {
         let steps = &self.source.steps;
-        let step = steps.partition_point(|step| line_of(step) < line).min(steps.len().saturating_sub(1));
+        let step = steps
+            .partition_point(|step| line_of(step) < line)
+            .min(steps.len().saturating_sub(1));
         feed_number(feed_mm_s, self.source.modes(step).unit_mm)
     }
 
     /// A line that moves by the code of a line before, with that code.
     fn with_code(&self, number: usize, line: &str) -> Option<String> {
         let moves = |step: &&Canon| matches!(step, Canon::Motion(_)) && line_of(step) == number;
-        let Some(Canon::Motion(motion)) = self.source.steps.iter().find(moves) else { return Some(line.to_owned()) };
+        let Some(Canon::Motion(motion)) = self.source.steps.iter().find(moves) else {
+            return Some(line.to_owned());
+        };
         let code = match (&motion.shape, motion.kind) {
             (Shape::Line, MotionKind::Rapid) => "G0",
             (Shape::Line, MotionKind::Feed) => "G1",
@@ -241,13 +297,28 @@ impl TextParts<'_> {
         };
         let body = line.trim_start();
         let is_number = body.starts_with(['N', 'n']);
-        let end =
-            if is_number { body[1..].find(|c: char| !c.is_ascii_digit()).map_or(body.len(), |k| k + 1) } else { 0 };
-        Some(format!("{}{}{code} {}", &body[..end], if end > 0 { " " } else { "" }, body[end..].trim_start()))
+        let end = if is_number {
+            body[1..]
+                .find(|c: char| !c.is_ascii_digit())
+                .map_or(body.len(), |k| k + 1)
+        } else {
+            0
+        };
+        Some(format!(
+            "{}{}{code} {}",
+            &body[..end],
+            if end > 0 { " " } else { "" },
+            body[end..].trim_start()
+        ))
     }
 
     /// New blocks for the lines of some steps, with rests before and behind.
-    fn replaced(&self, [first, last]: [usize; 2], command: &[Motion], rests: [Option<f64>; 2]) -> Option<LineEdit> {
+    fn replaced(
+        &self,
+        [first, last]: [usize; 2],
+        command: &[Motion],
+        rests: [Option<f64>; 2],
+    ) -> Option<LineEdit> {
         let steps = &self.source.steps;
         let (from, to) = (self.begins(first)?, line_of(&steps[last]));
         let (modes, at_end) = (self.source.modes(first), self.source.modes(last));
@@ -266,8 +337,15 @@ impl TextParts<'_> {
             if rest.is_empty() || line > from && !parsed.has("MST") {
                 continue;
             }
-            let early = steps[..first].iter().rev().take_while(|step| line_of(step) >= line).count();
-            let late = steps[last + 1..].iter().take_while(|step| line_of(step) <= line).count();
+            let early = steps[..first]
+                .iter()
+                .rev()
+                .take_while(|step| line_of(step) >= line)
+                .count();
+            let late = steps[last + 1..]
+                .iter()
+                .take_while(|step| line_of(step) <= line)
+                .count();
             match (early, late) {
                 (_, 0) => before.push(rest),
                 (0, _) => behind.push(rest),
@@ -288,13 +366,20 @@ impl TextParts<'_> {
         text.extend(rest_behind);
         text.extend(behind);
         text.retain(|line| !line.is_empty());
-        Some(LineEdit { to, text, ..LineEdit::default() })
+        Some(LineEdit {
+            to,
+            text,
+            ..LineEdit::default()
+        })
     }
 
     /// Notes as comments behind `%` and the program's number.
     pub(super) fn put_notes(&self, text: &mut Vec<String>) {
         let at = text.iter().take_while(|line| is_head(line)).count();
-        let notes = self.notes.iter().map(|note| format!("({})", visible(note).replace(['(', ')'], " ")));
+        let notes = self
+            .notes
+            .iter()
+            .map(|note| format!("({})", visible(note).replace(['(', ')'], " ")));
         text.splice(at..at, notes);
     }
 }
@@ -310,23 +395,44 @@ pub(super) fn joined(lines: &[String]) -> String {
 }
 
 impl TextParts<'_> {
-    /// Codes that put the modes in force that blocks need, and those that put in force what the program has behind them.
-    fn around(&self, [before, behind]: [&ModesInForce; 2], command: &[Motion]) -> [Option<String>; 2] {
-        let corner = command.first().map_or(before.corner, |motion| motion.corner);
+    /// Codes that put the modes in force that blocks need, and those that put in force what the
+    /// program has behind them.
+    fn around(
+        &self,
+        [before, behind]: [&ModesInForce; 2],
+        command: &[Motion],
+    ) -> [Option<String>; 2] {
+        let corner = command
+            .first()
+            .map_or(before.corner, |motion| motion.corner);
         let words = |now: &ModesInForce, wanted: &ModesInForce| {
             let distance = if wanted.incremental { "G91" } else { "G90" };
-            let center = if wanted.arc_absolute { "G90.1" } else { "G91.1" };
+            let center = if wanted.arc_absolute {
+                "G90.1"
+            } else {
+                "G91.1"
+            };
             let words = [
                 (now.incremental != wanted.incremental).then(|| distance.to_owned()),
                 (now.arc_absolute != wanted.arc_absolute).then(|| center.to_owned()),
                 (now.plane != wanted.plane).then(|| plane_word(wanted.plane).to_owned()),
-                (now.corner != wanted.corner).then(|| corner_words(wanted.corner, wanted.unit_mm, self.dialect())),
+                (now.corner != wanted.corner)
+                    .then(|| corner_words(wanted.corner, wanted.unit_mm, self.dialect())),
             ];
-            let words: Vec<String> = words.into_iter().flatten().filter(|word| !word.is_empty()).collect();
+            let words: Vec<String> = words
+                .into_iter()
+                .flatten()
+                .filter(|word| !word.is_empty())
+                .collect();
             (!words.is_empty()).then(|| words.join(" "))
         };
         let mut blocks = before.clone();
-        (blocks.incremental, blocks.arc_absolute, blocks.plane, blocks.corner) = (false, false, Plane::Xy, corner);
+        (
+            blocks.incremental,
+            blocks.arc_absolute,
+            blocks.plane,
+            blocks.corner,
+        ) = (false, false, Plane::Xy, corner);
         [words(before, &blocks), words(&blocks, behind)]
     }
 }

@@ -1,7 +1,8 @@
 //! Rounds: cut, change the command where the tool was off, fit blocks to it, cut again.
 //!
-//! Each stretch is judged by itself: the tool rests at its ends, so that it does not see the others. The best command of each is kept, and a
-//! stretch whose command gets no better is left alone. One that is cut within [`GOOD_MM`] from the start stays as it is programmed.
+//! Each stretch is judged by itself: the tool rests at its ends, so that it does not see the
+//! others. The best command of each is kept, and a stretch whose command gets no better is left
+//! alone. One that is cut within [`GOOD_MM`] from the start stays as it is programmed.
 
 use std::ops::Range;
 
@@ -21,7 +22,9 @@ use super::nominal::deterministic;
 use super::slow_end::{SlowEnd, slow_approach, slow_end, slow_last};
 use super::stretch_cut::{StretchCut, StretchGain, by_stretch, overshoot_mm, rapid_overshoot_mm};
 use super::stretch_rounds::StretchRounds;
-use super::stretches::{NewMotions, ProgramPart, SmoothStretch, StretchCommand, assembled, dwells, stretches};
+use super::stretches::{
+    NewMotions, ProgramPart, SmoothStretch, StretchCommand, assembled, dwells, stretches,
+};
 use super::target::PrintedTarget;
 use super::unchanged::UnchangedReason;
 
@@ -29,27 +32,32 @@ use super::unchanged::UnchangedReason;
 const ROUNDS: u32 = 12;
 /// Cuts at the most in which commands are given up that are worse together.
 const CHECKS: u32 = 4;
-/// Standard deviations of the Gaussians over errors and over the command, time constants of the position loop.
+/// Standard deviations of the Gaussians over errors and over the command, time constants of the
+/// position loop.
 const SMOOTHING: f64 = 0.15;
 const COMMAND_SMOOTHING: f64 = 0.4;
 /// Time in which a change fades at the ends of a stretch, s.
 const FADE_S: f64 = 0.01;
 /// Least distance of points that blocks are fitted to, mm.
 const LEAST_MM: f64 = 0.005;
-/// A tool that runs over the end of a stretch, or of the rapid to it, by more goes there slowly, mm.
+/// A tool that runs over the end of a stretch, or of the rapid to it, by more goes there slowly,
+/// mm.
 const OVERSHOOT_MM: f64 = 2e-3;
-/// A slow end that is shorter than this part of a usual one gets no slower: the tool would run ahead over all of it.
+/// A slow end that is shorter than this part of a usual one gets no slower: the tool would run
+/// ahead over all of it.
 const SLOWEST: f64 = 0.4;
 /// A dwell is three lags of the loop and five of its time constants, within these bounds, s.
 const DWELL_TIME_CONSTANTS: f64 = 5.0;
 const DWELL_LAGS: f64 = 3.0;
 const DWELL_S: [f64; 2] = [0.03, 0.06];
-/// Where a program takes too long in one of the first rounds, its dwells and its slow ends get shorter, down to these parts: on a slow end that is
-/// shorter, the tool does not come back from running ahead. No dwell is shorter than this, s.
+/// Where a program takes too long in one of the first rounds, its dwells and its slow ends get
+/// shorter, down to these parts: on a slow end that is shorter, the tool does not come back from
+/// running ahead. No dwell is shorter than this, s.
 const HASTY_ROUNDS: u32 = 5;
 const MOST_HASTE: [f64; 2] = [0.05, 0.7];
 const LEAST_DWELL_S: f64 = 0.002;
-/// Part of the time that a program may take longer that is for its rests, as long as no command is corrected.
+/// Part of the time that a program may take longer that is for its rests, as long as no command is
+/// corrected.
 const FOR_RESTS: f64 = 0.6;
 
 /// What the rounds have come to.
@@ -70,7 +78,8 @@ pub(super) struct RoundsResult {
 impl RoundsResult {
     /// Whether stretches beside these, which are in order, have another command.
     pub(super) fn has_other_commands(&self, numbers: &[usize]) -> bool {
-        (0..self.commands.len()).any(|k| self.commands[k].is_some() && numbers.binary_search(&k).is_err())
+        (0..self.commands.len())
+            .any(|k| self.commands[k].is_some() && numbers.binary_search(&k).is_err())
     }
 
     /// Gives up the commands of stretches whose lines cannot be written.
@@ -81,7 +90,8 @@ impl RoundsResult {
     }
 }
 
-/// The part of a program that is judged; what is before and behind it leads to it, and is corrected for that alone.
+/// The part of a program that is judged; what is before and behind it leads to it, and is corrected
+/// for that alone.
 #[derive(Debug, Clone)]
 pub(super) struct JudgedPart {
     /// Numbers of its stretches.
@@ -96,7 +106,11 @@ impl JudgedPart {
     /// All of a program.
     pub(super) fn whole(parts: &[ProgramPart]) -> Self {
         let count = stretches(parts).count();
-        Self { stretches: 0..count, path_mm: f64::NEG_INFINITY..f64::INFINITY, of_several: count > 1 }
+        Self {
+            stretches: 0..count,
+            path_mm: f64::NEG_INFINITY..f64::INFINITY,
+            of_several: count > 1,
+        }
     }
 }
 
@@ -105,7 +119,8 @@ pub(super) fn steps_of(program: &[Canon]) -> Result<Vec<Step>, PathError> {
     Pieces::new(program.iter().cloned()).collect()
 }
 
-/// Finds commands for the stretches of a program, on the machine of `cut`. Budgets are those of `judged`.
+/// Finds commands for the stretches of a program, on the machine of `cut`. Budgets are those of
+/// `judged`.
 pub(super) fn rounds(
     cut: &ExportedCut<'_>,
     parts: &[ProgramPart],
@@ -119,29 +134,54 @@ pub(super) fn rounds(
     };
     let slowest_s = lags.iter().map(|lag| lag.first_s).fold(0.0, f64::max);
     let settles_s = DWELL_TIME_CONSTANTS / cut.machine.slowest_kp_1_s();
-    let dwell_s = (DWELL_LAGS * slowest_s).max(settles_s).clamp(DWELL_S[0], DWELL_S[1]);
+    let dwell_s = (DWELL_LAGS * slowest_s)
+        .max(settles_s)
+        .clamp(DWELL_S[0], DWELL_S[1]);
     let dwell_s = (1e3 * dwell_s).round() / 1e3;
     let settings = settings(cut.machine);
     let mut progress = StageSteps::begin(cut.watch, "correcting");
     let count = stretches(parts).count();
     let haste = Haste([1.0; 2]);
-    let mut bench =
-        RoundsBench { cut, parts, target, lags, settings, settles_s: dwell_s, dwell_s, haste, count, judged };
+    let mut bench = RoundsBench {
+        cut,
+        parts,
+        target,
+        lags,
+        settings,
+        settles_s: dwell_s,
+        dwell_s,
+        haste,
+        count,
+        judged,
+    };
     bench.check_length()?;
     let (cuts, rows) = bench.cut(&vec![None; bench.count])?;
     let time_s = bench.time_s(&rows);
     let most_s = time_s + program_more_s(time_s, judged.of_several);
-    let mut under_way: Vec<StretchRounds> =
-        stretches(parts).zip(&cuts).map(|(stretch, cut)| bench.begun(stretch, cut, &rows)).collect();
+    let mut under_way: Vec<StretchRounds> = stretches(parts)
+        .zip(&cuts)
+        .map(|(stretch, cut)| bench.begun(stretch, cut, &rows))
+        .collect();
     let mut round = 1;
-    while round <= ROUNDS && under_way[judged.stretches.clone()].iter().any(|stretch| !stretch.done) {
-        let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.current.clone()).collect();
+    while round <= ROUNDS
+        && under_way[judged.stretches.clone()]
+            .iter()
+            .any(|stretch| !stretch.done)
+    {
+        let commands: Vec<StretchCommand> = under_way
+            .iter()
+            .map(|stretch| stretch.current.clone())
+            .collect();
         let (cuts, rows) = bench.cut(&commands)?;
         for (stretch, cut) in under_way.iter_mut().zip(&cuts) {
             stretch.judge(cut, settings.servo_s, dwell_s);
         }
         let more_s = bench.time_s(&rows) - most_s;
-        let more_s = if round == 1 { more_s + (1.0 - FOR_RESTS) * (most_s - time_s) } else { more_s };
+        let more_s = if round == 1 {
+            more_s + (1.0 - FOR_RESTS) * (most_s - time_s)
+        } else {
+            more_s
+        };
         if round <= HASTY_ROUNDS {
             bench.hurry(&mut under_way, more_s);
         }
@@ -154,9 +194,18 @@ pub(super) fn rounds(
         bench.give_up_what_is_uncertain(&mut under_way, file)?;
     }
     let checks = bench.give_up_what_is_worse(&mut under_way, most_s)?;
-    let reasons = under_way.iter().map(|stretch| stretch.best.is_none().then_some(stretch.reason)).collect();
+    let reasons = under_way
+        .iter()
+        .map(|stretch| stretch.best.is_none().then_some(stretch.reason))
+        .collect();
     let commands = under_way.into_iter().map(|stretch| stretch.best).collect();
-    Ok(RoundsResult { commands, reasons, rests_s: bench.rests_s(), dwell_s: bench.dwell_s, rounds: round + checks })
+    Ok(RoundsResult {
+        commands,
+        reasons,
+        rests_s: bench.rests_s(),
+        dwell_s: bench.dwell_s,
+        rounds: round + checks,
+    })
 }
 
 /// Parts of what dwells and slow ends usually take.
@@ -169,7 +218,9 @@ impl Haste {
         if takes_s <= 0.0 || more_s <= 0.0 {
             return 0.0;
         }
-        let part = (1.0 - more_s / takes_s).max(MOST_HASTE[which] / self.0[which]).min(1.0);
+        let part = (1.0 - more_s / takes_s)
+            .max(MOST_HASTE[which] / self.0[which])
+            .min(1.0);
         self.0[which] *= part;
         (1.0 - part) * takes_s
     }
@@ -193,7 +244,8 @@ struct RoundsBench<'a> {
 }
 
 impl RoundsBench<'_> {
-    /// Refuses a program whose cut cannot be kept, before it is cut: by the time that it takes at the programmed feedrates.
+    /// Refuses a program whose cut cannot be kept, before it is cut: by the time that it takes at
+    /// the programmed feedrates.
     fn check_length(&self) -> Result<(), RunError> {
         check_rows(self.cut.programmed_s(0.0), self.settings.servo_s)
     }
@@ -211,10 +263,16 @@ impl RoundsBench<'_> {
     /// What every stretch comes to, and the rows.
     fn cut(&self, commands: &[StretchCommand]) -> Result<(Vec<StretchCut>, Vec<CutRow>), RunError> {
         let steps = steps_of(&assembled(self.parts, commands, &self.rests_s()))?;
-        let mut kept = CutRows { own_mm: self.judged.path_mm.clone(), ..CutRows::new(self.cut.original) };
+        let mut kept = CutRows {
+            own_mm: self.judged.path_mm.clone(),
+            ..CutRows::new(self.cut.original)
+        };
         let cut = self.cut.cut(&steps, &mut [&mut kept]).map(|_| ());
         cut.map_err(|error| kept.fault(error, self.settings.servo_s))?;
-        Ok((by_stretch(&kept.rows, self.count, &self.judged.stretches), kept.rows))
+        Ok((
+            by_stretch(&kept.rows, self.count, &self.judged.stretches),
+            kept.rows,
+        ))
     }
 
     /// From the cut of the program as it is.
@@ -223,32 +281,54 @@ impl RoundsBench<'_> {
         let budget = StretchBudget {
             time_s: f64::from(cut.periods) * servo_s,
             blocks: stretch.motions.len(),
-            lines: stretch.motions.iter().filter(|motion| motion.shape == Shape::Line).count(),
+            lines: stretch
+                .motions
+                .iter()
+                .filter(|motion| motion.shape == Shape::Line)
+                .count(),
             loop_s: 1.0 / self.cut.machine.slowest_kp_1_s(),
         };
         let mut begun = StretchRounds::begun(cut, budget, self.target.steps_per_mm);
         let overruns = rapid_overshoot_mm(rows, cut, stretch, servo_s) > OVERSHOOT_MM;
         begun.slow_rapid = overruns.then(|| slow_end(self.cut.machine));
         if !begun.done {
-            let approach = begun.slow_rapid.and_then(|slow| slow_approach(stretch, slow, self.target));
-            begun.current = Some(NewMotions { motions: stretch.motions.clone(), approach, settles: false });
+            let approach = begun
+                .slow_rapid
+                .and_then(|slow| slow_approach(stretch, slow, self.target));
+            begun.current = Some(NewMotions {
+                motions: stretch.motions.clone(),
+                approach,
+                settles: false,
+            });
         }
         begun
     }
 
-    /// Makes a program faster that takes longer than it may by `more_s`: first its dwells get shorter, then its slow ends. The stretches are judged
-    /// again.
+    /// Makes a program faster that takes longer than it may by `more_s`: first its dwells get
+    /// shorter, then its slow ends. The stretches are judged again.
     fn hurry(&mut self, under_way: &mut [StretchRounds], more_s: f64) {
         if more_s <= 0.0 {
             return;
         }
-        let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.current.clone()).collect();
+        let commands: Vec<StretchCommand> = under_way
+            .iter()
+            .map(|stretch| stretch.current.clone())
+            .collect();
         let rests_s = self.rests_s();
         let own = self.judged.stretches.clone();
-        let rests = stretches(self.parts).enumerate().filter(|(k, _)| own.contains(k));
-        let rests = rests.flat_map(|(k, stretch)| dwells(stretch, &commands, k, &rests_s)).flatten();
-        let slow = under_way[own.clone()].iter().filter(|stretch| stretch.current.is_some());
-        let slow = slow.flat_map(|stretch| [stretch.slow_end, stretch.slow_rapid]).flatten().map(SlowEnd::time_s);
+        let rests = stretches(self.parts)
+            .enumerate()
+            .filter(|(k, _)| own.contains(k));
+        let rests = rests
+            .flat_map(|(k, stretch)| dwells(stretch, &commands, k, &rests_s))
+            .flatten();
+        let slow = under_way[own.clone()]
+            .iter()
+            .filter(|stretch| stretch.current.is_some());
+        let slow = slow
+            .flat_map(|stretch| [stretch.slow_end, stretch.slow_rapid])
+            .flatten()
+            .map(SlowEnd::time_s);
         let (rests_s, slow_s): (f64, f64) = (rests.sum(), slow.sum());
         let before = self.haste;
         let saved_s = self.haste.shorten(0, rests_s, more_s);
@@ -257,8 +337,14 @@ impl RoundsBench<'_> {
             return;
         }
         let part = self.haste.0[1] / before.0[1];
-        self.dwell_s = (1e3 * self.haste.0[0] * self.settles_s).round().max(1e3 * LEAST_DWELL_S) / 1e3;
-        for stretch in under_way.iter_mut().filter(|stretch| stretch.reason != UnchangedReason::Good) {
+        self.dwell_s = (1e3 * self.haste.0[0] * self.settles_s)
+            .round()
+            .max(1e3 * LEAST_DWELL_S)
+            / 1e3;
+        for stretch in under_way
+            .iter_mut()
+            .filter(|stretch| stretch.reason != UnchangedReason::Good)
+        {
             stretch.slow_end = stretch.slow_end.map(|slow| slow.shorter(part));
             stretch.slow_rapid = stretch.slow_rapid.map(|slow| slow.shorter(part));
             stretch.again();
@@ -266,9 +352,20 @@ impl RoundsBench<'_> {
     }
 
     /// New commands for those that are not done; an end from outside is an error.
-    fn update(&self, under_way: &mut [StretchRounds], cuts: &[StretchCut], rows: &[CutRow]) -> Result<(), RunError> {
+    fn update(
+        &self,
+        under_way: &mut [StretchRounds],
+        cuts: &[StretchCut],
+        rows: &[CutRow],
+    ) -> Result<(), RunError> {
         let slow_end = slow_end(self.cut.machine).shorter(self.haste.0[1]);
-        let slower = |slow: SlowEnd| if slow.length_mm < SLOWEST * slow_end.length_mm { slow } else { slow.slower() };
+        let slower = |slow: SlowEnd| {
+            if slow.length_mm < SLOWEST * slow_end.length_mm {
+                slow
+            } else {
+                slow.slower()
+            }
+        };
         for ((state, stretch), cut) in under_way.iter_mut().zip(stretches(self.parts)).zip(cuts) {
             if state.done {
                 continue;
@@ -282,18 +379,34 @@ impl RoundsBench<'_> {
             if rapid_overshoot_mm(rows, cut, stretch, settings.servo_s) > OVERSHOOT_MM {
                 state.slow_rapid = Some(state.slow_rapid.map_or(slow_end, slower));
             }
-            let points = new_command(rows, cut.rows.clone(), &self.lags, stretch, &settings, state.slow_end);
+            let points = new_command(
+                rows,
+                cut.rows.clone(),
+                &self.lags,
+                stretch,
+                &settings,
+                state.slow_end,
+            );
             let (leaves_path, plane) = (points.is_none(), stretch.plane());
             let fitted = points.and_then(|points| state.fitted(&points, self.target.steps_per_mm));
             let fitted: Option<Vec<Motion>> = fitted
                 .map(|motions| {
-                    motions.into_iter().map(|motion| as_motion(motion.in_plane(plane), stretch, self.target)).collect()
+                    motions
+                        .into_iter()
+                        .map(|motion| as_motion(motion.in_plane(plane), stretch, self.target))
+                        .collect()
                 })
                 .or_else(|| slow_last(&stretch.motions, state.slow_end?, self.target));
             match fitted {
                 Some(motions) => {
-                    let approach = state.slow_rapid.and_then(|slow| slow_approach(stretch, slow, self.target));
-                    state.current = Some(NewMotions { motions, approach, settles: state.slow_end.is_some() });
+                    let approach = state
+                        .slow_rapid
+                        .and_then(|slow| slow_approach(stretch, slow, self.target));
+                    state.current = Some(NewMotions {
+                        motions,
+                        approach,
+                        settles: state.slow_end.is_some(),
+                    });
                 }
                 None if leaves_path => state.give_up(UnchangedReason::LeavesPath),
                 None => state.widen(),
@@ -302,15 +415,20 @@ impl RoundsBench<'_> {
         Ok(())
     }
 
-    /// Takes details back to what they were until the program has few enough blocks and is fast enough.
+    /// Takes details back to what they were until the program has few enough blocks and is fast
+    /// enough.
     fn give_up_details(&self, under_way: &mut [StretchRounds]) {
         let dwell_s = self.settles_s;
         let own = self.judged.stretches.clone();
-        let costs: Vec<StretchCost> = under_way[own.clone()].iter().map(|stretch| stretch.cost(dwell_s)).collect();
+        let costs: Vec<StretchCost> = under_way[own.clone()]
+            .iter()
+            .map(|stretch| stretch.cost(dwell_s))
+            .collect();
         let mut number = 0;
         let others = self.parts.iter().filter(|part| {
             number += usize::from(matches!(part, ProgramPart::Stretch(_)));
-            matches!(part, ProgramPart::Kept(Canon::Motion(_))) && (own.start..=own.end).contains(&number)
+            matches!(part, ProgramPart::Kept(Canon::Motion(_)))
+                && (own.start..=own.end).contains(&number)
         });
         for k in details_to_give_up(&costs, others.count(), dwell_s) {
             let k = own.start + k;
@@ -318,19 +436,50 @@ impl RoundsBench<'_> {
         }
     }
 
-    /// Gives up the commands that are likely to be worse on a machine that the file may describe as well.
-    fn give_up_what_is_uncertain(&self, under_way: &mut [StretchRounds], file: &FileModel) -> Result<(), RunError> {
-        let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.best.clone()).collect();
+    /// Gives up the commands that are likely to be worse on a machine that the file may describe as
+    /// well.
+    fn give_up_what_is_uncertain(
+        &self,
+        under_way: &mut [StretchRounds],
+        file: &FileModel,
+    ) -> Result<(), RunError> {
+        let commands: Vec<StretchCommand> = under_way
+            .iter()
+            .map(|stretch| stretch.best.clone())
+            .collect();
         let programmed = vec![None; self.count];
         let gains = |machine: &Machine| {
             let machine = deterministic(machine);
-            let bench = RoundsBench { cut: &ExportedCut { machine: &machine, ..*self.cut }, ..self.clone() };
+            let bench = RoundsBench {
+                cut: &ExportedCut {
+                    machine: &machine,
+                    ..*self.cut
+                },
+                ..self.clone()
+            };
             let [was, is] = [bench.cut(&programmed)?.0, bench.cut(&commands)?.0];
-            Ok::<_, RunError>(was.iter().zip(&is).map(|(was, is)| StretchGain::new(was, is)).collect::<Vec<_>>())
+            Ok::<_, RunError>(
+                was.iter()
+                    .zip(&is)
+                    .map(|(was, is)| StretchGain::new(was, is))
+                    .collect::<Vec<_>>(),
+            )
         };
-        let plausible = file.plausible.iter().map(gains).collect::<Result<Vec<_>, _>>()?;
-        let mistaken = file.mistaken.iter().map(gains).collect::<Result<Vec<_>, _>>()?;
-        for (k, stretch) in under_way.iter_mut().enumerate().filter(|(_, stretch)| stretch.best.is_some()) {
+        let plausible = file
+            .plausible
+            .iter()
+            .map(gains)
+            .collect::<Result<Vec<_>, _>>()?;
+        let mistaken = file
+            .mistaken
+            .iter()
+            .map(gains)
+            .collect::<Result<Vec<_>, _>>()?;
+        for (k, stretch) in under_way
+            .iter_mut()
+            .enumerate()
+            .filter(|(_, stretch)| stretch.best.is_some())
+        {
             let gains: Vec<StretchGain> = plausible.iter().map(|gains| gains[k]).collect();
             if !StretchGain::is_certain(&gains) || mistaken.iter().any(|gains| gains[k].is_loss()) {
                 stretch.take_back(UnchangedReason::Uncertain);
@@ -339,16 +488,28 @@ impl RoundsBench<'_> {
         Ok(())
     }
 
-    /// Cuts the best of all together: where the tool does not come to rest between them, they are not what they were each by itself, and they may
-    /// take longer than `most_s`. How often it was cut.
-    fn give_up_what_is_worse(&self, under_way: &mut [StretchRounds], most_s: f64) -> Result<u32, RunError> {
+    /// Cuts the best of all together: where the tool does not come to rest between them, they are
+    /// not what they were each by itself, and they may take longer than `most_s`. How often it was
+    /// cut.
+    fn give_up_what_is_worse(
+        &self,
+        under_way: &mut [StretchRounds],
+        most_s: f64,
+    ) -> Result<u32, RunError> {
         for check in 1..=CHECKS {
-            let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.best.clone()).collect();
+            let commands: Vec<StretchCommand> = under_way
+                .iter()
+                .map(|stretch| stretch.best.clone())
+                .collect();
             let (cuts, rows) = self.cut(&commands)?;
             let worse = give_up_culprits(under_way, &cuts);
             let own = self.judged.stretches.clone();
             let worse = worse || give_up_losses(&mut under_way[own.clone()], &cuts[own.clone()]);
-            let slow = give_up_slow(&mut under_way[own], self.time_s(&rows) - most_s, self.dwell_s);
+            let slow = give_up_slow(
+                &mut under_way[own],
+                self.time_s(&rows) - most_s,
+                self.dwell_s,
+            );
             if !(worse || slow) {
                 return Ok(check);
             }
@@ -370,14 +531,35 @@ fn settings(machine: &Machine) -> UpdateSettings {
 }
 
 fn as_motion(fitted: FitMotion, stretch: &SmoothStretch, target: PrintedTarget<'_>) -> Motion {
-    let FitMotion { start_mm, end_mm, shape, feed_mm_s } = fitted;
+    let FitMotion {
+        start_mm,
+        end_mm,
+        shape,
+        feed_mm_s,
+    } = fitted;
     let first = &stretch.motions[0];
     let corner = match (target.control.corner, first.corner) {
         (Some(corner), _) => corner,
         (None, Corner::Continuous { .. }) => first.corner,
-        (None, Corner::ExactStop | Corner::ExactPath) => Corner::Continuous { tolerance_mm: None, merge_mm: None },
+        (None, Corner::ExactStop | Corner::ExactPath) => Corner::Continuous {
+            tolerance_mm: None,
+            merge_mm: None,
+        },
     };
-    let feed_mm_s = if feed_mm_s > 0.0 { feed_mm_s } else { first.feed_mm_s };
+    let feed_mm_s = if feed_mm_s > 0.0 {
+        feed_mm_s
+    } else {
+        first.feed_mm_s
+    };
     let others = AuxiliaryAxes::default();
-    Motion { line: first.line, kind: MotionKind::Feed, start_mm, end_mm, shape, feed_mm_s, corner, others }
+    Motion {
+        line: first.line,
+        kind: MotionKind::Feed,
+        start_mm,
+        end_mm,
+        shape,
+        feed_mm_s,
+        corner,
+        others,
+    }
 }

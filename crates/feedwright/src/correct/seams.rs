@@ -1,8 +1,9 @@
 //! Where the commands of two pieces meet in the middle of a stretch.
 //!
-//! Both pieces correct the path around the seam, and each has a lead on its other side. The seam is the plane through a programmed
-//! point, across the direction of travel there. Each command is cut where it crosses that plane. Then the second begins where the first
-//! ends. Where one of the two stays as it is programmed, the other meets it in the programmed point.
+//! Both pieces correct the path around the seam, and each has a lead on its other side. The seam is
+//! the plane through a programmed point, across the direction of travel there. Each command is cut
+//! where it crosses that plane. Then the second begins where the first ends. Where one of the two
+//! stays as it is programmed, the other meets it in the programmed point.
 
 use feedwright_gcode::canon::{Motion, Shape};
 use feedwright_plan::vector::{Vector, add_scaled, distance, dot, sub};
@@ -34,7 +35,10 @@ impl Seam {
     /// At the start of a programmed motion; none where it has no length.
     pub(super) fn before(motion: &Motion) -> Option<Self> {
         let [direction, _] = directions(motion)?;
-        Some(Self { at_mm: motion.start_mm, direction })
+        Some(Self {
+            at_mm: motion.start_mm,
+            direction,
+        })
     }
 
     /// How far a point is behind the plane, mm.
@@ -51,18 +55,27 @@ impl Seam {
             return None;
         }
         let pieces = pieces(motion);
-        let piece = pieces.iter().find(|piece| self.behind_mm(piece.curve.at(piece.length_mm).position_mm) > 0.0)?;
+        let piece = pieces
+            .iter()
+            .find(|piece| self.behind_mm(piece.curve.at(piece.length_mm).position_mm) > 0.0)?;
         let (mut low, mut high) = (0.0, piece.length_mm);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
-            if self.behind_mm(piece.curve.at(middle).position_mm) > 0.0 { high = middle } else { low = middle }
+            if self.behind_mm(piece.curve.at(middle).position_mm) > 0.0 {
+                high = middle;
+            } else {
+                low = middle;
+            }
         }
         Some(piece.curve.at(high).position_mm)
     }
 
     /// The motion that crosses the plane next to the programmed point, and where.
     fn crossing(&self, motions: &[Motion]) -> Option<(usize, Vector)> {
-        let crossings = motions.iter().enumerate().filter_map(|(k, motion)| Some((k, self.crossing_mm(motion)?)));
+        let crossings = motions
+            .iter()
+            .enumerate()
+            .filter_map(|(k, motion)| Some((k, self.crossing_mm(motion)?)));
         let off_mm = |at_mm: Vector| distance(at_mm, self.at_mm);
         crossings
             .filter(|&(_, at_mm)| off_mm(at_mm) < NEAR_MM)
@@ -92,13 +105,17 @@ impl Seam {
     }
 }
 
-/// Moves an end of a motion. The center of an arc moves by as little as leaves it as far from one end as from the other.
+/// Moves an end of a motion. The center of an arc moves by as little as leaves it as far from one
+/// end as from the other.
 fn end_at(motion: &mut Motion, end: MotionEnd, at_mm: Vector) {
     match end {
         MotionEnd::Start => motion.start_mm = at_mm,
         MotionEnd::End => motion.end_mm = at_mm,
     }
-    if let Shape::Arc { plane, center_mm, .. } = &mut motion.shape {
+    if let Shape::Arc {
+        plane, center_mm, ..
+    } = &mut motion.shape
+    {
         let [.., normal] = plane.axes();
         let mut chord = sub(motion.end_mm, motion.start_mm);
         chord[normal] = 0.0;
@@ -112,7 +129,8 @@ fn end_at(motion: &mut Motion, end: MotionEnd, at_mm: Vector) {
     }
 }
 
-/// Whether a stretch and the one before it are one that was parted at `splits`. At a corner the tool rests.
+/// Whether a stretch and the one before it are one that was parted at `splits`. At a corner the
+/// tool rests.
 pub(super) fn is_parted(stretch: &SmoothStretch, splits: &[usize]) -> bool {
     stretch.follows && !stretch.rests[0] && splits.binary_search(&stretch.steps[0]).is_ok()
 }
@@ -124,8 +142,12 @@ pub(super) fn meet(commands: &mut [StretchCommand], parts: &[ProgramPart], split
             continue;
         }
         let (before, behind) = commands.split_at_mut(number);
-        let last = before[number - 1].as_mut().and_then(|command| command.motions.last_mut());
-        let first = behind[0].as_mut().and_then(|command| command.motions.first_mut());
+        let last = before[number - 1]
+            .as_mut()
+            .and_then(|command| command.motions.last_mut());
+        let first = behind[0]
+            .as_mut()
+            .and_then(|command| command.motions.first_mut());
         match (last, first) {
             (Some(last), Some(first)) => end_at(first, MotionEnd::Start, last.end_mm),
             (Some(last), None) => end_at(last, MotionEnd::End, stretch.start_mm()),
@@ -141,30 +163,69 @@ mod tests {
     use feedwright_gcode::canon::{AuxiliaryAxes, Corner, MotionKind, Plane};
 
     fn motion(start_mm: Vector, end_mm: Vector, shape: Shape) -> Motion {
-        let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
+        let corner = Corner::Continuous {
+            tolerance_mm: None,
+            merge_mm: None,
+        };
         let (kind, others) = (MotionKind::Feed, AuxiliaryAxes::default());
-        Motion { line: 1, kind, start_mm, end_mm, shape, feed_mm_s: 10.0, corner, others }
+        Motion {
+            line: 1,
+            kind,
+            start_mm,
+            end_mm,
+            shape,
+            feed_mm_s: 10.0,
+            corner,
+            others,
+        }
     }
 
     /// A quarter turn around the origin from X10, and a line from its end.
     fn quarter_and_line() -> Vec<Motion> {
-        let arc = Shape::Arc { plane: Plane::Xy, center_mm: [0.0; 3], turns: 1 };
-        vec![motion([10.0, 0.0, 0.0], [0.0, 10.0, 0.0], arc), motion([0.0, 10.0, 0.0], [-10.0, 10.0, 0.0], Shape::Line)]
+        let arc = Shape::Arc {
+            plane: Plane::Xy,
+            center_mm: [0.0; 3],
+            turns: 1,
+        };
+        vec![
+            motion([10.0, 0.0, 0.0], [0.0, 10.0, 0.0], arc),
+            motion([0.0, 10.0, 0.0], [-10.0, 10.0, 0.0], Shape::Line),
+        ]
     }
 
     #[test]
     fn a_command_is_cut_where_it_crosses_the_seam() {
         let motions = quarter_and_line();
         let root = 50_f64.sqrt();
-        let seam = Seam { at_mm: [root + 0.03, root + 0.03, 0.0], direction: [-1.0, 1.0, 0.0] };
-        let (before, behind) = (seam.before_it(&motions).unwrap(), seam.behind_it(&motions).unwrap());
+        let seam = Seam {
+            at_mm: [root + 0.03, root + 0.03, 0.0],
+            direction: [-1.0, 1.0, 0.0],
+        };
+        let (before, behind) = (
+            seam.before_it(&motions).unwrap(),
+            seam.behind_it(&motions).unwrap(),
+        );
         assert_eq!((before.len(), behind.len()), (1, 2));
-        assert!(distance(before[0].end_mm, [root, root, 0.0]) < 1e-6, "{:?}", before[0]);
-        assert!(distance(behind[0].start_mm, [root, root, 0.0]) < 1e-6, "{:?}", behind[0]);
+        assert!(
+            distance(before[0].end_mm, [root, root, 0.0]) < 1e-6,
+            "{:?}",
+            before[0]
+        );
+        assert!(
+            distance(behind[0].start_mm, [root, root, 0.0]) < 1e-6,
+            "{:?}",
+            behind[0]
+        );
         // The seam is next to the end of the arc: nothing of the arc is left behind it.
-        let seam = Seam { at_mm: [0.01, 10.0, 0.0], direction: [-1.0, 0.0, 0.0] };
+        let seam = Seam {
+            at_mm: [0.01, 10.0, 0.0],
+            direction: [-1.0, 0.0, 0.0],
+        };
         assert_eq!(seam.behind_it(&motions).unwrap().len(), 1);
-        let far = Seam { at_mm: [-5.0, 12.0, 0.0], ..seam };
+        let far = Seam {
+            at_mm: [-5.0, 12.0, 0.0],
+            ..seam
+        };
         assert!(far.before_it(&motions).is_none());
     }
 
@@ -172,9 +233,18 @@ mod tests {
     fn an_arc_that_begins_elsewhere_has_both_ends_as_far_from_its_center() {
         let mut arc = quarter_and_line().remove(0);
         end_at(&mut arc, MotionEnd::Start, [10.001, -0.002, 0.5]);
-        let Shape::Arc { center_mm, .. } = arc.shape else { panic!("{arc:?}") };
-        let radius_mm = |at_mm: Vector| libm::hypot(at_mm[0] - center_mm[0], at_mm[1] - center_mm[1]);
-        assert!((radius_mm(arc.start_mm) - radius_mm(arc.end_mm)).abs() < 1e-12, "{center_mm:?}");
-        assert!(radius_mm([0.0; 3]) < 0.002 && center_mm[2] == 0.5, "{center_mm:?}");
+        let Shape::Arc { center_mm, .. } = arc.shape else {
+            panic!("{arc:?}")
+        };
+        let radius_mm =
+            |at_mm: Vector| libm::hypot(at_mm[0] - center_mm[0], at_mm[1] - center_mm[1]);
+        assert!(
+            (radius_mm(arc.start_mm) - radius_mm(arc.end_mm)).abs() < 1e-12,
+            "{center_mm:?}"
+        );
+        assert!(
+            radius_mm([0.0; 3]) < 0.002 && center_mm[2] == 0.5,
+            "{center_mm:?}"
+        );
     }
 }

@@ -1,7 +1,10 @@
-//! Slow ways to where a tool would run over the end: of a stretch, and of the rapid that leads to one.
+//! Slow ways to where a tool would run over the end: of a stretch, and of the rapid that leads to
+//! one.
 //!
-//! A drive with feedforward runs over by `a (T1^2 - T2)` where the command decelerates at `a` until it rests. No geometry takes that back; a last piece
-//! at a speed from which it brakes in a fraction of the loop's time constant does. Where that is not slow enough, it is halved from round to round.
+//! A drive with feedforward runs over by `a (T1^2 - T2)` where the command decelerates at `a` until
+//! it rests. No geometry takes that back; a last piece at a speed from which it brakes in a
+//! fraction of the loop's time constant does. Where that is not slow enough, it is halved from
+//! round to round.
 
 use feedwright_gcode::canon::{Motion, MotionKind, Shape};
 use feedwright_plan::vector::{add_scaled, distance, norm, sub};
@@ -11,7 +14,8 @@ use super::arc_fit::FitPoint;
 use super::stretches::SmoothStretch;
 use super::target::PrintedTarget;
 
-/// A straight motion is slowed down before its end where it is longer than what is slow by this factor.
+/// A straight motion is slowed down before its end where it is longer than what is slow by this
+/// factor.
 const LEAST_WAY: f64 = 4.0;
 /// Time constants of the loop in which it brakes from there, and that the slow way takes.
 const BRAKES_IN: f64 = 0.25;
@@ -29,12 +33,18 @@ pub(super) struct SlowEnd {
 impl SlowEnd {
     /// Half as fast, and as long.
     pub(super) fn slower(self) -> Self {
-        Self { speed_mm_s: 0.5 * self.speed_mm_s, length_mm: 0.5 * self.length_mm }
+        Self {
+            speed_mm_s: 0.5 * self.speed_mm_s,
+            length_mm: 0.5 * self.length_mm,
+        }
     }
 
     /// As fast, and this part as long.
     pub(super) fn shorter(self, part: f64) -> Self {
-        Self { length_mm: part * self.length_mm, ..self }
+        Self {
+            length_mm: part * self.length_mm,
+            ..self
+        }
     }
 
     /// How long it takes, s.
@@ -58,23 +68,45 @@ impl SlowEnd {
     }
 }
 
-/// A way to the end that is so slow that it brakes in a part of the loop's time constant, and as long as that takes to settle.
+/// A way to the end that is so slow that it brakes in a part of the loop's time constant, and as
+/// long as that takes to settle.
 pub(super) fn slow_end(machine: &Machine) -> SlowEnd {
     let slowest_s = 1.0 / machine.slowest_kp_1_s();
     let speed_mm_s = machine.limits.tangential_accel_mm_s2 * BRAKES_IN * slowest_s;
-    SlowEnd { speed_mm_s, length_mm: speed_mm_s * SETTLES_IN * slowest_s }
+    SlowEnd {
+        speed_mm_s,
+        length_mm: speed_mm_s * SETTLES_IN * slowest_s,
+    }
 }
 
-/// The rapid to a stretch, the last of it at the slow end's speed; none where it is not much longer.
-pub(super) fn slow_approach(stretch: &SmoothStretch, slow: SlowEnd, target: PrintedTarget<'_>) -> Option<[Motion; 2]> {
+/// The rapid to a stretch, the last of it at the slow end's speed; none where it is not much
+/// longer.
+pub(super) fn slow_approach(
+    stretch: &SmoothStretch,
+    slow: SlowEnd,
+    target: PrintedTarget<'_>,
+) -> Option<[Motion; 2]> {
     let (_, rapid) = stretch.rapid.as_ref()?;
     slow.parted(rapid, target)
 }
 
-/// Programmed motions, the last of them slow at its end; none where that is no straight line, or not much longer.
-pub(super) fn slow_last(motions: &[Motion], slow: SlowEnd, target: PrintedTarget<'_>) -> Option<Vec<Motion>> {
-    let (last, others) = motions.split_last().filter(|(last, _)| matches!(last.shape, Shape::Line))?;
-    Some(others.iter().cloned().chain(slow.parted(last, target)?).collect())
+/// Programmed motions, the last of them slow at its end; none where that is no straight line, or
+/// not much longer.
+pub(super) fn slow_last(
+    motions: &[Motion],
+    slow: SlowEnd,
+    target: PrintedTarget<'_>,
+) -> Option<Vec<Motion>> {
+    let (last, others) = motions
+        .split_last()
+        .filter(|(last, _)| matches!(last.shape, Shape::Line))?;
+    Some(
+        others
+            .iter()
+            .cloned()
+            .chain(slow.parted(last, target)?)
+            .collect(),
+    )
 }
 
 impl SlowEnd {
@@ -88,10 +120,24 @@ impl SlowEnd {
         let steps_per_mm = target.steps_per_mm;
         let printed = |value: f64| (value * steps_per_mm).round() / steps_per_mm;
         let middle_mm = add_scaled(motion.end_mm, -self.length_mm / length_mm, way).map(printed);
-        let feed_mm_s =
-            if motion.kind == MotionKind::Feed { motion.feed_mm_s.min(self.speed_mm_s) } else { self.speed_mm_s };
-        let last = Motion { kind: MotionKind::Feed, start_mm: middle_mm, feed_mm_s, ..motion.clone() };
-        Some([Motion { end_mm: middle_mm, ..motion.clone() }, last])
+        let feed_mm_s = if motion.kind == MotionKind::Feed {
+            motion.feed_mm_s.min(self.speed_mm_s)
+        } else {
+            self.speed_mm_s
+        };
+        let last = Motion {
+            kind: MotionKind::Feed,
+            start_mm: middle_mm,
+            feed_mm_s,
+            ..motion.clone()
+        };
+        Some([
+            Motion {
+                end_mm: middle_mm,
+                ..motion.clone()
+            },
+            last,
+        ])
     }
 }
 
@@ -108,7 +154,10 @@ mod tests {
         let machine = Machine::load("tnv40".as_ref()).unwrap();
         let (slow, loop_s) = (slow_end(&machine), 1.0 / machine.slowest_kp_1_s());
         assert!((slow.time_s() / loop_s - 2.0).abs() < 1e-12, "{slow:?}");
-        assert!((slow.speed_mm_s / machine.limits.tangential_accel_mm_s2 / loop_s - 0.25).abs() < 1e-12, "{slow:?}");
+        assert!(
+            (slow.speed_mm_s / machine.limits.tangential_accel_mm_s2 / loop_s - 0.25).abs() < 1e-12,
+            "{slow:?}"
+        );
         assert!((slow.slower().time_s() - slow.time_s()).abs() < 1e-12);
         assert!((slow.shorter(0.3).time_s() - 0.3 * slow.time_s()).abs() < 1e-12);
     }
@@ -144,12 +193,24 @@ mod tests {
 
     #[test]
     fn points_are_slowed_down_over_the_length_and_no_further() {
-        let point = |n: u32| FitPoint { at_mm: [f64::from(n), 0.0, 0.0], tangent: [1.0, 0.0], feed_mm_s: 5.0 };
+        let point = |n: u32| FitPoint {
+            at_mm: [f64::from(n), 0.0, 0.0],
+            tangent: [1.0, 0.0],
+            feed_mm_s: 5.0,
+        };
         let mut points: Vec<FitPoint> = (0..10).map(point).collect();
-        SlowEnd { speed_mm_s: 2.0, length_mm: 2.5 }.slow_down(&mut points);
+        SlowEnd {
+            speed_mm_s: 2.0,
+            length_mm: 2.5,
+        }
+        .slow_down(&mut points);
         let feeds: Vec<f64> = points.iter().map(|point| point.feed_mm_s).collect();
         assert_eq!(feeds, [5.0, 5.0, 5.0, 5.0, 5.0, 5.0, 2.0, 2.0, 2.0, 2.0]);
-        SlowEnd { speed_mm_s: 9.0, length_mm: 2.5 }.slow_down(&mut points);
+        SlowEnd {
+            speed_mm_s: 9.0,
+            length_mm: 2.5,
+        }
+        .slow_down(&mut points);
         assert_eq!(points.last().map(|point| point.feed_mm_s), Some(2.0));
     }
 }

@@ -28,13 +28,23 @@ pub(super) struct SourceProgram {
 
 impl SourceProgram {
     /// A program that has been checked, with another feedrate where one is given.
-    pub(super) fn read(program: &Program, settings: &Settings, feed_mm_s: Option<f64>) -> Result<Self, ReadError> {
+    pub(super) fn read(
+        program: &Program,
+        settings: &Settings,
+        feed_mm_s: Option<f64>,
+    ) -> Result<Self, ReadError> {
         let mut bytes = Vec::new();
-        let copied = program.text().and_then(|(mut text, _)| text.read_to_end(&mut bytes));
-        copied.map_err(|cause| ReadError::Io { path: program.name().into(), cause })?;
+        let copied = program
+            .text()
+            .and_then(|(mut text, _)| text.read_to_end(&mut bytes));
+        copied.map_err(|cause| ReadError::Io {
+            path: program.name().into(),
+            cause,
+        })?;
         let mut reader = program.reader(settings.clone())?;
         let (dialect, start) = (reader.dialect().0, reader.modes());
-        let (mut steps, mut modes, mut in_force) = (Vec::new(), Vec::<ModesInForce>::new(), Vec::new());
+        let (mut steps, mut modes, mut in_force) =
+            (Vec::new(), Vec::<ModesInForce>::new(), Vec::new());
         let mut offset_lines = BTreeMap::new();
         while let Some(Ok(mut step)) = reader.next() {
             if !reader.offset_lines().is_empty() {
@@ -52,33 +62,56 @@ impl SourceProgram {
             in_force.push(modes.len() - 1);
             steps.push(step);
         }
-        let lines = String::from_utf8_lossy(&bytes).lines().map(str::to_owned).collect();
-        Ok(Self { lines, steps, dialect, feed_mm_s, start, modes, in_force, offset_lines })
+        let lines = String::from_utf8_lossy(&bytes)
+            .lines()
+            .map(str::to_owned)
+            .collect();
+        Ok(Self {
+            lines,
+            steps,
+            dialect,
+            feed_mm_s,
+            start,
+            modes,
+            in_force,
+            offset_lines,
+        })
     }
 
     /// The steps, each with the modes behind it.
     pub(super) fn steps_and_modes(&self) -> impl Iterator<Item = (&Canon, &ModesInForce)> {
-        self.steps.iter().zip(self.in_force.iter().map(|&modes| &self.modes[modes]))
+        self.steps
+            .iter()
+            .zip(self.in_force.iter().map(|&modes| &self.modes[modes]))
     }
 
-    /// The lines, carried out between the step before and this one, that write offsets or put others in force.
+    /// The lines, carried out between the step before and this one, that write offsets or put
+    /// others in force.
     pub(super) fn offset_lines(&self, step: usize) -> &[String] {
         self.offset_lines.get(&step).map_or(&[], Vec::as_slice)
     }
 
-    /// Whether offsets are written or put in force behind the first of some steps and before the last.
+    /// Whether offsets are written or put in force behind the first of some steps and before the
+    /// last.
     pub(super) fn sets_offsets_within(&self, [first, last]: [usize; 2]) -> bool {
-        self.offset_lines.range(first + 1..).next().is_some_and(|(&step, _)| step <= last)
+        self.offset_lines
+            .range(first + 1..)
+            .next()
+            .is_some_and(|(&step, _)| step <= last)
     }
 
     /// The largest unit of length that is in force somewhere, mm.
     pub(super) fn largest_unit_mm(&self) -> f64 {
-        self.modes.iter().map(|modes| modes.unit_mm).fold(1.0, f64::max)
+        self.modes
+            .iter()
+            .map(|modes| modes.unit_mm)
+            .fold(1.0, f64::max)
     }
 
     /// Modes before a step.
     pub(super) fn modes_before(&self, step: usize) -> &ModesInForce {
-        step.checked_sub(1).map_or(&self.start, |before| self.modes(before))
+        step.checked_sub(1)
+            .map_or(&self.start, |before| self.modes(before))
     }
 
     /// Modes behind a step.

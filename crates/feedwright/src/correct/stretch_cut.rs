@@ -37,7 +37,11 @@ pub(super) struct StretchCut {
 impl StretchCut {
     /// RMS of its errors, mm.
     pub(super) fn rms_mm(&self) -> f64 {
-        if self.cutting == 0 { 0.0 } else { (self.square_sum_mm2 / f64::from(self.cutting)).sqrt() }
+        if self.cutting == 0 {
+            0.0
+        } else {
+            (self.square_sum_mm2 / f64::from(self.cutting)).sqrt()
+        }
     }
 
     /// One figure of it, mm.
@@ -57,46 +61,77 @@ impl StretchCut {
 }
 
 /// How far the tool runs over the end of a stretch, mm.
-pub(super) fn overshoot_mm(rows: &[CutRow], cut: &StretchCut, stretch: &SmoothStretch, servo_s: f64) -> f64 {
+pub(super) fn overshoot_mm(
+    rows: &[CutRow],
+    cut: &StretchCut,
+    stretch: &SmoothStretch,
+    servo_s: f64,
+) -> f64 {
     let around = (AROUND_END_S / servo_s) as usize;
     let [_, direction] = stretch.directions();
     let from = cut.rows.end.saturating_sub(around).max(cut.rows.start);
     let near = &rows[from..(cut.rows.end + around).min(rows.len())];
-    near.iter().map(|row| -dot(row.error_mm, direction)).fold(0.0, f64::max)
+    near.iter()
+        .map(|row| -dot(row.error_mm, direction))
+        .fold(0.0, f64::max)
 }
 
 /// How far the tool runs over the end of the rapid that leads to a stretch, mm.
-pub(super) fn rapid_overshoot_mm(rows: &[CutRow], cut: &StretchCut, stretch: &SmoothStretch, servo_s: f64) -> f64 {
-    let Some((_, rapid)) = &stretch.rapid else { return 0.0 };
+pub(super) fn rapid_overshoot_mm(
+    rows: &[CutRow],
+    cut: &StretchCut,
+    stretch: &SmoothStretch,
+    servo_s: f64,
+) -> f64 {
+    let Some((_, rapid)) = &stretch.rapid else {
+        return 0.0;
+    };
     let way = sub(rapid.end_mm, rapid.start_mm);
     let to = cut.rows.start + (AROUND_END_S / servo_s) as usize;
-    let from = rows[..cut.rows.start].iter().rposition(|row| row.commanded == Commanded::Rapid).unwrap_or(0);
+    let from = rows[..cut.rows.start]
+        .iter()
+        .rposition(|row| row.commanded == Commanded::Rapid)
+        .unwrap_or(0);
     let near = &rows[from..to.min(rows.len())];
     let [goes_on, _] = stretch.directions();
     let over_mm = |row: &CutRow| {
         let along_mm = dot(row.error_mm, way) / norm(way);
-        // Where the stretch goes on in the same direction, the foot runs ahead with the tool and stays there when the tool comes back.
-        if angle(way, goes_on) < CORNER_RAD { along_mm.abs() } else { -along_mm }
+        // Where the stretch goes on in the same direction, the foot runs ahead with the tool and
+        // stays there when the tool comes back.
+        if angle(way, goes_on) < CORNER_RAD {
+            along_mm.abs()
+        } else {
+            -along_mm
+        }
     };
     near.iter().map(over_mm).fold(0.0, f64::max)
 }
 
-/// Rows and errors of each stretch. What the tool still does when the command has gone on belongs to it, until the next begins; what it does at
-/// the end of a rapid belongs to the stretch that the rapid leads to. Errors in a lead do not count for the stretches of `own`.
+/// Rows and errors of each stretch. What the tool still does when the command has gone on belongs
+/// to it, until the next begins; what it does at the end of a rapid belongs to the stretch that the
+/// rapid leads to. Errors in a lead do not count for the stretches of `own`.
 pub(super) fn by_stretch(rows: &[CutRow], count: usize, own: &Range<usize>) -> Vec<StretchCut> {
     let mut cuts = vec![StretchCut::default(); count];
     let (mut last, mut behind_rapid) = (None, None);
-    let counts = |row: &CutRow, number: Option<usize>| row.own || number.is_none_or(|number| !own.contains(&number));
+    let counts = |row: &CutRow, number: Option<usize>| {
+        row.own || number.is_none_or(|number| !own.contains(&number))
+    };
     for (n, row) in rows.iter().enumerate() {
         match row.commanded {
             Commanded::Cut => {
                 let number = (row.line as usize).checked_sub(1);
                 if let Some(cut) = number.and_then(|number| cuts.get_mut(number)) {
-                    let from = if cut.rows.is_empty() { n } else { cut.rows.start };
+                    let from = if cut.rows.is_empty() {
+                        n
+                    } else {
+                        cut.rows.start
+                    };
                     cut.rows = from..n + 1;
                     cut.periods += 1;
                     if let Some(from) = behind_rapid.take() {
-                        (from..n).filter(|&n| counts(&rows[n], number)).for_each(|n| cut.take(n, &rows[n]));
+                        (from..n)
+                            .filter(|&n| counts(&rows[n], number))
+                            .for_each(|n| cut.take(n, &rows[n]));
                     }
                 }
                 last = number;
@@ -104,7 +139,10 @@ pub(super) fn by_stretch(rows: &[CutRow], count: usize, own: &Range<usize>) -> V
             Commanded::Rapid => (last, behind_rapid) = (None, Some(n)),
             Commanded::Rest => {}
         }
-        if let Some(cut) = last.filter(|_| counts(row, last)).and_then(|last| cuts.get_mut(last)) {
+        if let Some(cut) = last
+            .filter(|_| counts(row, last))
+            .and_then(|last| cuts.get_mut(last))
+        {
             cut.take(n, row);
         }
     }
@@ -138,7 +176,10 @@ impl StretchGain {
     /// From the cuts of the programmed and of another command.
     pub(super) fn new(was: &StretchCut, is: &StretchCut) -> Self {
         let square = |cut: &StretchCut| cut.rms_mm() * cut.rms_mm();
-        Self { square_mm2: square(was) - square(is), max_mm: was.max_mm + 1e-3 * MAX_UM - is.max_mm }
+        Self {
+            square_mm2: square(was) - square(is),
+            max_mm: was.max_mm + 1e-3 * MAX_UM - is.max_mm,
+        }
     }
 
     pub(super) const fn is_loss(&self) -> bool {
@@ -150,15 +191,22 @@ impl StretchGain {
         let of = |value: fn(&Self) -> f64| {
             let count = all.len() as f64;
             let mean = all.iter().map(value).sum::<f64>() / count;
-            let variance = all.iter().map(|gain| (value(gain) - mean).powi(2)).sum::<f64>() / count;
+            let variance = all
+                .iter()
+                .map(|gain| (value(gain) - mean).powi(2))
+                .sum::<f64>()
+                / count;
             mean / variance.sqrt().max(1e-12)
         };
         [of(|gain| gain.square_mm2), of(|gain| gain.max_mm)]
     }
 
-    /// Whether a gain over machines is so much larger than its standard deviation that a loss is unlikely.
+    /// Whether a gain over machines is so much larger than its standard deviation that a loss is
+    /// unlikely.
     pub(super) fn is_certain(all: &[Self]) -> bool {
-        Self::certainty(all).iter().all(|certainty| *certainty > CERTAIN)
+        Self::certainty(all)
+            .iter()
+            .all(|certainty| *certainty > CERTAIN)
     }
 }
 
@@ -174,6 +222,8 @@ mod tests {
         // Mean 1.5 and standard deviation 1.
         assert!(!StretchGain::is_certain(&[gain(0.5, 1.0), gain(2.5, 1.0)]));
         assert!(!StretchGain::is_certain(&[gain(1.0, -1.0), gain(3.0, 1.0)]));
-        assert!(gain(1.0, -1.0).is_loss() && gain(-1.0, 1.0).is_loss() && !gain(1.0, 1.0).is_loss());
+        assert!(
+            gain(1.0, -1.0).is_loss() && gain(-1.0, 1.0).is_loss() && !gain(1.0, 1.0).is_loss()
+        );
     }
 }

@@ -13,17 +13,20 @@ use super::unchanged::UnchangedReason;
 const NO_GAIN: u32 = 3;
 /// Smallest reduction of a stretch's error figure that counts as a gain, as a fraction of it.
 const LEAST_GAIN: f64 = 0.02;
-/// A stretch whose largest error is less stays as it is, mm: what blocks that fit a command miss it by.
+/// A stretch whose largest error is less stays as it is, mm: what blocks that fit a command miss it
+/// by.
 const GOOD_MM: f64 = 1e-3;
-/// Distance of blocks from the command, mm: the finest at which they are few enough, from this part of the RMS error that they are to correct and
-/// no less than this and a printed step, in steps of this factor.
+/// Distance of blocks from the command, mm: the finest at which they are few enough, from this part
+/// of the RMS error that they are to correct and no less than this and a printed step, in steps of
+/// this factor.
 const FIT_SHARE: f64 = 0.04;
 const FINEST_MM: f64 = 5e-5;
 const COARSER: f64 = 1.25;
 /// Where no such distance is left, mm, and whether blocks may be many.
 const TOLERANCES_MM: [(f64, bool); 4] = [(1e-3, false), (2e-3, false), (1e-3, true), (4e-3, true)];
-/// Where a stretch takes too long, the Gaussian over its command gets wider by a factor between these: what the command bends more than the
-/// path slows the control down. It gets wider by so much at the most.
+/// Where a stretch takes too long, the Gaussian over its command gets wider by a factor between
+/// these: what the command bends more than the path slows the control down. It gets wider by so
+/// much at the most.
 const WIDER: [f64; 2] = [1.15, 1.6];
 const WIDEST: f64 = 4.0;
 
@@ -43,7 +46,8 @@ pub(super) struct StretchRounds {
     pub(super) tolerance_mm: f64,
     /// Sum of the squares of the errors of the best, mm2.
     pub(super) square_sum_mm2: f64,
-    /// Lowest figure of the commands that were tried, mm, and for how many rounds there was no lower one.
+    /// Lowest figure of the commands that were tried, mm, and for how many rounds there was no
+    /// lower one.
     pub(super) lowest_mm: f64,
     pub(super) since: u32,
     pub(super) slow_end: Option<SlowEnd>,
@@ -75,7 +79,11 @@ impl StretchRounds {
             slow_end: None,
             slow_rapid: None,
             width: 1.0,
-            reason: if done { UnchangedReason::Good } else { UnchangedReason::NoGain },
+            reason: if done {
+                UnchangedReason::Good
+            } else {
+                UnchangedReason::NoGain
+            },
             done,
         }
     }
@@ -83,7 +91,14 @@ impl StretchRounds {
     /// What its best command costs and gains.
     pub(super) fn cost(&self, dwell_s: f64) -> StretchCost {
         let Self { best, budget, .. } = self;
-        let Some(best) = best else { return StretchCost { budget: *budget, blocks: 0.0, time_s: 0.0, gain_mm2: None } };
+        let Some(best) = best else {
+            return StretchCost {
+                budget: *budget,
+                blocks: 0.0,
+                time_s: 0.0,
+                gain_mm2: None,
+            };
+        };
         StretchCost {
             budget: *budget,
             blocks: best.motions.len() as f64 - budget.blocks as f64 + 1.0,
@@ -94,7 +109,8 @@ impl StretchRounds {
 
     /// Takes in how its command was cut.
     pub(super) fn judge(&mut self, cut: &StretchCut, servo_s: f64, dwell_s: f64) {
-        if self.reason == UnchangedReason::Good && cut.max_mm > self.programmed.max_mm.max(GOOD_MM) {
+        if self.reason == UnchangedReason::Good && cut.max_mm > self.programmed.max_mm.max(GOOD_MM)
+        {
             self.reopen(cut);
             return;
         }
@@ -107,14 +123,19 @@ impl StretchRounds {
         if time_s >= most_s && self.width < WIDEST {
             let times = (time_s - self.budget.time_s) / (most_s - self.budget.time_s);
             self.width *= times.clamp(WIDER[0], WIDER[1]);
-            let [percent, rests] =
-                [time_s - self.budget.time_s, slow_s].map(|more_s| 100.0 * more_s / self.budget.time_s);
+            let [percent, rests] = [time_s - self.budget.time_s, slow_s]
+                .map(|more_s| 100.0 * more_s / self.budget.time_s);
             self.reason = UnchangedReason::TooSlow { percent, rests };
             return;
         }
         let better = figure_mm < self.best_mm && time_s < most_s;
-        // A command that gets better from round to round is followed, also where the programmed one is still ahead.
-        self.since = if figure_mm < (1.0 - LEAST_GAIN) * self.lowest_mm { 0 } else { self.since + 1 };
+        // A command that gets better from round to round is followed, also where the programmed one
+        // is still ahead.
+        self.since = if figure_mm < (1.0 - LEAST_GAIN) * self.lowest_mm {
+            0
+        } else {
+            self.since + 1
+        };
         self.lowest_mm = self.lowest_mm.min(figure_mm);
         if better {
             (self.best, self.best_mm, self.best_s) = (self.current.clone(), figure_mm, time_s);
@@ -125,16 +146,20 @@ impl StretchRounds {
         }
     }
 
-    /// Takes up a stretch that needed no other command until those around it had others: the tool rests at its end now.
+    /// Takes up a stretch that needed no other command until those around it had others: the tool
+    /// rests at its end now.
     fn reopen(&mut self, cut: &StretchCut) {
         (self.programmed_mm, self.best_mm) = (cut.figure_mm(), cut.figure_mm());
         (self.reason, self.done) = (UnchangedReason::NoGain, false);
     }
 
-    /// Blocks along the points of a command, as fine as they may be; none where they would be too many.
+    /// Blocks along the points of a command, as fine as they may be; none where they would be too
+    /// many.
     pub(super) fn fitted(&self, points: &[FitPoint], steps_per_mm: f64) -> Option<Vec<FitMotion>> {
         let fine = iter::successors(Some(self.tolerance_mm), |mm| Some(COARSER * mm));
-        let fine = fine.take_while(|&mm| mm < TOLERANCES_MM[0].0).map(|mm| (mm, self.budget.most_fine_blocks()));
+        let fine = fine
+            .take_while(|&mm| mm < TOLERANCES_MM[0].0)
+            .map(|mm| (mm, self.budget.most_fine_blocks()));
         let [few, most] = self.budget.most_blocks();
         let coarse = TOLERANCES_MM.map(|(mm, many)| (mm, if many { most } else { few }));
         fine.chain(coarse).find_map(|(tolerance_mm, most)| {
@@ -183,20 +208,36 @@ mod tests {
 
     /// A stretch with this largest error as it is programmed, um.
     fn begun(max_um: f64) -> StretchRounds {
-        let budget = StretchBudget { time_s: 1.0, blocks: 1, lines: 0, loop_s: 0.02 };
+        let budget = StretchBudget {
+            time_s: 1.0,
+            blocks: 1,
+            lines: 0,
+            loop_s: 0.02,
+        };
         StretchRounds::begun(&cut(max_um), budget, 1e5)
     }
 
     fn cut(max_um: f64) -> StretchCut {
-        StretchCut { rows: 0..1000, periods: 1000, max_mm: 1e-3 * max_um, ..StretchCut::default() }
+        StretchCut {
+            rows: 0..1000,
+            periods: 1000,
+            max_mm: 1e-3 * max_um,
+            ..StretchCut::default()
+        }
     }
 
     #[test]
     fn a_command_that_gets_better_is_followed_while_the_programmed_one_is_ahead() {
         let after = |tried_um: &[f64]| {
             let mut stretch = begun(10.0);
-            stretch.current = Some(NewMotions { motions: Vec::new(), approach: None, settles: false });
-            tried_um.iter().for_each(|&max_um| stretch.judge(&cut(max_um), 1e-3, 0.05));
+            stretch.current = Some(NewMotions {
+                motions: Vec::new(),
+                approach: None,
+                settles: false,
+            });
+            tried_um
+                .iter()
+                .for_each(|&max_um| stretch.judge(&cut(max_um), 1e-3, 0.05));
             (stretch.best.is_some(), stretch.done)
         };
         assert_eq!(after(&[30.0, 25.0, 18.0, 12.0]), (false, false));
@@ -210,11 +251,32 @@ mod tests {
         stretch.programmed.square_sum_mm2 = 5e-4;
         let cost = stretch.cost(0.05);
         assert!((cost.blocks, cost.time_s) == (0.0, 0.0) && cost.gain_mm2.is_none());
-        stretch.current = Some(NewMotions { motions: Vec::new(), approach: None, settles: true });
-        stretch.judge(&StretchCut { periods: 1010, square_sum_mm2: 1e-4, ..cut(2.0) }, 1e-3, 0.05);
+        stretch.current = Some(NewMotions {
+            motions: Vec::new(),
+            approach: None,
+            settles: true,
+        });
+        stretch.judge(
+            &StretchCut {
+                periods: 1010,
+                square_sum_mm2: 1e-4,
+                ..cut(2.0)
+            },
+            1e-3,
+            0.05,
+        );
         let cost = stretch.cost(0.05);
-        assert!((cost.time_s - 0.01 - rest_s(true, 0.05)).abs() < 1e-12, "{}", cost.time_s);
-        assert!(cost.blocks == 0.0 && cost.gain_mm2.is_some_and(|gain_mm2| (gain_mm2 - 4e-4).abs() < 1e-12));
+        assert!(
+            (cost.time_s - 0.01 - rest_s(true, 0.05)).abs() < 1e-12,
+            "{}",
+            cost.time_s
+        );
+        assert!(
+            cost.blocks == 0.0
+                && cost
+                    .gain_mm2
+                    .is_some_and(|gain_mm2| (gain_mm2 - 4e-4).abs() < 1e-12)
+        );
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! A program as stretches that are cut without a corner, and all else.
 //!
-//! A stretch is what a correction may bend as a whole: feed motions of X, Y and Z, one behind the other, that meet within
-//! [`CORNER_RAD`], without anything between them. At its ends the tool is to be where the program says, so the command rests there
-//! until the tool has come: a dwell at true corners and beside rapids.
+//! A stretch is what a correction may bend as a whole: feed motions of X, Y and Z, one behind the
+//! other, that meet within [`CORNER_RAD`], without anything between them. At its ends the tool is
+//! to be where the program says, so the command rests there until the tool has come: a dwell at
+//! true corners and beside rapids.
 
 use std::f64::consts::PI;
 
@@ -46,9 +47,20 @@ pub(super) struct SmoothStretch {
 
 /// The pieces of the path of a motion.
 pub(super) fn pieces(motion: &Motion) -> Vec<Piece> {
-    let alone = Motion { feed_mm_s: motion.feed_mm_s.max(1.0), ..motion.clone() };
+    let alone = Motion {
+        feed_mm_s: motion.feed_mm_s.max(1.0),
+        ..motion.clone()
+    };
     let steps = Pieces::new(std::iter::once(Canon::Motion(alone)));
-    steps.filter_map(|step| if let Ok(Step::Piece(piece)) = step { Some(piece) } else { None }).collect()
+    steps
+        .filter_map(|step| {
+            if let Ok(Step::Piece(piece)) = step {
+                Some(piece)
+            } else {
+                None
+            }
+        })
+        .collect()
 }
 
 /// How long the path of a motion is, mm.
@@ -60,10 +72,14 @@ pub(super) fn length_mm(motion: &Motion) -> f64 {
 pub(super) fn directions(motion: &Motion) -> Option<[Vector; 2]> {
     let pieces = pieces(motion);
     let (first, last) = (pieces.first()?, pieces.last()?);
-    Some([first.curve.at(0.0).tangent, last.curve.at(last.length_mm).tangent])
+    Some([
+        first.curve.at(0.0).tangent,
+        last.curve.at(last.length_mm).tangent,
+    ])
 }
 
-/// The parts of a program, in order. A stretch ends before each step of `splits`, which is sorted; the tool does not rest there.
+/// The parts of a program, in order. A stretch ends before each step of `splits`, which is sorted;
+/// the tool does not rest there.
 pub(super) fn parts(program: &[Canon], splits: &[usize]) -> Vec<ProgramPart> {
     let mut parts: Vec<ProgramPart> = Vec::new();
     // Direction at the end of the last motion, and whether nothing has happened since.
@@ -82,8 +98,12 @@ pub(super) fn parts(program: &[Canon], splits: &[usize]) -> Vec<ProgramPart> {
         let turn_rad = before.map(|before| angle(before, starts));
         let bends = motion.kind == MotionKind::Feed && motion.others.is_none();
         let mut corner = turn_rad.is_some();
-        if bends && let Some(ProgramPart::Stretch(stretch)) = parts.last_mut().filter(|_| adjacent) {
-            let mode = stretch.motions.last().map_or(motion.corner, |last| last.corner);
+        if bends && let Some(ProgramPart::Stretch(stretch)) = parts.last_mut().filter(|_| adjacent)
+        {
+            let mode = stretch
+                .motions
+                .last()
+                .map_or(motion.corner, |last| last.corner);
             let smooth = turn_rad.is_some_and(|turn| turn < most_turn_rad(mode));
             corner &= !smooth;
             if smooth && splits.binary_search(&index).is_err() {
@@ -112,7 +132,9 @@ pub(super) fn parts(program: &[Canon], splits: &[usize]) -> Vec<ProgramPart> {
         } else {
             ProgramPart::Kept(step.clone())
         });
-        let leads = motion.kind == MotionKind::Rapid && motion.shape == Shape::Line && motion.others.is_none();
+        let leads = motion.kind == MotionKind::Rapid
+            && motion.shape == Shape::Line
+            && motion.others.is_none();
         rapid = leads.then(|| (index, motion.clone()));
         (before, adjacent) = (Some(ends), true);
     }
@@ -121,8 +143,15 @@ pub(super) fn parts(program: &[Canon], splits: &[usize]) -> Vec<ProgramPart> {
 
 /// The stretch that the last motion belongs to.
 fn last_stretch(parts: &mut [ProgramPart]) -> Option<&mut SmoothStretch> {
-    let last = parts.iter_mut().rev().find(|part| !matches!(part, ProgramPart::Kept(Canon::Event(_))))?;
-    if let ProgramPart::Stretch(stretch) = last { Some(stretch) } else { None }
+    let last = parts
+        .iter_mut()
+        .rev()
+        .find(|part| !matches!(part, ProgramPart::Kept(Canon::Event(_))))?;
+    if let ProgramPart::Stretch(stretch) = last {
+        Some(stretch)
+    } else {
+        None
+    }
 }
 
 /// Turn at which a motion that ends by `corner` ends a stretch.
@@ -150,11 +179,18 @@ impl SmoothStretch {
         self.ends
     }
 
-    /// The plane of the arcs that may replace its motions: the one that its arcs and splines share, or XY if they share none.
+    /// The plane of the arcs that may replace its motions: the one that its arcs and splines share,
+    /// or XY if they share none.
     pub(super) fn plane(&self) -> Plane {
         let shares = |plane: &Plane| self.motions.iter().all(|motion| has_plane(motion, *plane));
-        let bends = self.motions.iter().any(|motion| motion.shape != Shape::Line);
-        [Plane::Xy, Plane::Zx, Plane::Yz].into_iter().find(|plane| bends && shares(plane)).unwrap_or(Plane::Xy)
+        let bends = self
+            .motions
+            .iter()
+            .any(|motion| motion.shape != Shape::Line);
+        [Plane::Xy, Plane::Zx, Plane::Yz]
+            .into_iter()
+            .find(|plane| bends && shares(plane))
+            .unwrap_or(Plane::Xy)
     }
 }
 
@@ -165,7 +201,10 @@ fn has_plane(motion: &Motion, plane: Plane) -> bool {
         Shape::Arc { plane: own, .. } => *own == plane,
         Shape::Spline(spline) => {
             let [.., normal] = plane.axes();
-            spline.control_mm.iter().all(|point_mm| point_mm[normal] == motion.start_mm[normal])
+            spline
+                .control_mm
+                .iter()
+                .all(|point_mm| point_mm[normal] == motion.start_mm[normal])
         }
     }
 }
@@ -175,7 +214,8 @@ fn has_plane(motion: &Motion, plane: Plane) -> bool {
 pub(super) struct NewMotions {
     /// In place of those of the stretch.
     pub(super) motions: Vec<Motion>,
-    /// In place of the rapid that leads to it: a rapid most of the way, and a slow feed motion to its end.
+    /// In place of the rapid that leads to it: a rapid most of the way, and a slow feed motion to
+    /// its end.
     pub(super) approach: Option<[Motion; 2]>,
     /// Whether the last of it is so slow that the tool has settled at its end.
     pub(super) settles: bool,
@@ -184,13 +224,28 @@ pub(super) struct NewMotions {
 /// What a stretch becomes; none where it stays as it is.
 pub(super) type StretchCommand = Option<NewMotions>;
 
-/// The program with other motions in place of its stretches, and dwells where the tool has to come to rest.
+/// The program with other motions in place of its stretches, and dwells where the tool has to come
+/// to rest.
 ///
 /// The line of a motion is the number of its stretch, from 1, and 0 of all that is kept.
-pub(super) fn assembled(parts: &[ProgramPart], commands: &[StretchCommand], rests_s: &[f64]) -> Vec<Canon> {
+pub(super) fn assembled(
+    parts: &[ProgramPart],
+    commands: &[StretchCommand],
+    rests_s: &[f64],
+) -> Vec<Canon> {
     let (mut program, mut number) = (Vec::new(), 0);
-    let rest = |seconds: f64| Canon::Event(Event { line: 0, kind: EventKind::Dwell { seconds } });
-    let numbered = |motion: &Motion, line: u32| Canon::Motion(Motion { line, ..motion.clone() });
+    let rest = |seconds: f64| {
+        Canon::Event(Event {
+            line: 0,
+            kind: EventKind::Dwell { seconds },
+        })
+    };
+    let numbered = |motion: &Motion, line: u32| {
+        Canon::Motion(Motion {
+            line,
+            ..motion.clone()
+        })
+    };
     for part in parts {
         match part {
             ProgramPart::Kept(Canon::Motion(motion)) => program.push(numbered(motion, 0)),
@@ -215,19 +270,32 @@ pub(super) fn assembled(parts: &[ProgramPart], commands: &[StretchCommand], rest
 
 /// Puts an approach in the place of the last rapid.
 fn slow_down(program: &mut Vec<Canon>, approach: &[Motion; 2]) {
-    if let Some(at) = program.iter().rposition(|step| matches!(step, Canon::Motion(_))) {
-        let slow = approach.iter().map(|motion| Canon::Motion(Motion { line: 0, ..motion.clone() }));
+    if let Some(at) = program
+        .iter()
+        .rposition(|step| matches!(step, Canon::Motion(_)))
+    {
+        let slow = approach.iter().map(|motion| {
+            Canon::Motion(Motion {
+                line: 0,
+                ..motion.clone()
+            })
+        });
         program.splice(at..=at, slow);
     }
 }
 
 /// How long a dwell is, s, where the tool comes slowly or does not.
 pub(super) fn rest_s(comes_slowly: bool, dwell_s: f64) -> f64 {
-    if comes_slowly { (SETTLED * dwell_s * 1e3).round().max(1.0) / 1e3 } else { dwell_s }
+    if comes_slowly {
+        (SETTLED * dwell_s * 1e3).round().max(1.0) / 1e3
+    } else {
+        dwell_s
+    }
 }
 
-/// How long the tool rests before and behind a stretch, s: where it, or the stretch before, has another command, a dwell, and less where the tool comes
-/// so slowly that it has settled. `rests_s` has a dwell for each stretch.
+/// How long the tool rests before and behind a stretch, s: where it, or the stretch before, has
+/// another command, a dwell, and less where the tool comes so slowly that it has settled. `rests_s`
+/// has a dwell for each stretch.
 pub(super) fn dwells(
     stretch: &SmoothStretch,
     commands: &[StretchCommand],
@@ -236,16 +304,24 @@ pub(super) fn dwells(
 ) -> [Option<f64>; 2] {
     let dwell_s = rests_s[number];
     let command = commands[number].as_ref();
-    let before = if number > 0 && stretch.follows { commands[number - 1].as_ref() } else { None };
+    let before = if number > 0 && stretch.follows {
+        commands[number - 1].as_ref()
+    } else {
+        None
+    };
     let comes_slowly = command.is_some_and(|command| command.approach.is_some());
     let comes_slowly = comes_slowly || before.is_some_and(|before| before.settles);
     let goes_slowly = command.is_some_and(|command| command.settles);
     let rests_before = stretch.rests[0] && (command.is_some() || before.is_some());
     let rests_behind = stretch.rests[1] && command.is_some();
-    [rests_before.then(|| rest_s(comes_slowly, dwell_s)), rests_behind.then(|| rest_s(goes_slowly, dwell_s))]
+    [
+        rests_before.then(|| rest_s(comes_slowly, dwell_s)),
+        rests_behind.then(|| rest_s(goes_slowly, dwell_s)),
+    ]
 }
 
-/// Printed ends need not be those of the program to the last digit: each motion begins where the one before has ended.
+/// Printed ends need not be those of the program to the last digit: each motion begins where the
+/// one before has ended.
 fn join(program: &mut [Canon]) {
     let mut here_mm = None;
     for step in program {
@@ -258,5 +334,11 @@ fn join(program: &mut [Canon]) {
 
 /// The stretches among the parts.
 pub(super) fn stretches(parts: &[ProgramPart]) -> impl Iterator<Item = &SmoothStretch> {
-    parts.iter().filter_map(|part| if let ProgramPart::Stretch(stretch) = part { Some(stretch) } else { None })
+    parts.iter().filter_map(|part| {
+        if let ProgramPart::Stretch(stretch) = part {
+            Some(stretch)
+        } else {
+            None
+        }
+    })
 }

@@ -1,7 +1,7 @@
 //! The controls that a corrected program is for.
 //!
-//! A row says how the control plans the speed, by the name of a [feed planner](feedwright_plan::feed), and what its programs may hold. To add
-//! a control is one row.
+//! A row says how the control plans the speed, by the name of a [feed
+//! planner](feedwright_plan::feed), and what its programs may hold. To add a control is one row.
 
 use feedwright_gcode::Dialect;
 use feedwright_gcode::canon::Corner;
@@ -23,7 +23,8 @@ pub struct TargetControl {
     pub columns: usize,
     /// Decimals of a coordinate in mm.
     pub decimals: u32,
-    /// Dialect that it reads; none is the dialect of the program: it is the control that the program was written for.
+    /// Dialect that it reads; none is the dialect of the program: it is the control that the
+    /// program was written for.
     pub dialect: Option<Dialect>,
 }
 
@@ -42,7 +43,10 @@ pub const TARGETS: &[TargetControl] = &[
         name: "linuxcnc",
         about: "LinuxCNC 2.9: its own planner, with the limits that the machine file has of each axis",
         planner: "linuxcnc",
-        corner: Some(Corner::Continuous { tolerance_mm: Some(0.001), merge_mm: Some(0.0) }),
+        corner: Some(Corner::Continuous {
+            tolerance_mm: Some(0.001),
+            merge_mm: Some(0.0),
+        }),
         columns: 120,
         decimals: 5,
         dialect: Some(Dialect::LinuxCnc),
@@ -76,10 +80,13 @@ impl TargetControl {
     /// How it plans on a machine.
     pub fn stages(&self, machine: &Machine) -> Stages {
         let own = Stages::of(machine);
-        Stages { planner: feed_planner(self.planner).unwrap_or(own.planner) }
+        Stages {
+            planner: feed_planner(self.planner).unwrap_or(own.planner),
+        }
     }
 
-    /// The dialect in which it reads a program that was written in another. A control of Fanuc reads those of its relatives.
+    /// The dialect in which it reads a program that was written in another. A control of Fanuc
+    /// reads those of its relatives.
     pub(super) fn reads_as(&self, dialect: Dialect) -> Dialect {
         match self.dialect {
             Some(Dialect::FanucMill) if dialect.is_fanuc() => dialect,
@@ -96,7 +103,8 @@ impl TargetControl {
         }
     }
 
-    /// Decimals of a length. Inches have one more: an inch is 25 mm, and then the step is small enough.
+    /// Decimals of a length. Inches have one more: an inch is 25 mm, and then the step is small
+    /// enough.
     pub(super) fn decimals_of(&self, unit_mm: f64) -> usize {
         self.decimals as usize + usize::from(unit_mm > 1.0)
     }
@@ -108,7 +116,10 @@ impl TargetControl {
 
     /// The control with the steps in which a program prints lengths whose largest unit is this, mm.
     pub(super) fn printed(&self, unit_mm: f64) -> PrintedTarget<'_> {
-        PrintedTarget { control: self, steps_per_mm: 10_f64.powi(self.decimals_of(unit_mm) as i32) / unit_mm }
+        PrintedTarget {
+            control: self,
+            steps_per_mm: 10_f64.powi(self.decimals_of(unit_mm) as i32) / unit_mm,
+        }
     }
 }
 

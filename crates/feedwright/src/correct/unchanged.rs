@@ -14,8 +14,8 @@ pub(super) enum UnchangedReason {
     Good,
     /// Another command does not lower its error by enough.
     NoGain,
-    /// Every better command takes longer than it may: by this share of its time, %. `rests` is the share of a slow way to its
-    /// end, %.
+    /// Every better command takes longer than it may: by this share of its time, %. `rests` is the
+    /// share of a slow way to its end, %.
     TooSlow { percent: f64, rests: f64 },
     /// A better command takes more blocks than the stretch may have.
     Blocks,
@@ -78,7 +78,10 @@ impl fmt::Display for UnchangedReason {
                 "its lines have expressions, feeds other than G94, or codes that change coordinates within the cut; plain words, or such codes before \
                  a rapid, let it be corrected"
             ),
-            Self::OtherAxes => write!(f, "it moves axes beside X, Y and Z, which are not corrected"),
+            Self::OtherAxes => write!(
+                f,
+                "it moves axes beside X, Y and Z, which are not corrected"
+            ),
         }
     }
 }
@@ -92,16 +95,28 @@ pub struct UnchangedStretch {
     pub reason: String,
 }
 
-/// The stretches that stay as they are, in the order of the program; `reasons` has one entry for each stretch.
-pub(super) fn unchanged_stretches(parts: &[ProgramPart], reasons: &[Option<UnchangedReason>]) -> Vec<UnchangedStretch> {
+/// The stretches that stay as they are, in the order of the program; `reasons` has one entry for
+/// each stretch.
+pub(super) fn unchanged_stretches(
+    parts: &[ProgramPart],
+    reasons: &[Option<UnchangedReason>],
+) -> Vec<UnchangedStretch> {
     let mut reasons = reasons.iter();
     let of_part = |part: &ProgramPart| match part {
         ProgramPart::Stretch(stretch) => {
             let reason = reasons.next().copied().flatten()?;
-            Some(UnchangedStretch { lines: lines_of(stretch), reason: reason.to_string() })
+            Some(UnchangedStretch {
+                lines: lines_of(stretch),
+                reason: reason.to_string(),
+            })
         }
-        ProgramPart::Kept(Canon::Motion(motion)) if motion.kind == MotionKind::Feed && !motion.others.is_none() => {
-            Some(UnchangedStretch { lines: [motion.line; 2], reason: UnchangedReason::OtherAxes.to_string() })
+        ProgramPart::Kept(Canon::Motion(motion))
+            if motion.kind == MotionKind::Feed && !motion.others.is_none() =>
+        {
+            Some(UnchangedStretch {
+                lines: [motion.line; 2],
+                reason: UnchangedReason::OtherAxes.to_string(),
+            })
         }
         ProgramPart::Kept(_) => None,
     };
@@ -114,7 +129,8 @@ pub(super) fn lines_of(stretch: &SmoothStretch) -> [u32; 2] {
 }
 
 impl UnchangedStretch {
-    /// One line for each reason, with the lines that it holds for, at most the first `most` of them.
+    /// One line for each reason, with the lines that it holds for, at most the first `most` of
+    /// them.
     #[cfg(feature = "command")]
     pub(crate) fn sentences(all: &[Self], most: usize) -> Vec<String> {
         let mut reasons: Vec<&str> = Vec::new();
@@ -128,13 +144,27 @@ impl UnchangedStretch {
                 .iter()
                 .filter(|stretch| stretch.reason == **reason)
                 .map(
-                    |Self { lines: [first, last], .. }| {
-                        if first == last { first.to_string() } else { format!("{first} to {last}") }
+                    |Self {
+                         lines: [first, last],
+                         ..
+                     }| {
+                        if first == last {
+                            first.to_string()
+                        } else {
+                            format!("{first} to {last}")
+                        }
                     },
                 )
                 .collect();
-            let more = if of.len() > most { format!(" and {} more", of.len() - most) } else { String::new() };
-            format!("unchanged, lines {}{more}: {reason}", of[..of.len().min(most)].join(", "))
+            let more = if of.len() > most {
+                format!(" and {} more", of.len() - most)
+            } else {
+                String::new()
+            };
+            format!(
+                "unchanged, lines {}{more}: {reason}",
+                of[..of.len().min(most)].join(", ")
+            )
         };
         reasons.iter().map(sentence).collect()
     }
@@ -147,18 +177,37 @@ mod tests {
     #[cfg(feature = "command")]
     #[test]
     fn each_reason_has_a_sentence_with_its_first_lines() {
-        let stretch = |lines: [u32; 2], reason: &str| UnchangedStretch { lines, reason: reason.to_owned() };
-        let all = [stretch([3, 3], "a"), stretch([5, 9], "b"), stretch([12, 13], "a")];
+        let stretch = |lines: [u32; 2], reason: &str| UnchangedStretch {
+            lines,
+            reason: reason.to_owned(),
+        };
+        let all = [
+            stretch([3, 3], "a"),
+            stretch([5, 9], "b"),
+            stretch([12, 13], "a"),
+        ];
         assert_eq!(
             UnchangedStretch::sentences(&all, 2),
-            ["unchanged, lines 3, 12 to 13: a", "unchanged, lines 5 to 9: b"]
+            [
+                "unchanged, lines 3, 12 to 13: a",
+                "unchanged, lines 5 to 9: b"
+            ]
         );
-        assert_eq!(UnchangedStretch::sentences(&all[..], 1)[0], "unchanged, lines 3 and 1 more: a");
+        assert_eq!(
+            UnchangedStretch::sentences(&all[..], 1)[0],
+            "unchanged, lines 3 and 1 more: a"
+        );
     }
 
     #[test]
     fn what_takes_the_time_of_a_better_command_is_named() {
-        let said = |rests: f64| UnchangedReason::TooSlow { percent: 20.0, rests }.to_string();
+        let said = |rests: f64| {
+            UnchangedReason::TooSlow {
+                percent: 20.0,
+                rests,
+            }
+            .to_string()
+        };
         assert!(said(15.0).starts_with(
             "the control would take 20 % longer for a better command, most of that to come to rest at its end"
         ));

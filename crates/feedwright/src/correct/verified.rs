@@ -47,9 +47,13 @@ pub(super) enum TextFault {
 impl fmt::Display for TextFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Unreadable { text, fault } => write!(f, "the control does not take '{}': {fault}", text.trim()),
+            Self::Unreadable { text, fault } => {
+                write!(f, "the control does not take '{}': {fault}", text.trim())
+            }
             Self::Otherwise { line: 0, what } => write!(f, "at its end the control reads {what}"),
-            Self::Otherwise { line, what } => write!(f, "in place of line {line} the control reads {what}"),
+            Self::Otherwise { line, what } => {
+                write!(f, "in place of line {line} the control reads {what}")
+            }
         }
     }
 }
@@ -58,8 +62,15 @@ impl fmt::Display for TextFault {
 ///
 /// # Errors
 /// The first mistake of it.
-pub(super) fn read(text: &str, settings: &Settings, dialect: Dialect) -> Result<ReadSteps, TextFault> {
-    let settings = Settings { dialect: Some(dialect), ..settings.clone() };
+pub(super) fn read(
+    text: &str,
+    settings: &Settings,
+    dialect: Dialect,
+) -> Result<ReadSteps, TextFault> {
+    let settings = Settings {
+        dialect: Some(dialect),
+        ..settings.clone()
+    };
     let unreadable = |text: String, fault: String| TextFault::Unreadable { text, fault };
     let mut reader = Reader::from_text("corrected.ngc", text, settings)
         .map_err(|fault| unreadable("corrected.ngc".to_owned(), fault.to_string()))?;
@@ -78,28 +89,41 @@ pub(super) fn read(text: &str, settings: &Settings, dialect: Dialect) -> Result<
 pub(super) struct TextComparison {
     /// Printed step, mm.
     pub(super) step_mm: f64,
-    /// Whether the control knows tolerances of corners and messages. Those that it does not know are its own, and comments.
+    /// Whether the control knows tolerances of corners and messages. Those that it does not know
+    /// are its own, and comments.
     pub(super) of_linuxcnc: bool,
 }
 
 impl TextComparison {
-    /// The first difference between the frames of the motions of two programs, one behind the other, up to their printed steps: a coordinate system
-    /// with other offsets on the control than here is no place in the machine.
+    /// The first difference between the frames of the motions of two programs, one behind the
+    /// other, up to their printed steps: a coordinate system with other offsets on the control than
+    /// here is no place in the machine.
     pub(super) fn frames<'a>(
         self,
         found: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>,
         wanted: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>,
     ) -> Result<(), TextFault> {
         let (found, wanted) = (frames(found, self.step_mm), frames(wanted, self.step_mm));
-        let is_near = |k: usize| found.get(k).is_some_and(|found| found.1.near_frame(wanted[k].1, self.step_mm));
+        let is_near = |k: usize| {
+            found
+                .get(k)
+                .is_some_and(|found| found.1.near_frame(wanted[k].1, self.step_mm))
+        };
         match (0..wanted.len()).find(|&k| !is_near(k)) {
-            Some(k) => Err(TextFault::Otherwise { line: wanted[k].0, what: "another coordinate system" }),
+            Some(k) => Err(TextFault::Otherwise {
+                line: wanted[k].0,
+                what: "another coordinate system",
+            }),
             None if found.len() == wanted.len() => Ok(()),
-            None => Err(TextFault::Otherwise { line: 0, what: "another coordinate system" }),
+            None => Err(TextFault::Otherwise {
+                line: 0,
+                what: "another coordinate system",
+            }),
         }
     }
 
-    /// The first difference between what two programs ask for, up to their printed steps; events between two motions may have another order.
+    /// The first difference between what two programs ask for, up to their printed steps; events
+    /// between two motions may have another order.
     pub(super) fn steps(self, found: &[Canon], wanted: &[Canon]) -> Result<(), TextFault> {
         let (found, wanted) = (self.legs(found), self.legs(wanted));
         for (k, leg) in wanted.iter().enumerate() {
@@ -111,7 +135,10 @@ impl TextComparison {
             }
         }
         if found.len() > wanted.len() {
-            return Err(TextFault::Otherwise { line: 0, what: "more motions" });
+            return Err(TextFault::Otherwise {
+                line: 0,
+                what: "more motions",
+            });
         }
         Ok(())
     }
@@ -142,7 +169,11 @@ impl TextComparison {
 
     fn leg(self, found: &Leg<'_>, wanted: &Leg<'_>) -> Result<(), &'static str> {
         if found.0.len() != wanted.0.len()
-            || found.0.iter().zip(&wanted.0).any(|(found, wanted)| !same_event(found, wanted))
+            || found
+                .0
+                .iter()
+                .zip(&wanted.0)
+                .any(|(found, wanted)| !same_event(found, wanted))
         {
             return Err("another M-code, speed, tool, dwell or message");
         }
@@ -157,17 +188,31 @@ impl TextComparison {
     fn motion(self, found: &Motion, wanted: &Motion) -> Result<(), &'static str> {
         let feed_mm_s = FEED_PART * wanted.feed_mm_s + 1e-6;
         let same = [
-            (found.kind == wanted.kind, "a rapid for a feed motion, or a feed motion for a rapid"),
-            (distance(found.end_mm, wanted.end_mm) < 2.0 * self.step_mm, "another end"),
-            (found.others == wanted.others, "other positions of axes beside X, Y and Z"),
-            ((found.feed_mm_s - wanted.feed_mm_s).abs() <= feed_mm_s, "another feedrate"),
+            (
+                found.kind == wanted.kind,
+                "a rapid for a feed motion, or a feed motion for a rapid",
+            ),
+            (
+                distance(found.end_mm, wanted.end_mm) < 2.0 * self.step_mm,
+                "another end",
+            ),
+            (
+                found.others == wanted.others,
+                "other positions of axes beside X, Y and Z",
+            ),
+            (
+                (found.feed_mm_s - wanted.feed_mm_s).abs() <= feed_mm_s,
+                "another feedrate",
+            ),
             (
                 found.kind == MotionKind::Rapid || self.corner(found.corner, wanted.corner),
                 "another way of taking corners",
             ),
             (same_shape(found, wanted, self.step_mm), "another curve"),
         ];
-        same.iter().find(|(same, _)| !same).map_or(Ok(()), |(_, what)| Err(what))
+        same.iter()
+            .find(|(same, _)| !same)
+            .map_or(Ok(()), |(_, what)| Err(what))
     }
 
     fn corner(self, found: Corner, wanted: Corner) -> bool {
@@ -177,9 +222,18 @@ impl TextComparison {
         };
         match (found, wanted) {
             (
-                Corner::Continuous { tolerance_mm, merge_mm },
-                Corner::Continuous { tolerance_mm: wanted_mm, merge_mm: wanted_merge_mm },
-            ) => !self.of_linuxcnc || near(tolerance_mm, wanted_mm) && near(merge_mm, wanted_merge_mm),
+                Corner::Continuous {
+                    tolerance_mm,
+                    merge_mm,
+                },
+                Corner::Continuous {
+                    tolerance_mm: wanted_mm,
+                    merge_mm: wanted_merge_mm,
+                },
+            ) => {
+                !self.of_linuxcnc
+                    || near(tolerance_mm, wanted_mm) && near(merge_mm, wanted_merge_mm)
+            }
             (found, wanted) => found == wanted,
         }
     }
@@ -193,7 +247,9 @@ fn frames<'a>(
     let mut frames: Vec<(u32, &ModesInForce)> = Vec::new();
     for (step, modes) in steps {
         if let Canon::Motion(motion) = step
-            && frames.last().is_none_or(|last| !last.1.near_frame(modes, step_mm))
+            && frames
+                .last()
+                .is_none_or(|last| !last.1.near_frame(modes, step_mm))
         {
             frames.push((motion.line, modes));
         }
@@ -212,7 +268,9 @@ fn is_nothing(motion: &Motion, step_mm: f64) -> bool {
 
 fn same_event(found: &EventKind, wanted: &EventKind) -> bool {
     match (found, wanted) {
-        (EventKind::Dwell { seconds: a }, EventKind::Dwell { seconds: b }) => (a - b).abs() < DWELL_S,
+        (EventKind::Dwell { seconds: a }, EventKind::Dwell { seconds: b }) => {
+            (a - b).abs() < DWELL_S
+        }
         (EventKind::Message { text: a }, EventKind::Message { text: b }) => a.trim() == b.trim(),
         (a, b) => a == b,
     }
@@ -222,8 +280,16 @@ fn same_shape(found: &Motion, wanted: &Motion, step_mm: f64) -> bool {
     match (&found.shape, &wanted.shape) {
         (Shape::Line, Shape::Line) => true,
         (
-            Shape::Arc { plane, center_mm, turns },
-            Shape::Arc { plane: wanted_plane, center_mm: wanted_mm, turns: wanted_turns },
+            Shape::Arc {
+                plane,
+                center_mm,
+                turns,
+            },
+            Shape::Arc {
+                plane: wanted_plane,
+                center_mm: wanted_mm,
+                turns: wanted_turns,
+            },
         ) => {
             let radius_mm = distance(*wanted_mm, wanted.start_mm);
             plane == wanted_plane
@@ -241,20 +307,29 @@ fn same_shape(found: &Motion, wanted: &Motion, step_mm: f64) -> bool {
 mod tests {
     use super::*;
 
-    const COMPARISON: TextComparison = TextComparison { step_mm: 0.001, of_linuxcnc: true };
+    const COMPARISON: TextComparison = TextComparison {
+        step_mm: 0.001,
+        of_linuxcnc: true,
+    };
     const PROGRAM: &str = "G21 G90 G17 G64 F600\nM3 S500\nG0 X5 Y5\nG1 X10\nG4 P0.5\nG2 X20 Y5 I5 J0\n(MSG, look)\n\
                            G5 X30 Y5 I2 J3 P-2 Q3\nM8\nM64 P1\nG1 Z-1\nG1 A10\nM2\n";
 
     fn read_again(text: &str) -> (Vec<Canon>, Vec<Arc<ModesInForce>>) {
-        read(text, &Settings::default(), Dialect::LinuxCnc).unwrap_or_else(|fault| panic!("{fault}\n{text}"))
+        read(text, &Settings::default(), Dialect::LinuxCnc)
+            .unwrap_or_else(|fault| panic!("{fault}\n{text}"))
     }
 
     /// Whether the program says the same with something in place of a part of it.
     fn is_same(part: &str, other: &str) -> bool {
         assert!(PROGRAM.contains(part), "{part}");
-        let [wanted, found] = [PROGRAM.to_owned(), PROGRAM.replacen(part, other, 1)].map(|text| read_again(&text).0);
+        let [wanted, found] =
+            [PROGRAM.to_owned(), PROGRAM.replacen(part, other, 1)].map(|text| read_again(&text).0);
         let is_same = COMPARISON.steps(&found, &wanted).is_ok();
-        assert_eq!(is_same, COMPARISON.steps(&wanted, &found).is_ok(), "{part:?} and {other:?}");
+        assert_eq!(
+            is_same,
+            COMPARISON.steps(&wanted, &found).is_ok(),
+            "{part:?} and {other:?}"
+        );
         is_same
     }
 
@@ -269,7 +344,10 @@ mod tests {
             ("X10\n", "X10\nX10.0004\n"),
             ("(MSG, look)", "(MSG,look )"),
             ("M2\n", "M30\n"),
-            ("G64 F600\nM3 S500\nG0 X5 Y5\n", "G61 F600\nM3 S500\nG0 X5 Y5\nG64\n"),
+            (
+                "G64 F600\nM3 S500\nG0 X5 Y5\n",
+                "G61 F600\nM3 S500\nG0 X5 Y5\nG64\n",
+            ),
             ("I5 J0", "R5.001"),
         ] {
             assert!(is_same(part, other), "{part:?} and {other:?}");
@@ -309,7 +387,8 @@ mod tests {
     #[test]
     fn frames_are_the_same_in_their_order_up_to_printed_steps() {
         let are_same = |found: &str, wanted: &str| {
-            let [found, wanted] = [found, wanted].map(|text| read_again(&format!("G21 G90 F600\n{text}M2\n")));
+            let [found, wanted] =
+                [found, wanted].map(|text| read_again(&format!("G21 G90 F600\n{text}M2\n")));
             let steps = |(steps, modes): &'static (Vec<Canon>, Vec<Arc<ModesInForce>>)| {
                 steps.iter().zip(modes.iter().map(|modes| &**modes))
             };
@@ -318,7 +397,10 @@ mod tests {
         };
         let two = "G54 G1 X1\nG10 L2 P2 X5 Y2\nG55 X1\n";
         assert!(are_same(two, two));
-        assert!(are_same("G54 G1 X1\nX2\nG10 L2 P2 X5.0004 Y2\nG55 X1\nX3\n", two));
+        assert!(are_same(
+            "G54 G1 X1\nX2\nG10 L2 P2 X5.0004 Y2\nG55 X1\nX3\n",
+            two
+        ));
         assert!(!are_same("G54 G1 X1\nG10 L2 P2 X5.01 Y2\nG55 X1\n", two));
         assert!(!are_same("G54 G1 X1\n", two) && !are_same(two, "G54 G1 X1\n"));
         assert!(!are_same("G10 L2 P2 X5 Y2\nG55 G1 X1\nG54 X1\n", two));

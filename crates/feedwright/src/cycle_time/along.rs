@@ -1,17 +1,19 @@
 //! What binds where: a record of bounded size of the motion along its path.
 //!
-//! Samples are gathered in stretches of equal time. When 2000 of them are full, neighbours merge in pairs and each takes twice the time.
+//! Samples are gathered in stretches of equal time. When 2000 of them are full, neighbours merge in
+//! pairs and each takes twice the time.
 
 use serde::Serialize;
 
-/// Most stretches: a pixel each on a wide screen. Even, so that a full record merges without a remainder.
+/// Most stretches: a pixel each on a wide screen. Even, so that a full record merges without a
+/// remainder.
 const MOST: usize = 2000;
 
 /// Time of a stretch at first, s.
 const FIRST_S: f64 = 1e-3;
 
-/// Number of limits: feedrate, tolerance, velocity, acceleration and jerk of three axes, and acceleration along the path, across it, and
-/// corners.
+/// Number of limits: feedrate, tolerance, velocity, acceleration and jerk of three axes, and
+/// acceleration along the path, across it, and corners.
 pub(crate) const LIMITS: usize = 14;
 
 /// A stretch of the motion.
@@ -58,7 +60,10 @@ pub struct BindingAlong {
 
 impl Default for BindingAlong {
     fn default() -> Self {
-        Self { stretches: Vec::new(), stretch_s: FIRST_S }
+        Self {
+            stretches: Vec::new(),
+            stretch_s: FIRST_S,
+        }
     }
 }
 
@@ -71,17 +76,28 @@ impl BindingAlong {
     /// The stretches, merged into at most `parts` of about equal time.
     pub fn in_parts(&self, parts: usize) -> Vec<BindingStretch> {
         let each = self.stretches.len().div_ceil(parts.max(1)).max(1);
-        let merged = |chunk: &[BindingStretch]| chunk.iter().skip(1).fold(chunk[0], |before, next| before.merged(next));
+        let merged = |chunk: &[BindingStretch]| {
+            chunk
+                .iter()
+                .skip(1)
+                .fold(chunk[0], |before, next| before.merged(next))
+        };
         self.stretches.chunks(each).map(merged).collect()
     }
 
     /// Adds a sample behind those before.
     pub(crate) fn push(&mut self, sample: &BindingStretch) {
         match self.stretches.last_mut() {
-            Some(last) if last.duration_s + 0.5 * sample.duration_s < self.stretch_s => *last = last.merged(sample),
+            Some(last) if last.duration_s + 0.5 * sample.duration_s < self.stretch_s => {
+                *last = last.merged(sample);
+            }
             _ => {
                 if self.stretches.len() == MOST {
-                    self.stretches = self.stretches.chunks_exact(2).map(|pair| pair[0].merged(&pair[1])).collect();
+                    self.stretches = self
+                        .stretches
+                        .chunks_exact(2)
+                        .map(|pair| pair[0].merged(&pair[1]))
+                        .collect();
                     self.stretch_s *= 2.0;
                 }
                 self.stretches.push(*sample);
@@ -113,8 +129,15 @@ mod tests {
         assert!(count > MOST / 4 && count <= MOST, "{count}");
         let halves = along.in_parts(2);
         assert_eq!(halves.len(), 2);
-        assert_eq!(halves.iter().map(|half| half.longest()).collect::<Vec<_>>(), [Some(0), Some(1)]);
-        let time_s: f64 = along.stretches().iter().map(|stretch| stretch.duration_s).sum();
+        assert_eq!(
+            halves.iter().map(|half| half.longest()).collect::<Vec<_>>(),
+            [Some(0), Some(1)]
+        );
+        let time_s: f64 = along
+            .stretches()
+            .iter()
+            .map(|stretch| stretch.duration_s)
+            .sum();
         assert!((time_s - 7.0).abs() < 1e-9, "{time_s}");
         assert_eq!((halves[0].lines[0], halves[1].lines[1]), (0, samples - 1));
     }

@@ -1,4 +1,5 @@
-//! What a cut was like at even places of the path: how fast the plan was there, and how far the tool was away when it came by.
+//! What a cut was like at even places of the path: how fast the plan was there, and how far the
+//! tool was away when it came by.
 
 use std::collections::VecDeque;
 use std::io;
@@ -38,12 +39,22 @@ impl CutPlaces {
     /// Creates the record of a path with `count` places.
     pub(super) fn new(spacing_mm: f64, count: usize) -> Self {
         let places = vec![CutPlace::default(); count];
-        Self { spacing_mm, places, behind: VecDeque::new(), last: None, last_foot_mm: 0.0, time_s: 0.0 }
+        Self {
+            spacing_mm,
+            places,
+            behind: VecDeque::new(),
+            last: None,
+            last_foot_mm: 0.0,
+            time_s: 0.0,
+        }
     }
 
     /// Largest error, um, and the line that is cut there.
     pub(super) fn worst(&self) -> (f64, u32) {
-        let worst = self.places.iter().max_by(|a, b| a.error_mm.total_cmp(&b.error_mm));
+        let worst = self
+            .places
+            .iter()
+            .max_by(|a, b| a.error_mm.total_cmp(&b.error_mm));
         worst.map_or((0.0, 0), |place| (1e3 * place.error_mm, place.line))
     }
 
@@ -60,7 +71,11 @@ impl CutPlaces {
             if at_mm > s_mm {
                 break;
             }
-            let part = if s_mm > from_mm { ((at_mm - from_mm) / (s_mm - from_mm)).clamp(0.0, 1.0) } else { 1.0 };
+            let part = if s_mm > from_mm {
+                ((at_mm - from_mm) / (s_mm - from_mm)).clamp(0.0, 1.0)
+            } else {
+                1.0
+            };
             self.places[i].speed_mm_s = from_mm_s + part * (speed_mm_s - from_mm_s);
         }
         self.last = Some((s_mm, speed_mm_s));
@@ -94,7 +109,12 @@ impl Sink for CutPlaces {
             let first = if to > from { from + 1 } else { to };
             for place in &mut self.places[first..=to] {
                 if error_mm > place.error_mm {
-                    *place = CutPlace { away_mm: sub(row.act_mm, row.foot_mm), error_mm, line: row.line, ..*place };
+                    *place = CutPlace {
+                        away_mm: sub(row.act_mm, row.foot_mm),
+                        error_mm,
+                        line: row.line,
+                        ..*place
+                    };
                 }
             }
         }

@@ -1,10 +1,12 @@
 //! How the contour error answers to the speed of the plan.
 //!
-//! A servo loop that follows is `x = r(t - T) + C a(t - T) + ..`, with the acceleration a of the plan: what lies in the lag T is along the
-//! path and no contour error, so the error across it is `u' C a` with the direction u from the path to the tool. C has one number for each
-//! axis, `1 / 2k^2 - 1 / ak` for a position loop of bandwidth k around a speed loop of bandwidth a; they are fitted to a cut. Since `a = t (v^2)' / 2 +
-//! t' v^2`, the error is linear in the squares of the speeds at three places. What the model does not know, friction or a controller of its own,
-//! is held to grow with the square of the speed.
+//! A servo loop that follows is `x = r(t - T) + C a(t - T) + ..`, with the acceleration a of the
+//! plan: what lies in the lag T is along the path and no contour error, so the error across it is
+//! `u' C a` with the direction u from the path to the tool. C has one number for each axis, `1 /
+//! 2k^2 - 1 / ak` for a position loop of bandwidth k around a speed loop of bandwidth a; they are
+//! fitted to a cut. Since `a = t (v^2)' / 2 + t' v^2`, the error is linear in the squares of the
+//! speeds at three places. What the model does not know, friction or a controller of its own, is
+//! held to grow with the square of the speed.
 
 use feedwright_plan::vector::{dot, scale};
 use nalgebra::{Matrix3, Vector3};
@@ -12,7 +14,8 @@ use nalgebra::{Matrix3, Vector3};
 use super::cut_places::CutPlace;
 use super::path_grid::PathGrid;
 
-/// Axes differ from each other by no more than is seen: a part of the whole information is added that they do not.
+/// Axes differ from each other by no more than is seen: a part of the whole information is added
+/// that they do not.
 const ALIKE: f64 = 1e-3;
 
 /// Least square of a speed that anything is divided by, (mm/s)^2.
@@ -34,7 +37,10 @@ pub(super) struct ErrorModel {
 impl ErrorModel {
     /// Fitted to a cut, with errors that answer as steeply ([`super::steepness`]).
     pub(super) fn of(grid: &PathGrid, places: &[CutPlace], steepness: f64) -> Self {
-        let squares: Vec<f64> = places.iter().map(|place| place.speed_mm_s * place.speed_mm_s).collect();
+        let squares: Vec<f64> = places
+            .iter()
+            .map(|place| place.speed_mm_s * place.speed_mm_s)
+            .collect();
         let lag_s2 = lag_of_axes(grid, places, &squares);
         let mut changes = Vec::with_capacity(places.len());
         for (i, place) in places.iter().enumerate() {
@@ -44,26 +50,38 @@ impl ErrorModel {
             change[1] += (place.error_mm - modelled_mm) / squares[i].max(LEAST_SQUARE);
             changes.push(change.map(|part| steepness * part));
         }
-        Self { errors_mm: places.iter().map(|place| place.error_mm).collect(), changes }
+        Self {
+            errors_mm: places.iter().map(|place| place.error_mm).collect(),
+            changes,
+        }
     }
 }
 
-/// `u_k a_k` of each axis k, as factors on the squares of three speeds, with the direction u of the error.
+/// `u_k a_k` of each axis k, as factors on the squares of three speeds, with the direction u of the
+/// error.
 fn parts_of(grid: &PathGrid, i: usize, place: &CutPlace) -> [[f64; 3]; 3] {
     let direction = scale(1.0 / place.error_mm.max(LEAST_MM), place.away_mm);
-    grid.acceleration(i).map(|accel| std::array::from_fn(|k| direction[k] * accel[k]))
+    grid.acceleration(i)
+        .map(|accel| std::array::from_fn(|k| direction[k] * accel[k]))
 }
 
-/// The sum of factors times values at the place before, there, and behind; places beyond the ends count as the ends.
+/// The sum of factors times values at the place before, there, and behind; places beyond the ends
+/// count as the ends.
 pub(super) fn at(factors: &[f64; 3], i: usize, values: &[f64]) -> f64 {
     let last = values.len() - 1;
-    factors[0] * values[i.saturating_sub(1)] + factors[1] * values[i] + factors[2] * values[(i + 1).min(last)]
+    factors[0] * values[i.saturating_sub(1)]
+        + factors[1] * values[i]
+        + factors[2] * values[(i + 1).min(last)]
 }
 
 /// C of each axis, by least squares.
 fn lag_of_axes(grid: &PathGrid, places: &[CutPlace], squares: &[f64]) -> [f64; 3] {
     let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
-    for (i, place) in places.iter().enumerate().filter(|(_, place)| place.error_mm > 0.0) {
+    for (i, place) in places
+        .iter()
+        .enumerate()
+        .filter(|(_, place)| place.error_mm > 0.0)
+    {
         let parts = parts_of(grid, i, place);
         let of_axis = |k: usize| at(&parts.map(|part| part[k]), i, squares);
         let row = Vector3::new(of_axis(0), of_axis(1), of_axis(2));
@@ -75,5 +93,8 @@ fn lag_of_axes(grid: &PathGrid, places: &[CutPlace], squares: &[f64]) -> [f64; 3
     let ones = Vector3::repeat(1.0);
     let apart = Matrix3::identity() - ones * ones.transpose() / 3.0;
     let regularized = matrix + information * apart;
-    regularized.lu().solve(&right).map_or([0.0; 3], |found| [found.x, found.y, found.z])
+    regularized
+        .lu()
+        .solve(&right)
+        .map_or([0.0; 3], |found| [found.x, found.y, found.z])
 }

@@ -32,7 +32,10 @@ impl PathGrid {
             last = piece.curve.at(piece.length_mm).tangent;
         }
         tangents.push(last);
-        Self { spacing_mm, tangents }
+        Self {
+            spacing_mm,
+            tangents,
+        }
     }
 
     /// Number of places: the last is at the end of the path or behind it.
@@ -40,8 +43,8 @@ impl PathGrid {
         self.tangents.len()
     }
 
-    /// What the acceleration at a place is made of: `a = t (v^2)' / 2 + t' v^2`, as factors on the squares of the speeds at the place before,
-    /// there, and behind.
+    /// What the acceleration at a place is made of: `a = t (v^2)' / 2 + t' v^2`, as factors on the
+    /// squares of the speeds at the place before, there, and behind.
     pub(super) fn acceleration(&self, i: usize) -> [[f64; 3]; 3] {
         let (lo, hi) = (i.saturating_sub(1), (i + 1).min(self.len() - 1));
         let way_mm = (hi - lo).max(1) as f64 * self.spacing_mm;
@@ -64,17 +67,25 @@ mod tests {
 
     #[test]
     fn acceleration_is_that_of_a_circle_at_a_speed_that_rises() {
-        let circle =
-            Reader::from_text("circle.ngc", "G17 G21 G90 G61 F600\nG2 X0 Y0 I10 J0\nM2\n", Settings::default());
+        let circle = Reader::from_text(
+            "circle.ngc",
+            "G17 G21 G90 G61 F600\nG2 X0 Y0 I10 J0\nM2\n",
+            Settings::default(),
+        );
         let grid = PathGrid::of(path_steps(circle.unwrap().map(Result::unwrap)), 0.1);
         assert_eq!(grid.len(), 630, "63 mm and the end");
         // v^2 = 100 + 40 s: 20 mm/s2 along the path, and v^2 / 10 mm across it.
         let square = |i: usize| 100.0 + 40.0 * 0.1 * i as f64;
         for i in [1, 50, 300] {
             let parts = grid.acceleration(i);
-            let accel = (0..3).fold([0.0; 3], |sum, part| add_scaled(sum, square(i + part - 1), parts[part]));
+            let accel = (0..3).fold([0.0; 3], |sum, part| {
+                add_scaled(sum, square(i + part - 1), parts[part])
+            });
             let expected = libm::hypot(20.0, 0.1 * square(i));
-            assert!((norm(accel) / expected - 1.0).abs() < 1e-3, "{accel:?} {expected}");
+            assert!(
+                (norm(accel) / expected - 1.0).abs() < 1e-3,
+                "{accel:?} {expected}"
+            );
         }
     }
 }

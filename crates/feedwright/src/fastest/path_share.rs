@@ -1,4 +1,5 @@
-//! The part of the tolerance of the tool that the planned path may use: what the machine leaves of it.
+//! The part of the tolerance of the tool that the planned path may use: what the machine leaves of
+//! it.
 
 use feedwright_control::Controller;
 use feedwright_gcode::ReadError;
@@ -11,7 +12,8 @@ use super::{FIRST_SHARE, FastestError, SPACING_MM, Search};
 /// Most cuts of a search.
 const CUTS: u32 = 6;
 
-/// Largest and smallest tolerance of the path, um: beyond a tenth of a millimetre a path gains hardly any time and loses its shape.
+/// Largest and smallest tolerance of the path, um: beyond a tenth of a millimetre a path gains
+/// hardly any time and loses its shape.
 const MOST_UM: f64 = 100.0;
 const LEAST_UM: f64 = 0.01;
 
@@ -29,8 +31,9 @@ pub struct TolerancePlan {
     pub largest_um: f64,
 }
 
-/// Shares a tolerance of the tool between the planned path and the predicted error of the machine: the path gets as much as lets a cut
-/// stay within it. Arguments as in [`fastest()`](super::fastest). `None` where the machine needs all of the tolerance at these
+/// Shares a tolerance of the tool between the planned path and the predicted error of the machine:
+/// the path gets as much as lets a cut stay within it. Arguments as in
+/// [`fastest()`](super::fastest). `None` where the machine needs all of the tolerance at these
 /// feedrates.
 ///
 /// # Errors
@@ -44,7 +47,12 @@ pub fn plan_within<'p, const N: usize>(
     watch: &dyn Watch,
 ) -> Result<Option<TolerancePlan>, FastestError> {
     let grid = PathGrid::of(steps().map_err(feedwright_sim::RunError::from)?, SPACING_MM);
-    let mut search = Search::new(machine, tolerance_um, grid, "looking for the tolerance of the path");
+    let mut search = Search::new(
+        machine,
+        tolerance_um,
+        grid,
+        "looking for the tolerance of the path",
+    );
     let mut share = FIRST_SHARE.min(MOST_UM / tolerance_um);
     for _ in 0..CUTS {
         if share * tolerance_um < LEAST_UM {

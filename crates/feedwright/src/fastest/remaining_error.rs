@@ -11,7 +11,8 @@ use super::cut_places::{CutPlace, CutPlaces};
 /// Two cuts are compared where the speed has come down to this part, r at the most.
 const SLOWER: f64 = 0.5;
 
-/// Where the tool is far away the speed so long before and behind may be to blame, s: as long as a servo loop remembers.
+/// Where the tool is far away the speed so long before and behind may be to blame, s: as long as a
+/// servo loop remembers.
 const AROUND_S: f64 = 0.03;
 
 /// No speed helps if more than [`LEFT`] tolerances remain at rest in [`IN_A_ROW`] comparisons of
@@ -46,11 +47,22 @@ impl RemainingError {
         if self.places.is_empty() {
             self.places = cut.places.iter().map(|place| place_of(place, 0)).collect();
         }
-        let compared: Vec<_> =
-            cut.places.iter().enumerate().map(|(i, place)| (place, self.left_mm(cut, i, tolerance_mm))).collect();
+        let compared: Vec<_> = cut
+            .places
+            .iter()
+            .enumerate()
+            .map(|(i, place)| (place, self.left_mm(cut, i, tolerance_mm)))
+            .collect();
         for (before, (place, left_mm)) in self.places.iter_mut().zip(compared) {
             if let Some(left_mm) = left_mm {
-                *before = place_of(place, if left_mm > LEFT * tolerance_mm { before.in_a_row + 1 } else { 0 });
+                *before = place_of(
+                    place,
+                    if left_mm > LEFT * tolerance_mm {
+                        before.in_a_row + 1
+                    } else {
+                        0
+                    },
+                );
             }
         }
         self.places.iter().any(|place| place.in_a_row >= IN_A_ROW)
@@ -66,7 +78,11 @@ impl RemainingError {
         let near = i.saturating_sub(around)..(i + around + 1).min(cut.places.len());
         let pairs = cut.places[near.clone()].iter().zip(&self.places[near]);
         let [r, e1, e2] = pairs.fold([0.0_f64; 3], |[r, e1, e2], (now, before)| {
-            [r.max(now.speed_mm_s / before.speed_mm_s), e1.max(before.error_mm), e2.max(now.error_mm)]
+            [
+                r.max(now.speed_mm_s / before.speed_mm_s),
+                e1.max(before.error_mm),
+                e2.max(now.error_mm),
+            ]
         });
         (r <= SLOWER).then(|| (e2 - r * e1) / (1.0 - r))
     }
@@ -82,21 +98,29 @@ mod tests {
     /// factor `slower`.
     fn given_up(slower: f64, error_mm: impl Fn(f64) -> f64) -> bool {
         let mut remaining = RemainingError::default();
-        (0..4).map(|cut| 50.0 / slower.powi(cut)).fold(false, |_, speed_mm_s| {
-            let mut cut = CutPlaces::new(0.1, 100);
-            for place in &mut cut.places {
-                (place.speed_mm_s, place.error_mm) = (speed_mm_s, error_mm(speed_mm_s));
-            }
-            remaining.take_in(&cut, TOLERANCE_MM)
-        })
+        (0..4)
+            .map(|cut| 50.0 / slower.powi(cut))
+            .fold(false, |_, speed_mm_s| {
+                let mut cut = CutPlaces::new(0.1, 100);
+                for place in &mut cut.places {
+                    (place.speed_mm_s, place.error_mm) = (speed_mm_s, error_mm(speed_mm_s));
+                }
+                remaining.take_in(&cut, TOLERANCE_MM)
+            })
     }
 
     #[test]
     fn what_falls_with_the_speed_is_not_given_up_and_what_stays_is() {
         assert!(!given_up(2.0, |v| 0.01 * v), "in proportion");
         assert!(!given_up(3.0, |v| 1e-3 * v * v), "with its square");
-        assert!(!given_up(4.0, |v| (0.01 * v).min(0.3)), "as large as it gets in the first cut");
-        assert!(given_up(2.0, |v| 0.013 + 0.01 * v), "1.3 tolerances at rest");
+        assert!(
+            !given_up(4.0, |v| (0.01 * v).min(0.3)),
+            "as large as it gets in the first cut"
+        );
+        assert!(
+            given_up(2.0, |v| 0.013 + 0.01 * v),
+            "1.3 tolerances at rest"
+        );
         assert!(!given_up(2.0, |v| 0.012 + 0.01 * v), "less than that");
         assert!(!given_up(1.5, |_| 0.1), "what has not been tried slowly");
     }

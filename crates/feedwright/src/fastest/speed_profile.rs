@@ -1,19 +1,22 @@
-//! Speeds of least time at even places of a path, so that errors that are linear in the squares of the speeds stay within what is allowed.
+//! Speeds of least time at even places of a path, so that errors that are linear in the squares of
+//! the speeds stay within what is allowed.
 //!
 //! ```text
 //! min sum_i 2 d / (v_i + v_(i+1))  +  P sum_i h_i max(0, |e_i| / aim_i - 1)^2  +  W sum_i h_i (q_i / q0_i - 1)^2
 //! e_i = e0_i + sum_j s_ij (q_j - q0_j)        q = v^2
 //! ```
 //!
-//! with the spacing d and the time h_i of a place before. Convex in q; Newton's method with a matrix of two off-diagonals. The last term
-//! keeps near to what the errors were measured at.
+//! with the spacing d and the time h_i of a place before. Convex in q; Newton's method with a
+//! matrix of two off-diagonals. The last term keeps near to what the errors were measured at.
 
 use super::error_model::{ErrorModel, at};
 
-/// P: at the end the time that an error saves is worth `1 / 2` of its part, so that what is allowed is exceeded by `1 / 4P` of it.
+/// P: at the end the time that an error saves is worth `1 / 2` of its part, so that what is allowed
+/// is exceeded by `1 / 4P` of it.
 const EXCESS_WEIGHT: f64 = 100.0;
 
-/// W at the least of a place where something else than a bound of ours holds the speed down: it is not raised in vain.
+/// W at the least of a place where something else than a bound of ours holds the speed down: it is
+/// not raised in vain.
 const HELD: f64 = 2.0;
 
 /// Newton steps, the least gain of one, s, and how often a step is halved.
@@ -46,16 +49,26 @@ pub(super) struct SpeedProfile<'a> {
 impl SpeedProfile<'_> {
     /// Squares of the speeds of least time.
     pub(super) fn solve(&self) -> Vec<f64> {
-        let mut q: Vec<f64> = self.squares.iter().map(|&square| square.max(self.least_square)).collect();
+        let mut q: Vec<f64> = self
+            .squares
+            .iter()
+            .map(|&square| square.max(self.least_square))
+            .collect();
         let mut cost_s = self.cost_s(&q);
         for _ in 0..STEPS {
             let (mut matrix, mut step) = self.newton(&q);
             matrix.solve(&mut step);
             let largest = q.iter().zip(&step).filter(|(_, d)| **d < 0.0);
-            let mut part = largest.fold(1.0_f64, |part, (q, d)| part.min((1.0 - LEAST_PART) * q / -d));
+            let mut part = largest.fold(1.0_f64, |part, (q, d)| {
+                part.min((1.0 - LEAST_PART) * q / -d)
+            });
             let mut gain_s = 0.0;
             for _ in 0..HALVED {
-                let next: Vec<f64> = q.iter().zip(&step).map(|(q, d)| (q + part * d).max(self.least_square)).collect();
+                let next: Vec<f64> = q
+                    .iter()
+                    .zip(&step)
+                    .map(|(q, d)| (q + part * d).max(self.least_square))
+                    .collect();
                 let next_s = self.cost_s(&next);
                 if next_s < cost_s {
                     gain_s = cost_s - next_s;
@@ -81,23 +94,33 @@ impl SpeedProfile<'_> {
     }
 
     fn near(&self, i: usize, q: f64) -> f64 {
-        if self.held[i] && q > self.base(i) { self.near.max(HELD) } else { self.near }
+        if self.held[i] && q > self.base(i) {
+            self.near.max(HELD)
+        } else {
+            self.near
+        }
     }
 
     /// By which part an error is beyond what is allowed, with its sign.
     fn beyond(&self, i: usize, q: &[f64]) -> f64 {
         let change = &self.model.changes[i];
         let error_mm = self.model.errors_mm[i] + at(change, i, q) - at(change, i, self.squares);
-        (error_mm.abs() / self.aims_mm[i] - 1.0).max(0.0).copysign(error_mm)
+        (error_mm.abs() / self.aims_mm[i] - 1.0)
+            .max(0.0)
+            .copysign(error_mm)
     }
 
     fn cost_s(&self, q: &[f64]) -> f64 {
         let speeds: Vec<f64> = q.iter().map(|q| q.sqrt()).collect();
-        let time_s: f64 = speeds.windows(2).map(|pair| 2.0 * self.spacing_mm / (pair[0] + pair[1])).sum();
+        let time_s: f64 = speeds
+            .windows(2)
+            .map(|pair| 2.0 * self.spacing_mm / (pair[0] + pair[1]))
+            .sum();
         let penalties: f64 = (0..q.len())
             .map(|i| {
                 let (beyond, moved) = (self.beyond(i, q), q[i] / self.base(i) - 1.0);
-                self.time_s(i) * (EXCESS_WEIGHT * beyond * beyond + self.near(i, q[i]) * moved * moved)
+                self.time_s(i)
+                    * (EXCESS_WEIGHT * beyond * beyond + self.near(i, q[i]) * moved * moved)
             })
             .sum();
         time_s + penalties
@@ -106,7 +129,12 @@ impl SpeedProfile<'_> {
     /// Matrix and right side of a Newton step.
     fn newton(&self, q: &[f64]) -> (BandMatrix, Vec<f64>) {
         let n = q.len();
-        let (mut matrix, mut right) = (BandMatrix { rows: vec![[0.0; BAND + 1]; n] }, vec![0.0; n]);
+        let (mut matrix, mut right) = (
+            BandMatrix {
+                rows: vec![[0.0; BAND + 1]; n],
+            },
+            vec![0.0; n],
+        );
         for i in 0..n - 1 {
             self.add_time(i, q, &mut matrix, &mut right);
         }
@@ -150,7 +178,8 @@ impl SpeedProfile<'_> {
             for second in 0..3 {
                 let (row, column) = (at(first), at(second));
                 if column >= row {
-                    matrix.rows[row][column - row] += weight / self.aims_mm[i] * change[first] * change[second];
+                    matrix.rows[row][column - row] +=
+                        weight / self.aims_mm[i] * change[first] * change[second];
                 }
             }
         }
@@ -187,7 +216,9 @@ impl BandMatrix {
         }
         for i in (0..n).rev() {
             let row = self.rows[i];
-            let known: f64 = (1..=BAND.min(n - 1 - i)).map(|k| row[k] * right[i + k]).sum();
+            let known: f64 = (1..=BAND.min(n - 1 - i))
+                .map(|k| row[k] * right[i + k])
+                .sum();
             right[i] = (right[i] - known) / row[0];
         }
     }
@@ -197,7 +228,8 @@ impl BandMatrix {
 mod tests {
     use super::*;
 
-    /// An error of `c v^2 / r` on a circle: the speed is `(aim r / c)^(1/2)` wherever a place is not near a rest.
+    /// An error of `c v^2 / r` on a circle: the speed is `(aim r / c)^(1/2)` wherever a place is
+    /// not near a rest.
     #[test]
     fn on_a_circle_the_speed_is_that_at_which_the_error_is_what_is_allowed() {
         let (n, curvature_1_mm, lag_s2, aim_mm) = (200, 0.1, 1e-4, 0.01);
@@ -226,11 +258,27 @@ mod tests {
 
     #[test]
     fn a_band_matrix_is_solved_as_its_whole_is() {
-        let rows = vec![[4.0, 1.0, 0.5], [5.0, -1.0, 0.2], [3.0, 0.4, 0.0], [6.0, 0.0, 0.0]];
-        let whole = [[4.0, 1.0, 0.5, 0.0], [1.0, 5.0, -1.0, 0.2], [0.5, -1.0, 3.0, 0.4], [0.0, 0.2, 0.4, 6.0]];
+        let rows = vec![
+            [4.0, 1.0, 0.5],
+            [5.0, -1.0, 0.2],
+            [3.0, 0.4, 0.0],
+            [6.0, 0.0, 0.0],
+        ];
+        let whole = [
+            [4.0, 1.0, 0.5, 0.0],
+            [1.0, 5.0, -1.0, 0.2],
+            [0.5, -1.0, 3.0, 0.4],
+            [0.0, 0.2, 0.4, 6.0],
+        ];
         let x = [1.0, -2.0, 3.0, 0.5];
-        let mut right: Vec<f64> = whole.iter().map(|row| row.iter().zip(x).map(|(a, b)| a * b).sum()).collect();
+        let mut right: Vec<f64> = whole
+            .iter()
+            .map(|row| row.iter().zip(x).map(|(a, b)| a * b).sum())
+            .collect();
         BandMatrix { rows }.solve(&mut right);
-        assert!(right.iter().zip(x).all(|(a, b)| (a - b).abs() < 1e-12), "{right:?}");
+        assert!(
+            right.iter().zip(x).all(|(a, b)| (a - b).abs() < 1e-12),
+            "{right:?}"
+        );
     }
 }

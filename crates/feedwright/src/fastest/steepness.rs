@@ -8,7 +8,8 @@
 
 use super::cut_places::CutPlace;
 
-/// Places count whose larger error is this part of the tolerance or more, and whose q has changed by this part.
+/// Places count whose larger error is this part of the tolerance or more, and whose q has changed
+/// by this part.
 const ERROR_PART: f64 = 0.7;
 const CHANGED: f64 = 0.02;
 
@@ -24,9 +25,12 @@ pub(super) fn steepness(before: &[CutPlace], now: &[CutPlace], tolerance_mm: f64
         let counts = before.error_mm.max(now.error_mm) > ERROR_PART * tolerance_mm;
         let of_q = 2.0 * libm::log(now.speed_mm_s / before.speed_mm_s);
         let error = |place: &CutPlace| place.error_mm.max(LEAST_PART * tolerance_mm);
-        (counts && of_q.is_finite() && of_q.abs() > CHANGED).then(|| (of_q, libm::log(error(now) / error(before))))
+        (counts && of_q.is_finite() && of_q.abs() > CHANGED)
+            .then(|| (of_q, libm::log(error(now) / error(before))))
     });
-    let [both, square] = logarithms.fold([0.0; 2], |[both, square], (q, e)| [both + q * e, square + q * q]);
+    let [both, square] = logarithms.fold([0.0; 2], |[both, square], (q, e)| {
+        [both + q * e, square + q * q]
+    });
     (square > 0.0).then(|| (both / square).clamp(1.0, MOST))
 }
 
@@ -36,11 +40,16 @@ mod tests {
 
     const TOLERANCE_MM: f64 = 0.01;
 
-    /// A cut at these speeds whose errors grow with the square of the speed to a power, and are the tolerance at 50 mm/s.
+    /// A cut at these speeds whose errors grow with the square of the speed to a power, and are the
+    /// tolerance at 50 mm/s.
     fn cut(speeds_mm_s: impl Iterator<Item = f64>, power: f64) -> Vec<CutPlace> {
         let error_mm = |speed_mm_s: f64| TOLERANCE_MM * libm::pow(speed_mm_s / 50.0, 2.0 * power);
         speeds_mm_s
-            .map(|speed_mm_s| CutPlace { speed_mm_s, error_mm: error_mm(speed_mm_s), ..CutPlace::default() })
+            .map(|speed_mm_s| CutPlace {
+                speed_mm_s,
+                error_mm: error_mm(speed_mm_s),
+                ..CutPlace::default()
+            })
             .collect()
     }
 
@@ -48,7 +57,11 @@ mod tests {
     fn the_power_of_the_squares_is_found_within_its_bounds() {
         for (power, found) in [(1.0, 1.0), (4.0, 4.0), (0.5, 1.0), (9.0, MOST)] {
             let speeds = |factor: f64| (0..20).map(move |i| factor * (50.0 + f64::from(i)));
-            let p = steepness(&cut(speeds(1.1), power), &cut(speeds(1.0), power), TOLERANCE_MM);
+            let p = steepness(
+                &cut(speeds(1.1), power),
+                &cut(speeds(1.0), power),
+                TOLERANCE_MM,
+            );
             assert!(p.is_some_and(|p| (p - found).abs() < 1e-9), "{p:?} {found}");
         }
     }

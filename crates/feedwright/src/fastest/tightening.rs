@@ -11,21 +11,25 @@ use super::steepness::steepness;
 /// Part of the tolerance that is aimed at.
 const AIM: f64 = 0.995;
 
-/// An error beyond the tolerance lowers what is aimed at where the plan is so long before and behind, s: as long as a servo loop remembers.
+/// An error beyond the tolerance lowers what is aimed at where the plan is so long before and
+/// behind, s: as long as a servo loop remembers.
 const AROUND_S: f64 = 0.03;
 
-/// What is aimed at goes down by a little more than what is exceeded, and no further than to this part.
+/// What is aimed at goes down by a little more than what is exceeded, and no further than to this
+/// part.
 const LOWERED: f64 = 0.997;
 const LEAST_AIM: f64 = 0.2;
 
-/// Lowest bound: where the tool is too far away at this speed, speed is not what takes it there, mm/s.
+/// Lowest bound: where the tool is too far away at this speed, speed is not what takes it there,
+/// mm/s.
 pub(super) const LOWEST_MM_S: f64 = 0.2;
 
 /// A bound holds the speed where so much of it is used.
 const HOLDS: f64 = 0.95;
 
-/// What keeps speeds near to those of the last cut ([`SpeedProfile::near`]): little in the first cuts, then twice as much each time, up to where speeds change
-/// by some percent. Errors that answer to the speed more steeply than the model has it would swing without it.
+/// What keeps speeds near to those of the last cut ([`SpeedProfile::near`]): little in the first
+/// cuts, then twice as much each time, up to where speeds change by some percent. Errors that
+/// answer to the speed more steeply than the model has it would swing without it.
 const NEAR: f64 = 0.02;
 const FREE_CUTS: i32 = 4;
 const MOST_NEAR: f64 = 5.0;
@@ -54,14 +58,25 @@ pub(super) struct Tightening {
 impl Tightening {
     /// The same everywhere.
     pub(super) fn new(tolerance_mm: f64, count: usize) -> Self {
-        Self { tolerance_mm, aims_mm: vec![AIM * tolerance_mm; count], last: Vec::new(), steepness: 1.0 }
+        Self {
+            tolerance_mm,
+            aims_mm: vec![AIM * tolerance_mm; count],
+            last: Vec::new(),
+            steepness: 1.0,
+        }
     }
 
-    /// Where errors are beyond the tolerance although the speed was chosen for what is aimed at, less is aimed at.
+    /// Where errors are beyond the tolerance although the speed was chosen for what is aimed at,
+    /// less is aimed at.
     pub(super) fn aim_lower(&mut self, cut: &CutPlaces, spacing_mm: f64) {
         let n = self.aims_mm.len();
         let mut factors = vec![1.0_f64; n];
-        for (i, place) in cut.places.iter().enumerate().filter(|(_, place)| place.error_mm > self.tolerance_mm) {
+        for (i, place) in cut
+            .places
+            .iter()
+            .enumerate()
+            .filter(|(_, place)| place.error_mm > self.tolerance_mm)
+        {
             let factor = LOWERED * self.tolerance_mm / place.error_mm;
             let around = (AROUND_S * place.speed_mm_s / spacing_mm).ceil() as usize + 1;
             for of_place in &mut factors[i.saturating_sub(around)..(i + around + 1).min(n)] {
@@ -75,11 +90,25 @@ impl Tightening {
 
     /// The speed bounds for the next cut. `cut` was made within the bounds `caps`; `cuts` is the
     /// number of cuts so far.
-    pub(super) fn caps(&mut self, grid: &PathGrid, cut: &CutPlaces, caps: &SpeedCaps, cuts: u32) -> NextCaps {
-        let squares: Vec<f64> = cut.places.iter().map(|place| place.speed_mm_s * place.speed_mm_s).collect();
+    pub(super) fn caps(
+        &mut self,
+        grid: &PathGrid,
+        cut: &CutPlaces,
+        caps: &SpeedCaps,
+        cuts: u32,
+    ) -> NextCaps {
+        let squares: Vec<f64> = cut
+            .places
+            .iter()
+            .map(|place| place.speed_mm_s * place.speed_mm_s)
+            .collect();
         let cap_of = |i: usize| caps.caps_mm_s.get(i).copied().unwrap_or(f64::INFINITY);
-        let held: Vec<bool> =
-            cut.places.iter().enumerate().map(|(i, place)| place.speed_mm_s < HOLDS * cap_of(i)).collect();
+        let held: Vec<bool> = cut
+            .places
+            .iter()
+            .enumerate()
+            .map(|(i, place)| place.speed_mm_s < HOLDS * cap_of(i))
+            .collect();
         if let Some(steepness) = steepness(&self.last, &cut.places, self.tolerance_mm) {
             self.steepness = (self.steepness * steepness).sqrt();
         }
@@ -103,9 +132,21 @@ impl Tightening {
             })
             .collect();
         let time_s = |held_only: bool| -> f64 {
-            let places = cut.places.iter().zip(&held).filter(|(_, held)| **held || !held_only);
-            places.map(|(place, _)| 1.0 / place.speed_mm_s.max(LOWEST_MM_S)).sum()
+            let places = cut
+                .places
+                .iter()
+                .zip(&held)
+                .filter(|(_, held)| **held || !held_only);
+            places
+                .map(|(place, _)| 1.0 / place.speed_mm_s.max(LOWEST_MM_S))
+                .sum()
         };
-        NextCaps { caps: SpeedCaps { spacing_mm: grid.spacing_mm, caps_mm_s }, held_part: time_s(true) / time_s(false) }
+        NextCaps {
+            caps: SpeedCaps {
+                spacing_mm: grid.spacing_mm,
+                caps_mm_s,
+            },
+            held_part: time_s(true) / time_s(false),
+        }
     }
 }

@@ -21,11 +21,17 @@ pub fn keep_in(texts: &'static dyn KeptTexts) {
 
 /// What tells this program from others that may identify otherwise, where anything is kept.
 pub(super) fn program() -> Option<&'static str> {
-    if ELSEWHERE.get().is_some() { Some("") } else { files::program() }
+    if ELSEWHERE.get().is_some() {
+        Some("")
+    } else {
+        files::program()
+    }
 }
 
 pub(super) fn read(name: &str) -> Option<String> {
-    ELSEWHERE.get().map_or_else(|| files::read(name), |texts| texts.read(name))
+    ELSEWHERE
+        .get()
+        .map_or_else(|| files::read(name), |texts| texts.read(name))
 }
 
 pub(super) fn write(name: &str, text: &str) {

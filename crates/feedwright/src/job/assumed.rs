@@ -14,7 +14,9 @@ type Has = fn(&Axis) -> bool;
 const DISTURBANCES: [(&str, Has); 8] = [
     ("encoder noise", |axis| axis.encoder_noise_um > 0.0),
     ("encoder steps", |axis| axis.encoder_step_um > 0.0),
-    ("interpolation error", |axis| axis.interpolation_error_um > 0.0),
+    ("interpolation error", |axis| {
+        axis.interpolation_error_um > 0.0
+    }),
     ("torque noise", |axis| axis.torque_noise_nm > 0.0),
     ("cogging", |axis| axis.cogging_nm > 0.0),
     ("torque ripple", |axis| axis.ripple > 0.0),
@@ -22,21 +24,35 @@ const DISTURBANCES: [(&str, Has); 8] = [
     ("late references", |axis| axis.jitter_s > 0.0),
 ];
 
-/// What an axis may have besides loops, inertia, viscous and Coulomb friction, and whether it has it.
+/// What an axis may have besides loops, inertia, viscous and Coulomb friction, and whether it has
+/// it.
 const IMPERFECTIONS: [(&str, Has); 4] = [
-    ("friction that sticks", |axis| axis.stribeck_nm > 0.0 || axis.presliding_um > 0.0),
-    ("late drives", |axis| axis.loop_delays() != LoopDelays::default()),
-    ("a ball screw that gives", |axis| axis.transmission.is_some()),
-    ("errors of scale and pitch", |axis| axis.scale_um_m != 0.0 || axis.pitch_error_um > 0.0),
+    ("friction that sticks", |axis| {
+        axis.stribeck_nm > 0.0 || axis.presliding_um > 0.0
+    }),
+    ("late drives", |axis| {
+        axis.loop_delays() != LoopDelays::default()
+    }),
+    ("a ball screw that gives", |axis| {
+        axis.transmission.is_some()
+    }),
+    ("errors of scale and pitch", |axis| {
+        axis.scale_um_m != 0.0 || axis.pitch_error_um > 0.0
+    }),
 ];
 
 impl Job {
-    /// What the figures of its runs rest on; `axes` of the machine were simulated, `unidentified` are the controllers that nothing was identified for.
+    /// What the figures of its runs rest on; `axes` of the machine were simulated, `unidentified`
+    /// are the controllers that nothing was identified for.
     pub(super) fn assumptions(&self, axes: usize, unidentified: &[CutsUncorrected]) -> Assumptions {
         let (law, law_from) = self.law(unidentified);
         let simulated = &self.machine.axes[..axes.min(self.machine.axes.len())];
         let named = |table: &[(&'static str, Has)], there: bool| -> Vec<&'static str> {
-            table.iter().filter(|(_, has)| simulated.iter().any(has) == there).map(|(name, _)| *name).collect()
+            table
+                .iter()
+                .filter(|(_, has)| simulated.iter().any(has) == there)
+                .map(|(name, _)| *name)
+                .collect()
         };
         let gain = |(name, axis): (&str, &Axis)| format!("{name} {}", axis.kp_1_s);
         Assumptions {
@@ -44,10 +60,17 @@ impl Job {
             description: self.machine.description.clone(),
             machine_file: self.machine_file.clone(),
             machine_source: self.machine.source.clone(),
-            position_gains_1_s: ["X", "Y", "Z"].into_iter().zip(simulated).map(gain).collect(),
+            position_gains_1_s: ["X", "Y", "Z"]
+                .into_iter()
+                .zip(simulated)
+                .map(gain)
+                .collect(),
             disturbed_by: named(&DISTURBANCES, true),
             with: named(&IMPERFECTIONS, true),
-            without: named(&IMPERFECTIONS, false).into_iter().chain(named(&DISTURBANCES, false)).collect(),
+            without: named(&IMPERFECTIONS, false)
+                .into_iter()
+                .chain(named(&DISTURBANCES, false))
+                .collect(),
             noise_seed: self.machine.noise.seed,
             controller: self.controller.name,
             law,
@@ -57,29 +80,48 @@ impl Job {
 
     /// How the controller that is asked for knows the law of the axes, and from what.
     fn law(&self, unidentified: &[CutsUncorrected]) -> (LawKnowledge, String) {
-        match unidentified.iter().find(|remark| remark.controller() == self.controller.name) {
+        match unidentified
+            .iter()
+            .find(|remark| remark.controller() == self.controller.name)
+        {
             Some(CutsUncorrected::NothingIdentified { .. }) => {
                 return (LawKnowledge::None, "nothing could be identified".to_owned());
             }
             Some(CutsUncorrected::Unsuited { .. }) => {
-                return (LawKnowledge::None, "it does not suit this machine and cuts uncorrected".to_owned());
+                return (
+                    LawKnowledge::None,
+                    "it does not suit this machine and cuts uncorrected".to_owned(),
+                );
             }
             None => {}
         }
         if let Some(about) = self.model.as_ref().map(|model| model.about()) {
-            return (LawKnowledge::Identified, format!("the model: {}, {}", about.source, about.date));
+            return (
+                LawKnowledge::Identified,
+                format!("the model: {}, {}", about.source, about.date),
+            );
         }
         match self.controller.knows {
             Knows::Nothing => (LawKnowledge::None, "it needs none".to_owned()),
             Knows::Identified => {
                 let seed = self.choices.seed;
-                (LawKnowledge::Identified, format!("a simulated recording of this machine, seed {seed}"))
+                (
+                    LawKnowledge::Identified,
+                    format!("a simulated recording of this machine, seed {seed}"),
+                )
             }
-            Knows::ExactModel => (LawKnowledge::Exact, "the parameters of the simulated machine".to_owned()),
-            Knows::Everything => {
-                (LawKnowledge::Exact, "the parameters of the simulated machine and of all that disturbs it".to_owned())
-            }
-            Knows::EarlierLaps => (LawKnowledge::Learned, "earlier laps of the same part".to_owned()),
+            Knows::ExactModel => (
+                LawKnowledge::Exact,
+                "the parameters of the simulated machine".to_owned(),
+            ),
+            Knows::Everything => (
+                LawKnowledge::Exact,
+                "the parameters of the simulated machine and of all that disturbs it".to_owned(),
+            ),
+            Knows::EarlierLaps => (
+                LawKnowledge::Learned,
+                "earlier laps of the same part".to_owned(),
+            ),
         }
     }
 }

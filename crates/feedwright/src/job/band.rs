@@ -1,7 +1,7 @@
 //! Cuts on machines that fit the recording of the model, all with the controller of that model.
 //!
-//! The plan of the cut and the limits of the machine stay. So does what the recording does not show: the geometry. Each machine has
-//! noise of its own.
+//! The plan of the cut and the limits of the machine stay. So does what the recording does not
+//! show: the geometry. Each machine has noise of its own.
 
 use feedwright_sim::{Axis, Machine, Outcome, Row, RunError, Sink, Watch, map_in_parallel};
 
@@ -13,11 +13,13 @@ use crate::report::{Band, BandErrors, RunSummary, Statistics};
 /// Machining time that a band covers at the most, s: of a longer cut only the beginning.
 const MOST_S: f64 = 30.0;
 
-/// What a cut on one machine came to: RMS and largest error at the tool and by the encoders, um; `None` where it diverged.
+/// What a cut on one machine came to: RMS and largest error at the tool and by the encoders, um;
+/// `None` where it diverged.
 type CutOfOne = Option<([f64; 2], Option<[f64; 2]>)>;
 
 impl Job {
-    /// The band of a cut; `None` where no machines are given for it, or the cut did not come to its end.
+    /// The band of a cut; `None` where no machines are given for it, or the cut did not come to its
+    /// end.
     pub(super) fn band<const N: usize>(
         &self,
         plan: PlannedCut<'_>,
@@ -30,7 +32,10 @@ impl Job {
         if self.fitting.is_empty() || cut.outcome != Outcome::Completed {
             return Ok(None);
         }
-        watch.begin("cutting on machines that fit the recording", self.fitting.len() as u64);
+        watch.begin(
+            "cutting on machines that fit the recording",
+            self.fitting.len() as u64,
+        );
         let first_s = (cut.time_s > MOST_S).then_some(MOST_S);
         let cut = |(i, fitting): (usize, &Machine)| {
             let machine = on_job(plan.machine, fitting, i as u64 + 1);
@@ -38,12 +43,18 @@ impl Job {
             watch.advance(1);
             cut
         };
-        let cuts: Vec<CutOfOne> =
-            map_in_parallel(self.fitting.iter().enumerate(), cut).into_iter().collect::<Result<_, _>>()?;
+        let cuts: Vec<CutOfOne> = map_in_parallel(self.fitting.iter().enumerate(), cut)
+            .into_iter()
+            .collect::<Result<_, _>>()?;
         let tool: Vec<[f64; 2]> = cuts.iter().flatten().map(|(tool, _)| *tool).collect();
-        let joints: Option<Vec<[f64; 2]>> = cuts.iter().flatten().map(|(_, joints)| *joints).collect();
-        let of = |errors: &[[f64; 2]], i: usize| BandErrors::of(errors.iter().map(|both| both[i]).collect());
-        let (Some(rms_um), Some(max_um)) = (of(&tool, 0), of(&tool, 1)) else { return Ok(None) };
+        let joints: Option<Vec<[f64; 2]>> =
+            cuts.iter().flatten().map(|(_, joints)| *joints).collect();
+        let of = |errors: &[[f64; 2]], i: usize| {
+            BandErrors::of(errors.iter().map(|both| both[i]).collect())
+        };
+        let (Some(rms_um), Some(max_um)) = (of(&tool, 0), of(&tool, 1)) else {
+            return Ok(None);
+        };
         Ok(Some(Band {
             machines: tool.len(),
             diverged: cuts.len() - tool.len(),
@@ -70,11 +81,26 @@ impl Job {
         watch.check()?;
         let mut controller = self.own_controller::<N>()?;
         let cancels = CancelsOnly(watch);
-        let mut beginning = Beginning { statistics: Statistics::new(), until_s: first_s.unwrap_or(f64::INFINITY) };
-        let plan = PlannedCut { machine, looked_at: None, ..plan };
-        let joints = match self.cut_planned(plan, self.controller, &mut *controller, &mut [&mut beginning], &cancels) {
+        let mut beginning = Beginning {
+            statistics: Statistics::new(),
+            until_s: first_s.unwrap_or(f64::INFINITY),
+        };
+        let plan = PlannedCut {
+            machine,
+            looked_at: None,
+            ..plan
+        };
+        let joints = match self.cut_planned(
+            plan,
+            self.controller,
+            &mut *controller,
+            &mut [&mut beginning],
+            &cancels,
+        ) {
             Ok(result) if result.outcome != Outcome::Completed => return Ok(None),
-            Ok(result) => result.joint_error.map(|error| [1e3 * error.rms_mm, 1e3 * error.max_mm]),
+            Ok(result) => result
+                .joint_error
+                .map(|error| [1e3 * error.rms_mm, 1e3 * error.max_mm]),
             // The sink takes no more behind the beginning.
             Err(RunError::Write(_)) if first_s.is_some() => None,
             Err(error) => return Err(JobError::of_run(&self.program, error)),
@@ -120,7 +146,8 @@ fn on_job(machine: &Machine, recorded: &Machine, seed: u64) -> Machine {
     on
 }
 
-/// A recorded axis on the screw of an axis of the job, with its limits and its geometry. The motion in mm stays the same.
+/// A recorded axis on the screw of an axis of the job, with its limits and its geometry. The motion
+/// in mm stays the same.
 fn on_axis(axis: &Axis, recorded: &Axis) -> Axis {
     let turns = recorded.lead_mm_per_rev / axis.lead_mm_per_rev;
     Axis {

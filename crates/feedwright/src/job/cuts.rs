@@ -7,7 +7,9 @@ use feedwright_gcode::Summary;
 use feedwright_gcode::canon::{Canon, MotionKind};
 use feedwright_ident::{Model, Origin};
 use feedwright_plan::{AlignedPaths, PlanSink, SpeedCaps};
-use feedwright_sim::{Machine, PlanCache, Row, Run, RunError, RunResult, Sink, StageSteps, Watch, path_steps};
+use feedwright_sim::{
+    Machine, PlanCache, Row, Run, RunError, RunResult, Sink, StageSteps, Watch, path_steps,
+};
 
 use super::guests::SharedPlantMaker;
 use super::record::{RunRecord, Timeline};
@@ -47,7 +49,8 @@ pub(super) struct PlannedCut<'a> {
     pub(super) looked_at: Option<&'a dyn PlanSink>,
 }
 
-/// The steps of a program with other feedrates of its motions, in its order, mm/s. Rapids and motions that have none keep their own.
+/// The steps of a program with other feedrates of its motions, in its order, mm/s. Rapids and
+/// motions that have none keep their own.
 pub(super) fn with_feeds(
     steps: impl Iterator<Item = Canon> + Send,
     mut feeds_mm_s: impl Iterator<Item = f64> + Send,
@@ -102,7 +105,8 @@ impl Job {
             watch.check()?;
             let judged = entry.name == self.controller.name;
             let model = self.model.as_ref().filter(|_| judged);
-            let mut steps = (entry.identifier.is_some() && model.is_none()).then(|| identifying(&self.machine, watch));
+            let mut steps = (entry.identifier.is_some() && model.is_none())
+                .then(|| identifying(&self.machine, watch));
             let mut progress = |part: f64| steps.iter_mut().for_each(|steps| steps.reach(part));
             let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
             let mut controller = match (guest.filter(|_| judged), model) {
@@ -121,11 +125,29 @@ impl Job {
             }
             // A cut with the feedrates of a planner has its own plan.
             let (own, feeds_mm_s) = (PlanCache::default(), plan.feeds_mm_s.filter(|_| judged));
-            let kept = if feeds_mm_s.is_some() { &own } else { plan.kept };
-            let plan = PlannedCut { looked_at: plan.looked_at.filter(|_| judged), feeds_mm_s, kept, ..plan };
-            cuts.runs.push(self.cut_once(summary, entry, &mut *controller, plan, &mut sinks, watch)?);
+            let kept = if feeds_mm_s.is_some() {
+                &own
+            } else {
+                plan.kept
+            };
+            let plan = PlannedCut {
+                looked_at: plan.looked_at.filter(|_| judged),
+                feeds_mm_s,
+                kept,
+                ..plan
+            };
+            cuts.runs.push(self.cut_once(
+                summary,
+                entry,
+                &mut *controller,
+                plan,
+                &mut sinks,
+                watch,
+            )?);
             cuts.geometry = self.compensation.reported(&self.machine, &spread);
-            if let (Some(model), Some(date)) = (self.model.as_ref().filter(|_| judged), &self.learned_on) {
+            if let (Some(model), Some(date)) =
+                (self.model.as_ref().filter(|_| judged), &self.learned_on)
+            {
                 cuts.learned = self.learned(model, &*controller, date);
             }
         }
@@ -133,11 +155,25 @@ impl Job {
     }
 
     /// A model with the axes as a controller knows them now; `None` of one that does not learn.
-    fn learned<const N: usize>(&self, model: &Model, controller: &dyn Controller<N>, date: &str) -> Option<Model> {
-        let axes = IdentifiedAxes { mechanics_s: self.machine.period.mechanics_s, axes: controller.known()? };
+    fn learned<const N: usize>(
+        &self,
+        model: &Model,
+        controller: &dyn Controller<N>,
+        date: &str,
+    ) -> Option<Model> {
+        let axes = IdentifiedAxes {
+            mechanics_s: self.machine.period.mechanics_s,
+            axes: controller.known()?,
+        };
         let (given, part) = (&model.about().source, self.program.file_name());
         let source = format!("{given}; learned while {} cut {part}", self.machine.name);
-        model.with_axes(axes, Origin { source, date: date.to_owned() })
+        model.with_axes(
+            axes,
+            Origin {
+                source,
+                date: date.to_owned(),
+            },
+        )
     }
 
     fn cut_once<const N: usize>(
@@ -152,7 +188,11 @@ impl Job {
         let mut record = RunRecord::new(N, self.machine.period.servo_s, plan.circles);
         let mut timeline = Timeline::new(&self.machine.plc_events);
         let steps = StageSteps::begin(watch, &format!("cutting, {}", entry.name));
-        let mut cut = CutProgress { steps, length_mm: summary.feed_mm + summary.rapid_mm, rows: 0 };
+        let mut cut = CutProgress {
+            steps,
+            length_mm: summary.feed_mm + summary.rapid_mm,
+            rows: 0,
+        };
         let others: [&mut dyn Sink; 2] = [&mut timeline, &mut cut];
         let mut sinks: Vec<&mut dyn Sink> = record.sinks().into_iter().chain(others).collect();
         for sink in rows {
@@ -161,30 +201,53 @@ impl Job {
         let run = self.cut_planned(plan, entry, controller, &mut sinks, watch);
         let run = run.map_err(|error| JobError::of_run(&self.program, error))?;
         drop(sinks);
-        Ok(ReportedRun { events: timeline.events, ..self.reported(record, entry.name, run)? })
+        Ok(ReportedRun {
+            events: timeline.events,
+            ..self.reported(record, entry.name, run)?
+        })
     }
 
     /// Cuts the program on the machine of a plan.
     pub(super) fn cut_planned<const N: usize>(
         &self,
-        PlannedCut { machine, plant, feeds_mm_s, path_um, caps, kept, aligned, looked_at, .. }: PlannedCut<'_>,
+        PlannedCut {
+            machine,
+            plant,
+            feeds_mm_s,
+            path_um,
+            caps,
+            kept,
+            aligned,
+            looked_at,
+            ..
+        }: PlannedCut<'_>,
         entry: &Entry,
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
         watch: &dyn Watch,
     ) -> Result<RunResult, RunError> {
         let steps = || {
-            let steps = path_steps(with_feeds(self.steps()?, feeds_mm_s.unwrap_or_default().iter().copied()));
+            let steps = path_steps(with_feeds(
+                self.steps()?,
+                feeds_mm_s.unwrap_or_default().iter().copied(),
+            ));
             Ok(match path_um {
                 Some(path_um) => with_tolerance(steps, 1e-3 * path_um),
                 None => steps,
             })
         };
-        let run = self
-            .planned_as
-            .map_or_else(|| Run::on(machine), |control| Run::on(machine).stages(control.stages(machine)));
+        let run = self.planned_as.map_or_else(
+            || Run::on(machine),
+            |control| Run::on(machine).stages(control.stages(machine)),
+        );
         let run = plant.map_or(run, |plant| run.plant(plant));
-        let run = run.within_drives().capped(caps).laps(entry.laps).sharing(kept).watched(watch).planned_to(looked_at);
+        let run = run
+            .within_drives()
+            .capped(caps)
+            .laps(entry.laps)
+            .sharing(kept)
+            .watched(watch)
+            .planned_to(looked_at);
         match aligned {
             Some(aligned) => run.cut_aligned(aligned, controller, sinks),
             None => run.cut(steps, controller, sinks),

@@ -9,14 +9,17 @@ use crate::correct::{CorrectJob, CorrectOutcome, TargetControl};
 use crate::report::{AS_EXPORTED, FullCircle, ReportedRun, RunSummary};
 
 impl Job {
-    /// The corrected program, where one is asked for; its run, where a text could be written, goes behind the others.
+    /// The corrected program, where one is asked for; its run, where a text could be written, goes
+    /// behind the others.
     pub(super) fn push_exported(
         &self,
         runs: &mut Vec<ReportedRun>,
         circles: &[FullCircle],
         watch: &dyn Watch,
     ) -> Result<Option<CorrectOutcome>, JobError> {
-        let Some(target) = self.target else { return Ok(None) };
+        let Some(target) = self.target else {
+            return Ok(None);
+        };
         let job = CorrectJob {
             feed_mm_s: self.feed_mm_s,
             reader: self.reader.clone(),
@@ -29,7 +32,8 @@ impl Job {
         Ok(Some(outcome))
     }
 
-    /// The run of the text: the figures of all its cuts, and the rows of the one with the largest error.
+    /// The run of the text: the figures of all its cuts, and the rows of the one with the largest
+    /// error.
     fn exported_run(
         &self,
         target: &TargetControl,
@@ -37,7 +41,9 @@ impl Job {
         circles: &[FullCircle],
         watch: &dyn Watch,
     ) -> Result<Option<ReportedRun>, JobError> {
-        let Some(written) = &outcome.written else { return Ok(None) };
+        let Some(written) = &outcome.written else {
+            return Ok(None);
+        };
         let mut record = RunRecord::new(outcome.axes, self.machine.period.servo_s, circles);
         let mut timeline = Timeline::new(&self.machine.plc_events);
         let stages = target.stages(&self.machine);
@@ -55,7 +61,13 @@ impl Job {
             .worst(&written.steps, &outcome.corrected, &mut sinks)
             .map_err(|error| JobError::of_run(&self.program, error))?;
         let lines: Vec<&str> = written.text.lines().collect();
-        let text = |line: u32| lines.get((line as usize).wrapping_sub(1)).copied().unwrap_or_default().to_owned();
+        let text = |line: u32| {
+            lines
+                .get((line as usize).wrapping_sub(1))
+                .copied()
+                .unwrap_or_default()
+                .to_owned()
+        };
         let figures = outcome.corrected;
         let reported = self.reported_as(record, AS_EXPORTED, run, text);
         let summary = RunSummary {
@@ -65,6 +77,10 @@ impl Job {
             uncut_um: figures.uncut_um,
             ..reported.summary
         };
-        Ok(Some(ReportedRun { summary, events: timeline.events, ..reported }))
+        Ok(Some(ReportedRun {
+            summary,
+            events: timeline.events,
+            ..reported
+        }))
     }
 }

@@ -20,17 +20,29 @@ impl Job {
         let whole = size_bytes <= WHOLE_BYTES;
         let drawn: BTreeSet<u32> = match whole {
             true => BTreeSet::new(),
-            false => runs.iter().flat_map(|run| run.series.points().map(|point| point.line)).collect(),
+            false => runs
+                .iter()
+                .flat_map(|run| run.series.points().map(|point| point.line))
+                .collect(),
         };
         let (mut listing, mut bytes) = (Vec::new(), 0);
         let mut text = Vec::new();
         for line in 1.. {
             text.clear();
-            if file.read_until(b'\n', &mut text).map_err(|cause| self.reread(cause))? == 0 || bytes > MOST_BYTES {
+            if file
+                .read_until(b'\n', &mut text)
+                .map_err(|cause| self.reread(cause))?
+                == 0
+                || bytes > MOST_BYTES
+            {
                 break;
             }
             if whole || drawn.contains(&line) {
-                let text: String = String::from_utf8_lossy(&text).trim_end().chars().take(MOST_CHARACTERS).collect();
+                let text: String = String::from_utf8_lossy(&text)
+                    .trim_end()
+                    .chars()
+                    .take(MOST_CHARACTERS)
+                    .collect();
                 bytes += text.len();
                 listing.push(ProgramLine { line, text });
             }

@@ -7,7 +7,8 @@ use feedwright_sim::{Row, RunResult, Sink};
 
 use super::{Job, JobError, MEASURED};
 use crate::report::{
-    DriveLimits, ErrorSpectrum, FullCircle, RadialDeviations, ReportedRun, RunFacts, Series, Statistics, TimelineEvent,
+    DriveLimits, ErrorSpectrum, FullCircle, RadialDeviations, ReportedRun, RunFacts, Series,
+    Statistics, TimelineEvent,
 };
 
 /// Everything that is drawn or counted of a run, while its rows come.
@@ -33,7 +34,12 @@ impl<'a> RunRecord<'a> {
 
     /// What takes the rows.
     pub(super) fn sinks(&mut self) -> [&mut dyn Sink; 4] {
-        [&mut self.statistics, &mut self.series, &mut self.spectrum, &mut self.radial]
+        [
+            &mut self.statistics,
+            &mut self.series,
+            &mut self.spectrum,
+            &mut self.radial,
+        ]
     }
 }
 
@@ -51,7 +57,10 @@ pub(super) struct Timeline<'a> {
 
 impl<'a> Timeline<'a> {
     pub(super) const fn new(named: &'a [PlcEvent]) -> Self {
-        Self { events: Vec::new(), named }
+        Self {
+            events: Vec::new(),
+            named,
+        }
     }
 }
 
@@ -62,9 +71,17 @@ impl Sink for Timeline<'_> {
 
     fn event(&mut self, t_s: f64, event: &TimedEvent) -> io::Result<()> {
         if self.events.len() < MAX_EVENTS {
-            let TimedEvent { duration_s, event, .. } = event;
+            let TimedEvent {
+                duration_s, event, ..
+            } = event;
             let EventName { row, label } = named(&event.kind, self.named);
-            self.events.push(TimelineEvent { t_s, duration_s: *duration_s, line: event.line, row, label });
+            self.events.push(TimelineEvent {
+                t_s,
+                duration_s: *duration_s,
+                line: event.line,
+                row,
+                label,
+            });
         }
         Ok(())
     }
@@ -72,7 +89,12 @@ impl Sink for Timeline<'_> {
 
 impl Job {
     /// A run as the page has it; its events are still open.
-    pub(super) fn reported(&self, record: RunRecord<'_>, name: &str, run: RunResult) -> Result<ReportedRun, JobError> {
+    pub(super) fn reported(
+        &self,
+        record: RunRecord<'_>,
+        name: &str,
+        run: RunResult,
+    ) -> Result<ReportedRun, JobError> {
         let mut reported = self.reported_as(record, name, run, |_| String::new());
         self.fill_in_texts(&mut reported.summary.worst)?;
         Ok(reported)
@@ -97,6 +119,12 @@ impl Job {
         };
         let summary = record.statistics.summary(facts, text);
         let (spectrum, roundness) = (record.spectrum.bands(), record.radial.roundness());
-        ReportedRun { summary, series: record.series, spectrum, roundness, events: Vec::new() }
+        ReportedRun {
+            summary,
+            series: record.series,
+            spectrum,
+            roundness,
+            events: Vec::new(),
+        }
     }
 }

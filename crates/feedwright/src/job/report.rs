@@ -9,7 +9,9 @@ use super::{Job, JobError};
 use crate::controllers::CutsUncorrected;
 use crate::cycle_time::{self, CycleTime, CycleTimeOfCut, cycle_time};
 use crate::fastest::FastestPlan;
-use crate::report::{DrawnLimits, FullCircle, LimitBand, Outcome, Report, ReportedRun, RunSummary, WorstPlace};
+use crate::report::{
+    DrawnLimits, FullCircle, LimitBand, Outcome, Report, ReportedRun, RunSummary, WorstPlace,
+};
 
 /// What the machine allows each axis.
 fn drawn_limits(machine: &Machine) -> Vec<DrawnLimits> {
@@ -24,7 +26,10 @@ fn drawn_limits(machine: &Machine) -> Vec<DrawnLimits> {
 impl Job {
     /// That the program could not be read once more.
     pub(super) fn reread(&self, cause: std::io::Error) -> JobError {
-        JobError::Reread { part: self.program.name(), cause }
+        JobError::Reread {
+            part: self.program.name(),
+            cause,
+        }
     }
 
     /// Looks up the texts of the worst places' lines, in one pass over the program.
@@ -34,7 +39,8 @@ impl Job {
         let mut text = Vec::new();
         for line in 1..=last {
             text.clear();
-            file.read_until(b'\n', &mut text).map_err(|cause| self.reread(cause))?;
+            file.read_until(b'\n', &mut text)
+                .map_err(|cause| self.reread(cause))?;
             for place in worst.iter_mut().filter(|place| place.line == line) {
                 place.text = String::from_utf8_lossy(&text).trim_end().to_owned();
             }
@@ -54,14 +60,23 @@ impl Job {
         let value = |name: &str, value: String| (name.to_owned(), value);
         let mut settings = vec![
             value("Compared against", self.against.name.to_owned()),
-            value("Controller", format!("{}: {}", self.controller.name, self.controller.summary)),
+            value(
+                "Controller",
+                format!("{}: {}", self.controller.name, self.controller.summary),
+            ),
             value("Source of the method", self.controller.source.to_owned()),
             value("Axes controlled", axes.to_string()),
-            value("Program read as", format!("{}: {}", summary.dialect.0, summary.dialect.1)),
+            value(
+                "Program read as",
+                format!("{}: {}", summary.dialect.0, summary.dialect.1),
+            ),
             value("Seed", self.choices.seed.to_string()),
         ];
         for set in &self.choices.set {
-            settings.push(value(&format!("{}, {}", set.controller, set.name), set.value.to_string()));
+            settings.push(value(
+                &format!("{}, {}", set.controller, set.name),
+                set.value.to_string(),
+            ));
         }
         if let Some(model) = self.model.as_ref().map(Model::about) {
             settings.push(value("Model", format!("{}, {}", model.source, model.date)));
@@ -70,10 +85,16 @@ impl Job {
             settings.push(value("Errors measured to", reference.name()));
         }
         if let Some(target) = self.target {
-            settings.push(value("Corrected program for", format!("{}: {}", target.name, target.about)));
+            settings.push(value(
+                "Corrected program for",
+                format!("{}: {}", target.name, target.about),
+            ));
         }
         if let Some(feed_mm_s) = self.feed_mm_s {
-            settings.push(value("Feedrate, in place of the programmed", format!("{feed_mm_s} mm/s")));
+            settings.push(value(
+                "Feedrate, in place of the programmed",
+                format!("{feed_mm_s} mm/s"),
+            ));
         }
         Ok(Report {
             title: format!("{} on {}", self.program.file_name(), self.machine.name),
@@ -92,12 +113,14 @@ impl Job {
         })
     }
 
-    /// Whether the command of the controller that is asked for may be used: it was cut to its end, is not worse than uncorrected, and a drive may
-    /// get it.
+    /// Whether the command of the controller that is asked for may be used: it was cut to its end,
+    /// is not worse than uncorrected, and a drive may get it.
     pub(super) fn is_of_use(&self, report: &Report) -> bool {
         let mut runs = report.runs.iter().map(|run| &run.summary);
-        let of_use = |run: &RunSummary| run.outcome == Outcome::Completed && run.beyond_drives().is_none();
-        runs.any(|run| run.controller == self.controller.name && of_use(run)) && report.harm().is_empty()
+        let of_use =
+            |run: &RunSummary| run.outcome == Outcome::Completed && run.beyond_drives().is_none();
+        runs.any(|run| run.controller == self.controller.name && of_use(run))
+            && report.harm().is_empty()
     }
 
     /// Whether to find what binds along the path: on machines that are planned axis by axis.
@@ -133,29 +156,45 @@ impl Job {
             None => {
                 watch.begin("looking at what binds", 1);
                 let found = cycle_time(machine, false, || Ok(path_steps(self.steps()?)), watch);
-                found.map_err(|error| JobError::of_run(&self.program, error))?.along
+                found
+                    .map_err(|error| JobError::of_run(&self.program, error))?
+                    .along
             }
         };
-        Ok(Some(LimitBand { names: cycle_time::limit_names(), along }))
+        Ok(Some(LimitBand {
+            names: cycle_time::limit_names(),
+            along,
+        }))
     }
 }
 
 /// The machine's values, named and with units.
 fn describe(machine: &Machine) -> Vec<(String, String)> {
     let mut lines = vec![
-        ("Machine".to_owned(), format!("{}: {}", machine.name, machine.description)),
+        (
+            "Machine".to_owned(),
+            format!("{}: {}", machine.name, machine.description),
+        ),
         ("Source".to_owned(), machine.source.clone()),
     ];
-    // The keys of the file carry their units; the serialisation lists all of them without a second list here.
+    // The keys of the file carry their units; the serialisation lists all of them without a second
+    // list here.
     let sections = [
         ("period".to_owned(), serde_json::json!(machine.period)),
         ("limits".to_owned(), serde_json::json!(machine.limits)),
     ];
-    let axes =
-        ["x", "y", "z"].iter().zip(&machine.axes).map(|(name, axis)| (format!("axis.{name}"), serde_json::json!(axis)));
+    let axes = ["x", "y", "z"]
+        .iter()
+        .zip(&machine.axes)
+        .map(|(name, axis)| (format!("axis.{name}"), serde_json::json!(axis)));
     let geometry = [("geometry".to_owned(), serde_json::json!(machine.geometry))];
     let noise = [("noise".to_owned(), serde_json::json!(machine.noise))];
-    for (section, values) in sections.into_iter().chain(axes).chain(geometry).chain(noise) {
+    for (section, values) in sections
+        .into_iter()
+        .chain(axes)
+        .chain(geometry)
+        .chain(noise)
+    {
         for (key, value) in values.as_object().into_iter().flatten() {
             lines.push((format!("{section}.{key}"), value.to_string()));
         }

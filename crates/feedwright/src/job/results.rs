@@ -58,7 +58,11 @@ impl JobOutcome {
             assumed: &report.assumed,
             geometry: report.geometry.as_ref(),
             worse_than_uncorrected: &self.harm,
-            settings: report.settings.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect(),
+            settings: report
+                .settings
+                .iter()
+                .map(|(name, value)| (name.as_str(), value.as_str()))
+                .collect(),
             machine: &job.machine,
             runs: report.runs.iter().map(|run| &run.summary).collect(),
             band: report.band.as_ref(),

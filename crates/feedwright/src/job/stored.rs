@@ -1,4 +1,5 @@
-//! How a job is serialised: what has a file of its own as the text of that file, what stands in a table by its name.
+//! How a job is serialised: what has a file of its own as the text of that file, what stands in a
+//! table by its name.
 
 use serde::de::{Deserialize, Deserializer, Error};
 use serde::ser::{Serialize, Serializer};
@@ -8,11 +9,16 @@ pub(super) mod machine {
     use super::{Deserialize, Deserializer, Error, Serializer};
     use feedwright_sim::Machine;
 
-    pub(in super::super) fn serialize<S: Serializer>(machine: &Machine, serializer: S) -> Result<S::Ok, S::Error> {
+    pub(in super::super) fn serialize<S: Serializer>(
+        machine: &Machine,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(&machine.text())
     }
 
-    pub(in super::super) fn deserialize<'d, D: Deserializer<'d>>(deserializer: D) -> Result<Machine, D::Error> {
+    pub(in super::super) fn deserialize<'d, D: Deserializer<'d>>(
+        deserializer: D,
+    ) -> Result<Machine, D::Error> {
         Machine::parse("machine", &String::deserialize(deserializer)?).map_err(Error::custom)
     }
 }
@@ -22,16 +28,23 @@ pub(super) mod model {
     use super::{Deserialize, Deserializer, Error, Serializer};
     use feedwright_ident::Model;
 
-    pub(in super::super) fn serialize<S: Serializer>(model: &Option<Model>, serializer: S) -> Result<S::Ok, S::Error> {
+    pub(in super::super) fn serialize<S: Serializer>(
+        model: &Option<Model>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
         match model {
             Some(model) => serializer.serialize_some(&model.text()),
             None => serializer.serialize_none(),
         }
     }
 
-    pub(in super::super) fn deserialize<'d, D: Deserializer<'d>>(deserializer: D) -> Result<Option<Model>, D::Error> {
+    pub(in super::super) fn deserialize<'d, D: Deserializer<'d>>(
+        deserializer: D,
+    ) -> Result<Option<Model>, D::Error> {
         let text = Option::<String>::deserialize(deserializer)?;
-        text.map(|text| Model::parse("model", &text)).transpose().map_err(Error::custom)
+        text.map(|text| Model::parse("model", &text))
+            .transpose()
+            .map_err(Error::custom)
     }
 }
 
@@ -51,9 +64,12 @@ pub(super) mod target {
         deserializer: D,
     ) -> Result<Option<&'static TargetControl>, D::Error> {
         let find = |name: String| {
-            TargetControl::find(&name).ok_or_else(|| D::Error::custom(format!("no control is called '{name}'")))
+            TargetControl::find(&name)
+                .ok_or_else(|| D::Error::custom(format!("no control is called '{name}'")))
         };
-        Option::<String>::deserialize(deserializer)?.map(find).transpose()
+        Option::<String>::deserialize(deserializer)?
+            .map(find)
+            .transpose()
     }
 }
 
@@ -63,12 +79,19 @@ pub(super) mod entry {
     use crate::controllers::{CONTROLLERS, Entry};
 
     #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
-    pub(in super::super) fn serialize<S: Serializer>(entry: &&'static Entry, serializer: S) -> Result<S::Ok, S::Error> {
+    pub(in super::super) fn serialize<S: Serializer>(
+        entry: &&'static Entry,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(entry.name)
     }
 
-    pub(in super::super) fn deserialize<'d, D: Deserializer<'d>>(deserializer: D) -> Result<&'static Entry, D::Error> {
+    pub(in super::super) fn deserialize<'d, D: Deserializer<'d>>(
+        deserializer: D,
+    ) -> Result<&'static Entry, D::Error> {
         let name = String::deserialize(deserializer)?;
-        CONTROLLERS.find(&name).ok_or_else(|| D::Error::custom(format!("no controller is called '{name}'")))
+        CONTROLLERS
+            .find(&name)
+            .ok_or_else(|| D::Error::custom(format!("no controller is called '{name}'")))
     }
 }

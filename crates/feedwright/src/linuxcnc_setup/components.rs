@@ -1,5 +1,6 @@
-//! Components of LinuxCNC that compute, and reach nothing outside the computer. Setup follows a signal through these only. Every other
-//! component is hardware that setup does not know: a name says nothing about what a pin moves.
+//! Components of LinuxCNC that compute, and reach nothing outside the computer. Setup follows a
+//! signal through these only. Every other component is hardware that setup does not know: a name
+//! says nothing about what a pin moves.
 //!
 //! Names and directions of pins are those that `halcmd show pin` lists in LinuxCNC 2.9.
 
@@ -28,7 +29,8 @@ pub(crate) enum AtRest {
     Unclear,
 }
 
-/// Components that compute, beginnings of their outputs' names (or ends, behind `*`), and the value of these outputs at rest.
+/// Components that compute, beginnings of their outputs' names (or ends, behind `*`), and the value
+/// of these outputs at rest.
 #[rustfmt::skip]
 const COMPUTING: &[(&[&str], &[&str], AtRest)] = &[
     // Arithmetic, limits, filters, choices and conversions.
@@ -73,8 +75,17 @@ const COMPUTING: &[(&[&str], &[&str], AtRest)] = &[
 ];
 
 /// Programs that only show and ask.
-const SCREENS: &[&str] =
-    &["axisui", "gladevcp", "gmoccapy", "gscreen", "hal_manualtoolchange", "pyvcp", "qtdragon", "qtvcp", "touchy"];
+const SCREENS: &[&str] = &[
+    "axisui",
+    "gladevcp",
+    "gmoccapy",
+    "gscreen",
+    "hal_manualtoolchange",
+    "pyvcp",
+    "qtdragon",
+    "qtvcp",
+    "touchy",
+];
 
 /// Pins of joints, axes, spindles, motion and iocontrol that LinuxCNC reads.
 const INPUTS: &[&str] = &[
@@ -116,14 +127,33 @@ const INPUTS: &[&str] = &[
     "toolchanger-fault",
 ];
 /// Beginnings of the last parts of `halui` pins that LinuxCNC writes.
-const HALUI_OUTPUTS: [&str; 9] =
-    ["is-", "has-", "on-hard-", "on-soft-", "override-limits", "runs-", "brake-is-on", "value", "pos-"];
+const HALUI_OUTPUTS: [&str; 9] = [
+    "is-",
+    "has-",
+    "on-hard-",
+    "on-soft-",
+    "override-limits",
+    "runs-",
+    "brake-is-on",
+    "value",
+    "pos-",
+];
 /// Last parts of pins of LinuxCNC that are true while it commands nothing.
 const TRUE_AT_REST: [&str; 4] = ["brake", "brake-is-on", "is-activated", "is-off"];
 
 /// Whether LinuxCNC itself has a pin.
 pub(crate) fn is_planner(pin: &str) -> bool {
-    ["joint.", "axis.", "motion.", "spindle.", "halui.", "iocontrol.", "ini."].iter().any(|name| pin.starts_with(name))
+    [
+        "joint.",
+        "axis.",
+        "motion.",
+        "spindle.",
+        "halui.",
+        "iocontrol.",
+        "ini.",
+    ]
+    .iter()
+    .any(|name| pin.starts_with(name))
 }
 
 /// What a pin does with its signal.
@@ -133,22 +163,36 @@ pub(crate) fn side(netlist: &Netlist, pin: &str) -> PinSide {
         match pin.split('.').next() {
             Some("halui") => HALUI_OUTPUTS.iter().any(|name| last.starts_with(name)),
             Some("ini") => false,
-            _ => !INPUTS.contains(&last) && !last.starts_with("digital-in-") && !last.starts_with("analog-in-"),
+            _ => {
+                !INPUTS.contains(&last)
+                    && !last.starts_with("digital-in-")
+                    && !last.starts_with("analog-in-")
+            }
         }
     } else if let Some(module) = computing(netlist, pin) {
         output_at_rest(module, last).is_some()
-    } else if SCREENS.iter().any(|name| pin.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'))) {
+    } else if SCREENS.iter().any(|name| {
+        pin.strip_prefix(name)
+            .is_some_and(|rest| rest.starts_with('.'))
+    }) {
         false
     } else {
         return PinSide::Hardware;
     };
-    if writes { PinSide::Writes } else { PinSide::Reads }
+    if writes {
+        PinSide::Writes
+    } else {
+        PinSide::Reads
+    }
 }
 
 /// The component that computes a pin, if it is one.
 fn computing<'a>(netlist: &'a Netlist, pin: &str) -> Option<&'a str> {
     let module = netlist.module_of(pin)?;
-    COMPUTING.iter().any(|(modules, ..)| modules.contains(&module)).then_some(module)
+    COMPUTING
+        .iter()
+        .any(|(modules, ..)| modules.contains(&module))
+        .then_some(module)
 }
 
 /// Value of an output at rest; none where the pin is no output.
@@ -157,18 +201,27 @@ fn output_at_rest(module: &str, last: &str) -> Option<AtRest> {
         Some(end) => last.ends_with(end),
         None => last.starts_with(*name),
     };
-    let row = COMPUTING.iter().find(|(modules, outputs, _)| modules.contains(&module) && outputs.iter().any(is_named));
+    let row = COMPUTING
+        .iter()
+        .find(|(modules, outputs, _)| modules.contains(&module) && outputs.iter().any(is_named));
     row.map(|&(.., at_rest)| at_rest)
 }
 
 /// The pin that writes a signal; none where it is the pin of hardware, or nothing writes it.
 pub(crate) fn writer<'a>(netlist: &'a Netlist, signal: &'a str) -> Option<&'a str> {
-    netlist.pins(signal).find(|pin| side(netlist, pin) == PinSide::Writes)
+    netlist
+        .pins(signal)
+        .find(|pin| side(netlist, pin) == PinSide::Writes)
 }
 
 /// The connected inputs of the component that has a pin.
-pub(crate) fn inputs_beside<'a>(netlist: &'a Netlist, pin: &'a str) -> impl Iterator<Item = &'a str> {
-    netlist.pins_of(instance_of(pin)).filter(|other| side(netlist, other) == PinSide::Reads)
+pub(crate) fn inputs_beside<'a>(
+    netlist: &'a Netlist,
+    pin: &'a str,
+) -> impl Iterator<Item = &'a str> {
+    netlist
+        .pins_of(instance_of(pin))
+        .filter(|other| side(netlist, other) == PinSide::Reads)
 }
 
 /// The first hardware that the signal of a pin reaches.
@@ -181,10 +234,12 @@ pub(crate) fn hardware_behind(netlist: &Netlist, pin: &str) -> Option<String> {
             match side(netlist, reader) {
                 PinSide::Hardware => return Some(reader.to_owned()),
                 PinSide::Reads if !is_planner(reader) => {
-                    let outputs =
-                        netlist.pins_of(instance_of(reader)).filter(|other| side(netlist, other) == PinSide::Writes);
+                    let outputs = netlist
+                        .pins_of(instance_of(reader))
+                        .filter(|other| side(netlist, other) == PinSide::Writes);
                     let behind = outputs.filter_map(|output| netlist.signal_of(output));
-                    let new: Vec<&str> = behind.filter(|signal| !signals.contains(signal)).collect();
+                    let new: Vec<&str> =
+                        behind.filter(|signal| !signals.contains(signal)).collect();
                     signals.extend(new);
                 }
                 PinSide::Reads | PinSide::Writes => {}
@@ -200,7 +255,9 @@ const MOST_IN_A_ROW: usize = 12;
 /// Value of an output while LinuxCNC commands and enables nothing; none where setup cannot tell.
 pub(crate) fn at_rest(netlist: &Netlist, output: &str, depth: usize) -> Option<f64> {
     if is_planner(output) {
-        return Some(f64::from(u8::from(TRUE_AT_REST.contains(&last_part(output)))));
+        return Some(f64::from(u8::from(
+            TRUE_AT_REST.contains(&last_part(output)),
+        )));
     }
     let module = computing(netlist, output).filter(|_| depth < MOST_IN_A_ROW)?;
     let instance = instance_of(output);
@@ -209,7 +266,12 @@ pub(crate) fn at_rest(netlist: &Netlist, output: &str, depth: usize) -> Option<f
         match netlist.signal_of(&pin) {
             Some(signal) => match writer(netlist, signal) {
                 Some(before) => at_rest(netlist, before, depth + 1),
-                None if netlist.pins(signal).any(|other| side(netlist, other) == PinSide::Hardware) => None,
+                None if netlist
+                    .pins(signal)
+                    .any(|other| side(netlist, other) == PinSide::Hardware) =>
+                {
+                    None
+                }
                 None => Some(netlist.number(signal).unwrap_or(0.0)),
             },
             None => Some(netlist.number(&pin).unwrap_or(0.0)),
@@ -227,10 +289,17 @@ pub(crate) fn at_rest(netlist: &Netlist, output: &str, depth: usize) -> Option<f
             [first, second] => Some(first? || second?),
         },
         AtRest::Zero => {
-            let names = inputs_beside(netlist, output).chain(netlist.set_of(instance)).map(last_part);
-            let counts =
-                |name: &&str| name.starts_with("in") && *name != "index-enable" || ["offset", "bias"].contains(name);
-            names.filter(counts).all(|name| input(name) == Some(0.0)).then_some(false)
+            let names = inputs_beside(netlist, output)
+                .chain(netlist.set_of(instance))
+                .map(last_part);
+            let counts = |name: &&str| {
+                name.starts_with("in") && *name != "index-enable"
+                    || ["offset", "bias"].contains(name)
+            };
+            names
+                .filter(counts)
+                .all(|name| input(name) == Some(0.0))
+                .then_some(false)
         }
         AtRest::Unclear => None,
     };

@@ -1,6 +1,7 @@
-//! What `--simulate` disconnects in the copy: every pin of hardware that setup does not know, from every signal that LinuxCNC or a
-//! component that computes writes. The pin then keeps the value that it has when its driver is loaded. Where the signal is not zero
-//! while the machine is off, as behind a `not`, the copy sets the pin to that value.
+//! What `--simulate` disconnects in the copy: every pin of hardware that setup does not know, from
+//! every signal that LinuxCNC or a component that computes writes. The pin then keeps the value
+//! that it has when its driver is loaded. Where the signal is not zero while the machine is off, as
+//! behind a `not`, the copy sets the pin to that value.
 
 use std::collections::BTreeMap;
 
@@ -23,10 +24,18 @@ pub(crate) struct CutPin {
 pub(crate) fn cut_pins(netlist: &Netlist) -> Vec<CutPin> {
     let mut cut = Vec::new();
     for signal in netlist.signals() {
-        let Some(writer) = writer(netlist, signal) else { continue };
+        let Some(writer) = writer(netlist, signal) else {
+            continue;
+        };
         let at_rest = at_rest(netlist, writer, 0);
-        let hardware = netlist.pins(signal).filter(|pin| side(netlist, pin) == PinSide::Hardware);
-        cut.extend(hardware.map(|pin| CutPin { pin: pin.to_owned(), writer: writer.to_owned(), at_rest }));
+        let hardware = netlist
+            .pins(signal)
+            .filter(|pin| side(netlist, pin) == PinSide::Hardware);
+        cut.extend(hardware.map(|pin| CutPin {
+            pin: pin.to_owned(),
+            writer: writer.to_owned(),
+            at_rest,
+        }));
     }
     cut.sort_by(|a, b| a.pin.cmp(&b.pin));
     cut
@@ -35,11 +44,24 @@ pub(crate) fn cut_pins(netlist: &Netlist) -> Vec<CutPin> {
 /// What was disconnected, a line for each part of the hardware.
 pub(crate) fn cut_words(cut: &[CutPin]) -> Vec<String> {
     let mut lines: BTreeMap<&str, Vec<String>> = BTreeMap::new();
-    for CutPin { pin, writer, at_rest } in cut {
-        let set = at_rest.filter(|value| *value != 0.0).map_or(String::new(), |value| format!(", set to {value}"));
-        lines.entry(instance_of(pin)).or_default().push(format!("{} (from {writer}{set})", last_part(pin)));
+    for CutPin {
+        pin,
+        writer,
+        at_rest,
+    } in cut
+    {
+        let set = at_rest
+            .filter(|value| *value != 0.0)
+            .map_or(String::new(), |value| format!(", set to {value}"));
+        lines
+            .entry(instance_of(pin))
+            .or_default()
+            .push(format!("{} (from {writer}{set})", last_part(pin)));
     }
-    lines.into_iter().map(|(instance, pins)| format!("{instance}: {}", pins.join(", "))).collect()
+    lines
+        .into_iter()
+        .map(|(instance, pins)| format!("{instance}: {}", pins.join(", ")))
+        .collect()
 }
 
 /// Why the hardware cannot be disconnected.
@@ -55,21 +77,36 @@ pub(crate) fn refusals(ini: &IniFile, script: &HalScript, cut: &[CutPin]) -> Vec
             "--simulate cannot disconnect the hardware: {place}: setup does not read {what}. Put its commands into a HAL file"
         )
     };
-    let in_ini = ini.entries.iter().filter(|entry| entry.section == "HAL").filter_map(
-        |IniEntry { key, value, place, .. }| {
-            let first = value.split_whitespace().next().unwrap_or("");
-            let what = match key.as_str() {
-                "HALCMD" | "POSTGUI_HALCMD" if !["setp", "sets"].contains(&first) => key,
-                "POSTGUI_HALFILE" if first.to_lowercase().ends_with(".tcl") => value,
-                _ => return None,
-            };
-            Some(unread(what, place))
-        },
-    );
-    let halcmd = script.lines().filter(|(_, line)| line.word(0) == "loadusr").filter_map(|(place, line)| {
-        let mut programs = line.words.iter().map(|word| word.text.rsplit('/').next().unwrap_or(""));
-        let program = programs.find(|name| ["halcmd", "haltcl", "halrun"].contains(name))?;
-        Some(unread(&format!("what {program} does"), &script.place(place)))
-    });
+    let in_ini = ini
+        .entries
+        .iter()
+        .filter(|entry| entry.section == "HAL")
+        .filter_map(
+            |IniEntry {
+                 key, value, place, ..
+             }| {
+                let first = value.split_whitespace().next().unwrap_or("");
+                let what = match key.as_str() {
+                    "HALCMD" | "POSTGUI_HALCMD" if !["setp", "sets"].contains(&first) => key,
+                    "POSTGUI_HALFILE" if first.to_lowercase().ends_with(".tcl") => value,
+                    _ => return None,
+                };
+                Some(unread(what, place))
+            },
+        );
+    let halcmd = script
+        .lines()
+        .filter(|(_, line)| line.word(0) == "loadusr")
+        .filter_map(|(place, line)| {
+            let mut programs = line
+                .words
+                .iter()
+                .map(|word| word.text.rsplit('/').next().unwrap_or(""));
+            let program = programs.find(|name| ["halcmd", "haltcl", "halrun"].contains(name))?;
+            Some(unread(
+                &format!("what {program} does"),
+                &script.place(place),
+            ))
+        });
     unclear.chain(in_ini).chain(halcmd).collect()
 }

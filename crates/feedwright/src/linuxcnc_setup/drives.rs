@@ -47,27 +47,60 @@ pub(crate) enum FeedbackKind {
 }
 
 /// Parts of names of sensors.
-const SENSORS: [&str; 8] = ["encoder", "enc-", "enc.", "resolver", "biss", "ssi.", "fanuc", "fabs"];
+const SENSORS: [&str; 8] = [
+    "encoder", "enc-", "enc.", "resolver", "biss", "ssi.", "fanuc", "fabs",
+];
 /// Drivers of cards whose positions are those of encoders.
-const CARDS: [&str; 9] = ["stg.", "vti.", "pluto-servo", "motenc", "ppmc", "gm.", "mv.", "8i20", "opto"];
+const CARDS: [&str; 9] = [
+    "stg.",
+    "vti.",
+    "pluto-servo",
+    "motenc",
+    "ppmc",
+    "gm.",
+    "mv.",
+    "8i20",
+    "opto",
+];
 /// What takes the position command of a joint.
 pub(crate) fn drive_of(netlist: &Netlist, command_pin: &str) -> DriveKind {
-    let sinks: Vec<&str> = netlist.beside(command_pin).filter(|pin| last_part(pin) != "motor-pos-fb").collect();
-    if let Some(pid) = sinks.iter().find(|pin| last_part(pin) == "command" && is_pid(netlist, instance_of(pin))) {
+    let sinks: Vec<&str> = netlist
+        .beside(command_pin)
+        .filter(|pin| last_part(pin) != "motor-pos-fb")
+        .collect();
+    if let Some(pid) = sinks
+        .iter()
+        .find(|pin| last_part(pin) == "command" && is_pid(netlist, instance_of(pin)))
+    {
         let pid = instance_of(pid).to_owned();
         let output_pin = format!("{pid}.output");
         let outputs: Vec<&str> = netlist.beside(&output_pin).collect();
-        if let Some(stepgen) = outputs.iter().find(|pin| pin.contains("stepgen") && last_part(pin) == "velocity-cmd") {
-            return DriveKind::PidStepgen { pid, stepgen: instance_of(stepgen).to_owned() };
+        if let Some(stepgen) = outputs
+            .iter()
+            .find(|pin| pin.contains("stepgen") && last_part(pin) == "velocity-cmd")
+        {
+            return DriveKind::PidStepgen {
+                pid,
+                stepgen: instance_of(stepgen).to_owned(),
+            };
         }
-        let output = outputs.first().map_or_else(|| output_pin.clone(), |pin| (*pin).to_owned());
+        let output = outputs
+            .first()
+            .map_or_else(|| output_pin.clone(), |pin| (*pin).to_owned());
         return DriveKind::PidAnalog { pid, output };
     }
-    if let Some(pin) = sinks.iter().find(|pin| pin.contains("stepgen") && last_part(pin) == "position-cmd") {
-        return DriveKind::Stepgen { stepgen: instance_of(pin).to_owned() };
+    if let Some(pin) = sinks
+        .iter()
+        .find(|pin| pin.contains("stepgen") && last_part(pin) == "position-cmd")
+    {
+        return DriveKind::Stepgen {
+            stepgen: instance_of(pin).to_owned(),
+        };
     }
     if let Some(pin) = sinks.iter().find(|pin| is_ethercat(pin)) {
-        return DriveKind::EtherCat { pin: (*pin).to_owned() };
+        return DriveKind::EtherCat {
+            pin: (*pin).to_owned(),
+        };
     }
     match hardware_behind(netlist, command_pin) {
         Some(pin) => DriveKind::Other { pin },
@@ -78,10 +111,19 @@ pub(crate) fn drive_of(netlist: &Netlist, command_pin: &str) -> DriveKind {
 
 fn is_pid(netlist: &Netlist, instance: &str) -> bool {
     let named = |load: &super::netlist::HalLoad| {
-        let names = load.arguments.iter().filter_map(|argument| argument.strip_prefix("names="));
-        names.flat_map(|names| names.split(',')).any(|name| name == instance)
+        let names = load
+            .arguments
+            .iter()
+            .filter_map(|argument| argument.strip_prefix("names="));
+        names
+            .flat_map(|names| names.split(','))
+            .any(|name| name == instance)
     };
-    instance.starts_with("pid") || netlist.loads.iter().any(|load| load.module == "pid" && named(load))
+    instance.starts_with("pid")
+        || netlist
+            .loads
+            .iter()
+            .any(|load| load.module == "pid" && named(load))
 }
 
 fn is_ethercat(pin: &str) -> bool {
@@ -89,13 +131,27 @@ fn is_ethercat(pin: &str) -> bool {
 }
 
 /// Where the position of a joint comes from.
-pub(crate) fn feedback_of(netlist: &Netlist, command_pin: &str, feedback_pin: &str) -> FeedbackKind {
-    let Some(command) = netlist.signal_of(command_pin) else { return FeedbackKind::Nothing };
-    let Some(feedback) = netlist.signal_of(feedback_pin) else { return FeedbackKind::Nothing };
+pub(crate) fn feedback_of(
+    netlist: &Netlist,
+    command_pin: &str,
+    feedback_pin: &str,
+) -> FeedbackKind {
+    let Some(command) = netlist.signal_of(command_pin) else {
+        return FeedbackKind::Nothing;
+    };
+    let Some(feedback) = netlist.signal_of(feedback_pin) else {
+        return FeedbackKind::Nothing;
+    };
     if command == feedback {
         return FeedbackKind::Loopback;
     }
-    let mut trace = FeedbackTrace { netlist, command, seen: BTreeSet::new(), sources: Vec::new(), is_simulated: false };
+    let mut trace = FeedbackTrace {
+        netlist,
+        command,
+        seen: BTreeSet::new(),
+        sources: Vec::new(),
+        is_simulated: false,
+    };
     trace.follow(feedback);
     let rank = |kind: &&FeedbackKind| match kind {
         FeedbackKind::OwnSteps { .. } => 1,
@@ -107,7 +163,11 @@ pub(crate) fn feedback_of(netlist: &Netlist, command_pin: &str, feedback_pin: &s
     }
     let other = writer(netlist, feedback).or_else(|| netlist.beside(feedback_pin).next());
     let pin = other.unwrap_or(feedback).to_owned();
-    if trace.is_simulated { FeedbackKind::Simulated { pin } } else { FeedbackKind::Unknown { pin } }
+    if trace.is_simulated {
+        FeedbackKind::Simulated { pin }
+    } else {
+        FeedbackKind::Unknown { pin }
+    }
 }
 
 /// Follows the feedback of a joint back to what makes it, through components that compute.
@@ -131,10 +191,19 @@ impl FeedbackTrace<'_> {
             return;
         }
         let netlist = self.netlist;
-        let unknown = || netlist.pins(signal).filter(|pin| side(netlist, pin) == PinSide::Hardware);
+        let unknown = || {
+            netlist
+                .pins(signal)
+                .filter(|pin| side(netlist, pin) == PinSide::Hardware)
+        };
         let Some(output) = writer(netlist, signal) else {
-            let unknown_source = || Some(FeedbackKind::Unknown { pin: unknown().next()?.to_owned() });
-            self.sources.extend(unknown().find_map(source).or_else(unknown_source));
+            let unknown_source = || {
+                Some(FeedbackKind::Unknown {
+                    pin: unknown().next()?.to_owned(),
+                })
+            };
+            self.sources
+                .extend(unknown().find_map(source).or_else(unknown_source));
             return;
         };
         if let Some(kind) = source(output) {
@@ -158,6 +227,7 @@ fn source(pin: &str) -> Option<FeedbackKind> {
         return Some(FeedbackKind::FromDrive { pin: owned });
     }
     let is_position = last.contains("pos") || last.contains("count") || last.contains("angle");
-    let is_sensor = SENSORS.iter().any(|name| lower.contains(name)) || CARDS.iter().any(|name| lower.starts_with(name));
+    let is_sensor = SENSORS.iter().any(|name| lower.contains(name))
+        || CARDS.iter().any(|name| lower.starts_with(name));
     (is_position && is_sensor).then_some(FeedbackKind::Measured { pin: owned })
 }

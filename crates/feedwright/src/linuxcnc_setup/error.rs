@@ -79,12 +79,19 @@ impl LinuxcncSetupError {
     /// A file that cannot be read; `named` is where it is named.
     pub(super) fn unreadable(path: &Path, named: Option<String>, source: io::Error) -> Self {
         let hint = match source.kind() {
-            io::ErrorKind::NotFound if named.is_some() => "LinuxCNC does not find it either: correct the name",
+            io::ErrorKind::NotFound if named.is_some() => {
+                "LinuxCNC does not find it either: correct the name"
+            }
             io::ErrorKind::NotFound => "name the INI file of the configuration, with its folder",
             io::ErrorKind::IsADirectory => "name the INI file in it",
             _ => "make it readable, for example with chmod u+r",
         };
-        Self::Unreadable { path: path.to_owned(), named, source, hint: hint.to_owned() }
+        Self::Unreadable {
+            path: path.to_owned(),
+            named,
+            source,
+            hint: hint.to_owned(),
+        }
     }
 }
 

@@ -1,9 +1,9 @@
 //! The HAL lines of a configuration, in the order in which LinuxCNC executes them.
 //!
-//! A line is words between blanks; quotation marks hold blanks together; `#` at the beginning of a word
-//! starts a comment; a backslash at the end joins the next line. `[SECTION]KEY`, `[SECTION](KEY)` and
-//! `$NAME` are replaced before the words are told apart. Each word keeps its place in its line, so that a
-//! copy can replace it and leave the rest as it is.
+//! A line is words between blanks; quotation marks hold blanks together; `#` at the beginning of a
+//! word starts a comment; a backslash at the end joins the next line. `[SECTION]KEY`,
+//! `[SECTION](KEY)` and `$NAME` are replaced before the words are told apart. Each word keeps its
+//! place in its line, so that a copy can replace it and leave the rest as it is.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -73,8 +73,18 @@ pub(crate) struct HalScript {
 }
 
 impl HalScript {
-    pub(crate) fn read(ini: &IniFile, folder: &Path, hallib: &Path) -> Result<Self, LinuxcncSetupError> {
-        let mut reader = HalReader { ini, folder, hallib, script: Self::default(), missing: Vec::new() };
+    pub(crate) fn read(
+        ini: &IniFile,
+        folder: &Path,
+        hallib: &Path,
+    ) -> Result<Self, LinuxcncSetupError> {
+        let mut reader = HalReader {
+            ini,
+            folder,
+            hallib,
+            script: Self::default(),
+            missing: Vec::new(),
+        };
         if let Some(entry) = ini.entry("HAL", "TWOPASS") {
             reader.script.refusals.push(format!(
                 "{}: TWOPASS loads HAL files in another way, which setup does not read. Take TWOPASS out, and load each component once",
@@ -82,17 +92,25 @@ impl HalScript {
             ));
         }
         for key in ["HALFILE", "POSTGUI_HALFILE"] {
-            let entries =
-                ini.entries.iter().enumerate().filter(|(_, entry)| entry.section == "HAL" && entry.key == key);
+            let entries = ini
+                .entries
+                .iter()
+                .enumerate()
+                .filter(|(_, entry)| entry.section == "HAL" && entry.key == key);
             for (number, entry) in entries {
                 reader.file_of(number, entry, key == "HALFILE")?;
             }
         }
         if ini.all("HAL", "HALFILE").next().is_none() {
-            let refusal = "the INI file names no HALFILE in [HAL]: without HAL files no drive is connected";
+            let refusal =
+                "the INI file names no HALFILE in [HAL]: without HAL files no drive is connected";
             reader.script.refusals.push(refusal.to_owned());
         }
-        let HalReader { mut script, missing, .. } = reader;
+        let HalReader {
+            mut script,
+            missing,
+            ..
+        } = reader;
         script.notes.extend(missing);
         Ok(script)
     }
@@ -103,7 +121,11 @@ impl HalScript {
 
     /// File and line, for messages.
     pub(crate) fn place(&self, place: HalPlace) -> String {
-        format!("{}:{}", shown(&self.files[place.0].path), self.line(place).number)
+        format!(
+            "{}:{}",
+            shown(&self.files[place.0].path),
+            self.line(place).number
+        )
     }
 
     /// The lines in the order of their execution.
@@ -122,8 +144,15 @@ struct HalReader<'a> {
 
 impl HalReader<'_> {
     /// The file of an entry `HALFILE`; arguments behind the name are for Tcl.
-    fn file_of(&mut self, number: usize, entry: &IniEntry, is_needed: bool) -> Result<(), LinuxcncSetupError> {
-        let Some(name) = entry.value.split_whitespace().next() else { return Ok(()) };
+    fn file_of(
+        &mut self,
+        number: usize,
+        entry: &IniEntry,
+        is_needed: bool,
+    ) -> Result<(), LinuxcncSetupError> {
+        let Some(name) = entry.value.split_whitespace().next() else {
+            return Ok(());
+        };
         if name.to_lowercase().ends_with(".tcl") {
             if is_needed {
                 self.script.refusals.push(format!(
@@ -132,7 +161,10 @@ impl HalReader<'_> {
                     entry.place
                 ));
             } else {
-                self.script.notes.push(format!("{}: {name} is a Tcl program and is not read", entry.place));
+                self.script.notes.push(format!(
+                    "{}: {name} is a Tcl program and is not read",
+                    entry.place
+                ));
             }
             return Ok(());
         }
@@ -140,7 +172,9 @@ impl HalReader<'_> {
         let sourced = self.append(&path, Some(entry.place.clone()), NamedBy::Entry(number), 0);
         match sourced {
             Err(LinuxcncSetupError::Unreadable { .. }) if !is_needed => {
-                self.script.notes.push(format!("{}: {name} is not there", entry.place));
+                self.script
+                    .notes
+                    .push(format!("{}: {name} is not there", entry.place));
                 Ok(())
             }
             other => other,
@@ -154,7 +188,11 @@ impl HalReader<'_> {
         }
         let near = self.folder.join(expanded(name));
         let far = self.hallib.join(name);
-        if !near.exists() && far.exists() { far } else { near }
+        if !near.exists() && far.exists() {
+            far
+        } else {
+            near
+        }
     }
 
     fn append(
@@ -169,7 +207,10 @@ impl HalReader<'_> {
             None => {
                 let text = read_text(path, named)?;
                 let lines = self.lines(path, &text);
-                self.script.files.push(HalFile { path: path.to_owned(), lines });
+                self.script.files.push(HalFile {
+                    path: path.to_owned(),
+                    lines,
+                });
                 self.script.files.len() - 1
             }
         };
@@ -183,7 +224,11 @@ impl HalReader<'_> {
                 if depth == MOST_SOURCED {
                     let message = format!("more than {MOST_SOURCED} files source one another");
                     let hint = "take the circle out".to_owned();
-                    return Err(LinuxcncSetupError::Line { place: at, message, hint });
+                    return Err(LinuxcncSetupError::Line {
+                        place: at,
+                        message,
+                        hint,
+                    });
                 }
                 let path = self.found(&name);
                 self.append(&path, Some(at), NamedBy::Source(place), depth + 1)?;
@@ -216,23 +261,36 @@ impl HalReader<'_> {
     fn line(&mut self, path: &Path, text: String, number: usize) -> HalLine {
         let mut words = Vec::new();
         for (span, is_quoted) in spans(&text) {
-            let raw = if is_quoted { &text[span.start + 1..span.end - 1] } else { &text[span.clone()] };
+            let raw = if is_quoted {
+                &text[span.start + 1..span.end - 1]
+            } else {
+                &text[span.clone()]
+            };
             let (value, missing) = self.replaced(raw);
             for name in missing {
                 let place = format!("{}:{number}", shown(path));
-                self.missing.push(format!("{place}: {name} is not in the INI file: LinuxCNC stops here"));
+                self.missing.push(format!(
+                    "{place}: {name} is not in the INI file: LinuxCNC stops here"
+                ));
             }
             if is_quoted {
                 words.push(HalWord { text: value, span });
             } else {
-                words
-                    .extend(value.split_whitespace().map(|word| HalWord { text: word.to_owned(), span: span.clone() }));
+                words.extend(value.split_whitespace().map(|word| HalWord {
+                    text: word.to_owned(),
+                    span: span.clone(),
+                }));
             }
         }
-        HalLine { text, words, number }
+        HalLine {
+            text,
+            words,
+            number,
+        }
     }
 
-    /// A word with the values of the INI file and of the environment, and which of them are missing.
+    /// A word with the values of the INI file and of the environment, and which of them are
+    /// missing.
     fn replaced(&self, raw: &str) -> (String, Vec<String>) {
         let (mut text, mut missing) = (String::new(), Vec::new());
         let mut rest = raw;
@@ -267,7 +325,10 @@ impl HalReader<'_> {
         let (section, rest) = text.strip_prefix('[')?.split_once(']')?;
         let (key, length) = name_in(rest)?;
         let length = length + section.len() + 2;
-        let value = self.ini.entry(section, key).map(|entry| entry.value.clone());
+        let value = self
+            .ini
+            .entry(section, key)
+            .map(|entry| entry.value.clone());
         Some((&text[..length], value, length))
     }
 }
@@ -291,7 +352,8 @@ fn spans(text: &str) -> Vec<(Range<usize>, bool)> {
         match sign {
             '#' => break,
             _ if sign.is_whitespace()
-                || (sign == '\\' && text[start + 1..].trim_start_matches(' ').starts_with('\n')) => {}
+                || (sign == '\\'
+                    && text[start + 1..].trim_start_matches(' ').starts_with('\n')) => {}
             '"' | '\'' => match text[start + 1..].find(sign) {
                 Some(length) => {
                     let end = start + length + 2;
@@ -344,7 +406,9 @@ mod tests {
 
     fn words(script: &HalScript) -> Vec<Vec<&str>> {
         let lines = script.files[0].lines.iter();
-        lines.map(|line| line.words.iter().map(|word| word.text.as_str()).collect()).collect()
+        lines
+            .map(|line| line.words.iter().map(|word| word.text.as_str()).collect())
+            .collect()
     }
 
     #[test]
@@ -358,7 +422,10 @@ mod tests {
         assert_eq!(found[2], ["setp", "a.b", "one two"]);
         assert_eq!(found[3], ["net", "a", "b", "c"]);
         assert!(found[4].is_empty());
-        assert_eq!(script.notes, ["my.hal:7: [B]MISSING is not in the INI file: LinuxCNC stops here"]);
+        assert_eq!(
+            script.notes,
+            ["my.hal:7: [B]MISSING is not in the INI file: LinuxCNC stops here"]
+        );
         let line = &script.files[0].lines[1];
         assert_eq!(&line.text[line.words[2].span.clone()], "hm2_[B](K).0.x");
         assert_eq!(script.files[0].lines[5].number, 7);

@@ -11,7 +11,8 @@ const CORRECTION_MM_S2: f64 = 400.0;
 /// Largest distance of the drive's command from the path at the start, mm.
 const DEVIATION_MM: f64 = 0.05;
 
-/// The text of the copy. `renamed` are entries, by their number, that name another HAL file; `accel_mm_s2` is what every joint can.
+/// The text of the copy. `renamed` are entries, by their number, that name another HAL file;
+/// `accel_mm_s2` is what every joint can.
 pub(crate) fn ini_copy(
     ini: &IniFile,
     renamed: &[(usize, String)],
@@ -26,15 +27,24 @@ pub(crate) fn ini_copy(
         lines[first..=last].iter_mut().for_each(|line| *line = None);
         lines[first] = Some(format!("{} = {value}", entry.key));
     };
-    let halfiles =
-        || ini.entries.iter().enumerate().filter(|(_, entry)| entry.section == "HAL" && entry.key == "HALFILE");
+    let halfiles = || {
+        ini.entries
+            .iter()
+            .enumerate()
+            .filter(|(_, entry)| entry.section == "HAL" && entry.key == "HALFILE")
+    };
     for (number, name) in renamed {
         if let Some(entry) = ini.entries.get(*number) {
             set(entry, name);
         }
     }
     let mut missing: Vec<(String, String)> = Vec::new();
-    for IniValue { section, key, value } in values {
+    for IniValue {
+        section,
+        key,
+        value,
+    } in values
+    {
         match ini.entry(section, key) {
             Some(entry) => set(entry, &value.to_string()),
             None => missing.push((section.clone(), format!("{key} = {value}"))),
@@ -67,7 +77,10 @@ pub(crate) fn ini_copy(
 fn section(names: &SetupNames, simulates: bool, accel_mm_s2: Option<f64>) -> String {
     let accel_mm_s2 = accel_mm_s2.unwrap_or(0.0);
     let machine = if simulates {
-        format!("# The simulated machine that stands in for the drives.\nMACHINE = {}\n", names.plant)
+        format!(
+            "# The simulated machine that stands in for the drives.\nMACHINE = {}\n",
+            names.plant
+        )
     } else {
         String::new()
     };

@@ -1,5 +1,5 @@
-//! The joints of a configuration: which axis each is, what drives and measures it, its limits, and whether
-//! it can be corrected.
+//! The joints of a configuration: which axis each is, what drives and measures it, its limits, and
+//! whether it can be corrected.
 
 use feedwright_gcode::INCH_MM;
 
@@ -74,50 +74,91 @@ pub(crate) struct SetupJoints {
 
 impl SetupJoints {
     pub(crate) fn of(ini: &IniFile, netlist: &Netlist) -> Self {
-        let kinematics = ini.value("KINS", "KINEMATICS").unwrap_or("trivkins").to_owned();
-        let stated = ini.number("KINS", "JOINTS").filter(|count| (1.0..=MOST_JOINTS as f64).contains(count));
+        let kinematics = ini
+            .value("KINS", "KINEMATICS")
+            .unwrap_or("trivkins")
+            .to_owned();
+        let stated = ini
+            .number("KINS", "JOINTS")
+            .filter(|count| (1.0..=MOST_JOINTS as f64).contains(count));
         let mut words = kinematics.split_whitespace();
         let name = words.next().unwrap_or("").to_owned();
-        let coordinates = words.find_map(|word| word.strip_prefix("coordinates=")).unwrap_or(LETTERS);
-        let letters: Vec<char> = coordinates.chars().filter(char::is_ascii_alphabetic).collect();
+        let coordinates = words
+            .find_map(|word| word.strip_prefix("coordinates="))
+            .unwrap_or(LETTERS);
+        let letters: Vec<char> = coordinates
+            .chars()
+            .filter(char::is_ascii_alphabetic)
+            .collect();
         let count = stated.map_or(letters.len().min(3), |count| count as usize);
         let joint = |number: usize| {
-            let letter = letters.get(number).map_or(NO_AXIS, char::to_ascii_uppercase);
+            let letter = letters
+                .get(number)
+                .map_or(NO_AXIS, char::to_ascii_uppercase);
             SetupJoint::of(ini, netlist, number, letter)
         };
-        let unit_mm = match ini.value("TRAJ", "LINEAR_UNITS").unwrap_or("mm").to_lowercase().as_str() {
+        let unit_mm = match ini
+            .value("TRAJ", "LINEAR_UNITS")
+            .unwrap_or("mm")
+            .to_lowercase()
+            .as_str()
+        {
             "inch" | "in" | "imperial" => INCH_MM,
             _ => 1.0,
         };
-        let servo_s = ini.number("EMCMOT", "SERVO_PERIOD").filter(|ns| *ns > 0.0).map_or(SERVO_S, |ns| ns / 1e9);
-        Self { joints: (0..count).map(joint).collect(), kinematics: name, unit_mm, servo_s, ini: ini.clone() }
+        let servo_s = ini
+            .number("EMCMOT", "SERVO_PERIOD")
+            .filter(|ns| *ns > 0.0)
+            .map_or(SERVO_S, |ns| ns / 1e9);
+        Self {
+            joints: (0..count).map(joint).collect(),
+            kinematics: name,
+            unit_mm,
+            servo_s,
+            ini: ini.clone(),
+        }
     }
 
     /// The joints that the component corrects, in the order X, Y, Z.
     pub(crate) fn wired(&self) -> impl Iterator<Item = &SetupJoint> {
-        let first = |letter: char| self.joints.iter().find(|joint| joint.letter == letter && !joint.is_rotary);
+        let first = |letter: char| {
+            self.joints
+                .iter()
+                .find(|joint| joint.letter == letter && !joint.is_rotary)
+        };
         ['X', 'Y', 'Z'].into_iter().filter_map(first)
     }
 
     /// The joints that pass through the component, and the axis whose correction they get.
     pub(crate) fn passing(&self) -> impl Iterator<Item = (&SetupJoint, Option<usize>)> {
-        self.joints.iter().filter_map(|joint| match self.role(joint) {
-            JointRole::Second(axis) => Some((joint, Some(axis))),
-            JointRole::Passes => Some((joint, None)),
-            JointRole::Corrected(_) | JointRole::Stays => None,
-        })
+        self.joints
+            .iter()
+            .filter_map(|joint| match self.role(joint) {
+                JointRole::Second(axis) => Some((joint, Some(axis))),
+                JointRole::Passes => Some((joint, None)),
+                JointRole::Corrected(_) | JointRole::Stays => None,
+            })
     }
 
-    /// The joints that get a correction: those that the component corrects, and the second motors of their axes.
+    /// The joints that get a correction: those that the component corrects, and the second motors
+    /// of their axes.
     pub(crate) fn with_correction(&self) -> impl Iterator<Item = &SetupJoint> {
-        self.wired().chain(self.passing().filter_map(|(joint, axis)| axis.map(|_| joint)))
+        self.wired().chain(
+            self.passing()
+                .filter_map(|(joint, axis)| axis.map(|_| joint)),
+        )
     }
 
     /// What the component does with a joint.
     pub(crate) fn role(&self, joint: &SetupJoint) -> JointRole {
         let axis = self.wired().position(|wired| wired.letter == joint.letter);
         match axis.filter(|_| !joint.is_rotary) {
-            Some(axis) if self.wired().nth(axis).is_some_and(|wired| wired.number == joint.number) => {
+            Some(axis)
+                if self
+                    .wired()
+                    .nth(axis)
+                    .is_some_and(|wired| wired.number == joint.number) =>
+            {
                 JointRole::Corrected(axis)
             }
             Some(axis) => JointRole::Second(axis),
@@ -131,8 +172,8 @@ impl SetupJoints {
         self.number(joint.section(), key)
     }
 
-    /// A limit of a joint in a program, and its section: LinuxCNC plans programs by the section of the
-    /// axis, and jogs of a joint by that of the joint. The larger one counts.
+    /// A limit of a joint in a program, and its section: LinuxCNC plans programs by the section of
+    /// the axis, and jogs of a joint by that of the joint. The larger one counts.
     pub(crate) fn planned(&self, joint: &SetupJoint, key: &str) -> Option<(String, f64)> {
         let values = self
             .sections(joint)
@@ -149,27 +190,41 @@ impl SetupJoints {
     /// A number of a section, and where it stands.
     pub(crate) fn number(&self, section: String, key: &str) -> Option<JointValue> {
         let IniEntry { value, place, .. } = self.ini.entry(&section, key)?;
-        Some(JointValue { value: number(value)?, place: place.clone() })
+        Some(JointValue {
+            value: number(value)?,
+            place: place.clone(),
+        })
     }
 
     /// A limit of a joint in programs, in mm: of its axis, or of the joint where that states none.
     pub(crate) fn program_mm(&self, joint: &SetupJoint, key: &str) -> Option<JointValue> {
         let sections = self.sections(joint).into_iter().rev();
-        let found = sections.filter_map(|section| self.number(section, key)).find(|found| found.value > 0.0);
-        found.map(|JointValue { value, place }| JointValue { value: value * self.unit_mm, place })
+        let found = sections
+            .filter_map(|section| self.number(section, key))
+            .find(|found| found.value > 0.0);
+        found.map(|JointValue { value, place }| JointValue {
+            value: value * self.unit_mm,
+            place,
+        })
     }
 
     /// The smallest of all joints that a program moves, within a range, in mm.
     pub(crate) fn least_mm(&self, key: &str, [low, high]: [f64; 2]) -> Option<JointValue> {
         let values = self.wired().filter_map(|joint| self.program_mm(joint, key));
         let least = values.min_by(|a, b| a.value.total_cmp(&b.value))?;
-        Some(JointValue { value: least.value.clamp(low, high), place: least.place })
+        Some(JointValue {
+            value: least.value.clamp(low, high),
+            place: least.place,
+        })
     }
 
     /// A number of a joint's section, a length, a speed or an acceleration, in mm.
     pub(crate) fn length_mm(&self, joint: &SetupJoint, key: &str) -> Option<JointValue> {
         let JointValue { value, place } = self.value(joint, key)?;
-        Some(JointValue { value: value * self.unit_mm, place })
+        Some(JointValue {
+            value: value * self.unit_mm,
+            place,
+        })
     }
 
     /// Unit of length of the configuration.
@@ -199,11 +254,15 @@ impl SetupJoints {
         lines
     }
 
-    /// What LinuxCNC compensates itself of the joints that are wired: the geometry of a model must not have it, too.
+    /// What LinuxCNC compensates itself of the joints that are wired: the geometry of a model must
+    /// not have it, too.
     pub(crate) fn compensated(&self) -> Vec<String> {
         let of = |joint: &SetupJoint| {
             let section = joint.section();
-            let file = self.ini.entry(&section, "COMP_FILE").filter(|entry| !entry.value.is_empty());
+            let file = self
+                .ini
+                .entry(&section, "COMP_FILE")
+                .filter(|entry| !entry.value.is_empty());
             let screw = file.map(|IniEntry { value, place, .. }| {
                 format!(
                     "joint {} ({}): LinuxCNC compensates the screw by COMP_FILE = {value} ({place}). What is in a geometry as well is compensated \
@@ -281,17 +340,25 @@ impl SetupJoints {
 impl SetupJoint {
     fn of(ini: &IniFile, netlist: &Netlist, number: usize, letter: char) -> Self {
         let section = format!("JOINT_{number}");
-        let is_rotary =
-            ini.value(&section, "TYPE").map_or("ABC".contains(letter), |kind| kind.to_uppercase() == "ANGULAR");
-        let (command, feedback) = (format!("joint.{number}.motor-pos-cmd"), format!("joint.{number}.motor-pos-fb"));
+        let is_rotary = ini
+            .value(&section, "TYPE")
+            .map_or("ABC".contains(letter), |kind| {
+                kind.to_uppercase() == "ANGULAR"
+            });
+        let (command, feedback) = (
+            format!("joint.{number}.motor-pos-cmd"),
+            format!("joint.{number}.motor-pos-fb"),
+        );
         let drive = drive_of(netlist, &command);
         let feedback = feedback_of(netlist, &command, &feedback);
         let value = |name: String| netlist.number(&name);
         let gains = match &drive {
-            DriveKind::PidAnalog { pid, .. } | DriveKind::PidStepgen { pid, .. } => Some(PidGains {
-                p: value(format!("{pid}.Pgain")),
-                feedforward: std::array::from_fn(|i| value(format!("{pid}.FF{i}"))),
-            }),
+            DriveKind::PidAnalog { pid, .. } | DriveKind::PidStepgen { pid, .. } => {
+                Some(PidGains {
+                    p: value(format!("{pid}.Pgain")),
+                    feedforward: std::array::from_fn(|i| value(format!("{pid}.FF{i}"))),
+                })
+            }
             _ => None,
         };
         let stepgen_limits = match &drive {
@@ -300,7 +367,15 @@ impl SetupJoint {
             }
             _ => [None; 2],
         };
-        Self { number, letter, is_rotary, drive, feedback, gains, stepgen_limits }
+        Self {
+            number,
+            letter,
+            is_rotary,
+            drive,
+            feedback,
+            gains,
+            stepgen_limits,
+        }
     }
 
     fn section(&self) -> String {
@@ -309,27 +384,42 @@ impl SetupJoint {
 
     /// Whether there are no drives behind the joint.
     pub(crate) fn is_simulated(&self) -> bool {
-        matches!(self.feedback, FeedbackKind::Loopback | FeedbackKind::Simulated { .. })
+        matches!(
+            self.feedback,
+            FeedbackKind::Loopback | FeedbackKind::Simulated { .. }
+        )
     }
 
-    /// Whether the output of its `pid` is a speed in the unit of the configuration, so that P is in 1/s and FF1 a part of 1. A step generator
-    /// takes a speed by its own definition. What an amplifier makes of a value, such as volts, no file states.
+    /// Whether the output of its `pid` is a speed in the unit of the configuration, so that P is in
+    /// 1/s and FF1 a part of 1. A step generator takes a speed by its own definition. What an
+    /// amplifier makes of a value, such as volts, no file states.
     pub(crate) fn commands_speed(&self) -> bool {
         matches!(self.drive, DriveKind::PidStepgen { .. })
     }
 
     /// Whether a simulated machine can stand in for what is behind the joint.
     fn is_replaced(&self) -> bool {
-        self.is_simulated() || matches!(self.feedback, FeedbackKind::Unknown { .. } | FeedbackKind::Nothing)
+        self.is_simulated()
+            || matches!(
+                self.feedback,
+                FeedbackKind::Unknown { .. } | FeedbackKind::Nothing
+            )
     }
 
     fn drive_words(&self) -> String {
         match &self.drive {
-            DriveKind::PidAnalog { pid, output } => format!("{pid}{} drives {output}", self.gain_words()),
-            DriveKind::PidStepgen { pid, stepgen } => {
-                format!("{pid}{} drives the step generator {stepgen} by speed", self.gain_words())
+            DriveKind::PidAnalog { pid, output } => {
+                format!("{pid}{} drives {output}", self.gain_words())
             }
-            DriveKind::Stepgen { stepgen } => format!("the step generator {stepgen} takes positions"),
+            DriveKind::PidStepgen { pid, stepgen } => {
+                format!(
+                    "{pid}{} drives the step generator {stepgen} by speed",
+                    self.gain_words()
+                )
+            }
+            DriveKind::Stepgen { stepgen } => {
+                format!("the step generator {stepgen} takes positions")
+            }
             DriveKind::EtherCat { pin } => format!("an EtherCAT drive takes positions at {pin}"),
             DriveKind::Other { pin } => format!("{pin} takes the position"),
             DriveKind::Computed => "no drive".to_owned(),
@@ -339,11 +429,22 @@ impl SetupJoint {
 
     /// P and feedforward, as far as they are set.
     fn gain_words(&self) -> String {
-        let Some(gains) = &self.gains else { return String::new() };
-        let named = [("P", gains.p)].into_iter().chain(["FF0", "FF1", "FF2", "FF3"].into_iter().zip(gains.feedforward));
-        let words: Vec<String> =
-            named.filter_map(|(name, value)| Some(format!("{name} {}", value.filter(|v| *v != 0.0)?))).collect();
-        if words.is_empty() { String::new() } else { format!(" ({})", words.join(", ")) }
+        let Some(gains) = &self.gains else {
+            return String::new();
+        };
+        let named = [("P", gains.p)].into_iter().chain(
+            ["FF0", "FF1", "FF2", "FF3"]
+                .into_iter()
+                .zip(gains.feedforward),
+        );
+        let words: Vec<String> = named
+            .filter_map(|(name, value)| Some(format!("{name} {}", value.filter(|v| *v != 0.0)?)))
+            .collect();
+        if words.is_empty() {
+            String::new()
+        } else {
+            format!(" ({})", words.join(", "))
+        }
     }
 
     fn feedback_words(&self) -> String {
@@ -352,7 +453,9 @@ impl SetupJoint {
             FeedbackKind::FromDrive { pin } => format!("the drive reports its position at {pin}"),
             FeedbackKind::OwnSteps { pin } => format!("{pin} reports the steps that were sent"),
             FeedbackKind::Loopback => "the command is its own feedback".to_owned(),
-            FeedbackKind::Simulated { pin } => format!("{pin} computes its position from the command"),
+            FeedbackKind::Simulated { pin } => {
+                format!("{pin} computes its position from the command")
+            }
             FeedbackKind::Unknown { pin } => format!("its position comes from {pin}"),
             FeedbackKind::Nothing => "no position comes back".to_owned(),
         }

@@ -26,7 +26,11 @@ pub(crate) fn edited(line: &HalLine, words: &BTreeMap<usize, Option<String>>) ->
     let mut changes = words.clone();
     // An arrow in front of a word that is taken out goes with it.
     changes.extend(
-        (1..line.words.len()).filter(is_taken).map(|number| number - 1).filter(|&n| is_arrow(n)).map(|n| (n, None)),
+        (1..line.words.len())
+            .filter(is_taken)
+            .map(|number| number - 1)
+            .filter(|&n| is_arrow(n))
+            .map(|n| (n, None)),
     );
     let mut text = line.text.clone();
     let mut end = line.words.len();
@@ -35,7 +39,8 @@ pub(crate) fn edited(line: &HalLine, words: &BTreeMap<usize, Option<String>>) ->
         let numbers = end - place.len()..end;
         end = numbers.start;
         if changes.range(numbers.clone()).next().is_some() {
-            let left = numbers.filter_map(|n| changes.get(&n).map_or(Some(line.word(n)), Option::as_deref));
+            let left = numbers
+                .filter_map(|n| changes.get(&n).map_or(Some(line.word(n)), Option::as_deref));
             text.replace_range(place[0].span.clone(), &left.collect::<Vec<_>>().join(" "));
         }
     }

@@ -1,6 +1,6 @@
-//! The machine file that the configuration gives: limits and gains, each with its place, and what is still
-//! unknown. It suffices to write the program of `feedwright excite`; the numbers of the axes come from
-//! `feedwright identify`.
+//! The machine file that the configuration gives: limits and gains, each with its place, and what
+//! is still unknown. It suffices to write the program of `feedwright excite`; the numbers of the
+//! axes come from `feedwright identify`.
 
 use std::fmt::Write as _;
 
@@ -30,14 +30,22 @@ pub(crate) fn machine_file(joints: &SetupJoints, ini: &IniFile, names: &SetupNam
          description = {}\n\
          source = {}\n",
         names.original,
-        if joints.unit_mm == 1.0 { "" } else { ", converted from inches" },
+        if joints.unit_mm == 1.0 {
+            ""
+        } else {
+            ", converted from inches"
+        },
         quoted(&names.stem),
-        quoted(&format!("limits of {}, the rest is unknown", names.original)),
+        quoted(&format!(
+            "limits of {}, the rest is unknown",
+            names.original
+        )),
         quoted(&names.original),
     );
-    let place = ini
-        .entry("EMCMOT", "SERVO_PERIOD")
-        .map_or_else(|| "LinuxCNC's default".to_owned(), |entry| entry.place.clone());
+    let place = ini.entry("EMCMOT", "SERVO_PERIOD").map_or_else(
+        || "LinuxCNC's default".to_owned(),
+        |entry| entry.place.clone(),
+    );
     let servo_s = joints.servo_s;
     let _ = writeln!(
         text,
@@ -57,7 +65,11 @@ fn limits(text: &mut String, joints: &SetupJoints) {
     let mut line = |key: &str, from: &str, found: Option<&JointValue>| {
         let _ = match found {
             Some(JointValue { value, place }) => {
-                writeln!(text, "{key} = {} # the smallest {from}, {place}", to_four_digits(*value))
+                writeln!(
+                    text,
+                    "{key} = {} # the smallest {from}, {place}",
+                    to_four_digits(*value)
+                )
             }
             None => writeln!(text, "# {key} is unknown: no joint has {from}"),
         };
@@ -66,10 +78,20 @@ fn limits(text: &mut String, joints: &SetupJoints) {
     line("rapid_mm_s", "MAX_VELOCITY", speed.as_ref());
     line("max_feed_mm_s", "MAX_VELOCITY", speed.as_ref());
     let acceleration = joints.least_mm("MAX_ACCELERATION", ACCELERATIONS_MM_S2);
-    line("tangential_accel_mm_s2", "MAX_ACCELERATION", acceleration.as_ref());
-    line("normal_accel_mm_s2", "MAX_ACCELERATION", acceleration.as_ref());
-    let _ =
-        writeln!(text, "corner_jump_mm_s = 0 # LinuxCNC stops in exact stop mode\nmax_deviation_mm = 0.5 # assumed");
+    line(
+        "tangential_accel_mm_s2",
+        "MAX_ACCELERATION",
+        acceleration.as_ref(),
+    );
+    line(
+        "normal_accel_mm_s2",
+        "MAX_ACCELERATION",
+        acceleration.as_ref(),
+    );
+    let _ = writeln!(
+        text,
+        "corner_jump_mm_s = 0 # LinuxCNC stops in exact stop mode\nmax_deviation_mm = 0.5 # assumed"
+    );
 }
 
 /// What is known of an axis; the rest is that of the base.
@@ -77,28 +99,55 @@ fn axis(text: &mut String, joints: &SetupJoints, joint: &SetupJoint, name: &str)
     let _ = writeln!(text, "\n[axis.{name}] # joint {}", joint.number);
     if let Some(speed) = joints.program_mm(joint, "MAX_VELOCITY") {
         let value = speed.value.clamp(SPEEDS_MM_S[0], SPEEDS_MM_S[1]);
-        let _ = writeln!(text, "max_velocity_mm_s = {} # MAX_VELOCITY, {}", to_four_digits(value), speed.place);
+        let _ = writeln!(
+            text,
+            "max_velocity_mm_s = {} # MAX_VELOCITY, {}",
+            to_four_digits(value),
+            speed.place
+        );
     }
     if let Some(acceleration) = joints.program_mm(joint, "MAX_ACCELERATION") {
-        let value = acceleration.value.clamp(ACCELERATIONS_MM_S2[0], ACCELERATIONS_MM_S2[1]);
-        let _ =
-            writeln!(text, "max_accel_mm_s2 = {} # MAX_ACCELERATION, {}", to_four_digits(value), acceleration.place);
+        let value = acceleration
+            .value
+            .clamp(ACCELERATIONS_MM_S2[0], ACCELERATIONS_MM_S2[1]);
+        let _ = writeln!(
+            text,
+            "max_accel_mm_s2 = {} # MAX_ACCELERATION, {}",
+            to_four_digits(value),
+            acceleration.place
+        );
     }
     if joint.is_simulated() {
-        let _ = writeln!(text, "# unknown: everything else, because there is no drive");
+        let _ = writeln!(
+            text,
+            "# unknown: everything else, because there is no drive"
+        );
         return;
     }
     gains(text, joints, joint);
-    let scale =
-        ["INPUT_SCALE", "ENCODER_SCALE", "SCALE"].into_iter().find_map(|key| Some((key, joints.value(joint, key)?)));
-    if let Some((key, JointValue { value, place })) = scale.filter(|(_, scale)| scale.value != 0.0) {
+    let scale = ["INPUT_SCALE", "ENCODER_SCALE", "SCALE"]
+        .into_iter()
+        .find_map(|key| Some((key, joints.value(joint, key)?)));
+    if let Some((key, JointValue { value, place })) = scale.filter(|(_, scale)| scale.value != 0.0)
+    {
         let step_um = 1e3 * joints.unit_mm / value.abs();
         if step_um <= MOST_STEP_UM && step_um > 0.0 {
-            let counts = if key == "SCALE" { "if it counts the encoder" } else { "steps of the encoder" };
-            let _ = writeln!(text, "encoder_step_um = {} # 1 / {key}, {place}: {counts}", to_four_digits(step_um));
+            let counts = if key == "SCALE" {
+                "if it counts the encoder"
+            } else {
+                "steps of the encoder"
+            };
+            let _ = writeln!(
+                text,
+                "encoder_step_um = {} # 1 / {key}, {place}: {counts}",
+                to_four_digits(step_um)
+            );
         }
     }
-    if let Some(backlash) = joints.length_mm(joint, "BACKLASH").filter(|backlash| backlash.value != 0.0) {
+    if let Some(backlash) = joints
+        .length_mm(joint, "BACKLASH")
+        .filter(|backlash| backlash.value != 0.0)
+    {
         let um = to_four_digits(1e3 * backlash.value);
         let _ = writeln!(
             text,
@@ -106,16 +155,26 @@ fn axis(text: &mut String, joints: &SetupJoints, joint: &SetupJoint, name: &str)
             backlash.place
         );
     }
-    let _ = writeln!(text, "# unknown: lead, inertia, friction, gains of the speed loop, delays");
+    let _ = writeln!(
+        text,
+        "# unknown: lead, inertia, friction, gains of the speed loop, delays"
+    );
 }
 
 /// P and feedforward of the `pid`, if they can be what a machine file means.
 fn gains(text: &mut String, joints: &SetupJoints, joint: &SetupJoint) {
     let Some(gains) = &joint.gains else {
-        let _ = writeln!(text, "# unknown: kp_1_s, velocity_feedforward; the position loop is in the drive");
+        let _ = writeln!(
+            text,
+            "# unknown: kp_1_s, velocity_feedforward; the position loop is in the drive"
+        );
         return;
     };
-    let place = |key: &str| joints.value(joint, key).map_or_else(|| "the HAL file".to_owned(), |found| found.place);
+    let place = |key: &str| {
+        joints
+            .value(joint, key)
+            .map_or_else(|| "the HAL file".to_owned(), |found| found.place)
+    };
     if !joint.commands_speed() {
         let _ = writeln!(
             text,
@@ -129,14 +188,22 @@ fn gains(text: &mut String, joints: &SetupJoints, joint: &SetupJoint) {
             let _ = writeln!(text, "kp_1_s = {p:?} # P, {}", place("P"));
         }
         Some(p) => {
-            let _ = writeln!(text, "# P = {p:?}, {}, is no position gain in 1/s: kp_1_s is unknown", place("P"));
+            let _ = writeln!(
+                text,
+                "# P = {p:?}, {}, is no position gain in 1/s: kp_1_s is unknown",
+                place("P")
+            );
         }
         None => {
             let _ = writeln!(text, "# unknown: kp_1_s; no P is set");
         }
     }
     if let Some(ff1) = gains.feedforward[1].filter(|ff1| (0.0..=2.0).contains(ff1)) {
-        let _ = writeln!(text, "velocity_feedforward = {ff1:?} # FF1, {}", place("FF1"));
+        let _ = writeln!(
+            text,
+            "velocity_feedforward = {ff1:?} # FF1, {}",
+            place("FF1")
+        );
     }
     if let Some(ff2) = gains.feedforward[2].filter(|ff2| *ff2 != 0.0) {
         let _ = writeln!(

@@ -1,6 +1,6 @@
-//! Writes the copies, and takes them away again. A manifest beside them has the checksum of each, so that
-//! nothing is replaced or removed that was changed by hand. All files take their places together, or none
-//! does.
+//! Writes the copies, and takes them away again. A manifest beside them has the checksum of each,
+//! so that nothing is replaced or removed that was changed by hand. All files take their places
+//! together, or none does.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -23,8 +23,8 @@ pub(crate) struct SetupFile {
 /// What an earlier setup wrote: names and checksums.
 type Written = Vec<(String, String)>;
 
-/// Writes the files and the manifest; files that are as wanted stay untouched. Returns all files in their
-/// order.
+/// Writes the files and the manifest; files that are as wanted stay untouched. Returns all files in
+/// their order.
 pub(super) fn write(
     names: &SetupNames,
     files: Vec<SetupFile>,
@@ -35,12 +35,18 @@ pub(super) fn write(
     if !replace {
         check(names, &before, &files)?;
     }
-    let mut text = format!("# Written by feedwright linuxcnc setup {}: checksums and names.\n", names.original);
+    let mut text = format!(
+        "# Written by feedwright linuxcnc setup {}: checksums and names.\n",
+        names.original
+    );
     for SetupFile { path, bytes } in &files {
         let _ = writeln!(text, "{} {}", checksum(bytes), name_of(path));
     }
     let paths = files.iter().map(|file| file.path.clone()).collect();
-    let manifest = SetupFile { path: names.path(&names.manifest), bytes: text.into_bytes() };
+    let manifest = SetupFile {
+        path: names.path(&names.manifest),
+        bytes: text.into_bytes(),
+    };
     let mut outputs = OutputFiles::new(None);
     let mut started = Vec::new();
     // The manifest comes first: a process that is killed leaves no file that it does not list.
@@ -49,7 +55,8 @@ pub(super) fn write(
             continue;
         }
         let mut file = outputs.start(&path)?;
-        file.write_all(&bytes).map_err(|error| OutputError::from_io(error, &path))?;
+        file.write_all(&bytes)
+            .map_err(|error| OutputError::from_io(error, &path))?;
         started.push(file);
     }
     OutputFile::commit_all(started, watch)?;
@@ -57,7 +64,11 @@ pub(super) fn write(
 }
 
 /// Refuses to replace what setup did not write, or what was changed since.
-fn check(names: &SetupNames, before: &Written, files: &[SetupFile]) -> Result<(), LinuxcncSetupError> {
+fn check(
+    names: &SetupNames,
+    before: &Written,
+    files: &[SetupFile],
+) -> Result<(), LinuxcncSetupError> {
     let mut changed = Vec::new();
     for SetupFile { path, bytes } in files {
         let Ok(there) = fs::read(path) else { continue };
@@ -73,13 +84,19 @@ fn check(names: &SetupNames, before: &Written, files: &[SetupFile]) -> Result<()
     if before.is_empty() && manifest.exists() {
         return Err(LinuxcncSetupError::InTheWay { path: manifest });
     }
-    if changed.is_empty() { Ok(()) } else { Err(LinuxcncSetupError::ChangedByHand { paths: changed }) }
+    if changed.is_empty() {
+        Ok(())
+    } else {
+        Err(LinuxcncSetupError::ChangedByHand { paths: changed })
+    }
 }
 
 /// Removes what setup wrote: the removed files, and those that stay because they were changed.
 pub(super) fn undo(names: &SetupNames) -> Result<[Vec<PathBuf>; 2], LinuxcncSetupError> {
     let manifest = names.path(&names.manifest);
-    let Some(written) = read(names)? else { return Err(LinuxcncSetupError::NothingToUndo { path: manifest }) };
+    let Some(written) = read(names)? else {
+        return Err(LinuxcncSetupError::NothingToUndo { path: manifest });
+    };
     let [mut removed, mut kept] = [Vec::new(), Vec::new()];
     // The INI file, which is the last, goes first: what is left cannot be started.
     for (name, sum) in written.iter().rev() {
@@ -99,7 +116,10 @@ pub(super) fn undo(names: &SetupNames) -> Result<[Vec<PathBuf>; 2], LinuxcncSetu
 }
 
 fn remove(path: &Path) -> Result<(), LinuxcncSetupError> {
-    fs::remove_file(path).map_err(|source| LinuxcncSetupError::Removing { path: path.to_owned(), source })
+    fs::remove_file(path).map_err(|source| LinuxcncSetupError::Removing {
+        path: path.to_owned(),
+        source,
+    })
 }
 
 /// The manifest, if there is one.
@@ -113,7 +133,8 @@ fn read(names: &SetupNames) -> Result<Option<Written>, LinuxcncSetupError> {
     // Only names of files beside the manifest: nothing else is ever removed.
     let entry = |line: &str| {
         let (sum, name) = line.split_once(' ')?;
-        (!line.starts_with('#') && name_of(Path::new(name)) == name).then(|| (name.to_owned(), sum.to_owned()))
+        (!line.starts_with('#') && name_of(Path::new(name)) == name)
+            .then(|| (name.to_owned(), sum.to_owned()))
     };
     Ok(Some(text.lines().filter_map(entry).collect()))
 }
@@ -123,5 +144,6 @@ fn checksum(bytes: &[u8]) -> String {
 }
 
 fn name_of(path: &Path) -> String {
-    path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+    path.file_name()
+        .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }

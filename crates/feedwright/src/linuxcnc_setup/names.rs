@@ -28,7 +28,9 @@ pub(crate) struct SetupNames {
 
 impl SetupNames {
     pub(crate) fn of(ini: &Path) -> Self {
-        let stem = ini.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+        let stem = ini
+            .file_stem()
+            .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         let named = |ending: &str| format!("{stem}-feedwright{ending}");
         Self {
             folder: super::folder_of(ini).to_owned(),
@@ -51,6 +53,10 @@ impl SetupNames {
 
     /// A file of that name beside the INI file.
     pub(crate) fn path(&self, name: &str) -> PathBuf {
-        if self.folder == Path::new(".") { PathBuf::from(name) } else { self.folder.join(name) }
+        if self.folder == Path::new(".") {
+            PathBuf::from(name)
+        } else {
+            self.folder.join(name)
+        }
     }
 }

@@ -1,5 +1,5 @@
-//! What the HAL lines build: signals with their pins, values of pins, loaded components, and the order of
-//! functions.
+//! What the HAL lines build: signals with their pins, values of pins, loaded components, and the
+//! order of functions.
 
 use std::collections::BTreeMap;
 
@@ -18,13 +18,22 @@ pub(crate) struct HalLoad {
 impl HalLoad {
     /// Names of its instances, where the line states them.
     fn names(&self) -> impl Iterator<Item = &str> {
-        let lists = self.arguments.iter().filter_map(|argument| argument.strip_prefix("names="));
-        lists.flat_map(|names| names.split(',')).filter(|name| !name.is_empty())
+        let lists = self
+            .arguments
+            .iter()
+            .filter_map(|argument| argument.strip_prefix("names="));
+        lists
+            .flat_map(|names| names.split(','))
+            .filter(|name| !name.is_empty())
     }
 
     /// Beginning of its pins' names where the line states no names.
     fn prefix(&self) -> String {
-        if self.module == "mux_generic" { "mux-gen".to_owned() } else { self.module.replace('_', "-") }
+        if self.module == "mux_generic" {
+            "mux-gen".to_owned()
+        } else {
+            self.module.replace('_', "-")
+        }
     }
 }
 
@@ -75,7 +84,13 @@ impl Netlist {
     }
 
     fn execute(&mut self, place: HalPlace, line: &HalLine) {
-        let rest = || line.words.iter().skip(2).map(|word| word.text.as_str()).filter(|word| !ARROWS.contains(word));
+        let rest = || {
+            line.words
+                .iter()
+                .skip(2)
+                .map(|word| word.text.as_str())
+                .filter(|word| !ARROWS.contains(word))
+        };
         match line.word(0) {
             "net" => {
                 self.signals.entry(line.word(1).to_owned()).or_default();
@@ -95,20 +110,34 @@ impl Netlist {
             }
             "setp" | "sets" => {
                 let name = self.pin(line.word(1));
-                let value = if line.word(2) == "=" { line.word(3) } else { line.word(2) };
+                let value = if line.word(2) == "=" {
+                    line.word(3)
+                } else {
+                    line.word(2)
+                };
                 self.values.insert(name, value.to_owned());
             }
             "alias" if line.word(1) == "pin" => {
-                self.aliases.insert(line.word(3).to_owned(), line.word(2).to_owned());
+                self.aliases
+                    .insert(line.word(3).to_owned(), line.word(2).to_owned());
             }
             "loadrt" => {
                 let module = line.word(1).rsplit('/').next().unwrap_or("").to_owned();
-                self.loads.push(HalLoad { module, arguments: rest().map(str::to_owned).collect(), place });
+                self.loads.push(HalLoad {
+                    module,
+                    arguments: rest().map(str::to_owned).collect(),
+                    place,
+                });
             }
             "addf" => {
                 let position = line.word(3).parse().ok();
                 let (name, thread) = (line.word(1).to_owned(), line.word(2).to_owned());
-                self.functions.push(HalFunction { name, thread, position, place });
+                self.functions.push(HalFunction {
+                    name,
+                    thread,
+                    position,
+                    place,
+                });
             }
             _ => {}
         }
@@ -116,7 +145,10 @@ impl Netlist {
 
     /// The pin that a name means: its own, or the one that it is another name of.
     pub(crate) fn pin(&self, name: &str) -> String {
-        self.aliases.get(name).cloned().unwrap_or_else(|| name.to_owned())
+        self.aliases
+            .get(name)
+            .cloned()
+            .unwrap_or_else(|| name.to_owned())
     }
 
     fn connect(&mut self, pin: &str, signal: &str) {
@@ -124,13 +156,20 @@ impl Netlist {
         if pin.is_empty() || signal.is_empty() || self.of_pin.contains_key(&pin) {
             return;
         }
-        self.signals.entry(signal.to_owned()).or_default().push(pin.clone());
+        self.signals
+            .entry(signal.to_owned())
+            .or_default()
+            .push(pin.clone());
         self.of_pin.insert(pin, signal.to_owned());
     }
 
     fn disconnect(&mut self, pin: &str) {
         let pin = self.pin(pin);
-        if let Some(pins) = self.of_pin.remove(&pin).and_then(|signal| self.signals.get_mut(&signal)) {
+        if let Some(pins) = self
+            .of_pin
+            .remove(&pin)
+            .and_then(|signal| self.signals.get_mut(&signal))
+        {
             pins.retain(|other| *other != pin);
         }
     }
@@ -147,7 +186,11 @@ impl Netlist {
 
     /// The pins of a signal.
     pub(crate) fn pins(&self, signal: &str) -> impl Iterator<Item = &str> {
-        self.signals.get(signal).into_iter().flatten().map(String::as_str)
+        self.signals
+            .get(signal)
+            .into_iter()
+            .flatten()
+            .map(String::as_str)
     }
 
     /// The pins that are connected with a pin, without itself.
@@ -158,7 +201,10 @@ impl Netlist {
 
     /// All connected pins of an instance, such as `pid.0`.
     pub(crate) fn pins_of<'a>(&'a self, instance: &'a str) -> impl Iterator<Item = &'a str> {
-        self.of_pin.keys().map(String::as_str).filter(move |pin| instance_of(pin) == instance)
+        self.of_pin
+            .keys()
+            .map(String::as_str)
+            .filter(move |pin| instance_of(pin) == instance)
     }
 
     /// What a pin or signal was set to.
@@ -177,16 +223,25 @@ impl Netlist {
 
     /// The pins of an instance that were set.
     pub(crate) fn set_of<'a>(&'a self, instance: &'a str) -> impl Iterator<Item = &'a str> {
-        self.values.keys().map(String::as_str).filter(move |pin| instance_of(pin) == instance)
+        self.values
+            .keys()
+            .map(String::as_str)
+            .filter(move |pin| instance_of(pin) == instance)
     }
 
-    /// The component that has a pin, by the names of its instances, or by its own name where it is loaded without names.
+    /// The component that has a pin, by the names of its instances, or by its own name where it is
+    /// loaded without names.
     pub(crate) fn module_of(&self, pin: &str) -> Option<&str> {
-        let has = |name: &str| pin.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'));
+        let has = |name: &str| {
+            pin.strip_prefix(name)
+                .is_some_and(|rest| rest.starts_with('.'))
+        };
         let is_named = |load: &&HalLoad| load.names().any(has);
         let is_counted = |load: &&HalLoad| load.names().next().is_none() && has(&load.prefix());
         let mut loads = self.loads.iter();
-        let load = loads.find(is_named).or_else(|| self.loads.iter().find(is_counted))?;
+        let load = loads
+            .find(is_named)
+            .or_else(|| self.loads.iter().find(is_counted))?;
         Some(&load.module)
     }
 
@@ -218,6 +273,8 @@ pub(crate) fn last_part(pin: &str) -> &str {
 
 /// Whether a pin of a joint has the name that it had before LinuxCNC 2.8.
 fn is_old_joint_pin(pin: &str) -> bool {
-    let number = pin.strip_prefix("axis.").and_then(|rest| rest.strip_suffix(".motor-pos-cmd"));
+    let number = pin
+        .strip_prefix("axis.")
+        .and_then(|rest| rest.strip_suffix(".motor-pos-cmd"));
     number.is_some_and(|number| number.parse::<u8>().is_ok())
 }

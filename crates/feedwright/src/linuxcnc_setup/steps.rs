@@ -5,15 +5,25 @@ use std::fmt::Write as _;
 use super::joints::SetupJoints;
 use super::names::SetupNames;
 
-/// The pins that the sampler records of each axis: LinuxCNC's command, the drive's command, the measured
-/// position.
-pub(crate) const SAMPLED: [&str; 3] = ["joint.N.motor-pos-cmd", "feedwright.drive-N", "feedwright.actual-N"];
+/// The pins that the sampler records of each axis: LinuxCNC's command, the drive's command, the
+/// measured position.
+pub(crate) const SAMPLED: [&str; 3] = [
+    "joint.N.motor-pos-cmd",
+    "feedwright.drive-N",
+    "feedwright.actual-N",
+];
 
 /// The steps in their order. A line that begins with blanks is a command.
 pub(crate) fn steps(names: &SetupNames, axes: usize, simulates: bool) -> Vec<String> {
-    let SetupNames { ini, machine, record, model, original, .. } = names;
-    let hardware =
-        "Setup was tested in LinuxCNC on a simulated machine, not on your hardware: keep the emergency stop in reach";
+    let SetupNames {
+        ini,
+        machine,
+        record,
+        model,
+        original,
+        ..
+    } = names;
+    let hardware = "Setup was tested in LinuxCNC on a simulated machine, not on your hardware: keep the emergency stop in reach";
     let mut lines = vec![
         "1. Start LinuxCNC with the copy. The component reports that its model is missing, and passes every command on unchanged. Home, jog and run a \
          program in the air: the machine has to behave as before. Then record it (2)"
@@ -54,14 +64,19 @@ pub(crate) fn steps(names: &SetupNames, axes: usize, simulates: bool) -> Vec<Str
     lines
 }
 
-/// A shell script that records until Enter is pressed. Its first lines in the log name the columns, the
-/// period and the unit.
+/// A shell script that records until Enter is pressed. Its first lines in the log name the columns,
+/// the period and the unit.
 pub(crate) fn record_script(joints: &SetupJoints, names: &SetupNames) -> String {
-    // In a test of the axes the drive's command is what moves it; in a cut LinuxCNC's command is what is to be cut.
+    // In a test of the axes the drive's command is what moves it; in a cut LinuxCNC's command is
+    // what is to be cut.
     let columns = |command: &str, other: &str| {
         let of = |joint: &super::joints::SetupJoint| {
             let letter = joint.letter.to_ascii_lowercase();
-            let [first, second] = if command == "drive" { [other, "cmd"] } else { ["cmd", other] };
+            let [first, second] = if command == "drive" {
+                [other, "cmd"]
+            } else {
+                ["cmd", other]
+            };
             format!("{letter}.{first} {letter}.{second} {letter}.act")
         };
         joints.wired().map(of).collect::<Vec<_>>().join(" ")

@@ -42,15 +42,27 @@ pub(super) fn axis_keys(found: &FoundAxis, servo_s: f64) -> AxisKeys {
     loops(&mut keys, found);
     extras(&mut keys, found, mechanics_s);
     noise(&mut keys, found);
-    AxisKeys { keys, transmission: transmission(found, mechanics_s), remarks: remarks(found) }
+    AxisKeys {
+        keys,
+        transmission: transmission(found, mechanics_s),
+        remarks: remarks(found),
+    }
 }
 
 fn told(name: &'static str, value: f64, comment: impl Into<String>) -> AxisKey {
-    AxisKey { name, value: in_six_digits(value), comment: comment.into(), is_told: true }
+    AxisKey {
+        name,
+        value: in_six_digits(value),
+        comment: comment.into(),
+        is_told: true,
+    }
 }
 
 fn assumed(name: &'static str, value: f64, comment: impl Into<String>) -> AxisKey {
-    AxisKey { is_told: false, ..told(name, value, comment) }
+    AxisKey {
+        is_told: false,
+        ..told(name, value, comment)
+    }
 }
 
 /// What a log tells has no more.
@@ -60,29 +72,52 @@ fn in_six_digits(value: f64) -> f64 {
 
 /// A key by where its number comes from.
 fn by_source(name: &'static str, value: f64, source: NumberSource) -> AxisKey {
-    let is_told = matches!(source, NumberSource::Identified | NumberSource::TorqueColumn);
-    AxisKey { is_told, ..told(name, value, source.word()) }
+    let is_told = matches!(
+        source,
+        NumberSource::Identified | NumberSource::TorqueColumn
+    );
+    AxisKey {
+        is_told,
+        ..told(name, value, source.word())
+    }
 }
 
 /// Noise: of the encoder, and what the free run leaves, as a torque.
 fn noise(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
     if found.step_um > 0.0 {
-        keys.push(told("encoder_step_um", found.step_um.min(1e3), "as the log shows them"));
+        keys.push(told(
+            "encoder_step_um",
+            found.step_um.min(1e3),
+            "as the log shows them",
+        ));
     }
     if found.noise_um > 0.0 {
-        keys.push(told("encoder_noise_um", found.noise_um.min(1e3), "by third differences of the actual position"));
+        keys.push(told(
+            "encoder_noise_um",
+            found.noise_um.min(1e3),
+            "by third differences of the actual position",
+        ));
     }
     if let Some(residual) = &found.residual {
         let nm = nm_per_mm_s2(found) * residual.load_mm_s2;
-        let comment = format!("moves the axis as what the free run leaves: {} um RMS", digits(residual.left_um));
+        let comment = format!(
+            "moves the axis as what the free run leaves: {} um RMS",
+            digits(residual.left_um)
+        );
         keys.push(told("torque_noise_nm", nm.min(1e3), comment));
-        keys.push(told("torque_noise_s", residual.correlation_s, "as long as that is correlated"));
+        keys.push(told(
+            "torque_noise_s",
+            residual.correlation_s,
+            "as long as that is correlated",
+        ));
     }
 }
 
 fn remarks(found: &FoundAxis) -> Vec<String> {
     let late = digits(found.law().get(LawTerm::RecordDelay));
-    vec![format!("the log has actual positions {late} s later than the commands; no machine shows that of itself")]
+    vec![format!(
+        "the log has actual positions {late} s later than the commands; no machine shows that of itself"
+    )]
 }
 
 /// Torque at the shaft for an acceleration of the table of 1 mm/s2, N m.
@@ -95,17 +130,45 @@ fn mechanics(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
     let ((lead, of_lead), (inertia, _, of_inertia)) = (found.lead(), found.inertia());
     let (get, nm) = (|term| found.law().get(term), nm_per_mm_s2(found));
     keys.push(by_source("lead_mm_per_rev", lead, of_lead));
-    keys.push(by_source("inertia_kg_m2", inertia.clamp(1e-9, 1e3), of_inertia));
+    keys.push(by_source(
+        "inertia_kg_m2",
+        inertia.clamp(1e-9, 1e3),
+        of_inertia,
+    ));
     let viscous = get(LawTerm::Viscous);
-    let of_viscous = if viscous > 0.0 { found.gains_source() } else { NumberSource::Assumed };
-    keys.push(by_source("viscous_friction_nm_s", inertia * viscous, of_viscous));
-    keys.push(told("coulomb_friction_nm", nm * get(LawTerm::Coulomb), interval(found, LawTerm::Coulomb, nm)));
+    let of_viscous = if viscous > 0.0 {
+        found.gains_source()
+    } else {
+        NumberSource::Assumed
+    };
+    keys.push(by_source(
+        "viscous_friction_nm_s",
+        inertia * viscous,
+        of_viscous,
+    ));
+    keys.push(told(
+        "coulomb_friction_nm",
+        nm * get(LawTerm::Coulomb),
+        interval(found, LawTerm::Coulomb, nm),
+    ));
     let smoothing = found.law().smoothing_at_mm_s(mechanics_s) * TAU / lead;
-    keys.push(assumed("coulomb_smoothing_rad_s", smoothing.max(LEAST_SMOOTHING_RAD_S), "assumed"));
+    keys.push(assumed(
+        "coulomb_smoothing_rad_s",
+        smoothing.max(LEAST_SMOOTHING_RAD_S),
+        "assumed",
+    ));
     let (offset, most) = (get(LawTerm::Offset), MOST_ASYMMETRY * get(LawTerm::Coulomb));
-    let held = if offset.abs() > most { "; held within the Coulomb friction" } else { "" };
+    let held = if offset.abs() > most {
+        "; held within the Coulomb friction"
+    } else {
+        ""
+    };
     let comment = format!("{}{held}", interval(found, LawTerm::Offset, nm));
-    keys.push(told("coulomb_asymmetry_nm", nm * offset.clamp(-most, most), comment));
+    keys.push(told(
+        "coulomb_asymmetry_nm",
+        nm * offset.clamp(-most, most),
+        comment,
+    ));
     keys.push(assumed("disturbance_nm", 0.0, ""));
     keys.push(assumed("disturbance_hz", 0.0, ""));
 }
@@ -119,14 +182,27 @@ fn loops(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
     };
     keys.push(told("kp_1_s", found.law().kp_1_s(), apart));
     keys.push(assumed("kd", 0.0, "assumed"));
-    keys.push(told("kv_nm_s_per_rad", found.inertia().0 * found.law().speed_gain_1_s(), apart));
+    keys.push(told(
+        "kv_nm_s_per_rad",
+        found.inertia().0 * found.law().speed_gain_1_s(),
+        apart,
+    ));
     let limit = get(LawTerm::AccelerationLimit);
     if limit > 0.0 {
-        keys.push(told("torque_limit_nm", nm * limit, interval(found, LawTerm::AccelerationLimit, nm)));
+        keys.push(told(
+            "torque_limit_nm",
+            nm * limit,
+            interval(found, LawTerm::AccelerationLimit, nm),
+        ));
     } else {
-        let needed = nm * (found.most[1] + get(LawTerm::Coulomb) + get(LawTerm::Viscous) * found.most[0]);
+        let needed =
+            nm * (found.most[1] + get(LawTerm::Coulomb) + get(LawTerm::Viscous) * found.most[0]);
         let limit = (SPARE * needed).clamp(1e-6, 1e6);
-        keys.push(assumed("torque_limit_nm", limit, "assumed: the log never came to one"));
+        keys.push(assumed(
+            "torque_limit_nm",
+            limit,
+            "assumed: the log never came to one",
+        ));
     }
 }
 
@@ -135,17 +211,35 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
     let get = |term| found.law().get(term);
     let late_s = get(LawTerm::CommandDelay);
     if late_s > 0.0 {
-        keys.push(told("command_delay_s", late_s, "commands reach the position loop late, by whole servo periods"));
+        keys.push(told(
+            "command_delay_s",
+            late_s,
+            "commands reach the position loop late, by whole servo periods",
+        ));
     }
-    let periods = (get(LawTerm::LoopDelay) / mechanics_s).round().min((MOST_DRIVE_DELAY_S / mechanics_s).floor());
+    let periods = (get(LawTerm::LoopDelay) / mechanics_s)
+        .round()
+        .min((MOST_DRIVE_DELAY_S / mechanics_s).floor());
     let whole = periods * mechanics_s;
     optional(keys, found, "drive_delay_s", LawTerm::LoopDelay, whole, 1.0);
     let integral = get(LawTerm::Integral);
     if integral > 0.0 {
-        let half = found.half_interval(LawTerm::Integral).unwrap_or(f64::INFINITY);
-        let end = |rate: f64| if rate > 0.0 { digits(1.0 / rate) } else { "any".to_owned() };
+        let half = found
+            .half_interval(LawTerm::Integral)
+            .unwrap_or(f64::INFINITY);
+        let end = |rate: f64| {
+            if rate > 0.0 {
+                digits(1.0 / rate)
+            } else {
+                "any".to_owned()
+            }
+        };
         let comment = format!("{} to {}", end(integral + half), end(integral - half));
-        keys.push(told("speed_integral_s", (1.0 / integral).min(10.0), comment));
+        keys.push(told(
+            "speed_integral_s",
+            (1.0 / integral).min(10.0),
+            comment,
+        ));
     }
     for (name, term) in [
         ("velocity_feedforward", LawTerm::VelocityFeedforward),
@@ -156,25 +250,70 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
     }
     if let Some(resolved) = &found.resolved {
         let fitted = interval(found, LawTerm::SpeedWindow, 1.0);
-        let of_window = if resolved.torque.is_some() { fitted } else { "given".to_owned() };
+        let of_window = if resolved.torque.is_some() {
+            fitted
+        } else {
+            "given".to_owned()
+        };
         keys.push(told("speed_window_s", get(LawTerm::SpeedWindow), of_window));
-        let is_held = if get(LawTerm::SpeedHold) > 0.0 { 1.0 } else { 0.0 };
+        let is_held = if get(LawTerm::SpeedHold) > 0.0 {
+            1.0
+        } else {
+            0.0
+        };
         optional(keys, found, "speed_held", LawTerm::SpeedHold, is_held, 1.0);
     }
     let filter = get(LawTerm::FilterTime);
     if filter > 0.0 {
-        let comment = format!("a time constant of {} s", interval(found, LawTerm::FilterTime, 1.0));
-        keys.push(told("torque_filter_hz", (1.0 / (TAU * filter)).min(1e5), comment));
+        let comment = format!(
+            "a time constant of {} s",
+            interval(found, LawTerm::FilterTime, 1.0)
+        );
+        keys.push(told(
+            "torque_filter_hz",
+            (1.0 / (TAU * filter)).min(1e5),
+            comment,
+        ));
     } else {
-        optional(keys, found, "torque_filter_hz", LawTerm::FilterTime, 0.0, 1.0);
+        optional(
+            keys,
+            found,
+            "torque_filter_hz",
+            LawTerm::FilterTime,
+            0.0,
+            1.0,
+        );
     }
-    optional(keys, found, "presliding_um", LawTerm::Presliding, 1e3 * get(LawTerm::Presliding), 1e3);
+    friction_extras(keys, found);
+}
+
+/// What its friction may have beside.
+fn friction_extras(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
+    let get = |term| found.law().get(term);
+    optional(
+        keys,
+        found,
+        "presliding_um",
+        LawTerm::Presliding,
+        1e3 * get(LawTerm::Presliding),
+        1e3,
+    );
     let stribeck = get(LawTerm::Stribeck);
     if stribeck > 0.0 {
         let nm = nm_per_mm_s2(found) * stribeck * get(LawTerm::Coulomb);
-        let comment = format!("a part of {} of the Coulomb friction", interval(found, LawTerm::Stribeck, 1.0));
+        let comment = format!(
+            "a part of {} of the Coulomb friction",
+            interval(found, LawTerm::Stribeck, 1.0)
+        );
         keys.push(told("stribeck_nm", nm, comment));
-        optional(keys, found, "stribeck_mm_s", LawTerm::StribeckSpeed, get(LawTerm::StribeckSpeed), 1.0);
+        optional(
+            keys,
+            found,
+            "stribeck_mm_s",
+            LawTerm::StribeckSpeed,
+            get(LawTerm::StribeckSpeed),
+            1.0,
+        );
     }
 }
 
@@ -182,12 +321,24 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
 fn interval(found: &FoundAxis, term: LawTerm, scale: f64) -> String {
     found.half_interval(term).map_or_else(String::new, |half| {
         let value = scale * found.law().get(term);
-        format!("{} to {}", digits(value - scale * half), digits(value + scale * half))
+        format!(
+            "{} to {}",
+            digits(value - scale * half),
+            digits(value + scale * half)
+        )
     })
 }
 
-/// A key of a term that the axis may not have. A machine file that is updated may have had it before.
-fn optional(keys: &mut Vec<AxisKey>, found: &FoundAxis, name: &'static str, term: LawTerm, value: f64, scale: f64) {
+/// A key of a term that the axis may not have. A machine file that is updated may have had it
+/// before.
+fn optional(
+    keys: &mut Vec<AxisKey>,
+    found: &FoundAxis,
+    name: &'static str,
+    term: LawTerm,
+    value: f64,
+    scale: f64,
+) {
     let was = found.facts.before.map_or(0.0, |before| before.get(term));
     if value > 0.0 || was > 0.0 {
         keys.push(told(name, value, interval(found, term, scale)));
@@ -196,12 +347,26 @@ fn optional(keys: &mut Vec<AxisKey>, found: &FoundAxis, name: &'static str, term
 
 /// Motor and table as two masses, where the log shows them.
 fn transmission(found: &FoundAxis, mechanics_s: f64) -> Vec<AxisKey> {
-    let Some(screw) = found.law().transmission(mechanics_s) else { return vec![] };
+    let Some(screw) = found.law().transmission(mechanics_s) else {
+        return vec![];
+    };
     let seconds = interval(found, LawTerm::Resonance, 1.0);
     vec![
-        told("table_share", screw.table_share, interval(found, LawTerm::TableShare, 1.0)),
-        told("resonance_hz", screw.resonance_hz, format!("a time constant of {seconds} s")),
+        told(
+            "table_share",
+            screw.table_share,
+            interval(found, LawTerm::TableShare, 1.0),
+        ),
+        told(
+            "resonance_hz",
+            screw.resonance_hz,
+            format!("a time constant of {seconds} s"),
+        ),
         assumed("damping_ratio", screw.damping_ratio, "assumed"),
-        told("backlash_um", screw.backlash_um, interval(found, LawTerm::Backlash, 1e3)),
+        told(
+            "backlash_um",
+            screw.backlash_um,
+            interval(found, LawTerm::Backlash, 1e3),
+        ),
     ]
 }

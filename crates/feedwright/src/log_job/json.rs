@@ -65,7 +65,9 @@ fn axis(identified: &LogIdentified, i: usize, found: &FoundAxis) -> Value {
             (number.key.to_owned(), value)
         })
         .collect();
-    let beyond = scores.beyond.map(|(um, share)| json!({ "free_run_um": um, "share": share }));
+    let beyond = scores
+        .beyond
+        .map(|(um, share)| json!({ "free_run_um": um, "share": share }));
     json!({
         "following_um": scores.following_um,
         "fit_um": found.fit_um,

@@ -1,8 +1,10 @@
 //! The motion that would settle what a log leaves open, axis by axis.
 //!
-//! A part of the excitation is needed where a parameter is open that it shows: creeping for friction, reversals for what goes with the
-//! speed, strokes for what goes with the acceleration. Axes keep to positions, speeds and accelerations that the log has, or to the limits
-//! of the machine file that is updated where those are higher. What no motion tells (inertia, the scale of torques) asks for none.
+//! A part of the excitation is needed where a parameter is open that it shows: creeping for
+//! friction, reversals for what goes with the speed, strokes for what goes with the acceleration.
+//! Axes keep to positions, speeds and accelerations that the log has, or to the limits of the
+//! machine file that is updated where those are higher. What no motion tells (inertia, the scale of
+//! torques) asks for none.
 
 use feedwright_ident::{AxisExcitation, FoundAxis, LawTerm, MotionPart};
 use feedwright_sim::Machine;
@@ -15,9 +17,12 @@ const FEED_PART: f64 = 0.8;
 const REACHED_S: f64 = 0.05;
 
 impl LogIdentified {
-    /// What each axis is to move, in the order of the log; one that no machine file has is left out.
+    /// What each axis is to move, in the order of the log; one that no machine file has is left
+    /// out.
     pub fn next_motion(&self) -> Vec<AxisExcitation> {
-        (0..self.machine.axes.len()).filter_map(|i| self.next_motion_of(i)).collect()
+        (0..self.machine.axes.len())
+            .filter_map(|i| self.next_motion_of(i))
+            .collect()
     }
 
     /// What an axis of the log is to move; none where no machine file has it.
@@ -25,22 +30,44 @@ impl LogIdentified {
         let axis = self.places().iter().position(|place| *place == Some(i))?;
         let found = self.machine.axes.get(i)?;
         let command_mm = &self.log.axes.get(i)?.command_mm;
-        let range_mm = [f64::min, f64::max].map(|end| command_mm.iter().copied().fold(f64::NAN, end));
-        let limits = self.job.before.as_ref().map(|machine| machine_limits(machine, axis));
+        let range_mm =
+            [f64::min, f64::max].map(|end| command_mm.iter().copied().fold(f64::NAN, end));
+        let limits = self
+            .job
+            .before
+            .as_ref()
+            .map(|machine| machine_limits(machine, axis));
         let [speed_mm_s, accel_mm_s2] = limits.unwrap_or([0.0; 2]);
         let fastest_mm_s = found.most[0].max(speed_mm_s);
         let accel_mm_s2 = found.most[1].max(accel_mm_s2);
-        let accel_mm_s2 = if accel_mm_s2 > 0.0 { accel_mm_s2 } else { fastest_mm_s / REACHED_S };
+        let accel_mm_s2 = if accel_mm_s2 > 0.0 {
+            accel_mm_s2
+        } else {
+            fastest_mm_s / REACHED_S
+        };
         let is_one_sided = self.machine.split.one_sided.iter().any(|(of, _)| *of == i);
-        Some(AxisExcitation { axis, range_mm, fastest_mm_s, accel_mm_s2, parts: parts(found, is_one_sided) })
+        Some(AxisExcitation {
+            axis,
+            range_mm,
+            fastest_mm_s,
+            accel_mm_s2,
+            parts: parts(found, is_one_sided),
+        })
     }
 }
 
 /// Highest speed and acceleration of an axis by its machine file, mm/s and mm/s2.
 fn machine_limits(machine: &Machine, axis: usize) -> [f64; 2] {
     let limits = &machine.limits;
-    let own_mm_s = machine.axes.get(axis).and_then(|axis| axis.max_velocity_mm_s).unwrap_or(f64::INFINITY);
-    [FEED_PART * limits.max_feed_mm_s.min(own_mm_s), limits.tangential_accel_mm_s2]
+    let own_mm_s = machine
+        .axes
+        .get(axis)
+        .and_then(|axis| axis.max_velocity_mm_s)
+        .unwrap_or(f64::INFINITY);
+    [
+        FEED_PART * limits.max_feed_mm_s.min(own_mm_s),
+        limits.tangential_accel_mm_s2,
+    ]
 }
 
 /// Kinds of motion that settle what is open of an axis.
@@ -49,7 +76,8 @@ fn parts(found: &FoundAxis, is_one_sided: bool) -> Vec<MotionPart> {
     let is_needed = |part: &MotionPart| {
         let shows = |term: &LawTerm| shown_by(*term).contains(part);
         // Without a name, anything may be open.
-        let is_open = unseen.is_open() && (unseen.terms.is_empty() || unseen.terms.iter().any(shows));
+        let is_open =
+            unseen.is_open() && (unseen.terms.is_empty() || unseen.terms.iter().any(shows));
         let is_missing = unseen.never.is_some() || is_one_sided || found.scores.beyond.is_some();
         is_open || (*part == MotionPart::Reversals && is_missing)
     };
@@ -63,7 +91,9 @@ fn shown_by(term: LawTerm) -> &'static [MotionPart] {
         LawTerm::LoopGain | LawTerm::Damping => &[Reversals, Strokes],
         LawTerm::Coulomb | LawTerm::Offset => &[Creeping, Reversals],
         LawTerm::VelocityFeedforward | LawTerm::Viscous | LawTerm::SpeedLimit => &[Reversals],
-        LawTerm::Presliding | LawTerm::Stribeck | LawTerm::StribeckSpeed | LawTerm::Backlash => &[Creeping],
+        LawTerm::Presliding | LawTerm::Stribeck | LawTerm::StribeckSpeed | LawTerm::Backlash => {
+            &[Creeping]
+        }
         LawTerm::RecordDelay
         | LawTerm::CommandDelay
         | LawTerm::LoopDelay

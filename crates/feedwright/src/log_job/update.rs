@@ -31,20 +31,30 @@ pub fn updated_text(identified: &LogIdentified, before: &str) -> Result<String, 
     let mut document: DocumentMut = before.parse()?;
     let servo_s = feedwright_ident::servo_period_s(identified.machine.sample_s);
     for (name, place) in AXIS_NAMES.into_iter().zip(identified.places()) {
-        let Some(found) = place.and_then(|i| identified.machine.axes.get(i)) else { continue };
+        let Some(found) = place.and_then(|i| identified.machine.axes.get(i)) else {
+            continue;
+        };
         let axes = within(document.as_table_mut(), "axis", true)?;
         let axis = within(axes, name, false)?;
         let keys = axis_keys(found, servo_s);
-        keys.keys.iter().filter(|key| key.is_told).for_each(|key| set(axis, key));
+        keys.keys
+            .iter()
+            .filter(|key| key.is_told)
+            .for_each(|key| set(axis, key));
         if !keys.transmission.is_empty() {
             let transmission = within(axis, "transmission", false)?;
             let is_new = !transmission.contains_key("damping_ratio");
-            keys.transmission.iter().filter(|key| key.is_told || is_new).for_each(|key| set(transmission, key));
+            keys.transmission
+                .iter()
+                .filter(|key| key.is_told || is_new)
+                .for_each(|key| set(transmission, key));
         }
     }
     let log = visible(&identified.job.name);
     let text = document.to_string();
-    Ok(format!("# Updated by feedwright from {log}; intervals of 90 % beside what it told.\n{text}"))
+    Ok(format!(
+        "# Updated by feedwright from {log}; intervals of 90 % beside what it told.\n{text}"
+    ))
 }
 
 /// The table of a key, which is created if it is missing. Fails if the key holds something else.
@@ -56,7 +66,10 @@ fn within<'t>(
     let mut new = Table::new();
     new.set_implicit(is_implicit);
     let item = table.entry(key).or_insert(Item::Table(new));
-    item.as_table_like_mut().ok_or_else(|| UpdateError::NoTable { key: key.to_owned() })
+    item.as_table_like_mut()
+        .ok_or_else(|| UpdateError::NoTable {
+            key: key.to_owned(),
+        })
 }
 
 /// A value with its comment.

@@ -85,15 +85,22 @@ impl OutputError {
             // Some folders exist and take no files.
             io::ErrorKind::NotFound if folder.is_dir() => {}
             io::ErrorKind::StorageFull if is_standard_output(path) => {
-                hint = Some("make room where the standard output goes, or write to a file".to_owned());
+                hint =
+                    Some("make room where the standard output goes, or write to a file".to_owned());
             }
             // A device has no room of its own, whatever is free around it.
             io::ErrorKind::StorageFull if path.exists() && !path.is_file() => {}
             io::ErrorKind::NotFound => {
-                hint = Some(format!("create the directory first: mkdir -p {}", folder.display()));
+                hint = Some(format!(
+                    "create the directory first: mkdir -p {}",
+                    folder.display()
+                ));
             }
             io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
-                hint = Some(format!("the file is made in {}, which has to be writable", folder.display()));
+                hint = Some(format!(
+                    "the file is made in {}, which has to be writable",
+                    folder.display()
+                ));
             }
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
                 free_bytes = free_bytes_in(folder);
@@ -107,24 +114,38 @@ impl OutputError {
             }
             _ => {}
         }
-        Self::Io { step, path: path.to_owned(), free_bytes, source, hint }
+        Self::Io {
+            step,
+            path: path.to_owned(),
+            free_bytes,
+            source,
+            hint,
+        }
     }
 
-    /// The error that [`super::OutputFile`] put into an `io::Error`, out of which writers above it hand it back; `path` is named
-    /// where it is some other error.
+    /// The error that [`super::OutputFile`] put into an `io::Error`, out of which writers above it
+    /// hand it back; `path` is named where it is some other error.
     pub fn from_io(error: io::Error, path: &Path) -> Self {
         match error.downcast::<Self>() {
             Ok(inner) => inner,
-            Err(source) => {
-                Self::Io { step: FileOperation::Write, path: path.to_owned(), free_bytes: None, source, hint: None }
-            }
+            Err(source) => Self::Io {
+                step: FileOperation::Write,
+                path: path.to_owned(),
+                free_bytes: None,
+                source,
+                hint: None,
+            },
         }
     }
 }
 
 /// What messages call a target.
 fn target(path: &Path) -> String {
-    if is_standard_output(path) { "the standard output".to_owned() } else { path.display().to_string() }
+    if is_standard_output(path) {
+        "the standard output".to_owned()
+    } else {
+        path.display().to_string()
+    }
 }
 
 fn room(free_bytes: Option<u64>) -> String {

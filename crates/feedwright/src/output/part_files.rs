@@ -34,7 +34,8 @@ pub(super) struct PartFile {
 }
 
 impl PartFile {
-    /// One for a target in a folder, and the file to write to; what earlier processes left there is removed.
+    /// One for a target in a folder, and the file to write to; what earlier processes left there is
+    /// removed.
     pub(super) fn create(target: &Path, folder: &Path) -> io::Result<(File, Self)> {
         remove_abandoned(folder);
         for _ in 0..ATTEMPTS {
@@ -46,7 +47,9 @@ impl PartFile {
                 return Ok((file, Self { path, _lock: lock }));
             }
         }
-        Err(io::Error::other("the file is removed by another process each time"))
+        Err(io::Error::other(
+            "the file is removed by another process each time",
+        ))
     }
 
     /// Moves it to its target.
@@ -70,20 +73,27 @@ fn create_beside(target: &Path, folder: &Path) -> io::Result<(File, TempPath)> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // A file that is replaced keeps its permissions; a new one gets what the user's umask leaves.
+        // A file that is replaced keeps its permissions; a new one gets what the user's umask
+        // leaves.
         let mode = fs::metadata(target).map_or(0o666, |found| found.permissions().mode());
         builder.permissions(fs::Permissions::from_mode(mode & 0o777));
     }
     #[cfg(not(unix))]
     let _ = target;
-    Ok(builder.tempfile_in(folder).map_err(of_the_system)?.into_parts())
+    Ok(builder
+        .tempfile_in(folder)
+        .map_err(of_the_system)?
+        .into_parts())
 }
 
 /// Removes the files under way that no process holds. What cannot be looked at, or removed, stays.
 fn remove_abandoned(folder: &Path) {
-    let Ok(entries) = fs::read_dir(folder) else { return };
+    let Ok(entries) = fs::read_dir(folder) else {
+        return;
+    };
     for entry in entries.flatten() {
-        let is_ours = is_part(&entry.file_name()) && entry.file_type().is_ok_and(|kind| kind.is_file());
+        let is_ours =
+            is_part(&entry.file_name()) && entry.file_type().is_ok_and(|kind| kind.is_file());
         if is_ours && File::open(entry.path()).is_ok_and(|file| is_abandoned(&file)) {
             let _ = fs::remove_file(entry.path());
         }
@@ -91,7 +101,8 @@ fn remove_abandoned(folder: &Path) {
 }
 
 fn is_part(name: &OsStr) -> bool {
-    name.to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX))
+    name.to_str()
+        .is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX))
 }
 
 /// Holds a file. Where the file system has no locks, nothing is removed either.

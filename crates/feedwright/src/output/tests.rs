@@ -5,8 +5,10 @@ use miette::Diagnostic;
 use super::*;
 
 fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> =
-        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
     names.sort();
     names
 }
@@ -16,7 +18,10 @@ fn start(path: &Path) -> OutputFile {
 }
 
 fn refusal(path: &Path, inputs: &[&Path]) -> OutputError {
-    OutputFiles::new(inputs.iter().copied()).start(path).err().expect("the output is refused")
+    OutputFiles::new(inputs.iter().copied())
+        .start(path)
+        .err()
+        .expect("the output is refused")
 }
 
 #[test]
@@ -57,7 +62,10 @@ fn an_end_from_outside_leaves_the_old_files_and_nothing_else() {
     fs::write(&old, "old").unwrap();
     let mut files = OutputFiles::default();
     let files = [&old, &new].map(|path| files.start(path).unwrap());
-    assert!(matches!(OutputFile::commit_all(files.into(), &Ended), Err(OutputError::Cancelled(_))));
+    assert!(matches!(
+        OutputFile::commit_all(files.into(), &Ended),
+        Err(OutputError::Cancelled(_))
+    ));
     assert_eq!(names(folder.path()), ["old.csv"]);
     assert_eq!(fs::read(&old).unwrap(), b"old");
 }
@@ -79,14 +87,30 @@ fn a_panic_leaves_nothing() {
 #[test]
 fn targets_that_are_no_files_are_refused() {
     let folder = tempfile::tempdir().unwrap();
-    assert!(matches!(refusal(folder.path(), &[]), OutputError::IsDirectory { .. }));
-    assert!(matches!(refusal(&folder.path().join("new/"), &[]), OutputError::IsDirectory { .. }));
+    assert!(matches!(
+        refusal(folder.path(), &[]),
+        OutputError::IsDirectory { .. }
+    ));
+    assert!(matches!(
+        refusal(&folder.path().join("new/"), &[]),
+        OutputError::IsDirectory { .. }
+    ));
     let missing = refusal(&folder.path().join("none/trace.csv"), &[]);
-    assert!(missing.help().unwrap().to_string().starts_with("create the directory first: mkdir -p "), "{missing}");
+    assert!(
+        missing
+            .help()
+            .unwrap()
+            .to_string()
+            .starts_with("create the directory first: mkdir -p "),
+        "{missing}"
+    );
     fs::write(folder.path().join("file"), "").unwrap();
     assert!(matches!(
         refusal(&folder.path().join("file/trace.csv"), &[]),
-        OutputError::Io { step: FileOperation::Create, .. }
+        OutputError::Io {
+            step: FileOperation::Create,
+            ..
+        }
     ));
 }
 
@@ -95,14 +119,27 @@ fn inputs_are_never_replaced_even_through_links() {
     let folder = tempfile::tempdir().unwrap();
     let input = folder.path().join("part.ngc");
     fs::write(&input, "G0 X1").unwrap();
-    assert!(matches!(refusal(&input, &[&input]), OutputError::IsInput { .. }));
-    let detour = folder.path().join("../").join(folder.path().file_name().unwrap()).join("part.ngc");
-    assert!(matches!(refusal(&detour, &[&input]), OutputError::IsInput { .. }));
+    assert!(matches!(
+        refusal(&input, &[&input]),
+        OutputError::IsInput { .. }
+    ));
+    let detour = folder
+        .path()
+        .join("../")
+        .join(folder.path().file_name().unwrap())
+        .join("part.ngc");
+    assert!(matches!(
+        refusal(&detour, &[&input]),
+        OutputError::IsInput { .. }
+    ));
     #[cfg(unix)]
     {
         let link = folder.path().join("link.ngc");
         std::os::unix::fs::symlink(&input, &link).unwrap();
-        assert!(matches!(refusal(&link, &[&input]), OutputError::IsInput { .. }));
+        assert!(matches!(
+            refusal(&link, &[&input]),
+            OutputError::IsInput { .. }
+        ));
     }
 }
 
@@ -112,7 +149,10 @@ fn two_outputs_do_not_share_a_target() {
     let path = folder.path().join("same.csv");
     let mut files = OutputFiles::default();
     files.start(&path).unwrap().commit().unwrap();
-    assert!(matches!(files.start(&path).err(), Some(OutputError::Twice { .. })));
+    assert!(matches!(
+        files.start(&path).err(),
+        Some(OutputError::Twice { .. })
+    ));
 }
 
 /// A link is followed whether its file exists or not.
@@ -128,13 +168,23 @@ fn a_link_to_a_file_that_does_not_exist_is_followed() {
     file.write_all(b"new").unwrap();
     OutputFile::commit_all(vec![file], &()).unwrap();
     assert_eq!(fs::read(place("inner/real")).unwrap(), b"new");
-    assert!(["link", "inner/next"].iter().all(|link| fs::symlink_metadata(place(link)).unwrap().is_symlink()));
+    assert!(
+        ["link", "inner/next"]
+            .iter()
+            .all(|link| fs::symlink_metadata(place(link)).unwrap().is_symlink())
+    );
     for (from, to) in [("a", "b"), ("b", "a")] {
         std::os::unix::fs::symlink(place(to), place(from)).unwrap();
     }
-    assert!(refusal(&place("a"), &[]).to_string().contains("too many symbolic links"));
+    assert!(
+        refusal(&place("a"), &[])
+            .to_string()
+            .contains("too many symbolic links")
+    );
     std::os::unix::fs::symlink("none/file", place("lost")).unwrap();
-    assert!(matches!(refusal(&place("lost"), &[]), OutputError::Io { hint: Some(hint), .. } if hint.contains("none")));
+    assert!(
+        matches!(refusal(&place("lost"), &[]), OutputError::Io { hint: Some(hint), .. } if hint.contains("none"))
+    );
 }
 
 #[cfg(unix)]
@@ -142,7 +192,10 @@ fn a_link_to_a_file_that_does_not_exist_is_followed() {
 fn a_link_is_followed_and_permissions_are_kept() {
     use std::os::unix::fs::PermissionsExt;
     let folder = tempfile::tempdir().unwrap();
-    let (real, link) = (folder.path().join("real.csv"), folder.path().join("link.csv"));
+    let (real, link) = (
+        folder.path().join("real.csv"),
+        folder.path().join("link.csv"),
+    );
     fs::write(&real, "old").unwrap();
     fs::set_permissions(&real, fs::Permissions::from_mode(0o640)).unwrap();
     std::os::unix::fs::symlink(&real, &link).unwrap();
@@ -151,7 +204,10 @@ fn a_link_is_followed_and_permissions_are_kept() {
     file.commit().unwrap();
     assert_eq!(fs::read(&real).unwrap(), b"new");
     assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
-    assert_eq!(fs::metadata(&real).unwrap().permissions().mode() & 0o777, 0o640);
+    assert_eq!(
+        fs::metadata(&real).unwrap().permissions().mode() & 0o777,
+        0o640
+    );
 }
 
 #[cfg(target_os = "linux")]
@@ -161,9 +217,15 @@ fn a_full_device_is_reported_by_name() {
     file.write_all(&vec![0; 2 * BUFFER_BYTES]).unwrap();
     let error = OutputFile::commit_all(vec![file], &()).unwrap_err();
     let text = error.to_string();
-    assert!(text.starts_with("cannot write /dev/full: No space left on device"), "{text}");
+    assert!(
+        text.starts_with("cannot write /dev/full: No space left on device"),
+        "{text}"
+    );
     // What is free in the folder around a device says nothing about it.
-    assert!(!text.contains("bytes are free there") && error.help().is_none(), "{text}");
+    assert!(
+        !text.contains("bytes are free there") && error.help().is_none(),
+        "{text}"
+    );
 }
 
 #[cfg(target_os = "linux")]
@@ -184,9 +246,15 @@ fn a_full_disk_leaves_neither_file_nor_temporary() {
     let error = (0..64).find_map(|_| file.write_all(&[b'x'; 8192]).err());
     drop(file);
     let left = names(folder.path());
-    std::process::Command::new("umount").arg(folder.path()).status().unwrap();
+    std::process::Command::new("umount")
+        .arg(folder.path())
+        .status()
+        .unwrap();
     let error = OutputError::from_io(error.expect("256 KiB do not fit into 64 KiB"), &path);
-    assert!(matches!(&error, OutputError::Io { free_bytes: Some(free), .. } if *free < 65536), "{error:?}");
+    assert!(
+        matches!(&error, OutputError::Io { free_bytes: Some(free), .. } if *free < 65536),
+        "{error:?}"
+    );
     assert!(left.is_empty(), "{left:?}");
 }
 
@@ -202,14 +270,20 @@ fn what_a_killed_process_left_is_removed_and_what_another_one_writes_is_not() {
     let second = start(&folder.path().join("second.csv"));
     assert_eq!(names(folder.path()).len(), 3);
     OutputFile::commit_all(vec![under_way, second], &()).unwrap();
-    assert_eq!(names(folder.path()), [".feedwright-notes", "first.csv", "second.csv"]);
+    assert_eq!(
+        names(folder.path()),
+        [".feedwright-notes", "first.csv", "second.csv"]
+    );
 }
 
 #[test]
 fn nothing_goes_to_a_device_before_all_is_complete() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("pipe");
-    let made = std::process::Command::new("mkfifo").arg(&path).status().is_ok_and(|status| status.success());
+    let made = std::process::Command::new("mkfifo")
+        .arg(&path)
+        .status()
+        .is_ok_and(|status| status.success());
     if !made {
         eprintln!("SKIPPED: no pipe can be made");
         return;

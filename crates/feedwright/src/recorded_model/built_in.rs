@@ -1,8 +1,10 @@
-//! What the logs of the built-in machines tell, and the models by that, shipped with the program: their first cut waits for no identification.
+//! What the logs of the built-in machines tell, and the models by that, shipped with the program:
+//! their first cut waits for no identification.
 //!
-//! `just built-in-logs` writes the file, for each machine and number of axes a line of the log and one of the model for the default controller. A line is found by a hash of what it follows
-//! from: a machine with another value, or another seed, is identified anew. One test finds all lines, another compares a line with a new
-//! identification.
+//! `just built-in-logs` writes the file, for each machine and number of axes a line of the log and
+//! one of the model for the default controller. A line is found by a hash of what it follows from:
+//! a machine with another value, or another seed, is identified anew. One test finds all lines,
+//! another compares a line with a new identification.
 
 use serde::{Deserialize, Serialize};
 
@@ -37,28 +39,53 @@ fn beginning(content: &str) -> String {
 /// What the program was shipped with of a content.
 pub(super) fn told(content: &str) -> Option<Told> {
     let beginning = beginning(content);
-    let BuiltInLog { text, doubts, fitting, .. } =
-        serde_json::from_str(lines().find(|line| line.starts_with(&beginning))?).ok()?;
+    let BuiltInLog {
+        text,
+        doubts,
+        fitting,
+        ..
+    } = serde_json::from_str(lines().find(|line| line.starts_with(&beginning))?).ok()?;
     let with = |changes: &Vec<(usize, String)>| {
         let mut lines: Vec<&str> = text.split('\n').collect();
-        changes.iter().try_for_each(|(number, line)| lines.get_mut(*number).map(|old| *old = line.as_str()))?;
+        changes.iter().try_for_each(|(number, line)| {
+            lines.get_mut(*number).map(|old| *old = line.as_str())
+        })?;
         Some(lines.join("\n"))
     };
     let fitting = fitting.iter().map(with).collect::<Option<_>>()?;
-    Some(Told { text, doubts, fitting })
+    Some(Told {
+        text,
+        doubts,
+        fitting,
+    })
 }
 
-/// The line of a content. A machine that fits as well has the lines of the text with other values; one that has not is left out.
+/// The line of a content. A machine that fits as well has the lines of the text with other values;
+/// one that has not is left out.
 pub(super) fn line(content: &str, told: &Told) -> String {
     let lines: Vec<&str> = told.text.split('\n').collect();
     let changes = |fits: &String| {
         let of_fits: Vec<&str> = fits.split('\n').collect();
-        let changed = lines.iter().zip(&of_fits).enumerate().filter(|(_, (line, other))| line != other);
+        let changed = lines
+            .iter()
+            .zip(&of_fits)
+            .enumerate()
+            .filter(|(_, (line, other))| line != other);
         let changed = changed.map(|(number, (_, other))| (number, (*other).to_owned()));
         (of_fits.len() == lines.len()).then(|| changed.collect::<Vec<_>>())
     };
-    let fitting = told.fitting.iter().filter_map(changes).take(FITTING).collect();
+    let fitting = told
+        .fitting
+        .iter()
+        .filter_map(changes)
+        .take(FITTING)
+        .collect();
     let content = key_of(&[content.as_bytes()]);
-    let line = BuiltInLog { content, text: told.text.clone(), doubts: told.doubts.clone(), fitting };
+    let line = BuiltInLog {
+        content,
+        text: told.text.clone(),
+        doubts: told.doubts.clone(),
+        fitting,
+    };
     serde_json::to_string(&line).unwrap_or_default()
 }

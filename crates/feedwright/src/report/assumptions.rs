@@ -49,13 +49,23 @@ pub enum LawKnowledge {
 impl Assumptions {
     /// What was cut, with or without a run that was measured.
     pub const fn cut_sentence(measured: bool) -> &'static str {
-        if measured { "Nothing was cut but what the log shows." } else { "Nothing was cut." }
+        if measured {
+            "Nothing was cut but what the log shows."
+        } else {
+            "Nothing was cut."
+        }
     }
 
     /// Which machine it is, and where its values come from.
     pub fn machine_sentence(&self) -> String {
-        let file = self.machine_file.as_ref().map_or_else(|| "built in".to_owned(), |file| format!("file {file}"));
-        format!("the machine is {} ({file}; values: {})", self.machine, self.machine_source)
+        let file = self
+            .machine_file
+            .as_ref()
+            .map_or_else(|| "built in".to_owned(), |file| format!("file {file}"));
+        format!(
+            "the machine is {} ({file}; values: {})",
+            self.machine, self.machine_source
+        )
     }
 
     /// What disturbs it.
@@ -63,14 +73,32 @@ impl Assumptions {
         if self.disturbed_by.is_empty() {
             return "nothing disturbs it".to_owned();
         }
-        format!("it has {} (seed {})", self.disturbed_by.join(", "), self.noise_seed)
+        format!(
+            "it has {} (seed {})",
+            self.disturbed_by.join(", "),
+            self.noise_seed
+        )
     }
 
     /// What is simulated of it, and what is not.
     pub fn simulation_sentence(&self) -> String {
-        let listed = |names: &[&'static str]| names.iter().map(|name| format!("{name}, ")).collect::<String>();
-        let with: Vec<&str> = self.with.iter().chain(&self.disturbed_by).copied().collect();
-        let with = if with.is_empty() { String::new() } else { format!(", with {}", with.join(", ")) };
+        let listed = |names: &[&'static str]| {
+            names
+                .iter()
+                .map(|name| format!("{name}, "))
+                .collect::<String>()
+        };
+        let with: Vec<&str> = self
+            .with
+            .iter()
+            .chain(&self.disturbed_by)
+            .copied()
+            .collect();
+        let with = if with.is_empty() {
+            String::new()
+        } else {
+            format!(", with {}", with.join(", "))
+        };
         format!(
             "simulated are its servo loops (position gain {} 1/s), inertia and friction{with}; not simulated: {}cutting forces of a material, bending, heat",
             self.position_gains_1_s.join(", "),
@@ -80,7 +108,12 @@ impl Assumptions {
 
     /// What the controller goes by.
     pub fn law_sentence(&self) -> String {
-        let Self { controller, law, law_from, .. } = self;
+        let Self {
+            controller,
+            law,
+            law_from,
+            ..
+        } = self;
         match law {
             LawKnowledge::None => format!("{controller} goes by no law of the axes ({law_from})"),
             LawKnowledge::Identified => {
@@ -88,7 +121,9 @@ impl Assumptions {
                     "{controller} goes by an identified law of the axes (from {law_from}); a real machine that differs from it comes out worse"
                 )
             }
-            LawKnowledge::Exact => format!("{controller} is given {law_from}, which nobody has of a real machine"),
+            LawKnowledge::Exact => {
+                format!("{controller} is given {law_from}, which nobody has of a real machine")
+            }
             LawKnowledge::Learned => format!("{controller} has learned from {law_from}"),
         }
     }

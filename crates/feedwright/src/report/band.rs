@@ -7,7 +7,8 @@ use super::text::number;
 /// Share of the machines that stay within the upper end of the band.
 const SHARE: f64 = 0.9;
 
-/// What machines that fit the recording of a model come to, each cut with the controller of that model.
+/// What machines that fit the recording of a model come to, each cut with the controller of that
+/// model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Band {
     /// Machines that were cut.
@@ -20,7 +21,8 @@ pub struct Band {
     pub rms_um: BandErrors,
     /// Largest contour error, um.
     pub max_um: BandErrors,
-    /// RMS contour error by the encoders, um, where the machine has geometry that they do not see and all was cut.
+    /// RMS contour error by the encoders, um, where the machine has geometry that they do not see
+    /// and all was cut.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joint_rms_um: Option<BandErrors>,
     /// Largest contour error by the encoders, um.
@@ -33,8 +35,8 @@ pub struct Band {
 pub struct BandErrors {
     /// The median.
     pub median: f64,
-    /// The value that a further machine exceeds with a probability of one in ten: of n machines the one of rank 0.9 (n + 1), the largest
-    /// where there are fewer than nine.
+    /// The value that a further machine exceeds with a probability of one in ten: of n machines the
+    /// one of rank 0.9 (n + 1), the largest where there are fewer than nine.
     pub p90: f64,
 }
 
@@ -53,7 +55,15 @@ impl BandErrors {
 impl Band {
     /// The band in a sentence.
     pub fn sentence(&self) -> String {
-        let Self { machines, diverged, first_s, rms_um, max_um, joint_rms_um, joint_max_um } = self;
+        let Self {
+            machines,
+            diverged,
+            first_s,
+            rms_um,
+            max_um,
+            joint_rms_um,
+            joint_max_um,
+        } = self;
         let both = |rms: &BandErrors, max: &BandErrors| {
             format!(
                 "RMS {} um in the median and {} um at 90 %, largest error {} and {} um",
@@ -63,11 +73,16 @@ impl Band {
                 number(max.p90)
             )
         };
-        let beginning = first_s.map_or_else(String::new, |first_s| format!(", the first {first_s:.0} s of the cut"));
+        let beginning = first_s.map_or_else(String::new, |first_s| {
+            format!(", the first {first_s:.0} s of the cut")
+        });
         let joints = joint_rms_um.as_ref().zip(joint_max_um.as_ref());
         let tool = both(rms_um, max_um);
-        let joints = joints.map(|(rms, max)| both(rms, max)).filter(|joints| *joints != tool);
-        let joints = joints.map_or_else(String::new, |joints| format!("; by the encoders: {joints}"));
+        let joints = joints
+            .map(|(rms, max)| both(rms, max))
+            .filter(|joints| *joints != tool);
+        let joints =
+            joints.map_or_else(String::new, |joints| format!("; by the encoders: {joints}"));
         let lost = if *diverged == 0 {
             String::new()
         } else {
@@ -85,8 +100,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sentence_says_what_the_encoders_see_and_which_loops_are_unstable_where_there_is_something_to_say() {
-        let [small, large] = [1.0, 4.0].map(|median| BandErrors { median, p90: 2.0 * median });
+    fn a_sentence_says_what_the_encoders_see_and_which_loops_are_unstable_where_there_is_something_to_say()
+     {
+        let [small, large] = [1.0, 4.0].map(|median| BandErrors {
+            median,
+            p90: 2.0 * median,
+        });
         let band = Band {
             machines: 9,
             diverged: 0,
@@ -97,8 +116,16 @@ mod tests {
             joint_max_um: Some(large),
         };
         let tool = "RMS 1.00 um in the median and 2.00 um at 90 %, largest error 4.00 and 8.00 um";
-        assert_eq!(band.sentence(), format!("band of 9 machines that fit the recording as well: {tool}"));
-        let all = Band { diverged: 2, first_s: Some(5.0), joint_rms_um: Some(large), ..band };
+        assert_eq!(
+            band.sentence(),
+            format!("band of 9 machines that fit the recording as well: {tool}")
+        );
+        let all = Band {
+            diverged: 2,
+            first_s: Some(5.0),
+            joint_rms_um: Some(large),
+            ..band
+        };
         assert_eq!(
             all.sentence(),
             format!(
@@ -113,9 +140,33 @@ mod tests {
     fn one_in_ten_is_beyond_the_band_where_there_are_nine_machines_and_more() {
         let of = |n: usize| BandErrors::of((1..=n).rev().map(|error| error as f64).collect());
         assert_eq!(of(0), None);
-        assert_eq!(of(1), Some(BandErrors { median: 1.0, p90: 1.0 }));
-        assert_eq!(of(8), Some(BandErrors { median: 4.5, p90: 8.0 }));
-        assert_eq!(of(9), Some(BandErrors { median: 5.0, p90: 9.0 }));
-        assert_eq!(of(19), Some(BandErrors { median: 10.0, p90: 18.0 }));
+        assert_eq!(
+            of(1),
+            Some(BandErrors {
+                median: 1.0,
+                p90: 1.0
+            })
+        );
+        assert_eq!(
+            of(8),
+            Some(BandErrors {
+                median: 4.5,
+                p90: 8.0
+            })
+        );
+        assert_eq!(
+            of(9),
+            Some(BandErrors {
+                median: 5.0,
+                p90: 9.0
+            })
+        );
+        assert_eq!(
+            of(19),
+            Some(BandErrors {
+                median: 10.0,
+                p90: 18.0
+            })
+        );
     }
 }

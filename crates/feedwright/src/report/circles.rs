@@ -1,4 +1,5 @@
-//! The full circles of a program, and how round each was cut: what a circular test shows (ISO 230-4).
+//! The full circles of a program, and how round each was cut: what a circular test shows (ISO
+//! 230-4).
 //!
 //! ```text
 //! F(theta) = (tool - foot) . u        radial deviation, u the outward unit vector of the circle at the foot, theta its angle
@@ -6,7 +7,8 @@
 //! G = max - min of F - b cos(theta) - c sin(theta)      circular deviation, about the least-squares circle
 //! ```
 //!
-//! Unlike a circular test, which leaves out where the axes start and stop, all of the circle counts, its beginning and its end, too.
+//! Unlike a circular test, which leaves out where the axes start and stop, all of the circle
+//! counts, its beginning and its end, too.
 
 use std::f64::consts::TAU;
 use std::io;
@@ -57,7 +59,9 @@ impl FullCircle {
     fn starting_with(piece: &Piece, arc: &feedwright_plan::Arc) -> Self {
         let axis = arc.axis();
         let planes = ["YZ", "ZX", "XY"];
-        let normal = (0..3).max_by(|&a, &b| axis[a].abs().total_cmp(&axis[b].abs())).unwrap_or(2);
+        let normal = (0..3)
+            .max_by(|&a, &b| axis[a].abs().total_cmp(&axis[b].abs()))
+            .unwrap_or(2);
         Self {
             line: piece.line,
             center_mm: arc.center_mm(),
@@ -74,7 +78,8 @@ impl FullCircle {
             && (self.plane, self.counter_clockwise) == (next.plane, next.counter_clockwise)
     }
 
-    /// Angle of a point of the circle as part of a turn, and the outward unit vector there; none where it is not on the circle.
+    /// Angle of a point of the circle as part of a turn, and the outward unit vector there; none
+    /// where it is not on the circle.
     fn place(&self, point_mm: [f64; 3]) -> Option<(f64, [f64; 3])> {
         let from_center = sub(point_mm, self.center_mm);
         let [first, second] = self.axes();
@@ -87,12 +92,16 @@ impl FullCircle {
     }
 }
 
-/// The full circles of a path in the order in which they are cut: the longest, where there are many.
+/// The full circles of a path in the order in which they are cut: the longest, where there are
+/// many.
 pub(crate) fn full_circles(steps: impl Iterator<Item = Step>) -> Vec<FullCircle> {
     let mut found = Vec::new();
     let mut open: Option<(FullCircle, f64)> = None;
     let mut keep = |open: Option<(FullCircle, f64)>| {
-        found.extend(open.filter(|(_, turned_rad)| *turned_rad > TAU - OPEN_RAD).map(|(circle, _)| circle));
+        found.extend(
+            open.filter(|(_, turned_rad)| *turned_rad > TAU - OPEN_RAD)
+                .map(|(circle, _)| circle),
+        );
         if found.len() > 4 * MOST_CIRCLES {
             keep_longest(&mut found);
         }
@@ -134,7 +143,8 @@ pub struct Roundness {
     pub radial_max_um: f64,
     /// Least radial deviation Fmin, µm.
     pub radial_min_um: f64,
-    /// Radial deviation of largest magnitude in each part of a turn from the first axis of the plane on, µm; none where it was not cut.
+    /// Radial deviation of largest magnitude in each part of a turn from the first axis of the
+    /// plane on, µm; none where it was not cut.
     #[serde(skip)]
     pub radial_um: Vec<Option<f64>>,
 }
@@ -151,18 +161,26 @@ impl<'a> RadialDeviations<'a> {
     /// Nothing yet.
     pub(crate) fn of(circles: &'a [FullCircle]) -> Self {
         let none = (vec![None; BINS], [f64::INFINITY, f64::NEG_INFINITY]);
-        Self { circles, recorded: vec![none; circles.len()] }
+        Self {
+            circles,
+            recorded: vec![none; circles.len()],
+        }
     }
 
     /// One for each circle; none where too little of it was cut to say.
     pub(crate) fn roundness(self) -> Vec<Option<Roundness>> {
-        self.recorded.into_iter().map(|(bins_mm, extremes_mm)| roundness(&bins_mm, extremes_mm)).collect()
+        self.recorded
+            .into_iter()
+            .map(|(bins_mm, extremes_mm)| roundness(&bins_mm, extremes_mm))
+            .collect()
     }
 }
 
 impl Sink for RadialDeviations<'_> {
     fn row(&mut self, row: &Row) -> io::Result<()> {
-        let reached = self.circles.partition_point(|circle| circle.s_mm[0] <= row.s_mm);
+        let reached = self
+            .circles
+            .partition_point(|circle| circle.s_mm[0] <= row.s_mm);
         if !row.cutting || !row.act_mm.iter().all(|x| x.is_finite()) {
             return Ok(());
         }
@@ -191,10 +209,14 @@ impl Sink for RadialDeviations<'_> {
 fn roundness(bins_mm: &[Option<f64>], [least_mm, most_mm]: [f64; 2]) -> Option<Roundness> {
     let angle = |i: usize| (i as f64 + 0.5) / bins_mm.len() as f64 * TAU;
     let places: Vec<([f64; 3], f64)> = (0..bins_mm.len())
-        .filter_map(|i| bins_mm[i].map(|radial_mm| ([1.0, libm::cos(angle(i)), libm::sin(angle(i))], radial_mm)))
+        .filter_map(|i| {
+            bins_mm[i].map(|radial_mm| ([1.0, libm::cos(angle(i)), libm::sin(angle(i))], radial_mm))
+        })
         .collect();
     let quarters: [bool; 4] = std::array::from_fn(|q| {
-        bins_mm[q * bins_mm.len() / 4..(q + 1) * bins_mm.len() / 4].iter().any(Option::is_some)
+        bins_mm[q * bins_mm.len() / 4..(q + 1) * bins_mm.len() / 4]
+            .iter()
+            .any(Option::is_some)
     });
     if places.len() < 8 || quarters.contains(&false) {
         return None;
@@ -211,7 +233,8 @@ fn roundness(bins_mm: &[Option<f64>], [least_mm, most_mm]: [f64; 2]) -> Option<R
     })
 }
 
-/// The factors of least squares, by the normal equations of three unknowns, which are near to diagonal here.
+/// The factors of least squares, by the normal equations of three unknowns, which are near to
+/// diagonal here.
 fn least_squares(places: &[([f64; 3], f64)]) -> Option<[f64; 3]> {
     let mut rows = [[0.0; 4]; 3];
     for (at, value) in places {
@@ -242,20 +265,34 @@ mod tests {
     use feedwright_plan::vector::add_scaled;
 
     fn circles_of(program: &str) -> Vec<FullCircle> {
-        let reader =
-            feedwright_gcode::Reader::from_text("part.ngc", program, feedwright_gcode::Settings::default()).unwrap();
+        let reader = feedwright_gcode::Reader::from_text(
+            "part.ngc",
+            program,
+            feedwright_gcode::Settings::default(),
+        )
+        .unwrap();
         full_circles(Pieces::new(reader.map(Result::unwrap)).map(Result::unwrap))
     }
 
     #[test]
     fn a_circle_is_found_in_one_arc_and_in_several() {
         let one = circles_of("G0 X0 Y0\nG2 X0 Y0 I10 J0 F3000\nM2\n");
-        let four =
-            circles_of("G0 X0 Y0\nG2 X10 Y10 I10 J0 F3000\nX20 Y0 I0 J-10\nX10 Y-10 I-10 J0\nX0 Y0 I0 J10\nM2\n");
+        let four = circles_of(
+            "G0 X0 Y0\nG2 X10 Y10 I10 J0 F3000\nX20 Y0 I0 J-10\nX10 Y-10 I-10 J0\nX0 Y0 I0 J10\nM2\n",
+        );
         for circles in [&one, &four] {
             assert_eq!(circles.len(), 1);
-            let FullCircle { center_mm, radius_mm, plane, counter_clockwise, line, s_mm } = &circles[0];
-            assert!(distance(*center_mm, [10.0, 0.0, 0.0]) < 1e-9 && (radius_mm - 10.0).abs() < 1e-9);
+            let FullCircle {
+                center_mm,
+                radius_mm,
+                plane,
+                counter_clockwise,
+                line,
+                s_mm,
+            } = &circles[0];
+            assert!(
+                distance(*center_mm, [10.0, 0.0, 0.0]) < 1e-9 && (radius_mm - 10.0).abs() < 1e-9
+            );
             assert_eq!((*plane, *counter_clockwise, *line), ("XY", false, 2));
             assert!((s_mm[1] - s_mm[0] - 10.0 * TAU).abs() < 1e-9);
         }
@@ -265,10 +302,15 @@ mod tests {
     fn half_circles_helices_and_rapids_are_none() {
         let none = "G0 X0 Y0\nG2 X20 Y0 I10 J0 F3000\nG3 X40 Y0 I10 J0\nG2 X40 Y0 Z-1 I10 J0\nG0 X0 Y0\nM2\n";
         assert_eq!(circles_of(none), []);
-        let many: String = (0..100).map(|n| format!("G0 X{n} Y0\nG2 I{} F500\n", 0.1 * f64::from(n + 1))).collect();
+        let many: String = (0..100)
+            .map(|n| format!("G0 X{n} Y0\nG2 I{} F500\n", 0.1 * f64::from(n + 1)))
+            .collect();
         let found = circles_of(&(many + "M2\n"));
         assert_eq!(found.len(), MOST_CIRCLES);
-        assert!(found.iter().all(|circle| circle.radius_mm > 8.7), "{found:?}");
+        assert!(
+            found.iter().all(|circle| circle.radius_mm > 8.7),
+            "{found:?}"
+        );
     }
 
     /// The tool cuts an ellipse of 3 um with a shifted center and a wrong radius. Only the ellipse
@@ -284,22 +326,46 @@ mod tests {
             let radial_mm = 0.005 + 0.004 * libm::cos(angle) + 0.003 * libm::cos(2.0 * angle);
             let act_mm = add_scaled(foot_mm, radial_mm, outward);
             let s_mm = circles[0].s_mm[0] + 10.0 * angle + 0.5;
-            recorded.row(&Row { foot_mm, act_mm, s_mm, ..row(f64::from(k)) }).unwrap();
+            recorded
+                .row(&Row {
+                    foot_mm,
+                    act_mm,
+                    s_mm,
+                    ..row(f64::from(k))
+                })
+                .unwrap();
         }
         let roundness = recorded.roundness()[0].clone().unwrap();
-        assert!((roundness.circular_deviation_um - 6.0).abs() < 0.02, "{roundness:?}");
-        assert!((roundness.radial_max_um - 12.0).abs() < 1e-6 && roundness.radial_min_um < 5.0, "{roundness:?}");
+        assert!(
+            (roundness.circular_deviation_um - 6.0).abs() < 0.02,
+            "{roundness:?}"
+        );
+        assert!(
+            (roundness.radial_max_um - 12.0).abs() < 1e-6 && roundness.radial_min_um < 5.0,
+            "{roundness:?}"
+        );
         assert!((roundness.radial_um[0].unwrap() - 12.0).abs() < 0.01);
     }
 
     #[test]
     fn least_squares_have_no_rest_along_any_of_their_columns() {
-        // A part of a circle: no two columns are orthogonal. What is left of the values is, to all of them.
-        let at = |k: u32| [1.0, libm::cos(0.1 * f64::from(k)), libm::sin(0.1 * f64::from(k))];
-        let places: Vec<([f64; 3], f64)> = (0..30).map(|k| (at(k), libm::sin(f64::from(k * k)))).collect();
+        // A part of a circle: no two columns are orthogonal. What is left of the values is, to all
+        // of them.
+        let at = |k: u32| {
+            [
+                1.0,
+                libm::cos(0.1 * f64::from(k)),
+                libm::sin(0.1 * f64::from(k)),
+            ]
+        };
+        let places: Vec<([f64; 3], f64)> = (0..30)
+            .map(|k| (at(k), libm::sin(f64::from(k * k))))
+            .collect();
         let found = least_squares(&places).unwrap();
         for i in 0..3 {
-            let along = |(at, value): &([f64; 3], f64)| at[i] * (value - (0..3).map(|k| at[k] * found[k]).sum::<f64>());
+            let along = |(at, value): &([f64; 3], f64)| {
+                at[i] * (value - (0..3).map(|k| at[k] * found[k]).sum::<f64>())
+            };
             let rest: f64 = places.iter().map(along).sum();
             assert!(rest.abs() < 1e-9, "{rest} along column {i} of {found:?}");
         }

@@ -12,7 +12,8 @@ pub struct CompensatedGeometry {
     pub from: Option<String>,
     /// What is compensated.
     pub terms: Vec<&'static str>,
-    /// Standard deviation of the tool across the path by those of the file: root mean square over the cut, um.
+    /// Standard deviation of the tool across the path by those of the file: root mean square over
+    /// the cut, um.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spread_rms_um: Option<f64>,
     /// Its largest value, um.
@@ -24,7 +25,10 @@ impl CompensatedGeometry {
     /// In a sentence, without its full stop.
     pub fn sentence(&self) -> String {
         let from = self.from.as_ref().map_or_else(
-            || "exactly as the machine file states it; of a real machine it has to be measured".to_owned(),
+            || {
+                "exactly as the machine file states it; of a real machine it has to be measured"
+                    .to_owned()
+            },
             |name| format!("as {name} states it"),
         );
         let known = match (self.spread_rms_um, self.spread_max_um) {
@@ -36,6 +40,9 @@ impl CompensatedGeometry {
             _ if self.from.is_some() => "; it states no standard deviations".to_owned(),
             _ => String::new(),
         };
-        format!("compensated geometry: {}, {from}{known}", self.terms.join(", "))
+        format!(
+            "compensated geometry: {}, {from}{known}",
+            self.terms.join(", ")
+        )
     }
 }

@@ -1,8 +1,10 @@
-//! The page's data: one JSON object, deflated and in base64, in a script element that browsers do not run.
+//! The page's data: one JSON object, deflated and in base64, in a script element that browsers do
+//! not run.
 //!
-//! Every column is an array of integers, the first value and then the differences, in the units of [`units`]:
-//! differences of smooth signals are short, and sums of integers come back without drift. Deflated (RFC 1951), the data of
-//! a long program have a third of the bytes. Base64 (RFC 4648) has no character that ends a script element.
+//! Every column is an array of integers, the first value and then the differences, in the units of
+//! [`units`]: differences of smooth signals are short, and sums of integers come back without
+//! drift. Deflated (RFC 1951), the data of a long program have a third of the bytes. Base64 (RFC
+//! 4648) has no character that ends a script element.
 
 use std::io::{self, Write};
 
@@ -12,7 +14,9 @@ use miniz_oxide::deflate::compress_to_vec;
 use serde_json::json;
 
 use super::series::SeriesPoint;
-use super::{DrawnLimits, FullCircle, Histogram, PageUnits, ProgramLine, Report, ReportedRun, RunSummary};
+use super::{
+    DrawnLimits, FullCircle, Histogram, PageUnits, ProgramLine, Report, ReportedRun, RunSummary,
+};
 
 /// Level of the compression, of 10: the default of zlib.
 const LEVEL: u8 = 6;
@@ -39,7 +43,11 @@ pub(super) fn write(out: &mut impl Write, report: &Report, units: PageUnits) -> 
 }
 
 /// Writes the object as it is.
-pub(super) fn write_json(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
+pub(super) fn write_json(
+    out: &mut impl Write,
+    report: &Report,
+    units: PageUnits,
+) -> io::Result<()> {
     write!(out, "{{\"meta\":{},\"outline\":", meta(report, units))?;
     match report.runs.first() {
         Some(run) => write_outline(out, run)?,
@@ -58,7 +66,11 @@ pub(super) fn write_json(out: &mut impl Write, report: &Report, units: PageUnits
 /// Lengths, errors and speeds are in units of the page: the keys have the names of the metric ones.
 fn meta(report: &Report, of: PageUnits) -> serde_json::Value {
     let factor = of.factor();
-    let runs: Vec<_> = report.runs.iter().map(|run| run_meta(run, factor)).collect();
+    let runs: Vec<_> = report
+        .runs
+        .iter()
+        .map(|run| run_meta(run, factor))
+        .collect();
     json!({
         "axes": report.runs.iter().map(|r| r.summary.axes).max().unwrap_or(2),
         "tolerance_um": report.tolerance_um.map(|um| factor * um),
@@ -75,11 +87,18 @@ fn meta(report: &Report, of: PageUnits) -> serde_json::Value {
     })
 }
 
-/// What a count of an error stands for, mm: a thousandth to a ten-thousandth of the largest, so that the drawing of a small one has no steps.
+/// What a count of an error stands for, mm: a thousandth to a ten-thousandth of the largest, so
+/// that the drawing of a small one has no steps.
 fn error_unit_mm(summary: &RunSummary) -> f64 {
     // Of a run that diverged it is not known.
-    let largest_mm = if summary.max_um.is_finite() { (1e-3 * summary.max_um).clamp(1e-6, 1.0) } else { 1.0 };
-    10_f64.powi(libm::log10(largest_mm).floor() as i32 - 3).min(units::ERROR_MM)
+    let largest_mm = if summary.max_um.is_finite() {
+        (1e-3 * summary.max_um).clamp(1e-6, 1.0)
+    } else {
+        1.0
+    };
+    10_f64
+        .powi(libm::log10(largest_mm).floor() as i32 - 3)
+        .min(units::ERROR_MM)
 }
 
 fn run_meta(run: &ReportedRun, factor: f64) -> serde_json::Value {
@@ -110,7 +129,11 @@ fn limits_meta(limits: &DrawnLimits) -> serde_json::Value {
 }
 
 /// A circle, and the radial deviation of each run from it in counts of [`error_unit_mm`].
-fn circle_meta(report: &Report, (index, circle): (usize, &FullCircle), factor: f64) -> serde_json::Value {
+fn circle_meta(
+    report: &Report,
+    (index, circle): (usize, &FullCircle),
+    factor: f64,
+) -> serde_json::Value {
     let run = |run: &ReportedRun| {
         let (roundness, unit_mm) = (run.roundness_of(index)?, error_unit_mm(&run.summary));
         let counts = |um: &Option<f64>| um.map(|um| (um * 1e-3 / unit_mm).round() as i64);
@@ -147,10 +170,22 @@ fn digits(value: f64) -> f64 {
 fn write_outline(out: &mut impl Write, run: &ReportedRun) -> io::Result<()> {
     let vertices: Vec<_> = run.series.outline().collect();
     let mut object = Object::begin(out)?;
-    for (k, name) in ["x", "y", "z"].into_iter().enumerate().take(run.summary.axes) {
-        object.column(name, units::POINT_MM, vertices.iter().map(|v| v.point_mm[k]))?;
+    for (k, name) in ["x", "y", "z"]
+        .into_iter()
+        .enumerate()
+        .take(run.summary.axes)
+    {
+        object.column(
+            name,
+            units::POINT_MM,
+            vertices.iter().map(|v| v.point_mm[k]),
+        )?;
     }
-    object.column("cutting", 1.0, vertices.iter().map(|v| f64::from(u8::from(v.cutting))))?;
+    object.column(
+        "cutting",
+        1.0,
+        vertices.iter().map(|v| f64::from(u8::from(v.cutting))),
+    )?;
     object.end()
 }
 
@@ -170,12 +205,32 @@ fn write_run(out: &mut impl Write, run: &ReportedRun) -> io::Result<()> {
     object.column("feed", units::FEED_MM_S, column(|p| p.feed_act_mm_s))?;
     object.column("line", 1.0, column(|p| f64::from(p.line)))?;
     object.column("cutting", 1.0, column(|p| f64::from(u8::from(p.cutting))))?;
-    for (k, axis) in ["x", "y", "z"].into_iter().enumerate().take(run.summary.axes) {
-        object.column(&format!("f{axis}"), units::POINT_MM, points.iter().map(|p| p.foot_mm[k]))?;
-        object.column(&format!("d{axis}"), error_mm, points.iter().map(|p| p.deviation_mm[k]))?;
+    for (k, axis) in ["x", "y", "z"]
+        .into_iter()
+        .enumerate()
+        .take(run.summary.axes)
+    {
+        object.column(
+            &format!("f{axis}"),
+            units::POINT_MM,
+            points.iter().map(|p| p.foot_mm[k]),
+        )?;
+        object.column(
+            &format!("d{axis}"),
+            error_mm,
+            points.iter().map(|p| p.deviation_mm[k]),
+        )?;
         if run.summary.peak_torque_nm.is_some() {
-            object.column(&format!("torque_{axis}"), units::TORQUE_NM, points.iter().map(|p| p.torque_nm[k]))?;
-            object.column(&format!("accel_{axis}"), units::ACCEL_MM_S2, points.iter().map(|p| p.accel_mm_s2[k]))?;
+            object.column(
+                &format!("torque_{axis}"),
+                units::TORQUE_NM,
+                points.iter().map(|p| p.torque_nm[k]),
+            )?;
+            object.column(
+                &format!("accel_{axis}"),
+                units::ACCEL_MM_S2,
+                points.iter().map(|p| p.accel_mm_s2[k]),
+            )?;
         }
     }
     object.end()
@@ -193,7 +248,12 @@ impl<'a, W: Write> Object<'a, W> {
         Ok(Self { out, separator: "" })
     }
 
-    fn column(&mut self, name: &str, unit: f64, values: impl Iterator<Item = f64>) -> io::Result<()> {
+    fn column(
+        &mut self,
+        name: &str,
+        unit: f64,
+        values: impl Iterator<Item = f64>,
+    ) -> io::Result<()> {
         write!(self.out, "{}\"{name}\":[", self.separator)?;
         self.separator = ",";
         let mut before = 0;

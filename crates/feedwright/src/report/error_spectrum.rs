@@ -4,8 +4,9 @@
 //! rms(band)^2 = 1/L sum over the frequencies n of the band of I(n), twice but for the first and the last
 //! ```
 //!
-//! I is the spectrum of [`feedwright_ident::spectrum`] over the rows that cut, L its segment: the squares of all bands add up to the mean square of the error.
-//! In the plane the error is signed; in space, where it has no sign, its three components are added up: the size of a vibration has
+//! I is the spectrum of [`feedwright_ident::spectrum`] over the rows that cut, L its segment: the
+//! squares of all bands add up to the mean square of the error. In the plane the error is signed;
+//! in space, where it has no sign, its three components are added up: the size of a vibration has
 //! twice its frequency.
 
 use std::io;
@@ -19,7 +20,8 @@ use serde::Serialize;
 const SEGMENT_S: f64 = 2.0;
 /// A sequence of fewer samples has no spectrum.
 const LEAST_SAMPLES: usize = 64;
-/// A band is this part of its frequency wide, a twelfth of an octave, and no narrower than this many frequencies.
+/// A band is this part of its frequency wide, a twelfth of an octave, and no narrower than this
+/// many frequencies.
 const BAND_WIDTH: f64 = 1.059_463_094_359_295_3;
 const LEAST_FREQUENCIES: usize = 3;
 
@@ -40,7 +42,8 @@ pub struct ErrorSpectrum {
     servo_s: f64,
     length: usize,
     segments: [SpectrumSegments; 3],
-    /// Components of the error, mm, in as many of the sequences as the run has; the others are empty.
+    /// Components of the error, mm, in as many of the sequences as the run has; the others are
+    /// empty.
     errors_mm: [Vec<f64>; 3],
     cutting: Vec<bool>,
     /// Rows that are not in a segment yet.
@@ -53,7 +56,9 @@ pub struct ErrorSpectrum {
 impl ErrorSpectrum {
     /// Creates the collector for a run with 2 or 3 `axes` and the servo period `servo_s`, s.
     pub fn new(axes: usize, servo_s: f64) -> Self {
-        let length = ((SEGMENT_S / servo_s) as usize).max(LEAST_SAMPLES).next_power_of_two();
+        let length = ((SEGMENT_S / servo_s) as usize)
+            .max(LEAST_SAMPLES)
+            .next_power_of_two();
         Self {
             servo_s,
             length,
@@ -106,12 +111,19 @@ impl ErrorSpectrum {
         while self.open > 0 {
             self.push([0.0; 3], false);
         }
-        let power = self.segments[..self.channels()].iter().map(|segments| segments.spectrum(self.seen).power);
+        let power = self.segments[..self.channels()]
+            .iter()
+            .map(|segments| segments.spectrum(self.seen).power);
         let sum = |mut sum: Vec<f64>, power: Vec<f64>| {
-            sum.iter_mut().zip(power).for_each(|(sum, power)| *sum += power);
+            sum.iter_mut()
+                .zip(power)
+                .for_each(|(sum, power)| *sum += power);
             sum
         };
-        banded(&power.fold(vec![0.0; self.length / 2 + 1], sum), self.servo_s)
+        banded(
+            &power.fold(vec![0.0; self.length / 2 + 1], sum),
+            self.servo_s,
+        )
     }
 
     /// A run that is shorter than a segment gets shorter segments.
@@ -130,12 +142,18 @@ impl ErrorSpectrum {
 
 impl Sink for ErrorSpectrum {
     fn row(&mut self, row: &Row) -> io::Result<()> {
-        let error_mm = if self.in_space { sub(row.act_mm, row.foot_mm) } else { [row.contour_error_mm, 0.0, 0.0] };
+        let error_mm = if self.in_space {
+            sub(row.act_mm, row.foot_mm)
+        } else {
+            [row.contour_error_mm, 0.0, 0.0]
+        };
         if !error_mm.iter().all(|x| x.is_finite()) {
             return Ok(());
         }
         // Of a rest that was left out no more is filled in than there is room for.
-        let left_out = self.last_s.map_or(0.0, |last_s| ((row.t_s - last_s) / self.servo_s).round() - 1.0);
+        let left_out = self.last_s.map_or(0.0, |last_s| {
+            ((row.t_s - last_s) / self.servo_s).round() - 1.0
+        });
         for _ in 0..(left_out as usize).min(self.length) {
             self.push([0.0; 3], false);
         }
@@ -149,14 +167,19 @@ impl Sink for ErrorSpectrum {
 fn banded(power: &[f64], servo_s: f64) -> Vec<SpectrumBand> {
     let last = power.len() - 1;
     let hz = |n: f64| 0.5 * n / last as f64 / servo_s;
-    let mean_square = |n: usize| (if n == 0 || n == last { 0.5 } else { 1.0 }) * power[n] / last as f64;
+    let mean_square =
+        |n: usize| (if n == 0 || n == last { 0.5 } else { 1.0 }) * power[n] / last as f64;
     let (mut bands, mut first) = (Vec::new(), 0);
     while first <= last {
         let wide = (first as f64 * BAND_WIDTH).ceil() as usize;
         let next = wide.max(first + LEAST_FREQUENCIES).min(last + 1);
         let sum: f64 = (first..next).map(mean_square).sum();
         let edge = |n: usize| hz((n as f64 - 0.5).clamp(0.0, last as f64));
-        bands.push(SpectrumBand { from_hz: edge(first), to_hz: edge(next), rms_um: 1e3 * sum.sqrt() });
+        bands.push(SpectrumBand {
+            from_hz: edge(first),
+            to_hz: edge(next),
+            rms_um: 1e3 * sum.sqrt(),
+        });
         first = next;
     }
     bands
@@ -177,32 +200,62 @@ mod tests {
             let mm = 1e-3 * error_um(t_s);
             let act_mm = [0.6 * mm, 0.0, 0.8 * mm];
             let contour_error_mm = if axes == 3 { mm.abs() } else { mm };
-            spectrum.row(&Row { act_mm, contour_error_mm, ..row(t_s) }).unwrap();
+            spectrum
+                .row(&Row {
+                    act_mm,
+                    contour_error_mm,
+                    ..row(t_s)
+                })
+                .unwrap();
         }
         spectrum.bands()
     }
 
     fn rms_um(bands: &[SpectrumBand]) -> f64 {
-        bands.iter().map(|band| band.rms_um * band.rms_um).sum::<f64>().sqrt()
+        bands
+            .iter()
+            .map(|band| band.rms_um * band.rms_um)
+            .sum::<f64>()
+            .sqrt()
     }
 
-    /// A line in a band and its neighbours has the RMS of a sine, in the plane and in space; so has all of it, however long the run is.
+    /// A line in a band and its neighbours has the RMS of a sine, in the plane and in space; so has
+    /// all of it, however long the run is.
     #[test]
     fn a_vibration_is_found_at_its_frequency_with_its_size() {
-        for (axes, rows, hz) in [(2, 20_000, 43.0), (3, 20_000, 43.0), (2, 1757, 120.0), (2, 400, 80.0)] {
+        for (axes, rows, hz) in [
+            (2, 20_000, 43.0),
+            (3, 20_000, 43.0),
+            (2, 1757, 120.0),
+            (2, 400, 80.0),
+        ] {
             let found = bands(axes, rows, |t_s| 2.0 * libm::sin(TAU * hz * t_s));
             let near = |band: &&SpectrumBand| band.from_hz < 1.1 * hz && band.to_hz > 0.9 * hz;
             let line_um = rms_um(&found.iter().filter(near).copied().collect::<Vec<_>>());
-            assert!((line_um / 2.0_f64.sqrt() - 1.0).abs() < 0.01, "{axes} axes, {rows} rows: {line_um}");
-            assert!((rms_um(&found) / 2.0_f64.sqrt() - 1.0).abs() < 0.01, "{axes} axes, {rows} rows: {found:?}");
+            assert!(
+                (line_um / 2.0_f64.sqrt() - 1.0).abs() < 0.01,
+                "{axes} axes, {rows} rows: {line_um}"
+            );
+            assert!(
+                (rms_um(&found) / 2.0_f64.sqrt() - 1.0).abs() < 0.01,
+                "{axes} axes, {rows} rows: {found:?}"
+            );
         }
     }
 
     #[test]
     fn bands_touch_and_end_at_half_the_sampling_rate() {
         let found = bands(2, 5000, |t_s| t_s);
-        assert!(found.windows(2).all(|pair| pair[0].to_hz == pair[1].from_hz), "{found:?}");
-        assert_eq!((found[0].from_hz, found[found.len() - 1].to_hz), (0.0, 500.0));
+        assert!(
+            found
+                .windows(2)
+                .all(|pair| pair[0].to_hz == pair[1].from_hz),
+            "{found:?}"
+        );
+        assert_eq!(
+            (found[0].from_hz, found[found.len() - 1].to_hz),
+            (0.0, 500.0)
+        );
         assert!(found.len() < 120, "{}", found.len());
     }
 
@@ -213,8 +266,18 @@ mod tests {
         for k in 0..12_000 {
             let n = if k > 6000 { k + 9000 } else { k };
             let (t_s, cutting) = (f64::from(n) * SERVO_S, k % 3000 < 2000);
-            let mm = if cutting { 1e-3 * libm::sin(TAU * 50.0 * t_s) } else { 7.0 };
-            spectrum.row(&Row { contour_error_mm: mm, cutting, ..row(t_s) }).unwrap();
+            let mm = if cutting {
+                1e-3 * libm::sin(TAU * 50.0 * t_s)
+            } else {
+                7.0
+            };
+            spectrum
+                .row(&Row {
+                    contour_error_mm: mm,
+                    cutting,
+                    ..row(t_s)
+                })
+                .unwrap();
         }
         assert!((rms_um(&spectrum.bands()) * 2.0_f64.sqrt() - 1.0).abs() < 0.02);
     }

@@ -1,7 +1,9 @@
-//! Figures as a paper prints them: line charts in panels, as SVG, and a page that holds several with captions.
+//! Figures as a paper prints them: line charts in panels, as SVG, and a page that holds several
+//! with captions.
 //!
-//! Equal figures give equal bytes. As a file the drawing is black on a white plate, so that it is read on any page; a page
-//! takes the plate away and has colours for light and dark. Text is text, so that it can be searched and edited.
+//! Equal figures give equal bytes. As a file the drawing is black on a white plate, so that it is
+//! read on any page; a page takes the plate away and has colours for light and dark. Text is text,
+//! so that it can be searched and edited.
 
 mod axis;
 mod svg;
@@ -35,7 +37,8 @@ pub struct Panel {
     pub curves: Vec<Polyline>,
     /// Whether a unit has the same length on both axes, as a path needs it.
     pub equal_axes: bool,
-    /// Whether both axes are logarithmic: points and ranges are the powers of ten, and ticks tell the numbers.
+    /// Whether both axes are logarithmic: points and ranges are the powers of ten, and ticks tell
+    /// the numbers.
     pub powers_of_ten: bool,
     /// Range of the horizontal axis; `None` takes it from the curves.
     pub x_range: Option<[f64; 2]>,
@@ -46,7 +49,8 @@ pub struct Panel {
 /// A polyline.
 #[derive(Debug, Clone, Default)]
 pub struct Polyline {
-    /// Name in the legend; curves of equal name in several panels share an entry, an empty name has none.
+    /// Name in the legend; curves of equal name in several panels share an entry, an empty name has
+    /// none.
     pub label: String,
     /// Points; one that is not finite leaves a gap.
     pub points: Vec<[f64; 2]>,
@@ -70,9 +74,12 @@ pub enum LineStyle {
     Thin,
 }
 
-/// Colours that stay apart for the colour-blind and in grey print: black, vermilion, blue, green, purple, orange. After
-/// Okabe and Ito, "Color Universal Design", 2008, darkened where thin lines need it.
-pub const COLORS: [&str; 6] = ["#111111", "#c8500a", "#0067a8", "#00805f", "#a8568a", "#c98a00"];
+/// Colours that stay apart for the colour-blind and in grey print: black, vermilion, blue, green,
+/// purple, orange. After Okabe and Ito, "Color Universal Design", 2008, darkened where thin lines
+/// need it.
+pub const COLORS: [&str; 6] = [
+    "#111111", "#c8500a", "#0067a8", "#00805f", "#a8568a", "#c98a00",
+];
 
 /// A figure with what stands below it.
 #[derive(Debug, Clone, Default)]
@@ -91,14 +98,16 @@ impl Figure {
         svg::write(self, svg::WIDTH)
     }
 
-    /// The figure for a page: once as wide as a text column, and once for phones; the style sheet shows one of the two.
+    /// The figure for a page: once as wide as a text column, and once for phones; the style sheet
+    /// shows one of the two.
     pub fn to_html(&self) -> String {
         let [roomy, narrow] = [svg::WIDTH, svg::NARROW].map(|page_px| svg::write(self, page_px));
         format!("<div class=\"roomy\">{roomy}</div><div class=\"narrow\">{narrow}</div>")
     }
 }
 
-/// Writes one self-contained HTML page with `introduction`, a paragraph, and the figures below each other.
+/// Writes one self-contained HTML page with `introduction`, a paragraph, and the figures below each
+/// other.
 ///
 /// # Errors
 /// Where `out` takes no more.
@@ -110,20 +119,37 @@ pub fn write_figure_page(
 ) -> io::Result<()> {
     let parts: Vec<PagePart> = figure_parts(figures).collect();
     write_head(out, "figures", title, introduction, &parts)?;
-    parts.iter().zip(figures).try_for_each(|(part, entry)| write_figure_part(out, part, entry))?;
+    parts
+        .iter()
+        .zip(figures)
+        .try_for_each(|(part, entry)| write_figure_part(out, part, entry))?;
     write_foot(out)
 }
 
 /// The parts of a page that figures are.
 pub fn figure_parts(figures: &[CaptionedFigure]) -> impl Iterator<Item = PagePart> {
-    figures.iter().enumerate().map(|(i, entry)| PagePart::new(&format!("figure-{}", i + 1), entry.number.as_str()))
+    figures
+        .iter()
+        .enumerate()
+        .map(|(i, entry)| PagePart::new(&format!("figure-{}", i + 1), entry.number.as_str()))
 }
 
 /// One of them.
-pub fn write_figure_part(out: &mut impl Write, part: &PagePart, entry: &CaptionedFigure) -> io::Result<()> {
+pub fn write_figure_part(
+    out: &mut impl Write,
+    part: &PagePart,
+    entry: &CaptionedFigure,
+) -> io::Result<()> {
     part.begin(out)?;
-    let (svg, number, caption) = (entry.figure.to_html(), escaped(&entry.number), escaped(&entry.caption));
-    writeln!(out, "<figure>\n{svg}<figcaption><b>{number}.</b> {caption}</figcaption>\n</figure>")?;
+    let (svg, number, caption) = (
+        entry.figure.to_html(),
+        escaped(&entry.number),
+        escaped(&entry.caption),
+    );
+    writeln!(
+        out,
+        "<figure>\n{svg}<figcaption><b>{number}.</b> {caption}</figcaption>\n</figure>"
+    )?;
     PagePart::end(out)
 }
 
@@ -132,9 +158,22 @@ mod tests {
     use super::*;
 
     fn sine() -> Figure {
-        let points = (0..=100).map(|k| [f64::from(k) * 0.02, 30.0 * libm::sin(f64::from(k) * 0.1)]).collect();
-        let curve = Polyline { label: "a <b>".to_owned(), points, color: COLORS[0].to_owned(), ..Polyline::default() };
-        Figure { panels: vec![Panel { curves: vec![curve], ..Panel::default() }], ..Figure::default() }
+        let points = (0..=100)
+            .map(|k| [f64::from(k) * 0.02, 30.0 * libm::sin(f64::from(k) * 0.1)])
+            .collect();
+        let curve = Polyline {
+            label: "a <b>".to_owned(),
+            points,
+            color: COLORS[0].to_owned(),
+            ..Polyline::default()
+        };
+        Figure {
+            panels: vec![Panel {
+                curves: vec![curve],
+                ..Panel::default()
+            }],
+            ..Figure::default()
+        }
     }
 
     #[test]
@@ -145,29 +184,50 @@ mod tests {
 
     #[test]
     fn a_figure_without_points_is_still_a_figure() {
-        let empty = Figure { panels: vec![Panel::default()], ..Figure::default() };
+        let empty = Figure {
+            panels: vec![Panel::default()],
+            ..Figure::default()
+        };
         let mut broken = sine();
         broken.panels[0].curves[0].points = vec![[f64::NAN, 1.0], [f64::INFINITY, 0.0], [1.0, 1.0]];
         for svg in [empty.to_svg(), broken.to_svg(), Figure::default().to_svg()] {
-            assert!(!svg.contains("NaN") && !svg.contains("inf") && svg.ends_with("</svg>\n"), "{svg}");
+            assert!(
+                !svg.contains("NaN") && !svg.contains("inf") && svg.ends_with("</svg>\n"),
+                "{svg}"
+            );
         }
     }
 
     #[test]
     fn equal_axes_draw_a_circle_round() {
-        let circle =
-            (0..=360).map(|k| [libm::cos(f64::from(k).to_radians()), libm::sin(f64::from(k).to_radians())]).collect();
+        let circle = (0..=360)
+            .map(|k| {
+                [
+                    libm::cos(f64::from(k).to_radians()),
+                    libm::sin(f64::from(k).to_radians()),
+                ]
+            })
+            .collect();
         let mut figure = sine();
         figure.panels[0].curves[0].points = circle;
         figure.panels[0].equal_axes = true;
         let svg = figure.to_svg();
         let curves = svg.split("stroke-linejoin").nth(1).unwrap();
-        let path = curves.split("<path d=\"M").nth(1).and_then(|s| s.split('"').next()).unwrap();
+        let path = curves
+            .split("<path d=\"M")
+            .nth(1)
+            .and_then(|s| s.split('"').next())
+            .unwrap();
         let numbers: Vec<f64> = path.split(['L', ' ']).map(|n| n.parse().unwrap()).collect();
         let span = |axis: usize| {
             let values = numbers.iter().skip(axis).step_by(2).copied();
             values.clone().fold(f64::MIN, f64::max) - values.fold(f64::MAX, f64::min)
         };
-        assert!((span(0) - span(1)).abs() < 0.5, "{} by {}", span(0), span(1));
+        assert!(
+            (span(0) - span(1)).abs() < 0.5,
+            "{} by {}",
+            span(0),
+            span(1)
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! The headline: what came out of the runs of a report and what it costs. The terminal and the page show the same text.
+//! The headline: what came out of the runs of a report and what it costs. The terminal and the page
+//! show the same text.
 //!
 //! The run that is judged, the last, is compared with the first run that was simulated.
 
@@ -41,7 +42,11 @@ impl fmt::Display for Headline {
         for part in &self.parts {
             match part {
                 HeadlinePart::Text(text) | HeadlinePart::Name(text) => f.write_str(text)?,
-                HeadlinePart::Value { before, after, change } => {
+                HeadlinePart::Value {
+                    before,
+                    after,
+                    change,
+                } => {
                     if let Some(before) = before {
                         write!(f, "{before} → ")?;
                     }
@@ -70,39 +75,57 @@ impl Report {
     /// The run that it is compared with: the first that was simulated to its end, if there are two.
     fn compared(&self) -> Option<&RunSummary> {
         let (_, others) = self.runs.split_last()?;
-        others.iter().map(|run| &run.summary).find(|run| !run.measured && run.outcome == Outcome::Completed)
+        others
+            .iter()
+            .map(|run| &run.summary)
+            .find(|run| !run.measured && run.outcome == Outcome::Completed)
     }
 
-    /// Whether the run that is judged reached its end within the tolerance. Without a tolerance the end is enough.
+    /// Whether the run that is judged reached its end within the tolerance. Without a tolerance the
+    /// end is enough.
     pub fn is_within_tolerance(&self) -> bool {
         self.judged().is_some_and(|run| {
-            run.outcome == Outcome::Completed && self.tolerance_um.is_none_or(|tolerance_um| run.max_um <= tolerance_um)
+            run.outcome == Outcome::Completed
+                && self
+                    .tolerance_um
+                    .is_none_or(|tolerance_um| run.max_um <= tolerance_um)
         })
     }
 
     /// The run of the controller that was asked for. A corrected program is cut without it.
     fn controlled(&self) -> Option<&RunSummary> {
         let runs = self.runs.iter().map(|run| &run.summary);
-        runs.rev().find(|run| !run.measured && run.controller != AS_EXPORTED)
+        runs.rev()
+            .find(|run| !run.measured && run.controller != AS_EXPORTED)
     }
 
     /// Whether the controller that was asked for left most of the part uncorrected, or its end.
     pub fn is_mostly_uncorrected(&self) -> bool {
-        self.controlled().is_some_and(RunSummary::is_mostly_uncorrected)
+        self.controlled()
+            .is_some_and(RunSummary::is_mostly_uncorrected)
     }
 
-    /// Index of the axis whose peak torque the headline names; the table of the terminal shows that axis, too.
+    /// Index of the axis whose peak torque the headline names; the table of the terminal shows that
+    /// axis, too.
     #[cfg(feature = "command")]
     pub(crate) fn costly_axis(&self) -> usize {
-        self.judged().map_or(0, |judged| costly_axis(self.compared(), judged).0)
+        self.judged()
+            .map_or(0, |judged| costly_axis(self.compared(), judged).0)
     }
 
-    /// The errors of the controller that was asked for that are worse than the uncorrected errors. Empty if one of the two runs
-    /// is missing or diverged.
+    /// The errors of the controller that was asked for that are worse than the uncorrected errors.
+    /// Empty if one of the two runs is missing or diverged.
     pub fn harm(&self) -> Vec<Harm> {
         let is_whole = |run: &&RunSummary| run.outcome == Outcome::Completed;
-        let baseline = self.runs.iter().map(|run| &run.summary).find(|run| run.controller == BASELINE);
-        match (baseline.filter(is_whole), self.controlled().filter(is_whole)) {
+        let baseline = self
+            .runs
+            .iter()
+            .map(|run| &run.summary)
+            .find(|run| run.controller == BASELINE);
+        match (
+            baseline.filter(is_whole),
+            self.controlled().filter(is_whole),
+        ) {
             (Some(before), Some(after)) => harm(&CutErrors::of(before), &CutErrors::of(after)),
             _ => Vec::new(),
         }
@@ -166,8 +189,15 @@ impl Headline {
         self.value(", uncut path ", runs, |run| run.uncut_um, um);
         self.value(", machining time ", runs, |run| run.time_s, duration);
         if let Some(tolerance_um) = report.tolerance_um {
-            let side = if report.is_within_tolerance() { "within" } else { "out of" };
-            self.text(&format!("; {side} tolerance: max {} µm, allowed {tolerance_um} µm", fixed(judged.max_um, 2)));
+            let side = if report.is_within_tolerance() {
+                "within"
+            } else {
+                "out of"
+            };
+            self.text(&format!(
+                "; {side} tolerance: max {} µm, allowed {tolerance_um} µm",
+                fixed(judged.max_um, 2)
+            ));
         }
         self.text(".");
         self.harm(report);
@@ -188,12 +218,17 @@ impl Headline {
 
     /// That a run has no figures.
     fn diverged(&mut self, run: &RunSummary) {
-        let Outcome::Diverged { at_s } = run.outcome else { return };
+        let Outcome::Diverged { at_s } = run.outcome else {
+            return;
+        };
         if !self.parts.is_empty() {
             self.text(" ");
         }
         self.name(&run.controller);
-        self.text(&format!(" diverged at {}: the tool ran away from the path.", duration(at_s)));
+        self.text(&format!(
+            " diverged at {}: the tool ran away from the path.",
+            duration(at_s)
+        ));
     }
 
     /// That the correction is worse than none.
@@ -213,22 +248,51 @@ impl Headline {
     fn cost(&mut self, runs: [Option<&RunSummary>; 2], judged: &RunSummary) {
         let (axis, why) = costly_axis(runs[0], judged);
         let torque_nm = |run: &RunSummary| run.peak_torque_nm.map_or(f64::NAN, |peaks| peaks[axis]);
-        let accel_m_s2 = |run: &RunSummary| if run.measured { f64::NAN } else { run.max_command_accel_mm_s2 * 1e-3 };
+        let accel_m_s2 = |run: &RunSummary| {
+            if run.measured {
+                f64::NAN
+            } else {
+                run.max_command_accel_mm_s2 * 1e-3
+            }
+        };
         let what = format!(" Cost: peak torque of {}, {why}, ", AXES[axis]);
         self.value(&what, runs, torque_nm, |nm| format!("{} N m", number(nm)));
-        self.value(", command beside the program by up to ", [None, runs[1]], |run| run.max_deviation_um, um);
-        self.value(", its largest acceleration ", runs, accel_m_s2, |accel| format!("{} m/s²", number(accel)));
-        if let Some(CommandShares { acceleration, torque }) = judged.command_share {
-            let of_limit = |of: CommandShare| format!("{} % of the limit of {}", number(100.0 * of.share), of.axis);
-            self.text(&format!(", {}; largest torque {}", of_limit(acceleration), of_limit(torque)));
+        self.value(
+            ", command beside the program by up to ",
+            [None, runs[1]],
+            |run| run.max_deviation_um,
+            um,
+        );
+        self.value(", its largest acceleration ", runs, accel_m_s2, |accel| {
+            format!("{} m/s²", number(accel))
+        });
+        if let Some(CommandShares {
+            acceleration,
+            torque,
+        }) = judged.command_share
+        {
+            let of_limit = |of: CommandShare| {
+                format!("{} % of the limit of {}", number(100.0 * of.share), of.axis)
+            };
+            self.text(&format!(
+                ", {}; largest torque {}",
+                of_limit(acceleration),
+                of_limit(torque)
+            ));
         }
         self.text(".");
     }
 
     /// That the controller was taken out of the loop.
     fn faded(&mut self, judged: &RunSummary) {
-        let Some(faded) = judged.faded_out else { return };
-        let (from, share, cause) = (duration(faded.at_s), number(100.0 * judged.engaged_share), faded.cause);
+        let Some(faded) = judged.faded_out else {
+            return;
+        };
+        let (from, share, cause) = (
+            duration(faded.at_s),
+            number(100.0 * judged.engaged_share),
+            faded.cause,
+        );
         self.text(" ");
         self.name(&judged.controller);
         self.text(&format!(
@@ -241,8 +305,20 @@ impl Headline {
 
     /// What a log shows, if there is one.
     fn measured(&mut self, report: &Report) {
-        let Some(run) = report.runs.iter().map(|run| &run.summary).find(|run| run.measured) else { return };
-        self.value(" Measured on the machine: RMS contour error ", [None, Some(run)], |run| run.rms_um, um);
+        let Some(run) = report
+            .runs
+            .iter()
+            .map(|run| &run.summary)
+            .find(|run| run.measured)
+        else {
+            return;
+        };
+        self.value(
+            " Measured on the machine: RMS contour error ",
+            [None, Some(run)],
+            |run| run.rms_um,
+            um,
+        );
         self.value(", largest ", [None, Some(run)], |run| run.max_um, um);
         self.text(".");
     }
@@ -254,18 +330,22 @@ fn um(value: f64) -> String {
 
 /// The axis whose peak torque is told, and why it is that one.
 ///
-/// Each axis has a drive of its own, so its peak is compared with its own peak in the other run. The largest peaks of all
-/// axes may belong to different drives, and their ratio hides a drive whose load has grown more. Without another run it is
-/// the axis with the largest torque.
+/// Each axis has a drive of its own, so its peak is compared with its own peak in the other run.
+/// The largest peaks of all axes may belong to different drives, and their ratio hides a drive
+/// whose load has grown more. Without another run it is the axis with the largest torque.
 fn costly_axis(before: Option<&RunSummary>, after: &RunSummary) -> (usize, &'static str) {
-    let Some(peaks_nm) = after.peak_torque_nm else { return (0, "of which there is no record") };
+    let Some(peaks_nm) = after.peak_torque_nm else {
+        return (0, "of which there is no record");
+    };
     let before_nm = before.and_then(|before| before.peak_torque_nm);
     let load = |k: usize| match before_nm {
         Some(before_nm) if before_nm[k] > 0.0 => peaks_nm[k] / before_nm[k],
         Some(_) => 0.0,
         None => peaks_nm[k],
     };
-    let axis = (0..after.axes.clamp(1, 3)).max_by(|&a, &b| load(a).total_cmp(&load(b))).unwrap_or(0);
+    let axis = (0..after.axes.clamp(1, 3))
+        .max_by(|&a, &b| load(a).total_cmp(&load(b)))
+        .unwrap_or(0);
     let why = match before_nm {
         None => "the largest",
         Some(_) if load(axis) < 1.0 => "which falls least",
@@ -280,8 +360,16 @@ mod tests {
     use super::*;
 
     /// A run of two axes with these errors, um, and peak torques, N m.
-    fn run(controller: &str, [rms_um, max_um, uncut_um]: [f64; 3], peaks_nm: [f64; 2]) -> ReportedRun {
-        let facts = RunFacts { controller: controller.to_owned(), axes: 2, ..RunFacts::default() };
+    fn run(
+        controller: &str,
+        [rms_um, max_um, uncut_um]: [f64; 3],
+        peaks_nm: [f64; 2],
+    ) -> ReportedRun {
+        let facts = RunFacts {
+            controller: controller.to_owned(),
+            axes: 2,
+            ..RunFacts::default()
+        };
         let summary = RunSummary {
             rms_um,
             max_um,
@@ -292,7 +380,13 @@ mod tests {
             peak_torque_nm: Some([peaks_nm[0], peaks_nm[1], 0.0]),
             ..Statistics::new().summary(facts, |_| String::new())
         };
-        ReportedRun { summary, series: Series::new(), spectrum: Vec::new(), roundness: Vec::new(), events: Vec::new() }
+        ReportedRun {
+            summary,
+            series: Series::new(),
+            spectrum: Vec::new(),
+            roundness: Vec::new(),
+            events: Vec::new(),
+        }
     }
 
     fn uncorrected() -> ReportedRun {
@@ -339,8 +433,15 @@ mod tests {
     #[test]
     fn a_run_alone_is_compared_with_nothing_and_a_log_is_no_run_to_compare_with() {
         let alone = text(vec![uncorrected()], None);
-        assert!(alone.starts_with("Simulated, uncorrected: RMS contour error 10.0 µm, largest 40.0 µm,"), "{alone}");
-        assert!(alone.contains("peak torque of X, the largest, 1.00 N m,"), "{alone}");
+        assert!(
+            alone
+                .starts_with("Simulated, uncorrected: RMS contour error 10.0 µm, largest 40.0 µm,"),
+            "{alone}"
+        );
+        assert!(
+            alone.contains("peak torque of X, the largest, 1.00 N m,"),
+            "{alone}"
+        );
         let mut log = run("measured", [12.0, 50.0, 5.0], [0.0; 2]);
         (log.summary.measured, log.summary.peak_torque_nm) = (true, None);
         let beside_a_log = text(vec![log, uncorrected()], None);
@@ -362,27 +463,59 @@ mod tests {
         lost.summary.outcome = Outcome::Diverged { at_s: 0.5 };
         let lost = report(vec![uncorrected(), lost], Some(100.0));
         assert!(!lost.is_within_tolerance());
-        assert_eq!(headline(&lost).to_string(), "two-dimensional diverged at 0.50 s: the tool ran away from the path.");
+        assert_eq!(
+            headline(&lost).to_string(),
+            "two-dimensional diverged at 0.50 s: the tool ran away from the path."
+        );
         let mut without = uncorrected();
         without.summary.outcome = Outcome::Diverged { at_s: 0.5 };
         let text = text(vec![without, controlled()], None);
-        assert!(text.starts_with("Simulated, two-dimensional: RMS contour error 1.00 µm, largest 4.00 µm,"), "{text}");
-        assert!(text.ends_with(" uncorrected diverged at 0.50 s: the tool ran away from the path."), "{text}");
+        assert!(
+            text.starts_with(
+                "Simulated, two-dimensional: RMS contour error 1.00 µm, largest 4.00 µm,"
+            ),
+            "{text}"
+        );
+        assert!(
+            text.ends_with(" uncorrected diverged at 0.50 s: the tool ran away from the path."),
+            "{text}"
+        );
     }
 
     #[test]
     fn the_torque_is_that_of_the_axis_on_which_it_rises_most() {
         let torque = |peaks_nm: [f64; 2]| {
-            let text = text(vec![uncorrected(), run("two-dimensional", [1.0; 3], peaks_nm)], None);
+            let text = text(
+                vec![uncorrected(), run("two-dimensional", [1.0; 3], peaks_nm)],
+                None,
+            );
             let (_, rest) = text.split_once("peak torque of ").unwrap_or_default();
-            rest.split_once(", command").unwrap_or_default().0.to_owned()
+            rest.split_once(", command")
+                .unwrap_or_default()
+                .0
+                .to_owned()
         };
         // The largest of all axes, X, goes from 1 to 2.72 N m; Y from 0.5 to 1.48.
-        let largest_is_another = report(vec![uncorrected(), run("two-dimensional", [1.0; 3], [2.72, 1.48])], None);
+        let largest_is_another = report(
+            vec![
+                uncorrected(),
+                run("two-dimensional", [1.0; 3], [2.72, 1.48]),
+            ],
+            None,
+        );
         assert_eq!(largest_is_another.costly_axis(), 1);
-        assert_eq!(torque([2.72, 1.48]), "Y, which rises most, 0.50 N m → 1.48 N m (+196 %)");
-        assert_eq!(torque([3.0, 1.48]), "X, which rises most, 1.00 N m → 3.00 N m (+200 %)");
-        assert_eq!(torque([0.8, 0.3]), "X, which falls least, 1.00 N m → 0.80 N m (−20 %)");
+        assert_eq!(
+            torque([2.72, 1.48]),
+            "Y, which rises most, 0.50 N m → 1.48 N m (+196 %)"
+        );
+        assert_eq!(
+            torque([3.0, 1.48]),
+            "X, which rises most, 1.00 N m → 3.00 N m (+200 %)"
+        );
+        assert_eq!(
+            torque([0.8, 0.3]),
+            "X, which falls least, 1.00 N m → 0.80 N m (−20 %)"
+        );
     }
 
     #[test]
@@ -391,11 +524,20 @@ mod tests {
         let said = "two-dimensional is worse than uncorrected for this part on this machine \
                     (RMS 10.10 µm for 10.00, uncut 9.00 µm for 5.00): do not use its command.";
         let exported = || run(AS_EXPORTED, [1.0; 3], [1.0; 2]);
-        for runs in [vec![uncorrected(), worse()], vec![uncorrected(), worse(), exported()]] {
+        for runs in [
+            vec![uncorrected(), worse()],
+            vec![uncorrected(), worse(), exported()],
+        ] {
             let text = text(runs, None);
             assert!(text.contains(said), "{text}");
         }
         assert!(!text(vec![uncorrected(), controlled()], None).contains("worse"));
-        assert!(!text(vec![run("cross-coupled", [0.1; 3], [1.0; 2]), worse()], None).contains("worse"));
+        assert!(
+            !text(
+                vec![run("cross-coupled", [0.1; 3], [1.0; 2]), worse()],
+                None
+            )
+            .contains("worse")
+        );
     }
 }

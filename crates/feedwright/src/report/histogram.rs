@@ -5,8 +5,8 @@ use serde::Serialize;
 /// Bins on either side of zero while counting.
 const BINS_PER_SIDE: usize = 512;
 
-/// Width of a bin to begin with, µm. It doubles until all errors fit, so that a full histogram has 256 to 512 bins on a
-/// side.
+/// Width of a bin to begin with, µm. It doubles until all errors fit, so that a full histogram has
+/// 256 to 512 bins on a side.
 const FIRST_BIN_UM: f64 = 1e-3;
 
 /// Most bins of a finished [`Histogram`]: what a plot can show.
@@ -16,7 +16,8 @@ const SHOWN_BINS: usize = 96;
 /// `(first_bin + i) * bin_um` up to the next multiple.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Histogram {
-    /// Width of a bin, µm: 0.001 times a power of two, so that histograms of several runs can be brought to one width.
+    /// Width of a bin, µm: 0.001 times a power of two, so that histograms of several runs can be
+    /// brought to one width.
     pub bin_um: f64,
     /// Number of the first bin; the bin from 0 upwards has number 0.
     pub first_bin: i64,
@@ -24,7 +25,8 @@ pub struct Histogram {
     pub counts: Vec<u64>,
 }
 
-/// Counts of a histogram under way: as many bins on either side of zero, wide enough for all so far.
+/// Counts of a histogram under way: as many bins on either side of zero, wide enough for all so
+/// far.
 #[derive(Debug, Clone)]
 pub(super) struct Counts {
     bin_um: f64,
@@ -34,7 +36,10 @@ pub(super) struct Counts {
 impl Counts {
     /// None yet.
     pub(super) fn new() -> Self {
-        Self { bin_um: FIRST_BIN_UM, counts: vec![0; 2 * BINS_PER_SIDE] }
+        Self {
+            bin_um: FIRST_BIN_UM,
+            counts: vec![0; 2 * BINS_PER_SIDE],
+        }
     }
 
     /// One more of so much, um.
@@ -47,7 +52,8 @@ impl Counts {
         self.counts[bin as usize] += 1;
     }
 
-    /// Doubles the width of the bins. With zero between two bins, pairs join without remainder on either side.
+    /// Doubles the width of the bins. With zero between two bins, pairs join without remainder on
+    /// either side.
     fn widen(&mut self) {
         let narrow = std::mem::replace(&mut self.counts, vec![0; 2 * BINS_PER_SIDE]);
         for (i, count) in narrow.into_iter().enumerate() {
@@ -61,11 +67,19 @@ impl Counts {
         let first = self.counts.iter().position(|&n| n > 0);
         let last = self.counts.iter().rposition(|&n| n > 0);
         let (Some(first), Some(last)) = (first, last) else {
-            return Histogram { bin_um: self.bin_um, first_bin: 0, counts: Vec::new() };
+            return Histogram {
+                bin_um: self.bin_um,
+                first_bin: 0,
+                counts: Vec::new(),
+            };
         };
         let side = BINS_PER_SIDE as i64;
         let counts = self.counts[first..=last].to_vec();
-        let mut histogram = Histogram { bin_um: self.bin_um, first_bin: first as i64 - side, counts };
+        let mut histogram = Histogram {
+            bin_um: self.bin_um,
+            first_bin: first as i64 - side,
+            counts,
+        };
         while histogram.counts.len() > SHOWN_BINS {
             histogram = histogram.widened();
         }
@@ -85,7 +99,11 @@ impl Histogram {
             }
             counts[wide] += count;
         }
-        Self { bin_um: self.bin_um * 2.0, first_bin, counts }
+        Self {
+            bin_um: self.bin_um * 2.0,
+            first_bin,
+            counts,
+        }
     }
 }
 
@@ -95,14 +113,22 @@ mod tests {
 
     #[test]
     fn the_histogram_agrees_with_counting_by_hand() {
-        let errors_um: Vec<f64> = (0..4000).map(|k| 37.0 * libm::sin(f64::from(k) * 0.7) - 5.0).collect();
+        let errors_um: Vec<f64> = (0..4000)
+            .map(|k| 37.0 * libm::sin(f64::from(k) * 0.7) - 5.0)
+            .collect();
         let mut counts = Counts::new();
         errors_um.iter().for_each(|error_um| counts.add(*error_um));
         let histogram = counts.histogram();
-        assert!(histogram.counts.len() <= SHOWN_BINS && histogram.counts.len() > SHOWN_BINS / 2 - 2);
+        assert!(
+            histogram.counts.len() <= SHOWN_BINS && histogram.counts.len() > SHOWN_BINS / 2 - 2
+        );
         for (bin, &count) in (histogram.first_bin..).zip(&histogram.counts) {
             let inside = |e: &&f64| (**e / histogram.bin_um).floor() as i64 == bin;
-            assert_eq!(count, errors_um.iter().filter(inside).count() as u64, "bin {bin}");
+            assert_eq!(
+                count,
+                errors_um.iter().filter(inside).count() as u64,
+                "bin {bin}"
+            );
         }
         assert_eq!(histogram.counts.iter().sum::<u64>(), 4000);
     }

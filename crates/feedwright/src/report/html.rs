@@ -1,7 +1,8 @@
 //! The page: one HTML file, readable without a network and without scripts.
 //!
-//! Headings, verdict and tables are written here, so that the numbers are there before any script runs; the drawings
-//! are made in the browser by `assets/report/*.js` from the data that [`embedded_data`] writes.
+//! Headings, verdict and tables are written here, so that the numbers are there before any script
+//! runs; the drawings are made in the browser by `assets/report/*.js` from the data that
+//! [`embedded_data`] writes.
 
 use std::io::{self, Write};
 
@@ -20,7 +21,8 @@ const PAGE_CSS: &str = include_str!("../../assets/report/page.css");
 const UPLOT_CSS: &str = include_str!("../../assets/vendor/uplot/uPlot.min.css");
 const UPLOT_JS: &str = include_str!("../../assets/vendor/uplot/uPlot.iife.min.js");
 
-/// The page's scripts in the order in which they build on each other; they share one function scope.
+/// The page's scripts in the order in which they build on each other; they share one function
+/// scope.
 const SCRIPTS: [&str; 11] = [
     include_str!("../../assets/report/data.js"),
     include_str!("../../assets/report/theme.js"),
@@ -48,7 +50,10 @@ pub fn write_html(out: &mut impl Write, report: &Report) -> io::Result<()> {
 /// # Errors
 /// Where `out` takes no more.
 pub fn write_html_in(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
-    let frame = PageFrame::new(&[UPLOT_CSS, COLORS_CSS, PAGE_CSS], vec![UPLOT_JS.to_owned(), in_one_scope(&SCRIPTS)]);
+    let frame = PageFrame::new(
+        &[UPLOT_CSS, COLORS_CSS, PAGE_CSS],
+        vec![UPLOT_JS.to_owned(), in_one_scope(&SCRIPTS)],
+    );
     frame.write_head(out, &report.title)?;
     out.write_all(b"<body>\n")?;
     write_header(out, report, units)?;
@@ -59,7 +64,9 @@ pub fn write_html_in(out: &mut impl Write, report: &Report, units: PageUnits) ->
     circularity::write_circularity(out, report, units)?;
     tables::write_worst(out, report, units)?;
     tables::write_notes(out, report, units)?;
-    out.write_all(b"</main>\n<footer>Simulated and written by feedwright. Charts: uPlot (MIT).</footer>\n")?;
+    out.write_all(
+        b"</main>\n<footer>Simulated and written by feedwright. Charts: uPlot (MIT).</footer>\n",
+    )?;
     out.write_all(b"<script type=\"text/plain\" id=\"data\">")?;
     embedded_data::write(out, report, units)?;
     out.write_all(b"</script>\n")?;
@@ -90,7 +97,11 @@ fn write_header(out: &mut impl Write, report: &Report, units: PageUnits) -> io::
         title = escaped(&report.title),
         part = escaped(&report.part),
         machine = escaped(machine),
-        how = if measured { "simulated, beside a log" } else { "simulated" },
+        how = if measured {
+            "simulated, beside a log"
+        } else {
+            "simulated"
+        },
         verdict = verdict::verdict(report, units),
         band = band(report, units),
     )
@@ -113,10 +124,22 @@ fn assumed(report: &Report, units: PageUnits) -> String {
         return String::new();
     }
     let machine = format!("{}: {}", assumed.machine_sentence(), assumed.description);
-    let mut sentences = vec![machine, assumed.simulation_sentence(), assumed.law_sentence()];
-    sentences.extend(report.geometry.as_ref().map(|geometry| units.text(&geometry.sentence().replace(" um", " µm"))));
+    let mut sentences = vec![
+        machine,
+        assumed.simulation_sentence(),
+        assumed.law_sentence(),
+    ];
+    sentences.extend(
+        report
+            .geometry
+            .as_ref()
+            .map(|geometry| units.text(&geometry.sentence().replace(" um", " µm"))),
+    );
     let cut = Assumptions::cut_sentence(report.runs.iter().any(|run| run.summary.measured));
-    format!("<p class=\"assumed\"><b>Assumed</b> {}. {cut}</p>\n", escaped(&sentences.join("; ")))
+    format!(
+        "<p class=\"assumed\"><b>Assumed</b> {}. {cut}</p>\n",
+        escaped(&sentences.join("; "))
+    )
 }
 
 /// The places that the scripts fill.

@@ -1,6 +1,8 @@
-//! Which limit binds where along the path: a row for each limit over the time of the plan, below its feedrate.
+//! Which limit binds where along the path: a row for each limit over the time of the plan, below
+//! its feedrate.
 //!
-//! An SVG in the page, drawn here, so that it is there without scripts; each stretch says its place and lines where the pointer rests on it.
+//! An SVG in the page, drawn here, so that it is there without scripts; each stretch says its place
+//! and lines where the pointer rests on it.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -9,7 +11,8 @@ use super::page_units::PageUnits;
 use super::text::escaped;
 use crate::cycle_time::along::{BindingAlong, BindingStretch, LIMITS};
 
-/// Size of the drawing: width, height of the feedrate, of a row, and of the numbers below; left of them stand the names.
+/// Size of the drawing: width, height of the feedrate, of a row, and of the numbers below; left of
+/// them stand the names.
 const WIDTH: f64 = 1200.0;
 const FEED: f64 = 120.0;
 const ROW: f64 = 18.0;
@@ -36,7 +39,8 @@ pub struct LimitBand {
 }
 
 impl LimitBand {
-    /// Each limit that binds: its name, its part of the time in percent, and the line of the stretch in which it binds longest. Largest parts first.
+    /// Each limit that binds: its name, its part of the time in percent, and the line of the
+    /// stretch in which it binds longest. Largest parts first.
     pub fn shares(&self) -> Vec<(&str, f64, u32)> {
         let stretches = self.along.stretches();
         let mut shares: Vec<_> = self
@@ -44,8 +48,14 @@ impl LimitBand {
             .iter()
             .enumerate()
             .map(|(limit, name)| {
-                let longest = stretches.iter().max_by(|a, b| a.bound_s[limit].total_cmp(&b.bound_s[limit]));
-                (name.as_str(), percent(stretches, limit), longest.map_or(0, |stretch| stretch.lines[0]))
+                let longest = stretches
+                    .iter()
+                    .max_by(|a, b| a.bound_s[limit].total_cmp(&b.bound_s[limit]));
+                (
+                    name.as_str(),
+                    percent(stretches, limit),
+                    longest.map_or(0, |stretch| stretch.lines[0]),
+                )
             })
             .filter(|(_, percent, _)| *percent > 0.0)
             .collect();
@@ -56,9 +66,14 @@ impl LimitBand {
 
 /// Part of the time in which a limit binds, percent.
 fn percent(stretches: &[BindingStretch], limit: usize) -> f64 {
-    let [bound_s, total_s] = stretches.iter().fold([0.0, 0.0], |[bound_s, total_s], stretch| {
-        [bound_s + stretch.bound_s[limit], total_s + stretch.duration_s]
-    });
+    let [bound_s, total_s] = stretches
+        .iter()
+        .fold([0.0, 0.0], |[bound_s, total_s], stretch| {
+            [
+                bound_s + stretch.bound_s[limit],
+                total_s + stretch.duration_s,
+            ]
+        });
     100.0 * bound_s / total_s.max(f64::MIN_POSITIVE)
 }
 
@@ -74,7 +89,11 @@ fn color(name: &str) -> &'static str {
 }
 
 /// The section, where there is something to show.
-pub(super) fn write(out: &mut impl Write, band: Option<&LimitBand>, units: PageUnits) -> io::Result<()> {
+pub(super) fn write(
+    out: &mut impl Write,
+    band: Option<&LimitBand>,
+    units: PageUnits,
+) -> io::Result<()> {
     let Some(band) = band.filter(|band| !band.along.stretches().is_empty()) else {
         return Ok(());
     };
@@ -83,13 +102,19 @@ pub(super) fn write(out: &mut impl Write, band: Option<&LimitBand>, units: PageU
           <p>Feedrate of the plan over its time, rests left out, and which limit holds it down where. Several bind at once; a pale stretch is one in which a limit \
           binds for a part of the time.</p>\n",
     )?;
-    writeln!(out, "<div class=\"scroll\" tabindex=\"0\">{}</div></section>", units.text(&drawing(band)))
+    writeln!(
+        out,
+        "<div class=\"scroll\" tabindex=\"0\">{}</div></section>",
+        units.text(&drawing(band))
+    )
 }
 
 fn drawing(band: &LimitBand) -> String {
     let stretches = band.along.in_parts(DRAWN);
     let total_s: f64 = stretches.iter().map(|stretch| stretch.duration_s).sum();
-    let rows: Vec<usize> = (0..LIMITS).filter(|&limit| stretches.iter().any(|s| s.bound_s[limit] > 0.0)).collect();
+    let rows: Vec<usize> = (0..LIMITS)
+        .filter(|&limit| stretches.iter().any(|s| s.bound_s[limit] > 0.0))
+        .collect();
     let height = ABOVE + FEED + ROW * rows.len() as f64 + BELOW;
     let mut svg = format!(
         "<svg viewBox=\"0 0 {WIDTH} {height}\" width=\"100%\" role=\"img\" aria-label=\"Which limit binds where\" \
@@ -107,7 +132,9 @@ fn drawing(band: &LimitBand) -> String {
 
 /// Mean feedrate of each stretch, mm/min as programs have it.
 fn write_feed(svg: &mut String, stretches: &[BindingStretch], scale: f64) {
-    let feed = |stretch: &BindingStretch| 60.0 * stretch.way_mm / stretch.duration_s.max(f64::MIN_POSITIVE);
+    let feed = |stretch: &BindingStretch| {
+        60.0 * stretch.way_mm / stretch.duration_s.max(f64::MIN_POSITIVE)
+    };
     let most = stretches.iter().map(feed).fold(1.0, f64::max);
     let (mut points, mut x) = (String::new(), LEFT);
     for stretch in stretches {
@@ -129,7 +156,13 @@ fn write_feed(svg: &mut String, stretches: &[BindingStretch], scale: f64) {
 }
 
 /// A row of one limit, with its name and its part of the time.
-fn write_row(svg: &mut String, band: &LimitBand, stretches: &[BindingStretch], [row, limit]: [usize; 2], scale: f64) {
+fn write_row(
+    svg: &mut String,
+    band: &LimitBand,
+    stretches: &[BindingStretch],
+    [row, limit]: [usize; 2],
+    scale: f64,
+) {
     let name = band.names.get(limit).map_or("", String::as_str);
     let y = ABOVE + FEED + 8.0 + ROW * row as f64;
     let _ = writeln!(
@@ -140,13 +173,18 @@ fn write_row(svg: &mut String, band: &LimitBand, stretches: &[BindingStretch], [
         escaped(name),
         percent(stretches, limit)
     );
-    let _ =
-        writeln!(svg, "<g fill=\"{}\" shape-rendering=\"crispEdges\" transform=\"translate(0 {y:.0})\">", color(name));
+    let _ = writeln!(
+        svg,
+        "<g fill=\"{}\" shape-rendering=\"crispEdges\" transform=\"translate(0 {y:.0})\">",
+        color(name)
+    );
     let (mut x, mut run): (f64, Option<(f64, u32, BindingStretch)>) = (LEFT, None);
     for stretch in stretches {
         let level = level(stretch, limit);
         run = match run {
-            Some((from, same, before)) if same == level => Some((from, same, before.merged(stretch))),
+            Some((from, same, before)) if same == level => {
+                Some((from, same, before.merged(stretch)))
+            }
             other => {
                 write_run(svg, name, limit, other, scale);
                 Some((x, level, *stretch))
@@ -161,16 +199,32 @@ fn write_row(svg: &mut String, band: &LimitBand, stretches: &[BindingStretch], [
 /// How much of a stretch a limit binds, in steps; 0 where it hardly does.
 fn level(stretch: &BindingStretch, limit: usize) -> u32 {
     let part = stretch.bound_s[limit] / stretch.duration_s.max(f64::MIN_POSITIVE);
-    if part > LEAST { (part * f64::from(LEVELS)).ceil().clamp(1.0, f64::from(LEVELS)) as u32 } else { 0 }
+    if part > LEAST {
+        (part * f64::from(LEVELS))
+            .ceil()
+            .clamp(1.0, f64::from(LEVELS)) as u32
+    } else {
+        0
+    }
 }
 
 /// Neighbours of one colour: where they begin, their step, and all of them together.
-fn write_run(svg: &mut String, name: &str, limit: usize, run: Option<(f64, u32, BindingStretch)>, scale: f64) {
+fn write_run(
+    svg: &mut String,
+    name: &str,
+    limit: usize,
+    run: Option<(f64, u32, BindingStretch)>,
+    scale: f64,
+) {
     let Some((x, level, stretch)) = run.filter(|(_, level, _)| *level > 0) else {
         return;
     };
     let [first, last] = stretch.lines;
-    let lines = if first == last { format!("line {first}") } else { format!("lines {first} to {last}") };
+    let lines = if first == last {
+        format!("line {first}")
+    } else {
+        format!("lines {first} to {last}")
+    };
     let _ = writeln!(
         svg,
         "<rect x=\"{x:.1}\" y=\"0\" width=\"{:.1}\" height=\"{:.0}\" opacity=\"{:.2}\"><title>{}, {lines}, up to {:.2} mm: {:.0} %</title></rect>",
@@ -191,7 +245,10 @@ fn write_times(svg: &mut String, total_s: f64, scale: f64, height: f64) {
         let (x, y) = (LEFT + scale * t_s, height - 8.0);
         let anchor = if tick == TICKS { "end" } else { "middle" };
         let unit = if tick == TICKS { " s" } else { "" };
-        let _ = writeln!(svg, "<text x=\"{x:.0}\" y=\"{y:.0}\" text-anchor=\"{anchor}\">{t_s:.2}{unit}</text>");
+        let _ = writeln!(
+            svg,
+            "<text x=\"{x:.0}\" y=\"{y:.0}\" text-anchor=\"{anchor}\">{t_s:.2}{unit}</text>"
+        );
     }
 }
 
@@ -202,15 +259,33 @@ mod tests {
     #[test]
     fn limits_have_their_part_of_the_time_and_the_line_where_they_bind_longest() {
         let mut along = BindingAlong::default();
-        for (line, bound_s) in [(1, [0.5, 0.0, 0.2]), (2, [0.0, 0.0, 0.5]), (3, [0.5, 0.0, 0.3])] {
-            let mut stretch = BindingStretch { duration_s: 1.0, lines: [line; 2], ..BindingStretch::default() };
+        for (line, bound_s) in [
+            (1, [0.5, 0.0, 0.2]),
+            (2, [0.0, 0.0, 0.5]),
+            (3, [0.5, 0.0, 0.3]),
+        ] {
+            let mut stretch = BindingStretch {
+                duration_s: 1.0,
+                lines: [line; 2],
+                ..BindingStretch::default()
+            };
             stretch.bound_s[..3].copy_from_slice(&bound_s);
             along.push(&stretch);
         }
-        let band = LimitBand { names: ["a", "b", "c"].map(str::to_owned).to_vec(), along };
+        let band = LimitBand {
+            names: ["a", "b", "c"].map(str::to_owned).to_vec(),
+            along,
+        };
         let third = 100.0 / 3.0;
         assert_eq!(band.shares(), [("a", third, 3), ("c", third, 2)]);
-        assert!(LimitBand { along: BindingAlong::default(), ..band }.shares().is_empty());
+        assert!(
+            LimitBand {
+                along: BindingAlong::default(),
+                ..band
+            }
+            .shares()
+            .is_empty()
+        );
     }
 
     #[test]
@@ -227,19 +302,31 @@ mod tests {
             stretch
         };
         let mut svg = String::new();
-        let band = LimitBand { names: vec!["feed<rate".to_owned()], along: BindingAlong::default() };
+        let band = LimitBand {
+            names: vec!["feed<rate".to_owned()],
+            along: BindingAlong::default(),
+        };
         write_row(
             &mut svg,
             &band,
-            &[stretch(1.0, 1), stretch(1.0, 2), stretch(0.0, 3), stretch(0.3, 4)],
+            &[
+                stretch(1.0, 1),
+                stretch(1.0, 2),
+                stretch(0.0, 3),
+                stretch(0.3, 4),
+            ],
             [0, 0],
             100.0,
         );
         assert_eq!(svg.matches("<rect").count(), 2, "{svg}");
         assert!(
-            svg.contains("lines 1 to 2, up to 2.00 mm: 100 %") && svg.contains("line 4, up to 4.00 mm: 30 %"),
+            svg.contains("lines 1 to 2, up to 2.00 mm: 100 %")
+                && svg.contains("line 4, up to 4.00 mm: 30 %"),
             "{svg}"
         );
-        assert!(svg.contains("feed&lt;rate 58 %") && !svg.contains("feed<rate"), "{svg}");
+        assert!(
+            svg.contains("feed&lt;rate 58 %") && !svg.contains("feed<rate"),
+            "{svg}"
+        );
     }
 }

@@ -1,6 +1,7 @@
-//! What every page begins and ends with. A page is one file without references to anything outside it, and its content security policy
-//! names the style and the scripts that a browser may use: by their hash (CSP3, section 8.3), so that nothing else runs, whatever a program
-//! or a log brings into the page.
+//! What every page begins and ends with. A page is one file without references to anything outside
+//! it, and its content security policy names the style and the scripts that a browser may use: by
+//! their hash (CSP3, section 8.3), so that nothing else runs, whatever a program or a log brings
+//! into the page.
 
 use std::io::{self, Write};
 
@@ -19,7 +20,10 @@ pub(super) struct PageFrame {
 impl PageFrame {
     /// Styles that follow on each other, and scripts that run one after the other.
     pub(super) fn new(styles: &[&str], scripts: Vec<String>) -> Self {
-        Self { style: styles.join("\n"), scripts }
+        Self {
+            style: styles.join("\n"),
+            scripts,
+        }
     }
 
     /// The head, up to the body.
@@ -58,12 +62,18 @@ impl PageFrame {
 
 /// Scripts that share one scope of their own. What they export is for the page in a browser.
 pub(super) fn in_one_scope(scripts: &[&str]) -> String {
-    format!("(async () => {{\n\"use strict\";\n{}}})();\n", scripts.concat().replace("\nexport ", "\n"))
+    format!(
+        "(async () => {{\n\"use strict\";\n{}}})();\n",
+        scripts.concat().replace("\nexport ", "\n")
+    )
 }
 
 /// The expression of a policy that allows `text`.
 fn allowed(text: &str) -> String {
-    format!(" 'sha256-{}'", Base64Display::new(&Sha256::digest(text), &STANDARD))
+    format!(
+        " 'sha256-{}'",
+        Base64Display::new(&Sha256::digest(text), &STANDARD)
+    )
 }
 
 #[cfg(test)]
@@ -73,6 +83,9 @@ mod tests {
     /// The example of CSP3, section 8.3: `alert('Hello, world.');`.
     #[test]
     fn a_hash_is_that_of_the_standard() {
-        assert_eq!(allowed("alert('Hello, world.');"), " 'sha256-qznLcsROx4GACP2dm0UCKCzCG+HiZ1guq6ZZDob/Tng='");
+        assert_eq!(
+            allowed("alert('Hello, world.');"),
+            " 'sha256-qznLcsROx4GACP2dm0UCKCzCG+HiZ1guq6ZZDob/Tng='"
+        );
     }
 }

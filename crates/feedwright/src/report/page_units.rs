@@ -1,7 +1,8 @@
 //! Units of lengths and speeds on the page.
 //!
-//! An inch is to a thousandth what a millimeter is to a micrometer, so one factor serves lengths, errors and speeds: a page in inches is the metric page with its
-//! numbers divided by 25.4, and with other names of units. Accelerations stay in m/s².
+//! An inch is to a thousandth what a millimeter is to a micrometer, so one factor serves lengths,
+//! errors and speeds: a page in inches is the metric page with its numbers divided by 25.4, and
+//! with other names of units. Accelerations stay in m/s².
 
 use feedwright_gcode::INCH_MM;
 
@@ -51,7 +52,8 @@ impl PageUnits {
         }
     }
 
-    /// An error in µm, to three digits; a thousandth of an inch has a decimal more, as it is 25.4 µm.
+    /// An error in µm, to three digits; a thousandth of an inch has a decimal more, as it is 25.4
+    /// µm.
     pub(crate) fn number(self, um: f64) -> String {
         let value = self.factor() * um;
         match self {
@@ -90,9 +92,18 @@ mod tests {
     #[test]
     fn a_value_has_the_digits_of_its_unit() {
         let inch = PageUnits::Inch;
-        assert_eq!([0.24, 25.4, 254.0, 2540.0].map(|um| inch.number(um)), ["0.009", "1.00", "10.0", "100"]);
-        assert_eq!([0.24, 25.4].map(|um| PageUnits::Metric.number(um)), ["0.24", "25.4"]);
-        assert_eq!((inch.fixed(-25.4, 2), inch.signed(25.4, 2)), ("−1.000".to_owned(), "+1.000".to_owned()));
+        assert_eq!(
+            [0.24, 25.4, 254.0, 2540.0].map(|um| inch.number(um)),
+            ["0.009", "1.00", "10.0", "100"]
+        );
+        assert_eq!(
+            [0.24, 25.4].map(|um| PageUnits::Metric.number(um)),
+            ["0.24", "25.4"]
+        );
+        assert_eq!(
+            (inch.fixed(-25.4, 2), inch.signed(25.4, 2)),
+            ("−1.000".to_owned(), "+1.000".to_owned())
+        );
         assert_eq!(inch.text("35.7 µm over 508 mm"), "1.41 thou over 20.0 in");
     }
 }

@@ -1,5 +1,5 @@
-//! Pages of tables and figures: head, table of contents, parts that fold, foot. Without scripts everything is there, but nothing is
-//! sorted.
+//! Pages of tables and figures: head, table of contents, parts that fold, foot. Without scripts
+//! everything is there, but nothing is sorted.
 
 use std::io::{self, Write};
 
@@ -29,12 +29,20 @@ pub struct PagePart {
 impl PagePart {
     /// One that is open, under no group.
     pub fn new(id: &str, title: impl Into<String>) -> Self {
-        Self { id: id.to_owned(), title: title.into(), ..Self::default() }
+        Self {
+            id: id.to_owned(),
+            title: title.into(),
+            ..Self::default()
+        }
     }
 
     /// Its beginning.
     pub fn begin(&self, out: &mut impl Write) -> io::Result<()> {
-        let note = if self.note.is_empty() { String::new() } else { format!("<small>{}</small>", escaped(&self.note)) };
+        let note = if self.note.is_empty() {
+            String::new()
+        } else {
+            format!("<small>{}</small>", escaped(&self.note))
+        };
         writeln!(
             out,
             "<details class=\"part\" id=\"{}\"{}><summary><h2>{}</h2>{note}</summary>",
@@ -50,7 +58,8 @@ impl PagePart {
     }
 }
 
-/// The beginning of a page, up to its first part. `class` is "tables" or "figures": the second is narrow, to be read.
+/// The beginning of a page, up to its first part. `class` is "tables" or "figures": the second is
+/// narrow, to be read.
 pub fn write_head(
     out: &mut impl Write,
     class: &str,
@@ -61,7 +70,12 @@ pub fn write_head(
     frame().write_head(out, title)?;
     write!(out, "<body class=\"{class}\">\n<div class=\"page\">\n")?;
     write_contents(out, parts)?;
-    writeln!(out, "<main>\n<h1>{}</h1>\n<p>{}</p>", escaped(title), escaped(introduction))
+    writeln!(
+        out,
+        "<main>\n<h1>{}</h1>\n<p>{}</p>",
+        escaped(title),
+        escaped(introduction)
+    )
 }
 
 fn write_contents(out: &mut impl Write, parts: &[PagePart]) -> io::Result<()> {
@@ -95,8 +109,12 @@ fn frame() -> PageFrame {
 }
 
 /// The beginning of a table, up to its first row.
-pub fn write_table_head<'a>(out: &mut impl Write, heads: impl IntoIterator<Item = &'a str>) -> io::Result<()> {
-    // With the keyboard a table that is wider than the screen is moved once it has the focus. A heading says something.
+pub fn write_table_head<'a>(
+    out: &mut impl Write,
+    heads: impl IntoIterator<Item = &'a str>,
+) -> io::Result<()> {
+    // With the keyboard a table that is wider than the screen is moved once it has the focus. A
+    // heading says something.
     out.write_all(b"<div class=\"wide\" tabindex=\"0\"><table><thead><tr>")?;
     for head in heads {
         match head {

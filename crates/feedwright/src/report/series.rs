@@ -1,8 +1,9 @@
 //! Series: the record of a run that is drawn, bounded whatever the run's length.
 //!
-//! Rows are gathered in buckets of equal row count. When [`Series::MAX_POINTS`] buckets are full, neighbours merge in
-//! pairs and each bucket takes twice as many rows. A bucket is represented by its row of largest contour error, and it
-//! keeps the least and the largest error, so that no peak is lost at any resolution.
+//! Rows are gathered in buckets of equal row count. When [`Series::MAX_POINTS`] buckets are full,
+//! neighbours merge in pairs and each bucket takes twice as many rows. A bucket is represented by
+//! its row of largest contour error, and it keeps the least and the largest error, so that no peak
+//! is lost at any resolution.
 
 use std::io;
 
@@ -11,7 +12,8 @@ use feedwright_sim::{Row, Sink};
 
 use super::outline::{OutlineBuilder, Vertex};
 
-/// One point of a [`Series`]: a few successive rows, represented by the one with the largest contour error.
+/// One point of a [`Series`]: a few successive rows, represented by the one with the largest
+/// contour error.
 ///
 /// Where at least one of the rows cuts, only those that cut are considered for the error.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,11 +38,13 @@ pub struct SeriesPoint {
     pub deviation_mm: [f64; 3],
     /// Mean planned feedrate, mm/s.
     pub feed_plan_mm_s: f64,
-    /// Mean actual speed of the tool, mm/s: length of the polyline through its positions over the time it took.
+    /// Mean actual speed of the tool, mm/s: length of the polyline through its positions over the
+    /// time it took.
     pub feed_act_mm_s: f64,
     /// Torque of largest magnitude on each axis, N m, with its sign.
     pub torque_nm: [f64; 3],
-    /// Acceleration of largest magnitude of each axis's command, mm/s2, with its sign: the second difference over servo periods.
+    /// Acceleration of largest magnitude of each axis's command, mm/s2, with its sign: the second
+    /// difference over servo periods.
     pub accel_mm_s2: [f64; 3],
 }
 
@@ -55,7 +59,8 @@ pub(super) struct CommandAcceleration {
 }
 
 impl CommandAcceleration {
-    /// Takes the command of a row; the acceleration of each axis, mm/s2, where the rows before are a period apart.
+    /// Takes the command of a row; the acceleration of each axis, mm/s2, where the rows before are
+    /// a period apart.
     pub(super) fn push(&mut self, t_s: f64, command_mm: [f64; 3]) -> Option<[f64; 3]> {
         let [last, before] = self.commands;
         self.commands = [Some((t_s, command_mm)), last];
@@ -94,8 +99,8 @@ impl Default for Series {
 }
 
 impl Series {
-    /// Most points kept: on a wide screen ten for each pixel, and with two controllers a page of less than 2 MB.
-    /// Even, so that a full record merges without a remainder.
+    /// Most points kept: on a wide screen ten for each pixel, and with two controllers a page of
+    /// less than 2 MB. Even, so that a full record merges without a remainder.
     pub const MAX_POINTS: usize = 20_000;
 
     /// An empty record.
@@ -148,9 +153,20 @@ impl Series {
 impl Sink for Series {
     /// Rows with a number that is not finite are left out: only a run that diverged has them.
     fn row(&mut self, row: &Row) -> io::Result<()> {
-        let numbers = [row.path_mm, row.act_mm, row.foot_mm, row.cmd_mm, row.torque_nm];
+        let numbers = [
+            row.path_mm,
+            row.act_mm,
+            row.foot_mm,
+            row.cmd_mm,
+            row.torque_nm,
+        ];
         let scalars = [row.t_s, row.s_mm, row.contour_error_mm, row.feed_plan_mm_s];
-        if !numbers.iter().flatten().chain(&scalars).all(|x| x.is_finite()) {
+        if !numbers
+            .iter()
+            .flatten()
+            .chain(&scalars)
+            .all(|x| x.is_finite())
+        {
             return Ok(());
         }
         let (travel_mm, span_s) = match self.previous {
@@ -158,8 +174,14 @@ impl Sink for Series {
             None => (0.0, 0.0),
         };
         self.previous = Some((row.t_s, row.act_mm));
-        let accel_mm_s2 = self.acceleration.push(row.t_s, row.cmd_mm).unwrap_or_default();
-        self.outline.push(Vertex { point_mm: row.path_mm, cutting: row.cutting });
+        let accel_mm_s2 = self
+            .acceleration
+            .push(row.t_s, row.cmd_mm)
+            .unwrap_or_default();
+        self.outline.push(Vertex {
+            point_mm: row.path_mm,
+            cutting: row.cutting,
+        });
         self.push(Bucket {
             point: SeriesPoint {
                 t_s: row.t_s,
@@ -189,7 +211,11 @@ impl Bucket {
     fn point(&self) -> SeriesPoint {
         SeriesPoint {
             feed_plan_mm_s: self.plan_sum_mm_s / self.rows as f64,
-            feed_act_mm_s: if self.span_s > 0.0 { self.travel_mm / self.span_s } else { 0.0 },
+            feed_act_mm_s: if self.span_s > 0.0 {
+                self.travel_mm / self.span_s
+            } else {
+                0.0
+            },
             ..self.point
         }
     }
@@ -232,7 +258,12 @@ mod tests {
         let mut series = Series::new();
         for k in 0..70_000 {
             let t = f64::from(k) * 1e-3;
-            series.row(&Row { act_mm: [30.0 * t, 40.0 * t, 0.0], ..row(t) }).unwrap();
+            series
+                .row(&Row {
+                    act_mm: [30.0 * t, 40.0 * t, 0.0],
+                    ..row(t)
+                })
+                .unwrap();
         }
         assert_eq!(series.rows_per_point(), 4);
         for point in series.points() {
@@ -246,17 +277,37 @@ mod tests {
         for k in 0..=Series::MAX_POINTS {
             let cutting = k % 2 == 0;
             let error = if cutting { 0.001 } else { 5.0 };
-            series.row(&Row { cutting, contour_error_mm: error, ..row(k as f64) }).unwrap();
+            series
+                .row(&Row {
+                    cutting,
+                    contour_error_mm: error,
+                    ..row(k as f64)
+                })
+                .unwrap();
         }
-        assert!(series.points().all(|p| p.cutting && p.error_max_mm == 0.001));
+        assert!(
+            series
+                .points()
+                .all(|p| p.cutting && p.error_max_mm == 0.001)
+        );
     }
 
     #[test]
     fn rows_that_are_not_finite_are_left_out() {
         let mut series = Series::new();
         series.row(&row(0.0)).unwrap();
-        series.row(&Row { act_mm: [f64::NAN, 0.0, 0.0], ..row(1.0) }).unwrap();
-        series.row(&Row { contour_error_mm: f64::INFINITY, ..row(2.0) }).unwrap();
+        series
+            .row(&Row {
+                act_mm: [f64::NAN, 0.0, 0.0],
+                ..row(1.0)
+            })
+            .unwrap();
+        series
+            .row(&Row {
+                contour_error_mm: f64::INFINITY,
+                ..row(2.0)
+            })
+            .unwrap();
         assert_eq!(series.points().len(), 1);
     }
 }

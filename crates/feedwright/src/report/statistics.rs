@@ -6,8 +6,10 @@
 //! - Largest acceleration of the command: the largest |c(k) - 2 c(k-1) + c(k-2)| / dt^2 over rows
 //!   at equal intervals. It does not count across the part of a rest that was left out.
 //! - Peak torque: the largest |torque| of each axis over all rows.
-//! - Shares of the limits: the largest acceleration of the command and torque of each axis, by its limit; the largest of the axes.
-//! - Feedrate: the way of the tool from row to row by its time, beside the programmed feedrate at its foot, over the rows that cut.
+//! - Shares of the limits: the largest acceleration of the command and torque of each axis, by its
+//!   limit; the largest of the axes.
+//! - Feedrate: the way of the tool from row to row by its time, beside the programmed feedrate at
+//!   its foot, over the rows that cut.
 //! - Cutting length and time: the sum of the steps in arc length and time to the rows that cut.
 //!
 //! The statistics skip a row with a number that is not finite. Only a run that diverged has such
@@ -23,8 +25,8 @@ use super::series::CommandAcceleration;
 use super::summary::{FeedShares, RunFacts, RunSummary};
 use super::worst::WorstFinder;
 
-/// Parts of the programmed feedrate that a tool is slow below and fast above: the chip is then a fifth thinner or thicker than it was
-/// programmed.
+/// Parts of the programmed feedrate that a tool is slow below and fast above: the chip is then a
+/// fifth thinner or thicker than it was programmed.
 const SLOW_AND_FAST: [f64; 2] = [0.8, 1.2];
 
 /// Times in which the tool is slower and faster than its program says.
@@ -52,8 +54,17 @@ impl FeedMeter {
     }
 
     fn shares(self) -> Option<FeedShares> {
-        let Self { time_s, slow_s, fast_s, largest } = self;
-        (time_s > 0.0).then(|| FeedShares { slow_share: slow_s / time_s, fast_share: fast_s / time_s, largest })
+        let Self {
+            time_s,
+            slow_s,
+            fast_s,
+            largest,
+        } = self;
+        (time_s > 0.0).then(|| FeedShares {
+            slow_share: slow_s / time_s,
+            fast_share: fast_s / time_s,
+            largest,
+        })
     }
 }
 
@@ -106,8 +117,8 @@ impl Statistics {
         }
     }
 
-    /// The summary of the run; `text` gives the text of a program line. The errors and times of a cut that diverged are not
-    /// a number: they would be those of its beginning.
+    /// The summary of the run; `text` gives the text of a program line. The errors and times of a
+    /// cut that diverged are not a number: they would be those of its beginning.
     pub fn summary(&self, facts: RunFacts, text: impl FnMut(u32) -> String) -> RunSummary {
         let completed = facts.run.outcome == Outcome::Completed;
         let of_whole = |value: f64| if completed { value } else { f64::NAN };
@@ -131,10 +142,9 @@ impl Statistics {
             uncut_um: of_whole(facts.run.uncut_mm * 1e3),
             max_deviation_um: self.max_deviation_mm * 1e3,
             max_command_accel_mm_s2: self.max_command_accel_mm_s2,
-            command_share: facts
-                .drives
-                .filter(|_| !facts.measured)
-                .map(|drives| drives.shares(facts.axes, self.axis_accel_mm_s2, self.peak_torque_nm)),
+            command_share: facts.drives.filter(|_| !facts.measured).map(|drives| {
+                drives.shares(facts.axes, self.axis_accel_mm_s2, self.peak_torque_nm)
+            }),
             peak_torque_nm: (!facts.measured).then_some(self.peak_torque_nm),
             feed: self.feed.shares(),
             cutting_length_mm: self.cutting_length_mm,
@@ -151,10 +161,15 @@ impl Statistics {
 
     /// Root mean square of the contour error over the rows that cut, µm; 0 without such rows.
     pub fn rms_um(&self) -> f64 {
-        if self.cutting_rows == 0 { 0.0 } else { (self.square_sum_mm2 / self.cutting_rows as f64).sqrt() * 1e3 }
+        if self.cutting_rows == 0 {
+            0.0
+        } else {
+            (self.square_sum_mm2 / self.cutting_rows as f64).sqrt() * 1e3
+        }
     }
 
-    /// Largest distance of the corrected reference from the programmed path's point of the same row, µm.
+    /// Largest distance of the corrected reference from the programmed path's point of the same
+    /// row, µm.
     pub fn max_deviation_um(&self) -> f64 {
         self.max_deviation_mm * 1e3
     }
@@ -183,7 +198,11 @@ impl Statistics {
         if let Some(last) = self.previous {
             self.cutting_time_s += row.t_s - last.t_s;
             self.cutting_length_mm += (row.s_mm - last.s_mm).max(0.0);
-            self.feed.add(distance(row.act_mm, last.act_mm), row.t_s - last.t_s, row.programmed_mm_s);
+            self.feed.add(
+                distance(row.act_mm, last.act_mm),
+                row.t_s - last.t_s,
+                row.programmed_mm_s,
+            );
         }
         self.counts.add(error_mm * 1e3);
     }
@@ -191,9 +210,20 @@ impl Statistics {
 
 impl Sink for Statistics {
     fn row(&mut self, row: &Row) -> io::Result<()> {
-        let numbers = [row.path_mm, row.act_mm, row.cmd_mm, row.corrected_mm, row.torque_nm];
+        let numbers = [
+            row.path_mm,
+            row.act_mm,
+            row.cmd_mm,
+            row.corrected_mm,
+            row.torque_nm,
+        ];
         let scalars = [row.t_s, row.s_mm, row.contour_error_mm];
-        if !numbers.iter().flatten().chain(&scalars).all(|x| x.is_finite()) {
+        if !numbers
+            .iter()
+            .flatten()
+            .chain(&scalars)
+            .all(|x| x.is_finite())
+        {
             return Ok(());
         }
         self.rows += 1;
@@ -206,7 +236,10 @@ impl Sink for Statistics {
         if let Some(accel) = self.acceleration.push(row.t_s, row.cmd_mm) {
             let accel_mm_s2 = libm::hypot(libm::hypot(accel[0], accel[1]), accel[2]);
             self.max_command_accel_mm_s2 = self.max_command_accel_mm_s2.max(accel_mm_s2);
-            self.axis_accel_mm_s2.iter_mut().zip(accel).for_each(|(most, accel)| *most = most.max(accel.abs()));
+            self.axis_accel_mm_s2
+                .iter_mut()
+                .zip(accel)
+                .for_each(|(most, accel)| *most = most.max(accel.abs()));
         }
         if row.cutting {
             self.cut(row);
@@ -224,15 +257,21 @@ mod tests {
     fn statistics_of(errors_um: &[f64]) -> Statistics {
         let mut statistics = Statistics::new();
         for (k, error) in errors_um.iter().enumerate() {
-            statistics.row(&Row { contour_error_mm: error * 1e-3, ..row(k as f64 * 1e-3) }).unwrap();
+            statistics
+                .row(&Row {
+                    contour_error_mm: error * 1e-3,
+                    ..row(k as f64 * 1e-3)
+                })
+                .unwrap();
         }
         statistics
     }
 
     #[test]
     fn rms_of_a_sine_is_its_amplitude_over_root_two() {
-        let sine: Vec<f64> =
-            (0..1000).map(|k| 10.0 * libm::sin(f64::from(k) * std::f64::consts::TAU / 1000.0)).collect();
+        let sine: Vec<f64> = (0..1000)
+            .map(|k| 10.0 * libm::sin(f64::from(k) * std::f64::consts::TAU / 1000.0))
+            .collect();
         let statistics = statistics_of(&sine);
         assert!((statistics.rms_um() - 10.0 / 2f64.sqrt()).abs() < 1e-9);
         assert!((statistics.max_um() - 10.0).abs() < 1e-12);
@@ -244,17 +283,45 @@ mod tests {
         let (radius_mm, speed_mm_s) = (10.0, 50.0);
         let at = |t_s: f64| {
             let angle: f64 = speed_mm_s / radius_mm * t_s;
-            [radius_mm * libm::cos(angle), radius_mm * libm::sin(angle), 0.0]
+            [
+                radius_mm * libm::cos(angle),
+                radius_mm * libm::sin(angle),
+                0.0,
+            ]
         };
         let mut statistics = Statistics::new();
         for t_s in (0..100).map(|k| f64::from(k) * 1e-3) {
-            statistics.row(&Row { cmd_mm: at(t_s), path_mm: at(t_s), ..row(t_s) }).unwrap();
+            statistics
+                .row(&Row {
+                    cmd_mm: at(t_s),
+                    path_mm: at(t_s),
+                    ..row(t_s)
+                })
+                .unwrap();
         }
-        statistics.row(&Row { cmd_mm: [900.0, 0.0, 0.0], ..row(5.0) }).unwrap();
-        statistics.row(&Row { cmd_mm: [900.0, 0.0, 0.0], ..row(5.001) }).unwrap();
-        let facts = RunFacts { axes: 2, ..RunFacts::default() };
-        let accel_mm_s2 = statistics.summary(facts, |_| String::new()).max_command_accel_mm_s2;
-        assert!((accel_mm_s2 / (speed_mm_s * speed_mm_s / radius_mm) - 1.0).abs() < 1e-4, "{accel_mm_s2}");
+        statistics
+            .row(&Row {
+                cmd_mm: [900.0, 0.0, 0.0],
+                ..row(5.0)
+            })
+            .unwrap();
+        statistics
+            .row(&Row {
+                cmd_mm: [900.0, 0.0, 0.0],
+                ..row(5.001)
+            })
+            .unwrap();
+        let facts = RunFacts {
+            axes: 2,
+            ..RunFacts::default()
+        };
+        let accel_mm_s2 = statistics
+            .summary(facts, |_| String::new())
+            .max_command_accel_mm_s2;
+        assert!(
+            (accel_mm_s2 / (speed_mm_s * speed_mm_s / radius_mm) - 1.0).abs() < 1e-4,
+            "{accel_mm_s2}"
+        );
     }
 
     /// F is 10 mm/s: a second each at 5, 10, 13 and 8.5 mm/s, and a rapid that does not count.
@@ -262,16 +329,34 @@ mod tests {
     fn feed_shares_are_those_of_the_time_outside_a_fifth_of_f() {
         let mut statistics = Statistics::new();
         let (mut t_s, mut x_mm) = (0.0, 0.0);
-        for (speed_mm_s, programmed_mm_s) in [(5.0, 10.0), (10.0, 10.0), (13.0, 10.0), (8.5, 10.0), (90.0, 0.0)] {
+        for (speed_mm_s, programmed_mm_s) in [
+            (5.0, 10.0),
+            (10.0, 10.0),
+            (13.0, 10.0),
+            (8.5, 10.0),
+            (90.0, 0.0),
+        ] {
             for _ in 0..100 {
-                statistics.row(&Row { act_mm: [0.0, x_mm, 0.0], programmed_mm_s, ..row(t_s) }).unwrap();
+                statistics
+                    .row(&Row {
+                        act_mm: [0.0, x_mm, 0.0],
+                        programmed_mm_s,
+                        ..row(t_s)
+                    })
+                    .unwrap();
                 (t_s, x_mm) = (t_s + 0.01, x_mm + 0.01 * speed_mm_s);
             }
         }
-        let facts = RunFacts { axes: 2, ..RunFacts::default() };
+        let facts = RunFacts {
+            axes: 2,
+            ..RunFacts::default()
+        };
         let feed = statistics.summary(facts, |_| String::new()).feed.unwrap();
         // Each row has the speed of the interval before it, and the first row has none.
-        assert!((feed.slow_share - 0.25).abs() < 0.01 && (feed.fast_share - 0.25).abs() < 0.01, "{feed:?}");
+        assert!(
+            (feed.slow_share - 0.25).abs() < 0.01 && (feed.fast_share - 0.25).abs() < 0.01,
+            "{feed:?}"
+        );
         assert!((feed.largest - 1.3).abs() < 1e-9, "{feed:?}");
     }
 
@@ -281,21 +366,41 @@ mod tests {
         for (at_um, deviation_um) in [([3.0, 4.0, 12.0], 13.0), ([0.0, 0.0, -7.0], 7.0)] {
             let mut statistics = Statistics::new();
             statistics
-                .row(&Row { path_mm: [1.0; 3], corrected_mm: at_um.map(|um: f64| 1.0 + um * 1e-3), ..row(0.0) })
+                .row(&Row {
+                    path_mm: [1.0; 3],
+                    corrected_mm: at_um.map(|um: f64| 1.0 + um * 1e-3),
+                    ..row(0.0)
+                })
                 .unwrap();
-            assert!((statistics.max_deviation_um() - deviation_um).abs() < 1e-9, "{}", statistics.max_deviation_um());
+            assert!(
+                (statistics.max_deviation_um() - deviation_um).abs() < 1e-9,
+                "{}",
+                statistics.max_deviation_um()
+            );
         }
     }
 
     #[test]
     fn rapids_count_for_torque_but_not_for_the_error() {
         let mut statistics = statistics_of(&[1.0, -1.0]);
-        let rapid = Row { cutting: false, contour_error_mm: 9.0, torque_nm: [0.0, -2.0, 0.0], ..row(1.0) };
+        let rapid = Row {
+            cutting: false,
+            contour_error_mm: 9.0,
+            torque_nm: [0.0, -2.0, 0.0],
+            ..row(1.0)
+        };
         statistics.row(&rapid).unwrap();
-        let facts = RunFacts { axes: 2, ..RunFacts::default() };
+        let facts = RunFacts {
+            axes: 2,
+            ..RunFacts::default()
+        };
         let summary = statistics.summary(facts, |_| String::new());
         assert!((summary.rms_um - 1.0).abs() < 1e-12 && (summary.max_um - 1.0).abs() < 1e-12);
         assert_eq!(summary.peak_torque_nm, Some([0.0, 2.0, 0.0]));
-        assert!((summary.cutting_time_s - 1e-3).abs() < 1e-15, "{}", summary.cutting_time_s);
+        assert!(
+            (summary.cutting_time_s - 1e-3).abs() < 1e-15,
+            "{}",
+            summary.cutting_time_s
+        );
     }
 }

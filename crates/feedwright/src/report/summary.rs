@@ -45,13 +45,31 @@ impl DriveLimits {
     }
 
     /// What of them is used by the axis that uses most.
-    pub(super) fn shares(&self, axes: usize, accel_mm_s2: [f64; 3], torque_nm: [f64; 3]) -> CommandShares {
+    pub(super) fn shares(
+        &self,
+        axes: usize,
+        accel_mm_s2: [f64; 3],
+        torque_nm: [f64; 3],
+    ) -> CommandShares {
         let share = |used: [f64; 3], limits: [f64; 3]| {
-            let shares = used.into_iter().zip(limits).map(|(used, limit)| used / limit).take(axes.clamp(1, 3));
-            let (axis, share) = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0));
-            CommandShare { axis: AXES[axis], share }
+            let shares = used
+                .into_iter()
+                .zip(limits)
+                .map(|(used, limit)| used / limit)
+                .take(axes.clamp(1, 3));
+            let (axis, share) = shares
+                .enumerate()
+                .max_by(|a, b| a.1.total_cmp(&b.1))
+                .unwrap_or((0, 0.0));
+            CommandShare {
+                axis: AXES[axis],
+                share,
+            }
         };
-        CommandShares { acceleration: share(accel_mm_s2, self.accel_mm_s2), torque: share(torque_nm, self.torque_nm) }
+        CommandShares {
+            acceleration: share(accel_mm_s2, self.accel_mm_s2),
+            torque: share(torque_nm, self.torque_nm),
+        }
     }
 }
 
@@ -73,8 +91,8 @@ pub struct CommandShare {
     pub share: f64,
 }
 
-/// A command that asks for more than this of an acceleration limit must not go to a drive, in percent as the user reads them: the plan may ask for
-/// all of it, and the correction for as much.
+/// A command that asks for more than this of an acceleration limit must not go to a drive, in
+/// percent as the user reads them: the plan may ask for all of it, and the correction for as much.
 const MOST_PERCENT: f64 = 200.0;
 
 /// How the speed of the tool leaves the programmed feedrate F, over the time that it cuts.
@@ -94,7 +112,8 @@ impl RunSummary {
         self.faded_out.is_some() && (self.engaged_share < LEAST_SHARE || !self.engaged_at_end)
     }
 
-    /// The share of the acceleration limit that its command asks for, where that is more than any drive may get.
+    /// The share of the acceleration limit that its command asks for, where that is more than any
+    /// drive may get.
     pub fn beyond_drives(&self) -> Option<CommandShare> {
         self.command_share
             .map(|shares| shares.acceleration)
@@ -105,8 +124,8 @@ impl RunSummary {
 /// Part of the cutting time in which a correction is to be in the loop at least.
 const LEAST_SHARE: f64 = 0.5;
 
-/// The numbers of one run. [`Statistics`](super::Statistics) has their exact definitions. Errors and times of a run that
-/// diverged are not a number, null in JSON.
+/// The numbers of one run. [`Statistics`](super::Statistics) has their exact definitions. Errors
+/// and times of a run that diverged are not a number, null in JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunSummary {
     /// Name of the controller.
@@ -137,15 +156,18 @@ pub struct RunSummary {
     pub rms_um: f64,
     /// Largest contour error of the rows that cut, µm.
     pub max_um: f64,
-    /// The same two by the encoders and the compensated geometry, µm; none where the machine has no geometry that no encoder sees.
+    /// The same two by the encoders and the compensated geometry, µm; none where the machine has no
+    /// geometry that no encoder sees.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joint_rms_um: Option<f64>,
     /// See above.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joint_max_um: Option<f64>,
-    /// Uncut path: largest distance from a programmed point to what the tool did in the time that it has for it, µm.
+    /// Uncut path: largest distance from a programmed point to what the tool did in the time that
+    /// it has for it, µm.
     pub uncut_um: f64,
-    /// Largest distance of the corrected reference from the programmed path's point of the same row, µm.
+    /// Largest distance of the corrected reference from the programmed path's point of the same
+    /// row, µm.
     pub max_deviation_um: f64,
     /// Largest acceleration of the command from one servo period to the next, mm/s2.
     pub max_command_accel_mm_s2: f64,
@@ -155,7 +177,8 @@ pub struct RunSummary {
     /// Largest torque of each axis, N m; none of a log: torques of logs are not read.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub peak_torque_nm: Option<[f64; 3]>,
-    /// The speed of the tool beside the programmed feedrate; none where that is not known, as of a log.
+    /// The speed of the tool beside the programmed feedrate; none where that is not known, as of a
+    /// log.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub feed: Option<FeedShares>,
     /// Arc length that was cut, mm.
@@ -166,8 +189,8 @@ pub struct RunSummary {
     pub rows: u64,
     /// When the tool has arrived at the end, s.
     pub arrival_s: f64,
-    /// Computing time of the ticks in which the controller decides, us: half of them take less. Not shown on the page,
-    /// which must not depend on the computer.
+    /// Computing time of the ticks in which the controller decides, us: half of them take less. Not
+    /// shown on the page, which must not depend on the computer.
     pub tick_median_us: f64,
     /// 99.9 % of them take less, us.
     pub tick_p999_us: f64,

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use feedwright_gcode::visible;
 
-/// `text` with the characters that HTML gives a meaning replaced, and nothing hidden; for element content and quoted attributes.
+/// `text` with the characters that HTML gives a meaning replaced, and nothing hidden; for element
+/// content and quoted attributes.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in visible(text).chars() {
@@ -40,13 +41,21 @@ pub(super) fn fixed(value: f64, decimals: usize) -> String {
     }
     let plain = format!("{:.decimals$}", value.abs());
     let is_zero = plain.bytes().all(|b| b == b'0' || b == b'.');
-    if value < 0.0 && !is_zero { format!("−{plain}") } else { plain }
+    if value < 0.0 && !is_zero {
+        format!("−{plain}")
+    } else {
+        plain
+    }
 }
 
 /// As [`fixed`], with a plus sign before what is larger than zero.
 pub(super) fn signed(value: f64, decimals: usize) -> String {
     let text = fixed(value, decimals);
-    if value > 0.0 && text.bytes().any(|b| (b'1'..=b'9').contains(&b)) { format!("+{text}") } else { text }
+    if value > 0.0 && text.bytes().any(|b| (b'1'..=b'9').contains(&b)) {
+        format!("+{text}")
+    } else {
+        text
+    }
 }
 
 /// A time with its unit: "1.76 s", "10 min 03.2 s", "2 h 05 min 10 s".
@@ -59,16 +68,28 @@ pub(super) fn duration(seconds: f64) -> String {
         let _ = write!(out, "{seconds:.2} s");
     } else if seconds < 7199.95 {
         let tenths = (seconds * 10.0).round() as u64;
-        let _ = write!(out, "{} min {:02}.{} s", tenths / 600, tenths % 600 / 10, tenths % 10);
+        let _ = write!(
+            out,
+            "{} min {:02}.{} s",
+            tenths / 600,
+            tenths % 600 / 10,
+            tenths % 10
+        );
     } else {
         let whole = seconds.round() as u64;
-        let _ = write!(out, "{} h {:02} min {:02} s", whole / 3600, whole % 3600 / 60, whole % 60);
+        let _ = write!(
+            out,
+            "{} h {:02} min {:02} s",
+            whole / 3600,
+            whole % 3600 / 60,
+            whole % 60
+        );
     }
     out
 }
 
-/// Change from `before` to `after` in per cent: "−87 %"; nothing where `before` is zero. Near −100 % it is what is left that
-/// tells, and beyond ten times it is the factor.
+/// Change from `before` to `after` in per cent: "−87 %"; nothing where `before` is zero. Near −100
+/// % it is what is left that tells, and beyond ten times it is the factor.
 pub(crate) fn change(before: f64, after: f64) -> Option<String> {
     let percent = (after / before - 1.0) * 100.0;
     if before == 0.0 || !percent.is_finite() {

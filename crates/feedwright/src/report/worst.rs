@@ -1,8 +1,9 @@
 //! The worst places of a run: its largest contour errors, each listed once.
 //!
-//! A place is a peak of |contour error|: it is over when the error has fallen below [`PEAK_ENDS`] times the peak, and
-//! the next begins when it rises again by the same factor above the least since. Of peaks closer than
-//! [`APART_MM`] or [`APART_S`] to one that is larger, only the larger counts. Memory does not grow with the run.
+//! A place is a peak of |contour error|: it is over when the error has fallen below [`PEAK_ENDS`]
+//! times the peak, and the next begins when it rises again by the same factor above the least
+//! since. Of peaks closer than [`APART_MM`] or [`APART_S`] to one that is larger, only the larger
+//! counts. Memory does not grow with the run.
 
 use feedwright_sim::Row;
 use serde::Serialize;
@@ -10,11 +11,12 @@ use serde::Serialize;
 /// Places listed.
 const PLACES: usize = 10;
 
-/// A peak is over when the error is this fraction of it. Nearer to 1, ripple on one bump makes many places of it;
-/// nearer to 0, neighbouring corners join.
+/// A peak is over when the error is this fraction of it. Nearer to 1, ripple on one bump makes many
+/// places of it; nearer to 0, neighbouring corners join.
 const PEAK_ENDS: f64 = 0.7;
 
-/// Peaks smaller than this fraction of the largest are not listed: they are not what is wrong with the part.
+/// Peaks smaller than this fraction of the largest are not listed: they are not what is wrong with
+/// the part.
 const MIN_SHARE: f64 = 0.01;
 
 /// Peaks nearer to each other than this along the path are one place, mm.
@@ -68,7 +70,11 @@ pub(super) struct WorstFinder {
 
 impl Default for WorstFinder {
     fn default() -> Self {
-        Self { trend: Trend::Falling { least_mm: 0.0 }, pending: None, found: Vec::new() }
+        Self {
+            trend: Trend::Falling { least_mm: 0.0 },
+            pending: None,
+            found: Vec::new(),
+        }
     }
 }
 
@@ -108,8 +114,15 @@ impl WorstFinder {
             t_s: p.t_s,
             s_mm: p.s_mm,
         };
-        let least_mm = last.found.first().map_or(0.0, |p| MIN_SHARE * p.error_mm.abs());
-        last.found.iter().filter(|p| p.error_mm.abs() >= least_mm).map(place).collect()
+        let least_mm = last
+            .found
+            .first()
+            .map_or(0.0, |p| MIN_SHARE * p.error_mm.abs());
+        last.found
+            .iter()
+            .filter(|p| p.error_mm.abs() >= least_mm)
+            .map(place)
+            .collect()
     }
 
     fn close(&mut self, peak: Peak) {
@@ -128,7 +141,9 @@ impl WorstFinder {
     }
 
     fn keep(&mut self, peak: Peak) {
-        let rank = self.found.partition_point(|p| p.error_mm.abs() >= peak.error_mm.abs());
+        let rank = self
+            .found
+            .partition_point(|p| p.error_mm.abs() >= peak.error_mm.abs());
         self.found.insert(rank, peak);
         self.found.truncate(PLACES);
     }
@@ -136,7 +151,13 @@ impl WorstFinder {
 
 impl Peak {
     fn of(row: &Row) -> Self {
-        Self { error_mm: row.contour_error_mm, line: row.line, position_mm: row.act_mm, t_s: row.t_s, s_mm: row.s_mm }
+        Self {
+            error_mm: row.contour_error_mm,
+            line: row.line,
+            position_mm: row.act_mm,
+            t_s: row.t_s,
+            s_mm: row.s_mm,
+        }
     }
 
     fn is_near(&self, other: &Self) -> bool {
@@ -153,7 +174,12 @@ mod tests {
         let mut finder = WorstFinder::default();
         for (k, error) in errors.enumerate() {
             let t_s = k as f64 * 1e-3;
-            finder.row(&Row { contour_error_mm: error, s_mm: step_mm * k as f64, line: k as u32, ..row(t_s) });
+            finder.row(&Row {
+                contour_error_mm: error,
+                s_mm: step_mm * k as f64,
+                line: k as u32,
+                ..row(t_s)
+            });
         }
         finder.places(|line| format!("N{line}"))
     }
@@ -172,7 +198,10 @@ mod tests {
         let places = places_of((0..1200).map(|k| bumps(k, 12)), 0.05);
         let lines: Vec<u32> = places.iter().map(|p| p.line).collect();
         assert_eq!(lines, [1150, 1050, 950, 850, 750, 650, 550, 450, 350, 250]);
-        assert!((places[0].error_um + 12.0).abs() < 1e-9 && (places[1].error_um - 11.0).abs() < 1e-9, "{places:?}");
+        assert!(
+            (places[0].error_um + 12.0).abs() < 1e-9 && (places[1].error_um - 11.0).abs() < 1e-9,
+            "{places:?}"
+        );
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! Chromium without a window, driven through its debugging pipe: two pipes that carry JSON, each message ended by a zero.
+//! Chromium without a window, driven through its debugging pipe: two pipes that carry JSON, each
+//! message ended by a zero.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
@@ -29,7 +30,12 @@ impl Browser {
     /// None where there is no browser: it says so, and under CI fails.
     pub(crate) fn start() -> Option<Self> {
         let there = |name: &&&str| {
-            Command::new(name).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
+            Command::new(name)
+                .arg("--version")
+                .stdout(Stdio::null())
+                .stderr(Stdio::null())
+                .status()
+                .is_ok()
         };
         let Some(name) = BROWSERS.iter().find(there) else {
             missing(&format!("none of {BROWSERS:?} is installed"));
@@ -37,13 +43,37 @@ impl Browser {
         };
         let folder = tempfile::tempdir().unwrap();
         let pipes = ["in", "out"].map(|name| folder.path().join(name));
-        assert!(Command::new("mkfifo").args(&pipes).status().unwrap().success());
+        assert!(
+            Command::new("mkfifo")
+                .args(&pipes)
+                .status()
+                .unwrap()
+                .success()
+        );
         // The shell opens the pipes as the descriptors that the browser takes.
         let process = Command::new("sh")
-            .args(["-c", "exec \"$0\" \"$@\" 3<\"$PIPE_IN\" 4>\"$PIPE_OUT\"", name])
-            .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync"])
-            .args(["--disable-background-networking", "--disable-component-update", "--remote-debugging-pipe"])
-            .arg(format!("--user-data-dir={}", folder.path().join("profile").display()))
+            .args([
+                "-c",
+                "exec \"$0\" \"$@\" 3<\"$PIPE_IN\" 4>\"$PIPE_OUT\"",
+                name,
+            ])
+            .args([
+                "--headless",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--disable-quic",
+                "--no-first-run",
+                "--disable-sync",
+            ])
+            .args([
+                "--disable-background-networking",
+                "--disable-component-update",
+                "--remote-debugging-pipe",
+            ])
+            .arg(format!(
+                "--user-data-dir={}",
+                folder.path().join("profile").display()
+            ))
             .env("PIPE_IN", &pipes[0])
             .env("PIPE_OUT", &pipes[1])
             .stdout(Stdio::null())
@@ -55,19 +85,40 @@ impl Browser {
         let (sender, answers) = channel();
         std::thread::spawn(move || {
             let mut message = Vec::new();
-            while out.read_until(0, &mut message).is_ok_and(|length| length > 0) {
+            while out
+                .read_until(0, &mut message)
+                .is_ok_and(|length| length > 0)
+            {
                 message.pop();
-                if sender.send(serde_json::from_slice(&message).unwrap()).is_err() {
+                if sender
+                    .send(serde_json::from_slice(&message).unwrap())
+                    .is_err()
+                {
                     return;
                 }
                 message.clear();
             }
         });
-        let mut browser =
-            Self { process, commands, answers, sent: 0, session: None, faults: Vec::new(), _folder: folder };
+        let mut browser = Self {
+            process,
+            commands,
+            answers,
+            sent: 0,
+            session: None,
+            faults: Vec::new(),
+            _folder: folder,
+        };
         let targets = browser.call("Target.getTargets", &json!({}));
-        let page = targets["targetInfos"].as_array().unwrap().iter().find(|target| target["type"] == "page").unwrap();
-        let attached = browser.call("Target.attachToTarget", &json!({"targetId": page["targetId"], "flatten": true}));
+        let page = targets["targetInfos"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .find(|target| target["type"] == "page")
+            .unwrap();
+        let attached = browser.call(
+            "Target.attachToTarget",
+            &json!({"targetId": page["targetId"], "flatten": true}),
+        );
         browser.session = Some(attached["sessionId"].as_str().unwrap().to_owned());
         for domain in ["Page", "Runtime", "Log"] {
             browser.call(&format!("{domain}.enable"), &json!({}));
@@ -82,7 +133,9 @@ impl Browser {
         if let Some(session) = &self.session {
             message["sessionId"] = json!(session);
         }
-        self.commands.write_all(message.to_string().as_bytes()).unwrap();
+        self.commands
+            .write_all(message.to_string().as_bytes())
+            .unwrap();
         self.commands.write_all(&[0]).unwrap();
         loop {
             let answer = self.next();
@@ -96,7 +149,10 @@ impl Browser {
     /// The next message; faults of the page are kept.
     fn next(&mut self) -> Value {
         let message = self.answers.recv_timeout(PATIENCE).unwrap();
-        if ["Runtime.exceptionThrown", "Log.entryAdded"].iter().any(|fault| message["method"] == *fault) {
+        if ["Runtime.exceptionThrown", "Log.entryAdded"]
+            .iter()
+            .any(|fault| message["method"] == *fault)
+        {
             self.faults.push(message["params"].to_string());
         }
         message
@@ -104,15 +160,22 @@ impl Browser {
 
     /// Sets the size of the screen in pixels; `phone` turns on touch input and the mobile mode.
     pub(crate) fn screen(&mut self, width: u32, height: u32, phone: bool) {
-        let metrics = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": phone});
+        let metrics =
+            json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": phone});
         self.call("Emulation.setDeviceMetricsOverride", &metrics);
-        self.call("Emulation.setTouchEmulationEnabled", &json!({ "enabled": phone }));
+        self.call(
+            "Emulation.setTouchEmulationEnabled",
+            &json!({ "enabled": phone }),
+        );
     }
 
     /// Opens a file and waits until it is loaded and has been drawn.
     pub(crate) fn open(&mut self, file: &Path, fragment: &str) {
         self.call("Page.navigate", &json!({"url": "about:blank"}));
-        self.call("Page.navigate", &json!({"url": format!("file://{}{fragment}", file.display())}));
+        self.call(
+            "Page.navigate",
+            &json!({"url": format!("file://{}{fragment}", file.display())}),
+        );
         self.until("document.readyState === 'complete' && location.protocol === 'file:'");
         self.frames();
     }
@@ -135,19 +198,29 @@ impl Browser {
     pub(crate) fn value(&mut self, expression: &str) -> Value {
         let asked = json!({"expression": expression, "returnByValue": true, "awaitPromise": true});
         let result = self.call("Runtime.evaluate", &asked);
-        assert!(result["exceptionDetails"].is_null(), "{expression}: {result}");
+        assert!(
+            result["exceptionDetails"].is_null(),
+            "{expression}: {result}"
+        );
         result["result"]["value"].clone()
     }
 
     /// Clicks what a selector finds, and waits for the drawings.
     pub(crate) fn click(&mut self, selector: &str) {
-        self.value(&format!("document.querySelector({}).click()", json!(selector)));
+        self.value(&format!(
+            "document.querySelector({}).click()",
+            json!(selector)
+        ));
         self.frames();
     }
 
     /// Presses a key where the focus is, and waits for the drawings.
     pub(crate) fn press(&mut self, key: &str, code: u32) {
-        let text = if key.chars().count() == 1 { json!(key) } else { Value::Null };
+        let text = if key.chars().count() == 1 {
+            json!(key)
+        } else {
+            Value::Null
+        };
         for kind in ["keyDown", "keyUp"] {
             let mut event = json!({"type": kind, "key": key, "windowsVirtualKeyCode": code});
             if kind == "keyDown" && !text.is_null() {
@@ -164,10 +237,16 @@ impl Browser {
         let touch = |kind: &str, y: f64| json!({"type": kind, "touchPoints": [{"x": x, "y": y}]});
         self.call("Input.dispatchTouchEvent", &touch("touchStart", y));
         for k in 1..=STEPS {
-            self.call("Input.dispatchTouchEvent", &touch("touchMove", y - way * f64::from(k) / f64::from(STEPS)));
+            self.call(
+                "Input.dispatchTouchEvent",
+                &touch("touchMove", y - way * f64::from(k) / f64::from(STEPS)),
+            );
             self.frames();
         }
-        self.call("Input.dispatchTouchEvent", &json!({"type": "touchEnd", "touchPoints": []}));
+        self.call(
+            "Input.dispatchTouchEvent",
+            &json!({"type": "touchEnd", "touchPoints": []}),
+        );
         self.frames();
     }
 

@@ -1,4 +1,5 @@
-//! Runs the command as a user does: in a folder of its own, looking at nothing but files, exit code and what is printed.
+//! Runs the command as a user does: in a folder of its own, looking at nothing but files, exit code
+//! and what is printed.
 
 use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
@@ -8,12 +9,16 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// Path of the command under test, from the package that the test belongs to.
-const BINARY: &str = match (option_env!("CARGO_BIN_EXE_feedwright"), option_env!("CARGO_BIN_EXE_feedwright-lab")) {
+const BINARY: &str = match (
+    option_env!("CARGO_BIN_EXE_feedwright"),
+    option_env!("CARGO_BIN_EXE_feedwright-lab"),
+) {
     (Some(binary), _) | (None, Some(binary)) => binary,
     (None, None) => panic!("the package has no command"),
 };
 
-/// A part that every test may cut: a circle of 2 mm radius at 20 mm/s, done in under a second of machining.
+/// A part that every test may cut: a circle of 2 mm radius at 20 mm/s, done in under a second of
+/// machining.
 pub(crate) const CIRCLE: &str = "G21 G17 G90 G94 G64\nG0 X0 Y0\nG2 X0 Y0 I2 J0 F1200\nM2\n";
 
 /// A working folder.
@@ -54,7 +59,11 @@ impl Folder {
                 if kind.is_dir() {
                     folders.push(path.clone());
                 }
-                let content = if kind.is_file() { std::fs::read(&path).unwrap() } else { Vec::new() };
+                let content = if kind.is_file() {
+                    std::fs::read(&path).unwrap()
+                } else {
+                    Vec::new()
+                };
                 found.insert(path, content);
             }
         }
@@ -64,7 +73,10 @@ impl Folder {
     /// The command, to be run here. Trained identifiers are kept from one test run to the next.
     pub(crate) fn command(&self) -> Command {
         let mut command = Command::new(BINARY);
-        command.current_dir(self.path()).env("FEEDWRIGHT_CACHE", Path::new(env!("CARGO_TARGET_TMPDIR")).join("cache"));
+        command.current_dir(self.path()).env(
+            "FEEDWRIGHT_CACHE",
+            Path::new(env!("CARGO_TARGET_TMPDIR")).join("cache"),
+        );
         command
     }
 
@@ -75,8 +87,14 @@ impl Folder {
 
     /// Cuts without a controller, which needs no training.
     pub(crate) fn run_uncorrected<S: AsRef<OsStr>>(&self, arguments: &[S]) -> Ran {
-        let mut all: Vec<OsString> = ["run", "--controller", "uncorrected"].map(OsString::from).to_vec();
-        all.extend(arguments.iter().map(|argument| argument.as_ref().to_owned()));
+        let mut all: Vec<OsString> = ["run", "--controller", "uncorrected"]
+            .map(OsString::from)
+            .to_vec();
+        all.extend(
+            arguments
+                .iter()
+                .map(|argument| argument.as_ref().to_owned()),
+        );
         self.run(&all)
     }
 }
@@ -129,9 +147,16 @@ impl Ran {
     fn ended(&self, code: i32, says: &[&str]) {
         assert_eq!(self.code, Some(code), "{self:?}");
         assert_eq!(self.stdout, "", "{self:?}");
-        assert!(!self.stderr.contains("panicked") && !self.stderr.contains('\u{1b}'), "{}", self.stderr);
+        assert!(
+            !self.stderr.contains("panicked") && !self.stderr.contains('\u{1b}'),
+            "{}",
+            self.stderr
+        );
         // Messages are wrapped to the width of the terminal.
-        let message = self.stderr.split(|c: char| c.is_whitespace() || c == '│').filter(|word| !word.is_empty());
+        let message = self
+            .stderr
+            .split(|c: char| c.is_whitespace() || c == '│')
+            .filter(|word| !word.is_empty());
         let message = message.collect::<Vec<_>>().join(" ");
         for part in says {
             assert!(message.contains(part), "not told: {part}\n{}", self.stderr);

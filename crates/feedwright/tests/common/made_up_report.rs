@@ -1,8 +1,8 @@
 //! A report of two made-up runs, in which every text is hostile to the page.
 
 use feedwright::{
-    Assumptions, DrawnLimits, ErrorSpectrum, FullCircle, MEASURED, ProgramLine, Report, ReportedRun, Roundness,
-    RunFacts, Series, Statistics, TimelineEvent, write_html,
+    Assumptions, DrawnLimits, ErrorSpectrum, FullCircle, MEASURED, ProgramLine, Report,
+    ReportedRun, Roundness, RunFacts, Series, Statistics, TimelineEvent, write_html,
 };
 use feedwright_sim::{Commanded, Row, Sink};
 
@@ -12,10 +12,13 @@ pub(crate) const HOSTILE: &str =
 fn made_up_run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> ReportedRun {
     let (mut series, mut statistics) = (Series::new(), Statistics::new());
     let mut spectrum = ErrorSpectrum::new(axes, 1e-3);
-    // Noise of a linear congruential generator: smooth signals would make the page smaller than a real one.
+    // Noise of a linear congruential generator: smooth signals would make the page smaller than a
+    // real one.
     let mut state = 1u64;
     let mut noise = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
     };
     for k in 0..rows {
@@ -52,13 +55,27 @@ fn made_up_run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> Repo
         axes,
         measured: controller == MEASURED,
         drives: None,
-        run: feedwright_sim::RunResult { time_s: rows as f64 * 1e-3, ..Default::default() },
+        run: feedwright_sim::RunResult {
+            time_s: rows as f64 * 1e-3,
+            ..Default::default()
+        },
     };
-    let radial_um: Vec<_> = (0..720).map(|k| Some(1e3 * size_mm * f64::from(k % 90) / 90.0)).collect();
-    let roundness =
-        Roundness { circular_deviation_um: 1e3 * size_mm, radial_max_um: 1e3 * size_mm, radial_min_um: 0.0, radial_um };
-    let event =
-        TimelineEvent { t_s: 0.1, duration_s: 0.5, line: 3, row: HOSTILE.to_owned(), label: HOSTILE.to_owned() };
+    let radial_um: Vec<_> = (0..720)
+        .map(|k| Some(1e3 * size_mm * f64::from(k % 90) / 90.0))
+        .collect();
+    let roundness = Roundness {
+        circular_deviation_um: 1e3 * size_mm,
+        radial_max_um: 1e3 * size_mm,
+        radial_min_um: 0.0,
+        radial_um,
+    };
+    let event = TimelineEvent {
+        t_s: 0.1,
+        duration_s: 0.5,
+        line: 3,
+        row: HOSTILE.to_owned(),
+        label: HOSTILE.to_owned(),
+    };
     ReportedRun {
         summary: statistics.summary(facts, |_| HOSTILE.to_owned()),
         series,
@@ -71,7 +88,9 @@ fn made_up_run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> Repo
 /// The same with a run of a log between the two.
 pub(crate) fn report_with_log(axes: usize, rows: usize) -> Report {
     let mut report = report(axes, rows);
-    report.runs.insert(1, made_up_run(MEASURED, axes, rows, 0.025));
+    report
+        .runs
+        .insert(1, made_up_run(MEASURED, axes, rows, 0.025));
     report
 }
 
@@ -89,7 +108,12 @@ pub(crate) fn report(axes: usize, rows: usize) -> Report {
             law_from: HOSTILE.to_owned(),
             ..Assumptions::default()
         },
-        program: (1..30).map(|line| ProgramLine { line, text: HOSTILE.to_owned() }).collect(),
+        program: (1..30)
+            .map(|line| ProgramLine {
+                line,
+                text: HOSTILE.to_owned(),
+            })
+            .collect(),
         circles: vec![FullCircle {
             line: 12,
             center_mm: [0.0; 3],
@@ -100,9 +124,18 @@ pub(crate) fn report(axes: usize, rows: usize) -> Report {
         }],
         tolerance_um: Some(10.0),
         limits: None,
-        axis_limits: vec![DrawnLimits { torque_nm: 3.0, accel_mm_s2: Some(900.0) }; axes],
+        axis_limits: vec![
+            DrawnLimits {
+                torque_nm: 3.0,
+                accel_mm_s2: Some(900.0)
+            };
+            axes
+        ],
         band: None,
-        runs: vec![made_up_run(HOSTILE, axes, rows, 0.03), made_up_run("corrected", axes, rows, 0.005)],
+        runs: vec![
+            made_up_run(HOSTILE, axes, rows, 0.03),
+            made_up_run("corrected", axes, rows, 0.005),
+        ],
     }
 }
 

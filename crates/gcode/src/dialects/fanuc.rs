@@ -1,8 +1,10 @@
 //! What Fanuc and Haas mean by words that LinuxCNC reads otherwise.
 //!
-//! `mill_or_lathe` tells a program for a lathe from one for a mill, and `text/codes/fanuc.rs` holds the G-codes that are theirs. Of lathes, G-code system A is read: X, U
-//! and the position are diameters, U and W are distances, F is a feed per revolution (G99) unless G98 makes it one per minute. `turning` has the
-//! cycles of one block, `repetitive` those of two (G70 to G76), `profile` the blocks P to Q that they refer to.
+//! `mill_or_lathe` tells a program for a lathe from one for a mill, and `text/codes/fanuc.rs` holds
+//! the G-codes that are theirs. Of lathes, G-code system A is read: X, U and the position are
+//! diameters, U and W are distances, F is a feed per revolution (G99) unless G98 makes it one per
+//! minute. `turning` has the cycles of one block, `repetitive` those of two (G70 to G76), `profile`
+//! the blocks P to Q that they refer to.
 
 pub(super) mod mill_or_lathe;
 mod words;
@@ -31,15 +33,19 @@ use crate::text::diagnostic::{LineFault, Read, Short};
 pub(crate) fn uses_axes(block: &Block) -> bool {
     block.g.iter().any(|word| {
         word.number >= OWN
-            && row(word.number)
-                .is_some_and(|row| row.group != Group::Motion && (row.letters & AXES != 0 || word.number == OWN + 650))
+            && row(word.number).is_some_and(|row| {
+                row.group != Group::Motion && (row.letters & AXES != 0 || word.number == OWN + 650)
+            })
     })
 }
 
-/// Whether a line bounds the spindle speed: G50 S, and G92 S of G-code systems B and C and of mills.
+/// Whether a line bounds the spindle speed: G50 S, and G92 S of G-code systems B and C and of
+/// mills.
 pub(crate) fn bounds_spindle(block: &Block) -> bool {
     block.has(b's')
-        && block.code(Group::NonModal).is_some_and(|word| matches!(word.number, 920) || word.number % OWN == 500)
+        && block
+            .code(Group::NonModal)
+            .is_some_and(|word| matches!(word.number, 920) || word.number % OWN == 500)
 }
 
 impl Interpreter {
@@ -62,20 +68,30 @@ impl Interpreter {
 
     fn prepare_lathe(&self, block: &mut Block) -> Read<()> {
         let steps = block.set & (bit(b'u') | bit(b'v') | bit(b'w'));
-        if let Some(word) = block.code(Group::NonModal).filter(|word| matches!(word.number, 100 | 520 | 530))
+        if let Some(word) = block
+            .code(Group::NonModal)
+            .filter(|word| matches!(word.number, 100 | 520 | 530))
             && steps != 0
         {
             let message = format!("U, V and W are not read with {}", spelled(word.number));
-            return Err(LineFault::new("gcode::unsupported", block.at_any(steps), message).hint("write X, Y and Z"));
+            return Err(
+                LineFault::new("gcode::unsupported", block.at_any(steps), message)
+                    .hint("write X, Y and Z"),
+            );
         }
-        let cycle = block.code(Group::Motion).filter(|word| matches!(word.number % OWN, 900 | 920 | 940));
+        let cycle = block
+            .code(Group::Motion)
+            .filter(|word| matches!(word.number % OWN, 900 | 920 | 940));
         if let Some(word) = cycle.filter(|word| word.number >= LATHE_OWN && !block.has_axes()) {
             let code = spelled(word.number);
-            let message =
-                format!("{code} without X and Z: in G-code system A it is a cycle, and other systems are not read");
+            let message = format!(
+                "{code} without X and Z: in G-code system A it is a cycle, and other systems are not read"
+            );
             return Err(LineFault::new("gcode::system_a", word.at(), message).hint(SYSTEM_A));
         }
-        let home = block.code(Group::NonModal).is_some_and(|word| matches!(word.number, 280 | 300));
+        let home = block
+            .code(Group::NonModal)
+            .is_some_and(|word| matches!(word.number, 280 | 300));
         if home {
             // The way to the reference point goes over a point that U and W give as distances.
             for (step, letter, axis) in [(b'u', b'x', 0), (b'w', b'z', 2)] {
@@ -99,17 +115,26 @@ impl Interpreter {
             && self.modal.feed >= LARGE_FEED_MM
             && self.warn_once("gcode::feed")
         {
-            let message = format!("the feed is {} mm per revolution (G99, as a lathe begins)", Short(self.modal.feed));
+            let message = format!(
+                "the feed is {} mm per revolution (G99, as a lathe begins)",
+                Short(self.modal.feed)
+            );
             let warning = LineFault::new("gcode::feed", block.at(b'f'), message);
-            self.output.warnings.push(*warning.hint("G98 makes F a feed per minute"));
+            self.output
+                .warnings
+                .push(*warning.hint("G98 makes F a feed per minute"));
         }
     }
 
     /// Bound of the spindle speed (G50 S).
     pub(crate) fn bound_spindle(&mut self, block: &Block, rpm: f64) -> Read<()> {
         if rpm <= 0.0 {
-            return Err(LineFault::new("gcode::spindle", block.at(b's'), "a bound of 0 rev/min stops the spindle")
-                .hint("write the highest speed, as in G50 S2500"));
+            return Err(LineFault::new(
+                "gcode::spindle",
+                block.at(b's'),
+                "a bound of 0 rev/min stops the spindle",
+            )
+            .hint("write the highest speed, as in G50 S2500"));
         }
         self.fanuc.highest_rpm = Some(rpm);
         if let Some(highest) = &mut self.modal.constant_surface {
@@ -118,19 +143,26 @@ impl Interpreter {
         Ok(())
     }
 
-    /// S of G96 and G97 on Fanuc: each is remembered, and G97 alone goes on as fast as the spindle turns.
+    /// S of G96 and G97 on Fanuc: each is remembered, and G97 alone goes on as fast as the spindle
+    /// turns.
     pub(crate) fn own_spindle_mode(&mut self, block: &Block, word: Word) -> Read<()> {
         if word.number == 960 {
             let surface = block.get(b's').or(self.fanuc.surface_speed);
             let Some(surface) = surface else {
-                return Err(LineFault::new("gcode::spindle", word.at(), "G96 has no surface speed S")
-                    .hint("write G96 S180 for 180 m/min"));
+                return Err(LineFault::new(
+                    "gcode::spindle",
+                    word.at(),
+                    "G96 has no surface speed S",
+                )
+                .hint("write G96 S180 for 180 m/min"));
             };
             self.modal.spindle_speed = surface;
             self.fanuc.surface_speed = Some(surface);
         } else if self.modal.constant_surface.is_some() && !block.has(b's') {
             self.modal.spindle_speed = self.spindle_rpm(&self.here);
-            self.event(EventKind::SpindleSpeed { rpm: self.modal.spindle_speed });
+            self.event(EventKind::SpindleSpeed {
+                rpm: self.modal.spindle_speed,
+            });
         }
         Ok(())
     }
@@ -143,25 +175,36 @@ impl Interpreter {
     /// T of a lathe turns the turret: `T0101` is tool 1 with offset 1.
     pub(crate) fn turret(&mut self, block: &Block) -> Read<()> {
         let number = self.integer(block, b't', 0, 999_999)?;
-        let tool = if number > 9999 { number / 1000 } else { number / 100 } as u32;
+        let tool = if number > 9999 {
+            number / 1000
+        } else {
+            number / 100
+        } as u32;
         // T0 and T0100 take the offset away, and T1 puts offset 1 to the tool that is there.
         if tool != 0 && tool != self.tool.number {
             self.tool.next = tool;
             self.event(EventKind::ToolSelect { tool });
             self.load_tool(tool);
-            self.event(EventKind::MCode { code: 6, p: None, q: None });
+            self.event(EventKind::MCode {
+                code: 6,
+                p: None,
+                q: None,
+            });
         }
         Ok(())
     }
 
-    /// G41 and G42 of a lathe: what is cut is the programmed contour, whatever the radius of the tool's nose.
+    /// G41 and G42 of a lathe: what is cut is the programmed contour, whatever the radius of the
+    /// tool's nose.
     pub(crate) fn nose_compensation(&mut self, word: Word) {
         if self.warn_once("gcode::nose_radius") {
             let message = format!(
                 "{}: the tool's nose radius is in the control; the path that is read is the programmed contour, which the nose then cuts",
                 spelled(word.number)
             );
-            self.output.warnings.push(*LineFault::new("gcode::nose_radius", word.at(), message));
+            self.output
+                .warnings
+                .push(*LineFault::new("gcode::nose_radius", word.at(), message));
         }
     }
 
@@ -178,7 +221,8 @@ impl Interpreter {
         }
     }
 
-    /// G50 of a lathe: X and Z name the position, U and W shift what it is called; S was read before.
+    /// G50 of a lathe: X and Z name the position, U and W shift what it is called; S was read
+    /// before.
     fn shift_by_g50(&mut self, block: &Block) -> Read<()> {
         for (letter, step, axis) in [(b'x', b'u', 0), (b'z', b'w', 2)] {
             if let Some(value) = block.get(letter) {

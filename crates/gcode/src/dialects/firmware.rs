@@ -1,4 +1,5 @@
-//! Lines that are commands to a firmware and no G-code: macros of Klipper, texts for a display, settings of grbl, smoothing of Fanuc.
+//! Lines that are commands to a firmware and no G-code: macros of Klipper, texts for a display,
+//! settings of grbl, smoothing of Fanuc.
 
 use crate::dialects::choice::GRBL_COMMANDS;
 use crate::settings::Dialect;
@@ -15,21 +16,28 @@ pub(crate) enum FirmwareCommand {
     Smooths,
 }
 
-/// G-codes of printers that set the machine to work by itself: nozzle cleaning, parking, bed probing and alignment.
-const PRINTER_ACTS: [&[u8]; 12] =
-    [b"g11", b"g12", b"g26", b"g27", b"g29", b"g30", b"g32", b"g33", b"g34", b"g35", b"g60", b"g425"];
+/// G-codes of printers that set the machine to work by itself: nozzle cleaning, parking, bed
+/// probing and alignment.
+const PRINTER_ACTS: [&[u8]; 12] = [
+    b"g11", b"g12", b"g26", b"g27", b"g29", b"g30", b"g32", b"g33", b"g34", b"g35", b"g60", b"g425",
+];
 /// M-codes of printers that are followed by text.
-const PRINTER_TEXT: [&[u8]; 11] =
-    [b"m16", b"m23", b"m28", b"m32", b"m110", b"m115", b"m117", b"m118", b"m486", b"m862", b"m928"];
+const PRINTER_TEXT: [&[u8]; 11] = [
+    b"m16", b"m23", b"m28", b"m32", b"m110", b"m115", b"m117", b"m118", b"m486", b"m862", b"m928",
+];
 
 /// Whether a line is a command to the firmware of this dialect.
 pub(crate) fn command(line: &[u8], dialect: Dialect) -> Option<FirmwareCommand> {
     let line = line.trim_ascii();
     match dialect {
-        Dialect::Grbl if line.first() == Some(&b'$') && !line.to_ascii_lowercase().starts_with(b"$j") => {
+        Dialect::Grbl
+            if line.first() == Some(&b'$') && !line.to_ascii_lowercase().starts_with(b"$j") =>
+        {
             Some(FirmwareCommand::Speaks)
         }
-        Dialect::Grbl if !line.is_empty() && line.iter().all(|byte| GRBL_COMMANDS.contains(byte)) => {
+        Dialect::Grbl
+            if !line.is_empty() && line.iter().all(|byte| GRBL_COMMANDS.contains(byte)) =>
+        {
             Some(FirmwareCommand::Speaks)
         }
         Dialect::Printer => printer_command(without_number(line)),
@@ -44,7 +52,11 @@ fn without_number(line: &[u8]) -> &[u8] {
         return line;
     };
     let digits = rest.iter().take_while(|byte| byte.is_ascii_digit()).count();
-    if digits > 0 { rest[digits..].trim_ascii_start() } else { line }
+    if digits > 0 {
+        rest[digits..].trim_ascii_start()
+    } else {
+        line
+    }
 }
 
 fn printer_command(line: &[u8]) -> Option<FirmwareCommand> {
@@ -70,13 +82,14 @@ fn printer_command(line: &[u8]) -> Option<FirmwareCommand> {
     if is_one_of(&PRINTER_TEXT) {
         return Some(FirmwareCommand::Speaks);
     }
-    // A macro has a name of letters: `START_PRINT BED=60`; words of G-code have a digit or a sign behind the first letter.
+    // A macro has a name of letters: `START_PRINT BED=60`; words of G-code have a digit or a sign
+    // behind the first letter.
     let of_letters = word.len() > 2 && word.iter().take(3).all(u8::is_ascii_alphabetic);
     (of_letters || word.contains(&b'_')).then_some(FirmwareCommand::Acts)
 }
 
-/// `G10` alone, or with the S of a long retraction, pulls filament back by a length that the firmware knows; RepRap's `G10 P1 S200` sets
-/// up a tool; with L it is LinuxCNC's.
+/// `G10` alone, or with the S of a long retraction, pulls filament back by a length that the
+/// firmware knows; RepRap's `G10 P1 S200` sets up a tool; with L it is LinuxCNC's.
 fn firmware_retract(words: &[u8]) -> Option<FirmwareCommand> {
     let code = words.split(|&byte| byte == b';').next().unwrap_or(words);
     let has = |letter: u8| code.iter().any(|byte| byte.eq_ignore_ascii_case(&letter));
@@ -87,9 +100,13 @@ fn firmware_retract(words: &[u8]) -> Option<FirmwareCommand> {
     }
 }
 
-/// Look-ahead and smoothing of Fanuc and Haas: `G5.1 Q1`, `G5 P10000`, `G8 P1`, `G187 P3 E0.01`, alone on the line.
+/// Look-ahead and smoothing of Fanuc and Haas: `G5.1 Q1`, `G5 P10000`, `G8 P1`, `G187 P3 E0.01`,
+/// alone on the line.
 fn smooths(line: &[u8]) -> bool {
-    let mut code = line.split(|byte| matches!(byte, b'(' | b';')).next().unwrap_or(line);
+    let mut code = line
+        .split(|byte| matches!(byte, b'(' | b';'))
+        .next()
+        .unwrap_or(line);
     if let [b'n' | b'N', rest @ ..] = code {
         let number = rest.iter().take_while(|byte| byte.is_ascii_digit()).count();
         code = rest[number..].trim_ascii_start();
@@ -97,9 +114,15 @@ fn smooths(line: &[u8]) -> bool {
     let [b'g' | b'G', code @ ..] = code else {
         return false;
     };
-    let end = code.iter().position(|byte| !byte.is_ascii_digit() && *byte != b'.').unwrap_or(code.len());
+    let end = code
+        .iter()
+        .position(|byte| !byte.is_ascii_digit() && *byte != b'.')
+        .unwrap_or(code.len());
     let (number, rest) = code.split_at(end);
-    let mut letters = rest.iter().filter(|byte| byte.is_ascii_alphabetic()).map(u8::to_ascii_lowercase);
+    let mut letters = rest
+        .iter()
+        .filter(|byte| byte.is_ascii_alphabetic())
+        .map(u8::to_ascii_lowercase);
     match number {
         b"187" => letters.all(|letter| matches!(letter, b'p' | b'e')),
         b"5.1" | b"05.1" => letters.next() == Some(b'q') && letters.all(|letter| letter == b'r'),
@@ -110,13 +133,20 @@ fn smooths(line: &[u8]) -> bool {
 
 /// The warning for a command whose motions are not known, or that is left out.
 pub(crate) fn warning(line: &[u8], command: FirmwareCommand) -> Box<LineFault> {
-    let shown = String::from_utf8_lossy(line.trim_ascii()).chars().take(40).collect::<String>();
+    let shown = String::from_utf8_lossy(line.trim_ascii())
+        .chars()
+        .take(40)
+        .collect::<String>();
     let what = if command == FirmwareCommand::Smooths {
         "sets how the control smooths motions: it is left out"
     } else {
         "is carried out by the firmware: what it moves is not known here"
     };
-    LineFault::new("gcode::firmware", 0..line.len(), format!("`{shown}` {what}"))
+    LineFault::new(
+        "gcode::firmware",
+        0..line.len(),
+        format!("`{shown}` {what}"),
+    )
 }
 
 #[cfg(test)]
@@ -137,7 +167,10 @@ mod tests {
         assert_eq!(printer("N4 G1 X1 E1*97"), None);
         assert_eq!(command(b"?", Dialect::Grbl), Some(FirmwareCommand::Speaks));
         assert_eq!(command(b"!~", Dialect::Grbl), Some(FirmwareCommand::Speaks));
-        assert_eq!(printer("G10 ; retract by the firmware's length"), Some(FirmwareCommand::Acts));
+        assert_eq!(
+            printer("G10 ; retract by the firmware's length"),
+            Some(FirmwareCommand::Acts)
+        );
         assert_eq!(printer("G10 S1"), Some(FirmwareCommand::Acts));
         assert_eq!(printer("G10 P1 S200"), Some(FirmwareCommand::Speaks));
         assert_eq!(printer("G10 L2 P1 X5"), None);
@@ -149,10 +182,26 @@ mod tests {
         assert_eq!(command(b"$J=G91 X1", Dialect::Grbl), None);
         assert_eq!(command(b"START_PRINT", Dialect::LinuxCnc), None);
         let fanuc = |line: &str| command(line.as_bytes(), Dialect::Fanuc);
-        for line in ["G187 P3 E0.01", "N10 G05.1 Q1 (AICC)", "G5.1Q1R5", "G08 P1", "G05 P10000", "g187"] {
+        for line in [
+            "G187 P3 E0.01",
+            "N10 G05.1 Q1 (AICC)",
+            "G5.1Q1R5",
+            "G08 P1",
+            "G05 P10000",
+            "g187",
+        ] {
             assert_eq!(fanuc(line), Some(FirmwareCommand::Smooths), "{line}");
         }
-        for line in ["G5.1 X1 I1 J2", "G8", "G1 X5 P1", "G187 P1 G0 X5", "G08 P1 X5", "", "N10", "G"] {
+        for line in [
+            "G5.1 X1 I1 J2",
+            "G8",
+            "G1 X5 P1",
+            "G187 P1 G0 X5",
+            "G08 P1 X5",
+            "",
+            "N10",
+            "G",
+        ] {
             assert_eq!(fanuc(line), None, "{line}");
         }
     }

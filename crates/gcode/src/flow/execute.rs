@@ -1,7 +1,9 @@
-//! Carries out one block: first its modes, in the order that RS-274 fixes, then its motion, then its stop.
+//! Carries out one block: first its modes, in the order that RS-274 fixes, then its motion, then
+//! its stop.
 //!
-//! Order: NISTIR 6556, table 8: feed mode, F, S, T, tool change, spindle, coolant, overrides, dwell, plane, units, compensation,
-//! tool length, coordinate system, path control, distance modes, return level, offsets, motion, stop.
+//! Order: NISTIR 6556, table 8: feed mode, F, S, T, tool change, spindle, coolant, overrides,
+//! dwell, plane, units, compensation, tool length, coordinate system, path control, distance modes,
+//! return level, offsets, motion, stop.
 
 use crate::canon::EventKind;
 use crate::dialects::fanuc;
@@ -53,18 +55,27 @@ impl Interpreter {
         if self.dialect == Dialect::Printer && !block.m.is_empty() {
             return None;
         }
-        let taken = block.code(Group::NonModal).is_some_and(|word| USES_AXES.contains(&word.number))
-            || block.code(Group::ToolLength).is_some_and(|word| matches!(word.number, 431 | 432))
+        let taken = block
+            .code(Group::NonModal)
+            .is_some_and(|word| USES_AXES.contains(&word.number))
+            || block
+                .code(Group::ToolLength)
+                .is_some_and(|word| matches!(word.number, 431 | 432))
             || (self.dialect.is_fanuc() && fanuc::uses_axes(block));
         let is_center = matches!(self.modal.motion, 20 | 30)
             && block.set & codes::ARC_CENTER != 0
             && block.code(Group::NonModal).is_none();
-        let is_g53 = block.code(Group::NonModal).is_some_and(|word| word.number == 530);
+        let is_g53 = block
+            .code(Group::NonModal)
+            .is_some_and(|word| word.number == 530);
         if is_g53 && self.dialect.is_fanuc() && block.has_axes() {
             return Some(0); // It moves by itself.
         }
-        (!taken && (block.has_axes() || is_center || (self.dialect == Dialect::Printer && block.has(b'e'))))
-            .then_some(self.modal.motion)
+        (!taken
+            && (block.has_axes()
+                || is_center
+                || (self.dialect == Dialect::Printer && block.has(b'e'))))
+        .then_some(self.modal.motion)
     }
 
     fn motion(&mut self, block: &Block) -> Read<()> {
@@ -72,23 +83,35 @@ impl Interpreter {
         self.check_words(block, motion)?;
         let Some(code) = motion else { return Ok(()) };
         if let Some(word) = block.code(Group::Motion) {
-            // `G80 G28 Z0`: G28 takes the axis words. Fanuc: in `G0 G28 Z0` too, and G0 is only remembered.
-            let taken = block.code(Group::NonModal).is_some_and(|other| USES_AXES.contains(&other.number))
+            // `G80 G28 Z0`: G28 takes the axis words. Fanuc: in `G0 G28 Z0` too, and G0 is only
+            // remembered.
+            let taken = block
+                .code(Group::NonModal)
+                .is_some_and(|other| USES_AXES.contains(&other.number))
                 || (self.dialect.is_fanuc() && fanuc::uses_axes(block));
             if taken && (code == 800 || self.dialect.is_fanuc()) {
                 self.modal.motion = code;
                 return Ok(());
             }
-            if let Some(other) =
-                block.code(Group::NonModal).filter(|other| USES_AXES.contains(&other.number) && block.has_axes())
+            if let Some(other) = block
+                .code(Group::NonModal)
+                .filter(|other| USES_AXES.contains(&other.number) && block.has_axes())
             {
-                let message =
-                    format!("{} and {} would both use the axis words", spelled(word.number), spelled(other.number));
-                return Err(LineFault::new("gcode::modal_group", other.at(), message).hint("write them on two lines"));
+                let message = format!(
+                    "{} and {} would both use the axis words",
+                    spelled(word.number),
+                    spelled(other.number)
+                );
+                return Err(LineFault::new("gcode::modal_group", other.at(), message)
+                    .hint("write them on two lines"));
             }
             self.modal.motion = code;
         }
-        if block.code(Group::NonModal).is_some_and(|word| word.number == 530) && !matches!(code, 0 | 10) {
+        if block
+            .code(Group::NonModal)
+            .is_some_and(|word| word.number == 530)
+            && !matches!(code, 0 | 10)
+        {
             return Err(LineFault::new(
                 "gcode::g53",
                 block.whole(),
@@ -123,9 +146,17 @@ impl Interpreter {
     fn stop(&mut self, block: &Block) -> Read<()> {
         for word in &block.m {
             match word.number {
-                0 | 1 | 60 => self.event(EventKind::MCode { code: word.number, p: None, q: None }),
+                0 | 1 | 60 => self.event(EventKind::MCode {
+                    code: word.number,
+                    p: None,
+                    q: None,
+                }),
                 2 | 30 => {
-                    self.event(EventKind::MCode { code: word.number, p: None, q: None });
+                    self.event(EventKind::MCode {
+                        code: word.number,
+                        p: None,
+                        q: None,
+                    });
                     let open = self.lathe.is_some();
                     self.end_program();
                     self.check_profile_end(open, word.at())?;
@@ -141,7 +172,10 @@ impl Interpreter {
     fn special_motion(&mut self, block: &Block, code: u16) -> Read<()> {
         if self.compensates() && !matches!(code, 50..=53) {
             let message = format!("{} cannot run with cutter compensation", spelled(code));
-            return Err(LineFault::new("gcode::compensation", block.whole(), message).hint("end it with G40 first"));
+            return Err(
+                LineFault::new("gcode::compensation", block.whole(), message)
+                    .hint("end it with G40 first"),
+            );
         }
         match code {
             50 | 51 => self.bezier(block, code),
@@ -157,7 +191,8 @@ impl Interpreter {
         }
     }
 
-    /// A line was refused: takes the mode and the position that it was meant to leave, so that what follows is judged by itself.
+    /// A line was refused: takes the mode and the position that it was meant to leave, so that what
+    /// follows is judged by itself.
     #[cold]
     pub(super) fn assume(&mut self, block: &Block) {
         self.behind_fault |= block.has_axes() || !block.g.is_empty();
@@ -165,7 +200,11 @@ impl Interpreter {
             self.modal.motion = word.number;
         }
         let moves = matches!(self.modal.motion, 0..=30) && block.has_axes() && !self.compensates();
-        if let Some(target) = self.target(block).ok().filter(|_| moves && self.lathe.is_none()) {
+        if let Some(target) = self
+            .target(block)
+            .ok()
+            .filter(|_| moves && self.lathe.is_none())
+        {
             self.at = target;
             self.here = self.frame.to_machine(&target);
         }

@@ -1,12 +1,13 @@
-//! Which faults are shown: each place once, however often a loop comes by, and no more than anybody reads.
+//! Which faults are shown: each place once, however often a loop comes by, and no more than anybody
+//! reads.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::text::diagnostic::Diagnostic;
 
-/// Faults after which a program is not read any further. Subroutines that call themselves twice and err each time make
-/// faults without end from a few lines.
+/// Faults after which a program is not read any further. Subroutines that call themselves twice and
+/// err each time make faults without end from a few lines.
 const HOPELESS: usize = 100_000;
 /// Places that are remembered; beyond, every fault counts as new.
 const MAX_PLACES: usize = 10_000;
@@ -25,7 +26,12 @@ pub(super) struct Faults {
 }
 
 pub(super) fn place(diagnostic: &Diagnostic) -> Place {
-    (diagnostic.file.clone(), diagnostic.line, diagnostic.column, diagnostic.code)
+    (
+        diagnostic.file.clone(),
+        diagnostic.line,
+        diagnostic.column,
+        diagnostic.code,
+    )
 }
 
 impl Faults {
@@ -64,10 +70,17 @@ impl Faults {
     /// What is said behind the last line of those that were not shown; once.
     pub(super) fn rest(&mut self, most: usize) -> Option<String> {
         let more = self.count.saturating_sub(most);
-        let unread = if self.are_hopeless() { "; the rest of the program was not read" } else { "" };
+        let unread = if self.are_hopeless() {
+            "; the rest of the program was not read"
+        } else {
+            ""
+        };
         let said = match (more, unread) {
             (0, "") => None,
-            (0, _) => Some("the same errors come again and again; the rest of the program was not read".to_owned()),
+            (0, _) => Some(
+                "the same errors come again and again; the rest of the program was not read"
+                    .to_owned(),
+            ),
             _ => Some(format!("and {more} more errors{unread}")),
         };
         (self.count, self.met) = (0, 0);

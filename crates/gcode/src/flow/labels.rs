@@ -1,4 +1,5 @@
-//! Blocks by their numbers: `N100` of a jump, a profile or M97, in the program or subprogram under way.
+//! Blocks by their numbers: `N100` of a jump, a profile or M97, in the program or subprogram under
+//! way.
 
 use std::ops::Range;
 
@@ -11,12 +12,15 @@ use crate::text::source::{Mark, SourceLine};
 const MAX_PLACES: usize = 100_000;
 
 impl Flow {
-    /// The line with the number `N`: the next from here on in the program or subprogram under way, or else its first.
+    /// The line with the number `N`: the next from here on in the program or subprogram under way,
+    /// or else its first.
     pub(super) fn find_block(&mut self, number: u64, at: &Range<usize>) -> Read<Option<Mark>> {
-        self.find_blocks(number, at).map(|found| found.behind.or(found.before))
+        self.find_blocks(number, at)
+            .map(|found| found.behind.or(found.before))
     }
 
-    /// The first lines with a number before here and from here on, in the program or subprogram under way.
+    /// The first lines with a number before here and from here on, in the program or subprogram
+    /// under way.
     pub(super) fn find_blocks(&mut self, number: u64, at: &Range<usize>) -> Read<Found> {
         let (here, line_start) = (self.source_ref().here(), self.source_ref().line_start);
         let key = (self.current, here.offset, number);
@@ -50,9 +54,14 @@ impl Flow {
                 Label::Program if begin.offset < here => found = Found::default(),
                 Label::Program => return Ok(found),
                 Label::Block(label) if label == number && begin.offset >= here => {
-                    return Ok(Found { behind: Some(begin), ..found });
+                    return Ok(Found {
+                        behind: Some(begin),
+                        ..found
+                    });
                 }
-                Label::Block(label) if label == number => found.before = found.before.or(Some(begin)),
+                Label::Block(label) if label == number => {
+                    found.before = found.before.or(Some(begin));
+                }
                 _ => {}
             }
         }
@@ -77,7 +86,9 @@ impl Label {
             b'o' | b':' => Self::Program,
             b'n' => {
                 cursor.bump();
-                cursor.number().map_or(Self::Nothing, |number| Self::Block(number.round().max(0.0) as u64))
+                cursor.number().map_or(Self::Nothing, |number| {
+                    Self::Block(number.round().max(0.0) as u64)
+                })
             }
             _ => Self::Nothing,
         }

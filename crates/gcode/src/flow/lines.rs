@@ -1,7 +1,9 @@
-//! Lines with O-words, and lines that are passed over, which are looked at only for the O-word that ends the passing.
+//! Lines with O-words, and lines that are passed over, which are looked at only for the O-word that
+//! ends the passing.
 
 use crate::flow::owords::{
-    Arguments, Head, Keyword, at_o_word, read_arguments, read_head, read_keyword, read_label, read_rest, shown,
+    Arguments, Head, Keyword, at_o_word, read_arguments, read_head, read_keyword, read_label,
+    read_rest, shown,
 };
 use crate::flow::program::{Flow, Purpose, SubroutineKind};
 use crate::flow::statements::ends_loop;
@@ -14,24 +16,41 @@ impl Flow {
     /// What the end of the file leaves open: the line that began it and the message.
     pub(super) fn unfinished(&self) -> Option<(u32, String)> {
         if let Some(skip) = &self.skip {
-            if let Some(number) = skip.label.strip_prefix(b"do").filter(|_| skip.purpose == Purpose::EndOfLoop) {
+            if let Some(number) = skip
+                .label
+                .strip_prefix(b"do")
+                .filter(|_| skip.purpose == Purpose::EndOfLoop)
+            {
                 let number = String::from_utf8_lossy(number);
                 return Some((skip.line, format!("DO{number} has no END{number}")));
             }
             let wanted = match skip.purpose {
                 Purpose::Branch | Purpose::EndOfBranches => "endif",
                 Purpose::Definition => "endsub",
-                Purpose::EndOfLoop | Purpose::NextRound => "end of its loop (endwhile, while or endrepeat)",
+                Purpose::EndOfLoop | Purpose::NextRound => {
+                    "end of its loop (endwhile, while or endrepeat)"
+                }
             };
             return Some((skip.line, format!("{} has no {wanted}", shown(&skip.label))));
         }
         let frame = self.frames.last()?;
-        let wanted = if frame.kind == SubroutineKind::Rs274 { "endsub" } else { "M99" };
-        Some((frame.body.lines_before, format!("the subroutine {} has no {wanted}", shown(&frame.label))))
+        let wanted = if frame.kind == SubroutineKind::Rs274 {
+            "endsub"
+        } else {
+            "M99"
+        };
+        Some((
+            frame.body.lines_before,
+            format!("the subroutine {} has no {wanted}", shown(&frame.label)),
+        ))
     }
 
     /// A line that is passed over: does it end the passing?
-    pub(super) fn passed_line(&mut self, range: std::ops::Range<usize>, interpreter: &Interpreter) -> Read<()> {
+    pub(super) fn passed_line(
+        &mut self,
+        range: std::ops::Range<usize>,
+        interpreter: &Interpreter,
+    ) -> Read<()> {
         let Some((head, arguments)) = self.passed_head(range, interpreter)? else {
             return Ok(());
         };
@@ -40,7 +59,8 @@ impl Flow {
             return Ok(());
         };
         match (skip.purpose, head.keyword) {
-            (Purpose::Branch, Keyword::ElseIf) if arguments.is_some_and(|arguments| arguments.values[0] == 0.0) => {}
+            (Purpose::Branch, Keyword::ElseIf)
+                if arguments.is_some_and(|arguments| arguments.values[0] == 0.0) => {}
             (Purpose::Branch, Keyword::ElseIf | Keyword::Else | Keyword::EndIf)
             | (Purpose::EndOfBranches, Keyword::EndIf)
             | (Purpose::Definition, Keyword::EndSub) => {
@@ -59,7 +79,8 @@ impl Flow {
         Ok(())
     }
 
-    /// The O-word of a passed line, if it has the label looked for; its arguments where they matter.
+    /// The O-word of a passed line, if it has the label looked for; its arguments where they
+    /// matter.
     fn passed_head(
         &self,
         range: std::ops::Range<usize>,
@@ -90,7 +111,11 @@ impl Flow {
             Err(_) if interpreter.dialect.is_fanuc() => return Ok(None),
             Err(fault) => return Err(fault),
         };
-        let head = Head { label, keyword, at: start..evaluator.cursor.at };
+        let head = Head {
+            label,
+            keyword,
+            at: start..evaluator.cursor.at,
+        };
         if head.label != skip.label {
             if skip.purpose == Purpose::Definition && head.keyword == Keyword::Sub {
                 return Err(LineFault::new(
@@ -105,12 +130,21 @@ impl Flow {
             (skip.purpose, head.keyword),
             (Purpose::Branch, Keyword::ElseIf) | (Purpose::NextRound, Keyword::While)
         );
-        let arguments = if evaluates { Some(read_arguments(&mut evaluator, &head)?) } else { None };
+        let arguments = if evaluates {
+            Some(read_arguments(&mut evaluator, &head)?)
+        } else {
+            None
+        };
         Ok(Some((head, arguments)))
     }
 
     /// A line that is an O-word: reads it at `at` and carries it out.
-    pub(super) fn line(&mut self, range: std::ops::Range<usize>, at: usize, interpreter: &mut Interpreter) -> Read<()> {
+    pub(super) fn line(
+        &mut self,
+        range: std::ops::Range<usize>,
+        at: usize,
+        interpreter: &mut Interpreter,
+    ) -> Read<()> {
         let (head, arguments) = {
             let mut cursor = Cursor::new(self.source_ref().bytes(range));
             cursor.at = at;
@@ -120,8 +154,9 @@ impl Flow {
             let read = if head.keyword == Keyword::ElseIf {
                 Ok(None)
             } else {
-                read_arguments(&mut evaluator, &head)
-                    .and_then(|arguments| read_rest(&mut evaluator.cursor).map(|()| Some(arguments)))
+                read_arguments(&mut evaluator, &head).and_then(|arguments| {
+                    read_rest(&mut evaluator.cursor).map(|()| Some(arguments))
+                })
             };
             (head, read)
         };
@@ -135,7 +170,9 @@ impl Flow {
         };
         match (head.keyword, arguments) {
             (Keyword::Call, Some(arguments)) => self.call(&head, &arguments, interpreter),
-            (Keyword::Return | Keyword::EndSub, Some(arguments)) => self.leave(&head, &arguments, interpreter),
+            (Keyword::Return | Keyword::EndSub, Some(arguments)) => {
+                self.leave(&head, &arguments, interpreter)
+            }
             _ => self.carry_out(&head, arguments, line),
         }
     }

@@ -5,28 +5,38 @@ use crate::flow::program::{Flow, Loop, Purpose, Skip, SubroutineKind, cannot_rea
 use crate::text::diagnostic::{LineFault, Read};
 use crate::text::source::Mark;
 
-/// Labels of branches and loops that are remembered, far more than anybody writes by hand; what comes then is not checked.
+/// Labels of branches and loops that are remembered, far more than anybody writes by hand; what
+/// comes then is not checked.
 const MAX_LABELS: usize = 100_000;
 
 impl Flow {
     /// Branches and loops.
-    pub(super) fn carry_out(&mut self, head: &Head, arguments: Option<Arguments>, line: u32) -> Read<()> {
+    pub(super) fn carry_out(
+        &mut self,
+        head: &Head,
+        arguments: Option<Arguments>,
+        line: u32,
+    ) -> Read<()> {
         let value = arguments.map_or(0.0, |arguments| arguments.values[0]);
         let is_true = value != 0.0;
         match head.keyword {
-            Keyword::Sub | Keyword::If | Keyword::Do | Keyword::Repeat => self.take_label(head, line)?,
+            Keyword::Sub | Keyword::If | Keyword::Do | Keyword::Repeat => {
+                self.take_label(head, line)?;
+            }
             Keyword::While if !self.ends_do(head) => self.take_label(head, line)?,
             Keyword::ElseIf | Keyword::Else | Keyword::EndIf => self.find_label(head)?,
             _ => {}
         }
         match head.keyword {
-            Keyword::Number | Keyword::EndIf | Keyword::Call | Keyword::Return | Keyword::EndSub => {}
+            Keyword::Number
+            | Keyword::EndIf
+            | Keyword::Call
+            | Keyword::Return
+            | Keyword::EndSub => {}
             Keyword::Sub => {
-                if self
-                    .frames
-                    .last()
-                    .is_some_and(|frame| frame.kind == SubroutineKind::Fanuc && frame.label == head.label)
-                {
+                if self.frames.last().is_some_and(|frame| {
+                    frame.kind == SubroutineKind::Fanuc && frame.label == head.label
+                }) {
                     return Err(LineFault::new(
                         "gcode::o_word",
                         head.at.clone(),
@@ -47,7 +57,9 @@ impl Flow {
             Keyword::ElseIf | Keyword::Else => self.pass(head, Purpose::EndOfBranches, line),
             Keyword::While => return self.meet_while(head, is_true, line),
             Keyword::Do => self.begin_loop(head, 0)?,
-            Keyword::Repeat if value.round_ties_even() < 1.0 => self.pass(head, Purpose::EndOfLoop, line),
+            Keyword::Repeat if value.round_ties_even() < 1.0 => {
+                self.pass(head, Purpose::EndOfLoop, line);
+            }
             Keyword::Repeat => self.begin_loop(head, value.round_ties_even() as u64)?,
             Keyword::EndWhile | Keyword::EndRepeat => return self.end_round(head),
             Keyword::Break => {
@@ -72,27 +84,42 @@ impl Flow {
     /// Warns of a `break` or `continue` of a `repeat`.
     fn leaves(&mut self, head: &Head, kind: Keyword) {
         if kind == Keyword::Repeat {
-            let message = format!("LinuxCNC refuses `{}` in a repeat: it has no such label", head.keyword.spelled());
+            let message = format!(
+                "LinuxCNC refuses `{}` in a repeat: it has no such label",
+                head.keyword.spelled()
+            );
             let fault = LineFault::new("gcode::o_word", head.at.clone(), message);
             self.warning = Some(fault.hint("write the loop with while"));
         }
     }
 
-    /// A branch or loop with a faulty condition begins all the same: its end is no fault. The branch is read, the loop passed over.
+    /// A branch or loop with a faulty condition begins all the same: its end is no fault. The
+    /// branch is read, the loop passed over.
     #[cold]
     pub(super) fn begin_anyway(&mut self, head: &Head, line: u32) {
         // Behind one fault, another in the same line is not told.
         let _ = match head.keyword {
             Keyword::If => self.take_label(head, line),
-            Keyword::Repeat => self.take_label(head, line).map(|()| self.pass(head, Purpose::EndOfLoop, line)),
-            Keyword::While if self.ends_do(head) => self.find_loop(head).map(|_| ()).map(|()| drop(self.loops.pop())),
-            Keyword::While => self.take_label(head, line).map(|()| self.pass(head, Purpose::EndOfLoop, line)),
+            Keyword::Repeat => self
+                .take_label(head, line)
+                .map(|()| self.pass(head, Purpose::EndOfLoop, line)),
+            Keyword::While if self.ends_do(head) => self
+                .find_loop(head)
+                .map(|_| ())
+                .map(|()| drop(self.loops.pop())),
+            Keyword::While => self
+                .take_label(head, line)
+                .map(|()| self.pass(head, Purpose::EndOfLoop, line)),
             _ => Ok(()),
         };
     }
 
     pub(super) fn pass(&mut self, head: &Head, purpose: Purpose, line: u32) {
-        self.skip = Some(Skip { label: head.label.clone(), purpose, line });
+        self.skip = Some(Skip {
+            label: head.label.clone(),
+            purpose,
+            line,
+        });
     }
 
     /// Passes a loop over whose condition does not hold.
@@ -103,7 +130,10 @@ impl Flow {
     pub(super) fn begin_loop(&mut self, head: &Head, repeats: u64) -> Read<()> {
         let base = self.frames.last().map_or(0, |frame| frame.loops);
         // A loop that was left by a jump ends when it begins anew.
-        if let Some(old) = self.loops[base..].iter().position(|turn| turn.label == head.label) {
+        if let Some(old) = self.loops[base..]
+            .iter()
+            .position(|turn| turn.label == head.label)
+        {
             self.loops.truncate(base + old);
         }
         if self.loops.len() >= base + self.max_depth {
@@ -115,15 +145,28 @@ impl Flow {
         }
         let source = self.source_ref();
         let (begin, body) = (source.line_start, source.here());
-        self.loops.push(Loop { label: head.label.clone(), kind: head.keyword, begin, body, repeats });
+        self.loops.push(Loop {
+            label: head.label.clone(),
+            kind: head.keyword,
+            begin,
+            body,
+            repeats,
+        });
         Ok(())
     }
 
     /// The innermost loop, which must have the label; inner ones that were left behind end.
     fn find_loop(&mut self, head: &Head) -> Read<&mut Loop> {
         let base = self.frames.last().map_or(0, |frame| frame.loops);
-        let Some(found) = self.loops[base..].iter().rposition(|turn| turn.label == head.label) else {
-            let message = format!("{}: no loop {} is under way here", head.keyword.spelled(), head.shown());
+        let Some(found) = self.loops[base..]
+            .iter()
+            .rposition(|turn| turn.label == head.label)
+        else {
+            let message = format!(
+                "{}: no loop {} is under way here",
+                head.keyword.spelled(),
+                head.shown()
+            );
             return Err(LineFault::new("gcode::o_word", head.at.clone(), message));
         };
         self.loops.truncate(base + found + 1);
@@ -133,7 +176,9 @@ impl Flow {
     /// Whether a `while` ends a loop that began with `do`.
     fn ends_do(&self, head: &Head) -> bool {
         let base = self.frames.last().map_or(0, |frame| frame.loops);
-        self.loops[base..].iter().any(|turn| turn.label == head.label && turn.kind == Keyword::Do)
+        self.loops[base..]
+            .iter()
+            .any(|turn| turn.label == head.label && turn.kind == Keyword::Do)
     }
 
     /// Registers the label of a definition, a branch or a loop. Fails if another line of the same
@@ -162,7 +207,11 @@ impl Flow {
         if self.labels.contains_key(&self.key) || self.labels.len() == MAX_LABELS {
             return Ok(());
         }
-        let message = format!("{}: no `{} if` stands before it", head.keyword.spelled(), head.shown());
+        let message = format!(
+            "{}: no `{} if` stands before it",
+            head.keyword.spelled(),
+            head.shown()
+        );
         Err(LineFault::new("gcode::o_word", head.at.clone(), message))
     }
 
@@ -173,7 +222,11 @@ impl Flow {
             self.key.extend_from_slice(&frame.label);
         }
         // A subroutine may share its number with a branch or a loop.
-        self.key.push(if head.keyword == Keyword::Sub { b'<' } else { b'>' });
+        self.key.push(if head.keyword == Keyword::Sub {
+            b'<'
+        } else {
+            b'>'
+        });
         self.key.extend_from_slice(&head.label);
     }
 
@@ -183,7 +236,9 @@ impl Flow {
             let body = self.find_loop(head)?.body;
             let broke = self.broke.take();
             if is_true {
-                self.warning = broke.map(|line| ends_early(head, line)).or_else(|| self.warning.take());
+                self.warning = broke
+                    .map(|line| ends_early(head, line))
+                    .or_else(|| self.warning.take());
                 return self.jump(body, head);
             }
             self.loops.pop();
@@ -228,7 +283,9 @@ impl Flow {
     }
 
     fn jump(&mut self, mark: Mark, head: &Head) -> Read<()> {
-        self.source().jump(mark).map_err(|error| cannot_read(head.at.clone(), &error))
+        self.source()
+            .jump(mark)
+            .map_err(|error| cannot_read(head.at.clone(), &error))
     }
 }
 

@@ -1,4 +1,5 @@
-//! M-codes: those with a meaning to the interpreter change its state, all become events in program order.
+//! M-codes: those with a meaning to the interpreter change its state, all become events in program
+//! order.
 
 use crate::canon::EventKind;
 use crate::settings::Dialect;
@@ -9,17 +10,30 @@ use crate::text::codes::bit;
 use crate::text::diagnostic::{LineFault, Read};
 
 /// M-codes of one group exclude each other on a line.
-const GROUPS: [&[u16]; 8] =
-    [&[0, 1, 2, 30, 60], &[6, 61], &[3, 4, 5], &[3, 4, 19], &[7, 9], &[8, 9], &[48, 49], &[70, 71, 72, 73]];
+const GROUPS: [&[u16]; 8] = [
+    &[0, 1, 2, 30, 60],
+    &[6, 61],
+    &[3, 4, 5],
+    &[3, 4, 19],
+    &[7, 9],
+    &[8, 9],
+    &[48, 49],
+    &[70, 71, 72, 73],
+];
 
-/// LinuxCNC drops what stands behind M98 and refuses what stands before it or behind M99; Fanuc carries the line out, then jumps.
+/// LinuxCNC drops what stands behind M98 and refuses what stands before it or behind M99; Fanuc
+/// carries the line out, then jumps.
 fn check_jump(block: &Block, jump: &Word) -> Read<()> {
     let begin = match jump.number {
         98 => 0,
         99 => jump.at().end,
         _ => return Ok(()),
     };
-    let own = if jump.number == 98 { bit(b'p') | bit(b'l') } else { bit(b'p') };
+    let own = if jump.number == 98 {
+        bit(b'p') | bit(b'l')
+    } else {
+        bit(b'p')
+    };
     let codes = block.g.iter().chain(&block.m).map(Word::at);
     let letters = (b'a'..=b'z').filter(|letter| block.has(*letter) && own & bit(*letter) == 0);
     let mut places = codes.chain(letters.map(|letter| block.at(letter)));
@@ -53,7 +67,8 @@ impl Interpreter {
         }
     }
 
-    /// Carries out the M-codes except stops, in RS-274's order: tool, spindle, coolant, overrides, the rest.
+    /// Carries out the M-codes except stops, in RS-274's order: tool, spindle, coolant, overrides,
+    /// the rest.
     pub(super) fn machine_codes(&mut self, block: &Block) -> Read<()> {
         if block.m.is_empty() {
             return Ok(());
@@ -73,11 +88,17 @@ impl Interpreter {
         for (n, word) in block.m.iter().enumerate() {
             let clash = block.m[..n].iter().find(|other| {
                 other.number == word.number
-                    || GROUPS.iter().any(|group| group.contains(&other.number) && group.contains(&word.number))
+                    || GROUPS
+                        .iter()
+                        .any(|group| group.contains(&other.number) && group.contains(&word.number))
             });
             if let Some(other) = clash {
-                let message = format!("M{} and M{} exclude each other on one line", other.number, word.number);
-                return Err(LineFault::new("gcode::modal_group", word.at(), message).hint("write them on two lines"));
+                let message = format!(
+                    "M{} and M{} exclude each other on one line",
+                    other.number, word.number
+                );
+                return Err(LineFault::new("gcode::modal_group", word.at(), message)
+                    .hint("write them on two lines"));
             }
             if self.dialect.is_fanuc()
                 && let Some((what, hint)) = jump(word.number)
@@ -115,7 +136,11 @@ impl Interpreter {
         for &letter in needed {
             if !block.has(letter) {
                 let name = char::from(letter).to_ascii_uppercase();
-                return Err(LineFault::new("gcode::m_code", block.whole(), format!("M{number} needs its word {name}")));
+                return Err(LineFault::new(
+                    "gcode::m_code",
+                    block.whole(),
+                    format!("M{number} needs its word {name}"),
+                ));
             }
         }
         if number != 66 {
@@ -128,7 +153,11 @@ impl Interpreter {
                 "M66 waits for a digital input P or an analog input E: exactly one of them",
             ));
         }
-        let mode = if block.has(b'l') { self.integer(block, b'l', 0, 4)? } else { 0 };
+        let mode = if block.has(b'l') {
+            self.integer(block, b'l', 0, 4)?
+        } else {
+            0
+        };
         if mode != 0 && block.get(b'q').unwrap_or(0.0) <= 0.0 {
             return Err(LineFault::new(
                 "gcode::m_code",
@@ -180,7 +209,11 @@ impl Interpreter {
             83 if self.dialect == Dialect::Printer => self.extruder.is_relative = true,
             _ => {}
         }
-        self.event(EventKind::MCode { code: number, p: block.get(b'p'), q: block.get(b'q') });
+        self.event(EventKind::MCode {
+            code: number,
+            p: block.get(b'p'),
+            q: block.get(b'q'),
+        });
         Ok(())
     }
 }
@@ -190,7 +223,10 @@ const fn jump(number: u16) -> Option<(&'static str, &'static str)> {
     const AS_SUBROUTINE: &str =
         "put the lines behind M30, O1000 before and M99 behind them, and call them by M98 P1000";
     match number {
-        96 => Some(("jumps where an input is off", "write the lines that the machine will carry out")),
+        96 => Some((
+            "jumps where an input is off",
+            "write the lines that the machine will carry out",
+        )),
         198 => Some(("calls a program on another device", AS_SUBROUTINE)),
         _ => None,
     }

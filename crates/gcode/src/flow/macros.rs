@@ -1,6 +1,7 @@
 //! Macros of Fanuc: jumps, loops, and calls by `G65 P9010 A1. B2.`.
 //!
-//! Loops are those of O-words, under the label `do1`, so that what ends them and what bounds them is the same.
+//! Loops are those of O-words, under the label `do1`, so that what ends them and what bounds them
+//! is the same.
 
 use std::ops::Range;
 
@@ -56,11 +57,16 @@ impl Flow {
                 self.pass_loop(&head, line);
             }
             Statement::End(head) => {
-                self.end_round(&Head { keyword: Keyword::EndWhile, ..head })?;
+                self.end_round(&Head {
+                    keyword: Keyword::EndWhile,
+                    ..head
+                })?;
             }
             Statement::Print => {
                 let range = at.clone();
-                interpreter.event(EventKind::Message { text: self.text_of_line(range) });
+                interpreter.event(EventKind::Message {
+                    text: self.text_of_line(range),
+                });
             }
         }
         Ok(None)
@@ -87,7 +93,11 @@ impl Flow {
             )
             .hint("write G65 P9010 A1. to call O9010 with #1 = 1"));
         };
-        let times = if block.has(b'l') { interpreter.integer(block, b'l', 0, 9999)? } else { 1 };
+        let times = if block.has(b'l') {
+            interpreter.integer(block, b'l', 0, 9999)?
+        } else {
+            1
+        };
         let mut arguments = [f64::NAN; MACRO_LOCALS];
         for (letter, variable) in ARGUMENTS {
             if let Some(value) = block.get(letter) {
@@ -97,11 +107,22 @@ impl Flow {
         if let Some(word) = block.m.first() {
             arguments[12] = f64::from(word.number);
         }
-        self.call_with(number.round() as u64, times as u32, &at, interpreter, Some(Box::new(arguments)))
+        self.call_with(
+            number.round() as u64,
+            times as u32,
+            &at,
+            interpreter,
+            Some(Box::new(arguments)),
+        )
     }
 
     /// `M97 P100`: blocks of the same program as a subroutine.
-    pub(super) fn call_block(&mut self, block: &Block, at: &Range<usize>, interpreter: &mut Interpreter) -> Read<()> {
+    pub(super) fn call_block(
+        &mut self,
+        block: &Block,
+        at: &Range<usize>,
+        interpreter: &mut Interpreter,
+    ) -> Read<()> {
         let Some(number) = block.get(b'p').filter(|number| (1.0..1e9).contains(number)) else {
             return Err(LineFault::new(
                 "gcode::m98",
@@ -110,7 +131,11 @@ impl Flow {
             )
             .hint("write M97 P100 to call the lines from N100 to M99"));
         };
-        let times = if block.has(b'l') { interpreter.integer(block, b'l', 0, i64::from(u32::MAX))? } else { 1 };
+        let times = if block.has(b'l') {
+            interpreter.integer(block, b'l', 0, i64::from(u32::MAX))?
+        } else {
+            1
+        };
         let number = number.round() as u64;
         let Some(mark) = self.find_block(number, at)? else {
             let message = format!("M97 P{number}: there is no block N{number} in this program");
@@ -121,7 +146,14 @@ impl Flow {
             return Ok(());
         }
         let label = format!("N{number}").into_bytes();
-        self.enter_lines(label, SubroutineKind::Fanuc, (self.current, mark), times as u32, at, interpreter)
+        self.enter_lines(
+            label,
+            SubroutineKind::Fanuc,
+            (self.current, mark),
+            times as u32,
+            at,
+            interpreter,
+        )
     }
 
     /// A line of the source under way as text.

@@ -10,7 +10,8 @@ use crate::text::codes::fanuc::OWN;
 use crate::text::codes::{self, Group};
 use crate::text::diagnostic::{LineFault, Read, Short};
 
-/// From this time on a dwell of whole seconds may be meant in milliseconds: 0.1 s is a usual dwell, 100 s is not.
+/// From this time on a dwell of whole seconds may be meant in milliseconds: 0.1 s is a usual dwell,
+/// 100 s is not.
 const LONG_DWELL_S: f64 = 100.0;
 
 impl Interpreter {
@@ -43,7 +44,11 @@ impl Interpreter {
             ));
         }
         // F comes before G20 and G21 of the same line: it still has the old unit.
-        self.modal.feed_unit_mm = if self.modal.feed_mode == FeedMode::Inverse { 1.0 } else { self.modal.unit_mm };
+        self.modal.feed_unit_mm = if self.modal.feed_mode == FeedMode::Inverse {
+            1.0
+        } else {
+            self.modal.unit_mm
+        };
         self.modal.feed = (feed * self.modal.feed_unit_mm).min(f64::MAX);
         if self.dialect.is_lathe() {
             self.check_lathe_feed(block);
@@ -70,7 +75,10 @@ impl Interpreter {
             return Err(LineFault::new(
                 "gcode::spindle",
                 block.at(b's'),
-                format!("spindle speed S{} is negative; the smallest is 0 rev/min", Short(speed)),
+                format!(
+                    "spindle speed S{} is negative; the smallest is 0 rev/min",
+                    Short(speed)
+                ),
             ));
         }
         if self.dialect.is_fanuc() && fanuc::bounds_spindle(block) {
@@ -95,7 +103,9 @@ impl Interpreter {
         if block.has(b't') {
             let tool = self.integer(block, b't', 0, 999_999)?;
             self.tool.next = tool as u32;
-            self.event(EventKind::ToolSelect { tool: self.tool.next });
+            self.event(EventKind::ToolSelect {
+                tool: self.tool.next,
+            });
         }
         Ok(())
     }
@@ -171,27 +181,38 @@ impl Interpreter {
         })
     }
 
-    /// G50 alone ends scaling on some controls, which nothing here begins; with words it means something else.
+    /// G50 alone ends scaling on some controls, which nothing here begins; with words it means
+    /// something else.
     fn scaling(&mut self, block: &Block) -> Read<()> {
-        let Some(word) = block.code(Group::Scaling) else { return Ok(()) };
+        let Some(word) = block.code(Group::Scaling) else {
+            return Ok(());
+        };
         if block.has_axes() || block.has(b's') {
-            let message = "G50 with words is a scale, a speed or a shift on other controls, and is not read";
+            let message =
+                "G50 with words is a scale, a speed or a shift on other controls, and is not read";
             return Err(LineFault::new("gcode::unsupported", word.at(), message)
                 .hint("scale the part in the CAM system; on a lathe, D of G96 bounds the speed of the spindle"));
         }
         let message = "G50 is left out: it ends scaling on other controls (Tormach), and LinuxCNC does not know it";
-        self.output.warnings.push(*LineFault::new("gcode::unsupported", word.at(), message));
+        self.output
+            .warnings
+            .push(*LineFault::new("gcode::unsupported", word.at(), message));
         Ok(())
     }
 
-    /// A time that looks as if it were in the milliseconds of Fanuc, in a program whose control is guessed.
+    /// A time that looks as if it were in the milliseconds of Fanuc, in a program whose control is
+    /// guessed.
     fn check_seconds(&mut self, block: &Block, seconds: f64) {
         let is_guessed = self.dialect == Dialect::LinuxCnc && self.settings.dialect.is_none();
         if is_guessed && seconds >= LONG_DWELL_S && seconds.fract() == 0.0 {
             let shown = Short(seconds);
-            let message = format!("the dwell P{shown} is read as {shown} s; Fanuc and others count milliseconds");
+            let message = format!(
+                "the dwell P{shown} is read as {shown} s; Fanuc and others count milliseconds"
+            );
             let fault = LineFault::new("gcode::dwell", block.at(b'p'), message);
-            self.output.warnings.push(*fault.hint("--dialect linuxcnc or fanuc says whose program it is"));
+            self.output
+                .warnings
+                .push(*fault.hint("--dialect linuxcnc or fanuc says whose program it is"));
         }
     }
 
@@ -206,20 +227,27 @@ impl Interpreter {
             }
             (None, _) if printer => 0.0,
             (None, _) => {
-                return Err(LineFault::new("gcode::dwell", word.at(), "the dwell G4 has no time").hint(
-                    if self.dialect.is_fanuc() {
-                        "write G4 X or U with seconds, or P with milliseconds"
-                    } else {
-                        "write G4 P with seconds"
-                    },
-                ));
+                return Err(
+                    LineFault::new("gcode::dwell", word.at(), "the dwell G4 has no time").hint(
+                        if self.dialect.is_fanuc() {
+                            "write G4 X or U with seconds, or P with milliseconds"
+                        } else {
+                            "write G4 P with seconds"
+                        },
+                    ),
+                );
             }
         };
         if seconds < 0.0 {
             return Err(LineFault::new(
                 "gcode::dwell",
-                block.at_any(codes::bit(b'p') | codes::bit(b's') | codes::bit(b'x') | codes::bit(b'u')),
-                format!("the dwell of {} s is negative; the smallest is 0 s", Short(seconds)),
+                block.at_any(
+                    codes::bit(b'p') | codes::bit(b's') | codes::bit(b'x') | codes::bit(b'u'),
+                ),
+                format!(
+                    "the dwell of {} s is negative; the smallest is 0 s",
+                    Short(seconds)
+                ),
             ));
         }
         self.check_seconds(block, seconds);

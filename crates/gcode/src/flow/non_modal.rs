@@ -15,7 +15,9 @@ impl Interpreter {
         };
         if !self.dialect.is_fanuc()
             && matches!(word.number, 280 | 300 | 520 | 920 | 100)
-            && block.code(Group::Motion).is_some_and(|motion| motion.number != 800)
+            && block
+                .code(Group::Motion)
+                .is_some_and(|motion| motion.number != 800)
             && block.has_axes()
         {
             return Ok(()); // The motion refuses the line.

@@ -51,7 +51,9 @@ impl Keyword {
     /// How it is written.
     pub(super) fn spelled(self) -> String {
         let row = KEYWORDS.iter().find(|row| row.1 == self);
-        row.map_or_else(String::new, |row| String::from_utf8_lossy(row.0).into_owned())
+        row.map_or_else(String::new, |row| {
+            String::from_utf8_lossy(row.0).into_owned()
+        })
     }
 }
 
@@ -75,7 +77,11 @@ impl Head {
 /// A label as a message shows it.
 pub(super) fn shown(label: &[u8]) -> String {
     let text = String::from_utf8_lossy(label);
-    if label.iter().all(u8::is_ascii_digit) { format!("O{text}") } else { format!("O<{text}>") }
+    if label.iter().all(u8::is_ascii_digit) {
+        format!("O{text}")
+    } else {
+        format!("O<{text}>")
+    }
 }
 
 /// Arguments of an O-word.
@@ -90,7 +96,11 @@ pub(super) fn read_head<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>) ->
     let start = evaluator.cursor.at;
     let label = read_label(evaluator)?;
     let keyword = read_keyword(&mut evaluator.cursor, &label, start)?;
-    Ok(Head { label, keyword, at: start..evaluator.cursor.at })
+    Ok(Head {
+        label,
+        keyword,
+        at: start..evaluator.cursor.at,
+    })
 }
 
 /// Reads O and the label behind it.
@@ -104,7 +114,11 @@ pub(super) fn read_label<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>) -
         let rounded = value.round();
         if (value - rounded).abs() > INTEGER_WITHIN || !(0.0..1e15).contains(&rounded) {
             let message = format!("the label O{} is not a whole number", Short(value));
-            return Err(LineFault::new("gcode::o_word", start..evaluator.cursor.at, message));
+            return Err(LineFault::new(
+                "gcode::o_word",
+                start..evaluator.cursor.at,
+                message,
+            ));
         }
         format!("{}", rounded as u64).into_bytes()
     })
@@ -116,7 +130,10 @@ pub(super) fn read_keyword(cursor: &mut Cursor<'_>, label: &[u8], start: usize) 
         return Ok(Keyword::Number);
     }
     // The longest spelling that fits: `else` also begins `elseif`, `sub` ends `endsub`.
-    let found = KEYWORDS.iter().filter(|row| cursor.clone().eat_word(row.0)).max_by_key(|row| row.0.len());
+    let found = KEYWORDS
+        .iter()
+        .filter(|row| cursor.clone().eat_word(row.0))
+        .max_by_key(|row| row.0.len());
     let Some((spelling, keyword)) = found else {
         let at = start..cursor.at + 1;
         return Err(LineFault::new("gcode::o_word", at, format!("{} is followed by no keyword", shown(label)))
@@ -127,8 +144,14 @@ pub(super) fn read_keyword(cursor: &mut Cursor<'_>, label: &[u8], start: usize) 
 }
 
 /// Reads bracketed arguments up to the end of the line or a comment.
-pub(super) fn read_arguments<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>, head: &Head) -> Read<Arguments> {
-    let mut arguments = Arguments { values: [0.0; LOCALS], count: 0 };
+pub(super) fn read_arguments<V: ParameterSource>(
+    evaluator: &mut Evaluator<'_, V>,
+    head: &Head,
+) -> Read<Arguments> {
+    let mut arguments = Arguments {
+        values: [0.0; LOCALS],
+        count: 0,
+    };
     loop {
         match evaluator.cursor.peek() {
             b'[' => {}
@@ -140,17 +163,29 @@ pub(super) fn read_arguments<V: ParameterSource>(evaluator: &mut Evaluator<'_, V
         }
         if arguments.count == LOCALS {
             let at = evaluator.cursor.at;
-            return Err(LineFault::new("gcode::o_word", at..at + 1, format!("more than {LOCALS} arguments")));
+            return Err(LineFault::new(
+                "gcode::o_word",
+                at..at + 1,
+                format!("more than {LOCALS} arguments"),
+            ));
         }
         arguments.values[arguments.count] = evaluator.bracketed()?;
         arguments.count += 1;
     }
     let most = match head.keyword {
         Keyword::Call => LOCALS,
-        Keyword::If | Keyword::ElseIf | Keyword::While | Keyword::Repeat | Keyword::Return | Keyword::EndSub => 1,
+        Keyword::If
+        | Keyword::ElseIf
+        | Keyword::While
+        | Keyword::Repeat
+        | Keyword::Return
+        | Keyword::EndSub => 1,
         _ => 0,
     };
-    let needs_one = matches!(head.keyword, Keyword::If | Keyword::ElseIf | Keyword::While | Keyword::Repeat);
+    let needs_one = matches!(
+        head.keyword,
+        Keyword::If | Keyword::ElseIf | Keyword::While | Keyword::Repeat
+    );
     if arguments.count > most || (needs_one && arguments.count == 0) {
         let wanted = if needs_one {
             "exactly one argument in brackets"
@@ -223,8 +258,14 @@ mod tests {
     #[test]
     fn labels_and_keywords() {
         assert_eq!(head("o100 sub"), ("O100".into(), Keyword::Sub));
-        assert_eq!(head("O < My Sub > CALL [1]"), ("O<mysub>".into(), Keyword::Call));
-        assert_eq!(head("o#[100+1] else if [1]"), ("O101".into(), Keyword::ElseIf));
+        assert_eq!(
+            head("O < My Sub > CALL [1]"),
+            ("O<mysub>".into(), Keyword::Call)
+        );
+        assert_eq!(
+            head("o#[100+1] else if [1]"),
+            ("O101".into(), Keyword::ElseIf)
+        );
         assert_eq!(head("o1else(note)"), ("O1".into(), Keyword::Else));
         assert_eq!(head("O0002 (PART)"), ("O2".into(), Keyword::Number));
         assert_eq!(head("o1do"), ("O1".into(), Keyword::Do));

@@ -103,13 +103,14 @@ pub(super) struct Flow {
     pub(super) frames: Vec<Call>,
     pub(super) loops: Vec<Loop>,
     pub(super) skip: Option<Skip>,
-    /// The line of the last `break`, obeyed or passed over: LinuxCNC 2.9 ends the next do at its `while`, whatever its condition
-    /// says.
+    /// The line of the last `break`, obeyed or passed over: LinuxCNC 2.9 ends the next do at its
+    /// `while`, whatever its condition says.
     pub(super) broke: Option<u32>,
     /// What deserves a look in the line under way.
     pub(super) warning: Option<Box<LineFault>>,
     pub(super) max_depth: usize,
-    /// Lines of the branches and loops met so far, by file, subroutine and label; and room for such a key.
+    /// Lines of the branches and loops met so far, by file, subroutine and label; and room for such
+    /// a key.
     pub(super) labels: HashMap<Vec<u8>, u32>,
     pub(super) key: Vec<u8>,
     /// Blocks that were looked for by their numbers.
@@ -118,8 +119,15 @@ pub(super) struct Flow {
 
 impl Flow {
     pub(super) fn new(source: Source, folder: Option<PathBuf>, settings: &Settings) -> Self {
-        let folders = folder.into_iter().chain(settings.subroutine_paths.iter().cloned()).collect();
-        let file = ProgramFile { source, path: None, subroutines: None };
+        let folders = folder
+            .into_iter()
+            .chain(settings.subroutine_paths.iter().cloned())
+            .collect();
+        let file = ProgramFile {
+            source,
+            path: None,
+            subroutines: None,
+        };
         Self {
             files: vec![file],
             current: 0,
@@ -155,11 +163,17 @@ impl Flow {
 
     /// Goes on at a line.
     pub(super) fn jump_to(&mut self, mark: Mark, at: &Range<usize>) -> Read<()> {
-        self.source().jump(mark).map_err(|error| cannot_read(at.clone(), &error))
+        self.source()
+            .jump(mark)
+            .map_err(|error| cannot_read(at.clone(), &error))
     }
 }
 
 #[cold]
 pub(super) fn cannot_read(at: Range<usize>, error: &io::Error) -> Box<LineFault> {
-    LineFault::new("gcode::read", at, format!("the program cannot be read on: {error}"))
+    LineFault::new(
+        "gcode::read",
+        at,
+        format!("the program cannot be read on: {error}"),
+    )
 }

@@ -26,7 +26,8 @@ use crate::text::lexer::{Cursor, END};
 use crate::text::read_error::ReadError;
 use crate::text::source::{MAX_LINE_BYTES, Source, SourceLine};
 
-/// Reads a program and hands out its canonical steps as it goes; memory does not grow with the program.
+/// Reads a program and hands out its canonical steps as it goes; memory does not grow with the
+/// program.
 ///
 /// After a fault the reader goes on with the next line, so that one run shows all faults.
 #[derive(Debug)]
@@ -56,8 +57,14 @@ enum Percent {
     Absent,
 }
 
-/// Faults that a refused motion before them may be the reason of: the position or the mode is not what it was meant to be.
-const FOLLOWING: [&str; 4] = ["gcode::arc_radius", "gcode::no_motion_mode", "gcode::compensation", "gcode::cycle"];
+/// Faults that a refused motion before them may be the reason of: the position or the mode is not
+/// what it was meant to be.
+const FOLLOWING: [&str; 4] = [
+    "gcode::arc_radius",
+    "gcode::no_motion_mode",
+    "gcode::compensation",
+    "gcode::cycle",
+];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ReaderState {
@@ -71,16 +78,22 @@ impl Reader {
     /// # Errors
     /// A file that cannot be read or is no G-code program.
     pub fn open(path: &Path, settings: Settings) -> Result<Self, ReadError> {
-        let io_error = |cause| ReadError::Io { path: path.to_owned(), cause };
+        let io_error = |cause| ReadError::Io {
+            path: path.to_owned(),
+            cause,
+        };
         let name: Arc<str> = input::name(path).into();
         if input::is_standard_input(path) {
             let source = Source::from_text(name, input::read(path).map_err(io_error)?);
             return Self::new(source, None, settings);
         }
         if fs::metadata(path).map_err(io_error)?.is_dir() {
-            return Err(ReadError::Directory { path: path.to_owned() });
+            return Err(ReadError::Directory {
+                path: path.to_owned(),
+            });
         }
-        let source = Source::from_file(name, fs::File::open(path).map_err(io_error)?).map_err(io_error)?;
+        let source =
+            Source::from_file(name, fs::File::open(path).map_err(io_error)?).map_err(io_error)?;
         Self::new(source, path.parent().map(Path::to_owned), settings)
     }
 
@@ -88,7 +101,11 @@ impl Reader {
     ///
     /// # Errors
     /// Text that is no G-code program.
-    pub fn from_text(name: &str, text: impl Into<Vec<u8>>, settings: Settings) -> Result<Self, ReadError> {
+    pub fn from_text(
+        name: &str,
+        text: impl Into<Vec<u8>>,
+        settings: Settings,
+    ) -> Result<Self, ReadError> {
         Self::new(Source::from_text(name.into(), text.into()), None, settings)
     }
 
@@ -96,9 +113,16 @@ impl Reader {
         let choice = choice::choose(source.head(), &source.name, settings.dialect)?;
         let dialect = choice.dialect;
         let warning = choice.warning.map(|(line, message)| {
-            let mut warning = Diagnostic::of_file(Severity::Warning, "gcode::machine", source.name.clone(), message);
+            let mut warning = Diagnostic::of_file(
+                Severity::Warning,
+                "gcode::machine",
+                source.name.clone(),
+                message,
+            );
             warning.line = line;
-            warning.hint = Some("--dialect fanuc-mill, fanuc-lathe, haas-lathe or linuxcnc says which".to_owned());
+            warning.hint = Some(
+                "--dialect fanuc-mill, fanuc-lathe, haas-lathe or linuxcnc says which".to_owned(),
+            );
             warning
         });
         let codes = match dialect {
@@ -110,7 +134,11 @@ impl Reader {
             flow: Flow::new(source, folder, &settings),
             interpreter: Interpreter::new(settings, dialect),
             block: Block::new(),
-            style: Style { printer: dialect == Dialect::Printer, points: dialect.is_fanuc(), codes },
+            style: Style {
+                printer: dialect == Dialect::Printer,
+                points: dialect.is_fanuc(),
+                codes,
+            },
             warnings: warning.into_iter().collect(),
             faults: Faults::default(),
             idle_lines: 0,
@@ -132,8 +160,9 @@ impl Reader {
         ModesInForce::of(&self.interpreter)
     }
 
-    /// Text of the lines that were carried out between the step before the last and the last, and that write offsets or put others in force: G10, G43,
-    /// G54, G92 and the like, whatever their values.
+    /// Text of the lines that were carried out between the step before the last and the last, and
+    /// that write offsets or put others in force: G10, G43, G54, G92 and the like, whatever their
+    /// values.
     pub fn offset_lines(&self) -> &[String] {
         &self.interpreter.output.offset_lines
     }
@@ -148,9 +177,13 @@ impl Reader {
         self.flow.source().name.clone()
     }
 
-    /// The files of subroutines that were opened so far, in the order in which they were called first.
+    /// The files of subroutines that were opened so far, in the order in which they were called
+    /// first.
     pub fn subroutine_files(&self) -> impl Iterator<Item = &Path> {
-        self.flow.files.iter().filter_map(|file| file.path.as_deref())
+        self.flow
+            .files
+            .iter()
+            .filter_map(|file| file.path.as_deref())
     }
 
     /// Lines carried out so far; those of loops and subroutines count each time.
@@ -183,8 +216,15 @@ impl Reader {
         self.lines += 1;
         self.interpreter.line = self.flow.source().line;
         let result = self.carry_out(range);
-        let result = if self.interpreter.fanuc.capture.is_some() { self.end_own_profile(result) } else { result };
-        self.interpreter.output.warnings.extend(self.flow.warning.take().map(|warning| *warning));
+        let result = if self.interpreter.fanuc.capture.is_some() {
+            self.end_own_profile(result)
+        } else {
+            result
+        };
+        self.interpreter
+            .output
+            .warnings
+            .extend(self.flow.warning.take().map(|warning| *warning));
         if !self.interpreter.output.warnings.is_empty() {
             self.take_warnings();
         }
@@ -194,12 +234,17 @@ impl Reader {
         self.watch()
     }
 
-    /// A fault of the line under way. One that only follows from the fault of an earlier line is not told.
+    /// A fault of the line under way. One that only follows from the fault of an earlier line is
+    /// not told.
     #[cold]
     pub(super) fn refuse(&mut self, fault: LineFault) -> Result<(), Box<Diagnostic>> {
         let follows = self.interpreter.behind_fault && FOLLOWING.contains(&fault.code);
         self.interpreter.assume(&self.block);
-        if follows { Ok(()) } else { Err(self.diagnose(Severity::Error, fault)) }
+        if follows {
+            Ok(())
+        } else {
+            Err(self.diagnose(Severity::Error, fault))
+        }
     }
 
     fn take_warnings(&mut self) {
@@ -221,10 +266,13 @@ impl Reader {
         }
     }
 
-    /// What stands before the words of a line; returns where they begin, or nothing where the line has none.
+    /// What stands before the words of a line; returns where they begin, or nothing where the line
+    /// has none.
     #[inline]
     fn begin(&mut self, range: &Range<usize>) -> Read<Option<usize>> {
-        let Self { flow, interpreter, .. } = self;
+        let Self {
+            flow, interpreter, ..
+        } = self;
         let bytes = flow.source_ref().bytes(range.clone());
         let mut cursor = Cursor::new(bytes);
         match cursor.peek() {
@@ -251,12 +299,21 @@ impl Reader {
             && let Some(command) = firmware::command(bytes, interpreter.dialect)
         {
             if command != firmware::FirmwareCommand::Speaks {
-                interpreter.output.warnings.push(*firmware::warning(bytes, command));
+                interpreter
+                    .output
+                    .warnings
+                    .push(*firmware::warning(bytes, command));
             }
-            interpreter.event(EventKind::Message { text: String::from_utf8_lossy(bytes.trim_ascii()).into_owned() });
+            interpreter.event(EventKind::Message {
+                text: String::from_utf8_lossy(bytes.trim_ascii()).into_owned(),
+            });
             return Ok(None);
         }
-        let number = if cursor.eat(b'n') { cursor.number()? } else { 0.0 };
+        let number = if cursor.eat(b'n') {
+            cursor.number()?
+        } else {
+            0.0
+        };
         interpreter.fanuc.block_number = number.round().max(0.0) as u64;
         if cursor.peek() == b'o' || (interpreter.dialect.is_fanuc() && cursor.peek() == b':') {
             let at = cursor.at;
@@ -269,10 +326,20 @@ impl Reader {
     /// The words of a line, which begin at `at`.
     #[inline]
     fn carry_out_words(&mut self, range: Range<usize>, mut at: usize) -> Read<()> {
-        let Self { flow, interpreter, block, .. } = self;
+        let Self {
+            flow,
+            interpreter,
+            block,
+            ..
+        } = self;
         if interpreter.dialect.is_fanuc()
-            && let Some(statement) =
-                statement(Cursor { bytes: flow.source_ref().bytes(range.clone()), at }, interpreter)?
+            && let Some(statement) = statement(
+                Cursor {
+                    bytes: flow.source_ref().bytes(range.clone()),
+                    at,
+                },
+                interpreter,
+            )?
         {
             match flow.carry_out_statement(statement, &range, interpreter)? {
                 Some(rest) => at = rest,
@@ -288,13 +355,19 @@ impl Reader {
         if interpreter.dialect.is_fanuc() {
             interpreter.prepare(block)?;
         }
-        if block.code(Group::NonModal).is_some_and(|word| word.number == OWN + 650) {
+        if block
+            .code(Group::NonModal)
+            .is_some_and(|word| word.number == OWN + 650)
+        {
             return flow.call_macro(block, interpreter);
         }
         interpreter.output.line_sets_offsets = block.names_offsets();
         interpreter.execute(block)?;
         if interpreter.output.line_sets_offsets {
-            interpreter.output.offset_lines.push(String::from_utf8_lossy(bytes).into_owned());
+            interpreter
+                .output
+                .offset_lines
+                .push(String::from_utf8_lossy(bytes).into_owned());
         }
         if let Some(wanted) = interpreter.fanuc.wanted.take() {
             flow.begin_own_profile(*wanted, interpreter)?;
@@ -305,7 +378,11 @@ impl Reader {
         for (target, value) in block.assignments.drain(..) {
             interpreter.assign(&target, value)?;
         }
-        if block.m.is_empty() { Ok(()) } else { self.calls() }
+        if block.m.is_empty() {
+            Ok(())
+        } else {
+            self.calls()
+        }
     }
 
     /// A line with `%`: the first opens the program, the next ends it.
@@ -320,8 +397,12 @@ impl Reader {
                 self.interpreter.check_profile_end(open, at)?;
             }
             Percent::Absent => {
-                let fault = LineFault::new("gcode::percent", at, "`%` ends the program, but no `%` begins it")
-                    .hint("write `%` as the first line, too, or M2 instead of this one");
+                let fault = LineFault::new(
+                    "gcode::percent",
+                    at,
+                    "`%` ends the program, but no `%` begins it",
+                )
+                .hint("write `%` as the first line, too, or M2 instead of this one");
                 self.interpreter.output.warnings.push(*fault);
                 self.interpreter.end_program();
             }
@@ -336,7 +417,10 @@ impl Reader {
             self.interpreter.end_program();
             self.flow.source().find(line);
             let fault = LineFault::new("gcode::o_word", 0..usize::MAX, message);
-            return Err(self.diagnose(Severity::Error, *fault.hint("write it behind the last line that belongs to it")));
+            return Err(self.diagnose(
+                Severity::Error,
+                *fault.hint("write it behind the last line that belongs to it"),
+            ));
         }
         if let Err(fault) = self.interpreter.check_pending(0..0) {
             self.interpreter.end_program();
@@ -347,10 +431,14 @@ impl Reader {
         if !self.interpreter.ended {
             let quiet = matches!(self.interpreter.dialect, Dialect::Grbl | Dialect::Printer);
             if !quiet {
-                let mut warning =
-                    self.of_file("gcode::program_end", "the program ends without M2, M30 or %".to_owned());
+                let mut warning = self.of_file(
+                    "gcode::program_end",
+                    "the program ends without M2, M30 or %".to_owned(),
+                );
                 warning.severity = Severity::Warning;
-                warning.hint = Some("write M2 on the last line; a control may wait for more without it".to_owned());
+                warning.hint = Some(
+                    "write M2 on the last line; a control may wait for more without it".to_owned(),
+                );
                 self.warn(*warning);
             }
             self.interpreter.end_program();
@@ -368,7 +456,10 @@ impl Reader {
         let settings = &self.interpreter.settings;
         let (message, hint) = if self.idle_lines > settings.max_idle_lines {
             (
-                format!("endless loop: {} lines in a row were carried out without a motion", settings.max_idle_lines),
+                format!(
+                    "endless loop: {} lines in a row were carried out without a motion",
+                    settings.max_idle_lines
+                ),
                 "does the loop change what it waits for? --max-idle-lines sets the limit",
             )
         } else if self.interpreter.output.motions > settings.max_motions {
@@ -380,10 +471,14 @@ impl Reader {
             return Ok(());
         };
         self.state = ReaderState::Done;
-        Err(self.diagnose(Severity::Error, *LineFault::new("gcode::endless", 0..usize::MAX, message).hint(hint)))
+        Err(self.diagnose(
+            Severity::Error,
+            *LineFault::new("gcode::endless", 0..usize::MAX, message).hint(hint),
+        ))
     }
 
-    /// The fault with its place; reads the line again, because looking for a subroutine may have moved the buffer on.
+    /// The fault with its place; reads the line again, because looking for a subroutine may have
+    /// moved the buffer on.
     #[cold]
     fn diagnose(&mut self, severity: Severity, fault: LineFault) -> Box<Diagnostic> {
         let source = self.flow.source();
@@ -394,7 +489,13 @@ impl Reader {
             Ok(SourceLine::Text(range) | SourceLine::TooLong(range)) => source.bytes(range),
             _ => &[],
         };
-        let diagnostic = Diagnostic::of_line(severity, fault, name, begin.lines_before.saturating_add(1), bytes);
+        let diagnostic = Diagnostic::of_line(
+            severity,
+            fault,
+            name,
+            begin.lines_before.saturating_add(1),
+            bytes,
+        );
         if source.jump(here).is_err() {
             self.state = ReaderState::Done;
         }
@@ -402,7 +503,12 @@ impl Reader {
     }
 
     pub(super) fn of_file(&mut self, code: &'static str, message: String) -> Box<Diagnostic> {
-        Box::new(Diagnostic::of_file(Severity::Error, code, self.flow.source().name.clone(), message))
+        Box::new(Diagnostic::of_file(
+            Severity::Error,
+            code,
+            self.flow.source().name.clone(),
+            message,
+        ))
     }
 
     /// How often a fault or warning has come up at its place.
@@ -411,7 +517,9 @@ impl Reader {
     }
 
     fn warn(&mut self, warning: Diagnostic) {
-        if !self.faults.is_known(&warning) && self.warnings.len() < self.interpreter.settings.max_errors {
+        if !self.faults.is_known(&warning)
+            && self.warnings.len() < self.interpreter.settings.max_errors
+        {
             self.warnings.push(warning);
         }
     }
@@ -433,7 +541,10 @@ impl Iterator for Reader {
             if let Some(canon) = self.interpreter.output.steps.pop_front() {
                 return Some(Ok(canon));
             }
-            if self.state == ReaderState::Done || self.interpreter.ended || self.faults.are_hopeless() {
+            if self.state == ReaderState::Done
+                || self.interpreter.ended
+                || self.faults.are_hopeless()
+            {
                 self.state = ReaderState::Done;
                 self.warn_of_points();
                 let rest = self.rest()?;
@@ -443,7 +554,9 @@ impl Iterator for Reader {
                 return Some(Ok(Canon::Motion(motion)));
             }
             if let Err(diagnostic) = self.step()
-                && self.faults.add(&diagnostic, self.interpreter.settings.max_errors)
+                && self
+                    .faults
+                    .add(&diagnostic, self.interpreter.settings.max_errors)
             {
                 return Some(Err(*diagnostic));
             }

@@ -1,7 +1,8 @@
-//! Statements of Fanuc's macros (custom macro B): `IF [..] GOTO 10`, `IF [..] THEN ..`, `WHILE [..] DO1` ... `END1`, `GOTO 10`, read from a line.
+//! Statements of Fanuc's macros (custom macro B): `IF [..] GOTO 10`, `IF [..] THEN ..`, `WHILE [..]
+//! DO1` ... `END1`, `GOTO 10`, read from a line.
 //!
-//! A variable without a value is vacant: `#1 EQ #0` asks for it, a word with it is left out, and in sums it is 0. Inside it is NaN, which no value
-//! is otherwise.
+//! A variable without a value is vacant: `#1 EQ #0` asks for it, a word with it is left out, and in
+//! sums it is 0. Inside it is NaN, which no value is otherwise.
 
 use crate::flow::owords::{Head, Keyword, read_rest};
 use crate::text::diagnostic::{LineFault, Read, Short};
@@ -27,7 +28,10 @@ pub(super) enum Statement {
 const MAX_LOOPS: f64 = 3.0;
 
 /// The line at the cursor as a statement, if it is one.
-pub(super) fn statement<V: ParameterSource>(cursor: Cursor<'_>, values: &V) -> Read<Option<Statement>> {
+pub(super) fn statement<V: ParameterSource>(
+    cursor: Cursor<'_>,
+    values: &V,
+) -> Read<Option<Statement>> {
     let start = cursor.at;
     let mut evaluator = Evaluator::new(cursor, values);
     let printed: [&[u8]; 4] = [b"dprnt", b"bprnt", b"popen", b"pclos"];
@@ -42,7 +46,8 @@ pub(super) fn statement<V: ParameterSource>(cursor: Cursor<'_>, values: &V) -> R
         if !evaluator.cursor.eat_word(b"do") {
             let at = start..evaluator.cursor.at + 1;
             return Err(
-                LineFault::new("gcode::macro", at, "DO is missing behind WHILE [..]").hint("write WHILE [#1 LT 5] DO1")
+                LineFault::new("gcode::macro", at, "DO is missing behind WHILE [..]")
+                    .hint("write WHILE [#1 LT 5] DO1"),
             );
         }
         Statement::While(loop_head(&mut evaluator, start)?, is_true)
@@ -68,23 +73,43 @@ pub(super) fn ends_loop(line: &[u8], label: &[u8]) -> Option<Head> {
         cursor.number().ok()?;
     }
     let start = cursor.at;
-    let ends = cursor.eat_word(b"end") && cursor.eat_word(number) && !cursor.peek().is_ascii_digit();
-    ends.then(|| Head { label: label.to_vec(), keyword: Keyword::EndWhile, at: start..cursor.at })
+    let ends =
+        cursor.eat_word(b"end") && cursor.eat_word(number) && !cursor.peek().is_ascii_digit();
+    ends.then(|| Head {
+        label: label.to_vec(),
+        keyword: Keyword::EndWhile,
+        at: start..cursor.at,
+    })
 }
 
-fn condition<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<Statement> {
+fn condition<V: ParameterSource>(
+    evaluator: &mut Evaluator<'_, V>,
+    start: usize,
+) -> Read<Statement> {
     let is_true = is_true(evaluator)?;
     if evaluator.cursor.eat_word(b"goto") {
         let number = label(evaluator, start)?;
         read_rest(&mut evaluator.cursor)?;
-        return Ok(if is_true { Statement::Goto(number) } else { Statement::Nothing });
+        return Ok(if is_true {
+            Statement::Goto(number)
+        } else {
+            Statement::Nothing
+        });
     }
     if evaluator.cursor.eat_word(b"then") {
-        return Ok(if is_true { Statement::Then(evaluator.cursor.at) } else { Statement::Nothing });
+        return Ok(if is_true {
+            Statement::Then(evaluator.cursor.at)
+        } else {
+            Statement::Nothing
+        });
     }
     let at = start..evaluator.cursor.at + 1;
-    Err(LineFault::new("gcode::macro", at, "neither GOTO nor THEN stands behind IF [..]")
-        .hint("write IF [#1 GT 5] GOTO 10, or IF [#1 GT 5] THEN #2=0"))
+    Err(LineFault::new(
+        "gcode::macro",
+        at,
+        "neither GOTO nor THEN stands behind IF [..]",
+    )
+    .hint("write IF [#1 GT 5] GOTO 10, or IF [#1 GT 5] THEN #2=0"))
 }
 
 pub(super) fn is_true<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>) -> Read<bool> {
@@ -93,15 +118,26 @@ pub(super) fn is_true<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>) -> R
 }
 
 /// Number of a block.
-pub(super) fn label<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<u64> {
+pub(super) fn label<V: ParameterSource>(
+    evaluator: &mut Evaluator<'_, V>,
+    start: usize,
+) -> Read<u64> {
     let number = evaluator.value()?;
     let at = start..evaluator.cursor.at;
     if (1.0..1e9).contains(&number.round()) {
         return Ok(number.round() as u64);
     }
-    let shown = if number.is_nan() { "a variable without a value".to_owned() } else { format!("{}", Short(number)) };
-    Err(LineFault::new("gcode::macro", at, format!("GOTO {shown}: that is no number of a block"))
-        .hint("GOTO 10 goes on at the line that begins with N10"))
+    let shown = if number.is_nan() {
+        "a variable without a value".to_owned()
+    } else {
+        format!("{}", Short(number))
+    };
+    Err(LineFault::new(
+        "gcode::macro",
+        at,
+        format!("GOTO {shown}: that is no number of a block"),
+    )
+    .hint("GOTO 10 goes on at the line that begins with N10"))
 }
 
 fn loop_head<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<Head> {
@@ -109,9 +145,14 @@ fn loop_head<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>, start: usize)
     let at = start..evaluator.cursor.at;
     if !(1.0..=MAX_LOOPS).contains(&number) || number.fract() != 0.0 {
         let message = format!("a loop DO{} does not exist: DO1 to DO3 do", Short(number));
-        return Err(LineFault::new("gcode::macro", at, message).hint("loops inside each other have different numbers"));
+        return Err(LineFault::new("gcode::macro", at, message)
+            .hint("loops inside each other have different numbers"));
     }
-    Ok(Head { label: format!("do{number}").into_bytes(), keyword: Keyword::While, at })
+    Ok(Head {
+        label: format!("do{number}").into_bytes(),
+        keyword: Keyword::While,
+        at,
+    })
 }
 
 #[cfg(test)]
@@ -143,7 +184,9 @@ mod tests {
         assert_eq!(read("IF [#5 GT 4] GOTO 10"), Some(Statement::Goto(10)));
         assert_eq!(read("IF[#1EQ#0]GOTO10"), Some(Statement::Nothing));
         assert_eq!(read("GOTO#7 (on)"), Some(Statement::Goto(7)));
-        assert!(matches!(read("WHILE [#1 LE 1] DO2"), Some(Statement::While(head, true)) if head.label == b"do2"));
+        assert!(
+            matches!(read("WHILE [#1 LE 1] DO2"), Some(Statement::While(head, true)) if head.label == b"do2")
+        );
         assert!(matches!(read("END 3"), Some(Statement::End(head)) if head.label == b"do3"));
         assert_eq!(read("IF [1 EQ 1] THEN #1=5"), Some(Statement::Then(16)));
         for block in ["G0 X5", "#1=5", "I5 F100", "D1", "", "E5"] {

@@ -1,7 +1,8 @@
 //! Subroutines: finding them, calling them, returning from them.
 //!
-//! `O1 sub` ... `O1 endsub` has parameters of its own and is called by `O1 call [..]`; `O1` ... `M99` shares them and is called by `M98 P1`.
-//! A subroutine is looked for in the file under way, in the program, and in a file of its name.
+//! `O1 sub` ... `O1 endsub` has parameters of its own and is called by `O1 call [..]`; `O1` ...
+//! `M99` shares them and is called by `M98 P1`. A subroutine is looked for in the file under way,
+//! in the program, and in a file of its name.
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -19,14 +20,20 @@ use crate::text::expression::{Evaluator, NoParameters};
 use crate::text::lexer::Cursor;
 use crate::text::source::{Mark, Source, SourceLine};
 
-/// Files of subroutines that stay open. A program uses a handful; each may hold a buffer of 256 KiB.
+/// Files of subroutines that stay open. A program uses a handful; each may hold a buffer of 256
+/// KiB.
 const MAX_FILES: usize = 100;
 /// Subroutines that one file may define.
 const MAX_SUBROUTINES: usize = 100_000;
 
 impl Flow {
     /// `O1 call [..]`.
-    pub(super) fn call(&mut self, head: &Head, arguments: &Arguments, interpreter: &mut Interpreter) -> Read<()> {
+    pub(super) fn call(
+        &mut self,
+        head: &Head,
+        arguments: &Arguments,
+        interpreter: &mut Interpreter,
+    ) -> Read<()> {
         let (file, kind, body) = self.find_subroutine(&head.label, &head.at)?;
         if kind == SubroutineKind::Fanuc {
             let number = String::from_utf8_lossy(&head.label).into_owned();
@@ -60,13 +67,25 @@ impl Flow {
     }
 
     /// The profile of a lathe cycle: a call without arguments.
-    pub(super) fn call_profile(&mut self, wanted: &ProfileCall, interpreter: &mut Interpreter) -> Read<()> {
-        let head = Head { label: wanted.label.clone(), keyword: Keyword::Call, at: wanted.at.clone() };
-        let arguments = Arguments { values: [0.0; LOCALS], count: 0 };
+    pub(super) fn call_profile(
+        &mut self,
+        wanted: &ProfileCall,
+        interpreter: &mut Interpreter,
+    ) -> Read<()> {
+        let head = Head {
+            label: wanted.label.clone(),
+            keyword: Keyword::Call,
+            at: wanted.at.clone(),
+        };
+        let arguments = Arguments {
+            values: [0.0; LOCALS],
+            count: 0,
+        };
         if let Some(lathe) = &mut interpreter.lathe {
             lathe.mark = self.source_ref().line_start;
         }
-        self.call(&head, &arguments, interpreter).inspect_err(|_| interpreter.lathe = None)
+        self.call(&head, &arguments, interpreter)
+            .inspect_err(|_| interpreter.lathe = None)
     }
 
     /// `M98 P1 L2`.
@@ -98,13 +117,24 @@ impl Flow {
             return Err(LineFault::new(
                 "gcode::o_word",
                 at.clone(),
-                format!("{} has `sub`: it is called by `{} call`, not by M98", shown(&label), shown(&label)),
+                format!(
+                    "{} has `sub`: it is called by `{} call`, not by M98",
+                    shown(&label),
+                    shown(&label)
+                ),
             ));
         }
         let Some(arguments) = arguments else {
             return self.enter_lines(label, kind, (file, body), times, at, interpreter);
         };
-        self.enter_lines(label, SubroutineKind::Macro, (file, body), times, at, interpreter)?;
+        self.enter_lines(
+            label,
+            SubroutineKind::Macro,
+            (file, body),
+            times,
+            at,
+            interpreter,
+        )?;
         let saved = interpreter.parameters.enter(&arguments[..]);
         if let Some(frame) = self.frames.last_mut() {
             (frame.saved, frame.arguments) = (saved, Some(arguments));
@@ -140,7 +170,10 @@ impl Flow {
     }
 
     fn enter(&mut self, frame: Call, file: usize, at: &std::ops::Range<usize>) -> Read<()> {
-        self.files[file].source.jump(frame.body).map_err(|error| cannot_read(at.clone(), &error))?;
+        self.files[file]
+            .source
+            .jump(frame.body)
+            .map_err(|error| cannot_read(at.clone(), &error))?;
         self.current = file;
         self.frames.push(frame);
         Ok(())
@@ -153,13 +186,21 @@ impl Flow {
         Err(LineFault::new(
             "gcode::depth",
             at.clone(),
-            format!("more than {} subroutine calls inside each other", self.max_depth),
+            format!(
+                "more than {} subroutine calls inside each other",
+                self.max_depth
+            ),
         )
         .hint("does a subroutine call itself?"))
     }
 
     /// `endsub`, `return`.
-    pub(super) fn leave(&mut self, head: &Head, arguments: &Arguments, interpreter: &mut Interpreter) -> Read<()> {
+    pub(super) fn leave(
+        &mut self,
+        head: &Head,
+        arguments: &Arguments,
+        interpreter: &mut Interpreter,
+    ) -> Read<()> {
         let fault = |message: &str| Err(LineFault::new("gcode::o_word", head.at.clone(), message));
         match self.frames.last() {
             None => return fault("this is not inside a subroutine"),
@@ -181,7 +222,11 @@ impl Flow {
     }
 
     /// M99: returns true where there is nothing to return from.
-    pub(super) fn return_number(&mut self, at: &std::ops::Range<usize>, interpreter: &mut Interpreter) -> Read<bool> {
+    pub(super) fn return_number(
+        &mut self,
+        at: &std::ops::Range<usize>,
+        interpreter: &mut Interpreter,
+    ) -> Read<bool> {
         let Some(frame) = self.frames.last_mut() else {
             return Ok(true);
         };
@@ -198,14 +243,20 @@ impl Flow {
             if let Some(arguments) = &frame.arguments {
                 interpreter.parameters.set_locals(&arguments[..]);
             }
-            self.source().jump(body).map_err(|error| cannot_read(at.clone(), &error))?;
+            self.source()
+                .jump(body)
+                .map_err(|error| cannot_read(at.clone(), &error))?;
             return Ok(false);
         }
         self.pop_frame(at, interpreter)?;
         Ok(false)
     }
 
-    fn pop_frame(&mut self, at: &std::ops::Range<usize>, interpreter: &mut Interpreter) -> Read<()> {
+    fn pop_frame(
+        &mut self,
+        at: &std::ops::Range<usize>,
+        interpreter: &mut Interpreter,
+    ) -> Read<()> {
         let Some(frame) = self.frames.pop() else {
             return Ok(());
         };
@@ -217,11 +268,18 @@ impl Flow {
         self.loops.truncate(frame.loops);
         interpreter.left(self.frames.len());
         self.current = frame.file;
-        self.source().jump(frame.back).map_err(|error| cannot_read(at.clone(), &error))
+        self.source()
+            .jump(frame.back)
+            .map_err(|error| cannot_read(at.clone(), &error))
     }
 
-    /// File, manner and first line of a subroutine: in the file under way, in the program, in a file of its name.
-    fn find_subroutine(&mut self, label: &[u8], at: &std::ops::Range<usize>) -> Read<(usize, SubroutineKind, Mark)> {
+    /// File, manner and first line of a subroutine: in the file under way, in the program, in a
+    /// file of its name.
+    fn find_subroutine(
+        &mut self,
+        label: &[u8],
+        at: &std::ops::Range<usize>,
+    ) -> Read<(usize, SubroutineKind, Mark)> {
         for file in [self.current, 0] {
             if let Some((kind, mark)) = self.index(file, at)?.get(label).copied() {
                 return Ok((file, kind, mark));
@@ -230,7 +288,12 @@ impl Flow {
         let name = format!("{}.ngc", String::from_utf8_lossy(label));
         let is_plain = Path::new(&name).components().count() == 1 && !name.starts_with('.');
         let path = is_plain
-            .then(|| self.folders.iter().map(|folder| folder.join(&name)).find(|path| path.is_file()))
+            .then(|| {
+                self.folders
+                    .iter()
+                    .map(|folder| folder.join(&name))
+                    .find(|path| path.is_file())
+            })
             .flatten();
         let Some(path) = path else {
             let fault = LineFault::new(
@@ -238,7 +301,9 @@ impl Flow {
                 at.clone(),
                 format!("the subroutine {} is defined nowhere", shown(label)),
             );
-            return Err(fault.hint(format!("define it in this program, or put {name} into a folder of subroutines")));
+            return Err(fault.hint(format!(
+                "define it in this program, or put {name} into a folder of subroutines"
+            )));
         };
         let file = self.open(&path, at)?;
         match self.index(file, at)?.get(label).copied() {
@@ -252,7 +317,11 @@ impl Flow {
     }
 
     fn open(&mut self, path: &Path, at: &std::ops::Range<usize>) -> Read<usize> {
-        if let Some(file) = self.files.iter().position(|file| file.path.as_deref() == Some(path)) {
+        if let Some(file) = self
+            .files
+            .iter()
+            .position(|file| file.path.as_deref() == Some(path))
+        {
             return Ok(file);
         }
         if self.files.len() > MAX_FILES {
@@ -266,23 +335,36 @@ impl Flow {
         let source = File::open(path)
             .and_then(|file| Source::from_file(name, file))
             .map_err(|error| cannot_read(at.clone(), &error))?;
-        self.files.push(ProgramFile { source, path: Some(path.to_owned()), subroutines: None });
+        self.files.push(ProgramFile {
+            source,
+            path: Some(path.to_owned()),
+            subroutines: None,
+        });
         Ok(self.files.len() - 1)
     }
 
     /// The subroutines of a file, found by one pass over it at the first call.
-    fn index(&mut self, file: usize, at: &std::ops::Range<usize>) -> Read<&HashMap<Vec<u8>, (SubroutineKind, Mark)>> {
+    fn index(
+        &mut self,
+        file: usize,
+        at: &std::ops::Range<usize>,
+    ) -> Read<&HashMap<Vec<u8>, (SubroutineKind, Mark)>> {
         let file = &mut self.files[file];
         if file.subroutines.is_none() {
             let here = file.source.here();
             let line_start = file.source.line_start;
-            let found = find_definitions(&mut file.source).and_then(|found| file.source.jump(here).map(|()| found));
+            let found = find_definitions(&mut file.source)
+                .and_then(|found| file.source.jump(here).map(|()| found));
             file.source.line_start = line_start;
             file.subroutines = Some(found.map_err(|error| cannot_read(at.clone(), &error))?);
         }
-        file.subroutines
-            .as_ref()
-            .ok_or_else(|| LineFault::new("gcode::o_word", at.clone(), "the subroutines cannot be found"))
+        file.subroutines.as_ref().ok_or_else(|| {
+            LineFault::new(
+                "gcode::o_word",
+                at.clone(),
+                "the subroutines cannot be found",
+            )
+        })
     }
 }
 

@@ -1,4 +1,5 @@
-//! A run through a whole program ahead of all others: every fault at once, or what the program amounts to.
+//! A run through a whole program ahead of all others: every fault at once, or what the program
+//! amounts to.
 
 use std::sync::Arc;
 
@@ -76,7 +77,8 @@ pub fn summarize(mut reader: Reader) -> Result<Summary, CheckError> {
     }
     if summary.motions == 0 && faults.is_empty() {
         let message = "the program has no motion".to_owned();
-        let mut fault = Diagnostic::of_file(Severity::Error, "gcode::no_motion", reader.name(), message);
+        let mut fault =
+            Diagnostic::of_file(Severity::Error, "gcode::no_motion", reader.name(), message);
         fault.hint = Some(NO_MOTION_HINT.to_owned());
         faults.push(fault);
     }
@@ -88,7 +90,9 @@ pub fn summarize(mut reader: Reader) -> Result<Summary, CheckError> {
         diagnostic
     };
     if !faults.is_empty() {
-        return Err(CheckError::Faults(faults.into_iter().map(counted).collect()));
+        return Err(CheckError::Faults(
+            faults.into_iter().map(counted).collect(),
+        ));
     }
     summary.lines = reader.lines();
     summary.warnings = reader.warnings().iter().cloned().map(counted).collect();
@@ -120,11 +124,16 @@ impl Summary {
         }
         match &motion.shape {
             Shape::Line => {}
-            Shape::Arc { plane, center_mm, turns } => {
+            Shape::Arc {
+                plane,
+                center_mm,
+                turns,
+            } => {
                 let [first, second, _] = plane.axes();
                 self.moves[first] = true;
                 self.moves[second] = true;
-                let spiral = Spiral::new(motion.start_mm, motion.end_mm, *center_mm, *plane, *turns);
+                let spiral =
+                    Spiral::new(motion.start_mm, motion.end_mm, *center_mm, *plane, *turns);
                 for point in spiral.extremes(motion.start_mm) {
                     self.include(point);
                 }
@@ -144,10 +153,22 @@ impl Summary {
     /// A warning where axes move that nothing behind the reader simulates or controls.
     pub fn uncontrolled(&self) -> Option<Diagnostic> {
         let line = self.others_move.iter().flatten().min()?;
-        let moving = "ABCUVW".chars().zip(self.others_move).filter(|(_, line)| line.is_some());
-        let names = moving.map(|(name, _)| name.to_string()).collect::<Vec<_>>().join(", ");
-        let message = format!("line {line}: {names} moves; only X, Y and Z are simulated and controlled");
-        let mut warning = Diagnostic::of_file(Severity::Warning, "gcode::other_axes", self.name.clone(), message);
+        let moving = "ABCUVW"
+            .chars()
+            .zip(self.others_move)
+            .filter(|(_, line)| line.is_some());
+        let names = moving
+            .map(|(name, _)| name.to_string())
+            .collect::<Vec<_>>()
+            .join(", ");
+        let message =
+            format!("line {line}: {names} moves; only X, Y and Z are simulated and controlled");
+        let mut warning = Diagnostic::of_file(
+            Severity::Warning,
+            "gcode::other_axes",
+            self.name.clone(),
+            message,
+        );
         warning.hint = Some(
             "where it moves alone it takes its time; together with X, Y or Z it slows them down to its rate, which is rotary_deg_s in [plc]"
                 .to_owned(),

@@ -40,7 +40,11 @@ impl Interpreter {
             return Err(self.axes_without_motion(block, motion));
         }
         let with = motion.map_or_else(|| "this line".to_owned(), codes::spelled);
-        let fault = LineFault::new("gcode::unused_word", at, format!("{word} has no meaning with {with}"));
+        let fault = LineFault::new(
+            "gcode::unused_word",
+            at,
+            format!("{word} has no meaning with {with}"),
+        );
         Err(match word {
             'E' if block.exponent => fault.hint(NO_EXPONENT),
             'E' => fault.hint("E pushes filament on 3D printers: choose the printer's dialect for its programs"),
@@ -59,10 +63,18 @@ impl Interpreter {
     pub(super) fn axes_without_motion(&self, block: &Block, motion: Option<u16>) -> Box<LineFault> {
         let at = block.at_any(codes::AXES);
         if motion == Some(800) && block.code(Group::Motion).is_some() {
-            return LineFault::new("gcode::no_motion_mode", at, "G80 ends motion modes and takes no axis words")
-                .hint("write G0 or G1 with them on the next line");
+            return LineFault::new(
+                "gcode::no_motion_mode",
+                at,
+                "G80 ends motion modes and takes no axis words",
+            )
+            .hint("write G0 or G1 with them on the next line");
         }
-        LineFault::new("gcode::no_motion_mode", at, "axis words, but no code such as G0 or G1 says how to move")
-            .hint("write G0, G1, G2 or G3 on this line or one before it")
+        LineFault::new(
+            "gcode::no_motion_mode",
+            at,
+            "axis words, but no code such as G0 or G1 says how to move",
+        )
+        .hint("write G0, G1, G2 or G3 on this line or one before it")
     }
 }

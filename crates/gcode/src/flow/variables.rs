@@ -11,23 +11,29 @@ use crate::text::lexer::Cursor;
 impl Interpreter {
     /// `#target = value`, in effect from the next line on.
     pub(super) fn assign(&mut self, target: &Target, value: f64) -> Read<()> {
-        let read_only =
-            |name: &str| Err(LineFault::new("gcode::parameter", 0..usize::MAX, format!("{name} can only be read")));
+        let read_only = |name: &str| {
+            Err(LineFault::new(
+                "gcode::parameter",
+                0..usize::MAX,
+                format!("{name} can only be read"),
+            ))
+        };
         match target {
             Target::Numbered(index @ (5400..=5413 | 5420..=5428)) => {
                 return read_only(&format!("#{index}"));
             }
             Target::Numbered(3000) if self.dialect.is_fanuc() => {
                 let message = format!("the program stops here with alarm {value} (#3000)");
-                return Err(
-                    LineFault::new("gcode::alarm", 0..usize::MAX, message).hint("the macro refuses what it was given")
-                );
+                return Err(LineFault::new("gcode::alarm", 0..usize::MAX, message)
+                    .hint("the macro refuses what it was given"));
             }
             Target::Numbered(index) => self.parameters.set(*index, value),
             Target::Named(name) => {
                 let shown = String::from_utf8_lossy(name);
                 if self.parameters.named(name).is_none()
-                    && (self.named(name).is_some() || name.starts_with(b"_ini[") || name.starts_with(b"_hal["))
+                    && (self.named(name).is_some()
+                        || name.starts_with(b"_ini[")
+                        || name.starts_with(b"_hal["))
                 {
                     return read_only(&format!("#<{shown}>"));
                 }
@@ -35,7 +41,9 @@ impl Interpreter {
                     return Err(LineFault::new(
                         "gcode::parameter",
                         0..usize::MAX,
-                        format!("no room for #<{shown}>: the program has too many named parameters"),
+                        format!(
+                            "no room for #<{shown}>: the program has too many named parameters"
+                        ),
                     ));
                 }
             }
@@ -43,7 +51,8 @@ impl Interpreter {
         Ok(())
     }
 
-    /// Comments that speak to the operator, at the bytes `at` of the line; one in brackets can end the program.
+    /// Comments that speak to the operator, at the bytes `at` of the line; one in brackets can end
+    /// the program.
     #[cold]
     pub(super) fn comment(&mut self, line: &[u8], at: Range<usize>) -> Read<()> {
         let in_brackets = at.start > 0 && line[at.start - 1] == b'(';
@@ -57,7 +66,10 @@ impl Interpreter {
         } else if let Some(rest) = after(b"print,").or_else(|| after(b"debug,")) {
             self.with_values(rest)
         } else if let Some(rest) = after(b"abort,").filter(|_| in_brackets) {
-            let message = format!("the program gives itself up here: {}", self.with_values(rest).trim());
+            let message = format!(
+                "the program gives itself up here: {}",
+                self.with_values(rest).trim()
+            );
             self.end_program();
             return Err(LineFault::new("gcode::abort", at, message)
                 .hint("(abort, ...) ends a program on LinuxCNC; what it asks for is in its text"));
@@ -79,8 +91,15 @@ impl Interpreter {
                 continue;
             }
             // A blank ends the number of a parameter here, though not in a line.
-            let digits = text[at + 1..].iter().take_while(|byte| byte.is_ascii_digit()).count();
-            let mut cursor = Cursor::new(if digits > 0 { &text[..=at + digits] } else { text });
+            let digits = text[at + 1..]
+                .iter()
+                .take_while(|byte| byte.is_ascii_digit())
+                .count();
+            let mut cursor = Cursor::new(if digits > 0 {
+                &text[..=at + digits]
+            } else {
+                text
+            });
             cursor.at = at;
             let mut evaluator = Evaluator::new(cursor, self);
             match evaluator.value() {

@@ -3,8 +3,9 @@
 use crate::canon::{Motion, Shape, Spline};
 use crate::geometry::spiral::Spiral;
 
-/// Chords that a span of a spline is divided into for its length. The relative error of a chord is its turning angle squared over 24, so
-/// that even a span that turns by a full radian is measured to 5e-6.
+/// Chords that a span of a spline is divided into for its length. The relative error of a chord is
+/// its turning angle squared over 24, so that even a span that turns by a full radian is measured
+/// to 5e-6.
 const CHORDS_PER_SPAN: usize = 100;
 
 impl Motion {
@@ -12,9 +13,11 @@ impl Motion {
     pub fn length_mm(&self) -> f64 {
         match &self.shape {
             Shape::Line => norm(self.start_mm, self.end_mm),
-            Shape::Arc { plane, center_mm, turns } => {
-                Spiral::new(self.start_mm, self.end_mm, *center_mm, *plane, *turns).length_mm()
-            }
+            Shape::Arc {
+                plane,
+                center_mm,
+                turns,
+            } => Spiral::new(self.start_mm, self.end_mm, *center_mm, *plane, *turns).length_mm(),
             Shape::Spline(spline) => spline.length_mm(),
         }
     }
@@ -25,7 +28,8 @@ fn norm(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 impl Spline {
-    /// The point at parameter `u`, by de Boor's algorithm on homogeneous coordinates (C. de Boor, On calculating with B-splines, 1972).
+    /// The point at parameter `u`, by de Boor's algorithm on homogeneous coordinates (C. de Boor,
+    /// On calculating with B-splines, 1972).
     pub fn point_mm(&self, u: f64) -> [f64; 3] {
         let last = self.control_mm.len() - 1;
         let span = (self.degree..=last)
@@ -34,7 +38,10 @@ impl Spline {
             .unwrap_or(self.degree);
         let mut points: Vec<[f64; 4]> = (0..=self.degree)
             .map(|n| {
-                let (p, w) = (self.control_mm[span - self.degree + n], self.weights[span - self.degree + n]);
+                let (p, w) = (
+                    self.control_mm[span - self.degree + n],
+                    self.weights[span - self.degree + n],
+                );
                 [p[0] * w, p[1] * w, p[2] * w, w]
             })
             .collect();
@@ -42,7 +49,11 @@ impl Spline {
             for n in (level..=self.degree).rev() {
                 let low = self.knots[span - self.degree + n];
                 let high = self.knots[span + 1 + n - level];
-                let share = if high > low { (u - low) / (high - low) } else { 0.0 };
+                let share = if high > low {
+                    (u - low) / (high - low)
+                } else {
+                    0.0
+                };
                 for axis in 0..4 {
                     points[n][axis] = (1.0 - share) * points[n - 1][axis] + share * points[n][axis];
                 }

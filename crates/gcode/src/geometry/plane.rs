@@ -1,4 +1,5 @@
-//! Points, lines and arcs of a plane, as far as cutter compensation and the cycles of lathes need them.
+//! Points, lines and arcs of a plane, as far as cutter compensation and the cycles of lathes need
+//! them.
 
 /// A point or a vector.
 pub(crate) type PlanePoint = [f64; 2];
@@ -30,7 +31,11 @@ pub(crate) fn length(a: PlanePoint) -> f64 {
 /// The vector at length 1; zero stays zero.
 pub(crate) fn unit(a: PlanePoint) -> PlanePoint {
     let length = length(a);
-    if length > 0.0 { scaled(a, 1.0 / length) } else { a }
+    if length > 0.0 {
+        scaled(a, 1.0 / length)
+    } else {
+        a
+    }
 }
 
 /// The vector turned left by a quarter.
@@ -51,8 +56,8 @@ pub(crate) enum PlaneCurve {
         start: PlanePoint,
         end: PlanePoint,
     },
-    /// `turn` is 1 counter-clockwise, -1 clockwise; up to one full turn. Where start and end are not equally far from the centre,
-    /// it counts as a circle through the end.
+    /// `turn` is 1 counter-clockwise, -1 clockwise; up to one full turn. Where start and end are
+    /// not equally far from the centre, it counts as a circle through the end.
     Arc {
         start: PlanePoint,
         end: PlanePoint,
@@ -86,11 +91,14 @@ impl PlaneCurve {
         }
     }
 
-    /// How much farther from an arc's centre, or nearer, one point is than another, mm; 0 for a line.
+    /// How much farther from an arc's centre, or nearer, one point is than another, mm; 0 for a
+    /// line.
     pub(crate) fn off_mm(&self, point: PlanePoint, other: PlanePoint) -> f64 {
         match *self {
             Self::Line { .. } => 0.0,
-            Self::Arc { center, .. } => (length(minus(point, center)) - length(minus(other, center))).abs(),
+            Self::Arc { center, .. } => {
+                (length(minus(point, center)) - length(minus(other, center))).abs()
+            }
         }
     }
 
@@ -107,24 +115,39 @@ impl PlaneCurve {
         }
     }
 
-    /// Where the one curve can end and the other begin: the meeting nearest to a point, of two as near the one that `other` has first.
+    /// Where the one curve can end and the other begin: the meeting nearest to a point, of two as
+    /// near the one that `other` has first.
     pub(crate) fn meet(&self, other: &Self, near: PlanePoint) -> Option<PlanePoint> {
         let candidates = self.candidates(other);
         let fits = |point: &PlanePoint| self.ends_at(*point) && other.begins_at(*point);
         let away = |point: &PlanePoint| length(minus(*point, near));
         match candidates {
-            // Both as near: a line that turns back into an arc. The arc is entered as early as it can be.
-            [Some(a), Some(b)] if fits(&a) && fits(&b) && (away(&a) - away(&b)).abs() < SLACK_MM => {
-                Some(if other.way_to(a) <= other.way_to(b) { a } else { b })
+            // Both as near: a line that turns back into an arc. The arc is entered as early as it
+            // can be.
+            [Some(a), Some(b)]
+                if fits(&a) && fits(&b) && (away(&a) - away(&b)).abs() < SLACK_MM =>
+            {
+                Some(if other.way_to(a) <= other.way_to(b) {
+                    a
+                } else {
+                    b
+                })
             }
-            _ => candidates.into_iter().flatten().filter(fits).min_by(|a, b| away(a).total_cmp(&away(b))),
+            _ => candidates
+                .into_iter()
+                .flatten()
+                .filter(fits)
+                .min_by(|a, b| away(a).total_cmp(&away(b))),
         }
     }
 
     /// Where the curves cross between their ends, the first along `other`.
     pub(crate) fn first_crossing(&self, other: &Self) -> Option<PlanePoint> {
-        let on_both =
-            |point: &PlanePoint| [self, other].iter().all(|curve| curve.ends_at(*point) && curve.begins_at(*point));
+        let on_both = |point: &PlanePoint| {
+            [self, other]
+                .iter()
+                .all(|curve| curve.ends_at(*point) && curve.begins_at(*point))
+        };
         let candidates = self.candidates(other).into_iter().flatten().filter(on_both);
         candidates.min_by(|a, b| other.way_to(*a).total_cmp(&other.way_to(*b)))
     }
@@ -135,13 +158,31 @@ impl PlaneCurve {
             (Self::Line { start: a, end: b }, Self::Line { start: c, end: d }) => {
                 line_line(a, minus(b, a), c, minus(d, c))
             }
-            (Self::Line { start, end }, Self::Arc { end: on, center, .. })
-            | (Self::Arc { end: on, center, .. }, Self::Line { start, end }) => {
-                line_circle(start, unit(minus(end, start)), center, length(minus(on, center)))
-            }
-            (Self::Arc { end: a, center: c, .. }, Self::Arc { end: b, center: d, .. }) => {
-                circle_circle(c, length(minus(a, c)), d, length(minus(b, d)))
-            }
+            (
+                Self::Line { start, end },
+                Self::Arc {
+                    end: on, center, ..
+                },
+            )
+            | (
+                Self::Arc {
+                    end: on, center, ..
+                },
+                Self::Line { start, end },
+            ) => line_circle(
+                start,
+                unit(minus(end, start)),
+                center,
+                length(minus(on, center)),
+            ),
+            (
+                Self::Arc {
+                    end: a, center: c, ..
+                },
+                Self::Arc {
+                    end: b, center: d, ..
+                },
+            ) => circle_circle(c, length(minus(a, c)), d, length(minus(b, d))),
         }
     }
 
@@ -149,17 +190,33 @@ impl PlaneCurve {
     pub(crate) fn way_to(&self, point: PlanePoint) -> f64 {
         match *self {
             Self::Line { start, end } => dot(minus(point, start), unit(minus(end, start))),
-            Self::Arc { start, center, turn, .. } => sweep_within(start, point, center, turn),
+            Self::Arc {
+                start,
+                center,
+                turn,
+                ..
+            } => sweep_within(start, point, center, turn),
         }
     }
 
     /// The curve moved by a vector.
     pub(crate) fn moved(&self, by: PlanePoint) -> Self {
         match *self {
-            Self::Line { start, end } => Self::Line { start: add(start, by), end: add(end, by) },
-            Self::Arc { start, end, center, turn } => {
-                Self::Arc { start: add(start, by), end: add(end, by), center: add(center, by), turn }
-            }
+            Self::Line { start, end } => Self::Line {
+                start: add(start, by),
+                end: add(end, by),
+            },
+            Self::Arc {
+                start,
+                end,
+                center,
+                turn,
+            } => Self::Arc {
+                start: add(start, by),
+                end: add(end, by),
+                center: add(center, by),
+                turn,
+            },
         }
     }
 
@@ -167,15 +224,27 @@ impl PlaneCurve {
     pub(crate) fn bend(&self) -> f64 {
         match *self {
             Self::Line { .. } => 0.0,
-            Self::Arc { start, center, turn, .. } => turn / length(minus(start, center)),
+            Self::Arc {
+                start,
+                center,
+                turn,
+                ..
+            } => turn / length(minus(start, center)),
         }
     }
 
     /// Whether the curve, shortened at its end, can end at `point`.
     pub(crate) fn ends_at(&self, point: PlanePoint) -> bool {
         match *self {
-            Self::Line { start, end } => dot(minus(point, start), unit(minus(end, start))) >= -SLACK_MM,
-            Self::Arc { start, end, center, turn } => {
+            Self::Line { start, end } => {
+                dot(minus(point, start), unit(minus(end, start))) >= -SLACK_MM
+            }
+            Self::Arc {
+                start,
+                end,
+                center,
+                turn,
+            } => {
                 let sweep = sweep(start, end, center, turn);
                 let to_point = sweep_within(start, point, center, turn);
                 to_point <= sweep + SLACK_RAD
@@ -186,10 +255,23 @@ impl PlaneCurve {
     /// Whether the curve, shortened at its start, can begin at `point`.
     pub(crate) fn begins_at(&self, point: PlanePoint) -> bool {
         match *self {
-            Self::Line { start, end } => Self::Line { start: end, end: start }.ends_at(point),
-            Self::Arc { start, end, center, turn } => {
-                Self::Arc { start: end, end: start, center, turn: -turn }.ends_at(point)
+            Self::Line { start, end } => Self::Line {
+                start: end,
+                end: start,
             }
+            .ends_at(point),
+            Self::Arc {
+                start,
+                end,
+                center,
+                turn,
+            } => Self::Arc {
+                start: end,
+                end: start,
+                center,
+                turn: -turn,
+            }
+            .ends_at(point),
         }
     }
 }
@@ -197,17 +279,30 @@ impl PlaneCurve {
 /// Angle from start to end in the sense of `turn`, above 0 and up to a full turn.
 pub(crate) fn sweep(start: PlanePoint, end: PlanePoint, center: PlanePoint, turn: f64) -> f64 {
     let angle = sweep_within(start, end, center, turn);
-    if angle < SLACK_RAD { std::f64::consts::TAU } else { angle }
+    if angle < SLACK_RAD {
+        std::f64::consts::TAU
+    } else {
+        angle
+    }
 }
 
 /// The same from 0.
 fn sweep_within(start: PlanePoint, end: PlanePoint, center: PlanePoint, turn: f64) -> f64 {
     let (a, b) = (minus(start, center), minus(end, center));
     let angle = turn * libm::atan2(cross(a, b), dot(a, b));
-    if angle < -SLACK_RAD { angle + std::f64::consts::TAU } else { angle.max(0.0) }
+    if angle < -SLACK_RAD {
+        angle + std::f64::consts::TAU
+    } else {
+        angle.max(0.0)
+    }
 }
 
-fn line_line(a: PlanePoint, along: PlanePoint, c: PlanePoint, other: PlanePoint) -> [Option<PlanePoint>; 2] {
+fn line_line(
+    a: PlanePoint,
+    along: PlanePoint,
+    c: PlanePoint,
+    other: PlanePoint,
+) -> [Option<PlanePoint>; 2] {
     let determinant = cross(along, other);
     if determinant == 0.0 {
         return [None, None];
@@ -216,14 +311,22 @@ fn line_line(a: PlanePoint, along: PlanePoint, c: PlanePoint, other: PlanePoint)
     [Some(add(a, scaled(along, t))), None]
 }
 
-fn line_circle(a: PlanePoint, along: PlanePoint, center: PlanePoint, radius: f64) -> [Option<PlanePoint>; 2] {
+fn line_circle(
+    a: PlanePoint,
+    along: PlanePoint,
+    center: PlanePoint,
+    radius: f64,
+) -> [Option<PlanePoint>; 2] {
     let foot = add(a, scaled(along, dot(minus(center, a), along)));
     let distance = length(minus(center, foot));
     if distance > radius + SLACK_MM {
         return [None, None];
     }
     let half = (radius * radius - distance * distance).max(0.0).sqrt();
-    [Some(add(foot, scaled(along, half))), Some(add(foot, scaled(along, -half)))]
+    [
+        Some(add(foot, scaled(along, half))),
+        Some(add(foot, scaled(along, -half))),
+    ]
 }
 
 fn circle_circle(c: PlanePoint, r: f64, d: PlanePoint, q: f64) -> [Option<PlanePoint>; 2] {
@@ -236,7 +339,10 @@ fn circle_circle(c: PlanePoint, r: f64, d: PlanePoint, q: f64) -> [Option<PlaneP
     let y = (r * r - x * x).max(0.0).sqrt();
     let along = unit(apart);
     let foot = add(c, scaled(along, x));
-    [Some(add(foot, scaled(left_of(along), y))), Some(add(foot, scaled(left_of(along), -y)))]
+    [
+        Some(add(foot, scaled(left_of(along), y))),
+        Some(add(foot, scaled(left_of(along), -y))),
+    ]
 }
 
 /// An arc in the plane's own two coordinates.
@@ -252,15 +358,29 @@ pub(crate) fn shifted(curve: &PlaneCurve, by: f64) -> Option<PlaneCurve> {
     Some(match *curve {
         PlaneCurve::Line { start, end } => {
             let shift = scaled(left_of(unit(minus(end, start))), by);
-            PlaneCurve::Line { start: add(start, shift), end: add(end, shift) }
+            PlaneCurve::Line {
+                start: add(start, shift),
+                end: add(end, shift),
+            }
         }
-        PlaneCurve::Arc { start, end, center, turn } => {
+        PlaneCurve::Arc {
+            start,
+            end,
+            center,
+            turn,
+        } => {
             let out = |point: PlanePoint| {
                 let ray = minus(point, center);
                 let radius = length(ray);
-                (radius - turn * by > SLACK_MM).then(|| add(center, scaled(ray, (radius - turn * by) / radius)))
+                (radius - turn * by > SLACK_MM)
+                    .then(|| add(center, scaled(ray, (radius - turn * by) / radius)))
             };
-            PlaneCurve::Arc { start: out(start)?, end: out(end)?, center, turn }
+            PlaneCurve::Arc {
+                start: out(start)?,
+                end: out(end)?,
+                center,
+                turn,
+            }
         }
     })
 }
@@ -271,31 +391,67 @@ mod tests {
 
     #[test]
     fn curves_meet_where_they_should() {
-        let floor = PlaneCurve::Line { start: [0.0, 0.0], end: [4.0, 0.0] };
-        let wall = PlaneCurve::Line { start: [3.0, -1.0], end: [3.0, 5.0] };
+        let floor = PlaneCurve::Line {
+            start: [0.0, 0.0],
+            end: [4.0, 0.0],
+        };
+        let wall = PlaneCurve::Line {
+            start: [3.0, -1.0],
+            end: [3.0, 5.0],
+        };
         assert_eq!(floor.meet(&wall, [0.0, 0.0]).unwrap(), [3.0, 0.0]);
-        let circle = PlaneCurve::Arc { start: [5.0, 0.0], end: [0.0, 5.0], center: [0.0, 0.0], turn: 1.0 };
+        let circle = PlaneCurve::Arc {
+            start: [5.0, 0.0],
+            end: [0.0, 5.0],
+            center: [0.0, 0.0],
+            turn: 1.0,
+        };
         assert_eq!(
             floor
                 .meet(
-                    &PlaneCurve::Arc { start: [3.0, 0.0], end: [0.0, 3.0], center: [0.0, 0.0], turn: 1.0 },
+                    &PlaneCurve::Arc {
+                        start: [3.0, 0.0],
+                        end: [0.0, 3.0],
+                        center: [0.0, 0.0],
+                        turn: 1.0
+                    },
                     [4.0, 1.0]
                 )
                 .unwrap(),
             [3.0, 0.0]
         );
-        let other = PlaneCurve::Arc { start: [1.0, 0.0], end: [6.0, 5.0], center: [6.0, 0.0], turn: -1.0 };
+        let other = PlaneCurve::Arc {
+            start: [1.0, 0.0],
+            end: [6.0, 5.0],
+            center: [6.0, 0.0],
+            turn: -1.0,
+        };
         let point = circle.meet(&other, [3.0, 9.0]).unwrap();
         assert!((point[0] - 3.0).abs() < 1e-12 && (point[1] - 4.0).abs() < 1e-12);
         assert!(circle.ends_at(point) && !circle.ends_at([3.0, -4.0]));
         assert!(floor.begins_at([1.0, 0.0]) && !floor.begins_at([4.5, 0.0]));
         // A spiral's end is what the next motion meets.
-        let spiral = PlaneCurve::Arc { start: [3.5, 0.0], end: [0.0, 3.0], center: [0.0, 0.0], turn: 1.0 };
+        let spiral = PlaneCurve::Arc {
+            start: [3.5, 0.0],
+            end: [0.0, 3.0],
+            center: [0.0, 0.0],
+            turn: 1.0,
+        };
         assert_eq!(
-            spiral.meet(&PlaneCurve::Line { start: [0.0, 0.0], end: [0.0, 9.0] }, [0.0, 3.0]).unwrap(),
+            spiral
+                .meet(
+                    &PlaneCurve::Line {
+                        start: [0.0, 0.0],
+                        end: [0.0, 9.0]
+                    },
+                    [0.0, 3.0]
+                )
+                .unwrap(),
             [0.0, 3.0]
         );
-        let PlaneCurve::Arc { center, end, .. } = spiral.moved([1.0, 2.0]) else { panic!("an arc stays an arc") };
+        let PlaneCurve::Arc { center, end, .. } = spiral.moved([1.0, 2.0]) else {
+            panic!("an arc stays an arc")
+        };
         assert_eq!((center, end), ([1.0, 2.0], [1.0, 5.0]));
     }
 }

@@ -53,7 +53,12 @@ impl Interpreter {
 
     pub(super) fn rpm_at(&self, x_mm: f64, highest: f64) -> f64 {
         // Metres or feet per minute.
-        let surface_mm = self.modal.spindle_speed * if self.modal.unit_mm == 1.0 { 1000.0 } else { 304.8 };
+        let surface_mm = self.modal.spindle_speed
+            * if self.modal.unit_mm == 1.0 {
+                1000.0
+            } else {
+                304.8
+            };
         (surface_mm / (TAU * x_mm.abs().max(MIN_RADIUS_MM))).min(highest)
     }
 
@@ -71,13 +76,17 @@ impl Interpreter {
             .hint("F2 does the motion in half a minute; G94 goes back to feed per minute")),
             // The machine's limits hold for whatever is faster; only it must be a number.
             FeedMode::Inverse if feed > 0.0 => Ok((length_mm * feed / MINUTE_S).min(f64::MAX)),
-            FeedMode::PerRevolution if feed > 0.0 && self.spindle_rpm(&self.here) == 0.0 => Err(LineFault::new(
-                "gcode::feed",
-                block.whole(),
-                "with G95 (feed per revolution) the spindle needs a speed S above 0 rev/min",
-            )
-            .hint("write S and M3 before it, or G94 for feed per minute")),
-            FeedMode::PerRevolution if feed > 0.0 => Ok((feed * self.spindle_rpm(&self.here) / MINUTE_S).min(f64::MAX)),
+            FeedMode::PerRevolution if feed > 0.0 && self.spindle_rpm(&self.here) == 0.0 => {
+                Err(LineFault::new(
+                    "gcode::feed",
+                    block.whole(),
+                    "with G95 (feed per revolution) the spindle needs a speed S above 0 rev/min",
+                )
+                .hint("write S and M3 before it, or G94 for feed per minute"))
+            }
+            FeedMode::PerRevolution if feed > 0.0 => {
+                Ok((feed * self.spindle_rpm(&self.here) / MINUTE_S).min(f64::MAX))
+            }
             // Printers start with a feed of their own.
             _ if self.dialect == Dialect::Printer => Ok(PRINTER_FEED_MM_S),
             _ => self.missing_feed(block),
@@ -91,7 +100,11 @@ impl Interpreter {
             return Ok(0.0);
         }
         self.missing_feed_reported = true;
-        let at = if block.has(b'f') { block.at(b'f') } else { block.whole() };
+        let at = if block.has(b'f') {
+            block.at(b'f')
+        } else {
+            block.whole()
+        };
         let message = if block.has(b'f') {
             "the feed F0 moves nothing: a feed motion needs F above 0"
         } else {
@@ -139,8 +152,15 @@ pub(super) fn others(start: &Position, end: &Position, extruder_mm: f64) -> Auxi
 
 /// Length that F refers to: of X Y Z if they move, else of U V W, else degrees of A B C.
 pub(super) fn distance(start: &Position, end: &Position) -> f64 {
-    let along = |axes: std::ops::Range<usize>| axes.map(|axis| (end[axis] - start[axis]).powi(2)).sum::<f64>().sqrt();
-    [along(0..3), along(6..9), along(3..6)].into_iter().find(|&length| length > 0.0).unwrap_or(0.0)
+    let along = |axes: std::ops::Range<usize>| {
+        axes.map(|axis| (end[axis] - start[axis]).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
+    [along(0..3), along(6..9), along(3..6)]
+        .into_iter()
+        .find(|&length| length > 0.0)
+        .unwrap_or(0.0)
 }
 
 /// Whether rotary axes are all that moves, so that F is in degrees.

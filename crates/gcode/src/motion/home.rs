@@ -17,7 +17,8 @@ impl Interpreter {
         if block.has_axes() {
             self.line_to(block, self.frame.to_machine(&target), Speed::Rapid, 0.0)?;
         }
-        // The axes are those of the program: in a rotated system, Y alone moves X and Y of the machine.
+        // The axes are those of the program: in a rotated system, Y alone moves X and Y of the
+        // machine.
         let stored = self.frame.to_program(&self.parameters.nine(home));
         let mut goal = target;
         for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {

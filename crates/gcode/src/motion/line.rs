@@ -10,7 +10,13 @@ use crate::text::diagnostic::Read;
 impl Interpreter {
     /// Moves straight to `machine`; the programmed position is the caller's business.
     #[inline]
-    pub(crate) fn line_to(&mut self, block: &Block, machine: Position, speed: Speed, extruder_mm: f64) -> Read<()> {
+    pub(crate) fn line_to(
+        &mut self,
+        block: &Block,
+        machine: Position,
+        speed: Speed,
+        extruder_mm: f64,
+    ) -> Read<()> {
         let start = std::mem::replace(&mut self.here, machine);
         let others = others(&start, &machine, extruder_mm);
         if others.is_none() && start[..3] == machine[..3] {
@@ -23,7 +29,11 @@ impl Interpreter {
             Speed::Rapid => 0.0,
             Speed::Programmed => {
                 let feed = self.feed_for(block, distance(&start, &machine))?;
-                if turns_only(&start, &machine) { feed / self.modal.feed_unit_mm } else { feed }
+                if turns_only(&start, &machine) {
+                    feed / self.modal.feed_unit_mm
+                } else {
+                    feed
+                }
             }
         };
         self.push_motion(speed, &start, Shape::Line, feed_mm_s, others);

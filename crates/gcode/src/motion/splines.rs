@@ -1,8 +1,9 @@
 //! G5, G5.1, G5.2/G5.3 and G6.2 as exact splines.
 //!
-//! G5 is a cubic and G5.1 a quadratic Bezier curve; G5.2 collects control points with weights for a clamped uniform NURBS until G5.3;
-//! G6.2 gives order, knots, weights and control points itself. An interpreter that turns them into chords or arcs loses what the path
-//! stage needs; the curve is handed on as it is.
+//! G5 is a cubic and G5.1 a quadratic Bezier curve; G5.2 collects control points with weights for a
+//! clamped uniform NURBS until G5.3; G6.2 gives order, knots, weights and control points itself. An
+//! interpreter that turns them into chords or arcs loses what the path stage needs; the curve is
+//! handed on as it is.
 
 use std::sync::Arc;
 
@@ -15,11 +16,13 @@ use crate::text::block::Block;
 use crate::text::codes::{AXES, bit, spelled};
 use crate::text::diagnostic::{LineFault, Read};
 
-/// Control points of one curve: each costs 32 bytes, and no curve of a CAM system has more than some hundreds.
+/// Control points of one curve: each costs 32 bytes, and no curve of a CAM system has more than
+/// some hundreds.
 const MAX_POINTS: usize = 100_000;
 /// Order of a curve. LinuxCNC takes 3 up; beyond 10 the basis loses digits.
 const ORDERS: (i64, i64) = (2, 10);
-/// Distance of the first control point of G6.2 from the position, mm: what three printed decimals leave.
+/// Distance of the first control point of G6.2 from the position, mm: what three printed decimals
+/// leave.
 const START_WITHIN_MM: f64 = 0.01;
 
 impl Interpreter {
@@ -36,11 +39,16 @@ impl Interpreter {
             ));
         }
         let pair = |one: u8, two: u8| {
-            (block.has(one) || block.has(two)).then(|| [one, two].map(|letter| block.get(letter).unwrap_or(0.0) * unit))
+            (block.has(one) || block.has(two))
+                .then(|| [one, two].map(|letter| block.get(letter).unwrap_or(0.0) * unit))
         };
         if block.has(b'i') != block.has(b'j') {
             let at = block.at_any(bit(b'i') | bit(b'j'));
-            return Err(LineFault::new("gcode::spline", at, "the first control point needs both I and J, or neither"));
+            return Err(LineFault::new(
+                "gcode::spline",
+                at,
+                "the first control point needs both I and J, or neither",
+            ));
         }
         let first = match (pair(b'i', b'j'), self.carried.bezier_end) {
             (Some(offset), _) => offset,
@@ -73,8 +81,16 @@ impl Interpreter {
         let degree = points.len() - 1;
         let mut knots = vec![0.0; degree + 1];
         knots.resize(2 * (degree + 1), 1.0);
-        let control_mm = points.iter().map(|point| self.machine_point(point)).collect();
-        let spline = Spline { degree, knots, control_mm, weights: vec![1.0; degree + 1] };
+        let control_mm = points
+            .iter()
+            .map(|point| self.machine_point(point))
+            .collect();
+        let spline = Spline {
+            degree,
+            knots,
+            control_mm,
+            weights: vec![1.0; degree + 1],
+        };
         self.spline_to(block, spline, target)?;
         self.carried.bezier_end = end_offset;
         // The next line needs its own G5.
@@ -87,9 +103,17 @@ impl Interpreter {
         self.check_spline(block, 52)?;
         let has_point = block.has(b'x') || block.has(b'y');
         if self.carried.collected.is_none() {
-            let order = if block.has(b'l') { self.integer(block, b'l', ORDERS.0, ORDERS.1)? as usize } else { 3 };
+            let order = if block.has(b'l') {
+                self.integer(block, b'l', ORDERS.0, ORDERS.1)? as usize
+            } else {
+                3
+            };
             let first = self.machine_point(&self.at);
-            let weight = if has_point { 1.0 } else { self.weight(block, b'p')? };
+            let weight = if has_point {
+                1.0
+            } else {
+                self.weight(block, b'p')?
+            };
             self.carried.collected = Some(Collected {
                 code: 52,
                 order,
@@ -103,47 +127,85 @@ impl Interpreter {
             }
         }
         if !(block.has(b'x') && block.has(b'y')) {
-            return Err(LineFault::new("gcode::spline", block.whole(), "a control point of G5.2 needs both X and Y"));
+            return Err(LineFault::new(
+                "gcode::spline",
+                block.whole(),
+                "a control point of G5.2 needs both X and Y",
+            ));
         }
         if !block.has(b'p') {
-            return Err(LineFault::new("gcode::spline", block.whole(), "a control point of G5.2 needs its weight P"));
+            return Err(LineFault::new(
+                "gcode::spline",
+                block.whole(),
+                "a control point of G5.2 needs its weight P",
+            ));
         }
         let weight = self.weight(block, b'p')?;
         // In G91 every point is a distance from the start of the curve.
-        self.at = self.carried.collected.as_ref().map_or(self.at, |collected| collected.start);
+        self.at = self
+            .carried
+            .collected
+            .as_ref()
+            .map_or(self.at, |collected| collected.start);
         let target = self.target(block)?;
         self.collect(block, target, weight)
     }
 
     /// G5.3: the curve of G5.2 is complete.
     pub(crate) fn nurbs_end(&mut self, block: &Block) -> Read<()> {
-        let Some(collected) = self.carried.collected.take().filter(|collected| collected.code == 52) else {
-            return Err(LineFault::new("gcode::spline", block.whole(), "G5.3 ends a curve that no G5.2 began"));
+        let Some(collected) = self
+            .carried
+            .collected
+            .take()
+            .filter(|collected| collected.code == 52)
+        else {
+            return Err(LineFault::new(
+                "gcode::spline",
+                block.whole(),
+                "G5.3 ends a curve that no G5.2 began",
+            ));
         };
         let (count, order) = (collected.points.len(), collected.order);
         if count < order {
             return Err(LineFault::new(
                 "gcode::spline",
                 block.whole(),
-                format!("a curve of order {order} needs at least {order} control points, this has {count}"),
+                format!(
+                    "a curve of order {order} needs at least {order} control points, this has {count}"
+                ),
             ));
         }
         let spans = count - order + 1;
-        let knots = (0..count + order).map(|n| (n + 1).saturating_sub(order).min(spans) as f64).collect();
+        let knots = (0..count + order)
+            .map(|n| (n + 1).saturating_sub(order).min(spans) as f64)
+            .collect();
         self.modal.motion = 800;
-        let spline = Spline { degree: order - 1, knots, control_mm: collected.points, weights: collected.weights };
+        let spline = Spline {
+            degree: order - 1,
+            knots,
+            control_mm: collected.points,
+            weights: collected.weights,
+        };
         self.spline_to(block, spline, self.at)
     }
 
     /// One line of G6.2: a control point with weight R and knot K, or a closing knot alone.
     pub(crate) fn nurbs_with_knots(&mut self, block: &Block) -> Read<()> {
         let Some(knot) = block.get(b'k') else {
-            return Err(LineFault::new("gcode::spline", block.whole(), "every line of G6.2 needs its knot K"));
+            return Err(LineFault::new(
+                "gcode::spline",
+                block.whole(),
+                "every line of G6.2 needs its knot K",
+            ));
         };
         if self.carried.collected.is_none() {
             self.begin_with_knots(block)?;
         }
-        let last = self.carried.collected.as_ref().and_then(|collected| collected.knots.last().copied());
+        let last = self
+            .carried
+            .collected
+            .as_ref()
+            .and_then(|collected| collected.knots.last().copied());
         if last.is_some_and(|last| knot < last) {
             return Err(LineFault::new(
                 "gcode::spline",
@@ -152,7 +214,11 @@ impl Interpreter {
             ));
         }
         if block.has_axes() {
-            let weight = if block.has(b'r') { self.weight(block, b'r')? } else { 1.0 };
+            let weight = if block.has(b'r') {
+                self.weight(block, b'r')?
+            } else {
+                1.0
+            };
             let target = self.target(block)?;
             self.collect(block, target, weight)?;
         }
@@ -172,12 +238,19 @@ impl Interpreter {
     /// The first line of G6.2: its order P, and that it begins where the tool is.
     fn begin_with_knots(&mut self, block: &Block) -> Read<()> {
         if !block.has(b'p') {
-            return Err(LineFault::new("gcode::spline", block.whole(), "the first line of G6.2 needs the order P"));
+            return Err(LineFault::new(
+                "gcode::spline",
+                block.whole(),
+                "the first line of G6.2 needs the order P",
+            ));
         }
         let order = self.integer(block, b'p', ORDERS.0, ORDERS.1)? as usize;
         let target = self.target(block)?;
         let (first, here) = (self.machine_point(&target), self.machine_point(&self.at));
-        let away = (0..3).map(|axis| (first[axis] - here[axis]).powi(2)).sum::<f64>().sqrt();
+        let away = (0..3)
+            .map(|axis| (first[axis] - here[axis]).powi(2))
+            .sum::<f64>()
+            .sqrt();
         if away > START_WITHIN_MM {
             return Err(LineFault::new(
                 "gcode::spline",
@@ -218,7 +291,12 @@ impl Interpreter {
                 ),
             ));
         }
-        let spline = Spline { degree: order - 1, knots, control_mm: collected.points, weights: collected.weights };
+        let spline = Spline {
+            degree: order - 1,
+            knots,
+            control_mm: collected.points,
+            weights: collected.weights,
+        };
         self.spline_to(block, spline, self.at)
     }
 
@@ -227,11 +305,18 @@ impl Interpreter {
         match self.carried.collected.take() {
             None => Ok(()),
             Some(collected) => {
-                let end = if collected.code == 52 { "G5.3" } else { "its last knots K" };
+                let end = if collected.code == 52 {
+                    "G5.3"
+                } else {
+                    "its last knots K"
+                };
                 Err(LineFault::new(
                     "gcode::spline",
                     block.whole(),
-                    format!("the curve of {} is not complete: {end} is missing", spelled(collected.code)),
+                    format!(
+                        "the curve of {} is not complete: {end} is missing",
+                        spelled(collected.code)
+                    ),
                 ))
             }
         }
@@ -308,7 +393,13 @@ impl Interpreter {
         }
         let feed_mm_s = self.feed_for(block, spline.length_mm())?;
         let others = others(&start, &machine, 0.0);
-        self.push_motion(Speed::Programmed, &start, Shape::Spline(Arc::new(spline)), feed_mm_s, others);
+        self.push_motion(
+            Speed::Programmed,
+            &start,
+            Shape::Spline(Arc::new(spline)),
+            feed_mm_s,
+            others,
+        );
         Ok(())
     }
 }

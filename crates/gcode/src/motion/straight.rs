@@ -15,8 +15,14 @@ impl Interpreter {
         if !block.has_axes() && extruder_mm == 0.0 {
             return Ok(());
         }
-        let is_g53 = block.code(Group::NonModal).is_some_and(|word| word.number == 530);
-        let target = if is_g53 { self.machine_target(block)? } else { self.target(block)? };
+        let is_g53 = block
+            .code(Group::NonModal)
+            .is_some_and(|word| word.number == 530);
+        let target = if is_g53 {
+            self.machine_target(block)?
+        } else {
+            self.target(block)?
+        };
         // Printers move at F with G0 too; G53 of Fanuc is always a rapid.
         let is_feed = (code == 10 && !(is_g53 && self.dialect.is_fanuc()))
             || (self.dialect == Dialect::Printer && self.modal.feed > 0.0);
@@ -35,13 +41,18 @@ impl Interpreter {
             return Ok(());
         }
         let machine = self.frame.to_machine(target);
-        let speed = if is_feed { Speed::Programmed } else { Speed::Rapid };
+        let speed = if is_feed {
+            Speed::Programmed
+        } else {
+            Speed::Rapid
+        };
         let fed = self.line_to(block, machine, speed, extruder_mm);
         self.at = *target;
         if self.behind_fault {
             // Known again once a line names where it goes.
             self.behind_fault = self.modal.incremental
-                || !(block.has(b'x') && block.has(if self.dialect.is_lathe() { b'z' } else { b'y' }));
+                || !(block.has(b'x')
+                    && block.has(if self.dialect.is_lathe() { b'z' } else { b'y' }));
         }
         fed
     }

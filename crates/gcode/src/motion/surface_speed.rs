@@ -1,7 +1,9 @@
-//! G96: the spindle turns as fast as the surface speed asks for, so that a feed per revolution changes along X.
+//! G96: the spindle turns as fast as the surface speed asks for, so that a feed per revolution
+//! changes along X.
 //!
-//! n = S / (2 pi |x|), at most what G96 D, G50 S or G92 S allow; S in m/min, with G20 in feet/min; x from the axis. A straight motion is handed out in
-//! pieces along each of which n changes by at most 5 %; an arc has the speed of its end.
+//! n = S / (2 pi |x|), at most what G96 D, G50 S or G92 S allow; S in m/min, with G20 in feet/min;
+//! x from the axis. A straight motion is handed out in pieces along each of which n changes by at
+//! most 5 %; an arc has the speed of its end.
 
 use crate::canon::{Corner, Shape};
 use crate::motion::feed::{MIN_RADIUS_MM, Speed, others};
@@ -24,13 +26,22 @@ impl Interpreter {
         let mut last = *start;
         for (number, &share) in shares.iter().enumerate() {
             let is_last = number + 1 == shares.len();
-            self.here =
-                if is_last { end } else { std::array::from_fn(|axis| start[axis] + share * (end[axis] - start[axis])) };
+            self.here = if is_last {
+                end
+            } else {
+                std::array::from_fn(|axis| start[axis] + share * (end[axis] - start[axis]))
+            };
             let middle: Position = std::array::from_fn(|axis| 0.5 * (last[axis] + self.here[axis]));
             let begin = std::mem::replace(&mut last, self.here);
             let feed = self.feed_at(block, &middle)?;
             self.modal.corner = if is_last { corner } else { joint(corner) };
-            self.push_motion(Speed::Programmed, &begin, Shape::Line, feed, others(&begin, &last, 0.0));
+            self.push_motion(
+                Speed::Programmed,
+                &begin,
+                Shape::Line,
+                feed,
+                others(&begin, &last, 0.0),
+            );
             self.modal.corner = corner;
         }
         Ok(())
@@ -48,7 +59,11 @@ impl Interpreter {
     fn shares(&self, from: f64, to: f64, highest: f64) -> Vec<f64> {
         let mut shares = Vec::new();
         let crosses = from * to < 0.0;
-        let ends = if crosses { vec![[from, 0.0], [0.0, to]] } else { vec![[from, to]] };
+        let ends = if crosses {
+            vec![[from, 0.0], [0.0, to]]
+        } else {
+            vec![[from, to]]
+        };
         let least = {
             let surface = self.rpm_at(1.0, f64::INFINITY);
             (surface / highest).max(MIN_RADIUS_MM)

@@ -33,7 +33,11 @@ impl Interpreter {
                     continue;
                 }
                 let value = self.length(block, letter, axis, value)?;
-                target[axis] = if self.modal.incremental { self.at[axis] + value } else { value };
+                target[axis] = if self.modal.incremental {
+                    self.at[axis] + value
+                } else {
+                    value
+                };
             }
         }
         if self.lathe.is_some() {
@@ -54,7 +58,11 @@ impl Interpreter {
             .hint("write G90 before it"));
         }
         // Behind G40 the tool stands beside the contour, and every motion starts from the contour.
-        let mut machine = if self.carried.left_compensation { self.frame.to_machine(&self.at) } else { self.here };
+        let mut machine = if self.carried.left_compensation {
+            self.frame.to_machine(&self.at)
+        } else {
+            self.here
+        };
         for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
             if let Some(value) = block.get(letter) {
                 machine[axis] = self.length(block, letter, axis, value)?;
@@ -79,25 +87,44 @@ impl Interpreter {
     fn polar_target(&self, block: &Block, target: &mut Position) -> Read<()> {
         let at = block.at_any(bit(b'@') | bit(b'^'));
         if block.set & (bit(b'x') | bit(b'y')) != 0 {
-            return Err(LineFault::new("gcode::polar", at, "polar coordinates @ and ^ exclude X and Y"));
+            return Err(LineFault::new(
+                "gcode::polar",
+                at,
+                "polar coordinates @ and ^ exclude X and Y",
+            ));
         }
         let [first, second, _] = self.modal.plane.axes();
-        let (old_radius, old_angle) =
-            (libm::hypot(self.at[0], self.at[1]), libm::atan2(self.at[1], self.at[0]).to_degrees());
+        let (old_radius, old_angle) = (
+            libm::hypot(self.at[0], self.at[1]),
+            libm::atan2(self.at[1], self.at[0]).to_degrees(),
+        );
         if [first, second] != [0, 1] {
-            return Err(LineFault::new("gcode::polar", at, "polar coordinates need the XY plane G17"));
+            return Err(LineFault::new(
+                "gcode::polar",
+                at,
+                "polar coordinates need the XY plane G17",
+            ));
         }
         let radius = block.get(b'@').map(|radius| radius * self.modal.unit_mm);
         let angle = block.get(b'^');
         if self.modal.incremental && old_radius == 0.0 {
             let message = "in G91, polar coordinates have no direction at the origin";
-            return Err(LineFault::new("gcode::polar", at, message).hint("write this motion in G90"));
+            return Err(
+                LineFault::new("gcode::polar", at, message).hint("write this motion in G90")
+            );
         }
         if angle.is_none() && old_radius == 0.0 {
-            return Err(LineFault::new("gcode::polar", at, "at the origin the angle ^ is needed"));
+            return Err(LineFault::new(
+                "gcode::polar",
+                at,
+                "at the origin the angle ^ is needed",
+            ));
         }
         let (radius, angle) = if self.modal.incremental {
-            (old_radius + radius.unwrap_or(0.0), old_angle + angle.unwrap_or(0.0))
+            (
+                old_radius + radius.unwrap_or(0.0),
+                old_angle + angle.unwrap_or(0.0),
+            )
         } else {
             (radius.unwrap_or(old_radius), angle.unwrap_or(old_angle))
         };
@@ -147,9 +174,12 @@ impl Interpreter {
     fn stepped(&self, block: &Block, letter: u8, axis: usize, value: f64) -> Read<f64> {
         let place = b"xyz"[axis];
         if block.has(place) {
-            let [step, place] = [letter, place].map(|letter| char::from(letter).to_ascii_uppercase());
-            let message = format!("{step} and {place} on one line: {step} is a distance along {place}");
-            return Err(LineFault::new("gcode::repeated", block.at(letter), message).hint("write one of the two"));
+            let [step, place] =
+                [letter, place].map(|letter| char::from(letter).to_ascii_uppercase());
+            let message =
+                format!("{step} and {place} on one line: {step} is a distance along {place}");
+            return Err(LineFault::new("gcode::repeated", block.at(letter), message)
+                .hint("write one of the two"));
         }
         Ok(self.at[axis] + self.length(block, place, axis, value)?)
     }
@@ -158,11 +188,17 @@ impl Interpreter {
     #[cold]
     fn profile_steps(&self, block: &Block, target: &mut Position) -> Read<()> {
         for (letter, axis, coordinate) in STEPS {
-            let Some(value) = block.get(letter) else { continue };
+            let Some(value) = block.get(letter) else {
+                continue;
+            };
             if block.has(coordinate) {
-                let [step, place] = [letter, coordinate].map(|letter| char::from(letter).to_ascii_uppercase());
-                let message = format!("{step} and {place} in one block of a profile: {step} is a step along {place}");
-                return Err(LineFault::new("gcode::lathe", block.at(letter), message).hint("write one of the two"));
+                let [step, place] =
+                    [letter, coordinate].map(|letter| char::from(letter).to_ascii_uppercase());
+                let message = format!(
+                    "{step} and {place} in one block of a profile: {step} is a step along {place}"
+                );
+                return Err(LineFault::new("gcode::lathe", block.at(letter), message)
+                    .hint("write one of the two"));
             }
             target[axis] = self.at[axis] + self.length(block, coordinate, axis, value)?;
         }
@@ -176,7 +212,11 @@ impl Interpreter {
             return 0.0;
         };
         let value = value * self.modal.unit_mm;
-        let pushed = if self.extruder.is_relative { value } else { value - self.extruder.at_mm };
+        let pushed = if self.extruder.is_relative {
+            value
+        } else {
+            value - self.extruder.at_mm
+        };
         self.extruder.at_mm += pushed;
         pushed
     }

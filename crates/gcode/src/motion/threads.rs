@@ -1,6 +1,7 @@
 //! Motions tied to the spindle or to a probe: G33, G33.1, G38.2-G38.5, G76.
 //!
-//! The canonical output has the motions at the speed that the spindle asks for, between events that say that spindle and feed are coupled.
+//! The canonical output has the motions at the speed that the spindle asks for, between events that
+//! say that spindle and feed are coupled.
 
 use crate::canon::{EventKind, Plane};
 use crate::motion::feed::{Speed, distance};
@@ -32,7 +33,9 @@ impl Interpreter {
         let target = self.target(block)?;
         let start = self.at;
         let pitch_mm = pitch * self.modal.unit_mm;
-        self.event(EventKind::SpindleSync { pitch_mm: Some(pitch_mm) });
+        self.event(EventKind::SpindleSync {
+            pitch_mm: Some(pitch_mm),
+        });
         self.paced(block, target, pitch_mm)?;
         if code == 331 {
             // Rigid tapping comes back the same way.
@@ -61,7 +64,10 @@ impl Interpreter {
             return Err(LineFault::new(
                 "gcode::thread",
                 block.whole(),
-                format!("{} needs a turning spindle: M3 or M4, and S above 0 rev/min", spelled(code)),
+                format!(
+                    "{} needs a turning spindle: M3 or M4, and S above 0 rev/min",
+                    spelled(code)
+                ),
             )
             .hint("start it before: S500 M3"));
         }
@@ -80,13 +86,23 @@ impl Interpreter {
     /// G38.2 to G38.5. Moves all the way to the target, as in a dry run: the program does not show
     /// where the probe will trip.
     pub(crate) fn probe(&mut self, block: &Block) -> Read<()> {
-        let at = block.code(Group::Motion).map_or(block.whole(), |word| word.at());
+        let at = block
+            .code(Group::Motion)
+            .map_or(block.whole(), |word| word.at());
         if !block.has_axes() {
-            return Err(LineFault::new("gcode::probe", at, "a probing motion has no axis word"));
+            return Err(LineFault::new(
+                "gcode::probe",
+                at,
+                "a probing motion has no axis word",
+            ));
         }
         if self.modal.feed_mode == FeedMode::PerRevolution {
-            return Err(LineFault::new("gcode::probe", at, "a probing motion cannot have a feed per revolution (G95)")
-                .hint("write G94 with a feed F per minute before it"));
+            return Err(LineFault::new(
+                "gcode::probe",
+                at,
+                "a probing motion cannot have a feed per revolution (G95)",
+            )
+            .hint("write G94 with a feed F per minute before it"));
         }
         let rotary = bit(b'a') | bit(b'b') | bit(b'c');
         let target = self.target(block)?;
@@ -102,7 +118,9 @@ impl Interpreter {
             return Err(LineFault::new(
                 "gcode::probe",
                 at,
-                format!("the probing way of {way:.3} mm is too short: at least {PROBE_LEAST_MM} mm"),
+                format!(
+                    "the probing way of {way:.3} mm is too short: at least {PROBE_LEAST_MM} mm"
+                ),
             ));
         }
         self.event(EventKind::Probe);
@@ -119,21 +137,45 @@ impl Interpreter {
         let unit = self.modal.unit_mm;
         let need = |letter: u8| {
             let name = char::from(letter).to_ascii_uppercase();
-            block
-                .get(letter)
-                .ok_or_else(|| LineFault::new("gcode::thread", block.whole(), format!("{name} is missing for G76")))
+            block.get(letter).ok_or_else(|| {
+                LineFault::new(
+                    "gcode::thread",
+                    block.whole(),
+                    format!("{name} is missing for G76"),
+                )
+            })
         };
-        let (pitch, offset, first, full) =
-            (need(b'p')? * unit, need(b'i')? * unit, need(b'j')? * unit, need(b'k')? * unit);
+        let (pitch, offset, first, full) = (
+            need(b'p')? * unit,
+            need(b'i')? * unit,
+            need(b'j')? * unit,
+            need(b'k')? * unit,
+        );
         let degression = block.get(b'r').unwrap_or(1.0);
-        let springs = if block.has(b'h') { self.integer(block, b'h', 0, 1000)? } else { 0 };
-        let (taper, taper_at) =
-            (block.get(b'e').unwrap_or(0.0) * unit, if block.has(b'l') { self.integer(block, b'l', 0, 3)? } else { 0 });
+        let springs = if block.has(b'h') {
+            self.integer(block, b'h', 0, 1000)?
+        } else {
+            0
+        };
+        let (taper, taper_at) = (
+            block.get(b'e').unwrap_or(0.0) * unit,
+            if block.has(b'l') {
+                self.integer(block, b'l', 0, 3)?
+            } else {
+                0
+            },
+        );
         let angle = block.get(b'q').unwrap_or(0.0);
         let target = self.target(block)?;
-        let bad = |letter: u8, message: &str| Err(LineFault::new("gcode::thread", block.at(letter), message));
+        let bad = |letter: u8, message: &str| {
+            Err(LineFault::new("gcode::thread", block.at(letter), message))
+        };
         if self.modal.plane != Plane::Zx {
-            return Err(LineFault::new("gcode::thread", block.whole(), "G76 needs the plane G18"));
+            return Err(LineFault::new(
+                "gcode::thread",
+                block.whole(),
+                "G76 needs the plane G18",
+            ));
         }
         if pitch <= 0.0 {
             return bad(b'p', "the pitch P must be above 0");
@@ -176,26 +218,41 @@ impl Interpreter {
     /// One pass at `depth` below the peaks: in, along the thread with its tapers, out.
     fn thread_pass(&mut self, block: &Block, thread: &Thread, depth: f64) -> Read<()> {
         let inward = if thread.offset > 0.0 { 1.0 } else { -1.0 };
-        let direction = if thread.end_z < thread.start[2] { -1.0 } else { 1.0 };
+        let direction = if thread.end_z < thread.start[2] {
+            -1.0
+        } else {
+            1.0
+        };
         // The compound slide: a deeper pass begins and ends further along.
         let begin_z = thread.start[2] + direction * depth * thread.tangent;
         let end_z = thread.end_z - direction * (thread.full - depth) * thread.tangent;
         let safe_x = thread.start[0] - inward * (thread.full - depth);
         let bottom = thread.start[0] + thread.offset + inward * depth;
         let top = bottom - inward * thread.full;
-        let taper_pitch = thread.pitch * libm::hypot(thread.taper, thread.full) / thread.taper.max(f64::MIN_POSITIVE);
-        let (first_taper, last_taper) =
-            (thread.taper > 0.0 && thread.taper_at & 1 != 0, thread.taper > 0.0 && thread.taper_at & 2 != 0);
+        let taper_pitch = thread.pitch * libm::hypot(thread.taper, thread.full)
+            / thread.taper.max(f64::MIN_POSITIVE);
+        let (first_taper, last_taper) = (
+            thread.taper > 0.0 && thread.taper_at & 1 != 0,
+            thread.taper > 0.0 && thread.taper_at & 2 != 0,
+        );
 
         self.go(block, thread.at(safe_x, begin_z), Speed::Rapid)?;
         if first_taper {
             // The infeed waits for the spindle, too.
             self.coupled(block, thread.at(top, begin_z), taper_pitch)?;
-            self.paced(block, thread.at(bottom, begin_z + direction * thread.taper), taper_pitch)?;
+            self.paced(
+                block,
+                thread.at(bottom, begin_z + direction * thread.taper),
+                taper_pitch,
+            )?;
         } else {
             self.go(block, thread.at(bottom, begin_z), Speed::Rapid)?;
         }
-        let straight_end = if last_taper { end_z - direction * thread.taper } else { end_z };
+        let straight_end = if last_taper {
+            end_z - direction * thread.taper
+        } else {
+            end_z
+        };
         self.coupled(block, thread.at(bottom, straight_end), thread.pitch)?;
         if last_taper {
             self.coupled(block, thread.at(top, end_z), taper_pitch)?;
@@ -205,7 +262,9 @@ impl Interpreter {
     }
 
     fn coupled(&mut self, block: &Block, target: Position, pitch_mm: f64) -> Read<()> {
-        self.event(EventKind::SpindleSync { pitch_mm: Some(pitch_mm) });
+        self.event(EventKind::SpindleSync {
+            pitch_mm: Some(pitch_mm),
+        });
         self.paced(block, target, pitch_mm)
     }
 }

@@ -53,15 +53,31 @@ impl ToolTable {
     /// # Errors
     /// A file that cannot be read, or the faults of all its lines.
     pub fn read(path: &Path, unit_mm: f64) -> Result<Self, ToolTableError> {
-        let bytes = input::read(path).map_err(|cause| ToolTableError::Io { path: path.to_owned(), cause })?;
+        let bytes = input::read(path).map_err(|cause| ToolTableError::Io {
+            path: path.to_owned(),
+            cause,
+        })?;
         let file: Arc<str> = input::name(path).into();
         let (mut table, mut faults) = (Self::default(), Vec::new());
         for (line, bytes) in (1..).zip(bytes.split(|&byte| byte == b'\n')) {
             if let Err(fault) = table.add_line(bytes, unit_mm) {
-                faults.push(Diagnostic::of_line(Severity::Error, *fault, file.clone(), line, bytes));
+                faults.push(Diagnostic::of_line(
+                    Severity::Error,
+                    *fault,
+                    file.clone(),
+                    line,
+                    bytes,
+                ));
             }
         }
-        if faults.is_empty() { Ok(table) } else { Err(ToolTableError::Faults { path: path.to_owned(), faults }) }
+        if faults.is_empty() {
+            Ok(table)
+        } else {
+            Err(ToolTableError::Faults {
+                path: path.to_owned(),
+                faults,
+            })
+        }
     }
 
     /// Reads a table; `unit_mm` is the length of its unit in mm.
@@ -71,7 +87,9 @@ impl ToolTable {
     pub fn parse(text: &str, unit_mm: f64) -> Result<Self, (u32, String)> {
         let mut table = Self::default();
         for (line, text) in (1..).zip(text.lines()) {
-            table.add_line(text.as_bytes(), unit_mm).map_err(|fault| (line, fault.message))?;
+            table
+                .add_line(text.as_bytes(), unit_mm)
+                .map_err(|fault| (line, fault.message))?;
         }
         Ok(table)
     }
@@ -84,7 +102,10 @@ impl ToolTable {
         let (number, tool) = parse_tool(words, unit_mm)?;
         if self.tools.insert(number, tool).is_some() {
             let message = format!("tool {number} stands on an earlier line, too");
-            return Err(LineFault::new(CODE, 0..words.trim_ascii_end().len(), message).hint("a tool has one line"));
+            return Err(
+                LineFault::new(CODE, 0..words.trim_ascii_end().len(), message)
+                    .hint("a tool has one line"),
+            );
         }
         Ok(())
     }
@@ -97,10 +118,12 @@ const MAX_MM: f64 = 1e6;
 
 /// The words of a line with their places.
 pub(super) fn words(line: &[u8]) -> impl Iterator<Item = (Range<usize>, &[u8])> {
-    line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).map(move |word| {
-        let start = word.as_ptr().addr() - line.as_ptr().addr();
-        (start..start + word.len(), word)
-    })
+    line.split(u8::is_ascii_whitespace)
+        .filter(|word| !word.is_empty())
+        .map(move |word| {
+            let start = word.as_ptr().addr() - line.as_ptr().addr();
+            (start..start + word.len(), word)
+        })
 }
 
 fn parse_tool(line: &[u8], unit_mm: f64) -> Read<(u32, Tool)> {
@@ -110,7 +133,10 @@ fn parse_tool(line: &[u8], unit_mm: f64) -> Read<(u32, Tool)> {
         let word = String::from_utf8_lossy(bytes);
         let fault = |what: &str| LineFault::new(CODE, at.clone(), format!("`{word}`: {what}"));
         let letter = bytes[0].to_ascii_lowercase();
-        let value = word.get(1..).and_then(|rest| rest.parse().ok()).filter(|value: &f64| value.is_finite());
+        let value = word
+            .get(1..)
+            .and_then(|rest| rest.parse().ok())
+            .filter(|value: &f64| value.is_finite());
         let Some(value) = value else {
             let fault = fault("a number is missing");
             return Err(if bytes.contains(&b',') {
@@ -128,7 +154,11 @@ fn parse_tool(line: &[u8], unit_mm: f64) -> Read<(u32, Tool)> {
         };
         let length = || -> Read<f64> {
             let length = value * unit_mm;
-            if length.abs() <= MAX_MM { Ok(length) } else { Err(fault(&format!("beyond the limit of {MAX_MM} mm"))) }
+            if length.abs() <= MAX_MM {
+                Ok(length)
+            } else {
+                Err(fault(&format!("beyond the limit of {MAX_MM} mm")))
+            }
         };
         match letter {
             b't' => number = Some(whole()?),
@@ -137,19 +167,33 @@ fn parse_tool(line: &[u8], unit_mm: f64) -> Read<(u32, Tool)> {
             b'i' => tool.front_angle_deg = value,
             b'j' => tool.back_angle_deg = value,
             b'q' => {
-                tool.orientation =
-                    u8::try_from(whole()?).ok().filter(|&q| q <= 9).ok_or_else(|| fault("out of range: 0 to 9"))?;
+                tool.orientation = u8::try_from(whole()?)
+                    .ok()
+                    .filter(|&q| q <= 9)
+                    .ok_or_else(|| fault("out of range: 0 to 9"))?;
             }
             _ => {
                 let axis = AXIS_LETTERS.iter().position(|&axis| axis == letter).ok_or_else(|| {
                     fault("unknown word").hint("T number, P pocket, D diameter, X to W offsets, I J angles, Q orientation; `;` begins a remark")
                 })?;
-                tool.offset[axis] = if (3..6).contains(&axis) { value } else { length()? };
+                tool.offset[axis] = if (3..6).contains(&axis) {
+                    value
+                } else {
+                    length()?
+                };
             }
         }
     }
-    let missing = || LineFault::new(CODE, 0..line.trim_ascii_end().len(), "the tool number T is missing");
-    number.map(|number| (number, tool)).ok_or_else(|| missing().hint("begin the line with T and the number: T1 P1 D6"))
+    let missing = || {
+        LineFault::new(
+            CODE,
+            0..line.trim_ascii_end().len(),
+            "the tool number T is missing",
+        )
+    };
+    number
+        .map(|number| (number, tool))
+        .ok_or_else(|| missing().hint("begin the line with T and the number: T1 P1 D6"))
 }
 
 /// Why a tool table cannot be used.
@@ -181,23 +225,58 @@ mod tests {
 
     #[test]
     fn a_table_in_inches_is_read() {
-        let table = ToolTable::parse("T1 P3 Z+0.511 D0.125 ; mill\n; nothing\nT20 I30 J150 Q2 A5", 25.4).unwrap();
+        let table = ToolTable::parse(
+            "T1 P3 Z+0.511 D0.125 ; mill\n; nothing\nT20 I30 J150 Q2 A5",
+            25.4,
+        )
+        .unwrap();
         let first = table.get(1).unwrap();
-        assert_eq!((first.offset[2], first.diameter_mm, first.pocket), (0.511 * 25.4, 0.125 * 25.4, 3));
+        assert_eq!(
+            (first.offset[2], first.diameter_mm, first.pocket),
+            (0.511 * 25.4, 0.125 * 25.4, 3)
+        );
         let second = table.get(20).unwrap();
         assert_eq!(
-            (second.front_angle_deg, second.back_angle_deg, second.orientation, second.offset[3]),
+            (
+                second.front_angle_deg,
+                second.back_angle_deg,
+                second.orientation,
+                second.offset[3]
+            ),
             (30.0, 150.0, 2, 5.0)
         );
     }
 
     #[test]
     fn faults_name_line_and_word() {
-        assert_eq!(ToolTable::parse("T1\nT2 Z1,5", 1.0).unwrap_err(), (2, "`Z1,5`: a number is missing".to_owned()));
-        assert!(ToolTable::parse("P1", 1.0).unwrap_err().1.contains("tool number"));
+        assert_eq!(
+            ToolTable::parse("T1\nT2 Z1,5", 1.0).unwrap_err(),
+            (2, "`Z1,5`: a number is missing".to_owned())
+        );
+        assert!(
+            ToolTable::parse("P1", 1.0)
+                .unwrap_err()
+                .1
+                .contains("tool number")
+        );
         assert!(ToolTable::parse("é", 1.0).is_err());
-        assert!(ToolTable::parse("T1 D1e300", 25.4).unwrap_err().1.contains("limit of 1000000 mm"));
-        assert!(ToolTable::parse("T1 Dnan", 25.4).unwrap_err().1.contains("number is missing"));
-        assert!(ToolTable::parse("T1\nT1", 1.0).unwrap_err().1.contains("earlier line"));
+        assert!(
+            ToolTable::parse("T1 D1e300", 25.4)
+                .unwrap_err()
+                .1
+                .contains("limit of 1000000 mm")
+        );
+        assert!(
+            ToolTable::parse("T1 Dnan", 25.4)
+                .unwrap_err()
+                .1
+                .contains("number is missing")
+        );
+        assert!(
+            ToolTable::parse("T1\nT1", 1.0)
+                .unwrap_err()
+                .1
+                .contains("earlier line")
+        );
     }
 }

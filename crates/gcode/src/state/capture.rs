@@ -1,4 +1,5 @@
-//! The blocks N(P) to N(Q) of a lathe cycle of Fanuc while they are read: their motions are kept instead of handed out.
+//! The blocks N(P) to N(Q) of a lathe cycle of Fanuc while they are read: their motions are kept
+//! instead of handed out.
 
 use crate::canon::{Canon, Motion, Plane, Shape};
 use crate::state::Interpreter;
@@ -18,9 +19,18 @@ pub(crate) enum ProfileWork {
     /// G70.
     Finish,
     /// G71, G72: passes of a depth; the allowance along X (radius) and Z moves the profile.
-    Rough { is_facing: bool, depth_mm: f64, escape_mm: f64, allowance_mm: [f64; 2] },
+    Rough {
+        is_facing: bool,
+        depth_mm: f64,
+        escape_mm: f64,
+        allowance_mm: [f64; 2],
+    },
     /// G73: the profile itself, moved.
-    Pattern { shift_mm: [f64; 2], passes: u32, allowance_mm: [f64; 2] },
+    Pattern {
+        shift_mm: [f64; 2],
+        passes: u32,
+        allowance_mm: [f64; 2],
+    },
 }
 
 /// A cycle that asks for its profile.
@@ -66,12 +76,23 @@ impl Capture {
         let Canon::Motion(motion) = step else { return };
         let line = motion.line;
         let fault = match &motion {
-            _ if self.motions.len() >= MAX_MOTIONS => Some("the profile has more than 100000 motions"),
-            Motion { others, .. } if !others.is_none() => Some("it moves other axes than X and Z"),
-            Motion { start_mm, end_mm, .. } if start_mm[1] != end_mm[1] => {
-                Some("it moves Y; only X and Z form a profile")
+            _ if self.motions.len() >= MAX_MOTIONS => {
+                Some("the profile has more than 100000 motions")
             }
-            Motion { shape: Shape::Line | Shape::Arc { plane: Plane::Zx, turns: 1 | -1, .. }, .. } => None,
+            Motion { others, .. } if !others.is_none() => Some("it moves other axes than X and Z"),
+            Motion {
+                start_mm, end_mm, ..
+            } if start_mm[1] != end_mm[1] => Some("it moves Y; only X and Z form a profile"),
+            Motion {
+                shape:
+                    Shape::Line
+                    | Shape::Arc {
+                        plane: Plane::Zx,
+                        turns: 1 | -1,
+                        ..
+                    },
+                ..
+            } => None,
             _ => Some("a profile has straight lines and arcs of up to one turn in G18"),
         };
         match fault {
@@ -83,8 +104,15 @@ impl Capture {
 
     /// Returns the error that refuses the profile; `line` is the line of the unfit block.
     pub(crate) fn refuse(&self, line: u32, message: &str) -> Box<LineFault> {
-        let place = if line == self.wanted.line { String::new() } else { format!("line {line}: ") };
-        let message = format!("the profile of {} cannot be cut: {place}{message}", spelled(self.wanted.code));
+        let place = if line == self.wanted.line {
+            String::new()
+        } else {
+            format!("line {line}: ")
+        };
+        let message = format!(
+            "the profile of {} cannot be cut: {place}{message}",
+            spelled(self.wanted.code)
+        );
         LineFault::new("gcode::lathe", self.wanted.block.at(b'p'), message)
     }
 }

@@ -27,7 +27,8 @@ pub(crate) struct Compensation {
     /// 1 left, -1 right.
     pub(crate) side: f64,
     pub(crate) radius_mm: f64,
-    /// The offset curve of the last motion in the plane, and its direction at its end; none before the entry.
+    /// The offset curve of the last motion in the plane, and its direction at its end; none before
+    /// the entry.
     pub(crate) last: Option<(PlaneCurve, PlanePoint)>,
 }
 
@@ -43,7 +44,11 @@ pub(crate) struct CycleLength {
 impl CycleLength {
     /// In this unit: as written where that is its unit, which a way over mm would round.
     pub(crate) fn in_unit(self, unit_mm: f64) -> f64 {
-        if unit_mm == self.unit_mm { self.written } else { self.mm / unit_mm }
+        if unit_mm == self.unit_mm {
+            self.written
+        } else {
+            self.mm / unit_mm
+        }
     }
 }
 
@@ -67,7 +72,8 @@ impl Cycle {
     }
 }
 
-/// Pecks of G83 with I, J and K, mm: the first, how much smaller each is than the one before, the smallest.
+/// Pecks of G83 with I, J and K, mm: the first, how much smaller each is than the one before, the
+/// smallest.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pecks {
     pub(crate) first_mm: f64,

@@ -37,7 +37,8 @@ pub(crate) struct Fanuc {
     pub(super) warned: Vec<&'static str>,
 }
 
-/// Words of the last G90, G92 or G94 of a lathe, by axis: a place, or a distance from where the cycle begins, mm.
+/// Words of the last G90, G92 or G94 of a lathe, by axis: a place, or a distance from where the
+/// cycle begins, mm.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct TurningWords {
     pub(crate) code: u16,

@@ -14,7 +14,10 @@ impl Turn {
     pub(super) fn of(&self, [x, y]: [f64; 2], sense: f64) -> [f64; 2] {
         let (sin, cos) = libm::sincos((sense * self.angle_deg).to_radians());
         let (x, y) = (x - self.center[0], y - self.center[1]);
-        [self.center[0] + cos * x - sin * y, self.center[1] + sin * x + cos * y]
+        [
+            self.center[0] + cos * x - sin * y,
+            self.center[1] + sin * x + cos * y,
+        ]
     }
 }
 
@@ -34,13 +37,23 @@ pub(crate) struct Frame {
 
 impl Frame {
     pub(super) const fn new() -> Self {
-        Self { system: 1, system_offset: [0.0; 9], rotation_deg: 0.0, g92: [0.0; 9], tool: [0.0; 9], turn: None }
+        Self {
+            system: 1,
+            system_offset: [0.0; 9],
+            rotation_deg: 0.0,
+            g92: [0.0; 9],
+            tool: [0.0; 9],
+            turn: None,
+        }
     }
 
-    /// Whether both have the same system and rotations, and offsets that differ by less than `within_mm`.
+    /// Whether both have the same system and rotations, and offsets that differ by less than
+    /// `within_mm`.
     pub(super) fn is_near(&self, other: &Self, within_mm: f64) -> bool {
-        let near = |a: &Position, b: &Position| a.iter().zip(b).all(|(a, b)| (a - b).abs() < within_mm);
-        (self.system, self.rotation_deg, &self.turn) == (other.system, other.rotation_deg, &other.turn)
+        let near =
+            |a: &Position, b: &Position| a.iter().zip(b).all(|(a, b)| (a - b).abs() < within_mm);
+        (self.system, self.rotation_deg, &self.turn)
+            == (other.system, other.rotation_deg, &other.turn)
             && near(&self.system_offset, &other.system_offset)
             && near(&self.g92, &other.g92)
             && near(&self.tool, &other.tool)

@@ -18,7 +18,8 @@ pub struct ModesInForce {
     pub plane: Plane,
     /// Whether F is a way in a minute (G94).
     pub feed_per_minute: bool,
-    /// Whether cutter compensation or the diameters of a lathe make another path of coordinates than they say.
+    /// Whether cutter compensation or the diameters of a lathe make another path of coordinates
+    /// than they say.
     pub changes_coordinates: bool,
     /// How corners are taken.
     pub corner: Corner,
@@ -40,13 +41,14 @@ impl ModesInForce {
         }
     }
 
-    /// Whether coordinates of the program mean the same places: coordinate system, offsets, rotation and tool length are the same.
+    /// Whether coordinates of the program mean the same places: coordinate system, offsets,
+    /// rotation and tool length are the same.
     pub fn same_frame(&self, other: &Self) -> bool {
         self.frame == other.frame
     }
 
-    /// The same up to offsets that differ by less than `within_mm`: an offset that a program sets from where the tool is has
-    /// the digits of that place.
+    /// The same up to offsets that differ by less than `within_mm`: an offset that a program sets
+    /// from where the tool is has the digits of that place.
     pub fn near_frame(&self, other: &Self, within_mm: f64) -> bool {
         self.frame.is_near(&other.frame, within_mm)
     }

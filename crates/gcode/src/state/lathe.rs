@@ -1,4 +1,5 @@
-//! The profile of a lathe cycle of LinuxCNC while its subroutine is read: its motions are kept instead of handed out.
+//! The profile of a lathe cycle of LinuxCNC while its subroutine is read: its motions are kept
+//! instead of handed out.
 
 use crate::canon::{Canon, Motion, Plane, Shape};
 use crate::state::Interpreter;
@@ -7,19 +8,27 @@ use crate::state::modal::FeedMode;
 use crate::text::block::Block;
 use crate::text::source::Mark;
 
-/// Motions of a profile, and of all passes along it: they are kept in memory, and a drawing has far fewer.
+/// Motions of a profile, and of all passes along it: they are kept in memory, and a drawing has far
+/// fewer.
 pub(crate) const MAX_MOTIONS: usize = 100_000;
 
-pub(crate) const CHANGED: &str =
-    "it changes the unit, the plane, offsets, G90 or G91, G7 or G8, G90.1, cutter compensation or the mode of F";
+pub(crate) const CHANGED: &str = "it changes the unit, the plane, offsets, G90 or G91, G7 or G8, G90.1, cutter compensation or the mode of F";
 
 /// What the words of the cycle ask for, mm.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum LatheWork {
     /// G70: passes from one distance off the profile to another.
-    Finish { first_mm: f64, last_mm: f64, passes: u32 },
+    Finish {
+        first_mm: f64,
+        last_mm: f64,
+        passes: u32,
+    },
     /// G71, G72: passes of a depth, and what is left on the profile.
-    Rough { depth_mm: f64, retraction_mm: f64, left_mm: f64 },
+    Rough {
+        depth_mm: f64,
+        retraction_mm: f64,
+        left_mm: f64,
+    },
 }
 
 /// A cycle whose profile is being read.
@@ -45,7 +54,8 @@ pub(crate) struct LatheCycle {
     pub(crate) fault: Option<(u32, String)>,
 }
 
-/// Modes that give the words of a profile their meaning. LinuxCNC passes over codes in a profile that change them.
+/// Modes that give the words of a profile their meaning. LinuxCNC passes over codes in a profile
+/// that change them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ProfileModes {
     pub(super) plane: Plane,
@@ -105,17 +115,34 @@ impl Interpreter {
                 Some("the profile moves Y; only X and Z form a profile".to_owned())
             }
             Canon::Motion(Motion {
-                shape: Shape::Arc { plane: Plane::Zx, turns: 1 | -1, .. } | Shape::Line, ..
+                shape:
+                    Shape::Arc {
+                        plane: Plane::Zx,
+                        turns: 1 | -1,
+                        ..
+                    }
+                    | Shape::Line,
+                ..
             }) => None,
-            Canon::Motion(_) => Some("a profile has straight lines and arcs of up to one turn in G18".to_owned()),
+            Canon::Motion(_) => {
+                Some("a profile has straight lines and arcs of up to one turn in G18".to_owned())
+            }
         };
         match (fault, step) {
             (Some(fault), _) => lathe.fault = Some((self.line, fault)),
             (None, Canon::Motion(_)) if lathe.motions.len() >= MAX_MOTIONS => {
-                lathe.fault = Some((self.line, format!("the profile has more than {MAX_MOTIONS} motions")));
+                lathe.fault = Some((
+                    self.line,
+                    format!("the profile has more than {MAX_MOTIONS} motions"),
+                ));
             }
             (None, Canon::Motion(motion)) => {
-                lathe.corners.extend(lathe.corner.take().map(|corner| (lathe.motions.len(), corner)));
+                lathe.corners.extend(
+                    lathe
+                        .corner
+                        .take()
+                        .map(|corner| (lathe.motions.len(), corner)),
+                );
                 lathe.motions.push(motion);
             }
             (None, Canon::Event(_)) => {}

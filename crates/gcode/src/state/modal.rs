@@ -29,7 +29,8 @@ pub(crate) struct Modal {
     pub(crate) feed_mode: FeedMode,
     /// F: mm/min, 1/min or mm/rev by `feed_mode`.
     pub(crate) feed: f64,
-    /// What F was multiplied by to become millimetres. Rotary axes that move alone take F in degrees, whatever the unit.
+    /// What F was multiplied by to become millimetres. Rotary axes that move alone take F in
+    /// degrees, whatever the unit.
     pub(crate) feed_unit_mm: f64,
     pub(crate) corner: Corner,
     /// G99: canned cycles retract to R; G98: to where they began.
@@ -61,7 +62,10 @@ impl Modal {
             feed_mode: FeedMode::PerMinute,
             feed: 0.0,
             feed_unit_mm: 1.0,
-            corner: Corner::Continuous { tolerance_mm: None, merge_mm: None },
+            corner: Corner::Continuous {
+                tolerance_mm: None,
+                merge_mm: None,
+            },
             // As LinuxCNC begins, though its manual says otherwise.
             retract_to_r: true,
             diameter: false,

@@ -1,7 +1,8 @@
 //! Coordinate systems and their offsets: G10 L2 and L20, G52, G54 to G59.3, G54.1 P, G92.
 //!
-//! machine = rotate(program + G92 offset) + coordinate system + tool offset; see [`Frame`](super::frame::Frame). None of these codes moves the
-//! machine; they change what its position is called.
+//! machine = rotate(program + G92 offset) + coordinate system + tool offset; see
+//! [`Frame`](super::frame::Frame). None of these codes moves the machine; they change what its
+//! position is called.
 
 use crate::settings::Dialect;
 use crate::state::Interpreter;
@@ -72,8 +73,11 @@ impl Interpreter {
         for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
             if let Some(value) = block.get(letter) {
                 let value = self.length(block, letter, axis, value)?;
-                self.frame.g92[axis] =
-                    if word.number == 520 { value } else { self.frame.g92[axis] + self.at[axis] - value };
+                self.frame.g92[axis] = if word.number == 520 {
+                    value
+                } else {
+                    self.frame.g92[axis] + self.at[axis] - value
+                };
             }
         }
         self.parameters.set_nine(numbers::G92_FIRST, self.frame.g92);
@@ -84,15 +88,21 @@ impl Interpreter {
 
     /// G92.1 forgets the shift, G92.2 suspends it, G92.3 takes it up again.
     pub(crate) fn shift_mode(&mut self, number: u16) {
-        self.frame.g92 = if number == 923 { self.parameters.nine(numbers::G92_FIRST) } else { [0.0; 9] };
+        self.frame.g92 = if number == 923 {
+            self.parameters.nine(numbers::G92_FIRST)
+        } else {
+            [0.0; 9]
+        };
         if number == 921 {
             self.parameters.set_nine(numbers::G92_FIRST, [0.0; 9]);
         }
-        self.parameters.set(numbers::G92_ACTIVE, f64::from(u8::from(number == 923)));
+        self.parameters
+            .set(numbers::G92_ACTIVE, f64::from(u8::from(number == 923)));
         self.offsets_changed();
     }
 
-    /// G10 L2 sets an origin, G10 L20 sets it so that the current position gets the given coordinates.
+    /// G10 L2 sets an origin, G10 L20 sets it so that the current position gets the given
+    /// coordinates.
     pub(crate) fn set_system(&mut self, block: &Block, by_position: bool) -> Read<()> {
         let system = match self.integer(block, b'p', 0, SYSTEMS)? {
             0 => self.frame.system,
@@ -130,7 +140,8 @@ impl Interpreter {
             // The origin that gives the current position these coordinates.
             let from_zero = frame.to_machine(&named);
             for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
-                let turned = frame.rotation_deg != 0.0 && axis < 2 && (block.has(b'x') || block.has(b'y'));
+                let turned =
+                    frame.rotation_deg != 0.0 && axis < 2 && (block.has(b'x') || block.has(b'y'));
                 offset[axis] = if block.has(letter) || turned {
                     self.here[axis] - from_zero[axis]
                 } else {
@@ -148,8 +159,13 @@ impl Interpreter {
     /// `G54.1 P3`, `G154 P3`.
     fn further_system(&mut self, block: &Block, word: Word) -> Read<()> {
         if !block.has(b'p') {
-            let message = format!("P (number of the coordinate system) is missing for {}", spelled(word.number));
-            return Err(LineFault::new("gcode::coordinates", word.at(), message).hint("write G54.1 P1"));
+            let message = format!(
+                "P (number of the coordinate system) is missing for {}",
+                spelled(word.number)
+            );
+            return Err(
+                LineFault::new("gcode::coordinates", word.at(), message).hint("write G54.1 P1")
+            );
         }
         let system = SYSTEMS as usize + self.integer(block, b'p', 1, MAX_SYSTEMS)? as usize;
         self.frame.system = system;
@@ -169,7 +185,12 @@ impl Interpreter {
     }
 
     fn load_further_system(&mut self) {
-        self.frame.system_offset = self.fanuc.systems.get(&self.frame.system).copied().unwrap_or_default();
+        self.frame.system_offset = self
+            .fanuc
+            .systems
+            .get(&self.frame.system)
+            .copied()
+            .unwrap_or_default();
         self.frame.rotation_deg = 0.0;
         self.offsets_changed();
     }
@@ -181,7 +202,11 @@ impl Interpreter {
         for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
             if let Some(value) = block.get(letter) {
                 let value = self.length(block, letter, axis, value)?;
-                offset[axis] = if self.modal.incremental { offset[axis] + value } else { value };
+                offset[axis] = if self.modal.incremental {
+                    offset[axis] + value
+                } else {
+                    value
+                };
             }
         }
         self.fanuc.systems.insert(system, offset);

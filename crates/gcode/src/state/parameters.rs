@@ -1,7 +1,8 @@
 //! Parameters of a program: numbered `#1`-`#5601`, named `#<local>` and `#<_global>`.
 //!
-//! Numbers 1-30 and names without a leading underscore belong to the subroutine call; all others are global. The numbers
-//! with a meaning are those of RS-274/NGC (NISTIR 6556, section 3.2.1) as LinuxCNC extends them.
+//! Numbers 1-30 and names without a leading underscore belong to the subroutine call; all others
+//! are global. The numbers with a meaning are those of RS-274/NGC (NISTIR 6556, section 3.2.1) as
+//! LinuxCNC extends them.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -12,8 +13,8 @@ use crate::text::expression::PARAMETERS;
 pub(crate) const LOCALS: usize = 30;
 /// `#1`-`#33` belong to the call of a macro of Fanuc.
 pub(crate) const MACRO_LOCALS: usize = 33;
-/// Named parameters that a program may have. Each costs about 100 bytes; a program that makes more of them builds names in
-/// an endless loop.
+/// Named parameters that a program may have. Each costs about 100 bytes; a program that makes more
+/// of them builds names in an endless loop.
 const MAX_NAMES: usize = 100_000;
 
 /// First of the nine coordinates that G28 goes to.
@@ -26,7 +27,8 @@ pub(super) const G92_ACTIVE: usize = 5210;
 pub(super) const G92_FIRST: usize = 5211;
 /// Number of the active coordinate system, 1-9.
 pub(super) const SYSTEM: usize = 5220;
-/// First number of coordinate system 1; the next systems follow at distance [`SYSTEM_STRIDE`]; the tenth is its rotation.
+/// First number of coordinate system 1; the next systems follow at distance [`SYSTEM_STRIDE`]; the
+/// tenth is its rotation.
 pub(super) const SYSTEM_FIRST: usize = 5221;
 /// Distance between the numbers of two coordinate systems.
 pub(super) const SYSTEM_STRIDE: usize = 20;
@@ -53,7 +55,12 @@ impl ParameterTable {
     pub(super) fn new() -> Self {
         let mut numbered = vec![0.0; PARAMETERS];
         numbered[SYSTEM] = 1.0;
-        Self { numbered, globals: HashMap::new(), locals: vec![HashMap::new()], names: 0 }
+        Self {
+            numbered,
+            globals: HashMap::new(),
+            locals: vec![HashMap::new()],
+            names: 0,
+        }
     }
 
     /// Value of `#index`; `index` is below [`PARAMETERS`].
@@ -84,7 +91,11 @@ impl ParameterTable {
     }
 
     fn scope(&self, name: &[u8]) -> &HashMap<Vec<u8>, f64> {
-        if name.first() == Some(&b'_') { &self.globals } else { self.locals.last().unwrap_or(&self.globals) }
+        if name.first() == Some(&b'_') {
+            &self.globals
+        } else {
+            self.locals.last().unwrap_or(&self.globals)
+        }
     }
 
     /// Sets or makes the parameter called `name`; false when there are too many.
@@ -157,9 +168,15 @@ mod tests {
         parameters.set_named(b"_g", 2.0);
         let saved = parameters.enter(&[5.0; LOCALS]);
         assert_eq!((parameters.get(1), parameters.get(31)), (5.0, 8.0));
-        assert_eq!((parameters.named(b"a"), parameters.named(b"_g")), (None, Some(2.0)));
+        assert_eq!(
+            (parameters.named(b"a"), parameters.named(b"_g")),
+            (None, Some(2.0))
+        );
         parameters.leave(&saved[..LOCALS]);
-        assert_eq!((parameters.get(1), parameters.named(b"a")), (7.0, Some(1.0)));
+        assert_eq!(
+            (parameters.get(1), parameters.named(b"a")),
+            (7.0, Some(1.0))
+        );
     }
 
     #[test]

@@ -71,7 +71,13 @@ impl Interpreter {
     /// M72.
     pub(crate) fn restore_modes(&mut self, block: &Block) -> Read<()> {
         let level = self.calls.level;
-        if let Some(saved) = self.calls.saved.last().filter(|saved| saved.level == level).cloned() {
+        if let Some(saved) = self
+            .calls
+            .saved
+            .last()
+            .filter(|saved| saved.level == level)
+            .cloned()
+        {
             self.restore(&saved);
         } else if self.dialect == Dialect::LinuxCnc {
             return Err(LineFault::new(
@@ -88,8 +94,8 @@ impl Interpreter {
         self.parameters.get(numbers::G92_ACTIVE) != 0.0
     }
 
-    /// Modes come back; a motion mode does not, and offsets that G10 and G92 have changed stay. Whether G92 is in effect comes
-    /// back, as if G92.2 or G92.3 stood there.
+    /// Modes come back; a motion mode does not, and offsets that G10 and G92 have changed stay.
+    /// Whether G92 is in effect comes back, as if G92.2 or G92.3 stood there.
     fn restore(&mut self, saved: &Saved) {
         let motion = self.modal.motion;
         self.modal = saved.modal.clone();

@@ -1,4 +1,5 @@
-//! Values of parameters that the interpreter itself keeps: modes, positions, variables of a control.
+//! Values of parameters that the interpreter itself keeps: modes, positions, variables of a
+//! control.
 
 use crate::canon::Plane;
 use crate::state::Interpreter;
@@ -17,7 +18,11 @@ impl Interpreter {
             [b'_', letter] if axis(*letter).is_some() => self.shown_position(axis(*letter)?),
             [b'_', b'a', b'b', b's', b'_', letter] if axis(*letter).is_some() => {
                 let index = axis(*letter)?;
-                if (3..6).contains(&index) { self.here[index] } else { self.here[index] / self.modal.unit_mm }
+                if (3..6).contains(&index) {
+                    self.here[index]
+                } else {
+                    self.here[index] / self.modal.unit_mm
+                }
             }
             b"_vmajor" => 2.9,
             b"_vminor" => 0.0,
@@ -36,8 +41,16 @@ impl Interpreter {
             b"_tool_offset" => truth(self.frame.tool != [0.0; 9]),
             b"_current_tool" => f64::from(self.tool.number),
             b"_selected_tool" => f64::from(self.tool.next),
-            b"_current_pocket" => self.settings.tools.get(self.tool.number).map_or(0.0, |tool| f64::from(tool.pocket)),
-            b"_selected_pocket" => self.settings.tools.get(self.tool.next).map_or(-1.0, |tool| f64::from(tool.pocket)),
+            b"_current_pocket" => self
+                .settings
+                .tools
+                .get(self.tool.number)
+                .map_or(0.0, |tool| f64::from(tool.pocket)),
+            b"_selected_pocket" => self
+                .settings
+                .tools
+                .get(self.tool.next)
+                .map_or(-1.0, |tool| f64::from(tool.pocket)),
             b"_value" => self.calls.returned.unwrap_or(0.0),
             b"_value_returned" => truth(self.calls.returned.is_some()),
             b"_call_level" => self.calls.level as f64,
@@ -51,7 +64,9 @@ impl Interpreter {
     fn refuses_variable(&self, index: usize) -> Option<String> {
         let is_known = matches!(index, 0..=33 | 100..=999 | 4001 | 4003 | 4006 | 4014 | 4109 | 4119 | 4120
             | 5001..=5003 | 5021..=5023 | 5041..=5043 | 5061..=5070 | 5201..=5400);
-        (!is_known).then(|| format!("the variable #{index} is one of the control, whose value is not known here"))
+        (!is_known).then(|| {
+            format!("the variable #{index} is one of the control, whose value is not known here")
+        })
     }
 
     /// Variables of the control: modes, positions.
@@ -80,7 +95,11 @@ impl Interpreter {
             5001..=5003 => self.shown_position(index - 5001),
             5041..=5043 => self.shown_position(index - 5041),
             5021..=5023 => {
-                let factor = if index == 5021 && self.modal.diameter { 2.0 } else { 1.0 };
+                let factor = if index == 5021 && self.modal.diameter {
+                    2.0
+                } else {
+                    1.0
+                };
                 factor * self.here[index - 5021] / self.modal.unit_mm
             }
             _ => return None,
@@ -137,7 +156,11 @@ impl ParameterSource for Interpreter {
     }
 
     fn refused(&self, index: usize) -> Option<String> {
-        if self.dialect.is_fanuc() { self.refuses_variable(index) } else { None }
+        if self.dialect.is_fanuc() {
+            self.refuses_variable(index)
+        } else {
+            None
+        }
     }
 
     fn numbered(&self, index: usize) -> f64 {

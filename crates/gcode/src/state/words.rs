@@ -13,22 +13,34 @@ impl Interpreter {
         let name = codes::letter(codes::slot(letter));
         let at = block.at(letter);
         if (value - value.round()).abs() > INTEGER_WITHIN {
-            return Err(LineFault::new("gcode::integer", at, format!("{name}{} is not an integer", Short(value))));
+            return Err(LineFault::new(
+                "gcode::integer",
+                at,
+                format!("{name}{} is not an integer", Short(value)),
+            ));
         }
         let rounded = value.round() as i64;
         if !(low..=high).contains(&rounded) {
             return Err(LineFault::new(
                 "gcode::range",
                 at,
-                format!("{name}{} is out of range: {low} to {high}", Short(value.round())),
+                format!(
+                    "{name}{} is out of range: {low} to {high}",
+                    Short(value.round())
+                ),
             ));
         }
         Ok(rounded)
     }
 
-    /// Seconds of the time P of a dwell. Fanuc and Haas count milliseconds where it has no decimal point.
+    /// Seconds of the time P of a dwell. Fanuc and Haas count milliseconds where it has no decimal
+    /// point.
     pub(crate) const fn seconds(&self, block: &Block, time: f64) -> f64 {
-        if self.dialect.is_fanuc() && !block.has_point(b'p') { time * 1e-3 } else { time }
+        if self.dialect.is_fanuc() && !block.has_point(b'p') {
+            time * 1e-3
+        } else {
+            time
+        }
     }
 
     /// Value of an axis word in mm or degrees.
@@ -49,12 +61,21 @@ impl Interpreter {
     pub(crate) fn too_far(&self, block: &Block, letter: u8, value: f64) -> Box<LineFault> {
         let name = char::from(letter).to_ascii_uppercase();
         let limit = self.settings.coordinate_limit_mm;
-        let unit = if matches!(letter, b'a' | b'b' | b'c') { "degrees" } else { "mm" };
-        let message = format!("{name} = {} {unit} is beyond the limit of {limit} {unit}", Short(value));
-        LineFault::new("gcode::coordinate", block.at(letter), message).hint(if self.modal.unit_mm == 1.0 {
-            "is a decimal point missing?"
+        let unit = if matches!(letter, b'a' | b'b' | b'c') {
+            "degrees"
         } else {
-            "is a decimal point missing? G20 is active: lengths are inches"
-        })
+            "mm"
+        };
+        let message = format!(
+            "{name} = {} {unit} is beyond the limit of {limit} {unit}",
+            Short(value)
+        );
+        LineFault::new("gcode::coordinate", block.at(letter), message).hint(
+            if self.modal.unit_mm == 1.0 {
+                "is a decimal point missing?"
+            } else {
+                "is a decimal point missing? G20 is active: lengths are inches"
+            },
+        )
     }
 }

@@ -15,7 +15,8 @@ use crate::text::lexer::{Cursor, END, NO_EXPONENT, shown};
 
 /// Letters, `@`, `^` and `$`.
 const LETTERS: usize = 29;
-/// Distance from a tenth at which a G-code still is that tenth: expressions such as `G[54+0.1]` do not come out exactly.
+/// Distance from a tenth at which a G-code still is that tenth: expressions such as `G[54+0.1]` do
+/// not come out exactly.
 const TENTH_WITHIN: f64 = 1e-3;
 
 /// A G- or M-code on the line.
@@ -120,7 +121,8 @@ impl Block {
         (self.set & bit(letter) != 0).then(|| self.value[slot(letter)])
     }
 
-    /// Gives the line a word in place of those that it has of the letter, in the same place where there is one.
+    /// Gives the line a word in place of those that it has of the letter, in the same place where
+    /// there is one.
     pub(crate) const fn put(&mut self, letter: u8, value: f64) {
         self.set |= bit(letter);
         self.value[slot(letter)] = value;
@@ -137,7 +139,8 @@ impl Block {
         self.set & bit(letter) != 0
     }
 
-    /// Whether the number of a letter is written with a decimal point; known where [`Style::points`] asks for it.
+    /// Whether the number of a letter is written with a decimal point; known where
+    /// [`Style::points`] asks for it.
     pub(crate) const fn has_point(&self, letter: u8) -> bool {
         self.pointed & bit(letter) != 0
     }
@@ -150,9 +153,12 @@ impl Block {
 
     /// Where the first word of a set of letters stands.
     pub(crate) fn at_any(&self, letters: u32) -> Range<usize> {
-        let first =
-            (0..LETTERS).filter(|slot| self.set & letters & (1 << slot) != 0).min_by_key(|&slot| self.place[slot].0);
-        first.map_or(self.whole(), |slot| self.place[slot].0 as usize..self.place[slot].1 as usize)
+        let first = (0..LETTERS)
+            .filter(|slot| self.set & letters & (1 << slot) != 0)
+            .min_by_key(|&slot| self.place[slot].0);
+        first.map_or(self.whole(), |slot| {
+            self.place[slot].0 as usize..self.place[slot].1 as usize
+        })
     }
 
     /// All words of the line.
@@ -172,14 +178,22 @@ impl Block {
         self.group[group as usize]
     }
 
-    /// Whether it has G10, or a code that puts a coordinate system or the length of a tool in force.
+    /// Whether it has G10, or a code that puts a coordinate system or the length of a tool in
+    /// force.
     pub(crate) fn names_offsets(&self) -> bool {
-        let writes = self.code(Group::NonModal).is_some_and(|word| word.number % OWN == 100);
+        let writes = self
+            .code(Group::NonModal)
+            .is_some_and(|word| word.number % OWN == 100);
         writes || self.code(Group::Coordinates).is_some() || self.code(Group::ToolLength).is_some()
     }
 
     /// Reads the words from the cursor to the end of the line.
-    pub(crate) fn read<V: ParameterSource>(&mut self, cursor: Cursor<'_>, values: &V, style: Style) -> Read<()> {
+    pub(crate) fn read<V: ParameterSource>(
+        &mut self,
+        cursor: Cursor<'_>,
+        values: &V,
+        style: Style,
+    ) -> Read<()> {
         let mut evaluator = Evaluator::new(cursor, values);
         self.end = evaluator.cursor.at;
         self.bare_words = style.printer;
@@ -200,7 +214,9 @@ impl Block {
                     evaluator.cursor.finish();
                     return Ok(());
                 }
-                b'$' if evaluator.cursor.is_spindle() => self.read_word(&mut evaluator, byte, start)?,
+                b'$' if evaluator.cursor.is_spindle() => {
+                    self.read_word(&mut evaluator, byte, start)?;
+                }
                 b'#' => self.read_assignment(&mut evaluator, start)?,
                 b',' if style.codes != CodeSet::Rs274 => self.read_corner(&mut evaluator, start)?,
                 b'*' if style.printer => return Ok(()),
@@ -224,10 +240,16 @@ impl Block {
     }
 
     #[inline]
-    fn read_word<V: ParameterSource>(&mut self, evaluator: &mut Evaluator<'_, V>, byte: u8, start: usize) -> Read<()> {
+    fn read_word<V: ParameterSource>(
+        &mut self,
+        evaluator: &mut Evaluator<'_, V>,
+        byte: u8,
+        start: usize,
+    ) -> Read<()> {
         self.exponent |= byte == b'e' && evaluator.cursor.is_exponent();
         evaluator.cursor.bump();
-        let value = if self.bare_words && self.names_axes() && Self::is_bare(&mut evaluator.cursor) {
+        let value = if self.bare_words && self.names_axes() && Self::is_bare(&mut evaluator.cursor)
+        {
             0.0
         } else {
             evaluator.value()?
@@ -239,8 +261,14 @@ impl Block {
         }
         if self.set & (1 << slot) != 0 {
             let message = format!("the line already has a word {}", letter(slot));
-            let hint = if byte == b'e' && self.exponent { NO_EXPONENT } else { "split the line in two" };
-            return Err(LineFault::new("gcode::repeated", start..evaluator.cursor.at, message).hint(hint));
+            let hint = if byte == b'e' && self.exponent {
+                NO_EXPONENT
+            } else {
+                "split the line in two"
+            };
+            return Err(
+                LineFault::new("gcode::repeated", start..evaluator.cursor.at, message).hint(hint),
+            );
         }
         self.set |= 1 << slot;
         self.value[slot] = value;
@@ -254,21 +282,31 @@ impl Block {
     }
 
     #[inline]
-    fn read_g<V: ParameterSource>(&mut self, evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<()> {
+    fn read_g<V: ParameterSource>(
+        &mut self,
+        evaluator: &mut Evaluator<'_, V>,
+        start: usize,
+    ) -> Read<()> {
         evaluator.cursor.bump();
         let value = evaluator.value()?;
         let end = evaluator.cursor.at;
         // A cast is much faster than rounding, and below 0 nothing is a code.
         let tenths = (value * 10.0 + 0.5) as u32 as f64;
-        let is_tenth = (value * 10.0 - tenths).abs() < TENTH_WITHIN && (0.0..10_000.0).contains(&tenths);
+        let is_tenth =
+            (value * 10.0 - tenths).abs() < TENTH_WITHIN && (0.0..10_000.0).contains(&tenths);
         let Some(code) = is_tenth.then(|| self.codes.find(tenths as u16)).flatten() else {
             return Err(unknown_g(value, evaluator.cursor.bytes, start..end));
         };
-        let word = Word { number: code.number, start: start as u32, end: end as u32 };
+        let word = Word {
+            number: code.number,
+            start: start as u32,
+            end: end as u32,
+        };
         if let Some(other) = self.group[code.group as usize].replace(word) {
             if (code.number == 800) != (other.number == 800) {
                 // `G80 G0 X5`: the motion ends the cycle by itself.
-                self.group[code.group as usize] = Some(if code.number == 800 { other } else { word });
+                self.group[code.group as usize] =
+                    Some(if code.number == 800 { other } else { word });
                 self.g.push(word);
                 return Ok(());
             }
@@ -277,15 +315,25 @@ impl Block {
                 codes::spelled(other.number),
                 codes::spelled(code.number)
             );
-            let is_mode = [other.number, code.number].iter().any(|&number| number >= LATHE_OWN);
-            let hint = if is_mode { SYSTEM_A } else { "write them on two lines" };
+            let is_mode = [other.number, code.number]
+                .iter()
+                .any(|&number| number >= LATHE_OWN);
+            let hint = if is_mode {
+                SYSTEM_A
+            } else {
+                "write them on two lines"
+            };
             return Err(LineFault::new("gcode::modal_group", start..end, message).hint(hint));
         }
         self.g.push(word);
         Ok(())
     }
 
-    fn read_m<V: ParameterSource>(&mut self, evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<()> {
+    fn read_m<V: ParameterSource>(
+        &mut self,
+        evaluator: &mut Evaluator<'_, V>,
+        start: usize,
+    ) -> Read<()> {
         evaluator.cursor.bump();
         let value = evaluator.value()?;
         let end = evaluator.cursor.at;
@@ -294,14 +342,25 @@ impl Block {
             return Err(LineFault::new(
                 "gcode::m_code",
                 start..end,
-                format!("M{} is no M-code: the number must be an integer from 0 to 9999", Short(value)),
+                format!(
+                    "M{} is no M-code: the number must be an integer from 0 to 9999",
+                    Short(value)
+                ),
             ));
         }
-        self.m.push(Word { number: number as u16, start: start as u32, end: end as u32 });
+        self.m.push(Word {
+            number: number as u16,
+            start: start as u32,
+            end: end as u32,
+        });
         Ok(())
     }
 
-    fn read_assignment<V: ParameterSource>(&mut self, evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<()> {
+    fn read_assignment<V: ParameterSource>(
+        &mut self,
+        evaluator: &mut Evaluator<'_, V>,
+        start: usize,
+    ) -> Read<()> {
         let target = evaluator.target()?;
         if !evaluator.cursor.eat(b'=') {
             let at = evaluator.cursor.at;
@@ -311,14 +370,18 @@ impl Block {
                 "a parameter here must be assigned to: `=` is missing",
             ));
         }
-        let value = if evaluator.is_fanuc() { evaluator.joined()? } else { evaluator.value()? };
+        let value = if evaluator.is_fanuc() {
+            evaluator.joined()?
+        } else {
+            evaluator.value()?
+        };
         self.assignments.push((target, value));
         Ok(())
     }
 }
 
-/// Words of all lines of a program, read and not carried out: what the benches compare the reader with. Parameters are 0,
-/// and lines that are no words (O-words, `%`, mistakes) count nothing.
+/// Words of all lines of a program, read and not carried out: what the benches compare the reader
+/// with. Parameters are 0, and lines that are no words (O-words, `%`, mistakes) count nothing.
 #[doc(hidden)]
 pub fn count_words(text: &[u8]) -> usize {
     struct Zeros;
@@ -338,7 +401,11 @@ pub fn count_words(text: &[u8]) -> usize {
         }
         block.clear();
         let read = block.read(cursor, &Zeros, Style::default());
-        if read.is_ok() { block.set.count_ones() as usize + block.g.len() + block.m.len() } else { 0 }
+        if read.is_ok() {
+            block.set.count_ones() as usize + block.g.len() + block.m.len()
+        } else {
+            0
+        }
     };
     text.split(|&byte| byte == b'\n').map(words_of).sum()
 }
@@ -354,8 +421,12 @@ pub(crate) fn read_comment(cursor: &mut Cursor<'_>) -> Read<Range<usize>> {
         }
         Some(length) => {
             let at = start + 1 + length;
-            Err(LineFault::new("gcode::comment", at..at + 1, "a comment begins inside a comment")
-                .hint("close the first comment with `)` before the second `(`"))
+            Err(LineFault::new(
+                "gcode::comment",
+                at..at + 1,
+                "a comment begins inside a comment",
+            )
+            .hint("close the first comment with `)` before the second `(`"))
         }
         None => Err(LineFault::new(
             "gcode::comment",
@@ -368,10 +439,21 @@ pub(crate) fn read_comment(cursor: &mut Cursor<'_>) -> Read<Range<usize>> {
 
 #[cold]
 fn misplaced(byte: u8, start: usize) -> Box<LineFault> {
-    let what = if byte == b'n' { "the line number N" } else { "an O-word" };
-    let fault =
-        LineFault::new("gcode::misplaced", start..start + 1, format!("{what} must stand at the beginning of the line"));
-    if byte == b'o' { fault.hint("the letter O is no zero: write 0 in numbers") } else { fault }
+    let what = if byte == b'n' {
+        "the line number N"
+    } else {
+        "an O-word"
+    };
+    let fault = LineFault::new(
+        "gcode::misplaced",
+        start..start + 1,
+        format!("{what} must stand at the beginning of the line"),
+    );
+    if byte == b'o' {
+        fault.hint("the letter O is no zero: write 0 in numbers")
+    } else {
+        fault
+    }
 }
 
 #[cold]
@@ -383,20 +465,33 @@ fn unknown_g(value: f64, bytes: &[u8], at: Range<usize>) -> Box<LineFault> {
         format!("G{}", Short(value))
     };
     // `G1 10`: digits, a blank, digits.
-    let has_gap = bytes[at.clone()].windows(3).any(|w| w[0].is_ascii_digit() && w[1] == b' ' && w[2].is_ascii_digit());
+    let has_gap = bytes[at.clone()]
+        .windows(3)
+        .any(|w| w[0].is_ascii_digit() && w[1] == b' ' && w[2].is_ascii_digit());
     if let Some((what, hint)) = foreign::what(tenths).filter(|_| !has_gap) {
-        return LineFault::new("gcode::unsupported", at, format!("{spelled} ({what}, on other controls) is not read"))
-            .hint(hint);
+        return LineFault::new(
+            "gcode::unsupported",
+            at,
+            format!("{spelled} ({what}, on other controls) is not read"),
+        )
+        .hint(hint);
     }
     // Read with the codes of Fanuc or Haas.
     if !has_gap
         && (0.0..1000.0).contains(&tenths)
         && codes::find(tenths as u16).is_some_and(|row| f64::from(row.number) == tenths)
     {
-        let message = format!("{spelled} is a G-code of LinuxCNC, and none of Fanuc and Haas that this reader knows");
-        return LineFault::new("gcode::unknown_g", at, message).hint("--dialect linuxcnc reads a program for LinuxCNC");
+        let message = format!(
+            "{spelled} is a G-code of LinuxCNC, and none of Fanuc and Haas that this reader knows"
+        );
+        return LineFault::new("gcode::unknown_g", at, message)
+            .hint("--dialect linuxcnc reads a program for LinuxCNC");
     }
-    let fault = LineFault::new("gcode::unknown_g", at, format!("{spelled} is not a G-code that this reader knows"));
+    let fault = LineFault::new(
+        "gcode::unknown_g",
+        at,
+        format!("{spelled} is not a G-code that this reader knows"),
+    );
     if has_gap {
         fault.hint("blanks inside numbers mean nothing: is a letter missing behind the blank?")
     } else {
@@ -409,24 +504,35 @@ fn unknown_g(value: f64, bytes: &[u8], at: Range<usize>) -> Box<LineFault> {
 fn strange(bytes: &[u8], start: usize) -> Box<LineFault> {
     let byte = bytes[start];
     if byte.is_ascii() {
-        let next = bytes[start + 1..].trim_ascii_start().first().map(u8::to_ascii_uppercase);
+        let next = bytes[start + 1..]
+            .trim_ascii_start()
+            .first()
+            .map(u8::to_ascii_uppercase);
         if let (b',', Some(next @ (b'R' | b'C' | b'A'))) = (byte, next) {
             let what = match next {
                 b'R' => "rounds the corner at the end of the line",
                 b'C' => "cuts a chamfer at the end of the line",
                 _ => "gives the angle of the line",
             };
-            let message = format!("`,{}` {what} on other controls and is not read", char::from(next));
+            let message = format!(
+                "`,{}` {what} on other controls and is not read",
+                char::from(next)
+            );
             return LineFault::new("gcode::unsupported", start..start + 1, message)
                 .hint("write the corner as a motion of its own, with its end point");
         }
-        let fault =
-            LineFault::new("gcode::character", start..start + 1, format!("`{}` has no meaning here", shown(byte)));
+        let fault = LineFault::new(
+            "gcode::character",
+            start..start + 1,
+            format!("`{}` has no meaning here", shown(byte)),
+        );
         return match byte {
             b'/' => fault.hint("a `/` that deletes the line stands first on it"),
             b')' => fault.hint("the comment that ends here has no `(`"),
             b'=' => fault.hint("only a parameter is assigned to: #1=5; words have no `=`"),
-            b'+' | b'-' | b'*' if start > 0 => fault.hint("a calculation stands in brackets: #1=[5+3], X[2*#1]"),
+            b'+' | b'-' | b'*' if start > 0 => {
+                fault.hint("a calculation stands in brackets: #1=[5+3], X[2*#1]")
+            }
             b'[' => fault.hint("a bracket stands behind a letter or a function"),
             b',' => fault.hint("a decimal point is a point: write 1.5, not 1,5"),
             b']' => fault.hint("the bracket that ends here has no `[`"),
@@ -447,14 +553,25 @@ mod tests {
 
     fn read(text: &str) -> Read<Block> {
         let mut block = Block::new();
-        block.read(Cursor::new(text.as_bytes()), &NoParameters, Style::default()).map(|()| block)
+        block
+            .read(
+                Cursor::new(text.as_bytes()),
+                &NoParameters,
+                Style::default(),
+            )
+            .map(|()| block)
     }
 
     #[test]
     fn words_may_stand_in_any_order_and_spacing() {
         let block = read("g 1 x1.5(note)Y-[1+1] f 1 0 0 ; rest").unwrap();
         assert_eq!(
-            (block.get(b'x'), block.get(b'y'), block.get(b'f'), block.get(b'z')),
+            (
+                block.get(b'x'),
+                block.get(b'y'),
+                block.get(b'f'),
+                block.get(b'z')
+            ),
             (Some(1.5), Some(-2.0), Some(100.0), None)
         );
         assert_eq!(block.code(Group::Motion).unwrap().number, 10);
@@ -464,7 +581,10 @@ mod tests {
 
     #[test]
     fn words_are_counted_without_being_carried_out() {
-        assert_eq!(count_words(b"N10 G1 X1 Y[2*#3] F100 (a)\nM3 S100\nX$\n\n%"), 6);
+        assert_eq!(
+            count_words(b"N10 G1 X1 Y[2*#3] F100 (a)\nM3 S100\nX$\n\n%"),
+            6
+        );
     }
 
     #[test]
@@ -475,9 +595,16 @@ mod tests {
         assert_eq!(fault("G1.7 X2").at, 0..4);
         assert_eq!(fault("G1.7 X2").hint.unwrap(), "the nearest known: G2");
         assert_eq!(fault("X1 (open").at, 3..8);
-        assert_eq!(fault("X1 é").message, "`é` has no meaning outside a comment");
+        assert_eq!(
+            fault("X1 é").message,
+            "`é` has no meaning outside a comment"
+        );
         assert_eq!(fault("X1 $").at, 3..4);
         assert!(fault("X").message.contains("end of the line"));
-        assert!(fault("X1 Qb").message.contains("neither a number nor a function"));
+        assert!(
+            fault("X1 Qb")
+                .message
+                .contains("neither a number nor a function")
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! Characters that look like G-code and are not: what word processors, web pages and other encodings leave in a program.
+//! Characters that look like G-code and are not: what word processors, web pages and other
+//! encodings leave in a program.
 
 use crate::text::diagnostic::LineFault;
 
@@ -15,36 +16,76 @@ const LOOKALIKES: &[(char, &str, &str)] = &[
     ('\u{2007}', "a figure space", BLANK),
     ('\u{2009}', "a thin space", BLANK),
     ('\u{3000}', "a full-width space", BLANK),
-    ('\u{feff}', "a byte order mark", "delete it: it belongs to the beginning of a file at most"),
-    ('\u{200b}', "a space of no width", "delete it: it cannot be seen"),
-    ('\u{201c}', "a typeset quotation mark", "G-code has no quotation marks; comments stand in ( )"),
-    ('\u{201d}', "a typeset quotation mark", "G-code has no quotation marks; comments stand in ( )"),
-    ('\u{ff08}', "a full-width bracket", "comments stand in the brackets ( ) of ASCII"),
-    ('\u{ff09}', "a full-width bracket", "comments stand in the brackets ( ) of ASCII"),
-    ('\u{b0}', "a degree sign", "angles are plain numbers in degrees"),
+    (
+        '\u{feff}',
+        "a byte order mark",
+        "delete it: it belongs to the beginning of a file at most",
+    ),
+    (
+        '\u{200b}',
+        "a space of no width",
+        "delete it: it cannot be seen",
+    ),
+    (
+        '\u{201c}',
+        "a typeset quotation mark",
+        "G-code has no quotation marks; comments stand in ( )",
+    ),
+    (
+        '\u{201d}',
+        "a typeset quotation mark",
+        "G-code has no quotation marks; comments stand in ( )",
+    ),
+    (
+        '\u{ff08}',
+        "a full-width bracket",
+        "comments stand in the brackets ( ) of ASCII",
+    ),
+    (
+        '\u{ff09}',
+        "a full-width bracket",
+        "comments stand in the brackets ( ) of ASCII",
+    ),
+    (
+        '\u{b0}',
+        "a degree sign",
+        "angles are plain numbers in degrees",
+    ),
     ('\u{d8}', "a diameter sign", "write the number alone"),
 ];
 
 const MINUS: &str = "write the hyphen `-` of the keyboard; the text was perhaps copied from a page or a word processor";
-const BLANK: &str = "write the blank of the keyboard; the text was perhaps copied from a page or a word processor";
+const BLANK: &str =
+    "write the blank of the keyboard; the text was perhaps copied from a page or a word processor";
 
 /// What is wrong with the byte at `start`, which is no ASCII.
 #[cold]
 pub(super) fn not_ascii(bytes: &[u8], start: usize) -> Box<LineFault> {
     // Up to four bytes make one character; what follows may be the beginning of another.
     let longest = &bytes[start..bytes.len().min(start + 4)];
-    let valid = longest.utf8_chunks().next().map_or("", |chunk| chunk.valid());
+    let valid = longest
+        .utf8_chunks()
+        .next()
+        .map_or("", |chunk| chunk.valid());
     let Some(character) = valid.chars().next() else {
         let message = format!("byte {:#04x} is not UTF-8 text", bytes[start]);
-        return LineFault::new("gcode::utf8", start..start + 1, message).hint("save the file as UTF-8 or plain ASCII");
+        return LineFault::new("gcode::utf8", start..start + 1, message)
+            .hint("save the file as UTF-8 or plain ASCII");
     };
     let at = start..start + character.len_utf8();
     match LOOKALIKES.iter().find(|row| row.0 == character) {
         Some((_, name, hint)) => {
-            let message = format!("{name} (U+{:04X}) has no meaning outside a comment", u32::from(character));
+            let message = format!(
+                "{name} (U+{:04X}) has no meaning outside a comment",
+                u32::from(character)
+            );
             LineFault::new("gcode::character", at, message).hint(*hint)
         }
-        None => LineFault::new("gcode::character", at, format!("`{character}` has no meaning outside a comment")),
+        None => LineFault::new(
+            "gcode::character",
+            at,
+            format!("`{character}` has no meaning outside a comment"),
+        ),
     }
 }
 
@@ -65,10 +106,17 @@ mod tests {
     #[test]
     fn lookalikes_are_named() {
         let fault = not_ascii("X\u{2212}5".as_bytes(), 1);
-        assert_eq!(fault.message, "a minus sign of typesetting (U+2212) has no meaning outside a comment");
+        assert_eq!(
+            fault.message,
+            "a minus sign of typesetting (U+2212) has no meaning outside a comment"
+        );
         assert_eq!((fault.at, fault.hint.as_deref()), (1..4, Some(MINUS)));
         assert_eq!(not_ascii(b"\xe9X", 0).code, "gcode::utf8");
-        assert!(not_ascii("G1\u{a0}X1".as_bytes(), 2).message.starts_with("a no-break space"));
+        assert!(
+            not_ascii("G1\u{a0}X1".as_bytes(), 2)
+                .message
+                .starts_with("a no-break space")
+        );
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The G-codes that the reader knows, their modal groups, and which words each takes.
 //!
-//! Groups and numbers: NISTIR 6556, table 4, and the LinuxCNC G-code reference. A number is ten times the code: G38.2 is 382.
+//! Groups and numbers: NISTIR 6556, table 4, and the LinuxCNC G-code reference. A number is ten
+//! times the code: G38.2 is 382.
 
 pub(crate) mod fanuc;
 
@@ -89,16 +90,24 @@ pub(crate) struct Code {
 }
 
 pub(super) const fn code(number: u16, group: Group, letters: &[u8]) -> Code {
-    Code { number, group, letters: bits(letters) }
+    Code {
+        number,
+        group,
+        letters: bits(letters),
+    }
 }
 
 pub(super) const fn axes(number: u16, group: Group, letters: &[u8]) -> Code {
-    Code { number, group, letters: bits(letters) | AXES }
+    Code {
+        number,
+        group,
+        letters: bits(letters) | AXES,
+    }
 }
 
 use Group::{
-    ArcDistance, Coordinates, Corner, CutterCompensation, Diameter, Distance, FeedMode, Motion, NonModal, Plane,
-    Return, Scaling, SpindleMode, ToolLength, Units,
+    ArcDistance, Coordinates, Corner, CutterCompensation, Diameter, Distance, FeedMode, Motion,
+    NonModal, Plane, Return, Scaling, SpindleMode, ToolLength, Units,
 };
 
 /// Every code.
@@ -221,7 +230,11 @@ pub(crate) fn find(number: u16) -> Option<&'static Code> {
 /// The code as written: `G38.2`.
 pub(crate) fn spelled(number: u16) -> String {
     let number = number % fanuc::OWN;
-    if number.is_multiple_of(10) { format!("G{}", number / 10) } else { format!("G{}.{}", number / 10, number % 10) }
+    if number.is_multiple_of(10) {
+        format!("G{}", number / 10)
+    } else {
+        format!("G{}.{}", number / 10, number % 10)
+    }
 }
 
 /// The known codes closest to an unknown number, as a hint.
@@ -238,7 +251,10 @@ pub(super) fn nearest(number: f64) -> String {
             best.push(row.number);
         }
     }
-    best.into_iter().map(spelled).collect::<Vec<_>>().join(" and ")
+    best.into_iter()
+        .map(spelled)
+        .collect::<Vec<_>>()
+        .join(" and ")
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
-//! What is wrong with a program and where: one [`Diagnostic`] per fault, shown by miette with the line and a caret.
+//! What is wrong with a program and where: one [`Diagnostic`] per fault, shown by miette with the
+//! line and a caret.
 //!
-//! A diagnostic carries an excerpt of its own line, so that showing it needs neither the file nor a copy of the program.
+//! A diagnostic carries an excerpt of its own line, so that showing it needs neither the file nor a
+//! copy of the program.
 
 use std::fmt;
 use std::ops::Range;
@@ -10,7 +12,8 @@ use miette::{LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpa
 
 use crate::text::visible::visible;
 
-/// Longest excerpt of a line that a diagnostic keeps, bytes: a row of a terminal, so that the caret stands below its fault.
+/// Longest excerpt of a line that a diagnostic keeps, bytes: a row of a terminal, so that the caret
+/// stands below its fault.
 const EXCERPT_BYTES: usize = 100;
 /// What stands where an excerpt is cut.
 const CUT: &str = "…";
@@ -39,7 +42,8 @@ pub struct Diagnostic {
     pub column: u32,
     /// Length of the faulty text in characters.
     pub span: u32,
-    /// What is wrong, with value, limit and unit. What the program hides in its text shows here, as in the hint: see [`visible`].
+    /// What is wrong, with value, limit and unit. What the program hides in its text shows here, as
+    /// in the hint: see [`visible`].
     pub message: String,
     /// Likely remedy.
     pub hint: Option<String>,
@@ -51,17 +55,44 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// A fault of the file as a whole.
-    pub(crate) fn of_file(severity: Severity, code: &'static str, file: Arc<str>, message: String) -> Self {
+    pub(crate) fn of_file(
+        severity: Severity,
+        code: &'static str,
+        file: Arc<str>,
+        message: String,
+    ) -> Self {
         let message = visible(&message).into_owned();
-        Self { severity, code, file, line: 0, column: 0, span: 0, message, hint: None, text: String::new(), mark: 0..0 }
+        Self {
+            severity,
+            code,
+            file,
+            line: 0,
+            column: 0,
+            span: 0,
+            message,
+            hint: None,
+            text: String::new(),
+            mark: 0..0,
+        }
     }
 
     /// The fault `fault` of the line `bytes`.
-    pub(crate) fn of_line(severity: Severity, fault: LineFault, file: Arc<str>, line: u32, bytes: &[u8]) -> Self {
+    pub(crate) fn of_line(
+        severity: Severity,
+        fault: LineFault,
+        file: Arc<str>,
+        line: u32,
+        bytes: &[u8],
+    ) -> Self {
         let start = fault.at.start.min(bytes.len());
         let end = fault.at.end.clamp(start, bytes.len());
-        // The window begins a third of the excerpt before the fault, so that the caret keeps some context on both sides.
-        let from = if bytes.len() <= EXCERPT_BYTES { 0 } else { start.saturating_sub(EXCERPT_BYTES / 3) };
+        // The window begins a third of the excerpt before the fault, so that the caret keeps some
+        // context on both sides.
+        let from = if bytes.len() <= EXCERPT_BYTES {
+            0
+        } else {
+            start.saturating_sub(EXCERPT_BYTES / 3)
+        };
         let to = bytes.len().min(from + EXCERPT_BYTES);
         let before = if from > 0 { CUT } else { "" }.to_owned() + &printable(&bytes[from..start]);
         let inside = printable(&bytes[start..end.min(to)]);
@@ -114,7 +145,9 @@ impl miette::Diagnostic for Diagnostic {
     }
 
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.hint.as_ref().map(|hint| Box::new(hint) as Box<dyn fmt::Display>)
+        self.hint
+            .as_ref()
+            .map(|hint| Box::new(hint) as Box<dyn fmt::Display>)
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
@@ -124,8 +157,9 @@ impl miette::Diagnostic for Diagnostic {
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         (self.line > 0).then(|| {
             let span: SourceSpan = (self.mark.start, self.mark.len().max(1)).into();
-            Box::new(std::iter::once(LabeledSpan::new_primary_with_span(None, span)))
-                as Box<dyn Iterator<Item = LabeledSpan>>
+            Box::new(std::iter::once(LabeledSpan::new_primary_with_span(
+                None, span,
+            ))) as Box<dyn Iterator<Item = LabeledSpan>>
         })
     }
 }
@@ -152,8 +186,9 @@ impl SourceCode for Diagnostic {
     }
 }
 
-/// Beyond these magnitudes a number in a message has an exponent instead of hundreds of digits. No length, feed or time of
-/// a program lies outside, so that sensible values are shown as they were written.
+/// Beyond these magnitudes a number in a message has an exponent instead of hundreds of digits. No
+/// length, feed or time of a program lies outside, so that sensible values are shown as they were
+/// written.
 const WRITTEN_OUT: Range<f64> = 1e-7..1e15;
 
 /// A number as messages show it.
@@ -163,7 +198,11 @@ pub(crate) struct Short(pub(crate) f64);
 impl fmt::Display for Short {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(value) = *self;
-        if value == 0.0 || WRITTEN_OUT.contains(&value.abs()) { write!(f, "{value}") } else { write!(f, "{value:.3e}") }
+        if value == 0.0 || WRITTEN_OUT.contains(&value.abs()) {
+            write!(f, "{value}")
+        } else {
+            write!(f, "{value:.3e}")
+        }
     }
 }
 
@@ -176,14 +215,24 @@ pub(crate) struct LineFault {
     pub(crate) hint: Option<String>,
 }
 
-/// Result of reading something within a line; boxed, because the success path must stay small and fast.
+/// Result of reading something within a line; boxed, because the success path must stay small and
+/// fast.
 pub(crate) type Read<T> = Result<T, Box<LineFault>>;
 
 impl LineFault {
     /// A fault at the bytes `at` of the line.
     #[cold]
-    pub(crate) fn new(code: &'static str, at: Range<usize>, message: impl Into<String>) -> Box<Self> {
-        Box::new(Self { code, at, message: message.into(), hint: None })
+    pub(crate) fn new(
+        code: &'static str,
+        at: Range<usize>,
+        message: impl Into<String>,
+    ) -> Box<Self> {
+        Box::new(Self {
+            code,
+            at,
+            message: message.into(),
+            hint: None,
+        })
     }
 
     /// Adds the likely remedy.
@@ -200,7 +249,13 @@ mod tests {
     #[test]
     fn numbers_are_shown_as_written_or_short() {
         let shown = |value: f64| Short(value).to_string();
-        assert_eq!([0.0, -1.5, 999_999_999.0, 0.0001].map(shown), ["0", "-1.5", "999999999", "0.0001"]);
-        assert_eq!([1e300, -1.23456e20, 1e-300].map(shown), ["1.000e300", "-1.235e20", "1.000e-300"]);
+        assert_eq!(
+            [0.0, -1.5, 999_999_999.0, 0.0001].map(shown),
+            ["0", "-1.5", "999999999", "0.0001"]
+        );
+        assert_eq!(
+            [1e300, -1.23456e20, 1e-300].map(shown),
+            ["1.000e300", "-1.235e20", "1.000e-300"]
+        );
     }
 }

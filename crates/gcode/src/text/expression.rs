@@ -1,4 +1,5 @@
-//! Values of words: numbers, parameters, functions and bracketed expressions, evaluated while they are read.
+//! Values of words: numbers, parameters, functions and bracketed expressions, evaluated while they
+//! are read.
 //!
 //! Grammar (binding tightest first; operators of one row from left to right):
 //!
@@ -9,8 +10,8 @@
 //! index      = value | '<' name '>'
 //! ```
 //!
-//! Rules: T. R. Kramer, F. M. Proctor, E. Messina, The NIST RS274NGC Interpreter - Version 3, NISTIR 6556 (2000), section 3.3,
-//! with the named parameters and comparisons that LinuxCNC added.
+//! Rules: T. R. Kramer, F. M. Proctor, E. Messina, The NIST RS274NGC Interpreter - Version 3,
+//! NISTIR 6556 (2000), section 3.3, with the named parameters and comparisons that LinuxCNC added.
 
 mod operators;
 
@@ -19,7 +20,8 @@ use crate::text::diagnostic::{LineFault, Read, Short};
 use crate::text::expression::operators::{OPERATORS, Operator, apply_function, without_vacancy};
 use crate::text::lexer::{Cursor, END, NO_EXPONENT, shown};
 
-/// Brackets, signs and `#` inside each other. Each level costs stack; no written program has more than a dozen.
+/// Brackets, signs and `#` inside each other. Each level costs stack; no written program has more
+/// than a dozen.
 const MAX_DEPTH: u32 = 200;
 /// An index or number this close to an integer is that integer, as in LinuxCNC.
 pub(crate) const INTEGER_WITHIN: f64 = 1e-4;
@@ -72,8 +74,8 @@ pub(crate) struct Evaluator<'a, V> {
 
 /// Functions of one argument; `atan` and `exists` have a syntax of their own.
 const FUNCTIONS: [&[u8]; 14] = [
-    b"abs", b"acos", b"asin", b"atan", b"cos", b"exists", b"exp", b"fix", b"fup", b"ln", b"round", b"sin", b"sqrt",
-    b"tan",
+    b"abs", b"acos", b"asin", b"atan", b"cos", b"exists", b"exp", b"fix", b"fup", b"ln", b"round",
+    b"sin", b"sqrt", b"tan",
 ];
 
 /// What signs of other languages are told.
@@ -84,14 +86,22 @@ const MACRO_KEYWORDS: [&str; 8] = ["if", "while", "goto", "end", "endif", "else"
 
 impl<'a, V: ParameterSource> Evaluator<'a, V> {
     pub(crate) const fn new(cursor: Cursor<'a>, values: &'a V) -> Self {
-        Self { cursor, values, depth: 0 }
+        Self {
+            cursor,
+            values,
+            depth: 0,
+        }
     }
 
     /// A value.
     #[inline]
     pub(crate) fn value(&mut self) -> Read<f64> {
         let first = self.cursor.peek();
-        if first.is_ascii_digit() || first == b'.' { self.cursor.number() } else { self.other_value(first) }
+        if first.is_ascii_digit() || first == b'.' {
+            self.cursor.number()
+        } else {
+            self.other_value(first)
+        }
     }
 
     fn other_value(&mut self, first: u8) -> Read<f64> {
@@ -144,7 +154,10 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
         let value = self.deeper(start, |evaluator| evaluator.expression(1))?;
         if !self.cursor.eat(b']') {
             let (found, at) = (self.cursor.raw(), self.cursor.at);
-            let message = format!("`]` or an operator is missing: {} stands in its place", text_of(found));
+            let message = format!(
+                "`]` or an operator is missing: {} stands in its place",
+                text_of(found)
+            );
             let fault = LineFault::new("gcode::bracket", at..at + 1, message);
             if !found.is_ascii() {
                 return Err(not_ascii(self.cursor.bytes, at));
@@ -176,7 +189,9 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
             } else {
                 operator.apply(left, right)
             };
-            left = applied.map_err(|message| LineFault::new("gcode::expression", start..self.cursor.at, message))?;
+            left = applied.map_err(|message| {
+                LineFault::new("gcode::expression", start..self.cursor.at, message)
+            })?;
             if !left.is_finite() {
                 return Err(not_finite(start..self.cursor.at));
             }
@@ -197,7 +212,10 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
 
     fn function(&mut self) -> Read<f64> {
         let start = self.cursor.at;
-        let Some(name) = FUNCTIONS.into_iter().find(|name| self.cursor.eat_word(name)) else {
+        let Some(name) = FUNCTIONS
+            .into_iter()
+            .find(|name| self.cursor.eat_word(name))
+        else {
             return Err(self.unknown_function(start));
         };
         if name == b"exists" {
@@ -210,21 +228,33 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
             if !self.cursor.eat(b'/') {
                 let message = "atan needs two arguments: a `/` and a second bracket are missing";
                 return Err(
-                    LineFault::new("gcode::expression", start..self.cursor.at, message).hint("write atan[y]/[x]")
+                    LineFault::new("gcode::expression", start..self.cursor.at, message)
+                        .hint("write atan[y]/[x]"),
                 );
             }
             libm::atan2(argument, self.bracketed()?).to_degrees()
         } else {
-            apply_function(name, argument)
-                .map_err(|message| LineFault::new("gcode::expression", start..self.cursor.at, message))?
+            apply_function(name, argument).map_err(|message| {
+                LineFault::new("gcode::expression", start..self.cursor.at, message)
+            })?
         };
-        if value.is_finite() { Ok(value) } else { Err(not_finite(start..self.cursor.at)) }
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(not_finite(start..self.cursor.at))
+        }
     }
 
     #[cold]
     fn unknown_function(&mut self, start: usize) -> Box<LineFault> {
-        let letters: Vec<u8> =
-            self.cursor.rest().iter().copied().take_while(u8::is_ascii_alphabetic).take(12).collect();
+        let letters: Vec<u8> = self
+            .cursor
+            .rest()
+            .iter()
+            .copied()
+            .take_while(u8::is_ascii_alphabetic)
+            .take(12)
+            .collect();
         let name = String::from_utf8_lossy(&letters).into_owned();
         let fault = LineFault::new(
             "gcode::number",
@@ -234,9 +264,13 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
         let nearest = FUNCTIONS
             .iter()
             .map(|known| String::from_utf8_lossy(known))
-            .find(|known| letters.len() > 1 && strsim::levenshtein(known, &name.to_ascii_lowercase()) <= 1);
+            .find(|known| {
+                letters.len() > 1 && strsim::levenshtein(known, &name.to_ascii_lowercase()) <= 1
+            });
         // The letter before the value belongs to the word that the user wrote: W and `hile`.
-        let before = start.checked_sub(1).map_or(b' ', |before| self.cursor.bytes[before].to_ascii_lowercase());
+        let before = start.checked_sub(1).map_or(b' ', |before| {
+            self.cursor.bytes[before].to_ascii_lowercase()
+        });
         let keyword = format!("{}{}", char::from(before), name.to_ascii_lowercase());
         match nearest {
             _ if before == b'#' => fault.hint(format!("names of parameters stand in angle brackets: #<{name}>")),
@@ -265,8 +299,12 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
                 return Ok(f64::from(u8::from(exists)));
             }
         }
-        Err(LineFault::new("gcode::expression", start..self.cursor.at + 1, "exists takes a parameter")
-            .hint("write exists[#<name>]"))
+        Err(LineFault::new(
+            "gcode::expression",
+            start..self.cursor.at + 1,
+            "exists takes a parameter",
+        )
+        .hint("write exists[#<name>]"))
     }
 
     /// What stands behind the `#` under the cursor.
@@ -278,9 +316,16 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
         }
         let number = self.parameter_number(start)?;
         if !self.has_parameter(number) {
-            let message =
-                format!("parameter #{} does not exist: the numbers go from 1 to {}", Short(number), PARAMETERS - 1);
-            return Err(LineFault::new("gcode::parameter", start..self.cursor.at, message));
+            let message = format!(
+                "parameter #{} does not exist: the numbers go from 1 to {}",
+                Short(number),
+                PARAMETERS - 1
+            );
+            return Err(LineFault::new(
+                "gcode::parameter",
+                start..self.cursor.at,
+                message,
+            ));
         }
         Ok(Target::Numbered(number as usize))
     }
@@ -291,7 +336,11 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
         let rounded = index.round();
         if (index - rounded).abs() > INTEGER_WITHIN {
             let message = format!("parameter number {} is not an integer", Short(index));
-            return Err(LineFault::new("gcode::parameter", start..self.cursor.at, message));
+            return Err(LineFault::new(
+                "gcode::parameter",
+                start..self.cursor.at,
+                message,
+            ));
         }
         Ok(rounded)
     }
@@ -320,7 +369,11 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
         }
         self.cursor.bump();
         if name.is_empty() {
-            Err(LineFault::new("gcode::parameter", start..self.cursor.at, "the name is empty"))
+            Err(LineFault::new(
+                "gcode::parameter",
+                start..self.cursor.at,
+                "the name is empty",
+            ))
         } else {
             Ok(name)
         }
@@ -348,7 +401,11 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
     fn deeper<T>(&mut self, start: usize, read: impl FnOnce(&mut Self) -> Read<T>) -> Read<T> {
         if self.depth == MAX_DEPTH {
             let message = format!("more than {MAX_DEPTH} brackets, signs or # inside each other");
-            return Err(LineFault::new("gcode::depth", start..self.cursor.at + 1, message));
+            return Err(LineFault::new(
+                "gcode::depth",
+                start..self.cursor.at + 1,
+                message,
+            ));
         }
         self.depth += 1;
         let result = read(self);
@@ -363,7 +420,11 @@ fn not_finite(at: std::ops::Range<usize>) -> Box<LineFault> {
 }
 
 fn text_of(byte: u8) -> String {
-    if byte == END { "the end of the line".to_owned() } else { format!("`{}`", shown(byte)) }
+    if byte == END {
+        "the end of the line".to_owned()
+    } else {
+        format!("`{}`", shown(byte))
+    }
 }
 
 /// One more than the highest numbered parameter.
@@ -386,11 +447,16 @@ mod tests {
     }
 
     fn value(text: &str) -> f64 {
-        Evaluator::new(Cursor::new(text.as_bytes()), &Fixed).value().unwrap()
+        Evaluator::new(Cursor::new(text.as_bytes()), &Fixed)
+            .value()
+            .unwrap()
     }
 
     fn message(text: &str) -> String {
-        Evaluator::new(Cursor::new(text.as_bytes()), &Fixed).value().unwrap_err().message
+        Evaluator::new(Cursor::new(text.as_bytes()), &Fixed)
+            .value()
+            .unwrap_err()
+            .message
     }
 
     #[test]

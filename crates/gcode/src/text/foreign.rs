@@ -3,14 +3,26 @@
 
 /// Codes, ten times their number; what they do; what helps.
 const CODES: &[(&[u16], &str, &str)] = &[
-    (&[71, 1070], "cylindrical interpolation", "let the CAM system write A, B or C and X, Y, Z"),
+    (
+        &[71, 1070],
+        "cylindrical interpolation",
+        "let the CAM system write A, B or C and X, Y, Z",
+    ),
     (
         &[120, 130, 1500],
         "a pocket cycle of Haas",
         "let the CAM system write the motions of the pocket, or write them with G1, G2 and G3",
     ),
-    (&[150, 160], "polar coordinates", "write X and Y, or the radius as @ and the angle as ^: G1 @10 ^30"),
-    (&[310], "a motion until a signal", "G38.2 is a motion until the probe trips"),
+    (
+        &[150, 160],
+        "polar coordinates",
+        "write X and Y, or the radius as @ and the angle as ^: G1 @10 ^30",
+    ),
+    (
+        &[310],
+        "a motion until a signal",
+        "G38.2 is a motion until the probe trips",
+    ),
     (&[320], "threading", "G33 with K, the pitch, cuts a thread"),
     (
         &[434, 435, 1410, 1430, 2340],
@@ -18,10 +30,26 @@ const CODES: &[(&[u16], &str, &str)] = &[
         "let the CAM system write the motions of a machine with X, Y and Z",
     ),
     (&[510], "scaling", "scale the part in the CAM system"),
-    (&[501, 511], "a mirror image", "mirror the part in the CAM system, or negate the coordinates"),
-    (&[470], "the engraving of Haas", "let the CAM system write the motions of the letters"),
-    (&[1030], "the limit of Haas's look-ahead", "leave it out: it moves nothing"),
-    (&[600], "approaching from one side", "write the approach with G0"),
+    (
+        &[501, 511],
+        "a mirror image",
+        "mirror the part in the CAM system, or negate the coordinates",
+    ),
+    (
+        &[470],
+        "the engraving of Haas",
+        "let the CAM system write the motions of the letters",
+    ),
+    (
+        &[1030],
+        "the limit of Haas's look-ahead",
+        "leave it out: it moves nothing",
+    ),
+    (
+        &[600],
+        "approaching from one side",
+        "write the approach with G0",
+    ),
     (
         &[650, 660, 661, 670],
         "a call of a macro",
@@ -37,21 +65,32 @@ const CODES: &[(&[u16], &str, &str)] = &[
         "a tilted plane",
         "let the CAM system write the motions of a machine with X, Y and Z",
     ),
-    (&[171, 181, 191], "a plane of U, V and W", "write the arcs in X, Y and Z, in G17, G18 or G19"),
+    (
+        &[171, 181, 191],
+        "a plane of U, V and W",
+        "write the arcs in X, Y and Z, in G17, G18 or G19",
+    ),
     (
         &[1540],
         "a further coordinate system of Haas",
         "write G154 P1 for G110 and so on (--dialect haas), or G54 to G59",
     ),
-    (&[1870], "the smoothness of Haas", "--dialect haas leaves it out, because it moves nothing"),
+    (
+        &[1870],
+        "the smoothness of Haas",
+        "--dialect haas leaves it out, because it moves nothing",
+    ),
 ];
 
 /// What a code of another control does, and what helps.
 pub(super) fn what(tenths: f64) -> Option<(&'static str, &'static str)> {
-    let row = CODES.iter().find(|(codes, ..)| codes.iter().any(|&code| f64::from(code) == tenths));
+    let row = CODES
+        .iter()
+        .find(|(codes, ..)| codes.iter().any(|&code| f64::from(code) == tenths));
     // G110 to G129 are G54 and so on of Haas.
     let haas_systems = (1100.0..=1290.0).contains(&tenths).then_some(1540.0);
-    row.map(|&(_, what, hint)| (what, hint)).or_else(|| what(haas_systems?))
+    row.map(|&(_, what, hint)| (what, hint))
+        .or_else(|| what(haas_systems?))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Files that are read, and `-`, which stands for the standard input.
 //!
-//! The standard input can be read once and programs are read several times, so it is kept in memory; the same bytes are handed out
-//! each time. `./-` is a file of that name.
+//! The standard input can be read once and programs are read several times, so it is kept in
+//! memory; the same bytes are handed out each time. `./-` is a file of that name.
 
 use std::fs;
 use std::io::{self, Read};
@@ -35,7 +35,11 @@ pub fn name(path: &Path) -> String {
 /// # Errors
 /// Where the operating system refuses.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
-    if is_standard_input(path) { standard_input().map(<[u8]>::to_vec) } else { fs::read(path) }
+    if is_standard_input(path) {
+        standard_input().map(<[u8]>::to_vec)
+    } else {
+        fs::read(path)
+    }
 }
 
 /// All bytes of the standard input.

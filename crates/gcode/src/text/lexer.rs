@@ -1,8 +1,10 @@
-//! The bytes of one line as RS-274 sees them: blanks mean nothing outside comments, and case does not matter.
+//! The bytes of one line as RS-274 sees them: blanks mean nothing outside comments, and case does
+//! not matter.
 //!
-//! Numbers are decimal without exponent: digits, one point, a sign. Up to 15 significant digits (and any mantissa below
-//! 2^53 with at most 22 decimals) the value is exact arithmetic: integer divided by a power of ten, both exact in f64, is
-//! correctly rounded (W. D. Clinger, How to read floating point numbers accurately, 1990). Longer ones go through `str::parse`.
+//! Numbers are decimal without exponent: digits, one point, a sign. Up to 15 significant digits
+//! (and any mantissa below 2^53 with at most 22 decimals) the value is exact arithmetic: integer
+//! divided by a power of ten, both exact in f64, is correctly rounded (W. D. Clinger, How to read
+//! floating point numbers accurately, 1990). Longer ones go through `str::parse`.
 
 use crate::text::characters::not_ascii;
 use crate::text::diagnostic::{LineFault, Read};
@@ -12,8 +14,8 @@ pub(crate) const END: u8 = b'\n';
 
 /// Powers of ten that f64 holds exactly.
 pub(crate) const EXACT_POWERS: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
-    1e21, 1e22,
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 /// Largest mantissa below which every integer is exact in f64.
 const EXACT_MANTISSA: u64 = 1 << 53;
@@ -82,9 +84,13 @@ impl<'a> Cursor<'a> {
         true
     }
 
-    /// Whether an `e` under the cursor looks like an exponent: between a digit or point and a digit or sign.
+    /// Whether an `e` under the cursor looks like an exponent: between a digit or point and a digit
+    /// or sign.
     pub(super) fn is_exponent(&self) -> bool {
-        let before = self.at.checked_sub(1).and_then(|before| self.bytes.get(before));
+        let before = self
+            .at
+            .checked_sub(1)
+            .and_then(|before| self.bytes.get(before));
         let after = self.bytes.get(self.at + 1);
         self.raw().eq_ignore_ascii_case(&b'e')
             && before.is_some_and(|byte| byte.is_ascii_digit() || *byte == b'.')
@@ -93,7 +99,10 @@ impl<'a> Cursor<'a> {
 
     /// Whether a number follows the `$` under the cursor: the `$` then selects a spindle.
     pub(super) fn is_spindle(&self) -> bool {
-        let after = self.bytes[self.at..].iter().skip(1).find(|byte| !is_blank(**byte));
+        let after = self.bytes[self.at..]
+            .iter()
+            .skip(1)
+            .find(|byte| !is_blank(**byte));
         after.is_some_and(|byte| byte.is_ascii_digit() || *byte == b'-')
     }
 
@@ -121,7 +130,9 @@ impl<'a> Cursor<'a> {
         loop {
             let byte = self.raw();
             if byte.is_ascii_digit() {
-                mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(byte - b'0'));
+                mantissa = mantissa
+                    .wrapping_mul(10)
+                    .wrapping_add(u64::from(byte - b'0'));
                 digits += 1;
                 decimals += usize::from(point);
             } else if byte == b'.' && !point {
@@ -142,11 +153,13 @@ impl<'a> Cursor<'a> {
         if digits == 0 {
             return Err(self.not_a_number(start));
         }
-        let value = if digits <= SAFE_DIGITS && mantissa <= EXACT_MANTISSA && decimals < EXACT_POWERS.len() {
-            mantissa as f64 / EXACT_POWERS[decimals]
-        } else {
-            self.long_number(start)?
-        };
+        let value =
+            if digits <= SAFE_DIGITS && mantissa <= EXACT_MANTISSA && decimals < EXACT_POWERS.len()
+            {
+                mantissa as f64 / EXACT_POWERS[decimals]
+            } else {
+                self.long_number(start)?
+            };
         Ok(if negative { -value } else { value })
     }
 
@@ -174,7 +187,11 @@ impl<'a> Cursor<'a> {
         if !self.raw().is_ascii() {
             return not_ascii(self.bytes, self.at);
         }
-        let what = if found == END { "the end of the line".to_owned() } else { format!("`{}`", shown(self.raw())) };
+        let what = if found == END {
+            "the end of the line".to_owned()
+        } else {
+            format!("`{}`", shown(self.raw()))
+        };
         let end = if found == END { self.at } else { self.at + 1 };
         LineFault::new(
             "gcode::number",
@@ -192,7 +209,11 @@ pub(crate) const fn is_blank(byte: u8) -> bool {
 
 /// A byte as a message shows it.
 pub(super) fn shown(byte: u8) -> String {
-    if byte.is_ascii_graphic() { char::from(byte).to_string() } else { format!("byte {byte:#04x}") }
+    if byte.is_ascii_graphic() {
+        char::from(byte).to_string()
+    } else {
+        format!("byte {byte:#04x}")
+    }
 }
 
 #[cfg(test)]
@@ -221,7 +242,11 @@ mod tests {
             "9007199254740993",
             "0.30000000000000004",
         ] {
-            assert_eq!(Cursor::new(text.as_bytes()).number().unwrap(), text.parse::<f64>().unwrap(), "{text}");
+            assert_eq!(
+                Cursor::new(text.as_bytes()).number().unwrap(),
+                text.parse::<f64>().unwrap(),
+                "{text}"
+            );
         }
     }
 

@@ -11,7 +11,9 @@ use thiserror::Error;
 pub enum ReadError {
     /// No such file, no permission, or the disk fails.
     #[error("{path}: the program cannot be read: {cause}")]
-    #[diagnostic(help("give the path to the program from the current folder, or - for the standard input"))]
+    #[diagnostic(help(
+        "give the path to the program from the current folder, or - for the standard input"
+    ))]
     Io {
         /// As the user named it.
         path: PathBuf,
@@ -48,14 +50,18 @@ pub enum ReadError {
     },
     /// Two bytes a character.
     #[error("{name}: the file is UTF-16 text, which no control reads")]
-    #[diagnostic(help("save it as UTF-8 or plain ASCII; editors ask for the encoding in \"Save as\""))]
+    #[diagnostic(help(
+        "save it as UTF-8 or plain ASCII; editors ask for the encoding in \"Save as\""
+    ))]
     Utf16 {
         /// As the user named it.
         name: Arc<str>,
     },
     /// Nothing in it.
     #[error("{name}: the program is empty")]
-    #[diagnostic(help("the export may have failed; a program has at least a motion such as G1 X10 F100"))]
+    #[diagnostic(help(
+        "the export may have failed; a program has at least a motion such as G1 X10 F100"
+    ))]
     Empty {
         /// As the user named it.
         name: Arc<str>,

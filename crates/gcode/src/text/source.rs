@@ -1,14 +1,16 @@
-//! Lines of a program, read in chunks: memory stays the same for a file of any length, and a loop can jump back.
+//! Lines of a program, read in chunks: memory stays the same for a file of any length, and a loop
+//! can jump back.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Bytes read at a time. Small enough for the second-level cache, large enough that the cost of a read does not matter.
+/// Bytes read at a time. Small enough for the second-level cache, large enough that the cost of a
+/// read does not matter.
 const CHUNK_BYTES: usize = 1 << 18;
-/// Longest line. Real programs stay below 300 bytes (LinuxCNC stops at 255, comments included); a longer line is a
-/// damaged file or no program, and must not fill the memory.
+/// Longest line. Real programs stay below 300 bytes (LinuxCNC stops at 255, comments included); a
+/// longer line is a damaged file or no program, and must not fill the memory.
 pub(crate) const MAX_LINE_BYTES: usize = 1 << 16;
 
 /// A place to come back to.
@@ -67,8 +69,20 @@ impl Source {
     }
 
     fn new(name: Arc<str>, file: Option<File>, buffer: Vec<u8>) -> Self {
-        let line_start = Mark { offset: 0, lines_before: 0 };
-        Self { name, file, buffer, buffer_start: 0, next: 0, at_end: false, line_start, line: 0 }
+        let line_start = Mark {
+            offset: 0,
+            lines_before: 0,
+        };
+        Self {
+            name,
+            file,
+            buffer,
+            buffer_start: 0,
+            next: 0,
+            at_end: false,
+            line_start,
+            line: 0,
+        }
     }
 
     /// UTF-8 files from other systems begin with three bytes that are no text.
@@ -122,7 +136,11 @@ impl Source {
         }
         self.begin_line();
         self.next = self.buffer.len();
-        if range.len() > MAX_LINE_BYTES { SourceLine::TooLong(head_of(range)) } else { SourceLine::Text(range) }
+        if range.len() > MAX_LINE_BYTES {
+            SourceLine::TooLong(head_of(range))
+        } else {
+            SourceLine::Text(range)
+        }
     }
 
     /// What has been read of the file behind the last line.
@@ -140,7 +158,10 @@ impl Source {
 
     #[inline]
     fn begin_line(&mut self) {
-        self.line_start = Mark { offset: self.buffer_start + self.next as u64, lines_before: self.line };
+        self.line_start = Mark {
+            offset: self.buffer_start + self.next as u64,
+            lines_before: self.line,
+        };
         self.line = self.line.saturating_add(1);
     }
 
@@ -180,7 +201,9 @@ impl Source {
         self.buffer.drain(..self.next);
         self.buffer_start += self.next as u64;
         self.next = 0;
-        let read = file.take(CHUNK_BYTES as u64).read_to_end(&mut self.buffer)?;
+        let read = file
+            .take(CHUNK_BYTES as u64)
+            .read_to_end(&mut self.buffer)?;
         self.at_end = read == 0;
         Ok(())
     }
@@ -201,22 +224,34 @@ impl Source {
         Ok(())
     }
 
-    /// Takes a line of the file as the one that `next_line` returned last, for a message; leaves it where the file cannot be read.
+    /// Takes a line of the file as the one that `next_line` returned last, for a message; leaves it
+    /// where the file cannot be read.
     #[cold]
     pub(crate) fn find(&mut self, line: u32) {
         if self.rewind().is_ok() {
-            while self.line < line && matches!(self.next_line(), Ok(SourceLine::Text(_) | SourceLine::TooLong(_))) {}
+            while self.line < line
+                && matches!(
+                    self.next_line(),
+                    Ok(SourceLine::Text(_) | SourceLine::TooLong(_))
+                )
+            {}
         }
     }
 
     /// Where the next line begins.
     pub(crate) fn here(&self) -> Mark {
-        Mark { offset: self.buffer_start + self.next as u64, lines_before: self.line }
+        Mark {
+            offset: self.buffer_start + self.next as u64,
+            lines_before: self.line,
+        }
     }
 
     /// Goes back to the first line.
     pub(crate) fn rewind(&mut self) -> io::Result<()> {
-        self.jump(Mark { offset: 0, lines_before: 0 })?;
+        self.jump(Mark {
+            offset: 0,
+            lines_before: 0,
+        })?;
         if self.buffer.is_empty() && !self.at_end {
             self.refill()?;
         }
@@ -252,17 +287,24 @@ mod tests {
 
     #[test]
     fn lines_across_chunks_are_whole() {
-        let text: Vec<u8> = (0..60_000).flat_map(|n| format!("N{n} X{n}\n").into_bytes()).collect();
+        let text: Vec<u8> = (0..60_000)
+            .flat_map(|n| format!("N{n} X{n}\n").into_bytes())
+            .collect();
         assert!(text.len() > 2 * CHUNK_BYTES);
         let from_file = lines(&mut file_with(&text));
-        assert_eq!(from_file, lines(&mut Source::from_text("test".into(), text)));
+        assert_eq!(
+            from_file,
+            lines(&mut Source::from_text("test".into(), text))
+        );
         assert_eq!(from_file.len(), 60_000);
         assert_eq!(from_file[59_999], (60_000, b"N59999 X59999".to_vec()));
     }
 
     #[test]
     fn a_jump_returns_to_the_line() {
-        let text: Vec<u8> = (0..60_000).flat_map(|n| format!("N{n} X{n}\n").into_bytes()).collect();
+        let text: Vec<u8> = (0..60_000)
+            .flat_map(|n| format!("N{n} X{n}\n").into_bytes())
+            .collect();
         let mut source = file_with(&text);
         for _ in 0..10 {
             source.next_line().unwrap();
@@ -270,7 +312,9 @@ mod tests {
         let mark = source.line_start;
         while source.next_line().unwrap() != SourceLine::End {}
         source.jump(mark).unwrap();
-        let SourceLine::Text(range) = source.next_line().unwrap() else { panic!("no line") };
+        let SourceLine::Text(range) = source.next_line().unwrap() else {
+            panic!("no line")
+        };
         assert_eq!((source.line, source.bytes(range)), (10, &b"N9 X9"[..]));
     }
 
@@ -279,12 +323,21 @@ mod tests {
         let mut text = vec![b'x'; 3 * CHUNK_BYTES];
         text.extend_from_slice(b"\nG0\nG1");
         let mut source = file_with(&text);
-        assert!(matches!(source.next_line().unwrap(), SourceLine::TooLong(_)));
-        assert_eq!(lines(&mut source), [(2, b"G0".to_vec()), (3, b"G1".to_vec())]);
+        assert!(matches!(
+            source.next_line().unwrap(),
+            SourceLine::TooLong(_)
+        ));
+        assert_eq!(
+            lines(&mut source),
+            [(2, b"G0".to_vec()), (3, b"G1".to_vec())]
+        );
     }
 
     #[test]
     fn a_byte_order_mark_is_no_text() {
-        assert_eq!(lines(&mut file_with(b"\xef\xbb\xbfG0\n")), [(1, b"G0".to_vec())]);
+        assert_eq!(
+            lines(&mut file_with(b"\xef\xbb\xbfG0\n")),
+            [(1, b"G0".to_vec())]
+        );
     }
 }

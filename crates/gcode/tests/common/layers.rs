@@ -18,8 +18,15 @@ impl File {
     pub(crate) fn new(module: &str, text: &str) -> Self {
         let code = code(text);
         // Unit tests may use what is made of their subject.
-        let code = code.split("#[cfg(test)]\nmod tests").next().unwrap_or_default().to_owned();
-        Self { module: module.to_owned(), code }
+        let code = code
+            .split("#[cfg(test)]\nmod tests")
+            .next()
+            .unwrap_or_default()
+            .to_owned();
+        Self {
+            module: module.to_owned(),
+            code,
+        }
     }
 }
 
@@ -35,7 +42,8 @@ fn word(text: &str) -> &str {
 fn declared(code: &str) -> Vec<&str> {
     let names = code.lines().filter_map(|line| {
         let (visibility, rest) = line.split_once("mod ")?;
-        let is_item = visibility.is_empty() || (visibility.starts_with("pub") && visibility.ends_with(' '));
+        let is_item =
+            visibility.is_empty() || (visibility.starts_with("pub") && visibility.ends_with(' '));
         rest.strip_suffix(';').filter(|_| is_item)
     });
     names.collect()
@@ -45,9 +53,14 @@ fn declared(code: &str) -> Vec<&str> {
 pub(crate) fn files(src: &Path) -> Vec<File> {
     fn walk(src: &Path, module: &str, code: &str, found: &mut Vec<File>) {
         for name in declared(code) {
-            let child = if module.is_empty() { name.to_owned() } else { format!("{module}/{name}") };
+            let child = if module.is_empty() {
+                name.to_owned()
+            } else {
+                format!("{module}/{name}")
+            };
             let path = src.join(format!("{child}.rs"));
-            let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+            let text = std::fs::read_to_string(&path)
+                .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
             let file = File::new(&child, &text);
             let code = file.code.clone();
             found.push(file);
@@ -55,14 +68,18 @@ pub(crate) fn files(src: &Path) -> Vec<File> {
         }
     }
     // A binary has its modules in main.rs.
-    let root = ["lib.rs", "main.rs"].map(|name| src.join(name)).into_iter().find(|path| path.exists());
+    let root = ["lib.rs", "main.rs"]
+        .map(|name| src.join(name))
+        .into_iter()
+        .find(|path| path.exists());
     let root = std::fs::read_to_string(root.expect("a crate has a root")).expect("it can be read");
     let mut found = Vec::new();
     walk(src, "", &code(&root), &mut found);
     found
 }
 
-/// Every path that a text names from the crate's root on, or from a parent, with its line: `a::{b, c::d}` is a/b and a/c/d.
+/// Every path that a text names from the crate's root on, or from a parent, with its line: `a::{b,
+/// c::d}` is a/b and a/c/d.
 fn paths(file: &File) -> Vec<(usize, String)> {
     let mut paths = Vec::new();
     for (at, _) in file.code.match_indices("::") {
@@ -96,12 +113,18 @@ fn expand<'a>(base: &str, text: &'a str, found: &mut impl FnMut(String)) -> &'a 
     if let Some(mut rest) = text.strip_prefix('{') {
         loop {
             rest = expand(base, rest, found).trim_start();
-            let Some(after) = rest.strip_prefix(',') else { return rest.strip_prefix('}').unwrap_or(rest) };
+            let Some(after) = rest.strip_prefix(',') else {
+                return rest.strip_prefix('}').unwrap_or(rest);
+            };
             rest = after;
         }
     }
     let name = word(text);
-    let path = if base.is_empty() { name.to_owned() } else { format!("{base}/{name}") };
+    let path = if base.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{base}/{name}")
+    };
     let mut rest = &text[name.len()..];
     if let Some(after) = rest.strip_prefix("::") {
         return expand(&path, after, found);
@@ -134,7 +157,10 @@ fn methods<'a>(files: &'a [File], spread: Spread<'_>) -> HashMap<(&'a str, &'a s
     let mut methods = HashMap::new();
     for file in files {
         for (_, line, of) in lines_by_type(&file.code) {
-            if let Some((_, name)) = line.split_once("fn ").filter(|_| spread.iter().any(|spread| spread.0 == of)) {
+            if let Some((_, name)) = line
+                .split_once("fn ")
+                .filter(|_| spread.iter().any(|spread| spread.0 == of))
+            {
                 methods.insert((of, word(name)), file.module.as_str());
             }
         }
@@ -149,10 +175,14 @@ fn calls<'a>(file: &'a File, spread: Spread<'a>) -> Vec<(usize, &'a str, &'a str
         for (at, dot) in line.match_indices('.').chain(line.match_indices("::")) {
             let receiver = line[..at].rsplit(|c| !is_word(c)).next().unwrap_or("");
             let spread = spread.iter().find(|(name, value)| {
-                receiver == *value || receiver == *name || (matches!(receiver, "self" | "Self") && of == *name)
+                receiver == *value
+                    || receiver == *name
+                    || (matches!(receiver, "self" | "Self") && of == *name)
             });
             let name = word(&line[at + dot.len()..]);
-            if let Some((of, _)) = spread.filter(|_| line[at + dot.len() + name.len()..].starts_with('(')) {
+            if let Some((of, _)) =
+                spread.filter(|_| line[at + dot.len() + name.len()..].starts_with('('))
+            {
                 calls.push((number, *of, name));
             }
         }
@@ -160,7 +190,8 @@ fn calls<'a>(file: &'a File, spread: Spread<'a>) -> Vec<(usize, &'a str, &'a str
     calls
 }
 
-/// Uses, by line and module used; a path that leads to no module is what `lib.rs` gives to strangers.
+/// Uses, by line and module used; a path that leads to no module is what `lib.rs` gives to
+/// strangers.
 fn uses(
     file: &File,
     files: &[File],
@@ -175,29 +206,44 @@ fn uses(
         }
         path.to_owned()
     };
-    let named = paths(file).into_iter().map(|(line, path)| (line, module(path)));
+    let named = paths(file)
+        .into_iter()
+        .map(|(line, path)| (line, module(path)));
     let called = calls(file, spread)
         .into_iter()
         .filter_map(|(line, of, name)| Some((line, (*methods.get(&(of, name))?).to_owned())));
-    named.chain(called).filter(|(_, used)| *used != file.module).collect()
+    named
+        .chain(called)
+        .filter(|(_, used)| *used != file.module)
+        .collect()
 }
 
-/// What goes upwards, and how many uses there are at all; `outside` are names of other crates that the root gives as its own.
+/// What goes upwards, and how many uses there are at all; `outside` are names of other crates that
+/// the root gives as its own.
 pub(crate) fn check(files: &[File], spread: Spread<'_>, outside: &[&str]) -> (Vec<String>, usize) {
     let methods = methods(files, spread);
     let (mut violations, mut seen) = (Vec::new(), 0);
     for (place, file) in files.iter().enumerate() {
         for (line, used) in uses(file, files, &methods, spread) {
             seen += 1;
-            let (user, within) = (&file.module, |a: &str, b: &str| a.starts_with(&format!("{b}/")));
+            let (user, within) = (&file.module, |a: &str, b: &str| {
+                a.starts_with(&format!("{b}/"))
+            });
             let is_above = files[..place].iter().any(|above| above.module == used);
             if used.is_empty() {
                 let code = file.code.lines().nth(line - 1).unwrap_or_default();
-                if !outside.iter().any(|name| code.contains(&format!("crate::{name}"))) {
-                    violations.push(format!("{user}.rs:{line}: a path through the root; name the module itself"));
+                if !outside
+                    .iter()
+                    .any(|name| code.contains(&format!("crate::{name}")))
+                {
+                    violations.push(format!(
+                        "{user}.rs:{line}: a path through the root; name the module itself"
+                    ));
                 }
             } else if !is_above && !within(user, &used) && !within(&used, user) {
-                violations.push(format!("{user}.rs:{line}: uses {used}, which stands below it"));
+                violations.push(format!(
+                    "{user}.rs:{line}: uses {used}, which stands below it"
+                ));
             }
         }
     }

@@ -8,19 +8,27 @@ use feedwright_sim::{AXIS_NAMES, Machine, Plant, RunError, Stages, joints_of, pa
 /// Rest that is recorded behind the end, s: what rings is seen to its end.
 const REST_S: f64 = 0.3;
 
-/// What `halsampler -t` would write of the first N axes: the command and the position that the encoders show, mm, both taken at the
-/// same moment, once a servo period.
+/// What `halsampler -t` would write of the first N axes: the command and the position that the
+/// encoders show, mm, both taken at the same moment, once a servo period.
 ///
 /// # Errors
 /// A program that cannot be read, or a machine without a plan.
-pub fn recorded_log<const N: usize>(machine: &Machine, program: &Program) -> Result<String, RunError> {
+pub fn recorded_log<const N: usize>(
+    machine: &Machine,
+    program: &Program,
+) -> Result<String, RunError> {
     let steps = program.reader(Settings::default())?.map_while(Result::ok);
     let mut reference = Stages::of(machine).reference(path_steps(steps), machine)?;
     let mut seen_mm: [f64; N] = joints_of(reference.at(0.0).position_mm);
     let mut plant = Plant::<N>::new(machine, seen_mm);
     let servo_s = machine.period.servo_s;
-    let columns = AXIS_NAMES[..N].iter().map(|name| format!("{name}.cmd {name}.act"));
-    let mut log = format!("# sample_time_s = {servo_s}\n# n {}\n", columns.collect::<Vec<_>>().join(" "));
+    let columns = AXIS_NAMES[..N]
+        .iter()
+        .map(|name| format!("{name}.cmd {name}.act"));
+    let mut log = format!(
+        "# sample_time_s = {servo_s}\n# n {}\n",
+        columns.collect::<Vec<_>>().join(" ")
+    );
     for n in 0_u32.. {
         let t_s = f64::from(n) * servo_s;
         let command_mm: [f64; N] = joints_of(reference.at(t_s).position_mm);

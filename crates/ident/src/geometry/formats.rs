@@ -21,12 +21,16 @@ const FORMATS: &str = "feedwright reads a ball bar (columns angle_deg, direction
                        docs/measure-geometry.md";
 
 impl GeometryInput {
-    /// The measurement in a text; `axis` says which axis a compensation file or a positioning table is of.
+    /// The measurement in a text; `axis` says which axis a compensation file or a positioning table
+    /// is of.
     ///
     /// # Errors
     /// A text of another kind, or with a fault.
     pub fn parse(file: &str, text: &str, axis: Option<usize>) -> Result<Self, MeasurementError> {
-        let blocks: Vec<TextBlock> = blocks(file, text).into_iter().filter(|block| !block.rows.is_empty()).collect();
+        let blocks: Vec<TextBlock> = blocks(file, text)
+            .into_iter()
+            .filter(|block| !block.rows.is_empty())
+            .collect();
         let mut sets = Vec::new();
         for block in &blocks {
             let reader = reader(block).ok_or_else(|| unknown(block, block.line()))?;
@@ -48,7 +52,10 @@ impl GeometryInput {
             sets.push(set);
         }
         if sets.is_empty() {
-            let empty = TextBlock { file: file.to_owned(), ..TextBlock::default() };
+            let empty = TextBlock {
+                file: file.to_owned(),
+                ..TextBlock::default()
+            };
             return Err(unknown(&empty, 1));
         }
         Ok(Self::Sets(sets))
@@ -65,9 +72,15 @@ enum MeasurementFormat {
 }
 
 fn reader(block: &TextBlock) -> Option<MeasurementFormat> {
-    let has = |begins: &str| block.columns.iter().any(|column| column.starts_with(begins));
+    let has = |begins: &str| {
+        block
+            .columns
+            .iter()
+            .any(|column| column.starts_with(begins))
+    };
     let measured_of = |axis: &&'static str| {
-        has(&format!("{axis}_mm")) && (has(&format!("{axis}_measured")) || has(&format!("d{axis}_")))
+        has(&format!("{axis}_mm"))
+            && (has(&format!("{axis}_measured")) || has(&format!("d{axis}_")))
     };
     if has("angle") {
         Some(MeasurementFormat::BallBar)
@@ -85,32 +98,72 @@ fn reader(block: &TextBlock) -> Option<MeasurementFormat> {
 }
 
 fn unknown(block: &TextBlock, line: usize) -> MeasurementError {
-    let is_log = block.columns.iter().any(|column| column.ends_with(".cmd") || column.ends_with(".act"));
+    let is_log = block
+        .columns
+        .iter()
+        .any(|column| column.ends_with(".cmd") || column.ends_with(".act"));
     if is_log {
-        let message = "this is a log of commanded and actual positions, which show no geometry".to_owned();
-        return block.error(line, message, "leave --geometry out to identify the axes from it");
+        let message =
+            "this is a log of commanded and actual positions, which show no geometry".to_owned();
+        return block.error(
+            line,
+            message,
+            "leave --geometry out to identify the axes from it",
+        );
     }
-    let columns = if block.columns.is_empty() { "none".to_owned() } else { block.columns.join(", ") };
-    block.error(line, format!("this is no measurement that is known; its columns are: {columns}"), FORMATS)
+    let columns = if block.columns.is_empty() {
+        "none".to_owned()
+    } else {
+        block.columns.join(", ")
+    };
+    block.error(
+        line,
+        format!("this is no measurement that is known; its columns are: {columns}"),
+        FORMATS,
+    )
 }
 
 fn axis_of(block: &TextBlock, given: Option<usize>) -> Result<usize, MeasurementError> {
-    let named = block.keys.get("axis").and_then(|name| AXIS_NAMES.iter().position(|axis| *axis == name.to_lowercase()));
+    let named = block.keys.get("axis").and_then(|name| {
+        AXIS_NAMES
+            .iter()
+            .position(|axis| *axis == name.to_lowercase())
+    });
     named.or(given).ok_or_else(|| {
         let message = "which axis this is of is not said".to_owned();
-        block.error(block.line(), message, "give the file as x=FILE, or put a line '# axis: x' into it")
+        block.error(
+            block.line(),
+            message,
+            "give the file as x=FILE, or put a line '# axis: x' into it",
+        )
     })
 }
 
 fn plane_of(block: &TextBlock) -> String {
-    block.keys.get("plane").map_or_else(|| "xy".to_owned(), |plane| plane.to_lowercase())
+    block
+        .keys
+        .get("plane")
+        .map_or_else(|| "xy".to_owned(), |plane| plane.to_lowercase())
 }
 
 /// A set without rows, in its place.
-fn set_of(block: &TextBlock, kind: &str, axes: String, at: &str) -> Result<MeasuredSet, MeasurementError> {
+fn set_of(
+    block: &TextBlock,
+    kind: &str,
+    axes: String,
+    at: &str,
+) -> Result<MeasuredSet, MeasurementError> {
     let [x_mm, y_mm, z_mm] = block.place_mm(at)?;
     let calibrated = block.flag("calibrated");
-    let set = MeasuredSet { kind: kind.to_owned(), axes, calibrated, x_mm, y_mm, z_mm, ..MeasuredSet::default() };
+    let set = MeasuredSet {
+        kind: kind.to_owned(),
+        axes,
+        calibrated,
+        x_mm,
+        y_mm,
+        z_mm,
+        ..MeasuredSet::default()
+    };
     if set.axis_numbers().is_none() {
         let message = format!("the plane is '{}'", set.axes);
         return Err(block.error(block.line(), message, "write '# plane: xy', xz or yz"));
@@ -125,14 +178,22 @@ fn way(block: &TextBlock, line: usize, cell: &str) -> Result<f64, MeasurementErr
         "-1" | "-" | "cw" | "g2" | "backward" | "reverse" | "down" => Ok(-1.0),
         other => {
             let message = format!("the direction is '{other}'");
-            Err(block.error(line, message, "write 1 or -1, ccw or cw for a circle, forward or backward for an axis"))
+            Err(block.error(
+                line,
+                message,
+                "write 1 or -1, ccw or cw for a circle, forward or backward for an axis",
+            ))
         }
     }
 }
 
 fn ball_bar(block: &TextBlock) -> Result<MeasuredSet, MeasurementError> {
     let mut set = set_of(block, "bar", plane_of(block), "center_mm")?;
-    let radius = block.keys.get("radius_mm").and_then(|value| value.parse::<f64>().ok()).filter(|mm| *mm > 0.0);
+    let radius = block
+        .keys
+        .get("radius_mm")
+        .and_then(|value| value.parse::<f64>().ok())
+        .filter(|mm| *mm > 0.0);
     let radius_mm = radius.ok_or_else(|| {
         block.error(
             block.line(),
@@ -148,20 +209,43 @@ fn ball_bar(block: &TextBlock) -> Result<MeasuredSet, MeasurementError> {
         .map(|of| (of, 0.0))
         .or(block.column("radius", "um").map(|of| (of, 1e3 * radius_mm)));
     let ((deviation, factor), nominal_um) = deviation.ok_or_else(|| {
-        block.error(block.line(), "there is no column of deviations".to_owned(), "name it deviation_um or radius_mm")
+        block.error(
+            block.line(),
+            "there is no column of deviations".to_owned(),
+            "name it deviation_um or radius_mm",
+        )
     })?;
     // What the encoders see is no geometry.
     let encoder = block.column("encoder", "um");
     for row in &block.rows {
-        let cell =
-            direction.and_then(|at| row.1.get(at)).or_else(|| block.keys.get("direction")).map_or("", String::as_str);
-        let encoder_um = encoder.map_or(Ok(0.0), |(at, factor)| block.number(row, at).map(|value| factor * value))?;
+        let cell = direction
+            .and_then(|at| row.1.get(at))
+            .or_else(|| block.keys.get("direction"))
+            .map_or("", String::as_str);
+        let encoder_um = encoder.map_or(Ok(0.0), |(at, factor)| {
+            block.number(row, at).map(|value| factor * value)
+        })?;
         let deviation_um = factor * block.number(row, deviation)? - nominal_um - encoder_um;
-        set.rows.push(vec![block.number(row, angle)?, way(block, row.0, cell)?, deviation_um]);
+        set.rows.push(vec![
+            block.number(row, angle)?,
+            way(block, row.0, cell)?,
+            deviation_um,
+        ]);
     }
-    if let Some(at) = set.rows.iter().position(|row| row[2].abs() > 1e4 * 0.1 * radius_mm) {
-        let message = format!("a deviation of {} um is no reading of a ball bar of {radius_mm} mm", set.rows[at][2]);
-        return Err(block.error(block.rows[at].0, message, "is the unit right? columns end with _um or _mm"));
+    if let Some(at) = set
+        .rows
+        .iter()
+        .position(|row| row[2].abs() > 1e4 * 0.1 * radius_mm)
+    {
+        let message = format!(
+            "a deviation of {} um is no reading of a ball bar of {radius_mm} mm",
+            set.rows[at][2]
+        );
+        return Err(block.error(
+            block.rows[at].0,
+            message,
+            "is the unit right? columns end with _um or _mm",
+        ));
     }
     Ok(set)
 }
@@ -169,7 +253,10 @@ fn ball_bar(block: &TextBlock) -> Result<MeasuredSet, MeasurementError> {
 fn positioning(block: &TextBlock, axis: Option<usize>) -> Result<MeasuredSet, MeasurementError> {
     let axis = axis_of(block, axis)?;
     let mut set = set_of(block, "axis", AXIS_NAMES[axis].to_owned(), "others_mm")?;
-    let position = block.column("position", "mm").or(block.column("target", "mm")).map_or(0, |(at, _)| at);
+    let position = block
+        .column("position", "mm")
+        .or(block.column("target", "mm"))
+        .map_or(0, |(at, _)| at);
     let no_values = || {
         block.error(
             block.line(),
@@ -178,15 +265,25 @@ fn positioning(block: &TextBlock, axis: Option<usize>) -> Result<MeasuredSet, Me
         )
     };
     let direction = block.column("direction", "").map(|(at, _)| at);
-    // Column, factor to um, direction or the column that says it, whether it is the position itself.
+    // Column, factor to um, direction or the column that says it, whether it is the position
+    // itself.
     let mut values: Vec<(usize, f64, Option<f64>, bool)> = Vec::new();
-    for (at, column) in block.columns.iter().enumerate().filter(|(at, _)| *at != position && Some(*at) != direction) {
+    for (at, column) in block
+        .columns
+        .iter()
+        .enumerate()
+        .filter(|(at, _)| *at != position && Some(*at) != direction)
+    {
         let factor = if column.ends_with("_mm") { 1e3 } else { 1.0 };
-        if column.starts_with("deviation") || column.starts_with("measured") || column.starts_with("actual") {
+        if column.starts_with("deviation")
+            || column.starts_with("measured")
+            || column.starts_with("actual")
+        {
             values.push((at, factor, None, !column.starts_with("deviation")));
         } else if column.contains("forward") || column.ends_with('+') {
             values.push((at, factor, Some(1.0), false));
-        } else if column.contains("backward") || column.contains("reverse") || column.ends_with('-') {
+        } else if column.contains("backward") || column.contains("reverse") || column.ends_with('-')
+        {
             values.push((at, factor, Some(-1.0), false));
         }
     }
@@ -196,10 +293,16 @@ fn positioning(block: &TextBlock, axis: Option<usize>) -> Result<MeasuredSet, Me
     for row in &block.rows {
         let at_mm = block.number(row, position)?;
         for &(column, factor, fixed, is_position) in &values {
-            let cell = direction.and_then(|at| row.1.get(at)).map_or("", String::as_str);
+            let cell = direction
+                .and_then(|at| row.1.get(at))
+                .map_or("", String::as_str);
             let way = fixed.map_or_else(|| way(block, row.0, cell), Ok)?;
             let value = block.number(row, column)?;
-            let deviation_um = if is_position { 1e3 * (value - at_mm) } else { factor * value };
+            let deviation_um = if is_position {
+                1e3 * (value - at_mm)
+            } else {
+                factor * value
+            };
             set.rows.push(vec![at_mm, way, deviation_um]);
         }
     }
@@ -211,15 +314,24 @@ fn grid(block: &TextBlock) -> Result<MeasuredSet, MeasurementError> {
         .into_iter()
         .filter(|axis| {
             block.columns.iter().any(|column| {
-                column.starts_with(&format!("{axis}_measured")) || column.starts_with(&format!("d{axis}_"))
+                column.starts_with(&format!("{axis}_measured"))
+                    || column.starts_with(&format!("d{axis}_"))
             })
         })
         .collect();
     let mut set = set_of(block, "grid", axes.concat(), "origin_mm")?;
     let columns = |axis: &str| {
-        let command = block.column(&format!("{axis}_mm"), "mm").map_or(0, |(at, _)| at);
+        let command = block
+            .column(&format!("{axis}_mm"), "mm")
+            .map_or(0, |(at, _)| at);
         let difference = block.column(&format!("d{axis}_"), "um");
-        (command, difference, block.column(&format!("{axis}_measured"), "mm").map_or(0, |(at, _)| at))
+        (
+            command,
+            difference,
+            block
+                .column(&format!("{axis}_measured"), "mm")
+                .map_or(0, |(at, _)| at),
+        )
     };
     let (mut before, mut ways) = (None::<[f64; 2]>, [0.0; 2]);
     for row in &block.rows {
@@ -237,12 +349,15 @@ fn grid(block: &TextBlock) -> Result<MeasuredSet, MeasurementError> {
             }
         }
         before = Some(at_mm);
-        set.rows.push(vec![at_mm[0], at_mm[1], ways[0], ways[1], seen_um[0], seen_um[1]]);
+        set.rows.push(vec![
+            at_mm[0], at_mm[1], ways[0], ways[1], seen_um[0], seen_um[1],
+        ]);
     }
     Ok(set)
 }
 
-/// Names of distances of a test part: direction in degrees, and by how much more than once each side moves with the size of the tool.
+/// Names of distances of a test part: direction in degrees, and by how much more than once each
+/// side moves with the size of the tool.
 const DISTANCES: [(&str, f64, f64); 8] = [
     ("circle_0", 0.0, 1.0),
     ("circle_45", 45.0, 1.0),
@@ -271,7 +386,8 @@ fn test_part(block: &TextBlock) -> Result<MeasuredSet, MeasurementError> {
         let (nominal_mm, measured_mm) = (block.number(row, nominal)?, block.number(row, measured)?);
         let (sin, cos) = libm::sincos(angle_deg.to_radians());
         let [a, b] = [0.5 * nominal_mm * cos, 0.5 * nominal_mm * sin];
-        set.rows.push(vec![-a, -b, a, b, *size, 1e3 * (measured_mm - nominal_mm)]);
+        set.rows
+            .push(vec![-a, -b, a, b, *size, 1e3 * (measured_mm - nominal_mm)]);
     }
     Ok(set)
 }

@@ -11,9 +11,20 @@ impl FoundGeometry {
         let mut lines: Vec<String> = self
             .values
             .iter()
-            .map(|found| format!("{:<16} {:>10} +- {} {}", found.name, found.value, found.std, found.unit))
+            .map(|found| {
+                format!(
+                    "{:<16} {:>10} +- {} {}",
+                    found.name, found.value, found.std, found.unit
+                )
+            })
             .collect();
-        for axis in self.file.axes.iter().zip(feedwright_sim::AXIS_NAMES).filter(|(axis, _)| !axis.table.is_empty()) {
+        for axis in self
+            .file
+            .axes
+            .iter()
+            .zip(feedwright_sim::AXIS_NAMES)
+            .filter(|(axis, _)| !axis.table.is_empty())
+        {
             let (axis, name) = axis;
             lines.push(format!(
                 "{:<16} {:>10} positions +- {} um",
@@ -34,10 +45,15 @@ impl FoundGeometry {
                 to_four_digits(set.left_um),
                 set.rows
             ));
-            let nuisances =
-                set.nuisances.iter().map(|(name, value, unit)| format!("{name} {} {unit}", to_four_digits(*value)));
+            let nuisances = set
+                .nuisances
+                .iter()
+                .map(|(name, value, unit)| format!("{name} {} {unit}", to_four_digits(*value)));
             lines.push(format!("  {}", nuisances.collect::<Vec<_>>().join(", ")));
-            lines.extend(set.circularity.map(|circularity| format!("  {}", circularity.line())));
+            lines.extend(
+                set.circularity
+                    .map(|circularity| format!("  {}", circularity.line())),
+            );
         }
         lines.extend(self.notes.iter().cloned());
         lines
@@ -45,11 +61,15 @@ impl FoundGeometry {
 
     /// The keys of docs/json.md below `identify --geometry`.
     pub fn json(&self) -> Value {
-        let values =
-            self.values.iter().map(|of| json!({"name": of.name, "unit": of.unit, "value": of.value, "std": of.std}));
+        let values = self
+            .values
+            .iter()
+            .map(|of| json!({"name": of.name, "unit": of.unit, "value": of.value, "std": of.std}));
         let sets = self.sets.iter().map(|set| {
-            let nuisances =
-                set.nuisances.iter().map(|(name, value, unit)| json!({"name": name, "value": value, "unit": unit}));
+            let nuisances = set
+                .nuisances
+                .iter()
+                .map(|(name, value, unit)| json!({"name": name, "value": value, "unit": unit}));
             json!({
                 "name": set.name,
                 "rows": set.rows,

@@ -15,9 +15,11 @@ pub struct BallBarProgram {
     pub plane: [usize; 2],
 }
 
-/// Way that the bar is shorter than the start of the program, mm: within the stroke of a telescoping ball bar.
+/// Way that the bar is shorter than the start of the program, mm: within the stroke of a
+/// telescoping ball bar.
 pub(super) const FEED_IN_MM: f64 = 1.0;
-/// Arc before and behind the measured one, degrees: the machine has its speed, and the servos have settled.
+/// Arc before and behind the measured one, degrees: the machine has its speed, and the servos have
+/// settled.
 pub(super) const OVERSHOOT_DEG: f64 = 90.0;
 /// The same in a plane with z, where the spindle bounds the arc.
 const SHORT_OVERSHOOT_DEG: f64 = 2.0;
@@ -25,20 +27,34 @@ const SHORT_OVERSHOOT_DEG: f64 = 2.0;
 impl BallBarProgram {
     /// First and last angle that is measured, degrees, and the arc before and behind.
     pub(super) fn arc_deg(&self) -> ([f64; 2], f64) {
-        if self.plane == [0, 1] { ([0.0, 360.0], OVERSHOOT_DEG) } else { ([-20.0, 200.0], SHORT_OVERSHOOT_DEG) }
+        if self.plane == [0, 1] {
+            ([0.0, 360.0], OVERSHOOT_DEG)
+        } else {
+            ([-20.0, 200.0], SHORT_OVERSHOOT_DEG)
+        }
     }
 
-    /// Points of the moves of a direction: start, first and last point of the arc, end; and how many full turns the arc has besides.
+    /// Points of the moves of a direction: start, first and last point of the arc, end; and how
+    /// many full turns the arc has besides.
     fn points(&self, way: f64) -> ([[f64; 2]; 4], bool) {
         let ([first, last], over) = self.arc_deg();
-        let [from, to] = if way > 0.0 { [first - over, last + over] } else { [last + over, first - over] };
+        let [from, to] = if way > 0.0 {
+            [first - over, last + over]
+        } else {
+            [last + over, first - over]
+        };
         let at = |angle_deg: f64, radius_mm: f64| {
             let (sin, cos) = libm::sincos(angle_deg.to_radians());
             [radius_mm * cos, radius_mm * sin].map(|mm| (mm * 1e5).round() / 1e5 + 0.0)
         };
         let outside = self.radius_mm + FEED_IN_MM;
         (
-            [at(from, outside), at(from, self.radius_mm), at(to, self.radius_mm), at(to, outside)],
+            [
+                at(from, outside),
+                at(from, self.radius_mm),
+                at(to, self.radius_mm),
+                at(to, outside),
+            ],
             (to - from).abs() >= 360.0,
         )
     }
@@ -70,7 +86,11 @@ impl BallBarProgram {
             let counterclockwise = (way > 0.0) != (self.plane == [0, 2]);
             let code = if counterclockwise { "G3" } else { "G2" };
             let center = format!("{i}{} {j}{}", -from[0] + 0.0, -from[1] + 0.0);
-            let word = if way > 0.0 { "counterclockwise" } else { "clockwise" };
+            let word = if way > 0.0 {
+                "counterclockwise"
+            } else {
+                "clockwise"
+            };
             let point = |of: [f64; 2]| format!("{a}{} {b}{}", of[0], of[1]);
             // Writing to a string cannot fail.
             let _ = writeln!(
@@ -82,7 +102,12 @@ impl BallBarProgram {
             if has_turn {
                 let _ = writeln!(text, "{code} {} {center}", point(from));
             }
-            let _ = writeln!(text, "{code} {} {center}\nG1 {}\nM0 (stop the record)", point(to), point(end));
+            let _ = writeln!(
+                text,
+                "{code} {} {center}\nG1 {}\nM0 (stop the record)",
+                point(to),
+                point(end)
+            );
         }
         text + "M2\n"
     }
@@ -105,7 +130,10 @@ const REST_S: f64 = 1.0;
 impl GridProgram {
     /// Points of a line.
     fn points(&self) -> u32 {
-        (self.travel_mm / self.step_mm + 1e-9).floor().clamp(1.0, 200.0) as u32 + 1
+        (self.travel_mm / self.step_mm + 1e-9)
+            .floor()
+            .clamp(1.0, 200.0) as u32
+            + 1
     }
 
     /// The program: rows along x, then rows along y, each there and back.
@@ -120,8 +148,12 @@ impl GridProgram {
         for [along, across] in [["X", "Y"], ["Y", "X"]] {
             for row in 0..count {
                 for point in (0..count).chain((0..count).rev()) {
-                    let [along_mm, across_mm] = [point, row].map(|number| f64::from(number) * self.step_mm);
-                    let _ = writeln!(text, "G1 {along}{along_mm} {across}{across_mm}\nG4 P{REST_S}");
+                    let [along_mm, across_mm] =
+                        [point, row].map(|number| f64::from(number) * self.step_mm);
+                    let _ = writeln!(
+                        text,
+                        "G1 {along}{along_mm} {across}{across_mm}\nG4 P{REST_S}"
+                    );
                 }
             }
         }

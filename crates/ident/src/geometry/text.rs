@@ -1,8 +1,8 @@
 //! Texts of measurements: lines `key: value`, a line of columns, and rows.
 //!
-//! A key may stand behind `#`. A line without any number names the columns. A key or columns after rows begin the next block,
-//! which keeps the keys from before. Cells are separated by semicolons, tabs, commas or blanks; with the first two, a comma may be the
-//! decimal point.
+//! A key may stand behind `#`. A line without any number names the columns. A key or columns after
+//! rows begin the next block, which keeps the keys from before. Cells are separated by semicolons,
+//! tabs, commas or blanks; with the first two, a comma may be the decimal point.
 
 use std::collections::BTreeMap;
 
@@ -40,7 +40,12 @@ pub(super) struct TextBlock {
 
 impl TextBlock {
     pub(super) fn error(&self, line: usize, message: String, hint: &str) -> MeasurementError {
-        MeasurementError { file: self.file.clone(), line, message, hint: hint.to_owned() }
+        MeasurementError {
+            file: self.file.clone(),
+            line,
+            message,
+            hint: hint.to_owned(),
+        }
     }
 
     /// Line of the first row.
@@ -49,17 +54,34 @@ impl TextBlock {
     }
 
     /// The number in a cell of a row.
-    pub(super) fn number(&self, row: &(usize, Vec<String>), column: usize) -> Result<f64, MeasurementError> {
+    pub(super) fn number(
+        &self,
+        row: &(usize, Vec<String>),
+        column: usize,
+    ) -> Result<f64, MeasurementError> {
         let cell = row.1.get(column).map_or("", String::as_str);
-        cell.parse::<f64>().ok().filter(|number| number.is_finite()).ok_or_else(|| {
-            let name = self.columns.get(column).map_or_else(|| format!("column {}", column + 1), Clone::clone);
-            self.error(row.0, format!("{name} is '{cell}', not a number"), "each row has a number in each column")
-        })
+        cell.parse::<f64>()
+            .ok()
+            .filter(|number| number.is_finite())
+            .ok_or_else(|| {
+                let name = self
+                    .columns
+                    .get(column)
+                    .map_or_else(|| format!("column {}", column + 1), Clone::clone);
+                self.error(
+                    row.0,
+                    format!("{name} is '{cell}', not a number"),
+                    "each row has a number in each column",
+                )
+            })
     }
 
     /// The column whose name begins so, and the factor that makes it `unit` (`um` or `mm`).
     pub(super) fn column(&self, begins: &str, unit: &str) -> Option<(usize, f64)> {
-        let at = self.columns.iter().position(|column| column.starts_with(begins))?;
+        let at = self
+            .columns
+            .iter()
+            .position(|column| column.starts_with(begins))?;
         let factor = match (self.columns[at].rsplit('_').next()?, unit) {
             ("mm", "um") => 1e3,
             ("um", "mm") => 1e-3,
@@ -70,9 +92,14 @@ impl TextBlock {
 
     /// Three numbers of a key; zeros where it is missing.
     pub(super) fn place_mm(&self, key: &str) -> Result<[f64; 3], MeasurementError> {
-        let Some(value) = self.keys.get(key) else { return Ok([0.0; 3]) };
-        let numbers: Option<Vec<f64>> =
-            value.split([',', ' ', ';']).filter(|cell| !cell.is_empty()).map(|cell| cell.parse().ok()).collect();
+        let Some(value) = self.keys.get(key) else {
+            return Ok([0.0; 3]);
+        };
+        let numbers: Option<Vec<f64>> = value
+            .split([',', ' ', ';'])
+            .filter(|cell| !cell.is_empty())
+            .map(|cell| cell.parse().ok())
+            .collect();
         match numbers.as_deref() {
             Some(&[x, y]) => Ok([x, y, 0.0]),
             Some(&[x, y, z]) => Ok([x, y, z]),
@@ -86,19 +113,27 @@ impl TextBlock {
 
     /// Whether a key is `yes`, `true` or `1`.
     pub(super) fn flag(&self, key: &str) -> bool {
-        self.keys.get(key).is_some_and(|value| ["yes", "true", "1"].contains(&value.to_lowercase().as_str()))
+        self.keys
+            .get(key)
+            .is_some_and(|value| ["yes", "true", "1"].contains(&value.to_lowercase().as_str()))
     }
 }
 
 /// The blocks of a text.
 pub(super) fn blocks(file: &str, text: &str) -> Vec<TextBlock> {
-    let mut blocks = vec![TextBlock { file: file.to_owned(), ..TextBlock::default() }];
+    let mut blocks = vec![TextBlock {
+        file: file.to_owned(),
+        ..TextBlock::default()
+    }];
     for (number, line) in text.lines().enumerate() {
         let bare = line.trim_start_matches('\u{feff}').trim();
         let comment = bare.trim_start_matches(['#', '%', '/', ';']).trim();
         let begins = |blocks: &mut Vec<TextBlock>| {
             if let Some(last) = blocks.last().filter(|last| !last.rows.is_empty()) {
-                let next = TextBlock { rows: Vec::new(), ..last.clone() };
+                let next = TextBlock {
+                    rows: Vec::new(),
+                    ..last.clone()
+                };
                 blocks.push(next);
             }
         };
@@ -140,7 +175,10 @@ fn cells(line: &str) -> Vec<String> {
     let clean = |cell: &str| cell.trim().trim_matches('"').to_owned();
     for separator in [';', '\t'] {
         if line.contains(separator) {
-            return line.split(separator).map(|cell| clean(cell).replace(',', ".")).collect();
+            return line
+                .split(separator)
+                .map(|cell| clean(cell).replace(',', "."))
+                .collect();
         }
     }
     if line.contains(',') {

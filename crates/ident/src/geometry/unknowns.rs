@@ -1,7 +1,7 @@
 //! The unknowns that a measurement may tell, each as the geometry that it has when it is 1.
 //!
-//! The scales of n axes are fitted as n - 1 differences and their mean. A ball bar of unknown length does not tell the mean, which is
-//! then dropped; the differences remain, split evenly.
+//! The scales of n axes are fitted as n - 1 differences and their mean. A ball bar of unknown
+//! length does not tell the mean, which is then dropped; the differences remain, split evenly.
 
 use feedwright_sim::{AXIS_NAMES, GeometryFile, Observation};
 
@@ -30,20 +30,28 @@ pub(super) struct Unknown {
     pub(super) unit: GeometryFile,
 }
 
-/// Steps of a turn of the screw that a measurement has at least, to show what happens within a turn.
+/// Steps of a turn of the screw that a measurement has at least, to show what happens within a
+/// turn.
 const STEPS_PER_TURN: f64 = 5.0;
 
 /// Whether steps of this length along an axis show what is within a turn.
 pub(super) fn shows_turns(observations: &[Observation], axis: usize, lead_mm: f64) -> bool {
-    let moves =
-        observations.windows(2).map(|pair| (pair[1].places[0].at_mm[axis] - pair[0].places[0].at_mm[axis]).abs());
+    let moves = observations
+        .windows(2)
+        .map(|pair| (pair[1].places[0].at_mm[axis] - pair[0].places[0].at_mm[axis]).abs());
     let mut moves: Vec<f64> = moves.filter(|step_mm| *step_mm > 1e-6).collect();
     moves.sort_by(f64::total_cmp);
-    moves.get(moves.len() / 2).is_some_and(|median_mm| *median_mm <= lead_mm / STEPS_PER_TURN)
+    moves
+        .get(moves.len() / 2)
+        .is_some_and(|median_mm| *median_mm <= lead_mm / STEPS_PER_TURN)
 }
 
 /// The unknowns of some axes and planes, the ones that are most surely told first.
-pub(super) fn unknowns(axes: &[usize], planes: &[[usize; 2]], turns: [Option<f64>; 3]) -> Vec<Unknown> {
+pub(super) fn unknowns(
+    axes: &[usize],
+    planes: &[[usize; 2]],
+    turns: [Option<f64>; 3],
+) -> Vec<Unknown> {
     let of = |kind, change: &dyn Fn(&mut GeometryFile)| {
         let mut unit = GeometryFile::default();
         change(&mut unit);
@@ -62,20 +70,34 @@ pub(super) fn unknowns(axes: &[usize], planes: &[[usize; 2]], turns: [Option<f64
         // The k-th axis against the mean of those before.
         let whole = (k + 1) as f64;
         all.push(of(UnknownKind::ScaleDifference, &|file| {
-            axes[..k].iter().for_each(|&axis| file.axes[axis].scale_um_m = -1.0 / whole);
+            axes[..k]
+                .iter()
+                .for_each(|&axis| file.axes[axis].scale_um_m = -1.0 / whole);
             file.axes[axes[k]].scale_um_m = k as f64 / whole;
         }));
     }
-    all.push(of(UnknownKind::MeanScale, &|file| axes.iter().for_each(|&axis| file.axes[axis].scale_um_m = 1.0)));
+    all.push(of(UnknownKind::MeanScale, &|file| {
+        axes.iter()
+            .for_each(|&axis| file.axes[axis].scale_um_m = 1.0);
+    }));
     for &axis in axes {
-        all.push(of(UnknownKind::Backlash(axis), &|file| file.axes[axis].backlash_um = 1.0));
+        all.push(of(UnknownKind::Backlash(axis), &|file| {
+            file.axes[axis].backlash_um = 1.0;
+        }));
     }
     for &axis in axes {
         let Some(lead_mm) = turns[axis] else { continue };
-        for (kind, phase_deg) in [(UnknownKind::PitchSine(axis), 0.0), (UnknownKind::PitchCosine(axis), 90.0)] {
+        for (kind, phase_deg) in [
+            (UnknownKind::PitchSine(axis), 0.0),
+            (UnknownKind::PitchCosine(axis), 90.0),
+        ] {
             all.push(of(kind, &|file| {
                 let axis = &mut file.axes[axis];
-                (axis.pitch_error_um, axis.pitch_phase_deg, axis.lead_mm_per_rev) = (1.0, phase_deg, lead_mm);
+                (
+                    axis.pitch_error_um,
+                    axis.pitch_phase_deg,
+                    axis.lead_mm_per_rev,
+                ) = (1.0, phase_deg, lead_mm);
             }));
         }
     }
@@ -102,7 +124,9 @@ impl UnknownKind {
             Self::ScaleDifference => "difference of scales".to_owned(),
             Self::MeanScale => "mean scale".to_owned(),
             Self::Backlash(axis) => format!("backlash {}", AXIS_NAMES[axis]),
-            Self::PitchSine(axis) | Self::PitchCosine(axis) => format!("pitch error {}", AXIS_NAMES[axis]),
+            Self::PitchSine(axis) | Self::PitchCosine(axis) => {
+                format!("pitch error {}", AXIS_NAMES[axis])
+            }
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Axes identified from a recording: what each is, by its law, and the statistics of its noise.
 //!
-//! What a drive is set to is known; [`super::axis_parameters`] finds inertia and friction, [`super::axis_statistics`] the noise. Of an
-//! axis that does not move so that they show, nothing is found.
+//! What a drive is set to is known; [`super::axis_parameters`] finds inertia and friction,
+//! [`super::axis_statistics`] the noise. Of an axis that does not move so that they show, nothing
+//! is found.
 
 use feedwright_control::IdentifiedAxes;
 use feedwright_sim::{Known, Machine, map_in_parallel};
@@ -37,18 +38,24 @@ impl<const N: usize> AxisRecordings<N> {
     /// Of a simulated machine.
     pub fn of(machine: &Machine, seed: u64) -> Self {
         let (parameters, _) = Excitation::axis_parameters(machine).record(machine, seed);
-        Self { parameters, statistics: Excitation::statistics(machine).record_in_one(machine, seed) }
+        Self {
+            parameters,
+            statistics: Excitation::statistics(machine).record_in_one(machine, seed),
+        }
     }
 
     /// Both as one.
     pub fn joined(&self) -> Recording<N> {
         let mut joined = self.parameters.clone();
-        joined.stretches.extend_from_slice(&self.statistics.stretches);
+        joined
+            .stretches
+            .extend_from_slice(&self.statistics.stretches);
         joined
     }
 }
 
-/// Finds the axes of a machine whose drives are set as it is known; they are to be used on one whose drives may be set otherwise.
+/// Finds the axes of a machine whose drives are set as it is known; they are to be used on one
+/// whose drives may be set otherwise.
 ///
 /// # Errors
 /// A recording in which parameters do not show.
@@ -57,26 +64,50 @@ pub fn train_axes<const N: usize>(
     known: &Known,
     used_on: &Known,
 ) -> Result<TrainedAxes<N>, NotIdentified> {
-    let estimate =
-        |i: usize| identify_axis(&recordings.parameters, i, &DriveSettings::of(known.axis(i), &known.period));
+    let estimate = |i: usize| {
+        identify_axis(
+            &recordings.parameters,
+            i,
+            &DriveSettings::of(known.axis(i), &known.period),
+        )
+    };
     // All, and then the first axis that fails: not the one whose thread is first.
-    let estimates = map_in_parallel(0..N, estimate).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let estimates = map_in_parallel(0..N, estimate)
+        .into_iter()
+        .collect::<Result<Vec<_>, _>>()?;
     let believed = |of: &Known| {
         of.with_axes(|i, axis| {
             let settings = DriveSettings::of(axis, &of.period);
-            estimates.get(i).map_or(*axis, |found| found.parameters.believed(axis, &settings))
+            estimates
+                .get(i)
+                .map_or(*axis, |found| found.parameters.believed(axis, &settings))
         })
     };
     let statistics = axis_statistics(&recordings.statistics, &believed(known));
     let (here, periods) = (believed(used_on), used_on.period.periods());
     let axes = std::array::from_fn(|i| here.axis(i).with_statistics(periods, statistics[i]));
-    let axes = IdentifiedAxes { mechanics_s: used_on.period.mechanics_s, axes };
+    let axes = IdentifiedAxes {
+        mechanics_s: used_on.period.mechanics_s,
+        axes,
+    };
     // What no axis can be, a component in a servo thread would refuse.
     if !axes.are_possible(used_on.period.servo_s) {
         return Err(NotIdentified::NotExcited);
     }
-    let square_um2: f64 = estimates.iter().map(|found| found.left_um * found.left_um).sum();
+    let square_um2: f64 = estimates
+        .iter()
+        .map(|found| found.left_um * found.left_um)
+        .sum();
     let samples = [&recordings.parameters, &recordings.statistics];
-    let samples = samples.iter().flat_map(|recording| &recording.stretches).map(Vec::len).sum();
-    Ok(TrainedAxes { axes, estimates, fit_um: (square_um2 / N as f64).sqrt(), samples })
+    let samples = samples
+        .iter()
+        .flat_map(|recording| &recording.stretches)
+        .map(Vec::len)
+        .sum();
+    Ok(TrainedAxes {
+        axes,
+        estimates,
+        fit_um: (square_um2 / N as f64).sqrt(),
+        samples,
+    })
 }

@@ -1,15 +1,19 @@
-//! What an axis is, inertia and friction, from commanded and measured positions, where what its drive is set to is known.
+//! What an axis is, inertia and friction, from commanded and measured positions, where what its
+//! drive is set to is known.
 //!
 //! ```text
 //! minimise  V(p) = sum_k (y(k) - y_s(k; c, p))^2        over all knots of all stretches but their beginnings
 //! dp = (S^T S)^-1 S^T (y - y_s),   S = dy_s / dp         Gauss and Newton, in shorter steps where V grows
 //! ```
 //!
-//! y measured position, c commands, y_s the free run of the axis's law on the commands alone (`axis_parameters/free_run.rs`), p the
-//! parameters. This is the output error of the closed loop. What is random, encoder and torque noise, does not depend on the command,
-//! so that it is uncorrelated with S and leaves the minimum where it is; the torque that is recomputed from measured positions, and
-//! linear least squares on it, would have the noise in its regressors, twice differentiated (errors in variables). By how much the
-//! inertia comes out wrong, measured over both axes (`crates/ident/tests/oracle_axis_parameters.rs` has the method, the bounds, and holds them):
+//! y measured position, c commands, y_s the free run of the axis's law on the commands alone
+//! (`axis_parameters/free_run.rs`), p the parameters. This is the output error of the closed loop.
+//! What is random, encoder and torque noise, does not depend on the command, so that it is
+//! uncorrelated with S and leaves the minimum where it is; the torque that is recomputed from
+//! measured positions, and linear least squares on it, would have the noise in its regressors,
+//! twice differentiated (errors in variables). By how much the inertia comes out wrong, measured
+//! over both axes (`crates/ident/tests/oracle_axis_parameters.rs` has the method, the bounds, and
+//! holds them):
 //!
 //! | Machine | output error | least squares on the torque |
 //! |---|--:|--:|
@@ -21,14 +25,15 @@
 //! | router, with backlash and a late bus | +4 to +6 % | -64 to -65 % |
 //!
 //!
-//! Standard errors take each stretch for one observation, since what is left is correlated within (a vibration, torque noise):
+//! Standard errors take each stretch for one observation, since what is left is correlated within
+//! (a vibration, torque noise):
 //!
 //! ```text
 //! cov p = H^-1 (sum_stretches g g^T) H^-1 n / (n - 1),   H = S^T S,  g = S^T (y - y_s) over a stretch
 //! ```
 //!
-//! They tell what the noise does, not what the law does not have: Stribeck's curve goes into the Coulomb friction and the presliding, a
-//! bus that is late at random into all of them.
+//! They tell what the noise does, not what the law does not have: Stribeck's curve goes into the
+//! Coulomb friction and the presliding, a bus that is late at random into all of them.
 //!
 //! | File | What |
 //! |---|---|
@@ -36,11 +41,13 @@
 //! | `axis_parameters/output_error_fit.rs` | the steps of Gauss and Newton, and the standard errors |
 //! | `axis_parameters/screw_fit.rs` | whether the ball screw gives, and by how much |
 //!
-//! Source: Gautier, Janot and Vandanjon (2013), A new closed-loop output error method for parameter identification of robot dynamics,
-//! IEEE Trans. Control Systems Technology 21(2), for the output error of an axis in its loop with known gains; Landau and Karimi (1997),
-//! Recursive algorithms for identification in closed loop, Automatica 33(8), for why it is unbiased; Young (1970), An instrumental
-//! variable method for real-time identification of a noisy process, for what errors in variables do; Liang and Zeger (1986),
-//! Longitudinal data analysis using generalized linear models, Biometrika 73(1), for the standard errors.
+//! Source: Gautier, Janot and Vandanjon (2013), A new closed-loop output error method for parameter
+//! identification of robot dynamics, IEEE Trans. Control Systems Technology 21(2), for the output
+//! error of an axis in its loop with known gains; Landau and Karimi (1997), Recursive algorithms
+//! for identification in closed loop, Automatica 33(8), for why it is unbiased; Young (1970), An
+//! instrumental variable method for real-time identification of a noisy process, for what errors in
+//! variables do; Liang and Zeger (1986), Longitudinal data analysis using generalized linear
+//! models, Biometrika 73(1), for the standard errors.
 
 mod free_run;
 mod output_error_fit;
@@ -82,7 +89,8 @@ pub struct DriveSettings {
 }
 
 impl DriveSettings {
-    /// Those of an axis; its inertia and its friction are not looked at but for the torque that is fed forward.
+    /// Those of an axis; its inertia and its friction are not looked at but for the torque that is
+    /// fed forward.
     pub fn of(axis: &KnownAxis, period: &Period) -> Self {
         let nominal = &axis.nominal;
         Self {
@@ -99,9 +107,13 @@ impl DriveSettings {
         }
     }
 
-    /// What the drive has beside its loops, where the inertia is taken for this: the torque that it feeds forward stays what it is.
+    /// What the drive has beside its loops, where the inertia is taken for this: the torque that it
+    /// feeds forward stays what it is.
     pub fn drive_of(&self, inertia_kg_m2: f64) -> DriveParameters {
-        DriveParameters { acceleration_feedforward: self.fed_kg_m2 / inertia_kg_m2, ..self.drive }
+        DriveParameters {
+            acceleration_feedforward: self.fed_kg_m2 / inertia_kg_m2,
+            ..self.drive
+        }
     }
 }
 
@@ -115,7 +127,8 @@ pub struct AxisParameters {
     pub viscous_friction_nm_s: f64,
     /// Coulomb friction, N m.
     pub coulomb_friction_nm: f64,
-    /// What it is higher in the positive direction, and lower in the negative: also a weight that hangs on the axis, N m.
+    /// What it is higher in the positive direction, and lower in the negative: also a weight that
+    /// hangs on the axis, N m.
     pub coulomb_asymmetry_nm: f64,
     /// Deflection before it slides, rad; zero where it cannot be told from none.
     pub presliding_rad: f64,
@@ -123,8 +136,9 @@ pub struct AxisParameters {
     pub transmission: TransmissionParameters,
 }
 
-/// Speed over which Coulomb friction turns its sign where nothing of presliding is seen, mm/s of travel: as tnv40's. It only keeps the
-/// law smooth, and is no parameter that a recording could tell: a millisecond of a reversal.
+/// Speed over which Coulomb friction turns its sign where nothing of presliding is seen, mm/s of
+/// travel: as tnv40's. It only keeps the law smooth, and is no parameter that a recording could
+/// tell: a millisecond of a reversal.
 const SMOOTHING_MM_S: f64 = 0.08;
 
 /// How many they are: inertia and friction, and those of the screw.
@@ -140,7 +154,13 @@ impl From<AxisParameters> for [f64; PARAMETERS] {
             coulomb_friction_nm,
             coulomb_asymmetry_nm,
             presliding_rad,
-            transmission: TransmissionParameters { table_share, resonance_rad_s, damping_ratio, backlash_rad },
+            transmission:
+                TransmissionParameters {
+                    table_share,
+                    resonance_rad_s,
+                    damping_ratio,
+                    backlash_rad,
+                },
         } = parameters;
         [
             inertia_kg_m2,
@@ -175,7 +195,12 @@ impl From<[f64; PARAMETERS]> for AxisParameters {
             coulomb_friction_nm,
             coulomb_asymmetry_nm,
             presliding_rad,
-            transmission: TransmissionParameters { table_share, resonance_rad_s, damping_ratio, backlash_rad },
+            transmission: TransmissionParameters {
+                table_share,
+                resonance_rad_s,
+                damping_ratio,
+                backlash_rad,
+            },
         }
     }
 }
@@ -186,7 +211,8 @@ impl AxisParameters {
         self.transmission != TransmissionParameters::RIGID
     }
 
-    /// What is then believed of an axis with these settings: nothing of its data sheets but the drive.
+    /// What is then believed of an axis with these settings: nothing of its data sheets but the
+    /// drive.
     #[must_use]
     pub fn believed(&self, axis: &KnownAxis, settings: &DriveSettings) -> KnownAxis {
         let nominal = self.law(settings);
@@ -203,7 +229,14 @@ impl AxisParameters {
 
     /// As the law of an axis takes them.
     fn law(&self, settings: &DriveSettings) -> Parameters {
-        let DriveSettings { rad_per_mm, kp_1_s, kd, kv_nm_s_per_rad, torque_limit_nm, .. } = *settings;
+        let DriveSettings {
+            rad_per_mm,
+            kp_1_s,
+            kd,
+            kv_nm_s_per_rad,
+            torque_limit_nm,
+            ..
+        } = *settings;
         Parameters {
             rad_per_mm,
             kp_1_s,
@@ -264,13 +297,16 @@ pub enum NotIdentified {
         settled_s: f64,
     },
     /// The axis does not move so that a parameter shows.
-    #[error("the axis does not move so that its parameters show\n  hint: record both directions and several speeds")]
+    #[error(
+        "the axis does not move so that its parameters show\n  hint: record both directions and several speeds"
+    )]
     NotExcited,
 }
 
 /// Stretches that standard errors need.
 const LEAST_STRETCHES: usize = 2;
-/// Time constants of the position loop after which the beginning is forgotten: what the drive had summed up is not recorded. e^-5 is 0.7 %.
+/// Time constants of the position loop after which the beginning is forgotten: what the drive had
+/// summed up is not recorded. e^-5 is 0.7 %.
 const SETTLED_CONSTANTS: f64 = 5.0;
 
 /// Finds the parameters of an axis.
@@ -284,7 +320,10 @@ pub fn identify_axis<const N: usize>(
 ) -> Result<AxisEstimate, NotIdentified> {
     let servo_s = settings.periods.servo_s;
     if (recording.feed_period_s - servo_s).abs() > 1e-9 * servo_s {
-        return Err(NotIdentified::Period { found_s: recording.feed_period_s, needed_s: servo_s });
+        return Err(NotIdentified::Period {
+            found_s: recording.feed_period_s,
+            needed_s: servo_s,
+        });
     }
     let settled_s = SETTLED_CONSTANTS / settings.kp_1_s;
     let settled = (settled_s / servo_s).ceil() as usize;
@@ -294,13 +333,23 @@ pub fn identify_axis<const N: usize>(
         .filter(|rows| rows.len() > settled + START_KNOTS)
         .map(|rows| {
             let (commands_mm, measured_mm) = rows.into_iter().map(<(f64, f64)>::from).unzip();
-            Stretch { commands_mm, measured_mm }
+            Stretch {
+                commands_mm,
+                measured_mm,
+            }
         })
         .collect();
     if stretches.len() < LEAST_STRETCHES {
-        return Err(NotIdentified::TooShort { stretches: stretches.len(), settled_s });
+        return Err(NotIdentified::TooShort {
+            stretches: stretches.len(),
+            settled_s,
+        });
     }
-    let fit = OutputErrorFit { settings, stretches, settled };
+    let fit = OutputErrorFit {
+        settings,
+        stretches,
+        settled,
+    };
     let rigid = fit.rigid()?;
     // A scale on the table sees what the screw does, and the loops hold the table.
     if settings.scale_on_table {
@@ -319,25 +368,56 @@ mod tests {
         Machine::load("stiff".as_ref()).unwrap().known()
     }
 
-    fn recording(knots: usize, stretches: usize, command_mm: impl Fn(usize) -> f64) -> Recording<1> {
-        let knot = |k| RecordedKnot { command_mm: [command_mm(k)], tool_mm: [command_mm(k)], contour_mm: [0.0] };
+    fn recording(
+        knots: usize,
+        stretches: usize,
+        command_mm: impl Fn(usize) -> f64,
+    ) -> Recording<1> {
+        let knot = |k| RecordedKnot {
+            command_mm: [command_mm(k)],
+            tool_mm: [command_mm(k)],
+            contour_mm: [0.0],
+        };
         let stretch: Vec<_> = (0..knots).map(knot).collect();
         let servo_s = known().period.servo_s;
-        Recording { servo_s, feed_period_s: servo_s, stretches: vec![stretch; stretches] }
+        Recording {
+            servo_s,
+            feed_period_s: servo_s,
+            stretches: vec![stretch; stretches],
+        }
     }
 
     #[test]
     fn what_does_not_tell_the_parameters_is_refused_with_the_reason() {
         let known = known();
         let settings = DriveSettings::of(known.axis(0), &known.period);
-        let refused = |recording: &Recording<1>| identify_axis(recording, 0, &settings).unwrap_err();
+        let refused =
+            |recording: &Recording<1>| identify_axis(recording, 0, &settings).unwrap_err();
         let sine = |k: usize| libm::sin(0.01 * k as f64);
         // Five time constants of 1/120 s are 84 servo periods.
-        assert!(matches!(refused(&recording(80, 5, sine)), NotIdentified::TooShort { stretches: 0, .. }));
-        assert!(matches!(refused(&recording(200, 1, sine)), NotIdentified::TooShort { stretches: 1, .. }));
-        assert_eq!(refused(&recording(200, 5, |_| 1.0)), NotIdentified::NotExcited);
-        let coarse = Recording { feed_period_s: 0.003, ..recording(200, 5, sine) };
-        assert_eq!(refused(&coarse), NotIdentified::Period { found_s: 0.003, needed_s: 0.0005 });
+        assert!(matches!(
+            refused(&recording(80, 5, sine)),
+            NotIdentified::TooShort { stretches: 0, .. }
+        ));
+        assert!(matches!(
+            refused(&recording(200, 1, sine)),
+            NotIdentified::TooShort { stretches: 1, .. }
+        ));
+        assert_eq!(
+            refused(&recording(200, 5, |_| 1.0)),
+            NotIdentified::NotExcited
+        );
+        let coarse = Recording {
+            feed_period_s: 0.003,
+            ..recording(200, 5, sine)
+        };
+        assert_eq!(
+            refused(&coarse),
+            NotIdentified::Period {
+                found_s: 0.003,
+                needed_s: 0.0005
+            }
+        );
     }
 
     #[test]
@@ -345,12 +425,23 @@ mod tests {
         let known = known();
         let axis = known.axis(0);
         let settings = DriveSettings::of(axis, &known.period);
-        let parameters =
-            AxisParameters { inertia_kg_m2: 2.0 * axis.nominal.inertia_kg_m2, ..AxisParameters::default() };
+        let parameters = AxisParameters {
+            inertia_kg_m2: 2.0 * axis.nominal.inertia_kg_m2,
+            ..AxisParameters::default()
+        };
         let believed = parameters.believed(axis, &settings);
-        assert_eq!(believed.drive.acceleration_feedforward, 0.5 * axis.drive.acceleration_feedforward);
-        assert_eq!(believed.nominal.kv_nm_s_per_rad, axis.nominal.kv_nm_s_per_rad);
+        assert_eq!(
+            believed.drive.acceleration_feedforward,
+            0.5 * axis.drive.acceleration_feedforward
+        );
+        assert_eq!(
+            believed.nominal.kv_nm_s_per_rad,
+            axis.nominal.kv_nm_s_per_rad
+        );
         let more_nm = believed.spare_torque_nm - axis.spare_torque_nm;
-        assert!((more_nm - axis.nominal.coulomb_friction_nm).abs() < 1e-12, "{more_nm}");
+        assert!(
+            (more_nm - axis.nominal.coulomb_friction_nm).abs() < 1e-12,
+            "{more_nm}"
+        );
     }
 }

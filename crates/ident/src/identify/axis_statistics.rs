@@ -1,7 +1,8 @@
-//! Statistics of an axis from a recording: noise of the encoder, what acts on the motor beside its law, and what repeats with place.
+//! Statistics of an axis from a recording: noise of the encoder, what acts on the motor beside its
+//! law, and what repeats with place.
 //!
-//! The law is given, by data sheets or identified. A filter that has nothing but the law goes along the recording; what it is surprised
-//! by holds everything else:
+//! The law is given, by data sheets or identified. A filter that has nothing but the law goes along
+//! the recording; what it is surprised by holds everything else:
 //!
 //! | File | What |
 //! |---|---|
@@ -11,10 +12,12 @@
 //! | `axis_statistics/place.rs` | interpolation error and cogging, found by a scan and admitted by the likelihood |
 //! | `axis_statistics/search.rs` | the least value of a function |
 //!
-//! Steps of the encoder are the common divisor of what was measured. Noise is fitted, then what repeats with place with that noise, then
-//! both once more without the other. What the recording does not show is zero.
+//! Steps of the encoder are the common divisor of what was measured. Noise is fitted, then what
+//! repeats with place with that noise, then both once more without the other. What the recording
+//! does not show is zero.
 //!
-//! Departures: one line and one order of cogging, the strongest; ripple of the motor and the ball screw count as broadband torque.
+//! Departures: one line and one order of cogging, the strongest; ripple of the motor and the ball
+//! screw count as broadband torque.
 
 mod search;
 mod innovation;
@@ -33,26 +36,33 @@ use place::{Through, Wave, Weighed};
 
 /// Length of a segment of the spectrum, s: 0.2 Hz are told apart, and a minute has some twenty.
 const SEGMENT_S: f64 = 4.0;
-/// Part of the Coulomb friction below which no torque is told from what a friction law leaves: laws of friction fit to some per cent.
+/// Part of the Coulomb friction below which no torque is told from what a friction law leaves: laws
+/// of friction fit to some per cent.
 const LEAST_TORQUE: f64 = 0.05;
 /// Differences of positions from which the step is found: enough for the least common one.
 const STEP_SAMPLES: usize = 4000;
 /// Part of the way of a recording that is rounding of numbers: ten thousand times that of a double.
 const ROUNDING: f64 = 1e-12;
-/// A step is at least so many times that: of numbers without a common divisor, one larger is left once in a hundred times, and then not by
-/// the next number.
+/// A step is at least so many times that: of numbers without a common divisor, one larger is left
+/// once in a hundred times, and then not by the next number.
 const LEAST_STEP: f64 = 1e3;
-/// Part of the encoder's RMS noise below which its interpolation error is of no use: it is 2 % of the mean square.
+/// Part of the encoder's RMS noise below which its interpolation error is of no use: it is 2 % of
+/// the mean square.
 const LEAST_INTERPOLATION: f64 = 0.2;
 /// The same in least noises of an encoder, for those without noise: 0.005 um on a lead of 10 mm.
 const LEAST_NOISES: f64 = 5.0;
 /// Periods in a turn by which both kinds differ: what one leaves of a wave is not the other.
 const APART: f64 = 1.0;
-/// Steps of the encoder alone have this variance or less, times the square of the step over 12: rounding of a slow motion is not quite white.
+/// Steps of the encoder alone have this variance or less, times the square of the step over 12:
+/// rounding of a slow motion is not quite white.
 const STEPS_ALONE: f64 = 1.3;
 
-/// What a recording shows of the axes beside what is known of them. The recording is one at the servo period.
-pub fn axis_statistics<const N: usize>(recording: &Recording<N>, known: &Known) -> [AxisStatistics; N] {
+/// What a recording shows of the axes beside what is known of them. The recording is one at the
+/// servo period.
+pub fn axis_statistics<const N: usize>(
+    recording: &Recording<N>,
+    known: &Known,
+) -> [AxisStatistics; N] {
     std::array::from_fn(|i| {
         let axis = known.axis(i);
         let stretches = recording.of_axis(i, axis.delays.command_periods(known.period.servo_s));
@@ -62,15 +72,25 @@ pub fn axis_statistics<const N: usize>(recording: &Recording<N>, known: &Known) 
 
 /// Of an axis, from commands and measured positions, mm, servo period by servo period.
 fn of_axis(stretches: &[Vec<[f64; 2]>], known: &KnownAxis, period: &Period) -> AxisStatistics {
-    let rad_per_mm = AxisLaw::new(known.nominal, period.periods()).parameters.rad_per_mm;
+    let rad_per_mm = AxisLaw::new(known.nominal, period.periods())
+        .parameters
+        .rad_per_mm;
     let step_rad = step_mm(stretches) * rad_per_mm;
     let noise_rad = rough_noise_mm(stretches) * rad_per_mm;
     let filter = AxisFilter::new(known, period, noise_rad);
-    let in_rad = stretches.iter().map(|stretch| stretch.iter().map(|row| row.map(|mm| mm * rad_per_mm)).collect());
+    let in_rad = stretches.iter().map(|stretch| {
+        stretch
+            .iter()
+            .map(|row| row.map(|mm| mm * rad_per_mm))
+            .collect()
+    });
     let innovations = filter.innovations(in_rad);
     let segment = ((SEGMENT_S / period.servo_s) as usize).next_power_of_two();
     if innovations.counts.iter().filter(|&&counts| counts).count() < 2 * segment {
-        return AxisStatistics { encoder_step_rad: step_rad, ..AxisStatistics::default() };
+        return AxisStatistics {
+            encoder_step_rad: step_rad,
+            ..AxisStatistics::default()
+        };
     }
     let least_nm = LEAST_TORQUE * known.nominal.coulomb_friction_nm;
     let segment_responses = filter.responses(segment);
@@ -82,7 +102,13 @@ fn of_axis(stretches: &[Vec<[f64; 2]>], known: &KnownAxis, period: &Period) -> A
     let responses = filter.responses(length);
     let first = noise_of(&innovations);
     let weighed = Weighed::new(&innovations, &responses, &first, period.servo_s);
-    let waves = waves(&weighed, &responses, &first, period.servo_s, [step_rad, least_nm]);
+    let waves = waves(
+        &weighed,
+        &responses,
+        &first,
+        period.servo_s,
+        [step_rad, least_nm],
+    );
     if waves.is_empty() {
         return statistics(&first, &[], step_rad);
     }
@@ -109,36 +135,59 @@ fn waves(
     servo_s: f64,
     [step_rad, least_nm]: [f64; 2],
 ) -> Vec<(Through, Wave)> {
-    let cogging = weighed.cogging(least_nm).map(|(wave, gain)| (Through::Motor, wave, gain));
-    let interpolation =
-        weighed.interpolation(step_rad, least_rad(noise)).map(|(wave, gain)| (Through::Encoder, wave, gain));
-    let Some((through, wave, _)) = [cogging, interpolation].into_iter().flatten().max_by(|a, b| a.2.total_cmp(&b.2))
+    let cogging = weighed
+        .cogging(least_nm)
+        .map(|(wave, gain)| (Through::Motor, wave, gain));
+    let interpolation = weighed
+        .interpolation(step_rad, least_rad(noise))
+        .map(|(wave, gain)| (Through::Encoder, wave, gain));
+    let Some((through, wave, _)) = [cogging, interpolation]
+        .into_iter()
+        .flatten()
+        .max_by(|a, b| a.2.total_cmp(&b.2))
     else {
         return Vec::new();
     };
     let left = weighed.without(&[(through, wave)]);
     let weighed = Weighed::new(&left, responses, noise, servo_s);
     let other = match through {
-        Through::Motor => weighed.interpolation(step_rad, least_rad(noise)).map(|(wave, _)| (Through::Encoder, wave)),
-        Through::Encoder => weighed.cogging(least_nm).map(|(wave, _)| (Through::Motor, wave)),
+        Through::Motor => weighed
+            .interpolation(step_rad, least_rad(noise))
+            .map(|(wave, _)| (Through::Encoder, wave)),
+        Through::Encoder => weighed
+            .cogging(least_nm)
+            .map(|(wave, _)| (Through::Motor, wave)),
     };
     let other = other.filter(|(_, other)| (other.per_rad - wave.per_rad).abs() > APART);
-    [Some((through, wave)), other].into_iter().flatten().collect()
+    [Some((through, wave)), other]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// Least interpolation error that is of use, rad.
 fn least_rad(noise: &NoiseFit) -> f64 {
-    (LEAST_INTERPOLATION * noise.encoder_rad2.sqrt()).max(LEAST_NOISES * innovation::LEAST_NOISE_RAD)
+    (LEAST_INTERPOLATION * noise.encoder_rad2.sqrt())
+        .max(LEAST_NOISES * innovation::LEAST_NOISE_RAD)
 }
 
 fn statistics(noise: &NoiseFit, waves: &[(Through, Wave)], step_rad: f64) -> AxisStatistics {
     let of_steps_rad2 = step_rad * step_rad / 12.0;
     let least_rad2 = (STEPS_ALONE * of_steps_rad2).max(4.0 * innovation::LEAST_NOISE_RAD.powi(2));
     let alone = noise.encoder_rad2 < least_rad2;
-    let wave = |kind: Through| waves.iter().find(|(through, _)| *through == kind).map_or(Wave::default(), |(_, w)| *w);
+    let wave = |kind: Through| {
+        waves
+            .iter()
+            .find(|(through, _)| *through == kind)
+            .map_or(Wave::default(), |(_, w)| *w)
+    };
     let (cogging, interpolation) = (wave(Through::Motor), wave(Through::Encoder));
     AxisStatistics {
-        encoder_noise_rad: if alone { 0.0 } else { (noise.encoder_rad2 - of_steps_rad2).sqrt() },
+        encoder_noise_rad: if alone {
+            0.0
+        } else {
+            (noise.encoder_rad2 - of_steps_rad2).sqrt()
+        },
         encoder_step_rad: step_rad,
         interpolation_rad: interpolation.amplitude(),
         interpolation_phase_rad: interpolation.phase_rad(),
@@ -147,7 +196,11 @@ fn statistics(noise: &NoiseFit, waves: &[(Through, Wave)], step_rad: f64) -> Axi
         torque_noise_s: noise.torque_s,
         disturbance_nm: noise.line_nm,
         disturbance_rad_s: TAU * noise.line_hz,
-        disturbance_wander: if noise.line_hz > 0.0 { noise.wander_hz / noise.line_hz } else { 0.0 },
+        disturbance_wander: if noise.line_hz > 0.0 {
+            noise.wander_hz / noise.line_hz
+        } else {
+            0.0
+        },
         cogging_nm: cogging.amplitude(),
         cogging_phase_rad: cogging.phase_rad(),
         cogging_per_rev: cogging.per_rad,
@@ -156,19 +209,40 @@ fn statistics(noise: &NoiseFit, waves: &[(Through, Wave)], step_rad: f64) -> Axi
 
 /// Step of the encoder: the common divisor of what was measured, mm; zero where there is none.
 fn step_mm(stretches: &[Vec<[f64; 2]>]) -> f64 {
-    let measured = || stretches.iter().flat_map(|stretch| stretch.iter().map(|row| row[1]));
-    let Some(first_mm) = measured().next() else { return 0.0 };
+    let measured = || {
+        stretches
+            .iter()
+            .flat_map(|stretch| stretch.iter().map(|row| row[1]))
+    };
+    let Some(first_mm) = measured().next() else {
+        return 0.0;
+    };
     let way_mm = measured().fold(0.0_f64, |most, mm| most.max((mm - first_mm).abs()));
-    let moved = || measured().take(STEP_SAMPLES).map(|mm| (mm - first_mm).abs());
+    let moved = || {
+        measured()
+            .take(STEP_SAMPLES)
+            .map(|mm| (mm - first_mm).abs())
+    };
     // Euclid's algorithm, in numbers that are rounded.
     let least_mm = ROUNDING * way_mm;
     let mut divisor_mm = 0.0_f64;
     for mut mm in moved() {
         while mm > least_mm {
-            (divisor_mm, mm) = (mm, if divisor_mm > 0.0 { remainder(divisor_mm, mm) } else { 0.0 });
+            (divisor_mm, mm) = (
+                mm,
+                if divisor_mm > 0.0 {
+                    remainder(divisor_mm, mm)
+                } else {
+                    0.0
+                },
+            );
         }
     }
-    if divisor_mm > LEAST_STEP * least_mm { divisor_mm } else { 0.0 }
+    if divisor_mm > LEAST_STEP * least_mm {
+        divisor_mm
+    } else {
+        0.0
+    }
 }
 
 /// What is left of a division to the nearest whole number.
@@ -176,8 +250,8 @@ fn remainder(of: f64, by: f64) -> f64 {
     (of - by * (of / by).round()).abs()
 }
 
-/// White noise of the encoder at the most, mm: by fourth differences, whose coefficients have the sum of squares 70, of which a motion
-/// leaves next to nothing.
+/// White noise of the encoder at the most, mm: by fourth differences, whose coefficients have the
+/// sum of squares 70, of which a motion leaves next to nothing.
 fn rough_noise_mm(stretches: &[Vec<[f64; 2]>]) -> f64 {
     let mut squares: Vec<f64> = stretches
         .iter()

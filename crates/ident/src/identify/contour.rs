@@ -1,8 +1,11 @@
 //! Training of the paper's identifier: plain back-propagation over the shuffled samples.
 //!
-//! Source: Lee, Cho and Jeon (2005), section 3.2, eq. 6. The paper does not say on what the network was trained.
+//! Source: Lee, Cho and Jeon (2005), section 3.2, eq. 6. The paper does not say on what the network
+//! was trained.
 
-use feedwright_control::{ContourIdentifier, ContourModel, Delays, ERROR_SCALE_MM, HIDDEN, INPUTS, Inputs, seen_feed};
+use feedwright_control::{
+    ContourIdentifier, ContourModel, Delays, ERROR_SCALE_MM, HIDDEN, INPUTS, Inputs, seen_feed,
+};
 use feedwright_plan::vector::{scale, sub};
 use rand::{RngExt, seq::SliceRandom};
 use serde::Serialize;
@@ -24,10 +27,15 @@ pub struct Training {
 }
 
 impl Default for Training {
-    /// 300 epochs bring the fit to the level of the disturbance (about 4 um RMS on tnv40); the decay makes the last
-    /// steps a hundredth of the first.
+    /// 300 epochs bring the fit to the level of the disturbance (about 4 um RMS on tnv40); the
+    /// decay makes the last steps a hundredth of the first.
     fn default() -> Self {
-        Self { epochs: 300, step: 0.05, decay: 0.985, initial_weight: 0.5 }
+        Self {
+            epochs: 300,
+            step: 0.05,
+            decay: 0.985,
+            initial_weight: 0.5,
+        }
     }
 }
 
@@ -49,8 +57,8 @@ pub struct TrainedContour<const N: usize> {
     pub samples: usize,
 }
 
-/// Trains a network on what a machine showed; `rng` shuffles and draws the weights to start from. `progress` gets the part
-/// done, 0 to 1.
+/// Trains a network on what a machine showed; `rng` shuffles and draws the weights to start from.
+/// `progress` gets the part done, 0 to 1.
 pub fn train_contour<const N: usize>(
     recording: &Recording<N>,
     training: &Training,
@@ -58,7 +66,11 @@ pub fn train_contour<const N: usize>(
     progress: &mut dyn FnMut(f64),
 ) -> TrainedContour<N> {
     let period_s = recording.feed_period_s;
-    let samples = recording.stretches.iter().flat_map(|stretch| samples(stretch, period_s)).collect();
+    let samples = recording
+        .stretches
+        .iter()
+        .flat_map(|stretch| samples(stretch, period_s))
+        .collect();
     descend(samples, training, &mut rng, progress)
 }
 
@@ -90,17 +102,28 @@ fn descend<const N: usize>(
     let mut cost = 0.0;
     for epoch in 0..training.epochs {
         samples.shuffle(rng);
-        cost = samples.iter().map(|s| net.learn(&s.inputs, s.error, step)).sum();
+        cost = samples
+            .iter()
+            .map(|s| net.learn(&s.inputs, s.error, step))
+            .sum();
         step *= training.decay;
         progress(f64::from(epoch + 1) / f64::from(training.epochs));
     }
     let mean_square = 2.0 * cost / (samples.len() * N).max(1) as f64;
     let fit_um = mean_square.sqrt() * ERROR_SCALE_MM * 1e3;
-    TrainedContour { net, fit_um, samples: samples.len() }
+    TrainedContour {
+        net,
+        fit_um,
+        samples: samples.len(),
+    }
 }
 
 fn initial<const N: usize>(width: f64, rng: &mut Rng) -> ContourIdentifier<N> {
     let mut row = || -> [f64; HIDDEN] { std::array::from_fn(|_| rng.random_range(-width..=width)) };
-    let hidden = std::array::from_fn(|_| -> [[f64; HIDDEN]; INPUTS] { std::array::from_fn(|_| row()) });
-    ContourIdentifier { hidden, output: std::array::from_fn(|_| row()) }
+    let hidden =
+        std::array::from_fn(|_| -> [[f64; HIDDEN]; INPUTS] { std::array::from_fn(|_| row()) });
+    ContourIdentifier {
+        hidden,
+        output: std::array::from_fn(|_| row()),
+    }
 }

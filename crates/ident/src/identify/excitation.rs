@@ -1,5 +1,5 @@
-//! The identification programme, cut by a simulated machine: laps of circles under a controller that disturbs the command and
-//! records.
+//! The identification programme, cut by a simulated machine: laps of circles under a controller
+//! that disturbs the command and records.
 
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
@@ -14,7 +14,11 @@ use super::{Excitation, Rng};
 const UNDISTURBED_EVERY: u32 = 3;
 
 /// Cuts all laps.
-pub(super) fn record<const N: usize>(machine: &Machine, excitation: &Excitation, rng: &mut Rng) -> Recording<N> {
+pub(super) fn record<const N: usize>(
+    machine: &Machine,
+    excitation: &Excitation,
+    rng: &mut Rng,
+) -> Recording<N> {
     let stretches = (0..excitation.laps)
         .map(|lap| {
             let motion = circle::<N>(excitation, lap, rng);
@@ -22,7 +26,11 @@ pub(super) fn record<const N: usize>(machine: &Machine, excitation: &Excitation,
             let mut excitation = ExcitationController {
                 excitation,
                 servo_periods: machine.period.servo_periods(excitation.feed_period_s),
-                reach_mm: if undisturbed { 0.0 } else { excitation.offset_mm },
+                reach_mm: if undisturbed {
+                    0.0
+                } else {
+                    excitation.offset_mm
+                },
                 rng,
                 from_mm: [0.0; N],
                 to_mm: [0.0; N],
@@ -30,24 +38,38 @@ pub(super) fn record<const N: usize>(machine: &Machine, excitation: &Excitation,
             };
             // A lap that diverges simply ends.
             cut_on(machine)
-                .cut(|| Ok(path_steps([Canon::Motion(motion.clone())])), &mut excitation, &mut [])
+                .cut(
+                    || Ok(path_steps([Canon::Motion(motion.clone())])),
+                    &mut excitation,
+                    &mut [],
+                )
                 .expect("a circle on a machine that was checked, no sinks");
             excitation.lap
         })
         .collect();
     let (servo_s, feed_period_s) = (machine.period.servo_s, excitation.period_s(machine));
-    Recording { servo_s, feed_period_s, stretches }
+    Recording {
+        servo_s,
+        feed_period_s,
+        stretches,
+    }
 }
 
-/// Planned with constant accelerations on every machine: offsets excite the axes more than any plan, and a circle is planned in no time.
+/// Planned with constant accelerations on every machine: offsets excite the axes more than any
+/// plan, and a circle is planned in no time.
 fn cut_on(machine: &Machine) -> Run<'_> {
     Run::on(machine).uncompensated().stages(Stages::default())
 }
 
 /// Cuts all laps one after the other, with offsets in all of them.
-pub(super) fn record_in_one<const N: usize>(machine: &Machine, excitation: &Excitation, rng: &mut Rng) -> Recording<N> {
-    let motions: Vec<Canon> =
-        (0..excitation.laps).map(|lap| Canon::Motion(circle::<N>(excitation, lap, rng))).collect();
+pub(super) fn record_in_one<const N: usize>(
+    machine: &Machine,
+    excitation: &Excitation,
+    rng: &mut Rng,
+) -> Recording<N> {
+    let motions: Vec<Canon> = (0..excitation.laps)
+        .map(|lap| Canon::Motion(circle::<N>(excitation, lap, rng)))
+        .collect();
     let mut excitation_controller = ExcitationController {
         excitation,
         servo_periods: machine.period.servo_periods(excitation.feed_period_s),
@@ -58,10 +80,18 @@ pub(super) fn record_in_one<const N: usize>(machine: &Machine, excitation: &Exci
         lap: Vec::new(),
     };
     cut_on(machine)
-        .cut(|| Ok(path_steps(motions.clone())), &mut excitation_controller, &mut [])
+        .cut(
+            || Ok(path_steps(motions.clone())),
+            &mut excitation_controller,
+            &mut [],
+        )
         .expect("circles on a machine that was checked, no sinks");
     let (servo_s, feed_period_s) = (machine.period.servo_s, excitation.period_s(machine));
-    Recording { servo_s, feed_period_s, stretches: vec![excitation_controller.lap] }
+    Recording {
+        servo_s,
+        feed_period_s,
+        stretches: vec![excitation_controller.lap],
+    }
 }
 
 /// One lap: radii, senses and planes in turn, feed and starting point at random.
@@ -83,7 +113,11 @@ fn circle<const N: usize>(excitation: &Excitation, lap: u32, rng: &mut Rng) -> M
         kind: MotionKind::Feed,
         start_mm: [0.0; 3],
         end_mm: [0.0; 3],
-        shape: Shape::Arc { plane, center_mm, turns: excitation.turns[lap_index % excitation.turns.len()] },
+        shape: Shape::Arc {
+            plane,
+            center_mm,
+            turns: excitation.turns[lap_index % excitation.turns.len()],
+        },
         feed_mm_s: rng.random_range(slow..=fast),
         corner: Corner::ExactStop,
         others: AuxiliaryAxes::default(),
@@ -104,7 +138,10 @@ struct ExcitationController<'a, const N: usize> {
 
 impl<const N: usize> Controller<N> for ExcitationController<'_, N> {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: self.servo_periods, preview: 0 }
+        Schedule {
+            servo_periods: self.servo_periods,
+            preview: 0,
+        }
     }
 
     fn reset(&mut self) {
@@ -130,7 +167,14 @@ impl<const N: usize> Controller<N> for ExcitationController<'_, N> {
         let (gone, ramp) = (since + 1, self.excitation.ramp_periods as usize);
         let part = gone as f64 / ramp as f64;
         let under_way = gone < ramp;
-        Command::straight(1.0, if under_way { lerp(self.from_mm, self.to_mm, part) } else { self.to_mm })
+        Command::straight(
+            1.0,
+            if under_way {
+                lerp(self.from_mm, self.to_mm, part)
+            } else {
+                self.to_mm
+            },
+        )
     }
 }
 

@@ -1,8 +1,10 @@
-//! Grey box: the law of each axis of a real machine, from commanded and actual positions that it recorded.
+//! Grey box: the law of each axis of a real machine, from commanded and actual positions that it
+//! recorded.
 //!
-//! Nothing is known of the drive. What is fitted is the law of [`feedwright_control::axis`], divided by the inertia, by output error over
-//! free runs: the model gets the commands and nothing else. Terms are admitted one by one, by samples that were not fitted; how far it
-//! misses is told by samples that neither saw, beside linear models and the guess that the error stays.
+//! Nothing is known of the drive. What is fitted is the law of [`feedwright_control::axis`],
+//! divided by the inertia, by output error over free runs: the model gets the commands and nothing
+//! else. Terms are admitted one by one, by samples that were not fitted; how far it misses is told
+//! by samples that neither saw, beside linear models and the guess that the error stays.
 //!
 //! | File | What |
 //! |---|---|
@@ -60,9 +62,11 @@ use sample_split::SampleSplit;
 /// What an identification is told beside the record.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct GreyBoxOptions {
-    /// Times that are fitted, and times that are scored, s of the record; blocks of motion that take turns where there are none.
+    /// Times that are fitted, and times that are scored, s of the record; blocks of motion that
+    /// take turns where there are none.
     pub times_s: Option<[Range<f64>; 2]>,
-    /// What is known of each axis, in the order of the records; of one that is not there nothing is.
+    /// What is known of each axis, in the order of the records; of one that is not there nothing
+    /// is.
     pub facts: Vec<AxisFacts>,
 }
 
@@ -141,8 +145,8 @@ pub(crate) type TorqueValues<'a> = Option<&'a [f64]>;
 /// Part of the work until it is known whether position loops have commands late.
 const WITHOUT_DELAY: f64 = 0.6;
 
-/// Identifies axes that were recorded together. `tell` is told which part of the work is done, 0 to 1, and
-/// answers whether to go on.
+/// Identifies axes that were recorded together. `tell` is told which part of the work is done, 0 to
+/// 1, and answers whether to go on.
 ///
 /// # Errors
 /// A record that does not tell the law of an axis, or an end from outside.
@@ -162,7 +166,12 @@ pub fn identify_machine(
     for (part, counts) in [("--fit", &split.fit), ("--score", &split.score)] {
         let found = counts.iter().filter(|counts| **counts).count();
         if found < LEAST_SAMPLES {
-            return Err(NotFound::TooFew { part, found, from_s: ends[0], to_s: ends[1] });
+            return Err(NotFound::TooFew {
+                part,
+                found,
+                from_s: ends[0],
+                to_s: ends[1],
+            });
         }
     }
     let mut find = |facts: &[AxisFacts], from: f64, to: f64| -> Result<Vec<FoundAxis>, NotFound> {
@@ -181,10 +190,22 @@ pub fn identify_machine(
         let left = |axes: &[FoundAxis]| axes.iter().map(|axis| libm::log(axis.fit_um)).sum::<f64>();
         if left(&delayed) < left(&axes) {
             let told = axes.iter().map(|axis| axis.facts).collect::<Vec<_>>();
-            axes = delayed.into_iter().zip(told).map(|(axis, facts)| FoundAxis { facts, ..axis }).collect();
-            axes.iter_mut().for_each(|axis| axis.at_bounds.extend(command_delay::at_bound(axis, first.sample_s)));
+            axes = delayed
+                .into_iter()
+                .zip(told)
+                .map(|(axis, facts)| FoundAxis { facts, ..axis })
+                .collect();
+            axes.iter_mut().for_each(|axis| {
+                axis.at_bounds
+                    .extend(command_delay::at_bound(axis, first.sample_s));
+            });
         }
     }
     let contour = ContourScores::of(records, &axes, &split.score);
-    Ok(FoundMachine { axes, split, contour, sample_s: first.sample_s })
+    Ok(FoundMachine {
+        axes,
+        split,
+        contour,
+        sample_s: first.sample_s,
+    })
 }

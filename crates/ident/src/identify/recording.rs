@@ -1,7 +1,9 @@
-//! A recording: what a machine showed while it moved, knot by knot. All that an identification gets to see of a machine.
+//! A recording: what a machine showed while it moved, knot by knot. All that an identification gets
+//! to see of a machine.
 //!
-//! It comes from a simulated machine ([`super::Excitation::record`]) or from the log of a real one. It is made of stretches: laps of
-//! a programme, or the parts of a log between gaps; nothing is carried over from one to the next.
+//! It comes from a simulated machine ([`super::Excitation::record`]) or from the log of a real one.
+//! It is made of stretches: laps of a programme, or the parts of a log between gaps; nothing is
+//! carried over from one to the next.
 
 use serde::{Deserialize, Serialize};
 
@@ -29,12 +31,17 @@ pub struct Recording<const N: usize> {
 }
 
 impl<const N: usize> Recording<N> {
-    /// Command and measured position of an axis, mm, stretch by stretch: each position with the command that the position loop has then,
-    /// sent `late` knots before. The first positions, whose commands are not recorded, are left out.
+    /// Command and measured position of an axis, mm, stretch by stretch: each position with the
+    /// command that the position loop has then, sent `late` knots before. The first positions,
+    /// whose commands are not recorded, are left out.
     pub(super) fn of_axis(&self, axis: usize, late: usize) -> Vec<Vec<[f64; 2]>> {
         let rows = |knots: &Vec<RecordedKnot<N>>| {
             let then = knots.iter().skip(late).map(|knot| knot.tool_mm[axis]);
-            knots.iter().zip(then).map(|(sent, tool_mm)| [sent.command_mm[axis], tool_mm]).collect()
+            knots
+                .iter()
+                .zip(then)
+                .map(|(sent, tool_mm)| [sent.command_mm[axis], tool_mm])
+                .collect()
         };
         self.stretches.iter().map(rows).collect()
     }
@@ -45,11 +52,23 @@ impl<const N: usize> Recording<N> {
         let mut number = |number: f64| {
             hasher.update(&number.to_le_bytes());
         };
-        [N as f64, self.servo_s, self.feed_period_s].into_iter().for_each(&mut number);
+        [N as f64, self.servo_s, self.feed_period_s]
+            .into_iter()
+            .for_each(&mut number);
         for stretch in &self.stretches {
             number(stretch.len() as f64);
-            for RecordedKnot { command_mm, tool_mm, contour_mm } in stretch {
-                command_mm.iter().chain(tool_mm).chain(contour_mm).copied().for_each(&mut number);
+            for RecordedKnot {
+                command_mm,
+                tool_mm,
+                contour_mm,
+            } in stretch
+            {
+                command_mm
+                    .iter()
+                    .chain(tool_mm)
+                    .chain(contour_mm)
+                    .copied()
+                    .for_each(&mut number);
             }
         }
         hasher.finalize().to_hex().to_string()
@@ -67,10 +86,23 @@ struct StoredRecording {
 
 impl<const N: usize> From<Recording<N>> for StoredRecording {
     fn from(recording: Recording<N>) -> Self {
-        let Recording { servo_s, feed_period_s, stretches } = recording;
-        let row = |knot: &RecordedKnot<N>| [knot.command_mm, knot.tool_mm, knot.contour_mm].concat();
-        let stretches = stretches.iter().map(|stretch| stretch.iter().map(row).collect()).collect();
-        Self { axes: N, servo_s, feed_period_s, stretches }
+        let Recording {
+            servo_s,
+            feed_period_s,
+            stretches,
+        } = recording;
+        let row =
+            |knot: &RecordedKnot<N>| [knot.command_mm, knot.tool_mm, knot.contour_mm].concat();
+        let stretches = stretches
+            .iter()
+            .map(|stretch| stretch.iter().map(row).collect())
+            .collect();
+        Self {
+            axes: N,
+            servo_s,
+            feed_period_s,
+            stretches,
+        }
     }
 }
 
@@ -78,16 +110,33 @@ impl<const N: usize> TryFrom<StoredRecording> for Recording<N> {
     type Error = String;
 
     fn try_from(stored: StoredRecording) -> Result<Self, String> {
-        let StoredRecording { axes, servo_s, feed_period_s, stretches } = stored;
+        let StoredRecording {
+            axes,
+            servo_s,
+            feed_period_s,
+            stretches,
+        } = stored;
         if axes != N {
             return Err(format!("a recording of {axes} axes, not of {N}"));
         }
         let knot = |row: Vec<f64>| match row.as_chunks::<N>() {
-            (&[command_mm, tool_mm, contour_mm], []) => Ok(RecordedKnot { command_mm, tool_mm, contour_mm }),
+            (&[command_mm, tool_mm, contour_mm], []) => Ok(RecordedKnot {
+                command_mm,
+                tool_mm,
+                contour_mm,
+            }),
             _ => Err(format!("a knot of {} numbers, not of {}", row.len(), 3 * N)),
         };
-        let stretch = |rows: Vec<Vec<f64>>| rows.into_iter().map(knot).collect::<Result<Vec<_>, _>>();
-        Ok(Self { servo_s, feed_period_s, stretches: stretches.into_iter().map(stretch).collect::<Result<_, _>>()? })
+        let stretch =
+            |rows: Vec<Vec<f64>>| rows.into_iter().map(knot).collect::<Result<Vec<_>, _>>();
+        Ok(Self {
+            servo_s,
+            feed_period_s,
+            stretches: stretches
+                .into_iter()
+                .map(stretch)
+                .collect::<Result<_, _>>()?,
+        })
     }
 }
 
@@ -96,8 +145,11 @@ mod tests {
     use super::*;
 
     fn recording() -> Recording<2> {
-        let knot =
-            |x: f64| RecordedKnot { command_mm: [x, 0.1 * x], tool_mm: [x - 1.0, -0.0], contour_mm: [1e-3, x / 3.0] };
+        let knot = |x: f64| RecordedKnot {
+            command_mm: [x, 0.1 * x],
+            tool_mm: [x - 1.0, -0.0],
+            contour_mm: [1e-3, x / 3.0],
+        };
         Recording {
             servo_s: 1e-3,
             feed_period_s: 3e-3,
@@ -111,9 +163,20 @@ mod tests {
         let back: Recording<2> = serde_json::from_str(&text).unwrap();
         assert_eq!((&back, back.hash()), (&recording(), recording().hash()));
         let error = serde_json::from_str::<Recording<3>>(&text).unwrap_err();
-        assert!(error.to_string().starts_with("a recording of 2 axes, not of 3"), "{error}");
-        let error = serde_json::from_str::<Recording<2>>(&text.replacen("[1.0,", "[1.0,1.0,", 1)).unwrap_err();
-        assert!(error.to_string().starts_with("a knot of 7 numbers, not of 6"), "{error}");
+        assert!(
+            error
+                .to_string()
+                .starts_with("a recording of 2 axes, not of 3"),
+            "{error}"
+        );
+        let error = serde_json::from_str::<Recording<2>>(&text.replacen("[1.0,", "[1.0,1.0,", 1))
+            .unwrap_err();
+        assert!(
+            error
+                .to_string()
+                .starts_with("a knot of 7 numbers, not of 6"),
+            "{error}"
+        );
     }
 
     #[test]

@@ -64,7 +64,8 @@ pub struct ColumnsError {
 }
 
 /// How it is written.
-const EXAMPLE: &str = "such as t=0,x.cmd=1,x.act=3,x.torque=5; columns by number from 0, or by name";
+const EXAMPLE: &str =
+    "such as t=0,x.cmd=1,x.act=3,x.torque=5; columns by number from 0, or by name";
 /// What may stand before `=`.
 const KEYS: [&str; 4] = ["t", "unit", "time", "period_s"];
 /// What may stand behind the name of an axis.
@@ -75,7 +76,11 @@ impl FromStr for Columns {
 
     fn from_str(text: &str) -> Result<Self, ColumnsError> {
         let mut columns = Self::default();
-        for item in text.split(',').map(str::trim).filter(|item| !item.is_empty()) {
+        for item in text
+            .split(',')
+            .map(str::trim)
+            .filter(|item| !item.is_empty())
+        {
             columns.add(item)?;
         }
         for axis in &columns.axes {
@@ -84,7 +89,11 @@ impl FromStr for Columns {
                 if column.is_none() {
                     let item = axis.name.clone();
                     let message = format!("no {part} of this axis");
-                    return Err(ColumnsError { item, message, hint: format!("add {}.{part}=COLUMN", axis.name) });
+                    return Err(ColumnsError {
+                        item,
+                        message,
+                        hint: format!("add {}.{part}=COLUMN", axis.name),
+                    });
                 }
             }
         }
@@ -94,8 +103,15 @@ impl FromStr for Columns {
 
 impl Columns {
     fn add(&mut self, item: &str) -> Result<(), ColumnsError> {
-        let fault = |message: String, hint: String| ColumnsError { item: item.to_owned(), message, hint };
-        let Some((key, value)) = item.split_once('=').map(|(key, value)| (key.trim(), value.trim())) else {
+        let fault = |message: String, hint: String| ColumnsError {
+            item: item.to_owned(),
+            message,
+            hint,
+        };
+        let Some((key, value)) = item
+            .split_once('=')
+            .map(|(key, value)| (key.trim(), value.trim()))
+        else {
             return Err(fault("no '='".to_owned(), EXAMPLE.to_owned()));
         };
         if value.is_empty() {
@@ -107,36 +123,61 @@ impl Columns {
             "t" => set(&mut self.time, column()).ok_or_else(twice),
             "unit" => {
                 let unit = PositionUnit::from_name(value).ok_or_else(|| {
-                    fault(format!("no unit of length is called '{value}'"), PositionUnit::KNOWN.to_owned())
+                    fault(
+                        format!("no unit of length is called '{value}'"),
+                        PositionUnit::KNOWN.to_owned(),
+                    )
                 })?;
                 set(&mut self.position_unit, unit).ok_or_else(twice)
             }
             "time" => {
-                let unit = TimeUnit::from_name(value)
-                    .ok_or_else(|| fault(format!("no unit of time is called '{value}'"), TimeUnit::KNOWN.to_owned()))?;
+                let unit = TimeUnit::from_name(value).ok_or_else(|| {
+                    fault(
+                        format!("no unit of time is called '{value}'"),
+                        TimeUnit::KNOWN.to_owned(),
+                    )
+                })?;
                 set(&mut self.time_unit, unit).ok_or_else(twice)
             }
             "period_s" => match value.parse::<f64>() {
                 Ok(period_s) if period_s.is_finite() && period_s > 0.0 => {
                     set(&mut self.sample_time_s, period_s).ok_or_else(twice)
                 }
-                _ => Err(fault("a time above zero is needed, s".to_owned(), "such as period_s=0.001".to_owned())),
+                _ => Err(fault(
+                    "a time above zero is needed, s".to_owned(),
+                    "such as period_s=0.001".to_owned(),
+                )),
             },
-            _ => self.add_axis(key, column()).map_err(|(message, hint)| fault(message, hint)),
+            _ => self
+                .add_axis(key, column())
+                .map_err(|(message, hint)| fault(message, hint)),
         }
     }
 
     fn add_axis(&mut self, key: &str, column: ColumnChoice) -> Result<(), (String, String)> {
         let Some((name, part)) = key.rsplit_once('.').filter(|(name, _)| !name.is_empty()) else {
             let hint = nearest(key, &KEYS).map(|near| format!("did you mean '{near}'?"));
-            return Err((format!("'{key}' is unknown"), hint.unwrap_or_else(|| EXAMPLE.to_owned())));
+            return Err((
+                format!("'{key}' is unknown"),
+                hint.unwrap_or_else(|| EXAMPLE.to_owned()),
+            ));
         };
-        let at = self.axes.iter().position(|axis| axis.name == name).unwrap_or_else(|| {
-            self.axes.push(AxisChoice { name: name.to_owned(), ..AxisChoice::default() });
-            self.axes.len() - 1
-        });
+        let at = self
+            .axes
+            .iter()
+            .position(|axis| axis.name == name)
+            .unwrap_or_else(|| {
+                self.axes.push(AxisChoice {
+                    name: name.to_owned(),
+                    ..AxisChoice::default()
+                });
+                self.axes.len() - 1
+            });
         if at >= MAX_AXES {
-            return Err((format!("more than {MAX_AXES} axes"), "read those that belong together".to_owned()));
+            return Err((
+                format!("more than {MAX_AXES} axes"),
+                "read those that belong together".to_owned(),
+            ));
         }
         let axis = &mut self.axes[at];
         let field = match part {
@@ -145,7 +186,8 @@ impl Columns {
             "err" => &mut axis.error,
             "torque" => &mut axis.torque,
             _ => {
-                let hint = nearest(part, &PARTS).map(|near| format!("did you mean '{name}.{near}'?"));
+                let hint =
+                    nearest(part, &PARTS).map(|near| format!("did you mean '{name}.{near}'?"));
                 let message = format!("an axis has no '{part}', but cmd, act, err and torque");
                 return Err((message, hint.unwrap_or_else(|| EXAMPLE.to_owned())));
             }

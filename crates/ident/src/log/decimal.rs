@@ -1,13 +1,14 @@
 //! Decimal numbers out of bytes.
 //!
-//! A log of ten million rows has a hundred million numbers, nearly all of them short: up to 15 digits are a whole number times a power
-//! of ten that both are exact in binary, and so is their product or quotient rounded once (Clinger 1990, How to read floating point numbers
-//! accurately). Whatever is longer takes the long way.
+//! A log of ten million rows has a hundred million numbers, nearly all of them short: up to 15
+//! digits are a whole number times a power of ten that both are exact in binary, and so is their
+//! product or quotient rounded once (Clinger 1990, How to read floating point numbers accurately).
+//! Whatever is longer takes the long way.
 
 /// Powers of ten that are exact.
 const EXACT: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
-    1e21, 1e22,
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 /// Digits of which every whole number is exact.
 const EXACT_DIGITS: u32 = 15;
@@ -100,7 +101,11 @@ mod tests {
             "inf",
         ] {
             let expected: f64 = text.parse().unwrap();
-            assert_eq!(parse(text.as_bytes(), b'.').map(f64::to_bits), Some(expected.to_bits()), "{text}");
+            assert_eq!(
+                parse(text.as_bytes(), b'.').map(f64::to_bits),
+                Some(expected.to_bits()),
+                "{text}"
+            );
         }
         for text in ["x", "1.2.3", "-", ".", "+", "1,5", "0x10", "1 2", "--1"] {
             assert_eq!(parse(text.as_bytes(), b'.'), None, "{text}");

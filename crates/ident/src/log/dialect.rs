@@ -1,4 +1,5 @@
-//! How a text table is written: what stands between its columns, which sign its decimal point is, what its columns are called.
+//! How a text table is written: what stands between its columns, which sign its decimal point is,
+//! what its columns are called.
 
 use std::cmp::Ordering;
 
@@ -25,9 +26,11 @@ pub(super) struct TableDialect {
     pub(super) sample_time_s: Option<f64>,
     /// Line before the rows that states the unit of the positions, from 1, and the unit.
     pub(super) position_unit: Option<(u64, String)>,
-    /// Whether the rows are names and numbers by turns, as `halscope` wrote them before LinuxCNC 2.9.
+    /// Whether the rows are names and numbers by turns, as `halscope` wrote them before LinuxCNC
+    /// 2.9.
     pub(super) names_in_rows: bool,
-    /// The scope that wrote the table, and what its header says of each column; none of any other table.
+    /// The scope that wrote the table, and what its header says of each column; none of any other
+    /// table.
     pub(super) scope: Option<(LogFormat, Vec<ScopeChannel>)>,
 }
 
@@ -67,9 +70,17 @@ impl LineKind {
 /// Fields of a line.
 pub(super) fn fields(line: &[u8], delimiter: u8) -> impl Iterator<Item = &[u8]> {
     // One of the two is empty.
-    let (blank, other) = if delimiter == b' ' { (line, None) } else { ([].as_slice(), Some(line)) };
-    let blank = blank.split(|byte| byte.is_ascii_whitespace()).filter(|field| !field.is_empty());
-    let other = other.into_iter().flat_map(move |line| line.split(move |&byte| byte == delimiter));
+    let (blank, other) = if delimiter == b' ' {
+        (line, None)
+    } else {
+        ([].as_slice(), Some(line))
+    };
+    let blank = blank
+        .split(|byte| byte.is_ascii_whitespace())
+        .filter(|field| !field.is_empty());
+    let other = other
+        .into_iter()
+        .flat_map(move |line| line.split(move |&byte| byte == delimiter));
     blank.chain(other)
 }
 
@@ -77,7 +88,10 @@ impl TableDialect {
     /// The dialect of a text by its first lines; none where they hold no rows of numbers.
     pub(super) fn of(head: &[u8]) -> Option<Self> {
         let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
-        let whole = head.iter().rposition(|&byte| byte == b'\n').map_or(head, |end| &head[..end]);
+        let whole = head
+            .iter()
+            .rposition(|&byte| byte == b'\n')
+            .map_or(head, |end| &head[..end]);
         let lines: Vec<&[u8]> = whole
             .split(|&byte| byte == b'\n')
             .take(LINES)
@@ -99,20 +113,37 @@ impl TableDialect {
         best.map(|(_, dialect)| dialect)
     }
 
-    /// The dialect of an export with this header. Its decimal point is the one by which more of the first rows are numbers.
+    /// The dialect of an export with this header. Its decimal point is the one by which more of the
+    /// first rows are numbers.
     pub(super) fn of_scope(header: ScopeHeader, head: &[u8]) -> Self {
-        let ScopeHeader { format, delimiter, channels, first_line, sample_time_s } = header;
+        let ScopeHeader {
+            format,
+            delimiter,
+            channels,
+            first_line,
+            sample_time_s,
+        } = header;
         let numbers = |point: u8| -> usize {
-            let rows = head.split(|&byte| byte == b'\n').skip(first_line as usize - 1).take(LINES);
-            rows.map(|row| count(row.strip_suffix(b"\r").unwrap_or(row), delimiter, point).1).sum()
+            let rows = head
+                .split(|&byte| byte == b'\n')
+                .skip(first_line as usize - 1)
+                .take(LINES);
+            rows.map(|row| count(row.strip_suffix(b"\r").unwrap_or(row), delimiter, point).1)
+                .sum()
         };
         let has_comma = delimiter != b',' && numbers(b',') > numbers(b'.');
         Self {
             delimiter,
             point: if has_comma { b',' } else { b'.' },
             columns: channels.len(),
-            names: channels.iter().map(|channel| channel.name.clone()).collect(),
-            units: channels.iter().map(|channel| channel.unit.clone()).collect(),
+            names: channels
+                .iter()
+                .map(|channel| channel.name.clone())
+                .collect(),
+            units: channels
+                .iter()
+                .map(|channel| channel.unit.clone())
+                .collect(),
             first_line,
             sample_time_s,
             position_unit: None,
@@ -132,8 +163,18 @@ impl TableDialect {
             })
             .collect();
         let is_row = |&(fields, numbers): &(usize, usize)| numbers >= 2 && 2 * numbers >= fields;
-        let columns = usual(counts.iter().filter(|count| is_row(count)).map(|count| count.0))?;
-        let rows = || counts.iter().enumerate().filter(|(_, count)| count.0 == columns && is_row(count));
+        let columns = usual(
+            counts
+                .iter()
+                .filter(|count| is_row(count))
+                .map(|count| count.0),
+        )?;
+        let rows = || {
+            counts
+                .iter()
+                .enumerate()
+                .filter(|(_, count)| count.0 == columns && is_row(count))
+        };
         let score: usize = rows().map(|(_, count)| count.1).sum();
         let (first, _) = rows().next()?;
         let before = &lines[..first];
@@ -143,9 +184,14 @@ impl TableDialect {
         if names_in_rows {
             names = labels;
         }
-        let sample_time_s = before.iter().find_map(|line| sample_time_s(&String::from_utf8_lossy(line)));
+        let sample_time_s = before
+            .iter()
+            .find_map(|line| sample_time_s(&String::from_utf8_lossy(line)));
         let position_unit = before.iter().zip(1..).find_map(|(line, number)| {
-            Some((number, stated(&String::from_utf8_lossy(line), &["unit", "position_unit"])?))
+            Some((
+                number,
+                stated(&String::from_utf8_lossy(line), &["unit", "position_unit"])?,
+            ))
         });
         let first_line = first as u64 + 1;
         let dialect = Self {
@@ -170,12 +216,15 @@ fn count(line: &[u8], delimiter: u8, point: u8) -> (usize, usize) {
     for field in fields(line, delimiter) {
         all += 1;
         // An empty field says nothing of the dialect.
-        numbers += usize::from(!decimal::trimmed(field).is_empty() && decimal::parse(field, point).is_some());
+        numbers += usize::from(
+            !decimal::trimmed(field).is_empty() && decimal::parse(field, point).is_some(),
+        );
     }
     (all, numbers)
 }
 
-/// Names in a row of names and numbers by turns, each for the number behind it; none in any other row.
+/// Names in a row of names and numbers by turns, each for the number behind it; none in any other
+/// row.
 fn labels(row: &[u8], delimiter: u8, point: u8) -> Vec<String> {
     let mut names = Vec::new();
     for (number, field) in fields(row, delimiter).enumerate() {
@@ -192,10 +241,15 @@ fn labels(row: &[u8], delimiter: u8, point: u8) -> Vec<String> {
     for pair in names.chunks_exact_mut(2) {
         pair[0].clear();
     }
-    if names.len() % 2 == 0 { names } else { Vec::new() }
+    if names.len() % 2 == 0 {
+        names
+    } else {
+        Vec::new()
+    }
 }
 
-/// Time between samples, s, in a line such as `# Sampling period is 1000000 ns` or `# sample_time_s = 0.001`.
+/// Time between samples, s, in a line such as `# Sampling period is 1000000 ns` or `# sample_time_s
+/// = 0.001`.
 fn sample_time_s(line: &str) -> Option<f64> {
     let number = |text: &str| text.split_whitespace().next()?.parse::<f64>().ok();
     let text = line.trim_start_matches(BEFORE_TEXT).to_lowercase();
@@ -213,7 +267,9 @@ const BEFORE_TEXT: [char; 6] = ['#', '%', '!', '/', ';', ' '];
 fn stated(line: &str, names: &[&str]) -> Option<String> {
     let text = line.trim_start_matches(BEFORE_TEXT).to_lowercase();
     let (name, value) = text.split_once('=')?;
-    names.contains(&name.trim()).then(|| value.trim().to_owned())
+    names
+        .contains(&name.trim())
+        .then(|| value.trim().to_owned())
 }
 
 /// The most frequent number.
@@ -222,16 +278,22 @@ fn usual(counts: impl Iterator<Item = usize>) -> Option<usize> {
     for count in counts {
         *seen.entry(count).or_insert(0_usize) += 1;
     }
-    seen.into_iter().max_by_key(|&(_, times)| times).map(|(count, _)| count)
+    seen.into_iter()
+        .max_by_key(|&(_, times)| times)
+        .map(|(count, _)| count)
 }
 
-/// Names and units of the columns in the lines before the first row: the last lines with as many fields, perhaps behind a comment sign.
+/// Names and units of the columns in the lines before the first row: the last lines with as many
+/// fields, perhaps behind a comment sign.
 fn header(before: &[&[u8]], delimiter: u8, columns: usize) -> (Vec<String>, Vec<String>) {
     let mut found = before.iter().rev().filter_map(|line| {
         let line = match LineKind::of(line, delimiter) {
             LineKind::Comment => {
                 let text = line.trim_ascii_start();
-                &text[text.iter().position(|byte| !b"#%!/; ".contains(byte)).unwrap_or(text.len())..]
+                &text[text
+                    .iter()
+                    .position(|byte| !b"#%!/; ".contains(byte))
+                    .unwrap_or(text.len())..]
             }
             LineKind::Other => line,
             LineKind::Blank | LineKind::Overrun => return None,
@@ -240,10 +302,14 @@ fn header(before: &[&[u8]], delimiter: u8, columns: usize) -> (Vec<String>, Vec<
             .map(|field| String::from_utf8_lossy(decimal::trimmed(field)).into_owned())
             .collect();
         // The pins of a sampler, without the counter that `halsampler -t` puts in front.
-        if words.len() + 1 == columns && words.iter().all(|word| word.contains('.')) && delimiter == b' ' {
+        if words.len() + 1 == columns
+            && words.iter().all(|word| word.contains('.'))
+            && delimiter == b' '
+        {
             words.insert(0, "n".to_owned());
         }
-        let is_header = words.len() == columns && words.iter().any(|word| word.contains(char::is_alphabetic));
+        let is_header =
+            words.len() == columns && words.iter().any(|word| word.contains(char::is_alphabetic));
         is_header.then_some(words)
     });
     let (last, above) = (found.next().unwrap_or_default(), found.next());
@@ -253,13 +319,22 @@ fn header(before: &[&[u8]], delimiter: u8, columns: usize) -> (Vec<String>, Vec<
     }
 }
 
-/// Whether words below others are their units: they say less of what the columns are, and are short, in brackets, or known.
+/// Whether words below others are their units: they say less of what the columns are, and are
+/// short, in brackets, or known.
 fn are_units(words: &[String], above: &[String]) -> bool {
     let bare = |word: &str| word.trim_matches(['[', ']', '(', ')', ' ']).to_owned();
     let is_short = |word: &String| bare(word).chars().count() <= 4 || bare(word).len() < word.len();
-    let (is_known, are_short) = (words.iter().any(|word| is_known_unit(&bare(word))), words.iter().all(is_short));
+    let (is_known, are_short) = (
+        words.iter().any(|word| is_known_unit(&bare(word))),
+        words.iter().all(is_short),
+    );
     let says = |words: &[String]| {
-        let is_role = |word: &&String| !matches!(understand(word).quantity, Quantity::Other | Quantity::Velocity);
+        let is_role = |word: &&String| {
+            !matches!(
+                understand(word).quantity,
+                Quantity::Other | Quantity::Velocity
+            )
+        };
         words.iter().filter(is_role).count()
     };
     match says(words).cmp(&says(above)) {
@@ -292,7 +367,11 @@ mod tests {
             ("0,1,,a\n1,2,,b\n", b',', b'.', 4),
         ] {
             let found = dialect(text);
-            assert_eq!((found.delimiter, found.point, found.columns), (delimiter, point, columns), "{text:?}");
+            assert_eq!(
+                (found.delimiter, found.point, found.columns),
+                (delimiter, point, columns),
+                "{text:?}"
+            );
             assert_eq!((found.first_line, found.names.len()), (1, 0), "{text:?}");
         }
         for text in ["", "\n\n", "a b c\n", "1\n2\n3\n", "# 1 2 3\n"] {
@@ -303,12 +382,19 @@ mod tests {
     #[test]
     fn names_stand_above_the_rows_with_units_and_comments_or_without() {
         let named = dialect("recorded by hand\nn,x,xfb\n0,1,2\n1,2,3\n");
-        assert_eq!((named.names, named.first_line), (["n", "x", "xfb"].map(str::to_owned).to_vec(), 3));
+        assert_eq!(
+            (named.names, named.first_line),
+            (["n", "x", "xfb"].map(str::to_owned).to_vec(), 3)
+        );
         let with_units = dialect("t;x cmd;x act\n[s];[mm];[mm]\n0;1,0;2\n1;2,5;3\n");
         assert_eq!(with_units.names[1], "x cmd");
         assert_eq!(with_units.units, ["[s]", "[mm]", "[mm]"]);
-        let pins = dialect("# unit = inch\n# joint.0.motor-pos-cmd joint.0.motor-pos-fb\n7 1 2\n8 2 3\n");
-        assert_eq!(pins.names, ["n", "joint.0.motor-pos-cmd", "joint.0.motor-pos-fb"]);
+        let pins =
+            dialect("# unit = inch\n# joint.0.motor-pos-cmd joint.0.motor-pos-fb\n7 1 2\n8 2 3\n");
+        assert_eq!(
+            pins.names,
+            ["n", "joint.0.motor-pos-cmd", "joint.0.motor-pos-fb"]
+        );
         assert_eq!(pins.position_unit, Some((1, "inch".to_owned())));
         let commented = dialect("# sample_time_s = 0.001\n# n x.cmd x.act\n0 1 2\n1 2 3\n");
         assert_eq!(commented.names, ["n", "x.cmd", "x.act"]);
@@ -317,7 +403,9 @@ mod tests {
 
     #[test]
     fn rows_of_names_and_numbers_are_taken_apart() {
-        let found = dialect("Sampling period is 2000000 nSec \n\nx-cmd +1.5 x-fb +1.4 \nx-cmd +1.6 x-fb +1.5 \n");
+        let found = dialect(
+            "Sampling period is 2000000 nSec \n\nx-cmd +1.5 x-fb +1.4 \nx-cmd +1.6 x-fb +1.5 \n",
+        );
         assert_eq!(found.names, ["", "x-cmd", "", "x-fb"]);
         assert!(found.names_in_rows);
         assert_eq!((found.sample_time_s, found.columns), (Some(0.002), 4));

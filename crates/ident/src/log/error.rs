@@ -112,36 +112,69 @@ impl LogError {
     pub(super) fn unreadable(path: &Path, source: io::Error) -> Self {
         let hint = match source.kind() {
             io::ErrorKind::IsADirectory => Some("name a file in it"),
-            io::ErrorKind::NotFound => Some("name the file that the recorder wrote, with its folder"),
+            io::ErrorKind::NotFound => {
+                Some("name the file that the recorder wrote, with its folder")
+            }
             _ => None,
         };
-        Self::Unreadable { path: path.to_owned(), source, hint }
+        Self::Unreadable {
+            path: path.to_owned(),
+            source,
+            hint,
+        }
     }
 
     /// A file that is not what it should be.
-    pub(super) fn format(path: &Path, line: Option<u64>, message: impl Into<String>, hint: impl Into<String>) -> Self {
-        Self::Format { path: path.to_owned(), line, message: message.into(), hint: hint.into() }
+    pub(super) fn format(
+        path: &Path,
+        line: Option<u64>,
+        message: impl Into<String>,
+        hint: impl Into<String>,
+    ) -> Self {
+        Self::Format {
+            path: path.to_owned(),
+            line,
+            message: message.into(),
+            hint: hint.into(),
+        }
     }
 
     /// Columns that are missing.
-    pub(super) fn columns(path: &Path, message: impl Into<String>, hint: impl Into<String>) -> Self {
-        Self::Columns { path: path.to_owned(), message: message.into(), hint: hint.into() }
+    pub(super) fn columns(
+        path: &Path,
+        message: impl Into<String>,
+        hint: impl Into<String>,
+    ) -> Self {
+        Self::Columns {
+            path: path.to_owned(),
+            message: message.into(),
+            hint: hint.into(),
+        }
     }
 
     /// A log of something else than the one before it.
     pub(super) fn apart(path: PathBuf, message: String, hint: &str) -> Self {
-        Self::Apart { path, message, hint: hint.to_owned() }
+        Self::Apart {
+            path,
+            message,
+            hint: hint.to_owned(),
+        }
     }
 
     /// A record that is refused for one reason.
     pub(super) fn refused(path: &Path, refusal: Refusal) -> Self {
-        Self::Refused { path: path.to_owned(), refusals: vec![refusal] }
+        Self::Refused {
+            path: path.to_owned(),
+            refusals: vec![refusal],
+        }
     }
 
     /// The reasons for which a record is refused; none where the file is at fault.
     pub fn reasons(&self) -> Vec<RefusalReason> {
         match self {
-            Self::Refused { refusals, .. } => refusals.iter().map(|refusal| refusal.reason).collect(),
+            Self::Refused { refusals, .. } => {
+                refusals.iter().map(|refusal| refusal.reason).collect()
+            }
             _ => Vec::new(),
         }
     }
@@ -149,8 +182,16 @@ impl LogError {
 
 impl Refusal {
     /// One reason.
-    pub(super) fn new(reason: RefusalReason, message: impl Into<String>, hint: impl Into<String>) -> Self {
-        Self { reason, message: message.into(), hint: hint.into() }
+    pub(super) fn new(
+        reason: RefusalReason,
+        message: impl Into<String>,
+        hint: impl Into<String>,
+    ) -> Self {
+        Self {
+            reason,
+            message: message.into(),
+            hint: hint.into(),
+        }
     }
 }
 

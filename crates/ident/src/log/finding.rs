@@ -202,22 +202,40 @@ fn ms(seconds: f64) -> String {
 impl fmt::Display for LogFinding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::AxisColumns { axis, command, actual, torque, torque_unit, by_data } => {
-                write!(f, "axis {axis}: command in column {command}, actual position in column {actual}")?;
+            Self::AxisColumns {
+                axis,
+                command,
+                actual,
+                torque,
+                torque_unit,
+                by_data,
+            } => {
+                write!(
+                    f,
+                    "axis {axis}: command in column {command}, actual position in column {actual}"
+                )?;
                 if let Some(torque) = torque {
                     write!(f, ", torque in column {torque} ({torque_unit})")?;
                 }
                 if *by_data {
-                    f.write_str("; guessed from the data, as the columns have no names that say so")?;
+                    f.write_str(
+                        "; guessed from the data, as the columns have no names that say so",
+                    )?;
                 }
                 Ok(())
             }
             Self::PositionUnit { unit, because } => write!(f, "positions are in {unit}: {because}"),
             Self::TimeUnit { unit, because } => write!(f, "time is in {unit}: {because}"),
-            Self::SampleTime { sample_time_s, because } => {
+            Self::SampleTime {
+                sample_time_s,
+                because,
+            } => {
                 write!(f, "{} between samples: {because}", ms(*sample_time_s))
             }
-            Self::UnevenClock { range_s: [shortest, longest], taken_s } => write!(
+            Self::UnevenClock {
+                range_s: [shortest, longest],
+                taken_s,
+            } => write!(
                 f,
                 "the clock is uneven: {} to {} between samples, taken as {}",
                 ms(*shortest),
@@ -233,14 +251,21 @@ impl fmt::Display for LogFinding {
                 )
             }
             Self::MoreGaps { count } => write!(f, "{count} more gaps"),
-            Self::Joined { path, from_s } => write!(f, "{path} is joined at {} s of the time", to_four_digits(*from_s)),
+            Self::Joined { path, from_s } => write!(
+                f,
+                "{path} is joined at {} s of the time",
+                to_four_digits(*from_s)
+            ),
             Self::CutOff { line } => write!(f, "line {line}, the last, is cut off and left out"),
             Self::Short { announced, found } => write!(
                 f,
                 "the header announces {announced} samples, and {found} are there: the rest is cut off; hint: save the record again if it is needed"
             ),
             Self::Rotary { axis } => write!(f, "axis {axis} is rotary, in degrees, and left out"),
-            Self::StandsStill { axis } => write!(f, "axis {axis} stands still: nothing can be identified of it"),
+            Self::StandsStill { axis } => write!(
+                f,
+                "axis {axis} stands still: nothing can be identified of it"
+            ),
             Self::Endless { axis, range_mm } => {
                 let range_mm = to_four_digits(*range_mm);
                 write!(
@@ -248,7 +273,9 @@ impl fmt::Display for LogFinding {
                     "axis {axis} goes over {range_mm} mm, which no linear axis does: it is taken for a spindle and left out"
                 )
             }
-            Self::Incomplete { axis, lacks } => write!(f, "axis {axis} has no {lacks} and is left out"),
+            Self::Incomplete { axis, lacks } => {
+                write!(f, "axis {axis} has no {lacks} and is left out")
+            }
             Self::Unused { columns } => write!(
                 f,
                 "not used: column {}; hint: a torque or current is named with --columns, such as x.torque={}",
@@ -271,30 +298,74 @@ impl LogFinding {
                     "command and actual position of {axis} differ by {offset_mm} mm all the time, which is taken out"
                 )
             }
-            Self::Following { axis, following_um, delay_s } => {
+            Self::Following {
+                axis,
+                following_um,
+                delay_s,
+            } => {
                 let (following_um, by) = (to_four_digits(*following_um), ms(delay_s.abs()));
                 let how = if *delay_s < 0.0 { "ahead" } else { "behind" };
-                write!(f, "the following error of {axis} is {following_um} um RMS, its actual position is {by} {how}")
+                write!(
+                    f,
+                    "the following error of {axis} is {following_um} um RMS, its actual position is {by} {how}"
+                )
             }
             Self::Steps { axis, step_um } => {
-                write!(f, "the actual position of {axis} comes in steps of {} um", to_four_digits(*step_um))
+                write!(
+                    f,
+                    "the actual position of {axis} comes in steps of {} um",
+                    to_four_digits(*step_um)
+                )
             }
-            Self::TorqueLimit { axis, limit, unit, part, from_s, to_s } => {
+            Self::TorqueLimit {
+                axis,
+                limit,
+                unit,
+                part,
+                from_s,
+                to_s,
+            } => {
                 let (limit, percent) = (to_four_digits(*limit), to_four_digits(100.0 * part));
-                write!(f, "the torque of {axis} is at its limit of {limit} {unit} in {percent} % of the samples, ")?;
+                write!(
+                    f,
+                    "the torque of {axis} is at its limit of {limit} {unit} in {percent} % of the samples, "
+                )?;
                 write!(f, "from {from_s:.3} s to {to_s:.3} s")
             }
-            Self::SpeedLimit { axis, limit_mm_s, commanded_mm_s } => {
-                let [limit, commanded] = [limit_mm_s, commanded_mm_s].map(|speed| to_four_digits(*speed));
-                write!(f, "the speed of {axis} stays below {limit} mm/s, where the command reaches {commanded} mm/s")
+            Self::SpeedLimit {
+                axis,
+                limit_mm_s,
+                commanded_mm_s,
+            } => {
+                let [limit, commanded] =
+                    [limit_mm_s, commanded_mm_s].map(|speed| to_four_digits(*speed));
+                write!(
+                    f,
+                    "the speed of {axis} stays below {limit} mm/s, where the command reaches {commanded} mm/s"
+                )
             }
-            Self::TorqueLine { axis, frequency_hz, amplitude, unit } => {
+            Self::TorqueLine {
+                axis,
+                frequency_hz,
+                amplitude,
+                unit,
+            } => {
                 let [at, size] = [frequency_hz, amplitude].map(|value| to_four_digits(*value));
-                write!(f, "the torque of {axis} swings at {at} Hz with an amplitude of {size} {unit}")
+                write!(
+                    f,
+                    "the torque of {axis} swings at {at} Hz with an amplitude of {size} {unit}"
+                )
             }
-            Self::FollowingLine { axis, frequency_hz, amplitude_um } => {
+            Self::FollowingLine {
+                axis,
+                frequency_hz,
+                amplitude_um,
+            } => {
                 let [at, size] = [frequency_hz, amplitude_um].map(|value| to_four_digits(*value));
-                write!(f, "the following error of {axis} swings at {at} Hz with an amplitude of {size} um")
+                write!(
+                    f,
+                    "the following error of {axis} swings at {at} Hz with an amplitude of {size} um"
+                )
             }
             Self::TakenFor { axis, program } => write!(
                 f,

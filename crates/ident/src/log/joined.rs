@@ -1,4 +1,5 @@
-//! Several logs of one machine as one: what each has is a stretch of its own, and times run on from one to the next.
+//! Several logs of one machine as one: what each has is a stretch of its own, and times run on from
+//! one to the next.
 
 use std::path::PathBuf;
 
@@ -17,7 +18,11 @@ impl Log {
     pub fn joined(logs: Vec<(PathBuf, Self)>) -> Result<Self, LogError> {
         let mut logs = logs.into_iter();
         let Some((first_path, mut all)) = logs.next() else {
-            return Err(LogError::apart(PathBuf::new(), "no log was given".to_owned(), "name one or more"));
+            return Err(LogError::apart(
+                PathBuf::new(),
+                "no log was given".to_owned(),
+                "name one or more",
+            ));
         };
         for (path, mut log) in logs {
             if (log.sample_time_s / all.sample_time_s - 1.0).abs() > SAME_CLOCK {
@@ -32,7 +37,12 @@ impl Log {
             }
             all.take_up(&log);
             log.take_up(&all);
-            let names = |log: &Self| log.axes.iter().map(|axis| axis.name.clone()).collect::<Vec<_>>();
+            let names = |log: &Self| {
+                log.axes
+                    .iter()
+                    .map(|axis| axis.name.clone())
+                    .collect::<Vec<_>>()
+            };
             let [here, there] = [names(&log), names(&all)];
             if here.len() != there.len() || there.iter().any(|name| !here.contains(name)) {
                 let message = format!(
@@ -61,8 +71,13 @@ impl Log {
         let last_s = self.time_s.last().copied().unwrap_or(0.0);
         let from_s = last_s + self.sample_time_s;
         let begins_s = log.time_s.first().copied().unwrap_or(0.0);
-        self.time_s.extend(log.time_s.iter().map(|time_s| time_s - begins_s + from_s));
-        self.stretches.extend(log.stretches.iter().map(|stretch| stretch.start + samples..stretch.end + samples));
+        self.time_s
+            .extend(log.time_s.iter().map(|time_s| time_s - begins_s + from_s));
+        self.stretches.extend(
+            log.stretches
+                .iter()
+                .map(|stretch| stretch.start + samples..stretch.end + samples),
+        );
         for axis in &mut self.axes {
             if let Some(other) = log.axes.iter().find(|other| other.name == axis.name) {
                 axis.append(other);
@@ -126,9 +141,19 @@ mod tests {
     fn times_and_stretches_run_on() {
         let joined = Log::joined(vec![log("x", 0.001, true), log("x", 0.001, false)]).unwrap();
         assert_eq!(joined.stretches, [0..2, 2..3, 3..5, 5..6]);
-        assert!(joined.time_s.windows(2).all(|pair| pair[1] > pair[0]), "{:?}", joined.time_s);
-        assert_eq!((joined.axes[0].command_mm.len(), &joined.axes[0].torque), (6, &None));
-        assert_eq!(joined.findings[0].to_string(), "a.csv is joined at 6.001 s of the time");
+        assert!(
+            joined.time_s.windows(2).all(|pair| pair[1] > pair[0]),
+            "{:?}",
+            joined.time_s
+        );
+        assert_eq!(
+            (joined.axes[0].command_mm.len(), &joined.axes[0].torque),
+            (6, &None)
+        );
+        assert_eq!(
+            joined.findings[0].to_string(),
+            "a.csv is joined at 6.001 s of the time"
+        );
     }
 
     #[test]
@@ -142,17 +167,34 @@ mod tests {
         };
         let (path, mut moving) = both();
         moving.axes.append(&mut moving.still);
-        for logs in [vec![both(), (path.clone(), moving.clone())], vec![(path, moving), both()]] {
+        for logs in [
+            vec![both(), (path.clone(), moving.clone())],
+            vec![(path, moving), both()],
+        ] {
             let joined = Log::joined(logs).unwrap();
-            let lengths: Vec<_> = joined.axes.iter().map(|axis| (axis.name.as_str(), axis.actual_mm.len())).collect();
+            let lengths: Vec<_> = joined
+                .axes
+                .iter()
+                .map(|axis| (axis.name.as_str(), axis.actual_mm.len()))
+                .collect();
             assert_eq!(lengths, [("x", 6), ("y", 6)]);
         }
     }
 
     #[test]
     fn other_axes_and_other_clocks_are_no_logs_of_the_same_machine() {
-        let refused = |other| Log::joined(vec![log("x", 0.001, true), other]).unwrap_err().to_string();
-        assert_eq!(refused(log("y", 0.001, true)), "a.csv: the axes are y here, and x in a.csv");
-        assert_eq!(refused(log("x", 0.002, true)), "a.csv: a sample is 0.002 s here, and 0.001 s in a.csv");
+        let refused = |other| {
+            Log::joined(vec![log("x", 0.001, true), other])
+                .unwrap_err()
+                .to_string()
+        };
+        assert_eq!(
+            refused(log("y", 0.001, true)),
+            "a.csv: the axes are y here, and x in a.csv"
+        );
+        assert_eq!(
+            refused(log("x", 0.002, true)),
+            "a.csv: a sample is 0.002 s here, and 0.001 s in a.csv"
+        );
     }
 }

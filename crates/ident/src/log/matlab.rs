@@ -1,4 +1,5 @@
-//! Variables of MATLAB and Octave: MAT-files of version 5, with and without compression, of either byte order.
+//! Variables of MATLAB and Octave: MAT-files of version 5, with and without compression, of either
+//! byte order.
 //!
 //! ```text
 //! file      128 bytes of header, elements
@@ -7,8 +8,9 @@
 //! matrix    flags (class), dimensions, name, numbers by columns
 //! ```
 //!
-//! Source: The MathWorks, MAT-File Format. Vectors of real numbers are columns of the log, and so are the columns of matrices that are
-//! longer than wide; text, cells, structs and what is complex or sparse is left out.
+//! Source: The MathWorks, MAT-File Format. Vectors of real numbers are columns of the log, and so
+//! are the columns of matrices that are longer than wide; text, cells, structs and what is complex
+//! or sparse is left out.
 
 use std::io::Read;
 use std::path::Path;
@@ -20,8 +22,9 @@ use super::table::{LineNumbers, LogColumn, LogTable};
 use super::{LogError, LogFormat};
 
 const HEADER_BYTES: usize = 128;
-/// Bytes that the numbers of a file may take in memory: these, and so many for each byte of the file. Measured positions deflate to a
-/// quarter and more of their size; zeros to a thousandth, so that a small file could fill the memory.
+/// Bytes that the numbers of a file may take in memory: these, and so many for each byte of the
+/// file. Measured positions deflate to a quarter and more of their size; zeros to a thousandth, so
+/// that a small file could fill the memory.
 const FREE_BYTES: usize = 16 << 20;
 const BYTES_PER_BYTE: usize = 16;
 /// Bytes of a number in memory.
@@ -51,9 +54,15 @@ pub(super) fn read(
     watch: &dyn Watch,
 ) -> Result<LogTable, LogError> {
     let mut bytes = Vec::new();
-    file.read_to_end(&mut bytes).map_err(|error| LogError::unreadable(path, error))?;
+    file.read_to_end(&mut bytes)
+        .map_err(|error| LogError::unreadable(path, error))?;
     let fault = |message: String| {
-        LogError::format(path, None, message, "save it anew: save('log.mat', 't', 'x_cmd', 'x_act', '-v7')")
+        LogError::format(
+            path,
+            None,
+            message,
+            "save it anew: save('log.mat', 't', 'x_cmd', 'x_act', '-v7')",
+        )
     };
     if is_hdf5(&bytes) {
         return Err(fault("MATLAB files of version 7.3 are not read".to_owned()));
@@ -61,7 +70,11 @@ pub(super) fn read(
     let order = match bytes.get(126..HEADER_BYTES) {
         Some(b"IM") => ByteOrder::Little,
         Some(b"MI") => ByteOrder::Big,
-        _ => return Err(fault("the header of the MATLAB file is not whole".to_owned())),
+        _ => {
+            return Err(fault(
+                "the header of the MATLAB file is not whole".to_owned(),
+            ));
+        }
     };
     let mut variables: Vec<Variable> = Vec::new();
     let most_bytes = FREE_BYTES + BYTES_PER_BYTE * bytes.len();
@@ -70,8 +83,11 @@ pub(super) fn read(
     while !rest.is_empty() {
         watch.check()?;
         let at = bytes.len() - rest.len();
-        let element = Element::take(&mut rest, order)
-            .ok_or_else(|| fault(format!("the MATLAB file is cut off: its variable at byte {at} is not whole")))?;
+        let element = Element::take(&mut rest, order).ok_or_else(|| {
+            fault(format!(
+                "the MATLAB file is cut off: its variable at byte {at} is not whole"
+            ))
+        })?;
         if let Some(variable) = variable(element, order, left_bytes).map_err(|why| match why {
             VariableFault::Broken(why) => fault(format!("variable at byte {at}: {why}")),
             VariableFault::TooLarge => {
@@ -120,7 +136,11 @@ impl<'a> Element<'a> {
         }
         let size = u32_of(bytes.get(4..8)?, order)? as usize;
         let data = bytes.get(8..)?.get(..size)?;
-        let padded = if first == COMPRESSED { size } else { size.next_multiple_of(8) };
+        let padded = if first == COMPRESSED {
+            size
+        } else {
+            size.next_multiple_of(8)
+        };
         // The zeros behind the last element may be missing.
         *bytes = bytes.get(8 + padded..).unwrap_or_default();
         Some(Self { kind: first, data })
@@ -144,7 +164,10 @@ struct Variable {
 impl Variable {
     /// Bytes of its numbers.
     fn bytes(&self) -> usize {
-        self.columns.iter().map(|column| NUMBER_BYTES * column.len()).sum()
+        self.columns
+            .iter()
+            .map(|column| NUMBER_BYTES * column.len())
+            .sum()
     }
 }
 
@@ -162,23 +185,37 @@ impl From<&str> for VariableFault {
 }
 
 /// The numbers of an element, which may take so many bytes; none where it holds anything else.
-fn variable(element: Element<'_>, order: ByteOrder, most_bytes: usize) -> Result<Option<Variable>, VariableFault> {
+fn variable(
+    element: Element<'_>,
+    order: ByteOrder,
+    most_bytes: usize,
+) -> Result<Option<Variable>, VariableFault> {
     match element.kind {
         COMPRESSED => {
             let inflated =
-                decompress_to_vec_zlib_with_limit(element.data, most_bytes).map_err(|error| match error.status {
-                    TINFLStatus::HasMoreOutput => VariableFault::TooLarge,
-                    _ => VariableFault::Broken(format!("cannot be inflated ({error})")),
+                decompress_to_vec_zlib_with_limit(element.data, most_bytes).map_err(|error| {
+                    match error.status {
+                        TINFLStatus::HasMoreOutput => VariableFault::TooLarge,
+                        _ => VariableFault::Broken(format!("cannot be inflated ({error})")),
+                    }
                 })?;
             let inner = Element::take(&mut inflated.as_slice(), order).ok_or("is not whole")?;
-            if inner.kind == MATRIX { matrix(inner.data, order, most_bytes) } else { Ok(None) }
+            if inner.kind == MATRIX {
+                matrix(inner.data, order, most_bytes)
+            } else {
+                Ok(None)
+            }
         }
         MATRIX => matrix(element.data, order, most_bytes),
         _ => Ok(None),
     }
 }
 
-fn matrix(mut data: &[u8], order: ByteOrder, most_bytes: usize) -> Result<Option<Variable>, VariableFault> {
+fn matrix(
+    mut data: &[u8],
+    order: ByteOrder,
+    most_bytes: usize,
+) -> Result<Option<Variable>, VariableFault> {
     const CUT_OFF: &str = "is not whole";
     let mut next = || Element::take(&mut data, order).ok_or(CUT_OFF);
     let flags = u32_of(next()?.data.get(..4).ok_or(CUT_OFF)?, order).ok_or(CUT_OFF)?;
@@ -187,15 +224,21 @@ fn matrix(mut data: &[u8], order: ByteOrder, most_bytes: usize) -> Result<Option
     if !is_numeric {
         return Ok(None);
     }
-    let dimensions: Vec<usize> =
-        next()?.data.chunks_exact(4).filter_map(|d| Some(u32_of(d, order)? as usize)).collect();
+    let dimensions: Vec<usize> = next()?
+        .data
+        .chunks_exact(4)
+        .filter_map(|d| Some(u32_of(d, order)? as usize))
+        .collect();
     let name = String::from_utf8_lossy(next()?.data).into_owned();
-    let [rows, columns] = dimensions[..] else { return Ok(None) };
+    let [rows, columns] = dimensions[..] else {
+        return Ok(None);
+    };
     if rows.saturating_mul(columns).saturating_mul(NUMBER_BYTES) > most_bytes {
         return Err(VariableFault::TooLarge);
     }
     let element = next()?;
-    let of = |data| numbers(Element { data, ..element }, order).ok_or("has numbers of an unknown type");
+    let of =
+        |data| numbers(Element { data, ..element }, order).ok_or("has numbers of an unknown type");
     let number_bytes = NUMBER_BYTES / of(&[0; NUMBER_BYTES])?.len();
     let count = element.data.len() / number_bytes;
     if Some(count) != rows.checked_mul(columns) {
@@ -208,8 +251,15 @@ fn matrix(mut data: &[u8], order: ByteOrder, most_bytes: usize) -> Result<Option
     let is_read = count > 0 && (is_vector || rows > columns && columns <= MAX_COLUMNS);
     // Column by column: all numbers at once would be in memory twice.
     let column_bytes = number_bytes * if is_vector { count } else { rows };
-    let columns =
-        if is_read { element.data.chunks_exact(column_bytes).map(of).collect::<Result<_, _>>()? } else { Vec::new() };
+    let columns = if is_read {
+        element
+            .data
+            .chunks_exact(column_bytes)
+            .map(of)
+            .collect::<Result<_, _>>()?
+    } else {
+        Vec::new()
+    };
     Ok(Some(Variable { name, columns }))
 }
 
@@ -244,24 +294,53 @@ fn numbers(element: Element<'_>, order: ByteOrder) -> Option<Vec<f64>> {
 /// The vectors of the most frequent length; none where no two have the same.
 fn table(variables: Vec<Variable>) -> Option<LogTable> {
     let is_time = |name: &str| SAMPLE_TIMES.contains(&name.to_lowercase().as_str());
-    let sample_time_s = variables.iter().find(|v| is_time(&v.name)).and_then(|v| match &v.columns[..] {
-        [column] if column.len() == 1 => Some(column[0]).filter(|&s| s.is_finite() && s > 0.0),
-        _ => None,
-    });
+    let sample_time_s =
+        variables
+            .iter()
+            .find(|v| is_time(&v.name))
+            .and_then(|v| match &v.columns[..] {
+                [column] if column.len() == 1 => {
+                    Some(column[0]).filter(|&s| s.is_finite() && s > 0.0)
+                }
+                _ => None,
+            });
     let mut times = std::collections::BTreeMap::new();
-    for column in variables.iter().flat_map(|variable| &variable.columns).filter(|column| column.len() > 1) {
+    for column in variables
+        .iter()
+        .flat_map(|variable| &variable.columns)
+        .filter(|column| column.len() > 1)
+    {
         *times.entry(column.len()).or_insert(0_usize) += 1;
     }
-    let (&length, _) =
-        times.iter().max_by_key(|&(&length, &count)| (count, length)).filter(|&(_, &count)| count > 1)?;
+    let (&length, _) = times
+        .iter()
+        .max_by_key(|&(&length, &count)| (count, length))
+        .filter(|&(_, &count)| count > 1)?;
     let mut columns = Vec::new();
-    for Variable { name, columns: found } in variables {
+    for Variable {
+        name,
+        columns: found,
+    } in variables
+    {
         let several = found.len() > 1;
-        for (number, values) in found.into_iter().enumerate().filter(|(_, values)| values.len() == length) {
-            let name = if several { format!("{name}({})", number + 1) } else { name.clone() };
+        for (number, values) in found
+            .into_iter()
+            .enumerate()
+            .filter(|(_, values)| values.len() == length)
+        {
+            let name = if several {
+                format!("{name}({})", number + 1)
+            } else {
+                name.clone()
+            };
             let nan = values.iter().position(|value| value.is_nan());
             let not_a_number = nan.map(|row| (row, "NaN".to_owned()));
-            columns.push(LogColumn { name, values, not_a_number, ..LogColumn::default() });
+            columns.push(LogColumn {
+                name,
+                values,
+                not_a_number,
+                ..LogColumn::default()
+            });
         }
     }
     let (breaks, lines) = (Vec::new(), LineNumbers::default());

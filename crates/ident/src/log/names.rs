@@ -57,13 +57,26 @@ const COMMANDS: [&str; 18] = [
 /// Where the command is to end up, perhaps only later.
 const TARGETS: [&str; 3] = ["target", "goal", "ziel"];
 const ACTUALS: [&str; 16] = [
-    "act", "actual", "fb", "fbk", "feedback", "meas", "measured", "measure", "enc", "encoder", "ist", "istwert", "qm",
-    "real", "mpos", "apos",
+    "act", "actual", "fb", "fbk", "feedback", "meas", "measured", "measure", "enc", "encoder",
+    "ist", "istwert", "qm", "real", "mpos", "apos",
 ];
-const TORQUES: [&str; 11] = ["torque", "trq", "tq", "tau", "moment", "force", "current", "iq", "curr", "vir", "amps"];
+const TORQUES: [&str; 11] = [
+    "torque", "trq", "tq", "tau", "moment", "force", "current", "iq", "curr", "vir", "amps",
+];
 const POSITIONS: [&str; 4] = ["pos", "position", "posn", "lage"];
-const TIMES: [&str; 8] = ["t", "time", "timestamp", "zeit", "clock", "seconds", "millis", "ms"];
-const COUNTERS: [&str; 9] = ["n", "sample", "samples", "cycle", "index", "idx", "counter", "count", "k"];
+const TIMES: [&str; 8] = [
+    "t",
+    "time",
+    "timestamp",
+    "zeit",
+    "clock",
+    "seconds",
+    "millis",
+    "ms",
+];
+const COUNTERS: [&str; 9] = [
+    "n", "sample", "samples", "cycle", "index", "idx", "counter", "count", "k",
+];
 const SPEEDS: [&str; 6] = ["velocity", "vel", "velo", "speed", "geschwindigkeit", "v"];
 /// Words of quantities that are none of these.
 const OTHERS: [&str; 37] = [
@@ -129,11 +142,17 @@ pub(super) fn understand(name: &str) -> Meaning {
     let meaning = of_words(&words, &unit);
     let is_unit = |word: &String| UNIT_WORDS.split(' ').any(|unit| unit == word);
     match words.split_last() {
-        // A word that makes the quantity, as in `index_count`, is no unit; and a counter, as `sample_count`, has none.
+        // A word that makes the quantity, as in `index_count`, is no unit; and a counter, as
+        // `sample_count`, has none.
         Some((last, rest))
-            if unit.is_empty() && !rest.is_empty() && is_unit(last) && meaning.quantity != Quantity::Counter =>
+            if unit.is_empty()
+                && !rest.is_empty()
+                && is_unit(last)
+                && meaning.quantity != Quantity::Counter =>
         {
-            Some(of_words(rest, last)).filter(|found| found.quantity == meaning.quantity).unwrap_or(meaning)
+            Some(of_words(rest, last))
+                .filter(|found| found.quantity == meaning.quantity)
+                .unwrap_or(meaning)
         }
         _ => meaning,
     }
@@ -141,19 +160,39 @@ pub(super) fn understand(name: &str) -> Meaning {
 
 /// What the words of a name say.
 fn of_words(words: &[String], unit: &str) -> Meaning {
-    let axis = Some(axis(words)).filter(|axis| !axis.is_empty()).unwrap_or_else(|| remainder(words));
-    let has = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()) || without_axis(word, list));
+    let axis = Some(axis(words))
+        .filter(|axis| !axis.is_empty())
+        .unwrap_or_else(|| remainder(words));
+    let has = |list: &[&str]| {
+        words
+            .iter()
+            .any(|word| list.contains(&word.as_str()) || without_axis(word, list))
+    };
     let (quantity, fit) = if is_spindle(&axis) {
         (Quantity::Other, 0)
     } else if words.iter().any(|word| word == "diff") && has(&POSITIONS) && !has(&SPEEDS) {
         (Quantity::Lag, 1)
     } else if has(&SPEEDS) && !has(&OTHERS) {
-        (if has(&COMMANDS) { Quantity::Other } else { Quantity::Velocity }, 1)
+        (
+            if has(&COMMANDS) {
+                Quantity::Other
+            } else {
+                Quantity::Velocity
+            },
+            1,
+        )
     } else if has(&SPEEDS) || has(&OTHERS) {
         (Quantity::Other, 0)
     } else if has(&TORQUES) && !has(&POSITIONS) {
         // Where there are both, torque says more than current.
-        (Quantity::Torque, if has(&["torque", "force", "vir", "tau"]) { 3 } else { 2 - u8::from(has(&COMMANDS)) })
+        (
+            Quantity::Torque,
+            if has(&["torque", "force", "vir", "tau"]) {
+                3
+            } else {
+                2 - u8::from(has(&COMMANDS))
+            },
+        )
     } else if has(&COMMANDS) {
         (Quantity::Command, 2)
     } else if has(&ACTUALS) {
@@ -166,15 +205,25 @@ fn of_words(words: &[String], unit: &str) -> Meaning {
         (Quantity::Time, if words.len() == 1 { 2 } else { 1 })
     } else if has(&COUNTERS) {
         (Quantity::Counter, 2)
-    } else if words.len() <= 2 && words.first().is_some_and(|word| word.len() == 1 && LETTERS.contains(word.as_str())) {
+    } else if words.len() <= 2
+        && words
+            .first()
+            .is_some_and(|word| word.len() == 1 && LETTERS.contains(word.as_str()))
+    {
         (Quantity::Position, 0)
     } else {
         (Quantity::Other, 0)
     };
-    Meaning { quantity, axis, unit: unit.to_owned(), fit }
+    Meaning {
+        quantity,
+        axis,
+        unit: unit.to_owned(),
+        fit,
+    }
 }
 
-/// A pin of the HAL component `feedwright`, whose number is that of the joint. LinuxCNC's own command fits better than that of the drive.
+/// A pin of the HAL component `feedwright`, whose number is that of the joint. LinuxCNC's own
+/// command fits better than that of the drive.
 fn of_component(name: &str) -> Option<Meaning> {
     let (kind, number) = name.strip_prefix("feedwright.")?.rsplit_once('-')?;
     number.parse::<u8>().ok()?;
@@ -185,17 +234,27 @@ fn of_component(name: &str) -> Option<Meaning> {
         "feedback" => (Quantity::Actual, 1),
         _ => (Quantity::Other, 0),
     };
-    Some(Meaning { quantity, axis: format!("joint{number}"), unit: String::new(), fit })
+    Some(Meaning {
+        quantity,
+        axis: format!("joint{number}"),
+        unit: String::new(),
+        fit,
+    })
 }
 
-/// A channel of Servo Guide, such as `POSF X`, or of TNCscope, such as `s actual X`: s is a position, v a speed, i a current.
+/// A channel of Servo Guide, such as `POSF X`, or of TNCscope, such as `s actual X`: s is a
+/// position, v a speed, i a current.
 fn of_scope(name: &str) -> Option<Meaning> {
     let (bare, unit) = split_unit(name);
     let words: Vec<&str> = bare.split_whitespace().collect();
     let (quantity, axis) = match words[..] {
-        [signal, ref axis @ ..] if SERVO_GUIDE_SIGNALS.iter().any(|(name, _)| *name == signal) => {
-            (SERVO_GUIDE_SIGNALS.iter().find(|(name, _)| *name == signal)?.1, axis)
-        }
+        [signal, ref axis @ ..] if SERVO_GUIDE_SIGNALS.iter().any(|(name, _)| *name == signal) => (
+            SERVO_GUIDE_SIGNALS
+                .iter()
+                .find(|(name, _)| *name == signal)?
+                .1,
+            axis,
+        ),
         [letter @ ("s" | "v" | "a" | "j" | "i"), kind, ref axis @ ..] if !axis.is_empty() => {
             let quantity = match (letter, kind.trim_end_matches('.')) {
                 ("s", "nominal" | "nom" | "soll") => Quantity::Command,
@@ -203,7 +262,9 @@ fn of_scope(name: &str) -> Option<Meaning> {
                 ("s", "dif" | "diff") => Quantity::Lag,
                 ("v", "actual" | "act" | "ist") => Quantity::Velocity,
                 ("i", "actual" | "act" | "ist") => Quantity::Torque,
-                (_, "nominal" | "nom" | "soll" | "actual" | "act" | "ist" | "dif" | "diff") => Quantity::Other,
+                (_, "nominal" | "nom" | "soll" | "actual" | "act" | "ist" | "dif" | "diff") => {
+                    Quantity::Other
+                }
                 _ => return None,
             };
             (quantity, axis)
@@ -211,8 +272,17 @@ fn of_scope(name: &str) -> Option<Meaning> {
         _ => return None,
     };
     let axis = axis.concat().to_lowercase();
-    let quantity = if is_spindle(&axis) { Quantity::Other } else { quantity };
-    Some(Meaning { quantity, axis, unit, fit: 2 })
+    let quantity = if is_spindle(&axis) {
+        Quantity::Other
+    } else {
+        quantity
+    };
+    Some(Meaning {
+        quantity,
+        axis,
+        unit,
+        fit: 2,
+    })
 }
 
 /// Whether an axis is a spindle by its name.
@@ -220,10 +290,15 @@ pub(super) fn is_spindle(axis: &str) -> bool {
     ["s", "sp", "spindle"].contains(&axis.trim_end_matches(|c: char| c.is_ascii_digit()))
 }
 
-/// What is left of a name without the words that are known: what those columns have in common that belong together.
+/// What is left of a name without the words that are known: what those columns have in common that
+/// belong together.
 fn remainder(words: &[String]) -> String {
-    let lists: [&[&str]; 8] = [&COMMANDS, &TARGETS, &ACTUALS, &TORQUES, &POSITIONS, &SPEEDS, &TIMES, &COUNTERS];
-    let unknown = words.iter().filter(|word| !lists.iter().any(|list| list.contains(&word.as_str())));
+    let lists: [&[&str]; 8] = [
+        &COMMANDS, &TARGETS, &ACTUALS, &TORQUES, &POSITIONS, &SPEEDS, &TIMES, &COUNTERS,
+    ];
+    let unknown = words
+        .iter()
+        .filter(|word| !lists.iter().any(|list| list.contains(&word.as_str())));
     unknown.map(String::as_str).collect::<Vec<_>>().concat()
 }
 
@@ -233,12 +308,16 @@ const UNIT_WORDS: &str = "mm um micron microns inch inches ms us ns nm deg degre
 /// Units that are too short to end a name behind any other sign than `_`.
 const ENDINGS: [&str; 4] = ["m", "in", "s", "%"];
 
-/// A name without its unit, and the unit: in brackets, or behind `_`. What else stands in brackets, such as an axis or a number, belongs
-/// to the name.
+/// A name without its unit, and the unit: in brackets, or behind `_`. What else stands in brackets,
+/// such as an axis or a number, belongs to the name.
 fn split_unit(name: &str) -> (String, String) {
     let mut at = name.len();
     while let Some(open) = name[..at].rfind(['[', '(']) {
-        let close = if name[open..].starts_with('[') { ']' } else { ')' };
+        let close = if name[open..].starts_with('[') {
+            ']'
+        } else {
+            ')'
+        };
         if let Some((unit, behind)) = name[open + 1..].split_once(close)
             && (is_known_unit(unit.trim()) || !is_part_of_name(unit))
         {
@@ -247,7 +326,9 @@ fn split_unit(name: &str) -> (String, String) {
         at = open;
     }
     match name.rsplit_once('_') {
-        Some((bare, unit)) if ENDINGS.contains(&unit.to_lowercase().as_str()) && !bare.is_empty() => {
+        Some((bare, unit))
+            if ENDINGS.contains(&unit.to_lowercase().as_str()) && !bare.is_empty() =>
+        {
             (bare.to_owned(), unit.to_owned())
         }
         _ => (name.to_owned(), String::new()),
@@ -263,13 +344,17 @@ pub(super) fn is_known_unit(text: &str) -> bool {
 
 /// Whether a text in brackets is an axis, a number or a quantity.
 fn is_part_of_name(text: &str) -> bool {
-    let lists: [&[&str]; 7] = [&COMMANDS, &TARGETS, &ACTUALS, &TORQUES, &POSITIONS, &SPEEDS, &OTHERS];
+    let lists: [&[&str]; 7] = [
+        &COMMANDS, &TARGETS, &ACTUALS, &TORQUES, &POSITIONS, &SPEEDS, &OTHERS,
+    ];
     let is_number = |word: &str| word.chars().all(|c| c.is_ascii_digit());
-    let is_axis =
-        |word: &str| word.len() == 1 && LETTERS.contains(word) || AXIS_WORDS.contains(&word) || is_spindle(word);
+    let is_axis = |word: &str| {
+        word.len() == 1 && LETTERS.contains(word) || AXIS_WORDS.contains(&word) || is_spindle(word)
+    };
     let words = words(text);
-    let is_part =
-        |word: &String| is_number(word) || is_axis(word) || lists.iter().any(|list| list.contains(&word.as_str()));
+    let is_part = |word: &String| {
+        is_number(word) || is_axis(word) || lists.iter().any(|list| list.contains(&word.as_str()))
+    };
     !words.is_empty() && words.iter().all(is_part)
 }
 
@@ -282,8 +367,9 @@ fn words(name: &str) -> Vec<String> {
             before = ' ';
             continue;
         }
-        let starts =
-            before == ' ' || (c.is_numeric() != before.is_numeric()) || (c.is_uppercase() && before.is_lowercase());
+        let starts = before == ' '
+            || (c.is_numeric() != before.is_numeric())
+            || (c.is_uppercase() && before.is_lowercase());
         if starts {
             words.push(String::new());
         }
@@ -299,8 +385,12 @@ fn words(name: &str) -> Vec<String> {
 fn without_axis(word: &str, list: &[&str]) -> bool {
     let is_letter = |c: Option<char>| c.is_some_and(|c| LETTERS.contains(c));
     list.iter().filter(|known| known.len() > 1).any(|known| {
-        let before = word.strip_suffix(known).is_some_and(|rest| rest.len() == 1 && is_letter(rest.chars().next()));
-        let behind = word.strip_prefix(known).is_some_and(|rest| rest.len() == 1 && is_letter(rest.chars().next()));
+        let before = word
+            .strip_suffix(known)
+            .is_some_and(|rest| rest.len() == 1 && is_letter(rest.chars().next()));
+        let behind = word
+            .strip_prefix(known)
+            .is_some_and(|rest| rest.len() == 1 && is_letter(rest.chars().next()));
         before || behind
     })
 }
@@ -308,10 +398,15 @@ fn without_axis(word: &str, list: &[&str]) -> bool {
 /// The axis of a name: a letter, a joint's number, or a letter joined to a word that is known.
 fn axis(words: &[String]) -> String {
     let letter = |word: &str| word.len() == 1 && LETTERS.contains(word);
-    if let Some(at) = words.iter().position(|word| AXIS_WORDS.contains(&word.as_str())) {
+    if let Some(at) = words
+        .iter()
+        .position(|word| AXIS_WORDS.contains(&word.as_str()))
+    {
         match words.get(at + 1) {
             Some(name) if letter(name) => return name.clone(),
-            Some(number) if number.chars().all(|c| c.is_ascii_digit()) => return format!("{}{number}", words[at]),
+            Some(number) if number.chars().all(|c| c.is_ascii_digit()) => {
+                return format!("{}{number}", words[at]);
+            }
             _ => {}
         }
     }
@@ -321,7 +416,11 @@ fn axis(words: &[String]) -> String {
     let lists: [&[&str]; 6] = [&COMMANDS, &ACTUALS, &TARGETS, &TORQUES, &POSITIONS, &SPEEDS];
     words
         .iter()
-        .filter(|word| lists.iter().any(|list| !list.contains(&word.as_str()) && without_axis(word, list)))
+        .filter(|word| {
+            lists
+                .iter()
+                .any(|list| !list.contains(&word.as_str()) && without_axis(word, list))
+        })
         .find_map(|word| {
             let ends = [word.chars().next(), word.chars().next_back()];
             let known = |rest: &str| lists.iter().any(|list| list.contains(&rest));
@@ -388,7 +487,11 @@ mod tests {
             ("period_clk", Other, "periodclk"),
         ] {
             let found = understand(name);
-            assert_eq!((found.quantity, found.axis.as_str()), (quantity, axis), "{name}: {found:?}");
+            assert_eq!(
+                (found.quantity, found.axis.as_str()),
+                (quantity, axis),
+                "{name}: {found:?}"
+            );
         }
         assert_eq!(understand("Time [s]").unit, "s");
         assert_eq!(understand("time_ms").unit, "ms");
@@ -421,7 +524,13 @@ mod tests {
         }
         let count = understand("sample_count");
         assert_eq!(count.quantity, Quantity::Counter);
-        assert_eq!((understand("Position (X)").axis.as_str(), understand("p1 [mm] (X)").axis.as_str()), ("x", "x"));
+        assert_eq!(
+            (
+                understand("Position (X)").axis.as_str(),
+                understand("p1 [mm] (X)").axis.as_str()
+            ),
+            ("x", "x")
+        );
     }
 
     #[test]
@@ -447,7 +556,11 @@ mod tests {
             ("Axes.Axis 1.ModuloActPos", Other, "axis1"),
         ] {
             let found = understand(name);
-            assert_eq!((found.quantity, found.axis.as_str()), (quantity, axis), "{name}: {found:?}");
+            assert_eq!(
+                (found.quantity, found.axis.as_str()),
+                (quantity, axis),
+                "{name}: {found:?}"
+            );
         }
     }
 }

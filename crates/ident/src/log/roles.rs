@@ -60,11 +60,21 @@ impl AxisRoles {
             ("following error", self.lag),
             ("torque", self.torque),
         ];
-        roles.into_iter().find_map(|(role, of)| (of == Some(column)).then_some(role))
+        roles
+            .into_iter()
+            .find_map(|(role, of)| (of == Some(column)).then_some(role))
     }
 
     pub(super) fn columns(&self) -> impl Iterator<Item = usize> {
-        [Some(self.command), Some(self.actual), self.lag, self.torque, self.velocity].into_iter().flatten()
+        [
+            Some(self.command),
+            Some(self.actual),
+            self.lag,
+            self.torque,
+            self.velocity,
+        ]
+        .into_iter()
+        .flatten()
     }
 }
 
@@ -81,12 +91,20 @@ pub(super) fn needed(table: &LogTable, columns: &Columns) -> Vec<bool> {
         _ => named(table, &meanings, &mut Vec::new()),
     };
     let time = time(table, columns, &meanings);
-    let Ok(time) = time else { return vec![true; table.columns.len()] };
+    let Ok(time) = time else {
+        return vec![true; table.columns.len()];
+    };
     if axes.is_empty() {
         return vec![true; table.columns.len()];
     }
-    let wanted: Vec<usize> = axes.iter().flat_map(AxisRoles::columns).chain(time.map(|time| time.column)).collect();
-    (0..table.columns.len()).map(|column| wanted.contains(&column)).collect()
+    let wanted: Vec<usize> = axes
+        .iter()
+        .flat_map(AxisRoles::columns)
+        .chain(time.map(|time| time.column))
+        .collect();
+    (0..table.columns.len())
+        .map(|column| wanted.contains(&column))
+        .collect()
 }
 
 /// The roles of the columns of a table that is read.
@@ -115,18 +133,24 @@ pub(super) fn find(
         axes = by_likeness(table, time.as_ref());
     }
     if axes.is_empty() {
-        return Err(fault("no two columns are the command and the actual position of an axis".to_owned()));
+        return Err(fault(
+            "no two columns are the command and the actual position of an axis".to_owned(),
+        ));
     }
     axes.retain(|axis| {
         let by_name = !by_data && is_rotary_name(&axis.name);
         let is_rotary = columns.axes.is_empty() && (by_name || is_angle(&meanings, axis));
         if is_rotary {
-            incomplete.push(LogFinding::Rotary { axis: axis.name.clone() });
+            incomplete.push(LogFinding::Rotary {
+                axis: axis.name.clone(),
+            });
         }
         !is_rotary
     });
     if axes.is_empty() {
-        return Err(fault("all axes with command and actual position are rotary".to_owned()));
+        return Err(fault(
+            "all axes with command and actual position are rotary".to_owned(),
+        ));
     }
     axes.truncate(MAX_AXES);
     at_one_rate(path, table, &axes)?;
@@ -134,10 +158,15 @@ pub(super) fn find(
     findings.extend(axes.iter().map(|axis| columns_of(table, axis, by_data)));
     findings.append(&mut incomplete);
     if by_data {
-        let used: Vec<usize> =
-            axes.iter().flat_map(AxisRoles::columns).chain(time.as_ref().map(|t| t.column)).collect();
-        let unused: Vec<String> =
-            (0..table.columns.len()).filter(|i| !used.contains(i)).map(|i| table.label(i)).collect();
+        let used: Vec<usize> = axes
+            .iter()
+            .flat_map(AxisRoles::columns)
+            .chain(time.as_ref().map(|t| t.column))
+            .collect();
+        let unused: Vec<String> = (0..table.columns.len())
+            .filter(|i| !used.contains(i))
+            .map(|i| table.label(i))
+            .collect();
         if !unused.is_empty() {
             findings.push(LogFinding::Unused { columns: unused });
         }
@@ -147,10 +176,16 @@ pub(super) fn find(
 }
 
 /// Refuses a torque in a unit that is not known.
-fn torques_are_known(path: &Path, table: &LogTable, meanings: &[Meaning], axes: &[AxisRoles]) -> Result<(), LogError> {
+fn torques_are_known(
+    path: &Path,
+    table: &LogTable,
+    meanings: &[Meaning],
+    axes: &[AxisRoles],
+) -> Result<(), LogError> {
     let mut torques = axes.iter().filter_map(|axis| axis.torque);
-    let unknown =
-        torques.find(|&at| !is_unstated(&meanings[at].unit) && TorqueUnit::from_name(&meanings[at].unit).is_none());
+    let unknown = torques.find(|&at| {
+        !is_unstated(&meanings[at].unit) && TorqueUnit::from_name(&meanings[at].unit).is_none()
+    });
     let Some(at) = unknown else { return Ok(()) };
     let message = format!(
         "the torque in column {} is in '{}', a unit that is not known: {}",
@@ -181,16 +216,27 @@ fn columns_of(table: &LogTable, axis: &AxisRoles, by_data: bool) -> LogFinding {
 /// A record of a scope in which no axis is complete.
 fn lacking(path: &Path, table: &LogTable, incomplete: &[LogFinding], hint: &str) -> LogError {
     let lacks: Vec<String> = incomplete.iter().map(LogFinding::to_string).collect();
-    let lacks = if lacks.is_empty() { "no channel is a position".to_owned() } else { lacks.join("; ") };
-    let message = format!("no axis of this {} record has command and actual position: {lacks}", table.format);
+    let lacks = if lacks.is_empty() {
+        "no channel is a position".to_owned()
+    } else {
+        lacks.join("; ")
+    };
+    let message = format!(
+        "no axis of this {} record has command and actual position: {lacks}",
+        table.format
+    );
     LogError::columns(path, message, format!("{hint}; or {}", there_are(table)))
 }
 
 /// Refuses positions that are sampled at different rates.
 fn at_one_rate(path: &Path, table: &LogTable, axes: &[AxisRoles]) -> Result<(), LogError> {
-    let positions = axes.iter().flat_map(|axis| [axis.command, axis.actual].into_iter().chain(axis.lag));
+    let positions = axes
+        .iter()
+        .flat_map(|axis| [axis.command, axis.actual].into_iter().chain(axis.lag));
     let mut rates = positions.filter_map(|at| Some((at, table.columns.get(at)?.sample_time_s?)));
-    let Some((first, first_s)) = rates.next() else { return Ok(()) };
+    let Some((first, first_s)) = rates.next() else {
+        return Ok(());
+    };
     match rates.find(|(_, sample_s)| (sample_s / first_s - 1.0).abs() > SAME_RATE) {
         None => Ok(()),
         Some((other, other_s)) => {
@@ -208,12 +254,29 @@ fn at_one_rate(path: &Path, table: &LogTable, axes: &[AxisRoles]) -> Result<(), 
 }
 
 /// Refuses a column that is the time and belongs to an axis too.
-fn not_the_time(path: &Path, table: &LogTable, time: Option<&TimeColumn>, axes: &[AxisRoles]) -> Result<(), LogError> {
-    let Some(column) = time.map(|time| time.column) else { return Ok(()) };
-    let taken = axes.iter().find_map(|axis| Some((&axis.name, axis.role_of(column)?)));
-    let Some((axis, role)) = taken else { return Ok(()) };
-    let message = format!("column {} is both the time and the {role} of {axis}", table.label(column));
-    let hint = format!("name another column for one of the two (the time is t=COLUMN); {}", there_are(table));
+fn not_the_time(
+    path: &Path,
+    table: &LogTable,
+    time: Option<&TimeColumn>,
+    axes: &[AxisRoles],
+) -> Result<(), LogError> {
+    let Some(column) = time.map(|time| time.column) else {
+        return Ok(());
+    };
+    let taken = axes
+        .iter()
+        .find_map(|axis| Some((&axis.name, axis.role_of(column)?)));
+    let Some((axis, role)) = taken else {
+        return Ok(());
+    };
+    let message = format!(
+        "column {} is both the time and the {role} of {axis}",
+        table.label(column)
+    );
+    let hint = format!(
+        "name another column for one of the two (the time is t=COLUMN); {}",
+        there_are(table)
+    );
     Err(LogError::columns(path, message, hint))
 }
 
@@ -234,11 +297,16 @@ fn is_angle(meanings: &[Meaning], axis: &AxisRoles) -> bool {
 /// What columns there are, and how to say which is which.
 fn there_are(table: &LogTable) -> String {
     const SHOWN: usize = 30;
-    let mut labels: Vec<String> = (0..table.columns.len().min(SHOWN)).map(|i| table.label(i)).collect();
+    let mut labels: Vec<String> = (0..table.columns.len().min(SHOWN))
+        .map(|i| table.label(i))
+        .collect();
     if table.columns.len() > SHOWN {
         labels.push("...".to_owned());
     }
-    format!("the columns are {}; say which is which, such as --columns t=0,x.cmd=1,x.act=3", labels.join(", "))
+    format!(
+        "the columns are {}; say which is which, such as --columns t=0,x.cmd=1,x.act=3",
+        labels.join(", ")
+    )
 }
 
 fn meanings(table: &LogTable) -> Vec<Meaning> {
@@ -251,7 +319,10 @@ fn meanings(table: &LogTable) -> Vec<Meaning> {
             }
         }
         if !column.unit.is_empty() {
-            meaning.unit = column.unit.trim_matches(['[', ']', '(', ')', ' ']).to_owned();
+            meaning.unit = column
+                .unit
+                .trim_matches(['[', ']', '(', ')', ' '])
+                .to_owned();
         }
         meaning
     };
@@ -267,10 +338,18 @@ fn resolve(table: &LogTable, choice: &ColumnChoice) -> Result<usize, String> {
     let count = table.columns.len();
     match text.parse::<usize>() {
         Ok(number) if number < count => Ok(number),
-        Ok(number) => Err(format!("there is no column {number}: the last of {count} is {}", count.saturating_sub(1))),
+        Ok(number) => Err(format!(
+            "there is no column {number}: the last of {count} is {}",
+            count.saturating_sub(1)
+        )),
         Err(_) => {
-            let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
-            let near = nearest(text, &names).map_or_else(String::new, |near| format!("; did you mean '{near}'?"));
+            let names: Vec<&str> = table
+                .columns
+                .iter()
+                .map(|column| column.name.as_str())
+                .collect();
+            let near = nearest(text, &names)
+                .map_or_else(String::new, |near| format!("; did you mean '{near}'?"));
             Err(format!("no column is called '{text}'{near}"))
         }
     }
@@ -280,7 +359,9 @@ fn resolve(table: &LogTable, choice: &ColumnChoice) -> Result<usize, String> {
 fn chosen(table: &LogTable, columns: &Columns) -> Result<Vec<AxisRoles>, String> {
     let meanings = meanings(table);
     let axis = |choice: &AxisChoice| {
-        let column = |of: &Option<ColumnChoice>| of.as_ref().map(|choice| resolve(table, choice)).transpose();
+        let column = |of: &Option<ColumnChoice>| {
+            of.as_ref().map(|choice| resolve(table, choice)).transpose()
+        };
         let (command, lag) = (column(&choice.command)?, column(&choice.error)?);
         let lag = lag.filter(|_| command.is_none());
         let actual = column(&choice.actual)?;
@@ -290,39 +371,80 @@ fn chosen(table: &LogTable, columns: &Columns) -> Result<Vec<AxisRoles>, String>
         let torque = column(&choice.torque)?;
         let (torque_unit, torque_scale) = torque_unit(table, &meanings, torque);
         let name = choice.name.clone();
-        Ok(AxisRoles { name, command, actual, lag, torque, torque_unit, torque_scale, velocity: None })
+        Ok(AxisRoles {
+            name,
+            command,
+            actual,
+            lag,
+            torque,
+            torque_unit,
+            torque_scale,
+            velocity: None,
+        })
     };
     columns.axes.iter().map(axis).collect()
 }
 
 /// Unit of a torque column, and the torque for a number of it.
 fn torque_unit(table: &LogTable, meanings: &[Meaning], column: Option<usize>) -> (TorqueUnit, f64) {
-    let Some(at) = column else { return (TorqueUnit::Unknown, 1.0) };
-    let name = table.columns.get(at).map_or("", |column| column.name.as_str()).to_lowercase();
+    let Some(at) = column else {
+        return (TorqueUnit::Unknown, 1.0);
+    };
+    let name = table
+        .columns
+        .get(at)
+        .map_or("", |column| column.name.as_str())
+        .to_lowercase();
     // The signal of a drive amplifier is a voltage.
-    let otherwise = if name == "vir" { TorqueUnit::Volt } else { TorqueUnit::Unknown };
-    TorqueUnit::from_name(meanings.get(at).map_or("", |meaning| meaning.unit.as_str())).unwrap_or((otherwise, 1.0))
+    let otherwise = if name == "vir" {
+        TorqueUnit::Volt
+    } else {
+        TorqueUnit::Unknown
+    };
+    TorqueUnit::from_name(meanings.get(at).map_or("", |meaning| meaning.unit.as_str()))
+        .unwrap_or((otherwise, 1.0))
 }
 
 /// The column of the time: as said, or by its name.
-fn time(table: &LogTable, columns: &Columns, meanings: &[Meaning]) -> Result<Option<TimeColumn>, String> {
+fn time(
+    table: &LogTable,
+    columns: &Columns,
+    meanings: &[Meaning],
+) -> Result<Option<TimeColumn>, String> {
     if let Some(choice) = &columns.time {
         let column = resolve(table, choice)?;
         let Meaning { quantity, unit, .. } = &meanings[column];
-        return Ok(Some(TimeColumn { column, counts: *quantity == Quantity::Counter, unit: unit.clone() }));
+        return Ok(Some(TimeColumn {
+            column,
+            counts: *quantity == Quantity::Counter,
+            unit: unit.clone(),
+        }));
     }
     let best = |wanted: Quantity| {
-        let of_kind = meanings.iter().enumerate().filter(|(_, meaning)| meaning.quantity == wanted);
+        let of_kind = meanings
+            .iter()
+            .enumerate()
+            .filter(|(_, meaning)| meaning.quantity == wanted);
         // The first of the best.
         of_kind.rev().max_by_key(|(_, meaning)| meaning.fit)
     };
-    let found =
-        best(Quantity::Time).map(|found| (found, false)).or_else(|| best(Quantity::Counter).map(|found| (found, true)));
-    let found = found.map(|((column, meaning), counts)| TimeColumn { column, counts, unit: meaning.unit.clone() });
+    let found = best(Quantity::Time)
+        .map(|found| (found, false))
+        .or_else(|| best(Quantity::Counter).map(|found| (found, true)));
+    let found = found.map(|((column, meaning), counts)| TimeColumn {
+        column,
+        counts,
+        unit: meaning.unit.clone(),
+    });
     // An index without a name stands first, before columns that have one.
-    let first_has_no_name =
-        table.columns.len() > 2 && table.columns[0].name.is_empty() && !table.columns[1].name.is_empty();
-    let index = first_has_no_name.then(|| TimeColumn { column: 0, counts: true, unit: String::new() });
+    let first_has_no_name = table.columns.len() > 2
+        && table.columns[0].name.is_empty()
+        && !table.columns[1].name.is_empty();
+    let index = first_has_no_name.then(|| TimeColumn {
+        column: 0,
+        counts: true,
+        unit: String::new(),
+    });
     Ok(found.or(index))
 }
 
@@ -330,7 +452,10 @@ fn time(table: &LogTable, columns: &Columns, meanings: &[Meaning]) -> Result<Opt
 fn named(table: &LogTable, meanings: &[Meaning], findings: &mut Vec<LogFinding>) -> Vec<AxisRoles> {
     let mut names: Vec<&str> = Vec::new();
     for meaning in meanings {
-        let is_of_axis = matches!(meaning.quantity, Quantity::Command | Quantity::Actual | Quantity::Position);
+        let is_of_axis = matches!(
+            meaning.quantity,
+            Quantity::Command | Quantity::Actual | Quantity::Position
+        );
         if is_of_axis && !names.contains(&meaning.axis.as_str()) {
             names.push(&meaning.axis);
         }
@@ -338,10 +463,20 @@ fn named(table: &LogTable, meanings: &[Meaning], findings: &mut Vec<LogFinding>)
     let mut axes = Vec::new();
     for name in &names {
         let best = |quantity: Quantity| {
-            let of_kind = meanings.iter().enumerate().filter(|(_, m)| m.quantity == quantity && m.axis == *name);
-            of_kind.rev().max_by_key(|(_, meaning)| meaning.fit).map(|(column, _)| column)
+            let of_kind = meanings
+                .iter()
+                .enumerate()
+                .filter(|(_, m)| m.quantity == quantity && m.axis == *name);
+            of_kind
+                .rev()
+                .max_by_key(|(_, meaning)| meaning.fit)
+                .map(|(column, _)| column)
         };
-        let (command, actual, position) = (best(Quantity::Command), best(Quantity::Actual), best(Quantity::Position));
+        let (command, actual, position) = (
+            best(Quantity::Command),
+            best(Quantity::Actual),
+            best(Quantity::Position),
+        );
         let shown = if name.is_empty() { NAMES[0] } else { name };
         let lag = best(Quantity::Lag).filter(|_| command.is_none() && position.is_none());
         let both = match (command, actual, position) {
@@ -350,12 +485,21 @@ fn named(table: &LogTable, meanings: &[Meaning], findings: &mut Vec<LogFinding>)
             | (Some(command), None, Some(actual))
             | (None, Some(actual), Some(command)) => Some((command, actual)),
             (command, actual, _) => {
-                let lacks = if actual.is_none() && command.is_some() { "actual position" } else { "command" };
-                findings.push(LogFinding::Incomplete { axis: shown.to_owned(), lacks });
+                let lacks = if actual.is_none() && command.is_some() {
+                    "actual position"
+                } else {
+                    "command"
+                };
+                findings.push(LogFinding::Incomplete {
+                    axis: shown.to_owned(),
+                    lacks,
+                });
                 None
             }
         };
-        let Some((command, actual)) = both else { continue };
+        let Some((command, actual)) = both else {
+            continue;
+        };
         let torque = best(Quantity::Torque);
         let (torque_unit, torque_scale) = torque_unit(table, meanings, torque);
         axes.push(AxisRoles {
@@ -375,7 +519,11 @@ fn named(table: &LogTable, meanings: &[Meaning], findings: &mut Vec<LogFinding>)
 /// The first column that grows evenly.
 fn clock_like(table: &LogTable, meanings: &[Meaning]) -> Option<TimeColumn> {
     let column = table.columns.iter().position(|column| {
-        let rises = column.values.windows(2).filter(|pair| pair[1] > pair[0]).count();
+        let rises = column
+            .values
+            .windows(2)
+            .filter(|pair| pair[1] > pair[0])
+            .count();
         let steps = column.values.len().saturating_sub(1);
         // All but a few: a clock that runs backward is still a clock, and refused with its reason.
         let rising = steps > 0 && rises as f64 > 0.99 * steps as f64;
@@ -383,17 +531,33 @@ fn clock_like(table: &LogTable, meanings: &[Meaning]) -> Option<TimeColumn> {
     })?;
     let values = &table.columns[column].values;
     let counts = table.format == LogFormat::Halsampler
-        && values.windows(2).take(1000).all(|pair| (pair[1] - pair[0]).fract() == 0.0);
-    Some(TimeColumn { column, counts, unit: meanings[column].unit.clone() })
+        && values
+            .windows(2)
+            .take(1000)
+            .all(|pair| (pair[1] - pair[0]).fract() == 0.0);
+    Some(TimeColumn {
+        column,
+        counts,
+        unit: meanings[column].unit.clone(),
+    })
 }
 
 /// Whether most steps of a column are alike: within a half of the median.
 fn is_even(values: &[f64]) -> bool {
-    let mut steps: Vec<f64> = values.windows(2).take(20_000).map(|pair| pair[1] - pair[0]).collect();
+    let mut steps: Vec<f64> = values
+        .windows(2)
+        .take(20_000)
+        .map(|pair| pair[1] - pair[0])
+        .collect();
     let middle = steps.len() / 2;
     steps.sort_by(f64::total_cmp);
-    let Some(&median) = steps.get(middle) else { return false };
-    let alike = steps.iter().filter(|&&step| (step - median).abs() <= 0.5 * median).count();
+    let Some(&median) = steps.get(middle) else {
+        return false;
+    };
+    let alike = steps
+        .iter()
+        .filter(|&&step| (step - median).abs() <= 0.5 * median)
+        .count();
     median > 0.0 && alike as f64 > 0.9 * steps.len() as f64
 }
 
@@ -408,7 +572,11 @@ fn by_likeness(table: &LogTable, time: Option<&TimeColumn>) -> Vec<AxisRoles> {
         .map(|(i, column)| if is_time(i) { none } else { &column.values[..] })
         .collect();
     let pairs = pairs::find(&columns);
-    let name = |number: usize| NAMES.get(number).map_or_else(|| format!("axis{number}"), |name| (*name).to_owned());
+    let name = |number: usize| {
+        NAMES
+            .get(number)
+            .map_or_else(|| format!("axis{number}"), |name| (*name).to_owned())
+    };
     pairs
         .iter()
         .enumerate()

@@ -1,6 +1,8 @@
-//! Text that the scopes of controls export: which program wrote it, what its channels are, and where its rows begin.
+//! Text that the scopes of controls export: which program wrote it, what its channels are, and
+//! where its rows begin.
 //!
-//! Each program has a header of its own before rows of numbers. What follows from the header is a [`ScopeHeader`]; the rows are read like those of any table.
+//! Each program has a header of its own before rows of numbers. What follows from the header is a
+//! [`ScopeHeader`]; the rows are read like those of any table.
 
 mod twincat;
 mod tncscope;
@@ -49,12 +51,20 @@ const HEADER_LINES: usize = 400;
 /// A header of a scope that is not complete.
 pub(super) fn header(path: &Path, head: &[u8]) -> Result<Option<ScopeHeader>, LogError> {
     let text = String::from_utf8_lossy(head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head));
-    let lines: Vec<&str> = text.split('\n').take(HEADER_LINES).map(|line| line.trim_end_matches('\r')).collect();
+    let lines: Vec<&str> = text
+        .split('\n')
+        .take(HEADER_LINES)
+        .map(|line| line.trim_end_matches('\r'))
+        .collect();
     for read in [tncscope::header, twincat::header, servo_guide::header] {
         if let Some(header) = read(&lines).transpose() {
-            return header
-                .map(Some)
-                .map_err(|HeaderFault { line, message, hint }| LogError::format(path, Some(line), message, hint));
+            return header.map(Some).map_err(
+                |HeaderFault {
+                     line,
+                     message,
+                     hint,
+                 }| LogError::format(path, Some(line), message, hint),
+            );
         }
     }
     Ok(None)
@@ -72,12 +82,18 @@ struct HeaderFault {
 /// A header that ends before its rows.
 fn cut_off(lines: &[&str], what: &str) -> HeaderFault {
     let message = format!("the file ends within its header: {what}");
-    HeaderFault { line: lines.len() as u64, message, hint: "export the record again; the file is cut off" }
+    HeaderFault {
+        line: lines.len() as u64,
+        message,
+        hint: "export the record again; the file is cut off",
+    }
 }
 
 /// The fields of a line, without quotes and blanks around them.
 fn fields(line: &str, delimiter: u8) -> Vec<&str> {
-    line.split(char::from(delimiter)).map(|field| field.trim().trim_matches('"').trim()).collect()
+    line.split(char::from(delimiter))
+        .map(|field| field.trim().trim_matches('"').trim())
+        .collect()
 }
 
 /// A number above zero with a decimal point or comma.

@@ -1,4 +1,5 @@
-//! Screening: what is told of the record of each axis, and records of which no servo model can be made.
+//! Screening: what is told of the record of each axis, and records of which no servo model can be
+//! made.
 
 mod steps;
 mod limits;
@@ -15,8 +16,8 @@ use super::pairs::delay_samples;
 use super::{Fitness, LogAxis};
 use crate::average::rms;
 
-/// Longest time between samples, s: position loops of machines have gains from 10 1/s on, and two samples within the 100 ms of the
-/// slowest are the least that shows it.
+/// Longest time between samples, s: position loops of machines have gains from 10 1/s on, and two
+/// samples within the 100 ms of the slowest are the least that shows it.
 const MAX_SAMPLE_TIME_S: f64 = 0.05;
 /// Shortest record, s: some reversals fit in.
 const MIN_RECORD_S: f64 = 1.0;
@@ -24,8 +25,8 @@ const MIN_RECORD_S: f64 = 1.0;
 const MIN_SAMPLES: usize = 200;
 /// Largest range of a position that stands still, mm.
 const STILL_MM: f64 = 1e-6;
-/// Largest range of the actual position of an axis that is held where its command stands still, mm: more is no noise and no load, but
-/// another axis.
+/// Largest range of the actual position of an axis that is held where its command stands still, mm:
+/// more is no noise and no load, but another axis.
 const HELD_MM: f64 = 0.1;
 /// Longest way of a linear axis, mm.
 const LONGEST_MM: f64 = 30e3;
@@ -33,8 +34,8 @@ const LONGEST_MM: f64 = 30e3;
 const COPY_SAMPLES: usize = 4;
 /// Part of the moving samples in which a copy equals the command.
 const COPY_PART: f64 = 0.99;
-/// By how many samples an actual position may lead its command: one where it is recorded at the end of the servo period and the
-/// command at its start, and what feedforward adds.
+/// By how many samples an actual position may lead its command: one where it is recorded at the end
+/// of the servo period and the command at its start, and what feedforward adds.
 const LEAD_SAMPLES: f64 = 2.0;
 /// Part of the following error that a lead explains, where columns are swapped.
 const EXPLAINED: f64 = 0.5;
@@ -42,9 +43,11 @@ const EXPLAINED: f64 = 0.5;
 const NEARER: f64 = 0.5;
 /// Least correlation of a position with its command.
 const MIN_CORRELATION: f64 = 0.3;
-/// Difference of command and actual position that can be no following error, mm: two zeros that differ.
+/// Difference of command and actual position that can be no following error, mm: two zeros that
+/// differ.
 const OFFSET_MM: f64 = 1.0;
-/// Steps up to which a servo model can be of use for control, mm: what such a model predicts is to be good to micrometres.
+/// Steps up to which a servo model can be of use for control, mm: what such a model predicts is to
+/// be good to micrometres.
 const FINE_STEP_MM: f64 = 0.005;
 /// Samples of which a median or a distribution is taken, at the most: long logs are not held twice.
 const LOOKED_AT: usize = 200_000;
@@ -67,17 +70,26 @@ pub(super) fn fit(
     for axis in axes {
         let [command, actual] = [&axis.command_mm, &axis.actual_mm].map(|values| range(values));
         if command <= STILL_MM && actual <= HELD_MM {
-            findings.push(LogFinding::StandsStill { axis: axis.name.clone() });
+            findings.push(LogFinding::StandsStill {
+                axis: axis.name.clone(),
+            });
             still.push(axis);
         } else if command > LONGEST_MM {
-            findings.push(LogFinding::Endless { axis: axis.name, range_mm: command });
+            findings.push(LogFinding::Endless {
+                axis: axis.name,
+                range_mm: command,
+            });
         } else {
             moving.push(axis);
         }
     }
     if moving.is_empty() {
         let hint = "record while the machine runs a program: feedwright excite writes one";
-        refusals.push(Refusal::new(RefusalReason::Constant, "no axis moves in it", hint));
+        refusals.push(Refusal::new(
+            RefusalReason::Constant,
+            "no axis moves in it",
+            hint,
+        ));
     }
     for axis in &mut moving {
         axis.step_mm = steps::step(&axis.actual_mm);
@@ -91,7 +103,10 @@ pub(super) fn fit(
         refusals.extend(wrong);
     }
     if !refusals.is_empty() {
-        return Err(LogError::Refused { path: path.to_owned(), refusals });
+        return Err(LogError::Refused {
+            path: path.to_owned(),
+            refusals,
+        });
     }
     for axis in &mut moving {
         tell(axis, clock, findings);
@@ -101,14 +116,21 @@ pub(super) fn fit(
 }
 
 fn range(values: &[f64]) -> f64 {
-    let [low, high] =
-        values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &v| [low.min(v), high.max(v)]);
+    let [low, high] = values
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &v| {
+            [low.min(v), high.max(v)]
+        });
     if high > low { high - low } else { 0.0 }
 }
 
 /// RMS of command minus actual position, mm.
 fn following_mm(axis: &LogAxis) -> f64 {
-    rms(axis.command_mm.iter().zip(&axis.actual_mm).map(|(command, actual)| command - actual))
+    rms(axis
+        .command_mm
+        .iter()
+        .zip(&axis.actual_mm)
+        .map(|(command, actual)| command - actual))
 }
 
 fn too_short(clock: &Clock) -> Option<Refusal> {
@@ -148,25 +170,42 @@ fn align(axis: &mut LogAxis, findings: &mut Vec<LogFinding>) {
     }
     let offset_mm = *errors.select_nth_unstable_by(middle, f64::total_cmp).1;
     if offset_mm.abs() > OFFSET_MM && offset_mm.abs() > 2.0 * spread {
-        axis.actual_mm.iter_mut().for_each(|actual| *actual += offset_mm);
-        findings.push(LogFinding::Offset { axis: axis.name.clone(), offset_mm });
+        axis.actual_mm
+            .iter_mut()
+            .for_each(|actual| *actual += offset_mm);
+        findings.push(LogFinding::Offset {
+            axis: axis.name.clone(),
+            offset_mm,
+        });
     }
 }
 
 /// The actual position is constant, or the command itself.
 fn not_connected(axis: &LogAxis) -> Option<Refusal> {
     let refusal = |what: String| {
-        let message = format!("the feedback of {} is not connected: its actual position {what}", axis.name);
+        let message = format!(
+            "the feedback of {} is not connected: its actual position {what}",
+            axis.name
+        );
         let hint = "record the measured position, such as the encoder's count times its scale, joint.N.motor-pos-fb of LinuxCNC";
-        Some(Refusal::new(RefusalReason::FeedbackNotConnected, message, hint))
+        Some(Refusal::new(
+            RefusalReason::FeedbackNotConnected,
+            message,
+            hint,
+        ))
     };
     let (command, actual) = (&axis.command_mm, &axis.actual_mm);
     if range(actual) <= STILL_MM {
-        return refusal(format!("stays at {} mm while the command moves", actual.first().copied().unwrap_or(0.0)));
+        return refusal(format!(
+            "stays at {} mm while the command moves",
+            actual.first().copied().unwrap_or(0.0)
+        ));
     }
     (0..=COPY_SAMPLES).find_map(|late| {
-        let pairs =
-            || (late.max(1)..command.len()).filter(|&k| command[k - late] != command[k - late.max(1)] || late > 0);
+        let pairs = || {
+            (late.max(1)..command.len())
+                .filter(|&k| command[k - late] != command[k - late.max(1)] || late > 0)
+        };
         let moving = pairs().filter(|&k| command[k] != command[k - 1]);
         let (mut all, mut equal) = (0_usize, 0_usize);
         for k in moving {
@@ -174,8 +213,16 @@ fn not_connected(axis: &LogAxis) -> Option<Refusal> {
             equal += usize::from(actual[k] == command[k - late]);
         }
         let is_copy = all > 0 && equal as f64 > COPY_PART * all as f64;
-        let late_by = if late == 0 { String::new() } else { format!(", {late} samples late") };
-        if is_copy { refusal(format!("is the command itself{late_by}")) } else { None }
+        let late_by = if late == 0 {
+            String::new()
+        } else {
+            format!(", {late} samples late")
+        };
+        if is_copy {
+            refusal(format!("is the command itself{late_by}"))
+        } else {
+            None
+        }
     })
 }
 
@@ -187,14 +234,20 @@ fn swapped(axis: &LogAxis, clock: &Clock) -> Option<Refusal> {
     }
     let (command, actual) = (&axis.command_mm, &axis.actual_mm);
     let left = |k: usize| {
-        command[k] - actual[k] + lead * 0.25 * (command[k + 1] + actual[k + 1] - command[k - 1] - actual[k - 1])
+        command[k] - actual[k]
+            + lead * 0.25 * (command[k + 1] + actual[k + 1] - command[k - 1] - actual[k - 1])
     };
     let inner = 1..command.len().saturating_sub(1);
-    let (all, rest) = (rms(inner.clone().map(|k| command[k] - actual[k])), rms(inner.map(left)));
+    let (all, rest) = (
+        rms(inner.clone().map(|k| command[k] - actual[k])),
+        rms(inner.map(left)),
+    );
     (rest * rest < (1.0 - EXPLAINED) * all * all).then(|| {
         let lead_ms = to_four_digits(1e3 * lead * clock.sample_time_s);
-        let message =
-            format!("the actual position of {} leads its command by {lead_ms} ms: the columns are swapped", axis.name);
+        let message = format!(
+            "the actual position of {} leads its command by {lead_ms} ms: the columns are swapped",
+            axis.name
+        );
         let hint = format!("exchange {0}.cmd and {0}.act in --columns", axis.name);
         Refusal::new(RefusalReason::Swapped, message, hint)
     })
@@ -206,13 +259,24 @@ fn mixed(axes: &[LogAxis], number: usize) -> Option<Refusal> {
     let axis = &axes[number];
     let stride = axis.actual_mm.len().div_ceil(50_000).max(1);
     let distance = |command: &[f64]| {
-        let errors = || command.iter().zip(&axis.actual_mm).step_by(stride).map(|(c, a)| c - a);
+        let errors = || {
+            command
+                .iter()
+                .zip(&axis.actual_mm)
+                .step_by(stride)
+                .map(|(c, a)| c - a)
+        };
         let mean = errors().sum::<f64>() / errors().count().max(1) as f64;
         rms(errors().map(|error| error - mean))
     };
     let own_mm = distance(&axis.command_mm);
     let hint = "check the columns, or say which is which with --columns";
-    for other in axes.iter().enumerate().filter(|(i, _)| *i != number).map(|(_, axis)| axis) {
+    for other in axes
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| *i != number)
+        .map(|(_, axis)| axis)
+    {
         let other_mm = distance(&other.command_mm);
         if other_mm < NEARER * own_mm {
             let message = format!(
@@ -254,9 +318,16 @@ fn tell(axis: &LogAxis, clock: &Clock, findings: &mut Vec<LogFinding>) {
     let name = || axis.name.clone();
     let following_um = 1e3 * following_mm(axis);
     let delay_s = delay_samples(&axis.command_mm, &axis.actual_mm) * clock.sample_time_s;
-    findings.push(LogFinding::Following { axis: name(), following_um, delay_s });
+    findings.push(LogFinding::Following {
+        axis: name(),
+        following_um,
+        delay_s,
+    });
     if axis.step_mm > 0.0 {
-        findings.push(LogFinding::Steps { axis: name(), step_um: 1e3 * axis.step_mm });
+        findings.push(LogFinding::Steps {
+            axis: name(),
+            step_um: 1e3 * axis.step_mm,
+        });
     }
     findings.extend(limits::torque(axis, clock));
     findings.extend(limits::speed(axis, clock));
@@ -278,7 +349,15 @@ fn verdict(axis: &LogAxis, clock: &Clock) -> Fitness {
         && longest_s - shortest_s > UNEVEN_PART * clock.sample_time_s
     {
         let [shortest, longest] = [shortest_s, longest_s].map(|s| to_four_digits(1e3 * s));
-        reasons.push(format!("the time between samples varies from {shortest} to {longest} ms"));
+        reasons.push(format!(
+            "the time between samples varies from {shortest} to {longest} ms"
+        ));
     }
-    if reasons.is_empty() { Fitness::ForControl } else { Fitness::NotForControl { reason: reasons.join(", and ") } }
+    if reasons.is_empty() {
+        Fitness::ForControl
+    } else {
+        Fitness::NotForControl {
+            reason: reasons.join(", and "),
+        }
+    }
 }

@@ -35,7 +35,15 @@ pub(super) fn read(
     watch: &dyn Watch,
 ) -> Result<LogTable, LogError> {
     let (cancelled, failed) = (Cell::new(false), Cell::new(None));
-    let reader = Watched { file, done_bytes: 0, total_bytes, steps, watch, cancelled: &cancelled, failed: &failed };
+    let reader = Watched {
+        file,
+        done_bytes: 0,
+        total_bytes,
+        steps,
+        watch,
+        cancelled: &cancelled,
+        failed: &failed,
+    };
     let mut reader = BufReader::with_capacity(1 << 18, reader);
     let result = skip_mark(&mut reader).map_err(|error| LogError::unreadable(path, error)).and_then(|()| {
         let mut json = serde_json::Deserializer::from_reader(reader);
@@ -89,7 +97,8 @@ impl Read for Watched<'_, '_> {
             other => other?,
         };
         self.done_bytes += count as u64;
-        self.steps.reach(self.done_bytes as f64 / self.total_bytes as f64);
+        self.steps
+            .reach(self.done_bytes as f64 / self.total_bytes as f64);
         Ok(count)
     }
 }
@@ -144,9 +153,15 @@ impl<'de> Visitor<'de> for RecordingSeed<'_> {
                 }
                 ("Payload", Some((table, kept))) => {
                     has_payload = true;
-                    map.next_value_seed(RowsSeed { table, kept, level: Level::Payload })?;
+                    map.next_value_seed(RowsSeed {
+                        table,
+                        kept,
+                        level: Level::Payload,
+                    })?;
                 }
-                ("Payload", None) => return Err(A::Error::custom("the payload stands before the header")),
+                ("Payload", None) => {
+                    return Err(A::Error::custom("the payload stands before the header"));
+                }
                 _ => {
                     map.next_value::<IgnoredAny>()?;
                 }
@@ -179,7 +194,12 @@ fn table_of(header: Header) -> LogTable {
                 _ => axis,
             }
         });
-        LogColumn { name: signal.name, unit: unit.to_owned(), axis, ..LogColumn::default() }
+        LogColumn {
+            name: signal.name,
+            unit: unit.to_owned(),
+            axis,
+            ..LogColumn::default()
+        }
     };
     LogTable {
         format: LogFormat::SinumerikEdge,
@@ -187,7 +207,10 @@ fn table_of(header: Header) -> LogTable {
         breaks: Vec::new(),
         lines: LineNumbers::default(),
         position_unit: None,
-        sample_time_s: header.cycle_time_ms.filter(|ms| ms.is_finite() && *ms > 0.0).map(|ms| 1e-3 * ms),
+        sample_time_s: header
+            .cycle_time_ms
+            .filter(|ms| ms.is_finite() && *ms > 0.0)
+            .map(|ms| 1e-3 * ms),
         cut_off_line: None,
         announced_rows: None,
     }
@@ -215,7 +238,11 @@ struct RowsSeed<'a> {
 
 impl RowsSeed<'_> {
     fn below(&mut self, level: Level) -> RowsSeed<'_> {
-        RowsSeed { table: self.table, kept: self.kept, level }
+        RowsSeed {
+            table: self.table,
+            kept: self.kept,
+            level,
+        }
     }
 }
 
@@ -269,7 +296,9 @@ impl RowsSeed<'_> {
         let row = self.table.rows();
         let mut count = 0;
         while let Some(SignalValue(value)) = seq.next_element()? {
-            if let (Some(true), Some(column)) = (self.kept.get(count), self.table.columns.get_mut(count)) {
+            if let (Some(true), Some(column)) =
+                (self.kept.get(count), self.table.columns.get_mut(count))
+            {
                 if value.is_nan() && column.not_a_number.is_none() {
                     column.not_a_number = Some((row, "no number".to_owned()));
                 }
@@ -281,7 +310,9 @@ impl RowsSeed<'_> {
         if count == expected {
             return Ok(());
         }
-        Err(A::Error::custom(format!("row {row} has {count} values, where the header announces {expected}")))
+        Err(A::Error::custom(format!(
+            "row {row} has {count} values, where the header announces {expected}"
+        )))
     }
 }
 

@@ -45,10 +45,11 @@ pub(crate) struct LogColumn {
 impl LogTable {
     /// What the file says of its columns goes into messages.
     pub(super) fn make_visible(&mut self) {
-        let of_columns = self
-            .columns
-            .iter_mut()
-            .flat_map(|column| [&mut column.name, &mut column.unit].into_iter().chain(&mut column.axis));
+        let of_columns = self.columns.iter_mut().flat_map(|column| {
+            [&mut column.name, &mut column.unit]
+                .into_iter()
+                .chain(&mut column.axis)
+        });
         of_columns
             .chain(self.position_unit.as_mut().map(|stated| &mut stated.1))
             .for_each(|text| *text = visible(text).into_owned());
@@ -56,13 +57,24 @@ impl LogTable {
 
     /// What a column is called in messages: its name, or its number from 0.
     pub(crate) fn label(&self, column: usize) -> String {
-        let name = self.columns.get(column).map_or("", |column| column.name.as_str());
-        if name.is_empty() { column.to_string() } else { format!("'{name}'") }
+        let name = self
+            .columns
+            .get(column)
+            .map_or("", |column| column.name.as_str());
+        if name.is_empty() {
+            column.to_string()
+        } else {
+            format!("'{name}'")
+        }
     }
 
     /// Rows.
     pub(crate) fn rows(&self) -> usize {
-        self.columns.iter().map(|column| column.values.len()).max().unwrap_or(0)
+        self.columns
+            .iter()
+            .map(|column| column.values.len())
+            .max()
+            .unwrap_or(0)
     }
 
     /// Where a row stands, for messages.

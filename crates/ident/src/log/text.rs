@@ -56,7 +56,12 @@ pub(super) fn read(
         carried.extend_from_slice(&chunk[start..count]);
         if carried.len() > MAX_LINE_BYTES {
             let hint = "a log is rows of numbers, one a line";
-            return Err(LogError::format(path, Some(rows.line + 1), "the line is longer than 1 MiB", hint));
+            return Err(LogError::format(
+                path,
+                Some(rows.line + 1),
+                "the line is longer than 1 MiB",
+                hint,
+            ));
         }
         done_bytes += count as u64;
         steps.reach(done_bytes as f64 / total_bytes as f64);
@@ -77,10 +82,16 @@ fn dialect_of(path: &Path, head: &[u8]) -> Result<TableDialect, LogError> {
     }
     if head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff") {
         let hint = "save it as UTF-8 or plain text";
-        return Err(LogError::format(path, None, "the file is text in UTF-16, which is not read", hint));
+        return Err(LogError::format(
+            path,
+            None,
+            "the file is text in UTF-16, which is not read",
+            hint,
+        ));
     }
     if let Some(at) = head.iter().position(|&byte| byte == 0) {
-        let message = format!("the file is neither text nor a binary format that is read: byte {at} is zero");
+        let message =
+            format!("the file is neither text nor a binary format that is read: byte {at} is zero");
         return Err(LogError::format(path, None, message, HINT));
     }
     if let Some(header) = scopes::header(path, head)? {
@@ -110,7 +121,10 @@ struct TextRows<'a> {
 impl<'a> TextRows<'a> {
     fn new(path: &'a Path, dialect: TableDialect, columns: &Columns) -> Self {
         let name = |names: &[String], i: usize| names.get(i).cloned().unwrap_or_default();
-        let channels = dialect.scope.as_ref().map_or(&[][..], |(_, channels)| channels);
+        let channels = dialect
+            .scope
+            .as_ref()
+            .map_or(&[][..], |(_, channels)| channels);
         let found = (0..dialect.columns)
             .map(|i| LogColumn {
                 name: name(&dialect.names, i),
@@ -121,7 +135,10 @@ impl<'a> TextRows<'a> {
             })
             .collect();
         let mut table = LogTable {
-            format: dialect.scope.as_ref().map_or(LogFormat::TextTable, |(format, _)| *format),
+            format: dialect
+                .scope
+                .as_ref()
+                .map_or(LogFormat::TextTable, |(format, _)| *format),
             columns: found,
             breaks: Vec::new(),
             lines: LineNumbers::default(),
@@ -130,26 +147,51 @@ impl<'a> TextRows<'a> {
             cut_off_line: None,
             announced_rows: None,
         };
-        // Fields that are names are no columns to `--columns`: what it needs is not known before they are gone.
+        // Fields that are names are no columns to `--columns`: what it needs is not known before
+        // they are gone.
         let kept = if dialect.names_in_rows {
-            table.columns.iter().map(|column| !column.name.is_empty()).collect()
+            table
+                .columns
+                .iter()
+                .map(|column| !column.name.is_empty())
+                .collect()
         } else {
             super::roles::needed(&table, columns)
         };
-        let samples = channels.iter().zip(&kept).filter(|(_, kept)| **kept).filter_map(|(channel, _)| channel.samples);
+        let samples = channels
+            .iter()
+            .zip(&kept)
+            .filter(|(_, kept)| **kept)
+            .filter_map(|(channel, _)| channel.samples);
         table.announced_rows = samples.min();
         table.sample_time_s = table.sample_time_s.or_else(|| {
             let mut kept = table.columns.iter().zip(&kept).filter(|(_, kept)| **kept);
             kept.find_map(|(column, _)| column.sample_time_s)
         });
-        Self { path, dialect, table, kept, row: 0, line: 0, is_last: false, is_over: false }
+        Self {
+            path,
+            dialect,
+            table,
+            kept,
+            row: 0,
+            line: 0,
+            is_last: false,
+            is_over: false,
+        }
     }
 
-    /// Room for about as many rows as there are, so that columns need not grow: that would take twice their memory.
+    /// Room for about as many rows as there are, so that columns need not grow: that would take
+    /// twice their memory.
     fn reserve(&mut self, head: &[u8], total_bytes: u64) {
         let lines = memchr_iter(b'\n', head).count().max(1);
         let rows = (total_bytes as f64 / head.len() as f64 * lines as f64 * 1.02) as usize + 1;
-        for (column, _) in self.table.columns.iter_mut().zip(&self.kept).filter(|(_, kept)| **kept) {
+        for (column, _) in self
+            .table
+            .columns
+            .iter_mut()
+            .zip(&self.kept)
+            .filter(|(_, kept)| **kept)
+        {
             // What cannot be had now is asked for row by row.
             let _ = column.values.try_reserve_exact(rows);
         }
@@ -161,7 +203,11 @@ impl<'a> TextRows<'a> {
         if self.line < self.dialect.first_line || self.is_over {
             return Ok(());
         }
-        let line = if self.line == 1 { line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line) } else { line };
+        let line = if self.line == 1 {
+            line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line)
+        } else {
+            line
+        };
         let line = line.strip_suffix(b"\r").unwrap_or(line);
         match LineKind::of(line, self.dialect.delimiter) {
             LineKind::Blank | LineKind::Comment => return Ok(()),
@@ -171,16 +217,25 @@ impl<'a> TextRows<'a> {
             }
             LineKind::Other => {}
         }
-        let line = if self.dialect.scope.is_some() { self.of_scope(line) } else { line };
+        let line = if self.dialect.scope.is_some() {
+            self.of_scope(line)
+        } else {
+            line
+        };
         if self.is_over {
             return Ok(());
         }
         let mut count = 0;
         for field in fields(line, self.dialect.delimiter) {
-            if let (Some(true), Some(column)) = (self.kept.get(count), self.table.columns.get_mut(count)) {
+            if let (Some(true), Some(column)) =
+                (self.kept.get(count), self.table.columns.get_mut(count))
+            {
                 let value = decimal::parse(field, self.dialect.point).unwrap_or(f64::NAN);
                 if value.is_nan() && column.not_a_number.is_none() {
-                    let text: String = String::from_utf8_lossy(decimal::trimmed(field)).chars().take(40).collect();
+                    let text: String = String::from_utf8_lossy(decimal::trimmed(field))
+                        .chars()
+                        .take(40)
+                        .collect();
                     column.not_a_number = Some((self.row, visible(&text).into_owned()));
                 }
                 column.values.push(value);
@@ -195,22 +250,38 @@ impl<'a> TextRows<'a> {
         Ok(())
     }
 
-    /// A row of a scope without the delimiter that may end it. The record is over behind its last sample, at an end mark, and where all channels that are
-    /// kept are empty: others were sampled for longer.
+    /// A row of a scope without the delimiter that may end it. The record is over behind its last
+    /// sample, at an end mark, and where all channels that are kept are empty: others were sampled
+    /// for longer.
     fn of_scope<'l>(&mut self, line: &'l [u8]) -> &'l [u8] {
         let delimiter = self.dialect.delimiter;
-        let is_complete = self.table.announced_rows.is_some_and(|rows| self.row >= rows);
-        let mut kept = fields(line, delimiter).zip(&self.kept).filter(|(_, kept)| **kept).peekable();
-        let is_empty = kept.peek().is_some() && kept.all(|(field, _)| decimal::trimmed(field).is_empty());
+        let is_complete = self
+            .table
+            .announced_rows
+            .is_some_and(|rows| self.row >= rows);
+        let mut kept = fields(line, delimiter)
+            .zip(&self.kept)
+            .filter(|(_, kept)| **kept)
+            .peekable();
+        let is_empty =
+            kept.peek().is_some() && kept.all(|(field, _)| decimal::trimmed(field).is_empty());
         self.is_over = is_complete || is_empty || line.trim_ascii() == END_MARK;
         let ends = memchr_iter(delimiter, line).count() == self.dialect.columns;
-        if ends { line.strip_suffix(&[delimiter]).unwrap_or(line) } else { line }
+        if ends {
+            line.strip_suffix(&[delimiter]).unwrap_or(line)
+        } else {
+            line
+        }
     }
 
-    /// A line with more or fewer fields than the rows: fine at the end of a record that was cut off.
+    /// A line with more or fewer fields than the rows: fine at the end of a record that was cut
+    /// off.
     fn of_other_length(&mut self, count: usize) -> Result<(), LogError> {
         if !self.is_last {
-            let message = format!("{count} columns, where the lines before have {}", self.dialect.columns);
+            let message = format!(
+                "{count} columns, where the lines before have {}",
+                self.dialect.columns
+            );
             let hint = "take the line out, or put # in front of it";
             return Err(LogError::format(self.path, Some(self.line), message, hint));
         }
@@ -243,13 +314,20 @@ impl TextRows<'_> {
         let first = self.table.columns.first();
         let counts = first.is_some_and(|column| {
             let is_named = ["", "n"].contains(&column.name.as_str()) && column.values.len() > 1;
-            is_named && column.values.windows(2).take(1000).all(|pair| pair[1] - pair[0] == 1.0)
+            is_named
+                && column
+                    .values
+                    .windows(2)
+                    .take(1000)
+                    .all(|pair| pair[1] - pair[0] == 1.0)
         });
         let named_n = counts && first.is_some_and(|column| column.name == "n");
         let is_blank = self.dialect.delimiter == b' ';
         match self.dialect.sample_time_s {
             Some(_) if self.dialect.names_in_rows || !counts => LogFormat::Halscope,
-            _ if !self.table.breaks.is_empty() || named_n || (counts && is_blank) => LogFormat::Halsampler,
+            _ if !self.table.breaks.is_empty() || named_n || (counts && is_blank) => {
+                LogFormat::Halsampler
+            }
             _ => LogFormat::TextTable,
         }
     }

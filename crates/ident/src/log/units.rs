@@ -29,7 +29,9 @@ pub(super) fn speed_unit(text: &str) -> Option<(PositionUnit, f64)> {
     let (length, time) = text.split_once('/')?;
     let time_s = match time.trim().to_lowercase().as_str() {
         "min" | "minute" => 60.0,
-        time => TimeUnit::from_name(time).filter(|unit| *unit != TimeUnit::Sample)?.in_s(1.0),
+        time => TimeUnit::from_name(time)
+            .filter(|unit| *unit != TimeUnit::Sample)?
+            .in_s(1.0),
     };
     Some((PositionUnit::from_name(length.trim())?, 1.0 / time_s))
 }
@@ -42,9 +44,11 @@ impl PositionUnit {
     pub fn from_name(name: &str) -> Option<Self> {
         match name.to_lowercase().as_str() {
             "m" | "meter" | "metre" | "meters" | "metres" => Some(Self::Metre),
-            "mm" | "millimeter" | "millimetre" | "millimeters" | "millimetres" => Some(Self::Millimetre),
-            "um" | "\u{b5}m" | "\u{3bc}m" | "\u{fffd}m" | "micron" | "microns" | "micrometer" | "micrometre"
-            | "micrometers" | "micrometres" => Some(Self::Micrometre),
+            "mm" | "millimeter" | "millimetre" | "millimeters" | "millimetres" => {
+                Some(Self::Millimetre)
+            }
+            "um" | "\u{b5}m" | "\u{3bc}m" | "\u{fffd}m" | "micron" | "microns" | "micrometer"
+            | "micrometre" | "micrometers" | "micrometres" => Some(Self::Micrometre),
             "in" | "in." | "inch" | "inches" | "\"" => Some(Self::Inch),
             _ => None,
         }
@@ -96,9 +100,8 @@ impl TimeUnit {
         match name.to_lowercase().as_str() {
             "s" | "sec" | "second" | "seconds" => Some(Self::Second),
             "ms" | "msec" | "millisecond" | "milliseconds" => Some(Self::Millisecond),
-            "us" | "usec" | "\u{b5}s" | "\u{3bc}s" | "\u{fffd}s" | "microsecond" | "microseconds" => {
-                Some(Self::Microsecond)
-            }
+            "us" | "usec" | "\u{b5}s" | "\u{3bc}s" | "\u{fffd}s" | "microsecond"
+            | "microseconds" => Some(Self::Microsecond),
             "ns" | "nsec" | "nanosecond" | "nanoseconds" => Some(Self::Nanosecond),
             "samples" | "sample" | "n" => Some(Self::Sample),
             _ => None,
@@ -135,21 +138,27 @@ impl TorqueUnit {
 
     /// By the name that a file gives it, and how much of it one is.
     pub(super) fn from_name(name: &str) -> Option<(Self, f64)> {
-        Some(match name.to_lowercase().replace([' ', '*', '.', '-', '\u{b7}'], "").as_str() {
-            "nm" => (Self::NewtonMetre, 1.0),
-            "mnm" => (Self::NewtonMetre, 1e-3),
-            "ncm" => (Self::NewtonMetre, 1e-2),
-            "knm" => (Self::NewtonMetre, 1e3),
-            "n" => (Self::Newton, 1.0),
-            "kn" => (Self::Newton, 1e3),
-            "v" | "volt" | "volts" => (Self::Volt, 1.0),
-            "mv" => (Self::Volt, 1e-3),
-            "a" | "amp" | "amps" | "ampere" | "arms" => (Self::Ampere, 1.0),
-            "ma" => (Self::Ampere, 1e-3),
-            "percent" | "pct" => (Self::Percent, 1.0),
-            // Of what the drive is rated for, in whatever words.
-            text if text.starts_with('%') => (Self::Percent, 1.0),
-            _ => return None,
-        })
+        Some(
+            match name
+                .to_lowercase()
+                .replace([' ', '*', '.', '-', '\u{b7}'], "")
+                .as_str()
+            {
+                "nm" => (Self::NewtonMetre, 1.0),
+                "mnm" => (Self::NewtonMetre, 1e-3),
+                "ncm" => (Self::NewtonMetre, 1e-2),
+                "knm" => (Self::NewtonMetre, 1e3),
+                "n" => (Self::Newton, 1.0),
+                "kn" => (Self::Newton, 1e3),
+                "v" | "volt" | "volts" => (Self::Volt, 1.0),
+                "mv" => (Self::Volt, 1e-3),
+                "a" | "amp" | "amps" | "ampere" | "arms" => (Self::Ampere, 1.0),
+                "ma" => (Self::Ampere, 1e-3),
+                "percent" | "pct" => (Self::Percent, 1.0),
+                // Of what the drive is rated for, in whatever words.
+                text if text.starts_with('%') => (Self::Percent, 1.0),
+                _ => return None,
+            },
+        )
     }
 }

@@ -4,8 +4,9 @@
 use feedwright_control::{IdentifiedAxes, KnownGeometry, ModelBlock, Trained};
 use feedwright_sim::Machine;
 
-/// The block of bytes, as of [`super::Model::block`], of the first `axes` axes of a machine, 2 or 3, with exactly its numbers and
-/// this geometry. What a block has no place for, two masses, ripple and backlash, is not in it.
+/// The block of bytes, as of [`super::Model::block`], of the first `axes` axes of a machine, 2 or
+/// 3, with exactly its numbers and this geometry. What a block has no place for, two masses, ripple
+/// and backlash, is not in it.
 pub fn exact_block(machine: &Machine, axes: usize, geometry: Option<&KnownGeometry<3>>) -> Vec<u8> {
     let mut bytes = Vec::new();
     let put = |more: &[u8]| bytes.extend_from_slice(more);
@@ -17,16 +18,33 @@ pub fn exact_block(machine: &Machine, axes: usize, geometry: Option<&KnownGeomet
     bytes
 }
 
-/// The geometry of the first N axes as a block has it: without backlash, and none where there is no error.
-pub(crate) fn of_a_block<const N: usize>(geometry: Option<&KnownGeometry<3>>) -> Option<KnownGeometry<N>> {
-    geometry.map(|known| known.of_first::<N>().with_backlash([0.0; N])).filter(|known| !known.is_exact())
+/// The geometry of the first N axes as a block has it: without backlash, and none where there is no
+/// error.
+pub(crate) fn of_a_block<const N: usize>(
+    geometry: Option<&KnownGeometry<3>>,
+) -> Option<KnownGeometry<N>> {
+    geometry
+        .map(|known| known.of_first::<N>().with_backlash([0.0; N]))
+        .filter(|known| !known.is_exact())
 }
 
 fn exact<const N: usize>(machine: &Machine, geometry: Option<&KnownGeometry<3>>) -> ModelBlock<N> {
-    let (known, periods, statistics) = (machine.known(), machine.period.periods(), machine.statistics::<N>());
+    let (known, periods, statistics) = (
+        machine.known(),
+        machine.period.periods(),
+        machine.statistics::<N>(),
+    );
     let axes = std::array::from_fn(|i| known.axis(i).with_statistics(periods, statistics[i]));
-    let trained = Trained::Axes(IdentifiedAxes { mechanics_s: periods.mechanics_s, axes });
-    ModelBlock { servo_s: periods.servo_s, feed_period_s: periods.servo_s, trained, geometry: of_a_block(geometry) }
+    let trained = Trained::Axes(IdentifiedAxes {
+        mechanics_s: periods.mechanics_s,
+        axes,
+    });
+    ModelBlock {
+        servo_s: periods.servo_s,
+        feed_period_s: periods.servo_s,
+        trained,
+        geometry: of_a_block(geometry),
+    }
 }
 
 #[cfg(test)]
@@ -39,7 +57,8 @@ mod tests {
             let machine = Machine::load(name.as_ref()).unwrap();
             let geometry = machine.errors_of_geometry::<3>();
             for geometry in [None, geometry.as_ref()] {
-                let read = ModelBlock::<3>::from_bytes(&exact_block(&machine, 3, geometry)).unwrap();
+                let read =
+                    ModelBlock::<3>::from_bytes(&exact_block(&machine, 3, geometry)).unwrap();
                 assert_eq!(read, exact::<3>(&machine, geometry), "{name}");
                 assert_eq!(read.geometry.as_ref(), geometry, "{name}");
                 ModelBlock::<2>::from_bytes(&exact_block(&machine, 2, geometry)).unwrap();

@@ -1,4 +1,5 @@
-//! The keys of a model file: name, unit, range, and the field that each fills; see [`feedwright_sim::toml_file::key`].
+//! The keys of a model file: name, unit, range, and the field that each fills; see
+//! [`feedwright_sim::toml_file::key`].
 
 use feedwright_control::{
     AxisKnowledge, FEED_PERIODS_S, IdentifierKind, MAX_WEIGHT, MECHANICS_PERIODS_S, SERVO_PERIODS_S,
@@ -32,7 +33,10 @@ pub(crate) const PERIOD: &[Key<ModelPeriods>] = &[
 ];
 
 /// Of `[fit]`.
-pub(crate) const FIT: &[Key<Fit>] = &[key!(fit_um, "um", 0.0, MAX_FIT_UM), key!(whole samples, "", 0.0, MAX_SAMPLES)];
+pub(crate) const FIT: &[Key<Fit>] = &[
+    key!(fit_um, "um", 0.0, MAX_FIT_UM),
+    key!(whole samples, "", 0.0, MAX_SAMPLES),
+];
 
 /// Of `[weights]`.
 pub(crate) const fn weights(kind: IdentifierKind) -> &'static [Key<Weights>] {
@@ -42,8 +46,10 @@ pub(crate) const fn weights(kind: IdentifierKind) -> &'static [Key<Weights>] {
     }
 }
 
-const CONTOUR: &[Key<Weights>] =
-    &[key!(numbers hidden, "", -MAX_WEIGHT, MAX_WEIGHT), key!(numbers output, "", -MAX_WEIGHT, MAX_WEIGHT)];
+const CONTOUR: &[Key<Weights>] = &[
+    key!(numbers hidden, "", -MAX_WEIGHT, MAX_WEIGHT),
+    key!(numbers output, "", -MAX_WEIGHT, MAX_WEIGHT),
+];
 
 /// The mechanics period, then one key for each parameter of an axis. Each of these keys holds one
 /// value per axis.

@@ -1,14 +1,18 @@
 //! The layout of a model file: its tables, and what holds between their values.
 
 use feedwright_control::{
-    AxisKnowledge, HIDDEN, INPUTS, IdentifierKind, MAX_MECHANICS_PER_SERVO, ModelBlock, position_gains_1_s,
+    AxisKnowledge, HIDDEN, INPUTS, IdentifierKind, MAX_MECHANICS_PER_SERVO, ModelBlock,
+    position_gains_1_s,
 };
 use feedwright_gcode::suggestion::nearest;
 use feedwright_sim::to_four_digits;
 use feedwright_sim::toml_file::key::{read, read_all};
 use feedwright_sim::toml_file::{Document, Fault, Table};
 
-use super::{About, FORMAT, KINDS, Model, SERVO, Weights, an_identifier, identifier_name, keys, kind_named, version};
+use super::{
+    About, FORMAT, KINDS, Model, SERVO, Weights, an_identifier, identifier_name, keys, kind_named,
+    version,
+};
 
 /// The model that a file holds, or every fault in it.
 pub(super) fn model(document: &Document<'_>) -> Result<Model, Vec<Fault>> {
@@ -22,7 +26,9 @@ pub(super) fn model(document: &Document<'_>) -> Result<Model, Vec<Fault>> {
     let fit = read_all(keys::FIT, root.table("fit", &mut faults), &mut faults);
     let mut table = root.table("weights", &mut faults);
     // Which weights there have to be is said by the kind alone.
-    let weights = kind.map(|kind| weights(kind, about.axes, &mut table, &mut faults)).unwrap_or_default();
+    let weights = kind
+        .map(|kind| weights(kind, about.axes, &mut table, &mut faults))
+        .unwrap_or_default();
     let place = table.header();
     if kind.is_some() {
         table.finish(&mut faults);
@@ -32,7 +38,12 @@ pub(super) fn model(document: &Document<'_>) -> Result<Model, Vec<Fault>> {
     if !faults.is_empty() {
         return Err(faults);
     }
-    let model = Model { about, period, fit, weights };
+    let model = Model {
+        about,
+        period,
+        fit,
+        weights,
+    };
     if model.checksum() != model.about.checksum {
         return Err(vec![Fault {
             at: at_checksum,
@@ -45,7 +56,12 @@ pub(super) fn model(document: &Document<'_>) -> Result<Model, Vec<Fault>> {
         }]);
     }
     match refused(&model) {
-        Some(message) => Err(vec![Fault { at: place, label: "here", message, hint: None }]),
+        Some(message) => Err(vec![Fault {
+            at: place,
+            label: "here",
+            message,
+            hint: None,
+        }]),
         None => Ok(model),
     }
 }
@@ -62,7 +78,9 @@ fn of_this_format(document: &Document<'_>) -> Result<(), Fault> {
             hint: Some(if is_machine {
                 "it looks like a machine file: give that to --machine".to_owned()
             } else {
-                format!("'feedwright identify' writes model files, which have 'format = {FORMAT}' at their top")
+                format!(
+                    "'feedwright identify' writes model files, which have 'format = {FORMAT}' at their top"
+                )
             }),
         });
     };
@@ -73,11 +91,18 @@ fn of_this_format(document: &Document<'_>) -> Result<(), Fault> {
     if found.is_none_or(|found| found == FORMAT) {
         return Ok(());
     }
-    let writer = entries.get("written_by").and_then(|writer| writer.get_ref().as_str()).unwrap_or("a later version");
+    let writer = entries
+        .get("written_by")
+        .and_then(|writer| writer.get_ref().as_str())
+        .unwrap_or("a later version");
     Err(Fault {
         at: format.span(),
         label: "of another version",
-        message: format!("the model is of format {}; {} reads format {FORMAT}", found.unwrap_or(0), version()),
+        message: format!(
+            "the model is of format {}; {} reads format {FORMAT}",
+            found.unwrap_or(0),
+            version()
+        ),
         hint: Some(format!(
             "{writer} wrote it and reads it; or write it anew with this version's 'feedwright identify'"
         )),
@@ -106,27 +131,49 @@ fn kind(about: &About, root: &Table<'_, '_>, faults: &mut Vec<Fault>) -> Option<
         faults.push(Fault {
             at: root.place("kind"),
             label: "unknown",
-            message: format!("no identifier is of kind '{}'; there are {}", about.kind, names.join(", ")),
+            message: format!(
+                "no identifier is of kind '{}'; there are {}",
+                about.kind,
+                names.join(", ")
+            ),
             hint: nearest(&about.kind, &names).map(|near| format!("did you mean '{near}'?")),
         });
     }
     found
 }
 
-fn weights(kind: IdentifierKind, axes: u64, table: &mut Table<'_, '_>, faults: &mut Vec<Fault>) -> Weights {
+fn weights(
+    kind: IdentifierKind,
+    axes: u64,
+    table: &mut Table<'_, '_>,
+    faults: &mut Vec<Fault>,
+) -> Weights {
     let before = faults.len();
     let weights: Weights = read(keys::weights(kind), table, faults);
-    // A number of axes that has a fault is 0 here; arrays with faults of their own get no second one.
+    // A number of axes that has a fault is 0 here; arrays with faults of their own get no second
+    // one.
     if axes == 0 || faults.len() > before {
         return weights;
     }
     let n = axes as usize;
-    let of_a_net = |number: usize| if kind == IdentifierKind::Contour { number } else { 0 };
-    let expected =
-        [("hidden", &weights.hidden, of_a_net(n * INPUTS * HIDDEN)), ("output", &weights.output, of_a_net(n * HIDDEN))];
+    let of_a_net = |number: usize| {
+        if kind == IdentifierKind::Contour {
+            number
+        } else {
+            0
+        }
+    };
+    let expected = [
+        ("hidden", &weights.hidden, of_a_net(n * INPUTS * HIDDEN)),
+        ("output", &weights.output, of_a_net(n * HIDDEN)),
+    ];
     // A number for each axis.
-    let of_axes = keys::weights(IdentifierKind::Axes).iter().filter(|key| key.name != "mechanics_s");
-    let of_axes = of_axes.zip(&weights.axes).filter(|(key, found)| !(key.optional && found.is_empty()));
+    let of_axes = keys::weights(IdentifierKind::Axes)
+        .iter()
+        .filter(|key| key.name != "mechanics_s");
+    let of_axes = of_axes
+        .zip(&weights.axes)
+        .filter(|(key, found)| !(key.optional && found.is_empty()));
     let of_axes = of_axes.map(|(key, found)| (key.name, found, n));
     for (key, found, expected) in expected.into_iter().chain(of_axes) {
         if found.len() != expected {
@@ -161,7 +208,9 @@ fn refused(model: &Model) -> Option<String> {
 /// What a range alone does not tell of axes.
 fn refused_axes(model: &Model) -> Option<String> {
     if model.block(None).is_empty() {
-        return Some(format!("servo_s is no whole multiple of mechanics_s, 1 to {MAX_MECHANICS_PER_SERVO} times"));
+        return Some(format!(
+            "servo_s is no whole multiple of mechanics_s, 1 to {MAX_MECHANICS_PER_SERVO} times"
+        ));
     }
     let servo_s = model.period.servo_s;
     AxisKnowledge::NUMBERS.iter().zip(&model.weights.axes).find_map(|(number, values)| {

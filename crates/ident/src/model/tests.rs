@@ -8,8 +8,16 @@ use super::*;
 use crate::identify::recording::RecordedKnot;
 
 fn recording<const N: usize>() -> Recording<N> {
-    let knot = RecordedKnot { command_mm: [0.3; N], tool_mm: [0.2; N], contour_mm: [0.1; N] };
-    Recording { servo_s: 0.001, feed_period_s: 0.003, stretches: vec![vec![knot; 3]] }
+    let knot = RecordedKnot {
+        command_mm: [0.3; N],
+        tool_mm: [0.2; N],
+        contour_mm: [0.1; N],
+    };
+    Recording {
+        servo_s: 0.001,
+        feed_period_s: 0.003,
+        stretches: vec![vec![knot; 3]],
+    }
 }
 
 /// Weights without symmetry, as a training gives them: not short in decimals.
@@ -25,17 +33,27 @@ fn filled<const N: usize, I: Identifier<N>>() -> I {
 }
 
 fn origin() -> Origin {
-    Origin { source: "a \"bench\", seed 1".to_owned(), date: "2026-05-17".to_owned() }
+    Origin {
+        source: "a \"bench\", seed 1".to_owned(),
+        date: "2026-05-17".to_owned(),
+    }
 }
 
 fn contour<const N: usize>() -> Model {
-    let trained = contour::TrainedContour { net: filled(), fit_um: 0.1 + 0.2, samples: 12_345 };
+    let trained = contour::TrainedContour {
+        net: filled(),
+        fit_um: 0.1 + 0.2,
+        samples: 12_345,
+    };
     Model::of_contour::<N>(&recording(), &trained, origin())
 }
 
 /// Axes like those of a machine: not short in decimals.
 fn axes<const N: usize>() -> Model {
-    let mut identified = IdentifiedAxes::<N> { mechanics_s: 1e-4, ..IdentifiedAxes::NULL };
+    let mut identified = IdentifiedAxes::<N> {
+        mechanics_s: 1e-4,
+        ..IdentifiedAxes::NULL
+    };
     let mut number = 0.1_f64;
     for axis in &mut identified.axes {
         for of in AxisKnowledge::NUMBERS {
@@ -45,8 +63,16 @@ fn axes<const N: usize>() -> Model {
         }
         axis.parameters.kp_1_s *= 100.0;
     }
-    let trained = axes::TrainedAxes { axes: identified, estimates: Vec::new(), fit_um: 0.1 + 0.2, samples: 12_345 };
-    let recording = Recording { feed_period_s: 0.001, ..recording() };
+    let trained = axes::TrainedAxes {
+        axes: identified,
+        estimates: Vec::new(),
+        fit_um: 0.1 + 0.2,
+        samples: 12_345,
+    };
+    let recording = Recording {
+        feed_period_s: 0.001,
+        ..recording()
+    };
     Model::of_axes::<N>(&recording, &trained, origin())
 }
 
@@ -80,7 +106,9 @@ fn what_is_written_reads_back_to_the_bit() {
         assert_eq!(read.block(None), model.block(None));
         assert_eq!(read.text(), model.text());
     }
-    let net = Model::parse("m", &contour::<3>().text()).unwrap().contour::<3>();
+    let net = Model::parse("m", &contour::<3>().text())
+        .unwrap()
+        .contour::<3>();
     assert_eq!(net, Some(filled::<3, ContourIdentifier<3>>()));
 }
 
@@ -95,28 +123,46 @@ fn the_block_is_what_control_takes() {
 #[test]
 fn a_model_gives_nothing_but_what_it_holds() {
     assert!(contour::<3>().contour::<2>().is_none() && contour::<2>().contour::<3>().is_none());
-    assert!(axes::<2>().identified_axes::<3>().is_none() && axes::<3>().identified_axes::<2>().is_none());
-    assert!(axes::<2>().contour::<2>().is_none() && contour::<2>().identified_axes::<2>().is_none());
-    assert!(axes::<2>().identified_axes::<2>().is_some() && axes::<3>().identified_axes::<3>().is_some());
+    assert!(
+        axes::<2>().identified_axes::<3>().is_none()
+            && axes::<3>().identified_axes::<2>().is_none()
+    );
+    assert!(
+        axes::<2>().contour::<2>().is_none() && contour::<2>().identified_axes::<2>().is_none()
+    );
+    assert!(
+        axes::<2>().identified_axes::<2>().is_some()
+            && axes::<3>().identified_axes::<3>().is_some()
+    );
 }
 
 #[test]
 fn line_ends_comments_and_the_order_of_keys_change_nothing() {
     let text = contour::<2>().text();
-    for other in [text.replace('\n', "\r\n"), format!("# mine\n{text}"), text.replace(",\n", ",\n\n")] {
+    for other in [
+        text.replace('\n', "\r\n"),
+        format!("# mine\n{text}"),
+        text.replace(",\n", ",\n\n"),
+    ] {
         assert_eq!(Model::parse("other", &other).unwrap(), contour::<2>());
     }
     let (about, tables) = text.split_once("\n[period]").unwrap();
     let mut lines: Vec<&str> = about.lines().collect();
     lines.reverse();
-    assert_eq!(Model::parse("other", &format!("{}\n[period]{tables}", lines.join("\n"))).unwrap(), contour::<2>());
+    assert_eq!(
+        Model::parse("other", &format!("{}\n[period]{tables}", lines.join("\n"))).unwrap(),
+        contour::<2>()
+    );
 }
 
 #[test]
 fn the_date_is_no_part_of_the_content_and_everything_else_is() {
     let text = contour::<2>().text();
     let dated = Model::parse("m", &text.replace("2026-05-17", "2030-01-01")).unwrap();
-    assert_eq!((dated.about.checksum, dated.weights), (contour::<2>().about.checksum, contour::<2>().weights));
+    assert_eq!(
+        (dated.about.checksum, dated.weights),
+        (contour::<2>().about.checksum, contour::<2>().weights)
+    );
     let weight = format!("{:?}", contour::<2>().weights.hidden[7]);
     for (from, to) in [
         ("seed 1", "seed 2"),
@@ -127,8 +173,14 @@ fn the_date_is_no_part_of_the_content_and_everything_else_is() {
     ] {
         let told = told_after(from, to);
         assert_eq!(told.len(), 1, "{told:?}");
-        assert!(told[0].starts_with("8:12: the checksum does not fit: the file was changed"), "{told:?}");
-        assert!(told[0].contains("write it anew with 'feedwright identify'"), "{told:?}");
+        assert!(
+            told[0].starts_with("8:12: the checksum does not fit: the file was changed"),
+            "{told:?}"
+        );
+        assert!(
+            told[0].contains("write it anew with 'feedwright identify'"),
+            "{told:?}"
+        );
     }
 }
 
@@ -150,47 +202,77 @@ fn every_fault_is_told_at_its_place_with_a_remedy() {
             "17:11: samples is 1.5; it must be a whole number / no hint",
         ]
     );
-    assert_eq!(problems(&text)[0].code().unwrap().to_string(), "model::file");
+    assert_eq!(
+        problems(&text)[0].code().unwrap().to_string(),
+        "model::file"
+    );
 }
 
 #[test]
 fn numbers_of_an_array_have_places_and_bounds() {
     let weight = format!("{:?}", contour::<2>().weights.hidden[1]);
     for (to, what) in [
-        ("nan", "is NaN; it must lie between -1e6 and 1e6 / write a finite number"),
-        ("-inf", "is -inf; it must lie between -1e6 and 1e6 / write a finite number"),
+        (
+            "nan",
+            "is NaN; it must lie between -1e6 and 1e6 / write a finite number",
+        ),
+        (
+            "-inf",
+            "is -inf; it must lie between -1e6 and 1e6 / write a finite number",
+        ),
         ("1e7", "is 1e7; it must lie between -1e6 and 1e6 / no hint"),
         ("'1.5'", "is a string, not a number / no hint"),
         ("[1.0]", "is an array, not a number / no hint"),
     ] {
         let told = told_after(&weight, to);
         assert_eq!(told.len(), 1, "{told:?}");
-        assert!(told[0].contains(&format!("hidden, number 2 {what}")), "{told:?}");
+        assert!(
+            told[0].contains(&format!("hidden, number 2 {what}")),
+            "{told:?}"
+        );
         assert!(told[0].starts_with("20:"), "{told:?}");
     }
-    assert_eq!(told_after(&weight, "1,5").len(), 1, "a decimal comma makes two numbers of one");
+    assert_eq!(
+        told_after(&weight, "1,5").len(),
+        1,
+        "a decimal comma makes two numbers of one"
+    );
     let short = told_after(&format!(" {weight},"), "");
     assert_eq!(short.len(), 1);
     assert!(
-        short[0].ends_with("hidden has 119 numbers; a contour identifier of 2 axes has 120 / no hint"),
+        short[0]
+            .ends_with("hidden has 119 numbers; a contour identifier of 2 axes has 120 / no hint"),
         "{short:?}"
     );
     let mut wild = contour::<2>();
     wild.weights.hidden.fill(f64::NAN);
     let told = told(&wild.text().replace("NaN", "nan"));
     assert_eq!(told.len(), 3, "{told:?}");
-    assert!(told[2].contains("117 more of hidden are as wrong"), "{told:?}");
+    assert!(
+        told[2].contains("117 more of hidden are as wrong"),
+        "{told:?}"
+    );
 }
 
 #[test]
 fn kinds_have_their_own_weights() {
     let told = told_after("kind = \"contour\"", "kind = \"axes\"");
-    assert!(told.iter().any(|told| told.contains("unknown key 'hidden' in [weights]")), "{told:?}");
+    assert!(
+        told.iter()
+            .any(|told| told.contains("unknown key 'hidden' in [weights]")),
+        "{told:?}"
+    );
     let told = told_after("kind = \"contour\"", "kind = \"contours\"");
-    assert_eq!(told, ["3:8: no identifier is of kind 'contours'; there are contour, axes / did you mean 'contour'?"]);
+    assert_eq!(
+        told,
+        [
+            "3:8: no identifier is of kind 'contours'; there are contour, axes / did you mean 'contour'?"
+        ]
+    );
     let told = told_after("axes = 2", "axes = 3");
     assert!(
-        told.len() == 2 && told[0].contains("hidden has 120 numbers; a contour identifier of 3 axes has 180"),
+        told.len() == 2
+            && told[0].contains("hidden has 120 numbers; a contour identifier of 3 axes has 180"),
         "{told:?}"
     );
 }
@@ -199,20 +281,35 @@ fn kinds_have_their_own_weights() {
 fn every_number_of_an_axis_has_its_key_its_bounds_and_one_for_each_axis() {
     let text = axes::<2>().text();
     let array = |name: &str| {
-        let (_, rest) = text.split_once(&format!("\n{name} = [")).unwrap_or_else(|| panic!("no {name}"));
+        let (_, rest) = text
+            .split_once(&format!("\n{name} = ["))
+            .unwrap_or_else(|| panic!("no {name}"));
         rest.split_once(']').unwrap().0.to_owned()
     };
     for number in AxisKnowledge::NUMBERS {
         let (name, was) = (number.name, array(number.name));
-        let after = |to: &str| told(&text.replacen(&format!("{name} = [{was}]"), &format!("{name} = {to}"), 1));
-        let beyond = after(&format!("[{:?}, {:?}]", number.range[0], 2.0 * number.range[1]));
-        assert!(beyond.len() == 1 && beyond[0].contains(&format!("{name}, number 2 is")), "{beyond:?}");
+        let after = |to: &str| {
+            told(&text.replacen(&format!("{name} = [{was}]"), &format!("{name} = {to}"), 1))
+        };
+        let beyond = after(&format!(
+            "[{:?}, {:?}]",
+            number.range[0],
+            2.0 * number.range[1]
+        ));
+        assert!(
+            beyond.len() == 1 && beyond[0].contains(&format!("{name}, number 2 is")),
+            "{beyond:?}"
+        );
         let short = after(&format!("[{:?}]", number.range[0]));
         let said = format!("{name} has 1 numbers; an axes identifier of 2 axes has 2");
         assert!(short.len() == 1 && short[0].contains(&said), "{short:?}");
     }
     let told = told(&text.replacen("mechanics_s = 0.0001", "mechanics_s = 0", 1));
-    assert!(told.len() == 1 && told[0].contains("mechanics_s is 0 s; it must lie between 1e-7 and 0.1 s"), "{told:?}");
+    assert!(
+        told.len() == 1
+            && told[0].contains("mechanics_s is 0 s; it must lie between 1e-7 and 0.1 s"),
+        "{told:?}"
+    );
 }
 
 /// With the checksum that belongs to it.
@@ -226,17 +323,35 @@ fn axes_that_cannot_be_computed_with_are_refused() {
     let mut uneven = axes::<2>();
     uneven.weights.mechanics_s = 0.0003;
     let mut divides = axes::<2>();
-    let presliding = AxisKnowledge::NUMBERS.iter().position(|number| number.name == "presliding_rad").unwrap();
+    let presliding = AxisKnowledge::NUMBERS
+        .iter()
+        .position(|number| number.name == "presliding_rad")
+        .unwrap();
     divides.weights.axes[presliding][1] = 1e-300;
-    let gain = AxisKnowledge::NUMBERS.iter().position(|number| number.name == "kp_1_s").unwrap();
+    let gain = AxisKnowledge::NUMBERS
+        .iter()
+        .position(|number| number.name == "kp_1_s")
+        .unwrap();
     let [mut slow, mut diverging] = [axes::<2>(), axes::<2>()];
     slow.weights.axes[gain][0] = 0.0036;
     diverging.weights.axes[gain][1] = 5500.0;
     for (model, said) in [
-        (slow, "kp_1_s, number 1 is 0.0036 1/s; with servo_s of 0.001 s a position loop has 0.5 to 5000 1/s"),
-        (diverging, "kp_1_s, number 2 is 5500 1/s; with servo_s of 0.001 s a position loop has 0.5 to 5000 1/s"),
-        (uneven, "servo_s is no whole multiple of mechanics_s, 1 to 1000 times"),
-        (divides, "presliding_rad, number 2 is 1e-300 rad; it must be 0 or lie between 1e-12 and 1e4 rad"),
+        (
+            slow,
+            "kp_1_s, number 1 is 0.0036 1/s; with servo_s of 0.001 s a position loop has 0.5 to 5000 1/s",
+        ),
+        (
+            diverging,
+            "kp_1_s, number 2 is 5500 1/s; with servo_s of 0.001 s a position loop has 0.5 to 5000 1/s",
+        ),
+        (
+            uneven,
+            "servo_s is no whole multiple of mechanics_s, 1 to 1000 times",
+        ),
+        (
+            divides,
+            "presliding_rad, number 2 is 1e-300 rad; it must be 0 or lie between 1e-12 and 1e4 rad",
+        ),
     ] {
         let told = told_of(model);
         assert!(told.len() == 1 && told[0].contains(said), "{told:?}");
@@ -268,7 +383,10 @@ fn another_format_is_told_of_by_who_reads_it_and_by_nothing_else() {
         )]
     );
     let told = told_after("format = 1", "format = 'one'");
-    assert!(told[0].starts_with("1:10: format has to be a number, but is a string"), "{told:?}");
+    assert!(
+        told[0].starts_with("1:10: format has to be a number, but is a string"),
+        "{told:?}"
+    );
 }
 
 #[test]
@@ -277,12 +395,15 @@ fn other_files_are_told_apart() {
     let machine = told(machine);
     assert_eq!(
         machine,
-        ["1:1: format is missing: this is no model file / it looks like a machine file: give that to --machine"]
+        [
+            "1:1: format is missing: this is no model file / it looks like a machine file: give that to --machine"
+        ]
     );
     assert!(told("")[0].contains("'feedwright identify' writes model files"));
     let program = told(&"G0 X1 Y2\n".repeat(100));
     assert!(
-        program.len() == 5 && program[4].ends_with("95 more places are not TOML: was another file meant?"),
+        program.len() == 5
+            && program[4].ends_with("95 more places are not TOML: was another file meant?"),
         "{program:?}"
     );
     let text = contour::<2>().text();
@@ -296,16 +417,33 @@ fn a_file_that_cannot_be_read_is_told_of_as_a_model_file() {
     let folder = tempfile::tempdir().unwrap();
     let tell = |name: &str, content: Option<&[u8]>| {
         let path = folder.path().join(name);
-        content.into_iter().for_each(|content| std::fs::write(&path, content).unwrap());
+        content
+            .into_iter()
+            .for_each(|content| std::fs::write(&path, content).unwrap());
         let error = Model::read(&path).unwrap_err();
-        (error.to_string(), error.help().map(|help| help.to_string()).unwrap_or_default())
+        (
+            error.to_string(),
+            error
+                .help()
+                .map(|help| help.to_string())
+                .unwrap_or_default(),
+        )
     };
     let (message, hint) = tell("none.model.toml", None);
-    assert!(message.starts_with("cannot read model file") && hint.contains("identify --out"), "{message} {hint}");
+    assert!(
+        message.starts_with("cannot read model file") && hint.contains("identify --out"),
+        "{message} {hint}"
+    );
     let (message, hint) = tell("huge", Some(&vec![b' '; 2 << 20]));
-    assert!(message.ends_with("this is no model file") && hint.contains("pages of TOML"), "{message} {hint}");
+    assert!(
+        message.ends_with("this is no model file") && hint.contains("pages of TOML"),
+        "{message} {hint}"
+    );
     let (message, hint) = tell("block", Some(&contour::<2>().block(None)));
-    assert!(message.contains("is not text") && hint.contains("a model file is TOML text"), "{message} {hint}");
+    assert!(
+        message.contains("is not text") && hint.contains("a model file is TOML text"),
+        "{message} {hint}"
+    );
 }
 
 /// The document's tables begin `| `key` | unit | range |`.
@@ -317,20 +455,40 @@ fn the_document_has_the_units_and_ranges_of_all_keys() {
             value => format!("{value:e}"),
         };
         let row = |key: &Key<T>| match key.range {
-            [least, most] if least < most => {
-                format!("| `{}` | {} | {} to {} |", key.name, key.unit, number(least), number(most))
-                    .replace("|  |", "| |")
-            }
+            [least, most] if least < most => format!(
+                "| `{}` | {} | {} to {} |",
+                key.name,
+                key.unit,
+                number(least),
+                number(most)
+            )
+            .replace("|  |", "| |"),
             _ => format!("| `{}` | | text |", key.name),
         };
         keys.iter().map(row).collect()
     }
     let document = include_str!("../../../../docs/model-file.md");
     let weights = KINDS.map(|kind| rows(keys::weights(kind))).concat();
-    for row in [rows(keys::ABOUT), rows(keys::PERIOD), rows(keys::FIT), weights].concat() {
-        assert!(document.contains(&row), "docs/model-file.md has no row that begins {row}");
+    for row in [
+        rows(keys::ABOUT),
+        rows(keys::PERIOD),
+        rows(keys::FIT),
+        weights,
+    ]
+    .concat()
+    {
+        assert!(
+            document.contains(&row),
+            "docs/model-file.md has no row that begins {row}"
+        );
     }
-    for (line, text) in [("format", FORMAT.to_string()), ("format", BLOCK_FORMAT.to_string())] {
-        assert!(document.contains(&format!("{line} {text}")), "docs/model-file.md does not tell the {line}");
+    for (line, text) in [
+        ("format", FORMAT.to_string()),
+        ("format", BLOCK_FORMAT.to_string()),
+    ] {
+        assert!(
+            document.contains(&format!("{line} {text}")),
+            "docs/model-file.md does not tell the {line}"
+        );
     }
 }

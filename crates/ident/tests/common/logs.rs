@@ -60,5 +60,8 @@ pub(crate) fn read(content: &[u8], columns: &str) -> Result<Log, LogError> {
 
 /// All findings, a line each.
 pub(crate) fn told(log: &Log) -> String {
-    log.findings.iter().map(|finding| format!("{finding}\n")).collect()
+    log.findings
+        .iter()
+        .map(|finding| format!("{finding}\n"))
+        .collect()
 }

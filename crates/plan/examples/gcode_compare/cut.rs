@@ -3,23 +3,36 @@
 use feedwright_gcode::canon::{Canon, Plane};
 use feedwright_gcode::{Dialect, Reader, Settings};
 
-use crate::linuxcnc::{Spiral, Theirs, away_from, compensated_radius, path_of, point, without_compensation};
+use crate::linuxcnc::{
+    Spiral, Theirs, away_from, compensated_radius, path_of, point, without_compensation,
+};
 
 /// Points of a motion that are looked at for the depth of a cut.
 const CUT_POINTS: u32 = 65;
 
-/// How deep LinuxCNC's compensated tool cuts into the contour about a line, mm: its motions of that line and of the one before it
-/// into the contour from there to the line behind. The entry has no contour.
+/// How deep LinuxCNC's compensated tool cuts into the contour about a line, mm: its motions of that
+/// line and of the one before it into the contour from there to the line behind. The entry has no
+/// contour.
 pub(crate) fn cut_mm(text: &str, theirs: &Theirs, line: u32) -> f64 {
-    let settings = Settings { dialect: Some(Dialect::LinuxCnc), max_motions: 1_000_000, ..Settings::default() };
+    let settings = Settings {
+        dialect: Some(Dialect::LinuxCnc),
+        max_motions: 1_000_000,
+        ..Settings::default()
+    };
     let Ok(reader) = Reader::from_text("contour", without_compensation(text), settings) else {
         return 0.0;
     };
-    let lines: Vec<String> = text.lines().map(|line| line.to_ascii_uppercase().replace(' ', "")).collect();
+    let lines: Vec<String> = text
+        .lines()
+        .map(|line| line.to_ascii_uppercase().replace(' ', ""))
+        .collect();
     let begins = |line: &String| ["G41", "G42"].iter().any(|code| line.contains(code));
     let moves = |line: &String| line.contains(['X', 'Y', 'Z', 'I', 'J', 'K']);
     let begin = lines.iter().position(begins).unwrap_or(0);
-    let entry = lines[begin..].iter().position(moves).map_or(0, |behind| (begin + behind + 1) as u32);
+    let entry = lines[begin..]
+        .iter()
+        .position(moves)
+        .map_or(0, |behind| (begin + behind + 1) as u32);
     let mut contour = Vec::new();
     for step in reader {
         if let Ok(Canon::Motion(motion)) = step
@@ -33,7 +46,10 @@ pub(crate) fn cut_mm(text: &str, theirs: &Theirs, line: u32) -> f64 {
     for value in &theirs.moves {
         let end = point(&value[2]);
         let from = std::mem::replace(&mut start, std::array::from_fn(|axis| end[axis]));
-        if !value[1].as_u64().is_some_and(|number| (u64::from(line) - 1..=u64::from(line)).contains(&number)) {
+        if !value[1]
+            .as_u64()
+            .is_some_and(|number| (u64::from(line) - 1..=u64::from(line)).contains(&number))
+        {
             continue;
         }
         let spiral = (value[0] == "arc").then(|| {
@@ -42,13 +58,25 @@ pub(crate) fn cut_mm(text: &str, theirs: &Theirs, line: u32) -> f64 {
                 Some(1) => 2,
                 _ => 0,
             }];
-            let center = [value[4][0].as_f64().unwrap_or(f64::NAN), value[4][1].as_f64().unwrap_or(f64::NAN)];
-            Spiral::new(from, end, center, plane, value[5].as_i64().unwrap_or(1) as i32)
+            let center = [
+                value[4][0].as_f64().unwrap_or(f64::NAN),
+                value[4][1].as_f64().unwrap_or(f64::NAN),
+            ];
+            Spiral::new(
+                from,
+                end,
+                center,
+                plane,
+                value[5].as_i64().unwrap_or(1) as i32,
+            )
         });
         for number in 0..CUT_POINTS {
             let share = f64::from(number) / f64::from(CUT_POINTS - 1);
-            let straight = || std::array::from_fn(|axis| from[axis] + share * (end[axis] - from[axis]));
-            let at = spiral.as_ref().map_or_else(straight, |spiral| spiral.at(share));
+            let straight =
+                || std::array::from_fn(|axis| from[axis] + share * (end[axis] - from[axis]));
+            let at = spiral
+                .as_ref()
+                .map_or_else(straight, |spiral| spiral.at(share));
             nearest_mm = nearest_mm.min(away_from(&contour, at));
         }
     }

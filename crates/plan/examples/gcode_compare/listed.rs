@@ -1,7 +1,9 @@
-//! Differences from LinuxCNC that are intended: the rows of docs/gcode-differences.md that a random program can meet.
+//! Differences from LinuxCNC that are intended: the rows of docs/gcode-differences.md that a random
+//! program can meet.
 //!
-//! A row names what is told and what the program has where it is told, so that another difference nearby does not hide behind it.
-//! `crates/plan/tests/oracle_linuxcnc_listed.rs` has a program for every row.
+//! A row names what is told and what the program has where it is told, so that another difference
+//! nearby does not hide behind it. `crates/plan/tests/oracle_linuxcnc_listed.rs` has a program for
+//! every row.
 
 use std::path::Path;
 
@@ -36,8 +38,14 @@ pub(crate) fn judge(path: &Path, text: &str, theirs: &Theirs, totals: &mut Total
 pub(crate) fn codes_of(text: &str) -> Vec<String> {
     let upper = text.to_ascii_uppercase();
     let code = |(at, letter): (usize, &str)| {
-        let number: String = upper[at + 1..].chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
-        number.parse::<f64>().ok().map(|number| format!("{letter}{number}"))
+        let number: String = upper[at + 1..]
+            .chars()
+            .take_while(|c| c.is_ascii_digit() || *c == '.')
+            .collect();
+        number
+            .parse::<f64>()
+            .ok()
+            .map(|number| format!("{letter}{number}"))
     };
     upper.match_indices(['G', 'M']).filter_map(code).collect()
 }
@@ -54,19 +62,32 @@ struct Case<'a> {
 
 const PLANES: &[&str] = &["G17", "G18", "G19"];
 const MOTIONS: &[&str] = &[
-    "G0", "G1", "G2", "G3", "G5", "G5.1", "G5.2", "G5.3", "G33", "G33.1", "G38.2", "G38.3", "G38.4", "G38.5", "G70",
-    "G71", "G71.1", "G71.2", "G72", "G72.1", "G72.2", "G73", "G74", "G76", "G80", "G81", "G82", "G83", "G84", "G85",
-    "G86", "G87", "G88", "G89",
+    "G0", "G1", "G2", "G3", "G5", "G5.1", "G5.2", "G5.3", "G33", "G33.1", "G38.2", "G38.3",
+    "G38.4", "G38.5", "G70", "G71", "G71.1", "G71.2", "G72", "G72.1", "G72.2", "G73", "G74", "G76",
+    "G80", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89",
 ];
 
 impl<'a> Case<'a> {
-    /// The line of a difference. LinuxCNC names that behind a line that it could read and not carry out: then one `earlier`.
+    /// The line of a difference. LinuxCNC names that behind a line that it could read and not carry
+    /// out: then one `earlier`.
     fn new(text: &'a str, theirs: &'a Theirs, difference: &str, earlier: usize) -> Option<Self> {
         let number = difference.split_once("line ")?.1;
-        let number: usize = number.chars().take_while(char::is_ascii_digit).collect::<String>().parse().ok()?;
+        let number: usize = number
+            .chars()
+            .take_while(char::is_ascii_digit)
+            .collect::<String>()
+            .parse()
+            .ok()?;
         let lines: Vec<String> = text.lines().map(str::to_ascii_uppercase).collect();
-        let at = number.checked_sub(1 + earlier).filter(|at| *at < lines.len())?;
-        Some(Self { text, theirs, lines, at })
+        let at = number
+            .checked_sub(1 + earlier)
+            .filter(|at| *at < lines.len())?;
+        Some(Self {
+            text,
+            theirs,
+            lines,
+            at,
+        })
     }
 
     fn line(&self) -> &str {
@@ -90,17 +111,24 @@ impl<'a> Case<'a> {
     }
 
     fn last_before(&self, end: usize, codes: &[&str]) -> Option<(usize, String)> {
-        let in_line = |at: usize| codes_of(&self.lines[at]).into_iter().rfind(|code| codes.contains(&code.as_str()));
+        let in_line = |at: usize| {
+            codes_of(&self.lines[at])
+                .into_iter()
+                .rfind(|code| codes.contains(&code.as_str()))
+        };
         (0..end).rev().find_map(|at| Some((at, in_line(at)?)))
     }
 
     fn is_active(&self, among: &[&str], codes: &[&str]) -> bool {
-        self.last(among).is_some_and(|(_, code)| codes.contains(&code.as_str()))
+        self.last(among)
+            .is_some_and(|(_, code)| codes.contains(&code.as_str()))
     }
 }
 
 fn has(line: &str, codes: &[&str]) -> bool {
-    codes_of(line).iter().any(|code| codes.contains(&code.as_str()))
+    codes_of(line)
+        .iter()
+        .any(|code| codes.contains(&code.as_str()))
 }
 
 /// A row: how the difference begins, a part of it, what the program has, the row of the table.
@@ -118,8 +146,18 @@ const CUT_MM: f64 = 1e-3;
 /// Both read the program, and a motion is not the same.
 const MOTION: &str = "motion";
 
-const fn row(who: &'static str, says: &'static str, fits: fn(&Case) -> bool, what: &'static str) -> Row {
-    Row { who, says, fits, what }
+const fn row(
+    who: &'static str,
+    says: &'static str,
+    fits: fn(&Case) -> bool,
+    what: &'static str,
+) -> Row {
+    Row {
+        who,
+        says,
+        fits,
+        what,
+    }
 }
 
 const ROWS: &[Row] = &[
@@ -129,7 +167,12 @@ const ROWS: &[Row] = &[
         free_pair,
         "M-codes on one line that LinuxCNC counts to one group",
     ),
-    row(THEY, "L word with no G10", |case| case.has_word('L') && case.is_active(MOTIONS, &["G74"]), "L with G74"),
+    row(
+        THEY,
+        "L word with no G10",
+        |case| case.has_word('L') && case.is_active(MOTIONS, &["G74"]),
+        "L with G74",
+    ),
     row(
         WE,
         "does not fit into the inner corner",
@@ -149,7 +192,12 @@ const ROWS: &[Row] = &[
         |case| (case.at..case.at + 2).any(|line| flat_lines(case.text).contains(&(line as u32))),
         "a flat corner of compensation that LinuxCNC refuses by rounding",
     ),
-    row(WE, "G76 needs the plane G18", |case| case.has(&["G76"]), "G76 outside G18"),
+    row(
+        WE,
+        "G76 needs the plane G18",
+        |case| case.has(&["G76"]),
+        "G76 outside G18",
+    ),
     row(
         WE,
         "inside the profile of a lathe cycle",
@@ -174,7 +222,12 @@ const ROWS: &[Row] = &[
         |case| case.has(&["G70", "G71", "G71.1", "G71.2", "G72", "G72.1", "G72.2"]),
         "lines of a profile that go straight on",
     ),
-    row(MOTION, "another", level_entry, "the side of D where a profile begins as deep as its cycle starts"),
+    row(
+        MOTION,
+        "another",
+        level_entry,
+        "the side of D where a profile begins as deep as its cycle starts",
+    ),
     row(
         WE,
         "the curve of G5.2 is not complete",
@@ -190,13 +243,37 @@ const ROWS: &[Row] = &[
     row(
         WE,
         "no other words beside M98",
-        |case| case.line().trim_start_matches(|c: char| c == 'N' || c.is_ascii_digit() || c == ' ').starts_with("M98"),
+        |case| {
+            case.line()
+                .trim_start_matches(|c: char| c == 'N' || c.is_ascii_digit() || c == ' ')
+                .starts_with("M98")
+        },
         "words behind M98 on its line",
     ),
-    row(WE, "needs its weight P", |case| case.has(&["G5.2"]) && !case.has_word('P'), "G5.2 without P"),
-    row(MOTION, "another", unit_under_offset, "G28, G30, G43.1, G49 and G53 under G43.1 in another unit"),
-    row(THEY, "zero feed rate", feed_forgotten, "G94 where it is active already"),
-    row(WE, "already has a word P", |case| case.is_active(MOTIONS, &["G5"]), "P twice on a line of G5"),
+    row(
+        WE,
+        "needs its weight P",
+        |case| case.has(&["G5.2"]) && !case.has_word('P'),
+        "G5.2 without P",
+    ),
+    row(
+        MOTION,
+        "another",
+        unit_under_offset,
+        "G28, G30, G43.1, G49 and G53 under G43.1 in another unit",
+    ),
+    row(
+        THEY,
+        "zero feed rate",
+        feed_forgotten,
+        "G94 where it is active already",
+    ),
+    row(
+        WE,
+        "already has a word P",
+        |case| case.is_active(MOTIONS, &["G5"]),
+        "P twice on a line of G5",
+    ),
     row(
         WE,
         "O9000 has no M99",
@@ -220,7 +297,9 @@ const ROWS: &[Row] = &[
         "theirs",
         |case| {
             let loops = [" REPEAT", " BREAK"];
-            has_flow(case, " CONTINUE") && has_flow(case, " DO") && loops.iter().any(|word| has_flow(case, word))
+            has_flow(case, " CONTINUE")
+                && has_flow(case, " DO")
+                && loops.iter().any(|word| has_flow(case, word))
         },
         "a repeat or a break behind a do that was continued",
     ),
@@ -230,8 +309,18 @@ const ROWS: &[Row] = &[
         |case| has_flow(case, " BREAK") && has_flow(case, " DO"),
         "a do behind a while that was left by break",
     ),
-    row(WE, "line", in_do_behind_break, "a later round of a do behind a break"),
-    row(THEY, "Unknown g code used", |case| case.has(&["G50"]), "G50 without words"),
+    row(
+        WE,
+        "line",
+        in_do_behind_break,
+        "a later round of a do behind a break",
+    ),
+    row(
+        THEY,
+        "Unknown g code used",
+        |case| case.has(&["G50"]),
+        "G50 without words",
+    ),
     row(
         THEY,
         "Unexpected character after O-word",
@@ -250,15 +339,32 @@ const ROWS: &[Row] = &[
         |case| case.has_word('R'),
         "an arc with R to the place where it is, but for rounding",
     ),
-    row(MOTION, "another", of_multiple, "MOD of a multiple, by rounding"),
-    row(MOTION, "another", value_of_definition, "the value of a subroutine that is only defined"),
-    row(MOTION, "another", turned_under_g92, "rotation of the active system under G92"),
+    row(
+        MOTION,
+        "another",
+        of_multiple,
+        "MOD of a multiple, by rounding",
+    ),
+    row(
+        MOTION,
+        "another",
+        value_of_definition,
+        "the value of a subroutine that is only defined",
+    ),
+    row(
+        MOTION,
+        "another",
+        turned_under_g92,
+        "rotation of the active system under G92",
+    ),
     row(
         MOTION,
         "off the spline",
         |case| {
             let begin = case.last_before(case.at, MOTIONS);
-            begin.is_some_and(|(at, code)| ["G2", "G3"].contains(&code.as_str()) && case.lines[at].contains('Z'))
+            begin.is_some_and(|(at, code)| {
+                ["G2", "G3"].contains(&code.as_str()) && case.lines[at].contains('Z')
+            })
         },
         "points of splines where LinuxCNC's preview has not noticed Z of an arc",
     ),
@@ -274,35 +380,66 @@ const ROWS: &[Row] = &[
         |case| case.has_word('L') && case.has(&["G41.1", "G42.1"]),
         "L with G41.1 and G42.1",
     ),
-    row(THEY, "I J words not allowed with G10 L2", |case| case.has(&["G10"]), "I and J with G10 L2"),
+    row(
+        THEY,
+        "I J words not allowed with G10 L2",
+        |case| case.has(&["G10"]),
+        "I and J with G10 L2",
+    ),
     row(
         THEY,
         "Unclosed comment",
         |case| case.line().contains("(OPEN"),
         "a comment that is open in a line that is not carried out",
     ),
-    row(WE, "needs its word Q", |case| case.has(&["M67", "M68"]) && !case.has_word('Q'), "M67 and M68 without Q"),
+    row(
+        WE,
+        "needs its word Q",
+        |case| case.has(&["M67", "M68"]) && !case.has_word('Q'),
+        "M67 and M68 without Q",
+    ),
 ];
 
-/// Whether an O-word with this keyword is anywhere: the line of the motion may be in a subroutine before it.
+/// Whether an O-word with this keyword is anywhere: the line of the motion may be in a subroutine
+/// before it.
 fn has_flow(case: &Case, keyword: &str) -> bool {
-    case.lines.iter().any(|line| line.starts_with('O') && line.contains(keyword))
+    case.lines
+        .iter()
+        .any(|line| line.starts_with('O') && line.contains(keyword))
 }
 
 /// Whether the line is in a do that LinuxCNC may have left: a break stands before its end.
 fn in_do_behind_break(case: &Case) -> bool {
     let ends_behind = |label: &str| {
-        let end = case.lines[case.at..].iter().position(|line| line.starts_with(&format!("{label} WHILE")));
-        end.is_some_and(|end| case.lines[..case.at + end].iter().any(|line| line.contains(" BREAK")))
+        let end = case.lines[case.at..]
+            .iter()
+            .position(|line| line.starts_with(&format!("{label} WHILE")));
+        end.is_some_and(|end| {
+            case.lines[..case.at + end]
+                .iter()
+                .any(|line| line.contains(" BREAK"))
+        })
     };
-    case.lines[..case.at].iter().any(|line| line.split_once(" DO").is_some_and(|(label, _)| ends_behind(label)))
+    case.lines[..case.at].iter().any(|line| {
+        line.split_once(" DO")
+            .is_some_and(|(label, _)| ends_behind(label))
+    })
 }
 
-/// Whether the first motion of a profile does not go down from where its cycle with D starts: it has no word of that axis.
+/// Whether the first motion of a profile does not go down from where its cycle with D starts: it
+/// has no word of that axis.
 fn level_entry(case: &Case) -> bool {
-    let depth = if case.has(&["G71", "G71.1", "G71.2"]) { 'X' } else { 'Z' };
+    let depth = if case.has(&["G71", "G71.1", "G71.2"]) {
+        'X'
+    } else {
+        'Z'
+    };
     let begin = case.lines.iter().position(|line| line.ends_with(" SUB"));
-    let first = begin.and_then(|begin| case.lines[begin..].iter().find(|line| line.contains(['X', 'Z'])));
+    let first = begin.and_then(|begin| {
+        case.lines[begin..]
+            .iter()
+            .find(|line| line.contains(['X', 'Z']))
+    });
     case.has(&["G71", "G71.1", "G71.2", "G72", "G72.1", "G72.2"])
         && case.has_word('D')
         && first.is_some_and(|line| !line.contains(depth))
@@ -323,13 +460,19 @@ fn behind_entry(case: &Case) -> bool {
     let Some((begin, _)) = case.last(&["G41", "G41.1", "G42", "G42.1"]) else {
         return false;
     };
-    case.lines[begin..case.at].iter().filter(|line| line.contains(['X', 'Y'])).count() == 1
+    case.lines[begin..case.at]
+        .iter()
+        .filter(|line| line.contains(['X', 'Y']))
+        .count()
+        == 1
 }
 
-/// Whether G28, G30, G53 or another length stands behind a change of the unit, and that behind G43.1.
+/// Whether G28, G30, G53 or another length stands behind a change of the unit, and that behind
+/// G43.1.
 fn unit_under_offset(case: &Case) -> bool {
     let leaving = ["G28", "G30", "G43", "G43.1", "G43.2", "G49", "G53"];
-    let behind = |from: usize, codes: &[&str]| (from + 1..=case.at).find(|at| has(&case.lines[*at], codes));
+    let behind =
+        |from: usize, codes: &[&str]| (from + 1..=case.at).find(|at| has(&case.lines[*at], codes));
     let unit = behind(0, &["G43.1"]).and_then(|offset| behind(offset, &["G20", "G21", "M72"]));
     unit.is_some_and(|unit| behind(unit, &leaving).is_some())
 }
@@ -343,12 +486,16 @@ fn feed_forgotten(case: &Case) -> bool {
     let before = case.last_before(last, &modes);
     code == "G94"
         && before.is_some_and(|(_, code)| code == "G94")
-        && !case.lines[last..=case.at].iter().any(|line| line.contains('F'))
+        && !case.lines[last..=case.at]
+            .iter()
+            .any(|line| line.contains('F'))
 }
 
 /// Whether a MOD stands in the line or the two before it, of whose values the motion is made.
 fn of_multiple(case: &Case) -> bool {
-    case.lines[case.at.saturating_sub(2)..=case.at].iter().any(|line| line.contains(" MOD "))
+    case.lines[case.at.saturating_sub(2)..=case.at]
+        .iter()
+        .any(|line| line.contains(" MOD "))
 }
 
 /// Whether the value of a subroutine was used that is defined before and called nowhere.
@@ -356,9 +503,17 @@ fn value_of_definition(case: &Case) -> bool {
     let Some(used) = (0..=case.at).rfind(|at| case.lines[*at].contains("#<_VALUE>")) else {
         return false;
     };
-    let label = |line: &String| line.split_once(" ENDSUB [").map(|(label, _)| label.to_owned());
+    let label = |line: &String| {
+        line.split_once(" ENDSUB [")
+            .map(|(label, _)| label.to_owned())
+    };
     let defined = case.lines[..used].iter().rev().find_map(label);
-    defined.is_some_and(|label| !case.lines.iter().any(|line| line.starts_with(&format!("{label} CALL "))))
+    defined.is_some_and(|label| {
+        !case
+            .lines
+            .iter()
+            .any(|line| line.starts_with(&format!("{label} CALL ")))
+    })
 }
 
 /// Whether the active system was turned while G92 or G52 was in effect.
@@ -369,7 +524,9 @@ fn turned_under_g92(case: &Case) -> bool {
         has(line, &["G10"])
             && line.contains("L2")
             && line.contains('R')
-            && case.last_before(at, &shifts).is_some_and(|(_, code)| !["G92.1", "G92.2"].contains(&code.as_str()))
+            && case
+                .last_before(at, &shifts)
+                .is_some_and(|(_, code)| !["G92.1", "G92.2"].contains(&code.as_str()))
     })
 }
 
@@ -378,7 +535,9 @@ pub(crate) fn find(text: &str, theirs: &Theirs, difference: &str) -> Option<&'st
     let fits = |row: &Row| {
         let earlier = if row.who == THEY { 0..2 } else { 0..1 };
         let mut cases = earlier.filter_map(|earlier| Case::new(text, theirs, difference, earlier));
-        difference.starts_with(row.who) && difference.contains(row.says) && cases.any(|case| (row.fits)(&case))
+        difference.starts_with(row.who)
+            && difference.contains(row.says)
+            && cases.any(|case| (row.fits)(&case))
     };
     ROWS.iter().find(|row| fits(row)).map(|row| row.what)
 }

@@ -1,10 +1,12 @@
-//! Compares this reader with LinuxCNC on random programs: verdicts, end points, centres and arcs, all to 1e-6 mm.
+//! Compares this reader with LinuxCNC on random programs: verdicts, end points, centres and arcs,
+//! all to 1e-6 mm.
 //!
-//! Usage: `cargo run --release -p feedwright-plan --example gcode_compare -- [PROGRAMS] [FIRST] [nested]`, with `nested` programs of control
-//! flow from a generator of their own. Needs the interpreter's Python module
-//! (Debian: `linuxcnc-uspace`). The same numbers give the same programs. Every difference that is not listed is written to
-//! `gcode_compare_NUMBER.ngc` and ends the run with exit code 1; in the end it says which codes the programs had. A program
-//! alone is printed.
+//! Usage: `cargo run --release -p feedwright-plan --example gcode_compare -- [PROGRAMS] [FIRST]
+//! [nested]`, with `nested` programs of control flow from a generator of their own. Needs the
+//! interpreter's Python module (Debian: `linuxcnc-uspace`). The same numbers give the same
+//! programs. Every difference that is not listed is written to `gcode_compare_NUMBER.ngc` and ends
+//! the run with exit code 1; in the end it says which codes the programs had. A program alone is
+//! printed.
 
 #![expect(clippy::unwrap_used, reason = "shared with tests, which may stop")]
 
@@ -39,10 +41,18 @@ struct Outcome {
 }
 
 fn main() -> ExitCode {
-    let (words, numbers): (Vec<String>, Vec<String>) = std::env::args().skip(1).partition(|text| text == "nested");
-    let program = if words.is_empty() { programs::program } else { nested::nested };
+    let (words, numbers): (Vec<String>, Vec<String>) =
+        std::env::args().skip(1).partition(|text| text == "nested");
+    let program = if words.is_empty() {
+        programs::program
+    } else {
+        nested::nested
+    };
     let mut arguments = numbers.iter().map(|text| text.parse::<u64>());
-    let (programs, first) = match (arguments.next().unwrap_or(Ok(20_000)), arguments.next().unwrap_or(Ok(1))) {
+    let (programs, first) = match (
+        arguments.next().unwrap_or(Ok(20_000)),
+        arguments.next().unwrap_or(Ok(1)),
+    ) {
         (Ok(programs), Ok(first)) => (programs, first),
         _ => {
             eprintln!("usage: gcode_compare [PROGRAMS] [FIRST] [nested]: two numbers");
@@ -73,7 +83,9 @@ impl Outcome {
             std::fs::write(&path, text)?;
             paths.push(path);
         }
-        for (((number, text), path), theirs) in (begin..).zip(&texts).zip(&paths).zip(theirs(&paths)) {
+        for (((number, text), path), theirs) in
+            (begin..).zip(&texts).zip(&paths).zip(theirs(&paths))
+        {
             match listed::judge(path, text, &theirs, &mut self.totals) {
                 Verdict::Unknown => self.count("LinuxCNC crashed or hung"),
                 Verdict::BothRefuse => self.count("both refuse"),
@@ -98,14 +110,23 @@ impl Outcome {
         }
     }
 
-    fn differ(&mut self, number: u64, text: &str, difference: &str, theirs: &Theirs) -> std::io::Result<()> {
+    fn differ(
+        &mut self,
+        number: u64,
+        text: &str,
+        difference: &str,
+        theirs: &Theirs,
+    ) -> std::io::Result<()> {
         if let Some(row) = listed::find(text, theirs, difference) {
             self.count(&format!("listed: {row}"));
             return Ok(());
         }
         self.unlisted += 1;
         let file = format!("gcode_compare_{number}.ngc");
-        eprintln!("{file}: {difference} ({} motions of theirs)", theirs.moves.len());
+        eprintln!(
+            "{file}: {difference} ({} motions of theirs)",
+            theirs.moves.len()
+        );
         std::fs::write(file, text)
     }
 
@@ -113,38 +134,69 @@ impl Outcome {
         for (what, count) in &self.counts {
             println!("{count:7} {what}");
         }
-        let unmet: Vec<&str> =
-            listed::names().filter(|name| !self.counts.contains_key(&format!("listed: {name}"))).collect();
+        let unmet: Vec<&str> = listed::names()
+            .filter(|name| !self.counts.contains_key(&format!("listed: {name}")))
+            .collect();
         println!(
             "rows of the list that no program met: {}",
-            if unmet.is_empty() { "none".to_owned() } else { unmet.join("; ") }
+            if unmet.is_empty() {
+                "none".to_owned()
+            } else {
+                unmet.join("; ")
+            }
         );
         println!(
             "{:7} flat corners of cutter compensation, where LinuxCNC cuts into the contour",
             self.totals.flat_corners
         );
-        println!("largest differences of arcs, their lengths and points of splines: {:?} mm", self.totals.largest_mm);
+        println!(
+            "largest differences of arcs, their lengths and points of splines: {:?} mm",
+            self.totals.largest_mm
+        );
         let known = known_codes();
-        let missing: Vec<&str> =
-            known.iter().filter(|code| !self.codes.contains_key(*code)).map(String::as_str).collect();
-        println!("codes compared: {} of {}", known.len() - missing.len(), known.len());
-        let shown: Vec<String> = self.codes.iter().map(|(code, count)| format!("{code} {count}")).collect();
+        let missing: Vec<&str> = known
+            .iter()
+            .filter(|code| !self.codes.contains_key(*code))
+            .map(String::as_str)
+            .collect();
+        println!(
+            "codes compared: {} of {}",
+            known.len() - missing.len(),
+            known.len()
+        );
+        let shown: Vec<String> = self
+            .codes
+            .iter()
+            .map(|(code, count)| format!("{code} {count}"))
+            .collect();
         println!("  {}", shown.join(", "));
         println!("codes not compared: {}", missing.join(", "));
-        println!("{programs} programs, {} differences that are not listed", self.unlisted);
-        if self.unlisted == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+        println!(
+            "{programs} programs, {} differences that are not listed",
+            self.unlisted
+        );
+        if self.unlisted == 0 {
+            ExitCode::SUCCESS
+        } else {
+            ExitCode::FAILURE
+        }
     }
 }
 
 /// Every G- and M-code that the reader knows, found by asking it.
 fn known_codes() -> Vec<String> {
     let is_known = |line: &str| {
-        let settings = Settings { dialect: Some(feedwright_gcode::Dialect::LinuxCnc), ..Settings::default() };
+        let settings = Settings {
+            dialect: Some(feedwright_gcode::Dialect::LinuxCnc),
+            ..Settings::default()
+        };
         let Ok(reader) = Reader::from_text("code", line, settings) else {
             return false;
         };
         let unknown = ["gcode::unknown_g", "gcode::unknown_m", "gcode::unsupported"];
-        reader.filter_map(Result::err).all(|fault| !unknown.contains(&fault.code))
+        reader
+            .filter_map(Result::err)
+            .all(|fault| !unknown.contains(&fault.code))
     };
     let g = (0..MAX_CODES[0]).map(|tenths| format!("G{}", f64::from(tenths) / 10.0));
     let m = (0..MAX_CODES[1]).map(|number| format!("M{number}"));

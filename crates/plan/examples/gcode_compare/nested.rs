@@ -1,5 +1,6 @@
-//! Random programs of control flow: loops in loops with `break` and `continue`, subroutines with arguments, and cycles, polar words and
-//! cutter compensation inside of them. Lines are written in all the ways that the language lets one write them.
+//! Random programs of control flow: loops in loops with `break` and `continue`, subroutines with
+//! arguments, and cycles, polar words and cutter compensation inside of them. Lines are written in
+//! all the ways that the language lets one write them.
 //!
 //! It shares no grammar with `programs.rs`, so that what the one never writes the other may.
 
@@ -11,12 +12,16 @@ const MOST_DEPTH: u32 = 4;
 const STATEMENTS: [u32; 2] = [3, 12];
 /// Subroutines of a program, at most.
 const MOST_ROUTINES: u32 = 3;
-/// Numbers of variables that anything may be assigned to, and before the first counter of a loop, which nothing else changes.
+/// Numbers of variables that anything may be assigned to, and before the first counter of a loop,
+/// which nothing else changes.
 const FREE: u32 = 41;
 const COUNTERS: u32 = 100;
 /// First axis, second axis, normal, and letters of the center, by plane.
-const PLANE_LETTERS: [(&str, [char; 5]); 3] =
-    [("G17", ['X', 'Y', 'Z', 'I', 'J']), ("G18", ['Z', 'X', 'Y', 'K', 'I']), ("G19", ['Y', 'Z', 'X', 'J', 'K'])];
+const PLANE_LETTERS: [(&str, [char; 5]); 3] = [
+    ("G17", ['X', 'Y', 'Z', 'I', 'J']),
+    ("G18", ['Z', 'X', 'Y', 'K', 'I']),
+    ("G19", ['Y', 'Z', 'X', 'J', 'K']),
+];
 /// Positive whole steps of a repeat, also as expressions.
 const TIMES: [&str; 6] = ["2", "3", "1", "0", "1+1", "#5420*0+2"];
 
@@ -29,7 +34,8 @@ enum Enclosure {
     Routine(u32),
 }
 
-/// What the loops of a program have. LinuxCNC 2.9 mixes up a do and loops that were left before, so that few programs have both.
+/// What the loops of a program have. LinuxCNC 2.9 mixes up a do and loops that were left before, so
+/// that few programs have both.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum LoopUses {
     Leaving,
@@ -94,7 +100,11 @@ impl NestedWriter {
 
     fn counter(&mut self) -> String {
         self.counters += 1;
-        if self.below(2) == 0 { format!("#{}", self.counters) } else { format!("#<_n{}>", self.counters) }
+        if self.below(2) == 0 {
+            format!("#{}", self.counters)
+        } else {
+            format!("#<_n{}>", self.counters)
+        }
     }
 
     /// Appends a line, in capitals or not, with numbers close to their letters or not.
@@ -105,7 +115,11 @@ impl NestedWriter {
             2 => words.replace(' ', "\t "),
             _ => words.to_owned(),
         };
-        let number = if self.below(12) == 0 { format!("N{} ", self.below(9999)) } else { String::new() };
+        let number = if self.below(12) == 0 {
+            format!("N{} ", self.below(9999))
+        } else {
+            String::new()
+        };
         let comment = self.pick(&["", "", "", "", "", " (a comment)", " ; behind"]);
         self.text += &format!("{number}{words}{comment}\n");
     }
@@ -230,7 +244,9 @@ impl NestedWriter {
 
     /// A break, a continue or a return, on a condition.
     fn leave(&mut self) {
-        let Some(enclosure) = self.around.last().copied() else { return };
+        let Some(enclosure) = self.around.last().copied() else {
+            return;
+        };
         let (label, condition) = (self.label(), self.truth());
         self.flow(label, &format!("if [{condition}]"));
         match enclosure {
@@ -318,7 +334,11 @@ impl NestedWriter {
         let radius = self.pick(&[7.0, 8.25, -9.0]);
         let line = match self.below(4) {
             0 => format!("{code} {first}{x} {second}{y} R{radius}"),
-            1 => format!("{code} {first}{} {second}{} {i}{x} {j}{y} {normal}1", 2 * x, 2 * y),
+            1 => format!(
+                "{code} {first}{} {second}{} {i}{x} {j}{y} {normal}1",
+                2 * x,
+                2 * y
+            ),
             2 => format!("{code} {i}{x} {j}{y} P2"),
             _ => format!("{code} {first}{} {i}{y}", 2 * y),
         };
@@ -367,7 +387,11 @@ impl NestedWriter {
                 0 => format!("{first}{} L{}", self.coordinate(), 1 + self.below(3)),
                 1 if plane == "G17" => format!("@{} ^{}", 2 + self.below(9), self.below(360)),
                 2 => format!("{second}{} R{}", self.coordinate(), self.below(4)),
-                3 => format!("{first}{} {normal}-{}", self.coordinate(), 1 + self.below(3)),
+                3 => format!(
+                    "{first}{} {normal}-{}",
+                    self.coordinate(),
+                    1 + self.below(3)
+                ),
                 _ => format!("{second}{}", self.coordinate()),
             };
             self.line(&line);
@@ -400,7 +424,11 @@ impl NestedWriter {
     /// A polygon with cutter compensation in any plane, its corners counted by a loop.
     fn compensation(&mut self) {
         // G19 has no compensation: both refuse it.
-        let plane = if self.below(16) == 0 { 2 } else { self.rng.random_range(0..2) };
+        let plane = if self.below(16) == 0 {
+            2
+        } else {
+            self.rng.random_range(0..2)
+        };
         let (plane, [first, second, ..]) = PLANE_LETTERS[plane];
         let (label, counter, corners) = (self.label(), self.counter(), 3 + self.below(5));
         let (code, sense) = self.pick(&[("G41.1", 1), ("G42.1", -1), ("G41.1", -1), ("G42.1", 1)]);
@@ -417,7 +445,9 @@ impl NestedWriter {
                 "{arc} {first}[{radius} * cos[{angle}]] {second}[{radius} * sin[{angle}]] R[{radius} * 1.5]"
             ));
         } else {
-            self.line(&format!("G1 {first}[{radius} * cos[{angle}]] {second}[{radius} * sin[{angle}]]"));
+            self.line(&format!(
+                "G1 {first}[{radius} * cos[{angle}]] {second}[{radius} * sin[{angle}]]"
+            ));
         }
         self.flow(label, "endwhile");
         self.line(&format!("G40 G1 {first}70 {second}{}", 9 * sense));

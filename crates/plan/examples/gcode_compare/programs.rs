@@ -1,6 +1,8 @@
-//! Random programs in LinuxCNC's language: most of them mean something, some have a slip of the pen.
+//! Random programs in LinuxCNC's language: most of them mean something, some have a slip of the
+//! pen.
 //!
-//! Arcs, cycles and curves are written so that they fit wherever the program stands: their coordinates are distances.
+//! Arcs, cycles and curves are written so that they fit wherever the program stands: their
+//! coordinates are distances.
 
 use std::f64::consts::{PI, TAU};
 
@@ -10,8 +12,10 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 /// One program in this many has a slip.
 const SLIPS: u32 = 8;
 /// Tokens of a slip: what a hand writes in the wrong place.
-const SLIP_WORDS: [&str; 16] =
-    ["G1", "G2", "G17", "G40", "X1", "R5", "I2", "K1", "P2", "L3", "M3", "M4", "D2", "(open", "o9 endif", "#<none>"];
+const SLIP_WORDS: [&str; 16] = [
+    "G1", "G2", "G17", "G40", "X1", "R5", "I2", "K1", "P2", "L3", "M3", "M4", "D2", "(open",
+    "o9 endif", "#<none>",
+];
 
 /// Writes one program.
 struct Writer {
@@ -23,8 +27,11 @@ struct Writer {
     labels: u32,
 }
 
-const PLANES: [(&str, [char; 3], [char; 2]); 3] =
-    [("G17", ['X', 'Y', 'Z'], ['I', 'J']), ("G18", ['Z', 'X', 'Y'], ['K', 'I']), ("G19", ['Y', 'Z', 'X'], ['J', 'K'])];
+const PLANES: [(&str, [char; 3], [char; 2]); 3] = [
+    ("G17", ['X', 'Y', 'Z'], ['I', 'J']),
+    ("G18", ['Z', 'X', 'Y'], ['K', 'I']),
+    ("G19", ['Y', 'Z', 'X'], ['J', 'K']),
+];
 
 /// The program of a number.
 pub(crate) fn program(number: u64) -> String {
@@ -84,7 +91,11 @@ impl Writer {
                 words += &format!(" {axis}{}", self.number(-reach, reach));
             }
         }
-        if words.is_empty() { format!(" X{}", self.number(-reach, reach)) } else { words }
+        if words.is_empty() {
+            format!(" X{}", self.number(-reach, reach))
+        } else {
+            words
+        }
     }
 
     fn slip(mut self) -> String {
@@ -96,7 +107,11 @@ impl Writer {
             _ => {
                 let words: Vec<&str> = lines[at].split(' ').collect();
                 let left_out = self.rng.random_range(0..words.len());
-                let kept = words.iter().enumerate().filter(|(number, _)| *number != left_out).map(|(_, word)| *word);
+                let kept = words
+                    .iter()
+                    .enumerate()
+                    .filter(|(number, _)| *number != left_out)
+                    .map(|(_, word)| *word);
                 lines[at] = kept.collect::<Vec<_>>().join(" ");
             }
         }
@@ -151,14 +166,32 @@ impl Writer {
         let was = self.incremental;
         self.distance(true);
         let radius = self.number(0.5, 20.0).max(0.5);
-        let (from, to) = (self.rng.random_range(0.0..TAU), self.rng.random_range(0.0..TAU));
-        let chord = [radius * (to.cos() - from.cos()), radius * (to.sin() - from.sin())];
+        let (from, to) = (
+            self.rng.random_range(0.0..TAU),
+            self.rng.random_range(0.0..TAU),
+        );
+        let chord = [
+            radius * (to.cos() - from.cos()),
+            radius * (to.sin() - from.sin()),
+        ];
         let code = self.pick(&["G2", "G3"]);
         let mut line = format!("{code} {first}{:.4} {second}{:.4}", chord[0], chord[1]);
         match self.below(5) {
-            0 => line += &format!(" R{}{:.4}", self.pick(&["", "-"]), radius + self.pick(&[0.0, 0.0005, 3.0])),
+            0 => {
+                line += &format!(
+                    " R{}{:.4}",
+                    self.pick(&["", "-"]),
+                    radius + self.pick(&[0.0, 0.0005, 3.0])
+                );
+            }
             1 => line = format!("{code} {i}{:.3} {j}0", -radius),
-            _ => line += &format!(" {i}{:.4} {j}{:.4}", -radius * from.cos(), -radius * from.sin()),
+            _ => {
+                line += &format!(
+                    " {i}{:.4} {j}{:.4}",
+                    -radius * from.cos(),
+                    -radius * from.sin()
+                );
+            }
         }
         if self.below(3) == 0 {
             line += &format!(" {normal}{}", self.number(-5.0, 5.0));
@@ -178,7 +211,11 @@ impl Writer {
             0 | 1 => format!("G10 L2 P{}{words}", self.below(10)),
             2 => format!("G10 L2 P{} R{}", self.below(3), self.number(-60.0, 60.0)),
             3 => format!("G10 L20 P{}{words}", self.below(10)),
-            4 => self.pick(&["G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"]).to_owned(),
+            4 => self
+                .pick(&[
+                    "G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3",
+                ])
+                .to_owned(),
             5 => self.pick(&["G92.1", "G92.2", "G92.3"]).to_owned(),
             6 => format!("G52{words}"),
             7 => format!("G43.1{words}"),
@@ -209,7 +246,9 @@ impl Writer {
             4 => self.line("G20".to_owned()),
             5 => self.line("G21".to_owned()),
             6 => {
-                let line = self.pick(&["G61", "G61.1", "G64", "G64 P0.01", "G64 P0.02 Q0.01"]).to_owned();
+                let line = self
+                    .pick(&["G61", "G61.1", "G64", "G64 P0.01", "G64 P0.02 Q0.01"])
+                    .to_owned();
                 self.line(line);
             }
             7 => {
@@ -221,7 +260,9 @@ impl Writer {
                 self.line(line);
             }
             9 => {
-                let line = self.pick(&["G96 S100 D2000", "G96 S60", "G97 S300", "G97 S300"]).to_owned();
+                let line = self
+                    .pick(&["G96 S100 D2000", "G96 S60", "G97 S300", "G97 S300"])
+                    .to_owned();
                 self.line(line);
             }
             10 => {
@@ -240,7 +281,11 @@ impl Writer {
         let [i, j] = [self.number(-20.0, 20.0), self.number(-20.0, 20.0)];
         self.line(format!("G0 X{x} Y{y}"));
         let code = self.pick(&["G2", "G3"]);
-        self.line(format!("G90.1 {code} X{:.4} Y{:.4} I{i} J{j}", 2.0 * i - x, 2.0 * j - y));
+        self.line(format!(
+            "G90.1 {code} X{:.4} Y{:.4} I{i} J{j}",
+            2.0 * i - x,
+            2.0 * j - y
+        ));
         self.line("G91.1".to_owned());
     }
 
@@ -265,11 +310,30 @@ impl Writer {
             3 => "M48".to_owned(),
             4 => "M49".to_owned(),
             5 => format!("M5{} P{}", self.below(4), self.below(2)),
-            6 => self.pick(&["M62 P1", "M63 P1", "M64 P2", "M65 P2", "M67 E1 Q2.5", "M68 E1 Q0.5"]).to_owned(),
+            6 => self
+                .pick(&[
+                    "M62 P1",
+                    "M63 P1",
+                    "M64 P2",
+                    "M65 P2",
+                    "M67 E1 Q2.5",
+                    "M68 E1 Q0.5",
+                ])
+                .to_owned(),
             7 => "M70\nG91 G20 F7\nM72".to_owned(),
             8 => "M70\nM71".to_owned(),
             9 => format!("M70\nG92 X{}\nM72", self.number(-9.0, 9.0)),
-            10 => self.pick(&["M0", "M1", "M60", "M66 P0 L0", "M19 R90", "M61 Q3", "(msg, hello)"]).to_owned(),
+            10 => self
+                .pick(&[
+                    "M0",
+                    "M1",
+                    "M60",
+                    "M66 P0 L0",
+                    "M19 R90",
+                    "M61 Q3",
+                    "(msg, hello)",
+                ])
+                .to_owned(),
             _ => "M73".to_owned(),
         };
         if line.contains("G91") {
@@ -292,11 +356,21 @@ impl Writer {
     }
 
     fn cycle(&mut self) {
-        let plane = if self.below(4) == 0 { self.rng.random_range(0..3) } else { 0 };
-        let code = self.pick(&["G81", "G82", "G83", "G73", "G84", "G74", "G85", "G86", "G88", "G89", "G87"]);
+        let plane = if self.below(4) == 0 {
+            self.rng.random_range(0..3)
+        } else {
+            0
+        };
+        let code = self.pick(&[
+            "G81", "G82", "G83", "G73", "G84", "G74", "G85", "G86", "G88", "G89", "G87",
+        ]);
         // G88 leaves the height to the operator, so that nothing behind it could be compared.
         // In other planes LinuxCNC 2.9 exchanges the axes of tapping.
-        self.choose_plane(if code == "G84" || code == "G74" { 0 } else { plane });
+        self.choose_plane(if code == "G84" || code == "G74" {
+            0
+        } else {
+            plane
+        });
         let (_, [first, second, normal], _) = PLANES[self.plane];
         let (bottom, above) = (self.number(-12.0, -2.0), self.number(0.0, 6.0));
         let mut words = match code {
@@ -317,7 +391,10 @@ impl Writer {
         }
         let back = self.pick(&["G98", "G99"]);
         let at = [self.number(-20.0, 20.0), self.number(-20.0, 20.0)];
-        self.line(format!("{back} {code} {first}{} {second}{} {normal}{bottom} R{above}{words}", at[0], at[1]));
+        self.line(format!(
+            "{back} {code} {first}{} {second}{} {normal}{bottom} R{above}{words}",
+            at[0], at[1]
+        ));
         for _ in 0..self.below(3) {
             if code != "G87" {
                 let axis = self.pick(&[first, second]);
@@ -365,13 +442,19 @@ impl Writer {
     fn expression(&mut self) {
         let value = |writer: &mut Self| writer.number(0.1, 0.9).max(0.1);
         let (a, b) = (value(self), value(self));
-        let function =
-            self.pick(&["sin", "cos", "tan", "abs", "asin", "acos", "exp", "fix", "fup", "ln", "round", "sqrt"]);
-        let operator =
-            self.pick(&["+", "-", "*", "/", "**", "mod", "eq", "ne", "gt", "ge", "lt", "le", "and", "or", "xor"]);
+        let function = self.pick(&[
+            "sin", "cos", "tan", "abs", "asin", "acos", "exp", "fix", "fup", "ln", "round", "sqrt",
+        ]);
+        let operator = self.pick(&[
+            "+", "-", "*", "/", "**", "mod", "eq", "ne", "gt", "ge", "lt", "le", "and", "or", "xor",
+        ]);
         let index = 1 + self.below(29);
-        self.line(format!("#{index} = [{function}[{a}] {operator} {b}] #<value> = [#{index} + 1]"));
-        self.line(format!("#{index} = [#{index} * 2 - #<value> / 3 + atan[{a}]/[-{b}] / 90 + exists[#<value>]]"));
+        self.line(format!(
+            "#{index} = [{function}[{a}] {operator} {b}] #<value> = [#{index} + 1]"
+        ));
+        self.line(format!(
+            "#{index} = [#{index} * 2 - #<value> / 3 + atan[{a}]/[-{b}] / 90 + exists[#<value>]]"
+        ));
         self.line(format!("G1 X#{index} Y[#<value> * 2] Z-[#{index} / 2]"));
     }
 
@@ -379,7 +462,10 @@ impl Writer {
         self.labels += 1;
         let label = self.labels;
         let step = self.number(-3.0, 3.0);
-        let (was, condition) = (self.incremental, self.pick(&["1", "0", "#5 gt 3", "#5420 lt 5"]));
+        let (was, condition) = (
+            self.incremental,
+            self.pick(&["1", "0", "#5 gt 3", "#5420 lt 5"]),
+        );
         let rounds = self.number(0.0, 4.0);
         self.distance(true);
         match self.below(5) {
@@ -428,15 +514,20 @@ impl Writer {
             };
             let length = self.rng.random_range(4.0..40.0);
             if self.below(3) > 0 {
-                at = [at[0] + length * heading.cos(), at[1] + length * heading.sin()];
+                at = [
+                    at[0] + length * heading.cos(),
+                    at[1] + length * heading.sin(),
+                ];
                 let word = if self.below(9) == 0 { " Z-1" } else { "" };
                 self.line(format!("G1 X{:.4} Y{:.4}{word}", at[0], at[1]));
                 continue;
             }
             let bend: f64 = self.rng.random_range(0.3..2.0) * self.pick(&[1.0, -1.0]);
             let (arc_radius, quarter) = (length / bend.abs(), 0.5 * PI * bend.signum());
-            let center =
-                [at[0] + arc_radius * (heading + quarter).cos(), at[1] + arc_radius * (heading + quarter).sin()];
+            let center = [
+                at[0] + arc_radius * (heading + quarter).cos(),
+                at[1] + arc_radius * (heading + quarter).sin(),
+            ];
             let [i, j] = [center[0] - at[0], center[1] - at[1]];
             heading += bend;
             at = [
@@ -444,7 +535,10 @@ impl Writer {
                 center[1] + arc_radius * (heading - quarter).sin(),
             ];
             let code = if bend > 0.0 { "G3" } else { "G2" };
-            self.line(format!("{code} X{:.4} Y{:.4} I{i:.4} J{j:.4}", at[0], at[1]));
+            self.line(format!(
+                "{code} X{:.4} Y{:.4} I{i:.4} J{j:.4}",
+                at[0], at[1]
+            ));
         }
         if self.below(8) == 0 {
             self.line("G0 Z5".to_owned());
@@ -471,20 +565,29 @@ impl Writer {
         self.plane = 1;
         match self.below(3) {
             0 => {
-                let taper = self.pick(&["", " E1 L1", " E1 L2", " E1.5 L3", " H2", " Q29.5", " R2"]);
+                let taper =
+                    self.pick(&["", " E1 L1", " E1 L2", " E1.5 L3", " H2", " Q29.5", " R2"]);
                 let (inward, depth) = (self.pick(&["", "-"]), self.number(0.2, 0.6).max(0.2));
                 let end = self.number(8.0, 20.0);
-                self.line(format!("G0 X20 Z5\nG76 P1.5 Z-{end} I{inward}2 J{depth} K1.2{taper}"));
+                self.line(format!(
+                    "G0 X20 Z5\nG76 P1.5 Z-{end} I{inward}2 J{depth} K1.2{taper}"
+                ));
             }
             1 => {
                 let deep = self.number(0.5, 3.0).max(0.5);
-                self.line("o1 sub\nG0 X10\nG1 Z-5\nX14 Z-9\nZ-14\nX20 Z-18\nX32\no1 endsub".to_owned());
+                self.line(
+                    "o1 sub\nG0 X10\nG1 Z-5\nX14 Z-9\nZ-14\nX20 Z-18\nX32\no1 endsub".to_owned(),
+                );
                 let line = self.pick(&["G71 Q1 X32 Z2", "G71.1 Q1 X32 Z2", "G71.2 Q1 X32 Z2"]);
-                self.line(format!("G0 X40 Z5\n{line} D0.3 I{deep} R0.5\nG70 Q1 X32 Z2"));
+                self.line(format!(
+                    "G0 X40 Z5\n{line} D0.3 I{deep} R0.5\nG70 Q1 X32 Z2"
+                ));
             }
             _ => {
                 let deep = self.number(0.5, 3.0).max(0.5);
-                self.line("o1 sub\nG0 Z-12\nG1 X20\nZ-8 X16\nX10 Z-4\nX4\nZ1\no1 endsub".to_owned());
+                self.line(
+                    "o1 sub\nG0 Z-12\nG1 X20\nZ-8 X16\nX10 Z-4\nX4\nZ1\no1 endsub".to_owned(),
+                );
                 let line = self.pick(&["G72 Q1 X32 Z2", "G72.1 Q1 X32 Z2", "G72.2 Q1 X32 Z2"]);
                 self.line(format!("G0 X40 Z5\n{line} D0.2 I{deep} R0.5"));
             }

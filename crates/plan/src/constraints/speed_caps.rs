@@ -13,7 +13,10 @@ pub struct SpeedCaps {
 impl SpeedCaps {
     /// No bound.
     pub const fn none(spacing_mm: f64) -> Self {
-        Self { spacing_mm, caps_mm_s: Vec::new() }
+        Self {
+            spacing_mm,
+            caps_mm_s: Vec::new(),
+        }
     }
 
     /// Number of the value at a place or before.
@@ -48,7 +51,10 @@ mod tests {
 
     #[test]
     fn bounds_are_straight_between_values_and_the_lower_one_beside_none() {
-        let caps = SpeedCaps { spacing_mm: 0.5, caps_mm_s: vec![10.0, 20.0, f64::INFINITY, 5.0] };
+        let caps = SpeedCaps {
+            spacing_mm: 0.5,
+            caps_mm_s: vec![10.0, 20.0, f64::INFINITY, 5.0],
+        };
         assert_eq!(
             [0.0, 0.25, 0.5, 0.75, 1.25, 1.5, 9.0].map(|s_mm| caps.at(s_mm)),
             [10.0, 15.0, 20.0, 20.0, 5.0, 5.0, f64::INFINITY]

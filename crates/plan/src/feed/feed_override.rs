@@ -1,13 +1,16 @@
-//! Feed override and feed hold on a published plan: they change how fast plan time runs, never the path.
+//! Feed override and feed hold on a published plan: they change how fast plan time runs, never the
+//! path.
 //!
-//! A plan says where the axes are at plan time `tau`: `p(tau)`. With the rate `r = dtau/dt` the axes have
+//! A plan says where the axes are at plan time `tau`: `p(tau)`. With the rate `r = dtau/dt` the
+//! axes have
 //!
 //! `v = p' r`, `a = p'' r^2 + p' r'`, `j = p''' r^3 + 3 p'' r r' + p' r''`,
 //!
-//! and with a rate that stays as it is, at 1 or below, everything is within the limits that the plan keeps. In each period `r''` is chosen:
-//! the one that leads to the override the fastest, of those from which a way is known to a rate that can stay. Its first period is always
-//! a choice, so that the axes are never led to where a limit cannot be kept. A plan in least time has a limit at its end at any moment: how
-//! soon the rate can fall depends on which.
+//! and with a rate that stays as it is, at 1 or below, everything is within the limits that the
+//! plan keeps. In each period `r''` is chosen: the one that leads to the override the fastest, of
+//! those from which a way is known to a rate that can stay. Its first period is always a choice, so
+//! that the axes are never led to where a limit cannot be kept. A plan in least time has a limit at
+//! its end at any moment: how soon the rate can fall depends on which.
 //!
 //! | File | What |
 //! |---|---|
@@ -72,7 +75,11 @@ impl ScaledTime {
     /// After a time at a constant change of the slope, 1/s2.
     #[inline]
     pub fn after(&self, t: f64, bend_1_s2: f64) -> Self {
-        let Self { tau_s, rate, slope_1_s } = *self;
+        let Self {
+            tau_s,
+            rate,
+            slope_1_s,
+        } = *self;
         Self {
             tau_s: tau_s + t * (rate + t * (0.5 * slope_1_s + t * bend_1_s2 / 6.0)),
             rate: rate + t * (slope_1_s + 0.5 * t * bend_1_s2),
@@ -84,12 +91,19 @@ impl ScaledTime {
     #[inline]
     pub fn motion(&self, planned: &AxisMotion, bend_1_s2: f64) -> AxisMotion {
         let (r, s) = (self.rate, self.slope_1_s);
-        let AxisMotion { position_mm, velocity_mm_s: v, accel_mm_s2: a, jerk_mm_s3: j } = *planned;
+        let AxisMotion {
+            position_mm,
+            velocity_mm_s: v,
+            accel_mm_s2: a,
+            jerk_mm_s3: j,
+        } = *planned;
         AxisMotion {
             position_mm,
             velocity_mm_s: std::array::from_fn(|k| v[k] * r),
             accel_mm_s2: std::array::from_fn(|k| a[k] * r * r + v[k] * s),
-            jerk_mm_s3: std::array::from_fn(|k| j[k] * r * r * r + 3.0 * a[k] * r * s + v[k] * bend_1_s2),
+            jerk_mm_s3: std::array::from_fn(|k| {
+                j[k] * r * r * r + 3.0 * a[k] * r * s + v[k] * bend_1_s2
+            }),
         }
     }
 }
@@ -134,14 +148,30 @@ pub struct TimeScaling<'a> {
 impl<'a> TimeScaling<'a> {
     /// At the beginning of a plan, at rest.
     pub fn new(plan: &'a PublishedPlan, limits: ScalingLimits) -> Self {
-        let now = ScaledTime { tau_s: 0.0, rate: 0.0, slope_1_s: 0.0 };
-        Self { plan, limits, now, safe: Landing::default() }
+        let now = ScaledTime {
+            tau_s: 0.0,
+            rate: 0.0,
+            slope_1_s: 0.0,
+        };
+        Self {
+            plan,
+            limits,
+            now,
+            safe: Landing::default(),
+        }
     }
 
     /// From a moment of the plan on, at the rate 1.
     pub fn from_moment(plan: &'a PublishedPlan, limits: ScalingLimits, tau_s: f64) -> Self {
-        let now = ScaledTime { tau_s, rate: 1.0, slope_1_s: 0.0 };
-        Self { now, ..Self::new(plan, limits) }
+        let now = ScaledTime {
+            tau_s,
+            rate: 1.0,
+            slope_1_s: 0.0,
+        };
+        Self {
+            now,
+            ..Self::new(plan, limits)
+        }
     }
 
     /// Where plan time is.
@@ -151,7 +181,11 @@ impl<'a> TimeScaling<'a> {
 
     /// Whether the plan rests here, whatever the rate.
     pub fn rests(&self) -> bool {
-        let AxisMotion { velocity_mm_s, accel_mm_s2, .. } = self.plan.at(self.now.tau_s);
+        let AxisMotion {
+            velocity_mm_s,
+            accel_mm_s2,
+            ..
+        } = self.plan.at(self.now.tau_s);
         norm(velocity_mm_s) < STILL_MM_S && norm(accel_mm_s2) < STILL_MM_S2
     }
 
@@ -160,7 +194,8 @@ impl<'a> TimeScaling<'a> {
         self.now.tau_s >= self.plan.end_s()
     }
 
-    /// Goes on for a step towards an override of feeds, 0 to [`MOST_OVERRIDE`]; a hold is one of 0 that holds for rapids too.
+    /// Goes on for a step towards an override of feeds, 0 to [`MOST_OVERRIDE`]; a hold is one of 0
+    /// that holds for rapids too.
     pub fn step(&mut self, override_of_feeds: f64, hold: bool) -> ScaledStep {
         let span = self.plan.span_at(self.now.tau_s);
         let wanted = if hold {
@@ -172,15 +207,27 @@ impl<'a> TimeScaling<'a> {
         };
         if span.is_rest || self.rests() {
             // At rest nothing keeps the rate from being any.
-            let rate = if span.is_rest && !hold { 1.0 } else { wanted.min(1.0) };
-            self.now = ScaledTime { rate, slope_1_s: 0.0, ..self.now };
+            let rate = if span.is_rest && !hold {
+                1.0
+            } else {
+                wanted.min(1.0)
+            };
+            self.now = ScaledTime {
+                rate,
+                slope_1_s: 0.0,
+                ..self.now
+            };
             self.safe = Landing::default();
         }
         let next = self.choice(if span.is_rest && !hold { 1.0 } else { wanted });
         self.now = next.after(next.duration_s);
         if self.safe.is_over() {
             // What is left of a way is rounding.
-            self.now = ScaledTime { rate: self.safe.rate(self.now.rate), slope_1_s: 0.0, ..self.now };
+            self.now = ScaledTime {
+                rate: self.safe.rate(self.now.rate),
+                slope_1_s: 0.0,
+                ..self.now
+            };
         }
         next
     }
@@ -192,12 +239,18 @@ impl<'a> TimeScaling<'a> {
             self.safe = Landing::default();
             return step(self.plan, &self.limits, &self.now, 0.0);
         }
-        let towards = if way < 0.0 || (way == 0.0 && self.now.slope_1_s > 0.0) { -1.0 } else { 1.0 };
+        let towards = if way < 0.0 || (way == 0.0 && self.now.slope_1_s > 0.0) {
+            -1.0
+        } else {
+            1.0
+        };
         if self.safe.is_over() && self.now.rate <= 1.0 && wanted <= 1.0 {
             // Where nothing faster is found, straight to what is wanted.
-            self.safe = landing(self.plan, &self.limits, &self.now, wanted, 1.0 + ROUNDING).unwrap_or_default();
+            self.safe = landing(self.plan, &self.limits, &self.now, wanted, 1.0 + ROUNDING)
+                .unwrap_or_default();
         }
-        // Where the override was lowered on the way up, the rate is above it for a while: no higher than it was going to be.
+        // Where the override was lowered on the way up, the rate is above it for a while: no higher
+        // than it was going to be.
         let most = wanted.max(1.0).max(self.now.rate).max(self.safe.highest()) + ROUNDING;
         if wanted > 1.0
             && let Some((step, behind)) = self.settling(wanted, towards, most)
@@ -207,7 +260,13 @@ impl<'a> TimeScaling<'a> {
         }
         let safe = self.safe.steps.pop_front();
         let mut good = safe.unwrap_or_else(|| step(self.plan, &self.limits, &self.now, 0.0));
-        let mut bad = bounded(self.plan, &self.limits, &self.now, towards * MOST_BEND_1_S2, good.bend_1_s2);
+        let mut bad = bounded(
+            self.plan,
+            &self.limits,
+            &self.now,
+            towards * MOST_BEND_1_S2,
+            good.bend_1_s2,
+        );
         if (bad - good.bend_1_s2) * towards > 0.0 {
             let mut bend = bad;
             for _ in 0..HALVINGS {
@@ -223,16 +282,28 @@ impl<'a> TimeScaling<'a> {
         good
     }
 
-    /// The first step of a way of few periods to an override above 1, without a slope there, and the way behind that step: near the override
-    /// the fastest change would go up and down from period to period.
+    /// The first step of a way of few periods to an override above 1, without a slope there, and
+    /// the way behind that step: near the override the fastest change would go up and down from
+    /// period to period.
     fn settling(&self, wanted: f64, towards: f64, most: f64) -> Option<(ScaledStep, Landing)> {
         let way = landing_within(self.plan, &self.limits, &self.now, wanted, most, SETTLING)?;
-        let first = way.steps.front().copied().unwrap_or_else(|| step(self.plan, &self.limits, &self.now, 0.0));
+        let first = way
+            .steps
+            .front()
+            .copied()
+            .unwrap_or_else(|| step(self.plan, &self.limits, &self.now, 0.0));
         Some((first, self.way_behind(&first, wanted, towards, most)?))
     }
 
-    /// The way from behind a step to a rate that can stay, that does not pass the one that is wanted and rises to no more than `most`.
-    fn way_behind(&self, tried: &ScaledStep, wanted: f64, towards: f64, most: f64) -> Option<Landing> {
+    /// The way from behind a step to a rate that can stay, that does not pass the one that is
+    /// wanted and rises to no more than `most`.
+    fn way_behind(
+        &self,
+        tried: &ScaledStep,
+        wanted: f64,
+        towards: f64,
+        most: f64,
+    ) -> Option<Landing> {
         if !keeps(self.plan, &self.limits, tried) {
             return None;
         }
@@ -255,7 +326,8 @@ mod tests {
 
     use super::*;
 
-    /// Of a central difference, s, and what it may be off: the square of it times higher derivatives below 1000.
+    /// Of a central difference, s, and what it may be off: the square of it times higher
+    /// derivatives below 1000.
     const H_S: f64 = 1e-3;
     const OFF: f64 = 1e-3;
 

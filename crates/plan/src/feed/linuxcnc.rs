@@ -1,11 +1,13 @@
 //! What LinuxCNC 2.9 makes of a program: its own trajectory planner, servo period by servo period.
 //!
-//! A model of a target control: what it will do with a program, not what would be best. In each servo period of 1 ms at most one block comes
-//! into the queue, is joined to the one before, and the look-ahead goes back over the last 50; then the segment under way moves on
-//! (`period.rs` has the equations). Speeds change in steps of `a T`; jerk has no bound.
+//! A model of a target control: what it will do with a program, not what would be best. In each
+//! servo period of 1 ms at most one block comes into the queue, is joined to the one before, and
+//! the look-ahead goes back over the last 50; then the segment under way moves on (`period.rs` has
+//! the equations). Speeds change in steps of `a T`; jerk has no bound.
 //!
-//! Written from the behaviour of `tp.c`, `tc.c`, `blendmath.c` and `emccanon.cc` of LinuxCNC 2.9.0~pre1 (GPL; facts and formulas, no code) and from
-//! its commands at 1 kHz, which it reproduces to the 1e-6 mm that were recorded (`oracle_linuxcnc_planner`).
+//! Written from the behaviour of `tp.c`, `tc.c`, `blendmath.c` and `emccanon.cc` of LinuxCNC
+//! 2.9.0~pre1 (GPL; facts and formulas, no code) and from its commands at 1 kHz, which it
+//! reproduces to the 1e-6 mm that were recorded (`oracle_linuxcnc_planner`).
 //!
 //! What its modes mean, and how that differs from [`time_optimal`](super::time_optimal):
 //!
@@ -19,16 +21,18 @@
 //! | rapids | are blended with rapids, stop before feeds |
 //! | last block | in `G64` half the acceleration before every rest, since the block might still be blended with a next one |
 //!
-//! The tolerance P bounds blends alone: Q comes on top. A block takes at least 1.02 servo periods. Corners are laid out for an override of
-//! 200 %.
+//! The tolerance P bounds blends alone: Q comes on top. A block takes at least 1.02 servo periods.
+//! Corners are laid out for an override of 200 %.
 //!
-//! LinuxCNC repeats the beginning of a line that has begun and is then taken into the blend behind it, which happens to lines of a few um at the
-//! beginning of a motion, and so ends up to 1 um beside the path, measured on the real one. The model does the same, and comes to the end of the
+//! LinuxCNC repeats the beginning of a line that has begun and is then taken into the blend behind
+//! it, which happens to lines of a few um at the beginning of a motion, and so ends up to 1 um
+//! beside the path, measured on the real one. The model does the same, and comes to the end of the
 //! path in the last servo period.
 //!
-//! Not modelled: overrides and holds while it moves, spindle synchronisation, probing, UVW as a path of their own; a computer that is late
-//! with a block (the queue is then shorter, and the motion slower, for some periods); `G5` as LinuxCNC cuts it into arcs: here a spline is
-//! lines within 1 um of it, which came out 7.5 um off.
+//! Not modelled: overrides and holds while it moves, spindle synchronisation, probing, UVW as a
+//! path of their own; a computer that is late with a block (the queue is then shorter, and the
+//! motion slower, for some periods); `G5` as LinuxCNC cuts it into arcs: here a spline is lines
+//! within 1 um of it, which came out 7.5 um off.
 //!
 //! | File | What |
 //! |---|---|
@@ -119,7 +123,10 @@ impl Linuxcnc {
     /// At rest before the first piece.
     pub(crate) fn new(constraints: &Constraints) -> Self {
         let limits = DirectionLimits::new(constraints);
-        let at = PeriodPoint { position_mm: [0.0; 3], station_mm: 0.0 };
+        let at = PeriodPoint {
+            position_mm: [0.0; 3],
+            station_mm: 0.0,
+        };
         Self {
             constraints: constraints.clone(),
             blocks: BlockMaker::new(limits.clone()),
@@ -139,7 +146,12 @@ impl Linuxcnc {
 
     /// Hands blocks on to the queue.
     fn take_blocks(&mut self) {
-        self.inputs.extend(self.blocks.ready.drain(..).map(|block| QueueInput::Block(Box::new(block))));
+        self.inputs.extend(
+            self.blocks
+                .ready
+                .drain(..)
+                .map(|block| QueueInput::Block(Box::new(block))),
+        );
     }
 
     /// The tool comes to rest behind what was pushed.
@@ -147,7 +159,10 @@ impl Linuxcnc {
         self.blocks.flush();
         self.take_blocks();
         if self.s_mm > 0.0 {
-            let end = PeriodPoint { position_mm: self.end_mm, station_mm: self.s_mm };
+            let end = PeriodPoint {
+                position_mm: self.end_mm,
+                station_mm: self.s_mm,
+            };
             self.inputs.push_back(QueueInput::Rest(end));
             self.rests += 1;
         }
@@ -159,7 +174,10 @@ impl Linuxcnc {
         match self.inputs.front() {
             None => return false,
             Some(QueueInput::Start(at_mm)) => {
-                self.at = PeriodPoint { position_mm: *at_mm, station_mm: 0.0 };
+                self.at = PeriodPoint {
+                    position_mm: *at_mm,
+                    station_mm: 0.0,
+                };
                 self.spline = JointSpline::at_rest(self.at);
                 self.inputs.pop_front();
             }
@@ -172,7 +190,8 @@ impl Linuxcnc {
                 self.run_period();
             }
             Some(QueueInput::Rest(end)) if self.queue.segments.is_empty() => {
-                // The spline rests two periods after its points; one more where LinuxCNC's motion ends beside the path.
+                // The spline rests two periods after its points; one more where LinuxCNC's motion
+                // ends beside the path.
                 let beside = distance(self.at.position_mm, end.position_mm) > BESIDE_MM;
                 self.at = *end;
                 self.inputs.pop_front();
@@ -181,7 +200,11 @@ impl Linuxcnc {
                     self.hand_out(&motion);
                 }
                 let rests = self.pieces.front().map_or(0, |piece| piece.rests);
-                while self.pieces.front().is_some_and(|piece| piece.rests == rests) {
+                while self
+                    .pieces
+                    .front()
+                    .is_some_and(|piece| piece.rests == rests)
+                {
                     self.pieces.pop_front();
                 }
             }
@@ -192,14 +215,26 @@ impl Linuxcnc {
 
     /// One servo period.
     fn run_period(&mut self) {
-        let before_mm = self.queue.segments.front().map(|segment| segment.progress_mm);
+        let before_mm = self
+            .queue
+            .segments
+            .front()
+            .map(|segment| segment.progress_mm);
         let step = self.queue.run_period();
         self.at.position_mm = add_scaled(self.at.position_mm, 1.0, step.way_mm);
         self.at.station_mm += step.station_mm.max(0.0);
         let motion = self.spline.next(self.at);
         self.hand_out(&motion);
-        let after_mm = self.queue.segments.front().map(|segment| segment.progress_mm);
-        self.still = if before_mm == after_mm { self.still + 1 } else { 0 };
+        let after_mm = self
+            .queue
+            .segments
+            .front()
+            .map(|segment| segment.progress_mm);
+        self.still = if before_mm == after_mm {
+            self.still + 1
+        } else {
+            0
+        };
         if self.still > MOST_STILL {
             // Rounding left a way that no period goes.
             self.queue.segments.pop_front();
@@ -210,19 +245,30 @@ impl Linuxcnc {
     /// A servo period as spans: one for each piece that it passes.
     fn hand_out(&mut self, motion: &PeriodMotion) {
         let [s_mm, speed_mm_s, accel_mm_s2, jerk_mm_s3] = motion.station;
-        let place = |t: f64| s_mm + t * (speed_mm_s + t * (0.5 * accel_mm_s2 + t * jerk_mm_s3 / 6.0));
+        let place =
+            |t: f64| s_mm + t * (speed_mm_s + t * (0.5 * accel_mm_s2 + t * jerk_mm_s3 / 6.0));
         let mut from_s = 0.0;
         while from_s < PERIOD_S {
-            let Some(piece) = self.pieces.front().copied() else { return };
+            let Some(piece) = self.pieces.front().copied() else {
+                return;
+            };
             let end_mm = piece.s_mm + piece.length_mm;
-            let is_last = self.pieces.get(1).is_none_or(|next| next.rests != piece.rests);
-            let until_s = if is_last || place(PERIOD_S) <= end_mm { PERIOD_S } else { time_of(place, end_mm, from_s) };
+            let is_last = self
+                .pieces
+                .get(1)
+                .is_none_or(|next| next.rests != piece.rests);
+            let until_s = if is_last || place(PERIOD_S) <= end_mm {
+                PERIOD_S
+            } else {
+                time_of(place, end_mm, from_s)
+            };
             if until_s > from_s {
                 self.ready.push_back(Span {
                     piece: piece.number,
                     from_mm: (place(from_s) - piece.s_mm).clamp(0.0, piece.length_mm),
                     duration_s: until_s - from_s,
-                    speed_mm_s: (speed_mm_s + from_s * (accel_mm_s2 + 0.5 * from_s * jerk_mm_s3)).max(0.0),
+                    speed_mm_s: (speed_mm_s + from_s * (accel_mm_s2 + 0.5 * from_s * jerk_mm_s3))
+                        .max(0.0),
                     accel_mm_s2: accel_mm_s2 + from_s * jerk_mm_s3,
                     jerk_mm_s3,
                     motion: Some(motion.axes.after(from_s)),
@@ -241,7 +287,11 @@ fn time_of(place: impl Fn(f64) -> f64, bound_mm: f64, from_s: f64) -> f64 {
     let (mut lo_s, mut hi_s) = (from_s, PERIOD_S);
     for _ in 0..60 {
         let middle_s = 0.5 * (lo_s + hi_s);
-        if place(middle_s) < bound_mm { lo_s = middle_s } else { hi_s = middle_s }
+        if place(middle_s) < bound_mm {
+            lo_s = middle_s;
+        } else {
+            hi_s = middle_s;
+        }
     }
     lo_s
 }
@@ -255,7 +305,9 @@ impl FeedPlanner for Linuxcnc {
             self.blocks.begin(piece.start_mm);
             self.inputs.push_back(QueueInput::Start(piece.start_mm));
         }
-        let along_mm_s = self.constraints.along_mm_s(piece.turn_deg_mm, piece.further_mm_mm);
+        let along_mm_s = self
+            .constraints
+            .along_mm_s(piece.turn_deg_mm, piece.further_mm_mm);
         let mode = BlockMode {
             is_rapid: !piece.cutting,
             is_rotary: piece.turn_deg_mm > 0.0 || piece.further_mm_mm > 0.0,
@@ -265,7 +317,12 @@ impl FeedPlanner for Linuxcnc {
         };
         self.blocks.push(piece, mode, self.s_mm);
         let (number, rests, s_mm) = (self.pushed, self.rests, self.s_mm);
-        self.pieces.push_back(PushedPiece { number, rests, s_mm, length_mm: piece.length_mm });
+        self.pieces.push_back(PushedPiece {
+            number,
+            rests,
+            s_mm,
+            length_mm: piece.length_mm,
+        });
         self.pushed += 1;
         self.s_mm += piece.length_mm;
         self.end_mm = piece.curve.at(piece.length_mm).position_mm;

@@ -12,8 +12,8 @@ use crate::plc::Plc;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// M-codes that take effect with the next motion and so do not interrupt it: digital and analogue outputs synchronised with
-/// motion.
+/// M-codes that take effect with the next motion and so do not interrupt it: digital and analogue
+/// outputs synchronised with motion.
 const CODES_THAT_DO_NOT_STOP: [u16; 3] = [62, 63, 67];
 
 /// What a plan hands out.
@@ -38,7 +38,8 @@ pub trait PlanSink: Sync {
 /// Most of what a plan hands out that is kept, 30 MB.
 const MOST_KEPT: usize = 100_000;
 
-/// A plan that was made, for more cuts of the same path within the same limits: all that it handed out.
+/// A plan that was made, for more cuts of the same path within the same limits: all that it handed
+/// out.
 #[derive(Debug, Clone)]
 pub struct KeptPlan(Arc<[Planned]>);
 
@@ -101,7 +102,12 @@ impl<'p> Plan<'p> {
         planner: &FeedMember,
         plc: Plc,
     ) -> Result<Self, LimitsError> {
-        Self::of_paired(Box::new(UnchangedSteps::new(steps)), constraints, planner, plc)
+        Self::of_paired(
+            Box::new(UnchangedSteps::new(steps)),
+            constraints,
+            planner,
+            plc,
+        )
     }
 
     /// As [`Plan::new`], along a planned path beside the programmed one.
@@ -132,24 +138,41 @@ impl<'p> Plan<'p> {
             fault: None,
             finished: false,
         };
-        Ok(Self { source: PlanSource::Made(Box::new(made)), keeps: None, sink: None })
+        Ok(Self {
+            source: PlanSource::Made(Box::new(made)),
+            keeps: None,
+            sink: None,
+        })
     }
 
     /// The same plan once more, without planning.
     pub fn again(kept: &KeptPlan) -> Self {
-        Self { source: PlanSource::Kept(kept.clone(), 0), keeps: None, sink: None }
+        Self {
+            source: PlanSource::Kept(kept.clone(), 0),
+            keeps: None,
+            sink: None,
+        }
     }
 
     /// Keeps what it hands out, for [`Plan::into_kept`].
     #[must_use]
     pub fn keeping(self) -> Self {
-        Self { keeps: Some(Vec::new()), ..self }
+        Self {
+            keeps: Some(Vec::new()),
+            ..self
+        }
     }
 
-    /// All that it handed out, where it came to its end without a fault and was not too long to be kept.
+    /// All that it handed out, where it came to its end without a fault and was not too long to be
+    /// kept.
     pub fn into_kept(self) -> Option<KeptPlan> {
-        let PlanSource::Made(made) = self.source else { return None };
-        let ended = made.finished && made.ready.is_empty() && made.between.is_empty() && made.fault.is_none();
+        let PlanSource::Made(made) = self.source else {
+            return None;
+        };
+        let ended = made.finished
+            && made.ready.is_empty()
+            && made.between.is_empty()
+            && made.fault.is_none();
         self.keeps.filter(|_| ended).map(|all| KeptPlan(all.into()))
     }
 
@@ -171,7 +194,9 @@ impl<'p> Plan<'p> {
 impl PlanInMaking<'_> {
     fn read_step(&mut self) {
         match self.steps.next() {
-            Some(Ok(PairedStep::Programmed(piece))) => self.ready.push_back(Planned::Programmed(piece)),
+            Some(Ok(PairedStep::Programmed(piece))) => {
+                self.ready.push_back(Planned::Programmed(piece));
+            }
             Some(Ok(PairedStep::Planned(piece))) => self.piece(piece),
             Some(Ok(PairedStep::Event(event))) => self.event(event),
             Some(Ok(PairedStep::Rest(rest))) => self.rest(rest),
@@ -192,7 +217,12 @@ impl PlanInMaking<'_> {
     }
 
     fn rest(&mut self, rest: Rest) {
-        let Rest { line, seconds, turn_deg, further_mm } = rest;
+        let Rest {
+            line,
+            seconds,
+            turn_deg,
+            further_mm,
+        } = rest;
         self.stop = true;
         let least_s = self.plc.turn_s(turn_deg).max(further_mm / self.rapid_mm_s);
         let seconds = seconds.max(least_s).min(MAX_REST_S);
@@ -201,9 +231,14 @@ impl PlanInMaking<'_> {
 
     fn event(&mut self, event: Event) {
         self.stop |= match event.kind {
-            EventKind::Dwell { .. } | EventKind::SpindleSync { .. } | EventKind::Probe | EventKind::ProgramEnd => true,
+            EventKind::Dwell { .. }
+            | EventKind::SpindleSync { .. }
+            | EventKind::Probe
+            | EventKind::ProgramEnd => true,
             EventKind::MCode { code, .. } => !CODES_THAT_DO_NOT_STOP.contains(&code),
-            EventKind::SpindleSpeed { .. } | EventKind::ToolSelect { .. } | EventKind::Message { .. } => false,
+            EventKind::SpindleSpeed { .. }
+            | EventKind::ToolSelect { .. }
+            | EventKind::Message { .. } => false,
         };
         let seconds = self.plc.takes_s(&event.kind);
         let rest = (seconds > 0.0).then_some((seconds, event.line));
@@ -214,7 +249,13 @@ impl PlanInMaking<'_> {
     fn between(&mut self, event: Option<Event>, rest: Option<(f64, u32)>) {
         // Before the first piece the tool is at the start of it.
         let piece = self.pieces.saturating_sub(1);
-        self.between.push_back(Between { before: self.pieces, piece, from_mm: self.last_mm, event, rest });
+        self.between.push_back(Between {
+            before: self.pieces,
+            piece,
+            from_mm: self.last_mm,
+            event,
+            rest,
+        });
     }
 
     fn finish(&mut self) {
@@ -224,17 +265,45 @@ impl PlanInMaking<'_> {
 
     fn span(&mut self, span: Span) {
         self.happen_before(span.piece);
-        let Span { piece, from_mm, duration_s, speed_mm_s, accel_mm_s2, jerk_mm_s3, motion } = span;
+        let Span {
+            piece,
+            from_mm,
+            duration_s,
+            speed_mm_s,
+            accel_mm_s2,
+            jerk_mm_s3,
+            motion,
+        } = span;
         let tau_s = self.clock.advance(duration_s);
-        let phase =
-            Phase { tau_s, duration_s, piece, from_mm, speed_mm_s, accel_mm_s2, jerk_mm_s3, motion, rest: None };
+        let phase = Phase {
+            tau_s,
+            duration_s,
+            piece,
+            from_mm,
+            speed_mm_s,
+            accel_mm_s2,
+            jerk_mm_s3,
+            motion,
+            rest: None,
+        };
         self.ready.push_back(Planned::Phase(phase));
     }
 
     /// Hands out what comes before a planned piece.
     fn happen_before(&mut self, piece: u64) {
-        while self.between.front().is_some_and(|between| between.before <= piece) {
-            let Some(Between { piece, from_mm, event, rest, .. }) = self.between.pop_front() else {
+        while self
+            .between
+            .front()
+            .is_some_and(|between| between.before <= piece)
+        {
+            let Some(Between {
+                piece,
+                from_mm,
+                event,
+                rest,
+                ..
+            }) = self.between.pop_front()
+            else {
                 return;
             };
             if let Some(event) = event {

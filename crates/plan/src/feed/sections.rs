@@ -1,12 +1,14 @@
 //! The path as sections with a bound on the speed, for planners that need no more of it.
 //!
-//! Within a section the square of the speed stays below a straight line over arc length (constant on lines and arcs, following
-//! `a_n / curvature` on other curves); at the joint before it, below a cap of its own.
+//! Within a section the square of the speed stays below a straight line over arc length (constant
+//! on lines and arcs, following `a_n / curvature` on other curves); at the joint before it, below a
+//! cap of its own.
 //!
-//! On a line or an arc the bound `f = min(feed^2, a_n / curvature)` on the square of the speed is constant: one section. On
-//! other curves the piece is halved until the straight line between the bounds at both ends of a section lies no more than
-//! `OVER` above `f`, so that v^2 times curvature keeps a_n to 0.1 %, and no more than `UNDER` below it, so that no time
-//! is given away. Neighbouring sections that are both bounded by the same feedrate alone are joined.
+//! On a line or an arc the bound `f = min(feed^2, a_n / curvature)` on the square of the speed is
+//! constant: one section. On other curves the piece is halved until the straight line between the
+//! bounds at both ends of a section lies no more than `OVER` above `f`, so that v^2 times curvature
+//! keeps a_n to 0.1 %, and no more than `UNDER` below it, so that no time is given away.
+//! Neighbouring sections that are both bounded by the same feedrate alone are joined.
 
 use feedwright_gcode::canon::Corner;
 
@@ -16,17 +18,20 @@ use crate::constraints::Constraints;
 use crate::path::smooth::{MAX_CURVATURE_1_MM, Smooth};
 use crate::path::{Curve, Piece};
 
-/// The bound may be exceeded by this at the points where it is compared; between them it then stays below 0.1 %.
+/// The bound may be exceeded by this at the points where it is compared; between them it then stays
+/// below 0.1 %.
 const OVER: f64 = 2.5e-4;
 
 /// The bound may be missed by this.
 const UNDER: f64 = 5e-3;
 
-/// Sections of less than this are not halved any more: the speed cannot change noticeably over a nanometre.
+/// Sections of less than this are not halved any more: the speed cannot change noticeably over a
+/// nanometre.
 const MIN_SECTION_MM: f64 = 1e-6;
 
-/// Nor are sections of less than this part of a cell of the curve's table, over which the tangent turns by 0.3 rad at
-/// most: five or six halvings do for curves, twelve for their inflections, and no more where curvature is mere rounding.
+/// Nor are sections of less than this part of a cell of the curve's table, over which the tangent
+/// turns by 0.3 rad at most: five or six halvings do for curves, twelve for their inflections, and
+/// no more where curvature is mere rounding.
 const MIN_PART: f64 = 1.0 / 4096.0;
 
 /// Part of a piece with a bound on the speed.
@@ -40,7 +45,8 @@ pub struct Section {
     pub length_mm: f64,
     /// Bound on the square of the speed at the joint before it, mm2/s2.
     pub joint_cap: f64,
-    /// Bound on the square of the speed just after its start, mm2/s2, more than 0; straight over arc length to
+    /// Bound on the square of the speed just after its start, mm2/s2, more than 0; straight over
+    /// arc length to
     pub start_cap: f64,
     /// the bound just before its end.
     pub end_cap: f64,
@@ -72,7 +78,12 @@ pub(crate) struct Capped<P> {
 impl<P> Capped<P> {
     /// At rest before the first piece.
     pub(crate) fn new(constraints: &Constraints, planner: P) -> Self {
-        Self { constraints: constraints.clone(), planner, last: None, pieces: 0 }
+        Self {
+            constraints: constraints.clone(),
+            planner,
+            last: None,
+            pieces: 0,
+        }
     }
 }
 
@@ -85,12 +96,17 @@ impl<P: SectionPlanner> FeedPlanner for Capped<P> {
             length_mm: piece.length_mm,
         };
         let cap = match &self.last {
-            Some((before, corner)) if !from_rest => {
-                joint_cap(before, &side(piece.curve.at(0.0).tangent, 0.0), *corner, &self.constraints.path)
-            }
+            Some((before, corner)) if !from_rest => joint_cap(
+                before,
+                &side(piece.curve.at(0.0).tangent, 0.0),
+                *corner,
+                &self.constraints.path,
+            ),
             _ => 0.0,
         };
-        sections(piece, self.pieces, cap, &self.constraints, |section| self.planner.push(section));
+        sections(piece, self.pieces, cap, &self.constraints, |section| {
+            self.planner.push(section);
+        });
         self.last = Some((side(end.tangent, piece.length_mm), piece.corner));
         self.pieces += 1;
     }
@@ -114,7 +130,8 @@ pub(crate) fn sections(
 ) {
     let feed = feed_mm_s(piece, constraints).powi(2);
     let normal_accel_mm_s2 = constraints.path.normal_accel_mm_s2;
-    let bound = |curvature: f64| feed.min(normal_accel_mm_s2 / curvature.clamp(0.0, MAX_CURVATURE_1_MM));
+    let bound =
+        |curvature: f64| feed.min(normal_accel_mm_s2 / curvature.clamp(0.0, MAX_CURVATURE_1_MM));
     match &piece.curve {
         Curve::Line(_) | Curve::Arc(_) => {
             let cap = bound(piece.curve.curvature(0.0));
@@ -138,9 +155,20 @@ pub(crate) fn sections(
                     }
                     push(*open);
                 }
-                let joint_cap = if joined.is_none() { joint_cap } else { f64::INFINITY };
+                let joint_cap = if joined.is_none() {
+                    joint_cap
+                } else {
+                    f64::INFINITY
+                };
                 let length_mm = to_mm - from_mm;
-                joined = Some(Section { piece: number, from_mm, length_mm, joint_cap, start_cap, end_cap });
+                joined = Some(Section {
+                    piece: number,
+                    from_mm,
+                    length_mm,
+                    joint_cap,
+                    start_cap,
+                    end_cap,
+                });
             });
             if let Some(open) = joined {
                 push(open);
@@ -153,7 +181,8 @@ pub(crate) fn sections(
 fn divide(smooth: &Smooth, bound: impl Fn(f64) -> f64, mut take: impl FnMut(f64, f64, f64, f64)) {
     let mut todo = Vec::new();
     for cell in 0..smooth.cells() {
-        // Each cell with its own bounds at its ends: between two spans of a spline the curvature may jump.
+        // Each cell with its own bounds at its ends: between two spans of a spline the curvature
+        // may jump.
         let bound = |s_mm: f64| bound(smooth.curvature_in(cell, s_mm));
         let (from_mm, to_mm) = smooth.cell_mm(cell);
         let shortest_mm = MIN_SECTION_MM.max((to_mm - from_mm) * MIN_PART);

@@ -1,10 +1,12 @@
-//! Least time within the tolerance of the programmed path: speed and path are chosen together, under the velocity, acceleration and
-//! jerk of each axis.
+//! Least time within the tolerance of the programmed path: speed and path are chosen together,
+//! under the velocity, acceleration and jerk of each axis.
 //!
-//! The path from one rest to the next is planned in windows. A window has `mesh` nodes on the programmed path, a few milliseconds of
-//! motion apart; its least time (`interior_point`) ends at rest. The first part of a window is committed, the next window begins
-//! there. What of a window was not committed is kept: where the next window comes to no solution, or its solution leaves the tube, the motion goes
-//! on along it, and so at worst comes to rest on the path; from there it goes on straight from rest to rest.
+//! The path from one rest to the next is planned in windows. A window has `mesh` nodes on the
+//! programmed path, a few milliseconds of motion apart; its least time (`interior_point`) ends at
+//! rest. The first part of a window is committed, the next window begins there. What of a window
+//! was not committed is kept: where the next window comes to no solution, or its solution leaves
+//! the tube, the motion goes on along it, and so at worst comes to rest on the path; from there it
+//! goes on straight from rest to rest.
 //!
 //! Look-ahead: the time in which the slowest axis stops, and 0.5 s.
 //!
@@ -54,16 +56,19 @@ const BEYOND_S: f64 = 0.5;
 /// Part of a window that is committed.
 const COMMITTED: f64 = 0.6;
 
-/// Where a window comes to no solution, so much of that goes on along the one before: the next one begins elsewhere, and still at speed.
+/// Where a window comes to no solution, so much of that goes on along the one before: the next one
+/// begins elsewhere, and still at speed.
 const GOING_ON: f64 = 0.25;
 
-/// Step of time, in times `(tolerance / jerk)^(1/3)`: within it jerk leads away from a chord by less than a hundredth of the tolerance.
+/// Step of time, in times `(tolerance / jerk)^(1/3)`: within it jerk leads away from a chord by
+/// less than a hundredth of the tolerance.
 const STEP: f64 = 0.35;
 
 /// Shortest and longest step of time, s.
 const STEPS_S: [f64; 2] = [2e-4, 5e-3];
 
-/// Where the feedrate is so low that a step is less than this part of the tolerance, steps are longer.
+/// Where the feedrate is so low that a step is less than this part of the tolerance, steps are
+/// longer.
 const LEAST_WAY: f64 = 0.1;
 
 /// Fewest and most steps of a window.
@@ -75,13 +80,15 @@ const FEWEST: usize = 24;
 /// Part of a tolerance that a node's offset may use: the rest is for what lies between nodes.
 const RADIUS_PART: f64 = 0.9;
 
-/// Parts of the tolerance that a window is looked for in, in turn. What is as small as the tolerance, an arc of its radius or a spike of
-/// its length, may come to no solution in the whole of it, and does in a narrower one.
+/// Parts of the tolerance that a window is looked for in, in turn. What is as small as the
+/// tolerance, an arc of its radius or a spike of its length, may come to no solution in the whole
+/// of it, and does in a narrower one.
 const TOLERANCE_PARTS: [f64; 4] = [1.0, 0.5, 0.25, 0.1];
 
-/// Part of the time that an offset at the edge of the tube costs; it falls with the square of the offset. So the tolerance is used only
-/// where it saves time. With 0.02, 13 programs within 10 um take 0 to 0.36 % longer, 0.1 % in the median; at 0.1 up to 0.6 %. At 0
-/// smooth curves use the whole tube for nothing.
+/// Part of the time that an offset at the edge of the tube costs; it falls with the square of the
+/// offset. So the tolerance is used only where it saves time. With 0.02, 13 programs within 10 um
+/// take 0 to 0.36 % longer, 0.1 % in the median; at 0.1 up to 0.6 %. At 0 smooth curves use the
+/// whole tube for nothing.
 const OFFSET_COST: f64 = 0.02;
 
 /// How often a window is solved again with what it exceeded tightened.
@@ -96,10 +103,15 @@ const LAST_OVER: f64 = 1e-9;
 /// First guesses, tried in turn: a motion and the first barrier. The motion is the motion of the
 /// nodes, or with `Some(f)` a motion along the chords that is `f` times slower. The first guess is
 /// for nodes whose motion was a solution.
-const GUESSES: [(Option<f64>, f64); 4] = [(None, 0.01), (None, 0.1), (Some(1.3), 0.1), (Some(2.0), 1.0)];
+const GUESSES: [(Option<f64>, f64); 4] = [
+    (None, 0.01),
+    (None, 0.1),
+    (Some(1.3), 0.1),
+    (Some(2.0), 1.0),
+];
 
-/// Nodes keep this part of the feedrate away from it, for rounding; where the speed rises by more between two nodes, the window is
-/// solved again with more.
+/// Nodes keep this part of the feedrate away from it, for rounding; where the speed rises by more
+/// between two nodes, the window is solved again with more.
 const FEED_MARGIN: f64 = 1e-7;
 
 /// The barrier at the end: 1e-5 of the time, and as near to the feedrate.
@@ -115,8 +127,9 @@ const CORNER_RAD: f64 = 1e-3;
 const DEFAULT_MM: f64 = 0.01;
 const LEAST_MM: f64 = 1e-5;
 
-/// How far a window's first guess follows what is known. Up to where that brakes for its rest, an estimate goes on at speed; where that comes to no
-/// solution, as with tolerances of 1 um, what is known is followed down to the last of its speed: a guess that is possible.
+/// How far a window's first guess follows what is known. Up to where that brakes for its rest, an
+/// estimate goes on at speed; where that comes to no solution, as with tolerances of 1 um, what is
+/// known is followed down to the last of its speed: a guess that is possible.
 #[derive(Debug, Clone, Copy)]
 enum Followed {
     UntilBraking,
@@ -169,18 +182,24 @@ pub struct TimeOptimal {
 }
 
 impl TimeOptimal {
-    /// At rest before the first piece. An axis without limits of its own is like the last that has some.
+    /// At rest before the first piece. An axis without limits of its own is like the last that has
+    /// some.
     pub fn new(constraints: &Constraints) -> Self {
         let limits = |k: usize| constraints.axis(k).unwrap_or(AxisLimits::NONE);
         Self {
             constraints: constraints.clone(),
-            caps: AxisCaps { axes: [limits(0), limits(1), limits(2)] },
+            caps: AxisCaps {
+                axes: [limits(0), limits(1), limits(2)],
+            },
             track: Track::new(constraints.speed_caps.clone()),
             pieces: 0,
             last: None,
             tolerance_mm: f64::INFINITY,
             feed_mm_s: 0.0,
-            from: MeshStart { s_mm: 0.0, motion: AxisMotion::REST },
+            from: MeshStart {
+                s_mm: 0.0,
+                motion: AxisMotion::REST,
+            },
             tail: Vec::new(),
             ready: VecDeque::new(),
             counts: PlanCounts::default(),
@@ -189,15 +208,22 @@ impl TimeOptimal {
         }
     }
 
-    /// The bound that plans are measured by: the whole path from rest to rest as one window, with the tolerance held at its nodes
-    /// only. Memory and latency grow with the program.
+    /// The bound that plans are measured by: the whole path from rest to rest as one window, with
+    /// the tolerance held at its nodes only. Memory and latency grow with the program.
     pub fn whole(constraints: &Constraints) -> Self {
-        Self { at_nodes: true, ..Self::whole_within(constraints) }
+        Self {
+            at_nodes: true,
+            ..Self::whole_within(constraints)
+        }
     }
 
-    /// The same within the tolerance everywhere, as far as that comes to a solution: what streaming costs shows beside it.
+    /// The same within the tolerance everywhere, as far as that comes to a solution: what streaming
+    /// costs shows beside it.
     pub fn whole_within(constraints: &Constraints) -> Self {
-        Self { whole: true, ..Self::new(constraints) }
+        Self {
+            whole: true,
+            ..Self::new(constraints)
+        }
     }
 
     /// What has been done so far.
@@ -215,9 +241,16 @@ impl TimeOptimal {
     }
 
     fn step_s(&self) -> f64 {
-        let jerk = self.caps.axes.iter().map(|limits| limits.jerk_mm_s3).fold(0.0, f64::max);
+        let jerk = self
+            .caps
+            .axes
+            .iter()
+            .map(|limits| limits.jerk_mm_s3)
+            .fold(0.0, f64::max);
         let step_s = STEP * libm::cbrt(self.tolerance_mm / jerk);
-        step_s.clamp(STEPS_S[0], STEPS_S[1]).max(LEAST_WAY * self.tolerance_mm / self.feed_mm_s)
+        step_s
+            .clamp(STEPS_S[0], STEPS_S[1])
+            .max(LEAST_WAY * self.tolerance_mm / self.feed_mm_s)
     }
 
     /// Steps of a window.
@@ -247,7 +280,8 @@ impl TimeOptimal {
         if self.track.ended {
             return self.from.s_mm < self.track.end_mm;
         }
-        !self.track.is_empty() && self.track.ahead_s(self.from.s_mm) > self.window() as f64 * self.step_s()
+        !self.track.is_empty()
+            && self.track.ahead_s(self.from.s_mm) > self.window() as f64 * self.step_s()
     }
 
     /// Plans what is due.
@@ -259,11 +293,21 @@ impl TimeOptimal {
 
     /// Commits the next part of the motion.
     fn plan_window(&mut self) {
-        let only = self.track.only().filter(|_| self.track.ended && self.from.s_mm == 0.0);
+        let only = self
+            .track
+            .only()
+            .filter(|_| self.track.ended && self.from.s_mm == 0.0);
         if let Some(piece) = only.filter(|piece| piece.curve.is_straight()) {
-            let (length_mm, feed_mm_s) = (piece.length_mm, self.track.least_mm_s(0.0, piece.length_mm));
+            let (length_mm, feed_mm_s) =
+                (piece.length_mm, self.track.least_mm_s(0.0, piece.length_mm));
             let to_mm = piece.curve.at(length_mm).position_mm;
-            let steps = straight(self.from.motion.position_mm, to_mm, [0.0, length_mm], feed_mm_s, &self.caps);
+            let steps = straight(
+                self.from.motion.position_mm,
+                to_mm,
+                [0.0, length_mm],
+                feed_mm_s,
+                &self.caps,
+            );
             self.hand_out(&steps);
             self.from.s_mm = self.track.end_mm;
             return;
@@ -286,11 +330,14 @@ impl TimeOptimal {
         }
     }
 
-    /// The steps of the next window, and whether they lead to the end of the track: within the tolerance, or from a narrower tube on to
-    /// wider ones, each from the solution of the one before.
+    /// The steps of the next window, and whether they lead to the end of the track: within the
+    /// tolerance, or from a narrower tube on to wider ones, each from the solution of the one
+    /// before.
     fn solve_window(&mut self) -> Option<(Vec<PlannedStep>, bool)> {
-        let (narrow, mut found) =
-            TOLERANCE_PARTS.iter().enumerate().find_map(|(i, &part)| Some((i, self.solve_within(part)?)))?;
+        let (narrow, mut found) = TOLERANCE_PARTS
+            .iter()
+            .enumerate()
+            .find_map(|(i, &part)| Some((i, self.solve_within(part)?)))?;
         for &part in TOLERANCE_PARTS[..narrow].iter().rev() {
             let step_s = self.step_s() * libm::cbrt(part);
             match self.solve_behind(&found.0, part, step_s, Followed::UntilBraking) {
@@ -301,21 +348,30 @@ impl TimeOptimal {
         Some(found)
     }
 
-    /// The steps of the next window within a part of the tolerance, and whether they lead to the end of the track.
+    /// The steps of the next window within a part of the tolerance, and whether they lead to the
+    /// end of the track.
     fn solve_within(&mut self, part: f64) -> Option<(Vec<PlannedStep>, bool)> {
         let mut step_s = self.step_s() * libm::cbrt(part);
         if !self.tail.is_empty() {
             let tail = self.tail.clone();
             let found = self.solve_behind(&tail, part, step_s, Followed::UntilBraking);
-            return found.or_else(|| self.solve_behind(&tail, part, step_s, Followed::AlmostToRest));
+            return found
+                .or_else(|| self.solve_behind(&tail, part, step_s, Followed::AlmostToRest));
         }
-        // From rest nothing is known of the times of nodes but an estimate: the solution for it gives better ones.
+        // From rest nothing is known of the times of nodes but an estimate: the solution for it
+        // gives better ones.
         let (nodes, _) = self.mesh(&[], part, step_s, Followed::UntilBraking);
         if nodes.len() <= FEWEST {
             step_s *= nodes.len() as f64 / (2 * FEWEST) as f64;
         }
         let (nodes, ends) = self.mesh(&[], part, step_s, Followed::UntilBraking);
-        let first = self.solution(&nodes, &vec![1.0; nodes.len() - 1], ends, step_s, &GUESSES[1..])?;
+        let first = self.solution(
+            &nodes,
+            &vec![1.0; nodes.len() - 1],
+            ends,
+            step_s,
+            &GUESSES[1..],
+        )?;
         let time_s: f64 = first.iter().map(|step| step.duration_s).sum();
         if ends {
             step_s = step_s.min(time_s / FEWEST as f64);
@@ -323,14 +379,41 @@ impl TimeOptimal {
         self.solve_behind(&first, part, step_s, Followed::UntilBraking)
     }
 
-    fn mesh(&self, known: &[PlannedStep], part: f64, step_s: f64, followed: Followed) -> (Vec<MeshNode>, bool) {
+    fn mesh(
+        &self,
+        known: &[PlannedStep],
+        part: f64,
+        step_s: f64,
+        followed: Followed,
+    ) -> (Vec<MeshNode>, bool) {
         let most = self.window();
-        let most = if self.track.ended { most + most / 4 } else { most };
-        let radius_part = if self.at_nodes { part } else { part * RADIUS_PART };
-        let mut mesh = Mesh::new(&self.track, &self.caps, step_s, most, radius_part, self.from);
+        let most = if self.track.ended {
+            most + most / 4
+        } else {
+            most
+        };
+        let radius_part = if self.at_nodes {
+            part
+        } else {
+            part * RADIUS_PART
+        };
+        let mut mesh = Mesh::new(
+            &self.track,
+            &self.caps,
+            step_s,
+            most,
+            radius_part,
+            self.from,
+        );
         let time_s: f64 = known.iter().map(|step| step.duration_s).sum();
-        let ends = self.track.ended && known.last().is_some_and(|step| step.to_mm >= self.track.end_mm);
-        let fastest = known.iter().map(|step| norm(step.motion.velocity_mm_s)).fold(0.0, f64::max);
+        let ends = self.track.ended
+            && known
+                .last()
+                .is_some_and(|step| step.to_mm >= self.track.end_mm);
+        let fastest = known
+            .iter()
+            .map(|step| norm(step.motion.velocity_mm_s))
+            .fold(0.0, f64::max);
         let until_s = match followed {
             _ if ends => time_s - 2.0 * step_s,
             Followed::UntilBraking => time_s - 1.2 * self.caps.stop_s(fastest),
@@ -352,12 +435,17 @@ impl TimeOptimal {
         let (mut nodes, ends) = self.mesh(known, part, step_s, followed);
         let mut feed_parts = vec![1.0 - FEED_MARGIN; nodes.len() - 1];
         for round in 0..ROUNDS {
-            let guesses = if round == 0 { &GUESSES[1..] } else { &GUESSES[..] };
+            let guesses = if round == 0 {
+                &GUESSES[1..]
+            } else {
+                &GUESSES[..]
+            };
             let steps = self.solution(&nodes, &feed_parts, ends, step_s, guesses)?;
             if self.at_nodes {
                 return Some((steps, ends));
             }
-            // The solver's rounding over steps of a fraction of a microsecond, in a window that hardly moves.
+            // The solver's rounding over steps of a fraction of a microsecond, in a window that
+            // hardly moves.
             if steps.iter().any(|step| !self.caps.keeps_jerk(step)) {
                 return None;
             }
@@ -365,14 +453,22 @@ impl TimeOptimal {
             let mut excesses = path_deviation::excesses(&self.track, &self.caps, &steps, soon);
             if round + 1 == ROUNDS {
                 excesses.retain(|excess| {
-                    excess.tube_mm > LAST_OVER_MM || excess.feed_part < 1.0 - LAST_OVER || excess.axes_mm_s.is_finite()
+                    excess.tube_mm > LAST_OVER_MM
+                        || excess.feed_part < 1.0 - LAST_OVER
+                        || excess.axes_mm_s.is_finite()
                 });
             }
             if excesses.is_empty() {
                 return Some((steps, ends));
             }
-            (nodes, feed_parts) =
-                path_deviation::tightened(&nodes, &feed_parts, &steps, &excesses, step_s, &self.track);
+            (nodes, feed_parts) = path_deviation::tightened(
+                &nodes,
+                &feed_parts,
+                &steps,
+                &excesses,
+                step_s,
+                &self.track,
+            );
         }
         None
     }
@@ -386,7 +482,11 @@ impl TimeOptimal {
         guesses: &[(Option<f64>, f64)],
     ) -> Option<Vec<PlannedStep>> {
         for &(slower, first_mu) in guesses {
-            let settings = SolverSettings { first_mu, last_mu: LAST_MU, most_iterations: self.most_iterations() };
+            let settings = SolverSettings {
+                first_mu,
+                last_mu: LAST_MU,
+                most_iterations: self.most_iterations(),
+            };
             let (track, caps, tolerance_mm) = (&self.track, &self.caps, self.tolerance_mm);
             let offset_cost = if self.at_nodes { 0.0 } else { OFFSET_COST };
             let problem = MeshProblem {
@@ -411,7 +511,8 @@ impl TimeOptimal {
         None
     }
 
-    /// How many steps may be committed before another window is solved: of the others, the tube at nodes is enough.
+    /// How many steps may be committed before another window is solved: of the others, the tube at
+    /// nodes is enough.
     fn soon(&self, steps: &[PlannedStep]) -> usize {
         let until_s = 2.0 * self.committed_s(steps);
         let mut time_s = 0.0;
@@ -444,11 +545,20 @@ impl TimeOptimal {
         let steps: Vec<PlannedStep> = self.tail.drain(..count).collect();
         self.hand_out(&steps);
         if let Some(last) = steps.last() {
-            let mut motion = AxisMotion { jerk_mm_s3: [0.0; 3], ..last.motion.after(last.duration_s) };
+            let mut motion = AxisMotion {
+                jerk_mm_s3: [0.0; 3],
+                ..last.motion.after(last.duration_s)
+            };
             if self.tail.is_empty() {
-                motion = AxisMotion { position_mm: motion.position_mm, ..AxisMotion::REST };
+                motion = AxisMotion {
+                    position_mm: motion.position_mm,
+                    ..AxisMotion::REST
+                };
             }
-            self.from = MeshStart { s_mm: last.to_mm, motion };
+            self.from = MeshStart {
+                s_mm: last.to_mm,
+                motion,
+            };
         }
         self.track.forget_before(self.from.s_mm);
     }
@@ -460,30 +570,49 @@ impl TimeOptimal {
         let start_mm = motion.position_mm;
         let mut way_mm = self.track.end_mm - s_mm;
         let mut to_mm = self.track.at(s_mm + way_mm).position_mm;
-        while way_mm > 1e-3 * self.tolerance_mm && !self.is_within(start_mm, to_mm, [s_mm, s_mm + way_mm]) {
+        while way_mm > 1e-3 * self.tolerance_mm
+            && !self.is_within(start_mm, to_mm, [s_mm, s_mm + way_mm])
+        {
             way_mm *= 0.5;
             to_mm = self.track.at(s_mm + way_mm).position_mm;
         }
         // At an end that is not the end of the track the rest is by chance as good as anywhere.
-        let end_mm = if s_mm + way_mm > s_mm { s_mm + way_mm } else { self.track.end_mm };
+        let end_mm = if s_mm + way_mm > s_mm {
+            s_mm + way_mm
+        } else {
+            self.track.end_mm
+        };
         let feed_mm_s = self.track.least_mm_s(s_mm, end_mm);
         let steps = straight(start_mm, to_mm, [s_mm, end_mm], feed_mm_s, &self.caps);
         self.hand_out(&steps);
-        self.from = MeshStart { s_mm: end_mm, motion: AxisMotion { position_mm: to_mm, ..AxisMotion::REST } };
+        self.from = MeshStart {
+            s_mm: end_mm,
+            motion: AxisMotion {
+                position_mm: to_mm,
+                ..AxisMotion::REST
+            },
+        };
         self.track.forget_before(end_mm);
     }
 
-    /// Whether a straight line and a part of the path are within the tolerance of each other, looked at closely.
+    /// Whether a straight line and a part of the path are within the tolerance of each other,
+    /// looked at closely.
     fn is_within(&self, from_mm: [f64; 3], to_mm: [f64; 3], [lo_mm, hi_mm]: [f64; 2]) -> bool {
         let most_mm = 0.95 * self.tolerance_mm;
         let chord = sub(to_mm, from_mm);
         let square = dot(chord, chord).max(1e-24);
         let from_chord = |point: [f64; 3]| {
             let along = (dot(sub(point, from_mm), chord) / square).clamp(0.0, 1.0);
-            norm(std::array::from_fn::<f64, 3, _>(|k| from_mm[k] + along * chord[k] - point[k]))
+            norm(std::array::from_fn::<f64, 3, _>(|k| {
+                from_mm[k] + along * chord[k] - point[k]
+            }))
         };
         let parts = (1..64).map(|m| f64::from(m) / 64.0);
-        let joints = self.track.between(lo_mm, hi_mm).filter(|piece| piece.s_mm > lo_mm).map(|piece| piece.s_mm);
+        let joints = self
+            .track
+            .between(lo_mm, hi_mm)
+            .filter(|piece| piece.s_mm > lo_mm)
+            .map(|piece| piece.s_mm);
         parts
             .clone()
             .map(|part| lo_mm + part * (hi_mm - lo_mm))
@@ -502,14 +631,20 @@ impl TimeOptimal {
             let mut from_s = 0.0;
             for piece in self.track.between(step.from_mm, step.to_mm) {
                 let end_mm = piece.s_mm + piece.length_mm;
-                let until_s =
-                    if end_mm < step.to_mm { time_of_place(&powers, end_mm, step.duration_s) } else { step.duration_s };
+                let until_s = if end_mm < step.to_mm {
+                    time_of_place(&powers, end_mm, step.duration_s)
+                } else {
+                    step.duration_s
+                };
                 if until_s > from_s {
                     self.ready.push_back(Span {
                         piece: piece.number,
-                        from_mm: (place_after(&powers, from_s) - piece.s_mm).max(0.0).min(piece.length_mm),
+                        from_mm: (place_after(&powers, from_s) - piece.s_mm)
+                            .max(0.0)
+                            .min(piece.length_mm),
                         duration_s: until_s - from_s,
-                        speed_mm_s: powers[1] + from_s * (2.0 * powers[2] + from_s * 3.0 * powers[3]),
+                        speed_mm_s: powers[1]
+                            + from_s * (2.0 * powers[2] + from_s * 3.0 * powers[3]),
                         accel_mm_s2: 2.0 * powers[2] + 6.0 * powers[3] * from_s,
                         jerk_mm_s3: 6.0 * powers[3],
                         motion: Some(step.motion.after(from_s)),
@@ -538,7 +673,10 @@ impl FeedPlanner for TimeOptimal {
             self.begin_track();
         }
         if self.track.is_empty() {
-            let motion = AxisMotion { position_mm: begin.position_mm, ..AxisMotion::REST };
+            let motion = AxisMotion {
+                position_mm: begin.position_mm,
+                ..AxisMotion::REST
+            };
             self.from = MeshStart { s_mm: 0.0, motion };
         }
         let feed_mm_s = feed_mm_s(piece, &self.constraints);

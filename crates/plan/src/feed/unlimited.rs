@@ -1,7 +1,8 @@
 //! The null member: no bound on the tangential acceleration.
 //!
-//! Every section is passed at its own bound, `v^2` straight over arc length from one end to the other, and joints cost
-//! nothing: a stop takes no time. No plan is faster; what a real planner needs beyond this is the cost of acceleration.
+//! Every section is passed at its own bound, `v^2` straight over arc length from one end to the
+//! other, and joints cost nothing: a stop takes no time. No plan is faster; what a real planner
+//! needs beyond this is the cost of acceleration.
 
 use super::Span;
 use super::sections::{Section, SectionPlanner};
@@ -15,7 +16,14 @@ pub struct Unlimited {
 
 impl SectionPlanner for Unlimited {
     fn push(&mut self, section: Section) {
-        let Section { piece, from_mm, length_mm, start_cap, end_cap, .. } = section;
+        let Section {
+            piece,
+            from_mm,
+            length_mm,
+            start_cap,
+            end_cap,
+            ..
+        } = section;
         let (start, end) = (start_cap.sqrt(), end_cap.sqrt());
         self.ready.push_back(Span {
             piece,

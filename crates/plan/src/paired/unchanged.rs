@@ -15,7 +15,11 @@ pub(crate) struct UnchangedSteps<'p> {
 impl<'p> UnchangedSteps<'p> {
     /// Of the steps of a program.
     pub(crate) const fn new(steps: Steps<'p>) -> Self {
-        Self { steps, pieces: 0, next: None }
+        Self {
+            steps,
+            pieces: 0,
+            next: None,
+        }
     }
 }
 

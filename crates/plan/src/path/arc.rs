@@ -1,7 +1,8 @@
 //! Circular arc and helix by arc length.
 //!
-//! With `t0` and `n0` the unit tangent and the unit vector to the centre at the start, both in the plane of the circle,
-//! `phi = s cos(gamma) / R` the angle turned and `h` the rise along the plane's normal for each mm of path:
+//! With `t0` and `n0` the unit tangent and the unit vector to the centre at the start, both in the
+//! plane of the circle, `phi = s cos(gamma) / R` the angle turned and `h` the rise along the
+//! plane's normal for each mm of path:
 //!
 //! `p(s) = start + R (sin(phi) t0 + (1 - cos(phi)) n0) + s h`
 //!
@@ -14,7 +15,8 @@ use super::{Derivatives, Point};
 use crate::vector::{Vector, add_scaled, cross, distance, dot, scale, sub};
 use std::f64::consts::{PI, TAU};
 
-/// Newton steps for the nearest point of a helix; the iteration is monotone and quadratic, it needs about six.
+/// Newton steps for the nearest point of a helix; the iteration is monotone and quadratic, it needs
+/// about six.
 const MAX_NEWTON_STEPS: usize = 60;
 
 /// Circular arc, possibly of several turns, possibly rising along its axis.
@@ -36,10 +38,16 @@ pub struct Arc {
 }
 
 impl Arc {
-    /// The arc that starts at `start_mm`, turns by `sweep_rad` (positive is counter-clockwise seen from the plane's positive
-    /// normal) about the centre at `to_center_mm` (first and second axis of `plane`) from the start, and rises by
-    /// `rise_mm`.
-    pub(super) fn new(start_mm: Vector, to_center_mm: [f64; 2], plane: Plane, sweep_rad: f64, rise_mm: f64) -> Self {
+    /// The arc that starts at `start_mm`, turns by `sweep_rad` (positive is counter-clockwise seen
+    /// from the plane's positive normal) about the centre at `to_center_mm` (first and second axis
+    /// of `plane`) from the start, and rises by `rise_mm`.
+    pub(super) fn new(
+        start_mm: Vector,
+        to_center_mm: [f64; 2],
+        plane: Plane,
+        sweep_rad: f64,
+        rise_mm: f64,
+    ) -> Self {
         let [first, second, normal] = plane.axes();
         let radius_mm = libm::hypot(to_center_mm[0], to_center_mm[1]);
         let inward = [to_center_mm[0] / radius_mm, to_center_mm[1] / radius_mm];
@@ -48,7 +56,8 @@ impl Arc {
         let mut normal0 = [0.0; 3];
         normal0[first] = inward[0];
         normal0[second] = inward[1];
-        // Counter-clockwise travel has the centre on its left: the tangent is the inward normal turned by -90 degrees.
+        // Counter-clockwise travel has the centre on its left: the tangent is the inward normal
+        // turned by -90 degrees.
         let mut tangent0 = [0.0; 3];
         tangent0[first] = sense * inward[1];
         tangent0[second] = -sense * inward[0];
@@ -118,14 +127,20 @@ impl Arc {
         let mut position_mm = [0.0; 3];
         let mut tangent = [0.0; 3];
         for k in 0..3 {
-            position_mm[k] =
-                self.start_mm[k] + across * self.tangent0[k] + inward * self.normal0[k] + s_mm * self.rise[k];
+            position_mm[k] = self.start_mm[k]
+                + across * self.tangent0[k]
+                + inward * self.normal0[k]
+                + s_mm * self.rise[k];
             tangent[k] = forward * self.tangent0[k] + sideways * self.normal0[k] + self.rise[k];
         }
-        Point { position_mm, tangent }
+        Point {
+            position_mm,
+            tangent,
+        }
     }
 
-    /// Derivatives at `s_mm`: with `phi' = k`, `p'' = R k^2 (cos(phi) n0 - sin(phi) t0)`, `p''' = -R k^3 (cos(phi) t0 + sin(phi) n0)`.
+    /// Derivatives at `s_mm`: with `phi' = k`, `p'' = R k^2 (cos(phi) n0 - sin(phi) t0)`, `p''' =
+    /// -R k^3 (cos(phi) t0 + sin(phi) n0)`.
     pub fn derivatives(&self, s_mm: f64) -> Derivatives {
         let (sin, cos) = libm::sincos(self.turn_rad_mm * s_mm);
         let along = add_scaled(scale(cos, self.tangent0), sin, self.normal0);
@@ -147,19 +162,34 @@ impl Arc {
         let outward = self.radius_mm - dot(from_start, self.normal0);
         let bearing = libm::atan2(across, outward);
         let s_mm = if self.rise == [0.0; 3] {
-            nearest_angle(bearing, self.turn_rad_mm * lo_mm, self.turn_rad_mm * hi_mm) / self.turn_rad_mm
+            nearest_angle(bearing, self.turn_rad_mm * lo_mm, self.turn_rad_mm * hi_mm)
+                / self.turn_rad_mm
         } else {
-            self.nearest_on_helix(point_mm, bearing, libm::hypot(across, outward), lo_mm, hi_mm)
+            self.nearest_on_helix(
+                point_mm,
+                bearing,
+                libm::hypot(across, outward),
+                lo_mm,
+                hi_mm,
+            )
         };
         s_mm.min(hi_mm).max(lo_mm)
     }
 
-    /// Half the derivative of the squared distance with respect to phi is `R rho sin(x) + k^2 (x - z)` where `x` is phi
-    /// counted from the point's bearing in some turn, `rho` the point's distance from the axis, `k` the rise per radian
-    /// and `z` the value of `x` at which the helix is as high as the point. The best turn is the one nearest in height;
-    /// if its minimum lies outside the bounds, the best is a minimum of the nearest turn inside them, or a bound.
+    /// Half the derivative of the squared distance with respect to phi is `R rho sin(x) + k^2 (x -
+    /// z)` where `x` is phi counted from the point's bearing in some turn, `rho` the point's
+    /// distance from the axis, `k` the rise per radian and `z` the value of `x` at which the helix
+    /// is as high as the point. The best turn is the one nearest in height; if its minimum lies
+    /// outside the bounds, the best is a minimum of the nearest turn inside them, or a bound.
     #[cold]
-    fn nearest_on_helix(&self, point_mm: Vector, bearing: f64, rho: f64, lo_mm: f64, hi_mm: f64) -> f64 {
+    fn nearest_on_helix(
+        &self,
+        point_mm: Vector,
+        bearing: f64,
+        rho: f64,
+        lo_mm: f64,
+        hi_mm: f64,
+    ) -> f64 {
         let rise_mm_mm = self.rise[0] + self.rise[1] + self.rise[2];
         let per_rad = rise_mm_mm / self.turn_rad_mm;
         let height = dot(sub(point_mm, self.start_mm), self.rise) / rise_mm_mm;
@@ -197,8 +227,8 @@ impl Arc {
     }
 }
 
-/// The angle equal to `bearing` up to whole turns that lies between the bounds, the smallest if there are several, or the
-/// bound nearest to it.
+/// The angle equal to `bearing` up to whole turns that lies between the bounds, the smallest if
+/// there are several, or the bound nearest to it.
 #[inline]
 fn nearest_angle(bearing: f64, lo: f64, hi: f64) -> f64 {
     let above = bearing + TAU * ((lo - bearing) / TAU).ceil();
@@ -213,11 +243,16 @@ fn nearest_angle(bearing: f64, lo: f64, hi: f64) -> f64 {
 
 /// Root of `x + pull sin(x) = level` in `[-pi, pi]` that is a minimum, where there is one.
 ///
-/// For `level >= 0` the left side rises from 0 and is concave up to its crest at `cos(x) = -1/pull`; Newton from 0 stays
-/// left of the root and converges monotonically. Beyond the crest there are only maxima.
+/// For `level >= 0` the left side rises from 0 and is concave up to its crest at `cos(x) =
+/// -1/pull`; Newton from 0 stays left of the root and converges monotonically. Beyond the crest
+/// there are only maxima.
 fn turn_minimum(pull: f64, level: f64) -> Option<f64> {
     let target = level.abs();
-    let crest = if pull > 1.0 { libm::acos(-1.0 / pull) } else { PI };
+    let crest = if pull > 1.0 {
+        libm::acos(-1.0 / pull)
+    } else {
+        PI
+    };
     if target > crest + pull * libm::sin(crest) {
         return None;
     }
@@ -225,7 +260,11 @@ fn turn_minimum(pull: f64, level: f64) -> Option<f64> {
     for _ in 0..MAX_NEWTON_STEPS {
         let (sin, cos) = libm::sincos(x);
         let slope = 1.0 + pull * cos;
-        let next = if slope > 0.0 { x + (target - x - pull * sin) / slope } else { crest };
+        let next = if slope > 0.0 {
+            x + (target - x - pull * sin) / slope
+        } else {
+            crest
+        };
         let next = next.min(crest);
         // Monotone from the left: as soon as it no longer advances, it is there.
         if next <= x {
@@ -236,14 +275,19 @@ fn turn_minimum(pull: f64, level: f64) -> Option<f64> {
     Some(x.copysign(level))
 }
 
-/// Centre of a circle through both ends of `chord` that turns by at most half a turn in `sense`, as near as possible to
-/// `to_center`; both relative to the start of the chord. Returns the new centre and the sweep.
+/// Centre of a circle through both ends of `chord` that turns by at most half a turn in `sense`, as
+/// near as possible to `to_center`; both relative to the start of the chord. Returns the new centre
+/// and the sweep.
 pub(super) fn recenter(chord: [f64; 2], to_center: [f64; 2], sense: f64) -> ([f64; 2], f64) {
     let length = libm::hypot(chord[0], chord[1]);
     // Unit normal of the chord on the side of the centre.
     let side = [-sense * chord[1] / length, sense * chord[0] / length];
-    let height = (to_center[0] - 0.5 * chord[0]) * side[0] + (to_center[1] - 0.5 * chord[1]) * side[1];
-    let center = [0.5 * chord[0] + height * side[0], 0.5 * chord[1] + height * side[1]];
+    let height =
+        (to_center[0] - 0.5 * chord[0]) * side[0] + (to_center[1] - 0.5 * chord[1]) * side[1];
+    let center = [
+        0.5 * chord[0] + height * side[0],
+        0.5 * chord[1] + height * side[1],
+    ];
     (center, sense * 2.0 * libm::atan2(0.5 * length, height))
 }
 
@@ -256,7 +300,11 @@ mod tests {
     fn recentering_puts_both_ends_on_the_circle() {
         // Quarter circle of radius 10 whose centre misses by 0.01 mm.
         let (center, sweep) = recenter([-10.0, 10.0], [-10.01, 0.003], 1.0);
-        assert!((libm::hypot(center[0], center[1]) - libm::hypot(center[0] + 10.0, center[1] - 10.0)).abs() < 1e-14);
+        assert!(
+            (libm::hypot(center[0], center[1]) - libm::hypot(center[0] + 10.0, center[1] - 10.0))
+                .abs()
+                < 1e-14
+        );
         assert!((sweep - PI / 2.0).abs() < 2e-3);
         let arc = Arc::new([10.0, 0.0, 0.0], center, Plane::Xy, sweep, 0.0);
         assert!(arc.end_error_mm([0.0, 10.0, 0.0]) < 1e-14);
@@ -274,9 +322,19 @@ mod tests {
 
     #[test]
     fn a_turn_minimum_is_a_root() {
-        for (pull, level) in [(0.3, 1.0), (5.0, 2.0), (40.0, -3.0), (1.0, 3.1), (1e-9, -2.0), (1e6, 0.0)] {
+        for (pull, level) in [
+            (0.3, 1.0),
+            (5.0, 2.0),
+            (40.0, -3.0),
+            (1.0, 3.1),
+            (1e-9, -2.0),
+            (1e6, 0.0),
+        ] {
             let x = turn_minimum(pull, level).unwrap();
-            assert!((x + pull * libm::sin(x) - level).abs() < 1e-9 * (1.0 + pull), "{pull} {level} {x}");
+            assert!(
+                (x + pull * libm::sin(x) - level).abs() < 1e-9 * (1.0 + pull),
+                "{pull} {level} {x}"
+            );
         }
         assert!(turn_minimum(0.5, 4.0).is_none());
     }

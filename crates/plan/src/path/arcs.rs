@@ -1,16 +1,18 @@
 //! An arc motion as arcs that meet both of its ends.
 //!
-//! Programs round their numbers, so the programmed centre `c` is seldom equally far from start and end. Both ends hold and
-//! the centre stays; what is cut is then no circle but a spiral, whose radius changes evenly with the angle over all turns:
+//! Programs round their numbers, so the programmed centre `c` is seldom equally far from start and
+//! end. Both ends hold and the centre stays; what is cut is then no circle but a spiral, whose
+//! radius changes evenly with the angle over all turns:
 //!
 //! `r(phi) = r_start + (r_end - r_start) phi / sweep`
 //!
-//! This is what LinuxCNC 2.9 does, measured on its motion (1 kHz, slow enough that the interpolation shows nothing).
-//! The spiral is cut into circular arcs that begin and end on it, each re-centred on the perpendicular bisector of its
-//! chord. With `k = (r_end - r_start) / sweep` an arc over the angle `d` leaves the spiral by `k d^3 / (72 sqrt 3)` (its
-//! radius changes as a sine, not evenly) and by `k^2 d^2 / (8 r)` (its centre is off by `k`); it runs ahead by `k d^2 / 8`,
-//! which a helix sees times the sine of its pitch angle; and it meets the next one with a kink of `k d^2 / (6 r)`. These
-//! four choose `d`.
+//! This is what LinuxCNC 2.9 does, measured on its motion (1 kHz, slow enough that the
+//! interpolation shows nothing). The spiral is cut into circular arcs that begin and end on it,
+//! each re-centred on the perpendicular bisector of its chord. With `k = (r_end - r_start) / sweep`
+//! an arc over the angle `d` leaves the spiral by `k d^3 / (72 sqrt 3)` (its radius changes as a
+//! sine, not evenly) and by `k^2 d^2 / (8 r)` (its centre is off by `k`); it runs ahead by `k d^2 /
+//! 8`, which a helix sees times the sine of its pitch angle; and it meets the next one with a kink
+//! of `k d^2 / (6 r)`. These four choose `d`.
 
 use feedwright_gcode::canon::Plane;
 
@@ -19,18 +21,21 @@ use super::{MIN_LENGTH_MM, PathError};
 use crate::vector::Vector;
 use std::f64::consts::{PI, TAU};
 
-/// An arc whose ends are this close, seen along the circle, is a full turn. Measured on LinuxCNC 2.9 with radii of 2 and
-/// 20 mm: 6e-9 mm is a full turn, 1e-8 mm is no motion to speak of. Offsets and inches add rounding far below this.
+/// An arc whose ends are this close, seen along the circle, is a full turn. Measured on LinuxCNC
+/// 2.9 with radii of 2 and 20 mm: 6e-9 mm is a full turn, 1e-8 mm is no motion to speak of. Offsets
+/// and inches add rounding far below this.
 const FULL_TURN_MM: f64 = 8e-9;
 
-/// Radii that differ by less than this are equal: the ends then meet the circle to better than the path's exactness.
+/// Radii that differ by less than this are equal: the ends then meet the circle to better than the
+/// path's exactness.
 const EQUAL_RADII_MM: f64 = 1e-10;
 
-/// An arc leaves the spiral by less than this for each of three reasons: together less than a third of what is resolved
-/// elsewhere ([`super::MAX_GAP_MM`]).
+/// An arc leaves the spiral by less than this for each of three reasons: together less than a third
+/// of what is resolved elsewhere ([`super::MAX_GAP_MM`]).
 const SPIRAL_WITHIN_MM: f64 = 1e-7;
 
-/// Largest kink where two arcs of a spiral meet: half of what the feed plan takes for a tangent joint.
+/// Largest kink where two arcs of a spiral meet: half of what the feed plan takes for a tangent
+/// joint.
 const SPIRAL_KINK_RAD: f64 = 5e-4;
 
 /// A spiral has no more arcs than this, so that memory stays bounded whatever a motion says.
@@ -51,20 +56,36 @@ pub(super) struct Request {
 
 /// Arcs of a motion, in order, each with its start.
 pub(super) fn arcs(request: &Request) -> Result<Vec<(Vector, Arc)>, PathError> {
-    let Request { line, start_mm, end_mm, plane, center_mm, turns } = *request;
+    let Request {
+        line,
+        start_mm,
+        end_mm,
+        plane,
+        center_mm,
+        turns,
+    } = *request;
     if turns == 0 {
         return Err(PathError::ArcTurns { line });
     }
     let [first, second, normal] = plane.axes();
-    let [from, to] = [start_mm, end_mm].map(|at| [at[first] - center_mm[first], at[second] - center_mm[second]]);
+    let [from, to] =
+        [start_mm, end_mm].map(|at| [at[first] - center_mm[first], at[second] - center_mm[second]]);
     let [radius_from, radius_to] = [from, to].map(|at| libm::hypot(at[0], at[1]));
     let radius_mm = radius_from.min(radius_to);
     if radius_mm < MIN_LENGTH_MM {
         return Err(PathError::ArcRadius { line, radius_mm });
     }
     let sense = f64::from(turns.signum());
-    let between = sense * libm::atan2(from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]);
-    let last_turn = if between * radius_mm > FULL_TURN_MM { between } else { between + TAU };
+    let between = sense
+        * libm::atan2(
+            from[0] * to[1] - from[1] * to[0],
+            from[0] * to[0] + from[1] * to[1],
+        );
+    let last_turn = if between * radius_mm > FULL_TURN_MM {
+        between
+    } else {
+        between + TAU
+    };
     let whole_turns = f64::from(turns.unsigned_abs() - 1);
     let sweep = last_turn + TAU * whole_turns;
     let rise_per_rad = (end_mm[normal] - start_mm[normal]) / sweep;
@@ -72,7 +93,16 @@ pub(super) fn arcs(request: &Request) -> Result<Vec<(Vector, Arc)>, PathError> {
     // Turns by `sweep` about the programmed centre.
     let turning = |sweep: f64| {
         let to_center = [-from[0], -from[1]];
-        (start_mm, Arc::new(start_mm, to_center, plane, sense * sweep, rise_per_rad * sweep))
+        (
+            start_mm,
+            Arc::new(
+                start_mm,
+                to_center,
+                plane,
+                sense * sweep,
+                rise_per_rad * sweep,
+            ),
+        )
     };
     let change_mm = radius_to - radius_from;
     if change_mm.abs() <= EQUAL_RADII_MM && sweep > PI {
@@ -103,9 +133,15 @@ pub(super) fn arcs(request: &Request) -> Result<Vec<(Vector, Arc)>, PathError> {
             point
         };
         let chord = [next[first] - here[first], next[second] - here[second]];
-        let to_center = [center_mm[first] - here[first], center_mm[second] - here[second]];
+        let to_center = [
+            center_mm[first] - here[first],
+            center_mm[second] - here[second],
+        ];
         let (to_center, turned) = recenter(chord, to_center, sense);
-        arcs.push((here, Arc::new(here, to_center, plane, turned, next[normal] - here[normal])));
+        arcs.push((
+            here,
+            Arc::new(here, to_center, plane, turned, next[normal] - here[normal]),
+        ));
         here = next;
     }
     Ok(arcs)
@@ -114,14 +150,21 @@ pub(super) fn arcs(request: &Request) -> Result<Vec<(Vector, Arc)>, PathError> {
 /// Number of arcs for a spiral whose radius changes by `change_mm`: see the head of this file.
 fn arcs_of_spiral(change_mm: f64, sweep_rad: f64, radius_mm: f64, rise_per_rad: f64) -> u32 {
     let change_mm = change_mm.abs();
-    let by_sine = libm::cbrt(change_mm * sweep_rad * sweep_rad / (72.0 * 3.0f64.sqrt() * SPIRAL_WITHIN_MM));
+    let by_sine =
+        libm::cbrt(change_mm * sweep_rad * sweep_rad / (72.0 * 3.0f64.sqrt() * SPIRAL_WITHIN_MM));
     let by_center = change_mm * (8.0 * radius_mm * SPIRAL_WITHIN_MM).sqrt().recip();
     let pitch_sine = rise_per_rad.abs() / libm::hypot(rise_per_rad, radius_mm);
     let by_pitch = (change_mm * sweep_rad * pitch_sine / (8.0 * SPIRAL_WITHIN_MM)).sqrt();
     let by_kink = (change_mm * sweep_rad / (6.0 * radius_mm * SPIRAL_KINK_RAD)).sqrt();
     // An arc that is re-centred turns by half a turn at most.
     let by_turn = sweep_rad / PI;
-    by_sine.max(by_center).max(by_pitch).max(by_kink).max(by_turn).clamp(1.0, MAX_ARCS).ceil() as u32
+    by_sine
+        .max(by_center)
+        .max(by_pitch)
+        .max(by_kink)
+        .max(by_turn)
+        .clamp(1.0, MAX_ARCS)
+        .ceil() as u32
 }
 
 #[cfg(test)]
@@ -130,13 +173,26 @@ mod tests {
     use proptest::prelude::*;
 
     fn request(start_mm: Vector, end_mm: Vector, center_mm: Vector, turns: i32) -> Request {
-        Request { line: 1, start_mm, end_mm, plane: Plane::Xy, center_mm, turns }
+        Request {
+            line: 1,
+            start_mm,
+            end_mm,
+            plane: Plane::Xy,
+            center_mm,
+            turns,
+        }
     }
 
     #[test]
     fn equal_ends_make_a_full_circle() {
         for turns in [1, -1] {
-            let arcs = arcs(&request([10.0, 0.0, 0.0], [10.0, 0.0, 0.0], [0.0; 3], turns)).unwrap();
+            let arcs = arcs(&request(
+                [10.0, 0.0, 0.0],
+                [10.0, 0.0, 0.0],
+                [0.0; 3],
+                turns,
+            ))
+            .unwrap();
             assert_eq!(arcs.len(), 1);
             assert!((arcs[0].1.length_mm() - 20.0 * PI).abs() < 1e-12);
             let quarter = arcs[0].1.at(5.0 * PI).position_mm;
@@ -157,29 +213,39 @@ mod tests {
         assert!(matches!(error, PathError::ArcRadius { .. }), "{error}");
     }
 
-    /// Largest distance between the arcs and the spiral about the programmed centre, seen at many points of each arc.
+    /// Largest distance between the arcs and the spiral about the programmed centre, seen at many
+    /// points of each arc.
     fn off_the_spiral_mm(arcs: &[(Vector, Arc)], request: &Request, sweep: f64) -> f64 {
         let [first, second, normal] = request.plane.axes();
         let polar = |point: Vector| {
-            let (x, y) = (point[first] - request.center_mm[first], point[second] - request.center_mm[second]);
+            let (x, y) = (
+                point[first] - request.center_mm[first],
+                point[second] - request.center_mm[second],
+            );
             (libm::hypot(x, y), libm::atan2(y, x))
         };
-        let ((radius_from, angle_from), (radius_to, _)) = (polar(request.start_mm), polar(request.end_mm));
+        let ((radius_from, angle_from), (radius_to, _)) =
+            (polar(request.start_mm), polar(request.end_mm));
         let sense = f64::from(request.turns.signum());
         let (mut turned, mut worst) = (0.0, 0.0f64);
         // A height that is off counts as the distance from the helix.
         let flat = radius_from * sweep;
-        let pitch_cosine = flat / libm::hypot(flat, request.end_mm[normal] - request.start_mm[normal]);
+        let pitch_cosine =
+            flat / libm::hypot(flat, request.end_mm[normal] - request.start_mm[normal]);
         for (_, arc) in arcs {
             for number in 0..=16 {
-                let point = arc.at(arc.length_mm() * f64::from(number) / 16.0).position_mm;
+                let point = arc
+                    .at(arc.length_mm() * f64::from(number) / 16.0)
+                    .position_mm;
                 let (radius, angle) = polar(point);
                 let step = sense * (angle - angle_from) - turned;
                 turned += step - TAU * (step / TAU).round();
                 let even = radius_from + (radius_to - radius_from) * turned / sweep;
-                let height =
-                    request.start_mm[normal] + (request.end_mm[normal] - request.start_mm[normal]) * turned / sweep;
-                worst = worst.max((radius - even).abs()).max((point[normal] - height).abs() * pitch_cosine);
+                let height = request.start_mm[normal]
+                    + (request.end_mm[normal] - request.start_mm[normal]) * turned / sweep;
+                worst = worst
+                    .max((radius - even).abs())
+                    .max((point[normal] - height).abs() * pitch_cosine);
             }
         }
         assert!((turned - sweep).abs() < 1e-9, "{turned} {sweep}");
@@ -209,7 +275,8 @@ mod tests {
     }
 
     proptest! {
-        /// Both ends hold to 1e-9 mm, the arcs join, and the path stays within the radii's difference of the circle.
+        /// Both ends hold to 1e-9 mm, the arcs join, and the path stays within the radii's
+        /// difference of the circle.
         #[test]
         fn both_ends_hold(
             radius in 0.1..100.0f64, from in -7.0..7.0f64, sweep in 0.01..6.2f64, miss in -1e-3..1e-3f64,

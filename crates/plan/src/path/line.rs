@@ -16,7 +16,11 @@ impl Line {
     pub fn new(start_mm: [f64; 3], end_mm: [f64; 3]) -> Option<Self> {
         let chord = sub(end_mm, start_mm);
         let length_mm = norm(chord);
-        (length_mm > 0.0).then(|| Self { start_mm, tangent: scale(1.0 / length_mm, chord), length_mm })
+        (length_mm > 0.0).then(|| Self {
+            start_mm,
+            tangent: scale(1.0 / length_mm, chord),
+            length_mm,
+        })
     }
 
     /// Length, mm.
@@ -27,18 +31,27 @@ impl Line {
     /// Position and tangent at `s_mm`.
     #[inline]
     pub fn at(&self, s_mm: f64) -> Point {
-        Point { position_mm: add_scaled(self.start_mm, s_mm, self.tangent), tangent: self.tangent }
+        Point {
+            position_mm: add_scaled(self.start_mm, s_mm, self.tangent),
+            tangent: self.tangent,
+        }
     }
 
     /// Derivatives, the same everywhere.
     pub const fn derivatives(&self) -> Derivatives {
-        Derivatives { first: self.tangent, second_1_mm: [0.0; 3], third_1_mm2: [0.0; 3] }
+        Derivatives {
+            first: self.tangent,
+            second_1_mm: [0.0; 3],
+            third_1_mm2: [0.0; 3],
+        }
     }
 
     /// Arc length of the nearest point: the foot of the perpendicular, kept between the bounds.
     #[inline]
     pub fn nearest(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> f64 {
-        dot(sub(point_mm, self.start_mm), self.tangent).min(hi_mm).max(lo_mm)
+        dot(sub(point_mm, self.start_mm), self.tangent)
+            .min(hi_mm)
+            .max(lo_mm)
     }
 }
 

@@ -1,7 +1,8 @@
 //! Motions of the program to pieces of the path.
 //!
-//! Each piece starts where the one before ended, to the last bit for lines and arcs: motions too short to matter vanish
-//! without leaving a gap, however many there are. The first error ends the path.
+//! Each piece starts where the one before ended, to the last bit for lines and arcs: motions too
+//! short to matter vanish without leaving a gap, however many there are. The first error ends the
+//! path.
 
 use feedwright_gcode::canon::{Canon, Event, EventKind, Motion, MotionKind, Shape};
 
@@ -9,7 +10,8 @@ use super::arcs::{Request, arcs};
 use super::line::Line;
 use super::spline::curves;
 use super::{
-    Curve, MAX_COORDINATE_MM, MAX_GAP_MM, MAX_REST_S, MIN_FEED_MM_S, MIN_LENGTH_MM, PathError, Piece, Rest, Step,
+    Curve, MAX_COORDINATE_MM, MAX_GAP_MM, MAX_REST_S, MIN_FEED_MM_S, MIN_LENGTH_MM, PathError,
+    Piece, Rest, Step,
 };
 use crate::vector::{Vector, distance};
 use std::collections::VecDeque;
@@ -28,7 +30,13 @@ pub struct Pieces<I> {
 impl<I: Iterator<Item = Canon>> Pieces<I> {
     /// The path of `source`.
     pub fn new(source: I) -> Self {
-        Self { source, here_mm: None, length: ArcLength::default(), ready: VecDeque::new(), failed: false }
+        Self {
+            source,
+            here_mm: None,
+            length: ArcLength::default(),
+            ready: VecDeque::new(),
+            failed: false,
+        }
     }
 
     fn motion(&mut self, motion: &Motion) -> Result<(), PathError> {
@@ -40,7 +48,11 @@ impl<I: Iterator<Item = Canon>> Pieces<I> {
                     self.keep(motion, here_mm, Curve::Line(line), motion.end_mm);
                 }
             }
-            Shape::Arc { plane, center_mm, turns } => {
+            Shape::Arc {
+                plane,
+                center_mm,
+                turns,
+            } => {
                 let request = Request {
                     line: motion.line,
                     start_mm: here_mm,
@@ -53,8 +65,12 @@ impl<I: Iterator<Item = Canon>> Pieces<I> {
                     let end_mm = arc.at(arc.length_mm()).position_mm;
                     self.keep(motion, start_mm, Curve::Arc(arc), end_mm);
                 }
-                // The last arc ends there up to rounding: later pieces start at the programmed point itself.
-                if self.here_mm.is_some_and(|here| distance(here, motion.end_mm) < MIN_LENGTH_MM) {
+                // The last arc ends there up to rounding: later pieces start at the programmed
+                // point itself.
+                if self
+                    .here_mm
+                    .is_some_and(|here| distance(here, motion.end_mm) < MIN_LENGTH_MM)
+                {
                     self.here_mm = Some(motion.end_mm);
                 }
             }
@@ -78,8 +94,13 @@ impl<I: Iterator<Item = Canon>> Pieces<I> {
 
     /// Tells the pieces from `first` on what else moves: evenly over their length.
     fn take_along(&mut self, first: usize, axes: &[[f64; 6]; 2]) {
-        let lengths =
-            self.ready.range(first..).map(|step| if let Step::Piece(piece) = step { piece.length_mm } else { 0.0 });
+        let lengths = self.ready.range(first..).map(|step| {
+            if let Step::Piece(piece) = step {
+                piece.length_mm
+            } else {
+                0.0
+            }
+        });
         let length_mm: f64 = lengths.sum();
         for step in self.ready.range_mut(first..) {
             if let Step::Piece(piece) = step {
@@ -96,14 +117,24 @@ impl<I: Iterator<Item = Canon>> Pieces<I> {
             Shape::Arc { center_mm, .. } => *center_mm,
             _ => motion.end_mm,
         };
-        for value_mm in motion.start_mm.into_iter().chain(motion.end_mm).chain(center) {
+        for value_mm in motion
+            .start_mm
+            .into_iter()
+            .chain(motion.end_mm)
+            .chain(center)
+        {
             // NaN is in no range.
             if !(-MAX_COORDINATE_MM..=MAX_COORDINATE_MM).contains(&value_mm) {
                 return Err(PathError::Coordinate { line, value_mm });
             }
         }
-        if motion.kind == MotionKind::Feed && !(MIN_FEED_MM_S..=f64::MAX).contains(&motion.feed_mm_s) {
-            return Err(PathError::Feed { line, feed_mm_s: motion.feed_mm_s });
+        if motion.kind == MotionKind::Feed
+            && !(MIN_FEED_MM_S..=f64::MAX).contains(&motion.feed_mm_s)
+        {
+            return Err(PathError::Feed {
+                line,
+                feed_mm_s: motion.feed_mm_s,
+            });
         }
         let here_mm = self.here_mm.unwrap_or(motion.start_mm);
         Self::join(line, here_mm, motion.start_mm)?;
@@ -154,7 +185,9 @@ impl<I: Iterator<Item = Canon>> Iterator for Pieces<I> {
             }
             let outcome = match self.source.next()? {
                 Canon::Motion(motion) => self.motion(&motion),
-                Canon::Event(event) => check_event(&event).map(|()| self.ready.push_back(Step::Event(event))),
+                Canon::Event(event) => {
+                    check_event(&event).map(|()| self.ready.push_back(Step::Event(event)))
+                }
             };
             if let Err(error) = outcome {
                 self.failed = true;
@@ -165,8 +198,8 @@ impl<I: Iterator<Item = Canon>> Iterator for Pieces<I> {
     }
 }
 
-/// What moves while X, Y and Z stand still. The feedrate refers to U, V, W in mm if they move, else to A, B, C in degrees,
-/// else to the extruder.
+/// What moves while X, Y and Z stand still. The feedrate refers to U, V, W in mm if they move, else
+/// to A, B, C in degrees, else to the extruder.
 fn rest(motion: &Motion) -> Step {
     let still = [[0.0; 6]; 2];
     let axes = motion.others.axes.as_deref().unwrap_or(&still);
@@ -177,7 +210,11 @@ fn rest(motion: &Motion) -> Step {
     let is_rapid = motion.kind == MotionKind::Rapid;
     Step::Rest(Rest {
         line: motion.line,
-        seconds: if is_rapid { 0.0 } else { (way / motion.feed_mm_s).min(MAX_REST_S) },
+        seconds: if is_rapid {
+            0.0
+        } else {
+            (way / motion.feed_mm_s).min(MAX_REST_S)
+        },
         turn_deg: turn_deg(axes),
         further_mm: further_mm(axes),
     })
@@ -185,7 +222,9 @@ fn rest(motion: &Motion) -> Step {
 
 /// Largest angle that one of A, B and C turns, degrees.
 fn turn_deg([start, end]: &[[f64; 6]; 2]) -> f64 {
-    (0..3).map(|axis| (end[axis] - start[axis]).abs()).fold(0.0, f64::max)
+    (0..3)
+        .map(|axis| (end[axis] - start[axis]).abs())
+        .fold(0.0, f64::max)
 }
 
 /// Way of U, V and W, mm.
@@ -196,14 +235,17 @@ fn further_mm([start, end]: &[[f64; 6]; 2]) -> f64 {
 fn check_event(event: &Event) -> Result<(), PathError> {
     match event.kind {
         EventKind::Dwell { seconds } if !(0.0..=MAX_REST_S).contains(&seconds) => {
-            Err(PathError::Dwell { line: event.line, seconds })
+            Err(PathError::Dwell {
+                line: event.line,
+                seconds,
+            })
         }
         _ => Ok(()),
     }
 }
 
-/// Running sum of lengths, with the rounding of each addition carried along (Kahan), so that millions of pieces do not
-/// drift.
+/// Running sum of lengths, with the rounding of each addition carried along (Kahan), so that
+/// millions of pieces do not drift.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ArcLength {
     sum: f64,
@@ -233,7 +275,10 @@ mod tests {
     use feedwright_gcode::canon::{Corner, Plane};
 
     fn motion(start_mm: Vector, end_mm: Vector, shape: Shape) -> Canon {
-        let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
+        let corner = Corner::Continuous {
+            tolerance_mm: None,
+            merge_mm: None,
+        };
         Canon::Motion(Motion {
             line: 1,
             kind: MotionKind::Feed,
@@ -266,7 +311,9 @@ mod tests {
         let mut last: Option<Piece> = None;
         let mut total = 0.0;
         for step in Pieces::new(steps) {
-            let Ok(Step::Piece(piece)) = step else { panic!() };
+            let Ok(Step::Piece(piece)) = step else {
+                panic!()
+            };
             if let Some(before) = &last {
                 let end = before.curve.at(before.length_mm).position_mm;
                 assert!(distance(end, piece.start_mm) < 1e-15);
@@ -280,7 +327,11 @@ mod tests {
 
     #[test]
     fn equal_points_make_no_piece() {
-        assert!(pieces(vec![motion([1.0; 3], [1.0; 3], Shape::Line)]).unwrap().is_empty());
+        assert!(
+            pieces(vec![motion([1.0; 3], [1.0; 3], Shape::Line)])
+                .unwrap()
+                .is_empty()
+        );
     }
 
     #[test]
@@ -289,16 +340,26 @@ mod tests {
             let error = pieces(vec![motion([0.0; 3], [value, 0.0, 0.0], Shape::Line)]).unwrap_err();
             assert!(matches!(error, PathError::Coordinate { .. }), "{error}");
         }
-        let gap =
-            vec![motion([0.0; 3], [1.0, 0.0, 0.0], Shape::Line), motion([1.1, 0.0, 0.0], [2.0, 0.0, 0.0], Shape::Line)];
+        let gap = vec![
+            motion([0.0; 3], [1.0, 0.0, 0.0], Shape::Line),
+            motion([1.1, 0.0, 0.0], [2.0, 0.0, 0.0], Shape::Line),
+        ];
         assert!(matches!(pieces(gap).unwrap_err(), PathError::Gap { .. }));
     }
 
     #[test]
     fn a_line_after_an_arc_starts_at_the_programmed_point() {
-        let arc = Shape::Arc { plane: Plane::Xy, center_mm: [0.0; 3], turns: 1 };
+        let arc = Shape::Arc {
+            plane: Plane::Xy,
+            center_mm: [0.0; 3],
+            turns: 1,
+        };
         let end = [0.0, 10.0, 0.0];
-        let pieces = pieces(vec![motion([10.0, 0.0, 0.0], end, arc), motion(end, [0.0; 3], Shape::Line)]).unwrap();
+        let pieces = pieces(vec![
+            motion([10.0, 0.0, 0.0], end, arc),
+            motion(end, [0.0; 3], Shape::Line),
+        ])
+        .unwrap();
         assert_eq!(pieces[1].start_mm, end);
         assert_eq!(pieces[1].curve.at(5.0).tangent, [0.0, -1.0, 0.0]);
     }

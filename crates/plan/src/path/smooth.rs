@@ -1,9 +1,10 @@
 //! A smooth parametric curve by arc length.
 //!
-//! The curve `C(u)` is exact; only the parameter `u(s)` at a given arc length is approximated. The domain is cut into cells;
-//! within a cell `u(s)` is the quintic polynomial that matches `u`, `u' = 1/|C'|` and `u'' = -(C'.C'')/|C'|^4` at both
-//! ends. Lengths of cells come from 5-point Gauss-Legendre quadrature of `|C'|`; a cell is halved until quadrature and
-//! polynomial are right to `CELL_TOLERANCE_MM` and the tangent turns little enough for the nearest point to be unique.
+//! The curve `C(u)` is exact; only the parameter `u(s)` at a given arc length is approximated. The
+//! domain is cut into cells; within a cell `u(s)` is the quintic polynomial that matches `u`, `u' =
+//! 1/|C'|` and `u'' = -(C'.C'')/|C'|^4` at both ends. Lengths of cells come from 5-point
+//! Gauss-Legendre quadrature of `|C'|`; a cell is halved until quadrature and polynomial are right
+//! to `CELL_TOLERANCE_MM` and the tangent turns little enough for the nearest point to be unique.
 
 mod nearest;
 
@@ -11,26 +12,30 @@ use super::{Derivatives, Point};
 use crate::vector::{Vector, add_scaled, angle, cross, dot, norm, scale};
 use std::fmt::Debug;
 
-/// Arc length within a cell is right to this: a tenth of what the path promises, and far above rounding.
+/// Arc length within a cell is right to this: a tenth of what the path promises, and far above
+/// rounding.
 const CELL_TOLERANCE_MM: f64 = 1e-10;
 
 /// The tangent turns by no more than this in a cell, so that the curve is a gentle arc there.
 const CELL_TURN_RAD: f64 = 0.3;
 
-/// Halvings before a cell is taken as it is: at a cusp, where no cell is short enough, 2^-40 of a span is below 1 pm.
+/// Halvings before a cell is taken as it is: at a cusp, where no cell is short enough, 2^-40 of a
+/// span is below 1 pm.
 const MAX_HALVINGS: u32 = 40;
 
-/// A cell no longer than this many times the rounding of its coordinates shows rounding rather than a curve.
+/// A cell no longer than this many times the rounding of its coordinates shows rounding rather than
+/// a curve.
 const ROUNDINGS: f64 = 1e3;
 
-/// Cells of one span before the rest is taken as it is: hundreds of times more than any curve of use needs, and an end to
-/// those that no table fits.
+/// Cells of one span before the rest is taken as it is: hundreds of times more than any curve of
+/// use needs, and an end to those that no table fits.
 const MAX_CELLS_OF_SPAN: usize = 1 << 14;
 
 /// Curvature above this is a corner, not a curve: a radius of 1 nm.
 pub(crate) const MAX_CURVATURE_1_MM: f64 = 1e6;
 
-/// A speed |C'| below this fraction of a mm per unit of the parameter counts as this, so that a cusp divides by no zero.
+/// A speed |C'| below this fraction of a mm per unit of the parameter counts as this, so that a
+/// cusp divides by no zero.
 const MIN_SPEED_MM: f64 = 1e-12;
 
 /// Position and the first two derivatives at a parameter.
@@ -46,7 +51,8 @@ pub struct Jet {
 
 /// A curve in spans, each over a parameter `u` from 0 to 1.
 ///
-/// Within a span all derivatives exist; where two spans meet, position and direction agree, the rest may jump.
+/// Within a span all derivatives exist; where two spans meet, position and direction agree, the
+/// rest may jump.
 pub trait Parametric: Debug + Send + Sync {
     /// Number of spans.
     fn spans(&self) -> usize;
@@ -103,7 +109,12 @@ impl Smooth {
             }
         }
         let bins = bins(&cells, s_mm);
-        Self { shape, cells, bins, length_mm: s_mm }
+        Self {
+            shape,
+            cells,
+            bins,
+            length_mm: s_mm,
+        }
     }
 
     /// Length, mm.
@@ -117,9 +128,15 @@ impl Smooth {
         let u = cell.parameter(s_mm);
         let jet = self.shape.jet(cell.span, u);
         let speed = norm(jet.first);
-        let tangent =
-            if speed > MIN_SPEED_MM { scale(1.0 / speed, jet.first) } else { self.tangent_of_cusp(cell.span, u) };
-        Point { position_mm: jet.position_mm, tangent }
+        let tangent = if speed > MIN_SPEED_MM {
+            scale(1.0 / speed, jet.first)
+        } else {
+            self.tangent_of_cusp(cell.span, u)
+        };
+        Point {
+            position_mm: jet.position_mm,
+            tangent,
+        }
     }
 
     /// Unit tangent at a cusp, where |C'| vanishes: the direction of C' slightly further inside the
@@ -128,7 +145,11 @@ impl Smooth {
     fn tangent_of_cusp(&self, span: usize, u: f64) -> Vector {
         let inside = self.shape.jet(span, u + 1e-6 * (0.5 - u)).first;
         let speed = norm(inside);
-        if speed > 0.0 { scale(1.0 / speed, inside) } else { [1.0, 0.0, 0.0] }
+        if speed > 0.0 {
+            scale(1.0 / speed, inside)
+        } else {
+            [1.0, 0.0, 0.0]
+        }
     }
 
     /// Curvature at `s_mm`, 1/mm.
@@ -140,7 +161,8 @@ impl Smooth {
     ///
     /// `u'' = -g u'^4`, `u''' = (4 g^2 u'^2 - C''.C'' - C'.C''') u'^5`:
     ///
-    /// `p'' = C'' u'^2 + C' u''`, `p''' = C''' u'^3 + 3 C'' u' u'' + C' u'''`. At a cusp there are none.
+    /// `p'' = C'' u'^2 + C' u''`, `p''' = C''' u'^3 + 3 C'' u' u'' + C' u'''`. At a cusp there are
+    /// none.
     pub fn derivatives(&self, s_mm: f64) -> Derivatives {
         let cell = &self.cells[self.cell_of(s_mm)];
         let u = cell.parameter(s_mm);
@@ -153,7 +175,11 @@ impl Smooth {
         Derivatives {
             first: self.at(s_mm).tangent,
             second_1_mm: add_scaled(scale(u1 * u1, second), u2, first),
-            third_1_mm2: add_scaled(add_scaled(scale(u1.powi(3), third), 3.0 * u1 * u2, second), u3, first),
+            third_1_mm2: add_scaled(
+                add_scaled(scale(u1.powi(3), third), 3.0 * u1 * u2, second),
+                u3,
+                first,
+            ),
         }
     }
 
@@ -192,7 +218,9 @@ impl Smooth {
     }
 
     fn cell_end_mm(&self, index: usize) -> f64 {
-        self.cells.get(index + 1).map_or(self.length_mm, |cell| cell.s_mm)
+        self.cells
+            .get(index + 1)
+            .map_or(self.length_mm, |cell| cell.s_mm)
     }
 }
 
@@ -242,7 +270,10 @@ fn make_cell(shape: &dyn Parametric, s_mm: f64, span: usize, u: [f64; 2]) -> (Ce
         powers: hermite(lo, hi, length_mm, &jets[0], &jets[4]),
         curvature_1_mm: jets.iter().map(curvature).fold(0.0, f64::max),
     };
-    let extent_mm = jets[0].position_mm.iter().fold(0.0, |extent: f64, x| extent.max(x.abs()));
+    let extent_mm = jets[0]
+        .position_mm
+        .iter()
+        .fold(0.0, |extent: f64, x| extent.max(x.abs()));
     let rounding_mm = f64::EPSILON * extent_mm;
     let tolerance_mm = CELL_TOLERANCE_MM.max(ROUNDINGS * rounding_mm);
     if length_mm <= tolerance_mm {
@@ -250,7 +281,8 @@ fn make_cell(shape: &dyn Parametric, s_mm: f64, span: usize, u: [f64; 2]) -> (Ce
     }
     let mut good = (gauss(shape, span, lo, hi) - length_mm).abs() <= tolerance_mm;
     for i in 1..4 {
-        let miss_mm = (cell.parameter(s_mm + lengths[i]) - quarter(i as u32)).abs() * norm(jets[i].first);
+        let miss_mm =
+            (cell.parameter(s_mm + lengths[i]) - quarter(i as u32)).abs() * norm(jets[i].first);
         good &= miss_mm <= tolerance_mm + 1e-15 * s_mm;
     }
     for i in 0..4 {
@@ -268,7 +300,8 @@ fn hermite(lo: f64, hi: f64, length: f64, at_lo: &Jet, at_hi: &Jet) -> [f64; 5] 
     let (a1, a2) = slopes(at_lo);
     let (b1, b2) = slopes(at_hi);
     let h = length.max(f64::MIN_POSITIVE);
-    // What a quadratic from the start misses at the end, in value, slope and second derivative, scaled by h.
+    // What a quadratic from the start misses at the end, in value, slope and second derivative,
+    // scaled by h.
     let value = hi - lo - a1 * h - 0.5 * a2 * h * h;
     let slope = (b1 - a1 - a2 * h) * h;
     let bend = (b2 - a2) * h * h;
@@ -276,7 +309,13 @@ fn hermite(lo: f64, hi: f64, length: f64, at_lo: &Jet, at_hi: &Jet) -> [f64; 5] 
     let quartic = -15.0 * value + 7.0 * slope - bend;
     let quintic = 6.0 * value - 3.0 * slope + 0.5 * bend;
     let h3 = h * h * h;
-    [a1, 0.5 * a2, cubic / h3, quartic / (h3 * h), quintic / (h3 * h * h)]
+    [
+        a1,
+        0.5 * a2,
+        cubic / h3,
+        quartic / (h3 * h),
+        quintic / (h3 * h * h),
+    ]
 }
 
 fn bins(cells: &[Cell], length_mm: f64) -> Vec<u32> {

@@ -1,4 +1,5 @@
-//! What an event is called, and which row of a timeline it stands in: one for each unit of the machine.
+//! What an event is called, and which row of a timeline it stands in: one for each unit of the
+//! machine.
 use feedwright_gcode::canon::EventKind;
 
 use super::PlcEvent;
@@ -15,7 +16,10 @@ pub struct EventName {
 /// Names an event; what the machine builder named goes first.
 pub fn named(kind: &EventKind, events: &[PlcEvent]) -> EventName {
     if let Some(event) = builders(kind, events) {
-        return EventName { row: event.row.clone(), label: event.label.clone() };
+        return EventName {
+            row: event.row.clone(),
+            label: event.label.clone(),
+        };
     }
     let (row, label) = match kind {
         EventKind::Dwell { seconds } => ("dwell", format!("dwell {seconds} s")),
@@ -23,14 +27,22 @@ pub fn named(kind: &EventKind, events: &[PlcEvent]) -> EventName {
         EventKind::MCode { code, p, .. } => m_code(*code, *p),
         EventKind::ToolSelect { tool } => ("tool", format!("T{tool} selected")),
         EventKind::Message { text } => ("message", text.clone()),
-        EventKind::SpindleSync { pitch_mm: Some(pitch_mm) } => {
-            ("spindle", format!("feed coupled to the spindle, {pitch_mm} mm/rev"))
+        EventKind::SpindleSync {
+            pitch_mm: Some(pitch_mm),
+        } => (
+            "spindle",
+            format!("feed coupled to the spindle, {pitch_mm} mm/rev"),
+        ),
+        EventKind::SpindleSync { pitch_mm: None } => {
+            ("spindle", "feed free of the spindle".to_owned())
         }
-        EventKind::SpindleSync { pitch_mm: None } => ("spindle", "feed free of the spindle".to_owned()),
         EventKind::Probe => ("probe", "probe".to_owned()),
         EventKind::ProgramEnd => ("stop", "program end".to_owned()),
     };
-    EventName { row: row.to_owned(), label }
+    EventName {
+        row: row.to_owned(),
+        label,
+    }
 }
 
 /// What the machine builder made of an M-code: the entry with its P word before the one for any.
@@ -39,8 +51,16 @@ pub(super) fn builders<'a>(kind: &EventKind, events: &'a [PlcEvent]) -> Option<&
         return None;
     };
     let of_code = |event: &&PlcEvent| event.code == *code;
-    let exact = events.iter().filter(of_code).find(|event| event.p.is_some_and(|own| *p == Some(f64::from(own))));
-    exact.or_else(|| events.iter().filter(of_code).find(|event| event.p.is_none()))
+    let exact = events
+        .iter()
+        .filter(of_code)
+        .find(|event| event.p.is_some_and(|own| *p == Some(f64::from(own))));
+    exact.or_else(|| {
+        events
+            .iter()
+            .filter(of_code)
+            .find(|event| event.p.is_none())
+    })
 }
 
 fn m_code(code: u16, p: Option<f64>) -> (&'static str, String) {
@@ -82,7 +102,10 @@ mod tests {
     fn every_unit_has_a_row_of_its_own() {
         let row = |kind: &EventKind| named(kind, &[]).row;
         let rows = [6, 8, 3, 0, 64, 150].map(|code| row(&m(code, None)));
-        assert_eq!(rows, ["tool", "coolant", "spindle", "stop", "output", "other"]);
+        assert_eq!(
+            rows,
+            ["tool", "coolant", "spindle", "stop", "output", "other"]
+        );
         assert_eq!(row(&EventKind::Dwell { seconds: 1.0 }), "dwell");
         assert_eq!(named(&m(64, Some(3.0)), &[]).label, "M64 P3 output on");
         assert_eq!(named(&m(150, None), &[]).label, "M150");
@@ -90,10 +113,19 @@ mod tests {
 
     #[test]
     fn the_builders_names_go_first_and_the_most_exact_of_them() {
-        let event = |p, label: &str| PlcEvent { code: 64, p, row: "lamp".into(), label: label.into(), takes_s: 0.0 };
+        let event = |p, label: &str| PlcEvent {
+            code: 64,
+            p,
+            row: "lamp".into(),
+            label: label.into(),
+            takes_s: 0.0,
+        };
         let events = [event(None, "some lamp"), event(Some(3), "red lamp")];
         let label = |p| named(&m(64, p), &events).label;
-        assert_eq!([Some(3.0), Some(1.0), None].map(label), ["red lamp", "some lamp", "some lamp"]);
+        assert_eq!(
+            [Some(3.0), Some(1.0), None].map(label),
+            ["red lamp", "some lamp", "some lamp"]
+        );
         assert_eq!(named(&m(64, Some(1.0)), &events[1..]).row, "output");
     }
 }

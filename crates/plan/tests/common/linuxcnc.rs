@@ -1,4 +1,5 @@
-//! LinuxCNC beside this reader: what `rs274` and LinuxCNC's interpreter say to a program, and where its motions differ from ours.
+//! LinuxCNC beside this reader: what `rs274` and LinuxCNC's interpreter say to a program, and where
+//! its motions differ from ours.
 //!
 //! Used by the test over the corpus and by the comparison of generated programs.
 
@@ -12,7 +13,8 @@ use feedwright_gcode::canon::{Canon, EventKind, Motion, MotionKind, Plane, Shape
 use feedwright_gcode::{Dialect, Reader, Settings, ToolTable};
 use feedwright_plan::{Piece, Pieces, Step};
 
-/// Largest distance between our points and LinuxCNC's, mm: its inches and our millimetres differ by rounding only.
+/// Largest distance between our points and LinuxCNC's, mm: its inches and our millimetres differ by
+/// rounding only.
 const SAME_POINT_MM: f64 = 1e-6;
 /// Largest distance between our centres and LinuxCNC's, mm.
 const SAME_CENTRE_MM: f64 = 1e-6;
@@ -20,7 +22,8 @@ const SAME_CENTRE_MM: f64 = 1e-6;
 const SAME_ARC_MM: f64 = 1e-6;
 /// Points of an arc that are compared, ends included.
 const ARC_POINTS: u32 = 9;
-/// LinuxCNC takes an arc that ends this close to its start, mm, for a full turn (measured: between 6e-9 and 1e-8).
+/// LinuxCNC takes an arc that ends this close to its start, mm, for a full turn (measured: between
+/// 6e-9 and 1e-8).
 const FULL_TURN_MM: f64 = 8e-9;
 /// Lines shorter than this are no motion, mm.
 const NO_MOTION_MM: f64 = 1e-9;
@@ -34,27 +37,38 @@ pub(crate) struct Theirs {
 
 /// Tools without length, an eighth of an inch thick; `rs274` alone counts in inches.
 pub(crate) fn tool_table() -> String {
-    (1..=99).map(|tool| format!("T{tool} P{tool} Z0 D0.125 ;\n")).collect()
+    (1..=99)
+        .map(|tool| format!("T{tool} P{tool} Z0 D0.125 ;\n"))
+        .collect()
 }
 
 pub(crate) fn theirs(paths: &[PathBuf]) -> Vec<Theirs> {
     let folder = tempfile::tempdir().unwrap();
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracle_scripts/linuxcnc_canon.py");
+    let script =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracle_scripts/linuxcnc_canon.py");
     let mut command = Command::new("/usr/bin/python3");
     command.arg(script).arg(folder.path()).args(paths);
-    // The interpreter keeps what it says to itself; a program that crashes it leaves a file without an end.
+    // The interpreter keeps what it says to itself; a program that crashes it leaves a file without
+    // an end.
     command.status().unwrap();
     (0..paths.len())
         .map(|number| {
-            let text = std::fs::read_to_string(folder.path().join(format!("{number}.json"))).unwrap_or_default();
-            let mut theirs = Theirs { moves: Vec::new(), refused: None, complete: false };
+            let text = std::fs::read_to_string(folder.path().join(format!("{number}.json")))
+                .unwrap_or_default();
+            let mut theirs = Theirs {
+                moves: Vec::new(),
+                refused: None,
+                complete: false,
+            };
             for line in text.lines() {
                 let Ok(value) = serde_json::from_str::<serde_json::Value>(line) else {
                     continue;
                 };
                 match value[0].as_str() {
                     Some("end") => theirs.complete = true,
-                    Some("error") => theirs.refused = Some(format!("line {}: {}", value[1], value[2])),
+                    Some("error") => {
+                        theirs.refused = Some(format!("line {}: {}", value[1], value[2]));
+                    }
                     _ => theirs.moves.push(value),
                 }
             }
@@ -86,24 +100,35 @@ pub(crate) fn ours(path: &Path) -> (Vec<Ours>, Option<String>) {
         Ok(reader) => reader,
         Err(error) => return (motions, Some(error.to_string())),
     };
-    // The line of a stop and a start of the spindle, one right behind the other: G88, whose next motion is the retraction.
+    // The line of a stop and a start of the spindle, one right behind the other: G88, whose next
+    // motion is the retraction.
     let (mut stopped, mut started) = (None, None);
     for step in reader {
         match step {
             Ok(Canon::Motion(motion)) => {
-                let by_hand = started.take() == Some(motion.line) && motion.kind == MotionKind::Rapid;
-                motions.push(Ours { motion, by_hand, within_mm: SAME_POINT_MM });
+                let by_hand =
+                    started.take() == Some(motion.line) && motion.kind == MotionKind::Rapid;
+                motions.push(Ours {
+                    motion,
+                    by_hand,
+                    within_mm: SAME_POINT_MM,
+                });
             }
             Ok(Canon::Event(event)) => {
                 let line = Some(event.line);
                 match event.kind {
-                    EventKind::MCode { code: 3 | 4, .. } => started = stopped.take().filter(|stop| Some(*stop) == line),
+                    EventKind::MCode { code: 3 | 4, .. } => {
+                        started = stopped.take().filter(|stop| Some(*stop) == line);
+                    }
                     EventKind::MCode { code: 0, .. } => stopped = line,
                     _ => (stopped, started) = (None, None),
                 }
             }
             Err(fault) => {
-                return (motions, Some(format!("line {}: {}", fault.line, fault.message)));
+                return (
+                    motions,
+                    Some(format!("line {}: {}", fault.line, fault.message)),
+                );
             }
         }
     }
@@ -130,29 +155,50 @@ fn far(a: &[f64], b: &[f64], limit: f64) -> bool {
 }
 
 fn apart(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
 }
 
 /// The path stage's curves of one motion.
 pub(crate) fn path_of(motion: &Motion) -> Vec<Piece> {
     // Only the shape is compared.
-    let motion = Motion { feed_mm_s: 1.0, ..motion.clone() };
+    let motion = Motion {
+        feed_mm_s: 1.0,
+        ..motion.clone()
+    };
     let steps = Pieces::new([Canon::Motion(motion)].into_iter());
-    steps.filter_map(|step| if let Step::Piece(piece) = step.unwrap() { Some(piece) } else { None }).collect()
+    steps
+        .filter_map(|step| {
+            if let Step::Piece(piece) = step.unwrap() {
+                Some(piece)
+            } else {
+                None
+            }
+        })
+        .collect()
 }
 
 /// Distance of a point from a path, mm.
 pub(crate) fn away_from(path: &[Piece], point: [f64; 3]) -> f64 {
     let to = |piece: &Piece| {
-        let at = piece.curve.at(piece.curve.nearest(point, 0.0, piece.length_mm)).position_mm;
-        (0..3).map(|axis| (at[axis] - point[axis]).powi(2)).sum::<f64>().sqrt()
+        let at = piece
+            .curve
+            .at(piece.curve.nearest(point, 0.0, piece.length_mm))
+            .position_mm;
+        (0..3)
+            .map(|axis| (at[axis] - point[axis]).powi(2))
+            .sum::<f64>()
+            .sqrt()
     };
     path.iter().map(to).fold(f64::INFINITY, f64::min)
 }
 
-/// LinuxCNC's motion along an arc, written without the project: about the centre that its interpreter gives out, the radius and
-/// the height change evenly with the angle. That its motion does so was measured in a running LinuxCNC 2.9 at 1 kHz; the
-/// deviation was 1.3e-6 mm, of which 0.7e-6 is the printing of six decimals and the rest the interpolation at that speed.
+/// LinuxCNC's motion along an arc, written without the project: about the centre that its
+/// interpreter gives out, the radius and the height change evenly with the angle. That its motion
+/// does so was measured in a running LinuxCNC 2.9 at 1 kHz; the deviation was 1.3e-6 mm, of which
+/// 0.7e-6 is the printing of six decimals and the rest the interpolation at that speed.
 pub(crate) struct Spiral {
     center: [f64; 2],
     axes: [usize; 3],
@@ -163,20 +209,34 @@ pub(crate) struct Spiral {
 }
 
 impl Spiral {
-    pub(crate) fn new(start: [f64; 3], end: [f64; 9], center: [f64; 2], plane: Plane, turns: i32) -> Self {
+    pub(crate) fn new(
+        start: [f64; 3],
+        end: [f64; 9],
+        center: [f64; 2],
+        plane: Plane,
+        turns: i32,
+    ) -> Self {
         let axes = plane.axes();
         let [first, second, normal] = axes;
         let from = [start[first] - center[0], start[second] - center[1]];
         let to = [end[first] - center[0], end[second] - center[1]];
         let radius = [from[0].hypot(from[1]), to[0].hypot(to[1])];
         let sense = f64::from(turns.signum());
-        let mut sweep = sense * (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
+        let mut sweep =
+            sense * (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
         if sweep * radius[0] < FULL_TURN_MM {
             sweep += TAU;
         }
         sweep += TAU * f64::from(turns.abs() - 1);
         let angle = from[1].atan2(from[0]);
-        Self { center, axes, radius, height: [start[normal], end[normal]], angle, sweep: sense * sweep }
+        Self {
+            center,
+            axes,
+            radius,
+            height: [start[normal], end[normal]],
+            angle,
+            sweep: sense * sweep,
+        }
     }
 
     pub(crate) fn at(&self, share: f64) -> [f64; 3] {
@@ -193,16 +253,24 @@ impl Spiral {
     fn length(&self) -> f64 {
         let speed = |share: f64| {
             let radius = self.radius[0] + (self.radius[1] - self.radius[0]) * share;
-            (radius * self.sweep).hypot(self.radius[1] - self.radius[0]).hypot(self.height[1] - self.height[0])
+            (radius * self.sweep)
+                .hypot(self.radius[1] - self.radius[0])
+                .hypot(self.height[1] - self.height[0])
         };
         (speed(0.0) + 4.0 * speed(0.5) + speed(1.0)) / 6.0
     }
 
-    /// How far our path is from it: the largest distance of its points from our path, and the difference of the lengths; mm.
+    /// How far our path is from it: the largest distance of its points from our path, and the
+    /// difference of the lengths; mm.
     fn apart(&self, motion: &Motion) -> [f64; 2] {
         let pieces = path_of(motion);
         let distance = (0..ARC_POINTS)
-            .map(|number| away_from(&pieces, self.at(f64::from(number) / f64::from(ARC_POINTS - 1))))
+            .map(|number| {
+                away_from(
+                    &pieces,
+                    self.at(f64::from(number) / f64::from(ARC_POINTS - 1)),
+                )
+            })
             .fold(0.0, f64::max);
         let length: f64 = pieces.iter().map(|piece| piece.length_mm).sum();
         [distance, (length - self.length()).abs()]
@@ -224,17 +292,26 @@ const FLAT_RAD: f64 = 0.049_994_8;
 /// Diameter of the tool in the table, and of one that the program computes, mm.
 const TABLE_MM: f64 = 0.125 * 25.4;
 
-/// Radius of the largest tool that the program compensates for, mm: `G41.1 D` and `G42.1 D`, or the tool table. 0 without.
+/// Radius of the largest tool that the program compensates for, mm: `G41.1 D` and `G42.1 D`, or the
+/// tool table. 0 without.
 pub(crate) fn compensated_radius(text: &str) -> f64 {
     let text = text.to_ascii_uppercase().replace(' ', "");
     let unit = if text.contains("G20") { 25.4 } else { 1.0 };
     let diameter = |rest: &str| {
-        let number: String = rest.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
+        let number: String = rest
+            .chars()
+            .take_while(|c| c.is_ascii_digit() || *c == '.')
+            .collect();
         number.parse().map_or(TABLE_MM, |d: f64| d * unit)
     };
-    let given = ["G41.1D", "G42.1D"].iter().flat_map(|code| text.split(code).skip(1)).map(diameter);
-    let by_table =
-        ["G41", "G42"].iter().any(|code| text.match_indices(code).any(|(at, _)| !text[at + 3..].starts_with('.')));
+    let given = ["G41.1D", "G42.1D"]
+        .iter()
+        .flat_map(|code| text.split(code).skip(1))
+        .map(diameter);
+    let by_table = ["G41", "G42"].iter().any(|code| {
+        text.match_indices(code)
+            .any(|(at, _)| !text[at + 3..].starts_with('.'))
+    });
     let table = if by_table { TABLE_MM } else { 0.0 };
     0.5 * given.fold(table, f64::max)
 }
@@ -261,11 +338,23 @@ pub(crate) fn without_compensation(text: &str) -> String {
 /// Direction of a motion in the plane, at its end or its start; none where it does not move there.
 fn direction(motion: &Motion, normal: usize, at_end: bool) -> Option<[f64; 3]> {
     let mut way: [f64; 3] = std::array::from_fn(|axis| motion.end_mm[axis] - motion.start_mm[axis]);
-    if let Shape::Arc { plane, center_mm, turns } = &motion.shape {
+    if let Shape::Arc {
+        plane,
+        center_mm,
+        turns,
+    } = &motion.shape
+    {
         let [first, second, _] = plane.axes();
-        let at = if at_end { motion.end_mm } else { motion.start_mm };
+        let at = if at_end {
+            motion.end_mm
+        } else {
+            motion.start_mm
+        };
         let sense = f64::from(turns.signum());
-        (way[first], way[second]) = (sense * (center_mm[second] - at[second]), sense * (at[first] - center_mm[first]));
+        (way[first], way[second]) = (
+            sense * (center_mm[second] - at[second]),
+            sense * (at[first] - center_mm[first]),
+        );
     }
     way[normal] = 0.0;
     let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -274,17 +363,38 @@ fn direction(motion: &Motion, normal: usize, at_end: bool) -> Option<[f64; 3]> {
 
 /// Lines that begin at a flat corner of the contour.
 pub(crate) fn flat_lines(text: &str) -> HashSet<u32> {
-    let settings = Settings { dialect: Some(Dialect::LinuxCnc), max_motions: 1_000_000, ..Settings::default() };
+    let settings = Settings {
+        dialect: Some(Dialect::LinuxCnc),
+        max_motions: 1_000_000,
+        ..Settings::default()
+    };
     let Ok(reader) = Reader::from_text("contour", without_compensation(text), settings) else {
         return HashSet::new();
     };
-    let normal = if text.to_ascii_uppercase().contains("G18") { 1 } else { 2 };
-    let motions = reader.filter_map(|step| if let Ok(Canon::Motion(motion)) = step { Some(motion) } else { None });
+    let normal = if text.to_ascii_uppercase().contains("G18") {
+        1
+    } else {
+        2
+    };
+    let motions = reader.filter_map(|step| {
+        if let Ok(Canon::Motion(motion)) = step {
+            Some(motion)
+        } else {
+            None
+        }
+    });
     let (mut before, mut flat): (Option<[f64; 3]>, _) = (None, HashSet::new());
     for motion in motions {
-        let (start, end) = (direction(&motion, normal, false), direction(&motion, normal, true));
+        let (start, end) = (
+            direction(&motion, normal, false),
+            direction(&motion, normal, true),
+        );
         if let (Some(a), Some(b)) = (before, start)
-            && (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt() <= FLAT_RAD
+            && (0..3)
+                .map(|axis| (a[axis] - b[axis]).powi(2))
+                .sum::<f64>()
+                .sqrt()
+                <= FLAT_RAD
         {
             flat.insert(motion.line);
         }
@@ -298,7 +408,12 @@ fn turns_little(motion: &Motion) -> bool {
     let Shape::Arc { center_mm, .. } = &motion.shape else {
         return false;
     };
-    let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt();
+    let apart = |a: [f64; 3], b: [f64; 3]| {
+        (0..3)
+            .map(|axis| (a[axis] - b[axis]).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
     let chord = apart(motion.start_mm, motion.end_mm);
     chord > NO_MOTION_MM && chord <= apart(motion.start_mm, *center_mm) * FLAT_RAD * 1.001
 }
@@ -306,12 +421,17 @@ fn turns_little(motion: &Motion) -> bool {
 /// The motions without the arcs round flat corners, whose ends may be farther from LinuxCNC's.
 fn without_flat_corners(text: &str, ours: &[Ours], totals: &mut Totals) -> Vec<Ours> {
     let radius_mm = compensated_radius(text);
-    let flat = if radius_mm > 0.0 { flat_lines(text) } else { HashSet::new() };
+    let flat = if radius_mm > 0.0 {
+        flat_lines(text)
+    } else {
+        HashSet::new()
+    };
     let mut kept: Vec<Ours> = Vec::with_capacity(ours.len());
     for (number, step) in ours.iter().enumerate() {
         let motion = &step.motion;
         let next = ours.get(number + 1).map(|next| next.motion.line);
-        // A loop may repeat its line: an arc of the program turns farther than that round a flat corner, or is full.
+        // A loop may repeat its line: an arc of the program turns farther than that round a flat
+        // corner, or is full.
         let is_round = radius_mm > 0.0 && turns_little(motion);
         if is_round && next == Some(motion.line) && flat.contains(&motion.line) {
             totals.flat_corners += 1;
@@ -320,18 +440,29 @@ fn without_flat_corners(text: &str, ours: &[Ours], totals: &mut Totals) -> Vec<O
         let is_flat = next.is_some_and(|next| next != motion.line && flat.contains(&next));
         totals.flat_corners += u64::from(is_flat);
         // Both offset curves end beside the corner, and meet within r times its angle.
-        kept.push(Ours { within_mm: if is_flat { radius_mm * FLAT_RAD } else { SAME_POINT_MM }, ..step.clone() });
+        kept.push(Ours {
+            within_mm: if is_flat {
+                radius_mm * FLAT_RAD
+            } else {
+                SAME_POINT_MM
+            },
+            ..step.clone()
+        });
     }
     kept
 }
 
 /// Whether a straight motion goes on in the next: at a surface speed (G96) ours are cut in pieces.
 fn goes_on(motion: &Motion, next: &Motion) -> bool {
-    let way = |motion: &Motion| -> [f64; 3] { std::array::from_fn(|axis| motion.end_mm[axis] - motion.start_mm[axis]) };
+    let way = |motion: &Motion| -> [f64; 3] {
+        std::array::from_fn(|axis| motion.end_mm[axis] - motion.start_mm[axis])
+    };
     let [a, b] = [way(motion), way(next)];
     let length = |way: [f64; 3]| way.iter().map(|x| x * x).sum::<f64>().sqrt();
     let ahead: f64 = (0..3).map(|axis| a[axis] * b[axis]).sum();
-    let beside = (0..3).map(|axis| (a[axis] * length(b) - b[axis] * length(a)).abs()).fold(0.0, f64::max);
+    let beside = (0..3)
+        .map(|axis| (a[axis] * length(b) - b[axis] * length(a)).abs())
+        .fold(0.0, f64::max);
     motion.line == next.line
         && motion.kind == MotionKind::Feed
         && next.kind == MotionKind::Feed
@@ -342,7 +473,12 @@ fn goes_on(motion: &Motion, next: &Motion) -> bool {
 }
 
 /// The first difference between the motions of the program `text`, if there is one.
-pub(crate) fn compare(text: &str, ours: &[Ours], theirs: &Theirs, totals: &mut Totals) -> Option<String> {
+pub(crate) fn compare(
+    text: &str,
+    ours: &[Ours],
+    theirs: &Theirs,
+    totals: &mut Totals,
+) -> Option<String> {
     let is_cut = text.to_ascii_uppercase().contains("G96");
     let before = Cell::new([0.0; 9]);
     let mut others = [0.0; 6];
@@ -363,7 +499,15 @@ pub(crate) fn compare(text: &str, ours: &[Ours], theirs: &Theirs, totals: &mut T
     let ours = without_flat_corners(text, ours, totals);
     // Theirs, while ours are pieces of it.
     let mut under_way = None;
-    for (number, Ours { motion, by_hand, within_mm }) in ours.iter().enumerate() {
+    for (
+        number,
+        Ours {
+            motion,
+            by_hand,
+            within_mm,
+        },
+    ) in ours.iter().enumerate()
+    {
         if std::mem::take(&mut returns) {
             // Their rigid tap comes back by itself.
             continue;
@@ -380,7 +524,10 @@ pub(crate) fn compare(text: &str, ours: &[Ours], theirs: &Theirs, totals: &mut T
         }
         end[3..].copy_from_slice(&others);
         let place = |what: &str, value: &serde_json::Value| {
-            Some(format!("motion {number}, line {}: {what}; ours {motion:?}, theirs {value}", motion.line))
+            Some(format!(
+                "motion {number}, line {}: {what}; ours {motion:?}, theirs {value}",
+                motion.line
+            ))
         };
         if *by_hand {
             before.set(end);
@@ -393,7 +540,8 @@ pub(crate) fn compare(text: &str, ours: &[Ours], theirs: &Theirs, totals: &mut T
             // An arc in a plane that is turned out of the axes': only its end can be compared.
             Shape::Spline(_) if value[0] == "arc" => None,
             Shape::Spline(_) => {
-                if let Some((wrong, value)) = wrong_spline(motion, &end, value, &mut moves, totals) {
+                if let Some((wrong, value)) = wrong_spline(motion, &end, value, &mut moves, totals)
+                {
                     return place(&wrong, value);
                 }
                 continue;
@@ -401,7 +549,8 @@ pub(crate) fn compare(text: &str, ours: &[Ours], theirs: &Theirs, totals: &mut T
             Shape::Arc { .. } => wrong_arc(motion, value, totals),
             Shape::Line => {
                 let is_rapid = motion.kind == MotionKind::Rapid;
-                (value[0] == "arc" || is_rapid != (value[0] == "rapid")).then(|| "another kind".to_owned())
+                (value[0] == "arc" || is_rapid != (value[0] == "rapid"))
+                    .then(|| "another kind".to_owned())
             }
         };
         if let Some(wrong) = wrong {
@@ -410,7 +559,11 @@ pub(crate) fn compare(text: &str, ours: &[Ours], theirs: &Theirs, totals: &mut T
         // A rigid tap says nothing of the axes that do not move.
         let axes = if value[0] == "tap" { 0..3 } else { 0..9 };
         if far(&end[axes.clone()], &point(&value[2])[axes], *within_mm) {
-            if is_cut && ours.get(number + 1).is_some_and(|next| goes_on(motion, &next.motion)) {
+            if is_cut
+                && ours
+                    .get(number + 1)
+                    .is_some_and(|next| goes_on(motion, &next.motion))
+            {
                 under_way = Some(value);
                 continue;
             }
@@ -419,14 +572,23 @@ pub(crate) fn compare(text: &str, ours: &[Ours], theirs: &Theirs, totals: &mut T
         returns = value[0] == "tap";
     }
     let moves_on = |value: &serde_json::Value| {
-        format!("motion {}, line {}: we have no more; theirs {value}", ours.len(), value[1])
+        format!(
+            "motion {}, line {}: we have no more; theirs {value}",
+            ours.len(),
+            value[1]
+        )
     };
     moves.next().map(moves_on)
 }
 
 /// What is different about LinuxCNC's arc.
 fn wrong_arc(motion: &Motion, value: &serde_json::Value, totals: &mut Totals) -> Option<String> {
-    let Shape::Arc { plane, center_mm, turns } = &motion.shape else {
+    let Shape::Arc {
+        plane,
+        center_mm,
+        turns,
+    } = &motion.shape
+    else {
         return None;
     };
     let number = match plane {
@@ -435,11 +597,18 @@ fn wrong_arc(motion: &Motion, value: &serde_json::Value, totals: &mut Totals) ->
         Plane::Yz => 2,
     };
     let [first, second, _] = plane.axes();
-    let center = [value[4][0].as_f64().unwrap_or(f64::NAN), value[4][1].as_f64().unwrap_or(f64::NAN)];
+    let center = [
+        value[4][0].as_f64().unwrap_or(f64::NAN),
+        value[4][1].as_f64().unwrap_or(f64::NAN),
+    ];
     if value[0] != "arc" || value[3] != number || value[5] != *turns {
         return Some("another shape".to_owned());
     }
-    if far(&center, &[center_mm[first], center_mm[second]], SAME_CENTRE_MM) {
+    if far(
+        &center,
+        &[center_mm[first], center_mm[second]],
+        SAME_CENTRE_MM,
+    ) {
         return Some("another centre".to_owned());
     }
     let spiral = Spiral::new(motion.start_mm, end_of(motion), center, *plane, *turns);
@@ -451,7 +620,8 @@ fn wrong_arc(motion: &Motion, value: &serde_json::Value, totals: &mut Totals) ->
     (!is_same).then(|| format!("another arc, {distance} mm apart, {length} mm longer or shorter"))
 }
 
-/// What is different about the chords and arcs that LinuxCNC cuts a spline into, whose ends lie on it; and where.
+/// What is different about the chords and arcs that LinuxCNC cuts a spline into, whose ends lie on
+/// it; and where.
 fn wrong_spline<'a>(
     motion: &Motion,
     end: &[f64; 9],

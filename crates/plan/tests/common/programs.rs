@@ -11,7 +11,10 @@ pub(crate) const LIMITS: PathLimits = PathLimits {
     corner_jump_mm_s: 8.0,
 };
 
-pub(crate) const BLEND: Corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
+pub(crate) const BLEND: Corner = Corner::Continuous {
+    tolerance_mm: None,
+    merge_mm: None,
+};
 
 pub(crate) fn line(start_mm: [f64; 3], end_mm: [f64; 3], feed_mm_s: f64, corner: Corner) -> Canon {
     let kind = MotionKind::Feed;
@@ -27,8 +30,18 @@ pub(crate) fn line(start_mm: [f64; 3], end_mm: [f64; 3], feed_mm_s: f64, corner:
     })
 }
 
-pub(crate) fn arc(start_mm: [f64; 3], end_mm: [f64; 3], center_mm: [f64; 3], turns: i32, feed_mm_s: f64) -> Canon {
-    let shape = Shape::Arc { plane: Plane::Xy, center_mm, turns };
+pub(crate) fn arc(
+    start_mm: [f64; 3],
+    end_mm: [f64; 3],
+    center_mm: [f64; 3],
+    turns: i32,
+    feed_mm_s: f64,
+) -> Canon {
+    let shape = Shape::Arc {
+        plane: Plane::Xy,
+        center_mm,
+        turns,
+    };
     let kind = MotionKind::Feed;
     Canon::Motion(Motion {
         line: 1,
@@ -43,7 +56,10 @@ pub(crate) fn arc(start_mm: [f64; 3], end_mm: [f64; 3], center_mm: [f64; 3], tur
 }
 
 pub(crate) fn polyline(points: &[[f64; 3]], feed_mm_s: f64, corner: Corner) -> Vec<Canon> {
-    let mut motions: Vec<Canon> = points.windows(2).map(|ends| line(ends[0], ends[1], feed_mm_s, corner)).collect();
+    let mut motions: Vec<Canon> = points
+        .windows(2)
+        .map(|ends| line(ends[0], ends[1], feed_mm_s, corner))
+        .collect();
     for (motion, number) in motions.iter_mut().zip(1..) {
         if let Canon::Motion(motion) = motion {
             motion.line = number;

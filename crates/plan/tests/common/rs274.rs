@@ -6,9 +6,15 @@ use crate::missing::missing;
 
 /// Whether `rs274` can be run; it is said where it cannot, and under CI the test fails.
 pub(crate) fn is_installed() -> bool {
-    let runs = Command::new("rs274").arg("-h").stdin(Stdio::null()).output().is_ok();
+    let runs = Command::new("rs274")
+        .arg("-h")
+        .stdin(Stdio::null())
+        .output()
+        .is_ok();
     if !runs {
-        missing("LinuxCNC is not installed (on Debian: apt-get install --no-install-recommends linuxcnc-uspace)");
+        missing(
+            "LinuxCNC is not installed (on Debian: apt-get install --no-install-recommends linuxcnc-uspace)",
+        );
     }
     runs
 }

@@ -1,15 +1,17 @@
 //! Tests a geometry against the measurement in its own file.
 //!
-//! Q(g) is the sum of the squares of (deviation - prediction by g) / noise over all rows, after the nuisances of each set are fitted.
-//! The file states what the fit left: Q_min. With p values of the geometry and m = rows - unknowns:
+//! Q(g) is the sum of the squares of (deviation - prediction by g) / noise over all rows, after the
+//! nuisances of each set are fitted. The file states what the fit left: Q_min. With p values of the
+//! geometry and m = rows - unknowns:
 //!
 //! ```text
 //! fits     ((Q(g) - Q_min) / p) / (Q_min / m)   exceeds F(p, m) with probability 1e-3 only: else the values are not those found
 //! reduces  ((Q(0) - Q(g)) / p) / (Q_min / m)    exceeds it: else the geometry cannot be told from none
 //! ```
 //!
-//! The first catches wrong signs, exchanged axes, and another lead, as far as the value concerned is above the noise.
-//! Source: Draper and Smith (1998), Applied regression analysis, chapter 6 (extra sum of squares).
+//! The first catches wrong signs, exchanged axes, and another lead, as far as the value concerned
+//! is above the noise. Source: Draper and Smith (1998), Applied regression analysis, chapter 6
+//! (extra sum of squares).
 
 use miette::Diagnostic;
 use thiserror::Error;
@@ -18,8 +20,9 @@ use super::GeometryFile;
 use super::least_squares::{RankedLeastSquares, f_exceeded};
 use crate::number::to_four_digits;
 
-/// Rate of false alarms of each test, for independent normal errors. At 1e-3 a correct file is refused once in a thousand, and a
-/// sign is caught where the value is at least about four standard deviations.
+/// Rate of false alarms of each test, for independent normal errors. At 1e-3 a correct file is
+/// refused once in a thousand, and a sign is caught where the value is at least about four standard
+/// deviations.
 pub const CHECK_ERROR_RATE: f64 = 1e-3;
 
 /// What the test found.
@@ -66,7 +69,9 @@ pub enum GeometryRefused {
     )]
     #[diagnostic(
         code(geometry::reduces),
-        help("the measurement shows no error above its noise: use no geometry file, or measure with less noise")
+        help(
+            "the measurement shows no error above its noise: use no geometry file, or measure with less noise"
+        )
     )]
     DoesNotReduce {
         /// What the geometry leaves, um.
@@ -79,8 +84,13 @@ pub enum GeometryRefused {
         probability: f64,
     },
     /// There are no more rows than unknowns.
-    #[error("the measurement has {rows} values for {unknowns} unknowns: there is nothing to test the geometry by")]
-    #[diagnostic(code(geometry::rows), help("measure more positions, or each position several times"))]
+    #[error(
+        "the measurement has {rows} values for {unknowns} unknowns: there is nothing to test the geometry by"
+    )]
+    #[diagnostic(
+        code(geometry::rows),
+        help("measure more positions, or each position several times")
+    )]
     TooFew {
         /// Deviations.
         rows: usize,
@@ -109,12 +119,19 @@ impl GeometryFile {
         let (with, without) = (self.misfit(self), self.misfit(&Self::default()));
         let free = with.rows as f64 - self.unknowns as f64;
         if free < 1.0 {
-            return Err(GeometryRefused::TooFew { rows: with.rows, unknowns: self.unknowns });
+            return Err(GeometryRefused::TooFew {
+                rows: with.rows,
+                unknowns: self.unknowns,
+            });
         }
-        let [after_um, before_um] = [with, without].map(|misfit| (misfit.um2 / misfit.rows as f64).sqrt());
+        let [after_um, before_um] =
+            [with, without].map(|misfit| (misfit.um2 / misfit.rows as f64).sqrt());
         if let Some(quotient) = self.misfit_quotient(&with) {
-            let left: f64 =
-                self.measured.iter().map(|set| set.observations().len() as f64 * set.left_um * set.left_um).sum();
+            let left: f64 = self
+                .measured
+                .iter()
+                .map(|set| set.observations().len() as f64 * set.left_um * set.left_um)
+                .sum();
             return Err(GeometryRefused::DoesNotFit {
                 after_um,
                 before_um,
@@ -124,29 +141,52 @@ impl GeometryFile {
                 hint: self.likely_fault(),
             });
         }
-        let quotient = (without.weighted - with.weighted) / self.values() / (self.least_misfit() / free);
+        let quotient =
+            (without.weighted - with.weighted) / self.values() / (self.least_misfit() / free);
         let probability = self.by_chance(quotient);
         if probability > CHECK_ERROR_RATE {
-            return Err(GeometryRefused::DoesNotReduce { after_um, before_um, quotient, probability });
+            return Err(GeometryRefused::DoesNotReduce {
+                after_um,
+                before_um,
+                quotient,
+                probability,
+            });
         }
-        Ok(Some(GeometryCheck { before_um, after_um, rows: with.rows }))
+        Ok(Some(GeometryCheck {
+            before_um,
+            after_um,
+            rows: with.rows,
+        }))
     }
 
     /// Values of the geometry, at least one.
     fn values(&self) -> f64 {
         let of_axis = |axis: &super::AxisGeometry| {
-            let single = [axis.scale_um_m, axis.pitch_error_um, axis.pitch_error_um, axis.backlash_um];
+            let single = [
+                axis.scale_um_m,
+                axis.pitch_error_um,
+                axis.pitch_error_um,
+                axis.backlash_um,
+            ];
             let straight: usize = axis.straightness.iter().map(Vec::len).sum();
             single.iter().filter(|value| **value != 0.0).count() + 2 * axis.table.len() + straight
         };
         let square = self.squareness;
-        let angles = [square.squareness_xy_urad, square.squareness_xz_urad, square.squareness_yz_urad];
+        let angles = [
+            square.squareness_xy_urad,
+            square.squareness_xz_urad,
+            square.squareness_yz_urad,
+        ];
         let angles = angles.iter().filter(|value| **value != 0.0).count();
         (self.axes.iter().map(of_axis).sum::<usize>() + angles).max(1) as f64
     }
 
     fn free(&self) -> f64 {
-        let rows: usize = self.measured.iter().map(|set| set.observations().len()).sum();
+        let rows: usize = self
+            .measured
+            .iter()
+            .map(|set| set.observations().len())
+            .sum();
         (rows as f64 - self.unknowns as f64).max(1.0)
     }
 
@@ -156,7 +196,11 @@ impl GeometryFile {
             let noises = set.left_um / set.noise_um;
             set.observations().len() as f64 * noises * noises
         };
-        self.measured.iter().map(of_set).sum::<f64>().max(f64::MIN_POSITIVE)
+        self.measured
+            .iter()
+            .map(of_set)
+            .sum::<f64>()
+            .max(f64::MIN_POSITIVE)
     }
 
     fn by_chance(&self, quotient: f64) -> f64 {
@@ -165,19 +209,24 @@ impl GeometryFile {
 
     /// The quotient of the test, where the geometry does not fit.
     fn misfit_quotient(&self, with: &Misfit) -> Option<f64> {
-        let quotient = (with.weighted - self.least_misfit()) / self.values() / (self.least_misfit() / self.free());
+        let quotient = (with.weighted - self.least_misfit())
+            / self.values()
+            / (self.least_misfit() / self.free());
         // A fit to the last digit leaves nothing, and rounding of the file counts as misfit.
         let rounding = with.um2 < ROUNDING_UM * ROUNDING_UM * with.rows as f64;
         (self.by_chance(quotient) < CHECK_ERROR_RATE && !rounding).then_some(quotient)
     }
 
-    /// What is left of this file's measurement by a geometry, once the nuisances of each set are fitted.
+    /// What is left of this file's measurement by a geometry, once the nuisances of each set are
+    /// fitted.
     fn misfit(&self, geometry: &Self) -> Misfit {
         let mut misfit = Misfit::default();
         for set in &self.measured {
             let observations = set.observations();
-            let left: Vec<f64> =
-                observations.iter().map(|seen| seen.deviation_um - seen.predicted_um(geometry)).collect();
+            let left: Vec<f64> = observations
+                .iter()
+                .map(|seen| seen.deviation_um - seen.predicted_um(geometry))
+                .collect();
             let columns: Vec<Vec<f64>> = (0..super::observation::NUISANCES)
                 .map(|i| observations.iter().map(|seen| seen.nuisance[i]).collect())
                 .collect();
@@ -207,22 +256,33 @@ impl GeometryFile {
         }
         type Angle = fn(&mut super::MeasuredSquareness) -> &mut f64;
         let angles: [(&str, Angle); 3] = [
-            ("squareness_xy_urad", |square| &mut square.squareness_xy_urad),
-            ("squareness_xz_urad", |square| &mut square.squareness_xz_urad),
-            ("squareness_yz_urad", |square| &mut square.squareness_yz_urad),
+            ("squareness_xy_urad", |square| {
+                &mut square.squareness_xy_urad
+            }),
+            ("squareness_xz_urad", |square| {
+                &mut square.squareness_xz_urad
+            }),
+            ("squareness_yz_urad", |square| {
+                &mut square.squareness_yz_urad
+            }),
         ];
         for (key, angle) in angles {
             if fits(&|file| *angle(&mut file.squareness) *= -1.0) {
-                return format!("with the other sign of {key} it fits: correct the sign, or measure again");
+                return format!(
+                    "with the other sign of {key} it fits: correct the sign, or measure again"
+                );
             }
         }
         for [a, b] in [[0, 1], [0, 2], [1, 2]] {
             if fits(&|file| file.axes.swap(a, b)) {
                 let [a, b] = [a, b].map(|axis| crate::machine::AXIS_NAMES[axis]);
-                return format!("with axis.{a} and axis.{b} exchanged it fits: exchange them, or measure again");
+                return format!(
+                    "with axis.{a} and axis.{b} exchanged it fits: exchange them, or measure again"
+                );
             }
         }
-        "a value, the lead or the measurement was changed: identify the measurement again".to_owned()
+        "a value, the lead or the measurement was changed: identify the measurement again"
+            .to_owned()
     }
 }
 

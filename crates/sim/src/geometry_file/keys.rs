@@ -6,8 +6,11 @@ use crate::toml_file::Key;
 use crate::toml_file::key::key;
 
 /// Of the top of the file.
-pub(crate) const ORIGIN: &[Key<GeometryOrigin>] =
-    &[key!(optional text written_by), key!(text source), key!(optional text date)];
+pub(crate) const ORIGIN: &[Key<GeometryOrigin>] = &[
+    key!(optional text written_by),
+    key!(text source),
+    key!(optional text date),
+];
 
 /// Of `[axis.x]` and its like. The ranges of values are those of machine files.
 pub(crate) const AXIS: &[Key<AxisGeometry>] = &[

@@ -1,6 +1,7 @@
 //! What each row of a measurement says about the geometry.
 //!
-//! A row is a deviation in um that is linear in the errors of the geometry, at one place or as the difference of two:
+//! A row is a deviation in um that is linear in the errors of the geometry, at one place or as the
+//! difference of two:
 //!
 //! | Kind | Row | Deviation | Nuisances |
 //! |---|---|---|---|
@@ -9,9 +10,10 @@
 //! | `grid` | two positions (mm), two directions, two deviations | tool beyond the command, in each axis | offsets (2), rotation |
 //! | `distance` | two points (mm, mm), factor of the size, deviation | distance longer than nominal | size of the tool |
 //!
-//! The radius of a bar and the size of a tool are nuisances unless the set is calibrated. The servo mismatch of a bar is
-//! proportional to the direction times sin(2 angle): the axes lag by different times. Source: ISO 230-4 (2022); Kakino, Ihara,
-//! Nakatsu (1987), The measurement of motion errors of NC machine tools by a double ball bar.
+//! The radius of a bar and the size of a tool are nuisances unless the set is calibrated. The servo
+//! mismatch of a bar is proportional to the direction times sin(2 angle): the axes lag by different
+//! times. Source: ISO 230-4 (2022); Kakino, Ihara, Nakatsu (1987), The measurement of motion errors
+//! of NC machine tools by a double ball bar.
 
 use super::GeometryFile;
 use crate::machine::AXIS_NAMES;
@@ -20,7 +22,8 @@ use crate::machine::AXIS_NAMES;
 pub const NUISANCES: usize = 4;
 
 /// Kinds of sets: name, and numbers in a row.
-pub(super) const KINDS: [(&str, usize); 4] = [("axis", 3), ("bar", 3), ("grid", 6), ("distance", 6)];
+pub(super) const KINDS: [(&str, usize); 4] =
+    [("axis", 3), ("bar", 3), ("grid", 6), ("distance", 6)];
 
 /// Values that were measured in one setup.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -37,7 +40,8 @@ pub struct MeasuredSet {
     pub date: String,
     /// Whether the length of the bar, or the size of the tool, is known.
     pub calibrated: bool,
-    /// Machine position of the center of a bar or of the origin of the points; of axes that are not in `axes`, where they stand.
+    /// Machine position of the center of a bar or of the origin of the points; of axes that are not
+    /// in `axes`, where they stand.
     pub x_mm: f64,
     /// The same of y.
     pub y_mm: f64,
@@ -80,7 +84,11 @@ impl Observation {
     pub fn predicted_um(&self, geometry: &GeometryFile) -> f64 {
         let along = |place: &MeasuredPlace| -> f64 {
             let error_um = geometry.error_um(place.at_mm, place.direction);
-            error_um.iter().zip(place.along).map(|(error, along)| error * along).sum()
+            error_um
+                .iter()
+                .zip(place.along)
+                .map(|(error, along)| error * along)
+                .sum()
         };
         self.places.iter().map(along).sum()
     }
@@ -97,7 +105,9 @@ impl MeasuredSet {
 
     /// Every row as observations; none where kind or axes are unknown.
     pub fn observations(&self) -> Vec<Observation> {
-        let Some(axes) = self.axis_numbers() else { return Vec::new() };
+        let Some(axes) = self.axis_numbers() else {
+            return Vec::new();
+        };
         let second = axes.get(1).copied().unwrap_or(axes[0]);
         let seen = |row: &Vec<f64>| match (self.kind.as_str(), row.as_slice()) {
             ("axis", &[at_mm, direction, deviation_um]) => {
@@ -106,11 +116,20 @@ impl MeasuredSet {
             ("bar", &[angle_deg, direction, deviation_um]) => {
                 vec![self.on_bar([axes[0], second], [angle_deg, direction, deviation_um])]
             }
-            ("grid", &[a_mm, b_mm, a_way, b_way, a_um, b_um]) => {
-                self.on_grid([axes[0], second], [a_mm, b_mm], [a_way, b_way], [a_um, b_um]).to_vec()
-            }
+            ("grid", &[a_mm, b_mm, a_way, b_way, a_um, b_um]) => self
+                .on_grid(
+                    [axes[0], second],
+                    [a_mm, b_mm],
+                    [a_way, b_way],
+                    [a_um, b_um],
+                )
+                .to_vec(),
             ("distance", &[a1, b1, a2, b2, size, deviation_um]) => {
-                vec![self.between([axes[0], second], [[a1, b1], [a2, b2]], [size, deviation_um])]
+                vec![self.between(
+                    [axes[0], second],
+                    [[a1, b1], [a2, b2]],
+                    [size, deviation_um],
+                )]
             }
             _ => Vec::new(),
         };
@@ -122,14 +141,24 @@ impl MeasuredSet {
     }
 
     fn on_axis(&self, axis: usize, [at_mm, direction, deviation_um]: [f64; 3]) -> Observation {
-        let mut place = MeasuredPlace { at_mm: self.origin_mm(), ..MeasuredPlace::default() };
+        let mut place = MeasuredPlace {
+            at_mm: self.origin_mm(),
+            ..MeasuredPlace::default()
+        };
         (place.at_mm[axis], place.direction[axis], place.along[axis]) = (at_mm, direction, 1.0);
-        Observation { places: [place, MeasuredPlace::default()], deviation_um, nuisance: [1.0, 0.0, 0.0, 0.0] }
+        Observation {
+            places: [place, MeasuredPlace::default()],
+            deviation_um,
+            nuisance: [1.0, 0.0, 0.0, 0.0],
+        }
     }
 
     fn on_bar(&self, [a, b]: [usize; 2], [angle_deg, way, deviation_um]: [f64; 3]) -> Observation {
         let (sin, cos) = libm::sincos(angle_deg.to_radians());
-        let mut place = MeasuredPlace { at_mm: self.origin_mm(), ..MeasuredPlace::default() };
+        let mut place = MeasuredPlace {
+            at_mm: self.origin_mm(),
+            ..MeasuredPlace::default()
+        };
         (place.along[a], place.along[b]) = (cos, sin);
         place.at_mm[a] += self.radius_mm * cos;
         place.at_mm[b] += self.radius_mm * sin;
@@ -142,8 +171,17 @@ impl MeasuredSet {
         }
     }
 
-    fn on_grid(&self, axes: [usize; 2], at_mm: [f64; 2], ways: [f64; 2], seen_um: [f64; 2]) -> [Observation; 2] {
-        let mut place = MeasuredPlace { at_mm: self.origin_mm(), ..MeasuredPlace::default() };
+    fn on_grid(
+        &self,
+        axes: [usize; 2],
+        at_mm: [f64; 2],
+        ways: [f64; 2],
+        seen_um: [f64; 2],
+    ) -> [Observation; 2] {
+        let mut place = MeasuredPlace {
+            at_mm: self.origin_mm(),
+            ..MeasuredPlace::default()
+        };
         for ((axis, at_mm), way) in axes.into_iter().zip(at_mm).zip(ways) {
             (place.at_mm[axis], place.direction[axis]) = (place.at_mm[axis] + at_mm, way);
         }
@@ -154,27 +192,48 @@ impl MeasuredSet {
             let mut nuisance = [0.0, 0.0, 1e-3 * turned, 0.0];
             nuisance[i] = 1.0;
             let places = [MeasuredPlace { along, ..place }, MeasuredPlace::default()];
-            Observation { places, deviation_um: seen_um[i], nuisance }
+            Observation {
+                places,
+                deviation_um: seen_um[i],
+                nuisance,
+            }
         })
     }
 
-    fn between(&self, [a, b]: [usize; 2], ends: [[f64; 2]; 2], [size, deviation_um]: [f64; 2]) -> Observation {
+    fn between(
+        &self,
+        [a, b]: [usize; 2],
+        ends: [[f64; 2]; 2],
+        [size, deviation_um]: [f64; 2],
+    ) -> Observation {
         let [from, to] = ends;
         let (along_a, along_b) = (to[0] - from[0], to[1] - from[1]);
         let length_mm = libm::hypot(along_a, along_b).max(f64::MIN_POSITIVE);
         let place = |end: [f64; 2], sign: f64| {
-            let mut place = MeasuredPlace { at_mm: self.origin_mm(), ..MeasuredPlace::default() };
-            (place.along[a], place.along[b]) = (sign * along_a / length_mm, sign * along_b / length_mm);
+            let mut place = MeasuredPlace {
+                at_mm: self.origin_mm(),
+                ..MeasuredPlace::default()
+            };
+            (place.along[a], place.along[b]) =
+                (sign * along_a / length_mm, sign * along_b / length_mm);
             place.at_mm[a] += end[0];
             place.at_mm[b] += end[1];
             place
         };
         let size = if self.calibrated { 0.0 } else { size };
-        Observation { places: [place(from, -1.0), place(to, 1.0)], deviation_um, nuisance: [size, 0.0, 0.0, 0.0] }
+        Observation {
+            places: [place(from, -1.0), place(to, 1.0)],
+            deviation_um,
+            nuisance: [size, 0.0, 0.0, 0.0],
+        }
     }
 }
 
 /// 1, -1, or 0 so near to a reversal that the direction is not known.
 fn sign(speed: f64) -> f64 {
-    if speed.abs() < 1e-9 { 0.0 } else { speed.signum() }
+    if speed.abs() < 1e-9 {
+        0.0
+    } else {
+        speed.signum()
+    }
 }

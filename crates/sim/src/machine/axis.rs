@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use feedwright_control::{DriveParameters, FrictionParameters, LoopDelays, Parameters, TransmissionParameters};
+use feedwright_control::{
+    DriveParameters, FrictionParameters, LoopDelays, Parameters, TransmissionParameters,
+};
 use serde::Serialize;
 
 /// A servo axis: mechanics at the motor shaft and the two control loops.
@@ -24,17 +26,20 @@ pub struct Axis {
     pub disturbance_hz: f64,
     /// Proportional gain of the position loop, 1/s.
     pub kp_1_s: f64,
-    /// Derivative gain of the position loop, dimensionless: rad/s of command for a rad/s of error rate.
+    /// Derivative gain of the position loop, dimensionless: rad/s of command for a rad/s of error
+    /// rate.
     pub kd: f64,
     /// Gain of the speed loop, N m s/rad.
     pub kv_nm_s_per_rad: f64,
     /// Torque at which the drive saturates, N m.
     pub torque_limit_nm: f64,
-    /// Acceleration that a correction of the command may add to the plan's, mm/s2; none is no limit in the loop, and the machine's
-    /// [`super::Limits::normal_accel_mm_s2`] for a correction that fades.
+    /// Acceleration that a correction of the command may add to the plan's, mm/s2; none is no limit
+    /// in the loop, and the machine's [`super::Limits::normal_accel_mm_s2`] for a correction that
+    /// fades.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub correction_accel_mm_s2: Option<f64>,
-    /// That of a correction that fades, of a machine that was planned by other limits in its file, mm/s2.
+    /// That of a correction that fades, of a machine that was planned by other limits in its file,
+    /// mm/s2.
     #[serde(skip)]
     pub fade_accel_mm_s2: Option<f64>,
     /// Delay between the control and the position loop, s; rounded to whole servo periods.
@@ -43,7 +48,8 @@ pub struct Axis {
     /// Delay between the position loop and the drive, s.
     #[serde(skip_serializing_if = "is_zero")]
     pub drive_delay_s: f64,
-    /// Bits of the torque command over the range from minus to plus [`Self::torque_limit_nm`]; none is without steps.
+    /// Bits of the torque command over the range from minus to plus [`Self::torque_limit_nm`]; none
+    /// is without steps.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque_bits: Option<u32>,
     /// Step of the position encoder, um of travel; 0 is without steps.
@@ -79,7 +85,8 @@ pub struct Axis {
     /// How much later than usual a reference reaches the drive at the most, s.
     #[serde(skip_serializing_if = "is_zero")]
     pub jitter_s: f64,
-    /// What the Coulomb friction is higher in the positive direction, and lower in the negative, N m.
+    /// What the Coulomb friction is higher in the positive direction, and lower in the negative, N
+    /// m.
     #[serde(skip_serializing_if = "is_zero")]
     pub coulomb_asymmetry_nm: f64,
     /// What friction has at rest above the Coulomb friction, N m.
@@ -118,7 +125,8 @@ pub struct Axis {
     /// Amplitude of the error within a turn of the screw, um.
     #[serde(skip_serializing_if = "is_zero")]
     pub pitch_error_um: f64,
-    /// Time over which the drive takes the speed from positions, s; no more than a mechanics period is the speed itself.
+    /// Time over which the drive takes the speed from positions, s; no more than a mechanics period
+    /// is the speed itself.
     #[serde(skip_serializing_if = "is_zero")]
     pub speed_window_s: f64,
     /// Whether the drive takes the speed at the start of each servo period, and holds it.
@@ -127,8 +135,8 @@ pub struct Axis {
     /// Whether the speed loop takes the speed from differences of the encoder.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub speed_from_encoder: bool,
-    /// Most that the axis can, for planners that plan axis by axis; none is what [`super::Limits`] and the drive allow. Speed,
-    /// mm/s.
+    /// Most that the axis can, for planners that plan axis by axis; none is what [`super::Limits`]
+    /// and the drive allow. Speed, mm/s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_velocity_mm_s: Option<f64>,
     /// Acceleration, mm/s2.
@@ -145,9 +153,14 @@ pub struct Axis {
 impl Axis {
     /// Whether anything of it is random.
     pub(super) fn is_noisy(&self) -> bool {
-        [self.encoder_noise_um, self.jitter_s, self.torque_noise_nm, self.disturbance_wander]
-            .iter()
-            .any(|&size| size > 0.0)
+        [
+            self.encoder_noise_um,
+            self.jitter_s,
+            self.torque_noise_nm,
+            self.disturbance_wander,
+        ]
+        .iter()
+        .any(|&size| size > 0.0)
     }
 
     /// As the law of an axis takes them.
@@ -198,23 +211,31 @@ impl Axis {
 
     /// Its ball screw.
     pub fn transmission(&self) -> TransmissionParameters {
-        self.transmission.map_or(TransmissionParameters::RIGID, |screw| TransmissionParameters {
-            table_share: screw.table_share,
-            resonance_rad_s: TAU * screw.resonance_hz,
-            damping_ratio: screw.damping_ratio,
-            backlash_rad: screw.backlash_um * 1e-3 * TAU / self.lead_mm_per_rev,
-        })
+        self.transmission
+            .map_or(TransmissionParameters::RIGID, |screw| {
+                TransmissionParameters {
+                    table_share: screw.table_share,
+                    resonance_rad_s: TAU * screw.resonance_hz,
+                    damping_ratio: screw.damping_ratio,
+                    backlash_rad: screw.backlash_um * 1e-3 * TAU / self.lead_mm_per_rev,
+                }
+            })
     }
 
     /// Backlash that the encoder does not see, mm: a scale on the table sees the gap.
     pub fn hidden_backlash_mm(&self) -> f64 {
-        self.hidden_screw().map_or(0.0, |screw| 1e-3 * screw.backlash_um)
+        self.hidden_screw()
+            .map_or(0.0, |screw| 1e-3 * screw.backlash_um)
     }
 
-    /// What the friction of both directions winds the screw up before the table moves, without the encoder seeing it, mm.
+    /// What the friction of both directions winds the screw up before the table moves, without the
+    /// encoder seeing it, mm.
     pub fn hidden_windup_mm(&self) -> f64 {
-        let windup_rad = self.transmission().windup_rad(self.inertia_kg_m2, self.coulomb_friction_nm);
-        self.hidden_screw().map_or(0.0, |_| windup_rad / self.rad_per_mm())
+        let windup_rad = self
+            .transmission()
+            .windup_rad(self.inertia_kg_m2, self.coulomb_friction_nm);
+        self.hidden_screw()
+            .map_or(0.0, |_| windup_rad / self.rad_per_mm())
     }
 
     /// The screw, where the encoder is at the motor.

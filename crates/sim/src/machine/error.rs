@@ -37,7 +37,8 @@ pub enum MachineError {
 }
 
 impl MachineError {
-    /// No such built-in machine; `is_file` when a file of that name stands in the current directory.
+    /// No such built-in machine; `is_file` when a file of that name stands in the current
+    /// directory.
     pub(super) fn unknown_name(name: &str, is_file: bool) -> Self {
         let names: Vec<&str> = BUILT_IN_MACHINES.iter().map(|(name, _)| *name).collect();
         let hint = if is_file {
@@ -45,9 +46,15 @@ impl MachineError {
         } else {
             match nearest(name, &names) {
                 Some(near) => format!("did you mean '{near}'?"),
-                None => "a machine of your own is a file: give its path, ending in .toml".to_owned(),
+                None => {
+                    "a machine of your own is a file: give its path, ending in .toml".to_owned()
+                }
             }
         };
-        Self::UnknownName { name: name.to_owned(), known: names.join(", "), hint }
+        Self::UnknownName {
+            name: name.to_owned(),
+            known: names.join(", "),
+            hint,
+        }
     }
 }

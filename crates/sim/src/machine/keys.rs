@@ -1,10 +1,11 @@
 //! The keys of a machine file that are numbers: name, unit, range, and the field that each fills.
 //!
-//! Reading, writing, the bounds in messages and the tables of docs/machine-file.md all go by these tables, see
-//! [`crate::toml_file::key`]. To add a key is one field and one row.
+//! Reading, writing, the bounds in messages and the tables of docs/machine-file.md all go by these
+//! tables, see [`crate::toml_file::key`]. To add a key is one field and one row.
 //!
-//! Ranges keep out what no machine has (a negative inertia, a unit mistaken by a factor of a million), not what is unusual: a
-//! machine that is tuned badly is a result of the simulation, not a fault of its file.
+//! Ranges keep out what no machine has (a negative inertia, a unit mistaken by a factor of a
+//! million), not what is unusual: a machine that is tuned badly is a result of the simulation, not
+//! a fault of its file.
 
 use feedwright_plan::Durations;
 
@@ -13,7 +14,10 @@ use crate::toml_file::Key;
 use crate::toml_file::key::{Value, key};
 
 /// Of `[period]`.
-pub const PERIOD: &[Key<Period>] = &[key!(servo_s, "s", 1e-5, 0.1), key!(mechanics_s, "s", 1e-7, 0.1)];
+pub const PERIOD: &[Key<Period>] = &[
+    key!(servo_s, "s", 1e-5, 0.1),
+    key!(mechanics_s, "s", 1e-7, 0.1),
+];
 
 /// Of `[limits]`.
 pub const LIMITS: &[Key<Limits>] = &[

@@ -1,14 +1,15 @@
-//! What may be known of a machine before it is identified: what its control is set to, and what its maker says of its axes.
+//! What may be known of a machine before it is identified: what its control is set to, and what its
+//! maker says of its axes.
 //!
-//! Controllers are made from this and from a trained model, never from a [`Machine`]. What is true of a simulated machine alone is
-//! not here: encoder, jitter, steps of the drive, ball screw, cogging and ripple, geometry, noise, phase and frequency of the
-//! disturbance.
+//! Controllers are made from this and from a trained model, never from a [`Machine`]. What is true
+//! of a simulated machine alone is not here: encoder, jitter, steps of the drive, ball screw,
+//! cogging and ripple, geometry, noise, phase and frequency of the disturbance.
 
 use std::f64::consts::TAU;
 
 use feedwright_control::{
-    AxisInverse, AxisKnowledge, AxisLaw, AxisStatistics, DriveParameters, FrictionParameters, LoopDelays, Parameters,
-    Periods, TransmissionParameters,
+    AxisInverse, AxisKnowledge, AxisLaw, AxisStatistics, DriveParameters, FrictionParameters,
+    LoopDelays, Parameters, Periods, TransmissionParameters,
 };
 
 use super::{Limits, Machine, Period};
@@ -29,7 +30,8 @@ pub struct Known {
 pub struct KnownAxis {
     /// Travel for one motor turn, mm.
     pub lead_mm_per_rev: f64,
-    /// Its law by the data sheets: loops, inertia, friction, and the torque at which the drive saturates.
+    /// Its law by the data sheets: loops, inertia, friction, and the torque at which the drive
+    /// saturates.
     pub nominal: Parameters,
     /// What its drive is set to beside.
     pub drive: DriveParameters,
@@ -43,8 +45,9 @@ pub struct KnownAxis {
     pub delays: LoopDelays,
     /// Acceleration that a correction may add to the plan's, mm/s2.
     pub correction_accel_mm_s2: f64,
-    /// Torque that is left for acceleration, N m: less friction, and less what the load takes at the most. The amplitude of a load
-    /// is known, since drives are chosen by it; its course is not.
+    /// Torque that is left for acceleration, N m: less friction, and less what the load takes at
+    /// the most. The amplitude of a load is known, since drives are chosen by it; its course is
+    /// not.
     pub spare_torque_nm: f64,
 }
 
@@ -59,8 +62,9 @@ impl Known {
         std::array::from_fn(|i| *self.axis(i))
     }
 
-    /// The same with wrong values of the axes: inertia and all friction by these factors. What the control is set to (gains,
-    /// feedforward, delays) is read off it and stays right. The torque that is left for acceleration follows from what is believed.
+    /// The same with wrong values of the axes: inertia and all friction by these factors. What the
+    /// control is set to (gains, feedforward, delays) is read off it and stays right. The torque
+    /// that is left for acceleration follows from what is believed.
     #[must_use]
     pub fn misjudged(&self, inertia: f64, friction: f64) -> Self {
         let axis = |axis: &KnownAxis| {
@@ -80,8 +84,16 @@ impl Known {
     /// The same with other axes, made of those that it has, by their numbers.
     #[must_use]
     pub fn with_axes(&self, axis: impl Fn(usize, &KnownAxis) -> KnownAxis) -> Self {
-        let axes = self.axes.iter().enumerate().map(|(i, known)| axis(i, known)).collect();
-        Self { axes, ..self.clone() }
+        let axes = self
+            .axes
+            .iter()
+            .enumerate()
+            .map(|(i, known)| axis(i, known))
+            .collect();
+        Self {
+            axes,
+            ..self.clone()
+        }
     }
 
     /// The nominal law of the first N axes.
@@ -102,8 +114,23 @@ impl Known {
 impl KnownAxis {
     /// With periods and statistics, as a controller takes it.
     pub fn with_statistics(&self, periods: Periods, statistics: AxisStatistics) -> AxisKnowledge {
-        let Self { nominal: parameters, drive, friction, transmission, delays, .. } = *self;
-        AxisKnowledge { parameters, periods, drive, friction, transmission, delays, statistics }
+        let Self {
+            nominal: parameters,
+            drive,
+            friction,
+            transmission,
+            delays,
+            ..
+        } = *self;
+        AxisKnowledge {
+            parameters,
+            periods,
+            drive,
+            friction,
+            transmission,
+            delays,
+            statistics,
+        }
     }
 
     /// Acceleration of the tool with the torque that is left for it, mm/s2.
@@ -118,21 +145,35 @@ impl Machine {
         let axis = |(i, axis): (usize, &super::Axis)| KnownAxis {
             lead_mm_per_rev: axis.lead_mm_per_rev,
             nominal: axis.parameters(),
-            drive: DriveParameters { speed_window_s: self.seen_over_s(axis), ..axis.drive() },
+            drive: DriveParameters {
+                speed_window_s: self.seen_over_s(axis),
+                ..axis.drive()
+            },
             friction: axis.friction(),
             transmission: TransmissionParameters::RIGID,
             scale_on_table: axis.transmission.is_some_and(|screw| screw.scale_on_table),
             delays: axis.loop_delays(),
             correction_accel_mm_s2: self.correction_accel_mm_s2(i),
-            spare_torque_nm: (axis.torque_limit_nm - axis.coulomb_friction_nm - axis.disturbance_nm).max(0.0),
+            spare_torque_nm: (axis.torque_limit_nm
+                - axis.coulomb_friction_nm
+                - axis.disturbance_nm)
+                .max(0.0),
         };
-        Known { period: self.period, limits: self.limits, axes: self.axes.iter().enumerate().map(axis).collect() }
+        Known {
+            period: self.period,
+            limits: self.limits,
+            axes: self.axes.iter().enumerate().map(axis).collect(),
+        }
     }
 
-    /// Window in which a drive sees the speed as late as this axis's does, s. A speed that is held for a servo period is later by half
-    /// of what it is held beyond the first mechanics period.
+    /// Window in which a drive sees the speed as late as this axis's does, s. A speed that is held
+    /// for a servo period is later by half of what it is held beyond the first mechanics period.
     fn seen_over_s(&self, axis: &super::Axis) -> f64 {
-        let Period { servo_s, mechanics_s, .. } = self.period;
+        let Period {
+            servo_s,
+            mechanics_s,
+            ..
+        } = self.period;
         if axis.speed_held {
             axis.speed_window_s.max(mechanics_s) + (servo_s - mechanics_s)
         } else {
@@ -152,8 +193,14 @@ mod tests {
         for i in 0..2 {
             let (was, is) = (known.axis(i), believed.axis(i));
             assert_eq!(is.nominal.inertia_kg_m2, 0.8 * was.nominal.inertia_kg_m2);
-            assert_eq!(is.nominal.viscous_friction_nm_s, 1.2 * was.nominal.viscous_friction_nm_s);
-            assert_eq!(is.nominal.coulomb_friction_nm, 1.2 * was.nominal.coulomb_friction_nm);
+            assert_eq!(
+                is.nominal.viscous_friction_nm_s,
+                1.2 * was.nominal.viscous_friction_nm_s
+            );
+            assert_eq!(
+                is.nominal.coulomb_friction_nm,
+                1.2 * was.nominal.coulomb_friction_nm
+            );
             let more_nm = 0.2 * was.nominal.coulomb_friction_nm;
             assert!((was.spare_torque_nm - is.spare_torque_nm - more_nm).abs() < 1e-12);
             assert_eq!(

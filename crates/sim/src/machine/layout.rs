@@ -5,18 +5,23 @@ use std::ops::Range;
 use feedwright_control::{MAX_COMMAND_PERIODS, MAX_MECHANICS_PER_SERVO, position_gains_1_s};
 use feedwright_plan::{Durations, PlcEvent};
 
-use super::{AXIS_NAMES, Axis, MACHINE_FORMAT, Machine, Noise, Period, Squareness, Transmission, keys};
+use super::{
+    AXIS_NAMES, Axis, MACHINE_FORMAT, Machine, Noise, Period, Squareness, Transmission, keys,
+};
 use crate::number::to_four_digits;
 use crate::toml_file::key::{read, read_all};
 use crate::toml_file::{Document, Fault, Table};
 
-/// Relative distance from a whole number below which `servo_s / mechanics_s` counts as whole: a hundred times the
-/// rounding of two decimal numbers and their quotient, far below any ratio that is off by a digit.
+/// Relative distance from a whole number below which `servo_s / mechanics_s` counts as whole: a
+/// hundred times the rounding of two decimal numbers and their quotient, far below any ratio that
+/// is off by a digit.
 const WHOLE_RATIO_TOLERANCE: f64 = 1e-12;
 
 /// Refuses a file of another format, whatever else stands in it.
 pub(super) fn of_this_format(document: &Document<'_>) -> Result<(), Vec<Fault>> {
-    let Some(format) = document.get_ref().get("format") else { return Ok(()) };
+    let Some(format) = document.get_ref().get("format") else {
+        return Ok(());
+    };
     let mut faults = Vec::new();
     let found = Table::root(document, None).whole("format", "", 1.0..=1e9, &mut faults);
     match found {
@@ -38,22 +43,36 @@ pub(super) fn of_this_format(document: &Document<'_>) -> Result<(), Vec<Fault>> 
 /// The name of the machine that a file builds upon, where it does.
 pub(super) fn base(document: &Document<'_>) -> Result<Option<String>, Vec<Fault>> {
     let mut faults = Vec::new();
-    let name = document.get_ref().contains_key("base").then(|| Table::root(document, None).text("base", &mut faults));
-    if faults.is_empty() { Ok(name) } else { Err(faults) }
+    let name = document
+        .get_ref()
+        .contains_key("base")
+        .then(|| Table::root(document, None).text("base", &mut faults));
+    if faults.is_empty() {
+        Ok(name)
+    } else {
+        Err(faults)
+    }
 }
 
 /// The base builds upon this file.
 pub(super) fn circular(document: &Document<'_>, base: &str) -> Fault {
     Fault {
-        at: document.get_ref().get("base").map_or(0..0, toml::Spanned::span),
+        at: document
+            .get_ref()
+            .get("base")
+            .map_or(0..0, toml::Spanned::span),
         label: "leads back to this file",
         message: format!("base: '{base}' builds upon this machine in turn"),
         hint: Some("name a machine that does not build upon this one".to_owned()),
     }
 }
 
-/// The machine that a file describes, upon a base without faults where it has one, or every fault in it.
-pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> Result<Machine, Vec<Fault>> {
+/// The machine that a file describes, upon a base without faults where it has one, or every fault
+/// in it.
+pub(super) fn machine(
+    document: &Document<'_>,
+    base: Option<&Document<'_>>,
+) -> Result<Machine, Vec<Fault>> {
     let mut faults = Vec::new();
     let mut root = Table::root(document, base);
     if base.is_some() {
@@ -62,7 +81,8 @@ pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> R
     root.has("format");
     let period = period(root.table("period", &mut faults), &mut faults);
     let mut plc_events = Vec::new();
-    let [name, description, source] = ["name", "description", "source"].map(|key| root.text(key, &mut faults));
+    let [name, description, source] =
+        ["name", "description", "source"].map(|key| root.text(key, &mut faults));
     let limits = root.table("limits", &mut faults);
     let in_limits = limits.header();
     let machine = Machine {
@@ -79,40 +99,63 @@ pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> R
         axes: axes(root.table("axis", &mut faults), period, &mut faults),
         geometry: root
             .optional_table("geometry", &mut faults)
-            .map_or(Squareness::default(), |table| read_all(keys::GEOMETRY, table, &mut faults)),
+            .map_or(Squareness::default(), |table| {
+                read_all(keys::GEOMETRY, table, &mut faults)
+            }),
         noise: root
             .optional_table("noise", &mut faults)
-            .map_or(Noise::default(), |table| read_all(keys::NOISE, table, &mut faults)),
+            .map_or(Noise::default(), |table| {
+                read_all(keys::NOISE, table, &mut faults)
+            }),
         compensated: None,
         tool: None,
     };
     tolerance_with_axes(&machine, in_limits, &mut faults);
     root.finish(&mut faults);
-    if faults.is_empty() { Ok(machine) } else { Err(faults) }
+    if faults.is_empty() {
+        Ok(machine)
+    } else {
+        Err(faults)
+    }
 }
 
-/// A tolerance of the path asks for a planner that needs the limits of each axis; these alone stand there for what else uses them.
+/// A tolerance of the path asks for a planner that needs the limits of each axis; these alone stand
+/// there for what else uses them.
 fn tolerance_with_axes(machine: &Machine, at: Range<usize>, faults: &mut Vec<Fault>) {
-    let limited = machine.axes.iter().all(|axis| axis.max_velocity_mm_s.is_some());
+    let limited = machine
+        .axes
+        .iter()
+        .all(|axis| axis.max_velocity_mm_s.is_some());
     if let (false, Some(tolerance_um)) = (limited, machine.limits.path_tolerance_um) {
         faults.push(Fault {
             at,
             label: "not without limits of the axes",
-            message: format!("path_tolerance_um is {tolerance_um} um, and the axes have no limits of their own"),
-            hint: Some(format!("give each axis {}, or leave path_tolerance_um out", AXIS_LIMITS.join(", "))),
+            message: format!(
+                "path_tolerance_um is {tolerance_um} um, and the axes have no limits of their own"
+            ),
+            hint: Some(format!(
+                "give each axis {}, or leave path_tolerance_um out",
+                AXIS_LIMITS.join(", ")
+            )),
         });
     }
 }
 
 /// The limits of an axis: all or none.
-pub(super) const AXIS_LIMITS: [&str; 3] = ["max_velocity_mm_s", "max_accel_mm_s2", "max_jerk_mm_s3"];
+pub(super) const AXIS_LIMITS: [&str; 3] =
+    ["max_velocity_mm_s", "max_accel_mm_s2", "max_jerk_mm_s3"];
 
 fn period(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Period {
-    let Period { servo_s, mechanics_s, .. } = read(keys::PERIOD, &mut table, faults);
+    let Period {
+        servo_s,
+        mechanics_s,
+        ..
+    } = read(keys::PERIOD, &mut table, faults);
     let ratio = servo_s / mechanics_s;
     // A value that has a fault of its own is NaN here and gets no second one.
     let is_whole = (ratio - ratio.round()).abs() <= WHOLE_RATIO_TOLERANCE * ratio;
-    if ratio.is_finite() && (!is_whole || !(1.0..=MAX_MECHANICS_PER_SERVO).contains(&ratio.round())) {
+    if ratio.is_finite() && (!is_whole || !(1.0..=MAX_MECHANICS_PER_SERVO).contains(&ratio.round()))
+    {
         let steps = ratio.round().clamp(1.0, MAX_MECHANICS_PER_SERVO);
         faults.push(Fault {
             at: table.place("mechanics_s"),
@@ -124,7 +167,11 @@ fn period(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Period {
         });
     }
     table.finish(faults);
-    Period { servo_s, mechanics_s, mechanics_per_servo: ratio.round() as u32 }
+    Period {
+        servo_s,
+        mechanics_s,
+        mechanics_per_servo: ratio.round() as u32,
+    }
 }
 
 fn plc(mut table: Table<'_, '_>, events: &mut Vec<PlcEvent>, faults: &mut Vec<Fault>) -> Durations {
@@ -138,7 +185,12 @@ fn plc(mut table: Table<'_, '_>, events: &mut Vec<PlcEvent>, faults: &mut Vec<Fa
     durations
 }
 
-fn plc_event(key: &str, mut table: Table<'_, '_>, before: &[PlcEvent], faults: &mut Vec<Fault>) -> Option<PlcEvent> {
+fn plc_event(
+    key: &str,
+    mut table: Table<'_, '_>,
+    before: &[PlcEvent],
+    faults: &mut Vec<Fault>,
+) -> Option<PlcEvent> {
     let event = m_code(key).map(|(code, p)| PlcEvent {
         code,
         p,
@@ -147,7 +199,14 @@ fn plc_event(key: &str, mut table: Table<'_, '_>, before: &[PlcEvent], faults: &
         takes_s: table.number("takes_s", "s", 0.0..=1e4, faults),
     });
     let at = table.header();
-    let fault = |label, message, hint: &str| faults.push(Fault { at, label, message, hint: Some(hint.to_owned()) });
+    let fault = |label, message, hint: &str| {
+        faults.push(Fault {
+            at,
+            label,
+            message,
+            hint: Some(hint.to_owned()),
+        });
+    };
     match &event {
         None => {
             fault(
@@ -164,8 +223,16 @@ fn plc_event(key: &str, mut table: Table<'_, '_>, before: &[PlcEvent], faults: &
                 "its duration is a key of [plc], where it has one",
             );
         }
-        Some(event) if before.iter().any(|other| (other.code, other.p) == (event.code, event.p)) => {
-            fault("named twice", format!("'{key}' is another spelling of an M-code that is named already"), "keep one");
+        Some(event)
+            if before
+                .iter()
+                .any(|other| (other.code, other.p) == (event.code, event.p)) =>
+        {
+            fault(
+                "named twice",
+                format!("'{key}' is another spelling of an M-code that is named already"),
+                "keep one",
+            );
         }
         Some(_) => {}
     }
@@ -173,21 +240,36 @@ fn plc_event(key: &str, mut table: Table<'_, '_>, before: &[PlcEvent], faults: &
     event
 }
 
-/// M-codes whose meaning no machine builder changes: stops, spindle, tool change, coolant, overrides, pallets, modes.
-const CODES_OF_THEIR_OWN: [u16; 23] =
-    [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 30, 48, 49, 50, 51, 52, 53, 60, 70, 71, 72, 73, 99];
+/// M-codes whose meaning no machine builder changes: stops, spindle, tool change, coolant,
+/// overrides, pallets, modes.
+const CODES_OF_THEIR_OWN: [u16; 23] = [
+    0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 30, 48, 49, 50, 51, 52, 53, 60, 70, 71, 72, 73, 99,
+];
 
 /// `M64 P3`: the code and its P word, blanks and case free.
 fn m_code(key: &str) -> Option<(u16, Option<u32>)> {
-    let key: String = key.chars().filter(|c| !c.is_whitespace()).map(|c| c.to_ascii_uppercase()).collect();
+    let key: String = key
+        .chars()
+        .filter(|c| !c.is_whitespace())
+        .map(|c| c.to_ascii_uppercase())
+        .collect();
     let words = key.strip_prefix('M')?;
     // `parse` alone would take a sign.
-    let number = |digits: &str| digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok()).flatten();
+    let number = |digits: &str| {
+        digits
+            .bytes()
+            .all(|byte| byte.is_ascii_digit())
+            .then(|| digits.parse().ok())
+            .flatten()
+    };
     let (code, p) = match words.split_once('P') {
         Some((code, p)) => (number(code)?, Some(number(p)?)),
         None => (number(words)?, None),
     };
-    u16::try_from(code).ok().filter(|&code| code <= LAST_M_CODE).map(|code| (code, p))
+    u16::try_from(code)
+        .ok()
+        .filter(|&code| code <= LAST_M_CODE)
+        .map(|code| (code, p))
 }
 
 /// As the reader has it.
@@ -195,20 +277,32 @@ const LAST_M_CODE: u16 = 9999;
 
 fn axes(mut table: Table<'_, '_>, period: Period, faults: &mut Vec<Fault>) -> Vec<Axis> {
     let [x, y, z] = AXIS_NAMES;
-    let mut axes: Vec<Axis> = [x, y].into_iter().map(|name| axis(table.table(name, faults), period, faults)).collect();
+    let mut axes: Vec<Axis> = [x, y]
+        .into_iter()
+        .map(|name| axis(table.table(name, faults), period, faults))
+        .collect();
     if let Some(present) = table.optional_table(z, faults) {
         axes.push(axis(present, period, faults));
     }
-    let limited = axes.iter().position(|axis| axis.max_velocity_mm_s.is_some());
-    let unlimited = axes.iter().position(|axis| axis.max_velocity_mm_s.is_none());
+    let limited = axes
+        .iter()
+        .position(|axis| axis.max_velocity_mm_s.is_some());
+    let unlimited = axes
+        .iter()
+        .position(|axis| axis.max_velocity_mm_s.is_none());
     if let (Some(limited), Some(unlimited)) = (limited, unlimited)
-        && axes.iter().all(|axis| axis.max_velocity_mm_s.is_some() == axis.max_jerk_mm_s3.is_some())
+        && axes
+            .iter()
+            .all(|axis| axis.max_velocity_mm_s.is_some() == axis.max_jerk_mm_s3.is_some())
     {
         let [has, lacks] = [limited, unlimited].map(|i| AXIS_NAMES[i]);
         faults.push(Fault {
             at: table.header(),
             label: "some axes with limits, some without",
-            message: format!("axis.{has} has limits of its own, and axis.{lacks} lacks {}", AXIS_LIMITS.join(", ")),
+            message: format!(
+                "axis.{has} has limits of its own, and axis.{lacks} lacks {}",
+                AXIS_LIMITS.join(", ")
+            ),
             hint: Some("a planner that plans axis by axis needs those of every axis".to_owned()),
         });
     }
@@ -219,7 +313,8 @@ fn axes(mut table: Table<'_, '_>, period: Period, faults: &mut Vec<Fault>) -> Ve
 fn axis(mut table: Table<'_, '_>, period: Period, faults: &mut Vec<Fault>) -> Axis {
     let transmission = table.optional_table("transmission", faults);
     let mut axis: Axis = read(keys::AXIS, &mut table, faults);
-    axis.transmission = transmission.map(|table| self::transmission(table, period.mechanics_s, faults));
+    axis.transmission =
+        transmission.map(|table| self::transmission(table, period.mechanics_s, faults));
     friction_within_step(&axis, period.mechanics_s, &table, faults);
     position_gain(axis.kp_1_s, period.servo_s, &table, faults);
     between_keys(&axis, &period, &table, faults);
@@ -227,12 +322,18 @@ fn axis(mut table: Table<'_, '_>, period: Period, faults: &mut Vec<Fault>) -> Ax
     axis
 }
 
-/// Largest part of its speed that viscous friction may take from a mass in a mechanics period. Beyond, the explicit step of the
-/// integration turns the speed around, and from 2 on it grows without bound.
+/// Largest part of its speed that viscous friction may take from a mass in a mechanics period.
+/// Beyond, the explicit step of the integration turns the speed around, and from 2 on it grows
+/// without bound.
 const MAX_FRICTION_STEP: f64 = 1.0;
 
 /// Refuses viscous friction B of a mass J that a step dt of the mechanics cannot follow: B dt / J.
-fn friction_within_step(axis: &Axis, mechanics_s: f64, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
+fn friction_within_step(
+    axis: &Axis,
+    mechanics_s: f64,
+    table: &Table<'_, '_>,
+    faults: &mut Vec<Fault>,
+) {
     // Friction acts on the table, where the screw gives.
     let mass_kg_m2 = axis.inertia_kg_m2 * axis.transmission.map_or(1.0, |screw| screw.table_share);
     let friction_nm_s = axis.viscous_friction_nm_s;
@@ -256,7 +357,8 @@ fn friction_within_step(axis: &Axis, mechanics_s: f64, table: &Table<'_, '_>, fa
     }
 }
 
-/// Refuses a position gain that no position loop with this servo period has. A value with a fault of its own is NaN here.
+/// Refuses a position gain that no position loop with this servo period has. A value with a fault
+/// of its own is NaN here.
 fn position_gain(kp_1_s: f64, servo_s: f64, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
     let [least, most] = position_gains_1_s(servo_s);
     if kp_1_s < least || kp_1_s > most {
@@ -281,9 +383,16 @@ const MAX_DELAY_PERIODS: f64 = 60.0;
 
 /// An axis has all of its limits or none.
 fn all_limits(axis: &Axis, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
-    let limits = [axis.max_velocity_mm_s, axis.max_accel_mm_s2, axis.max_jerk_mm_s3];
+    let limits = [
+        axis.max_velocity_mm_s,
+        axis.max_accel_mm_s2,
+        axis.max_jerk_mm_s3,
+    ];
     let those = |there: bool| {
-        let named = AXIS_LIMITS.iter().zip(limits).filter(move |(_, limit)| limit.is_some() == there);
+        let named = AXIS_LIMITS
+            .iter()
+            .zip(limits)
+            .filter(move |(_, limit)| limit.is_some() == there);
         named.map(|(name, _)| *name).collect::<Vec<_>>()
     };
     if let ([first, ..], [_, ..]) = (&those(true)[..], &those(false)[..]) {
@@ -303,9 +412,24 @@ fn all_limits(axis: &Axis, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
 /// What holds between the values of an axis.
 fn between_keys(axis: &Axis, period: &Period, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
     let pairs = [
-        (axis.interpolation_error_um, "interpolation_error_um", axis.signal_period_um, "signal_period_um"),
-        (axis.stribeck_nm, "stribeck_nm", axis.stribeck_mm_s, "stribeck_mm_s"),
-        (axis.cogging_nm, "cogging_nm", axis.cogging_per_rev, "cogging_per_rev"),
+        (
+            axis.interpolation_error_um,
+            "interpolation_error_um",
+            axis.signal_period_um,
+            "signal_period_um",
+        ),
+        (
+            axis.stribeck_nm,
+            "stribeck_nm",
+            axis.stribeck_mm_s,
+            "stribeck_mm_s",
+        ),
+        (
+            axis.cogging_nm,
+            "cogging_nm",
+            axis.cogging_per_rev,
+            "cogging_per_rev",
+        ),
         (axis.ripple, "ripple", axis.ripple_per_rev, "ripple_per_rev"),
     ];
     for (amount, key, over, needed) in pairs {
@@ -331,9 +455,17 @@ fn between_keys(axis: &Axis, period: &Period, table: &Table<'_, '_>, faults: &mu
         });
     }
     for (delay_s, key, most_periods) in [
-        (axis.command_delay_s, "command_delay_s", MAX_COMMAND_PERIODS as f64),
+        (
+            axis.command_delay_s,
+            "command_delay_s",
+            MAX_COMMAND_PERIODS as f64,
+        ),
         (axis.drive_delay_s, "drive_delay_s", MAX_DELAY_PERIODS),
-        (axis.measurement_delay_s, "measurement_delay_s", MAX_DELAY_PERIODS),
+        (
+            axis.measurement_delay_s,
+            "measurement_delay_s",
+            MAX_DELAY_PERIODS,
+        ),
     ] {
         let most_s = most_periods * period.servo_s;
         // Rounding of decimal numbers is let pass.
@@ -362,11 +494,15 @@ fn between_keys(axis: &Axis, period: &Period, table: &Table<'_, '_>, faults: &mu
     }
 }
 
-/// The two masses may turn by this angle against each other within a mechanics period, rad: beyond, the integration loses
-/// the frequency by more than a percent.
+/// The two masses may turn by this angle against each other within a mechanics period, rad: beyond,
+/// the integration loses the frequency by more than a percent.
 const MAX_PHASE_RAD: f64 = 0.5;
 
-fn transmission(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> Transmission {
+fn transmission(
+    mut table: Table<'_, '_>,
+    mechanics_s: f64,
+    faults: &mut Vec<Fault>,
+) -> Transmission {
     let transmission: Transmission = read(keys::TRANSMISSION, &mut table, faults);
     let free_rad_s = TAU * transmission.resonance_hz / (1.0 - transmission.table_share).sqrt();
     if free_rad_s * mechanics_s > MAX_PHASE_RAD {

@@ -1,4 +1,5 @@
-//! What a machine file says to the planner: limits along the path and of each axis, and how long PLC and spindle take.
+//! What a machine file says to the planner: limits along the path and of each axis, and how long
+//! PLC and spindle take.
 
 use feedwright_plan::{AxisLimits, Constraints, PathLimits, Plc};
 
@@ -16,35 +17,45 @@ impl From<&Limits> for PathLimits {
     }
 }
 
-/// Tolerance of a path that is planned axis by axis, um, where neither the program nor the machine file says one: about what a
-/// machine holds. A plan within 10 um is 1 % faster on the star.
+/// Tolerance of a path that is planned axis by axis, um, where neither the program nor the machine
+/// file says one: about what a machine holds. A plan within 10 um is 1 % faster on the star.
 const DEFAULT_PATH_TOLERANCE_UM: f64 = 1.0;
 
-/// Time in which the acceleration of an axis rises to its limit, s, where the machine file has no limits of the axes: a machine frame
-/// of 25 Hz comes to rest with it.
+/// Time in which the acceleration of an axis rises to its limit, s, where the machine file has no
+/// limits of the axes: a machine frame of 25 Hz comes to rest with it.
 const JERK_TIME_S: f64 = 0.04;
 
 impl Machine {
-    /// Limits of the i-th axis for a plan: those of the file. Where it has none, every axis has the speed of rapids, the smaller one of
-    /// the accelerations along and across the path, and the jerk that reaches it in 40 ms.
+    /// Limits of the i-th axis for a plan: those of the file. Where it has none, every axis has the
+    /// speed of rapids, the smaller one of the accelerations along and across the path, and the
+    /// jerk that reaches it in 40 ms.
     pub fn axis_limits(&self, i: usize) -> AxisLimits {
         let (axis, limits) = (self.axis(i), &self.limits);
-        let accel_mm_s2 = axis.max_accel_mm_s2.unwrap_or(limits.tangential_accel_mm_s2.min(limits.normal_accel_mm_s2));
+        let accel_mm_s2 = axis
+            .max_accel_mm_s2
+            .unwrap_or(limits.tangential_accel_mm_s2.min(limits.normal_accel_mm_s2));
         AxisLimits {
-            velocity_mm_s: axis.max_velocity_mm_s.unwrap_or(limits.rapid_mm_s.max(limits.max_feed_mm_s)),
+            velocity_mm_s: axis
+                .max_velocity_mm_s
+                .unwrap_or(limits.rapid_mm_s.max(limits.max_feed_mm_s)),
             accel_mm_s2,
             jerk_mm_s3: axis.max_jerk_mm_s3.unwrap_or(accel_mm_s2 / JERK_TIME_S),
         }
     }
 
-    /// This machine with a tolerance of the path, and with limits of every axis where the file has none: what a planner that plans axis
-    /// by axis takes. Corrections may accelerate as much as before.
+    /// This machine with a tolerance of the path, and with limits of every axis where the file has
+    /// none: what a planner that plans axis by axis takes. Corrections may accelerate as much as
+    /// before.
     #[must_use]
     pub fn planned_by_axes(&self, tolerance_um: f64) -> Self {
         let mut machine = self.clone();
         machine.limits.path_tolerance_um = Some(tolerance_um);
         for i in 0..machine.axes.len() {
-            let AxisLimits { velocity_mm_s, accel_mm_s2, jerk_mm_s3 } = self.axis_limits(i);
+            let AxisLimits {
+                velocity_mm_s,
+                accel_mm_s2,
+                jerk_mm_s3,
+            } = self.axis_limits(i);
             let axis = &mut machine.axes[i];
             if axis.max_accel_mm_s2.is_none() {
                 axis.fade_accel_mm_s2 = Some(self.correction_accel_mm_s2(i));
@@ -56,9 +67,14 @@ impl Machine {
         machine
     }
 
-    /// What a planner that plans axis by axis assumes where the file says nothing; `None` where it says all.
+    /// What a planner that plans axis by axis assumes where the file says nothing; `None` where it
+    /// says all.
     pub fn assumed_axis_limits(&self) -> Option<String> {
-        let AxisLimits { velocity_mm_s, accel_mm_s2, jerk_mm_s3 } = self.axis_limits(0);
+        let AxisLimits {
+            velocity_mm_s,
+            accel_mm_s2,
+            jerk_mm_s3,
+        } = self.axis_limits(0);
         self.axes.iter().any(|axis| axis.max_velocity_mm_s.is_none()).then(|| {
             format!(
                 "{} has no limits of its axes; assumed for each: {velocity_mm_s:.0} mm/s, {accel_mm_s2:.0} mm/s2 and {jerk_mm_s3:.0} mm/s3. \
@@ -73,10 +89,23 @@ impl Machine {
 impl From<&Machine> for Constraints {
     fn from(machine: &Machine) -> Self {
         let axes = (0..machine.axes.len()).map(|i| machine.axis_limits(i));
-        let rotary_deg_s = if machine.plc.rotary_deg_s > 0.0 { machine.plc.rotary_deg_s } else { f64::INFINITY };
-        let tolerance_um = machine.limits.path_tolerance_um.unwrap_or(DEFAULT_PATH_TOLERANCE_UM);
+        let rotary_deg_s = if machine.plc.rotary_deg_s > 0.0 {
+            machine.plc.rotary_deg_s
+        } else {
+            f64::INFINITY
+        };
+        let tolerance_um = machine
+            .limits
+            .path_tolerance_um
+            .unwrap_or(DEFAULT_PATH_TOLERANCE_UM);
         let path_tolerance_mm = Some(1e-3 * tolerance_um);
-        Self { path: (&machine.limits).into(), axes: axes.collect(), rotary_deg_s, path_tolerance_mm, speed_caps: None }
+        Self {
+            path: (&machine.limits).into(),
+            axes: axes.collect(),
+            rotary_deg_s,
+            path_tolerance_mm,
+            speed_caps: None,
+        }
     }
 }
 

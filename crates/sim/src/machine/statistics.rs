@@ -23,7 +23,11 @@ impl Machine {
                 encoder_step_rad: rad(axis.encoder_step_um),
                 interpolation_rad: rad(axis.interpolation_error_um),
                 interpolation_phase_rad: 0.0,
-                signal_per_rad: if signal_rad > 0.0 { TAU / signal_rad } else { 0.0 },
+                signal_per_rad: if signal_rad > 0.0 {
+                    TAU / signal_rad
+                } else {
+                    0.0
+                },
                 torque_noise_nm: axis.torque_noise_nm,
                 torque_noise_s: axis.torque_noise_s,
                 disturbance_nm: axis.disturbance_nm,

@@ -1,4 +1,5 @@
-//! Random numbers of a machine: a number for each seed, axis, purpose and moment, which needs nothing of those before.
+//! Random numbers of a machine: a number for each seed, axis, purpose and moment, which needs
+//! nothing of those before.
 //!
 //! ```text
 //! mix(z):  z ^= z >> 30; z *= 0xbf58476d1ce4e5b9; z ^= z >> 27; z *= 0x94d049bb133111eb; z ^= z >> 31       64 bits, modulo 2^64
@@ -8,19 +9,21 @@
 //! normal  = (sum of the twelve 16-bit parts of bits(3c), bits(3c + 1), bits(3c + 2) - 393210) / 65536
 //! ```
 //!
-//! The sum of twelve uniform numbers of 16 bits has the mean 12 * 65535 / 2 = 393,210 and the variance 12 (2^32 - 1) / 12, so normal
-//! has mean 0 and standard deviation 1 to 1e-10; it lies within -6 to 6, its excess kurtosis is -0.1. Integers and an exact division: any
-//! language on any machine computes the same bits.
+//! The sum of twelve uniform numbers of 16 bits has the mean 12 * 65535 / 2 = 393,210 and the
+//! variance 12 (2^32 - 1) / 12, so normal has mean 0 and standard deviation 1 to 1e-10; it lies
+//! within -6 to 6, its excess kurtosis is -0.1. Integers and an exact division: any language on any
+//! machine computes the same bits.
 //!
-//! Noise with a correlation time T is an Ornstein-Uhlenbeck process of standard deviation s, its step over dt exact, and it begins
-//! in its stationary distribution:
+//! Noise with a correlation time T is an Ornstein-Uhlenbeck process of standard deviation s, its
+//! step over dt exact, and it begins in its stationary distribution:
 //!
 //! ```text
 //! x(0) = s normal(0),   x(c + 1) = a x(c) + s sqrt(1 - a^2) normal(c + 1),   a = exp(-dt / T), 0 where T is
 //! ```
 //!
-//! Source: Steele, Lea and Flood (2014), Fast splittable pseudorandom number generators, for the generator, SplitMix64; Irwin (1927)
-//! and Hall (1927) for sums of uniform numbers; Uhlenbeck and Ornstein (1930), and Gillespie (1996) for the exact step.
+//! Source: Steele, Lea and Flood (2014), Fast splittable pseudorandom number generators, for the
+//! generator, SplitMix64; Irwin (1927) and Hall (1927) for sums of uniform numbers; Uhlenbeck and
+//! Ornstein (1930), and Gillespie (1996) for the exact step.
 
 /// 2^64 divided by the golden ratio.
 const GAMMA: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -52,7 +55,9 @@ pub(super) struct RandomStream {
 
 impl RandomStream {
     pub(super) fn new(seed: u64, axis: usize, purpose: RandomUse) -> Self {
-        Self { key: splitmix(seed, 16 * axis as u64 + purpose as u64) }
+        Self {
+            key: splitmix(seed, 16 * axis as u64 + purpose as u64),
+        }
     }
 
     /// From 0 to below 1.
@@ -99,8 +104,17 @@ pub(super) struct CorrelatedNoise {
 impl CorrelatedNoise {
     /// Of a standard deviation and a correlation time, for steps of `dt_s`.
     pub(super) fn new(stream: RandomStream, deviation: f64, correlation_s: f64, dt_s: f64) -> Self {
-        let keep = if correlation_s > 0.0 { libm::exp(-dt_s / correlation_s) } else { 0.0 };
-        Self { stream, keep, add: deviation * (1.0 - keep * keep).sqrt(), value: deviation * stream.normal(0) }
+        let keep = if correlation_s > 0.0 {
+            libm::exp(-dt_s / correlation_s)
+        } else {
+            0.0
+        };
+        Self {
+            stream,
+            keep,
+            add: deviation * (1.0 - keep * keep).sqrt(),
+            value: deviation * stream.normal(0),
+        }
     }
 
     /// Continues from the value of `before`.
@@ -128,7 +142,10 @@ mod tests {
             9_817_491_932_198_370_423,
             4_593_380_528_125_082_431,
         ];
-        assert_eq!([0, 1, 2, 3].map(|counter| splitmix(1_234_567, counter)), published);
+        assert_eq!(
+            [0, 1, 2, 3].map(|counter| splitmix(1_234_567, counter)),
+            published
+        );
     }
 
     /// Mean, variance, and the means of the third and fourth power.
@@ -145,12 +162,22 @@ mod tests {
     fn normal_and_uniform_numbers_have_their_moments() {
         for (axis, purpose) in [(0, RandomUse::Encoder), (2, RandomUse::Torque)] {
             let stream = RandomStream::new(7, axis, purpose);
-            // Of 1e6 numbers the standard errors of the means are 1e-3, 1.4e-3, 3.7e-3 and 9e-3; four of each are allowed.
+            // Of 1e6 numbers the standard errors of the means are 1e-3, 1.4e-3, 3.7e-3 and 9e-3;
+            // four of each are allowed.
             let [mean, square, cube, fourth] = moments((0..1_000_000).map(|c| stream.normal(c)));
-            assert!(mean.abs() < 4e-3 && (square - 1.0).abs() < 6e-3, "{mean} {square}");
-            assert!(cube.abs() < 0.015 && (fourth - 2.9).abs() < 0.04, "{cube} {fourth}");
+            assert!(
+                mean.abs() < 4e-3 && (square - 1.0).abs() < 6e-3,
+                "{mean} {square}"
+            );
+            assert!(
+                cube.abs() < 0.015 && (fourth - 2.9).abs() < 0.04,
+                "{cube} {fourth}"
+            );
             let [mean, square, ..] = moments((0..1_000_000).map(|c| stream.uniform(c)));
-            assert!((mean - 0.5).abs() < 1.2e-3 && (square - 1.0 / 3.0).abs() < 1.2e-3, "{mean} {square}");
+            assert!(
+                (mean - 0.5).abs() < 1.2e-3 && (square - 1.0 / 3.0).abs() < 1.2e-3,
+                "{mean} {square}"
+            );
         }
     }
 
@@ -164,7 +191,8 @@ mod tests {
         ];
         for (i, a) in streams.iter().enumerate() {
             for b in &streams[i + 1..] {
-                let product: f64 = (0..100_000).map(|c| a.normal(c) * b.normal(c)).sum::<f64>() / 1e5;
+                let product: f64 =
+                    (0..100_000).map(|c| a.normal(c) * b.normal(c)).sum::<f64>() / 1e5;
                 assert!(product.abs() < 0.0127, "{product}: four standard errors");
             }
         }
@@ -173,15 +201,29 @@ mod tests {
     #[test]
     fn correlated_noise_has_its_deviation_and_forgets_within_its_time() {
         let (deviation, time_s, dt_s) = (0.2, 0.005, 1e-4);
-        let mut noise = CorrelatedNoise::new(RandomStream::new(3, 0, RandomUse::Torque), deviation, time_s, dt_s);
+        let mut noise = CorrelatedNoise::new(
+            RandomStream::new(3, 0, RandomUse::Torque),
+            deviation,
+            time_s,
+            dt_s,
+        );
         let values: Vec<f64> = (0..2_000_000).map(|c| noise.next(c)).collect();
         let covariance = |lag: usize| {
-            values[lag..].iter().zip(&values).map(|(a, b)| a * b).sum::<f64>() / (values.len() - lag) as f64
+            values[lag..]
+                .iter()
+                .zip(&values)
+                .map(|(a, b)| a * b)
+                .sum::<f64>()
+                / (values.len() - lag) as f64
         };
         // 200 s are 20,000 independent numbers: 1 % for the variance, four times that is allowed.
         for lag in [0, 10, 50, 150] {
             let wanted = deviation * deviation * libm::exp(-(lag as f64) * dt_s / time_s);
-            assert!((covariance(lag) - wanted).abs() < 0.04 * deviation * deviation, "{lag}: {}", covariance(lag));
+            assert!(
+                (covariance(lag) - wanted).abs() < 0.04 * deviation * deviation,
+                "{lag}: {}",
+                covariance(lag)
+            );
         }
     }
 
@@ -190,8 +232,19 @@ mod tests {
         let stream = RandomStream::new(3, 0, RandomUse::Torque);
         let mut white = CorrelatedNoise::new(stream, 2.0, 0.0, 1e-4);
         assert_eq!(white.next(5), 2.0 * stream.normal(6));
-        let begins = |seed| CorrelatedNoise::new(RandomStream::new(seed, 0, RandomUse::Wander), 1.0, 1.0, 1e-3).next(0);
+        let begins = |seed| {
+            CorrelatedNoise::new(
+                RandomStream::new(seed, 0, RandomUse::Wander),
+                1.0,
+                1.0,
+                1e-3,
+            )
+            .next(0)
+        };
         let square: f64 = (0..10_000).map(|seed| begins(seed).powi(2)).sum::<f64>() / 1e4;
-        assert!((square - 1.0).abs() < 0.06, "{square}: four standard errors");
+        assert!(
+            (square - 1.0).abs() < 0.06,
+            "{square}: four standard errors"
+        );
     }
 }

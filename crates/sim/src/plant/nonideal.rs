@@ -7,8 +7,8 @@
 //! What the machine file does not name is passed over, to the bit.
 
 use feedwright_control::{
-    AxisLaw, AxisState, CommandQueue, DriveLaw, DriveParameters, DriveState, FrictionParameters, MechanicsLaw,
-    MechanicsState, TableState,
+    AxisLaw, AxisState, CommandQueue, DriveLaw, DriveParameters, DriveState, FrictionParameters,
+    MechanicsLaw, MechanicsState, TableState,
 };
 
 use super::drive::{Delay, in_steps, torque_step_nm};
@@ -41,15 +41,30 @@ pub(super) struct NonidealAxis {
 }
 
 impl NonidealAxis {
-    pub(super) fn new(machine: &Machine, index: usize, law: &AxisLaw, angle_rad: f64, seed: u64) -> Self {
+    pub(super) fn new(
+        machine: &Machine,
+        index: usize,
+        law: &AxisLaw,
+        angle_rad: f64,
+        seed: u64,
+    ) -> Self {
         let (axis, period) = (machine.axis(index), &machine.period);
         let encoder = Encoder::new(axis, RandomStream::new(seed, index, RandomUse::Encoder));
         let latency = Latency::new(axis, period, angle_rad);
         let speed = DriveSpeed::new(axis, encoder, period.mechanics_s, seed, index);
         Self {
-            commands: CommandQueue::resting(axis.loop_delays().command_periods(period.servo_s), angle_rad),
+            commands: CommandQueue::resting(
+                axis.loop_delays().command_periods(period.servo_s),
+                angle_rad,
+            ),
             // What it sees of the speed is simulated as it is.
-            drive: DriveLaw::new(law, DriveParameters { speed_window_s: 0.0, ..axis.drive() }),
+            drive: DriveLaw::new(
+                law,
+                DriveParameters {
+                    speed_window_s: 0.0,
+                    ..axis.drive()
+                },
+            ),
             drive_state: DriveState::default(),
             delay: Delay::new(axis, period, seed),
             torque_step_nm: torque_step_nm(axis),
@@ -61,7 +76,9 @@ impl NonidealAxis {
             mechanics: MechanicsLaw::new(law, axis.friction(), axis.transmission()),
             broadband: broadband(axis, period.mechanics_s, seed, index),
             wander: Wander::new(axis, period.servo_s, period.mechanics_s, seed, index),
-            scale_on_table: axis.transmission.is_some_and(|transmission| transmission.scale_on_table),
+            scale_on_table: axis
+                .transmission
+                .is_some_and(|transmission| transmission.scale_on_table),
             masses: MechanicsState::at_rest(angle_rad),
         }
     }
@@ -90,14 +107,18 @@ impl NonidealAxis {
             && axis.friction() == FrictionParameters::default()
     }
 
-    /// The axis goes on as another one: where its parts are and how fast, its commands, what its drive has summed up, what is on its way to and from
-    /// the drive, noise, and the disturbance's phase.
+    /// The axis goes on as another one: where its parts are and how fast, its commands, what its
+    /// drive has summed up, what is on its way to and from the drive, noise, and the disturbance's
+    /// phase.
     pub(super) fn take_over(&mut self, before: Option<&Self>, motor: &AxisState) {
         let periods = self.commands.periods();
         let Some(before) = before else {
             // The last command, but for the way of a servo period.
             self.commands = CommandQueue::resting(periods, motor.angle_rad + motor.error_rad);
-            self.masses.table = TableState { angle_rad: motor.angle_rad, speed_rad_s: motor.speed_rad_s };
+            self.masses.table = TableState {
+                angle_rad: motor.angle_rad,
+                speed_rad_s: motor.speed_rad_s,
+            };
             return;
         };
         self.commands = before.commands.with_periods(periods);
@@ -117,9 +138,12 @@ impl NonidealAxis {
         }
     }
 
-    /// The table gains the speed that a torque impulse gives it, N m s; false where the screw is rigid, and nothing changes.
+    /// The table gains the speed that a torque impulse gives it, N m s; false where the screw is
+    /// rigid, and nothing changes.
     pub(super) fn push_table(&mut self, impulse_nm_s: f64) -> bool {
-        let Some(screw) = self.mechanics.transmission() else { return false };
+        let Some(screw) = self.mechanics.transmission() else {
+            return false;
+        };
         self.masses.table.speed_rad_s += impulse_nm_s * screw.inverse_table_inertia;
         true
     }
@@ -146,7 +170,14 @@ impl NonidealAxis {
     /// What the encoder shows.
     #[inline]
     fn shown_rad(&self, motor: &AxisState, counter: u64) -> f64 {
-        self.encoder.read(if self.scale_on_table { self.table_rad() } else { motor.angle_rad }, counter)
+        self.encoder.read(
+            if self.scale_on_table {
+                self.table_rad()
+            } else {
+                motor.angle_rad
+            },
+            counter,
+        )
     }
 
     /// The position loop: what it asks for leaves for the drive.
@@ -160,16 +191,30 @@ impl NonidealAxis {
     ) {
         let measured_rad = self.measured_rad(motor, counter);
         let arrived_rad = self.commands.pass(command_rad);
-        let reference = self.drive.position_loop(law, arrived_rad, measured_rad, motor, &mut self.drive_state);
+        let reference =
+            self.drive
+                .position_loop(law, arrived_rad, measured_rad, motor, &mut self.drive_state);
         self.delay.send(reference, period);
     }
 
     /// One mechanics period under a disturbance; the torque of the drive, N m.
     #[inline]
-    pub(super) fn advance(&mut self, law: &AxisLaw, motor: &mut AxisState, moment: Moment, disturbance_nm: f64) -> f64 {
-        let speed_rad_s = if self.is_sensed { self.sensed_rad_s(law, motor, moment) } else { motor.speed_rad_s };
+    pub(super) fn advance(
+        &mut self,
+        law: &AxisLaw,
+        motor: &mut AxisState,
+        moment: Moment,
+        disturbance_nm: f64,
+    ) -> f64 {
+        let speed_rad_s = if self.is_sensed {
+            self.sensed_rad_s(law, motor, moment)
+        } else {
+            motor.speed_rad_s
+        };
         let reference = self.delay.arrived(moment.substep);
-        let wanted_nm = self.drive.torque_nm(law, reference, speed_rad_s, &mut self.drive_state);
+        let wanted_nm = self
+            .drive
+            .torque_nm(law, reference, speed_rad_s, &mut self.drive_state);
         let torque_nm = in_steps(wanted_nm, self.torque_step_nm);
         let load_nm = match &mut self.broadband {
             Some(noise) => disturbance_nm + noise.next(moment.counter),
@@ -187,7 +232,11 @@ impl NonidealAxis {
 
     /// The position on its way to the control is taken; the speed as the drive has it.
     fn sensed_rad_s(&mut self, law: &AxisLaw, motor: &AxisState, moment: Moment) -> f64 {
-        if self.latency.as_ref().is_some_and(|latency| latency.takes(moment.substep)) {
+        if self
+            .latency
+            .as_ref()
+            .is_some_and(|latency| latency.takes(moment.substep))
+        {
             let shown_rad = self.shown_rad(motor, moment.counter);
             if let Some(latency) = &mut self.latency {
                 latency.take(shown_rad);

@@ -20,7 +20,8 @@ use std::f64::consts::TAU;
 use super::noise::{CorrelatedNoise, RandomStream, RandomUse};
 use crate::machine::Axis;
 
-/// Correlation time of the disturbance's frequency, s: a spindle's speed control lets it wander over about a second.
+/// Correlation time of the disturbance's frequency, s: a spindle's speed control lets it wander
+/// over about a second.
 const WANDER_S: f64 = 1.0;
 
 /// Ripple and cogging of a motor.
@@ -35,8 +36,19 @@ pub(super) struct MotorTorque {
 impl MotorTorque {
     /// None where it has neither.
     pub(super) fn new(axis: &Axis) -> Option<Self> {
-        let Axis { ripple, ripple_per_rev, cogging_nm, cogging_per_rev, .. } = *axis;
-        (ripple > 0.0 || cogging_nm > 0.0).then_some(Self { ripple, ripple_per_rev, cogging_nm, cogging_per_rev })
+        let Axis {
+            ripple,
+            ripple_per_rev,
+            cogging_nm,
+            cogging_per_rev,
+            ..
+        } = *axis;
+        (ripple > 0.0 || cogging_nm > 0.0).then_some(Self {
+            ripple,
+            ripple_per_rev,
+            cogging_nm,
+            cogging_per_rev,
+        })
     }
 
     /// What the motor makes of the drive's torque at an angle, N m.
@@ -53,9 +65,15 @@ impl MotorTorque {
 }
 
 /// Broadband torque of an axis; none where it has none.
-pub(super) fn broadband(axis: &Axis, dt_s: f64, seed: u64, index: usize) -> Option<CorrelatedNoise> {
+pub(super) fn broadband(
+    axis: &Axis,
+    dt_s: f64,
+    seed: u64,
+    index: usize,
+) -> Option<CorrelatedNoise> {
     let stream = RandomStream::new(seed, index, RandomUse::Torque);
-    (axis.torque_noise_nm > 0.0).then(|| CorrelatedNoise::new(stream, axis.torque_noise_nm, axis.torque_noise_s, dt_s))
+    (axis.torque_noise_nm > 0.0)
+        .then(|| CorrelatedNoise::new(stream, axis.torque_noise_nm, axis.torque_noise_s, dt_s))
 }
 
 /// The disturbance's frequency, which is not constant.
@@ -71,7 +89,13 @@ pub(super) struct Wander {
 
 impl Wander {
     /// None where it is constant.
-    pub(super) fn new(axis: &Axis, servo_s: f64, mechanics_s: f64, seed: u64, index: usize) -> Option<Self> {
+    pub(super) fn new(
+        axis: &Axis,
+        servo_s: f64,
+        mechanics_s: f64,
+        seed: u64,
+        index: usize,
+    ) -> Option<Self> {
         let stream = RandomStream::new(seed, index, RandomUse::Wander);
         (axis.disturbance_wander > 0.0).then(|| Self {
             noise: CorrelatedNoise::new(stream, axis.disturbance_wander, WANDER_S, servo_s),
@@ -88,11 +112,13 @@ impl Wander {
         self.ahead_rad = before.ahead_rad;
     }
 
-    /// A servo period begins at t: cos and sin of the phase there, and of the angle by which it turns in a mechanics period.
+    /// A servo period begins at t: cos and sin of the phase there, and of the angle by which it
+    /// turns in a mechanics period.
     pub(super) fn servo_period(&mut self, period: u64, t_s: f64) -> [[f64; 2]; 2] {
         let faster_rad_s = self.nominal_rad_s * self.noise.next(period);
         let (sin, cos) = libm::sincos(self.nominal_rad_s * t_s + self.ahead_rad);
-        let (turn_sin, turn_cos) = libm::sincos((self.nominal_rad_s + faster_rad_s) * self.mechanics_s);
+        let (turn_sin, turn_cos) =
+            libm::sincos((self.nominal_rad_s + faster_rad_s) * self.mechanics_s);
         self.ahead_rad += faster_rad_s * self.servo_s;
         [[cos, sin], [turn_cos, turn_sin]]
     }
@@ -117,13 +143,21 @@ mod tests {
             ..axis()
         })
         .unwrap();
-        for (turn, ripple, cogging) in
-            [(0.0, 0.0, 0.0), (1.0 / 24.0, 0.05, 0.0), (1.0 / 96.0, 0.05 * 0.382_683_432, 0.04)]
-        {
+        for (turn, ripple, cogging) in [
+            (0.0, 0.0, 0.0),
+            (1.0 / 24.0, 0.05, 0.0),
+            (1.0 / 96.0, 0.05 * 0.382_683_432, 0.04),
+        ] {
             for drive_nm in [0.0, 2.0, -3.0] {
                 let wanted = drive_nm * (1.0 + ripple) + cogging;
-                assert!((motor.at_nm(drive_nm, TAU * turn) - wanted).abs() < 1e-9, "{turn} {drive_nm}");
-                assert!((motor.at_nm(drive_nm, TAU * (turn + 1.0)) - wanted).abs() < 1e-9, "a turn on");
+                assert!(
+                    (motor.at_nm(drive_nm, TAU * turn) - wanted).abs() < 1e-9,
+                    "{turn} {drive_nm}"
+                );
+                assert!(
+                    (motor.at_nm(drive_nm, TAU * (turn + 1.0)) - wanted).abs() < 1e-9,
+                    "a turn on"
+                );
             }
         }
         assert!(MotorTorque::new(&axis()).is_none());
@@ -131,7 +165,11 @@ mod tests {
 
     #[test]
     fn the_phase_is_the_integral_of_the_wandering_frequency() {
-        let axis = Axis { disturbance_wander: 0.02, disturbance_hz: 25.0, ..axis() };
+        let axis = Axis {
+            disturbance_wander: 0.02,
+            disturbance_hz: 25.0,
+            ..axis()
+        };
         let (servo_s, mechanics_s) = (1e-3, 1e-4);
         let mut wander = Wander::new(&axis, servo_s, mechanics_s, 5, 0).unwrap();
         let (mut last, mut square, periods) = (None, 0.0, 400_000_u64);
@@ -141,11 +179,18 @@ mod tests {
             square += part * part / periods as f64;
             if let Some(expected) = last {
                 let off: f64 = libm::atan2(sin, cos) - expected;
-                assert!(libm::sin(off).abs() < 1e-6 && libm::cos(off) > 0.0, "{n}: the phase has no steps");
+                assert!(
+                    libm::sin(off).abs() < 1e-6 && libm::cos(off) > 0.0,
+                    "{n}: the phase has no steps"
+                );
             }
             last = Some(libm::atan2(sin, cos) + 10.0 * libm::atan2(turn_sin, turn_cos));
         }
         // 400 s are 200 independent values: 5 % for the deviation, four times that is allowed.
-        assert!((square.sqrt() - 0.02).abs() < 0.2 * 0.02, "{}", square.sqrt());
+        assert!(
+            (square.sqrt() - 0.02).abs() < 0.2 * 0.02,
+            "{}",
+            square.sqrt()
+        );
     }
 }

@@ -1,13 +1,17 @@
-//! Pieces and phases that are kept: the planned path looked up by plan time, the programmed one by arc length.
+//! Pieces and phases that are kept: the planned path looked up by plan time, the programmed one by
+//! arc length.
 
 use feedwright_plan::vector::{norm, scale};
-use feedwright_plan::{AxisMotion, Phase, Piece, PlannedPiece, Point, ProgrammedPart, signed_distance_mm};
+use feedwright_plan::{
+    AxisMotion, Phase, Piece, PlannedPiece, Point, ProgrammedPart, signed_distance_mm,
+};
 
 use super::nearest::{Range, nearest};
 use super::{Foot, Sample};
 use std::collections::VecDeque;
 
-/// Times that a servo period looks at: two or three samples, and both ends of the range for the nearest point.
+/// Times that a servo period looks at: two or three samples, and both ends of the range for the
+/// nearest point.
 const HINTS: usize = 6;
 
 /// Speed, mm/s, above which the tangent is the direction of the velocity. At lower speed that
@@ -23,8 +27,8 @@ pub(super) struct KeptPath {
     first_programmed: u64,
     first_planned: u64,
     phases: VecDeque<Phase>,
-    /// Indices of phases found before: where to look first, never what to answer. A control loop looks at a few times that
-    /// move on together; each comes to have a hint of its own.
+    /// Indices of phases found before: where to look first, never what to answer. A control loop
+    /// looks at a few times that move on together; each comes to have a hint of its own.
     hints: [usize; HINTS],
 }
 
@@ -45,7 +49,8 @@ impl KeptPath {
         (self.planned.len(), self.phases.len())
     }
 
-    /// Drops phases that end before `tau_s` and pieces that no phase kept needs; the last of each stays.
+    /// Drops phases that end before `tau_s` and pieces that no phase kept needs; the last of each
+    /// stays.
     pub(super) fn forget_before(&mut self, tau_s: f64) {
         while self.phases.len() > 1 && self.phases[1].tau_s <= tau_s {
             self.phases.pop_front();
@@ -60,11 +65,14 @@ impl KeptPath {
             self.planned.pop_front();
             self.first_planned += 1;
         }
-        let keeps = |piece: &Piece, number: u64| match self.planned.front().map(|planned| planned.origin) {
-            Some(ProgrammedPart::Unchanged(first)) => number >= first,
-            Some(ProgrammedPart::Part { from_mm, .. }) => piece.s_mm + piece.length_mm > from_mm,
-            None => true,
-        };
+        let keeps =
+            |piece: &Piece, number: u64| match self.planned.front().map(|planned| planned.origin) {
+                Some(ProgrammedPart::Unchanged(first)) => number >= first,
+                Some(ProgrammedPart::Part { from_mm, .. }) => {
+                    piece.s_mm + piece.length_mm > from_mm
+                }
+                None => true,
+            };
         while self.programmed.len() > 1 && !keeps(&self.programmed[0], self.first_programmed) {
             self.programmed.pop_front();
             self.first_programmed += 1;
@@ -87,11 +95,17 @@ impl KeptPath {
             ProgrammedPart::Unchanged(_) => (piece.s_mm + local_mm, at.position_mm),
             ProgrammedPart::Part { from_mm, to_mm } => {
                 let s_mm = from_mm + local_mm / piece.length_mm * (to_mm - from_mm);
-                (s_mm, self.nearest_along(at.position_mm, s_mm, s_mm).position_mm)
+                (
+                    s_mm,
+                    self.nearest_along(at.position_mm, s_mm, s_mm).position_mm,
+                )
             }
         };
         if let Some(motion) = phase.motion {
-            let stands = Point { position_mm: programmed_mm, tangent: at.tangent };
+            let stands = Point {
+                position_mm: programmed_mm,
+                tangent: at.tangent,
+            };
             return beside(piece, s_mm, stands, &motion.after(along_s), ended);
         }
         let resting = ended || phase.rest.is_some();
@@ -100,7 +114,11 @@ impl KeptPath {
             tangent: at.tangent,
             s_mm,
             programmed_mm,
-            feed_mm_s: if resting { 0.0 } else { phase.speed_mm_s(along_s) },
+            feed_mm_s: if resting {
+                0.0
+            } else {
+                phase.speed_mm_s(along_s)
+            },
             line: phase.rest.unwrap_or(piece.line),
             cutting: piece.cutting && !resting,
             rapid: !piece.cutting,
@@ -110,10 +128,20 @@ impl KeptPath {
 
     #[inline]
     pub(super) fn nearest(&mut self, point_mm: [f64; 3], tau_lo_s: f64, tau_hi_s: f64) -> Foot {
-        let (Some((first, lo_mm)), Some((last, hi_mm))) = (self.place_at(tau_lo_s), self.place_at(tau_hi_s)) else {
+        let (Some((first, lo_mm)), Some((last, hi_mm))) =
+            (self.place_at(tau_lo_s), self.place_at(tau_hi_s))
+        else {
             return Foot::nowhere(point_mm);
         };
-        self.nearest_within(Range { first, last, lo_mm, hi_mm }, point_mm)
+        self.nearest_within(
+            Range {
+                first,
+                last,
+                lo_mm,
+                hi_mm,
+            },
+            point_mm,
+        )
     }
 
     /// Index of the programmed piece at a plan time, and the place in it.
@@ -122,7 +150,9 @@ impl KeptPath {
         let PlannedPiece { piece, origin } = self.planned(phase.piece)?;
         let local_mm = local_mm(&phase, piece, along(&phase, tau_s));
         Some(match *origin {
-            ProgrammedPart::Unchanged(number) => ((number - self.first_programmed) as usize, local_mm),
+            ProgrammedPart::Unchanged(number) => {
+                ((number - self.first_programmed) as usize, local_mm)
+            }
             ProgrammedPart::Part { from_mm, to_mm } => {
                 self.place_of(from_mm + local_mm / piece.length_mm * (to_mm - from_mm))
             }
@@ -136,22 +166,41 @@ impl KeptPath {
             return Foot::nowhere(point_mm);
         }
         let (first, lo_mm) = self.place_of(lo_mm);
-        let (last, hi_mm) = if hi_mm > lo_mm { self.place_of(hi_mm) } else { (first, lo_mm) };
-        self.nearest_within(Range { first, last, lo_mm, hi_mm }, point_mm)
+        let (last, hi_mm) = if hi_mm > lo_mm {
+            self.place_of(hi_mm)
+        } else {
+            (first, lo_mm)
+        };
+        self.nearest_within(
+            Range {
+                first,
+                last,
+                lo_mm,
+                hi_mm,
+            },
+            point_mm,
+        )
     }
 
     fn nearest_within(&self, range: Range, point_mm: [f64; 3]) -> Foot {
         if range.first == range.last {
             let piece = &self.programmed[range.first];
             let hi_mm = range.hi_mm.max(range.lo_mm);
-            return super::foot(piece, piece.curve.nearest(point_mm, range.lo_mm, hi_mm), point_mm);
+            return super::foot(
+                piece,
+                piece.curve.nearest(point_mm, range.lo_mm, hi_mm),
+                point_mm,
+            );
         }
         nearest(&self.programmed, range, point_mm)
     }
 
     /// Index of the piece at an arc length, and the place in it.
     fn place_of(&self, s_mm: f64) -> (usize, f64) {
-        let index = self.programmed.partition_point(|piece| piece.s_mm <= s_mm).saturating_sub(1);
+        let index = self
+            .programmed
+            .partition_point(|piece| piece.s_mm <= s_mm)
+            .saturating_sub(1);
         let piece = &self.programmed[index];
         (index, (s_mm - piece.s_mm).max(0.0).min(piece.length_mm))
     }
@@ -164,7 +213,8 @@ impl KeptPath {
     }
 
     fn planned(&self, number: u64) -> Option<&PlannedPiece> {
-        self.planned.get(number.checked_sub(self.first_planned)? as usize)
+        self.planned
+            .get(number.checked_sub(self.first_planned)? as usize)
     }
 
     /// The last phase that starts at `tau_s` or before, or else the first.
@@ -172,7 +222,11 @@ impl KeptPath {
     /// Looks ahead from the hint nearest before, in steps that double, and then halves.
     #[inline]
     fn phase_at(&mut self, tau_s: f64) -> Option<(Phase, usize)> {
-        let starts_by = |index: usize| self.phases.get(index).is_some_and(|phase| phase.tau_s <= tau_s);
+        let starts_by = |index: usize| {
+            self.phases
+                .get(index)
+                .is_some_and(|phase| phase.tau_s <= tau_s)
+        };
         let mut slot = None;
         let mut lo = 0;
         for (candidate, &hint) in self.hints.iter().enumerate() {
@@ -198,7 +252,8 @@ impl KeptPath {
     }
 }
 
-/// Where the reference is that leaves its piece, while `at`, at `s_mm`, is the point of the programmed path that stands for it.
+/// Where the reference is that leaves its piece, while `at`, at `s_mm`, is the point of the
+/// programmed path that stands for it.
 fn beside(piece: &Piece, s_mm: f64, at: Point, motion: &AxisMotion, ended: bool) -> Sample {
     let speed_mm_s = norm(motion.velocity_mm_s);
     Sample {

@@ -1,7 +1,8 @@
-//! The contour error by the encoders: that of the joints, where the control's geometry puts the tool with them.
+//! The contour error by the encoders: that of the joints, where the control's geometry puts the
+//! tool with them.
 //!
-//! It is measured as the tool's is, with a foot of its own, over the same servo periods. The rest of the tool's error is geometry that the
-//! control does not know.
+//! It is measured as the tool's is, with a foot of its own, over the same servo periods. The rest
+//! of the tool's error is geometry that the control does not know.
 
 use feedwright_plan::vector::Vector;
 
@@ -30,12 +31,27 @@ pub(super) struct JointErrorMeter {
 impl JointErrorMeter {
     /// At rest at the start of the path.
     pub(super) fn new(machine: &Machine, start_mm: Vector) -> Self {
-        Self { foot: FootTracker::new(machine, start_mm), square_sum_mm2: 0.0, max_mm: 0.0, rows: 0 }
+        Self {
+            foot: FootTracker::new(machine, start_mm),
+            square_sum_mm2: 0.0,
+            max_mm: 0.0,
+            rows: 0,
+        }
     }
 
-    /// The tool by the joints at the end of the servo period of a row that begins with the reference at `tau_s`.
-    pub(super) fn row(&mut self, reference: &mut Reference<'_>, tau_s: f64, by_joints_mm: Vector, row: &Row) {
-        let error_mm = self.foot.foot(reference, tau_s, row.s_mm, by_joints_mm).distance_mm;
+    /// The tool by the joints at the end of the servo period of a row that begins with the
+    /// reference at `tau_s`.
+    pub(super) fn row(
+        &mut self,
+        reference: &mut Reference<'_>,
+        tau_s: f64,
+        by_joints_mm: Vector,
+        row: &Row,
+    ) {
+        let error_mm = self
+            .foot
+            .foot(reference, tau_s, row.s_mm, by_joints_mm)
+            .distance_mm;
         if row.cutting {
             self.square_sum_mm2 += error_mm * error_mm;
             self.max_mm = self.max_mm.max(error_mm);
@@ -44,7 +60,14 @@ impl JointErrorMeter {
     }
 
     pub(super) fn finish(&self) -> JointError {
-        let rms_mm = if self.rows == 0 { 0.0 } else { (self.square_sum_mm2 / self.rows as f64).sqrt() };
-        JointError { rms_mm, max_mm: self.max_mm }
+        let rms_mm = if self.rows == 0 {
+            0.0
+        } else {
+            (self.square_sum_mm2 / self.rows as f64).sqrt()
+        };
+        JointError {
+            rms_mm,
+            max_mm: self.max_mm,
+        }
     }
 }

@@ -1,4 +1,5 @@
-//! How long the ticks took: a histogram, logarithmic and of fixed size, whatever the length of the run.
+//! How long the ticks took: a histogram, logarithmic and of fixed size, whatever the length of the
+//! run.
 
 /// Buckets an octave in the histogram of tick times: a quantile is good to 5 %.
 const BUCKETS_AN_OCTAVE: usize = 8;
@@ -14,7 +15,10 @@ pub struct TickTimes {
 
 impl Default for TickTimes {
     fn default() -> Self {
-        Self { counts: Box::new([0; BUCKETS_AN_OCTAVE * OCTAVES]), total: 0 }
+        Self {
+            counts: Box::new([0; BUCKETS_AN_OCTAVE * OCTAVES]),
+            total: 0,
+        }
     }
 }
 

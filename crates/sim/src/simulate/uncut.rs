@@ -4,15 +4,17 @@
 //! uncut = max over feed points P(t) of the distance from P(t) to the tool's trace over [t - W, t + W],   W = 5 / Kp + delay
 //! ```
 //!
-//! A feed point is where the reference stands at the start of a servo period in a programmed cutting motion; the trace is
-//! the polyline through the tool's positions at the ends of the servo periods. The contour error asks how far the tool
-//! is from the path; this asks how far the path is from the tool, and sees the corner that was rounded, the spike that was
-//! cut short, the leg that was left out. Feedforward can take the tool ahead of the command, so that it has been at a feed point
-//! before the command comes there; the time before `t` counts for that reason.
+//! A feed point is where the reference stands at the start of a servo period in a programmed
+//! cutting motion; the trace is the polyline through the tool's positions at the ends of the servo
+//! periods. The contour error asks how far the tool is from the path; this asks how far the path is
+//! from the tool, and sees the corner that was rounded, the spike that was cut short, the leg that
+//! was left out. Feedforward can take the tool ahead of the command, so that it has been at a feed
+//! point before the command comes there; the time before `t` counts for that reason.
 //!
-//! A feed point no further from the trace than the largest found so far is done with. One that is further by `g` is
-//! looked at again when the tool has gone `g`, since nothing nearer can come before; what is left at the end of its time is
-//! measured against all of it, and then is the new largest, but for a few. A servo period so takes some comparisons.
+//! A feed point no further from the trace than the largest found so far is done with. One that is
+//! further by `g` is looked at again when the tool has gone `g`, since nothing nearer can come
+//! before; what is left at the end of its time is measured against all of it, and then is the new
+//! largest, but for a few. A servo period so takes some comparisons.
 
 use std::collections::VecDeque;
 
@@ -27,7 +29,8 @@ pub struct Uncut {
     /// Servo periods so far.
     rows: u64,
     largest_mm: f64,
-    /// Where the tool was at the start of servo period `rows`, and of those before; the newest last.
+    /// Where the tool was at the start of servo period `rows`, and of those before; the newest
+    /// last.
     trace_mm: VecDeque<Vector>,
     /// Length of the trace.
     way_mm: f64,
@@ -66,13 +69,22 @@ impl Uncut {
             let before_mm = self.to_trace(row.path_mm, 0);
             if before_mm > self.largest_mm {
                 let again_mm = self.way_mm + distance(row.path_mm, from_mm) - self.largest_mm;
-                self.waiting.push_back(FeedPoint { point_mm: row.path_mm, row: self.rows, before_mm, again_mm });
+                self.waiting.push_back(FeedPoint {
+                    point_mm: row.path_mm,
+                    row: self.rows,
+                    before_mm,
+                    again_mm,
+                });
             }
         }
         self.last_mm = Some(row.path_mm);
         self.go(from_mm, row.act_mm);
         self.rows += 1;
-        while self.waiting.front().is_some_and(|point| point.row + self.periods <= self.rows) {
+        while self
+            .waiting
+            .front()
+            .is_some_and(|point| point.row + self.periods <= self.rows)
+        {
             self.settle();
         }
         if self.trace_mm.len() as u64 > self.periods + 1 {
@@ -80,7 +92,8 @@ impl Uncut {
         }
     }
 
-    /// The largest distance, mm. A tool within `arrived_mm` of the end has arrived there, though its rows end before it settles.
+    /// The largest distance, mm. A tool within `arrived_mm` of the end has arrived there, though
+    /// its rows end before it settles.
     pub fn finish(mut self, arrived_mm: f64) -> f64 {
         let last_mm = self.trace_mm[self.trace_mm.len() - 1];
         if let Some(end_mm) = self.last_mm
@@ -111,7 +124,15 @@ impl Uncut {
 
     /// The time of the oldest feed point is over.
     fn settle(&mut self) {
-        let Some(FeedPoint { point_mm, row, before_mm, .. }) = self.waiting.pop_front() else { return };
+        let Some(FeedPoint {
+            point_mm,
+            row,
+            before_mm,
+            ..
+        }) = self.waiting.pop_front()
+        else {
+            return;
+        };
         let first = self.trace_mm.len() as u64 - 1 - (self.rows - row);
         let nearest = self.to_trace(point_mm, first as usize).min(before_mm);
         if nearest.is_finite() {
@@ -119,10 +140,16 @@ impl Uncut {
         }
     }
 
-    /// Distance of a point from the trace, from its `first` position on; infinite where the trace has not begun.
+    /// Distance of a point from the trace, from its `first` position on; infinite where the trace
+    /// has not begun.
     fn to_trace(&self, point_mm: Vector, first: usize) -> f64 {
-        let trace = self.trace_mm.range(first..).zip(self.trace_mm.range(first + 1..));
-        trace.map(|(from, to)| to_segment(point_mm, *from, *to)).fold(f64::INFINITY, f64::min)
+        let trace = self
+            .trace_mm
+            .range(first..)
+            .zip(self.trace_mm.range(first + 1..));
+        trace
+            .map(|(from, to)| to_segment(point_mm, *from, *to))
+            .fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -130,7 +157,11 @@ impl Uncut {
 fn to_segment(point_mm: Vector, from_mm: Vector, to_mm: Vector) -> f64 {
     let along = sub(to_mm, from_mm);
     let square = dot(along, along);
-    let part = if square > 0.0 { (dot(sub(point_mm, from_mm), along) / square).clamp(0.0, 1.0) } else { 0.0 };
+    let part = if square > 0.0 {
+        (dot(sub(point_mm, from_mm), along) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
     distance(point_mm, add_scaled(from_mm, part, along))
 }
 
@@ -143,7 +174,11 @@ mod tests {
         let mut uncut = Uncut::new(periods, path[0]);
         for (n, &path_mm) in path.iter().enumerate() {
             let act_mm = tool(n);
-            uncut.row(&Row { path_mm, act_mm, ..Row::AT_REST });
+            uncut.row(&Row {
+                path_mm,
+                act_mm,
+                ..Row::AT_REST
+            });
         }
         uncut.finish(0.01)
     }
@@ -153,7 +188,8 @@ mod tests {
         let at = |n: usize| if n == 0 { path[0] } else { tool(n - 1) };
         let nearest = |n: usize| {
             let ends = (n + 1).saturating_sub(periods).max(1)..=(n + periods).min(path.len());
-            ends.map(|k| to_segment(path[n], at(k - 1), at(k))).fold(f64::INFINITY, f64::min)
+            ends.map(|k| to_segment(path[n], at(k - 1), at(k)))
+                .fold(f64::INFINITY, f64::min)
         };
         (0..path.len()).map(nearest).fold(0.0, f64::max)
     }
@@ -163,10 +199,17 @@ mod tests {
         let mut corners = vec![[0.0, 0.0, 0.0]];
         for tooth in 0..4 {
             let x = f64::from(tooth);
-            corners.extend([[x, 0.5, 0.0], [x + 0.5, 0.5, 0.0], [x + 0.5, 0.0, 0.0], [x + 1.0, 0.0, 0.0]]);
+            corners.extend([
+                [x, 0.5, 0.0],
+                [x + 0.5, 0.5, 0.0],
+                [x + 0.5, 0.0, 0.0],
+                [x + 1.0, 0.0, 0.0],
+            ]);
         }
         let leg = |ends: &[Vector]| -> Vec<Vector> {
-            (0..50).map(|k| add_scaled(ends[0], f64::from(k) / 50.0, sub(ends[1], ends[0]))).collect()
+            (0..50)
+                .map(|k| add_scaled(ends[0], f64::from(k) / 50.0, sub(ends[1], ends[0])))
+                .collect()
         };
         corners.windows(2).flat_map(leg).collect()
     }
@@ -199,11 +242,21 @@ mod tests {
         for (lag, wobble) in [(0, 0.0), (7, 1e-3), (20, 0.02), (90, 0.1), (150, 0.3)] {
             let tool = |n: usize| {
                 let phase = n as f64 * 0.3;
-                add_scaled(path[n.saturating_sub(lag)], wobble, [libm::sin(phase), libm::cos(1.7 * phase), 0.0])
+                add_scaled(
+                    path[n.saturating_sub(lag)],
+                    wobble,
+                    [libm::sin(phase), libm::cos(1.7 * phase), 0.0],
+                )
             };
             for periods in [1, 20, 100] {
-                let (found, wanted) = (uncut(&path, tool, periods), by_definition(&path, tool, periods));
-                assert!((found - wanted).abs() < 1e-12, "{lag} {wobble} {periods}: {found} {wanted}");
+                let (found, wanted) = (
+                    uncut(&path, tool, periods),
+                    by_definition(&path, tool, periods),
+                );
+                assert!(
+                    (found - wanted).abs() < 1e-12,
+                    "{lag} {wobble} {periods}: {found} {wanted}"
+                );
             }
         }
     }

@@ -1,4 +1,5 @@
-//! What can be wrong with a file of TOML text, each with its place and, where one is likely, a remedy.
+//! What can be wrong with a file of TOML text, each with its place and, where one is likely, a
+//! remedy.
 
 use std::io;
 use std::ops::Range;
@@ -119,7 +120,9 @@ impl Diagnostic for Problem {
     }
 
     fn help<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
-        self.hint.as_ref().map(|hint| Box::new(hint) as Box<dyn std::fmt::Display>)
+        self.hint
+            .as_ref()
+            .map(|hint| Box::new(hint) as Box<dyn std::fmt::Display>)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
@@ -136,14 +139,26 @@ impl FileError {
             io::ErrorKind::IsADirectory => Some("give a file of that directory"),
             _ => None,
         };
-        Self::Unreadable { kind, path: path.to_owned(), source, hint }
+        Self::Unreadable {
+            kind,
+            path: path.to_owned(),
+            source,
+            hint,
+        }
     }
 
     /// The faults of a text, sorted by place.
     pub fn invalid(kind: &'static Kind, file: &str, text: &str, mut faults: Vec<Fault>) -> Self {
         faults.sort_by_key(|fault| (fault.at.start, fault.at.end));
-        let problems = faults.into_iter().map(|fault| Problem::locate(kind, fault, text)).collect();
-        Self::Invalid { kind, text: NamedSource::new(visible(file), shown(text)).with_language("toml"), problems }
+        let problems = faults
+            .into_iter()
+            .map(|fault| Problem::locate(kind, fault, text))
+            .collect();
+        Self::Invalid {
+            kind,
+            text: NamedSource::new(visible(file), shown(text)).with_language("toml"),
+            problems,
+        }
     }
 }
 
@@ -162,7 +177,11 @@ impl Problem {
             line: before.matches('\n').count() + 1,
             column: before[line_start..].chars().count() + 1,
             // In the text as it is shown.
-            span: (shown(before).len(), text.get(fault.at).map_or(0, |at| shown(at).len())).into(),
+            span: (
+                shown(before).len(),
+                text.get(fault.at).map_or(0, |at| shown(at).len()),
+            )
+                .into(),
             label: fault.label,
             hint: fault.hint.map(|hint| visible(&hint).into_owned()),
         }

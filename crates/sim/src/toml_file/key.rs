@@ -1,7 +1,7 @@
 //! Keys declared in tables: name, unit, range, and the field that each fills.
 //!
-//! Reading, writing, the bounds in messages and the tables of the documents all go by such tables. To add a key is one field and
-//! one row.
+//! Reading, writing, the bounds in messages and the tables of the documents all go by such tables.
+//! To add a key is one field and one row.
 
 use super::{Fault, Table, quoted};
 
@@ -52,8 +52,9 @@ pub enum Value<T> {
     },
 }
 
-/// `field, unit, least, most`; `optional field` is an `Option`, `field or zero` has that where it is left out; `whole field`,
-/// `numbers field`, `text field` and `optional text field` are of those kinds; `flag field` is 0 or 1, and 0 where it is left out.
+/// `field, unit, least, most`; `optional field` is an `Option`, `field or zero` has that where it
+/// is left out; `whole field`, `numbers field`, `text field` and `optional text field` are of those
+/// kinds; `flag field` is 0 or 1, and 0 where it is left out.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! key {
@@ -95,7 +96,8 @@ macro_rules! key {
 }
 pub use key;
 
-/// Reads all keys of a table; a number that has a fault is not a number, everything else stays empty.
+/// Reads all keys of a table; a number that has a fault is not a number, everything else stays
+/// empty.
 pub fn read<T: Default>(keys: &[Key<T>], table: &mut Table<'_, '_>, faults: &mut Vec<Fault>) -> T {
     let mut part = T::default();
     for key in keys {
@@ -107,7 +109,11 @@ pub fn read<T: Default>(keys: &[Key<T>], table: &mut Table<'_, '_>, faults: &mut
 }
 
 /// A table that has these keys and no other.
-pub fn read_all<T: Default>(keys: &[Key<T>], mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> T {
+pub fn read_all<T: Default>(
+    keys: &[Key<T>],
+    mut table: Table<'_, '_>,
+    faults: &mut Vec<Fault>,
+) -> T {
     let part = read(keys, &mut table, faults);
     table.finish(faults);
     part
@@ -116,13 +122,18 @@ pub fn read_all<T: Default>(keys: &[Key<T>], mut table: Table<'_, '_>, faults: &
 fn read_one<T>(key: &Key<T>, table: &mut Table<'_, '_>, part: &mut T, faults: &mut Vec<Fault>) {
     let [least, most] = key.range;
     match key.value {
-        Value::Number { set, .. } => set(part, table.number(key.name, key.unit, least..=most, faults)),
+        Value::Number { set, .. } => {
+            set(part, table.number(key.name, key.unit, least..=most, faults));
+        }
         Value::Whole { set, .. } => {
             if let Some(whole) = table.whole(key.name, key.unit, least..=most, faults) {
                 set(part, whole);
             }
         }
-        Value::Numbers { set, .. } => set(part, table.numbers(key.name, key.unit, least..=most, faults)),
+        Value::Numbers { set, .. } => set(
+            part,
+            table.numbers(key.name, key.unit, least..=most, faults),
+        ),
         Value::Text { set, .. } => set(part, table.text(key.name, faults)),
     }
 }
@@ -136,8 +147,12 @@ pub fn write<T>(keys: &[Key<T>], part: &T) -> String {
         let value = match key.value {
             Value::Number { get, .. } => format!("{:?}", get(part)?),
             Value::Whole { get, .. } => get(part)?.to_string(),
-            Value::Numbers { get, .. } => array(Some(get(part)).filter(|numbers| !numbers.is_empty())?),
-            Value::Text { get, .. } => quoted(Some(get(part)).filter(|text| !(key.optional && text.is_empty()))?),
+            Value::Numbers { get, .. } => {
+                array(Some(get(part)).filter(|numbers| !numbers.is_empty())?)
+            }
+            Value::Text { get, .. } => {
+                quoted(Some(get(part)).filter(|text| !(key.optional && text.is_empty()))?)
+            }
         };
         Some(format!("{} = {value}\n", key.name))
     };
@@ -146,13 +161,33 @@ pub fn write<T>(keys: &[Key<T>], part: &T) -> String {
 
 /// A line of rows of numbers, a row in a line; nothing where there is none.
 pub(crate) fn write_rows<'r>(name: &str, rows: impl IntoIterator<Item = &'r [f64]>) -> String {
-    let row = |row: &[f64]| row.iter().map(|number| format!("{number:?}")).collect::<Vec<_>>().join(", ");
-    let lines: String = rows.into_iter().map(|numbers| format!("    [{}],\n", row(numbers))).collect();
-    if lines.is_empty() { lines } else { format!("{name} = [\n{lines}]\n") }
+    let row = |row: &[f64]| {
+        row.iter()
+            .map(|number| format!("{number:?}"))
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let lines: String = rows
+        .into_iter()
+        .map(|numbers| format!("    [{}],\n", row(numbers)))
+        .collect();
+    if lines.is_empty() {
+        lines
+    } else {
+        format!("{name} = [\n{lines}]\n")
+    }
 }
 
 fn array(numbers: &[f64]) -> String {
-    let line = |numbers: &[f64]| numbers.iter().map(|number| format!(" {number:?},")).collect::<String>();
-    let lines: String = numbers.chunks(NUMBERS_IN_A_LINE).map(|numbers| format!("   {}\n", line(numbers))).collect();
+    let line = |numbers: &[f64]| {
+        numbers
+            .iter()
+            .map(|number| format!(" {number:?},"))
+            .collect::<String>()
+    };
+    let lines: String = numbers
+        .chunks(NUMBERS_IN_A_LINE)
+        .map(|numbers| format!("   {}\n", line(numbers)))
+        .collect();
     format!("[\n{lines}]")
 }

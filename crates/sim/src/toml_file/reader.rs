@@ -26,7 +26,8 @@ pub struct Table<'t, 'i> {
     at: Range<usize>,
     /// What it holds; none where it stands in the base alone, or nowhere: then it reports nothing.
     entries: Option<&'t DeTable<'i>>,
-    /// What the file that this one builds upon has in its place: without faults, and its places are in another text.
+    /// What the file that this one builds upon has in its place: without faults, and its places are
+    /// in another text.
     base: Option<&'t DeTable<'i>>,
     asked: Vec<&'static str>,
 }
@@ -35,7 +36,13 @@ impl<'t, 'i> Table<'t, 'i> {
     /// The file itself.
     pub fn root(entries: &'t Spanned<DeTable<'i>>, base: Option<&'t Spanned<DeTable<'i>>>) -> Self {
         let (entries, base) = (Some(entries.get_ref()), base.map(Spanned::get_ref));
-        Self { name: String::new(), at: 0..0, entries, base, asked: Vec::new() }
+        Self {
+            name: String::new(),
+            at: 0..0,
+            entries,
+            base,
+            asked: Vec::new(),
+        }
     }
 
     /// Whether a key that may be left out is there.
@@ -52,7 +59,9 @@ impl<'t, 'i> Table<'t, 'i> {
         range: RangeInclusive<f64>,
         faults: &mut Vec<Fault>,
     ) -> f64 {
-        let found = self.required(key, faults).map(|value| number(value, key, key, unit, &range));
+        let found = self
+            .required(key, faults)
+            .map(|value| number(value, key, key, unit, &range));
         match found {
             Some(Ok(number)) => return number,
             Some(Err(fault)) => faults.push(fault),
@@ -81,7 +90,8 @@ impl<'t, 'i> Table<'t, 'i> {
         (value.is_finite() && value.fract() == 0.0).then_some(value as u64)
     }
 
-    /// Numbers within `range`; empty and faults, the first few of them, where there is one that is not.
+    /// Numbers within `range`; empty and faults, the first few of them, where there is one that is
+    /// not.
     pub(crate) fn numbers(
         &mut self,
         key: &'static str,
@@ -93,11 +103,19 @@ impl<'t, 'i> Table<'t, 'i> {
             return Vec::new();
         };
         let DeValue::Array(array) = value.get_ref() else {
-            faults.push(wrong_type(value.span(), key, "numbers in brackets", value.get_ref()));
+            faults.push(wrong_type(
+                value.span(),
+                key,
+                "numbers in brackets",
+                value.get_ref(),
+            ));
             return Vec::new();
         };
         let named = |at: usize| format!("{key}, number {}", at + 1);
-        let found = array.iter().enumerate().map(|(at, value)| number(value, key, &named(at), unit, &range));
+        let found = array
+            .iter()
+            .enumerate()
+            .map(|(at, value)| number(value, key, &named(at), unit, &range));
         let (numbers, wrong): (Vec<_>, Vec<_>) = found.partition(Result::is_ok);
         let wrong: Vec<Fault> = wrong.into_iter().filter_map(Result::err).collect();
         if wrong.is_empty() {
@@ -112,26 +130,47 @@ impl<'t, 'i> Table<'t, 'i> {
         Vec::new()
     }
 
-    /// Rows of `width` numbers within 1e9, `[[1, 2], [3, 4]]`; empty where the key is missing, and with faults where a row is no such row.
-    pub(crate) fn rows(&mut self, key: &'static str, width: usize, faults: &mut Vec<Fault>) -> Vec<Vec<f64>> {
+    /// Rows of `width` numbers within 1e9, `[[1, 2], [3, 4]]`; empty where the key is missing, and
+    /// with faults where a row is no such row.
+    pub(crate) fn rows(
+        &mut self,
+        key: &'static str,
+        width: usize,
+        faults: &mut Vec<Fault>,
+    ) -> Vec<Vec<f64>> {
         self.asked.push(key);
-        let Some(value) = self.value(key) else { return Vec::new() };
+        let Some(value) = self.value(key) else {
+            return Vec::new();
+        };
         let Some(array) = value.get_ref().as_array() else {
-            faults.push(wrong_type(value.span(), key, "rows of numbers in brackets", value.get_ref()));
+            faults.push(wrong_type(
+                value.span(),
+                key,
+                "rows of numbers in brackets",
+                value.get_ref(),
+            ));
             return Vec::new();
         };
         let mut rows = Vec::new();
         for (at, row) in array.iter().enumerate() {
             let named = format!("{key}, row {}", at + 1);
             let numbers = row.get_ref().as_array().filter(|row| row.len() == width);
-            let numbers: Option<Result<Vec<f64>, Fault>> = numbers
-                .map(|row| row.iter().map(|value| number(value, key, &named, "", &(-ROW_LIMIT..=ROW_LIMIT))).collect());
+            let numbers: Option<Result<Vec<f64>, Fault>> = numbers.map(|row| {
+                row.iter()
+                    .map(|value| number(value, key, &named, "", &(-ROW_LIMIT..=ROW_LIMIT)))
+                    .collect()
+            });
             match numbers {
                 Some(Ok(numbers)) => rows.push(numbers),
                 Some(Err(fault)) => faults.push(fault),
                 None => {
                     let message = format!("{named} has to be {width} numbers in brackets");
-                    faults.push(Fault { at: row.span(), label: "no such row", message, hint: None });
+                    faults.push(Fault {
+                        at: row.span(),
+                        label: "no such row",
+                        message,
+                        hint: None,
+                    });
                 }
             }
             if faults.len() >= FAULTS_OF_AN_ARRAY {
@@ -149,7 +188,12 @@ impl<'t, 'i> Table<'t, 'i> {
         match value.get_ref() {
             DeValue::String(text) if !text.trim().is_empty() => text.trim().to_owned(),
             DeValue::String(_) => {
-                faults.push(Fault { at: value.span(), label: "empty", message: format!("{key} is empty"), hint: None });
+                faults.push(Fault {
+                    at: value.span(),
+                    label: "empty",
+                    message: format!("{key} is empty"),
+                    hint: None,
+                });
                 String::new()
             }
             other => {
@@ -169,29 +213,61 @@ impl<'t, 'i> Table<'t, 'i> {
                     at: self.at.clone(),
                     label: "missing below here",
                     message: format!("table [{name}] is missing"),
-                    hint: self.near_unknown(key).map(|near| format!("is [{}] meant to be it?", self.dotted(near))),
+                    hint: self
+                        .near_unknown(key)
+                        .map(|near| format!("is [{}] meant to be it?", self.dotted(near))),
                 });
             }
-            Self { name, at: self.at.clone(), entries: None, base: None, asked: Vec::new() }
+            Self {
+                name,
+                at: self.at.clone(),
+                entries: None,
+                base: None,
+                asked: Vec::new(),
+            }
         })
     }
 
     /// A table that may be left out.
-    pub(crate) fn optional_table(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Option<Self> {
+    pub(crate) fn optional_table(
+        &mut self,
+        key: &'static str,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Self> {
         self.asked.push(key);
         let name = self.dotted(key);
-        let base = self.base.and_then(|base| base.get(key)).and_then(|value| value.get_ref().as_table());
+        let base = self
+            .base
+            .and_then(|base| base.get(key))
+            .and_then(|value| value.get_ref().as_table());
         let Some(value) = self.entries.and_then(|entries| entries.get(key)) else {
-            return base.is_some().then(|| Self { name, at: self.at.clone(), entries: None, base, asked: Vec::new() });
+            return base.is_some().then(|| Self {
+                name,
+                at: self.at.clone(),
+                entries: None,
+                base,
+                asked: Vec::new(),
+            });
         };
         let entries = match value.get_ref() {
             DeValue::Table(entries) => Some(entries),
             other => {
-                faults.push(wrong_type(value.span(), key, &format!("a table [{name}]"), other));
+                faults.push(wrong_type(
+                    value.span(),
+                    key,
+                    &format!("a table [{name}]"),
+                    other,
+                ));
                 None
             }
         };
-        Some(Self { name, at: value.span(), entries, base, asked: Vec::new() })
+        Some(Self {
+            name,
+            at: value.span(),
+            entries,
+            base,
+            asked: Vec::new(),
+        })
     }
 
     /// Returns every entry that is a table, with its key, in the order of the file. Every other
@@ -206,14 +282,28 @@ impl<'t, 'i> Table<'t, 'i> {
             };
             match value.get_ref() {
                 DeValue::Table(entries) => {
-                    let table = Self { name, at: key.span(), entries: Some(entries), base: None, asked: Vec::new() };
+                    let table = Self {
+                        name,
+                        at: key.span(),
+                        entries: Some(entries),
+                        base: None,
+                        asked: Vec::new(),
+                    };
                     found.push((key.span().start, key.get_ref().to_string(), table));
                 }
-                other => faults.push(wrong_type(value.span(), key.get_ref(), &format!("a table [{name}]"), other)),
+                other => faults.push(wrong_type(
+                    value.span(),
+                    key.get_ref(),
+                    &format!("a table [{name}]"),
+                    other,
+                )),
             }
         }
         found.sort_by_key(|(start, ..)| *start);
-        found.into_iter().map(|(_, key, table)| (key, table)).collect()
+        found
+            .into_iter()
+            .map(|(_, key, table)| (key, table))
+            .collect()
     }
 
     /// Place of the table itself.
@@ -223,7 +313,9 @@ impl<'t, 'i> Table<'t, 'i> {
 
     /// Place of a key's value, for faults between values; the table's where the key is missing.
     pub fn place(&self, key: &str) -> Range<usize> {
-        self.entries.and_then(|entries| entries.get(key)).map_or_else(|| self.at.clone(), Spanned::span)
+        self.entries
+            .and_then(|entries| entries.get(key))
+            .map_or_else(|| self.at.clone(), Spanned::span)
     }
 
     /// Reports every key that the caller did not ask for as a fault.
@@ -233,8 +325,16 @@ impl<'t, 'i> Table<'t, 'i> {
             if self.asked.contains(&word) {
                 continue;
             }
-            let kind = if value.get_ref().is_table() { "table" } else { "key" };
-            let home = if self.name.is_empty() { "the file".to_owned() } else { format!("[{}]", self.name) };
+            let kind = if value.get_ref().is_table() {
+                "table"
+            } else {
+                "key"
+            };
+            let home = if self.name.is_empty() {
+                "the file".to_owned()
+            } else {
+                format!("[{}]", self.name)
+            };
             let hint = match nearest(word, &self.asked) {
                 Some(near) => format!("did you mean '{near}'?"),
                 None => format!("{home} holds {}", self.asked.join(", ")),
@@ -249,16 +349,26 @@ impl<'t, 'i> Table<'t, 'i> {
     }
 
     /// The value of a key that has to be there; a fault where it is not.
-    fn required(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Option<&'t Spanned<DeValue<'i>>> {
+    fn required(
+        &mut self,
+        key: &'static str,
+        faults: &mut Vec<Fault>,
+    ) -> Option<&'t Spanned<DeValue<'i>>> {
         self.asked.push(key);
         let value = self.value(key);
         if value.is_none() && self.entries.is_some() {
-            let home = if self.name.is_empty() { String::new() } else { format!(" from [{}]", self.name) };
+            let home = if self.name.is_empty() {
+                String::new()
+            } else {
+                format!(" from [{}]", self.name)
+            };
             faults.push(Fault {
                 at: self.at.clone(),
                 label: "missing here",
                 message: format!("{key} is missing{home}"),
-                hint: self.near_unknown(key).map(|near| format!("is '{near}' meant to be it?")),
+                hint: self
+                    .near_unknown(key)
+                    .map(|near| format!("is '{near}' meant to be it?")),
             });
         }
         value
@@ -273,14 +383,21 @@ impl<'t, 'i> Table<'t, 'i> {
     /// A key of the text that looks like `key` and that the caller has not asked for yet.
     fn near_unknown(&self, key: &str) -> Option<&'t str> {
         let entries = self.entries?;
-        let unknown: Vec<&str> =
-            entries.keys().map(|key| key.get_ref().as_ref()).filter(|word| !self.asked.contains(word)).collect();
+        let unknown: Vec<&str> = entries
+            .keys()
+            .map(|key| key.get_ref().as_ref())
+            .filter(|word| !self.asked.contains(word))
+            .collect();
         // Stricter than `nearest` alone: a key that is asked for later is unknown only until then.
         nearest(key, &unknown).filter(|near| strsim::damerau_levenshtein(key, near) <= 2)
     }
 
     fn dotted(&self, key: &str) -> String {
-        if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
+        if self.name.is_empty() {
+            key.to_owned()
+        } else {
+            format!("{}.{key}", self.name)
+        }
     }
 }
 
@@ -294,13 +411,18 @@ fn number(
 ) -> Result<f64, Fault> {
     let number: Option<f64> = match value.get_ref() {
         DeValue::Float(float) => float.as_str().parse().ok(),
-        DeValue::Integer(integer) => {
-            i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|whole| whole as f64)
-        }
+        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
+            .ok()
+            .map(|whole| whole as f64),
         other if key == named => return Err(wrong_type(value.span(), key, "a number", other)),
         other => {
             let message = format!("{named} is {}, not a number", article(other.type_str()));
-            return Err(Fault { at: value.span(), label: "wrong type", message, hint: None });
+            return Err(Fault {
+                at: value.span(),
+                label: "wrong type",
+                message,
+                hint: None,
+            });
         }
     };
     match number {
@@ -318,7 +440,11 @@ fn number(
 /// Both ends of a range, with their unit where there is one.
 fn with_unit(range: &RangeInclusive<f64>, unit: &str) -> String {
     let ends = format!("{} and {}", shown(*range.start()), shown(*range.end()));
-    if unit.is_empty() { ends } else { format!("{ends} {unit}") }
+    if unit.is_empty() {
+        ends
+    } else {
+        format!("{ends} {unit}")
+    }
 }
 
 fn wrong_type(at: Range<usize>, key: &str, wanted: &str, got: &DeValue<'_>) -> Fault {
@@ -331,22 +457,42 @@ fn wrong_type(at: Range<usize>, key: &str, wanted: &str, got: &DeValue<'_>) -> F
     Fault {
         at,
         label: "wrong type",
-        message: format!("{key} has to be {wanted}, but is {}", article(got.type_str())),
+        message: format!(
+            "{key} has to be {wanted}, but is {}",
+            article(got.type_str())
+        ),
         hint,
     }
 }
 
 fn article(kind: &str) -> String {
-    let article = if kind.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    let article = if kind.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        "an"
+    } else {
+        "a"
+    };
     format!("{article} {kind}")
 }
 
-fn out_of_range(at: Range<usize>, key: &str, number: f64, unit: &str, range: &RangeInclusive<f64>) -> Fault {
-    let blank_and_unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+fn out_of_range(
+    at: Range<usize>,
+    key: &str,
+    number: f64,
+    unit: &str,
+    range: &RangeInclusive<f64>,
+) -> Fault {
+    let blank_and_unit = if unit.is_empty() {
+        String::new()
+    } else {
+        format!(" {unit}")
+    };
     let hint = if !number.is_finite() {
         Some("write a finite number".to_owned())
     } else if range.contains(&-number) {
-        Some(format!("is the sign wrong? {}{blank_and_unit} is allowed", -number))
+        Some(format!(
+            "is the sign wrong? {}{blank_and_unit} is allowed",
+            -number
+        ))
     } else if number == 0.0 || unit.is_empty() {
         None
     } else {
@@ -354,8 +500,16 @@ fn out_of_range(at: Range<usize>, key: &str, number: f64, unit: &str, range: &Ra
     };
     Fault {
         at,
-        label: if number.is_finite() { "out of range" } else { "not finite" },
-        message: format!("{key} is {}{blank_and_unit}; it must lie between {}", shown(number), with_unit(range, unit)),
+        label: if number.is_finite() {
+            "out of range"
+        } else {
+            "not finite"
+        },
+        message: format!(
+            "{key} is {}{blank_and_unit}; it must lie between {}",
+            shown(number),
+            with_unit(range, unit)
+        ),
         hint,
     }
 }

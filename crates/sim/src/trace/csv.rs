@@ -1,7 +1,8 @@
 //! Rows of a run as CSV: the whole trace, or the corrected setpoints alone.
 //!
-//! Numbers are printed in the shortest form that reads back as the same f64, so that a trace can be re-simulated from its
-//! text to the last bit. A row is put together in one buffer and written in one call.
+//! Numbers are printed in the shortest form that reads back as the same f64, so that a trace can be
+//! re-simulated from its text to the last bit. A row is put together in one buffer and written in
+//! one call.
 
 use std::io::{self, Write};
 
@@ -29,15 +30,26 @@ impl<W: Write> TraceWriter<W> {
     /// Where `out` takes no more.
     pub fn new(mut out: W, axes: usize) -> io::Result<Self> {
         let names = &AXIS_NAMES[..axes];
-        let mut columns = ["t_s", "s_mm", "line", "feed_plan_mm_s"].map(str::to_owned).to_vec();
+        let mut columns = ["t_s", "s_mm", "line", "feed_plan_mm_s"]
+            .map(str::to_owned)
+            .to_vec();
         columns.extend(names.iter().flat_map(|axis| {
-            [format!("path_{axis}_mm"), format!("cmd_{axis}_mm"), format!("act_{axis}_mm"), format!("torque_{axis}_nm")]
+            [
+                format!("path_{axis}_mm"),
+                format!("cmd_{axis}_mm"),
+                format!("act_{axis}_mm"),
+                format!("torque_{axis}_nm"),
+            ]
         }));
         columns.push("contour_error_mm".to_owned());
         columns.extend(names.iter().map(|axis| format!("corrected_{axis}_mm")));
         columns.push("cutting".to_owned());
         writeln!(out, "{}", columns.join(","))?;
-        Ok(Self { out, axes, text: Text::default() })
+        Ok(Self {
+            out,
+            axes,
+            text: Text::default(),
+        })
     }
 
     /// Flushes, and gives back what was written to.
@@ -78,9 +90,16 @@ impl<W: Write> SetpointWriter<W> {
     /// # Errors
     /// Where `out` takes no more.
     pub fn new(mut out: W, axes: usize) -> io::Result<Self> {
-        let columns: Vec<String> = AXIS_NAMES[..axes].iter().map(|axis| format!(",{axis}_mm")).collect();
+        let columns: Vec<String> = AXIS_NAMES[..axes]
+            .iter()
+            .map(|axis| format!(",{axis}_mm"))
+            .collect();
         writeln!(out, "t_s{}", columns.concat())?;
-        Ok(Self { out, axes, text: Text::default() })
+        Ok(Self {
+            out,
+            axes,
+            text: Text::default(),
+        })
     }
 
     /// Flushes, and gives back what was written to.
@@ -170,7 +189,13 @@ mod tests {
 
     #[test]
     fn columns_are_the_documented_ones() {
-        let header = |axes| written(axes, &row([0.0; 8], 1, true)).lines().next().unwrap().to_owned();
+        let header = |axes| {
+            written(axes, &row([0.0; 8], 1, true))
+                .lines()
+                .next()
+                .unwrap()
+                .to_owned()
+        };
         assert_eq!(
             header(2),
             "t_s,s_mm,line,feed_plan_mm_s,path_x_mm,cmd_x_mm,act_x_mm,torque_x_nm,path_y_mm,cmd_y_mm,act_y_mm,torque_y_nm,\
@@ -185,8 +210,13 @@ mod tests {
     #[test]
     fn setpoints_hold_time_and_corrected_position() {
         let mut writer = SetpointWriter::new(Vec::new(), 3).unwrap();
-        writer.row(&row([0.001, 2.0, 3.0, 4.0, 5.0, 0.1, -7.5, 1e-9], 1, true)).unwrap();
-        assert_eq!(String::from_utf8(writer.finish().unwrap()).unwrap(), "t_s,x_mm,y_mm,z_mm\n0.001,0.1,-7.5,1e-9\n");
+        writer
+            .row(&row([0.001, 2.0, 3.0, 4.0, 5.0, 0.1, -7.5, 1e-9], 1, true))
+            .unwrap();
+        assert_eq!(
+            String::from_utf8(writer.finish().unwrap()).unwrap(),
+            "t_s,x_mm,y_mm,z_mm\n0.001,0.1,-7.5,1e-9\n"
+        );
     }
 
     proptest! {

@@ -30,15 +30,18 @@ pub(crate) struct CompareArgs {
     /// Seed of everything random.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Set a parameter of a controller, such as two-dimensional.rho=0.01: it has its defaults then, and is not searched. May be given
-    /// several times; `feedwright-lab controllers NAME` lists them.
+    /// Set a parameter of a controller, such as two-dimensional.rho=0.01: it has its defaults then,
+    /// and is not searched. May be given several times; `feedwright-lab controllers NAME` lists
+    /// them.
     #[arg(long, value_name = "NAME.PARAMETER=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Where the values of the controllers' parameters come from: stored searches (a new search
-    /// if none is stored), a search for each controller and machine (an hour and more), or the defaults.
+    /// Where the values of the controllers' parameters come from: stored searches (a new search if
+    /// none is stored), a search for each controller and machine (an hour and more), or the
+    /// defaults.
     #[arg(long, value_name = "SOURCE", value_enum, default_value_t = TuningSource::Recorded)]
     tuning: TuningSource,
-    /// Search, and keep the values in this file beside those that it has; cut nothing. The program keeps lab/src/compare/recorded.jsonl.
+    /// Search, and keep the values in this file beside those that it has; cut nothing. The program
+    /// keeps lab/src/compare/recorded.jsonl.
     #[arg(long, value_name = "FILE.jsonl", conflicts_with_all = ["json", "at_tolerance"])]
     pub(crate) record: Option<PathBuf>,
     /// What is cut.
@@ -50,11 +53,12 @@ pub(crate) struct CompareArgs {
     /// What controllers are given of the machine; a row for each.
     #[arg(long, value_name = "GIVEN,...", value_enum, value_delimiter = ',', default_values_t = [Given::Own, Given::Identified, Given::TwentyPercentOff, Given::Unseen])]
     pub(crate) knowledge: Vec<Given>,
-    /// Geometry that every control compensates, uncorrected or not: none, known (as the machine file states it), opposite (the same
-    /// with wrong signs), or a geometry file (.toml).
+    /// Geometry that every control compensates, uncorrected or not: none, known (as the machine
+    /// file states it), opposite (the same with wrong signs), or a geometry file (.toml).
     #[arg(long, value_name = "GEOMETRY", default_value = "none")]
     pub(crate) geometry: Compensated,
-    /// Folder of finished work, so that an interrupted run continues [default: in the cache, until the run is complete].
+    /// Folder of finished work, so that an interrupted run continues [default: in the cache, until
+    /// the run is complete].
     #[arg(long, value_name = "FOLDER")]
     pub(crate) results: Option<PathBuf>,
     /// Also find, for each smooth contour, the feedrate at which each controller just holds 10 um.
@@ -88,7 +92,8 @@ pub(crate) enum Work {
     Contours,
     /// The contours, and the parts that come with the program.
     Development,
-    /// Contours turned and scaled, and random programs, whose seeds were drawn after everything was tuned.
+    /// Contours turned and scaled, and random programs, whose seeds were drawn after everything was
+    /// tuned.
     HeldOut,
 }
 
@@ -130,15 +135,23 @@ impl Compensated {
             Self::Opposite => {
                 let mut opposite = machine.clone();
                 for axis in &mut opposite.axes {
-                    (axis.scale_um_m, axis.pitch_error_um) = (-axis.scale_um_m, -axis.pitch_error_um);
+                    (axis.scale_um_m, axis.pitch_error_um) =
+                        (-axis.scale_um_m, -axis.pitch_error_um);
                 }
-                let Squareness { squareness_xy_urad, squareness_xz_urad, squareness_yz_urad } = machine.geometry;
+                let Squareness {
+                    squareness_xy_urad,
+                    squareness_xz_urad,
+                    squareness_yz_urad,
+                } = machine.geometry;
                 opposite.geometry = Squareness {
                     squareness_xy_urad: -squareness_xy_urad,
                     squareness_xz_urad: -squareness_xz_urad,
                     squareness_yz_urad: -squareness_yz_urad,
                 };
-                Ok(Machine { compensated: opposite.compensating_own()?.compensated, ..machine.clone() })
+                Ok(Machine {
+                    compensated: opposite.compensating_own()?.compensated,
+                    ..machine.clone()
+                })
             }
         }
     }
@@ -174,6 +187,10 @@ impl From<Given> for Knowledge {
 
 impl CompareArgs {
     pub(crate) fn tuning(&self) -> TuningSource {
-        if self.record.is_some() { TuningSource::Search } else { self.tuning }
+        if self.record.is_some() {
+            TuningSource::Search
+        } else {
+            self.tuning
+        }
     }
 }

@@ -25,7 +25,8 @@ pub(crate) struct HeldOutArgs {
     /// Only machines without encoder steps and delay.
     #[arg(long)]
     pub(crate) rigid: bool,
-    /// Machines that also have what real axes have: ball screws, backlash, friction, cogging, feedforward, noise, other servo periods.
+    /// Machines that also have what real axes have: ball screws, backlash, friction, cogging,
+    /// feedforward, noise, other servo periods.
     #[arg(long, conflicts_with = "rigid")]
     pub(crate) realistic: bool,
     /// Write each failure as DIR/N.ngc and DIR/N.toml, the worst first.

@@ -23,7 +23,8 @@ pub(crate) struct NeverWorseArgs {
     /// Only programs whose path fits this pattern, such as '*circle*'.
     #[arg(long, value_name = "GLOB")]
     pub(crate) only: Option<String>,
-    /// Machine to cut on: built-in, or a machine file; may be given several times. Without it, 19 variants of tnv40.
+    /// Machine to cut on: built-in, or a machine file; may be given several times. Without it, 19
+    /// variants of tnv40.
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) machine: Vec<OsString>,
     /// Cut no more of a program than this time of machining on tnv40, s.

@@ -23,10 +23,12 @@ pub(crate) struct PaperArgs {
     /// Number of seeds, from 1.
     #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub(crate) seeds: u64,
-    /// Cut as the paper prints it too: each departure of this repository undone alone, and all together; departures.json.
+    /// Cut as the paper prints it too: each departure of this repository undone alone, and all
+    /// together; departures.json.
     #[arg(long)]
     pub(crate) as_printed: bool,
-    /// Draw N times what the paper leaves open (step size, training set, disturbance), and give the ratios of Figure 8; draws.json.
+    /// Draw N times what the paper leaves open (step size, training set, disturbance), and give the
+    /// ratios of Figure 8; draws.json.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000))]
     pub(crate) draws: Option<u64>,
 }

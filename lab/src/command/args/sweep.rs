@@ -23,7 +23,8 @@ pub(crate) struct OneController {
 /// How controllers are compared with the uncorrected cut.
 #[derive(Debug, Args)]
 pub(crate) struct SweepArgs {
-    /// Set a parameter of the controller, such as knots=10; may be given several times. `feedwright-lab controllers NAME` lists them.
+    /// Set a parameter of the controller, such as knots=10; may be given several times.
+    /// `feedwright-lab controllers NAME` lists them.
     #[arg(long, value_name = "PARAMETER=VALUE")]
     pub(crate) set: Vec<String>,
     /// Seed of the recording that machines are identified from, and of the sample.
@@ -32,7 +33,8 @@ pub(crate) struct SweepArgs {
     /// Threads; all cores where it is left out. The result does not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
-    /// Folder of finished cuts, so that an interrupted run continues [default: in the cache, until the run is complete].
+    /// Folder of finished cuts, so that an interrupted run continues [default: in the cache, until
+    /// the run is complete].
     #[arg(long, value_name = "FOLDER")]
     pub(crate) results: Option<PathBuf>,
     /// Write all cuts.

@@ -18,18 +18,33 @@ const MOST_MM: f64 = 1000.0;
 const MOST_UM: f64 = 1000.0;
 
 pub(crate) fn run(args: &BallBarArgs, console: &Console) -> Result<ExitCode> {
-    let &BallBarArgs { radius, feed, noise, encoders, seed, .. } = args;
+    let &BallBarArgs {
+        radius,
+        feed,
+        noise,
+        encoders,
+        seed,
+        ..
+    } = args;
     let machine = Machine::load(args.machine.as_ref())?;
     let most_mm_min = 60.0 * machine.limits.max_feed_mm_s;
-    for (name, value, least, most) in
-        [("--radius", radius, 1.0, MOST_MM), ("--feed", feed, 1.0, most_mm_min), ("--noise", noise, 0.0, MOST_UM)]
-    {
+    for (name, value, least, most) in [
+        ("--radius", radius, 1.0, MOST_MM),
+        ("--feed", feed, 1.0, most_mm_min),
+        ("--noise", noise, 0.0, MOST_UM),
+    ] {
         if !(least..=most).contains(&value) {
-            return Err(miette!("{name} is {value}; it must be from {least} to {most}"));
+            return Err(miette!(
+                "{name} is {value}; it must be from {least} to {most}"
+            ));
         }
     }
     let bar = SimulatedBallBar {
-        program: BallBarProgram { radius_mm: radius, feed_mm_min: feed, plane: [0, 1] },
+        program: BallBarProgram {
+            radius_mm: radius,
+            feed_mm_min: feed,
+            plane: [0, 1],
+        },
         center_mm: [0.0; 3],
         noise_um: noise,
         samples: SAMPLES,
@@ -37,18 +52,25 @@ pub(crate) fn run(args: &BallBarArgs, console: &Console) -> Result<ExitCode> {
         has_encoders: encoders,
         seed,
     };
-    let read = |path| std::fs::read_to_string(path).into_diagnostic().wrap_err_with(|| format!("cannot read {path:?}"));
+    let read = |path| {
+        std::fs::read_to_string(path)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("cannot read {path:?}"))
+    };
     let text = match &args.program {
         Some(path) => bar.text_of(&machine, &read(path)?)?,
         None => bar.text(&machine)?,
     };
     let mut file = OutputFiles::new(args.program.as_deref()).start(&args.out)?;
-    file.write_all(text.as_bytes()).map_err(|error| OutputError::from_io(error, &args.out))?;
+    file.write_all(text.as_bytes())
+        .map_err(|error| OutputError::from_io(error, &args.out))?;
     OutputFile::commit_all(vec![file], &console.bar(0))?;
     if let GeometryInput::Sets(sets) = GeometryInput::parse("the bar", &text, None)?
         && !console.is_quiet()
     {
-        sets.iter().filter_map(Circularity::of).for_each(|of| remark(&of.line()));
+        sets.iter()
+            .filter_map(Circularity::of)
+            .for_each(|of| remark(&of.line()));
     }
     let out = Some(args.out.as_path());
     printed(tell_written(&mut tables([out]), [out]), ExitCode::SUCCESS)

@@ -18,7 +18,10 @@ use crate::kept::Kept;
 pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<ExitCode> {
     let options = options::options(args)?;
     if let Some(threads) = args.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global().into_diagnostic()?;
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.into())
+            .build_global()
+            .into_diagnostic()?;
     }
     tell_searches(args, &options);
     let kept = Kept::open(args.results.as_deref(), &options.fingerprint())?;
@@ -31,11 +34,16 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<ExitCode> {
     bar.clear();
     let comparison = comparison?;
     if let Some(mut file) = json {
-        file.write_all(comparison.text().as_bytes()).into_diagnostic().wrap_err("cannot write the rows")?;
+        file.write_all(comparison.text().as_bytes())
+            .into_diagnostic()
+            .wrap_err("cannot write the rows")?;
         OutputFile::commit_all(vec![file], &bar)?;
     }
     if kept.found() > 0 {
-        eprintln!("parts of the work that an earlier run had finished: {}", kept.found());
+        eprintln!(
+            "parts of the work that an earlier run had finished: {}",
+            kept.found()
+        );
     }
     kept.complete();
     printed(print::print(args, &comparison), ExitCode::SUCCESS)
@@ -44,11 +52,20 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<ExitCode> {
 /// A search takes a minute and more for each controller and machine.
 fn tell_searches(args: &CompareArgs, options: &ComparisonOptions) {
     let searched = options.to_search();
-    if args.tuning() == crate::command::args::compare::TuningSource::Recorded && !searched.is_empty() {
+    if args.tuning() == crate::command::args::compare::TuningSource::Recorded
+        && !searched.is_empty()
+    {
         const NAMED: usize = 4;
-        let names: Vec<String> =
-            searched.iter().take(NAMED).map(|(machine, name)| format!("{name} on {machine}")).collect();
-        let more = if searched.len() > NAMED { format!(" and {} more", searched.len() - NAMED) } else { String::new() };
+        let names: Vec<String> = searched
+            .iter()
+            .take(NAMED)
+            .map(|(machine, name)| format!("{name} on {machine}"))
+            .collect();
+        let more = if searched.len() > NAMED {
+            format!(" and {} more", searched.len() - NAMED)
+        } else {
+            String::new()
+        };
         eprintln!(
             "no values are recorded of {}{more}: they are searched; --tuning defaults does without",
             names.join(", ")
@@ -57,26 +74,49 @@ fn tell_searches(args: &CompareArgs, options: &ComparisonOptions) {
 }
 
 /// Searches, and keeps the values: no cuts, no table.
-fn record_searches(record: &Path, options: &ComparisonOptions, kept: Kept, console: &Console) -> Result<ExitCode> {
+fn record_searches(
+    record: &Path,
+    options: &ComparisonOptions,
+    kept: Kept,
+    console: &Console,
+) -> Result<ExitCode> {
     let old = match std::fs::read_to_string(record) {
-        Ok(text) => recorded::read(&text)
-            .into_diagnostic()
-            .wrap_err_with(|| format!("{} holds other things than recorded values", record.display()))?,
+        Ok(text) => recorded::read(&text).into_diagnostic().wrap_err_with(|| {
+            format!(
+                "{} holds other things than recorded values",
+                record.display()
+            )
+        })?,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
-        Err(error) => return Err(error).into_diagnostic().wrap_err_with(|| record.display().to_string()),
+        Err(error) => {
+            return Err(error)
+                .into_diagnostic()
+                .wrap_err_with(|| record.display().to_string());
+        }
     };
     let bar = console.bar(0);
     let tuned = tune_alone(options, &kept, &bar);
     bar.clear();
     let tuned = tuned?;
-    let machines: Vec<Machine> = options.machines.iter().chain([&options.nominal]).cloned().collect();
+    let machines: Vec<Machine> = options
+        .machines
+        .iter()
+        .chain([&options.nominal])
+        .cloned()
+        .collect();
     let mut file = OutputFiles::new(std::iter::empty::<&Path>()).start(record)?;
-    file.write_all(recorded::text(old, &tuned, &machines, options.seed).as_bytes()).into_diagnostic()?;
+    file.write_all(recorded::text(old, &tuned, &machines, options.seed).as_bytes())
+        .into_diagnostic()?;
     OutputFile::commit_all(vec![file], &bar)?;
     kept.complete();
     let text = print::tuned(&tuned);
     printed(
-        writeln!(std::io::stdout(), "{text}recorded {} searches in {}", tuned.len(), record.display()),
+        writeln!(
+            std::io::stdout(),
+            "{text}recorded {} searches in {}",
+            tuned.len(),
+            record.display()
+        ),
         ExitCode::SUCCESS,
     )
 }
@@ -84,7 +124,15 @@ fn record_searches(record: &Path, options: &ComparisonOptions, kept: Kept, conso
 /// Starts the file that is asked for before the work begins.
 fn start_json(args: &CompareArgs) -> Result<Option<OutputFile>> {
     let machines: Vec<PathBuf> = args.machine.iter().map(PathBuf::from).collect();
-    let inputs = args.part.iter().chain(&machines).chain(&args.reader.tool_table);
+    let inputs = args
+        .part
+        .iter()
+        .chain(&machines)
+        .chain(&args.reader.tool_table);
     let mut files = OutputFiles::new(inputs.map(PathBuf::as_path));
-    Ok(args.json.as_ref().map(|path| files.start(path)).transpose()?)
+    Ok(args
+        .json
+        .as_ref()
+        .map(|path| files.start(path))
+        .transpose()?)
 }

@@ -19,21 +19,35 @@ const MOST_MM_S: f64 = 1e4;
 pub(crate) fn run(args: &ExportContourArgs, console: &Console) -> Result<ExitCode> {
     let (feed, tolerance) = (args.feed, args.tolerance);
     if !(feed > 0.0 && feed <= MOST_MM_S) {
-        return Err(miette!("--feed is {feed} mm/s; it must lie above 0 and up to {MOST_MM_S} mm/s"));
+        return Err(miette!(
+            "--feed is {feed} mm/s; it must lie above 0 and up to {MOST_MM_S} mm/s"
+        ));
     }
     if !(LEAST_UM..=MOST_UM).contains(&tolerance) {
         let help = "the unit is um: 0.001 mm is --tolerance 1";
-        return Err(miette!(help = help, "--tolerance is {tolerance} um; it must be from {LEAST_UM} to {MOST_UM} um"));
+        return Err(miette!(
+            help = help,
+            "--tolerance is {tolerance} um; it must be from {LEAST_UM} to {MOST_UM} um"
+        ));
     }
-    let contour = contour(&args.contour).ok_or_else(|| miette!("no contour is called '{}'", args.contour))?;
+    let contour =
+        contour(&args.contour).ok_or_else(|| miette!("no contour is called '{}'", args.contour))?;
     let program = contour_program(contour, feed, 1e-3 * tolerance)?;
     let mut file = OutputFiles::default().start(&args.out)?;
-    file.write_all(program.text.as_bytes()).map_err(|error| OutputError::from_io(error, &args.out))?;
+    file.write_all(program.text.as_bytes())
+        .map_err(|error| OutputError::from_io(error, &args.out))?;
     OutputFile::commit_all(vec![file], &console.bar(0))?;
     let (name, about, blocks) = (contour.name, contour.about, program.blocks);
     if !console.is_quiet() {
-        let how = if program.is_exact { String::new() } else { format!(" within {tolerance} um of the curve") };
-        remark(&format!("{name}: {about}; {blocks} block{}{how}", if blocks == 1 { "" } else { "s" }));
+        let how = if program.is_exact {
+            String::new()
+        } else {
+            format!(" within {tolerance} um of the curve")
+        };
+        remark(&format!(
+            "{name}: {about}; {blocks} block{}{how}",
+            if blocks == 1 { "" } else { "s" }
+        ));
     }
     let out = Some(args.out.as_path());
     printed(tell_written(&mut tables([out]), [out]), ExitCode::SUCCESS)

@@ -26,11 +26,16 @@ pub(crate) fn run(args: &HeldOutArgs, console: &Console) -> Result<ExitCode> {
         _ => Class::Any,
     };
     let generated = draw(args.drawn_by, args.count, args.programs.into(), class)?;
-    eprintln!("{} cuts drawn by seed {}, {} programs for each machine", args.count, args.drawn_by, args.programs);
+    eprintln!(
+        "{} cuts drawn by seed {}, {} programs for each machine",
+        args.count, args.drawn_by, args.programs
+    );
     let jobs: Vec<SweepJob> = generated.iter().map(|made| made.job.clone()).collect();
     let mut done = sweep.run(&jobs, console)?;
     let summary = SweepSummary::of(std::mem::take(&mut done.rows));
-    let printing = sweep.write(&summary, console).map(|mut out| done.print(&summary, &mut out))?;
+    let printing = sweep
+        .write(&summary, console)
+        .map(|mut out| done.print(&summary, &mut out))?;
     if let Some(folder) = &args.failures {
         write_failures(folder, &summary.rows, &generated, &console.bar(0))?;
     }
@@ -38,11 +43,20 @@ pub(crate) fn run(args: &HeldOutArgs, console: &Console) -> Result<ExitCode> {
 }
 
 /// Writes the program and the machine of each failure.
-fn write_failures(folder: &Path, rows: &[Judged], generated: &[Generated], watch: &dyn Watch) -> Result<()> {
+fn write_failures(
+    folder: &Path,
+    rows: &[Judged],
+    generated: &[Generated],
+    watch: &dyn Watch,
+) -> Result<()> {
     let failures = rows.iter().filter(|judged| !judged.faults.is_empty());
     for (number, Judged { row, .. }) in (1..).zip(failures) {
-        let is_it = |made: &&Generated| made.job.program.name == row.program && made.job.machine.name == row.machine;
-        let Some(made) = generated.iter().find(is_it) else { continue };
+        let is_it = |made: &&Generated| {
+            made.job.program.name == row.program && made.job.machine.name == row.machine
+        };
+        let Some(made) = generated.iter().find(is_it) else {
+            continue;
+        };
         let mut files = OutputFiles::default();
         let mut complete = vec![];
         for (ending, text) in [("ngc", &made.text), ("toml", &made.variant.text())] {

@@ -3,7 +3,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use feedwright::command::{Console, ConsoleTable, OUT_OF_TOLERANCE, TableColumn, find, printed, tables, wrapped};
+use feedwright::command::{
+    Console, ConsoleTable, OUT_OF_TOLERANCE, TableColumn, find, printed, tables, wrapped,
+};
 use feedwright::{BEST, Choices, OutputFile, OutputFiles};
 use feedwright_sim::Machine;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
@@ -11,7 +13,8 @@ use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use super::never_worse::{checked, found};
 use crate::command::args::independent::IndependentArgs;
 use crate::independent::{
-    DEFAULT_CONTROLLERS, IndependentError, IndependentOptions, IndependentResult, PROGRAMS, independent,
+    DEFAULT_CONTROLLERS, IndependentError, IndependentOptions, IndependentResult, PROGRAMS,
+    independent,
 };
 use crate::independent_plant::linearization::LinearPart;
 use crate::independent_plant::machines::{INDEPENDENT_MACHINES, IndependentMachine};
@@ -21,17 +24,38 @@ use crate::peers::CONTROLLERS;
 pub(crate) fn run(args: &IndependentArgs, console: &Console) -> Result<ExitCode> {
     checked(args.limit_s)?;
     let (machines, options) = (machines(args)?, options(args)?);
-    let files = if args.programs.is_empty() { vec![] } else { found(&args.programs)? };
-    let inputs: Vec<&Path> = files.iter().chain(&args.excitation).map(PathBuf::as_path).collect();
+    let files = if args.programs.is_empty() {
+        vec![]
+    } else {
+        found(&args.programs)?
+    };
+    let inputs: Vec<&Path> = files
+        .iter()
+        .chain(&args.excitation)
+        .map(PathBuf::as_path)
+        .collect();
     let mut outputs = OutputFiles::new(inputs);
-    let json = args.json.as_ref().map(|path| outputs.start(path)).transpose()?;
+    let json = args
+        .json
+        .as_ref()
+        .map(|path| outputs.start(path))
+        .transpose()?;
     let settings = args.reader.settings()?;
     let programs = |sheet: &Machine| -> Result<Vec<SweepProgram>, IndependentError> {
-        let length = Length { machine: sheet, limit_s: args.limit_s };
+        let length = Length {
+            machine: sheet,
+            limit_s: args.limit_s,
+        };
         let read: Result<Vec<SweepProgram>, _> = if files.is_empty() {
-            PROGRAMS.iter().map(|(name, text)| SweepProgram::from_text(name, text, length)).collect()
+            PROGRAMS
+                .iter()
+                .map(|(name, text)| SweepProgram::from_text(name, text, length))
+                .collect()
         } else {
-            files.iter().map(|file| SweepProgram::read(file, &settings, length)).collect()
+            files
+                .iter()
+                .map(|file| SweepProgram::read(file, &settings, length))
+                .collect()
         };
         Ok(read?)
     };
@@ -46,10 +70,21 @@ pub(crate) fn run(args: &IndependentArgs, console: &Console) -> Result<ExitCode>
     }
     let out = &mut *tables([args.json.as_deref()]);
     let printing = results.iter().try_for_each(|result| print(result, out));
-    let is_worse =
-        |result: &IndependentResult| result.cuts.iter().any(|cut| cut.row.controller == BEST && !cut.faults.is_empty());
+    let is_worse = |result: &IndependentResult| {
+        result
+            .cuts
+            .iter()
+            .any(|cut| cut.row.controller == BEST && !cut.faults.is_empty())
+    };
     let worse = results.iter().any(is_worse);
-    printed(printing, if worse { ExitCode::from(OUT_OF_TOLERANCE) } else { ExitCode::SUCCESS })
+    printed(
+        printing,
+        if worse {
+            ExitCode::from(OUT_OF_TOLERANCE)
+        } else {
+            ExitCode::SUCCESS
+        },
+    )
 }
 
 /// Machines that are asked for.
@@ -60,12 +95,18 @@ fn machines(args: &IndependentArgs) -> Result<Vec<IndependentMachine>> {
         args.machine.iter().map(String::as_str).collect()
     };
     let named = |name: &&str| {
-        let known =
-            || miette!(help = format!("choose one of {}", INDEPENDENT_MACHINES.join(", ")), "no machine {name}");
+        let known = || {
+            miette!(
+                help = format!("choose one of {}", INDEPENDENT_MACHINES.join(", ")),
+                "no machine {name}"
+            )
+        };
         IndependentMachine::named(name).ok_or_else(known)
     };
     let mut machines = names.iter().map(named).collect::<Result<Vec<_>>>()?;
-    machines.extend((0..args.random).map(|i| IndependentMachine::drawn(args.seed.wrapping_add(u64::from(i)))));
+    machines.extend(
+        (0..args.random).map(|i| IndependentMachine::drawn(args.seed.wrapping_add(u64::from(i)))),
+    );
     Ok(machines)
 }
 
@@ -73,7 +114,8 @@ fn machines(args: &IndependentArgs) -> Result<Vec<IndependentMachine>> {
 fn options(args: &IndependentArgs) -> Result<IndependentOptions> {
     let excitation = args.excitation.as_ref().map(|path| {
         let text = std::fs::read_to_string(path).into_diagnostic();
-        text.map(|text| (path.display().to_string(), text)).wrap_err_with(|| path.display().to_string())
+        text.map(|text| (path.display().to_string(), text))
+            .wrap_err_with(|| path.display().to_string())
     });
     let named = if args.controller.is_empty() {
         DEFAULT_CONTROLLERS.to_vec()
@@ -83,8 +125,14 @@ fn options(args: &IndependentArgs) -> Result<IndependentOptions> {
     Ok(IndependentOptions {
         excitation: excitation.transpose()?,
         record_delay_s: (!args.open_delay).then_some(0.0),
-        controllers: named.into_iter().map(|name| find(name, CONTROLLERS)).collect::<Result<_>>()?,
-        choices: Choices { seed: args.seed, ..Choices::default() },
+        controllers: named
+            .into_iter()
+            .map(|name| find(name, CONTROLLERS))
+            .collect::<Result<_>>()?,
+        choices: Choices {
+            seed: args.seed,
+            ..Choices::default()
+        },
     })
 }
 
@@ -92,16 +140,35 @@ fn options(args: &IndependentArgs) -> Result<IndependentOptions> {
 fn print(result: &IndependentResult, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "{}", result.machine.name)?;
     if let Some(refused) = &result.refused {
-        return writeln!(out, "{}", wrapped(&format!("  not identified: {refused}"), 2));
+        return writeln!(
+            out,
+            "{}",
+            wrapped(&format!("  not identified: {refused}"), 2)
+        );
     }
     for axis in &result.axes {
-        writeln!(out, "{}", wrapped(&format!("  {}: {}", axis.name, axis.verdict), 4))?;
+        writeln!(
+            out,
+            "{}",
+            wrapped(&format!("  {}: {}", axis.name, axis.verdict), 4)
+        )?;
     }
-    let columns = ["found / plant", "Kp Kv/J 1/s2", "(Kv+B)/J 1/s", "feedforward", "delay ms", "lag ms"];
+    let columns = [
+        "found / plant",
+        "Kp Kv/J 1/s2",
+        "(Kv+B)/J 1/s",
+        "feedforward",
+        "delay ms",
+        "lag ms",
+    ];
     let mut table = ConsoleTable::new(columns.into_iter().map(TableColumn::new).collect());
     for axis in &result.axes {
         let pair = |digits: usize, of: fn(&LinearPart) -> f64| {
-            format!("{:.digits$} / {:.digits$}", of(&axis.found), of(&axis.plant))
+            format!(
+                "{:.digits$} / {:.digits$}",
+                of(&axis.found),
+                of(&axis.plant)
+            )
         };
         table.row(vec![
             axis.name.clone(),
@@ -131,15 +198,26 @@ fn print_cuts(result: &IndependentResult, out: &mut dyn Write) -> io::Result<()>
     let mut program = "";
     for cut in &result.cuts {
         let [before, after] = [&cut.row.uncorrected, &cut.row.corrected];
-        let [tool_before, tool_after] = [before, after].map(|figures| [figures.rms_um, figures.max_um]);
+        let [tool_before, tool_after] =
+            [before, after].map(|figures| [figures.rms_um, figures.max_um]);
         let [seen_before, seen_after] = cut.encoders_um;
         if program != cut.row.program {
             program = &cut.row.program;
-            let cells = [&format!("{program}, uncorrected"), &both(seen_before), "", &both(tool_before), "", "", ""];
+            let cells = [
+                &format!("{program}, uncorrected"),
+                &both(seen_before),
+                "",
+                &both(tool_before),
+                "",
+                "",
+                "",
+            ];
             table.row(cells.map(str::to_owned).to_vec());
         }
         let ratio = |before: f64, after: f64| format!("{:.3}", after / before.max(1e-3));
-        let engaged = after.engaged_share.map_or(String::new(), |share| format!("{share:.2}"));
+        let engaged = after
+            .engaged_share
+            .map_or(String::new(), |share| format!("{share:.2}"));
         let faults: Vec<&str> = cut.faults.iter().map(|fault| fault.name()).collect();
         table.row(vec![
             format!("  {}", cut.row.controller),

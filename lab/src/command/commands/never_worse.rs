@@ -25,10 +25,24 @@ pub(crate) fn run(args: &NeverWorseArgs, console: &Console) -> Result<ExitCode> 
     let machines = machines_of(args)?;
     let files = files(args)?;
     let machine_files = args.machine.iter().map(PathBuf::from).collect::<Vec<_>>();
-    let inputs: Vec<&Path> = files.iter().chain(&machine_files).map(PathBuf::as_path).collect();
-    let sweep = Sweep::new(&args.sweep, std::slice::from_ref(&args.one.controller), &inputs)?;
+    let inputs: Vec<&Path> = files
+        .iter()
+        .chain(&machine_files)
+        .map(PathBuf::as_path)
+        .collect();
+    let sweep = Sweep::new(
+        &args.sweep,
+        std::slice::from_ref(&args.one.controller),
+        &inputs,
+    )?;
     let pace = Machine::load(PACE.as_ref())?;
-    let programs = read(&files, &args.reader.settings()?, &pace, args.limit_s, console)?;
+    let programs = read(
+        &files,
+        &args.reader.settings()?,
+        &pace,
+        args.limit_s,
+        console,
+    )?;
     let jobs = jobs(programs, machines);
     let jobs = match args.sample {
         Some(count) => sample(jobs, count, args.sweep.seed),
@@ -47,14 +61,21 @@ pub(super) fn checked(limit_s: f64) -> Result<()> {
         return Ok(());
     }
     let help = "600 is the first ten minutes of machining";
-    Err(miette!(help = help, "--limit-s is {limit_s} s; it must lie above 0 and up to {MAX_S} s"))
+    Err(miette!(
+        help = help,
+        "--limit-s is {limit_s} s; it must lie above 0 and up to {MAX_S} s"
+    ))
 }
 
 fn machines_of(args: &NeverWorseArgs) -> Result<Vec<Machine>> {
     if args.machine.is_empty() {
         return Ok(machines::machines()?);
     }
-    Ok(args.machine.iter().map(|machine| Machine::load(machine)).collect::<Result<_, _>>()?)
+    Ok(args
+        .machine
+        .iter()
+        .map(|machine| Machine::load(machine))
+        .collect::<Result<_, _>>()?)
 }
 
 /// The programs in these places.
@@ -76,16 +97,25 @@ pub(super) fn found(places: &[PathBuf]) -> Result<Vec<PathBuf>> {
 /// The programs that are asked for.
 fn files(args: &NeverWorseArgs) -> Result<Vec<PathBuf>> {
     let found = found(&args.programs)?;
-    let Some(only) = &args.only else { return Ok(found) };
+    let Some(only) = &args.only else {
+        return Ok(found);
+    };
     let pattern = Pattern::new(only).map_err(|error| miette!("--only {only}: {error}"))?;
-    let files: Vec<PathBuf> = found.into_iter().filter(|file| pattern.matches_path(file)).collect();
+    let files: Vec<PathBuf> = found
+        .into_iter()
+        .filter(|file| pattern.matches_path(file))
+        .collect();
     if files.is_empty() {
-        return Err(miette!(help = "the pattern is for the whole path: '*circle*'", "--only {only}: no program fits"));
+        return Err(miette!(
+            help = "the pattern is for the whole path: '*circle*'",
+            "--only {only}: no program fits"
+        ));
     }
     Ok(files)
 }
 
-/// Reads all programs, and shortens long ones by their time on a machine; those with mistakes are counted and left out.
+/// Reads all programs, and shortens long ones by their time on a machine; those with mistakes are
+/// counted and left out.
 pub(super) fn read(
     files: &[PathBuf],
     settings: &Settings,
@@ -93,11 +123,18 @@ pub(super) fn read(
     limit_s: f64,
     console: &Console,
 ) -> Result<Vec<SweepProgram>> {
-    let length = Length { machine: pace, limit_s };
+    let length = Length {
+        machine: pace,
+        limit_s,
+    };
     let bar = console.bar(0);
     bar.begin("reading the programs", files.len() as u64);
     let read = |file: &PathBuf| {
-        let program = if bar.is_cancelled() { None } else { SweepProgram::read(file, settings, length).ok() };
+        let program = if bar.is_cancelled() {
+            None
+        } else {
+            SweepProgram::read(file, settings, length).ok()
+        };
         bar.advance(1);
         program
     };
@@ -120,7 +157,13 @@ pub(super) fn read(
 fn announce(jobs: &[SweepJob]) {
     let hours = jobs.iter().map(|job| job.program.machining_s).sum::<f64>() / 3600.0;
     let shortened = jobs.iter().filter(|job| job.program.shortened).count();
-    let parts =
-        if shortened > 0 { format!("; {shortened} of them of the beginning of a program") } else { String::new() };
-    eprintln!("{} cuts, {hours:.1} h of machining on {PACE}{parts}", jobs.len());
+    let parts = if shortened > 0 {
+        format!("; {shortened} of them of the beginning of a program")
+    } else {
+        String::new()
+    };
+    eprintln!(
+        "{} cuts, {hours:.1} h of machining on {PACE}{parts}",
+        jobs.len()
+    );
 }

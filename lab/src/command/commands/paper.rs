@@ -18,15 +18,27 @@ pub(crate) fn run(args: &PaperArgs, console: &Console) -> Result<ExitCode> {
     make_folder(&args.out)?;
     let seeds: Vec<u64> = (1..=args.seeds).collect();
     let bar = console.bar(0);
-    let made =
-        paper::experiment(&machine, &seeds, &bar).and_then(|paper| Ok((paper, figures(&machine, seeds[0], &bar)?)));
-    let printed_rows = args.as_printed.then(|| departures(&machine, &seeds, &bar)).transpose();
-    let drawn = args.draws.map(|count| draws(&machine, count, &bar)).transpose();
+    let made = paper::experiment(&machine, &seeds, &bar)
+        .and_then(|paper| Ok((paper, figures(&machine, seeds[0], &bar)?)));
+    let printed_rows = args
+        .as_printed
+        .then(|| departures(&machine, &seeds, &bar))
+        .transpose();
+    let drawn = args
+        .draws
+        .map(|count| draws(&machine, count, &bar))
+        .transpose();
     bar.clear();
     let (paper, figures) = made?;
-    let extra = Extra { departures: printed_rows?, draws: drawn? };
+    let extra = Extra {
+        departures: printed_rows?,
+        draws: drawn?,
+    };
     write(&args.out, &paper, &figures, &extra, &bar)?;
-    printed(print(&args.out, &paper).and_then(|()| extra.print()), ExitCode::SUCCESS)
+    printed(
+        print(&args.out, &paper).and_then(|()| extra.print()),
+        ExitCode::SUCCESS,
+    )
 }
 
 /// What is asked for beside the experiments.
@@ -40,12 +52,25 @@ impl Extra {
     fn print(&self) -> std::io::Result<()> {
         let mut out = std::io::stdout().lock();
         if let Some(rows) = &self.departures {
-            writeln!(out, "\n| Printed | Taken | Why | uncorrected | two-dimensional, mean | worst |")?;
+            writeln!(
+                out,
+                "\n| Printed | Taken | Why | uncorrected | two-dimensional, mean | worst |"
+            )?;
             writeln!(out, "|---|---|---|---|---|---|")?;
             let escaped = |text: &str| text.replace('|', "\\|");
-            for DepartureResult { printed, taken, reason, uncorrected, worst, mean } in rows {
+            for DepartureResult {
+                printed,
+                taken,
+                reason,
+                uncorrected,
+                worst,
+                mean,
+            } in rows
+            {
                 let [printed, taken, reason] = [printed, taken, reason].map(|text| escaped(text));
-                let cell = |n: &paper::Numbers| format!("{:.3} s, {:.1} / {:.1}", n.time_s, n.rms_um, n.max_um);
+                let cell = |n: &paper::Numbers| {
+                    format!("{:.3} s, {:.1} / {:.1}", n.time_s, n.rms_um, n.max_um)
+                };
                 let cells = [uncorrected, mean, worst].map(cell).join(" | ");
                 writeln!(out, "| {printed} | {taken} | {reason} | {cells} |")?;
             }
@@ -57,7 +82,8 @@ impl Extra {
                 draws.len()
             )?;
             let row = |out: &mut std::io::StdoutLock<'_>, name: &str, of: fn(&Draw) -> f64| {
-                let cells = [0.0, 0.05, 0.5, 0.95, 1.0].map(|part| format!("{:.3}", quantile(draws, of, part)));
+                let cells = [0.0, 0.05, 0.5, 0.95, 1.0]
+                    .map(|part| format!("{:.3}", quantile(draws, of, part)));
                 writeln!(out, "| {name} | {} |", cells.join(" | "))
             };
             row(&mut out, "RMS ratio", |draw| draw.rms_ratio)?;
@@ -69,14 +95,21 @@ impl Extra {
 }
 
 /// Writes everything, and moves it to its place only when all is written.
-fn write(folder: &Path, paper: &Paper, figures: &[CaptionedFigure], extra: &Extra, watch: &dyn Watch) -> Result<()> {
+fn write(
+    folder: &Path,
+    paper: &Paper,
+    figures: &[CaptionedFigure],
+    extra: &Extra,
+    watch: &dyn Watch,
+) -> Result<()> {
     let (mut files, mut complete) = (OutputFiles::default(), Vec::new());
-    let mut start = |name: &str, write: &dyn Fn(&mut OutputFile) -> std::io::Result<()>| -> Result<()> {
-        let mut file = files.start(&folder.join(name))?;
-        write(&mut file).into_diagnostic()?;
-        complete.push(file);
-        Ok(())
-    };
+    let mut start =
+        |name: &str, write: &dyn Fn(&mut OutputFile) -> std::io::Result<()>| -> Result<()> {
+            let mut file = files.start(&folder.join(name))?;
+            write(&mut file).into_diagnostic()?;
+            complete.push(file);
+            Ok(())
+        };
     fn json(file: &mut OutputFile, value: &impl serde::Serialize) -> std::io::Result<()> {
         serde_json::to_writer_pretty(&mut *file, value)?;
         file.write_all(b"\n")
@@ -90,7 +123,9 @@ fn write(folder: &Path, paper: &Paper, figures: &[CaptionedFigure], extra: &Extr
     }
     for figure in figures {
         let name = figure.number.to_lowercase().replace(' ', "_") + ".svg";
-        start(&name, &|file| file.write_all(figure.figure.to_svg().as_bytes()))?;
+        start(&name, &|file| {
+            file.write_all(figure.figure.to_svg().as_bytes())
+        })?;
     }
     OutputFile::commit_all(complete, watch)?;
     Ok(())
@@ -98,12 +133,25 @@ fn write(folder: &Path, paper: &Paper, figures: &[CaptionedFigure], extra: &Extr
 
 fn print(folder: &Path, paper: &Paper) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
-    writeln!(out, "{:>4} {:>24} {:>24} {:>24}", "", "uncorrected", "magnitude only", "two-dimensional")?;
-    writeln!(out, "{:>4}{}", "seed", format!("  {:>8} {:>7} {:>7}", "time s", "RMS um", "max um").repeat(3))?;
+    writeln!(
+        out,
+        "{:>4} {:>24} {:>24} {:>24}",
+        "", "uncorrected", "magnitude only", "two-dimensional"
+    )?;
+    writeln!(
+        out,
+        "{:>4}{}",
+        "seed",
+        format!("  {:>8} {:>7} {:>7}", "time s", "RMS um", "max um").repeat(3)
+    )?;
     for seed in &paper.seeds {
         write!(out, "{:>4}", seed.seed)?;
         for cut in [seed.uncorrected, seed.magnitude_only, seed.two_dimensional] {
-            write!(out, " {:>8.3} {:>7.2} {:>7.2}", cut.time_s, cut.rms_um, cut.max_um)?;
+            write!(
+                out,
+                " {:>8.3} {:>7.2} {:>7.2}",
+                cut.time_s, cut.rms_um, cut.max_um
+            )?;
         }
         writeln!(out)?;
     }

@@ -8,7 +8,12 @@ use crate::compare::{Tuning, table::ComparisonRow};
 
 const TNV40: &str = "tnv40";
 
-fn row(contour: &str, machine: &str, controller: &str, [rms_um, max_um]: [f64; 2]) -> ComparisonRow {
+fn row(
+    contour: &str,
+    machine: &str,
+    controller: &str,
+    [rms_um, max_um]: [f64; 2],
+) -> ComparisonRow {
     ComparisonRow {
         contour: contour.to_owned(),
         machine: machine.to_owned(),
@@ -38,8 +43,14 @@ fn row(contour: &str, machine: &str, controller: &str, [rms_um, max_um]: [f64; 2
 /// The nominal machine, a quiet one, and one with noise.
 fn options() -> ComparisonOptions {
     let nominal = Machine::load(TNV40.as_ref()).unwrap();
-    let quiet = Machine { name: "rough".to_owned(), ..nominal.clone() };
-    let mut noisy = Machine { name: "noisy".to_owned(), ..nominal.clone() };
+    let quiet = Machine {
+        name: "rough".to_owned(),
+        ..nominal.clone()
+    };
+    let mut noisy = Machine {
+        name: "noisy".to_owned(),
+        ..nominal.clone()
+    };
     noisy.axes[0].encoder_noise_um = 0.1;
     ComparisonOptions {
         workpieces: Workpiece::contours(),
@@ -58,7 +69,10 @@ fn options() -> ComparisonOptions {
 /// What is compared with, the value in thousandths, and whether the claim holds.
 fn told(rows: &[ComparisonRow]) -> Vec<(String, f64, bool)> {
     let verdicts = verdicts(rows, &options());
-    verdicts.into_iter().map(|v| (v.against, (v.value * 1e3).round(), v.holds)).collect()
+    verdicts
+        .into_iter()
+        .map(|v| (v.against, (v.value * 1e3).round(), v.holds))
+        .collect()
 }
 
 fn of(against: &str, thousandths: f64, holds: bool) -> (String, f64, bool) {
@@ -95,9 +109,20 @@ fn without_corners_four_claims_each_with_its_limit() {
 
 #[test]
 fn the_square_is_held_against_micrometres() {
-    let rows = |ours: [f64; 2]| [row("square", TNV40, BASELINE, [10.0, 20.0]), row("square", TNV40, BEST, ours)];
-    assert_eq!(told(&rows([0.02, 0.6])), [of("", 20.0, true), of("", 600.0, false)]);
-    assert_eq!(told(&rows([0.04, 0.4])), [of("", 40.0, false), of("", 400.0, true)]);
+    let rows = |ours: [f64; 2]| {
+        [
+            row("square", TNV40, BASELINE, [10.0, 20.0]),
+            row("square", TNV40, BEST, ours),
+        ]
+    };
+    assert_eq!(
+        told(&rows([0.02, 0.6])),
+        [of("", 20.0, true), of("", 600.0, false)]
+    );
+    assert_eq!(
+        told(&rows([0.04, 0.4])),
+        [of("", 40.0, false), of("", 400.0, true)]
+    );
 }
 
 #[test]
@@ -110,7 +135,13 @@ fn elsewhere_the_unseen_and_the_identified_row_are_held_against_the_same_peer() 
         row("circle", "rough", BEST, [0.8, 2.0]),
         row("circle", "rough", "lqg-identified+unseen", [2.4, 5.0]),
     ];
-    assert_eq!(told(&rows), [of("contour-compensation", 600.0, false), of("contour-compensation", 200.0, true)]);
+    assert_eq!(
+        told(&rows),
+        [
+            of("contour-compensation", 600.0, false),
+            of("contour-compensation", 200.0, true)
+        ]
+    );
 }
 
 #[test]
@@ -145,27 +176,60 @@ fn held_out_work_may_nowhere_be_worse_than_uncorrected_or_the_baseline() {
     let mut rows = vec![
         row("circle", "rough", BASELINE, [10.0, 20.0]),
         row("circle", "rough", DELIVERED, [1.0, 2.0]),
-        ComparisonRow { uncut_um: 1.5, peak_torque_nm: 1.3, ..row("circle", "rough", BEST, [1.04, 3.5]) },
+        ComparisonRow {
+            uncut_um: 1.5,
+            peak_torque_nm: 1.3,
+            ..row("circle", "rough", BEST, [1.04, 3.5])
+        },
     ];
     let short = |rows: &[ComparisonRow]| {
-        let short = verdicts(rows, &options).into_iter().filter(|v| !v.holds && v.claim.starts_with("held-out"));
+        let short = verdicts(rows, &options)
+            .into_iter()
+            .filter(|v| !v.holds && v.claim.starts_with("held-out"));
         short.map(|v| (v.claim, v.against)).collect::<Vec<_>>()
     };
     let named = |claim: &Claim, against: &str| (claim.0.to_owned(), against.to_owned());
-    assert_eq!(short(&rows), [named(&HELD_OUT_MAX, DELIVERED), named(&HELD_OUT_UNCUT, BASELINE)]);
-    let torque = verdicts(&rows, &options).into_iter().find(|v| v.claim == PEAK_TORQUE.0).unwrap();
+    assert_eq!(
+        short(&rows),
+        [
+            named(&HELD_OUT_MAX, DELIVERED),
+            named(&HELD_OUT_UNCUT, BASELINE)
+        ]
+    );
+    let torque = verdicts(&rows, &options)
+        .into_iter()
+        .find(|v| v.claim == PEAK_TORQUE.0)
+        .unwrap();
     assert!(!torque.holds && torque.value == 1.3, "{torque:?}");
-    rows[2] = ComparisonRow { lost: 1, ..row("circle", "rough", BEST, [1.06, 2.0]) };
-    assert_eq!(short(&rows), [named(&HELD_OUT_LOST, ""), named(&HELD_OUT_RMS, DELIVERED)]);
+    rows[2] = ComparisonRow {
+        lost: 1,
+        ..row("circle", "rough", BEST, [1.06, 2.0])
+    };
+    assert_eq!(
+        short(&rows),
+        [named(&HELD_OUT_LOST, ""), named(&HELD_OUT_RMS, DELIVERED)]
+    );
 }
 
 #[test]
 fn nothing_holds_that_took_longer_or_did_not_end() {
-    let mut rows = [row("circle", TNV40, BASELINE, [10.0, 20.0]), row("circle", TNV40, BEST, [0.1, 1.0])];
-    assert_eq!(told(&rows), [of(BASELINE, 10.0, true), of(BASELINE, 50.0, true)]);
+    let mut rows = [
+        row("circle", TNV40, BASELINE, [10.0, 20.0]),
+        row("circle", TNV40, BEST, [0.1, 1.0]),
+    ];
+    assert_eq!(
+        told(&rows),
+        [of(BASELINE, 10.0, true), of(BASELINE, 50.0, true)]
+    );
     rows[1].time_ratio = 1.001;
-    assert_eq!(told(&rows), [of(BASELINE, 10.0, false), of(BASELINE, 50.0, false)]);
+    assert_eq!(
+        told(&rows),
+        [of(BASELINE, 10.0, false), of(BASELINE, 50.0, false)]
+    );
     rows[1].time_ratio = 1.0;
     rows[1].completed = false;
-    assert_eq!(told(&rows), [of(BASELINE, 10.0, false), of(BASELINE, 50.0, false)]);
+    assert_eq!(
+        told(&rows),
+        [of(BASELINE, 10.0, false), of(BASELINE, 50.0, false)]
+    );
 }

@@ -1,8 +1,10 @@
-//! The horizon: the accelerations of the offset in all its knots, improved by one Gauss-Newton step after another.
+//! The horizon: the accelerations of the offset in all its knots, improved by one Gauss-Newton step
+//! after another.
 //!
-//! The command is the path and an offset o from it. With the accelerations a_j of the offset in each knot as the unknowns, in
-//! all axes, the plan is rolled out through a [`Predictor`] of the machine. Each predicted tool position p_i
-//! is referred to the point of the path of *its own plan time less the lag of the machine*,
+//! The command is the path and an offset o from it. With the accelerations a_j of the offset in
+//! each knot as the unknowns, in all axes, the plan is rolled out through a [`Predictor`] of the
+//! machine. Each predicted tool position p_i is referred to the point of the path of *its own plan
+//! time less the lag of the machine*,
 //!
 //! ```text
 //! r_i = P*(tau_i - lag)     eps_i = (1 - t_i t_i')(p_i - r_i)     theta_i = t_i'(p_i - r_i)
@@ -12,25 +14,30 @@
 //! v_j = v_0 + T sum_{m<=j} a_m     |a_j| <= A in each axis
 //! ```
 //!
-//! and J is made smaller by [`GaussNewton`], from last tick's plan, shifted. Where the tool lags behind its time, or leads, nothing
-//! is cut wrong, and theta counts little (h is small); but it counts, so that no tool stays on a stretch of the path that is
-//! over: a nearest point would let it.
+//! and J is made smaller by [`GaussNewton`], from last tick's plan, shifted. Where the tool lags
+//! behind its time, or leads, nothing is cut wrong, and theta counts little (h is small); but it
+//! counts, so that no tool stays on a stretch of the path that is over: a nearest point would let
+//! it.
 //!
 //! What holds the plan back from doing harm:
 //!
-//! - q, the weight of the offset itself, where it cannot undo all that is wrong, at the start, where drives are at their limit
-//!   ([`restraint`]): then the plan asks for a part of it.
-//! - e, at the end of the horizon: behind it nothing is foreseen, and the offset is to be on its way back.
+//! - q, the weight of the offset itself, where it cannot undo all that is wrong, at the start,
+//!   where drives are at their limit ([`restraint`]): then the plan asks for a part of it.
+//! - e, at the end of the horizon: behind it nothing is foreseen, and the offset is to be on its
+//!   way back.
 //!
-//! The limits of the plan are those of the machine file: what the plan asks for is carried out as it is. Speed and deviation of
-//! the offset, and what the drives can accelerate, cost much beyond their limits ([`problem`]).
+//! The limits of the plan are those of the machine file: what the plan asks for is carried out as
+//! it is. Speed and deviation of the offset, and what the drives can accelerate, cost much beyond
+//! their limits ([`problem`]).
 //!
-//! On a rapid motion nothing is cut: there the offset is to move the tool as little as the cuts about it allow.
+//! On a rapid motion nothing is cut: there the offset is to move the tool as little as the cuts
+//! about it allow.
 //!
 //! A knot of the plan is one feed period long.
 //!
-//! Source: the performance index is Lee, Cho and Jeon (2005), eq. 7, summed over a horizon; receding horizon as in Richalet
-//! et al. (1978), contour and lag error with weights of their own as in Lam, Manzie and Good (2010).
+//! Source: the performance index is Lee, Cho and Jeon (2005), eq. 7, summed over a horizon;
+//! receding horizon as in Richalet et al. (1978), contour and lag error with weights of their own
+//! as in Lam, Manzie and Good (2010).
 //!
 //! Everything is of fixed size: at most [`MAX_KNOTS`] knots, N unknowns each.
 
@@ -49,24 +56,28 @@ use restraint::Restraint;
 
 /// Most knots of a horizon.
 pub const MAX_KNOTS: usize = 20;
-/// Most axes; fewer than two have no path to leave. [`HorizonProblem::new`] does not compile for others: the normals of the path are those
-/// of a plane or of space, and there is no room for more unknowns.
+/// Most axes; fewer than two have no path to leave. [`HorizonProblem::new`] does not compile for
+/// others: the normals of the path are those of a plane or of space, and there is no room for more
+/// unknowns.
 pub(crate) const MAX_AXES: usize = 3;
 /// Most unknowns.
 pub(crate) const MAX_UNKNOWNS: usize = MAX_KNOTS * MAX_AXES;
 
-/// Where the path runs this slowly, mm/s, an error along it is on its way to be one across it: at rest it leads beyond the end.
+/// Where the path runs this slowly, mm/s, an error along it is on its way to be one across it: at
+/// rest it leads beyond the end.
 const RESTING_MM_S: f64 = 0.5;
 
-/// How many times the lag of the machine the horizon reaches ahead, or more: what is commanded later hardly moves the tool that is
-/// foreseen now.
+/// How many times the lag of the machine the horizon reaches ahead, or more: what is commanded
+/// later hardly moves the tool that is foreseen now.
 pub(crate) const LAGS_AHEAD: f64 = 3.6;
 
-/// Part of the largest deviation that a plan uses: the rest is for what it misses, before the safety layer acts.
+/// Part of the largest deviation that a plan uses: the rest is for what it misses, before the
+/// safety layer acts.
 const PLANNED_DEVIATION: f64 = 0.9;
 
-/// Knots at the end of the horizon by which the tool has to be back at its time. Behind the horizon nothing is foreseen: a tool
-/// that is late or fast there when the path turns swings from one side of it to the other.
+/// Knots at the end of the horizon by which the tool has to be back at its time. Behind the horizon
+/// nothing is foreseen: a tool that is late or fast there when the path turns swings from one side
+/// of it to the other.
 const LAST_KNOTS: usize = 5;
 
 /// Settings of the inversion.
@@ -74,19 +85,20 @@ const LAST_KNOTS: usize = 5;
 pub struct HorizonSettings<const N: usize> {
     /// Knots of the horizon; 1 to [`MAX_KNOTS`].
     pub knots: usize,
-    /// w: weight of the speed of the offset, s^2. Smaller is sharper; below 1e-10 the plan rings from knot to knot, above
-    /// 1e-4 nothing is corrected.
+    /// w: weight of the speed of the offset, s^2. Smaller is sharper; below 1e-10 the plan rings
+    /// from knot to knot, above 1e-4 nothing is corrected.
     pub rate_weight: f64,
     /// d: weight of the change of that speed from knot to knot, s^2.
     pub change_weight: f64,
     /// q_0: weight of the offset. 0 is sharpest, 10 leaves hardly any correction.
     pub offset_weight: f64,
-    /// h: weight of an error along the path against one across it: small, it leaves room at a corner, large, it keeps the
-    /// tool from staying behind. 0.001 to 1.
+    /// h: weight of an error along the path against one across it: small, it leaves room at a
+    /// corner, large, it keeps the tool from staying behind. 0.001 to 1.
     pub tangential_weight: f64,
     /// h of the last knots at the least.
     pub last_weight: f64,
-    /// Weight of a tool that is further from its time than without the offset; about points where the path turns back, more.
+    /// Weight of a tool that is further from its time than without the offset; about points where
+    /// the path turns back, more.
     pub late_weight: f64,
     /// What the plan keeps to.
     pub limits: CorrectionLimits<N>,
@@ -128,8 +140,8 @@ impl<const N: usize> CorrectionLimits<N> {
 /// The accelerations of a plan, knot by knot, mm/s^2.
 pub type Accelerations<const N: usize> = [[f64; N]; MAX_KNOTS];
 
-/// What the tool feels at the end of a knot: its displacement in each axis, mm, for an acceleration of the offset of 1 mm/s^2 in
-/// that axis in each of the knots so far, s^2.
+/// What the tool feels at the end of a knot: its displacement in each axis, mm, for an acceleration
+/// of the offset of 1 mm/s^2 in that axis in each of the knots so far, s^2.
 pub type Sensitivity<const N: usize> = [[f64; N]; MAX_KNOTS];
 
 /// What predicts the tool: a model of the machine, with its state at the current knot.
@@ -137,7 +149,8 @@ pub trait Predictor<const N: usize>: Clone {
     /// How far the tool is behind the command in the long run, s.
     fn lag_s(&self) -> f64;
 
-    /// How long the tool takes to follow an offset, s: its lag, but where a drive feeds forward of the path what it does not lag by.
+    /// How long the tool takes to follow an offset, s: its lag, but where a drive feeds forward of
+    /// the path what it does not lag by.
     fn response_s(&self) -> f64 {
         self.lag_s()
     }
@@ -187,7 +200,11 @@ impl<const N: usize> CommandedPeriod<N> {
         let [_, from_mm] = self.offset_mm;
         let [_, from_mm_s] = self.offset_mm_s;
         let to_mm_s = add_scaled(from_mm_s, period_s, acceleration_mm_s2);
-        let to_mm = add_scaled(add_scaled(from_mm, 0.5 * period_s, from_mm_s), 0.5 * period_s, to_mm_s);
+        let to_mm = add_scaled(
+            add_scaled(from_mm, 0.5 * period_s, from_mm_s),
+            0.5 * period_s,
+            to_mm_s,
+        );
         self.offset_mm = [from_mm, to_mm];
         self.offset_mm_s = [from_mm_s, to_mm_s];
         let path_mm = window.ahead(self.period + 1).position_mm;
@@ -197,10 +214,14 @@ impl<const N: usize> CommandedPeriod<N> {
     /// How far the way of the offset is bent, mm: see [`feedwright_control::Command`].
     #[inline]
     pub fn bend_mm(&self) -> [f64; N] {
-        scale(0.5 * self.period_s, sub(self.offset_mm_s[1], self.offset_mm_s[0]))
+        scale(
+            0.5 * self.period_s,
+            sub(self.offset_mm_s[1], self.offset_mm_s[0]),
+        )
     }
 
-    /// How far an acceleration of 1 mm/s^2 in a knot has moved the offset after `part` of this feed period, s^2.
+    /// How far an acceleration of 1 mm/s^2 in a knot has moved the offset after `part` of this feed
+    /// period, s^2.
     #[inline]
     pub fn moved_s2(&self, knot: usize, part: f64) -> f64 {
         let since = self.period as f64 + part - knot as f64;
@@ -228,7 +249,11 @@ pub(crate) struct PlanStep<const N: usize> {
 
 impl<const N: usize> Default for OffsetPlan<N> {
     fn default() -> Self {
-        Self { accelerations_mm_s2: [[0.0; N]; MAX_KNOTS], restraint: Restraint::START, solver: GaussNewton::default() }
+        Self {
+            accelerations_mm_s2: [[0.0; N]; MAX_KNOTS],
+            restraint: Restraint::START,
+            solver: GaussNewton::default(),
+        }
     }
 }
 
@@ -239,14 +264,20 @@ impl<const N: usize> OffsetPlan<N> {
         self.restraint = Restraint::START;
     }
 
-    /// Goes over to the next tick: what was planned for it comes first, and nothing is planned for the last knot.
+    /// Goes over to the next tick: what was planned for it comes first, and nothing is planned for
+    /// the last knot.
     pub(crate) fn shift(&mut self, settings: &HorizonSettings<N>) {
         let knots = settings.knots();
         let planned = self.accelerations_mm_s2;
         let limits = &settings.limits.acceleration_mm_s2;
         for (knot, acceleration) in self.accelerations_mm_s2.iter_mut().enumerate() {
-            let next = if knot + 1 < knots { planned[knot + 1] } else { [0.0; N] };
-            *acceleration = core::array::from_fn(|axis| bounded(next[axis], -limits[axis], limits[axis]));
+            let next = if knot + 1 < knots {
+                planned[knot + 1]
+            } else {
+                [0.0; N]
+            };
+            *acceleration =
+                core::array::from_fn(|axis| bounded(next[axis], -limits[axis], limits[axis]));
         }
     }
 
@@ -258,13 +289,23 @@ impl<const N: usize> OffsetPlan<N> {
         settings: &HorizonSettings<N>,
     ) -> PlanStep<N> {
         let horizon_s = settings.knots() as f64 * window.feed_period_s;
-        let settings = self.restraint.on(settings, model.response_s().max(horizon_s / LAGS_AHEAD));
+        let settings = self
+            .restraint
+            .on(settings, model.response_s().max(horizon_s / LAGS_AHEAD));
         let problem = HorizonProblem::new(model, window, &self.accelerations_mm_s2, &settings);
-        self.restraint.take_in(problem.need_mm(), problem.contour_mm2(), problem.drive_share());
+        self.restraint.take_in(
+            problem.need_mm(),
+            problem.contour_mm2(),
+            problem.drive_share(),
+        );
         let before = self.accelerations_mm_s2;
         self.solver.improve(&problem, &mut self.accelerations_mm_s2);
         let mut change_mm_s2 = 0.0_f64;
-        let finite = self.accelerations_mm_s2.as_flattened().iter().all(|a| a.is_finite());
+        let finite = self
+            .accelerations_mm_s2
+            .as_flattened()
+            .iter()
+            .all(|a| a.is_finite());
         if !finite {
             self.accelerations_mm_s2 = [[0.0; N]; MAX_KNOTS];
         }
@@ -273,7 +314,10 @@ impl<const N: usize> OffsetPlan<N> {
                 change_mm_s2 = change_mm_s2.max(change.abs());
             }
         }
-        PlanStep { acceleration_mm_s2: self.accelerations_mm_s2[0], change_mm_s2 }
+        PlanStep {
+            acceleration_mm_s2: self.accelerations_mm_s2[0],
+            change_mm_s2,
+        }
     }
 }
 
@@ -308,7 +352,11 @@ impl<const N: usize> HorizonSettings<N> {
     pub fn weight_along(&self, knot: usize, feed_mm_s: f64) -> f64 {
         let running = self.tangential_weight;
         let weight = running + (1.0 - running) / (1.0 + fourth_power(feed_mm_s / RESTING_MM_S));
-        if knot + LAST_KNOTS >= self.knots() { weight.max(self.last_weight) } else { weight }
+        if knot + LAST_KNOTS >= self.knots() {
+            weight.max(self.last_weight)
+        } else {
+            weight
+        }
     }
 
     /// Number of knots of the horizon, limited to 1 to [`MAX_KNOTS`].
@@ -344,8 +392,13 @@ mod tests {
     #[test]
     fn an_acceleration_moves_the_offset_by_its_closed_form() {
         let (offset_mm, offset_mm_s) = ([[0.0]; 2], [[0.0]; 2]);
-        let stretch =
-            CommandedPeriod::<1> { period: 5, period_s: 0.003, command_mm: [[0.0]; 2], offset_mm, offset_mm_s };
+        let stretch = CommandedPeriod::<1> {
+            period: 5,
+            period_s: 0.003,
+            command_mm: [[0.0]; 2],
+            offset_mm,
+            offset_mm_s,
+        };
         // In the third knot, from 6 ms to 9 ms; now it is 16.5 ms.
         let moved = 0.003 * (0.003 / 2.0 + 0.0075);
         assert!((stretch.moved_s2(2, 0.5) - moved).abs() < 1e-15);

@@ -4,12 +4,13 @@
 //! R(k) = lambda R(k-1) + phi phi'     q(k) = lambda q(k-1) + phi y     (R + d) theta = q + d mean
 //! ```
 //!
-//! The classical recursion keeps the inverse of R, which grows without bound along directions that nothing excites, and
-//! then leaps at the first excitation ("wind-up"). Here R is kept and the prior d is added anew at each solution: along a
-//! direction that nothing excites the estimate goes back to the prior, whatever the length of the run.
+//! The classical recursion keeps the inverse of R, which grows without bound along directions that
+//! nothing excites, and then leaps at the first excitation ("wind-up"). Here R is kept and the
+//! prior d is added anew at each solution: along a direction that nothing excites the estimate goes
+//! back to the prior, whatever the length of the run.
 //!
-//! Source: exponential forgetting in information form as in Ljung and Soederstroem (1983), section 2.6; ridge as in Hoerl
-//! and Kennard (1970). P unknowns; the solution costs P^3/6 multiplications.
+//! Source: exponential forgetting in information form as in Ljung and Soederstroem (1983), section
+//! 2.6; ridge as in Hoerl and Kennard (1970). P unknowns; the solution costs P^3/6 multiplications.
 
 /// The sums over the past.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,9 +21,13 @@ pub(crate) struct LeastSquares<const P: usize> {
 
 impl<const P: usize> LeastSquares<P> {
     /// Nothing seen.
-    pub(crate) const EMPTY: Self = Self { information: [[0.0; P]; P], right: [0.0; P] };
+    pub(crate) const EMPTY: Self = Self {
+        information: [[0.0; P]; P],
+        right: [0.0; P],
+    };
 
-    /// Takes in that `phi` led to `y`; what was before counts `lambda` times. What is not finite is left out.
+    /// Takes in that `phi` led to `y`; what was before counts `lambda` times. What is not finite is
+    /// left out.
     #[inline]
     pub(crate) fn add(&mut self, lambda: f64, phi: &[f64; P], y: f64) {
         let mut sum = y;
@@ -40,7 +45,8 @@ impl<const P: usize> LeastSquares<P> {
         }
     }
 
-    /// The estimate that fits best and lies near `mean`, where `weight` (above zero) says how much the prior counts.
+    /// The estimate that fits best and lies near `mean`, where `weight` (above zero) says how much
+    /// the prior counts.
     #[inline]
     pub(crate) fn estimate(&self, weight: f64, mean: &[f64; P]) -> [f64; P] {
         let mut a = self.information;
@@ -54,10 +60,12 @@ impl<const P: usize> LeastSquares<P> {
     }
 }
 
-/// Rows that are worked with together: an entry of a matrix is then read and written once for all of them.
+/// Rows that are worked with together: an entry of a matrix is then read and written once for all
+/// of them.
 pub(crate) const BLOCK: usize = 4;
 
-/// Adds the products of factors and rows to as many entries as `sums` has: what solving costs, it costs here.
+/// Adds the products of factors and rows to as many entries as `sums` has: what solving costs, it
+/// costs here.
 #[inline]
 pub(crate) fn add_products(sums: &mut [f64], factors: [f64; BLOCK], rows: [&[f64]; BLOCK]) {
     let [f0, f1, f2, f3] = factors;
@@ -68,11 +76,12 @@ pub(crate) fn add_products(sums: &mut [f64], factors: [f64; BLOCK], rows: [&[f64
     }
 }
 
-/// Solves A x = b in place for the lower half of a symmetric positive A, of which the first `n` rows count.
+/// Solves A x = b in place for the lower half of a symmetric positive A, of which the first `n`
+/// rows count.
 #[inline]
 pub(crate) fn cholesky<const P: usize>(a: &mut [[f64; P]; P], b: &mut [f64; P], n: usize) {
-    // A block of columns, then what it takes off all rows below at once. b goes along as one more row, and is solved for
-    // half by it.
+    // A block of columns, then what it takes off all rows below at once. b goes along as one more
+    // row, and is solved for half by it.
     let n = n.min(P);
     let mut columns = [[0.0; P]; BLOCK];
     let mut first = 0;
@@ -81,7 +90,9 @@ pub(crate) fn cholesky<const P: usize>(a: &mut [[f64; P]; P], b: &mut [f64; P], 
         for k in first..end {
             let (above, below) = a.split_at_mut(k + 1);
             let row = &mut above[k];
-            let rest = |entries: &[f64; P]| (first..k).fold(entries[k], |sum, j| sum - entries[j] * row[j]);
+            let rest = |entries: &[f64; P]| {
+                (first..k).fold(entries[k], |sum, j| sum - entries[j] * row[j])
+            };
             // The diagonal holds the reciprocal: one division a column.
             let pivot = 1.0 / libm::sqrt(rest(row));
             for below in below.iter_mut().take(n - k - 1) {
@@ -98,7 +109,11 @@ pub(crate) fn cholesky<const P: usize>(a: &mut [[f64; P]; P], b: &mut [f64; P], 
         // Only the last block is not whole, and there is nothing below it.
         let take_off = |row: &mut [f64; P], last: usize| {
             let factors = core::array::from_fn(|i| row.get(first + i).map_or(0.0, |entry| -entry));
-            add_products(&mut row[end..last], factors, columns.each_ref().map(|column| &column[end..last]));
+            add_products(
+                &mut row[end..last],
+                factors,
+                columns.each_ref().map(|column| &column[end..last]),
+            );
         };
         for r in end..n {
             take_off(&mut a[r], r + 1);
@@ -116,7 +131,10 @@ pub(crate) fn cholesky<const P: usize>(a: &mut [[f64; P]; P], b: &mut [f64; P], 
 pub(crate) fn substitute<const P: usize>(a: &[[f64; P]; P], b: &mut [f64; P], n: usize) {
     let n = n.min(P);
     for k in 0..n {
-        let sum = a[k][..k].iter().zip(&*b).fold(b[k], |sum, (factor, known)| sum - factor * known);
+        let sum = a[k][..k]
+            .iter()
+            .zip(&*b)
+            .fold(b[k], |sum, (factor, known)| sum - factor * known);
         b[k] = sum * a[k][k];
     }
     back(a, b, n);
@@ -146,25 +164,36 @@ mod tests {
             sums.add(1.0, &phi, 2.0 * phi[0] - 0.5 * phi[1]);
         }
         let found = sums.estimate(1e-9, &[0.0; 2]);
-        assert!((found[0] - 2.0).abs() < 1e-9 && (found[1] + 0.5).abs() < 1e-9, "{found:?}");
+        assert!(
+            (found[0] - 2.0).abs() < 1e-9 && (found[1] + 0.5).abs() < 1e-9,
+            "{found:?}"
+        );
     }
 
     #[test]
     fn what_is_solved_gives_the_right_side_whatever_the_number_of_rows() {
         const MOST: usize = 13;
         for n in 1..=MOST {
-            let entry = |r: usize, c: usize| libm::cos((r * c) as f64) + if r == c { 13.0 } else { 0.0 };
-            let mut a: [[f64; MOST]; MOST] = core::array::from_fn(|r| core::array::from_fn(|c| entry(r, c)));
+            let entry =
+                |r: usize, c: usize| libm::cos((r * c) as f64) + if r == c { 13.0 } else { 0.0 };
+            let mut a: [[f64; MOST]; MOST] =
+                core::array::from_fn(|r| core::array::from_fn(|c| entry(r, c)));
             let right: [f64; MOST] = core::array::from_fn(|r| libm::sin(r as f64));
             let (mut x, mut again) = (right, right);
             cholesky(&mut a, &mut x, n);
             substitute(&a, &mut again, n);
-            assert_eq!(x.map(|x| (x * 1e12).round()), again.map(|x| (x * 1e12).round()));
+            assert_eq!(
+                x.map(|x| (x * 1e12).round()),
+                again.map(|x| (x * 1e12).round())
+            );
             for (r, right) in right.into_iter().enumerate() {
                 let sum = (0..n).map(|c| entry(r, c) * x[c]).sum::<f64>();
                 // What does not count is left alone.
                 let expected = if r < n { sum } else { x[r] };
-                assert!((expected - right).abs() < 1e-13, "{n} {r}: {expected} {right}");
+                assert!(
+                    (expected - right).abs() < 1e-13,
+                    "{n} {r}: {expected} {right}"
+                );
             }
         }
     }
@@ -177,7 +206,10 @@ mod tests {
             sums.add(0.99, &[1.0, 1.0], 0.1 + 1e-3 * libm::sin(f64::from(i)));
         }
         let found = sums.estimate(1.0, &[0.0; 2]);
-        assert!((found[0] - found[1]).abs() < 1e-12 && (found[0] + found[1] - 0.1).abs() < 2e-3, "{found:?}");
+        assert!(
+            (found[0] - found[1]).abs() < 1e-12 && (found[0] + found[1] - 0.1).abs() < 2e-3,
+            "{found:?}"
+        );
     }
 
     #[test]

@@ -1,13 +1,15 @@
-//! What the model misses, predicted from what it missed before: friction of today, cutting force, a vibration.
+//! What the model misses, predicted from what it missed before: friction of today, cutting force, a
+//! vibration.
 //!
 //! ```text
 //! r(k) = sum_j a_j r(k-1-j) + innovation        j = 0 .. P-1, each axis for itself
 //! ```
 //!
-//! where r(k) is the measured growth of the following error less the predicted. An autoregression of order three predicts a
-//! constant and a sine of any frequency without error; more lags average noise out. The coefficients are fitted while
-//! cutting, to the last half second, and held to a prior that is exponential smoothing: residuals that are small, or
-//! without pattern, are smoothed. An innovation far beyond the usual (friction that turns) counts less, as in Huber (1964).
+//! where r(k) is the measured growth of the following error less the predicted. An autoregression
+//! of order three predicts a constant and a sine of any frequency without error; more lags average
+//! noise out. The coefficients are fitted while cutting, to the last half second, and held to a
+//! prior that is exponential smoothing: residuals that are small, or without pattern, are smoothed.
+//! An innovation far beyond the usual (friction that turns) counts less, as in Huber (1964).
 //!
 //! Source: autoregressive disturbance models as in Ljung and Soederstroem (1983), section 3.6.
 
@@ -35,7 +37,11 @@ pub(super) struct ResidualSettings {
 
 impl ResidualSettings {
     /// Values that serve.
-    pub(super) const DEFAULT: Self = Self { gain: 0.3, forgetting: 0.99, noise_mm: 2e-5 };
+    pub(super) const DEFAULT: Self = Self {
+        gain: 0.3,
+        forgetting: 0.99,
+        noise_mm: 2e-5,
+    };
 }
 
 /// The residuals to come of one axis, as far as the past foretells them.
@@ -51,7 +57,11 @@ pub(super) struct DisturbanceForecast {
 impl DisturbanceForecast {
     #[inline]
     fn expected_mm(&self) -> f64 {
-        bounded(weighted(&self.coefficients, &self.past_mm), -self.largest_mm, self.largest_mm)
+        bounded(
+            weighted(&self.coefficients, &self.past_mm),
+            -self.largest_mm,
+            self.largest_mm,
+        )
     }
 
     /// The next residual, mm; each call goes on by one knot.
@@ -83,7 +93,11 @@ impl Residual {
     pub(super) fn new(settings: ResidualSettings) -> Self {
         let prior = smoothing(settings.gain);
         Self {
-            forecast: DisturbanceForecast { past_mm: [0.0; LAGS], coefficients: prior, largest_mm: 0.0 },
+            forecast: DisturbanceForecast {
+                past_mm: [0.0; LAGS],
+                coefficients: prior,
+                largest_mm: 0.0,
+            },
             sums: LeastSquares::EMPTY,
             prior,
             usual_mm: 0.0,
@@ -106,16 +120,28 @@ impl Residual {
     /// Takes in the residual of a knot, mm.
     #[inline]
     pub(super) fn push(&mut self, residual_mm: f64) {
-        let ResidualSettings { forgetting, noise_mm, .. } = self.settings;
+        let ResidualSettings {
+            forgetting,
+            noise_mm,
+            ..
+        } = self.settings;
         let past_mm = self.forecast.past_mm;
         let innovation_mm = (residual_mm - self.expected_mm()).abs();
         let limit_mm = USUAL * self.usual_mm + noise_mm;
-        let weight = if innovation_mm > limit_mm { limit_mm / innovation_mm } else { 1.0 };
+        let weight = if innovation_mm > limit_mm {
+            limit_mm / innovation_mm
+        } else {
+            1.0
+        };
         self.usual_mm += USUAL_GAIN * (innovation_mm.min(limit_mm) - self.usual_mm);
         let surprise_mm = residual_mm - weighted(&self.prior, &past_mm);
         let root = libm::sqrt(weight);
-        self.sums.add(forgetting, &past_mm.map(|r| root * r), root * surprise_mm);
-        let change = self.sums.estimate(noise_mm * noise_mm / (1.0 - forgetting).max(1e-6), &[0.0; LAGS]);
+        self.sums
+            .add(forgetting, &past_mm.map(|r| root * r), root * surprise_mm);
+        let change = self.sums.estimate(
+            noise_mm * noise_mm / (1.0 - forgetting).max(1e-6),
+            &[0.0; LAGS],
+        );
         self.forecast.coefficients = core::array::from_fn(|j| self.prior[j] + change[j]);
         self.forecast.shift(residual_mm);
         self.forecast.largest_mm = (forgetting * self.forecast.largest_mm).max(residual_mm.abs());
@@ -161,7 +187,11 @@ mod tests {
         let mut forecast = residual.forecast();
         for k in 400..410 {
             let next = forecast.next_mm();
-            assert!((next - vibration(k)).abs() < 1e-4, "{k}: {next} {}", vibration(k));
+            assert!(
+                (next - vibration(k)).abs() < 1e-4,
+                "{k}: {next} {}",
+                vibration(k)
+            );
         }
     }
 

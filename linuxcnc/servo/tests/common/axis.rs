@@ -17,7 +17,20 @@ pub(crate) fn axis() -> AxisKnowledge {
         coulomb_friction_nm: 0.2,
         coulomb_smoothing_rad_s: 0.05,
     };
-    let periods = Periods { servo_s: 0.001, mechanics_s: 0.0001, mechanics_per_servo: 10 };
-    let delays = LoopDelays { command_s: 0.0, drive_s: 0.001, measurement_s: 0.0005 };
-    AxisKnowledge { parameters, periods, delays, ..AxisKnowledge::NOTHING }
+    let periods = Periods {
+        servo_s: 0.001,
+        mechanics_s: 0.0001,
+        mechanics_per_servo: 10,
+    };
+    let delays = LoopDelays {
+        command_s: 0.0,
+        drive_s: 0.001,
+        measurement_s: 0.0005,
+    };
+    AxisKnowledge {
+        parameters,
+        periods,
+        delays,
+        ..AxisKnowledge::NOTHING
+    }
 }

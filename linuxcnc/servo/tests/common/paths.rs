@@ -42,9 +42,12 @@ pub(crate) fn square() -> Vec<[f64; 2]> {
     })
 }
 
-/// Commands of a program that stops so often along points at equal distances, with rest before and behind.
+/// Commands of a program that stops so often along points at equal distances, with rest before and
+/// behind.
 pub(crate) fn stopping(points: &[[f64; 2]], times: usize) -> Vec<[f64; 2]> {
-    let pieces = points.windows(points.len() / times + 1).step_by(points.len() / times);
+    let pieces = points
+        .windows(points.len() / times + 1)
+        .step_by(points.len() / times);
     let mut commands = vec![points[0]; REST];
     pieces.for_each(|piece| {
         let way = self::commands(piece);
@@ -61,7 +64,9 @@ fn lengths(points: &[[f64; 2]]) -> Vec<f64> {
         length_mm += distance(pair[0], pair[1]);
         length_mm
     };
-    std::iter::once(0.0).chain(points.windows(2).map(step)).collect()
+    std::iter::once(0.0)
+        .chain(points.windows(2).map(step))
+        .collect()
 }
 
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -70,7 +75,10 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 /// The way of a motion from rest to rest at the feedrate, mm.
 pub(crate) fn way_mm(t_s: f64, length_mm: f64) -> f64 {
-    let (ramp_s, whole_s) = (FEED_MM_S / ACCELERATION_MM_S2, length_mm / FEED_MM_S + FEED_MM_S / ACCELERATION_MM_S2);
+    let (ramp_s, whole_s) = (
+        FEED_MM_S / ACCELERATION_MM_S2,
+        length_mm / FEED_MM_S + FEED_MM_S / ACCELERATION_MM_S2,
+    );
     let t_s = t_s.clamp(0.0, whole_s);
     if t_s < ramp_s {
         0.5 * ACCELERATION_MM_S2 * t_s * t_s
@@ -85,10 +93,13 @@ pub(crate) fn way_mm(t_s: f64, length_mm: f64) -> f64 {
 pub(crate) fn commands(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let lengths = lengths(points);
     let whole_mm = lengths[lengths.len() - 1];
-    let periods = ((whole_mm / FEED_MM_S + FEED_MM_S / ACCELERATION_MM_S2) / SERVO_S).ceil() as usize;
+    let periods =
+        ((whole_mm / FEED_MM_S + FEED_MM_S / ACCELERATION_MM_S2) / SERVO_S).ceil() as usize;
     let at = |n: usize| {
         let way_mm = way_mm((n as f64 - REST as f64) * SERVO_S, whole_mm);
-        let k = lengths.partition_point(|length| *length <= way_mm).clamp(1, points.len() - 1);
+        let k = lengths
+            .partition_point(|length| *length <= way_mm)
+            .clamp(1, points.len() - 1);
         let part = (way_mm - lengths[k - 1]) / (lengths[k] - lengths[k - 1]);
         std::array::from_fn(|i| points[k - 1][i] + part * (points[k][i] - points[k - 1][i]))
     };
@@ -98,9 +109,13 @@ pub(crate) fn commands(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
 /// Distance of a tool from the path about the point that was nearest before.
 pub(crate) fn error_mm(points: &[[f64; 2]], near: &mut usize, tool_mm: [f64; 2]) -> f64 {
     let about = near.saturating_sub(20)..(*near + 40).min(points.len());
-    *near = about.min_by(|a, b| distance(points[*a], tool_mm).total_cmp(&distance(points[*b], tool_mm))).unwrap_or(0);
+    *near = about
+        .min_by(|a, b| distance(points[*a], tool_mm).total_cmp(&distance(points[*b], tool_mm)))
+        .unwrap_or(0);
     let pieces = near.saturating_sub(1)..(*near + 1).min(points.len() - 1);
-    pieces.map(|k| to_piece_mm(points[k], points[k + 1], tool_mm)).fold(f64::INFINITY, f64::min)
+    pieces
+        .map(|k| to_piece_mm(points[k], points[k + 1], tool_mm))
+        .fold(f64::INFINITY, f64::min)
 }
 
 fn to_piece_mm(a: [f64; 2], b: [f64; 2], p: [f64; 2]) -> f64 {

@@ -20,7 +20,10 @@ pub(crate) fn machine() -> IdentifiedAxes<2> {
     let (axis, mut slower) = (axis(), axis());
     slower.parameters.inertia_kg_m2 = 0.012;
     slower.parameters.coulomb_friction_nm = 0.3;
-    IdentifiedAxes { mechanics_s: axis.periods.mechanics_s, axes: [axis, slower] }
+    IdentifiedAxes {
+        mechanics_s: axis.periods.mechanics_s,
+        axes: [axis, slower],
+    }
 }
 
 /// Rest, a turn of a circle of 10 mm at 50 mm/s with soft ends, rest.
@@ -28,9 +31,19 @@ pub(crate) fn command_mm(n: usize) -> [f64; 2] {
     let part = (n.saturating_sub(SETTLE) as f64 / (1.25 * TURN as f64)).min(1.0);
     // A fifth of the time to take up the speed, and a fifth to give it up.
     let ramp = 0.2;
-    let gone = |t: f64| if t < ramp { t * t / (2.0 * ramp) } else { t - 0.5 * ramp };
+    let gone = |t: f64| {
+        if t < ramp {
+            t * t / (2.0 * ramp)
+        } else {
+            t - 0.5 * ramp
+        }
+    };
     let whole = gone(1.0) - 0.5 * ramp;
-    let way = if part > 1.0 - ramp { whole - (1.0 - part).powi(2) / (2.0 * ramp) } else { gone(part) };
+    let way = if part > 1.0 - ramp {
+        whole - (1.0 - part).powi(2) / (2.0 * ramp)
+    } else {
+        gone(part)
+    };
     let angle = TAU * way / whole;
     [10.0 - 10.0 * angle.cos(), 10.0 * angle.sin()]
 }
@@ -51,22 +64,33 @@ pub(crate) fn turn(
     turn_on(&machine(), model, |_| *limits, change)
 }
 
-/// A turn on a machine that may differ from the model, with settings that may change from one servo period to the next.
+/// A turn on a machine that may differ from the model, with settings that may change from one servo
+/// period to the next.
 pub(crate) fn turn_on(
     real: &IdentifiedAxes<2>,
     model: Result<IdentifiedAxes<2>, Refused>,
     limits: impl Fn(usize) -> LinkLimits,
     mut change: impl FnMut(usize, &mut LinkInputs<2>),
 ) -> Vec<Period> {
-    let (mut plant, mut servo) = (SimulatedMachine::new(real, 1), Servo::new(model.map(LinkModel::Axes)));
-    assert!(matches!(servo.runs_at(SERVO_S), LinkFault::None | LinkFault::Model(_)));
+    let (mut plant, mut servo) = (
+        SimulatedMachine::new(real, 1),
+        Servo::new(model.map(LinkModel::Axes)),
+    );
+    assert!(matches!(
+        servo.runs_at(SERVO_S),
+        LinkFault::None | LinkFault::Model(_)
+    ));
     let mut periods = Vec::new();
     for n in 0..SETTLE + 2 * TURN {
         let mut inputs = cutting(command_mm(n), plant.measured_mm());
         change(n, &mut inputs);
         let outputs = servo.step(&inputs, &limits(n));
         plant.step(outputs.drive_mm, inputs.powered, 1.0);
-        periods.push(Period { inputs, outputs, tool_mm: plant.position_mm() });
+        periods.push(Period {
+            inputs,
+            outputs,
+            tool_mm: plant.position_mm(),
+        });
     }
     periods
 }

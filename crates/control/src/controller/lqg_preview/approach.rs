@@ -6,18 +6,21 @@
 //! u   = u_k of the first k with |u_k| <= U_k, and no less than U_k-1
 //! ```
 //!
-//! x is by how much the axis is off the reference, u by how much less reference speed is asked for, beside what loads take. U is what there is
-//! for that: what torque is left, and the largest offset; R is how fast an offset may change, and sqrt(p) the time constant of a law of price p:
-//! within three of them an error is closed.
-//! A linear regulator that asks for more than there is acts later than it reckons with: it overshoots as far as it came, or swings for good. The
-//! law of a higher price asks for less, and closes more slowly; as the axis comes nearer, a lower one takes over. Near the reference it is the
-//! lowest; k begins at 4 where the law is not trusted, at 6 where loads are not taken up, and comes down to 0 with that.
+//! x is by how much the axis is off the reference, u by how much less reference speed is asked for,
+//! beside what loads take. U is what there is for that: what torque is left, and the largest
+//! offset; R is how fast an offset may change, and sqrt(p) the time constant of a law of price p:
+//! within three of them an error is closed. A linear regulator that asks for more than there is
+//! acts later than it reckons with: it overshoots as far as it came, or swings for good. The law of
+//! a higher price asks for less, and closes more slowly; as the axis comes nearer, a lower one
+//! takes over. Near the reference it is the lowest; k begins at 4 where the law is not trusted, at
+//! 6 where loads are not taken up, and comes down to 0 with that.
 //!
-//! Of 180 random cuts with the lowest price of a hundredth of the servo period squared 14 are worse than uncorrected with one price, none in RMS
-//! or in the largest error with these.
+//! Of 180 random cuts with the lowest price of a hundredth of the servo period squared 14 are worse
+//! than uncorrected with one price, none in RMS or in the largest error with these.
 //!
-//! Source: Wredenhagen and Belanger (1994), "Piecewise-linear LQ control for systems with input constraints", Automatica 30(3); the bound by the rate,
-//! and the way from one law to the next, are our own.
+//! Source: Wredenhagen and Belanger (1994), "Piecewise-linear LQ control for systems with input
+//! constraints", Automatica 30(3); the bound by the rate, and the way from one law to the next, are
+//! our own.
 
 use crate::supervisor::validity::Trusted;
 
@@ -32,12 +35,14 @@ const LEAST_LEFT: f64 = 0.1;
 /// Prices, and the ratio of the time of one to that of the one before.
 const PRICES: usize = 12;
 const RATIO: f64 = 2.0;
-/// Time constants in which an error is closed. On router 1 leaves half as much again on the square, and 10 runs into the supervisor on the star;
-/// a double integrator whose input takes 20 ms from nothing to its most swings by 3 and not by 1, one that takes 5 ms by neither.
+/// Time constants in which an error is closed. On router 1 leaves half as much again on the square,
+/// and 10 runs into the supervisor on the star; a double integrator whose input takes 20 ms from
+/// nothing to its most swings by 3 and not by 1, one that takes 5 ms by neither.
 const CLOSED: f64 = 3.0;
-/// The lowest price that counts where the law is not trusted, 4^k p, and by how much k is higher where loads are not taken up. By a law that does not
-/// know that the drives are 2 ms late the square with jumps at its corners is cut with 3.2 um RMS of 1.7 with 1 of the second, with 0.5 with 2; the
-/// circle with 1.1 of 9 and with 1.8, and with 3.1 with 3.
+/// The lowest price that counts where the law is not trusted, 4^k p, and by how much k is higher
+/// where loads are not taken up. By a law that does not know that the drives are 2 ms late the
+/// square with jumps at its corners is cut with 3.2 um RMS of 1.7 with 1 of the second, with 0.5
+/// with 2; the circle with 1.1 of 9 and with 1.8, and with 3.1 with 3.
 const UNTRUSTED: f64 = 4.0;
 const WITHOUT_LOADS: f64 = 2.0;
 
@@ -56,7 +61,8 @@ pub(super) struct Room {
     pub(super) change_rad_s2: f64,
 }
 
-/// Gains of the regulator by price, from the lowest on: [`RATIO`]^2 times as high from one to the next.
+/// Gains of the regulator by price, from the lowest on: [`RATIO`]^2 times as high from one to the
+/// next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct WeightedGains {
     /// sqrt(p), s.
@@ -65,14 +71,21 @@ pub(super) struct WeightedGains {
 }
 
 impl WeightedGains {
-    /// By the lowest prices, s^2 and of the second difference of the command, of a regulator whose gains are known for any.
-    pub(super) fn new([lowest_s2, command]: [f64; 2], gains: impl Fn([f64; 2]) -> [f64; REGULATED]) -> Self {
+    /// By the lowest prices, s^2 and of the second difference of the command, of a regulator whose
+    /// gains are known for any.
+    pub(super) fn new(
+        [lowest_s2, command]: [f64; 2],
+        gains: impl Fn([f64; 2]) -> [f64; REGULATED],
+    ) -> Self {
         let mut times = 1.0 / (RATIO * RATIO);
         let gains = core::array::from_fn(|_| {
             times *= RATIO * RATIO;
             gains([times * lowest_s2, times * command])
         });
-        Self { time_s: libm::sqrt(lowest_s2), gains }
+        Self {
+            time_s: libm::sqrt(lowest_s2),
+            gains,
+        }
     }
 
     /// Near the reference.
@@ -81,7 +94,8 @@ impl WeightedGains {
         near
     }
 
-    /// By how much less reference speed is asked for where the axis is so far off, rad/s, by a law that is `trusted` so far.
+    /// By how much less reference speed is asked for where the axis is so far off, rad/s, by a law
+    /// that is `trusted` so far.
     pub(super) fn asked_rad_s(&self, off: &[f64; REGULATED], room: Room, trusted: Trusted) -> f64 {
         let [error, loads] = linear::error_and_loads(off);
         let loads_rad_s = trusted.loads * inner(&self.near(), &loads);
@@ -91,12 +105,25 @@ impl WeightedGains {
         let part = lowest - below as f64;
         let asked_rad_s = |from: usize| loads_rad_s + self.closing_rad_s(&error, room, from);
         let bold_rad_s = asked_rad_s(below);
-        if part > 0.0 { bold_rad_s + part * (asked_rad_s(below + 1) - bold_rad_s) } else { bold_rad_s }
+        if part > 0.0 {
+            bold_rad_s + part * (asked_rad_s(below + 1) - bold_rad_s)
+        } else {
+            bold_rad_s
+        }
     }
 
     /// u, from a price on.
-    fn closing_rad_s(&self, error: &[f64; REGULATED], Room { most_rad_s, change_rad_s2 }: Room, lowest: usize) -> f64 {
-        let (mut time_s, mut least_rad_s, mut closing_rad_s) = (self.time_s * libm::exp2(lowest as f64), 0.0, 0.0);
+    fn closing_rad_s(
+        &self,
+        error: &[f64; REGULATED],
+        Room {
+            most_rad_s,
+            change_rad_s2,
+        }: Room,
+        lowest: usize,
+    ) -> f64 {
+        let (mut time_s, mut least_rad_s, mut closing_rad_s) =
+            (self.time_s * libm::exp2(lowest as f64), 0.0, 0.0);
         for gains in self.gains.iter().skip(lowest) {
             let asked_rad_s = inner(gains, error);
             let bound_rad_s = most_rad_s.min(CLOSED * change_rad_s2 * time_s);
@@ -136,14 +163,27 @@ mod tests {
     #[test]
     fn what_is_asked_for_is_continuous_and_never_more_than_there_is() {
         let gains = WeightedGains::new([1e-6, 0.0], of_double_integrator);
-        let room = Room { most_rad_s: 100.0, change_rad_s2: 5000.0 };
+        let room = Room {
+            most_rad_s: 100.0,
+            change_rad_s2: 5000.0,
+        };
         let asked = |error_rad: f64| gains.asked_rad_s(&off(error_rad, 0.0), room, Trusted::FULLY);
-        assert_eq!(asked(1e-6), 1.0, "near the reference the lowest price counts in full");
+        assert_eq!(
+            asked(1e-6),
+            1.0,
+            "near the reference the lowest price counts in full"
+        );
         let mut before_rad_s = 0.0;
         for n in 1..20_000 {
             let asked_rad_s = asked(5e-6 * f64::from(n));
-            assert!(asked_rad_s >= before_rad_s && asked_rad_s <= room.most_rad_s, "{n}: {asked_rad_s}");
-            assert!(asked_rad_s - before_rad_s < 5.1, "{n}: {before_rad_s} {asked_rad_s}");
+            assert!(
+                asked_rad_s >= before_rad_s && asked_rad_s <= room.most_rad_s,
+                "{n}: {asked_rad_s}"
+            );
+            assert!(
+                asked_rad_s - before_rad_s < 5.1,
+                "{n}: {before_rad_s} {asked_rad_s}"
+            );
             before_rad_s = asked_rad_s;
         }
         assert_eq!(asked(-1e3), -room.most_rad_s);
@@ -156,17 +196,31 @@ mod tests {
         let mut off = [0.0; REGULATED];
         (off[0], off[7]) = (1.0, 30.0);
         assert_eq!(
-            gains.asked_rad_s(&off, Room { most_rad_s: 0.1, change_rad_s2: f64::INFINITY }, Trusted::FULLY),
+            gains.asked_rad_s(
+                &off,
+                Room {
+                    most_rad_s: 0.1,
+                    change_rad_s2: f64::INFINITY
+                },
+                Trusted::FULLY
+            ),
             30.1
         );
     }
 
-    /// Largest overshoot and what is left after a second, rad, of a double integrator under what is asked for, whose acceleration is bounded and
-    /// changes at a bounded rate, by periods of 1 ms.
-    fn overshoot_and_rest_rad(asked: &dyn Fn(f64, f64) -> f64, [most, change]: [f64; 2], from_rad: f64) -> [f64; 2] {
-        let (mut error_rad, mut speed_rad_s, mut acts, mut overshoot_rad) = (from_rad, 0.0_f64, 0.0_f64, 0.0_f64);
+    /// Largest overshoot and what is left after a second, rad, of a double integrator under what is
+    /// asked for, whose acceleration is bounded and changes at a bounded rate, by periods of 1 ms.
+    fn overshoot_and_rest_rad(
+        asked: &dyn Fn(f64, f64) -> f64,
+        [most, change]: [f64; 2],
+        from_rad: f64,
+    ) -> [f64; 2] {
+        let (mut error_rad, mut speed_rad_s, mut acts, mut overshoot_rad) =
+            (from_rad, 0.0_f64, 0.0_f64, 0.0_f64);
         for _ in 0..1000 {
-            let step = (-asked(error_rad, speed_rad_s) - acts).max(-change * 0.001).min(change * 0.001);
+            let step = (-asked(error_rad, speed_rad_s) - acts)
+                .max(-change * 0.001)
+                .min(change * 0.001);
             acts = (acts + step).max(-most).min(most);
             error_rad += 0.001 * speed_rad_s + 0.5e-6 * acts;
             speed_rad_s += 0.001 * acts;
@@ -179,7 +233,10 @@ mod tests {
     fn within_bounds_that_a_linear_law_swings_at_the_way_back_is_short_and_still() {
         let gains = WeightedGains::new([1.6e-5, 0.0], of_double_integrator);
         let bounds = [100.0, 2e4];
-        let room = Room { most_rad_s: 100.0, change_rad_s2: 2e4 };
+        let room = Room {
+            most_rad_s: 100.0,
+            change_rad_s2: 2e4,
+        };
         for from_rad in [1e-4, 1e-3, 0.01, 0.1, 1.0] {
             let priced = |x: f64, w: f64| gains.asked_rad_s(&off(x, w), room, Trusted::FULLY);
             let [overshoot_rad, rest_rad] = overshoot_and_rest_rad(&priced, bounds, from_rad);
@@ -190,7 +247,10 @@ mod tests {
         }
         let linear = |x: f64, w: f64| inner(&gains.near(), &off(x, w));
         let [overshoot_rad, _] = overshoot_and_rest_rad(&linear, bounds, 0.1);
-        assert!(overshoot_rad > 0.05, "the linear one is no example: {overshoot_rad}");
+        assert!(
+            overshoot_rad > 0.05,
+            "the linear one is no example: {overshoot_rad}"
+        );
     }
 
     #[test]

@@ -13,7 +13,10 @@ pub struct OffsetBounds {
 
 impl OffsetBounds {
     /// To nothing.
-    pub const NONE: Self = Self { largest_mm: f64::INFINITY, fastest_mm_s: f64::INFINITY };
+    pub const NONE: Self = Self {
+        largest_mm: f64::INFINITY,
+        fastest_mm_s: f64::INFINITY,
+    };
 }
 
 /// Settings of the controller.
@@ -21,24 +24,29 @@ impl OffsetBounds {
 pub struct LqgSettings {
     /// Weight of the reference speed against the position error near the reference, s^2.
     pub control_weight_s2: f64,
-    /// Weight of the second difference of the command against the position error near the reference; 0 is none.
+    /// Weight of the second difference of the command against the position error near the
+    /// reference; 0 is none.
     pub command_weight: f64,
     /// What the offset is held to.
     pub bounds: OffsetBounds,
-    /// Whether law and statistics may be wrong: both are learned, and a wrong law is not followed. Otherwise both are exact.
+    /// Whether law and statistics may be wrong: both are learned, and a wrong law is not followed.
+    /// Otherwise both are exact.
     pub learns: bool,
-    /// Whether it has been used on this machine before. Otherwise the laws have to show that they are of this machine before anything is corrected.
+    /// Whether it has been used on this machine before. Otherwise the laws have to show that they
+    /// are of this machine before anything is corrected.
     pub is_known: bool,
 }
 
-/// Control weight used with an identified model, in servo periods squared. A weight of 1 leaves 50 % more error on workshop. While
-/// the model is not followed, both weights are 256 times as high.
+/// Control weight used with an identified model, in servo periods squared. A weight of 1 leaves 50
+/// % more error on workshop. While the model is not followed, both weights are 256 times as high.
 pub const IDENTIFIED_WEIGHT: f64 = 0.01;
-/// Weight of the second difference of the command with an identified model: the fourth power of half a servo period, in servo periods. With it
-/// a plate in inches alternates in 9 servo periods on workshop, and in 130 on stiff; without any in 11,292 and 1,523.
+/// Weight of the second difference of the command with an identified model: the fourth power of
+/// half a servo period, in servo periods. With it a plate in inches alternates in 9 servo periods
+/// on workshop, and in 130 on stiff; without any in 11,292 and 1,523.
 const COMMAND_WEIGHT: f64 = 0.0625;
-/// By a law that may be wrong a screw that gives is regulated in no less than so many radians of its resonance: backlash is not in the law of the
-/// regulator. On soft 2 leaves 0.6 of what 0 leaves on star, circle and square, and 0.1 on pocket.
+/// By a law that may be wrong a screw that gives is regulated in no less than so many radians of
+/// its resonance: backlash is not in the law of the regulator. On soft 2 leaves 0.6 of what 0
+/// leaves on star, circle and square, and 0.1 on pocket.
 const SCREW_RAD: f64 = 2.0;
 
 impl LqgSettings {
@@ -51,7 +59,8 @@ impl LqgSettings {
         is_known: true,
     };
 
-    /// Settings for an identified model; `control_weight` is in servo periods squared, with a servo period of `servo_s`.
+    /// Settings for an identified model; `control_weight` is in servo periods squared, with a servo
+    /// period of `servo_s`.
     pub fn identified(control_weight: f64, servo_s: f64, bounds: OffsetBounds) -> Self {
         Self {
             control_weight_s2: control_weight * servo_s * servo_s,

@@ -5,17 +5,22 @@
 //! |J a + B v + Fc sgn v| > 0.9 Tmax                   there is none
 //! ```
 //!
-//! A reference that takes more torque than there is cannot be followed: the law falls behind, and swings in behind it. The axis by itself rounds
-//! it off. Until it has passed, the law is held on the way of the axis by itself, without any offset, in place of the reference: all axes of a machine over the
-//! same [`TO_OPEN_S`], before it comes to be. A corner of the path is averaged over h: what takes less time is made up for by the regulator.
+//! A reference that takes more torque than there is cannot be followed: the law falls behind, and
+//! swings in behind it. The axis by itself rounds it off. Until it has passed, the law is held on
+//! the way of the axis by itself, without any offset, in place of the reference: all axes of a
+//! machine over the same [`TO_OPEN_S`], before it comes to be. A corner of the path is averaged
+//! over h: what takes less time is made up for by the regulator.
 //!
-//! Source: the reference is changed where a bound would be met, as by a reference governor, Gilbert, Kolmanovsky and Tan (1995), "Discrete-time
-//! reference governors and the nonlinear control of systems with state and control constraints"; the one that it is changed to is our own.
+//! Source: the reference is changed where a bound would be met, as by a reference governor,
+//! Gilbert, Kolmanovsky and Tan (1995), "Discrete-time reference governors and the nonlinear
+//! control of systems with state and control constraints"; the one that it is changed to is our
+//! own.
 
 use crate::axis::AxisLaw;
 use crate::vector::{bounded, smooth_step};
 
-/// h, s. With 4 ms a drive that is just strong enough for its plan leaves as much as uncorrected at the corners of a square, with 10 and 20 ms a fifth.
+/// h, s. With 4 ms a drive that is just strong enough for its plan leaves as much as uncorrected at
+/// the corners of a square, with 10 and 20 ms a fifth.
 const AVERAGED_S: f64 = 0.01;
 /// Part of the torque that is there for the reference.
 const FOR_REFERENCE: f64 = 0.9;
@@ -30,10 +35,16 @@ pub(super) const BEFORE_END_S: [f64; 3] = [0.0, AVERAGED_S, 2.0 * AVERAGED_S];
 pub(super) fn is_beyond(law: &AxisLaw, [newest_mm, middle_mm, oldest_mm]: [f64; 3]) -> bool {
     let parameters = &law.parameters;
     let speed_rad_s = (newest_mm - oldest_mm) / (2.0 * AVERAGED_S) * parameters.rad_per_mm;
-    let acceleration_mm_s2 = ((newest_mm - middle_mm) - (middle_mm - oldest_mm)) / (AVERAGED_S * AVERAGED_S);
-    let sign = if speed_rad_s == 0.0 { 0.0 } else { libm::copysign(1.0, speed_rad_s) };
+    let acceleration_mm_s2 =
+        ((newest_mm - middle_mm) - (middle_mm - oldest_mm)) / (AVERAGED_S * AVERAGED_S);
+    let sign = if speed_rad_s == 0.0 {
+        0.0
+    } else {
+        libm::copysign(1.0, speed_rad_s)
+    };
     let inertia_nm = parameters.inertia_kg_m2 * acceleration_mm_s2 * parameters.rad_per_mm;
-    (inertia_nm + law.friction_nm(speed_rad_s, sign)).abs() > FOR_REFERENCE * parameters.torque_limit_nm
+    (inertia_nm + law.friction_nm(speed_rad_s, sign)).abs()
+        > FOR_REFERENCE * parameters.torque_limit_nm
 }
 
 /// How far the way of the axes by themselves takes the place of the reference.
@@ -46,12 +57,23 @@ pub(super) struct Feasibility {
 
 impl Feasibility {
     /// Not at all.
-    pub(super) const FOLLOWED: Self = Self { until_s: 0.0, open: 0.0 };
+    pub(super) const FOLLOWED: Self = Self {
+        until_s: 0.0,
+        open: 0.0,
+    };
 
     /// A servo period on; whether there is no torque for what comes to be followed in `ahead_s`.
     pub(super) fn take_in(&mut self, beyond: bool, ahead_s: f64, servo_s: f64) {
-        self.until_s = if beyond { ahead_s } else { self.until_s - servo_s };
-        let change = if self.until_s > 0.0 { servo_s / TO_OPEN_S } else { -servo_s / BACK_S };
+        self.until_s = if beyond {
+            ahead_s
+        } else {
+            self.until_s - servo_s
+        };
+        let change = if self.until_s > 0.0 {
+            servo_s / TO_OPEN_S
+        } else {
+            -servo_s / BACK_S
+        };
         self.open = bounded(self.open + change, 0.0, 1.0);
     }
 
@@ -75,17 +97,37 @@ mod tests {
             viscous_friction_nm_s: 0.0,
             ..feedforward::tests::axis(0.0, 1.0)
         };
-        AxisLaw::new(parameters, Periods { servo_s: 0.001, mechanics_s: 1e-4, mechanics_per_servo: 10 })
+        AxisLaw::new(
+            parameters,
+            Periods {
+                servo_s: 0.001,
+                mechanics_s: 1e-4,
+                mechanics_per_servo: 10,
+            },
+        )
     }
 
     #[test]
     fn what_takes_more_than_nine_tenths_of_the_torque_is_beyond() {
         let is_beyond = |at_mm: &dyn Fn(f64) -> f64| is_beyond(&law(), BEFORE_END_S.map(at_mm));
-        let speeds_up = |mm_s2: f64| is_beyond(&|before_s| 0.5 * mm_s2 * (1.0 - before_s) * (1.0 - before_s));
-        let slows_down = |mm_s2: f64| is_beyond(&|before_s| -0.5 * mm_s2 * (1.0 + before_s) * (1.0 + before_s));
-        assert_eq!([790.0, 810.0].map(speeds_up), [false, true], "friction comes on top");
-        assert_eq!([990.0, 1010.0].map(slows_down), [false, true], "friction helps");
-        assert!(!is_beyond(&|before_s| -100.0 * before_s), "a constant speed takes friction only");
+        let speeds_up =
+            |mm_s2: f64| is_beyond(&|before_s| 0.5 * mm_s2 * (1.0 - before_s) * (1.0 - before_s));
+        let slows_down =
+            |mm_s2: f64| is_beyond(&|before_s| -0.5 * mm_s2 * (1.0 + before_s) * (1.0 + before_s));
+        assert_eq!(
+            [790.0, 810.0].map(speeds_up),
+            [false, true],
+            "friction comes on top"
+        );
+        assert_eq!(
+            [990.0, 1010.0].map(slows_down),
+            [false, true],
+            "friction helps"
+        );
+        assert!(
+            !is_beyond(&|before_s| -100.0 * before_s),
+            "a constant speed takes friction only"
+        );
         assert!(!is_beyond(&|_| f64::NAN));
     }
 
@@ -96,7 +138,10 @@ mod tests {
             feasibility.take_in(true, 0.04, 0.001);
             feasibility.open()
         });
-        assert!(open.windows(2).all(|pair| pair[1] > pair[0]) && open[19] == 1.0, "{open:?}");
+        assert!(
+            open.windows(2).all(|pair| pair[1] > pair[0]) && open[19] == 1.0,
+            "{open:?}"
+        );
         let after = |feasibility: &mut Feasibility, periods: u32| {
             (0..periods).for_each(|_| feasibility.take_in(false, 0.04, 0.001));
             feasibility.open()

@@ -1,7 +1,8 @@
 //! What the law gets wrong, learned while the axis moves.
 //!
-//! Beside the filter of the nominal law runs another one, of a law that is learned. The differences theta between the two are constant, or
-//! nearly so. To first order they add to the error of the filter:
+//! Beside the filter of the nominal law runs another one, of a law that is learned. The differences
+//! theta between the two are constant, or nearly so. To first order they add to the error of the
+//! filter:
 //!
 //! ```text
 //! s_i <- A s_i + b phi_i        before a measurement: what a unit of difference i has made of the state since the last one
@@ -9,11 +10,13 @@
 //! nu   = sum_i h s_i (theta_i - applied_i) + w
 //! ```
 //!
-//! nu is the innovation of the filter that is learned, w what noise makes of it. Theta is found by recursive least squares, whether the
-//! correction is in the loop or not. They forget in the direction of what is measured only (Kulhavy): a long straight line, which tells of
-//! few differences, leaves the others as they are. A difference beyond its bounds is put on them, and the others where
-//! they are likeliest then. What is found is applied at once, and the estimate moves by s_i with it: filter and least squares together are
-//! the filter that has theta among its states.
+//! nu is the innovation of the filter that is learned, w what noise makes of it. Theta is found by
+//! recursive least squares, whether the correction is in the loop or not. They forget in the
+//! direction of what is measured only (Kulhavy): a long straight line, which tells of few
+//! differences, leaves the others as they are. A difference beyond its bounds is put on them, and
+//! the others where they are likeliest then. What is found is applied at once, and the estimate
+//! moves by s_i with it: filter and least squares together are the filter that has theta among its
+//! states.
 //!
 //! | i | Difference | phi |
 //! |---|---|---|
@@ -25,32 +28,41 @@
 //! | 5 | constant load, N m | 1; it is left to the filter, and only kept apart from the others |
 //! | 6 | acceleration feedforward | torque for the commanded acceleration |
 //!
-//! Free runs decide which of the two laws is followed. Both begin where their filters are, and miss what is measured by m:
+//! Free runs decide which of the two laws is followed. Both begin where their filters are, and miss
+//! what is measured by m:
 //!
 //! ```text
 //! l <- l + ln (<m^2> + e^2) / (<m_learned^2> + e^2)        over a free run
 //! e^2 = (0.1 um)^2 + 16 variances of the measurement + the mean square that loads nobody foresees make of a free run
 //! ```
 //!
-//! The learned law is followed from l = 6.9 on, and no more below 0: of nominal laws that are right, one in a thousand is taken for wrong
-//! (Wald). Where another axis of the machine follows what it learned, one in ten, l = 2.3: axes of which one is corrected by the right law and the other
-//! by a wrong one lag by different times. With 2.3 in place of 6.9, 36 cuts by wrong laws leave 0.069 of the error in the median in place of 0.087, and
-//! with 0 one of them is worse. A run counts once, however long: what it misses at its end stems from its beginning. Every 4 ms it is
-//! looked at: a run that proves the learned law by itself is not waited for. l counts up to 13.8 (Page), so that a change is noticed. A learned law that is
-//! certainly worse is begun anew. A nominal law that misses no more than noise explains stays as it is to the bit.
+//! The learned law is followed from l = 6.9 on, and no more below 0: of nominal laws that are
+//! right, one in a thousand is taken for wrong (Wald). Where another axis of the machine follows
+//! what it learned, one in ten, l = 2.3: axes of which one is corrected by the right law and the
+//! other by a wrong one lag by different times. With 2.3 in place of 6.9, 36 cuts by wrong laws
+//! leave 0.069 of the error in the median in place of 0.087, and with 0 one of them is worse. A run
+//! counts once, however long: what it misses at its end stems from its beginning. Every 4 ms it is
+//! looked at: a run that proves the learned law by itself is not waited for. l counts up to 13.8
+//! (Page), so that a change is noticed. A learned law that is certainly worse is begun anew. A
+//! nominal law that misses no more than noise explains stays as it is to the bit.
 //!
-//! Differences 2, 3 and 6 are learned only within [`EVEN_S`] of an acceleration of the path. At constant speed nothing tells of them, and what the
-//! law does not have, such as cogging, passes for them: on a plate in inches an inertia that is right is then taken for half of it.
+//! Differences 2, 3 and 6 are learned only within [`EVEN_S`] of an acceleration of the path. At
+//! constant speed nothing tells of them, and what the law does not have, such as cogging, passes
+//! for them: on a plate in inches an inertia that is right is then taken for half of it.
 //!
-//! What was tried: innovations in place of free runs took laws for wrong that were right, since steps of an encoder are not white noise. One
-//! filter with the nominal law whose innovations would have been is no judge: its own first order says that they are large. Least squares on
-//! the innovations of the nominal filter go astray where those are bounded as outliers. Where both laws miss alike, by a load that neither
-//! has, l is a random walk, which reaches 6.9 sooner or later: along 20 programs recorded in LinuxCNC, a law identified on tnv40 left 0.063 and
-//! 0.059 of the error in two, and 0.023 and 0.010 where it was kept. Less d^2 / 2 in each run, with d the logarithm, l hardly gets
-//! there (de la Pena, 1999). But then one of the cuts by laws of other machines is worse (linuxcnc/servo/tests/property_wrong_law.rs).
+//! What was tried: innovations in place of free runs took laws for wrong that were right, since
+//! steps of an encoder are not white noise. One filter with the nominal law whose innovations would
+//! have been is no judge: its own first order says that they are large. Least squares on the
+//! innovations of the nominal filter go astray where those are bounded as outliers. Where both laws
+//! miss alike, by a load that neither has, l is a random walk, which reaches 6.9 sooner or later:
+//! along 20 programs recorded in LinuxCNC, a law identified on tnv40 left 0.063 and 0.059 of the
+//! error in two, and 0.023 and 0.010 where it was kept. Less d^2 / 2 in each run, with d the
+//! logarithm, l hardly gets there (de la Pena, 1999). But then one of the cuts by laws of other
+//! machines is worse (linuxcnc/servo/tests/property_wrong_law.rs).
 //!
-//! Source: Friedland (1969), Treatment of bias in recursive filtering, IEEE Trans. Automatic Control 14(4), for the two filters; Kulhavy
-//! (1987), Restricted exponential forgetting in real-time identification, Automatica 23(5); Wald (1947), Sequential Analysis, and Page (1954),
+//! Source: Friedland (1969), Treatment of bias in recursive filtering, IEEE Trans. Automatic
+//! Control 14(4), for the two filters; Kulhavy (1987), Restricted exponential forgetting in
+//! real-time identification, Automatica 23(5); Wald (1947), Sequential Analysis, and Page (1954),
 //! Continuous inspection schemes, Biometrika 41, for the test.
 
 use crate::axis::drive::DriveReference;
@@ -66,11 +78,19 @@ use super::riccati::{StateMatrix, applied as carried};
 pub(super) const DIFFERENCES: usize = 7;
 /// Standard deviations of differences before anything is known, and their bounds.
 const PRIORS: [f64; DIFFERENCES] = [0.1, 0.1, 0.5, 0.3, 0.6, 0.1, 0.3];
-const BOUNDS: [[f64; 2]; DIFFERENCES] =
-    [[-0.5, 1.0], [-0.3, 0.3], [-2.0, 3.0], [-0.7, 2.0], [-0.9, 3.0], [-1e3, 1e3], [-1.0, 1.0]];
+const BOUNDS: [[f64; 2]; DIFFERENCES] = [
+    [-0.5, 1.0],
+    [-0.3, 0.3],
+    [-2.0, 3.0],
+    [-0.7, 2.0],
+    [-0.9, 3.0],
+    [-1e3, 1e3],
+    [-1.0, 1.0],
+];
 /// The constant load among them.
 const LOAD: usize = 5;
-/// Those that show while the path accelerates; what counts as that, mm/s^2, and for how long after it they still do, s.
+/// Those that show while the path accelerates; what counts as that, mm/s^2, and for how long after
+/// it they still do, s.
 const OF_ACCELERATION: [usize; 3] = [2, 3, 6];
 const ACCELERATED_MM_S2: f64 = 100.0;
 const EVEN_S: f64 = 0.1;
@@ -86,7 +106,8 @@ const FIRST_ORDER: f64 = 0.3;
 const BELIEVED: f64 = 3.0;
 /// An axis that moves more slowly shows its friction at rest, mm/s.
 const SLOWEST_MM_S: f64 = 1.0;
-/// l from which on the learned law is followed: of nominal laws that are right one in a thousand is taken for wrong.
+/// l from which on the learned law is followed: of nominal laws that are right one in a thousand is
+/// taken for wrong.
 const CERTAIN: f64 = 6.9;
 const LIKELY: f64 = 4.6;
 /// Most that l counts, and most that it changes by at once.
@@ -102,7 +123,15 @@ pub(super) type Differences = [f64; DIFFERENCES];
 
 /// What an axis is with these differences.
 pub(super) fn with(nominal: &AxisKnowledge, differences: &Differences) -> AxisKnowledge {
-    let [position_gain, velocity, delay, inertia, friction, _, acceleration] = *differences;
+    let [
+        position_gain,
+        velocity,
+        delay,
+        inertia,
+        friction,
+        _,
+        acceleration,
+    ] = *differences;
     let mut known = *nominal;
     let servo_s = nominal.periods.servo_s;
     known.parameters.kp_1_s *= 1.0 + position_gain;
@@ -131,7 +160,8 @@ pub(super) struct Learner {
     inputs: PeriodInputs,
     priors: Differences,
     bounds: [[f64; 2]; DIFFERENCES],
-    /// What the encoder and loads that nobody foresees explain of the square of a servo period, rad^2.
+    /// What the encoder and loads that nobody foresees explain of the square of a servo period,
+    /// rad^2.
     noise_rad2: f64,
     compared_periods: u32,
 }
@@ -139,7 +169,8 @@ pub(super) struct Learner {
 /// What free runs by the two laws have missed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Runs {
-    /// Squares by the law that is followed, and by the other, rad^2, and for how long these runs go, servo periods.
+    /// Squares by the law that is followed, and by the other, rad^2, and for how long these runs
+    /// go, servo periods.
     missed_rad2: [f64; 2],
     periods: u32,
     /// l before these runs, and with what they have shown.
@@ -148,15 +179,29 @@ struct Runs {
 }
 
 impl Runs {
-    const NONE: Self = Self { missed_rad2: [0.0; 2], periods: 0, before: 0.0, learned: 0.0 };
+    const NONE: Self = Self {
+        missed_rad2: [0.0; 2],
+        periods: 0,
+        before: 0.0,
+        learned: 0.0,
+    };
 
-    /// Looks at what the runs have missed, in which the learned law was followed or not; what noise explains of a servo period is
-    /// `noise_rad2`. Runs that go on count only where they prove the learned law by themselves.
+    /// Looks at what the runs have missed, in which the learned law was followed or not; what noise
+    /// explains of a servo period is `noise_rad2`. Runs that go on count only where they prove the
+    /// learned law by themselves.
     fn look(&mut self, is_followed: bool, noise_rad2: f64, is_over: bool) {
         let explained_rad2 = f64::from(self.periods) * noise_rad2;
         let [followed, other] = self.missed_rad2.map(|rad2| rad2 + explained_rad2);
-        let likelier = libm::log(if is_followed { other / followed } else { followed / other });
-        let likelier = if likelier.is_nan() { -MOST_OF_RUN } else { bounded(likelier, -MOST_OF_RUN, MOST_OF_RUN) };
+        let likelier = libm::log(if is_followed {
+            other / followed
+        } else {
+            followed / other
+        });
+        let likelier = if likelier.is_nan() {
+            -MOST_OF_RUN
+        } else {
+            bounded(likelier, -MOST_OF_RUN, MOST_OF_RUN)
+        };
         if is_over || likelier >= CERTAIN {
             self.learned = bounded(self.before + likelier, -CERTAIN, MOST_CERTAIN);
         }
@@ -191,7 +236,8 @@ pub(super) struct Learning {
     commanded_rad_s: [f64; KEPT_PERIODS],
     error_rad: [f64; KEPT_PERIODS],
     command_rad: Option<f64>,
-    /// The last two angles of the path, rad, the newest first, and for how long it has not accelerated, s.
+    /// The last two angles of the path, rad, the newest first, and for how long it has not
+    /// accelerated, s.
     path_rad: Option<[f64; 2]>,
     even_s: f64,
 }
@@ -205,7 +251,10 @@ impl Learner {
         if nominal.drive.acceleration_feedforward == 0.0 {
             priors[6] = 0.0;
         }
-        priors[LOAD] = nominal.parameters.coulomb_friction_nm.max(1e-3 * nominal.parameters.torque_limit_nm);
+        priors[LOAD] = nominal
+            .parameters
+            .coulomb_friction_nm
+            .max(1e-3 * nominal.parameters.torque_limit_nm);
         let mut bounds = BOUNDS;
         let [_, velocity, delay, inertia, .., acceleration] = &mut bounds;
         inertia[0] = inertia[0].max(least_inertia);
@@ -215,17 +264,30 @@ impl Learner {
         acceleration[0] = -nominal.drive.acceleration_feedforward;
         let rad_per_mm = nominal.parameters.rad_per_mm;
         let least_rad2 = LEAST_MM2 * rad_per_mm * rad_per_mm;
-        let loads_rad2 = linear.spread_rad2(&nominal.statistics, run_periods(nominal.periods.servo_s));
-        let noise_rad2 = least_rad2 + loads_rad2 + DEVIATIONS * DEVIATIONS * measured_rad2(&nominal.statistics);
+        let loads_rad2 =
+            linear.spread_rad2(&nominal.statistics, run_periods(nominal.periods.servo_s));
+        let noise_rad2 =
+            least_rad2 + loads_rad2 + DEVIATIONS * DEVIATIONS * measured_rad2(&nominal.statistics);
         // A float that is too large, or not a number, saturates here.
         let compared_periods = (libm::round(COMPARED_S / nominal.periods.servo_s) as u32).max(1);
-        Self { nominal, states, inputs: linear.inputs(), priors, bounds, noise_rad2, compared_periods }
+        Self {
+            nominal,
+            states,
+            inputs: linear.inputs(),
+            priors,
+            bounds,
+            noise_rad2,
+            compared_periods,
+        }
     }
 
     /// Before anything was measured.
     pub(super) fn begin(&self) -> Learning {
         let mut covariance = [[0.0; DIFFERENCES]; DIFFERENCES];
-        covariance.iter_mut().enumerate().for_each(|(i, row)| row[i] = self.priors[i] * self.priors[i]);
+        covariance
+            .iter_mut()
+            .enumerate()
+            .for_each(|(i, row)| row[i] = self.priors[i] * self.priors[i]);
         Learning {
             sensitivities: [[0.0; STATES]; DIFFERENCES],
             found: [0.0; DIFFERENCES],
@@ -249,11 +311,17 @@ impl Learner {
         let [last_rad, earlier_rad] = learning.path_rad.unwrap_or([path_rad; 2]);
         learning.path_rad = Some([path_rad, last_rad]);
         let acceleration_rad_s2 = (path_rad - 2.0 * last_rad + earlier_rad) / (servo_s * servo_s);
-        let is_even = acceleration_rad_s2.abs() <= ACCELERATED_MM_S2 * self.nominal.parameters.rad_per_mm;
-        learning.even_s = if is_even { learning.even_s + servo_s } else { 0.0 };
+        let is_even =
+            acceleration_rad_s2.abs() <= ACCELERATED_MM_S2 * self.nominal.parameters.rad_per_mm;
+        learning.even_s = if is_even {
+            learning.even_s + servo_s
+        } else {
+            0.0
+        };
     }
 
-    /// The machine is another one from now on: what is known of the differences is no better than at first.
+    /// The machine is another one from now on: what is known of the differences is no better than
+    /// at first.
     pub(super) fn doubt(&self, learning: &mut Learning) {
         learning.covariance = self.begin().covariance;
     }
@@ -261,9 +329,15 @@ impl Learner {
     /// A command was sent while a position was measured, rad.
     pub(super) fn sent(&self, learning: &mut Learning, command_rad: f64, measured_rad: f64) {
         let servo_s = self.nominal.periods.servo_s;
-        let before_rad = learning.command_rad.replace(command_rad).unwrap_or(command_rad);
+        let before_rad = learning
+            .command_rad
+            .replace(command_rad)
+            .unwrap_or(command_rad);
         for (kept, newest) in [
-            (&mut learning.commanded_rad_s, (command_rad - before_rad) / servo_s),
+            (
+                &mut learning.commanded_rad_s,
+                (command_rad - before_rad) / servo_s,
+            ),
             (&mut learning.error_rad, command_rad - measured_rad),
         ] {
             kept.copy_within(..KEPT_PERIODS - 1, 1);
@@ -287,7 +361,10 @@ impl Learner {
         }
         for sensitivity in &mut learning.sensitivities {
             let [angle, ..] = *sensitivity;
-            sensitivity.iter_mut().zip(told.gains).for_each(|(state, gain)| *state -= gain * angle);
+            sensitivity
+                .iter_mut()
+                .zip(told.gains)
+                .for_each(|(state, gain)| *state -= gain * angle);
         }
     }
 
@@ -307,13 +384,19 @@ impl Learner {
         let parameters = &self.nominal.parameters;
         let speed_rad_s = mean(&|age| kept(&speeds, age));
         let asked_rad_s = parameters.kp_1_s * mean(&|age| kept(&errors, age));
-        let later = |of: &dyn Fn(DriveReference) -> f64| -mean(&|age| of(reference(age)) - of(reference(age + 1)));
+        let later = |of: &dyn Fn(DriveReference) -> f64| {
+            -mean(&|age| of(reference(age)) - of(reference(age + 1)))
+        };
         let per_s = parameters.inertia_kg_m2 / self.nominal.periods.servo_s;
         let added_nm = per_s * mean(&|age| kept(&speeds, age) - kept(&speeds, age + 1));
         let inputs = [
             [asked_rad_s, 0.0, 0.0],
             [speed_rad_s, 0.0, 0.0],
-            [later(&|sent| sent.speed_rad_s), later(&|sent| sent.torque_nm), 0.0],
+            [
+                later(&|sent| sent.speed_rad_s),
+                later(&|sent| sent.torque_nm),
+                0.0,
+            ],
             [
                 0.0,
                 0.0,
@@ -324,11 +407,20 @@ impl Learner {
             [0.0, 0.0, 1.0],
             [0.0, added_nm, 0.0],
         ];
-        let PeriodInputs { reference, torque, load } = &self.inputs;
-        for (sensitivity, [by_reference, by_torque, by_load]) in learning.sensitivities.iter_mut().zip(inputs) {
+        let PeriodInputs {
+            reference,
+            torque,
+            load,
+        } = &self.inputs;
+        for (sensitivity, [by_reference, by_torque, by_load]) in
+            learning.sensitivities.iter_mut().zip(inputs)
+        {
             let after = carried(&self.states, sensitivity);
             *sensitivity = core::array::from_fn(|state| {
-                after[state] + by_reference * reference[state] + by_torque * torque[state] + by_load * load[state]
+                after[state]
+                    + by_reference * reference[state]
+                    + by_torque * torque[state]
+                    + by_load * load[state]
             });
         }
         speed_rad_s
@@ -345,7 +437,8 @@ impl Learner {
         let left_rad = of_nominal_rad - dot(&shows, &learning.found);
         let spreads: Differences = learning.covariance.map(|row| dot(&row, &shows));
         let second_rad = FIRST_ORDER * of_nominal_rad;
-        let noise_rad2 = COLOURED * told.expected_rad2.max(learning.left_rad2) + second_rad * second_rad;
+        let noise_rad2 =
+            COLOURED * told.expected_rad2.max(learning.left_rad2) + second_rad * second_rad;
         let variance_rad2 = noise_rad2 + dot(&shows, &spreads);
         let believed_rad = BELIEVED * libm::sqrt(variance_rad2);
         let left_rad = bounded(left_rad, -believed_rad, believed_rad);
@@ -364,7 +457,8 @@ impl Learner {
             }
         }
         self.bound(learning);
-        learning.left_rad2 += (servo_s / LEFT_S).min(1.0) * (left_rad * left_rad - learning.left_rad2);
+        learning.left_rad2 +=
+            (servo_s / LEFT_S).min(1.0) * (left_rad * left_rad - learning.left_rad2);
     }
 
     /// The likeliest differences within the bounds, one bound after the other.
@@ -385,11 +479,16 @@ impl Learner {
     fn wanted(&self, found: &Differences) -> Differences {
         core::array::from_fn(|i| {
             let [lowest, highest] = self.bounds[i];
-            if i == LOAD { 0.0 } else { bounded(found[i], lowest, highest) }
+            if i == LOAD {
+                0.0
+            } else {
+                bounded(found[i], lowest, highest)
+            }
         })
     }
 
-    /// Applies what is found to the learned law. Returns the change of its estimate, if anything changed.
+    /// Applies what is found to the learned law. Returns the change of its estimate, if anything
+    /// changed.
     pub(super) fn apply(&self, learning: &mut Learning) -> Option<[f64; STATES]> {
         let wanted = self.wanted(&learning.found);
         if wanted == learning.applied {
@@ -400,16 +499,30 @@ impl Learner {
         Some(moved)
     }
 
-    /// What free runs by the law that is followed and by the other missed in a servo period, rad; `is_likely` where another axis of the machine
-    /// follows what it learned.
-    pub(super) fn compare(&self, learning: &mut Learning, missed_rad: [f64; 2], is_likely: bool) -> LawChoice {
+    /// What free runs by the law that is followed and by the other missed in a servo period, rad;
+    /// `is_likely` where another axis of the machine follows what it learned.
+    pub(super) fn compare(
+        &self,
+        learning: &mut Learning,
+        missed_rad: [f64; 2],
+        is_likely: bool,
+    ) -> LawChoice {
         let was_followed = learning.is_followed;
         let runs = &mut learning.runs;
         let [followed_rad, other_rad] = missed_rad;
-        if !(if was_followed { followed_rad } else { other_rad }).is_finite() {
+        if !(if was_followed {
+            followed_rad
+        } else {
+            other_rad
+        })
+        .is_finite()
+        {
             runs.learned = -CERTAIN;
         } else if learning.moves {
-            runs.missed_rad2.iter_mut().zip(missed_rad).for_each(|(sum, rad)| *sum += rad * rad);
+            runs.missed_rad2
+                .iter_mut()
+                .zip(missed_rad)
+                .for_each(|(sum, rad)| *sum += rad * rad);
             runs.periods += 1;
             let is_over = runs.periods >= run_periods(self.nominal.periods.servo_s);
             if is_over || runs.periods.is_multiple_of(self.compared_periods) {
@@ -427,8 +540,22 @@ impl Learner {
         let turns = was_followed != learning.is_followed;
         let begins_anew = was_followed && turns || learning.runs.learned <= -CERTAIN;
         if begins_anew {
-            let Learning { commanded_rad_s, error_rad, command_rad, path_rad, even_s, .. } = *learning;
-            *learning = Learning { commanded_rad_s, error_rad, command_rad, path_rad, even_s, ..self.begin() };
+            let Learning {
+                commanded_rad_s,
+                error_rad,
+                command_rad,
+                path_rad,
+                even_s,
+                ..
+            } = *learning;
+            *learning = Learning {
+                commanded_rad_s,
+                error_rad,
+                command_rad,
+                path_rad,
+                even_s,
+                ..self.begin()
+            };
         }
         LawChoice { turns, begins_anew }
     }
@@ -454,8 +581,16 @@ impl Learning {
 /// Change of the estimate from the applied differences to these.
 fn moved(learning: &Learning, differences: &Differences) -> [f64; STATES] {
     let mut moved = [0.0; STATES];
-    for ((sensitivity, wanted), applied) in learning.sensitivities.iter().zip(differences).zip(learning.applied) {
-        moved.iter_mut().zip(sensitivity).for_each(|(state, of)| *state += (wanted - applied) * of);
+    for ((sensitivity, wanted), applied) in learning
+        .sensitivities
+        .iter()
+        .zip(differences)
+        .zip(learning.applied)
+    {
+        moved
+            .iter_mut()
+            .zip(sensitivity)
+            .for_each(|(state, of)| *state += (wanted - applied) * of);
     }
     moved
 }
@@ -468,11 +603,13 @@ fn dot(a: &Differences, b: &Differences) -> f64 {
 mod tests {
     use super::*;
 
-    /// l after a number of comparisons. The nominal law misses by the first angle, the learned one by the second, rad; noise is 1 rad.
+    /// l after a number of comparisons. The nominal law misses by the first angle, the learned one
+    /// by the second, rad; noise is 1 rad.
     fn after(times: u32, [nominal_rad, learned_rad]: [f64; 2]) -> f64 {
         let mut runs = Runs::NONE;
         for _ in 0..times {
-            (runs.missed_rad2, runs.periods) = ([nominal_rad * nominal_rad, learned_rad * learned_rad], 1);
+            (runs.missed_rad2, runs.periods) =
+                ([nominal_rad * nominal_rad, learned_rad * learned_rad], 1);
             runs.look(false, 1.0, true);
         }
         runs.learned
@@ -482,8 +619,14 @@ mod tests {
     fn two_laws_that_differ_by_what_noise_explains_are_not_told_apart_soon() {
         assert!(after(10, [0.5, 0.1]) < CERTAIN);
         assert_eq!(after(100, [1.0, 1.0]), 0.0);
-        assert!(after(1, [100.0, 0.0]) > CERTAIN, "one run is enough where it is beyond doubt");
-        assert!(after(1, [20.0, 0.0]) < CERTAIN && after(2, [20.0, 0.0]) > CERTAIN, "and two are soon");
+        assert!(
+            after(1, [100.0, 0.0]) > CERTAIN,
+            "one run is enough where it is beyond doubt"
+        );
+        assert!(
+            after(1, [20.0, 0.0]) < CERTAIN && after(2, [20.0, 0.0]) > CERTAIN,
+            "and two are soon"
+        );
         assert_eq!(after(100, [1.0, 100.0]), -CERTAIN);
         assert_eq!(after(2, [1.0, f64::NAN]), -CERTAIN);
         assert_eq!(after(100, [100.0, 1.0]), MOST_CERTAIN);
@@ -491,7 +634,11 @@ mod tests {
 
     #[test]
     fn a_learned_law_that_is_followed_is_judged_the_other_way_round() {
-        let mut runs = Runs { missed_rad2: [1e4, 0.0], periods: 1, ..Runs::NONE };
+        let mut runs = Runs {
+            missed_rad2: [1e4, 0.0],
+            periods: 1,
+            ..Runs::NONE
+        };
         runs.look(true, 1.0, true);
         assert_eq!(runs.learned, -CERTAIN);
     }
@@ -505,10 +652,18 @@ mod tests {
         nominal.drive.acceleration_feedforward = 0.8;
         let axis = with(&nominal, &[0.1, -0.2, -1.0, 0.6, 0.5, 0.3, 0.0]);
         assert!((axis.parameters.kp_1_s - 55.0).abs() < 1e-12);
-        assert_eq!((axis.drive.velocity_feedforward, axis.delays.drive_s), (0.0, 0.0));
+        assert_eq!(
+            (axis.drive.velocity_feedforward, axis.delays.drive_s),
+            (0.0, 0.0)
+        );
         assert!((axis.parameters.coulomb_friction_nm - 0.3).abs() < 1e-12);
-        let added = |axis: &AxisKnowledge| axis.drive.acceleration_feedforward * axis.parameters.inertia_kg_m2;
-        assert!((added(&axis) - added(&nominal)).abs() < 1e-12, "the drive adds what it was set to");
+        let added = |axis: &AxisKnowledge| {
+            axis.drive.acceleration_feedforward * axis.parameters.inertia_kg_m2
+        };
+        assert!(
+            (added(&axis) - added(&nominal)).abs() < 1e-12,
+            "the drive adds what it was set to"
+        );
         assert_eq!(with(&nominal, &[0.0; DIFFERENCES]), nominal);
     }
 }

@@ -1,4 +1,5 @@
-//! The linear part of an axis and of what acts on it, over a mechanics period and over a servo period.
+//! The linear part of an axis and of what acts on it, over a mechanics period and over a servo
+//! period.
 //!
 //! | State | Unit | |
 //! |---|---|---|
@@ -9,14 +10,16 @@
 //! | d | N m | what is left, a random walk |
 //! | xt, wt | rad, rad/s | of the table; those of the motor where the ball screw is rigid |
 //!
-//! Backlash is not linear, and not here: the flanks are taken to be in contact. A drive that sees the speed late by L, w - L dw/dt, is one
-//! whose motor is lighter by Kv L, to first order: that is how it is here.
+//! Backlash is not linear, and not here: the flanks are taken to be in contact. A drive that sees
+//! the speed late by L, w - L dw/dt, is one whose motor is lighter by Kv L, to first order: that is
+//! how it is here.
 //!
-//! A sine whose frequency wanders by s, of standard deviation, keeps its phase for about 1 / s: that long the oscillator remembers, and
-//! the noise that it is given holds its amplitude up.
+//! A sine whose frequency wanders by s, of standard deviation, keeps its phase for about 1 / s:
+//! that long the oscillator remembers, and the noise that it is given holds its amplitude up.
 //!
-//! Source: Gelb (1974), Applied Optimal Estimation, section 3.6, for shaping filters of coloured noise; sampling as in Franklin, Powell
-//! and Workman (1998), section 4.3, here by the same steps as the plant's.
+//! Source: Gelb (1974), Applied Optimal Estimation, section 3.6, for shaping filters of coloured
+//! noise; sampling as in Franklin, Powell and Workman (1998), section 4.3, here by the same steps
+//! as the plant's.
 
 use crate::axis::AxisLaw;
 use crate::axis::drive::DriveParameters;
@@ -34,15 +37,19 @@ const DISTURBANCE: usize = 5;
 const DRIFT: usize = 7;
 /// The table's angle: it is what cuts.
 const TABLE: usize = 8;
-/// Longest time for which the oscillator remembers its phase, s: one that remembers longer takes longer to find it at the start. On tnv40
-/// with 0.5 um of encoder noise 10 s leave 0.08 um RMS, 100 s 0.09.
+/// Longest time for which the oscillator remembers its phase, s: one that remembers longer takes
+/// longer to find it at the start. On tnv40 with 0.5 um of encoder noise 10 s leave 0.08 um RMS,
+/// 100 s 0.09.
 const LONGEST_MEMORY_S: f64 = 10.0;
-/// The random walk, N m in a second for a N m of Coulomb friction and disturbance: there is none in the simulation, but for what the
-/// linear part leaves out. On tnv40 with 0.5 um of encoder noise 0.1 leaves 0.12 um RMS, 0.003 0.08; no other machine minds.
+/// The random walk, N m in a second for a N m of Coulomb friction and disturbance: there is none in
+/// the simulation, but for what the linear part leaves out. On tnv40 with 0.5 um of encoder noise
+/// 0.1 leaves 0.12 um RMS, 0.003 0.08; no other machine minds.
 const DRIFT_SHARE: f64 = 0.003;
-/// Part of the motor's inertia that is left at least where the drive sees the speed late. A loop with less of it would oscillate.
+/// Part of the motor's inertia that is left at least where the drive sees the speed late. A loop
+/// with less of it would oscillate.
 const LEAST_INERTIA: f64 = 0.5;
-/// Least noise of an encoder, rad: 0.001 um on a lead of 10 mm. Without any the equations have no solution.
+/// Least noise of an encoder, rad: 0.001 um on a lead of 10 mm. Without any the equations have no
+/// solution.
 const LEAST_NOISE_RAD: f64 = 6e-7;
 
 /// The linear model of an axis.
@@ -50,7 +57,8 @@ const LEAST_NOISE_RAD: f64 = 6e-7;
 pub(super) struct LinearAxis {
     /// Over a mechanics period.
     substep: StateMatrix<STATES>,
-    /// What a reference speed of 1 rad/s adds in it, and what a torque beside the speed loop of 1 N m does.
+    /// What a reference speed of 1 rad/s adds in it, and what a torque beside the speed loop of 1 N
+    /// m does.
     substep_input: [f64; STATES],
     substep_torque: [f64; STATES],
     /// Noise that comes in it, covariance.
@@ -58,8 +66,8 @@ pub(super) struct LinearAxis {
     substeps: u32,
 }
 
-/// What a unit that is held over a servo period adds to each state: of reference speed, rad/s, of torque beside the speed loop and of
-/// load, N m.
+/// What a unit that is held over a servo period adds to each state: of reference speed, rad/s, of
+/// torque beside the speed loop and of load, N m.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PeriodInputs {
     pub(super) reference: [f64; STATES],
@@ -77,12 +85,18 @@ impl LinearAxis {
     ) -> Self {
         let (parameters, dt_s) = (law.parameters, law.periods.mechanics_s);
         let kv = parameters.kv_nm_s_per_rad;
-        let integral = if drive.speed_integral_s > 0.0 { kv * dt_s / drive.speed_integral_s } else { 0.0 };
+        let integral = if drive.speed_integral_s > 0.0 {
+            kv * dt_s / drive.speed_integral_s
+        } else {
+            0.0
+        };
         let filter = dt_s / (dt_s + drive.filter_lag_s(dt_s));
         let late_nm_s2 = kv * drive.speed_late_s(dt_s);
-        let part_left = |inverse_inertia: f64| (1.0 - late_nm_s2 * inverse_inertia).max(LEAST_INERTIA);
+        let part_left =
+            |inverse_inertia: f64| (1.0 - late_nm_s2 * inverse_inertia).max(LEAST_INERTIA);
         let inertia_kg_m2 = parameters.inertia_kg_m2 * part_left(1.0 / parameters.inertia_kg_m2);
-        // Columns: what becomes of a unit of each state; the last are those of what goes to the drive.
+        // Columns: what becomes of a unit of each state; the last are those of what goes to the
+        // drive.
         let after = |state: [f64; STATES], [reference_rad_s, torque_nm]: [f64; 2]| {
             let [x, w, i, y, n, p, q, d, xt, wt] = state;
             let error_rad_s = reference_rad_s - w;
@@ -91,8 +105,10 @@ impl LinearAxis {
             let viscous_nm_s = parameters.viscous_friction_nm_s;
             let [[x, w], [xt, wt]] = match screw {
                 Some(screw) => {
-                    let through_nm = screw.stiffness_nm_rad * (x - xt) + screw.damping_nm_s * (w - wt);
-                    let inverse_inertia = screw.inverse_motor_inertia / part_left(screw.inverse_motor_inertia);
+                    let through_nm =
+                        screw.stiffness_nm_rad * (x - xt) + screw.damping_nm_s * (w - wt);
+                    let inverse_inertia =
+                        screw.inverse_motor_inertia / part_left(screw.inverse_motor_inertia);
                     let w = w + dt_s * inverse_inertia * (y - through_nm);
                     let left_nm = through_nm - viscous_nm_s * wt - n - p - d;
                     let wt = wt + dt_s * screw.inverse_table_inertia * left_nm;
@@ -106,9 +122,23 @@ impl LinearAxis {
             };
             let (sin, cos) = libm::sincos(statistics.disturbance_rad_s * dt_s);
             let keep = libm::exp(-dt_s / memory_s(statistics));
-            let forget =
-                if statistics.torque_noise_s > 0.0 { libm::exp(-dt_s / statistics.torque_noise_s) } else { 0.0 };
-            [x, w, i, y, forget * n, keep * (cos * p + sin * q), keep * (cos * q - sin * p), d, xt, wt]
+            let forget = if statistics.torque_noise_s > 0.0 {
+                libm::exp(-dt_s / statistics.torque_noise_s)
+            } else {
+                0.0
+            };
+            [
+                x,
+                w,
+                i,
+                y,
+                forget * n,
+                keep * (cos * p + sin * q),
+                keep * (cos * q - sin * p),
+                d,
+                xt,
+                wt,
+            ]
         };
         let columns: StateMatrix<STATES> = core::array::from_fn(|j| after(unit(j), [0.0; 2]));
         Self {
@@ -120,19 +150,24 @@ impl LinearAxis {
         }
     }
 
-    /// Over a servo period with a reference speed that is held: the states, the input, the covariance of the noise.
+    /// Over a servo period with a reference speed that is held: the states, the input, the
+    /// covariance of the noise.
     pub(super) fn sampled(&self) -> (StateMatrix<STATES>, [f64; STATES], StateMatrix<STATES>) {
         let mut states = core::array::from_fn(unit);
         let mut covariance = [[0.0; STATES]; STATES];
         for _ in 0..self.substeps {
             states = product(&self.substep, &states);
-            let spread = product(&product(&self.substep, &covariance), &transposed(&self.substep));
+            let spread = product(
+                &product(&self.substep, &covariance),
+                &transposed(&self.substep),
+            );
             covariance = sum(&spread, &self.substep_noise);
         }
         (states, self.held(&self.substep_input), covariance)
     }
 
-    /// What an input that adds this in each mechanics period makes of the states over a servo period.
+    /// What an input that adds this in each mechanics period makes of the states over a servo
+    /// period.
     fn held(&self, substep_input: &[f64; STATES]) -> [f64; STATES] {
         (0..self.substeps).fold([0.0; STATES], |input, _| {
             let carried = applied(&self.substep, &input);
@@ -145,28 +180,45 @@ impl LinearAxis {
         let (states, reference, _) = self.sampled();
         let torque = self.held(&self.substep_torque);
         let load = core::array::from_fn(|i| if i == DRIFT { 0.0 } else { states[i][DRIFT] });
-        PeriodInputs { reference, torque, load }
+        PeriodInputs {
+            reference,
+            torque,
+            load,
+        }
     }
 
-    /// Variance of the motor's angle after so many servo periods, of which nothing but the state at their start is known: no load, no noise, rad^2.
+    /// Variance of the motor's angle after so many servo periods, of which nothing but the state at
+    /// their start is known: no load, no noise, rad^2.
     pub(super) fn spread_rad2(&self, statistics: &AxisStatistics, periods: u32) -> f64 {
         let (states, _, noise) = self.sampled();
         let swing_nm2 = 0.5 * statistics.disturbance_nm * statistics.disturbance_nm;
         let broadband_nm2 = statistics.torque_noise_nm * statistics.torque_noise_nm;
         let mut covariance = [[0.0; STATES]; STATES];
-        for (state, nm2) in [(BROADBAND, broadband_nm2), (DISTURBANCE, swing_nm2), (DISTURBANCE + 1, swing_nm2)] {
+        for (state, nm2) in [
+            (BROADBAND, broadband_nm2),
+            (DISTURBANCE, swing_nm2),
+            (DISTURBANCE + 1, swing_nm2),
+        ] {
             covariance[state][state] = nm2;
         }
         for _ in 0..periods {
-            covariance = sum(&product(&product(&states, &covariance), &transposed(&states)), &noise);
+            covariance = sum(
+                &product(&product(&states, &covariance), &transposed(&states)),
+                &noise,
+            );
         }
         covariance[0][0]
     }
 
     /// Mean square of the table's position over the servo period, and a price for the input.
     pub(super) fn cost(&self, control_weight_s2: f64) -> PeriodCost<STATES> {
-        let mut cost = PeriodCost { states: [[0.0; STATES]; STATES], cross: [0.0; STATES], input: control_weight_s2 };
-        let (mut states, mut input): (StateMatrix<STATES>, _) = (core::array::from_fn(unit), [0.0; STATES]);
+        let mut cost = PeriodCost {
+            states: [[0.0; STATES]; STATES],
+            cross: [0.0; STATES],
+            input: control_weight_s2,
+        };
+        let (mut states, mut input): (StateMatrix<STATES>, _) =
+            (core::array::from_fn(unit), [0.0; STATES]);
         let share = 1.0 / f64::from(self.substeps);
         for _ in 0..self.substeps {
             states = product(&self.substep, &states);
@@ -174,7 +226,9 @@ impl LinearAxis {
             input = core::array::from_fn(|i| carried[i] + self.substep_input[i]);
             let position = states[TABLE];
             for (i, (row, cross)) in cost.states.iter_mut().zip(&mut cost.cross).enumerate() {
-                row.iter_mut().zip(&position).for_each(|(sum, other)| *sum += share * position[i] * other);
+                row.iter_mut()
+                    .zip(&position)
+                    .for_each(|(sum, other)| *sum += share * position[i] * other);
                 *cross += share * position[i] * input[TABLE];
             }
             cost.input += share * input[TABLE] * input[TABLE];
@@ -194,13 +248,21 @@ impl LinearAxis {
 /// Variance of what is measured, rad^2.
 pub(super) fn measured_rad2(statistics: &AxisStatistics) -> f64 {
     let step_rad2 = statistics.encoder_step_rad * statistics.encoder_step_rad / 12.0;
-    (statistics.encoder_noise_rad * statistics.encoder_noise_rad + step_rad2).max(LEAST_NOISE_RAD * LEAST_NOISE_RAD)
+    (statistics.encoder_noise_rad * statistics.encoder_noise_rad + step_rad2)
+        .max(LEAST_NOISE_RAD * LEAST_NOISE_RAD)
 }
 
 /// Of states, those of the axis, and the loads.
 pub(super) fn error_and_loads<const S: usize>(states: &[f64; S]) -> [[f64; S]; 2] {
-    let of =
-        |loads: bool| core::array::from_fn(|i| if (BROADBAND..=DRIFT).contains(&i) == loads { states[i] } else { 0.0 });
+    let of = |loads: bool| {
+        core::array::from_fn(|i| {
+            if (BROADBAND..=DRIFT).contains(&i) == loads {
+                states[i]
+            } else {
+                0.0
+            }
+        })
+    };
     [of(false), of(true)]
 }
 
@@ -211,18 +273,40 @@ fn unit(j: usize) -> [f64; STATES] {
 /// How long the disturbance keeps its phase, s.
 fn memory_s(statistics: &AxisStatistics) -> f64 {
     let wander_rad_s = statistics.disturbance_wander * statistics.disturbance_rad_s;
-    if wander_rad_s > 0.0 { (1.0 / wander_rad_s).min(LONGEST_MEMORY_S) } else { LONGEST_MEMORY_S }
+    if wander_rad_s > 0.0 {
+        (1.0 / wander_rad_s).min(LONGEST_MEMORY_S)
+    } else {
+        LONGEST_MEMORY_S
+    }
 }
 
 /// Covariance of what comes in a mechanics period.
 fn noise(law: &AxisLaw, statistics: &AxisStatistics) -> StateMatrix<STATES> {
     let dt_s = law.periods.mechanics_s;
-    let fresh = |time_s: f64| if time_s > 0.0 { 1.0 - libm::exp(-2.0 * dt_s / time_s) } else { 1.0 };
-    let broadband_nm2 = statistics.torque_noise_nm * statistics.torque_noise_nm * fresh(statistics.torque_noise_s);
+    let fresh = |time_s: f64| {
+        if time_s > 0.0 {
+            1.0 - libm::exp(-2.0 * dt_s / time_s)
+        } else {
+            1.0
+        }
+    };
+    let broadband_nm2 =
+        statistics.torque_noise_nm * statistics.torque_noise_nm * fresh(statistics.torque_noise_s);
     let amplitude_nm = statistics.disturbance_nm;
     let swing_nm2 = 0.5 * amplitude_nm * amplitude_nm * fresh(memory_s(statistics));
     let drift_nm = DRIFT_SHARE * (law.parameters.coulomb_friction_nm + amplitude_nm);
     let drift_nm2 = drift_nm * drift_nm * dt_s;
-    let variances = [0.0, 0.0, 0.0, 0.0, broadband_nm2, swing_nm2, swing_nm2, drift_nm2, 0.0, 0.0];
+    let variances = [
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        broadband_nm2,
+        swing_nm2,
+        swing_nm2,
+        drift_nm2,
+        0.0,
+        0.0,
+    ];
     core::array::from_fn(|i| core::array::from_fn(|j| if i == j { variances[i] } else { 0.0 }))
 }

@@ -1,15 +1,19 @@
-//! Measurements that cannot be true are believed in part: an encoder that is frozen, or that leaps by less than the supervisor sees.
+//! Measurements that cannot be true are believed in part: an encoder that is frozen, or that leaps
+//! by less than the supervisor sees.
 //!
 //! ```text
 //! |nu| <= 4 sigma + (Tmax / J) Ts^2 / 2
 //! ```
 //!
-//! is what an innovation nu is bounded to; of a measurement that repeats itself to the bit while the axis moves, nothing is believed. The bound is noise, and the way on which a force as large as the drive's own takes the axis in a servo period. Beyond,
-//! it is the encoder and not the axis, or the law is not that of the axis. The first does not last: the supervisor has found out by then.
-//! What is still there after [`LASTS_S`] is taken for the second, and believed.
+//! is what an innovation nu is bounded to; of a measurement that repeats itself to the bit while
+//! the axis moves, nothing is believed. The bound is noise, and the way on which a force as large
+//! as the drive's own takes the axis in a servo period. Beyond, it is the encoder and not the axis,
+//! or the law is not that of the axis. The first does not last: the supervisor has found out by
+//! then. What is still there after [`LASTS_S`] is taken for the second, and believed.
 //!
-//! Source: bounded innovations as in Masreliez and Martin (1977), "Robust Bayesian estimation for the linear model and robustifying the Kalman
-//! filter", IEEE Trans. Automatic Control 22(3); the bound is our own.
+//! Source: bounded innovations as in Masreliez and Martin (1977), "Robust Bayesian estimation for
+//! the linear model and robustifying the Kalman filter", IEEE Trans. Automatic Control 22(3); the
+//! bound is our own.
 
 use crate::axis::AxisLaw;
 use crate::vector::bounded;
@@ -22,7 +26,8 @@ const LASTS_S: f64 = 0.025;
 /// Largest innovation that is believed in full, rad.
 pub(super) fn believed_rad(law: &AxisLaw, measured_rad2: f64) -> f64 {
     let servo_s = law.periods.servo_s;
-    let accelerated_rad = 0.5 * law.parameters.torque_limit_nm / law.parameters.inertia_kg_m2 * servo_s * servo_s;
+    let accelerated_rad =
+        0.5 * law.parameters.torque_limit_nm / law.parameters.inertia_kg_m2 * servo_s * servo_s;
     DEVIATIONS * libm::sqrt(measured_rad2) + accelerated_rad
 }
 
@@ -35,10 +40,19 @@ pub(super) struct Outliers {
 
 impl Outliers {
     /// There were none.
-    pub(super) const NONE: Self = Self { for_s: 0.0, measured_rad: f64::NAN };
+    pub(super) const NONE: Self = Self {
+        for_s: 0.0,
+        measured_rad: f64::NAN,
+    };
 
     /// The part of the innovation of a measurement that is believed, rad.
-    pub(super) fn bounded_rad(&mut self, measured_rad: f64, missed_rad: f64, believed_rad: f64, servo_s: f64) -> f64 {
+    pub(super) fn bounded_rad(
+        &mut self,
+        measured_rad: f64,
+        missed_rad: f64,
+        believed_rad: f64,
+        servo_s: f64,
+    ) -> f64 {
         let repeats = measured_rad.to_bits() == self.measured_rad.to_bits();
         self.measured_rad = measured_rad;
         if missed_rad.abs() <= believed_rad {
@@ -70,7 +84,10 @@ mod tests {
             outliers.bounded_rad(n, missed_rad, 0.01, SERVO_S)
         };
         assert_eq!([0.0, 0.01, -0.009].map(&mut believed), [0.0, 0.01, -0.009]);
-        assert_eq!([1.0, -1.0, f64::INFINITY].map(&mut believed), [0.01, -0.01, 0.01]);
+        assert_eq!(
+            [1.0, -1.0, f64::INFINITY].map(&mut believed),
+            [0.01, -0.01, 0.01]
+        );
         // One that is small begins the time anew.
         assert_eq!(believed(0.001), 0.001);
         let first = (0..100).position(|_| believed(1.0) == 1.0);
@@ -80,7 +97,8 @@ mod tests {
     #[test]
     fn of_a_frozen_encoder_nothing_is_believed_unless_the_axis_stands() {
         let mut outliers = Outliers::NONE;
-        let taken = [0.0, 0.005, 0.05, 0.1].map(|missed| outliers.bounded_rad(1.0, missed, 0.01, SERVO_S));
+        let taken =
+            [0.0, 0.005, 0.05, 0.1].map(|missed| outliers.bounded_rad(1.0, missed, 0.01, SERVO_S));
         assert_eq!(taken, [0.0, 0.005, 0.0, 0.0]);
     }
 }

@@ -1,4 +1,5 @@
-//! Gains of a Kalman filter and of a linear-quadratic regulator in their steady state, by doubling the horizon of the discrete Riccati equation.
+//! Gains of a Kalman filter and of a linear-quadratic regulator in their steady state, by doubling
+//! the horizon of the discrete Riccati equation.
 //!
 //! ```text
 //! X = A' X (I + G X)^-1 A + H         regulator: G = b b' / m, H = W; filter: A' for A, G = c c' / r, H = Q
@@ -7,19 +8,22 @@
 //! regulator:  G = (b' X A + n') / (b' X b + m)        filter:  K = X c / (c' X c + r)
 //! ```
 //!
-//! for x' = A x + b v, y = c' x with noise of covariance Q and variance r, and the cost x' W x + 2 x' n v + m v^2 of a period; n is taken out first,
-//! by v = u - n' x / m. H_k is the solution over 2^k periods. States that the input does not reach (a load, an oscillator) are no harm: their part of
-//! X grows, the gains do not contain it.
+//! for x' = A x + b v, y = c' x with noise of covariance Q and variance r, and the cost x' W x + 2
+//! x' n v + m v^2 of a period; n is taken out first, by v = u - n' x / m. H_k is the solution over
+//! 2^k periods. States that the input does not reach (a load, an oscillator) are no harm: their
+//! part of X grows, the gains do not contain it.
 //!
-//! Source: Anderson (1978), "Second-order convergent algorithms for the steady-state Riccati equation", Int. J. Control 28(2); Anderson and Moore (1979),
-//! Optimal Filtering, section 4.4; Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, section 2.4, and exercises for the
-//! cross term.
+//! Source: Anderson (1978), "Second-order convergent algorithms for the steady-state Riccati
+//! equation", Int. J. Control 28(2); Anderson and Moore (1979), Optimal Filtering, section 4.4;
+//! Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, section 2.4, and exercises
+//! for the cross term.
 
 /// Most doublings: a million periods, beyond which nothing is of use.
 const DOUBLINGS: u32 = 20;
 /// Converged: no gain changes by a greater part of the largest.
 const CONVERGED: f64 = 1e-12;
-/// Doublings before that is looked at: nothing moves in the first ones where a noise needs several periods to be seen.
+/// Doublings before that is looked at: nothing moves in the first ones where a noise needs several
+/// periods to be seen.
 const LEAST_DOUBLINGS: u32 = 8;
 
 /// A matrix, by rows.
@@ -31,7 +35,9 @@ pub(super) fn product<const S: usize>(a: &StateMatrix<S>, b: &StateMatrix<S>) ->
     for (row, a) in product.iter_mut().zip(a) {
         for (factor, b) in a.iter().zip(b) {
             if *factor != 0.0 {
-                row.iter_mut().zip(b).for_each(|(sum, b)| *sum += factor * b);
+                row.iter_mut()
+                    .zip(b)
+                    .for_each(|(sum, b)| *sum += factor * b);
             }
         }
     }
@@ -84,11 +90,21 @@ pub(super) struct PeriodCost<const S: usize> {
 }
 
 /// Gains of the regulator: the input is less by so much for a unit of each state.
-pub(super) fn regulator<const S: usize>(a: &StateMatrix<S>, b: &[f64; S], cost: &PeriodCost<S>) -> [f64; S] {
-    let PeriodCost { states, cross, input } = cost;
-    let without: StateMatrix<S> = core::array::from_fn(|i| core::array::from_fn(|j| a[i][j] - b[i] * cross[j] / input));
-    let left: StateMatrix<S> =
-        core::array::from_fn(|i| core::array::from_fn(|j| states[i][j] - cross[i] * cross[j] / input));
+pub(super) fn regulator<const S: usize>(
+    a: &StateMatrix<S>,
+    b: &[f64; S],
+    cost: &PeriodCost<S>,
+) -> [f64; S] {
+    let PeriodCost {
+        states,
+        cross,
+        input,
+    } = cost;
+    let without: StateMatrix<S> =
+        core::array::from_fn(|i| core::array::from_fn(|j| a[i][j] - b[i] * cross[j] / input));
+    let left: StateMatrix<S> = core::array::from_fn(|i| {
+        core::array::from_fn(|j| states[i][j] - cross[i] * cross[j] / input)
+    });
     let reached = b.map(|row| b.map(|column| row * column / input));
     doubled(without, reached, left, |to_go| {
         let of_input = applied(to_go, b);
@@ -118,7 +134,10 @@ fn doubled<const S: usize>(
         a = product(&a, &of_a);
         let next = gains_by(&h);
         let largest = next.iter().fold(0.0_f64, |most, gain| most.max(gain.abs()));
-        let change = next.iter().zip(&gains).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        let change = next
+            .iter()
+            .zip(&gains)
+            .fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
         gains = next;
         if n > LEAST_DOUBLINGS && change <= CONVERGED * largest {
             break;
@@ -136,15 +155,27 @@ fn symmetric<const S: usize>(a: &StateMatrix<S>) -> StateMatrix<S> {
 fn solved<const S: usize>(w: &StateMatrix<S>, a: &StateMatrix<S>) -> StateMatrix<S> {
     let (mut w, mut x) = (*w, *a);
     for i in 0..S {
-        let pivot = (i..S).fold(i, |best, row| if w[row][i].abs() > w[best][i].abs() { row } else { best });
+        let pivot = (i..S).fold(i, |best, row| {
+            if w[row][i].abs() > w[best][i].abs() {
+                row
+            } else {
+                best
+            }
+        });
         w.swap(i, pivot);
         x.swap(i, pivot);
         for row in 0..S {
             let factor = w[row][i] / w[i][i];
             if row != i && factor != 0.0 {
                 let (pivot_w, pivot_x) = (w[i], x[i]);
-                w[row].iter_mut().zip(&pivot_w).for_each(|(w, pivot)| *w -= factor * pivot);
-                x[row].iter_mut().zip(&pivot_x).for_each(|(x, pivot)| *x -= factor * pivot);
+                w[row]
+                    .iter_mut()
+                    .zip(&pivot_w)
+                    .for_each(|(w, pivot)| *w -= factor * pivot);
+                x[row]
+                    .iter_mut()
+                    .zip(&pivot_x)
+                    .for_each(|(x, pivot)| *x -= factor * pivot);
             }
         }
     }
@@ -169,11 +200,26 @@ mod tests {
     #[test]
     fn a_scalar_regulator_has_the_gain_of_its_quadratic_equation() {
         // Dual to the filter: s = a^2 s m / (m + b^2 s) + w, gain a b s / (m + b^2 s).
-        for (a, b, w, m) in [(1.0, 1.0, 0.1, 1.0), (0.9, 0.3, 2.0, 0.5), (1.1, 2.0, 0.01, 3.0_f64)] {
+        for (a, b, w, m) in [
+            (1.0, 1.0, 0.1, 1.0),
+            (0.9, 0.3, 2.0, 0.5),
+            (1.1, 2.0, 0.01, 3.0_f64),
+        ] {
             let (b2, half): (f64, f64) = (b * b, 0.5 * (m - a * a * m - b * b * w));
             let s = (-half + libm::sqrt(half * half + b2 * w * m)) / b2;
-            let [gain] = regulator(&[[a]], &[b], &PeriodCost { states: [[w]], cross: [0.0], input: m });
-            assert!((gain - a * b * s / (m + b2 * s)).abs() < 1e-12, "{a} {b}: {gain}");
+            let [gain] = regulator(
+                &[[a]],
+                &[b],
+                &PeriodCost {
+                    states: [[w]],
+                    cross: [0.0],
+                    input: m,
+                },
+            );
+            assert!(
+                (gain - a * b * s / (m + b2 * s)).abs() < 1e-12,
+                "{a} {b}: {gain}"
+            );
         }
     }
 
@@ -181,21 +227,37 @@ mod tests {
     fn a_load_that_the_input_does_not_reach_is_carried() {
         // x' = x + v - d: without a price for v it is v = d - x at once.
         let a = [[1.0, -1.0], [0.0, 1.0]];
-        let cost = PeriodCost { states: [[1.0, 0.0], [0.0, 0.0]], cross: [0.0; 2], input: 1e-12 };
+        let cost = PeriodCost {
+            states: [[1.0, 0.0], [0.0, 0.0]],
+            cross: [0.0; 2],
+            input: 1e-12,
+        };
         let [of_x, of_load] = regulator(&a, &[1.0, 0.0], &cost);
-        assert!((of_x - 1.0).abs() < 1e-9 && (of_load + 1.0).abs() < 1e-9, "{of_x} {of_load}");
+        assert!(
+            (of_x - 1.0).abs() < 1e-9 && (of_load + 1.0).abs() < 1e-9,
+            "{of_x} {of_load}"
+        );
     }
 
     #[test]
     fn a_double_integrator_has_the_known_filter() {
-        // Alpha-beta filter of tracking: lambda = sigma_a T^2 / sigma_n gives alpha, beta in closed form (Kalata 1984).
+        // Alpha-beta filter of tracking: lambda = sigma_a T^2 / sigma_n gives alpha, beta in closed
+        // form (Kalata 1984).
         let (t, sigma_a, sigma_n) = (0.1_f64, 3.0_f64, 0.2_f64);
         let lambda = sigma_a * t * t / sigma_n;
         let r = (4.0 + lambda - libm::sqrt(8.0 * lambda + lambda * lambda)) / 4.0;
         let (alpha, beta) = (1.0 - r * r, 2.0 * (2.0 - (1.0 - r * r)) - 4.0 * r);
         let pushed = [0.5 * t * t * sigma_a, t * sigma_a];
         let noise = pushed.map(|a| pushed.map(|b| a * b));
-        let [position, speed] = filter(&[[1.0, t], [0.0, 1.0]], &noise, &[1.0, 0.0], sigma_n * sigma_n);
-        assert!((position - alpha).abs() < 1e-9 && (speed - beta / t).abs() < 1e-8, "{position} {alpha} {speed}");
+        let [position, speed] = filter(
+            &[[1.0, t], [0.0, 1.0]],
+            &noise,
+            &[1.0, 0.0],
+            sigma_n * sigma_n,
+        );
+        assert!(
+            (position - alpha).abs() < 1e-9 && (speed - beta / t).abs() < 1e-8,
+            "{position} {alpha} {speed}"
+        );
     }
 }

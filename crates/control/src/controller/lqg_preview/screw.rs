@@ -4,15 +4,19 @@
 //! x_m = r + <T / k + b/2 sgn T>         T = J_t r'' + B r' + Fc sgn r'       torque through the screw; its sign is the flank in contact
 //! ```
 //!
-//! The motor cannot leap from flank to flank where T turns its sign, nor twist the screw at once where the plan's acceleration steps: <> is the mean over the
-//! time W to both sides, with weights of a triangle, so that the way across the backlash b has the acceleration b / W^2 in both halves. W is the time
-//! in which a part of the drive's torque is enough for that, and no less than that of a radian of the resonance. The damping of the
-//! screw is left out: it takes c/k of the speed of the twist, next to nothing.
+//! The motor cannot leap from flank to flank where T turns its sign, nor twist the screw at once
+//! where the plan's acceleration steps: <> is the mean over the time W to both sides, with weights
+//! of a triangle, so that the way across the backlash b has the acceleration b / W^2 in both
+//! halves. W is the time in which a part of the drive's torque is enough for that, and no less than
+//! that of a radian of the resonance. The damping of the screw is left out: it takes c/k of the
+//! speed of the twist, next to nothing.
 //!
-//! Symbols: r reference, k stiffness, J_t inertia of the table, B viscous and Fc Coulomb friction, which the table has.
+//! Symbols: r reference, k stiffness, J_t inertia of the table, B viscous and Fc Coulomb friction,
+//! which the table has.
 //!
-//! Source: the flexible joint is flat in its load's position, Spong (1987), "Modeling and control of elastic joint robots", J. Dynamic Systems,
-//! Measurement, and Control 109; backlash as in [`crate::axis::transmission`].
+//! Source: the flexible joint is flat in its load's position, Spong (1987), "Modeling and control
+//! of elastic joint robots", J. Dynamic Systems, Measurement, and Control 109; backlash as in
+//! [`crate::axis::transmission`].
 
 use crate::activation::tanh;
 use crate::axis::AxisLaw;
@@ -51,8 +55,10 @@ impl ScrewTwist {
         let axis = law.parameters;
         let table_kg_m2 = 1.0 / screw.inverse_table_inertia;
         let half_gap_mm = screw.half_gap_rad / axis.rad_per_mm;
-        let crossing_mm_s2 = CROSSING_TORQUE * axis.torque_limit_nm / (axis.inertia_kg_m2 * axis.rad_per_mm);
-        let crossing_s = libm::sqrt(2.0 * half_gap_mm / crossing_mm_s2).max(1.0 / screw.resonance_rad_s);
+        let crossing_mm_s2 =
+            CROSSING_TORQUE * axis.torque_limit_nm / (axis.inertia_kg_m2 * axis.rad_per_mm);
+        let crossing_s =
+            libm::sqrt(2.0 * half_gap_mm / crossing_mm_s2).max(1.0 / screw.resonance_rad_s);
         Self {
             step_s: law.periods.servo_s,
             inertia_s2: table_kg_m2 / screw.stiffness_nm_rad,
@@ -73,13 +79,15 @@ impl ScrewTwist {
     /// By how much the motor is ahead of the table so many seconds from now, mm.
     pub(super) fn mm(&self, at_mm: &impl Fn(f64) -> f64, after_s: f64) -> f64 {
         // Where there is no friction, a sign is clear beyond a part of the backlash.
-        let unclear_mm = (UNCLEAR * self.coulomb_mm + UNCLEAR_GAP * self.half_gap_mm).max(f64::MIN_POSITIVE);
+        let unclear_mm =
+            (UNCLEAR * self.coulomb_mm + UNCLEAR_GAP * self.half_gap_mm).max(f64::MIN_POSITIVE);
         let (mut sum_mm, mut weights) = (0.0, 0.0);
         for point in -POINTS..=POINTS {
             let weight = f64::from(POINTS + 1 - point.abs());
             let at_s = after_s + self.crossing_s * f64::from(point) / f64::from(POINTS + 1);
             let elastic_mm = self.elastic_mm(at_mm, at_s);
-            sum_mm += weight * (elastic_mm + self.half_gap_mm * bounded(elastic_mm / unclear_mm, -1.0, 1.0));
+            sum_mm += weight
+                * (elastic_mm + self.half_gap_mm * bounded(elastic_mm / unclear_mm, -1.0, 1.0));
             weights += weight;
         }
         sum_mm / weights
@@ -98,7 +106,12 @@ impl ScrewTwist {
     pub(super) fn course(&self, at_mm: &impl Fn(f64) -> f64, moment_s: f64) -> TwistCourse {
         let from_s = moment_s - self.step_s;
         let at = |n: usize| self.mm(at_mm, from_s + n as f64 * self.step_s);
-        TwistCourse { from_s, step_s: self.step_s, table_s: self.table_s, twists_mm: core::array::from_fn(at) }
+        TwistCourse {
+            from_s,
+            step_s: self.step_s,
+            table_s: self.table_s,
+            twists_mm: core::array::from_fn(at),
+        }
     }
 }
 
@@ -116,19 +129,29 @@ pub(super) struct TwistCourse {
 
 impl TwistCourse {
     /// Of a rigid screw.
-    pub(super) const NONE: Self = Self { from_s: 0.0, step_s: 1.0, table_s: 0.0, twists_mm: [0.0; COURSE] };
+    pub(super) const NONE: Self = Self {
+        from_s: 0.0,
+        step_s: 1.0,
+        table_s: 0.0,
+        twists_mm: [0.0; COURSE],
+    };
 
     /// The twist so many seconds from now, mm.
     pub(super) fn mm(&self, after_s: f64) -> f64 {
-        let place = bounded((after_s - self.from_s) / self.step_s, 0.0, (COURSE - 1) as f64);
+        let place = bounded(
+            (after_s - self.from_s) / self.step_s,
+            0.0,
+            (COURSE - 1) as f64,
+        );
         // A float that is not a number saturates to zero here.
         let before = (libm::floor(place + 1e-6) as usize).min(COURSE - 2);
         let [a, b] = [before, before + 1].map(|n| self.twists_mm.get(n).copied().unwrap_or(0.0));
         a + (place - before as f64) * (b - a)
     }
 
-    /// What the inverse asks too much of for a motor that accelerates otherwise than its table, mm/s of reference speed: it takes all of
-    /// the inertia to be the motor's. With its differences.
+    /// What the inverse asks too much of for a motor that accelerates otherwise than its table,
+    /// mm/s of reference speed: it takes all of the inertia to be the motor's. With its
+    /// differences.
     pub(super) fn spared_mm_s(&self) -> f64 {
         let [before, here, after, beyond, _] = self.twists_mm;
         self.table_s * ((beyond - here) - (after - before)) / (2.0 * self.step_s * self.step_s)
@@ -147,12 +170,27 @@ mod tests {
     use crate::controller::feedforward;
 
     fn law() -> AxisLaw {
-        let parameters = Parameters { torque_limit_nm: 30.0, ..feedforward::tests::axis(0.0, 0.2) };
-        AxisLaw::new(parameters, Periods { servo_s: 0.001, mechanics_s: 1e-5, mechanics_per_servo: 100 })
+        let parameters = Parameters {
+            torque_limit_nm: 30.0,
+            ..feedforward::tests::axis(0.0, 0.2)
+        };
+        AxisLaw::new(
+            parameters,
+            Periods {
+                servo_s: 0.001,
+                mechanics_s: 1e-5,
+                mechanics_per_servo: 100,
+            },
+        )
     }
 
     fn screw(backlash_rad: f64) -> TransmissionParameters {
-        TransmissionParameters { table_share: 0.5, resonance_rad_s: 380.0, damping_ratio: 0.02, backlash_rad }
+        TransmissionParameters {
+            table_share: 0.5,
+            resonance_rad_s: 380.0,
+            damping_ratio: 0.02,
+            backlash_rad,
+        }
     }
 
     /// A sine of 5 mm and 8 rad/s.
@@ -169,22 +207,30 @@ mod tests {
             let mut state = MechanicsState::default();
             let (mut with_um, mut without_um) = (0.0_f64, 0.0_f64);
             let rad_per_mm = law.parameters.rad_per_mm;
-            let motor_mm = |at_s: f64| reference_mm(at_s) + twist.mm(&|after_s| reference_mm(at_s + after_s), 0.0);
+            let motor_mm = |at_s: f64| {
+                reference_mm(at_s) + twist.mm(&|after_s| reference_mm(at_s + after_s), 0.0)
+            };
             state.table.speed_rad_s = 40.0 * rad_per_mm;
             for step in 0..200_000 {
                 let at_s = f64::from(step) * 1e-5;
                 state.motor.angle_rad = motor_mm(at_s) * rad_per_mm;
-                state.motor.speed_rad_s = (motor_mm(at_s + 1e-5) - motor_mm(at_s)) * 1e5 * rad_per_mm;
+                state.motor.speed_rad_s =
+                    (motor_mm(at_s + 1e-5) - motor_mm(at_s)) * 1e5 * rad_per_mm;
                 mechanics.advance(&mut state, 0.0, 0.0);
                 if at_s > 0.5 {
                     let next_mm = reference_mm(at_s + 1e-5);
-                    with_um = with_um.max(1e3 * (state.table.angle_rad / rad_per_mm - next_mm).abs());
+                    with_um =
+                        with_um.max(1e3 * (state.table.angle_rad / rad_per_mm - next_mm).abs());
                     without_um = without_um.max(1e3 * (motor_mm(at_s) - reference_mm(at_s)).abs());
                 }
             }
             std::eprintln!("{backlash_rad}: {with_um} um, without {without_um} um");
-            // The flank changes in 4 ms, while a table at rest does not move: what is left is what the reference does in that time.
-            assert!(with_um < 0.5 * without_um, "{backlash_rad}: {with_um} um, without {without_um} um");
+            // The flank changes in 4 ms, while a table at rest does not move: what is left is what
+            // the reference does in that time.
+            assert!(
+                with_um < 0.5 * without_um,
+                "{backlash_rad}: {with_um} um, without {without_um} um"
+            );
         }
     }
 }

@@ -5,16 +5,19 @@
 //! l <- l - m c,   L0 <= l <= L1                             the variance of the measurement is taken to be 4^l times as given
 //! ```
 //!
-//! A gain that is too high follows the noise of the encoder and has to go back on it: innovations next to each other are of opposite sign, c is
-//! negative, and the noise is taken to be larger. One that is too low leaves what really happens in several innovations: c is positive. The gains of a filter depend on
-//! the ratio of measurement noise to what disturbs, so that one number follows both. There is one of them for each whole l, between which they are
-//! interpolated.
+//! A gain that is too high follows the noise of the encoder and has to go back on it: innovations
+//! next to each other are of opposite sign, c is negative, and the noise is taken to be larger. One
+//! that is too low leaves what really happens in several innovations: c is positive. The gains of a
+//! filter depend on the ratio of measurement noise to what disturbs, so that one number follows
+//! both. There is one of them for each whole l, between which they are interpolated.
 //!
-//! The division makes a shock, however large, one step of m. A frozen encoder, and an axis that stands still between two steps of
-//! its encoder, say nothing of noise: a measurement that repeats itself to the bit is not learnt from.
+//! The division makes a shock, however large, one step of m. A frozen encoder, and an axis that
+//! stands still between two steps of its encoder, say nothing of noise: a measurement that repeats
+//! itself to the bit is not learnt from.
 //!
-//! Source: Mehra (1970), "On the identification of variances and adaptive Kalman filtering", IEEE Trans. Automatic Control 15(2): a filter
-//! with the optimal gain, and no other, has white innovations. The recursion with normalised products is our own.
+//! Source: Mehra (1970), "On the identification of variances and adaptive Kalman filtering", IEEE
+//! Trans. Automatic Control 15(2): a filter with the optimal gain, and no other, has white
+//! innovations. The recursion with normalised products is our own.
 
 use super::linear::STATES;
 
@@ -33,10 +36,14 @@ pub(super) struct GainTable {
 }
 
 impl GainTable {
-    /// Of a filter whose gains for a measurement of some variance are known; `given_rad2` is that of the statistics.
+    /// Of a filter whose gains for a measurement of some variance are known; `given_rad2` is that
+    /// of the statistics.
     pub(super) fn new(given_rad2: f64, gains: impl Fn(f64) -> [f64; STATES]) -> Self {
-        let at = |level: usize| gains(given_rad2 * libm::exp2(2.0 * f64::from(LOWEST + level as i32)));
-        Self { gains: core::array::from_fn(at) }
+        let at =
+            |level: usize| gains(given_rad2 * libm::exp2(2.0 * f64::from(LOWEST + level as i32)));
+        Self {
+            gains: core::array::from_fn(at),
+        }
     }
 
     /// By each level.
@@ -46,7 +53,9 @@ impl GainTable {
 
     /// For a measurement whose variance is as given.
     pub(super) fn constant(gains: [f64; STATES]) -> Self {
-        Self { gains: [gains; LEVELS] }
+        Self {
+            gains: [gains; LEVELS],
+        }
     }
 
     fn at(&self, power: f64) -> [f64; STATES] {
@@ -54,7 +63,8 @@ impl GainTable {
         // A float that is not a number saturates to zero here.
         let below = (libm::floor(level) as usize).min(LEVELS - 2);
         let part = level - below as f64;
-        let [lower, upper] = [below, below + 1].map(|n| self.gains.get(n).copied().unwrap_or([0.0; STATES]));
+        let [lower, upper] =
+            [below, below + 1].map(|n| self.gains.get(n).copied().unwrap_or([0.0; STATES]));
         core::array::from_fn(|i| lower[i] + part * (upper[i] - lower[i]))
     }
 }
@@ -70,7 +80,11 @@ pub(super) struct Whiteness {
 
 impl Whiteness {
     /// As given.
-    pub(super) const GIVEN: Self = Self { power: 0.0, before_rad: 0.0, measured_rad: f64::NAN };
+    pub(super) const GIVEN: Self = Self {
+        power: 0.0,
+        before_rad: 0.0,
+        measured_rad: f64::NAN,
+    };
 
     /// Variance of the measurement, in parts of what is given.
     pub(super) fn variance(&self) -> f64 {
@@ -92,7 +106,8 @@ impl Whiteness {
     pub(super) fn take_in(&mut self, measured_rad: f64, innovation_rad: f64, least_rad: f64) {
         let repeats = measured_rad.to_bits() == self.measured_rad.to_bits();
         let squares = innovation_rad * innovation_rad + self.before_rad * self.before_rad;
-        let alike = 2.0 * innovation_rad * self.before_rad / (squares + 2.0 * least_rad * least_rad);
+        let alike =
+            2.0 * innovation_rad * self.before_rad / (squares + 2.0 * least_rad * least_rad);
         (self.before_rad, self.measured_rad) = (innovation_rad, measured_rad);
         if !repeats && alike.is_finite() {
             let power = self.power - STEP * alike;
@@ -105,28 +120,34 @@ impl Whiteness {
 mod tests {
     use super::*;
 
-    /// A random number of mean 0 and variance 1 (sum of twelve uniform ones), by a congruential generator.
+    /// A random number of mean 0 and variance 1 (sum of twelve uniform ones), by a congruential
+    /// generator.
     fn normal(seed: &mut u64) -> f64 {
         let mut sum = -6.0;
         for _ in 0..12 {
-            *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            *seed = seed
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
             sum += (*seed >> 11) as f64 / (1_u64 << 53) as f64;
         }
         sum
     }
 
-    /// Gain of the filter of a random walk with steps of variance 1, as in [`super::super::riccati`].
+    /// Gain of the filter of a random walk with steps of variance 1, as in
+    /// [`super::super::riccati`].
     fn walk_gain(variance: f64) -> f64 {
         let p = 0.5 + libm::sqrt(0.25 + variance);
         p / (p + variance)
     }
 
     fn table() -> GainTable {
-        GainTable::new(1.0, |variance| core::array::from_fn(|i| if i == 0 { walk_gain(variance) } else { 0.0 }))
+        GainTable::new(1.0, |variance| {
+            core::array::from_fn(|i| if i == 0 { walk_gain(variance) } else { 0.0 })
+        })
     }
 
-    /// The power that is found for a random walk that is measured with noise of this standard deviation, where 1 is given: mean of the last
-    /// half, and the highest of all.
+    /// The power that is found for a random walk that is measured with noise of this standard
+    /// deviation, where 1 is given: mean of the last half, and the highest of all.
     fn found(noise: f64, periods: u32, mut disturb: impl FnMut(u32, f64) -> f64) -> (f64, f64) {
         let (table, mut whiteness) = (table(), Whiteness::GIVEN);
         let (mut seed, mut place, mut estimate, mut sum, mut highest) = (7, 0.0, 0.0, 0.0, 0.0_f64);
@@ -138,7 +159,11 @@ mod tests {
             let [gain, ..] = whiteness.gains(&table);
             estimate += gain * innovation;
             highest = highest.max(whiteness.power);
-            sum += if 2 * n >= periods { 2.0 * whiteness.power / f64::from(periods) } else { 0.0 };
+            sum += if 2 * n >= periods {
+                2.0 * whiteness.power / f64::from(periods)
+            } else {
+                0.0
+            };
         }
         (sum, highest)
     }
@@ -154,7 +179,14 @@ mod tests {
     #[test]
     fn a_shock_is_one_step_and_a_frozen_encoder_says_nothing() {
         let calm = found(1.0, 2000, |_, measured| measured).1;
-        let shocked = found(1.0, 2000, |n, measured| if n % 500 == 250 { measured + 1e9 } else { measured }).1;
+        let shocked = found(1.0, 2000, |n, measured| {
+            if n % 500 == 250 {
+                measured + 1e9
+            } else {
+                measured
+            }
+        })
+        .1;
         assert!(shocked <= calm + 10.0 * STEP, "{calm} {shocked}");
         let mut frozen = Whiteness::GIVEN;
         (0..1000).for_each(|n| frozen.take_in(1.0, if n % 2 == 0 { 1.0 } else { -1.0 }, 0.01));
@@ -169,6 +201,9 @@ mod tests {
         let [[low, ..], [middle, ..], [high, ..]] = [1.0, 1.5, 2.0].map(|power| table.at(power));
         assert_eq!([low, high], [walk_gain(4.0), walk_gain(16.0)]);
         assert!((middle - 0.5 * (low + high)).abs() < 1e-15);
-        assert_eq!(table.at(f64::from(HIGHEST))[0], walk_gain(libm::exp2(2.0 * f64::from(HIGHEST))));
+        assert_eq!(
+            table.at(f64::from(HIGHEST))[0],
+            walk_gain(libm::exp2(2.0 * f64::from(HIGHEST)))
+        );
     }
 }

@@ -1,7 +1,9 @@
-//! The servo period of every controller in two and three axes, and the reading of a model, linked without the standard library.
+//! The servo period of every controller in two and three axes, and the reading of a model, linked
+//! without the standard library.
 //!
-//! The panic handler calls a function that does not exist. Where no panic is left in what is exported, the linker drops the
-//! handler with all that it needs; otherwise it has to name that function.
+//! The panic handler calls a function that does not exist. Where no panic is left in what is
+//! exported, the linker drops the handler with all that it needs; otherwise it has to name that
+//! function.
 
 #![no_std]
 

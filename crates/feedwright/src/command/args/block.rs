@@ -9,8 +9,8 @@ use crate::command::args::geometry::GeometryArgs;
 
 /// Write a model as bytes, for a component in a servo thread
 ///
-/// Of a model file, or of a machine with exactly the numbers of its file. Scale, pitch and squareness of the machine go with it, and the
-/// component compensates them.
+/// Of a model file, or of a machine with exactly the numbers of its file. Scale, pitch and
+/// squareness of the machine go with it, and the component compensates them.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Examples:

@@ -8,7 +8,8 @@ use super::reader::ReaderArgs;
 
 /// Print the motions of a program, one JSON object a line
 ///
-/// Modes, offsets, loops, subroutines, cycles and compensation are resolved; lengths are in mm, feedrates in mm/s.
+/// Modes, offsets, loops, subroutines, cycles and compensation are resolved; lengths are in mm,
+/// feedrates in mm/s.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Example:

@@ -12,8 +12,9 @@ use super::reader::ReaderArgs;
 
 /// Write a corrected program for a control without feedback
 ///
-/// The correction is computed for the control that is named with --for: its planner, its arcs, its decimals. The new program is read
-/// again, planned as that control would, cut in simulation and compared with the original before it is written.
+/// The correction is computed for the control that is named with --for: its planner, its arcs, its
+/// decimals. The new program is read again, planned as that control would, cut in simulation and
+/// compared with the original before it is written.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Examples:
@@ -27,26 +28,31 @@ pub(crate) struct CorrectArgs {
     /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
     #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE, help_heading = CUT)]
     pub(crate) machine: OsString,
-    /// Control that the corrected program is for: how it plans the speed, and what its blocks may hold.
+    /// Control that the corrected program is for: how it plans the speed, and what its blocks may
+    /// hold.
     #[arg(long = "for", value_name = "CONTROL", default_value = crate::correct::TARGETS[0].name, long_help = controls("Control that the corrected program is for: how it plans the speed, and what its blocks may hold."), help_heading = CUT)]
     pub(crate) target: String,
-    /// Log of a cut of this part: commanded and actual positions, by this program or by one that was corrected from it. What the logs show
-    /// is corrected, not what the machine file says. Several logs: repeat the option.
+    /// Log of a cut of this part: commanded and actual positions, by this program or by one that
+    /// was corrected from it. What the logs show is corrected, not what the machine file says.
+    /// Several logs: repeat the option.
     #[arg(long, value_name = "FILE", help_heading = MEASURED)]
     pub(crate) log: Vec<PathBuf>,
-    /// How exact the values of the machine file are: standard deviation of each, %. 0: exact. By default a file has 10 %, and a built-in machine,
-    /// which is simulated as it is written, 0. Without a log, axes whose gains differ by chance count as matched, and a stretch is changed
+    /// How exact the values of the machine file are: standard deviation of each, %. 0: exact. By
+    /// default a file has 10 %, and a built-in machine, which is simulated as it is written, 0.
+    /// Without a log, axes whose gains differ by chance count as matched, and a stretch is changed
     /// only where a gain is likely on every machine that the file may describe.
     #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, help_heading = CUT)]
     pub(crate) file_error: Option<f64>,
-    /// Which column of the logs is what, by number from 0 or by name, and units: t=0,x.cmd=1,x.act=3,unit=mm,time=ms.
+    /// Which column of the logs is what, by number from 0 or by name, and units:
+    /// t=0,x.cmd=1,x.act=3,unit=mm,time=ms.
     #[arg(long, value_name = "COLUMNS", requires = "log", help_heading = MEASURED)]
     pub(crate) columns: Option<String>,
-    /// Place of the corrected program; it is written only if it is better than the uncorrected program; otherwise the exit code is 1.
+    /// Place of the corrected program; it is written only if it is better than the uncorrected
+    /// program; otherwise the exit code is 1.
     #[arg(long, value_name = "FILE.ngc", help_heading = RESULTS)]
     pub(crate) out: Option<PathBuf>,
-    /// Largest contour error allowed of the corrected program as the control cuts it, such as 10um, 0.01mm or 0.0004in; um where it has no
-    /// unit. Exit code 1 where it is exceeded.
+    /// Largest contour error allowed of the corrected program as the control cuts it, such as 10um,
+    /// 0.01mm or 0.0004in; um where it has no unit. Exit code 1 where it is exceeded.
     #[arg(long, value_name = "LENGTH", value_parser = length_um, allow_negative_numbers = true, help_heading = CUT)]
     pub(crate) tolerance: Option<f64>,
     /// Write all results as JSON.
@@ -60,6 +66,8 @@ pub(crate) struct CorrectArgs {
 
 /// What `--for` is, and its controls, one a line.
 pub(super) fn controls(about: &str) -> String {
-    let rows = crate::correct::TARGETS.iter().map(|target| format!("\n  {:<10} {}", target.name, target.about));
+    let rows = crate::correct::TARGETS
+        .iter()
+        .map(|target| format!("\n  {:<10} {}", target.name, target.about));
     about.to_owned() + &rows.collect::<String>()
 }

@@ -8,8 +8,8 @@ use super::reader::ReaderArgs;
 
 /// Compare two results, or two programs
 ///
-/// Figures before and after with their ratio. The page has both in one plot: the distribution of the contour error of two runs, or the
-/// paths of two programs.
+/// Figures before and after with their ratio. The page has both in one plot: the distribution of
+/// the contour error of two runs, or the paths of two programs.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Examples:

@@ -11,8 +11,8 @@ use super::quantity::length_mm;
 
 /// Identify a machine from its log, and write its machine file
 ///
-/// The log has commanded and actual positions of the axes at the servo period. Without a log a simulated machine is identified, and
-/// the model is written that `feedwright run --model` takes.
+/// The log has commanded and actual positions of the axes at the servo period. Without a log a
+/// simulated machine is identified, and the model is written that `feedwright run --model` takes.
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("measured").args(["log", "geometry"])))]
 #[command(after_long_help = "\
@@ -25,8 +25,8 @@ Examples:
   feedwright identify --geometry ballbar.csv --geometry x=laser.csv --machine mine.toml --out geometry.toml
   feedwright identify --geometry x=x.comp --machine mine.toml --out geometry.toml")]
 pub(crate) struct IdentifyArgs {
-    /// Log of commanded and actual positions of a real machine: halsampler, halscope, MATLAB v5, Sinumerik Edge, or a table of text.
-    /// Several are of one machine, with the same axes.
+    /// Log of commanded and actual positions of a real machine: halsampler, halscope, MATLAB v5,
+    /// Sinumerik Edge, or a table of text. Several are of one machine, with the same axes.
     #[arg(value_name = "LOG", conflicts_with_all = ["machine", "controller", "axes", "set", "seed"])]
     pub(crate) log: Vec<PathBuf>,
     #[command(flatten)]
@@ -48,7 +48,8 @@ pub(crate) struct IdentifyArgs {
     /// Seed of the recording that a simulated machine is identified from.
     #[arg(long, default_value_t = 1, help_heading = SIMULATED, hide_short_help = true)]
     pub(crate) seed: u64,
-    /// Place of the machine file; of a simulated machine, of its model; with --geometry, of the geometry file.
+    /// Place of the machine file; of a simulated machine, of its model; with --geometry, of the
+    /// geometry file.
     #[arg(long, value_name = "FILE.toml", required_unless_present = "update")]
     pub(crate) out: Option<PathBuf>,
 }
@@ -57,19 +58,35 @@ pub(crate) struct IdentifyArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Options of a LOG")]
 pub(crate) struct LogArgs {
-    /// Which column is what, by number from 0 or by name, and units: t=0,x.cmd=1,x.act=3,x.torque=5,unit=mm,time=ms.
+    /// Which column is what, by number from 0 or by name, and units:
+    /// t=0,x.cmd=1,x.act=3,x.torque=5,unit=mm,time=ms.
     #[arg(long, value_name = "COLUMNS", requires = "log")]
     pub(crate) columns: Option<feedwright_ident::Columns>,
-    /// Machine file that is updated: what the logs do not tell stays as it is. It is written to --out, without that in its place.
+    /// Machine file that is updated: what the logs do not tell stays as it is. It is written to
+    /// --out, without that in its place.
     #[arg(long, value_name = "FILE.toml", requires = "log")]
     pub(crate) update: Option<PathBuf>,
-    /// Identify from this part of the log, s; --score says by which to judge. Without both, blocks of motion take turns.
-    #[arg(long, value_name = "FROM:TO", requires = "score", requires = "log", hide_short_help = true)]
+    /// Identify from this part of the log, s; --score says by which to judge. Without both, blocks
+    /// of motion take turns.
+    #[arg(
+        long,
+        value_name = "FROM:TO",
+        requires = "score",
+        requires = "log",
+        hide_short_help = true
+    )]
     pub(crate) fit: Option<Times>,
     /// Judge by this part of the log, s.
-    #[arg(long, value_name = "FROM:TO", requires = "fit", requires = "log", hide_short_help = true)]
+    #[arg(
+        long,
+        value_name = "FROM:TO",
+        requires = "fit",
+        requires = "log",
+        hide_short_help = true
+    )]
     pub(crate) score: Option<Times>,
-    /// Travel for a turn of the motor, such as 5mm or 0.2in; mm where it has no unit. Without it an axis counts as linear: kg, N s/m, N.
+    /// Travel for a turn of the motor, such as 5mm or 0.2in; mm where it has no unit. Without it an
+    /// axis counts as linear: kg, N s/m, N.
     #[arg(long, value_name = "LENGTH", requires = "log", value_parser = lead_mm)]
     pub(crate) lead: Option<f64>,
     /// Inertia at the motor, kg m2; without --lead the mass, kg. Positions do not tell it.
@@ -81,36 +98,64 @@ pub(crate) struct LogArgs {
     /// Torque, N m, for a unit of the torque column; without --lead force, N.
     #[arg(long, value_name = "N_M|N", requires = "log", value_parser = positive, hide_short_help = true)]
     pub(crate) torque_gain: Option<f64>,
-    /// Position gain of the drive, 1/s. With ± it is known within that standard deviation, and the log corrects it; without, it is
-    /// taken as it is.
+    /// Position gain of the drive, 1/s. With ± it is known within that standard deviation, and the
+    /// log corrects it; without, it is taken as it is.
     #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
     pub(crate) kp: Option<KnownValue>,
     /// Integral time of the speed loop, s, as --kp; 0 is a loop without integral.
-    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log", hide_short_help = true)]
+    #[arg(
+        long,
+        value_name = "VALUE[±SPREAD[%]]",
+        requires = "log",
+        hide_short_help = true
+    )]
     pub(crate) integral_time: Option<KnownValue>,
     /// Part of the commanded speed that is fed forward, as --kp.
-    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log", hide_short_help = true)]
+    #[arg(
+        long,
+        value_name = "VALUE[±SPREAD[%]]",
+        requires = "log",
+        hide_short_help = true
+    )]
     pub(crate) velocity_feedforward: Option<KnownValue>,
     /// Part of the commanded acceleration that is fed forward, as --kp.
-    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log", hide_short_help = true)]
+    #[arg(
+        long,
+        value_name = "VALUE[±SPREAD[%]]",
+        requires = "log",
+        hide_short_help = true
+    )]
     pub(crate) acceleration_feedforward: Option<KnownValue>,
     /// Delay from the control to the drive, s, as --kp.
-    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log", hide_short_help = true)]
+    #[arg(
+        long,
+        value_name = "VALUE[±SPREAD[%]]",
+        requires = "log",
+        hide_short_help = true
+    )]
     pub(crate) drive_delay: Option<KnownValue>,
-    /// Delay from the control to a position loop in the drive, s: a whole number of servo periods. Without it the log tells the
-    /// delay, where --record-delay is given.
+    /// Delay from the control to a position loop in the drive, s: a whole number of servo periods.
+    /// Without it the log tells the delay, where --record-delay is given.
     #[arg(long, value_name = "S", requires = "log", value_parser = command_delay, hide_short_help = true)]
     pub(crate) command_delay: Option<f64>,
-    /// Time over which the drive takes the speed from positions, s, of one that closes its loops at the rate of the log and recorded it
-    /// itself: two samples are 0.002 at 1 kHz. Positions do not tell it.
+    /// Time over which the drive takes the speed from positions, s, of one that closes its loops at
+    /// the rate of the log and recorded it itself: two samples are 0.002 at 1 kHz. Positions do not
+    /// tell it.
     #[arg(long, value_name = "S", requires = "log", value_parser = positive, hide_short_help = true)]
     pub(crate) speed_window: Option<f64>,
-    /// Delay of the recorded actual position behind the recorded command, s: 0 if both are sampled at the same moment, as halsampler
-    /// does. Without it, a delay of the drive counts as a delay of the record.
-    #[arg(long, value_name = "S", requires = "log", allow_negative_numbers = true, hide_short_help = true)]
+    /// Delay of the recorded actual position behind the recorded command, s: 0 if both are sampled
+    /// at the same moment, as halsampler does. Without it, a delay of the drive counts as a delay
+    /// of the record.
+    #[arg(
+        long,
+        value_name = "S",
+        requires = "log",
+        allow_negative_numbers = true,
+        hide_short_help = true
+    )]
     pub(crate) record_delay: Option<f64>,
-    /// Write the program that moves the axes as the log did not, and as it would take to settle what is open. Where nothing is open, none
-    /// is written.
+    /// Write the program that moves the axes as the log did not, and as it would take to settle
+    /// what is open. Where nothing is open, none is written.
     #[arg(long, value_name = "FILE.ngc", requires = "log")]
     pub(crate) excite_next: Option<PathBuf>,
     /// Write a page: numbers, measured against predicted, what is left.
@@ -125,14 +170,21 @@ pub(crate) struct LogArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Options of the geometry")]
 pub(crate) struct MeasuredGeometryArgs {
-    /// Measurement of the geometry of --machine: ball bar, laser or scale, test part, grid encoder, or compensation file of LinuxCNC.
-    /// x=FILE says which axis it is of. Several are fitted together; --out gets the geometry file.
+    /// Measurement of the geometry of --machine: ball bar, laser or scale, test part, grid encoder,
+    /// or compensation file of LinuxCNC. x=FILE says which axis it is of. Several are fitted
+    /// together; --out gets the geometry file.
     #[arg(long, value_name = "[AXIS=]FILE", conflicts_with_all = ["log", "controller", "axes", "set", "seed"], requires = "out")]
     pub(crate) geometry: Vec<AxisFile>,
     /// Write the errors of an axis as a compensation file of LinuxCNC.
-    #[arg(long, value_name = "AXIS=FILE", requires = "geometry", hide_short_help = true)]
+    #[arg(
+        long,
+        value_name = "AXIS=FILE",
+        requires = "geometry",
+        hide_short_help = true
+    )]
     pub(crate) comp_file: Vec<AxisFile>,
-    /// Type of the compensation files that are written: 0 has positions of the tool, 1 has what is added to the command.
+    /// Type of the compensation files that are written: 0 has positions of the tool, 1 has what is
+    /// added to the command.
     #[arg(long, value_name = "0|1", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=1), hide_short_help = true)]
     pub(crate) comp_type: u8,
 }
@@ -148,13 +200,22 @@ impl std::str::FromStr for AxisFile {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let axis_of = |name: &str| feedwright_sim::AXIS_NAMES.iter().position(|axis| *axis == name.to_lowercase());
-        let named = text.split_once('=').and_then(|(name, path)| Some((axis_of(name)?, path)));
+        let axis_of = |name: &str| {
+            feedwright_sim::AXIS_NAMES
+                .iter()
+                .position(|axis| *axis == name.to_lowercase())
+        };
+        let named = text
+            .split_once('=')
+            .and_then(|(name, path)| Some((axis_of(name)?, path)));
         let (axis, path) = named.map_or((None, text), |(axis, path)| (Some(axis), path));
         if path.is_empty() {
             Err("the name of the file is missing".to_owned())
         } else {
-            Ok(Self { axis, path: path.into() })
+            Ok(Self {
+                axis,
+                path: path.into(),
+            })
         }
     }
 }
@@ -169,7 +230,11 @@ fn positive(text: &str) -> Result<f64, String> {
 
 fn lead_mm(text: &str) -> Result<f64, String> {
     let lead_mm = length_mm(text)?;
-    if lead_mm > 0.0 && lead_mm.is_finite() { Ok(lead_mm) } else { Err("it must be above 0 mm".to_owned()) }
+    if lead_mm > 0.0 && lead_mm.is_finite() {
+        Ok(lead_mm)
+    } else {
+        Err("it must be above 0 mm".to_owned())
+    }
 }
 
 fn command_delay(text: &str) -> Result<f64, String> {
@@ -187,7 +252,9 @@ impl std::str::FromStr for Times {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let ends = text.split_once(':').and_then(|(from, to)| Some((from.parse().ok()?, to.parse().ok()?)));
+        let ends = text
+            .split_once(':')
+            .and_then(|(from, to)| Some((from.parse().ok()?, to.parse().ok()?)));
         match ends {
             Some((from, to)) if from < to => Ok(Self(from..to)),
             _ => Err("write two times in s, the earlier first, as in 0:12.5".to_owned()),

@@ -8,6 +8,10 @@ use clap::Args;
 #[derive(Debug, Args)]
 pub(crate) struct LabArgs {
     /// Command of the laboratory and its arguments; `feedwright lab --help` lists them.
-    #[arg(value_name = "ARGUMENTS", trailing_var_arg = true, allow_hyphen_values = true)]
+    #[arg(
+        value_name = "ARGUMENTS",
+        trailing_var_arg = true,
+        allow_hyphen_values = true
+    )]
     pub(crate) arguments: Vec<OsString>,
 }

@@ -23,8 +23,9 @@ pub(crate) enum LinuxcncCommand {
 
 /// Say what can be corrected in a configuration, and wire the component into a copy of it
 ///
-/// Reads the INI file and its HAL files, and says of every joint what drives and measures it. If all joints can be corrected, it writes
-/// NAME-feedwright.ini with its HAL files, a machine file and a script that records, and prints what to do next.
+/// Reads the INI file and its HAL files, and says of every joint what drives and measures it. If
+/// all joints can be corrected, it writes NAME-feedwright.ini with its HAL files, a machine file
+/// and a script that records, and prints what to do next.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Examples:
@@ -40,12 +41,13 @@ pub(crate) struct LinuxcncSetupArgs {
     /// Say what would be done, and write nothing.
     #[arg(long, conflicts_with = "undo")]
     pub(crate) dry_run: bool,
-    /// Following error that the copy allows, in the unit of the configuration. FERROR and MIN_FERROR that are below it are raised to it. A
-    /// drive that fails moves so far before LinuxCNC stops it.
+    /// Following error that the copy allows, in the unit of the configuration. FERROR and
+    /// MIN_FERROR that are below it are raised to it. A drive that fails moves so far before
+    /// LinuxCNC stops it.
     #[arg(long, value_name = "VALUE", value_parser = following_error, conflicts_with = "undo")]
     pub(crate) raise_ferror: Option<f64>,
-    /// Machine that stands in for the drives: one that is built in, or a machine file (.toml). In the copy nothing commands or enables
-    /// hardware that setup does not know.
+    /// Machine that stands in for the drives: one that is built in, or a machine file (.toml). In
+    /// the copy nothing commands or enables hardware that setup does not know.
     #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "undo")]
     pub(crate) simulate: Option<String>,
     /// Replace files of an earlier setup that were changed by hand.
@@ -63,6 +65,8 @@ pub(crate) struct LinuxcncSetupArgs {
 fn following_error(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err("a following error is a number above 0, in the unit of the configuration".to_owned()),
+        _ => Err(
+            "a following error is a number above 0, in the unit of the configuration".to_owned(),
+        ),
     }
 }

@@ -8,7 +8,9 @@ use clap::Args;
 ///
 /// One for feedwright and one for each of its commands, as in feedwright-run.1.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Example:\n  feedwright man --out ~/.local/share/man/man1\n  man feedwright-run")]
+#[command(
+    after_long_help = "Example:\n  feedwright man --out ~/.local/share/man/man1\n  man feedwright-run"
+)]
 pub(crate) struct ManArgs {
     /// Folder for the pages; made where it is missing.
     #[arg(long, value_name = "DIR")]

@@ -6,8 +6,8 @@ use clap::{Args, ValueEnum};
 
 /// Show the page in a browser: see the cut, correct the program
 ///
-/// The page is a part of this command and needs no network. It is served to this computer only, at an address that holds a secret, until
-/// Ctrl-C. Everything is computed in the browser.
+/// The page is a part of this command and needs no network. It is served to this computer only, at
+/// an address that holds a secret, until Ctrl-C. Everything is computed in the browser.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Examples:
@@ -21,8 +21,9 @@ pub(crate) struct OpenArgs {
     pub(crate) files: Vec<PathBuf>,
     /// Show the machine of LinuxCNC on this computer, by the component's pins.
     ///
-    /// Path, tool and contour error with and without the correction, while LinuxCNC runs with the component feedwright. The pins are read by
-    /// halcmd and never written. With LINEAR_UNITS = inch: --hal=inch.
+    /// Path, tool and contour error with and without the correction, while LinuxCNC runs with the
+    /// component feedwright. The pins are read by halcmd and never written. With LINEAR_UNITS =
+    /// inch: --hal=inch.
     #[arg(long, value_name = "UNITS", value_enum, num_args = 0..=1, require_equals = true, default_missing_value = "mm")]
     pub(crate) hal: Option<JointUnits>,
     /// Print the address only.

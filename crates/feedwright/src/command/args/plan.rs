@@ -12,7 +12,8 @@ use super::reader::ReaderArgs;
 
 /// Tell the cycle time of a program, and what limits it
 ///
-/// By tool, by kind of motion, and by the limit that binds: feedrate, acceleration or jerk of an axis.
+/// By tool, by kind of motion, and by the limit that binds: feedrate, acceleration or jerk of an
+/// axis.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Example:
@@ -23,12 +24,13 @@ pub(crate) struct PlanArgs {
     /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
     #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE, help_heading = CUT)]
     pub(crate) machine: OsString,
-    /// Largest distance of the tool from the programmed path, such as 10um, 0.01mm or 0.0004in; um where it has no unit: deviation of the
-    /// plan and predicted error of the machine together. The machine is simulated for it.
+    /// Largest distance of the tool from the programmed path, such as 10um, 0.01mm or 0.0004in; um
+    /// where it has no unit: deviation of the plan and predicted error of the machine together. The
+    /// machine is simulated for it.
     #[arg(long, value_name = "LENGTH", value_parser = length_um, allow_negative_numbers = true, help_heading = CUT)]
     pub(crate) tolerance: Option<f64>,
-    /// Planner in place of the one that suits the machine: trapezoid, time-optimal, unlimited, or linuxcnc, which plans as LinuxCNC 2.9
-    /// does.
+    /// Planner in place of the one that suits the machine: trapezoid, time-optimal, unlimited, or
+    /// linuxcnc, which plans as LinuxCNC 2.9 does.
     #[arg(long, value_name = "NAME", help_heading = CUT)]
     pub(crate) planner: Option<String>,
     /// Plan as this control does, and list the time of each line: generic, linuxcnc, grbl or fanuc.
@@ -37,10 +39,12 @@ pub(crate) struct PlanArgs {
     /// Write the time of each line as a table: line, time_s, waiting_s and its text.
     #[arg(long, value_name = "FILE.csv", help_heading = RESULTS)]
     pub(crate) lines: Option<PathBuf>,
-    /// Plan each path from rest to rest as a whole too, and tell its time: what no plan can be faster than by much.
+    /// Plan each path from rest to rest as a whole too, and tell its time: what no plan can be
+    /// faster than by much.
     #[arg(long, help_heading = CUT, hide_short_help = true)]
     pub(crate) bound: bool,
-    /// Tell how long it takes with this override of feeds, 0 to 200 %, while it is cut: the path stays as planned.
+    /// Tell how long it takes with this override of feeds, 0 to 200 %, while it is cut: the path
+    /// stays as planned.
     #[arg(long = "override", value_name = "PERCENT", allow_negative_numbers = true, help_heading = CUT)]
     pub(crate) override_percent: Option<f64>,
     /// Tell where the tool rests when feed hold is pressed so long after the start, s.

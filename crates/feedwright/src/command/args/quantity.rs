@@ -26,27 +26,44 @@ const FEEDS: [(&str, f64); 6] = [
     ("in/s", 60.0 * INCH_MM),
 ];
 
-/// A feedrate such as `3000mm/min`, `50 mm/s` or `120ipm`, in mm/s. A number alone could be either, by sixty times.
+/// A feedrate such as `3000mm/min`, `50 mm/s` or `120ipm`, in mm/s. A number alone could be either,
+/// by sixty times.
 pub fn feed_mm_s(text: &str) -> Result<f64, String> {
-    let UnitValue { number, value, unit } = UnitValue::read(text, "3000mm/min, 50mm/s or 120ipm")?;
+    let UnitValue {
+        number,
+        value,
+        unit,
+    } = UnitValue::read(text, "3000mm/min, 50mm/s or 120ipm")?;
     if unit.is_empty() {
         let [slow, fast] = [value / 60.0, value * 60.0].map(shown);
-        return Err(format!("it has no unit; {number}mm/min is {slow} mm/s, {number}mm/s is {fast} mm/min"));
+        return Err(format!(
+            "it has no unit; {number}mm/min is {slow} mm/s, {number}mm/s is {fast} mm/min"
+        ));
     }
     // A feedrate in mm/s comes out as it was written.
-    if unit == "mm/s" { Ok(value) } else { Ok(value * feed_unit(&unit)? / 60.0) }
+    if unit == "mm/s" {
+        Ok(value)
+    } else {
+        Ok(value * feed_unit(&unit)? / 60.0)
+    }
 }
 
 /// A feedrate in mm/min; a number alone is one.
 pub(crate) fn feed_mm_min(text: &str) -> Result<f64, String> {
     let UnitValue { value, unit, .. } = UnitValue::read(text, "500mm/min or 20ipm")?;
-    if unit.is_empty() { Ok(value) } else { Ok(value * feed_unit(&unit)?) }
+    if unit.is_empty() {
+        Ok(value)
+    } else {
+        Ok(value * feed_unit(&unit)?)
+    }
 }
 
 /// A length such as `10um`, `0.01mm`, `0.0004in` or `0.4thou`, in um; a number alone is in um.
 pub(crate) fn length_um(text: &str) -> Result<f64, String> {
-    let UnitValue { value, unit, .. } =
-        UnitValue::read(text, "a length above 0, such as 10um, 0.01mm, 0.0004in or 0.4thou")?;
+    let UnitValue { value, unit, .. } = UnitValue::read(
+        text,
+        "a length above 0, such as 10um, 0.01mm, 0.0004in or 0.4thou",
+    )?;
     match unit.as_str() {
         // As it was written, to the last bit.
         "" | "um" | "µm" => Ok(value),
@@ -57,7 +74,11 @@ pub(crate) fn length_um(text: &str) -> Result<f64, String> {
 /// A length in mm; a number alone is in mm.
 pub(crate) fn length_mm(text: &str) -> Result<f64, String> {
     let UnitValue { value, unit, .. } = UnitValue::read(text, "20mm or 0.8in")?;
-    if unit.is_empty() { Ok(value) } else { Ok(value * length_unit(&unit)?) }
+    if unit.is_empty() {
+        Ok(value)
+    } else {
+        Ok(value * length_unit(&unit)?)
+    }
 }
 
 /// A length of 0.1 to 10000 mm, in mm; a number alone is in mm.
@@ -77,7 +98,9 @@ fn within(value: f64, unit: &str) -> Result<f64, String> {
     if (0.1..=MOST).contains(&value) {
         Ok(value)
     } else {
-        Err(format!("it is {value} {unit}, and must be 0.1 to {MOST} {unit}"))
+        Err(format!(
+            "it is {value} {unit}, and must be 0.1 to {MOST} {unit}"
+        ))
     }
 }
 
@@ -93,8 +116,8 @@ impl<'a> UnitValue<'a> {
     fn read(text: &'a str, examples: &str) -> Result<Self, String> {
         let text = text.trim();
         let unit_at = text.char_indices().find(|&(at, c)| {
-            let is_exponent =
-                matches!(c, 'e' | 'E') && text[at + 1..].starts_with(|c: char| c.is_ascii_digit() || "+-".contains(c));
+            let is_exponent = matches!(c, 'e' | 'E')
+                && text[at + 1..].starts_with(|c: char| c.is_ascii_digit() || "+-".contains(c));
             c.is_alphabetic() && !is_exponent
         });
         let (number, unit) = text.split_at(unit_at.map_or(text.len(), |(at, _)| at));
@@ -102,10 +125,15 @@ impl<'a> UnitValue<'a> {
         // The sign of micro is one of two characters.
         let unit = unit.trim().to_lowercase().replace('\u{3bc}', "µ");
         match number.parse::<f64>() {
-            Ok(value) => Ok(Self { number, value, unit }),
-            Err(_) if number.contains(',') => {
-                Err(format!("write {} with a point, not a comma", number.replace(',', ".")))
-            }
+            Ok(value) => Ok(Self {
+                number,
+                value,
+                unit,
+            }),
+            Err(_) if number.contains(',') => Err(format!(
+                "write {} with a point, not a comma",
+                number.replace(',', ".")
+            )),
             _ => Err(format!("it begins with no number; write {examples}")),
         }
     }
@@ -113,13 +141,17 @@ impl<'a> UnitValue<'a> {
 
 fn length_unit(unit: &str) -> Result<f64, String> {
     let found = LENGTHS.iter().find(|(name, _)| *name == unit);
-    found.map(|(_, mm)| *mm).ok_or_else(|| format!("'{unit}' is no unit of a length; those are {SHOWN_LENGTHS}"))
+    found
+        .map(|(_, mm)| *mm)
+        .ok_or_else(|| format!("'{unit}' is no unit of a length; those are {SHOWN_LENGTHS}"))
 }
 
 fn feed_unit(unit: &str) -> Result<f64, String> {
     let found = FEEDS.iter().find(|(name, _)| *name == unit);
     let names = || FEEDS.map(|(name, _)| name).join(", ");
-    found.map(|(_, mm_min)| *mm_min).ok_or_else(|| format!("'{unit}' is no unit of a feedrate; those are {}", names()))
+    found
+        .map(|(_, mm_min)| *mm_min)
+        .ok_or_else(|| format!("'{unit}' is no unit of a feedrate; those are {}", names()))
 }
 
 /// A number without digits that say nothing.
@@ -133,7 +165,10 @@ mod tests {
     use super::*;
 
     fn agree(found: f64, wanted: f64, text: &str) {
-        assert!((found - wanted).abs() < 1e-12 * wanted.abs(), "{text}: {found}");
+        assert!(
+            (found - wanted).abs() < 1e-12 * wanted.abs(),
+            "{text}: {found}"
+        );
     }
 
     #[test]
@@ -160,7 +195,10 @@ mod tests {
             let error = feed_mm_s(text).expect_err(text);
             assert!(error.contains(says), "{text}: {error}");
         }
-        assert_eq!((feed_mm_min("500").ok(), feed_mm_min("10mm/s").ok()), (Some(500.0), Some(600.0)));
+        assert_eq!(
+            (feed_mm_min("500").ok(), feed_mm_min("10mm/s").ok()),
+            (Some(500.0), Some(600.0))
+        );
     }
 
     #[test]
@@ -179,7 +217,10 @@ mod tests {
             agree(length_um(text).expect(text), um, text);
         }
         for (text, says) in [
-            ("10nm", "'nm' is no unit of a length; those are um, mm, in, thou"),
+            (
+                "10nm",
+                "'nm' is no unit of a length; those are um, mm, in, thou",
+            ),
             ("0,01mm", "write 0.01 with a point"),
             ("small", "begins with no number"),
             ("inf", "begins with no number"),
@@ -189,7 +230,11 @@ mod tests {
         }
         agree(length_mm("2in").unwrap(), 50.8, "2in");
         assert_eq!(
-            (length_mm("20").ok(), size_mm("0.05").is_err(), slow_feed_mm_min("2e4").is_err()),
+            (
+                length_mm("20").ok(),
+                size_mm("0.05").is_err(),
+                slow_feed_mm_min("2e4").is_err()
+            ),
             (Some(20.0), true, true)
         );
     }

@@ -10,11 +10,13 @@ use miette::{Result, miette};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Reading the program")]
 pub struct ReaderArgs {
-    /// Whose G-code it is: auto, linuxcnc, fanuc, haas, grbl, marlin or klipper; fanuc-mill, fanuc-lathe, haas-mill and haas-lathe where the
-    /// program does not show the machine. auto looks at the beginning.
+    /// Whose G-code it is: auto, linuxcnc, fanuc, haas, grbl, marlin or klipper; fanuc-mill,
+    /// fanuc-lathe, haas-mill and haas-lathe where the program does not show the machine. auto
+    /// looks at the beginning.
     #[arg(long, value_name = "NAME", default_value = AUTO, hide_short_help = true)]
     pub dialect: String,
-    /// What a length without a decimal point counts on a Fanuc or Haas: 0.01mm, 0.001mm or 0.0001mm [default: whole units].
+    /// What a length without a decimal point counts on a Fanuc or Haas: 0.01mm, 0.001mm or 0.0001mm
+    /// [default: whole units].
     #[arg(long, value_name = "LENGTH", value_parser = Increment::named, hide_short_help = true)]
     pub increment: Option<Increment>,
     /// Motions after which a program counts as endless.
@@ -29,7 +31,8 @@ pub struct ReaderArgs {
     /// Unit of the lengths in the tool table.
     #[arg(long, value_name = "UNIT", value_enum, default_value_t = Unit::Mm, requires = "tool_table", hide_short_help = true)]
     pub tool_unit: Unit,
-    /// Folder of subroutines, each in a file of its name (.ngc); may be given several times. The program's own folder comes first.
+    /// Folder of subroutines, each in a file of its name (.ngc); may be given several times. The
+    /// program's own folder comes first.
     #[arg(long, value_name = "FOLDER", hide_short_help = true)]
     pub subroutines: Vec<PathBuf>,
 }
@@ -55,7 +58,11 @@ impl ReaderArgs {
                 folder.display()
             ));
         }
-        let tools = self.tool_table.as_deref().map(|table| ToolTable::read(table, unit_mm)).transpose()?;
+        let tools = self
+            .tool_table
+            .as_deref()
+            .map(|table| ToolTable::read(table, unit_mm))
+            .transpose()?;
         Ok(Settings {
             dialect: Dialect::named(&self.dialect)?,
             increment: self.increment,

@@ -12,18 +12,23 @@ pub(crate) struct JobShard {
 }
 
 fn shard(text: &str) -> Result<JobShard, String> {
-    let numbers = text.split_once('/').and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
+    let numbers = text
+        .split_once('/')
+        .and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
     match numbers {
         Some((number, of)) if 0 < number && number <= of => Ok(JobShard { number, of }),
-        _ => Err("it must be the number of a part and how many parts there are, such as 3/8".to_owned()),
+        _ => Err(
+            "it must be the number of a part and how many parts there are, such as 3/8".to_owned(),
+        ),
     }
 }
 
 /// Run many programs on many machines; go on where a sweep ended
 ///
-/// JOBS.toml lists the jobs. Each is what `feedwright run` does, and its result is a file in FOLDER, named by the content of everything
-/// that the job reads. A result that is there is not computed again, so that a sweep that was killed goes on, and any number of computers
-/// may work on one folder. docs/sweeps.md describes the list.
+/// JOBS.toml lists the jobs. Each is what `feedwright run` does, and its result is a file in
+/// FOLDER, named by the content of everything that the job reads. A result that is there is not
+/// computed again, so that a sweep that was killed goes on, and any number of computers may work on
+/// one folder. docs/sweeps.md describes the list.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Examples:
@@ -39,17 +44,20 @@ pub(crate) struct SweepJobsArgs {
     /// Folder of the results.
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: PathBuf,
-    /// Part of the jobs, such as 3/8 for the third of eight. A job belongs to the same part, whatever else is in the list.
+    /// Part of the jobs, such as 3/8 for the third of eight. A job belongs to the same part,
+    /// whatever else is in the list.
     #[arg(long, value_name = "I/N", value_parser = shard)]
     pub(crate) shard: Option<JobShard>,
-    /// Jobs at once; as many as there are cores where it is left out. The results do not depend on it.
+    /// Jobs at once; as many as there are cores where it is left out. The results do not depend on
+    /// it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) workers: Option<u16>,
 }
 
 /// Write the results of sweeps as one table
 ///
-/// One row for each job, sorted by program, machine and controller. A result that is in several folders is one row.
+/// One row for each job, sorted by program, machine and controller. A result that is in several
+/// folders is one row.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Examples:

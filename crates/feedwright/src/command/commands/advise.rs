@@ -29,22 +29,42 @@ pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
     let target = control(&args.target)?;
     check_tolerance(Some(args.tolerance))?;
     let file_error = file_error(args.file_error, &args.machine)?;
-    let inputs =
-        ProgramInputs::of(&args.part, &args.machine, &args.reader).with_geometry(args.geometry.geometry.as_deref());
+    let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader)
+        .with_geometry(args.geometry.geometry.as_deref());
     inputs.check(console)?;
     let machine = Machine::load(&args.machine)?;
     tell_assumed_limits(&machine, target.stages(&machine));
     let mut files = inputs.outputs();
-    let report = args.report.as_deref().map(|path| files.start(path)).transpose()?;
-    let figure = args.figure.as_deref().map(|path| files.start(path)).transpose()?;
-    let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
+    let report = args
+        .report
+        .as_deref()
+        .map(|path| files.start(path))
+        .transpose()?;
+    let figure = args
+        .figure
+        .as_deref()
+        .map(|path| files.start(path))
+        .transpose()?;
+    let json = args
+        .json
+        .as_deref()
+        .map(|path| files.start(path))
+        .transpose()?;
     let job = AdviseJob {
         controller: find(&args.controller, CONTROLLERS)?,
-        choices: Choices { seed: args.seed, ..Choices::default() },
+        choices: Choices {
+            seed: args.seed,
+            ..Choices::default()
+        },
         compensation: compensation(&args.geometry)?,
         reader: args.reader.settings()?,
         file_error,
-        ..AdviseJob::new(Program::in_file(&args.part), machine, target, args.tolerance)
+        ..AdviseJob::new(
+            Program::in_file(&args.part),
+            machine,
+            target,
+            args.tolerance,
+        )
     };
     let bar = console.bar(0);
     let advice = job.run(&bar)?;
@@ -52,14 +72,21 @@ pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
     for warning in advice.warnings.iter().cloned() {
         warn(warning.into());
     }
-    let part = args.part.file_name().unwrap_or(args.part.as_os_str()).to_string_lossy();
+    let part = args
+        .part
+        .file_name()
+        .unwrap_or(args.part.as_os_str())
+        .to_string_lossy();
     let mut complete = Vec::new();
     if let Some(mut file) = report {
-        advice.write_page(&mut file, &part, &job.machine.name, page_units()).into_diagnostic()?;
+        advice
+            .write_page(&mut file, &part, &job.machine.name, page_units())
+            .into_diagnostic()?;
         complete.push(file);
     }
     if let Some(mut file) = figure {
-        file.write_all(advice.figure(PageUnits::Metric).to_svg().as_bytes()).into_diagnostic()?;
+        file.write_all(advice.figure(PageUnits::Metric).to_svg().as_bytes())
+            .into_diagnostic()?;
         complete.push(file);
     }
     if let Some(mut file) = json {
@@ -70,14 +97,30 @@ pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
         complete.push(file);
     }
     OutputFile::commit_all(complete, &bar)?;
-    let code = if advice.holds() { ExitCode::SUCCESS } else { ExitCode::from(OUT_OF_TOLERANCE) };
+    let code = if advice.holds() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(OUT_OF_TOLERANCE)
+    };
     printed(print(args, &job, &advice), code)
 }
 
 fn print(args: &AdviseArgs, job: &AdviseJob, advice: &Advice) -> std::io::Result<()> {
-    let files = || [args.report.as_deref(), args.figure.as_deref(), args.json.as_deref()];
+    let files = || {
+        [
+            args.report.as_deref(),
+            args.figure.as_deref(),
+            args.json.as_deref(),
+        ]
+    };
     let out = &mut *tables(files());
-    let Advice { tolerance_um, control, planner, programmed_mm_s: [_, largest_mm_s], .. } = advice;
+    let Advice {
+        tolerance_um,
+        control,
+        planner,
+        programmed_mm_s: [_, largest_mm_s],
+        ..
+    } = advice;
     writeln!(
         out,
         "within {tolerance_um} um on {}: feed of the whole program, or of each stretch",
@@ -93,13 +136,32 @@ fn print(args: &AdviseArgs, job: &AdviseJob, advice: &Advice) -> std::io::Result
         TableColumn::optional("each: time s", 1),
         TableColumn::optional("max um", 2),
     ]);
-    for WayAdvice { way, whole, by_stretch, nearest, .. } in &advice.ways {
+    for WayAdvice {
+        way,
+        whole,
+        by_stretch,
+        nearest,
+        ..
+    } in &advice.ways
+    {
         let mut cells = vec![way.name(advice.controller).to_owned()];
         match whole {
-            Some(FeedCut { factor, time_s, rms_um, max_um }) => {
+            Some(FeedCut {
+                factor,
+                time_s,
+                rms_um,
+                max_um,
+            }) => {
                 let percent = 100.0 * factor.unwrap_or(1.0);
-                cells.extend([format!("{percent:.0} %"), format!("{:.0}", 0.6 * percent * largest_mm_s)]);
-                cells.extend([format!("{time_s:.3}"), format!("{rms_um:.2}"), format!("{max_um:.2}")]);
+                cells.extend([
+                    format!("{percent:.0} %"),
+                    format!("{:.0}", 0.6 * percent * largest_mm_s),
+                ]);
+                cells.extend([
+                    format!("{time_s:.3}"),
+                    format!("{rms_um:.2}"),
+                    format!("{max_um:.2}"),
+                ]);
             }
             None => cells.extend(["none", "-", "-", "-", "-"].map(str::to_owned)),
         }
@@ -109,7 +171,11 @@ fn print(args: &AdviseArgs, job: &AdviseJob, advice: &Advice) -> std::io::Result
         }
         table.row(cells);
         if let Some(nearest) = nearest {
-            table.remark(format!("{}. {}", nearest.sentence("um", *largest_mm_s), nearest.why()));
+            table.remark(format!(
+                "{}. {}",
+                nearest.sentence("um", *largest_mm_s),
+                nearest.why()
+            ));
         }
     }
     table.print(out)?;
@@ -118,7 +184,10 @@ fn print(args: &AdviseArgs, job: &AdviseJob, advice: &Advice) -> std::io::Result
         format!("uncorrected, corrected: cut without feedback as {control} plans (planner {planner}); corrected: for that feed"),
     ];
     let assumed = advice.assumed.as_ref().map(FileAssumption::sentence);
-    notes.iter().chain(&assumed).try_for_each(|note| writeln!(out, "{}", wrapped(note, 2)))?;
+    notes
+        .iter()
+        .chain(&assumed)
+        .try_for_each(|note| writeln!(out, "{}", wrapped(note, 2)))?;
     print_stretches(out, advice)?;
     tell_written(out, files())
 }
@@ -129,8 +198,15 @@ fn print_stretches(out: &mut dyn Write, advice: &Advice) -> std::io::Result<()> 
     if advice.stretches.len() < 2 {
         return Ok(());
     }
-    let most = if listed.len() < advice.stretches.len() { ": those that hold the least" } else { "" };
-    writeln!(out, "\nfeed in mm/min that each stretch without a corner holds{most}")?;
+    let most = if listed.len() < advice.stretches.len() {
+        ": those that hold the least"
+    } else {
+        ""
+    };
+    writeln!(
+        out,
+        "\nfeed in mm/min that each stretch without a corner holds{most}"
+    )?;
     let mut table = ConsoleTable::new(vec![
         TableColumn::new("lines"),
         TableColumn::new("programmed"),
@@ -141,13 +217,27 @@ fn print_stretches(out: &mut dyn Write, advice: &Advice) -> std::io::Result<()> 
     ]);
     for stretch in &listed {
         let [first, last] = stretch.lines;
-        let lines = if first == last { first.to_string() } else { format!("{first} to {last}") };
+        let lines = if first == last {
+            first.to_string()
+        } else {
+            format!("{first} to {last}")
+        };
         let [a, b, c] = [0, 1, 2].map(|way| stretch.cell(way, PageUnits::Metric));
         let remark = stretch.remark("um").unwrap_or_default();
-        table.row(vec![lines, format!("{:.0}", 60.0 * stretch.feed_mm_s), a, b, c, remark]);
+        table.row(vec![
+            lines,
+            format!("{:.0}", 60.0 * stretch.feed_mm_s),
+            a,
+            b,
+            c,
+            remark,
+        ]);
     }
     table.print(out)?;
-    if listed.iter().any(|stretch| stretch.nearest.iter().any(Option::is_some)) {
+    if listed
+        .iter()
+        .any(|stretch| stretch.nearest.iter().any(Option::is_some))
+    {
         writeln!(out, "{}", wrapped(STRETCH_LEGEND, 2))?;
     }
     Ok(())

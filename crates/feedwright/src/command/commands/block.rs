@@ -25,47 +25,89 @@ pub(crate) fn run(args: &BlockArgs, console: &Console) -> Result<ExitCode> {
         let model = Model::read(from)?;
         if args.axes.is_some_and(|axes| axes != model.axes()) {
             let hint = "identify the machine again with --axes";
-            return Err(miette!(help = hint, "the model {} has {} axes", from.display(), model.axes()));
+            return Err(miette!(
+                help = hint,
+                "the model {} has {} axes",
+                from.display(),
+                model.axes()
+            ));
         }
         let machine = args.machine.as_deref().map(Machine::load).transpose()?;
         let geometry = BlockGeometry::of(&choice, machine.as_ref())?;
         let what = format!("the model of kind '{}'", identifier_name(model.kind()));
-        (model.block(geometry.known.as_ref()), model.axes(), what, geometry)
+        (
+            model.block(geometry.known.as_ref()),
+            model.axes(),
+            what,
+            geometry,
+        )
     } else {
         if args.machine.is_some() {
-            let hint = "leave --machine out: the geometry is that of the machine itself, or of --geometry";
-            return Err(miette!(help = hint, "--machine goes with a model file (.model.toml), not with a machine"));
+            let hint =
+                "leave --machine out: the geometry is that of the machine itself, or of --geometry";
+            return Err(miette!(
+                help = hint,
+                "--machine goes with a model file (.model.toml), not with a machine"
+            ));
         }
         let machine = Machine::load(&args.file)?;
         let axes = args.axes.unwrap_or(machine.axis_count());
         if axes > machine.axis_count() {
             let hint = "leave --axes out";
-            return Err(miette!(help = hint, "the machine '{}' has {} axes", machine.name, machine.axis_count()));
+            return Err(miette!(
+                help = hint,
+                "the machine '{}' has {} axes",
+                machine.name,
+                machine.axis_count()
+            ));
         }
         let geometry = BlockGeometry::of(&choice, Some(&machine))?;
         let what = format!("the machine '{}' with its own numbers", machine.name);
-        (exact_block(&machine, axes, geometry.known.as_ref()), axes, what, geometry)
+        (
+            exact_block(&machine, axes, geometry.known.as_ref()),
+            axes,
+            what,
+            geometry,
+        )
     };
     let input = (is_model || is_machine_path(from)).then_some(from);
     let mut file = OutputFiles::new(input).start(&args.out)?;
-    file.write_all(&bytes).map_err(|error| OutputError::from_io(error, &args.out))?;
+    file.write_all(&bytes)
+        .map_err(|error| OutputError::from_io(error, &args.out))?;
     OutputFile::commit_all(vec![file], &console.bar(0))?;
     let place = Some(args.out.as_path());
     let mut out = tables([place]);
     let told = writeln!(out, "{what}, {axes} axes: {} bytes", bytes.len());
     let told = told.and_then(|()| writeln!(out, "{}", wrapped(&geometry.told, 2)));
-    let ringing = if axes == 2 { ringing::<2>(&bytes) } else { ringing::<3>(&bytes) };
-    let told = told.and_then(|()| ringing.iter().try_for_each(|axis| writeln!(out, "{}", wrapped(&rings(axis), 2))));
-    printed(told.and_then(|()| tell_written(&mut *out, [place])), ExitCode::SUCCESS)
+    let ringing = if axes == 2 {
+        ringing::<2>(&bytes)
+    } else {
+        ringing::<3>(&bytes)
+    };
+    let told = told.and_then(|()| {
+        ringing
+            .iter()
+            .try_for_each(|axis| writeln!(out, "{}", wrapped(&rings(axis), 2)))
+    });
+    printed(
+        told.and_then(|()| tell_written(&mut *out, [place])),
+        ExitCode::SUCCESS,
+    )
 }
 
 /// Axes whose drives no command can follow.
 fn ringing<const N: usize>(block: &[u8]) -> Vec<&'static str> {
-    let Ok(ModelBlock { trained: Trained::Axes(known), .. }) = ModelBlock::<N>::from_bytes(block) else {
+    let Ok(ModelBlock {
+        trained: Trained::Axes(known),
+        ..
+    }) = ModelBlock::<N>::from_bytes(block)
+    else {
         return vec![];
     };
     let axes = known.axes.into_iter().zip(AXIS_NAMES);
-    axes.filter(|(axis, _)| !axis.is_followed()).map(|(_, name)| name).collect()
+    axes.filter(|(axis, _)| !axis.is_followed())
+        .map(|(_, name)| name)
+        .collect()
 }
 
 /// What is told of such an axis.

@@ -15,7 +15,10 @@ const KB: f64 = 1e3;
 pub(crate) fn run(args: &CacheArgs) -> Result<ExitCode> {
     let mut out = std::io::stdout().lock();
     let Some(folder) = folder() else {
-        let told = writeln!(out, "nothing is kept: FEEDWRIGHT_CACHE is empty, or there is no home folder");
+        let told = writeln!(
+            out,
+            "nothing is kept: FEEDWRIGHT_CACHE is empty, or there is no home folder"
+        );
         return printed(told, ExitCode::SUCCESS);
     };
     let shown = folder.display();
@@ -27,21 +30,37 @@ pub(crate) fn run(args: &CacheArgs) -> Result<ExitCode> {
     };
     if args.clear {
         let removed = clear(&folder).map_err(failed)?;
-        return printed(writeln!(out, "removed {} from {shown}", counted(removed)), ExitCode::SUCCESS);
+        return printed(
+            writeln!(out, "removed {} from {shown}", counted(removed)),
+            ExitCode::SUCCESS,
+        );
     }
     let files = entries(&folder).map_err(failed)?;
     let bytes: u64 = files.iter().map(|file| file.bytes).sum();
     let [kept_kb, most_kb] = [bytes, MOST_BYTES].map(|bytes| bytes as f64 / KB);
     let models = counted(files.len());
-    let mut told = writeln!(out, "{shown}\n{models}, {kept_kb:.0} kB of at most {most_kb:.0} kB");
+    let mut told = writeln!(
+        out,
+        "{shown}\n{models}, {kept_kb:.0} kB of at most {most_kb:.0} kB"
+    );
     let now = SystemTime::now();
-    let age_days = |used: SystemTime| now.duration_since(used).map_or(0.0, |age| age.as_secs_f64() / 86400.0);
-    if let Some(oldest) = files.iter().map(|file| age_days(file.used)).reduce(f64::max) {
+    let age_days = |used: SystemTime| {
+        now.duration_since(used)
+            .map_or(0.0, |age| age.as_secs_f64() / 86400.0)
+    };
+    if let Some(oldest) = files
+        .iter()
+        .map(|file| age_days(file.used))
+        .reduce(f64::max)
+    {
         told = told.and_then(|()| writeln!(out, "the oldest was used {oldest:.1} days ago"));
     }
     printed(told, ExitCode::SUCCESS)
 }
 
 fn counted(models: usize) -> String {
-    format!("{models} identified model{}", if models == 1 { "" } else { "s" })
+    format!(
+        "{models} identified model{}",
+        if models == 1 { "" } else { "s" }
+    )
 }

@@ -17,7 +17,13 @@ use lines::Lines;
 
 pub(crate) fn run(args: &CanonArgs, console: &Console) -> Result<ExitCode> {
     let tools = args.reader.tool_table.as_deref();
-    check_inputs(console, [("the program", Some(args.file.as_path())), ("--tool-table", tools)])?;
+    check_inputs(
+        console,
+        [
+            ("the program", Some(args.file.as_path())),
+            ("--tool-table", tools),
+        ],
+    )?;
     let reader = Reader::open(&args.file, args.reader.settings()?)?;
     if !console.is_quiet() {
         let (dialect, reason) = reader.dialect();
@@ -28,7 +34,8 @@ pub(crate) fn run(args: &CanonArgs, console: &Console) -> Result<ExitCode> {
     printed(result, code)
 }
 
-/// Steps that are read before they are written down, on all cores: writing numbers takes twice the time of reading them.
+/// Steps that are read before they are written down, on all cores: writing numbers takes twice the
+/// time of reading them.
 const BATCH: usize = 4096;
 /// Steps that one core writes down at a time.
 const SHARE: usize = 512;
@@ -57,7 +64,10 @@ fn print(mut reader: Reader, code: &mut ExitCode) -> io::Result<()> {
         if read == 0 {
             return out.flush();
         }
-        batch.par_chunks(SHARE).zip(&mut shares).try_for_each(|(steps, lines)| lines.write(steps))?;
+        batch
+            .par_chunks(SHARE)
+            .zip(&mut shares)
+            .try_for_each(|(steps, lines)| lines.write(steps))?;
         for Lines { text, .. } in &mut shares {
             out.write_all(text)?;
             text.clear();

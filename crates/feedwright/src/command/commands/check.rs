@@ -1,6 +1,7 @@
 //! `feedwright check`: all mistakes of programs and machine files, as a compiler tells them.
 //!
-//! Files are read in parallel, each as a stream; what is printed comes in the order of the arguments, whatever the number of threads.
+//! Files are read in parallel, each as a stream; what is printed comes in the order of the
+//! arguments, whatever the number of threads.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -74,16 +75,26 @@ struct CheckOutput {
 }
 
 pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<ExitCode> {
-    let files = args.files.iter().map(|file| ("a file", Some(file.as_path())));
-    check_inputs(console, files.chain([("--tool-table", args.reader.tool_table.as_deref())]))?;
+    let files = args
+        .files
+        .iter()
+        .map(|file| ("a file", Some(file.as_path())));
+    check_inputs(
+        console,
+        files.chain([("--tool-table", args.reader.tool_table.as_deref())]),
+    )?;
     let settings = match args.reader.settings() {
         Ok(settings) => settings,
         Err(report) => return tool_table(args, report),
     };
     let found = FilesToCheck::find(&args.files);
     let bar = console.bar_unless(args.format != Format::Text, found.files.len() as u64);
-    let mut output =
-        CheckOutput { format: args.format, worst: FileOutcome::Fine, findings: Vec::new(), files: Vec::new() };
+    let mut output = CheckOutput {
+        format: args.format,
+        worst: FileOutcome::Fine,
+        findings: Vec::new(),
+        files: Vec::new(),
+    };
     for remark in &found.remarks {
         crate::command::message::remark(remark);
     }
@@ -96,38 +107,61 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<ExitCode> {
     printed(result, ExitCode::from(output.worst.code()))
 }
 
-/// Tells what is wrong with the tool table, in the format that is asked for; any other error is one of the command line.
+/// Tells what is wrong with the tool table, in the format that is asked for; any other error is one
+/// of the command line.
 fn tool_table(args: &CheckArgs, report: Report) -> Result<ExitCode> {
-    let Some((error, table)) = report.downcast_ref::<ToolTableError>().zip(args.reader.tool_table.as_deref()) else {
+    let Some((error, table)) = report
+        .downcast_ref::<ToolTableError>()
+        .zip(args.reader.tool_table.as_deref())
+    else {
         return Err(report);
     };
     let findings = match error {
         ToolTableError::Faults { faults, .. } => faults.iter().map(Finding::of).collect(),
         ToolTableError::Io { .. } => vec![Finding::of_file(&input::name(table), &report)],
     };
-    let checked = CheckedFile { outcome: FileOutcome::Unreadable, line: None, reports: vec![report], findings };
-    let mut output =
-        CheckOutput { format: args.format, worst: FileOutcome::Fine, findings: Vec::new(), files: Vec::new() };
+    let checked = CheckedFile {
+        outcome: FileOutcome::Unreadable,
+        line: None,
+        reports: vec![report],
+        findings,
+    };
+    let mut output = CheckOutput {
+        format: args.format,
+        worst: FileOutcome::Fine,
+        findings: Vec::new(),
+        files: Vec::new(),
+    };
     let mut out = io::stdout().lock();
-    let result = output.tell(&mut out, table, checked).and_then(|()| output.end(&mut out));
+    let result = output
+        .tell(&mut out, table, checked)
+        .and_then(|()| output.end(&mut out));
     printed(result, ExitCode::from(ERROR))
 }
 
 /// Checks all files and prints what is found in each as soon as those before it are printed.
-fn print(files: &[PathBuf], settings: &Settings, bar: &Bar, output: &mut CheckOutput) -> io::Result<()> {
+fn print(
+    files: &[PathBuf],
+    settings: &Settings,
+    bar: &Bar,
+    output: &mut CheckOutput,
+) -> io::Result<()> {
     let enough = AtomicBool::new(false);
     let (sender, receiver) = mpsc::channel();
     rayon::in_place_scope(|scope| {
         let enough = &enough;
         scope.spawn(move |_| {
             // A bridge hands the files out one by one, so that results come about in their order.
-            files.iter().enumerate().par_bridge().for_each_with(sender, |sender, (number, file)| {
-                // Once printing has failed, no more results are read: the remaining files are
-                // skipped.
-                if !enough.load(Ordering::Relaxed) {
-                    let _ = sender.send((number, check_file(file, settings)));
-                }
-            });
+            files.iter().enumerate().par_bridge().for_each_with(
+                sender,
+                |sender, (number, file)| {
+                    // Once printing has failed, no more results are read: the remaining files are
+                    // skipped.
+                    if !enough.load(Ordering::Relaxed) {
+                        let _ = sender.send((number, check_file(file, settings)));
+                    }
+                },
+            );
         });
         let result = print_in_order(files, &receiver, bar, output);
         enough.store(true, Ordering::Relaxed);
@@ -153,7 +187,12 @@ fn print_in_order(
         }
     }
     if output.format == Format::Text && files.len() > 1 {
-        writeln!(out, "{} files: {} without mistakes, {faulty} with mistakes", files.len(), files.len() - faulty)?;
+        writeln!(
+            out,
+            "{} files: {} without mistakes, {faulty} with mistakes",
+            files.len(),
+            files.len() - faulty
+        )?;
     }
     output.end(&mut out)
 }
@@ -174,12 +213,21 @@ impl CheckOutput {
         match self.format {
             Format::Text => {
                 for report in checked.reports {
-                    if checked.line.is_some() { warn(report) } else { tell(&report) }
+                    if checked.line.is_some() {
+                        warn(report);
+                    } else {
+                        tell(&report);
+                    }
                 }
-                checked.line.iter().try_for_each(|line| writeln!(out, "{}: {}", input::name(file), visible(line)))?;
+                checked.line.iter().try_for_each(|line| {
+                    writeln!(out, "{}: {}", input::name(file), visible(line))
+                })?;
             }
             Format::Github => {
-                checked.findings.iter().try_for_each(|finding| writeln!(out, "{}", finding.github()))?;
+                checked
+                    .findings
+                    .iter()
+                    .try_for_each(|finding| writeln!(out, "{}", finding.github()))?;
             }
             Format::Sarif => self.findings.extend(checked.findings),
             Format::Json => self.files.push(json!({
@@ -194,9 +242,13 @@ impl CheckOutput {
 }
 
 fn check_file(file: &Path, settings: &Settings) -> CheckedFile {
-    let is_machine = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
-    let is_model =
-        is_machine && file.file_stem().is_some_and(|stem| Path::new(stem).extension().is_some_and(|e| e == "model"));
+    let is_machine = file
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+    let is_model = is_machine
+        && file
+            .file_stem()
+            .is_some_and(|stem| Path::new(stem).extension().is_some_and(|e| e == "model"));
     match (is_model, is_machine) {
         (true, _) => model(file),
         (_, true) => machine(file),
@@ -207,12 +259,21 @@ fn check_file(file: &Path, settings: &Settings) -> CheckedFile {
 /// What is told where a file as a whole is wrong.
 fn refused(file: &Path, outcome: FileOutcome, report: Report) -> CheckedFile {
     let findings = vec![Finding::of_file(&input::name(file), &report)];
-    CheckedFile { outcome, line: None, reports: vec![report], findings }
+    CheckedFile {
+        outcome,
+        line: None,
+        reports: vec![report],
+        findings,
+    }
 }
 
 fn machine(file: &Path) -> CheckedFile {
     match Machine::read(file) {
-        Ok(machine) => fine(format!("machine {}, {} axes", machine.name, machine.axis_count())),
+        Ok(machine) => fine(format!(
+            "machine {}, {} axes",
+            machine.name,
+            machine.axis_count()
+        )),
         Err(error) => {
             let findings = match &error {
                 MachineError::File(error) => findings(file, error),
@@ -225,21 +286,40 @@ fn machine(file: &Path) -> CheckedFile {
 
 fn model(file: &Path) -> CheckedFile {
     match Model::read(file) {
-        Ok(model) => {
-            fine(format!("{} model, {} axes, {}", identifier_name(model.kind()), model.axes(), model.about().source))
-        }
+        Ok(model) => fine(format!(
+            "{} model, {} axes, {}",
+            identifier_name(model.kind()),
+            model.axes(),
+            model.about().source
+        )),
         Err(error) => at_fault(file, findings(file, &error), error.into()),
     }
 }
 
 fn fine(line: String) -> CheckedFile {
-    CheckedFile { outcome: FileOutcome::Fine, line: Some(line), reports: Vec::new(), findings: Vec::new() }
+    CheckedFile {
+        outcome: FileOutcome::Fine,
+        line: Some(line),
+        reports: Vec::new(),
+        findings: Vec::new(),
+    }
 }
 
 fn at_fault(file: &Path, findings: Vec<Finding>, error: Report) -> CheckedFile {
-    let outcome = if findings.is_empty() { FileOutcome::Unreadable } else { FileOutcome::Mistakes };
+    let outcome = if findings.is_empty() {
+        FileOutcome::Unreadable
+    } else {
+        FileOutcome::Mistakes
+    };
     let refused = refused(file, outcome, error);
-    if findings.is_empty() { refused } else { CheckedFile { findings, ..refused } }
+    if findings.is_empty() {
+        refused
+    } else {
+        CheckedFile {
+            findings,
+            ..refused
+        }
+    }
 }
 
 /// The faults in the text of a machine file or model file; none where it cannot be read.
@@ -263,11 +343,18 @@ fn findings(file: &Path, error: &FileError) -> Vec<Finding> {
 fn program(file: &Path, settings: Settings) -> CheckedFile {
     let summary = match Program::in_file(file).check(settings) {
         Ok(summary) => summary,
-        Err(CheckError::Read(error)) => return refused(file, FileOutcome::Unreadable, error.into()),
+        Err(CheckError::Read(error)) => {
+            return refused(file, FileOutcome::Unreadable, error.into());
+        }
         Err(CheckError::Faults(faults)) => {
             let findings = faults.iter().map(Finding::of).collect();
             let reports = folded(&faults).into_iter().map(Report::new).collect();
-            return CheckedFile { outcome: FileOutcome::Mistakes, line: None, reports, findings };
+            return CheckedFile {
+                outcome: FileOutcome::Mistakes,
+                line: None,
+                reports,
+                findings,
+            };
         }
     };
     let (dialect, reason) = summary.dialect;
@@ -279,8 +366,16 @@ fn program(file: &Path, settings: Settings) -> CheckedFile {
         summary.rapid_mm
     );
     let findings = summary.warnings.iter().map(Finding::of).collect();
-    let reports = folded(&summary.warnings).into_iter().map(Report::new).collect();
-    CheckedFile { outcome: FileOutcome::Fine, line: Some(line), reports, findings }
+    let reports = folded(&summary.warnings)
+        .into_iter()
+        .map(Report::new)
+        .collect();
+    CheckedFile {
+        outcome: FileOutcome::Fine,
+        line: Some(line),
+        reports,
+        findings,
+    }
 }
 
 fn counted(count: u64, what: &str) -> String {

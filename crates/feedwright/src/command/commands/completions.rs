@@ -16,7 +16,8 @@ pub(crate) fn run(args: &CompletionsArgs, console: &Console) -> Result<ExitCode>
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "feedwright", &mut script);
     let mut file = OutputFiles::default().start(&args.out)?;
-    file.write_all(&script).map_err(|error| OutputError::from_io(error, &args.out))?;
+    file.write_all(&script)
+        .map_err(|error| OutputError::from_io(error, &args.out))?;
     OutputFile::commit_all(vec![file], &console.bar(0))?;
     let out = Some(args.out.as_path());
     printed(tell_written(&mut tables([out]), [out]), ExitCode::SUCCESS)

@@ -12,13 +12,17 @@ use serde_json::{Value, json};
 
 use crate::command::args::correct::CorrectArgs;
 use crate::command::console::Console;
-use crate::command::controls::{check_tolerance, compensation, control, file_error, print_correction};
+use crate::command::controls::{
+    check_tolerance, compensation, control, file_error, print_correction,
+};
 use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell_assumed_limits, warn};
 use crate::command::streams::{ProgramInputs, tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn, figure};
 use crate::command::terminal::wrapped;
 use crate::correct::exported::ExportedFigures;
-use crate::correct::{CorrectJob, CorrectOutcome, CutProgram, LearnedOutcome, LearnedValue, PredictedCut};
+use crate::correct::{
+    CorrectJob, CorrectOutcome, CutProgram, LearnedOutcome, LearnedValue, PredictedCut,
+};
 use crate::measured::MeasuredLog;
 use crate::output::{OutputFile, is_standard_output};
 use crate::results_format::{stamped, write_json};
@@ -27,24 +31,42 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let target = control(&args.target)?;
     check_tolerance(args.tolerance)?;
     let file_error = file_error(args.file_error, &args.machine)?;
-    let inputs =
-        ProgramInputs::of(&args.part, &args.machine, &args.reader).with_geometry(args.geometry.geometry.as_deref());
+    let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader)
+        .with_geometry(args.geometry.geometry.as_deref());
     inputs.check(console)?;
     let machine = Machine::load(&args.machine)?;
     let mut files = inputs.outputs();
-    let mut out = args.out.as_deref().map(|path| files.start(path)).transpose()?;
-    let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
+    let mut out = args
+        .out
+        .as_deref()
+        .map(|path| files.start(path))
+        .transpose()?;
+    let json = args
+        .json
+        .as_deref()
+        .map(|path| files.start(path))
+        .transpose()?;
     let reader = args.reader.settings()?;
     tell_assumed_limits(&machine, target.stages(&machine));
     let compensation = compensation(&args.geometry)?;
     let bar = console.bar(0);
     let logs = logs(args, &bar)?;
     let job = CorrectJob::new(Program::in_file(&args.part), machine, target);
-    let job = CorrectJob { reader, compensation, logs, file_error, keep: kept_beside(args), ..job };
+    let job = CorrectJob {
+        reader,
+        compensation,
+        logs,
+        file_error,
+        keep: kept_beside(args),
+        ..job
+    };
     let outcome = job.run(&bar).inspect_err(|_| {
         bar.clear();
         if let Some(kept) = job.kept_pieces() {
-            remark(&format!("finished pieces are kept in {}; the same command goes on with them", kept.display()));
+            remark(&format!(
+                "finished pieces are kept in {}; the same command goes on with them",
+                kept.display()
+            ));
         }
     })?;
     bar.clear();
@@ -54,8 +76,13 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     for warning in outcome.warnings.iter().cloned() {
         warn(warning.into());
     }
-    let ExportedFigures { max_um, completed, .. } = outcome.corrected;
-    let within = completed && args.tolerance.is_none_or(|tolerance_um| max_um <= tolerance_um);
+    let ExportedFigures {
+        max_um, completed, ..
+    } = outcome.corrected;
+    let within = completed
+        && args
+            .tolerance
+            .is_none_or(|tolerance_um| max_um <= tolerance_um);
     let mut complete = Vec::new();
     match (outcome.program().filter(|_| within), &mut out) {
         (Some(program), Some(file)) => file.write_all(program.as_bytes()).into_diagnostic()?,
@@ -70,14 +97,20 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     OutputFile::commit_all(complete, &bar)?;
     job.forget_pieces().into_diagnostic()?;
     let good = within && outcome.refusal.is_none();
-    let code = if good { ExitCode::SUCCESS } else { ExitCode::from(OUT_OF_TOLERANCE) };
+    let code = if good {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(OUT_OF_TOLERANCE)
+    };
     printed(print(args, &outcome, within), code)
 }
 
-/// Where finished pieces of a long program are kept: beside the corrected program, where that is a file.
+/// Where finished pieces of a long program are kept: beside the corrected program, where that is a
+/// file.
 fn kept_beside(args: &CorrectArgs) -> Option<PathBuf> {
-    let is_file =
-        |path: &&Path| !is_standard_output(path) && !std::fs::metadata(path).is_ok_and(|found| !found.is_file());
+    let is_file = |path: &&Path| {
+        !is_standard_output(path) && !std::fs::metadata(path).is_ok_and(|found| !found.is_file())
+    };
     args.out.as_deref().filter(is_file).map(|path| {
         let mut name = path.as_os_str().to_owned();
         name.push(".pieces");
@@ -87,14 +120,28 @@ fn kept_beside(args: &CorrectArgs) -> Option<PathBuf> {
 
 /// The logs of the part.
 fn logs(args: &CorrectArgs, watch: &dyn Watch) -> Result<Vec<MeasuredLog>> {
-    let columns = args.columns.as_deref().map(Columns::from_str).transpose()?.unwrap_or_default();
-    let read =
-        |path: &PathBuf| Ok(MeasuredLog { name: input::name(path), log: Log::read_watched(path, &columns, watch)? });
+    let columns = args
+        .columns
+        .as_deref()
+        .map(Columns::from_str)
+        .transpose()?
+        .unwrap_or_default();
+    let read = |path: &PathBuf| {
+        Ok(MeasuredLog {
+            name: input::name(path),
+            log: Log::read_watched(path, &columns, watch)?,
+        })
+    };
     args.log.iter().map(read).collect()
 }
 
 /// The figures of a correction, and what was asked for.
-fn results(args: &CorrectArgs, job: &CorrectJob, outcome: &CorrectOutcome, within: bool) -> serde_json::Result<Value> {
+fn results(
+    args: &CorrectArgs,
+    job: &CorrectJob,
+    outcome: &CorrectOutcome,
+    within: bool,
+) -> serde_json::Result<Value> {
     let mut results = json!({
         "part": args.part.display().to_string(),
         "machine": job.machine.name,
@@ -102,7 +149,9 @@ fn results(args: &CorrectArgs, job: &CorrectJob, outcome: &CorrectOutcome, withi
         "within_tolerance": within,
         "written": within && outcome.program().is_some() && args.out.is_some(),
     });
-    if let (Value::Object(all), Value::Object(figures)) = (&mut results, serde_json::to_value(outcome)?) {
+    if let (Value::Object(all), Value::Object(figures)) =
+        (&mut results, serde_json::to_value(outcome)?)
+    {
         all.extend(figures);
     }
     Ok(stamped(results))
@@ -110,7 +159,11 @@ fn results(args: &CorrectArgs, job: &CorrectJob, outcome: &CorrectOutcome, withi
 
 fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io::Result<()> {
     let mut out = tables([args.out.as_deref(), args.json.as_deref()]);
-    let CorrectOutcome { uncorrected, corrected, .. } = outcome;
+    let CorrectOutcome {
+        uncorrected,
+        corrected,
+        ..
+    } = outcome;
     let mut table = ConsoleTable::new(vec![
         TableColumn::new(""),
         TableColumn::new("time s"),
@@ -120,9 +173,18 @@ fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io:
         TableColumn::optional("blocks", 2),
     ]);
     for (name, figures) in [("uncorrected", uncorrected), ("as exported", corrected)] {
-        let ExportedFigures { rms_um, max_um, uncut_um, time_s, blocks, .. } = figures;
+        let ExportedFigures {
+            rms_um,
+            max_um,
+            uncut_um,
+            time_s,
+            blocks,
+            ..
+        } = figures;
         let errors = [rms_um, max_um, uncut_um].map(|um| figure(*um, 2));
-        let cells = std::iter::once(figure(*time_s, 3)).chain(errors).chain([blocks.to_string()]);
+        let cells = std::iter::once(figure(*time_s, 3))
+            .chain(errors)
+            .chain([blocks.to_string()]);
         table.row(std::iter::once(name.to_owned()).chain(cells).collect());
         if !figures.completed {
             table.remark("diverged: the servo loop of this machine is unstable".to_owned());
@@ -132,8 +194,10 @@ fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io:
     let note = "both cut without feedback, as the control plans them; errors are distances to the programmed path";
     writeln!(out, "{}", wrapped(note, 2))?;
     if outcome.pieces > 1 {
-        let note =
-            format!("corrected in {} pieces, one by one; each has its own limits of blocks and time", outcome.pieces);
+        let note = format!(
+            "corrected in {} pieces, one by one; each has its own limits of blocks and time",
+            outcome.pieces
+        );
         writeln!(out, "{}", wrapped(&note, 2))?;
     }
     if let Some(learned) = &outcome.learned {
@@ -142,9 +206,16 @@ fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io:
     print_correction(&mut *out, outcome)?;
     if let Some(tolerance_um) = args.tolerance {
         let verdict = if within { "within" } else { "out of" };
-        writeln!(out, "{verdict} tolerance: max {} um, allowed {tolerance_um} um", figure(corrected.max_um, 2))?;
+        writeln!(
+            out,
+            "{verdict} tolerance: max {} um, allowed {tolerance_um} um",
+            figure(corrected.max_um, 2)
+        )?;
     }
-    let written = args.out.as_deref().filter(|_| within && outcome.program().is_some());
+    let written = args
+        .out
+        .as_deref()
+        .filter(|_| within && outcome.program().is_some());
     if let (None, Some(path), None) = (written, &args.out, &outcome.refusal) {
         writeln!(out, "{} is not written", path.display())?;
     }
@@ -166,9 +237,17 @@ fn print_learned(out: &mut dyn Write, learned: &LearnedOutcome) -> std::io::Resu
             CutProgram::Original => "original",
             CutProgram::Corrected => "corrected",
         };
-        let figures = [log.rms_um, log.max_um, log.model_missed_um, log.missed_um].map(|um| figure(um, 2));
-        let name = Path::new(&log.log).file_name().map_or(log.log.clone(), |name| name.to_string_lossy().into_owned());
-        table.row([name, program.to_owned()].into_iter().chain(figures).collect());
+        let figures =
+            [log.rms_um, log.max_um, log.model_missed_um, log.missed_um].map(|um| figure(um, 2));
+        let name = Path::new(&log.log)
+            .file_name()
+            .map_or(log.log.clone(), |name| name.to_string_lossy().into_owned());
+        table.row(
+            [name, program.to_owned()]
+                .into_iter()
+                .chain(figures)
+                .collect(),
+        );
     }
     writeln!(out)?;
     table.print(out)?;
@@ -181,20 +260,48 @@ fn print_learned(out: &mut dyn Write, learned: &LearnedOutcome) -> std::io::Resu
         );
         writeln!(out, "{}", wrapped(&note, 2))?;
     }
-    let values = learned.values.iter().filter(|value| (value.factor - 1.0).abs() > 2.0 * value.standard_deviation);
-    let values = values.map(|LearnedValue { axis, value, factor, standard_deviation }| {
-        let [percent, sd] = [factor - 1.0, *standard_deviation].map(|part| 100.0 * part);
-        format!("{axis} {} {percent:+.1} +- {sd:.1} %", value.words())
-    });
+    let values = learned
+        .values
+        .iter()
+        .filter(|value| (value.factor - 1.0).abs() > 2.0 * value.standard_deviation);
+    let values = values.map(
+        |LearnedValue {
+             axis,
+             value,
+             factor,
+             standard_deviation,
+         }| {
+            let [percent, sd] = [factor - 1.0, *standard_deviation].map(|part| 100.0 * part);
+            format!("{axis} {} {percent:+.1} +- {sd:.1} %", value.words())
+        },
+    );
     let values: Vec<String> = values.collect();
     if !values.is_empty() {
-        writeln!(out, "{}", wrapped(&format!("the machine is not as its file: {}", values.join(", ")), 2))?;
+        writeln!(
+            out,
+            "{}",
+            wrapped(
+                &format!("the machine is not as its file: {}", values.join(", ")),
+                2
+            )
+        )?;
     }
     let [repeats, rest] = [learned.repeats_um, learned.rest_um].map(|um| figure(um, 2));
-    let note = format!("beside that, RMS {repeats} um repeat and are corrected, and {rest} um do not");
+    let note =
+        format!("beside that, RMS {repeats} um repeat and are corrected, and {rest} um do not");
     writeln!(out, "{}", wrapped(&note, 2))?;
-    let Some(PredictedCut { rms_um, band_um, max_um, .. }) = learned.predicted else { return Ok(()) };
+    let Some(PredictedCut {
+        rms_um,
+        band_um,
+        max_um,
+        ..
+    }) = learned.predicted
+    else {
+        return Ok(());
+    };
     let [rms, low, high, max] = [rms_um, band_um[0], band_um[1], max_um].map(|um| figure(um, 2));
-    let note = format!("the encoders are to show RMS {rms} um ({low} to {high}) and max {max} um in the next cut");
+    let note = format!(
+        "the encoders are to show RMS {rms} um ({low} to {high}) and max {max} um in the next cut"
+    );
     writeln!(out, "{}", wrapped(&note, 2))
 }

@@ -17,12 +17,22 @@ use crate::output::{OutputFile, OutputFiles};
 use crate::results_diff::{DiffSide, diff_figures, write_diff_page};
 
 pub(crate) fn run(args: &DiffArgs, console: &Console) -> Result<ExitCode> {
-    let inputs = [("BEFORE", args.before.as_path()), ("AFTER", args.after.as_path())];
+    let inputs = [
+        ("BEFORE", args.before.as_path()),
+        ("AFTER", args.after.as_path()),
+    ];
     check_inputs(console, inputs.map(|(name, path)| (name, Some(path))))?;
     let mut files = OutputFiles::new(inputs.map(|(_, path)| path));
-    let report = args.report.as_deref().map(|path| files.start(path)).transpose()?;
+    let report = args
+        .report
+        .as_deref()
+        .map(|path| files.start(path))
+        .transpose()?;
     let settings = args.reader.settings()?;
-    let (before, after) = (side(&args.before, &settings)?, side(&args.after, &settings)?);
+    let (before, after) = (
+        side(&args.before, &settings)?,
+        side(&args.after, &settings)?,
+    );
     let figures = diff_figures(&before, &after);
     if figures.is_empty() || before.is_path != after.is_path {
         return Err(miette!(
@@ -38,26 +48,42 @@ pub(crate) fn run(args: &DiffArgs, console: &Console) -> Result<ExitCode> {
     }
     let mut out = tables([args.report.as_deref()]);
     let mut told = writeln!(out, "before: {}\nafter:  {}", before.name, after.name);
-    let columns = ["", "before", "after", "ratio"].map(TableColumn::new).to_vec();
+    let columns = ["", "before", "after", "ratio"]
+        .map(TableColumn::new)
+        .to_vec();
     let mut table = ConsoleTable::new(columns);
     for figure in figures {
         let [before, after] = [figure.before, figure.after].map(|value| format!("{value:.3}"));
         table.row(vec![figure.name.to_owned(), before, after, figure.ratio()]);
     }
-    told = told.and_then(|()| table.print(&mut *out)).and_then(|()| tell_written(&mut *out, [args.report.as_deref()]));
+    told = told
+        .and_then(|()| table.print(&mut *out))
+        .and_then(|()| tell_written(&mut *out, [args.report.as_deref()]));
     printed(told, ExitCode::SUCCESS)
 }
 
 /// A result by the ending of its file, else a program.
 fn side(path: &Path, settings: &Settings) -> Result<DiffSide> {
     let name = input::name(path);
-    if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) {
+    if !path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
+    {
         return Ok(DiffSide::of_program(&Program::in_file(path), settings).map_err(JobError::from)?);
     }
-    let bytes = input::read(path)
-        .map_err(|error| miette!(help = "--json of run, correct or plan writes one", "cannot read {name}: {error}"))?;
-    let result = serde_json::from_slice(&bytes).ok().and_then(|result| DiffSide::of_result(&name, &result));
+    let bytes = input::read(path).map_err(|error| {
+        miette!(
+            help = "--json of run, correct or plan writes one",
+            "cannot read {name}: {error}"
+        )
+    })?;
+    let result = serde_json::from_slice(&bytes)
+        .ok()
+        .and_then(|result| DiffSide::of_result(&name, &result));
     result.ok_or_else(|| {
-        miette!(help = "--json of run, correct or plan writes one", "{name}: this is no result of run, correct or plan")
+        miette!(
+            help = "--json of run, correct or plan writes one",
+            "{name}: this is no result of run, correct or plan"
+        )
     })
 }

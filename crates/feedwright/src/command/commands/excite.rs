@@ -19,11 +19,13 @@ pub(crate) fn run(args: &ExciteArgs, console: &Console) -> Result<ExitCode> {
     let input = Some(PathBuf::from(&args.machine)).filter(|path| is_machine_path(path));
     let (program, said) = program(args, &machine)?;
     let mut file = OutputFiles::new(input.as_deref()).start(&args.out)?;
-    file.write_all(program.as_bytes()).map_err(|error| OutputError::from_io(error, &args.out))?;
+    file.write_all(program.as_bytes())
+        .map_err(|error| OutputError::from_io(error, &args.out))?;
     OutputFile::commit_all(vec![file], &console.bar(0))?;
     let place = Some(args.out.as_path());
     let mut out = tables([place]);
-    let told = writeln!(out, "{}", wrapped(&said, 2)).and_then(|()| tell_written(&mut *out, [place]));
+    let told =
+        writeln!(out, "{}", wrapped(&said, 2)).and_then(|()| tell_written(&mut *out, [place]));
     printed(told, ExitCode::SUCCESS)
 }
 
@@ -36,7 +38,11 @@ fn program(args: &ExciteArgs, machine: &Machine) -> Result<(String, String)> {
             "yz" => [1, 2],
             _ => [0, 1],
         };
-        let program = BallBarProgram { radius_mm, feed_mm_min, plane };
+        let program = BallBarProgram {
+            radius_mm,
+            feed_mm_min,
+            plane,
+        };
         let said = format!(
             "ball bar of {radius_mm} mm in {} at {feed_mm_min} mm/min, both directions, about the zero of the work coordinates; it stops where \
              the bar is mounted and where its record ends",
@@ -45,12 +51,23 @@ fn program(args: &ExciteArgs, machine: &Machine) -> Result<(String, String)> {
         return Ok((program.text(), said));
     }
     if let Some(step_mm) = args.grid {
-        let program = GridProgram { travel_mm: args.travel, step_mm, feed_mm_min };
-        let said =
-            format!("grid over {} mm from the zero of the work coordinates, points {step_mm} mm apart", args.travel);
+        let program = GridProgram {
+            travel_mm: args.travel,
+            step_mm,
+            feed_mm_min,
+        };
+        let said = format!(
+            "grid over {} mm from the zero of the work coordinates, points {step_mm} mm apart",
+            args.travel
+        );
         return Ok((program.text(), said));
     }
-    let program = excitation_program(machine, ExciteOptions { travel_mm: args.travel })?;
+    let program = excitation_program(
+        machine,
+        ExciteOptions {
+            travel_mm: args.travel,
+        },
+    )?;
     let (axes, takes_s, feed_mm_s) = (machine.axis_count(), program.takes_s, program.max_feed_mm_s);
     let said = format!(
         "{axes} axes, about {takes_s:.0} s, at most {feed_mm_s:.1} mm/s, within {} mm on each side of where the machine stands; the first \

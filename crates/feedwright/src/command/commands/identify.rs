@@ -1,4 +1,5 @@
-//! `feedwright identify`: a model of a machine, trained and written; its machine file from a log; its geometry from measurements.
+//! `feedwright identify`: a model of a machine, trained and written; its machine file from a log;
+//! its geometry from measurements.
 
 mod from_log;
 mod from_measurement;
@@ -32,7 +33,11 @@ pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     };
     let controller = find(&args.controller, CONTROLLERS)?;
     let set = settings(&args.set, CONTROLLERS, Some(controller), &[controller])?;
-    let choices = Choices { seed: args.seed, set, ..Choices::default() };
+    let choices = Choices {
+        seed: args.seed,
+        set,
+        ..Choices::default()
+    };
     let machine = Machine::load(&args.machine)?;
     let input = PathBuf::from(&args.machine);
     let input = Some(input.as_path()).filter(|path| is_machine_path(path));
@@ -43,18 +48,32 @@ pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     let mut progress = |part: f64| steps.reach(part);
     let mut setup = Setup::new(&machine, &choices).telling(&mut progress);
     let trained = setup.train(controller, usize::from(args.axes), date);
-    let found = setup.found().and_then(|found| found.as_ref().ok()).cloned().unwrap_or_default();
+    let found = setup
+        .found()
+        .and_then(|found| found.as_ref().ok())
+        .cloned()
+        .unwrap_or_default();
     bar.clear();
     let model = trained?;
-    file.write_all(model.text().as_bytes()).map_err(|error| OutputError::from_io(error, out))?;
+    file.write_all(model.text().as_bytes())
+        .map_err(|error| OutputError::from_io(error, out))?;
     OutputFile::commit_all(vec![file], &bar)?;
     printed(print(&model, &found, &machine, out), ExitCode::SUCCESS)
 }
 
-fn print(model: &Model, found: &[AxisEstimate], machine: &Machine, place: &Path) -> std::io::Result<()> {
+fn print(
+    model: &Model,
+    found: &[AxisEstimate],
+    machine: &Machine,
+    place: &Path,
+) -> std::io::Result<()> {
     let mut out = tables([Some(place)]);
     let (kind, axes, fit) = (identifier_name(model.kind()), model.axes(), model.fit());
-    writeln!(out, "{kind} identifier of {axes} axes, from {} samples: fits to {:.3} um RMS", fit.samples, fit.fit_um)?;
+    writeln!(
+        out,
+        "{kind} identifier of {axes} axes, from {} samples: fits to {:.3} um RMS",
+        fit.samples, fit.fit_um
+    )?;
     if !found.is_empty() {
         print_axes(&mut *out, found, machine)?;
     }
@@ -62,8 +81,15 @@ fn print(model: &Model, found: &[AxisEstimate], machine: &Machine, place: &Path)
 }
 
 /// What was found of each axis, with standard errors.
-fn print_axes(out: &mut dyn Write, found: &[AxisEstimate], machine: &Machine) -> std::io::Result<()> {
-    let names = ["x", "y", "z"].into_iter().take(found.len()).map(TableColumn::new);
+fn print_axes(
+    out: &mut dyn Write,
+    found: &[AxisEstimate],
+    machine: &Machine,
+) -> std::io::Result<()> {
+    let names = ["x", "y", "z"]
+        .into_iter()
+        .take(found.len())
+        .map(TableColumn::new);
     let mut table = ConsoleTable::new(std::iter::once(TableColumn::new("")).chain(names).collect());
     let um_per_rad = |i: usize| machine.axes[i].lead_mm_per_rev * 1e3 / TAU;
     type Value = fn(&AxisParameters, f64) -> f64;
@@ -72,25 +98,44 @@ fn print_axes(out: &mut dyn Write, found: &[AxisEstimate], machine: &Machine) ->
         ("viscous, N m s/rad", |p, _| p.viscous_friction_nm_s),
         ("Coulomb, N m", |p, _| p.coulomb_friction_nm),
         ("asymmetry, N m", |p, _| p.coulomb_asymmetry_nm),
-        ("presliding, um", |p, um_per_rad| p.presliding_rad * um_per_rad),
+        ("presliding, um", |p, um_per_rad| {
+            p.presliding_rad * um_per_rad
+        }),
         ("resonance, Hz", |p, _| p.transmission.resonance_rad_s / TAU),
         ("its damping ratio", |p, _| p.transmission.damping_ratio),
         ("share of the table", |p, _| p.transmission.table_share),
-        ("backlash, um", |p, um_per_rad| p.transmission.backlash_rad * um_per_rad),
+        ("backlash, um", |p, um_per_rad| {
+            p.transmission.backlash_rad * um_per_rad
+        }),
     ];
     let of_screw = |label: &str| rows[5..].iter().any(|(of_screw, _)| *of_screw == label);
     let gives = found.iter().any(|axis| axis.parameters.has_screw());
-    for (label, value) in rows.into_iter().filter(|(label, _)| gives || !of_screw(label)) {
+    for (label, value) in rows
+        .into_iter()
+        .filter(|(label, _)| gives || !of_screw(label))
+    {
         let cell = |(i, axis): (usize, &AxisEstimate)| {
-            let [found, error] = [&axis.parameters, &axis.standard_errors].map(|of| value(of, um_per_rad(i)));
+            let [found, error] =
+                [&axis.parameters, &axis.standard_errors].map(|of| value(of, um_per_rad(i)));
             format!("{} +- {}", three_digits(found), three_digits(error))
         };
-        table.row(std::iter::once(label.to_owned()).chain(found.iter().enumerate().map(cell)).collect());
+        table.row(
+            std::iter::once(label.to_owned())
+                .chain(found.iter().enumerate().map(cell))
+                .collect(),
+        );
     }
     let left = found.iter().map(|axis| three_digits(axis.left_um));
-    table.row(std::iter::once("left, um RMS".to_owned()).chain(left).collect());
+    table.row(
+        std::iter::once("left, um RMS".to_owned())
+            .chain(left)
+            .collect(),
+    );
     table.print(out)?;
-    writeln!(out, "left: what the law found leaves of the measured position")
+    writeln!(
+        out,
+        "left: what the law found leaves of the measured position"
+    )
 }
 
 /// With three digits, whatever its size.
@@ -104,7 +149,29 @@ mod tests {
 
     #[test]
     fn numbers_have_three_digits() {
-        let shown = [0.0, 1.0, 0.0123456, -0.000123456, 123.4, 1234.0, 9.87654e-7, f64::NAN].map(three_digits);
-        assert_eq!(shown, ["0", "1.00", "0.0123", "-0.000123", "123", "1.23e3", "9.88e-7", "NaN"]);
+        let shown = [
+            0.0,
+            1.0,
+            0.0123456,
+            -0.000123456,
+            123.4,
+            1234.0,
+            9.87654e-7,
+            f64::NAN,
+        ]
+        .map(three_digits);
+        assert_eq!(
+            shown,
+            [
+                "0",
+                "1.00",
+                "0.0123",
+                "-0.000123",
+                "123",
+                "1.23e3",
+                "9.88e-7",
+                "NaN"
+            ]
+        );
     }
 }

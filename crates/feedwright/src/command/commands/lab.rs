@@ -9,7 +9,11 @@ use miette::{Result, miette};
 use crate::command::args::lab::LabArgs;
 
 /// File name of the laboratory's command.
-const NAME: &str = if cfg!(windows) { "feedwright-lab.exe" } else { "feedwright-lab" };
+const NAME: &str = if cfg!(windows) {
+    "feedwright-lab.exe"
+} else {
+    "feedwright-lab"
+};
 
 pub(crate) fn run(args: &LabArgs) -> Result<ExitCode> {
     let mut command = Command::new(program());
@@ -25,8 +29,12 @@ pub(crate) fn run(args: &LabArgs) -> Result<ExitCode> {
 
 /// The laboratory beside this command, or its name, which the PATH is searched for.
 fn program() -> PathBuf {
-    let beside = std::env::current_exe().ok().map(|this| this.with_file_name(NAME));
-    beside.filter(|path| path.is_file()).unwrap_or_else(|| PathBuf::from(NAME))
+    let beside = std::env::current_exe()
+        .ok()
+        .map(|this| this.with_file_name(NAME));
+    beside
+        .filter(|path| path.is_file())
+        .unwrap_or_else(|| PathBuf::from(NAME))
 }
 
 /// Takes the place of this process, so that signals and the exit code are those of the laboratory.
@@ -38,6 +46,9 @@ fn start(mut command: Command) -> io::Result<ExitCode> {
 /// Runs the laboratory and returns its exit code.
 #[cfg(not(unix))]
 fn start(mut command: Command) -> io::Result<ExitCode> {
-    let code = command.status()?.code().and_then(|code| u8::try_from(code).ok());
+    let code = command
+        .status()?
+        .code()
+        .and_then(|code| u8::try_from(code).ok());
     Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
 }

@@ -13,7 +13,14 @@ use crate::linuxcnc_setup::LinuxcncSetup;
 
 pub(crate) fn run(args: &LinuxcncArgs, console: &Console) -> Result<ExitCode> {
     let LinuxcncCommand::Setup(args) = &args.command;
-    let LinuxcncSetupArgs { ini, hallib, simulate, raise_ferror, replace, .. } = args;
+    let LinuxcncSetupArgs {
+        ini,
+        hallib,
+        simulate,
+        raise_ferror,
+        replace,
+        ..
+    } = args;
     let setup = LinuxcncSetup {
         ini: ini.clone(),
         hallib: hallib.clone(),
@@ -24,22 +31,40 @@ pub(crate) fn run(args: &LinuxcncArgs, console: &Console) -> Result<ExitCode> {
     if args.undo {
         return undo(&setup);
     }
-    let wiring = if args.dry_run { setup.survey()? } else { setup.wire(&console.bar(0))? };
+    let wiring = if args.dry_run {
+        setup.survey()?
+    } else {
+        setup.wire(&console.bar(0))?
+    };
     let mut out = io::stdout().lock();
     let told = write!(out, "{}", wiring.text(|line| wrapped(line, 4)));
     let told = told.and_then(|()| match wiring.is_wired() {
-        true => tell_written(&mut out, wiring.written.iter().map(|path| Some(path.as_path()))),
+        true => tell_written(
+            &mut out,
+            wiring.written.iter().map(|path| Some(path.as_path())),
+        ),
         false => writeln!(out, "Nothing was written."),
     });
-    printed(told, if wiring.is_wired() { ExitCode::SUCCESS } else { ExitCode::from(MISTAKES) })
+    printed(
+        told,
+        if wiring.is_wired() {
+            ExitCode::SUCCESS
+        } else {
+            ExitCode::from(MISTAKES)
+        },
+    )
 }
 
 fn undo(setup: &LinuxcncSetup) -> Result<ExitCode> {
     let [removed, kept] = setup.undo()?;
     let mut out = io::stdout().lock();
-    let told = removed.iter().try_for_each(|path| writeln!(out, "removed {}", path.display()));
+    let told = removed
+        .iter()
+        .try_for_each(|path| writeln!(out, "removed {}", path.display()));
     let told = told.and_then(|()| {
-        kept.iter().try_for_each(|path| writeln!(out, "kept {}, which was changed by hand", path.display()))
+        kept.iter().try_for_each(|path| {
+            writeln!(out, "kept {}, which was changed by hand", path.display())
+        })
     });
     printed(told, ExitCode::SUCCESS)
 }

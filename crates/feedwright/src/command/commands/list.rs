@@ -21,7 +21,11 @@ pub(crate) fn machines() -> Result<ExitCode> {
     let mut lines = String::new();
     for (name, text) in BUILT_IN_MACHINES {
         let machine = Machine::parse(&format!("{name}.toml"), text)?;
-        let line = format!("{name:<10} {} axes  {}", machine.axis_count(), machine.description);
+        let line = format!(
+            "{name:<10} {} axes  {}",
+            machine.axis_count(),
+            machine.description
+        );
         lines += &(wrapped(&line, 19) + "\n");
     }
     print(&lines)
@@ -30,15 +34,25 @@ pub(crate) fn machines() -> Result<ExitCode> {
 /// Writes a built-in machine as a file to start from.
 pub(crate) fn machine(name: &str, out: Option<&Path>, console: &Console) -> Result<ExitCode> {
     if is_machine_path(Path::new(name)) {
-        return Err(miette!(help = "`feedwright machines` lists them", "'{}' is no built-in machine", visible(name)));
+        return Err(miette!(
+            help = "`feedwright machines` lists them",
+            "'{}' is no built-in machine",
+            visible(name)
+        ));
     }
     Machine::load(name.as_ref())?;
-    let text = machine_document(name).into_diagnostic()?.unwrap_or_default();
+    let text = machine_document(name)
+        .into_diagnostic()?
+        .unwrap_or_default();
     let Some(out) = out else { return print(&text) };
     let mut file = OutputFiles::new([]).start(out)?;
-    file.write_all(text.as_bytes()).map_err(|error| OutputError::from_io(error, out))?;
+    file.write_all(text.as_bytes())
+        .map_err(|error| OutputError::from_io(error, out))?;
     OutputFile::commit_all(vec![file], &console.bar(0))?;
-    printed(tell_written(&mut *tables([Some(out)]), [Some(out)]), ExitCode::SUCCESS)
+    printed(
+        tell_written(&mut *tables([Some(out)]), [Some(out)]),
+        ExitCode::SUCCESS,
+    )
 }
 
 /// Lists the controllers of a table.
@@ -46,7 +60,10 @@ pub fn controllers(table: Controllers) -> Result<ExitCode> {
     let mut lines = String::new();
     for entry in table {
         let best = if entry.name == BEST { " (default)" } else { "" };
-        let line = format!("{:<26} {}; {}{best}", entry.name, entry.summary, entry.source);
+        let line = format!(
+            "{:<26} {}; {}{best}",
+            entry.name, entry.summary, entry.source
+        );
         lines += &(wrapped(&line, 27) + "\n");
     }
     print(&lines)
@@ -70,7 +87,10 @@ pub fn controller(name: &str, table: Controllers) -> Result<ExitCode> {
     ];
     let mut lines: String = head.iter().map(|line| wrapped(line, 2) + "\n").collect();
     if entry.laps > 1 {
-        lines += &format!("laps of the part: {}, all but the last are practice\n", entry.laps);
+        lines += &format!(
+            "laps of the part: {}, all but the last are practice\n",
+            entry.laps
+        );
     }
     if !entry.parameters.is_empty() {
         lines += "\nparameters, for --set NAME=VALUE:\n";
@@ -78,8 +98,14 @@ pub fn controller(name: &str, table: Controllers) -> Result<ExitCode> {
     for parameter in entry.parameters {
         let default = shown(parameter.default);
         let reason = wrapped(&format!("    {}", parameter.reason), 4);
-        let unit = parameter.unit.map_or(String::new(), |unit| format!(" {unit}"));
-        lines += &format!("\n{} = {default}{unit}, allowed {}\n{reason}\n", parameter.name, parameter.range());
+        let unit = parameter
+            .unit
+            .map_or(String::new(), |unit| format!(" {unit}"));
+        lines += &format!(
+            "\n{} = {default}{unit}, allowed {}\n{reason}\n",
+            parameter.name,
+            parameter.range()
+        );
     }
     print(&lines)
 }
@@ -93,7 +119,9 @@ const fn gains(entry: &Entry) -> &'static str {
         (Some(_), _) => "none; it follows the gradient of a trained network",
         (None, Knows::Nothing) if entry.parameters.is_empty() => "none",
         (None, Knows::Nothing) => "those of the parameters below",
-        (None, Knows::EarlierLaps) => "those of the parameters below, on the errors of earlier laps",
+        (None, Knows::EarlierLaps) => {
+            "those of the parameters below, on the errors of earlier laps"
+        }
         (None, Knows::Identified | Knows::ExactModel | Knows::Everything) => {
             "computed when it starts, from the model of the machine and the parameters below"
         }

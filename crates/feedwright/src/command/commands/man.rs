@@ -27,12 +27,17 @@ pub(crate) fn run(args: &ManArgs, console: &Console) -> Result<ExitCode> {
     for page in pages {
         let path = args.out.join(format!("{}.1", page.get_name()));
         let mut file = files.start(&path)?;
-        Man::new(page).render(&mut file).map_err(|error| OutputError::from_io(error, &path))?;
+        Man::new(page)
+            .render(&mut file)
+            .map_err(|error| OutputError::from_io(error, &path))?;
         complete.push(file);
     }
     let count = complete.len();
     OutputFile::commit_all(complete, &console.bar(0))?;
     let mut out = std::io::stdout().lock();
-    let told = std::io::Write::write_fmt(&mut out, format_args!("wrote {count} pages in {}\n", args.out.display()));
+    let told = std::io::Write::write_fmt(
+        &mut out,
+        format_args!("wrote {count} pages in {}\n", args.out.display()),
+    );
     printed(told, ExitCode::SUCCESS)
 }

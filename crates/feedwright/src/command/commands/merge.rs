@@ -16,7 +16,11 @@ use crate::output::{OutputError, OutputFile, OutputFiles, is_standard_output};
 
 pub(crate) fn run(args: &MergeArgs, console: &Console) -> Result<ExitCode> {
     let write = writer(&args.out)?;
-    let stores = args.folders.iter().map(|folder| ResultStore::open(folder)).collect::<Result<Vec<_>>>()?;
+    let stores = args
+        .folders
+        .iter()
+        .map(|folder| ResultStore::open(folder))
+        .collect::<Result<Vec<_>>>()?;
     let mut file = OutputFiles::default().start(&args.out)?;
     let bar = console.bar(0);
     let table = ResultTable::of(&stores, &bar);
@@ -26,7 +30,8 @@ pub(crate) fn run(args: &MergeArgs, console: &Console) -> Result<ExitCode> {
     OutputFile::commit_all(vec![file], &bar)?;
     let place = Some(args.out.as_path());
     let mut out = tables([place]);
-    let told = writeln!(out, "{} results", table.rows.len()).and_then(|()| tell_written(&mut *out, [place]));
+    let told = writeln!(out, "{} results", table.rows.len())
+        .and_then(|()| tell_written(&mut *out, [place]));
     printed(told, ExitCode::SUCCESS)
 }
 

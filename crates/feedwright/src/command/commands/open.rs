@@ -19,17 +19,32 @@ pub(crate) fn run(args: OpenArgs, console: &Console) -> Result<ExitCode> {
     if !HAS_PAGE {
         let help = "take a package of feedwright, which has it; or, in a clone, run `web/page` (Node 20.19 or newer), then \
             `cargo build --release` again";
-        return Err(miette!(help = help, "this feedwright was built without the page"));
+        return Err(miette!(
+            help = help,
+            "this feedwright was built without the page"
+        ));
     }
-    check_inputs(console, args.files.iter().map(|file| ("the program", Some(file.as_path()))))?;
+    check_inputs(
+        console,
+        args.files
+            .iter()
+            .map(|file| ("the program", Some(file.as_path()))),
+    )?;
     for file in args.files.iter().filter(|file| !is_standard_input(file)) {
         let opened = File::open(file).and_then(|file| file.metadata());
         let kind = opened.map_err(|error| miette!("cannot read {}: {error}", input::name(file)))?;
         if kind.is_dir() {
-            return Err(miette!(help = "give the programs in it", "{} is a folder", input::name(file)));
+            return Err(miette!(
+                help = "give the programs in it",
+                "{} is a folder",
+                input::name(file)
+            ));
         }
     }
-    let hal = args.hal.map(|units| HalWatch::start(units.mm()).map_err(no_halcmd)).transpose()?;
+    let hal = args
+        .hal
+        .map(|units| HalWatch::start(units.mm()).map_err(no_halcmd))
+        .transpose()?;
     let server = PageServer::bind(args.files, hal).into_diagnostic()?;
     let address = server.address();
     let mut out = io::stdout();
@@ -47,7 +62,10 @@ pub(crate) fn run(args: OpenArgs, console: &Console) -> Result<ExitCode> {
 fn no_halcmd(error: io::Error) -> Report {
     if error.kind() == ErrorKind::NotFound {
         let help = "run this on the computer of the machine, where LinuxCNC is installed";
-        return miette!(help = help, "there is no halcmd, which reads the pins of LinuxCNC");
+        return miette!(
+            help = help,
+            "there is no halcmd, which reads the pins of LinuxCNC"
+        );
     }
     miette!("halcmd does not start: {error}")
 }
@@ -62,6 +80,11 @@ fn show(address: &str) -> bool {
         ("xdg-open", &[])
     };
     let mut command = Command::new(Path::new(program));
-    command.args(first).arg(address).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command
+        .args(first)
+        .arg(address)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
     command.spawn().is_ok()
 }

@@ -46,24 +46,39 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
     )?;
     let bar = console.bar(0);
     let (exact_settings, band) = (args.exact_settings, usize::from(args.band));
-    let Asked { mut job, inputs, outputs } = asked(args, table, &bar)?;
+    let Asked {
+        mut job,
+        inputs,
+        outputs,
+    } = asked(args, table, &bar)?;
     bar.begin("reading the program", 1);
     let read = job.check()?;
     let (axes, summary) = (read.axes(), read.into_summary());
     let mut files = Files::create(&outputs, inputs.iter().map(PathBuf::as_path), axes)?;
     let of_machine = job.machine.clone();
-    let doubts = if exact_settings { vec![] } else { take_model(&mut job, &of_machine, axes, band, &bar)? };
+    let doubts = if exact_settings {
+        vec![]
+    } else {
+        take_model(&mut job, &of_machine, axes, band, &bar)?
+    };
     let checked = job.check_read(summary)?;
     let outcome = match checked.run(&mut [&mut files], &bar) {
         Ok(outcome) => outcome,
         // That nothing is fast enough is what the answer is, and no mistake of what was asked for.
-        Err(error @ JobError::Fastest { error: FastestError::Impossible { .. }, .. }) => {
+        Err(
+            error @ JobError::Fastest {
+                error: FastestError::Impossible { .. },
+                ..
+            },
+        ) => {
             bar.clear();
             tell(&error.into());
             return Ok(ExitCode::from(OUT_OF_TOLERANCE));
         }
         // The rows go to files, whose errors name them.
-        Err(JobError::Write(error)) => return Err(OutputError::from_io(error, Path::new("the output")).into()),
+        Err(JobError::Write(error)) => {
+            return Err(OutputError::from_io(error, Path::new("the output")).into());
+        }
         Err(error) => return Err(error.into()),
     };
     bar.begin("writing", 1);
@@ -76,12 +91,25 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
         warn(remark.into());
     }
     doubts.iter().for_each(|doubt| remark(doubt));
-    outcome.log_findings.iter().for_each(|finding| remark(&finding.to_string()));
+    outcome
+        .log_findings
+        .iter()
+        .for_each(|finding| remark(&finding.to_string()));
     // Where a program for another control was asked for, that program decides.
     let corrects = outcome.harm.is_empty() && !outcome.report.is_mostly_uncorrected();
     let is_good = outcome.within_tolerance && (corrects || outcome.exported.is_some());
-    let code = if is_good { ExitCode::SUCCESS } else { ExitCode::from(OUT_OF_TOLERANCE) };
-    let Outputs { report, json, trace, learned, out } = &outputs;
+    let code = if is_good {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(OUT_OF_TOLERANCE)
+    };
+    let Outputs {
+        report,
+        json,
+        trace,
+        learned,
+        out,
+    } = &outputs;
     let mut table = tables([report, json, trace, learned, out].map(Option::as_deref));
     printed(summary::print(&mut *table, &job, &outputs, &outcome), code)
 }
@@ -97,9 +125,16 @@ struct Asked {
 fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
     let machine_file = Some(PathBuf::from(&args.machine)).filter(|path| is_machine_path(path));
     let report = args.report.unwrap_or_else(|| report_of(&args.part));
-    let outputs =
-        Outputs { report: Some(report), json: args.json, trace: args.trace, learned: args.learned, out: args.out };
-    if let (Some(controller), true, Some(out)) = (&args.controller, outputs.is_program()?, &outputs.out) {
+    let outputs = Outputs {
+        report: Some(report),
+        json: args.json,
+        trace: args.trace,
+        learned: args.learned,
+        out: args.out,
+    };
+    if let (Some(controller), true, Some(out)) =
+        (&args.controller, outputs.is_program()?, &outputs.out)
+    {
         return Err(no_part(controller, &args.part, out));
     }
     let controller = find(args.controller.as_deref().unwrap_or(BEST), table)?;
@@ -124,16 +159,26 @@ fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
     (job.controller, job.against) = (controller, against);
     job.compensation = compensation(&args.geometry)?;
     job.feed_mm_s = args.feed;
-    job.choices = Choices { seed: args.seed, set, tries: true, ..Choices::default() };
-    let recorded =
-        [controller, against].into_iter().filter_map(|entry| Some((entry, table.recorded(&job.machine, entry)?)));
-    job.choices.take_recorded(recorded.collect::<Vec<_>>().into_iter());
+    job.choices = Choices {
+        seed: args.seed,
+        set,
+        tries: true,
+        ..Choices::default()
+    };
+    let recorded = [controller, against]
+        .into_iter()
+        .filter_map(|entry| Some((entry, table.recorded(&job.machine, entry)?)));
+    job.choices
+        .take_recorded(recorded.collect::<Vec<_>>().into_iter());
     job.model = args.model.as_deref().map(Model::read).transpose()?;
     job.learned_on = outputs.learned.is_some().then(today).transpose()?;
     job.tolerance_um = args.tolerance;
     job.target = outputs.is_program()?.then_some(target);
     job.reference = args.reference.as_ref().map(Program::in_file);
-    job.planned_as = job.reference.as_ref().and_then(|_| corrected_for(&job.program));
+    job.planned_as = job
+        .reference
+        .as_ref()
+        .and_then(|_| corrected_for(&job.program));
     if job.planned_as.is_some() {
         job.compensation = job.compensation.in_program();
     }
@@ -141,12 +186,31 @@ fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
     job.with_limits = true;
     job.reader = args.reader.settings()?;
     if let Some(path) = &args.log {
-        let columns = args.columns.as_deref().map(Columns::from_str).transpose()?.unwrap_or_default();
-        job.log = Some(MeasuredLog { name: input::name(path), log: Log::read_watched(path, &columns, bar)? });
+        let columns = args
+            .columns
+            .as_deref()
+            .map(Columns::from_str)
+            .transpose()?
+            .unwrap_or_default();
+        job.log = Some(MeasuredLog {
+            name: input::name(path),
+            log: Log::read_watched(path, &columns, bar)?,
+        });
     }
     let models = [args.model, args.geometry.geometry, args.log];
-    let read = [machine_file, args.reader.tool_table, args.reference, Some(args.part)].into_iter().chain(models);
-    Ok(Asked { job, inputs: read.flatten().collect(), outputs })
+    let read = [
+        machine_file,
+        args.reader.tool_table,
+        args.reference,
+        Some(args.part),
+    ]
+    .into_iter()
+    .chain(models);
+    Ok(Asked {
+        job,
+        inputs: read.flatten().collect(),
+        outputs,
+    })
 }
 
 /// A corrected program was asked for, and a controller.
@@ -165,7 +229,11 @@ fn no_part(controller: &str, part: &Path, out: &Path) -> miette::Report {
 /// The control that a program is for; setpoints are for none.
 fn target(name: Option<&str>, out: Option<&Path>) -> Result<&'static TargetControl> {
     match (name, out) {
-        (Some(_), Some(out)) if out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) => {
+        (Some(_), Some(out))
+            if out
+                .extension()
+                .is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) =>
+        {
             Err(miette!(
                 help = "leave --for out, or write a program: --out FILE.ngc",
                 "--for is the control of a program, and {} is for setpoints",

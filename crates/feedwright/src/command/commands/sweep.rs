@@ -24,15 +24,30 @@ const NAMED: usize = 5;
 pub(crate) fn run(args: &SweepJobsArgs, console: &Console) -> Result<ExitCode> {
     let list = JobList::read(&args.jobs)?;
     let store = ResultStore::create(&args.out)?;
-    let workers = args.workers.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
+    let workers = args.workers.map_or_else(
+        || std::thread::available_parallelism().map_or(1, usize::from),
+        usize::from,
+    );
     let bar = console.bar(0);
     bar.begin(&format!("{} jobs", list.len()), list.len() as u64);
-    let work = SharedWork { list, store, shard: args.shard, next: AtomicUsize::new(0), tally: Mutex::default() };
+    let work = SharedWork {
+        list,
+        store,
+        shard: args.shard,
+        next: AtomicUsize::new(0),
+        tally: Mutex::default(),
+    };
     std::thread::scope(|scope| (0..workers).for_each(|_| drop(scope.spawn(|| work.on(&bar)))));
     bar.clear();
-    let tally = work.tally.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let tally = work
+        .tally
+        .into_inner()
+        .unwrap_or_else(PoisonError::into_inner);
     if bar.is_cancelled() {
-        remark(&format!("{} results were written; the same command goes on from there", tally.computed));
+        remark(&format!(
+            "{} results were written; the same command goes on from there",
+            tally.computed
+        ));
     }
     bar.check()?;
     tally.finish()
@@ -67,12 +82,20 @@ impl SharedWork {
         while !bar.is_cancelled() {
             match self.list.job(self.next.fetch_add(1, Ordering::Relaxed)) {
                 Ok(None) => return,
-                Ok(Some(job)) if self.shard.is_some_and(|shard| !job.is_in(shard)) => self.tally().elsewhere += 1,
+                Ok(Some(job)) if self.shard.is_some_and(|shard| !job.is_in(shard)) => {
+                    self.tally().elsewhere += 1;
+                }
                 Ok(Some(job)) => match do_job(&self.store, &job, bar) {
-                    Ok(done) => self.tally().add(&done, bar, &format!("{} on {}", job.spec.program, job.spec.machine)),
+                    Ok(done) => self.tally().add(
+                        &done,
+                        bar,
+                        &format!("{} on {}", job.spec.program, job.spec.machine),
+                    ),
                     Err(_) if bar.is_cancelled() => return,
                     // Where one result cannot be written, none can.
-                    Err(error) if error.downcast_ref::<OutputError>().is_some() => return self.stop(error),
+                    Err(error) if error.downcast_ref::<OutputError>().is_some() => {
+                        return self.stop(error);
+                    }
                     Err(error) => self.tally().miss(error, bar),
                 },
                 Err(error) => self.tally().miss(error, bar),
@@ -102,7 +125,12 @@ impl Tally {
         if let Some(error) = &done.error {
             self.mistaken += 1;
             if self.mistaken <= NAMED {
-                bar.aside(|| tell(&miette!("{name}: {}", error.lines().collect::<Vec<_>>().join("; "))));
+                bar.aside(|| {
+                    tell(&miette!(
+                        "{name}: {}",
+                        error.lines().collect::<Vec<_>>().join("; ")
+                    ));
+                });
             }
         }
     }
@@ -115,15 +143,29 @@ impl Tally {
     }
 
     fn finish(self) -> Result<ExitCode> {
-        let Self { computed, found, elsewhere, mistaken, missing, stopped } = self;
+        let Self {
+            computed,
+            found,
+            elsewhere,
+            mistaken,
+            missing,
+            stopped,
+        } = self;
         if let Some(error) = stopped {
-            let what = format!("the sweep ended after {computed} results; the same command goes on from there");
+            let what = format!(
+                "the sweep ended after {computed} results; the same command goes on from there"
+            );
             return Err(error.wrap_err(what));
         }
-        let mut told = format!("{} jobs: {computed} computed, {found} found", computed + found + missing);
-        for (count, what) in
-            [(elsewhere, "in other shards"), (mistaken, "with mistakes"), (missing, "without a result")]
-        {
+        let mut told = format!(
+            "{} jobs: {computed} computed, {found} found",
+            computed + found + missing
+        );
+        for (count, what) in [
+            (elsewhere, "in other shards"),
+            (mistaken, "with mistakes"),
+            (missing, "without a result"),
+        ] {
             if count > 0 {
                 told += &format!(", {count} {what}");
             }
@@ -134,7 +176,11 @@ impl Tally {
                 "{told}"
             ));
         }
-        let code = if mistaken > 0 { ExitCode::from(OUT_OF_TOLERANCE) } else { ExitCode::SUCCESS };
+        let code = if mistaken > 0 {
+            ExitCode::from(OUT_OF_TOLERANCE)
+        } else {
+            ExitCode::SUCCESS
+        };
         printed(writeln!(tables([]), "{told}"), code)
     }
 }

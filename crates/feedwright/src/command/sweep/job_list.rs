@@ -1,6 +1,8 @@
-//! The list of jobs of a sweep: every program on every machine with every controller, and single jobs.
+//! The list of jobs of a sweep: every program on every machine with every controller, and single
+//! jobs.
 //!
-//! Jobs are made when they are asked for by their numbers: a list of a million jobs takes no memory.
+//! Jobs are made when they are asked for by their numbers: a list of a million jobs takes no
+//! memory.
 
 use std::path::{Path, PathBuf};
 
@@ -36,7 +38,8 @@ struct JobFile {
 pub struct JobList {
     folder: PathBuf,
     each: Table,
-    /// The values of each key that the jobs are the product of; those of the last key change fastest.
+    /// The values of each key that the jobs are the product of; those of the last key change
+    /// fastest.
     product: Vec<(&'static str, Vec<Value>)>,
     single: Vec<JobSpec>,
 }
@@ -45,13 +48,16 @@ impl JobList {
     /// Reads a list.
     ///
     /// # Errors
-    /// A file that cannot be read, keys and names that do not exist, a pattern that no program fits.
+    /// A file that cannot be read, keys and names that do not exist, a pattern that no program
+    /// fits.
     pub fn read(path: &Path) -> Result<Self> {
-        let text =
-            std::fs::read_to_string(path).map_err(|error| miette!("{}: cannot be read: {error}", path.display()))?;
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| miette!("{}: cannot be read: {error}", path.display()))?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let in_file = || path.display().to_string();
-        let file: JobFile = toml::from_str(&text).map_err(|error| miette!("{error}")).wrap_err_with(in_file)?;
+        let file: JobFile = toml::from_str(&text)
+            .map_err(|error| miette!("{error}"))
+            .wrap_err_with(in_file)?;
         Self::of(file, folder).wrap_err_with(in_file)
     }
 
@@ -65,13 +71,23 @@ impl JobList {
             ("settings", file.settings),
             ("seed", file.seeds),
         ];
-        let listed = keys.into_iter().filter_map(|(key, values)| Some((key, values?)));
-        let product: Vec<_> = std::iter::once(("program", programs)).chain(listed).collect();
+        let listed = keys
+            .into_iter()
+            .filter_map(|(key, values)| Some((key, values?)));
+        let product: Vec<_> = std::iter::once(("program", programs))
+            .chain(listed)
+            .collect();
         let single = file.job.into_iter().enumerate().map(|(i, job)| {
-            spec(file.each.clone().into_iter().chain(job).collect()).wrap_err_with(|| format!("[[job]] {}", i + 1))
+            spec(file.each.clone().into_iter().chain(job).collect())
+                .wrap_err_with(|| format!("[[job]] {}", i + 1))
         });
         let single = single.collect::<Result<_>>()?;
-        let list = Self { folder, each: file.each, product, single };
+        let list = Self {
+            folder,
+            each: file.each,
+            product,
+            single,
+        };
         list.check()?;
         Ok(list)
     }
@@ -79,8 +95,7 @@ impl JobList {
     /// Makes each value that is listed once, with the first of all others.
     fn check(&self) -> Result<()> {
         if self.len() == 0 {
-            let help =
-                "programs = [\"parts/*.ngc\"] names programs, and [[job]] with program = \"part.ngc\" is a single job";
+            let help = "programs = [\"parts/*.ngc\"] names programs, and [[job]] with program = \"part.ngc\" is a single job";
             return Err(miette!(help = help, "the list has no job"));
         }
         let mut stride = self.product_len();
@@ -93,11 +108,17 @@ impl JobList {
     }
 
     fn product_len(&self) -> usize {
-        self.product.iter().map(|(_, values)| values.len()).product()
+        self.product
+            .iter()
+            .map(|(_, values)| values.len())
+            .product()
     }
 
     /// Number of jobs.
-    #[expect(clippy::len_without_is_empty, reason = "a list without a job is refused when it is read")]
+    #[expect(
+        clippy::len_without_is_empty,
+        reason = "a list without a job is refused when it is read"
+    )]
     pub fn len(&self) -> usize {
         self.product_len() + self.single.len()
     }
@@ -123,18 +144,23 @@ impl JobList {
         } else {
             self.single.get(number - of_product).cloned()
         };
-        Ok(spec.map(|spec| ListedJob { spec, folder: self.folder.clone() }))
+        Ok(spec.map(|spec| ListedJob {
+            spec,
+            folder: self.folder.clone(),
+        }))
     }
 }
 
 /// The job that these keys describe.
 fn spec(table: Table) -> Result<JobSpec> {
-    let spec = JobSpec::deserialize(table).map_err(|error| miette!("{}", error.to_string().trim_end()))?;
+    let spec =
+        JobSpec::deserialize(table).map_err(|error| miette!("{}", error.to_string().trim_end()))?;
     spec.check_names()?;
     Ok(spec)
 }
 
-/// The programs that paths, folders and patterns name, each by its path from the folder of the list.
+/// The programs that paths, folders and patterns name, each by its path from the folder of the
+/// list.
 fn programs(places: &[String], folder: &Path) -> Result<Vec<Value>> {
     let mut found: Vec<PathBuf> = Vec::new();
     for place in places {
@@ -145,12 +171,22 @@ fn programs(places: &[String], folder: &Path) -> Result<Vec<Value>> {
         }
         let base = Pattern::escape(&folder.to_string_lossy());
         let pattern = Path::new(&base).join(place);
-        let files = glob::glob(&pattern.to_string_lossy()).map_err(|error| miette!("programs: '{place}': {error}"))?;
+        let files = glob::glob(&pattern.to_string_lossy())
+            .map_err(|error| miette!("programs: '{place}': {error}"))?;
         let before = found.len();
-        found.extend(files.collect::<Result<Vec<_>, _>>().into_diagnostic()?.into_iter().filter(|file| file.is_file()));
+        found.extend(
+            files
+                .collect::<Result<Vec<_>, _>>()
+                .into_diagnostic()?
+                .into_iter()
+                .filter(|file| file.is_file()),
+        );
         if found.len() == before {
             let help = "paths start in the folder of the list; * stands for any part of a name, ** for any folders";
-            return Err(miette!(help = help, "programs: no file is called '{place}', and none fits it"));
+            return Err(miette!(
+                help = help,
+                "programs: no file is called '{place}', and none fits it"
+            ));
         }
     }
     let files = FilesToCheck::find(&found);
@@ -159,14 +195,16 @@ fn programs(places: &[String], folder: &Path) -> Result<Vec<Value>> {
     }
     let name = |file: &PathBuf| {
         let file = file.strip_prefix(folder).unwrap_or(file);
-        file.to_str().map(Value::from).ok_or_else(|| miette!("programs: {}: the name is no UTF-8", file.display()))
+        file.to_str()
+            .map(Value::from)
+            .ok_or_else(|| miette!("programs: {}: the name is no UTF-8", file.display()))
     };
     files.files.iter().map(name).collect()
 }
 
 impl ListedJob {
-    /// Whether the job belongs to a part of the jobs. The hash of its keys decides: a job stays in its part, whatever is added to the list
-    /// or removed from it, and no file is read for it.
+    /// Whether the job belongs to a part of the jobs. The hash of its keys decides: a job stays in
+    /// its part, whatever is added to the list or removed from it, and no file is read for it.
     pub(crate) fn is_in(&self, shard: JobShard) -> bool {
         let keys = serde_json::json!(self.spec).to_string();
         let hash = u64::from_str_radix(&key_of(&[keys.as_bytes()])[..16], 16).unwrap_or_default();

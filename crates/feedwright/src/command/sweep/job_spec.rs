@@ -1,4 +1,5 @@
-//! One job of a sweep: the keys that describe it, the address that follows from its content, and its cut, as `run` makes it.
+//! One job of a sweep: the keys that describe it, the address that follows from its content, and
+//! its cut, as `run` makes it.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -20,7 +21,8 @@ use crate::job::{Job, JobError};
 use crate::recorded_model::{RecordedModelError, fitting_machines, take_recorded_model};
 use crate::results_format::stamped;
 
-/// Raised whenever the same job gets another result without a new version of feedwright, or a result gets another form.
+/// Raised whenever the same job gets another result without a new version of feedwright, or a
+/// result gets another form.
 const STORE_FORMAT: &str = "feedwright sweep 1";
 
 /// A job of a sweep by the keys of JOBS.toml. Paths are relative to the folder of the list.
@@ -95,7 +97,11 @@ impl Default for JobSpec {
 impl JobSpec {
     /// The same without the texts, which the address covers as contents of files.
     fn named(&self) -> Self {
-        Self { program_text: None, machine_text: None, ..self.clone() }
+        Self {
+            program_text: None,
+            machine_text: None,
+            ..self.clone()
+        }
     }
 
     /// Refuses names of controllers and parameters that do not exist.
@@ -104,20 +110,36 @@ impl JobSpec {
     /// The first of them.
     pub fn check_names(&self) -> Result<()> {
         if self.program.is_empty() {
-            return Err(miette!(help = "program = \"part.ngc\"", "a job needs a program"));
+            return Err(miette!(
+                help = "program = \"part.ngc\"",
+                "a job needs a program"
+            ));
         }
         self.choices().map(drop)
     }
 
     fn choices(&self) -> Result<Choices> {
-        let (controller, against) = (find(&self.controller, CONTROLLERS)?, find(&self.against, CONTROLLERS)?);
+        let (controller, against) = (
+            find(&self.controller, CONTROLLERS)?,
+            find(&self.against, CONTROLLERS)?,
+        );
         let text = |(name, value): (&String, &Value)| match value {
             Value::String(value) => format!("{name}={value}"),
             value => format!("{name}={value}"),
         };
         let texts: Vec<String> = self.settings.iter().map(text).collect();
-        let set = settings(&texts, CONTROLLERS, Some(controller), &[controller, against])?;
-        Ok(Choices { seed: self.seed, set, tries: true, ..Choices::default() })
+        let set = settings(
+            &texts,
+            CONTROLLERS,
+            Some(controller),
+            &[controller, against],
+        )?;
+        Ok(Choices {
+            seed: self.seed,
+            set,
+            tries: true,
+            ..Choices::default()
+        })
     }
 }
 
@@ -152,9 +174,18 @@ impl ListedJob {
     }
 
     fn reader(&self) -> Result<Settings> {
-        let JobSpec { dialect, tool_table, inch_tools, subroutines, .. } = &self.spec;
+        let JobSpec {
+            dialect,
+            tool_table,
+            inch_tools,
+            subroutines,
+            ..
+        } = &self.spec;
         let unit_mm = if *inch_tools { INCH_MM } else { 1.0 };
-        let tools = tool_table.as_ref().map(|path| ToolTable::read(&self.at(path), unit_mm)).transpose()?;
+        let tools = tool_table
+            .as_ref()
+            .map(|path| ToolTable::read(&self.at(path), unit_mm))
+            .transpose()?;
         Ok(Settings {
             dialect: Dialect::named(dialect)?,
             tools: tools.unwrap_or_default(),
@@ -163,8 +194,8 @@ impl ListedJob {
         })
     }
 
-    /// Where the result is stored: a hash of the keys of the job, the version of feedwright, and the contents of all files that the job
-    /// reads, with the subroutines that the program calls.
+    /// Where the result is stored: a hash of the keys of the job, the version of feedwright, and
+    /// the contents of all files that the job reads, with the subroutines that the program calls.
     ///
     /// # Errors
     /// A file that cannot be read.
@@ -172,7 +203,9 @@ impl ListedJob {
         let spec = &self.spec;
         let read = |path: &Path| {
             let hint = "the path of a job starts in the folder of its list";
-            std::fs::read(path).map_err(|error| miette!(help = hint, "{}: cannot be read: {error}", path.display()))
+            std::fs::read(path).map_err(|error| {
+                miette!(help = hint, "{}: cannot be read: {error}", path.display())
+            })
         };
         let mut parts: Vec<Cow<'_, [u8]>> = vec![
             STORE_FORMAT.as_bytes().into(),
@@ -187,22 +220,33 @@ impl ListedJob {
         parts.push(match (self.machine(), &spec.machine_text) {
             (Ok(machine), _) => machine.text().into_bytes().into(),
             (Err(_), Some(text)) => text.as_bytes().into(),
-            (Err(_), None) if is_machine_path(spec.machine.as_ref()) => read(&self.at(&spec.machine))?.into(),
+            (Err(_), None) if is_machine_path(spec.machine.as_ref()) => {
+                read(&self.at(&spec.machine))?.into()
+            }
             (Err(_), None) => Cow::default(),
         });
         for path in spec.model.iter().chain(&spec.tool_table) {
             parts.push(read(&self.at(path))?.into());
         }
         for path in self.subroutine_files() {
-            let name = path.file_name().unwrap_or_default().as_encoded_bytes().to_owned();
+            let name = path
+                .file_name()
+                .unwrap_or_default()
+                .as_encoded_bytes()
+                .to_owned();
             parts.extend([name.into(), read(&path)?.into()]);
         }
         Ok(key_of(&parts.iter().map(AsRef::as_ref).collect::<Vec<_>>()))
     }
 
-    /// The files of subroutines that the program calls; none if it cannot be read, because its result tells why.
+    /// The files of subroutines that the program calls; none if it cannot be read, because its
+    /// result tells why.
     fn subroutine_files(&self) -> Vec<PathBuf> {
-        let Some(mut reader) = self.reader().ok().and_then(|settings| self.program().reader(settings).ok()) else {
+        let Some(mut reader) = self
+            .reader()
+            .ok()
+            .and_then(|settings| self.program().reader(settings).ok())
+        else {
             return vec![];
         };
         (&mut reader).for_each(drop);
@@ -227,7 +271,11 @@ impl ListedJob {
     fn error_result(&self, error: &Report) -> Value {
         let shown = |text: &str| self.relative(text);
         let mut findings = fault_findings(error);
-        for value in findings.iter_mut().filter_map(Value::as_object_mut).flat_map(|finding| finding.values_mut()) {
+        for value in findings
+            .iter_mut()
+            .filter_map(Value::as_object_mut)
+            .flat_map(|finding| finding.values_mut())
+        {
             if let Value::String(text) = value {
                 *text = shown(text);
             }
@@ -237,13 +285,28 @@ impl ListedJob {
 
     /// A message whose paths are those of the list: the same wherever the folder of the list is.
     fn relative(&self, text: &str) -> String {
-        let JobSpec { program, machine, model, tool_table, subroutines, .. } = &self.spec;
-        let listed = [Path::new(program), Path::new(machine)].into_iter().map(Path::to_owned);
+        let JobSpec {
+            program,
+            machine,
+            model,
+            tool_table,
+            subroutines,
+            ..
+        } = &self.spec;
+        let listed = [Path::new(program), Path::new(machine)]
+            .into_iter()
+            .map(Path::to_owned);
         let files = listed.chain(model.iter().chain(tool_table).chain(subroutines).cloned());
-        let files = files.map(|path| self.at(path)).chain(self.subroutine_files());
-        files.fold(text.to_owned(), |text, path| match path.strip_prefix(&self.folder) {
-            Ok(inside) => text.replace(&path.display().to_string(), &inside.display().to_string()),
-            Err(_) => text,
+        let files = files
+            .map(|path| self.at(path))
+            .chain(self.subroutine_files());
+        files.fold(text.to_owned(), |text, path| {
+            match path.strip_prefix(&self.folder) {
+                Ok(inside) => {
+                    text.replace(&path.display().to_string(), &inside.display().to_string())
+                }
+                Err(_) => text,
+            }
         })
     }
 
@@ -251,27 +314,40 @@ impl ListedJob {
         let spec = &self.spec;
         let machine = self.machine()?;
         let mut job = Job::new(self.program(), machine.clone());
-        (job.controller, job.against) = (find(&spec.controller, CONTROLLERS)?, find(&spec.against, CONTROLLERS)?);
+        (job.controller, job.against) = (
+            find(&spec.controller, CONTROLLERS)?,
+            find(&spec.against, CONTROLLERS)?,
+        );
         job.machine_file = is_machine_path(spec.machine.as_ref()).then(|| spec.machine.clone());
         job.choices = spec.choices()?;
         let both = [job.controller, job.against].into_iter();
-        let recorded = both.filter_map(|entry| Some((entry, CONTROLLERS.recorded(&machine, entry)?)));
-        job.choices.take_recorded(recorded.collect::<Vec<_>>().into_iter());
-        job.model = spec.model.as_ref().map(|path| Model::read(&self.at(path))).transpose()?;
-        (job.tolerance_um, job.feed_mm_s, job.fastest) = (spec.tolerance_um, spec.feed_mm_s, spec.fastest);
+        let recorded =
+            both.filter_map(|entry| Some((entry, CONTROLLERS.recorded(&machine, entry)?)));
+        job.choices
+            .take_recorded(recorded.collect::<Vec<_>>().into_iter());
+        job.model = spec
+            .model
+            .as_ref()
+            .map(|path| Model::read(&self.at(path)))
+            .transpose()?;
+        (job.tolerance_um, job.feed_mm_s, job.fastest) =
+            (spec.tolerance_um, spec.feed_mm_s, spec.fastest);
         job.reader = self.reader()?;
         let read = job.check()?;
         let (axes, summary) = (read.axes(), read.into_summary());
         if !spec.exact_settings {
             let model = take_recorded_model(&mut job, &machine, axes, today()?, watch)?;
             if model.is_some() && spec.band > 0 {
-                job.fitting = fitting_machines(&machine, axes, spec.seed, usize::from(spec.band), watch)?;
+                job.fitting =
+                    fitting_machines(&machine, axes, spec.seed, usize::from(spec.band), watch)?;
             }
         }
         let outcome = job.check_read(summary)?.run(&mut [], watch)?;
         let mut text = Vec::new();
         outcome.write_json(&job, &mut text).into_diagnostic()?;
-        let result = serde_json::from_slice(&text).into_diagnostic().wrap_err("a result of feedwright is no JSON")?;
+        let result = serde_json::from_slice(&text)
+            .into_diagnostic()
+            .wrap_err("a result of feedwright is no JSON")?;
         Ok(match &job.model {
             Some(model) if spec.model.is_none() => undated(result, &model.about().date),
             _ => result,
@@ -279,7 +355,8 @@ impl ListedJob {
     }
 }
 
-/// A result without the day on which its model was identified: that follows from the cache, not from the job.
+/// A result without the day on which its model was identified: that follows from the cache, not
+/// from the job.
 fn undated(mut result: Value, date: &str) -> Value {
     for told in ["/assumed/law_from", "/settings/Model"] {
         if let Some(Value::String(text)) = result.pointer_mut(told)
@@ -293,13 +370,21 @@ fn undated(mut result: Value, date: &str) -> Value {
 
 /// The message of the error that a result is, if it is one.
 pub(super) fn error_of(result: &Value) -> Option<String> {
-    Some(result.get("error")?["message"].as_str().unwrap_or_default().to_owned())
+    Some(
+        result.get("error")?["message"]
+            .as_str()
+            .unwrap_or_default()
+            .to_owned(),
+    )
 }
 
 /// Whether another attempt may go otherwise: the error is no result of the job.
 fn passes(error: &Report) -> bool {
     use JobError::{Cancelled as Ended, Read, Reread, Write};
-    let of_job = matches!(error.downcast_ref(), Some(Read(ReadError::Io { .. }) | Reread { .. } | Write(_) | Ended(_)));
+    let of_job = matches!(
+        error.downcast_ref(),
+        Some(Read(ReadError::Io { .. }) | Reread { .. } | Write(_) | Ended(_))
+    );
     of_job
         || matches!(error.downcast_ref(), Some(RecordedModelError::Cancelled(_)))
         || error.downcast_ref::<Cancelled>().is_some()

@@ -26,7 +26,9 @@ impl ResultStore {
     /// A folder that cannot be made.
     pub fn create(folder: &Path) -> Result<Self> {
         make_folder(folder)?;
-        Ok(Self { folder: folder.to_owned() })
+        Ok(Self {
+            folder: folder.to_owned(),
+        })
     }
 
     /// The results in a folder that is there.
@@ -35,7 +37,9 @@ impl ResultStore {
     /// A folder that is not there.
     pub fn open(folder: &Path) -> Result<Self> {
         if folder.is_dir() {
-            return Ok(Self { folder: folder.to_owned() });
+            return Ok(Self {
+                folder: folder.to_owned(),
+            });
         }
         Err(miette!(
             help = "name the folder that `feedwright sweep --out` wrote",
@@ -45,12 +49,16 @@ impl ResultStore {
     }
 
     fn path(&self, address: &str) -> PathBuf {
-        self.folder.join(&address[..FOLDER_DIGITS]).join(format!("{address}.json"))
+        self.folder
+            .join(&address[..FOLDER_DIGITS])
+            .join(format!("{address}.json"))
     }
 
     /// A result; `None` if there is none, or its file is damaged.
     pub fn get(&self, address: &str) -> Option<Value> {
-        read(&self.path(address)).ok().filter(|result| result["address"] == address)
+        read(&self.path(address))
+            .ok()
+            .filter(|result| result["address"] == address)
     }
 
     /// Writes a result. It is on the disk when this returns.
@@ -76,9 +84,13 @@ impl ResultStore {
     /// A folder that cannot be read.
     pub(super) fn files(&self) -> Result<Vec<PathBuf>> {
         let mut files = Vec::new();
-        for folder in entries(&self.folder)?.into_iter().filter(|path| has_digits(path, FOLDER_DIGITS) && path.is_dir())
+        for folder in entries(&self.folder)?
+            .into_iter()
+            .filter(|path| has_digits(path, FOLDER_DIGITS) && path.is_dir())
         {
-            let is_result = |path: &PathBuf| path.extension().is_some_and(|end| end == "json") && has_digits(path, 64);
+            let is_result = |path: &PathBuf| {
+                path.extension().is_some_and(|end| end == "json") && has_digits(path, 64)
+            };
             files.extend(entries(&folder)?.into_iter().filter(is_result));
         }
         Ok(files)
@@ -89,19 +101,27 @@ impl ResultStore {
 pub(super) fn read(path: &Path) -> Result<Value> {
     let shown = || path.display().to_string();
     let bytes = std::fs::read(path).into_diagnostic().wrap_err_with(shown)?;
-    serde_json::from_slice(&bytes).into_diagnostic().wrap_err_with(shown)
+    serde_json::from_slice(&bytes)
+        .into_diagnostic()
+        .wrap_err_with(shown)
 }
 
 fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
-    let found = folder.read_dir().and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect());
-    let mut found: Vec<PathBuf> =
-        found.map_err(|error: std::io::Error| miette!("{}: the folder cannot be read: {error}", folder.display()))?;
+    let found = folder
+        .read_dir()
+        .and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect());
+    let mut found: Vec<PathBuf> = found.map_err(|error: std::io::Error| {
+        miette!("{}: the folder cannot be read: {error}", folder.display())
+    })?;
     found.sort();
     Ok(found)
 }
 
 /// Whether the name, without its ending, has so many hexadecimal digits and nothing else.
 fn has_digits(path: &Path, digits: usize) -> bool {
-    let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+    let stem = path
+        .file_stem()
+        .and_then(|stem| stem.to_str())
+        .unwrap_or_default();
     stem.len() == digits && stem.bytes().all(|byte| byte.is_ascii_hexdigit())
 }

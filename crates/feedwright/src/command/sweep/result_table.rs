@@ -1,4 +1,5 @@
-//! Results of a sweep as a table: one row for each job, its keys, its figures, and those that it is compared with.
+//! Results of a sweep as a table: one row for each job, its keys, its figures, and those that it is
+//! compared with.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -39,8 +40,18 @@ pub struct ResultColumn {
     pointer: &'static str,
 }
 
-const fn column(name: &'static str, is_number: bool, source: ColumnSource, pointer: &'static str) -> ResultColumn {
-    ResultColumn { name, is_number, source, pointer }
+const fn column(
+    name: &'static str,
+    is_number: bool,
+    source: ColumnSource,
+    pointer: &'static str,
+) -> ResultColumn {
+    ResultColumn {
+        name,
+        is_number,
+        source,
+        pointer,
+    }
 }
 
 /// The columns, in the order in which rows are sorted and written.
@@ -64,7 +75,12 @@ pub const RESULT_COLUMNS: [ResultColumn; 27] = {
         column("max_um", true, Run, "/max_um"),
         column("uncut_um", true, Run, "/uncut_um"),
         column("max_deviation_um", true, Run, "/max_deviation_um"),
-        column("max_command_accel_mm_s2", true, Run, "/max_command_accel_mm_s2"),
+        column(
+            "max_command_accel_mm_s2",
+            true,
+            Run,
+            "/max_command_accel_mm_s2",
+        ),
         column("engaged_share", true, Run, "/engaged_share"),
         column("cutting_length_mm", true, Run, "/cutting_length_mm"),
         column("against_time_s", true, Against, "/time_s"),
@@ -89,7 +105,9 @@ impl ResultColumn {
         };
         match within.and_then(|value| value.pointer(self.pointer)) {
             // A list or an object is its text: a cell holds one value.
-            Some(value @ (Value::Array(_) | Value::Object(_))) => spelled_out(&value.to_string()).into(),
+            Some(value @ (Value::Array(_) | Value::Object(_))) => {
+                spelled_out(&value.to_string()).into()
+            }
             Some(value) => value.clone(),
             None => Value::Null,
         }
@@ -111,7 +129,12 @@ impl ResultTable {
     pub fn of(stores: &[ResultStore], watch: &dyn Watch) -> Result<Self> {
         let mut files: BTreeMap<_, PathBuf> = BTreeMap::new();
         for store in stores {
-            files.extend(store.files()?.into_iter().filter_map(|path| Some((path.file_name()?.to_owned(), path))));
+            files.extend(
+                store
+                    .files()?
+                    .into_iter()
+                    .filter_map(|path| Some((path.file_name()?.to_owned(), path))),
+            );
         }
         watch.begin("reading the results", files.len() as u64);
         let mut rows = Vec::with_capacity(files.len());
@@ -123,21 +146,35 @@ impl ResultTable {
                     "a result is damaged: {error:#}"
                 )
             })?;
-            rows.push(RESULT_COLUMNS.iter().map(|column| column.of(&result)).collect());
+            rows.push(
+                RESULT_COLUMNS
+                    .iter()
+                    .map(|column| column.of(&result))
+                    .collect(),
+            );
             watch.advance(1);
         }
         rows.sort_by(|a: &Vec<Value>, b| by_cells(a, b));
         Ok(Self { rows })
     }
 
-    /// Writes a line of names, and a line for each row, separated by commas. A missing value is empty.
+    /// Writes a line of names, and a line for each row, separated by commas. A missing value is
+    /// empty.
     ///
     /// # Errors
     /// What the writer says.
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
-        writeln!(out, "{}", RESULT_COLUMNS.map(|column| column.name).join(","))?;
+        writeln!(
+            out,
+            "{}",
+            RESULT_COLUMNS.map(|column| column.name).join(",")
+        )?;
         for row in &self.rows {
-            writeln!(out, "{}", row.iter().map(csv_cell).collect::<Vec<_>>().join(","))?;
+            writeln!(
+                out,
+                "{}",
+                row.iter().map(csv_cell).collect::<Vec<_>>().join(",")
+            )?;
         }
         Ok(())
     }
@@ -148,8 +185,15 @@ impl ResultTable {
     /// What the writer says.
     pub fn write_json_lines(&self, out: &mut impl Write) -> io::Result<()> {
         for row in &self.rows {
-            let cells = RESULT_COLUMNS.iter().map(|column| column.name.to_owned()).zip(row.iter().cloned());
-            writeln!(out, "{}", spelled_out(&Value::from(cells.collect::<Map<_, _>>()).to_string()))?;
+            let cells = RESULT_COLUMNS
+                .iter()
+                .map(|column| column.name.to_owned())
+                .zip(row.iter().cloned());
+            writeln!(
+                out,
+                "{}",
+                spelled_out(&Value::from(cells.collect::<Map<_, _>>()).to_string())
+            )?;
         }
         Ok(())
     }
@@ -161,7 +205,11 @@ fn csv_cell(value: &Value) -> String {
         Value::Null => String::new(),
         Value::String(text) => {
             let text = text.replace(['\r', '\n'], " ");
-            if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
+            if text.contains([',', '"']) {
+                format!("\"{}\"", text.replace('"', "\"\""))
+            } else {
+                text
+            }
         }
         value => value.to_string(),
     }
@@ -170,10 +218,15 @@ fn csv_cell(value: &Value) -> String {
 /// Rows by their cells from the first on: numbers by value, texts by their letters.
 fn by_cells(a: &[Value], b: &[Value]) -> Ordering {
     let by_cell = |(a, b): (&Value, &Value)| match (a, b) {
-        (Value::Number(a), Value::Number(b)) => {
-            a.as_f64().unwrap_or_default().total_cmp(&b.as_f64().unwrap_or_default())
-        }
+        (Value::Number(a), Value::Number(b)) => a
+            .as_f64()
+            .unwrap_or_default()
+            .total_cmp(&b.as_f64().unwrap_or_default()),
         (a, b) => a.as_str().cmp(&b.as_str()),
     };
-    a.iter().zip(b).map(by_cell).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+    a.iter()
+        .zip(b)
+        .map(by_cell)
+        .find(|order| order.is_ne())
+        .unwrap_or(Ordering::Equal)
 }

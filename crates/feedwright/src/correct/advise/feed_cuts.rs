@@ -18,7 +18,8 @@ use crate::correct::target::TargetControl;
 /// What cuts.
 pub(super) struct FeedBench<'a, const N: usize> {
     pub(super) machine: &'a Machine,
-    /// Machines that an uncertain file may describe: the corrected program is to be good on all of them.
+    /// Machines that an uncertain file may describe: the corrected program is to be good on all of
+    /// them.
     pub(super) file: Option<&'a FileModel>,
     pub(super) target: &'a TargetControl,
     /// Largest unit of length of the program, mm.
@@ -67,7 +68,12 @@ const SETTLES_IN: f64 = 3.0;
 
 impl FeedErrors {
     pub(super) const fn cut(&self, factor: Option<f64>) -> FeedCut {
-        FeedCut { factor, time_s: self.time_s, rms_um: self.rms_um, max_um: self.max_um }
+        FeedCut {
+            factor,
+            time_s: self.time_s,
+            rms_um: self.rms_um,
+            max_um: self.max_um,
+        }
     }
 }
 
@@ -88,7 +94,14 @@ impl<const N: usize> FeedBench<'_, N> {
         let silent = Silent(self.watch);
         let stages = self.target.stages(self.machine);
         let nominal = deterministic(self.machine);
-        let on = |machine| ExportedCut { machine, error: None, stages, original: &original, axes: N, watch: &silent };
+        let on = |machine| ExportedCut {
+            machine,
+            error: None,
+            stages,
+            original: &original,
+            axes: N,
+            watch: &silent,
+        };
         let program = match way {
             CutWay::Corrected => {
                 let found = rounds(
@@ -103,14 +116,26 @@ impl<const N: usize> FeedBench<'_, N> {
             CutWay::Uncorrected | CutWay::Controlled => original.clone(),
         };
         let count = stretches(&parts).count();
-        let nothing = StretchErrors { time_s: 0.0, max_um: 0.0, place: ErrorPlace::Way, way_um: 0.0 };
-        let mut all = FeedErrors { time_s: 0.0, rms_um: 0.0, max_um: 0.0, stretches: vec![nothing; count] };
+        let nothing = StretchErrors {
+            time_s: 0.0,
+            max_um: 0.0,
+            place: ErrorPlace::Way,
+            way_um: 0.0,
+        };
+        let mut all = FeedErrors {
+            time_s: 0.0,
+            rms_um: 0.0,
+            max_um: 0.0,
+            stretches: vec![nothing; count],
+        };
         let phases = on(self.machine).phases();
         for CutPhase { machine, wait_s } in &phases {
             let (program, mut kept) = (waited(&program, *wait_s), CutRows::new(&original));
             let run = match way {
                 CutWay::Controlled => self.controlled(machine, &program, &mut kept, &silent),
-                CutWay::Uncorrected | CutWay::Corrected => on(machine).cut(&program, &mut [&mut kept]),
+                CutWay::Uncorrected | CutWay::Corrected => {
+                    on(machine).cut(&program, &mut [&mut kept])
+                }
             };
             let run = run.map_err(|error| kept.fault(error, machine.period.servo_s))?;
             all.take(&run, &kept.rows, machine, *wait_s);
@@ -128,13 +153,21 @@ impl<const N: usize> FeedBench<'_, N> {
         watch: &dyn Watch,
     ) -> Result<RunResult, RunError> {
         let steps = || Ok(Box::new(program.iter().cloned().map(Ok)) as _);
-        Run::on(machine).within_drives().laps(self.laps).watched(watch).cut(steps, &mut *self.controller, &mut [kept])
+        Run::on(machine)
+            .within_drives()
+            .laps(self.laps)
+            .watched(watch)
+            .cut(steps, &mut *self.controller, &mut [kept])
     }
 }
 
 /// Mean square of the errors where the program cuts, um2.
 fn mean_square_um2(rows: &[CutRow]) -> f64 {
-    let cutting = || rows.iter().filter(|row| row.cutting).map(|row| 1e3 * norm(row.error_mm));
+    let cutting = || {
+        rows.iter()
+            .filter(|row| row.cutting)
+            .map(|row| 1e3 * norm(row.error_mm))
+    };
     cutting().map(|um| um * um).sum::<f64>() / (cutting().count().max(1) as f64)
 }
 
@@ -142,7 +175,10 @@ impl FeedErrors {
     /// Takes in a cut of several, all but its RMS.
     fn take(&mut self, run: &RunResult, rows: &[CutRow], machine: &Machine, wait_s: f64) {
         self.time_s = run.time_s - wait_s;
-        let cutting = rows.iter().filter(|row| row.cutting).map(|row| 1e3 * norm(row.error_mm));
+        let cutting = rows
+            .iter()
+            .filter(|row| row.cutting)
+            .map(|row| 1e3 * norm(row.error_mm));
         self.max_um = cutting.fold(self.max_um, f64::max);
         let servo_s = machine.period.servo_s;
         let settles = (SETTLES_IN / machine.slowest_kp_1_s() / servo_s).ceil() as usize;
@@ -161,14 +197,24 @@ impl StretchErrors {
     /// Adds one of several cuts. The tool settles in the first and last `settles` rows, which do
     /// not count for `way_um`.
     fn take(&mut self, cut: &StretchCut, rows: &[CutRow], settles: usize) {
-        let (from, to) = (cut.rows.start + settles, cut.rows.end.saturating_sub(settles));
+        let (from, to) = (
+            cut.rows.start + settles,
+            cut.rows.end.saturating_sub(settles),
+        );
         let way = rows.get(from..to.max(from)).unwrap_or_default();
-        let way = way.iter().filter(|row| row.cutting).map(|row| 1e3 * norm(row.error_mm));
+        let way = way
+            .iter()
+            .filter(|row| row.cutting)
+            .map(|row| 1e3 * norm(row.error_mm));
         self.way_um = way.fold(self.way_um, f64::max);
         if 1e3 * cut.max_mm > self.max_um {
             self.max_um = 1e3 * cut.max_mm;
             let early = cut.max_row < cut.rows.start + (cut.rows.len() / 2).min(settles);
-            let place = if cut.max_row >= to { ErrorPlace::End } else { ErrorPlace::Way };
+            let place = if cut.max_row >= to {
+                ErrorPlace::End
+            } else {
+                ErrorPlace::Way
+            };
             self.place = if early { ErrorPlace::Start } else { place };
         }
     }

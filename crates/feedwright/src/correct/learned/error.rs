@@ -60,6 +60,8 @@ pub enum LearnError {
 
 impl From<Cancelled> for LearnError {
     fn from(cancelled: Cancelled) -> Self {
-        Self::Measured(MeasuredError::Stopped { stopped: cancelled.into() })
+        Self::Measured(MeasuredError::Stopped {
+            stopped: cancelled.into(),
+        })
     }
 }

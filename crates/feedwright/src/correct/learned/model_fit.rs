@@ -1,17 +1,21 @@
 //! Values of the model that a log shows to be wrong.
 //!
-//! With the command `c` of the log, the model's position `m(c, p)` at the values `p`, and the recorded position `a`, the values are
+//! With the command `c` of the log, the model's position `m(c, p)` at the values `p`, and the
+//! recorded position `a`, the values are
 //!
 //! ```text
 //! min over q, d:  sum_k |a(k) - m(c, p exp(q))(k ts + d)|^2 / (S^2 L)  +  sum q^2 / Q^2  +  sum d^2 / D^2
 //! ```
 //!
-//! by Gauss and Newton. `S` is the RMS of what is left of an axis, `L` the samples of a time constant of the loop, within which errors of
-//! a model are not independent. `Q` = 0.2 is how far a machine file is off; values that the log does not show stay as they are. `d` is the
-//! time between the samples of the log and those of the model. The curvature at the minimum gives the standard deviations.
+//! by Gauss and Newton. `S` is the RMS of what is left of an axis, `L` the samples of a time
+//! constant of the loop, within which errors of a model are not independent. `Q` = 0.2 is how far a
+//! machine file is off; values that the log does not show stay as they are. `d` is the time between
+//! the samples of the log and those of the model. The curvature at the minimum gives the standard
+//! deviations.
 //!
-//! Source: iterative learning with basis functions (van de Wijdeven and Bosgra 2010), which carries what was learned over to another
-//! command. The functions are the changes of the simulated position with each value.
+//! Source: iterative learning with basis functions (van de Wijdeven and Bosgra 2010), which carries
+//! what was learned over to another command. The functions are the changes of the simulated
+//! position with each value.
 
 use feedwright_plan::vector::{Vector, add_scaled, distance, sub};
 use feedwright_sim::{AXIS_NAMES, Axis, Cancelled, Machine, Plant, Watch};
@@ -23,12 +27,13 @@ use crate::correct::nominal::deterministic;
 
 /// Standard deviation of a value of a machine file, natural logarithm.
 const FILE_SD: f64 = 0.2;
-/// Standard deviation of the time between the samples of log and model, s: recorders take positions at either end of a period, and
-/// controls delay commands by some periods.
+/// Standard deviation of the time between the samples of log and model, s: recorders take positions
+/// at either end of a period, and controls delay commands by some periods.
 const LATE_SD_S: f64 = 0.005;
 /// A value that differs from the file by more is that of another machine, times.
 const BOUNDS: [f64; 2] = [0.6, 1.667];
-/// Steps of Gauss and Newton at most, the change by which the derivatives are taken, and the step that is small, natural logarithms.
+/// Steps of Gauss and Newton at most, the change by which the derivatives are taken, and the step
+/// that is small, natural logarithms.
 const STEPS: u32 = 8;
 const DIFFERENCE: f64 = 0.01;
 const SMALL: f64 = 1e-3;
@@ -145,28 +150,48 @@ pub(super) fn at(series: &[Vector], index: f64) -> Vector {
     let index = index.clamp(0.0, last as f64);
     let n = (index as usize).min(last.saturating_sub(1));
     let t = index - n as f64;
-    let [a, b, c, d] = [n.saturating_sub(1), n, (n + 1).min(last), (n + 2).min(last)].map(|k| series[k]);
+    let [a, b, c, d] =
+        [n.saturating_sub(1), n, (n + 1).min(last), (n + 2).min(last)].map(|k| series[k]);
     std::array::from_fn(|i| {
         let (first, second) = (0.5 * (c[i] - a[i]), 0.5 * (d[i] - b[i]));
         let rise = c[i] - b[i];
-        b[i] + t * (first + t * (3.0 * rise - 2.0 * first - second + t * (first + second - 2.0 * rise)))
+        b[i] + t
+            * (first + t * (3.0 * rise - 2.0 * first - second + t * (first + second - 2.0 * rise)))
     })
 }
 
-/// Positions of a model at the starts of its servo periods, mm, that follow the command of a record.
-pub(super) fn followed(machine: &Machine, record: &PartRecord, samples: usize, seed: Option<u64>) -> Vec<Vector> {
+/// Positions of a model at the starts of its servo periods, mm, that follow the command of a
+/// record.
+pub(super) fn followed(
+    machine: &Machine,
+    record: &PartRecord,
+    samples: usize,
+    seed: Option<u64>,
+) -> Vec<Vector> {
     let (servo_s, sample_s) = (machine.period.servo_s, record.cut.sample_s);
     let ratio = servo_s / sample_s;
     let is_same = (ratio - 1.0).abs() < 1e-3;
     let command = &record.cut.command_mm[..samples];
-    let periods = if is_same { samples } else { (samples as f64 / ratio).ceil() as usize };
+    let periods = if is_same {
+        samples
+    } else {
+        (samples as f64 / ratio).ceil() as usize
+    };
     let start_mm = record.cut.actual_mm[0];
     let mut plant = Plant::<3>::with_seed(machine, start_mm, seed.unwrap_or(0));
     let mut positions = vec![start_mm];
     positions.extend((0..periods).map(|n| {
-        let command_mm = if is_same { command[n] } else { at(command, n as f64 * ratio) };
+        let command_mm = if is_same {
+            command[n]
+        } else {
+            at(command, n as f64 * ratio)
+        };
         let measurement = plant.step(command_mm);
-        if seed.is_some() { measurement.measured_mm } else { measurement.joint_mm }
+        if seed.is_some() {
+            measurement.measured_mm
+        } else {
+            measurement.joint_mm
+        }
     }));
     positions
 }
@@ -201,7 +226,11 @@ impl ValueSearch<'_> {
     /// The first sample that the model says something of.
     fn begin(&self, record: &PartRecord) -> usize {
         let rests = distance(record.cut.command_mm[0], record.cut.actual_mm[0]) < RESTS_MM;
-        if rests { 1 } else { (FORGETS / self.base.slowest_kp_1_s() / record.cut.sample_s) as usize }
+        if rests {
+            1
+        } else {
+            (FORGETS / self.base.slowest_kp_1_s() / record.cut.sample_s) as usize
+        }
     }
 
     fn machine(&self, at: &[f64]) -> Machine {
@@ -218,21 +247,37 @@ impl ValueSearch<'_> {
     fn left(&self, record: &PartRecord, followed_mm: &[Vector], late: f64) -> Vec<Vector> {
         let ratio = record.cut.sample_s / self.base.period.servo_s;
         let model = |k: usize| at(followed_mm, (k as f64 + late) * ratio);
-        record.cut.actual_mm.iter().enumerate().map(|(k, actual_mm)| sub(*actual_mm, model(k))).collect()
+        record
+            .cut
+            .actual_mm
+            .iter()
+            .enumerate()
+            .map(|(k, actual_mm)| sub(*actual_mm, model(k)))
+            .collect()
     }
 
     fn follow(&self, at: &[f64]) -> Result<Vec<Vec<Vector>>, Cancelled> {
         self.watch.check()?;
         let machine = deterministic(&self.machine(at));
-        Ok(self.records.iter().map(|record| followed(&machine, record, self.samples(record), None)).collect())
+        Ok(self
+            .records
+            .iter()
+            .map(|record| followed(&machine, record, self.samples(record), None))
+            .collect())
     }
 
     fn point(&self, at: Vec<f64>) -> Result<SearchPoint, Cancelled> {
         let followed_mm = self.follow(&at)?;
         let late = &at[self.axes * self.values.len()..];
         let left_mm = self.records.iter().zip(&followed_mm).zip(late);
-        let left_mm = left_mm.map(|((record, followed_mm), late)| self.left(record, followed_mm, *late)).collect();
-        Ok(SearchPoint { at, followed_mm, left_mm })
+        let left_mm = left_mm
+            .map(|((record, followed_mm), late)| self.left(record, followed_mm, *late))
+            .collect();
+        Ok(SearchPoint {
+            at,
+            followed_mm,
+            left_mm,
+        })
     }
 
     /// Mean square of what is left of each axis, mm2.
@@ -255,26 +300,44 @@ impl ValueSearch<'_> {
 
     fn prior(&self, k: usize) -> f64 {
         let record = k.checked_sub(self.axes * self.values.len());
-        let sd = record.map_or(FILE_SD, |record| LATE_SD_S / self.records[record].cut.sample_s);
+        let sd = record.map_or(FILE_SD, |record| {
+            LATE_SD_S / self.records[record].cut.sample_s
+        });
         1.0 / (sd * sd)
     }
 
     fn cost(&self, point: &SearchPoint, spread_mm2: Vector) -> f64 {
-        let mut cost: f64 = point.at.iter().enumerate().map(|(k, q)| self.prior(k) * q * q).sum();
+        let mut cost: f64 = point
+            .at
+            .iter()
+            .enumerate()
+            .map(|(k, q)| self.prior(k) * q * q)
+            .sum();
         for (record, left_mm) in self.records.iter().zip(&point.left_mm) {
             let weights = self.weights(record, spread_mm2);
             for left_mm in &left_mm[self.begin(record)..self.samples(record)] {
-                cost += (0..self.axes).map(|i| weights[i] * left_mm[i] * left_mm[i]).sum::<f64>();
+                cost += (0..self.axes)
+                    .map(|i| weights[i] * left_mm[i] * left_mm[i])
+                    .sum::<f64>();
             }
         }
         cost
     }
 
     /// Curvature and slope of the cost at a point.
-    fn normal(&self, point: &SearchPoint, spread_mm2: Vector) -> Result<(RowMatrix, Vec<f64>), Cancelled> {
+    fn normal(
+        &self,
+        point: &SearchPoint,
+        spread_mm2: Vector,
+    ) -> Result<(RowMatrix, Vec<f64>), Cancelled> {
         let (size, own) = (point.at.len(), self.values.len());
         let mut curvature = vec![vec![0.0; size]; size];
-        let mut slope: Vec<f64> = point.at.iter().enumerate().map(|(k, q)| -self.prior(k) * q).collect();
+        let mut slope: Vec<f64> = point
+            .at
+            .iter()
+            .enumerate()
+            .map(|(k, q)| -self.prior(k) * q)
+            .collect();
         (0..size).for_each(|k| curvature[k][k] = self.prior(k));
         let changed = |j: usize| {
             let mut at = point.at.clone();
@@ -288,15 +351,29 @@ impl ValueSearch<'_> {
             for k in self.begin(record)..self.samples(record) {
                 let index = (k as f64 + point.at[late]) * ratio;
                 let here = at(&point.followed_mm[n], index);
-                let speed = sub(at(&point.followed_mm[n], index + 0.5), at(&point.followed_mm[n], index - 0.5));
-                let changes: Vec<Vector> = changed.iter().map(|all| sub(at(&all[n], index), here)).collect();
+                let speed = sub(
+                    at(&point.followed_mm[n], index + 0.5),
+                    at(&point.followed_mm[n], index - 0.5),
+                );
+                let changes: Vec<Vector> = changed
+                    .iter()
+                    .map(|all| sub(at(&all[n], index), here))
+                    .collect();
                 for i in 0..self.axes {
                     let place = |j: usize| if j < own { i * own + j } else { late };
-                    let derivative = |j: usize| if j < own { changes[j][i] / DIFFERENCE } else { speed[i] * ratio };
+                    let derivative = |j: usize| {
+                        if j < own {
+                            changes[j][i] / DIFFERENCE
+                        } else {
+                            speed[i] * ratio
+                        }
+                    };
                     for j in 0..=own {
                         let weighted = weights[i] * derivative(j);
                         slope[place(j)] += weighted * point.left_mm[n][k][i];
-                        (0..=own).for_each(|l| curvature[place(j)][place(l)] += weighted * derivative(l));
+                        (0..=own).for_each(|l| {
+                            curvature[place(j)][place(l)] += weighted * derivative(l);
+                        });
                     }
                 }
             }
@@ -305,36 +382,60 @@ impl ValueSearch<'_> {
     }
 
     /// The values at a point, with the triangle of the curvature there.
-    fn learned(&self, point: &SearchPoint, factor: &[Vec<f64>]) -> Result<Vec<LearnedValue>, LearnError> {
+    fn learned(
+        &self,
+        point: &SearchPoint,
+        factor: &[Vec<f64>],
+    ) -> Result<Vec<LearnedValue>, LearnError> {
         let own = self.values.len();
         let value = |k: usize| {
             let (axis, value) = (AXIS_NAMES[k / own], self.values[k % own]);
             let times = libm::exp(point.at[k]);
             if !(BOUNDS[0]..=BOUNDS[1]).contains(&times) {
-                return Err(LearnError::OtherMachine { axis, value: value.words(), factor: times, bounds: BOUNDS });
+                return Err(LearnError::OtherMachine {
+                    axis,
+                    value: value.words(),
+                    factor: times,
+                    bounds: BOUNDS,
+                });
             }
             let mut unit = vec![0.0; point.at.len()];
             unit[k] = 1.0;
             let standard_deviation = solved(factor, &unit)[k].sqrt();
-            Ok(LearnedValue { axis, value, factor: times, standard_deviation })
+            Ok(LearnedValue {
+                axis,
+                value,
+                factor: times,
+                standard_deviation,
+            })
         };
         (0..self.axes * own).map(value).collect()
     }
 
-    /// A point further down, the curvature there before, and how far it is away; none where no step leads down.
+    /// A point further down, the curvature there before, and how far it is away; none where no step
+    /// leads down.
     fn step(&self, from: &SearchPoint) -> Result<(Option<SearchPoint>, RowMatrix, f64), Cancelled> {
         let spread_mm2 = self.spread_mm2(from);
         let (curvature, slope) = self.normal(from, spread_mm2)?;
         let factor = factor_of(&curvature);
         let step = solved(&factor, &slope);
         let values = &step[..self.axes * self.values.len()];
-        let longest = values.iter().fold(0.0_f64, |most, step| most.max(step.abs()));
+        let longest = values
+            .iter()
+            .fold(0.0_f64, |most, step| most.max(step.abs()));
         // A time is found where it changes by less than a fiftieth of a sample.
-        let way = step[values.len()..].iter().fold(longest, |most, step| most.max(SMALL / 0.02 * step.abs()));
+        let way = step[values.len()..]
+            .iter()
+            .fold(longest, |most, step| most.max(SMALL / 0.02 * step.abs()));
         let mut part = (LONGEST / longest.max(1e-12)).min(1.0);
         let cost = self.cost(from, spread_mm2);
         for _ in 0..HALVINGS {
-            let at = from.at.iter().zip(&step).map(|(at, step)| at + part * step).collect();
+            let at = from
+                .at
+                .iter()
+                .zip(&step)
+                .map(|(at, step)| at + part * step)
+                .collect();
             let point = self.point(at)?;
             if self.cost(&point, spread_mm2) < cost {
                 return Ok((Some(point), factor, part * way));
@@ -351,7 +452,11 @@ fn factor_of(matrix: &[Vec<f64>]) -> RowMatrix {
     for i in 0..matrix.len() {
         for j in 0..=i {
             let rest = matrix[i][j] - (0..j).map(|k| lower[i][k] * lower[j][k]).sum::<f64>();
-            lower[i][j] = if i == j { rest.max(f64::MIN_POSITIVE).sqrt() } else { rest / lower[j][j] };
+            lower[i][j] = if i == j {
+                rest.max(f64::MIN_POSITIVE).sqrt()
+            } else {
+                rest / lower[j][j]
+            };
         }
     }
     lower
@@ -375,9 +480,18 @@ fn solved(lower: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     backward(lower, &x)
 }
 
-/// Points of the standard normal distribution: the signs of their parts alternate in another rhythm for each.
+/// Points of the standard normal distribution: the signs of their parts alternate in another rhythm
+/// for each.
 fn alternating(size: usize, rhythm: usize) -> Vec<f64> {
-    (0..size).map(|k| if (k / rhythm).is_multiple_of(2) { 1.0 } else { -1.0 }).collect()
+    (0..size)
+        .map(|k| {
+            if (k / rhythm).is_multiple_of(2) {
+                1.0
+            } else {
+                -1.0
+            }
+        })
+        .collect()
 }
 
 /// Finds the values of a machine that its logs show.
@@ -390,8 +504,19 @@ pub(super) fn fit(
     axes: usize,
     watch: &dyn Watch,
 ) -> Result<ModelFit, LearnError> {
-    let has = |value: &ModelValue| base.axes.iter().take(axes).any(|axis| value.scale(&mut axis.clone(), 1.0));
-    let search = ValueSearch { base, records, axes, values: VALUES.into_iter().filter(has).collect(), watch };
+    let has = |value: &ModelValue| {
+        base.axes
+            .iter()
+            .take(axes)
+            .any(|axis| value.scale(&mut axis.clone(), 1.0))
+    };
+    let search = ValueSearch {
+        base,
+        records,
+        axes,
+        values: VALUES.into_iter().filter(has).collect(),
+        watch,
+    };
     let own = search.values.len();
     let mut point = search.point(vec![0.0; axes * own + records.len()])?;
     let mut factor = Vec::new();
@@ -408,7 +533,12 @@ pub(super) fn fit(
     let likely = [1, 2].into_iter().flat_map(|rhythm| {
         let away = backward(&factor, &alternating(point.at.len(), rhythm));
         [1.0, -1.0].map(|sign| {
-            let at: Vec<f64> = point.at.iter().zip(&away).map(|(at, away)| at + sign * away).collect();
+            let at: Vec<f64> = point
+                .at
+                .iter()
+                .zip(&away)
+                .map(|(at, away)| at + sign * away)
+                .collect();
             search.machine(&at)
         })
     });
@@ -416,22 +546,41 @@ pub(super) fn fit(
     let late = &point.at[axes * own..];
     let whole = deterministic(&search.machine(&point.at));
     let left = |(record, late): (&PartRecord, &f64)| {
-        search.left(record, &followed(&whole, record, record.cut.command_mm.len(), None), *late)
+        search.left(
+            record,
+            &followed(&whole, record, record.cut.command_mm.len(), None),
+            *late,
+        )
     };
     Ok(ModelFit {
         values,
-        late_s: records.iter().zip(late).map(|(record, late)| late * record.cut.sample_s).collect(),
+        late_s: records
+            .iter()
+            .zip(late)
+            .map(|(record, late)| late * record.cut.sample_s)
+            .collect(),
         left_mm: records.iter().zip(late).map(left).collect(),
         likely,
         machine: search.machine(&point.at),
     })
 }
 
-/// What a machine with all its noise adds to the positions of a record, mm: an example of what does not repeat.
+/// What a machine with all its noise adds to the positions of a record, mm: an example of what does
+/// not repeat.
 pub(super) fn noise_of(machine: &Machine, record: &PartRecord, seed: u64) -> Vec<Vector> {
     let samples = record.cut.command_mm.len();
-    let [noisy, quiet] =
-        [followed(machine, record, samples, Some(seed)), followed(&deterministic(machine), record, samples, None)];
+    let [noisy, quiet] = [
+        followed(machine, record, samples, Some(seed)),
+        followed(&deterministic(machine), record, samples, None),
+    ];
     let ratio = record.cut.sample_s / machine.period.servo_s;
-    (0..samples).map(|k| add_scaled(at(&noisy, k as f64 * ratio), -1.0, at(&quiet, k as f64 * ratio))).collect()
+    (0..samples)
+        .map(|k| {
+            add_scaled(
+                at(&noisy, k as f64 * ratio),
+                -1.0,
+                at(&quiet, k as f64 * ratio),
+            )
+        })
+        .collect()
 }

@@ -1,8 +1,10 @@
-//! What was learned, carried over from the samples of a record to those of another command along the same path.
+//! What was learned, carried over from the samples of a record to those of another command along
+//! the same path.
 //!
-//! Samples belong together where the command has come equally far along the programmed path; in a rest, those that are equally long behind
-//! its begin. The error of a model depends on how the command moves, so it is carried over as far as both move alike: with the commanded
-//! speeds `u` and `v`, times
+//! Samples belong together where the command has come equally far along the programmed path; in a
+//! rest, those that are equally long behind its begin. The error of a model depends on how the
+//! command moves, so it is carried over as far as both move alike: with the commanded speeds `u`
+//! and `v`, times
 //!
 //! ```text
 //! 1 / (1 + (|u - v| / (0.2 max(|u|, |v|)))^2)
@@ -44,11 +46,18 @@ impl PathTrack {
 
     /// The first sample at an arc length, and how many are there.
     fn samples_at(&self, s_mm: f64) -> [usize; 2] {
-        let [first, end] = [s_mm - SAME_MM, s_mm + SAME_MM].map(|s_mm| self.s_mm.partition_point(|s| *s < s_mm));
+        let [first, end] =
+            [s_mm - SAME_MM, s_mm + SAME_MM].map(|s_mm| self.s_mm.partition_point(|s| *s < s_mm));
         // Of those that are near, the ones at rest.
         let rest = (first..end).find(|&k| self.rests(k));
         let [first, end] = rest.map_or([first, first], |rest| {
-            [rest, (rest..end).rev().find(|&k| self.rests(k)).map_or(rest, |last| last + 1)]
+            [
+                rest,
+                (rest..end)
+                    .rev()
+                    .find(|&k| self.rests(k))
+                    .map_or(rest, |last| last + 1),
+            ]
         });
         [first, end - first]
     }
@@ -61,15 +70,29 @@ impl PathTrack {
             if self.s_mm.first().is_none_or(|first| s_mm < *first) {
                 return None;
             }
-            rested = if other.rests(k) { rested + other.sample_s / self.sample_s } else { 0.0 };
+            rested = if other.rests(k) {
+                rested + other.sample_s / self.sample_s
+            } else {
+                0.0
+            };
             if rested > 0.0 {
                 let [first, count] = self.samples_at(s_mm);
-                return Some((first as f64 + f64::min(rested, count as f64)).min((self.s_mm.len() - 1) as f64));
+                return Some(
+                    (first as f64 + f64::min(rested, count as f64))
+                        .min((self.s_mm.len() - 1) as f64),
+                );
             }
-            let after = self.s_mm.partition_point(|s| *s < s_mm).min(self.s_mm.len() - 1);
+            let after = self
+                .s_mm
+                .partition_point(|s| *s < s_mm)
+                .min(self.s_mm.len() - 1);
             let before = after.saturating_sub(1);
             let way_mm = self.s_mm[after] - self.s_mm[before];
-            let part = if way_mm > 0.0 { ((s_mm - self.s_mm[before]) / way_mm).clamp(0.0, 1.0) } else { 1.0 };
+            let part = if way_mm > 0.0 {
+                ((s_mm - self.s_mm[before]) / way_mm).clamp(0.0, 1.0)
+            } else {
+                1.0
+            };
             Some(before as f64 + part * (after - before) as f64)
         };
         (0..other.s_mm.len()).map(place).collect()
@@ -90,7 +113,10 @@ impl PlaceError {
         let places = self.track.places_of(other);
         let error = |(k, place): (usize, &Option<f64>)| {
             let Some(place) = place else { return [0.0; 3] };
-            let (theirs, ours) = (other.speed_mm_s(k), self.track.speed_mm_s((*place + 0.5) as usize));
+            let (theirs, ours) = (
+                other.speed_mm_s(k),
+                self.track.speed_mm_s((*place + 0.5) as usize),
+            );
             let apart = norm(sub(theirs, ours)) / norm(theirs).max(norm(ours)).max(LEAST_MM_S);
             let share = 1.0 / (1.0 + (apart / ALIKE).powi(2));
             at(&self.error_mm, *place).map(|error_mm| share * error_mm)
@@ -109,10 +135,19 @@ mod tests {
         let samples = ((2.0 * half_s + rest_s) / sample_s).round() as usize;
         let at = |k: usize| {
             let t_s = k as f64 * sample_s;
-            speed_mm_s * if t_s < half_s { t_s } else { half_s + (t_s - half_s - rest_s).max(0.0) }
+            speed_mm_s
+                * if t_s < half_s {
+                    t_s
+                } else {
+                    half_s + (t_s - half_s - rest_s).max(0.0)
+                }
         };
         let s_mm: Vec<f64> = (0..=samples).map(at).collect();
-        PathTrack { sample_s, command_mm: s_mm.iter().map(|s| [*s, 0.0, 0.0]).collect(), s_mm }
+        PathTrack {
+            sample_s,
+            command_mm: s_mm.iter().map(|s| [*s, 0.0, 0.0]).collect(),
+            s_mm,
+        }
     }
 
     #[test]
@@ -122,19 +157,30 @@ mod tests {
         // 0.1 s behind the start, in the rest, and 0.05 s behind the rest.
         for (k, expected) in [(100, 50.0), (230, 115.0), (310, 175.0)] {
             let place = places[k].unwrap();
-            assert!((place - expected).abs() <= 1.0, "{k}: {place} for {expected}");
+            assert!(
+                (place - expected).abs() <= 1.0,
+                "{k}: {place} for {expected}"
+            );
         }
     }
 
     #[test]
     fn an_error_is_carried_over_to_a_command_that_moves_alike_and_not_to_another() {
         let track_50 = track(0.001, 50.0, 0.0);
-        let error = PlaceError { error_mm: vec![[0.01, -0.02, 0.0]; track_50.s_mm.len()], track: track_50 };
+        let error = PlaceError {
+            error_mm: vec![[0.01, -0.02, 0.0]; track_50.s_mm.len()],
+            track: track_50,
+        };
         let mean = |speed_mm_s: f64| {
             let errors = error.along(&track(0.001, speed_mm_s, 0.0));
             errors.iter().map(|error| error[1]).sum::<f64>() / errors.len() as f64
         };
-        assert!((mean(50.0) + 0.02).abs() < 1e-4 && (mean(40.0) + 0.01).abs() < 1e-3, "{} {}", mean(50.0), mean(40.0));
+        assert!(
+            (mean(50.0) + 0.02).abs() < 1e-4 && (mean(40.0) + 0.01).abs() < 1e-3,
+            "{} {}",
+            mean(50.0),
+            mean(40.0)
+        );
         assert!(mean(10.0) > -0.002, "{}", mean(10.0));
     }
 }

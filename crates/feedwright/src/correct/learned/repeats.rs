@@ -1,15 +1,17 @@
 //! What of the records repeats, and what does not.
 //!
-//! A sequence is split into bands: the differences of moving averages over 1, 3, 7, 15, ... samples. In each band and axis, what repeats is
-//! the mean of the records times the weight of Wiener (1949),
+//! A sequence is split into bands: the differences of moving averages over 1, 3, 7, 15, ...
+//! samples. In each band and axis, what repeats is the mean of the records times the weight of
+//! Wiener (1949),
 //!
 //! ```text
 //! w = max(0, 1 - N / P),
 //! ```
 //!
-//! with the mean square `P` of the mean, and `N` that of what does not repeat in it. Of several records, the differences from their mean
-//! show `N`. One record does not tell it: `N` is twice what the machine file says of disturbance and noise, since that scatters from cut to
-//! cut, and at least half of `P`.
+//! with the mean square `P` of the mean, and `N` that of what does not repeat in it. Of several
+//! records, the differences from their mean show `N`. One record does not tell it: `N` is twice
+//! what the machine file says of disturbance and noise, since that scatters from cut to cut, and at
+//! least half of `P`.
 
 use feedwright_plan::vector::{Vector, add_scaled, sub};
 
@@ -36,7 +38,11 @@ fn averaged(values: &[Vector], reach: usize) -> Vec<Vector> {
             })
             .collect()
     };
-    if values.is_empty() { Vec::new() } else { once(&once(values)) }
+    if values.is_empty() {
+        Vec::new()
+    } else {
+        once(&once(values))
+    }
 }
 
 /// A sequence in bands, fast ones first; their sum is the sequence.
@@ -45,7 +51,12 @@ fn bands(values: &[Vector]) -> Vec<Vec<Vector>> {
     let mut bands = Vec::new();
     for band in 0..BANDS - 1 {
         let slower = averaged(&rest, 1 << band);
-        bands.push(rest.iter().zip(&slower).map(|(value, slow)| sub(*value, *slow)).collect());
+        bands.push(
+            rest.iter()
+                .zip(&slower)
+                .map(|(value, slow)| sub(*value, *slow))
+                .collect(),
+        );
         rest = slower;
     }
     bands.push(rest);
@@ -53,20 +64,39 @@ fn bands(values: &[Vector]) -> Vec<Vec<Vector>> {
 }
 
 fn mean_square(values: &[Vector], axis: usize) -> f64 {
-    values.iter().map(|value| value[axis] * value[axis]).sum::<f64>() / values.len().max(1) as f64
+    values
+        .iter()
+        .map(|value| value[axis] * value[axis])
+        .sum::<f64>()
+        / values.len().max(1) as f64
 }
 
-/// What repeats of records that stand beside each other sample by sample; `noise` is an example of what does not by the machine file.
+/// What repeats of records that stand beside each other sample by sample; `noise` is an example of
+/// what does not by the machine file.
 pub(super) fn repeating(records: &[Vec<Vector>], noise: &[Vector]) -> Vec<Vector> {
     let count = records.len() as f64;
     let samples = records.iter().map(Vec::len).min().unwrap_or(0);
     let mean: Vec<Vector> = (0..samples)
-        .map(|k| records.iter().fold([0.0; 3], |sum, record| add_scaled(sum, 1.0 / count, record[k])))
+        .map(|k| {
+            records.iter().fold([0.0; 3], |sum, record| {
+                add_scaled(sum, 1.0 / count, record[k])
+            })
+        })
         .collect();
     let apart = |record: &Vec<Vector>| -> Vec<Vec<Vector>> {
-        bands(&record.iter().zip(&mean).map(|(value, mean)| sub(*value, *mean)).collect::<Vec<_>>())
+        bands(
+            &record
+                .iter()
+                .zip(&mean)
+                .map(|(value, mean)| sub(*value, *mean))
+                .collect::<Vec<_>>(),
+        )
     };
-    let apart: Vec<Vec<Vec<Vector>>> = if records.len() > 1 { records.iter().map(apart).collect() } else { Vec::new() };
+    let apart: Vec<Vec<Vec<Vector>>> = if records.len() > 1 {
+        records.iter().map(apart).collect()
+    } else {
+        Vec::new()
+    };
     let noise = bands(noise);
     let mut found = vec![[0.0; 3]; samples];
     for (b, band) in bands(&mean).iter().enumerate() {
@@ -75,10 +105,22 @@ pub(super) fn repeating(records: &[Vec<Vector>], noise: &[Vector]) -> Vec<Vector
             let random = if apart.is_empty() {
                 (SCATTER * mean_square(&noise[b], axis)).max(DOUBT * power)
             } else {
-                apart.iter().map(|record| mean_square(&record[b], axis)).sum::<f64>() / (count - 1.0) / count
+                apart
+                    .iter()
+                    .map(|record| mean_square(&record[b], axis))
+                    .sum::<f64>()
+                    / (count - 1.0)
+                    / count
             };
-            let weight = if power > 0.0 { (1.0 - random / power).max(0.0) } else { 0.0 };
-            found.iter_mut().zip(band).for_each(|(found, value)| found[axis] += weight * value[axis]);
+            let weight = if power > 0.0 {
+                (1.0 - random / power).max(0.0)
+            } else {
+                0.0
+            };
+            found
+                .iter_mut()
+                .zip(band)
+                .for_each(|(found, value)| found[axis] += weight * value[axis]);
         }
     }
     found
@@ -98,7 +140,9 @@ mod tests {
     }
 
     fn record(phase: f64) -> Vec<Vector> {
-        (0..4000).map(|k| [signal(k) + random(k, phase), signal(k), 0.0]).collect()
+        (0..4000)
+            .map(|k| [signal(k) + random(k, phase), signal(k), 0.0])
+            .collect()
     }
 
     fn off(found: &[Vector], axis: usize) -> f64 {
@@ -119,20 +163,33 @@ mod tests {
     fn what_repeats_in_two_records_is_kept_and_a_disturbance_of_another_phase_is_not() {
         let quiet = vec![[0.0; 3]; 4000];
         let found = repeating(&[record(0.0), record(2.0)], &quiet);
-        // Without a disturbance all is kept, and with one the error is less than with the mean of both.
+        // Without a disturbance all is kept, and with one the error is less than with the mean of
+        // both.
         assert!(off(&found, 1) < 0.01, "{}", off(&found, 1));
-        let mean: Vec<Vector> =
-            record(0.0).iter().zip(&record(2.0)).map(|(a, b)| [0.5 * (a[0] + b[0]), 0.0, 0.0]).collect();
-        assert!(off(&found, 0) < 0.75 * off(&mean, 0), "{} {}", off(&found, 0), off(&mean, 0));
+        let mean: Vec<Vector> = record(0.0)
+            .iter()
+            .zip(&record(2.0))
+            .map(|(a, b)| [0.5 * (a[0] + b[0]), 0.0, 0.0])
+            .collect();
+        assert!(
+            off(&found, 0) < 0.75 * off(&mean, 0),
+            "{} {}",
+            off(&found, 0),
+            off(&mean, 0)
+        );
     }
 
     #[test]
     fn of_one_record_no_more_than_half_is_kept_and_nothing_that_the_machine_file_calls_noise() {
         let quiet = vec![[0.0; 3]; 4000];
         let found = repeating(&[record(0.0)], &quiet);
-        let kept = |found: &[Vector], axis: usize| (mean_square(found, axis) / mean_square(&record(0.0), axis)).sqrt();
+        let kept = |found: &[Vector], axis: usize| {
+            (mean_square(found, axis) / mean_square(&record(0.0), axis)).sqrt()
+        };
         assert!((kept(&found, 1) - 0.5).abs() < 0.01, "{}", kept(&found, 1));
-        let noise: Vec<Vector> = (0..4000).map(|k| [signal(k) + random(k, 0.0), 2.0 * signal(k), 0.0]).collect();
+        let noise: Vec<Vector> = (0..4000)
+            .map(|k| [signal(k) + random(k, 0.0), 2.0 * signal(k), 0.0])
+            .collect();
         assert!(kept(&repeating(&[record(0.0)], &noise), 0) < 0.01);
     }
 }

@@ -25,7 +25,8 @@ const TICK_PX: f64 = 5.0;
 const X_TICK_PX: f64 = 75.0;
 const Y_TICK_PX: f64 = 42.0;
 const DEFAULT_ASPECT: f64 = 0.62;
-/// Part of the span that curves leave free above and below. Sideways they fill the panel, unless its axes are equal.
+/// Part of the span that curves leave free above and below. Sideways they fill the panel, unless
+/// its axes are equal.
 const MARGIN: f64 = 0.04;
 /// Points nearer than this to the last one drawn are left out, px: less than a print shows.
 const THIN_PX: f64 = 0.3;
@@ -58,20 +59,45 @@ impl Area {
 
 /// The figure, `page_px` wide.
 pub(super) fn write(figure: &Figure, page_px: f64) -> String {
-    let columns = if page_px < WIDTH { 1 } else { figure.columns.max(1) };
-    let aspect = if figure.aspect > 0.0 { figure.aspect } else { DEFAULT_ASPECT };
+    let columns = if page_px < WIDTH {
+        1
+    } else {
+        figure.columns.max(1)
+    };
+    let aspect = if figure.aspect > 0.0 {
+        figure.aspect
+    } else {
+        DEFAULT_ASPECT
+    };
     let entries = legend(figure);
     let mut body = String::new();
     let lines = put_legend(&mut body, &entries, page_px);
-    let mut top = if lines == 0 { 2.0 } else { LEGEND_PX + LEGEND_LINE_PX * (lines - 1) as f64 };
-    let left = figure.panels.iter().map(|p| left_room(p, aspect, page_px / columns as f64)).fold(0.0, f64::max);
+    let mut top = if lines == 0 {
+        2.0
+    } else {
+        LEGEND_PX + LEGEND_LINE_PX * (lines - 1) as f64
+    };
+    let left = figure
+        .panels
+        .iter()
+        .map(|p| left_room(p, aspect, page_px / columns as f64))
+        .fold(0.0, f64::max);
     let cell = (page_px - GAP_PX * (columns - 1) as f64) / columns as f64;
     for row in figure.panels.chunks(columns) {
-        let title = if row.iter().all(|p| p.title.is_empty()) { 4.0 } else { TITLE_PX };
+        let title = if row.iter().all(|p| p.title.is_empty()) {
+            4.0
+        } else {
+            TITLE_PX
+        };
         let (width, height) = (cell - left - 8.0, (cell - left - 8.0) * aspect);
         for (i, panel) in row.iter().enumerate() {
             let x = (cell + GAP_PX) * i as f64 + left;
-            put_panel(&mut body, panel, &fitted(panel, x, top + title, width, height), 13.0 - left);
+            put_panel(
+                &mut body,
+                panel,
+                &fitted(panel, x, top + title, width, height),
+                13.0 - left,
+            );
         }
         let titled = row.iter().any(|p| !p.x_title.is_empty());
         top += title + height + LABELS_PX + if titled { AXIS_TITLE_PX } else { 0.0 };
@@ -92,8 +118,17 @@ fn spoken(figure: &Figure) -> String {
         ("", y) => format!("{y} over {}", panel.x_title),
         (title, y) => format!("{title}: {y} over {}", panel.x_title),
     };
-    let panels: Vec<String> = figure.panels.iter().map(panel).filter(|text| !text.is_empty()).collect();
-    if panels.is_empty() { "Chart".to_owned() } else { format!("Chart. {}", panels.join("; ")) }
+    let panels: Vec<String> = figure
+        .panels
+        .iter()
+        .map(panel)
+        .filter(|text| !text.is_empty())
+        .collect();
+    if panels.is_empty() {
+        "Chart".to_owned()
+    } else {
+        format!("Chart. {}", panels.join("; "))
+    }
 }
 
 /// Room for the vertical axis: its title and its widest label.
@@ -102,31 +137,68 @@ fn left_room(panel: &Panel, aspect: f64, cell_px: f64) -> f64 {
     let width = 0.85 * cell_px;
     let area = fitted(panel, 0.0, 0.0, width, width * aspect);
     let labels = (area.ticks)(area.y, area.height / Y_TICK_PX);
-    let widest = labels.iter().map(|t| t.1.chars().count()).max().unwrap_or(1);
+    let widest = labels
+        .iter()
+        .map(|t| t.1.chars().count())
+        .max()
+        .unwrap_or(1);
     DIGIT_PX * widest as f64 + 8.0 + if panel.y_title.is_empty() { 0.0 } else { 22.0 }
 }
 
 fn fitted(panel: &Panel, left: f64, top: f64, width: f64, height: f64) -> Area {
-    let values = |k: usize| panel.curves.iter().flat_map(move |c| c.points.iter().map(move |p| p[k]));
-    let given = |r: Option<[f64; 2]>| r.filter(|r| r[0] < r[1] && r[0].is_finite() && r[1].is_finite());
-    let mut x =
-        given(panel.x_range).unwrap_or_else(|| axis::range(values(0), if panel.equal_axes { MARGIN } else { 0.0 }));
+    let values = |k: usize| {
+        panel
+            .curves
+            .iter()
+            .flat_map(move |c| c.points.iter().map(move |p| p[k]))
+    };
+    let given =
+        |r: Option<[f64; 2]>| r.filter(|r| r[0] < r[1] && r[0].is_finite() && r[1].is_finite());
+    let mut x = given(panel.x_range)
+        .unwrap_or_else(|| axis::range(values(0), if panel.equal_axes { MARGIN } else { 0.0 }));
     let mut y = given(panel.y_range).unwrap_or_else(|| axis::range(values(1), MARGIN));
     if panel.equal_axes {
         let per_px = ((x[1] - x[0]) / width).max((y[1] - y[0]) / height);
-        let about = |r: [f64; 2], px: f64| [0.5 * (r[0] + r[1] - per_px * px), 0.5 * (r[0] + r[1] + per_px * px)];
+        let about = |r: [f64; 2], px: f64| {
+            [
+                0.5 * (r[0] + r[1] - per_px * px),
+                0.5 * (r[0] + r[1] + per_px * px),
+            ]
+        };
         (x, y) = (about(x, width), about(y, height));
     }
-    let ticks = if panel.powers_of_ten { axis::ticks_of_powers } else { axis::ticks };
-    Area { left, top, width, height, x, y, ticks }
+    let ticks = if panel.powers_of_ten {
+        axis::ticks_of_powers
+    } else {
+        axis::ticks
+    };
+    Area {
+        left,
+        top,
+        width,
+        height,
+        x,
+        y,
+        ticks,
+    }
 }
 
 /// `title_x` is where the title of the vertical axis stands, from the left of the area.
 fn put_panel(out: &mut String, panel: &Panel, area: &Area, title_x: f64) {
-    let Area { left, top, width, height, .. } = *area;
+    let Area {
+        left,
+        top,
+        width,
+        height,
+        ..
+    } = *area;
     put!(out, "<g transform=\"translate({left:.1} {top:.1})\">\n");
     if !panel.title.is_empty() {
-        put!(out, "<text x=\"0\" y=\"-8\" font-weight=\"600\">{}</text>\n", escaped(&panel.title));
+        put!(
+            out,
+            "<text x=\"0\" y=\"-8\" font-weight=\"600\">{}</text>\n",
+            escaped(&panel.title)
+        );
     }
     if area.y[0] < 0.0 && area.y[1] > 0.0 && !panel.equal_axes && !panel.powers_of_ten {
         let zero = area.py(0.0);
@@ -135,8 +207,12 @@ fn put_panel(out: &mut String, panel: &Panel, area: &Area, title_x: f64) {
             "<path d=\"M0 {zero:.2}H{width:.2}\" stroke=\"currentColor\" stroke-opacity=\"0.25\" fill=\"none\"/>\n"
         );
     }
-    // A nested drawing clips what leaves the area, without ids that would clash in a page of several figures.
-    put!(out, "<svg width=\"{width:.2}\" height=\"{height:.2}\" fill=\"none\" stroke-linejoin=\"round\">\n");
+    // A nested drawing clips what leaves the area, without ids that would clash in a page of
+    // several figures.
+    put!(
+        out,
+        "<svg width=\"{width:.2}\" height=\"{height:.2}\" fill=\"none\" stroke-linejoin=\"round\">\n"
+    );
     for curve in &panel.curves {
         let d = path_data(curve, area);
         if !d.is_empty() {
@@ -167,14 +243,25 @@ fn put_axes(out: &mut String, area: &Area) {
     for (value, text) in (area.ticks)(area.x, width / X_TICK_PX) {
         let x = area.px(value);
         put!(marks, "M{x:.2} {height:.2}v-{TICK_PX}M{x:.2} 0v{TICK_PX}");
-        put!(labels, "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{text}</text>\n", height + 17.0);
+        put!(
+            labels,
+            "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{text}</text>\n",
+            height + 17.0
+        );
     }
     for (value, text) in (area.ticks)(area.y, height / Y_TICK_PX) {
         let y = area.py(value);
         put!(marks, "M0 {y:.2}h{TICK_PX}M{width:.2} {y:.2}h-{TICK_PX}");
-        put!(labels, "<text x=\"-7\" y=\"{:.1}\" text-anchor=\"end\">{text}</text>\n", y + 0.34 * FONT_PX);
+        put!(
+            labels,
+            "<text x=\"-7\" y=\"{:.1}\" text-anchor=\"end\">{text}</text>\n",
+            y + 0.34 * FONT_PX
+        );
     }
-    put!(out, "<path d=\"M0 0H{width:.2}V{height:.2}H0Z{marks}\" fill=\"none\" stroke=\"currentColor\"/>\n{labels}");
+    put!(
+        out,
+        "<path d=\"M0 0H{width:.2}V{height:.2}H0Z{marks}\" fill=\"none\" stroke=\"currentColor\"/>\n{labels}"
+    );
 }
 
 fn path_data(curve: &Polyline, area: &Area) -> String {
@@ -197,7 +284,11 @@ fn path_data(curve: &Polyline, area: &Area) -> String {
 }
 
 fn stroke(curve: &Polyline) -> String {
-    let color = if curve.color.is_empty() { "currentColor".to_owned() } else { escaped(&curve.color) };
+    let color = if curve.color.is_empty() {
+        "currentColor".to_owned()
+    } else {
+        escaped(&curve.color)
+    };
     let (width, dash) = match curve.line {
         LineStyle::Solid => (1.4, ""),
         LineStyle::Dashed => (1.4, " stroke-dasharray=\"6 3\""),
@@ -227,8 +318,19 @@ fn put_legend(out: &mut String, entries: &[&Polyline], page_px: f64) -> usize {
             (x, lines) = (0.0, lines + 1);
         }
         let down = LEGEND_LINE_PX * (lines - 1) as f64;
-        put!(out, "<path d=\"M{x:.1} {}h28\" fill=\"none\" {}/>\n", 11.0 + down, stroke(curve));
-        put!(out, "<text x=\"{:.1}\" y=\"{}\">{}</text>\n", x + 35.0, 15.5 + down, escaped(&curve.label));
+        put!(
+            out,
+            "<path d=\"M{x:.1} {}h28\" fill=\"none\" {}/>\n",
+            11.0 + down,
+            stroke(curve)
+        );
+        put!(
+            out,
+            "<text x=\"{:.1}\" y=\"{}\">{}</text>\n",
+            x + 35.0,
+            15.5 + down,
+            escaped(&curve.label)
+        );
         x += 35.0 + text_px(&curve.label) + 22.0;
     }
     lines

@@ -7,11 +7,18 @@ use crate::report::text::escaped;
 use crate::report::{PageUnits, Report};
 
 /// A row for each circle and run; nothing where the program has no circle.
-pub(super) fn write_circularity(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
+pub(super) fn write_circularity(
+    out: &mut impl Write,
+    report: &Report,
+    units: PageUnits,
+) -> io::Result<()> {
     let mut rows = Vec::new();
     for (c, circle) in report.circles.iter().enumerate() {
         for (i, run) in report.runs.iter().enumerate() {
-            rows.extend(run.roundness_of(c).map(|roundness| (circle, i, run, roundness)));
+            rows.extend(
+                run.roundness_of(c)
+                    .map(|roundness| (circle, i, run, roundness)),
+            );
         }
     }
     if rows.is_empty() {
@@ -28,7 +35,11 @@ pub(super) fn write_circularity(out: &mut impl Write, report: &Report, units: Pa
     )?;
     for (circle, run, reported, roundness) in rows {
         let length = units.length();
-        let sense = if circle.counter_clockwise { "counter-clockwise" } else { "clockwise" };
+        let sense = if circle.counter_clockwise {
+            "counter-clockwise"
+        } else {
+            "clockwise"
+        };
         writeln!(
             out,
             "<tr><th scope=\"row\">{} R {} {length}, {sense}, line {}</th><td class=\"run\">{}{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",

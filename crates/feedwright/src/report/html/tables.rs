@@ -4,7 +4,8 @@ use std::io::{self, Write};
 
 use crate::report::text::{change, duration, escaped, fixed, number};
 use crate::report::{
-    FadedOut, Outcome, PageUnits, Report, ReportedRun, RunSummary, TimelineEvent, Transition, WorstPlace,
+    FadedOut, Outcome, PageUnits, Report, ReportedRun, RunSummary, TimelineEvent, Transition,
+    WorstPlace,
 };
 
 const AXES: [&str; 3] = ["X", "Y", "Z"];
@@ -12,9 +13,21 @@ const AXES: [&str; 3] = ["X", "Y", "Z"];
 /// Events drawn on a strip; the rest is given as a number. More would be a solid bar.
 const SHOWN_EVENTS: usize = 200;
 
-/// A row for each controller; behind them `assumed`, what they rest on, and what happened in each run.
-pub(super) fn write_summary(out: &mut impl Write, report: &Report, units: PageUnits, assumed: &str) -> io::Result<()> {
-    let axes = report.runs.iter().map(|r| r.summary.axes).max().unwrap_or(2).min(3);
+/// A row for each controller; behind them `assumed`, what they rest on, and what happened in each
+/// run.
+pub(super) fn write_summary(
+    out: &mut impl Write,
+    report: &Report,
+    units: PageUnits,
+    assumed: &str,
+) -> io::Result<()> {
+    let axes = report
+        .runs
+        .iter()
+        .map(|r| r.summary.axes)
+        .max()
+        .unwrap_or(2)
+        .min(3);
     let unit = units.error();
     write!(
         out,
@@ -50,7 +63,10 @@ fn write_summary_row(
     (axes, units): (usize, PageUnits),
 ) -> io::Result<()> {
     let note = match (&run.outcome, &run.faded_out) {
-        (Outcome::Diverged { at_s }, _) => format!("<small class=\"alarm\">diverged at {}</small>", duration(*at_s)),
+        (Outcome::Diverged { at_s }, _) => format!(
+            "<small class=\"alarm\">diverged at {}</small>",
+            duration(*at_s)
+        ),
         (Outcome::Completed, Some(FadedOut { at_s, cause })) => {
             let share = number(100.0 * run.engaged_share);
             format!(
@@ -67,31 +83,65 @@ fn write_summary_row(
         escaped(&run.controller)
     )?;
     let joints = |um: Option<f64>, tool_um: f64| {
-        let shown = um.map(|um| units.number(um)).filter(|shown| *shown != units.number(tool_um));
-        shown.map_or(String::new(), |shown| format!("<small>{shown} by encoders</small>"))
+        let shown = um
+            .map(|um| units.number(um))
+            .filter(|shown| *shown != units.number(tool_um));
+        shown.map_or(String::new(), |shown| {
+            format!("<small>{shown} by encoders</small>")
+        })
     };
     let mut cell = |label: &str, text: String, value: fn(&RunSummary, usize) -> f64, k: usize| {
         // A value that a run does not have is no number, and has no ratio.
         let ratio = first.and_then(|f| change(value(f, k), value(run, k)));
         let ratio = ratio.map_or(String::new(), |r| format!("<small>{r}</small>"));
-        write!(out, "<td role=\"cell\" data-label=\"{label}\">{text}{ratio}</td>")
+        write!(
+            out,
+            "<td role=\"cell\" data-label=\"{label}\">{text}{ratio}</td>"
+        )
     };
-    let [rms, max] = [(run.rms_um, run.joint_rms_um), (run.max_um, run.joint_max_um)]
-        .map(|(um, joint_um)| format!("{}{}", units.number(um), joints(joint_um, um)));
+    let [rms, max] = [
+        (run.rms_um, run.joint_rms_um),
+        (run.max_um, run.joint_max_um),
+    ]
+    .map(|(um, joint_um)| format!("{}{}", units.number(um), joints(joint_um, um)));
     let unit = units.error();
     cell(&format!("RMS error, {unit}"), rms, |r, _| r.rms_um, 0)?;
     cell(&format!("Largest error, {unit}"), max, |r, _| r.max_um, 0)?;
-    cell(&format!("Uncut path, {unit}"), units.number(run.uncut_um), |r, _| r.uncut_um, 0)?;
+    cell(
+        &format!("Uncut path, {unit}"),
+        units.number(run.uncut_um),
+        |r, _| r.uncut_um,
+        0,
+    )?;
     cell("Machining time", duration(run.time_s), |r, _| r.time_s, 0)?;
-    let outside =
-        |r: &RunSummary, _: usize| r.feed.map_or(f64::NAN, |feed| 100.0 * (feed.slow_share + feed.fast_share));
+    let outside = |r: &RunSummary, _: usize| {
+        r.feed
+            .map_or(f64::NAN, |feed| 100.0 * (feed.slow_share + feed.fast_share))
+    };
     cell("Outside ±20 % of F, %", number(outside(run, 0)), outside, 0)?;
-    cell(&format!("Command deviation, {unit}"), units.number(run.max_deviation_um), |r, _| r.max_deviation_um, 0)?;
-    let accel_m_s2 = |r: &RunSummary, _: usize| if r.measured { f64::NAN } else { r.max_command_accel_mm_s2 * 1e-3 };
-    cell("Command acceleration, m/s²", number(accel_m_s2(run, 0)), accel_m_s2, 0)?;
+    cell(
+        &format!("Command deviation, {unit}"),
+        units.number(run.max_deviation_um),
+        |r, _| r.max_deviation_um,
+        0,
+    )?;
+    let accel_m_s2 = |r: &RunSummary, _: usize| {
+        if r.measured {
+            f64::NAN
+        } else {
+            r.max_command_accel_mm_s2 * 1e-3
+        }
+    };
+    cell(
+        "Command acceleration, m/s²",
+        number(accel_m_s2(run, 0)),
+        accel_m_s2,
+        0,
+    )?;
     for (k, axis) in AXES.iter().enumerate().take(axes) {
         let label = format!("Peak torque {axis}, N m");
-        let torque_nm = |r: &RunSummary, k: usize| r.peak_torque_nm.map_or(f64::NAN, |peaks| peaks[k]);
+        let torque_nm =
+            |r: &RunSummary, k: usize| r.peak_torque_nm.map_or(f64::NAN, |peaks| peaks[k]);
         cell(&label, fixed(torque_nm(run, k), 3), torque_nm, k)?;
     }
     out.write_all(b"</tr>\n")
@@ -104,11 +154,12 @@ pub(super) fn swatch(index: usize) -> String {
 /// Behind this part of the machining time only the end of the program comes.
 const ENDS_WITHIN: f64 = 0.995;
 
-/// Rows of a timeline. A machine has a dozen units; a file that names hundreds is not drawn further.
+/// Rows of a timeline. A machine has a dozen units; a file that names hundreds is not drawn
+/// further.
 const SHOWN_ROWS: usize = 24;
 
-/// The events of a run on strips as long as the run, one for each unit of the machine, and as a list.
-/// When and why the correction came into the loop and left it.
+/// The events of a run on strips as long as the run, one for each unit of the machine, and as a
+/// list. When and why the correction came into the loop and left it.
 fn write_transitions(out: &mut impl Write, index: usize, run: &RunSummary) -> io::Result<()> {
     let transitions = &run.transitions;
     if transitions.is_empty() {
@@ -122,11 +173,19 @@ fn write_transitions(out: &mut impl Write, index: usize, run: &RunSummary) -> io
         swatch(index)
     )?;
     let text = |t: &Transition| format!("{}, line {}: {}", duration(t.at_s), t.line, t.words());
-    write_moments(out, transitions.iter().map(|transition| (transition.at_s, text(transition))))
+    write_moments(
+        out,
+        transitions
+            .iter()
+            .map(|transition| (transition.at_s, text(transition))),
+    )
 }
 
 /// Ends the heading of a list of moments, and writes the first of them.
-fn write_moments(out: &mut impl Write, moments: impl ExactSizeIterator<Item = (f64, String)>) -> io::Result<()> {
+fn write_moments(
+    out: &mut impl Write,
+    moments: impl ExactSizeIterator<Item = (f64, String)>,
+) -> io::Result<()> {
     let more = moments.len().saturating_sub(SHOWN_EVENTS);
     out.write_all(b"</summary><ol>")?;
     for (at_s, text) in moments.take(SHOWN_EVENTS) {
@@ -140,12 +199,24 @@ fn write_moments(out: &mut impl Write, moments: impl ExactSizeIterator<Item = (f
 
 fn write_events(out: &mut impl Write, index: usize, run: &ReportedRun) -> io::Result<()> {
     // That a program ends is no event: every one does.
-    if run.events.iter().all(|event| event.duration_s == 0.0 && event.t_s >= ENDS_WITHIN * run.summary.time_s) {
+    if run
+        .events
+        .iter()
+        .all(|event| event.duration_s == 0.0 && event.t_s >= ENDS_WITHIN * run.summary.time_s)
+    {
         return Ok(());
     }
-    let end_s = run.events.iter().map(|e| e.t_s + e.duration_s).fold(run.summary.time_s, f64::max);
+    let end_s = run
+        .events
+        .iter()
+        .map(|e| e.t_s + e.duration_s)
+        .fold(run.summary.time_s, f64::max);
     let percent = |t_s: f64| {
-        if end_s > 0.0 { (t_s / end_s * 100.0).clamp(0.0, 100.0) } else { 0.0 }
+        if end_s > 0.0 {
+            (t_s / end_s * 100.0).clamp(0.0, 100.0)
+        } else {
+            0.0
+        }
     };
     write!(
         out,
@@ -155,11 +226,20 @@ fn write_events(out: &mut impl Write, index: usize, run: &ReportedRun) -> io::Re
         escaped(&run.summary.controller)
     )?;
     write_rows(out, run, percent)?;
-    write_moments(out, run.events.iter().map(|event| (event.t_s, event_text(event))))
+    write_moments(
+        out,
+        run.events
+            .iter()
+            .map(|event| (event.t_s, event_text(event))),
+    )
 }
 
 /// A strip for each unit of the machine that has events, in the order in which they first come.
-fn write_rows(out: &mut impl Write, run: &ReportedRun, percent: impl Fn(f64) -> f64) -> io::Result<()> {
+fn write_rows(
+    out: &mut impl Write,
+    run: &ReportedRun,
+    percent: impl Fn(f64) -> f64,
+) -> io::Result<()> {
     let mut rows: Vec<&str> = Vec::new();
     for event in &run.events {
         if !rows.contains(&event.row.as_str()) && rows.len() < SHOWN_ROWS {
@@ -170,13 +250,24 @@ fn write_rows(out: &mut impl Write, run: &ReportedRun, percent: impl Fn(f64) -> 
     for row in rows {
         let events = || run.events.iter().filter(|event| event.row == row);
         let total_s: f64 = events().map(|event| event.duration_s).sum();
-        let took = if total_s > 0.0 { duration(total_s) } else { String::new() };
-        write!(out, "<span class=\"row\"><b>{}</b><svg class=\"strip\">", escaped(row))?;
+        let took = if total_s > 0.0 {
+            duration(total_s)
+        } else {
+            String::new()
+        };
+        write!(
+            out,
+            "<span class=\"row\"><b>{}</b><svg class=\"strip\">",
+            escaped(row)
+        )?;
         for event in events().take(SHOWN_EVENTS) {
             // A rectangle without a width is not drawn, nor is its stroke.
             let (left, width) = (percent(event.t_s), percent(event.duration_s).max(1e-3));
             let hint = escaped(&event_text(event));
-            write!(out, "<rect x=\"{left:.3}%\" width=\"{width:.3}%\" height=\"100%\"><title>{hint}</title></rect>")?;
+            write!(
+                out,
+                "<rect x=\"{left:.3}%\" width=\"{width:.3}%\" height=\"100%\"><title>{hint}</title></rect>"
+            )?;
         }
         write!(out, "</svg><span class=\"num\">{took}</span></span>")?;
     }
@@ -184,12 +275,25 @@ fn write_rows(out: &mut impl Write, run: &ReportedRun, percent: impl Fn(f64) -> 
 }
 
 fn event_text(event: &TimelineEvent) -> String {
-    let at = format!("{}  line {}  {}", duration(event.t_s), event.line, event.label);
-    if event.duration_s > 0.0 { format!("{at}, {}", duration(event.duration_s)) } else { at }
+    let at = format!(
+        "{}  line {}  {}",
+        duration(event.t_s),
+        event.line,
+        event.label
+    );
+    if event.duration_s > 0.0 {
+        format!("{at}, {}", duration(event.duration_s))
+    } else {
+        at
+    }
 }
 
 /// The worst places, a table for each controller.
-pub(super) fn write_worst(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
+pub(super) fn write_worst(
+    out: &mut impl Write,
+    report: &Report,
+    units: PageUnits,
+) -> io::Result<()> {
     out.write_all(
         b"<section aria-labelledby=\"h-worst\">\n<h2 id=\"h-worst\">Worst places</h2>\n\
           <p class=\"hint needs-script\">Choose a place to see it on the path.</p>\n<div class=\"pair\">\n",
@@ -242,15 +346,27 @@ fn write_place(
     for k in 0..axes {
         write!(out, "<td>{}</td>", units.fixed(place.position_mm[k], 3))?;
     }
-    writeln!(out, "<td>{}</td><td>{}</td></tr>", fixed(place.t_s, 3), units.fixed(place.s_mm, 2))
+    writeln!(
+        out,
+        "<td>{}</td><td>{}</td></tr>",
+        fixed(place.t_s, 3),
+        units.fixed(place.s_mm, 2)
+    )
 }
 
 /// How to read the page, the settings and the machine.
-pub(super) fn write_notes(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
+pub(super) fn write_notes(
+    out: &mut impl Write,
+    report: &Report,
+    units: PageUnits,
+) -> io::Result<()> {
     out.write_all(NOTES.as_bytes())?;
     out.write_all(b"<div class=\"pair\">\n")?;
     let told = |entries: &[(String, String)]| -> Vec<(String, String)> {
-        entries.iter().map(|(name, value)| (name.clone(), units.text(value))).collect()
+        entries
+            .iter()
+            .map(|(name, value)| (name.clone(), units.text(value)))
+            .collect()
     };
     write_list(out, "Settings", &told(&report.settings))?;
     write_list(out, "Machine", &told(&report.machine))?;
@@ -258,7 +374,11 @@ pub(super) fn write_notes(out: &mut impl Write, report: &Report, units: PageUnit
     for run in &report.runs {
         let summary = &run.summary;
         let per_point = run.series.rows_per_point();
-        let thinned = if per_point > 1 { format!("; a drawn point stands for {per_point}") } else { String::new() };
+        let thinned = if per_point > 1 {
+            format!("; a drawn point stands for {per_point}")
+        } else {
+            String::new()
+        };
         facts.push((
             summary.controller.clone(),
             format!(

@@ -23,8 +23,12 @@ impl Interpreter {
         }
         if (self.fanuc.is_polar || self.frame.turn.is_some()) && self.modal.plane != Plane::Xy {
             let what = if self.fanuc.is_polar { "G16" } else { "G68" };
-            return Err(LineFault::new("gcode::unsupported", block.whole(), format!("{what} outside G17 is not read"))
-                .hint("write G17 before it, and G15 or G69 before another plane"));
+            return Err(LineFault::new(
+                "gcode::unsupported",
+                block.whole(),
+                format!("{what} outside G17 is not read"),
+            )
+            .hint("write G17 before it, and G15 or G69 before another plane"));
         }
         Ok(())
     }
@@ -33,18 +37,30 @@ impl Interpreter {
     fn turn(&mut self, block: &Block, word: Word) -> Read<()> {
         let other = block.set & (bit(b'z') | bit(b'a') | bit(b'b') | bit(b'c'));
         if other != 0 {
-            return Err(LineFault::new("gcode::unsupported", block.at_any(other), "G68 in space is not read")
-                .hint("G68 X Y R turns in the XY plane"));
+            return Err(LineFault::new(
+                "gcode::unsupported",
+                block.at_any(other),
+                "G68 in space is not read",
+            )
+            .hint("G68 X Y R turns in the XY plane"));
         }
         let Some(angle_deg) = block.get(b'r') else {
-            return Err(LineFault::new("gcode::rotation", word.at(), "R (angle in degrees) is missing for G68")
-                .hint("write G68 X0 Y0 R30."));
+            return Err(LineFault::new(
+                "gcode::rotation",
+                word.at(),
+                "R (angle in degrees) is missing for G68",
+            )
+            .hint("write G68 X0 Y0 R30."));
         };
         let mut center = [self.at[0], self.at[1]];
         for (axis, letter) in [(0, b'x'), (1, b'y')] {
             if let Some(value) = block.get(letter) {
                 let value = self.length(block, letter, axis, value)?;
-                center[axis] = if self.modal.incremental { center[axis] + value } else { value };
+                center[axis] = if self.modal.incremental {
+                    center[axis] + value
+                } else {
+                    value
+                };
             }
         }
         self.frame.turn = Some(Turn { center, angle_deg });

@@ -1,7 +1,9 @@
-//! `,R` and `,C`: the corner at the end of a block is rounded by a radius, or cut off that far from it on both sides.
+//! `,R` and `,C`: the corner at the end of a block is rounded by a radius, or cut off that far from
+//! it on both sides.
 //!
-//! Where a motion with such a word ends is known only when the next one is read: it waits until then. The next block starts where the corner ends,
-//! and its distances count from the corner as it is programmed.
+//! Where a motion with such a word ends is known only when the next one is read: it waits until
+//! then. The next block starts where the corner ends, and its distances count from the corner as it
+//! is programmed.
 
 use std::ops::Range;
 
@@ -26,11 +28,22 @@ impl Interpreter {
             return self.go_to_goal(block, goal, code != 0);
         };
         if code == 0 {
-            let message = format!("`,{}` stands on a rapid; corners are cut between G1, G2 and G3", shown(&corner));
-            return Err(LineFault::new("gcode::corner", corner.at, message).hint("write G1 on this line"));
+            let message = format!(
+                "`,{}` stands on a rapid; corners are cut between G1, G2 and G3",
+                shown(&corner)
+            );
+            return Err(
+                LineFault::new("gcode::corner", corner.at, message).hint("write G1 on this line")
+            );
         }
         let feed = (self.modal.feed, self.modal.feed_unit_mm);
-        self.fanuc.pending = Some(Box::new(Pending { block: block.clone(), goal, corner, line: self.line, feed }));
+        self.fanuc.pending = Some(Box::new(Pending {
+            block: block.clone(),
+            goal,
+            corner,
+            line: self.line,
+            feed,
+        }));
         Ok(())
     }
 
@@ -41,7 +54,9 @@ impl Interpreter {
 
     fn goal(&self, block: &Block, code: u16) -> Read<Goal> {
         let target = self.target(block)?;
-        let round = matches!(code, 20 | 30).then(|| self.round(block, &target, code == 30)).transpose()?;
+        let round = matches!(code, 20 | 30)
+            .then(|| self.round(block, &target, code == 30))
+            .transpose()?;
         Ok(Goal { target, round })
     }
 
@@ -65,16 +80,25 @@ impl Interpreter {
         if block.set == 0 && block.g.is_empty() && block.m.is_empty() {
             return Ok(()); // A comment.
         }
-        let Some(pending) = self.fanuc.pending.take() else { return Ok(()) };
-        let code = block.code(Group::Motion).map_or(self.modal.motion, |word| word.number);
-        let is_plain = block.g.iter().all(|word| matches!(word.number, 10 | 20 | 30 | 900 | 910));
+        let Some(pending) = self.fanuc.pending.take() else {
+            return Ok(());
+        };
+        let code = block
+            .code(Group::Motion)
+            .map_or(self.modal.motion, |word| word.number);
+        let is_plain = block
+            .g
+            .iter()
+            .all(|word| matches!(word.number, 10 | 20 | 30 | 900 | 910));
         if !matches!(code, 10 | 20 | 30) || !is_plain || !block.has_axes() {
             return Err(no_second_side(&pending, block.whole()));
         }
         let start = std::mem::replace(&mut self.at, pending.goal.target);
         // G90 and G91 of the block already count for it.
         let was_incremental = self.modal.incremental;
-        self.modal.incremental = block.code(Group::Distance).map_or(was_incremental, |word| word.number == 910);
+        self.modal.incremental = block
+            .code(Group::Distance)
+            .map_or(was_incremental, |word| word.number == 910);
         let next = self.goal(block, code);
         self.modal.incremental = was_incremental;
         self.at = start;
@@ -85,19 +109,30 @@ impl Interpreter {
         let line = std::mem::replace(&mut self.line, pending.line);
         let feed = (self.modal.feed, self.modal.feed_unit_mm);
         (self.modal.feed, self.modal.feed_unit_mm) = pending.feed;
-        let moved =
-            [before, piece].into_iter().flatten().try_for_each(|goal| self.go_to_goal(&pending.block, goal, true));
+        let moved = [before, piece]
+            .into_iter()
+            .flatten()
+            .try_for_each(|goal| self.go_to_goal(&pending.block, goal, true));
         self.line = line;
         (self.modal.feed, self.modal.feed_unit_mm) = feed;
         moved
     }
 
     /// The motion up to the corner and the corner itself, where they have a length.
-    fn pieces(&self, block: &Block, pending: &Pending, start: &Position, next: &Goal) -> Read<[Option<Goal>; 2]> {
+    fn pieces(
+        &self,
+        block: &Block,
+        pending: &Pending,
+        start: &Position,
+        next: &Goal,
+    ) -> Read<[Option<Goal>; 2]> {
         let corner = pending.goal.target;
         let [first, second, normal] = self.modal.plane.axes();
         if corner[normal] != start[normal] || next.target[normal] != corner[normal] {
-            let message = format!("`,{}` lies between motions that leave the plane", shown(&pending.corner));
+            let message = format!(
+                "`,{}` lies between motions that leave the plane",
+                shown(&pending.corner)
+            );
             return Err(LineFault::new("gcode::corner", block.whole(), message)
                 .hint("corners are cut in the plane of G17, G18 or G19"));
         }
@@ -105,23 +140,32 @@ impl Interpreter {
         let curve = |from: &Position, goal: &Goal| {
             let (start, end) = (in_plane(from), in_plane(&goal.target));
             match goal.round {
-                Some(PlaneArc { center, turns }) => {
-                    PlaneCurve::Arc { start, end, center, turn: f64::from(turns.signum()) }
-                }
+                Some(PlaneArc { center, turns }) => PlaneCurve::Arc {
+                    start,
+                    end,
+                    center,
+                    turn: f64::from(turns.signum()),
+                },
                 None => PlaneCurve::Line { start, end },
             }
         };
         let (mut before, mut behind) = (curve(start, &pending.goal), curve(&corner, next));
         let size_mm = pending.corner.value * self.modal.unit_mm;
         let cut = if pending.corner.is_round {
-            CornerCut { radius_mm: size_mm.abs(), is_round: true }.cut(&mut before, &mut behind)
+            CornerCut {
+                radius_mm: size_mm.abs(),
+                is_round: true,
+            }
+            .cut(&mut before, &mut behind)
         } else {
             chamfer(&mut before, &mut behind, size_mm)
         };
         let Some(piece) = cut.filter(|_| size_mm > 0.0) else {
             let (word, value) = (shown(&pending.corner), pending.corner.value);
-            let message =
-                format!("`,{word}{value}` does not fit between this motion and the one on line {}", pending.line);
+            let message = format!(
+                "`,{word}{value}` does not fit between this motion and the one on line {}",
+                pending.line
+            );
             return Err(LineFault::new("gcode::corner", block.whole(), message)
                 .hint("it must be above 0 and shorter than both; a chamfer is cut between straight lines"));
         };
@@ -131,42 +175,62 @@ impl Interpreter {
             position
         };
         let has_length = length(minus(before.end(), before.start())) > SLACK_MM;
-        let up_to = has_length.then(|| Goal { target: place(before.end()), ..pending.goal });
+        let up_to = has_length.then(|| Goal {
+            target: place(before.end()),
+            ..pending.goal
+        });
         let around = piece.map(|piece| {
             let round = match piece {
-                PlaneCurve::Arc { center, turn, .. } => {
-                    Some(PlaneArc { center, turns: if turn > 0.0 { 1 } else { -1 } })
-                }
+                PlaneCurve::Arc { center, turn, .. } => Some(PlaneArc {
+                    center,
+                    turns: if turn > 0.0 { 1 } else { -1 },
+                }),
                 PlaneCurve::Line { .. } => None,
             };
-            Goal { target: place(piece.end()), round }
+            Goal {
+                target: place(piece.end()),
+                round,
+            }
         });
         Ok([up_to, around])
     }
 
     /// C on a straight motion of a lathe is a chamfer on some controls and an axis on others.
     pub(super) fn check_lathe_chamfer(&self, block: &Block) -> Read<()> {
-        let plain = block.code(Group::Motion).map_or(self.modal.motion, |word| word.number) == 10;
+        let plain = block
+            .code(Group::Motion)
+            .map_or(self.modal.motion, |word| word.number)
+            == 10;
         let moves = block.set & (bit(b'x') | bit(b'z') | bit(b'u') | bit(b'w')) != 0;
         if plain && moves && block.has(b'c') && block.code(Group::NonModal).is_none() {
             let message = "C on a straight motion is a chamfer on some lathes and an axis on others: it is not read";
-            return Err(LineFault::new("gcode::unsupported", block.at(b'c'), message).hint("write the chamfer as ,C"));
+            return Err(
+                LineFault::new("gcode::unsupported", block.at(b'c'), message)
+                    .hint("write the chamfer as ,C"),
+            );
         }
         if plain
             && moves
             && let Some(word) = [b'r', b'i', b'k'].into_iter().find(|&word| block.has(word))
         {
             let name = letter(slot(word));
-            let message = format!("{name} on a straight motion, a corner on some lathes, is not read");
-            return Err(LineFault::new("gcode::unsupported", block.at(word), message)
-                .hint("write a rounded corner as ,R and a chamfer as ,C"));
+            let message =
+                format!("{name} on a straight motion, a corner on some lathes, is not read");
+            return Err(
+                LineFault::new("gcode::unsupported", block.at(word), message)
+                    .hint("write a rounded corner as ,R and a chamfer as ,C"),
+            );
         }
         Ok(())
     }
 }
 
 /// Cuts two straight lines off at the same distance from where they meet.
-fn chamfer(before: &mut PlaneCurve, behind: &mut PlaneCurve, size_mm: f64) -> Option<Option<PlaneCurve>> {
+fn chamfer(
+    before: &mut PlaneCurve,
+    behind: &mut PlaneCurve,
+    size_mm: f64,
+) -> Option<Option<PlaneCurve>> {
     let (&mut PlaneCurve::Line { start, end: corner }, &mut PlaneCurve::Line { end, .. }) =
         (&mut *before, &mut *behind)
     else {
@@ -176,10 +240,16 @@ fn chamfer(before: &mut PlaneCurve, behind: &mut PlaneCurve, size_mm: f64) -> Op
     if length(to) < size_mm - SLACK_MM || length(from) < size_mm - SLACK_MM {
         return None;
     }
-    let [first, second] = [add(corner, scaled(unit(to), -size_mm)), add(corner, scaled(unit(from), size_mm))];
+    let [first, second] = [
+        add(corner, scaled(unit(to), -size_mm)),
+        add(corner, scaled(unit(from), size_mm)),
+    ];
     before.set_end(first);
     behind.set_start(second);
-    Some(Some(PlaneCurve::Line { start: first, end: second }))
+    Some(Some(PlaneCurve::Line {
+        start: first,
+        end: second,
+    }))
 }
 
 fn shown(corner: &CornerWord) -> char {
@@ -193,6 +263,7 @@ fn no_second_side(pending: &Pending, at: Range<usize>) -> Box<LineFault> {
         shown(&pending.corner),
         pending.line
     );
-    LineFault::new("gcode::corner", at, message)
-        .hint(format!("the next block is {code}, G2 or G3 in the same plane, with no other G-code than G90 or G91"))
+    LineFault::new("gcode::corner", at, message).hint(format!(
+        "the next block is {code}, G2 or G3 in the same plane, with no other G-code than G90 or G91"
+    ))
 }

@@ -1,6 +1,8 @@
-//! Drilling cycles G73 to G89 as far as words differ: repeats by K, no P, pecks that grow smaller, taps that start the spindle, and lathes.
+//! Drilling cycles G73 to G89 as far as words differ: repeats by K, no P, pecks that grow smaller,
+//! taps that start the spindle, and lathes.
 //!
-//! A lathe drills along Z, and goes back to where it began. R is how far the hole begins from there on Fanuc, and a coordinate on Haas.
+//! A lathe drills along Z, and goes back to where it began. R is how far the hole begins from there
+//! on Fanuc, and a coordinate on Haas.
 
 use crate::canon::Plane;
 use crate::settings::Dialect;
@@ -14,13 +16,20 @@ impl Interpreter {
     pub(super) fn drilling_cycle(&mut self, block: &Block, code: u16) -> Read<()> {
         let base = code % OWN;
         let mut block = block.clone();
-        self.fanuc.pecks = if base == 830 { self.smaller_pecks(&mut block)? } else { None };
+        self.fanuc.pecks = if base == 830 {
+            self.smaller_pecks(&mut block)?
+        } else {
+            None
+        };
         if block.has(b'k') {
             let repeats = block.get(b'k').unwrap_or(1.0);
             block.remove(b'k');
             block.put(b'l', repeats);
         }
-        if matches!(base, 820 | 860 | 880 | 890) && !block.has(b'p') && self.carried.cycle.code() != base {
+        if matches!(base, 820 | 860 | 880 | 890)
+            && !block.has(b'p')
+            && self.carried.cycle.code() != base
+        {
             block.put(b'p', 0.0);
         }
         if matches!(base, 740 | 840) {
@@ -42,7 +51,11 @@ impl Interpreter {
         // Without Q there are no pecks.
         let is_new = !matches!(self.carried.cycle.code(), 820 | 830) || base != 830;
         let base =
-            if base == 830 && !block.has(b'q') && (is_new || self.carried.cycle.code() == 820) { 820 } else { base };
+            if base == 830 && !block.has(b'q') && (is_new || self.carried.cycle.code() == 820) {
+                820
+            } else {
+                base
+            };
         if base == 820 && !block.has(b'p') && self.carried.cycle.code() != base {
             block.put(b'p', 0.0);
         }
@@ -50,7 +63,12 @@ impl Interpreter {
         if block.has(b'r') || is_first {
             let is_distance = self.dialect == Dialect::FanucLathe;
             let word = block.get(b'r');
-            if word.is_some() && !matches!(self.settings.dialect, Some(Dialect::FanucLathe | Dialect::HaasLathe)) {
+            if word.is_some()
+                && !matches!(
+                    self.settings.dialect,
+                    Some(Dialect::FanucLathe | Dialect::HaasLathe)
+                )
+            {
                 self.warn_of_level(block, is_distance);
             }
             block.put(
@@ -75,11 +93,16 @@ impl Interpreter {
 
     fn warn_of_level(&mut self, block: &Block, is_distance: bool) {
         if self.warn_once("gcode::drilling_level") {
-            let how =
-                if is_distance { "a distance from where the tool is, as on Fanuc" } else { "a coordinate, as on Haas" };
+            let how = if is_distance {
+                "a distance from where the tool is, as on Fanuc"
+            } else {
+                "a coordinate, as on Haas"
+            };
             let message = format!("R of a drilling cycle is read as {how}");
             let warning = LineFault::new("gcode::drilling_level", block.at(b'r'), message);
-            self.output.warnings.push(*warning.hint("--dialect fanuc-lathe or haas-lathe says which"));
+            self.output
+                .warnings
+                .push(*warning.hint("--dialect fanuc-lathe or haas-lathe says which"));
         }
     }
 
@@ -88,8 +111,13 @@ impl Interpreter {
         if !block.has(b'i') {
             return Ok(None);
         }
-        let word = |letter: u8| -> Read<f64> { Ok(self.not_negative(block, letter)?.unwrap_or(0.0)) };
-        let pecks = Pecks { first_mm: word(b'i')?, less_mm: word(b'j')?, least_mm: word(b'k')? };
+        let word =
+            |letter: u8| -> Read<f64> { Ok(self.not_negative(block, letter)?.unwrap_or(0.0)) };
+        let pecks = Pecks {
+            first_mm: word(b'i')?,
+            less_mm: word(b'j')?,
+            least_mm: word(b'k')?,
+        };
         if pecks.first_mm <= 0.0 || pecks.least_mm <= 0.0 {
             let message = format!(
                 "the pecks of G83 with I and K must be above 0: I is {} mm, K {} mm",

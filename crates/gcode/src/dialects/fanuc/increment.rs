@@ -1,4 +1,5 @@
-//! Lengths without a decimal point: least increments where the control counts so (`--increment`), whole units where it does not.
+//! Lengths without a decimal point: least increments where the control counts so (`--increment`),
+//! whole units where it does not.
 
 use crate::state::Interpreter;
 use crate::text::block::Block;
@@ -13,7 +14,9 @@ impl Interpreter {
     /// Counts the lengths of a line in least increments, or keeps an eye on those without a point.
     pub(super) fn count_increments(&mut self, block: &mut Block) {
         // The unit of the line itself.
-        let is_inch = block.code(Group::Units).map_or(self.modal.unit_mm != 1.0, |word| word.number == 200);
+        let is_inch = block
+            .code(Group::Units)
+            .map_or(self.modal.unit_mm != 1.0, |word| word.number == 200);
         let lengths = self.lengths(block) & block.set & !block.pointed & !block.computed;
         if let (Some(corner), Some(increment)) = (&mut block.corner, self.settings.increment)
             && !corner.has_point
@@ -44,7 +47,9 @@ impl Interpreter {
     /// Letters of the line that are lengths or angles and no counts.
     fn lengths(&self, block: &Block) -> u32 {
         let mut letters = LENGTHS.iter().fold(0, |set, &letter| set | bit(letter));
-        let motion = block.code(Group::Motion).map_or(self.modal.motion, |word| word.number);
+        let motion = block
+            .code(Group::Motion)
+            .map_or(self.modal.motion, |word| word.number);
         let other = block.code(Group::NonModal).map(|word| word.number);
         if matches!(motion % OWN, 730 | 740 | 810..=890) && !block.has(b'i') {
             letters &= !bit(b'k'); // Repeats.
@@ -55,8 +60,9 @@ impl Interpreter {
             Some(code) if code >= LATHE_OWN && matches!(code % OWN, 700..=760) => {
                 // Counted by the cycles themselves, or not at all.
                 let counted = bit(b'q') | bit(b'i') | bit(b'k') | bit(b'a');
-                let number =
-                    matches!(code % OWN, 730 | 760) && !block.has(b'z') && !block.has(b'p') | (code % OWN == 760);
+                let number = matches!(code % OWN, 730 | 760)
+                    && !block.has(b'z')
+                    && !block.has(b'p') | (code % OWN == 760);
                 letters & !counted & if number { !bit(b'r') } else { u32::MAX }
             }
             Some(100) => letters & !bit(b'q'),
@@ -71,14 +77,25 @@ impl Interpreter {
         let small = Short(value * 1e-3);
         let message = if points.has_point {
             let count = points.count;
-            let lengths = if count == 1 { "one length has".to_owned() } else { format!("{count} lengths have") };
-            format!("{lengths} no decimal point; the first, {word}, is read as {} and not as {small}", Short(value))
+            let lengths = if count == 1 {
+                "one length has".to_owned()
+            } else {
+                format!("{count} lengths have")
+            };
+            format!(
+                "{lengths} no decimal point; the first, {word}, is read as {} and not as {small}",
+                Short(value)
+            )
         } else {
             format!(
                 "no length of the program has a decimal point: {word} is read as {} and not as {small}",
                 Short(value)
             )
         };
-        Some((line, message, "--increment 0.001mm reads them as the least increments of a control that counts so"))
+        Some((
+            line,
+            message,
+            "--increment 0.001mm reads them as the least increments of a control that counts so",
+        ))
     }
 }

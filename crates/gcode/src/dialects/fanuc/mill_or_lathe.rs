@@ -1,7 +1,9 @@
-//! Whether a program for Fanuc or Haas is one for a mill or for a lathe: the same words cut different parts.
+//! Whether a program for Fanuc or Haas is one for a mill or for a lathe: the same words cut
+//! different parts.
 //!
-//! Signs are looked for line by line, in G-code system A. A certain one has no meaning on the other machine, a likely one has hardly any.
-//! Certain signs decide; without one, the machine with more kinds of likely signs; signs of both that weigh the same decide nothing.
+//! Signs are looked for line by line, in G-code system A. A certain one has no meaning on the other
+//! machine, a likely one has hardly any. Certain signs decide; without one, the machine with more
+//! kinds of likely signs; signs of both that weigh the same decide nothing.
 
 use crate::text::codes::{AXES, bit};
 
@@ -37,7 +39,8 @@ pub(crate) enum MillOrLathe {
     Unknown,
 }
 
-/// Feeds below these, per minute, are feeds per revolution: mm and inches in a program that does not say which; inches.
+/// Feeds below these, per minute, are feeds per revolution: mm and inches in a program that does
+/// not say which; inches.
 const SLOW: [f64; 2] = [1.0, 0.06];
 
 const LATHE_TOOL: &str = "a tool with its offset, as in T0101, and no M6";
@@ -105,14 +108,26 @@ impl Evidence {
 
     /// The first signs of both machines where none is certain and the number of kinds decided.
     pub(crate) fn doubt(&self) -> Option<(Sign, Sign)> {
-        let is_certain = self.lathe.iter().chain(&self.mill).any(|sign| sign.is_certain);
-        if is_certain { None } else { self.lathe.first().copied().zip(self.mill.first().copied()) }
+        let is_certain = self
+            .lathe
+            .iter()
+            .chain(&self.mill)
+            .any(|sign| sign.is_certain);
+        if is_certain {
+            None
+        } else {
+            self.lathe.first().copied().zip(self.mill.first().copied())
+        }
     }
 
     /// Adds a sign, once of each kind.
     fn add(signs: &mut Vec<Sign>, line: u32, what: &'static str, is_certain: bool) {
         if !signs.iter().any(|sign| sign.what == what) {
-            signs.push(Sign { line, what, is_certain });
+            signs.push(Sign {
+                line,
+                what,
+                is_certain,
+            });
         }
     }
 
@@ -120,17 +135,26 @@ impl Evidence {
         let mut add = |what, is_certain| Self::add(&mut self.lathe, line, what, is_certain);
         let has_axes = words.letters & AXES != 0;
         let is_pair = words.has(b"p") && words.has(b"q") && !words.has(b"r") && !words.has(b"z");
-        let is_first = (words.has(b"u") || words.has(b"w")) && words.has(b"r") && !words.has_any(b"xyz");
+        let is_first =
+            (words.has(b"u") || words.has(b"w")) && words.has(b"r") && !words.has_any(b"xyz");
         if words.has_g(500) && words.has(b"s") {
             add("G50 S, the highest spindle speed", true);
         }
-        if (words.has_any_g(&[710, 720, 730]) && (is_pair || is_first)) || (words.has_g(700) && is_pair && !has_axes) {
-            add("G70 to G73 with P and Q or with U and R, a roughing cycle", !words.has_g(700));
+        if (words.has_any_g(&[710, 720, 730]) && (is_pair || is_first))
+            || (words.has_g(700) && is_pair && !has_axes)
+        {
+            add(
+                "G70 to G73 with P and Q or with U and R, a roughing cycle",
+                !words.has_g(700),
+            );
         }
         if (words.has_any_g(&[740, 750]) && words.has(b"r") && !has_axes)
             || (words.has_g(760) && words.has(b"p") && words.has(b"q") && !has_axes)
         {
-            add("G74, G75 or G76 in two blocks, a grooving or threading cycle", true);
+            add(
+                "G74, G75 or G76 in two blocks, a grooving or threading cycle",
+                true,
+            );
         }
         if words.has_g(920) && words.has(b"f") && words.has_any(b"xu") {
             add("G92 with F, a threading cycle", true);
@@ -142,7 +166,10 @@ impl Evidence {
             add("G28 U, the way to the reference point", true);
         }
         let is_macro = words.has_any_g(&[650, 660, 661]);
-        if words.has_any(b"uw") && !is_macro && !words.has_any_g(&[700, 710, 720, 730, 740, 750, 760]) {
+        if words.has_any(b"uw")
+            && !is_macro
+            && !words.has_any_g(&[700, 710, 720, 730, 740, 750, 760])
+        {
             add("U or W, distances along X and Z", false);
         }
         if words.has_g(960) {
@@ -155,14 +182,22 @@ impl Evidence {
             add("G99 with F, a feed per revolution", false);
         }
         let alone = !words.has_any_g(&[0, 10, 20, 30]) && !words.has(b"y");
-        if words.has_g(900) && words.has_any(b"xu") && words.has_any(b"zw") && words.has(b"f") && alone {
+        if words.has_g(900)
+            && words.has_any(b"xu")
+            && words.has_any(b"zw")
+            && words.has(b"f")
+            && alone
+        {
             add("G90 with X, Z and F, a turning cycle", false);
         }
         if words.has_g(940) && words.has_any(b"xu") && words.has_any(b"zw") && alone {
             add("G94 with X and Z, a facing cycle", false);
         }
         let slow = SLOW[usize::from(is_inch)];
-        if words.feed.is_some_and(|feed| feed > 0.0 && feed < slow) && !words.has_any_g(&[930, 950]) && !is_macro {
+        if words.feed.is_some_and(|feed| feed > 0.0 && feed < slow)
+            && !words.has_any_g(&[930, 950])
+            && !is_macro
+        {
             add("F so small that it is a feed per revolution", false);
         }
     }
@@ -180,7 +215,10 @@ impl Evidence {
         }
         let has_axes = words.has_any(b"xzuw");
         if words.has_any_g(&[900, 910])
-            && (!has_axes || words.has(b"y") || words.has_g(910) || words.has_any_g(&[0, 10, 20, 30, 280]))
+            && (!has_axes
+                || words.has(b"y")
+                || words.has_g(910)
+                || words.has_any_g(&[0, 10, 20, 30, 280]))
         {
             add("G90 or G91 as a mode", false);
         }
@@ -212,19 +250,29 @@ impl LineWords {
     pub(super) fn of(line: &[u8]) -> Self {
         let mut words = Self::default();
         let mut at = 0;
-        let is_statement = ["IF", "WHILE", "GOTO", "END", "DO", "#"].iter().any(|start| {
-            let code = line.trim_ascii_start();
-            code.get(..start.len()).is_some_and(|code| code.eq_ignore_ascii_case(start.as_bytes()))
-        });
+        let is_statement = ["IF", "WHILE", "GOTO", "END", "DO", "#"]
+            .iter()
+            .any(|start| {
+                let code = line.trim_ascii_start();
+                code.get(..start.len())
+                    .is_some_and(|code| code.eq_ignore_ascii_case(start.as_bytes()))
+            });
         while let Some(&byte) = line.get(at).filter(|_| !is_statement) {
             at += 1;
             match byte.to_ascii_lowercase() {
                 b';' => break,
-                b'(' => at += line[at..].iter().position(|&byte| byte == b')').unwrap_or(line.len() - at),
+                b'(' => {
+                    at += line[at..]
+                        .iter()
+                        .position(|&byte| byte == b')')
+                        .unwrap_or(line.len() - at);
+                }
                 letter @ b'a'..=b'z' => {
                     let rest = line[at..].trim_ascii_start();
-                    let length =
-                        rest.iter().take_while(|byte| matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+')).count();
+                    let length = rest
+                        .iter()
+                        .take_while(|byte| matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+'))
+                        .count();
                     words.add(letter, &rest[..length]);
                     at = line.len() - rest.len() + length;
                 }
@@ -235,12 +283,15 @@ impl LineWords {
     }
 
     fn add(&mut self, letter: u8, number: &[u8]) {
-        let value = std::str::from_utf8(number).ok().and_then(|text| text.parse::<f64>().ok());
+        let value = std::str::from_utf8(number)
+            .ok()
+            .and_then(|text| text.parse::<f64>().ok());
         match (letter, value) {
             (b'g', Some(value)) => self.g.push((value * 10.0).round() as u32),
             (b'm', Some(value)) => self.m.push(value.round() as u32),
             (b't', _) => {
-                self.lathe_tool |= matches!(number.len(), 3 | 4) && number.iter().all(u8::is_ascii_digit);
+                self.lathe_tool |=
+                    matches!(number.len(), 3 | 4) && number.iter().all(u8::is_ascii_digit);
             }
             (b'g' | b'm' | b'n' | b'o', _) => {}
             (_, value) => {
@@ -257,7 +308,9 @@ impl LineWords {
     }
 
     fn has_any(&self, letters: &[u8]) -> bool {
-        letters.iter().any(|&letter| self.letters & bit(letter) != 0)
+        letters
+            .iter()
+            .any(|&letter| self.letters & bit(letter) != 0)
     }
 
     fn has_g(&self, code: u32) -> bool {
@@ -269,7 +322,9 @@ impl LineWords {
     }
 
     fn has_cycle(&self) -> bool {
-        self.g.iter().any(|code| matches!(code, 730 | 740 | 760 | 810..=890))
+        self.g
+            .iter()
+            .any(|code| matches!(code, 730 | 740 | 760 | 810..=890))
     }
 }
 
@@ -307,11 +362,22 @@ mod tests {
             "G94 X0 Z-1.",
             "G1 Z-30. F.2",
         ] {
-            assert_eq!(kind(&format!("O0001 (PART)\n{line}\nM30\n")), "lathe", "{line}");
+            assert_eq!(
+                kind(&format!("O0001 (PART)\n{line}\nM30\n")),
+                "lathe",
+                "{line}"
+            );
         }
-        for line in
-            ["G43 H1 Z50.", "G81 X10. Y10. Z-5. R2. F100", "G41 D1 X5.", "G90", "G91 G28 Z0", "T1 M6", "G17", "Y5."]
-        {
+        for line in [
+            "G43 H1 Z50.",
+            "G81 X10. Y10. Z-5. R2. F100",
+            "G41 D1 X5.",
+            "G90",
+            "G91 G28 Z0",
+            "T1 M6",
+            "G17",
+            "Y5.",
+        ] {
             assert_eq!(kind(&format!("O0001\n{line}\nM30\n")), "mill", "{line}");
         }
         for line in ["G0 X5. Z5.", "(G50 S1)", "IF [#24 EQ #0] GOTO 5", "T1"] {

@@ -1,6 +1,7 @@
 //! G73: the profile itself, several times, ever closer.
 //!
-//! Pass n of N is moved by the allowance U W and by (N - n)/(N - 1) of the U W of the first block. Each begins at the start of the cycle, moved alike.
+//! Pass n of N is moved by the allowance U W and by (N - n)/(N - 1) of the U W of the first block.
+//! Each begins at the start of the cycle, moved alike.
 
 use crate::canon::{MotionKind, Shape};
 use crate::geometry::plane::PlaneArc;
@@ -23,12 +24,18 @@ impl Interpreter {
     ) -> Read<()> {
         let wanted = &capture.wanted;
         if capture.motions.len() * passes as usize > MAX_MOTIONS {
-            let message =
-                format!("{passes} passes along {} motions; the product may be {MAX_MOTIONS}", capture.motions.len());
+            let message = format!(
+                "{passes} passes along {} motions; the product may be {MAX_MOTIONS}",
+                capture.motions.len()
+            );
             return Err(capture.refuse(wanted.line, &message));
         }
         for pass in 1..=passes {
-            let share = if passes == 1 { 0.0 } else { f64::from(passes - pass) / f64::from(passes - 1) };
+            let share = if passes == 1 {
+                0.0
+            } else {
+                f64::from(passes - pass) / f64::from(passes - 1)
+            };
             let moved = |point: [f64; 3]| {
                 let mut position: Position = wanted.start;
                 position[0] = point[0] + share * shift_mm[0] + allowance_mm[0];
@@ -40,12 +47,20 @@ impl Interpreter {
             for motion in &capture.motions {
                 let end = moved(motion.end_mm);
                 match &motion.shape {
-                    Shape::Arc { center_mm, turns, .. } => {
-                        let [middle, target] = [moved(*center_mm), end].map(|point| self.frame.to_program(&point));
-                        let round = PlaneArc { center: [middle[2], middle[0]], turns: *turns };
+                    Shape::Arc {
+                        center_mm, turns, ..
+                    } => {
+                        let [middle, target] =
+                            [moved(*center_mm), end].map(|point| self.frame.to_program(&point));
+                        let round = PlaneArc {
+                            center: [middle[2], middle[0]],
+                            turns: *turns,
+                        };
                         self.arc_to(&wanted.block, &target, round, 0.0)?;
                     }
-                    _ if motion.kind == MotionKind::Rapid => self.line_to(&wanted.block, end, Speed::Rapid, 0.0)?,
+                    _ if motion.kind == MotionKind::Rapid => {
+                        self.line_to(&wanted.block, end, Speed::Rapid, 0.0)?;
+                    }
                     _ => self.line_to(&wanted.block, end, Speed::Programmed, 0.0)?,
                 }
             }

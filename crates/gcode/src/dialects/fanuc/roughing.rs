@@ -1,4 +1,5 @@
-//! G71 (passes along Z) and G72 (passes along X): straight passes down to the profile, then along it.
+//! G71 (passes along Z) and G72 (passes along X): straight passes down to the profile, then along
+//! it.
 //!
 //! The allowance U W moves the profile and the start of the cycle. Pass n starts from the moved
 //! start C and cuts up to the profile, at n times the depth of cut. There the tool retracts at 45
@@ -22,7 +23,8 @@ use crate::text::diagnostic::{LineFault, Read};
 
 /// Passes of one cycle: more is a mistake in the depth of a pass.
 const MAX_PASSES: f64 = 10_000.0;
-/// A profile comes down, or turns back, where it does so by more, mm: coordinates of three decimals turn the ends of arcs by as little.
+/// A profile comes down, or turns back, where it does so by more, mm: coordinates of three decimals
+/// turn the ends of arcs by as little.
 const MIN_TURN_MM: f64 = 1e-3;
 
 /// A cycle with its profile, moved by the allowance.
@@ -40,22 +42,47 @@ struct Roughing<'a> {
 
 impl<'a> Roughing<'a> {
     fn new(capture: &'a Capture) -> Read<Self> {
-        let ProfileWork::Rough { is_facing, depth_mm, escape_mm, allowance_mm } = capture.wanted.work else {
+        let ProfileWork::Rough {
+            is_facing,
+            depth_mm,
+            escape_mm,
+            allowance_mm,
+        } = capture.wanted.work
+        else {
             return Err(capture.refuse(capture.wanted.line, "it is none of G71 or G72"));
         };
         let axes = if is_facing { [0, 2] } else { [2, 0] };
-        let (entry, rest) =
-            capture.motions.split_first().ok_or_else(|| capture.refuse(capture.wanted.line, "it is empty"))?;
-        let along = |motion: &Motion, n: usize| clear(motion.end_mm[axes[n]] - motion.start_mm[axes[n]]);
-        let start_mm = [capture.wanted.start[0], capture.wanted.start[1], capture.wanted.start[2]];
+        let (entry, rest) = capture
+            .motions
+            .split_first()
+            .ok_or_else(|| capture.refuse(capture.wanted.line, "it is empty"))?;
+        let along =
+            |motion: &Motion, n: usize| clear(motion.end_mm[axes[n]] - motion.start_mm[axes[n]]);
+        let start_mm = [
+            capture.wanted.start[0],
+            capture.wanted.start[1],
+            capture.wanted.start[2],
+        ];
         let last = rest.last().unwrap_or(entry);
         let infeed = clear(start_mm[axes[1]] - entry.end_mm[axes[1]]);
-        let outward = infeed.or_else(|| clear(last.end_mm[axes[1]] - entry.end_mm[axes[1]])).unwrap_or(1.0);
-        let plane =
-            CyclePlane { axes, signs: [rest.iter().find_map(|motion| along(motion, 0)).unwrap_or(-1.0), outward] };
+        let outward = infeed
+            .or_else(|| clear(last.end_mm[axes[1]] - entry.end_mm[axes[1]]))
+            .unwrap_or(1.0);
+        let plane = CyclePlane {
+            axes,
+            signs: [
+                rest.iter()
+                    .find_map(|motion| along(motion, 0))
+                    .unwrap_or(-1.0),
+                outward,
+            ],
+        };
         let by_axis = [allowance_mm[0], 0.0, allowance_mm[1]];
         let shift = plane.of(by_axis);
-        let curves: Vec<PlaneCurve> = rest.iter().map(|motion| plane.curve(motion).moved(shift)).collect();
+        let curves: Vec<PlaneCurve> = rest
+            .iter()
+            .map(|motion| plane.curve(motion).moved(shift))
+            .collect();
         let roughing = Self {
             capture,
             plane,
@@ -63,7 +90,11 @@ impl<'a> Roughing<'a> {
             curves: parted_at_tops(curves),
             depth_mm,
             escape_mm,
-            infeed: if entry.kind == MotionKind::Rapid { Speed::Rapid } else { Speed::Programmed },
+            infeed: if entry.kind == MotionKind::Rapid {
+                Speed::Rapid
+            } else {
+                Speed::Programmed
+            },
         };
         roughing.check(rest, shift)?;
         Ok(roughing)
@@ -79,7 +110,9 @@ impl<'a> Roughing<'a> {
         for motion in motions {
             let curve = self.plane.curve(motion).moved(shift);
             if goes_back_mm(&curve) > MIN_TURN_MM {
-                let message = format!("{name} turns back: an undercut cannot be reached by passes along {name}");
+                let message = format!(
+                    "{name} turns back: an undercut cannot be reached by passes along {name}"
+                );
                 return Err(self
                     .capture
                     .refuse(motion.line, &message)
@@ -96,8 +129,12 @@ impl<'a> Roughing<'a> {
             }
         }
         if self.start[0] > self.entry()[0] + SLACK_MM {
-            let message = format!("the cycle starts behind the beginning of its profile along {name}");
-            return Err(self.capture.refuse(self.capture.wanted.line, &message).hint("start it before the part"));
+            let message =
+                format!("the cycle starts behind the beginning of its profile along {name}");
+            return Err(self
+                .capture
+                .refuse(self.capture.wanted.line, &message)
+                .hint("start it before the part"));
         }
         Ok(())
     }
@@ -107,7 +144,10 @@ impl<'a> Roughing<'a> {
     }
 
     fn lowest(&self) -> f64 {
-        self.curves.iter().map(lowest_of).fold(self.entry()[1], f64::min)
+        self.curves
+            .iter()
+            .map(lowest_of)
+            .fold(self.entry()[1], f64::min)
     }
 
     /// Where the profile lies below a level: beginnings and ends along the passes.
@@ -144,7 +184,12 @@ impl<'a> Roughing<'a> {
 /// The lowest point of a curve.
 fn lowest_of(curve: &PlaneCurve) -> f64 {
     match *curve {
-        PlaneCurve::Arc { start, end, center, turn } if turn > 0.0 && start[0] < center[0] && end[0] > center[0] => {
+        PlaneCurve::Arc {
+            start,
+            end,
+            center,
+            turn,
+        } if turn > 0.0 && start[0] < center[0] && end[0] > center[0] => {
             center[1] - length(minus(start, center))
         }
         _ => curve.end()[1],
@@ -154,20 +199,38 @@ fn lowest_of(curve: &PlaneCurve) -> f64 {
 /// How far a curve goes back along the passes.
 fn goes_back_mm(curve: &PlaneCurve) -> f64 {
     let straight = (curve.start()[0] - curve.end()[0]).max(0.0);
-    let PlaneCurve::Arc { start, end, center, turn } = *curve else { return straight };
+    let PlaneCurve::Arc {
+        start,
+        end,
+        center,
+        turn,
+    } = *curve
+    else {
+        return straight;
+    };
     // Both ends of a half circle may lie a little beyond it, and no more.
     if sweep(start, end, center, turn) > 1.1 * std::f64::consts::PI {
         return f64::INFINITY;
     }
     let radius = length(minus(start, center));
-    let before = if curve.direction(start)[0] < 0.0 { start[0] - (center[0] - radius) } else { 0.0 };
-    let behind = if curve.direction(end)[0] < 0.0 { center[0] + radius - end[0] } else { 0.0 };
+    let before = if curve.direction(start)[0] < 0.0 {
+        start[0] - (center[0] - radius)
+    } else {
+        0.0
+    };
+    let behind = if curve.direction(end)[0] < 0.0 {
+        center[0] + radius - end[0]
+    } else {
+        0.0
+    };
     straight.max(before).max(behind)
 }
 
 /// Whether a curve goes down anywhere.
 fn comes_down(curve: &PlaneCurve) -> bool {
-    parted_at_tops(vec![*curve]).iter().any(|part| part.start()[1] - lowest_of(part) > MIN_TURN_MM)
+    parted_at_tops(vec![*curve])
+        .iter()
+        .any(|part| part.start()[1] - lowest_of(part) > MIN_TURN_MM)
 }
 
 impl Interpreter {
@@ -177,9 +240,13 @@ impl Interpreter {
         let (start, depth) = (roughing.start, roughing.depth_mm);
         let passes = ((start[1] - roughing.lowest() - SLACK_MM) / depth).ceil() - 1.0;
         if passes > MAX_PASSES {
-            let message = format!("the depth of a pass of {depth} mm makes {passes} passes; the limit is {MAX_PASSES}");
-            return Err(LineFault::new("gcode::lathe", capture.wanted.block.at(b'p'), message)
-                .hint("make the depth of a pass larger"));
+            let message = format!(
+                "the depth of a pass of {depth} mm makes {passes} passes; the limit is {MAX_PASSES}"
+            );
+            return Err(
+                LineFault::new("gcode::lathe", capture.wanted.block.at(b'p'), message)
+                    .hint("make the depth of a pass larger"),
+            );
         }
         self.rough_line(&roughing, start, Speed::Rapid)?;
         let mut pass = 1.0;
@@ -187,7 +254,9 @@ impl Interpreter {
             self.rough_level(&roughing, start[1] - pass * depth)?;
             pass += 1.0;
         }
-        let here = roughing.plane.of([self.here[0], self.here[1], self.here[2]]);
+        let here = roughing
+            .plane
+            .of([self.here[0], self.here[1], self.here[2]]);
         self.rough_line(&roughing, [here[0], start[1]], Speed::Rapid)?;
         self.rough_line(&roughing, roughing.entry(), roughing.infeed)?;
         for curve in &roughing.curves {
@@ -197,10 +266,16 @@ impl Interpreter {
             let end = roughing.curves.last().map_or(start, PlaneCurve::end);
             self.rough_line(&roughing, [end[0], start[1].max(end[1])], Speed::Rapid)?;
         }
-        self.line_to(&capture.wanted.block, capture.wanted.start, Speed::Rapid, 0.0)
+        self.line_to(
+            &capture.wanted.block,
+            capture.wanted.start,
+            Speed::Rapid,
+            0.0,
+        )
     }
 
-    /// The passes at one level: the first from the start of the cycle, those of pockets from above them.
+    /// The passes at one level: the first from the start of the cycle, those of pockets from above
+    /// them.
     fn rough_level(&mut self, roughing: &Roughing<'_>, level: f64) -> Read<()> {
         let start = roughing.start;
         for [begin, end] in roughing.open_at(level) {
@@ -208,10 +283,16 @@ impl Interpreter {
             if from_start {
                 self.rough_line(roughing, [start[0], level], roughing.infeed)?;
             } else {
-                let here = roughing.plane.of([self.here[0], self.here[1], self.here[2]]);
+                let here = roughing
+                    .plane
+                    .of([self.here[0], self.here[1], self.here[2]]);
                 self.rough_line(roughing, [here[0], start[1]], Speed::Rapid)?;
                 self.rough_line(roughing, [begin, start[1]], Speed::Rapid)?;
-                self.rough_line(roughing, [begin, (level + roughing.depth_mm).min(start[1])], Speed::Rapid)?;
+                self.rough_line(
+                    roughing,
+                    [begin, (level + roughing.depth_mm).min(start[1])],
+                    Speed::Rapid,
+                )?;
                 self.rough_line(roughing, [begin, level], Speed::Programmed)?;
             }
             self.rough_line(roughing, [end, level], Speed::Programmed)?;
@@ -228,16 +309,23 @@ impl Interpreter {
     }
 
     fn warn_of_allowance(&mut self, roughing: &Roughing<'_>) {
-        let ProfileWork::Rough { allowance_mm, .. } = roughing.capture.wanted.work else { return };
+        let ProfileWork::Rough { allowance_mm, .. } = roughing.capture.wanted.work else {
+            return;
+        };
         let shift = roughing.plane.of([allowance_mm[0], 0.0, allowance_mm[1]]);
         let (letter, block) = match shift {
-            [along, _] if along > SLACK_MM => (roughing.plane.axes[0], &roughing.capture.wanted.block),
+            [along, _] if along > SLACK_MM => {
+                (roughing.plane.axes[0], &roughing.capture.wanted.block)
+            }
             [_, out] if out < -SLACK_MM => (roughing.plane.axes[1], &roughing.capture.wanted.block),
             _ => return,
         };
         let letter = if letter == 0 { b'u' } else { b'w' };
         let name = char::from(letter).to_ascii_uppercase();
-        let message = format!("{name} of {} moves the profile into the part", spelled(roughing.capture.wanted.code));
+        let message = format!(
+            "{name} of {} moves the profile into the part",
+            spelled(roughing.capture.wanted.code)
+        );
         self.output.warnings.push(
             *LineFault::new("gcode::lathe", block.at(letter), message)
                 .hint("the allowance is left standing with the other sign"),

@@ -1,7 +1,9 @@
-//! Cycles of one block: G90 turns along Z, G94 faces along X, G92 cuts a thread; each begins and ends where the tool is. G32 is one thread.
+//! Cycles of one block: G90 turns along Z, G94 faces along X, G92 cuts a thread; each begins and
+//! ends where the tool is. G32 is one thread.
 //!
-//! G90 and G92: rapid along X to the start of the cut, cut to X Z, back along X, rapid along Z. G94: the same with X and Z exchanged. R (I, K of
-//! older controls and Haas) is the taper: how far the start of the cut lies from its end, along X as a radius, along Z for G94. X, Z and R stay
+//! G90 and G92: rapid along X to the start of the cut, cut to X Z, back along X, rapid along Z.
+//! G94: the same with X and Z exchanged. R (I, K of older controls and Haas) is the taper: how far
+//! the start of the cut lies from its end, along X as a radius, along Z for G94. X, Z and R stay
 //! for the blocks that follow.
 
 use crate::canon::EventKind;
@@ -32,7 +34,10 @@ impl Interpreter {
         out[infeed] = start[infeed];
         if begin[along] == end[along] {
             let axis = ["X", "Y", "Z"][along];
-            let message = format!("{} cuts nothing: it ends at the {axis} where it begins", spelled(code));
+            let message = format!(
+                "{} cuts nothing: it ends at the {axis} where it begins",
+                spelled(code)
+            );
             return Err(LineFault::new("gcode::lathe", block.whole(), message)
                 .hint("it begins where the tool is; as modes, G90 and G91 belong to other G-code systems than A"));
         }
@@ -41,7 +46,11 @@ impl Interpreter {
             self.check_thread(block, code)?;
             if self.warn_once("gcode::run_out") {
                 let message = "how a thread of G92 runs out is a parameter of the control: it is read as a right angle at its end";
-                self.output.warnings.push(*LineFault::new("gcode::run_out", block.whole(), message));
+                self.output.warnings.push(*LineFault::new(
+                    "gcode::run_out",
+                    block.whole(),
+                    message,
+                ));
             }
             self.cut_thread(block, end)?;
             self.go(block, out, Speed::Rapid)?;
@@ -56,13 +65,18 @@ impl Interpreter {
     fn turning_words(&mut self, block: &Block, code: u16) -> Read<Position> {
         let mut kept = self.fanuc.turning;
         if kept.code != code {
-            kept = TurningWords { code, ..TurningWords::default() };
+            kept = TurningWords {
+                code,
+                ..TurningWords::default()
+            };
         }
         for (axis, place, step) in [(0, b'x', b'u'), (2, b'z', b'w')] {
             if let Some(value) = block.get(place) {
-                (kept.place_mm[axis], kept.step_mm[axis]) = (Some(self.length(block, place, axis, value)?), None);
+                (kept.place_mm[axis], kept.step_mm[axis]) =
+                    (Some(self.length(block, place, axis, value)?), None);
             } else if let Some(value) = block.get(step) {
-                (kept.place_mm[axis], kept.step_mm[axis]) = (None, Some(self.length(block, step, axis, value)?));
+                (kept.place_mm[axis], kept.step_mm[axis]) =
+                    (None, Some(self.length(block, step, axis, value)?));
             }
         }
         for letter in [b'r', b'i', b'k'] {
@@ -83,7 +97,9 @@ impl Interpreter {
                         block.whole(),
                         format!("{name} is missing for {}", spelled(code)),
                     )
-                    .hint("the first block of a cycle has both; the next ones need only what changes"));
+                    .hint(
+                        "the first block of a cycle has both; the next ones need only what changes",
+                    ));
                 }
             }
         }
@@ -102,9 +118,8 @@ impl Interpreter {
         self.check_spindle(block, code)?;
         if self.modal.feed <= 0.0 {
             let message = format!("F (lead of the thread) is missing for {}", spelled(code));
-            return Err(
-                LineFault::new("gcode::thread", block.whole(), message).hint("write F1.5 for 1.5 mm per revolution")
-            );
+            return Err(LineFault::new("gcode::thread", block.whole(), message)
+                .hint("write F1.5 for 1.5 mm per revolution"));
         }
         Ok(())
     }
@@ -117,7 +132,9 @@ impl Interpreter {
             return Ok(());
         }
         let lead_mm = self.modal.feed * libm::hypot(way[0], way[1]) / longer;
-        self.event(EventKind::SpindleSync { pitch_mm: Some(self.modal.feed) });
+        self.event(EventKind::SpindleSync {
+            pitch_mm: Some(self.modal.feed),
+        });
         self.paced(block, target, lead_mm)?;
         self.event(EventKind::SpindleSync { pitch_mm: None });
         Ok(())

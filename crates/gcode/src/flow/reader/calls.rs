@@ -5,23 +5,37 @@ use crate::settings::Dialect;
 use crate::text::diagnostic::{LineFault, Read, Severity, Short};
 
 impl Reader {
-    /// A subroutine has perhaps returned to the lathe cycle whose profile it is; faults are the cycle's.
+    /// A subroutine has perhaps returned to the lathe cycle whose profile it is; faults are the
+    /// cycle's.
     pub(super) fn end_profile(&mut self) -> Read<()> {
-        let Self { flow, interpreter, .. } = self;
-        let Some(lathe) = interpreter.lathe.take_if(|lathe| interpreter.calls.level <= lathe.level) else {
+        let Self {
+            flow, interpreter, ..
+        } = self;
+        let Some(lathe) = interpreter
+            .lathe
+            .take_if(|lathe| interpreter.calls.level <= lathe.level)
+        else {
             return Ok(());
         };
         flow.source().line_start = lathe.mark;
         interpreter.finish_lathe(&lathe)
     }
 
-    /// The line that was read may be the last of a profile; without its faults the cycle is carried out.
+    /// The line that was read may be the last of a profile; without its faults the cycle is carried
+    /// out.
     pub(super) fn end_own_profile(&mut self, result: Read<()>) -> Read<()> {
         let number = std::mem::take(&mut self.interpreter.fanuc.block_number);
-        let Some(capture) = self.interpreter.fanuc.capture.take_if(|capture| capture.last() == number) else {
+        let Some(capture) = self
+            .interpreter
+            .fanuc
+            .capture
+            .take_if(|capture| capture.last() == number)
+        else {
             return result;
         };
-        let Self { flow, interpreter, .. } = self;
+        let Self {
+            flow, interpreter, ..
+        } = self;
         result?;
         interpreter.check_pending(0..usize::MAX)?;
         flow.end_own_profile(&capture, interpreter)
@@ -29,7 +43,12 @@ impl Reader {
 
     /// M98 and M99 come after all else of their line.
     pub(super) fn calls(&mut self) -> Read<()> {
-        let Self { flow, interpreter, block, .. } = self;
+        let Self {
+            flow,
+            interpreter,
+            block,
+            ..
+        } = self;
         for word in &block.m {
             let at = word.at();
             match word.number {
@@ -42,8 +61,11 @@ impl Reader {
                         )
                         .hint("write M98 P1000 to call O1000"));
                     };
-                    let times =
-                        if block.has(b'l') { interpreter.integer(block, b'l', 0, i64::from(u32::MAX))? } else { 1 };
+                    let times = if block.has(b'l') {
+                        interpreter.integer(block, b'l', 0, i64::from(u32::MAX))?
+                    } else {
+                        1
+                    };
                     if !(0.0..1e15).contains(&number) {
                         return Err(LineFault::new(
                             "gcode::m98",
@@ -57,7 +79,12 @@ impl Reader {
                     let counts = interpreter.dialect.is_fanuc() && !block.has(b'l');
                     match called {
                         Err(fault) if counts && (10_000..100_000_000).contains(&number) => flow
-                            .call_number(number % 10_000, (number / 10_000) as u32, &at, interpreter)
+                            .call_number(
+                                number % 10_000,
+                                (number / 10_000) as u32,
+                                &at,
+                                interpreter,
+                            )
                             .map_err(|_| fault)?,
                         called => called?,
                     }
@@ -88,7 +115,8 @@ impl Reader {
     pub(super) fn warn_of_points(&mut self) {
         if let Some((line, message, hint)) = self.interpreter.warning_of_points() {
             let mut warning = self.of_file("gcode::increment", message);
-            (warning.severity, warning.line, warning.hint) = (Severity::Warning, line, Some(hint.to_owned()));
+            (warning.severity, warning.line, warning.hint) =
+                (Severity::Warning, line, Some(hint.to_owned()));
             self.warn(*warning);
         }
     }

@@ -1,8 +1,10 @@
-//! The lines that long programs consist of, G0 or G1 with X, Y, Z, E and F as short decimals, read straight into a motion.
+//! The lines that long programs consist of, G0 or G1 with X, Y, Z, E and F as short decimals, read
+//! straight into a motion.
 //!
-//! Such a line needs little of what [`Block`](crate::text::block::Block) and `execute` do for any line. Where no other mode has a say it becomes
-//! the same motion, to the last bit, with the same arithmetic in the same order; whatever is out of the ordinary in the line or in
-//! the modes leaves everything as it was, and the line goes the long way.
+//! Such a line needs little of what [`Block`](crate::text::block::Block) and `execute` do for any
+//! line. Where no other mode has a say it becomes the same motion, to the last bit, with the same
+//! arithmetic in the same order; whatever is out of the ordinary in the line or in the modes leaves
+//! everything as it was, and the line goes the long way.
 
 use crate::canon::{AuxiliaryAxes, Motion, Shape};
 use crate::flow::reader::{Percent, Reader};
@@ -39,7 +41,9 @@ impl Reader {
     /// Carries out the next line if it is a plain one that moves.
     #[inline]
     pub(super) fn plain_line(&mut self) -> Option<Motion> {
-        let Self { flow, interpreter, .. } = self;
+        let Self {
+            flow, interpreter, ..
+        } = self;
         if self.percent == Percent::NotSeen || flow.is_skipping() || !interpreter.is_plain() {
             return None;
         }
@@ -55,7 +59,8 @@ impl Reader {
 }
 
 impl PlainWords {
-    /// Reads the line that `bytes` begin with; nothing where it is no plain one or does not end in them.
+    /// Reads the line that `bytes` begin with; nothing where it is no plain one or does not end in
+    /// them.
     #[inline]
     fn read(bytes: &[u8]) -> Option<Self> {
         let mut words = Self::default();
@@ -118,11 +123,15 @@ fn straight_code(bytes: &[u8], at: &mut usize) -> Option<u16> {
 
 /// How many digits come first, at least one and few.
 pub(super) fn digits(bytes: &[u8]) -> Option<usize> {
-    let count = bytes.iter().take_while(|byte| byte.is_ascii_digit()).count();
+    let count = bytes
+        .iter()
+        .take_while(|byte| byte.is_ascii_digit())
+        .count();
     (1..=MAX_DIGITS).contains(&count).then_some(count)
 }
 
-/// A decimal of few digits without blanks: an exact integer divided by an exact power of ten, as the lexer reads it.
+/// A decimal of few digits without blanks: an exact integer divided by an exact power of ten, as
+/// the lexer reads it.
 #[inline]
 fn short_decimal(bytes: &[u8], at: &mut usize) -> Option<f64> {
     let sign = *bytes.get(*at)?;
@@ -148,14 +157,19 @@ fn short_decimal(bytes: &[u8], at: &mut usize) -> Option<f64> {
 
 #[inline]
 fn take_digits(bytes: &[u8], at: &mut usize, mantissa: &mut u64) {
-    while let Some(digit) = bytes.get(*at).map(|byte| byte.wrapping_sub(b'0')).filter(|&digit| digit < 10) {
+    while let Some(digit) = bytes
+        .get(*at)
+        .map(|byte| byte.wrapping_sub(b'0'))
+        .filter(|&digit| digit < 10)
+    {
         *mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
         *at += 1;
     }
 }
 
 impl Interpreter {
-    /// Whether a straight motion goes to where its words say and nowhere else, and nothing waits for it.
+    /// Whether a straight motion goes to where its words say and nowhere else, and nothing waits
+    /// for it.
     #[inline]
     fn is_plain(&self) -> bool {
         self.modal.feed_mode == FeedMode::PerMinute
@@ -168,7 +182,8 @@ impl Interpreter {
             && !self.dialect.is_fanuc()
     }
 
-    /// The motion of a plain line, where it has one; everything that can be wrong with it comes before the first change.
+    /// The motion of a plain line, where it has one; everything that can be wrong with it comes
+    /// before the first change.
     #[inline]
     fn plain_motion(&mut self, words: &PlainWords, line: u32) -> Option<Motion> {
         let is_printer = self.dialect == Dialect::Printer;
@@ -177,8 +192,16 @@ impl Interpreter {
             return None;
         }
         let unit_mm = self.modal.unit_mm;
-        let feed = if words.has(F) { (words.value[F] * unit_mm).min(f64::MAX) } else { self.modal.feed };
-        let speed = if code == 10 || (is_printer && feed > 0.0) { Speed::Programmed } else { Speed::Rapid };
+        let feed = if words.has(F) {
+            (words.value[F] * unit_mm).min(f64::MAX)
+        } else {
+            self.modal.feed
+        };
+        let speed = if code == 10 || (is_printer && feed > 0.0) {
+            Speed::Programmed
+        } else {
+            Speed::Rapid
+        };
         let feed_mm_s = match speed {
             Speed::Rapid => 0.0,
             Speed::Programmed if feed > 0.0 => feed / MINUTE_S,
@@ -219,7 +242,10 @@ impl Interpreter {
             shape: Shape::Line,
             feed_mm_s,
             corner: self.modal.corner,
-            others: AuxiliaryAxes { extruder_mm: pushed_mm, axes: None },
+            others: AuxiliaryAxes {
+                extruder_mm: pushed_mm,
+                axes: None,
+            },
         })
     }
 
@@ -236,10 +262,16 @@ impl Interpreter {
                 if length_mm.abs() > limit_mm {
                     return None;
                 }
-                target[axis] = if self.modal.incremental { self.at[axis] + length_mm } else { length_mm };
+                target[axis] = if self.modal.incremental {
+                    self.at[axis] + length_mm
+                } else {
+                    length_mm
+                };
             }
         }
-        let is_near = [0, 1, 2, 6, 7, 8].into_iter().all(|axis| target[axis].abs() <= limit_mm);
+        let is_near = [0, 1, 2, 6, 7, 8]
+            .into_iter()
+            .all(|axis| target[axis].abs() <= limit_mm);
         is_near.then_some(target)
     }
 }
@@ -257,8 +289,14 @@ mod tests {
         let words = read("N12 g01X1.5 Y-.25\tF 6\n");
         assert_eq!(words, None, "a blank before a number");
         let words = read("N12 g01X1.5 Y-.25\tF600\r\nG1").unwrap();
-        assert_eq!((words.code, words.set, words.length), (Some(10), 0b10011, 23));
-        assert_eq!((words.value[X], words.value[Y], words.value[F]), (1.5, -0.25, 600.0));
+        assert_eq!(
+            (words.code, words.set, words.length),
+            (Some(10), 0b10011, 23)
+        );
+        assert_eq!(
+            (words.value[X], words.value[Y], words.value[F]),
+            (1.5, -0.25, 600.0)
+        );
     }
 
     #[test]
@@ -300,9 +338,16 @@ mod tests {
 
     #[test]
     fn short_decimals_are_rounded_correctly() {
-        for text in
-            ["0.1", "123.456", ".5", "7.", "999999999999999", "0.00000000000001", "1234567.89012345", "000001.5"]
-        {
+        for text in [
+            "0.1",
+            "123.456",
+            ".5",
+            "7.",
+            "999999999999999",
+            "0.00000000000001",
+            "1234567.89012345",
+            "000001.5",
+        ] {
             assert_eq!(
                 short_decimal(format!("{text} ").as_bytes(), &mut 0).unwrap(),
                 text.parse::<f64>().unwrap(),

@@ -1,10 +1,14 @@
-//! Corners of a profile: an arc that touches both sides (A), or the chord between the points where it would (C).
+//! Corners of a profile: an arc that touches both sides (A), or the chord between the points where
+//! it would (C).
 
-use crate::geometry::plane::{PlaneCurve, PlanePoint, SLACK_MM, add, cross, dot, length, minus, scaled, shifted, unit};
+use crate::geometry::plane::{
+    PlaneCurve, PlanePoint, SLACK_MM, add, cross, dot, length, minus, scaled, shifted, unit,
+};
 use crate::state::lathe::{CornerCut, LatheCycle};
 use crate::text::diagnostic::{LineFault, Read};
 
-/// Corners flatter than this need no arc and no new end, rad: their offset ends are less than a nanometre apart at 10 mm.
+/// Corners flatter than this need no arc and no new end, rad: their offset ends are less than a
+/// nanometre apart at 10 mm.
 pub(super) const SMOOTH_RAD: f64 = 1e-10;
 
 impl LatheCycle {
@@ -19,7 +23,9 @@ impl LatheCycle {
             let corner = corners.next_if(|corner| corner.0 + 1 == number);
             if let (Some((_, corner)), Some(before)) = (corner, cut.last_mut()) {
                 let line = self.motions[number - 1].line;
-                let piece = corner.cut(before, &mut curve).ok_or_else(|| self.too_large(line, corner))?;
+                let piece = corner
+                    .cut(before, &mut curve)
+                    .ok_or_else(|| self.too_large(line, corner))?;
                 cut.extend(piece);
             }
             cut.push(curve);
@@ -29,14 +35,23 @@ impl LatheCycle {
 
     fn too_large(&self, line: u32, corner: &CornerCut) -> Box<LineFault> {
         let letter = if corner.is_round { 'A' } else { 'C' };
-        let message = format!("the corner {letter} of {:.4} mm is larger than the motions beside it", corner.radius_mm);
-        self.refuse(line, &message).hint("a corner needs two sides that are longer than what it takes of them")
+        let message = format!(
+            "the corner {letter} of {:.4} mm is larger than the motions beside it",
+            corner.radius_mm
+        );
+        self.refuse(line, &message)
+            .hint("a corner needs two sides that are longer than what it takes of them")
     }
 }
 
 impl CornerCut {
-    /// Shortens both sides of the corner and returns what comes between them: nothing where the profile goes straight on.
-    pub(crate) fn cut(&self, before: &mut PlaneCurve, behind: &mut PlaneCurve) -> Option<Option<PlaneCurve>> {
+    /// Shortens both sides of the corner and returns what comes between them: nothing where the
+    /// profile goes straight on.
+    pub(crate) fn cut(
+        &self,
+        before: &mut PlaneCurve,
+        behind: &mut PlaneCurve,
+    ) -> Option<Option<PlaneCurve>> {
         let corner = behind.start();
         let (from, to) = (before.direction(corner), behind.direction(corner));
         let bend = libm::atan2(cross(from, to), dot(from, to));
@@ -52,11 +67,19 @@ impl CornerCut {
         }
         before.set_end(start);
         behind.set_start(end);
-        if [&*before, &*behind].iter().any(|curve| curve.chord() <= SLACK_MM) {
+        if [&*before, &*behind]
+            .iter()
+            .any(|curve| curve.chord() <= SLACK_MM)
+        {
             return None;
         }
         Some(Some(if self.is_round {
-            PlaneCurve::Arc { start, end, center, turn }
+            PlaneCurve::Arc {
+                start,
+                end,
+                center,
+                turn,
+            }
         } else {
             PlaneCurve::Line { start, end }
         }))
@@ -70,8 +93,9 @@ pub(super) fn foot(curve: &PlaneCurve, point: PlanePoint) -> PlanePoint {
             let along = unit(minus(end, start));
             add(start, scaled(along, dot(minus(point, start), along)))
         }
-        PlaneCurve::Arc { start, center, .. } => {
-            add(center, scaled(unit(minus(point, center)), length(minus(start, center))))
-        }
+        PlaneCurve::Arc { start, center, .. } => add(
+            center,
+            scaled(unit(minus(point, center)), length(minus(start, center))),
+        ),
     }
 }

@@ -1,6 +1,7 @@
 //! The plane of a lathe cycle: which axes, and which way; and motions along its lines and arcs.
 //!
-//! Coordinates, mm: the first grows along the passes, the second grows from the finished part to the stock's surface.
+//! Coordinates, mm: the first grows along the passes, the second grows from the finished part to
+//! the stock's surface.
 
 use crate::canon::{Motion, Shape};
 use crate::geometry::plane::{PlaneArc, PlaneCurve, PlanePoint, SLACK_MM, length, minus};
@@ -45,9 +46,14 @@ impl CyclePlane {
     pub(crate) fn curve(self, motion: &Motion) -> PlaneCurve {
         let (start, end) = (self.of(motion.start_mm), self.of(motion.end_mm));
         match &motion.shape {
-            Shape::Arc { center_mm, turns, .. } => {
-                PlaneCurve::Arc { start, end, center: self.of(*center_mm), turn: self.turns(f64::from(*turns)) }
-            }
+            Shape::Arc {
+                center_mm, turns, ..
+            } => PlaneCurve::Arc {
+                start,
+                end,
+                center: self.of(*center_mm),
+                turn: self.turns(f64::from(*turns)),
+            },
             _ => PlaneCurve::Line { start, end },
         }
     }
@@ -80,12 +86,21 @@ impl Interpreter {
         curve: &PlaneCurve,
     ) -> Read<()> {
         match *curve {
-            // A piece of an arc too short to be told from a full circle is as straight as it is short.
-            PlaneCurve::Arc { start, end, center, turn } if length(minus(end, start)) > SHORT_ARC_MM => {
-                let [middle, target] =
-                    [center, end].map(|point| self.frame.to_program(&plane.position(point, start_like)));
+            // A piece of an arc too short to be told from a full circle is as straight as it is
+            // short.
+            PlaneCurve::Arc {
+                start,
+                end,
+                center,
+                turn,
+            } if length(minus(end, start)) > SHORT_ARC_MM => {
+                let [middle, target] = [center, end]
+                    .map(|point| self.frame.to_program(&plane.position(point, start_like)));
                 let turns = if plane.turns(turn) > 0.0 { 1 } else { -1 };
-                let round = PlaneArc { center: [middle[2], middle[0]], turns };
+                let round = PlaneArc {
+                    center: [middle[2], middle[0]],
+                    turns,
+                };
                 self.arc_to(block, &target, round, 0.0)
             }
             PlaneCurve::Line { end, .. } | PlaneCurve::Arc { end, .. } => {

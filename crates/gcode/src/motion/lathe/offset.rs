@@ -1,28 +1,35 @@
 //! The curve at a distance from a profile, on the side of the stock.
 //!
-//! The profile never goes back along the passes, so all below it is part, and all within the distance of the part lies below the uppermost of
-//! these: its curves moved to their left, and circles about its outer corners. The pieces come one by one; one that begins below those before
+//! The profile never goes back along the passes, so all below it is part, and all within the
+//! distance of the part lies below the uppermost of these: its curves moved to their left, and
+//! circles about its outer corners. The pieces come one by one; one that begins below those before
 //! it is left out up to where it comes through them, and what it covers goes.
 
 use crate::geometry::plane::{
-    PlaneCurve, PlanePoint, SLACK_MM, add, cross, dot, left_of, length, minus, scaled, shifted, unit,
+    PlaneCurve, PlanePoint, SLACK_MM, add, cross, dot, left_of, length, minus, scaled, shifted,
+    unit,
 };
 use crate::motion::lathe::corners::SMOOTH_RAD;
 use crate::motion::lathe::profile::{Profile, goes_back};
 use crate::state::lathe::LatheCycle;
 use crate::text::diagnostic::Read;
 
-/// Curves that cross at less than this, rad, touch: where pieces are 1 mm off, lines that bend less end within [`SLACK_MM`].
+/// Curves that cross at less than this, rad, touch: where pieces are 1 mm off, lines that bend less
+/// end within [`SLACK_MM`].
 const TOUCH_RAD: f64 = 1e-9;
 /// Corners that turn back on themselves but for this, rad, leave walls that are one to rounding.
 const REVERSAL_RAD: f64 = 1e-6;
-/// As LinuxCNC (measured), lines whose ends at the distance lie closer along the passes, mm, meet in a corner instead of an arc.
+/// As LinuxCNC (measured), lines whose ends at the distance lie closer along the passes, mm, meet
+/// in a corner instead of an arc.
 const SHARP_MM: f64 = 0.01;
-/// That corner is 3 % farther away than the arc at a bend of this, rad; one that bends more is rounded in any case.
+/// That corner is 3 % farther away than the arc at a bend of this, rad; one that bends more is
+/// rounded in any case.
 const SHARP_RAD: f64 = 0.5;
-/// Where what is beside it covers the first or the last line, it is met within this many distances before or behind that line.
+/// Where what is beside it covers the first or the last line, it is met within this many distances
+/// before or behind that line.
 const GO_ON: f64 = 4.0;
-/// Comparisons of pieces with those before them: a distance much larger than the details of a long profile makes their number grow with its square.
+/// Comparisons of pieces with those before them: a distance much larger than the details of a long
+/// profile makes their number grow with its square.
 const MAX_COMPARISONS: usize = 10_000_000;
 
 impl Profile {
@@ -49,10 +56,16 @@ impl Profile {
                 let bend = libm::atan2(cross(from, to), dot(from, to));
                 // A wall that is its own way back has no side to be at a distance from.
                 above.is_lost |= bend.abs() > std::f64::consts::PI - REVERSAL_RAD;
-                let [start, end] = [from, to].map(|along| add(corner, scaled(left_of(along), distance_mm)));
+                let [start, end] =
+                    [from, to].map(|along| add(corner, scaled(left_of(along), distance_mm)));
                 let is_sharp = -bend < SHARP_RAD && end[0] - start[0] < SHARP_MM;
                 if bend < -SMOOTH_RAD && !(is_sharp && above.meet_sharply(moved.as_mut(), corner)) {
-                    above.push(PlaneCurve::Arc { start, end, center: corner, turn: -1.0 });
+                    above.push(PlaneCurve::Arc {
+                        start,
+                        end,
+                        center: corner,
+                        turn: -1.0,
+                    });
                 }
             }
             match moved {
@@ -70,10 +83,17 @@ impl Profile {
             && !above.curves.iter().any(goes_back);
         above.curves.retain(|curve| curve.chord() > SLACK_MM);
         if !is_found || above.curves.is_empty() {
-            let message = format!("the distance of {distance_mm:.4} mm to it is too large for its details");
-            return Err(lathe.refuse(lathe.line, &message).hint("make D (and E) smaller"));
+            let message =
+                format!("the distance of {distance_mm:.4} mm to it is too large for its details");
+            return Err(lathe
+                .refuse(lathe.line, &message)
+                .hint("make D (and E) smaller"));
         }
-        Ok(Self { plane: self.plane, start: self.start, curves: above.curves })
+        Ok(Self {
+            plane: self.plane,
+            start: self.start,
+            curves: above.curves,
+        })
     }
 }
 
@@ -93,12 +113,18 @@ struct UpperEnvelope {
 impl UpperEnvelope {
     pub(super) fn push(&mut self, mut piece: PlaneCurve) {
         let end = self.curves.last().map(PlaneCurve::end);
-        let goes_on = !self.is_below && end.is_none_or(|end| length(minus(piece.start(), end)) <= SLACK_MM);
+        let goes_on =
+            !self.is_below && end.is_none_or(|end| length(minus(piece.start(), end)) <= SLACK_MM);
         if !goes_on {
-            let through = self.comes_through(&piece).or_else(|| self.comes_before(&piece));
+            let through = self
+                .comes_through(&piece)
+                .or_else(|| self.comes_before(&piece));
             self.is_below = through.is_none();
             let Some((kept, point)) = through else {
-                self.is_lost |= self.curves.first().is_none_or(|first| piece.start()[0] < first.start()[0] - SLACK_MM);
+                self.is_lost |= self
+                    .curves
+                    .first()
+                    .is_none_or(|first| piece.start()[0] < first.start()[0] - SLACK_MM);
                 return;
             };
             self.shorten(kept, point);
@@ -122,7 +148,11 @@ impl UpperEnvelope {
         else {
             return false;
         };
-        let point = if self.is_below { None } else { last.meet(next, corner) };
+        let point = if self.is_below {
+            None
+        } else {
+            last.meet(next, corner)
+        };
         if let Some(point) = point {
             last.set_end(point);
             next.set_start(point);
@@ -135,8 +165,13 @@ impl UpperEnvelope {
         if self.is_below
             && let Some(PlaneCurve::Line { start, end }) = shifted(last, self.distance_mm)
         {
-            let longer =
-                PlaneCurve::Line { start, end: add(end, scaled(unit(minus(end, start)), GO_ON * self.distance_mm)) };
+            let longer = PlaneCurve::Line {
+                start,
+                end: add(
+                    end,
+                    scaled(unit(minus(end, start)), GO_ON * self.distance_mm),
+                ),
+            };
             if let Some((kept, point)) = self.comes_through(&longer)
                 && length(minus(point, last.end())) >= self.distance_mm - SLACK_MM
             {
@@ -146,18 +181,25 @@ impl UpperEnvelope {
         }
     }
 
-    /// Where a piece meets the first line, were it to begin earlier; nothing of what is there is kept.
+    /// Where a piece meets the first line, were it to begin earlier; nothing of what is there is
+    /// kept.
     fn comes_before(&self, piece: &PlaneCurve) -> Option<(usize, PlanePoint)> {
-        let Some(&PlaneCurve::Line { start, end }) = self.curves.first() else { return None };
+        let Some(&PlaneCurve::Line { start, end }) = self.curves.first() else {
+            return None;
+        };
         let earlier = PlaneCurve::Line {
-            start: add(start, scaled(unit(minus(start, end)), GO_ON * self.distance_mm)),
+            start: add(
+                start,
+                scaled(unit(minus(start, end)), GO_ON * self.distance_mm),
+            ),
             end: start,
         };
         let point = earlier.first_crossing(piece)?;
         (length(minus(point, self.first)) >= self.distance_mm - SLACK_MM).then_some((0, point))
     }
 
-    /// Where a piece that begins below the others comes through them first, and how many of them stay.
+    /// Where a piece that begins below the others comes through them first, and how many of them
+    /// stay.
     fn comes_through(&mut self, piece: &PlaneCurve) -> Option<(usize, PlanePoint)> {
         let mut found: Option<(usize, PlanePoint, f64)> = None;
         for (number, curve) in self.curves.iter().enumerate().rev() {

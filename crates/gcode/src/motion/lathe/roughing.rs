@@ -1,12 +1,15 @@
-//! G71 to G72.2: straight passes from the surface down to the profile, then along it, with passes wherever it goes down.
+//! G71 to G72.2: straight passes from the surface down to the profile, then along it, with passes
+//! wherever it goes down.
 //!
-//! Levels are fixed: whole steps of I below the start of the cycle. G71.1 leaves pockets standing. G71.2 cuts nothing but pockets, with levels
-//! below the lip of each.
+//! Levels are fixed: whole steps of I below the start of the cycle. G71.1 leaves pockets standing.
+//! G71.2 cuts nothing but pockets, with levels below the lip of each.
 
 use crate::geometry::plane::{PlaneCurve, PlanePoint, SLACK_MM};
 use crate::motion::feed::Speed;
 use crate::motion::lathe::MAX_PASSES;
-use crate::motion::lathe::pockets::{bridged, ends_falling, falls, falls_through, first_at, parted_at_tops};
+use crate::motion::lathe::pockets::{
+    bridged, ends_falling, falls, falls_through, first_at, parted_at_tops,
+};
 use crate::motion::lathe::profile::Profile;
 use crate::state::Interpreter;
 use crate::state::lathe::LatheCycle;
@@ -35,13 +38,22 @@ impl RoughingState {
         if self.passes <= MAX_PASSES {
             return Ok(());
         }
-        let message = format!("the depth of a pass of {} mm makes more than {MAX_PASSES} passes", self.depth_mm);
+        let message = format!(
+            "the depth of a pass of {} mm makes more than {MAX_PASSES} passes",
+            self.depth_mm
+        );
         Err(LineFault::new("gcode::lathe", lathe.block.at(b'q'), message).hint("make I larger"))
     }
 }
 
 impl Interpreter {
-    pub(super) fn rough(&mut self, lathe: &LatheCycle, depth_mm: f64, retraction_mm: f64, left_mm: f64) -> Read<()> {
+    pub(super) fn rough(
+        &mut self,
+        lathe: &LatheCycle,
+        depth_mm: f64,
+        retraction_mm: f64,
+        left_mm: f64,
+    ) -> Read<()> {
         let kind = match lathe.code % 10 {
             1 => Extent::WithoutPockets,
             2 => Extent::PocketsOnly,
@@ -53,14 +65,22 @@ impl Interpreter {
         if let Some(last) = profile.curves.last().map(PlaneCurve::end)
             && last[1] < start[1] - SLACK_MM
         {
-            profile.curves.push(PlaneCurve::Line { start: last, end: [last[0], start[1]] });
+            profile.curves.push(PlaneCurve::Line {
+                start: last,
+                end: [last[0], start[1]],
+            });
         }
         let entry_falls = entry[1] < start[1] - SLACK_MM;
         profile.curves = parted_at_tops(profile.curves);
         if kind == Extent::WithoutPockets {
             profile.curves = bridged(&profile.curves, entry_falls);
         }
-        let mut roughing = RoughingState { depth_mm, retraction_mm, top: None, passes: 0.0 };
+        let mut roughing = RoughingState {
+            depth_mm,
+            retraction_mm,
+            top: None,
+            passes: 0.0,
+        };
         self.lathe_line(lathe, profile.plane, start, Speed::Rapid)?;
         if kind != Extent::PocketsOnly {
             roughing.top = Some(start[1]);
@@ -79,7 +99,8 @@ impl Interpreter {
             {
                 roughing.top = Some(lip);
                 if first_at(&profile.curves[number..], lip).is_none() {
-                    let message = "a pocket ends below its lip, above the start of the cycle".to_owned();
+                    let message =
+                        "a pocket ends below its lip, above the start of the cycle".to_owned();
                     return Err(lathe
                         .refuse(lathe.line, &message)
                         .hint("start the cycle outside the highest point of the profile"));
@@ -92,7 +113,12 @@ impl Interpreter {
     }
 
     /// Passes from the way to the profile's entry.
-    fn rough_to_entry(&mut self, lathe: &LatheCycle, profile: &Profile, roughing: &mut RoughingState) -> Read<()> {
+    fn rough_to_entry(
+        &mut self,
+        lathe: &LatheCycle,
+        profile: &Profile,
+        roughing: &mut RoughingState,
+    ) -> Read<()> {
         let (start, entry, plane) = (profile.start, profile.entry(), profile.plane);
         let mut pass = 0_u32;
         loop {
@@ -104,9 +130,18 @@ impl Interpreter {
             let share = (start[1] - level) / (start[1] - entry[1]);
             let begin = [start[0] + share * (entry[0] - start[0]), level];
             let last = profile.curves.last().map_or(0.0, |last| last.end()[0]);
-            let hit = [first_at(&profile.curves, level).map_or(last, |(_, along)| along), level];
+            let hit = [
+                first_at(&profile.curves, level).map_or(last, |(_, along)| along),
+                level,
+            ];
             self.lathe_line(lathe, plane, begin, Speed::Rapid)?;
-            self.pass(lathe, profile, [begin, hit], Speed::Rapid, roughing.retraction_mm)?;
+            self.pass(
+                lathe,
+                profile,
+                [begin, hit],
+                Speed::Rapid,
+                roughing.retraction_mm,
+            )?;
             pass += 1;
         }
     }
@@ -122,8 +157,14 @@ impl Interpreter {
         let mut rest = profile.curves[number];
         let others = profile.curves.get(number + 1..).unwrap_or_default();
         let top = roughing.top.filter(|_| falls(&rest));
-        let mut step = top.map_or(0.0, |top| ((top - rest.start()[1] - SLACK_MM) / roughing.depth_mm).ceil().max(0.0));
-        while let Some(begin) = top.and_then(|top| falls_through(&rest, top - step * roughing.depth_mm)) {
+        let mut step = top.map_or(0.0, |top| {
+            ((top - rest.start()[1] - SLACK_MM) / roughing.depth_mm)
+                .ceil()
+                .max(0.0)
+        });
+        while let Some(begin) =
+            top.and_then(|top| falls_through(&rest, top - step * roughing.depth_mm))
+        {
             step += 1.0;
             roughing.count(lathe)?;
             let mut piece = rest;
@@ -134,7 +175,13 @@ impl Interpreter {
             let Some((_, along)) = hit else {
                 return Err(lathe.refuse(lathe.line, "a pass along it ends nowhere"));
             };
-            self.pass(lathe, profile, [begin, [along, begin[1]]], Speed::Programmed, roughing.retraction_mm)?;
+            self.pass(
+                lathe,
+                profile,
+                [begin, [along, begin[1]]],
+                Speed::Programmed,
+                roughing.retraction_mm,
+            )?;
         }
         self.lathe_curve(lathe, profile.plane, &rest)
     }

@@ -34,12 +34,18 @@ impl Block {
         let at = start..evaluator.cursor.at;
         if self.corner.is_some() {
             return Err(
-                LineFault::new("gcode::repeated", at, "the line already has a corner").hint("a corner is ,R or ,C")
+                LineFault::new("gcode::repeated", at, "the line already has a corner")
+                    .hint("a corner is ,R or ,C"),
             );
         }
         let written = &evaluator.cursor.bytes[at.clone()];
         let has_point = [b'.', b'#', b'['].iter().any(|byte| written.contains(byte));
-        self.corner = Some(CornerWord { is_round: letter == b'r', value, has_point, at });
+        self.corner = Some(CornerWord {
+            is_round: letter == b'r',
+            value,
+            has_point,
+            at,
+        });
         Ok(())
     }
 }

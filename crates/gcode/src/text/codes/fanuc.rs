@@ -1,6 +1,7 @@
 //! G-codes whose meaning on Fanuc and Haas is their own, beside or in place of LinuxCNC's.
 //!
-//! A number is ten times the code, plus [`OWN`] or [`LATHE_OWN`]: `G90` of a lathe is 40900, so that it is never taken for LinuxCNC's 900.
+//! A number is ten times the code, plus [`OWN`] or [`LATHE_OWN`]: `G90` of a lathe is 40900, so
+//! that it is never taken for LinuxCNC's 900.
 
 use crate::text::codes::{self, Code, Group, axes, code};
 
@@ -77,8 +78,8 @@ const LATHE: &[Code] = &[
 
 /// LinuxCNC's codes that mean something else on a lathe of system A, or nothing.
 const NOT_ON_LATHES: &[u16] = &[
-    50, 51, 52, 53, 62, 70, 80, 330, 331, 411, 421, 430, 431, 432, 500, 711, 712, 721, 722, 860, 870, 880, 890, 901,
-    910, 911, 921, 922, 923, 930,
+    50, 51, 52, 53, 62, 70, 80, 330, 331, 411, 421, 430, 431, 432, 500, 711, 712, 721, 722, 860,
+    870, 880, 890, 901, 910, 911, 921, 922, 923, 930,
 ];
 /// The same for mills.
 const NOT_ON_MILLS: &[u16] = &[70, 80, 411, 421, 711, 712, 721, 722, 760, 870, 901, 911];
@@ -98,14 +99,27 @@ impl CodeSet {
     }
 }
 
-fn find_own(tenths: u16, offset: u16, own: &'static [Code], not_read: &[u16]) -> Option<&'static Code> {
-    let with = |rows: &'static [Code], offset| rows.iter().find(|row| row.number == tenths + offset);
-    with(own, offset)
-        .or_else(|| with(BOTH, OWN))
-        .or_else(|| if not_read.contains(&tenths) { None } else { codes::find(tenths) })
+fn find_own(
+    tenths: u16,
+    offset: u16,
+    own: &'static [Code],
+    not_read: &[u16],
+) -> Option<&'static Code> {
+    let with =
+        |rows: &'static [Code], offset| rows.iter().find(|row| row.number == tenths + offset);
+    with(own, offset).or_else(|| with(BOTH, OWN)).or_else(|| {
+        if not_read.contains(&tenths) {
+            None
+        } else {
+            codes::find(tenths)
+        }
+    })
 }
 
 /// The row of a number that [`CodeSet::find`] has given.
 pub(crate) fn row(number: u16) -> Option<&'static Code> {
-    [BOTH, MILL, LATHE].into_iter().flatten().find(|row| row.number == number)
+    [BOTH, MILL, LATHE]
+        .into_iter()
+        .flatten()
+        .find(|row| row.number == number)
 }

@@ -1,4 +1,5 @@
-//! What operators and functions make of their values: NISTIR 6556, section 3.3.2, with the comparisons that LinuxCNC added.
+//! What operators and functions make of their values: NISTIR 6556, section 3.3.2, with the
+//! comparisons that LinuxCNC added.
 
 use crate::text::diagnostic::Short;
 
@@ -50,9 +51,9 @@ impl Operator {
         let truth = |value: bool| Ok(f64::from(u8::from(value)));
         let (is_left, is_right) = (left != 0.0, right != 0.0);
         match self {
-            Self::Power if left < 0.0 && right.fract() != 0.0 => {
-                Err(format!("{base} cannot be raised to {power}: a negative base needs an integer exponent"))
-            }
+            Self::Power if left < 0.0 && right.fract() != 0.0 => Err(format!(
+                "{base} cannot be raised to {power}: a negative base needs an integer exponent"
+            )),
             Self::Power => Ok(libm::pow(left, right)),
             Self::Times => Ok(left * right),
             Self::Over | Self::Modulo if right == 0.0 => Err(format!("{base} is divided by zero")),
@@ -76,7 +77,11 @@ impl Operator {
 /// A function of one argument; what it cannot be of is said.
 pub(super) fn apply_function(name: &[u8], x: f64) -> Result<f64, String> {
     let outside = |range: &str| {
-        Err(format!("{}[{}] does not exist: the argument must be {range}", String::from_utf8_lossy(name), Short(x)))
+        Err(format!(
+            "{}[{}] does not exist: the argument must be {range}",
+            String::from_utf8_lossy(name),
+            Short(x)
+        ))
     };
     match name {
         b"abs" => Ok(x.abs()),
@@ -106,13 +111,15 @@ pub(super) const fn without_vacancy(value: f64) -> f64 {
 }
 
 impl Operator {
-    /// As Fanuc's macros have it: a vacant variable equals only another, AND, OR and XOR join the bits of integers, and values are equal or not.
+    /// As Fanuc's macros have it: a vacant variable equals only another, AND, OR and XOR join the
+    /// bits of integers, and values are equal or not.
     pub(super) fn apply_to_variables(self, left: f64, right: f64) -> Result<f64, String> {
         let truth = |value: bool| Ok(f64::from(u8::from(value)));
-        let is_same =
-            (left.is_nan() && right.is_nan()) || (left - right).abs() <= SAME_WITHIN * left.abs().max(right.abs());
+        let is_same = (left.is_nan() && right.is_nan())
+            || (left - right).abs() <= SAME_WITHIN * left.abs().max(right.abs());
         let [left, right] = [left, right].map(without_vacancy);
-        let bits = |join: fn(i64, i64) -> i64| Ok(join(left.round() as i64, right.round() as i64) as f64);
+        let bits =
+            |join: fn(i64, i64) -> i64| Ok(join(left.round() as i64, right.round() as i64) as f64);
         match self {
             Self::Equal => truth(is_same),
             Self::Unequal => truth(!is_same),

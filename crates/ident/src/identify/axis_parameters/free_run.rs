@@ -1,10 +1,14 @@
-//! The free run of an axis: what its law makes of the commands alone, with the drive's known settings and any parameters.
+//! The free run of an axis: what its law makes of the commands alone, with the drive's known
+//! settings and any parameters.
 //!
-//! It steps the law of [`feedwright_control::axis`] as the plant does, with the delays of the drive and of the measurement in whole
-//! mechanics periods, and takes nothing of the recording but the commands that the position loop had and where the axis starts: no measured position comes in, so
+//! It steps the law of [`feedwright_control::axis`] as the plant does, with the delays of the drive
+//! and of the measurement in whole mechanics periods, and takes nothing of the recording but the
+//! commands that the position loop had and where the axis starts: no measured position comes in, so
 //! neither does its noise.
 
-use feedwright_control::{AxisLaw, DriveLaw, DriveReference, DriveState, LoopDelays, MechanicsLaw, MechanicsState};
+use feedwright_control::{
+    AxisLaw, DriveLaw, DriveReference, DriveState, LoopDelays, MechanicsLaw, MechanicsState,
+};
 
 use super::{AxisParameters, DriveSettings};
 
@@ -20,29 +24,39 @@ pub(super) struct FreeRun {
 impl FreeRun {
     pub(super) fn new(settings: &DriveSettings, axis: &AxisParameters) -> Self {
         let law = AxisLaw::new(axis.law(settings), settings.periods);
-        let LoopDelays { drive_s, measurement_s, .. } = settings.delays;
+        let LoopDelays {
+            drive_s,
+            measurement_s,
+            ..
+        } = settings.delays;
         Self {
             law,
             drive: DriveLaw::new(&law, settings.drive_of(axis.inertia_kg_m2)),
             mechanics: MechanicsLaw::new(&law, axis.friction(), axis.transmission),
             // A float that is not a number saturates to zero here.
-            late: [drive_s, measurement_s].map(|delay_s| (delay_s / settings.periods.mechanics_s).round() as usize),
+            late: [drive_s, measurement_s]
+                .map(|delay_s| (delay_s / settings.periods.mechanics_s).round() as usize),
         }
     }
 
-    /// Positions at the starts of the servo periods of these commands, as they are measured but for all noise, mm, of several axes
-    /// with the same settings; from a place, mm, and a speed, mm/s.
+    /// Positions at the starts of the servo periods of these commands, as they are measured but for
+    /// all noise, mm, of several axes with the same settings; from a place, mm, and a speed, mm/s.
     ///
-    /// They run side by side: each step of one waits for its step before, and the processor works on the others meanwhile.
+    /// They run side by side: each step of one waits for its step before, and the processor works
+    /// on the others meanwhile.
     pub(super) fn measured_mm<const M: usize>(
         axes: &[Self; M],
         commands_mm: &[f64],
         start_mm: f64,
         start_mm_s: f64,
     ) -> [Vec<f64>; M] {
-        let mut running = axes.each_ref().map(|axis| FreeAxis::new(axis, commands_mm.len(), start_mm, start_mm_s));
+        let mut running = axes
+            .each_ref()
+            .map(|axis| FreeAxis::new(axis, commands_mm.len(), start_mm, start_mm_s));
         for command_mm in commands_mm {
-            running.iter_mut().for_each(|axis| axis.command(*command_mm));
+            running
+                .iter_mut()
+                .for_each(|axis| axis.command(*command_mm));
             for _ in 0..axes[0].law.periods.mechanics_per_servo {
                 FreeAxis::step(&mut running);
             }
@@ -67,7 +81,8 @@ impl<'a> FreeAxis<'a> {
     fn new(axis: &'a FreeRun, commands: usize, start_mm: f64, start_mm_s: f64) -> Self {
         let scale = axis.law.parameters.rad_per_mm;
         let start_rad = start_mm * scale;
-        let mut course_rad = Vec::with_capacity(commands * axis.law.periods.mechanics_per_servo as usize + 1);
+        let mut course_rad =
+            Vec::with_capacity(commands * axis.law.periods.mechanics_per_servo as usize + 1);
         course_rad.push(start_rad);
         Self {
             axis,
@@ -87,12 +102,25 @@ impl<'a> FreeAxis<'a> {
 
     /// A servo period begins.
     fn command(&mut self, command_mm: f64) {
-        let FreeRun { law, drive, late: [_, measured_late], .. } = self.axis;
+        let FreeRun {
+            law,
+            drive,
+            late: [_, measured_late],
+            ..
+        } = self.axis;
         let scale = law.parameters.rad_per_mm;
-        let measured_rad = self.moment(*measured_late).map_or(self.start_rad, |then| self.course_rad[then]);
+        let measured_rad = self
+            .moment(*measured_late)
+            .map_or(self.start_rad, |then| self.course_rad[then]);
         self.measured_mm.push(measured_rad / scale);
         let motor = &mut self.masses.motor;
-        self.sent.push(drive.position_loop(law, command_mm * scale, measured_rad, motor, &mut self.drive));
+        self.sent.push(drive.position_loop(
+            law,
+            command_mm * scale,
+            measured_rad,
+            motor,
+            &mut self.drive,
+        ));
     }
 
     /// A mechanics period of several.
@@ -100,17 +128,35 @@ impl<'a> FreeAxis<'a> {
     fn step<const M: usize>(running: &mut [Self; M]) {
         let laws = running.each_ref().map(|running| &running.axis.mechanics);
         let torques_nm = running.each_mut().map(Self::torque_nm);
-        MechanicsLaw::advance_abreast(&laws, running.each_mut().map(|running| &mut running.masses), torques_nm);
-        running.iter_mut().for_each(|running| running.course_rad.push(running.masses.motor.angle_rad));
+        MechanicsLaw::advance_abreast(
+            &laws,
+            running.each_mut().map(|running| &mut running.masses),
+            torques_nm,
+        );
+        running
+            .iter_mut()
+            .for_each(|running| running.course_rad.push(running.masses.motor.angle_rad));
     }
 
     /// Torque of the motor, N m.
     #[inline]
     fn torque_nm(&mut self) -> f64 {
-        let FreeRun { law, drive, late: [drive_late, _], .. } = self.axis;
+        let FreeRun {
+            law,
+            drive,
+            late: [drive_late, _],
+            ..
+        } = self.axis;
         let per_servo = law.periods.mechanics_per_servo as usize;
-        let arrived = self.moment(*drive_late).map(|then| self.sent[then / per_servo]);
+        let arrived = self
+            .moment(*drive_late)
+            .map(|then| self.sent[then / per_servo]);
         let speed_rad_s = self.masses.motor.speed_rad_s;
-        drive.torque_nm(law, arrived.unwrap_or_default(), speed_rad_s, &mut self.drive)
+        drive.torque_nm(
+            law,
+            arrived.unwrap_or_default(),
+            speed_rad_s,
+            &mut self.drive,
+        )
     }
 }

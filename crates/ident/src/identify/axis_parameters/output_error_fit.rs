@@ -1,38 +1,50 @@
-//! Least squares of what a free run leaves of the measured positions, by steps of Gauss and Newton with Levenberg's and Marquardt's damping.
+//! Least squares of what a free run leaves of the measured positions, by steps of Gauss and Newton
+//! with Levenberg's and Marquardt's damping.
 
 use feedwright_control::TransmissionParameters;
 use feedwright_sim::map_in_parallel;
 use nalgebra::{DMatrix, DVector};
 
 use super::free_run::FreeRun;
-use super::{AxisEstimate, AxisParameters, DriveSettings, NotIdentified, PARAMETERS, RIGID_PARAMETERS};
+use super::{
+    AxisEstimate, AxisParameters, DriveSettings, NotIdentified, PARAMETERS, RIGID_PARAMETERS,
+};
 
-/// Knots that the speed at the start is taken over: the mean of five differences has a fifth of the noise of one.
+/// Knots that the speed at the start is taken over: the mean of five differences has a fifth of the
+/// noise of one.
 pub(super) const START_KNOTS: usize = 5;
-/// Speed loop beside the position loop, before anything is known: Kv / J four times Kp, as loops are usually set.
+/// Speed loop beside the position loop, before anything is known: Kv / J four times Kp, as loops
+/// are usually set.
 const LOOPS_APART: f64 = 4.0;
-/// Coulomb friction before anything is known, a part of the torque limit; the first steps find it from anywhere.
+/// Coulomb friction before anything is known, a part of the torque limit; the first steps find it
+/// from anywhere.
 const FRICTION_SHARE: f64 = 0.01;
-/// Presliding before anything is known, and the least that is told from none, mm of travel: a fiftieth of the usual 10 um.
+/// Presliding before anything is known, and the least that is told from none, mm of travel: a
+/// fiftieth of the usual 10 um.
 const PRESLIDING_MM: [f64; 2] = [0.005, 0.0002];
-/// Scales of a screw: share of the table, damping ratio, and backlash, mm of travel; the resonance is its own.
+/// Scales of a screw: share of the table, damping ratio, and backlash, mm of travel; the resonance
+/// is its own.
 const SCREW_SCALES: [f64; 3] = [0.5, 0.05, 0.005];
-/// Differences to both sides that a derivative is taken over, parts of the scales. A free run that sticks and slips is not smooth: over
-/// differences of a thousandth the derivatives on workshop are mostly that, and 30 steps do not suffice where these need four to six.
+/// Differences to both sides that a derivative is taken over, parts of the scales. A free run that
+/// sticks and slips is not smooth: over differences of a thousandth the derivatives on workshop are
+/// mostly that, and 30 steps do not suffice where these need four to six.
 const DIFFERENCES: [f64; PARAMETERS] = [0.05, 0.5, 0.1, 0.1, 0.1, 0.05, 0.02, 0.2, 0.1];
-/// The inertia is no smaller than this part of what it was a step before: below zero there is no law.
+/// The inertia is no smaller than this part of what it was a step before: below zero there is no
+/// law.
 const LEAST_INERTIA_STEP: f64 = 0.3;
-/// Bounds of the table's share, of the damping ratio, and of the resonance: 1/s, and turns in a servo period beyond which it is not sampled.
+/// Bounds of the table's share, of the damping ratio, and of the resonance: 1/s, and turns in a
+/// servo period beyond which it is not sampled.
 const SHARES: [f64; 2] = [0.05, 0.95];
 const DAMPING_RATIOS: [f64; 2] = [0.0, 0.7];
 const LEAST_RESONANCE_RAD_S: f64 = 30.0;
 const MOST_RESONANCE_RAD: f64 = 2.0;
-/// Part of the squares below which a step gains nothing: on workshop V itself is irregular by that much, and parameters move by less than
-/// their standard errors.
+/// Part of the squares below which a step gains nothing: on workshop V itself is irregular by that
+/// much, and parameters move by less than their standard errors.
 const DONE: f64 = 2e-3;
 /// Steps at the most; three to ten are usual.
 const MAX_STEPS: u32 = 30;
-/// Damping of Levenberg and Marquardt: at the start, after a step that helped and after one that did not; given up at the last.
+/// Damping of Levenberg and Marquardt: at the start, after a step that helped and after one that
+/// did not; given up at the last.
 const DAMPING: f64 = 1e-3;
 const DAMPING_AFTER: [f64; 2] = [0.1, 10.0];
 const DAMPING_MOST: f64 = 1e6;
@@ -81,7 +93,9 @@ impl FitState {
 
     /// The same, stretch by stretch.
     pub(super) fn by_stretch_mm2(&self) -> impl Iterator<Item = f64> + '_ {
-        self.left.iter().map(|stretch| stretch.iter().map(|left| left * left).sum())
+        self.left
+            .iter()
+            .map(|stretch| stretch.iter().map(|left| left * left).sum())
     }
 }
 
@@ -103,7 +117,11 @@ impl OutputErrorFit<'_> {
     /// The same over each so-manieth stretch.
     pub(super) fn every(&self, nth: usize) -> Self {
         let stretches = self.stretches.iter().step_by(nth).cloned().collect();
-        Self { settings: self.settings, stretches, settled: self.settled }
+        Self {
+            settings: self.settings,
+            stretches,
+            settled: self.settled,
+        }
     }
 
     /// Begins a search of the first so many parameters.
@@ -111,7 +129,16 @@ impl OutputErrorFit<'_> {
         let scales = self.scales(at.transmission);
         let left = self.left_mm(&at);
         let here = self.linearised(&at, &scales, free, &left);
-        FitState { at, scales, free, left, here, damping: DAMPING, steps: 0, done: false }
+        FitState {
+            at,
+            scales,
+            free,
+            left,
+            here,
+            damping: DAMPING,
+            steps: 0,
+            done: false,
+        }
     }
 
     /// At most so many steps more.
@@ -125,15 +152,23 @@ impl OutputErrorFit<'_> {
             let most = damped.diagonal().max();
             for i in 0..state.free {
                 // Without friction for a moment, presliding changes nothing, and stays what it is.
-                damped[(i, i)] = if damped[(i, i)] == 0.0 { most } else { damped[(i, i)] * (1.0 + state.damping) };
+                damped[(i, i)] = if damped[(i, i)] == 0.0 {
+                    most
+                } else {
+                    damped[(i, i)] * (1.0 + state.damping)
+                };
             }
-            let step = damped.cholesky().ok_or(NotIdentified::NotExcited)?.solve(&state.here.gradient);
+            let step = damped
+                .cholesky()
+                .ok_or(NotIdentified::NotExcited)?
+                .solve(&state.here.gradient);
             let next = self.stepped(state, &step);
             let next_left = self.left_mm(&next);
             let gained = 1.0 - squares(&next_left) / squares(&state.left);
             // What is not a number is no gain.
             if gained >= 0.0 {
-                (state.at, state.left, state.damping) = (next, next_left, state.damping * DAMPING_AFTER[0]);
+                (state.at, state.left, state.damping) =
+                    (next, next_left, state.damping * DAMPING_AFTER[0]);
                 state.here = self.linearised(&state.at, &state.scales, state.free, &state.left);
             } else {
                 state.damping *= DAMPING_AFTER[1];
@@ -143,9 +178,16 @@ impl OutputErrorFit<'_> {
         Ok(())
     }
 
-    /// Sizes of the parameters before anything is known; those of all but the inertia and the presliding begin at zero.
+    /// Sizes of the parameters before anything is known; those of all but the inertia and the
+    /// presliding begin at zero.
     fn scales(&self, screw: TransmissionParameters) -> [f64; PARAMETERS] {
-        let DriveSettings { rad_per_mm, kp_1_s, kv_nm_s_per_rad, torque_limit_nm, .. } = *self.settings;
+        let DriveSettings {
+            rad_per_mm,
+            kp_1_s,
+            kv_nm_s_per_rad,
+            torque_limit_nm,
+            ..
+        } = *self.settings;
         let friction_nm = FRICTION_SHARE * torque_limit_nm;
         let inertia = kv_nm_s_per_rad / (LOOPS_APART * kp_1_s);
         let [share, damping_ratio, backlash_mm] = SCREW_SCALES;
@@ -164,20 +206,30 @@ impl OutputErrorFit<'_> {
 
     /// What the free run of these parameters leaves of each measured position, mm, by stretch.
     fn left_mm(&self, at: &AxisParameters) -> Vec<Vec<f64>> {
-        self.left_of_each_mm([*at]).into_iter().map(|[left]| left).collect()
+        self.left_of_each_mm([*at])
+            .into_iter()
+            .map(|[left]| left)
+            .collect()
     }
 
     /// The same of several sets of parameters.
     fn left_of_each_mm<const M: usize>(&self, at: [AxisParameters; M]) -> Vec<[Vec<f64>; M]> {
         let runs = at.map(|at| FreeRun::new(self.settings, &at));
         let left = |stretch: &Stretch| {
-            let Stretch { commands_mm, measured_mm } = stretch;
+            let Stretch {
+                commands_mm,
+                measured_mm,
+            } = stretch;
             let moved_mm = measured_mm[START_KNOTS] - measured_mm[0];
             let start_mm_s = moved_mm / (START_KNOTS as f64 * self.settings.periods.servo_s);
-            FreeRun::measured_mm(&runs, commands_mm, measured_mm[0], start_mm_s).map(|simulated_mm| {
-                let pairs = measured_mm.iter().zip(&simulated_mm).skip(self.settled);
-                pairs.map(|(measured, simulated)| measured - simulated).collect()
-            })
+            FreeRun::measured_mm(&runs, commands_mm, measured_mm[0], start_mm_s).map(
+                |simulated_mm| {
+                    let pairs = measured_mm.iter().zip(&simulated_mm).skip(self.settled);
+                    pairs
+                        .map(|(measured, simulated)| measured - simulated)
+                        .collect()
+                },
+            )
         };
         map_in_parallel(&self.stretches, left)
     }
@@ -227,7 +279,11 @@ impl OutputErrorFit<'_> {
             scatter.ger(1.0, &of_stretch, &of_stretch, 1.0);
             gradient += of_stretch;
         }
-        Linearised { gradient, curvature, scatter }
+        Linearised {
+            gradient,
+            curvature,
+            scatter,
+        }
     }
 
     /// The parameters after a step, where there is a law.
@@ -237,16 +293,25 @@ impl OutputErrorFit<'_> {
             values[i] += step * state.scales[i];
         }
         let mut next = AxisParameters::from(values);
-        next.inertia_kg_m2 = next.inertia_kg_m2.max(LEAST_INERTIA_STEP * state.at.inertia_kg_m2);
+        next.inertia_kg_m2 = next
+            .inertia_kg_m2
+            .max(LEAST_INERTIA_STEP * state.at.inertia_kg_m2);
         next.viscous_friction_nm_s = next.viscous_friction_nm_s.max(0.0);
         next.coulomb_friction_nm = next.coulomb_friction_nm.max(0.0);
-        next.presliding_rad = next.presliding_rad.max(PRESLIDING_MM[1] * self.settings.rad_per_mm);
+        next.presliding_rad = next
+            .presliding_rad
+            .max(PRESLIDING_MM[1] * self.settings.rad_per_mm);
         if state.free > RIGID_PARAMETERS {
             let screw = &mut next.transmission;
             let most_rad_s = MOST_RESONANCE_RAD / self.settings.periods.servo_s;
             screw.table_share = screw.table_share.clamp(SHARES[0], SHARES[1]);
-            screw.resonance_rad_s = screw.resonance_rad_s.max(LEAST_RESONANCE_RAD_S).min(most_rad_s);
-            screw.damping_ratio = screw.damping_ratio.clamp(DAMPING_RATIOS[0], DAMPING_RATIOS[1]);
+            screw.resonance_rad_s = screw
+                .resonance_rad_s
+                .max(LEAST_RESONANCE_RAD_S)
+                .min(most_rad_s);
+            screw.damping_ratio = screw
+                .damping_ratio
+                .clamp(DAMPING_RATIOS[0], DAMPING_RATIOS[1]);
             screw.backlash_rad = screw.backlash_rad.max(0.0);
         }
         next
@@ -254,7 +319,13 @@ impl OutputErrorFit<'_> {
 
     /// What a search has found.
     pub(super) fn estimate(&self, state: &FitState) -> Result<AxisEstimate, NotIdentified> {
-        let inverse = state.here.curvature.clone().cholesky().ok_or(NotIdentified::NotExcited)?.inverse();
+        let inverse = state
+            .here
+            .curvature
+            .clone()
+            .cholesky()
+            .ok_or(NotIdentified::NotExcited)?
+            .inverse();
         let n = self.stretches.len() as f64;
         let covariance = &inverse * &state.here.scatter * &inverse * (n / (n - 1.0));
         let standard = |i: usize| covariance[(i, i)].max(0.0).sqrt() * state.scales[i];
@@ -266,7 +337,12 @@ impl OutputErrorFit<'_> {
             at.presliding_rad = 0.0;
         }
         let standard_errors = AxisParameters::from(standard);
-        Ok(AxisEstimate { parameters: at, standard_errors, left_um, steps: state.steps })
+        Ok(AxisEstimate {
+            parameters: at,
+            standard_errors,
+            left_um,
+            steps: state.steps,
+        })
     }
 }
 

@@ -1,9 +1,12 @@
-//! Whether the ball screw gives: table, resonance, damping and backlash, where a free run with them leaves clearly less.
+//! Whether the ball screw gives: table, resonance, damping and backlash, where a free run with them
+//! leaves clearly less.
 //!
-//! The resonance has many local minima: a search begins at each of [`STARTS_HZ`], on every [`SUBSET`]th stretch of the recording, and is given up that
-//! is no better than a rigid screw after [`TRIED`]. The best goes on over the whole recording. It is taken where it leaves less than a rigid screw
-//! from stretch to stretch, beyond doubt, and where its resonance and its share of the inertia are certain. Positions are the motor's: the
-//! table shows in how the motor swings, and backlash in how it turns.
+//! The resonance has many local minima: a search begins at each of [`STARTS_HZ`], on every
+//! [`SUBSET`]th stretch of the recording, and is given up that is no better than a rigid screw
+//! after [`TRIED`]. The best goes on over the whole recording. It is taken where it leaves less
+//! than a rigid screw from stretch to stretch, beyond doubt, and where its resonance and its share
+//! of the inertia are certain. Positions are the motor's: the table shows in how the motor swings,
+//! and backlash in how it turns.
 
 use std::f64::consts::TAU;
 
@@ -14,11 +17,13 @@ use super::{AxisEstimate, AxisParameters, PARAMETERS};
 
 /// Resonances at which a search begins, Hz.
 const STARTS_HZ: [f64; 4] = [30.0, 60.0, 110.0, 200.0];
-/// The rest of a screw at which it begins: half the inertia, a damping ratio of 0.05, and little backlash, mm.
+/// The rest of a screw at which it begins: half the inertia, a damping ratio of 0.05, and little
+/// backlash, mm.
 const START_SHARE: f64 = 0.5;
 const START_DAMPING: f64 = 0.05;
 const START_BACKLASH_MM: f64 = 0.002;
-/// What a rigid screw takes for presliding is mostly backlash where there is some: parts of it that are tried, the second where the first leads nowhere.
+/// What a rigid screw takes for presliding is mostly backlash where there is some: parts of it that
+/// are tried, the second where the first leads nowhere.
 const BACKLASH_SHARES: [f64; 2] = [0.0, 0.6];
 /// Presliding that may be backlash, mm.
 const LEAST_PRESLIDING_MM: f64 = 0.005;
@@ -26,11 +31,13 @@ const LEAST_PRESLIDING_MM: f64 = 0.005;
 const MOST_TURNS: f64 = 0.25;
 /// One stretch in so many serves to try the starts.
 const SUBSET: usize = 8;
-/// Steps after which a start may leave so many times the squares of a rigid screw, all steps, and those over the whole recording.
+/// Steps after which a start may leave so many times the squares of a rigid screw, all steps, and
+/// those over the whole recording.
 const TRIED: [(u32, f64); 2] = [(2, 1.5), (2, 1.0)];
 const MORE_STEPS: u32 = 15;
 const LAST_STEPS: u32 = 6;
-/// Part of the squares of a rigid screw that may be left at the most, and by how many standard errors less it is from stretch to stretch.
+/// Part of the squares of a rigid screw that may be left at the most, and by how many standard
+/// errors less it is from stretch to stretch.
 const LESS: f64 = 0.97;
 const BEYOND_DOUBT: f64 = 4.0;
 /// Standard errors of resonance and share at the most, parts of them.
@@ -46,12 +53,19 @@ pub(super) fn with_screw(fit: &OutputErrorFit<'_>, rigid: &AxisEstimate) -> Opti
         (state.squares_mm2() < than_mm2).then_some(state)
     };
     let mut best: Option<FitState> = None;
-    let has_presliding = rigid.parameters.presliding_rad > LEAST_PRESLIDING_MM * fit.settings.rad_per_mm;
-    for share in BACKLASH_SHARES.into_iter().filter(|share| has_presliding || *share == 0.0) {
+    let has_presliding =
+        rigid.parameters.presliding_rad > LEAST_PRESLIDING_MM * fit.settings.rad_per_mm;
+    for share in BACKLASH_SHARES
+        .into_iter()
+        .filter(|share| has_presliding || *share == 0.0)
+    {
         for hz in STARTS_HZ.into_iter().filter(|hz| hz * servo_s < MOST_TURNS) {
             let started = part.start(start(fit, rigid.parameters, hz, share), PARAMETERS);
-            let tried =
-                TRIED.into_iter().try_fold(started, |state, (steps, times)| better(state, steps, times * rigid_mm2));
+            let tried = TRIED
+                .into_iter()
+                .try_fold(started, |state, (steps, times)| {
+                    better(state, steps, times * rigid_mm2)
+                });
             let Some(tried) = tried else { continue };
             let than_mm2 = best.as_ref().map_or(rigid_mm2, FitState::squares_mm2);
             best = better(tried, MORE_STEPS, than_mm2).or(best);
@@ -63,8 +77,9 @@ pub(super) fn with_screw(fit: &OutputErrorFit<'_>, rigid: &AxisEstimate) -> Opti
     let mut whole = fit.start(best?.at, PARAMETERS);
     fit.steps(&mut whole, LAST_STEPS).ok()?;
     let found = fit.estimate(&whole).ok()?;
-    let certain =
-        |value: fn(&AxisParameters) -> f64, most: f64| value(&found.standard_errors) < most * value(&found.parameters);
+    let certain = |value: fn(&AxisParameters) -> f64, most: f64| {
+        value(&found.standard_errors) < most * value(&found.parameters)
+    };
     let [resonance, share] = CERTAIN;
     let is_certain = certain(|axis| axis.transmission.resonance_rad_s, resonance)
         && certain(|axis| axis.transmission.table_share, share);
@@ -77,23 +92,37 @@ fn is_less(with_screw: &FitState, rigid: &FitState) -> bool {
         && is_below(rigid.by_stretch_mm2().zip(with_screw.by_stretch_mm2()))
 }
 
-/// Whether the second of pairs of squares is below the first, beyond doubt. A stretch in which the axis stands still leaves nothing, and says nothing.
+/// Whether the second of pairs of squares is below the first, beyond doubt. A stretch in which the
+/// axis stands still leaves nothing, and says nothing.
 fn is_below(pairs_mm2: impl Iterator<Item = (f64, f64)>) -> bool {
-    let less: Vec<f64> = pairs_mm2.map(|(a, b)| libm::log(a / b)).filter(|less| less.is_finite()).collect();
+    let less: Vec<f64> = pairs_mm2
+        .map(|(a, b)| libm::log(a / b))
+        .filter(|less| less.is_finite())
+        .collect();
     let n = less.len() as f64;
     let mean = less.iter().sum::<f64>() / n;
     let variance = less.iter().map(|less| (less - mean).powi(2)).sum::<f64>() / (n - 1.0);
     mean > BEYOND_DOUBT * (variance / n).sqrt()
 }
 
-fn start(fit: &OutputErrorFit<'_>, rigid: AxisParameters, hz: f64, backlash_share: f64) -> AxisParameters {
+fn start(
+    fit: &OutputErrorFit<'_>,
+    rigid: AxisParameters,
+    hz: f64,
+    backlash_share: f64,
+) -> AxisParameters {
     let transmission = TransmissionParameters {
         table_share: START_SHARE,
         resonance_rad_s: TAU * hz,
         damping_ratio: START_DAMPING,
-        backlash_rad: START_BACKLASH_MM * fit.settings.rad_per_mm + backlash_share * rigid.presliding_rad,
+        backlash_rad: START_BACKLASH_MM * fit.settings.rad_per_mm
+            + backlash_share * rigid.presliding_rad,
     };
-    AxisParameters { transmission, presliding_rad: (1.0 - backlash_share) * rigid.presliding_rad, ..rigid }
+    AxisParameters {
+        transmission,
+        presliding_rad: (1.0 - backlash_share) * rigid.presliding_rad,
+        ..rigid
+    }
 }
 
 #[cfg(test)]
@@ -106,7 +135,10 @@ mod tests {
         let stands = [(0.0, 0.0); 3];
         let is_below = |pairs: &[&[(f64, f64)]]| is_below(pairs.concat().into_iter());
         assert!(is_below(&[&moves]) && is_below(&[&moves, &stands]));
-        assert!(!is_below(&[&stands]) && !is_below(&[&moves[..1]]), "there is no doubt to be judged by");
+        assert!(
+            !is_below(&[&stands]) && !is_below(&[&moves[..1]]),
+            "there is no doubt to be judged by"
+        );
         assert!(!is_below(&[&[(1.0, 1.0), (2.0, 1.0), (1.0, 2.0)]]));
     }
 }

@@ -1,4 +1,5 @@
-//! What an axis does beside its law: the innovations of a filter that knows the law, and what a load and the encoder make of them.
+//! What an axis does beside its law: the innovations of a filter that knows the law, and what a
+//! load and the encoder make of them.
 //!
 //! ```text
 //! x <- f(x, reference sent) - load d       every mechanics period, friction and limits as they are
@@ -6,14 +7,17 @@
 //! e = H_t (load) + H_n (encoder)           linear while friction slides: the linear part of f and K alone are in it
 //! ```
 //!
-//! Whatever K is, the innovations hold all that the recording shows: K decides for how long a deviation is remembered, not what is
-//! found. Where friction turns its sign, f has no linear part, and what the law misses of it is large for a moment: there innovations
-//! are held to the size of the others.
+//! Whatever K is, the innovations hold all that the recording shows: K decides for how long a
+//! deviation is remembered, not what is found. Where friction turns its sign, f has no linear part,
+//! and what the law misses of it is large for a moment: there innovations are held to the size of
+//! the others.
 //!
-//! Source: Kailath (1968), An innovations approach to least-squares estimation; Gelb (1974), Applied Optimal Estimation, section 6.1.
+//! Source: Kailath (1968), An innovations approach to least-squares estimation; Gelb (1974),
+//! Applied Optimal Estimation, section 6.1.
 
 use feedwright_control::{
-    AxisLaw, AxisState, DriveLaw, DriveReference, DriveState, MechanicsLaw, MechanicsState, TableState,
+    AxisLaw, AxisState, DriveLaw, DriveReference, DriveState, MechanicsLaw, MechanicsState,
+    TableState,
 };
 use feedwright_sim::{KnownAxis, Period};
 
@@ -24,21 +28,26 @@ const STATES: usize = 7;
 type FilterVector = [f64; STATES];
 type Matrix = [FilterVector; STATES];
 
-/// The load that the filter expects, as a part of the Coulomb friction, and how long it lasts, s: any that is of use to know.
+/// The load that the filter expects, as a part of the Coulomb friction, and how long it lasts, s:
+/// any that is of use to know.
 const LOAD_SHARE: f64 = 0.3;
 /// See above.
 const LOAD_S: f64 = 0.005;
-/// Least noise of an encoder, rad: as that of the filter of a controller has it, 0.001 um on a lead of 10 mm.
+/// Least noise of an encoder, rad: as that of the filter of a controller has it, 0.001 um on a lead
+/// of 10 mm.
 pub(super) const LEAST_NOISE_RAD: f64 = 6e-7;
-/// Steps of the Riccati equation: a second at 1 ms, in which all but the load's slowest part has converged.
+/// Steps of the Riccati equation: a second at 1 ms, in which all but the load's slowest part has
+/// converged.
 const RICCATI_STEPS: u32 = 1000;
 /// Beyond so many of the speeds and deflections over which friction turns, it has turned.
 const TURNED: f64 = 4.0;
-/// For so long a deviation is remembered at the most, s: after friction has turned, and at the start of a stretch.
+/// For so long a deviation is remembered at the most, s: after friction has turned, and at the
+/// start of a stretch.
 const REMEMBERED_S: f64 = 0.02;
 /// See above.
 const START_S: f64 = 0.1;
-/// Innovations are held to so many times the median of their sizes where friction turns: 2.7 standard deviations.
+/// Innovations are held to so many times the median of their sizes where friction turns: 2.7
+/// standard deviations.
 const MOST_MEDIANS: f64 = 4.0;
 
 /// An axis as the filter has it.
@@ -47,7 +56,8 @@ pub(super) struct AxisFilter {
     law: AxisLaw,
     drive: DriveLaw,
     mechanics: MechanicsLaw,
-    /// Mechanics periods from a measurement until it is there plus those from a reference until it acts.
+    /// Mechanics periods from a measurement until it is there plus those from a reference until it
+    /// acts.
     late: u32,
     gains: FilterVector,
     linear: Matrix,
@@ -80,14 +90,21 @@ impl Innovations {
     /// Holds those at which friction turns to the size of the others.
     fn limit(&mut self) {
         let others = self.error_rad.iter().zip(&self.turns).zip(&self.counts);
-        let mut sizes: Vec<f64> =
-            others.filter(|((_, turns), counts)| !**turns && **counts).map(|((error, _), _)| error.abs()).collect();
+        let mut sizes: Vec<f64> = others
+            .filter(|((_, turns), counts)| !**turns && **counts)
+            .map(|((error, _), _)| error.abs())
+            .collect();
         if sizes.is_empty() {
             return;
         }
         let middle = sizes.len() / 2;
         let most = MOST_MEDIANS * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1;
-        for (error, _) in self.error_rad.iter_mut().zip(&self.turns).filter(|(_, turns)| **turns) {
+        for (error, _) in self
+            .error_rad
+            .iter_mut()
+            .zip(&self.turns)
+            .filter(|(_, turns)| **turns)
+        {
             *error = error.max(-most).min(most);
         }
     }
@@ -107,18 +124,29 @@ impl AxisFilter {
             gains: [0.0; STATES],
             linear: [[0.0; STATES]; STATES],
             turning: [
-                TURNED * law.parameters.coulomb_smoothing_rad_s.max(0.5 * friction.stribeck_rad_s),
+                TURNED
+                    * law
+                        .parameters
+                        .coulomb_smoothing_rad_s
+                        .max(0.5 * friction.stribeck_rad_s),
                 TURNED * friction.presliding_rad,
             ],
         };
         filter.linear = filter.linear_part();
-        let coulomb_nm = law.parameters.coulomb_friction_nm.max(1e-3 * law.parameters.torque_limit_nm);
+        let coulomb_nm = law
+            .parameters
+            .coulomb_friction_nm
+            .max(1e-3 * law.parameters.torque_limit_nm);
         filter.gains = filter.kalman(LOAD_SHARE * coulomb_nm, noise_rad.max(LEAST_NOISE_RAD));
         filter
     }
 
-    /// Goes along stretches of commands and measured positions, rad, and puts together what it finds.
-    pub(super) fn innovations<'a>(&self, stretches: impl Iterator<Item = Vec<[f64; 2]>> + 'a) -> Innovations {
+    /// Goes along stretches of commands and measured positions, rad, and puts together what it
+    /// finds.
+    pub(super) fn innovations<'a>(
+        &self,
+        stretches: impl Iterator<Item = Vec<[f64; 2]>> + 'a,
+    ) -> Innovations {
         let mut found = Innovations::default();
         for stretch in stretches {
             self.stretch(&stretch, &mut found);
@@ -130,8 +158,13 @@ impl AxisFilter {
     fn stretch(&self, stretch: &[[f64; 2]], found: &mut Innovations) {
         let servo_s = self.law.periods.servo_s;
         let periods = |s: f64| (s / servo_s).ceil() as usize;
-        let Some(&[_, first_rad]) = stretch.first() else { return };
-        let mut state = FilterState { masses: MechanicsState::at_rest(first_rad), ..FilterState::default() };
+        let Some(&[_, first_rad]) = stretch.first() else {
+            return;
+        };
+        let mut state = FilterState {
+            masses: MechanicsState::at_rest(first_rad),
+            ..FilterState::default()
+        };
         let mut position_loop = (state.masses.motor, DriveState::default());
         let mut sent: Vec<DriveReference> = Vec::with_capacity(stretch.len());
         let (mut turns_for, mut turned_rad, mut forward) = (0, first_rad, true);
@@ -142,9 +175,13 @@ impl AxisFilter {
                 (forward, turned_rad) = (speed_rad_s > 0.0, state.masses.motor.angle_rad);
             }
             let [turning_rad_s, turning_rad] = self.turning;
-            let turns =
-                speed_rad_s.abs() < turning_rad_s || (state.masses.motor.angle_rad - turned_rad).abs() < turning_rad;
-            turns_for = if turns { periods(REMEMBERED_S) } else { turns_for.saturating_sub(1) };
+            let turns = speed_rad_s.abs() < turning_rad_s
+                || (state.masses.motor.angle_rad - turned_rad).abs() < turning_rad;
+            turns_for = if turns {
+                periods(REMEMBERED_S)
+            } else {
+                turns_for.saturating_sub(1)
+            };
             found.error_rad.push(error_rad);
             found.angle_rad.push(state.masses.motor.angle_rad);
             found.counts.push(n >= periods(START_S));
@@ -152,7 +189,10 @@ impl AxisFilter {
             self.correct(&mut state, error_rad);
             let (axis, drive) = &mut position_loop;
             axis.angle_rad = measured_rad;
-            sent.push(self.drive.position_loop(&self.law, command_rad, measured_rad, axis, drive));
+            sent.push(
+                self.drive
+                    .position_loop(&self.law, command_rad, measured_rad, axis, drive),
+            );
             self.servo_period(&mut state, &sent);
         }
     }
@@ -168,44 +208,81 @@ impl AxisFilter {
         state.load_nm += d;
     }
 
-    /// From a measurement to the next: what was sent last acts only as many mechanics periods later as everything is late.
+    /// From a measurement to the next: what was sent last acts only as many mechanics periods later
+    /// as everything is late.
     fn servo_period(&self, state: &mut FilterState, sent: &[DriveReference]) {
         let per_servo = self.law.periods.mechanics_per_servo;
         for n in 0..per_servo {
             // Time is that of the measurement.
             let age = (self.late + per_servo - 1 - n) / per_servo;
-            let reference = sent.len().checked_sub(1 + age as usize).and_then(|at| sent.get(at));
+            let reference = sent
+                .len()
+                .checked_sub(1 + age as usize)
+                .and_then(|at| sent.get(at));
             self.substep(state, reference.copied().unwrap_or_default());
         }
     }
 
     fn substep(&self, state: &mut FilterState, reference: DriveReference) {
         let speed_rad_s = state.masses.motor.speed_rad_s;
-        let drive_nm = self.drive.torque_nm(&self.law, reference, speed_rad_s, &mut state.drive);
-        self.mechanics.advance(&mut state.masses, drive_nm, state.load_nm);
+        let drive_nm = self
+            .drive
+            .torque_nm(&self.law, reference, speed_rad_s, &mut state.drive);
+        self.mechanics
+            .advance(&mut state.masses, drive_nm, state.load_nm);
     }
 
     /// The linear part of a servo period while friction slides, by differences.
     fn linear_part(&self) -> Matrix {
         // Far beyond all speeds over which friction turns, and a way that presliding needs.
         let sliding_rad_s = 100.0 * self.turning[0] + self.turning[1] / self.law.periods.servo_s;
-        let reference = DriveReference { speed_rad_s: sliding_rad_s, torque_nm: 0.0 };
+        let reference = DriveReference {
+            speed_rad_s: sliding_rad_s,
+            torque_nm: 0.0,
+        };
         let friction_nm = self.law.friction_nm(sliding_rad_s, 1.0);
-        let behind_rad = self.mechanics.transmission().map_or(0.0, |screw| screw.twist_rad(friction_nm));
+        let behind_rad = self
+            .mechanics
+            .transmission()
+            .map_or(0.0, |screw| screw.twist_rad(friction_nm));
         let after = |by: FilterVector| -> FilterVector {
             let [x, w, i, y, xt, wt, d] = by;
-            let motor = AxisState { angle_rad: x, speed_rad_s: sliding_rad_s + w, error_rad: 0.0 };
-            let table = TableState { angle_rad: xt - behind_rad, speed_rad_s: sliding_rad_s + wt };
+            let motor = AxisState {
+                angle_rad: x,
+                speed_rad_s: sliding_rad_s + w,
+                error_rad: 0.0,
+            };
+            let table = TableState {
+                angle_rad: xt - behind_rad,
+                speed_rad_s: sliding_rad_s + wt,
+            };
             let mut drive = DriveState::default();
             drive.correct(i, y);
             let presliding_nm = self.law.parameters.coulomb_friction_nm;
-            let masses = MechanicsState { motor, table, presliding_nm };
-            let mut state = FilterState { masses, drive, load_nm: d };
-            (0..self.law.periods.mechanics_per_servo).for_each(|_| self.substep(&mut state, reference));
+            let masses = MechanicsState {
+                motor,
+                table,
+                presliding_nm,
+            };
+            let mut state = FilterState {
+                masses,
+                drive,
+                load_nm: d,
+            };
+            (0..self.law.periods.mechanics_per_servo)
+                .for_each(|_| self.substep(&mut state, reference));
             let (drive, MechanicsState { motor, table, .. }) = (state.drive, state.masses);
             let [integral_nm, filtered_nm] = [drive.integral_nm(), drive.filtered_nm()];
             let [xt, wt] = [table.angle_rad, table.speed_rad_s];
-            [motor.angle_rad, motor.speed_rad_s, integral_nm, filtered_nm, xt, wt, state.load_nm]
+            [
+                motor.angle_rad,
+                motor.speed_rad_s,
+                integral_nm,
+                filtered_nm,
+                xt,
+                wt,
+                state.load_nm,
+            ]
         };
         // A torque is small beside the limit, a speed is what it makes in a servo period.
         let nm = 1e-3 * self.law.parameters.torque_limit_nm;
@@ -213,7 +290,8 @@ impl AxisFilter {
         let rad = rad_s * self.law.periods.servo_s;
         let sizes = [rad, rad_s, nm, nm, rad, rad_s, nm];
         let columns: Matrix = std::array::from_fn(|j| {
-            let by = |sign: f64| std::array::from_fn(|i| if i == j { sign * sizes[j] } else { 0.0 });
+            let by =
+                |sign: f64| std::array::from_fn(|i| if i == j { sign * sizes[j] } else { 0.0 });
             let (more, less) = (after(by(1.0)), after(by(-1.0)));
             std::array::from_fn(|i| (more[i] - less[i]) / (2.0 * sizes[j]))
         });
@@ -227,8 +305,9 @@ impl AxisFilter {
         push
     }
 
-    /// Gains for a load that wanders by `load_nm` in [`LOAD_S`] and is new by that in each servo period, and a noise, rad: by iterating
-    /// the Riccati equation, Anderson and Moore (1979), Optimal Filtering, section 4.4.
+    /// Gains for a load that wanders by `load_nm` in [`LOAD_S`] and is new by that in each servo
+    /// period, and a noise, rad: by iterating the Riccati equation, Anderson and Moore (1979),
+    /// Optimal Filtering, section 4.4.
     fn kalman(&self, load_nm: f64, noise_rad: f64) -> FilterVector {
         let (push, variance) = (self.push(), noise_rad * noise_rad);
         let wander_nm2 = load_nm * load_nm * self.law.periods.servo_s / LOAD_S;
@@ -237,14 +316,20 @@ impl AxisFilter {
         for _ in 0..RICCATI_STEPS {
             let seen: FilterVector = std::array::from_fn(|i| covariance[i][0]);
             gains = seen.map(|p| p / (seen[0] + variance));
-            let updated: Matrix =
-                std::array::from_fn(|i| std::array::from_fn(|j| covariance[i][j] - gains[i] * seen[j]));
-            let half: Matrix = std::array::from_fn(|i| {
-                std::array::from_fn(|j| (0..STATES).map(|k| self.linear[i][k] * updated[k][j]).sum())
+            let updated: Matrix = std::array::from_fn(|i| {
+                std::array::from_fn(|j| covariance[i][j] - gains[i] * seen[j])
             });
-            let inner = |a: &FilterVector, b: &FilterVector| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            let half: Matrix = std::array::from_fn(|i| {
+                std::array::from_fn(|j| {
+                    (0..STATES).map(|k| self.linear[i][k] * updated[k][j]).sum()
+                })
+            });
+            let inner = |a: &FilterVector, b: &FilterVector| {
+                a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>()
+            };
             let next = |i: usize, j: usize| {
-                let both = 0.5 * (inner(&half[i], &self.linear[j]) + inner(&half[j], &self.linear[i]));
+                let both =
+                    0.5 * (inner(&half[i], &self.linear[j]) + inner(&half[j], &self.linear[i]));
                 both + load_nm * load_nm * push[i] * push[j]
             };
             covariance = std::array::from_fn(|i| std::array::from_fn(|j| next(i, j)));
@@ -253,8 +338,8 @@ impl AxisFilter {
         gains
     }
 
-    /// What becomes of the innovations after 1 N m of load in a servo period, and after 1 rad of the encoder at a measurement: as
-    /// transforms over `length` samples.
+    /// What becomes of the innovations after 1 N m of load in a servo period, and after 1 rad of
+    /// the encoder at a measurement: as transforms over `length` samples.
     pub(super) fn responses(&self, length: usize) -> [Vec<Phasor>; 2] {
         let run = |mut off: FilterVector, first: f64| {
             let mut response = vec![first];
@@ -269,9 +354,17 @@ impl AxisFilter {
         [run(self.push(), 0.0), run(of_noise, 1.0)]
     }
 
-    /// By how much true states are ahead of estimated ones a servo period later, after such an innovation.
+    /// By how much true states are ahead of estimated ones a servo period later, after such an
+    /// innovation.
     fn off_after(&self, off: FilterVector, innovation_rad: f64) -> FilterVector {
-        let corrected: FilterVector = std::array::from_fn(|i| off[i] - self.gains[i] * innovation_rad);
-        std::array::from_fn(|i| self.linear[i].iter().zip(&corrected).map(|(a, x)| a * x).sum())
+        let corrected: FilterVector =
+            std::array::from_fn(|i| off[i] - self.gains[i] * innovation_rad);
+        std::array::from_fn(|i| {
+            self.linear[i]
+                .iter()
+                .zip(&corrected)
+                .map(|(a, x)| a * x)
+                .sum()
+        })
     }
 }

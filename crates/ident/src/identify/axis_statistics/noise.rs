@@ -5,11 +5,13 @@
 //! -ln L = w sum over f of ln S(f) + I(f) / S(f)
 //! ```
 //!
-//! R variance of the encoder; s, T broadband torque and its correlation time; D, f0, v amplitude, frequency and wandering of the line, N
-//! the density of a normal distribution, wider by the window of the spectrum. Broadband torque and line are admitted one by one, where
-//! the likelihood grows by more than [`ADMITTED`] and the recording shows more of them than what any model leaves.
+//! R variance of the encoder; s, T broadband torque and its correlation time; D, f0, v amplitude,
+//! frequency and wandering of the line, N the density of a normal distribution, wider by the window
+//! of the spectrum. Broadband torque and line are admitted one by one, where the likelihood grows
+//! by more than [`ADMITTED`] and the recording shows more of them than what any model leaves.
 //!
-//! Source: Whittle (1953), Estimation and information in stationary time series; Wilks (1938) for the ratio of likelihoods.
+//! Source: Whittle (1953), Estimation and information in stationary time series; Wilks (1938) for
+//! the ratio of likelihoods.
 
 use std::f64::consts::TAU;
 
@@ -18,8 +20,8 @@ use super::search::least;
 use crate::average::middle_of;
 use crate::spectrum::{Phasor, Spectrum, power};
 
-/// Growth of ln L beyond which a term is admitted: chance gives 9.2 for three variables once in 10,000 times, and twice that lets
-/// the frequency be searched for.
+/// Growth of ln L beyond which a term is admitted: chance gives 9.2 for three variables once in
+/// 10,000 times, and twice that lets the frequency be searched for.
 const ADMITTED: f64 = 20.0;
 /// Below this frequency the recording tells of slow drift, Hz.
 pub(super) const LEAST_HZ: f64 = 3.0;
@@ -31,8 +33,9 @@ const SHORTEST_PERIODS: f64 = 0.2;
 const WIDEST: f64 = 0.15;
 /// A line that is narrower than so much of what the window makes of it does not wander.
 const RESOLVED: f64 = 1.0;
-/// Part of the mean square of the innovations that no term explains: the window leaks, and friction turns at other moments than expected.
-/// Terms that have no noise beside them would else be fitted to that.
+/// Part of the mean square of the innovations that no term explains: the window leaks, and friction
+/// turns at other moments than expected. Terms that have no noise beside them would else be fitted
+/// to that.
 const LEFT_SHARE: f64 = 1e-2;
 /// Frequencies whose mean is taken where the spectrum is smooth.
 const GROUP: usize = 8;
@@ -59,8 +62,15 @@ pub(super) struct NoiseFit {
 }
 
 impl NoiseFit {
-    /// Expected spectrum at a frequency, Hz, of responses whose power is given; `window_hz` widens the line.
-    pub(super) fn at(&self, hz: f64, [load, encoder]: [f64; 2], servo_s: f64, window_hz: f64) -> f64 {
+    /// Expected spectrum at a frequency, Hz, of responses whose power is given; `window_hz` widens
+    /// the line.
+    pub(super) fn at(
+        &self,
+        hz: f64,
+        [load, encoder]: [f64; 2],
+        servo_s: f64,
+        window_hz: f64,
+    ) -> f64 {
         let keep = libm::exp(-servo_s / self.torque_s.max(1e-9));
         let broad_nm2 = self.torque_nm * self.torque_nm * (1.0 - keep * keep)
             / (1.0 - 2.0 * keep * libm::cos(TAU * hz * servo_s) + keep * keep);
@@ -68,7 +78,8 @@ impl NoiseFit {
         let off = (hz - self.line_hz) / width_hz;
         // Beyond, it is nothing beside the rest.
         let line_nm2 = if off.abs() < 8.0 {
-            0.25 * self.line_nm * self.line_nm * libm::exp(-0.5 * off * off) / (width_hz * servo_s * TAU.sqrt())
+            0.25 * self.line_nm * self.line_nm * libm::exp(-0.5 * off * off)
+                / (width_hz * servo_s * TAU.sqrt())
         } else {
             0.0
         };
@@ -92,15 +103,24 @@ pub(super) struct Seen {
 
 impl Seen {
     /// With responses over as many samples as the segments of the spectrum.
-    pub(super) fn new(spectrum: &Spectrum, [load, encoder]: &[Vec<Phasor>; 2], servo_s: f64) -> Self {
+    pub(super) fn new(
+        spectrum: &Spectrum,
+        [load, encoder]: &[Vec<Phasor>; 2],
+        servo_s: f64,
+    ) -> Self {
         let range = (0..spectrum.power.len()).filter(|&n| spectrum.at(n) / servo_s >= LEAST_HZ);
-        let mean_rad2 = range.clone().map(|n| spectrum.power[n]).sum::<f64>() / range.clone().count().max(1) as f64;
+        let mean_rad2 = range.clone().map(|n| spectrum.power[n]).sum::<f64>()
+            / range.clone().count().max(1) as f64;
         let left_rad2 = LEFT_SHARE * mean_rad2;
-        // Where there is less than that, or than the least noise, it is made up to it: nothing is told from it.
+        // Where there is less than that, or than the least noise, it is made up to it: nothing is
+        // told from it.
         let least = |n: usize| left_rad2 + least_rad2() * power(encoder[n]);
         Self {
             hz: range.clone().map(|n| spectrum.at(n) / servo_s).collect(),
-            power: range.clone().map(|n| spectrum.power[n] + least(n)).collect(),
+            power: range
+                .clone()
+                .map(|n| spectrum.power[n] + least(n))
+                .collect(),
             counts: range.clone().map(|_| 1.0).collect(),
             responses: range.map(|n| [power(load[n]), power(encoder[n])]).collect(),
             servo_s,
@@ -114,23 +134,38 @@ impl Seen {
     fn cost(&self, noise: &NoiseFit) -> f64 {
         let at = |(&hz, &responses)| noise.at(hz, responses, self.servo_s, self.window_hz);
         let expected = self.hz.iter().zip(&self.responses).map(at);
-        let terms = expected.zip(&self.power).zip(&self.counts).map(|((s, i), count)| count * (libm::log(s) + i / s));
+        let terms = expected
+            .zip(&self.power)
+            .zip(&self.counts)
+            .map(|((s, i), count)| count * (libm::log(s) + i / s));
         self.weight * terms.sum::<f64>()
     }
 
     /// The same with means over [`GROUP`] frequencies where no line at `hz` is.
     fn grouped(&self, hz: Option<f64>) -> Self {
-        let mut grouped = Self { hz: vec![], power: vec![], responses: vec![], counts: vec![], ..self.clone() };
+        let mut grouped = Self {
+            hz: vec![],
+            power: vec![],
+            responses: vec![],
+            counts: vec![],
+            ..self.clone()
+        };
         let reach_hz = BESIDE as f64 * (self.hz[1] - self.hz[0]);
         let mut n = 0;
         while n < self.hz.len() {
             let near = hz.is_some_and(|hz| (self.hz[n] - hz).abs() < reach_hz);
-            let range = n..if near { n + 1 } else { (n + GROUP).min(self.hz.len()) };
+            let range = n..if near {
+                n + 1
+            } else {
+                (n + GROUP).min(self.hz.len())
+            };
             let count = range.len() as f64;
             let mean = |value: &dyn Fn(usize) -> f64| range.clone().map(value).sum::<f64>() / count;
             grouped.hz.push(mean(&|n| self.hz[n]));
             grouped.power.push(mean(&|n| self.power[n]));
-            grouped.responses.push([0, 1].map(|i| mean(&|n| self.responses[n][i])));
+            grouped
+                .responses
+                .push([0, 1].map(|i| mean(&|n| self.responses[n][i])));
             grouped.counts.push(count);
             n = range.end;
         }
@@ -149,7 +184,10 @@ impl Seen {
         // One term first, the better one, then both.
         for (noise, cost) in [Some(broad), line_alone, line_beside].into_iter().flatten() {
             let shown = noise.torque_nm == 0.0 || noise.torque_nm > least_nm;
-            if shown && (noise.line_nm == 0.0 || noise.line_nm > least_nm) && cost < found.1 - ADMITTED {
+            if shown
+                && (noise.line_nm == 0.0 || noise.line_nm > least_nm)
+                && cost < found.1 - ADMITTED
+            {
                 found = (noise, cost);
             }
         }
@@ -160,25 +198,51 @@ impl Seen {
         noise
     }
 
-    /// An encoder alone: by the median in the upper half of the frequencies, that of an exponential distribution being ln 2 times its mean
-    /// and that of many of them near to it.
+    /// An encoder alone: by the median in the upper half of the frequencies, that of an exponential
+    /// distribution being ln 2 times its mean and that of many of them near to it.
     fn white(&self) -> NoiseFit {
         let upper = self.power.len() / 2..;
-        let mut shares: Vec<f64> =
-            self.power[upper.clone()].iter().zip(&self.responses[upper]).map(|(i, [_, n])| i / n).collect();
+        let mut shares: Vec<f64> = self.power[upper.clone()]
+            .iter()
+            .zip(&self.responses[upper])
+            .map(|(i, [_, n])| i / n)
+            .collect();
         let encoder_rad2 = middle_of(&mut shares).max(least_rad2());
-        let start = NoiseFit { encoder_rad2, left_rad2: self.left_rad2, ..NoiseFit::default() };
-        let made = |[r]: &[f64; 1]| NoiseFit { encoder_rad2: libm::exp(*r) + least_rad2(), ..start };
-        let ([r], _) = least([libm::log(start.encoder_rad2)], [0.3], |at| self.cost(&made(at)));
+        let start = NoiseFit {
+            encoder_rad2,
+            left_rad2: self.left_rad2,
+            ..NoiseFit::default()
+        };
+        let made = |[r]: &[f64; 1]| NoiseFit {
+            encoder_rad2: libm::exp(*r) + least_rad2(),
+            ..start
+        };
+        let ([r], _) = least([libm::log(start.encoder_rad2)], [0.3], |at| {
+            self.cost(&made(at))
+        });
         made(&[r])
     }
 
     /// Encoder and broadband torque, and the cost.
     fn broadband(&self, white: NoiseFit) -> (NoiseFit, f64) {
-        let mut excess: Vec<f64> = self.power.iter().zip(&self.responses).map(|(i, [load, _])| i / load).collect();
+        let mut excess: Vec<f64> = self
+            .power
+            .iter()
+            .zip(&self.responses)
+            .map(|(i, [load, _])| i / load)
+            .collect();
         let torque_nm = middle_of(&mut excess).max(1e-30).sqrt();
         [0.001, 0.005, 0.02]
-            .map(|torque_s| self.refined(NoiseFit { torque_nm, torque_s, ..white }, true))
+            .map(|torque_s| {
+                self.refined(
+                    NoiseFit {
+                        torque_nm,
+                        torque_s,
+                        ..white
+                    },
+                    true,
+                )
+            })
             .into_iter()
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .unwrap_or((white, f64::INFINITY))
@@ -187,42 +251,76 @@ impl Seen {
     /// Where a line may be: what is furthest above its surroundings.
     fn line(&self) -> Option<NoiseFit> {
         let beside = |n: usize| {
-            let mut around = self.power[n.saturating_sub(BESIDE)..(n + BESIDE).min(self.power.len())].to_vec();
+            let mut around =
+                self.power[n.saturating_sub(BESIDE)..(n + BESIDE).min(self.power.len())].to_vec();
             middle_of(&mut around)
         };
         let above = |n: usize| self.power[n] / beside(n);
         let n = (0..self.power.len()).max_by(|&a, &b| above(a).total_cmp(&above(b)))?;
         let (level, step_hz) = (beside(n), self.hz[1] - self.hz[0]);
         let range = n.saturating_sub(BESIDE / 2)..(n + BESIDE / 2).min(self.power.len());
-        let nm2: f64 = range.map(|n| (self.power[n] - level).max(0.0) / self.responses[n][0]).sum();
+        let nm2: f64 = range
+            .map(|n| (self.power[n] - level).max(0.0) / self.responses[n][0])
+            .sum();
         let line_nm = (4.0 * nm2 * step_hz * self.servo_s).sqrt();
-        Some(NoiseFit { line_nm, line_hz: self.hz[n], wander_hz: 0.02 * self.hz[n], ..NoiseFit::default() })
+        Some(NoiseFit {
+            line_nm,
+            line_hz: self.hz[n],
+            wander_hz: 0.02 * self.hz[n],
+            ..NoiseFit::default()
+        })
     }
 
     /// The most likely near a start, and the cost.
     fn refined(&self, start: NoiseFit, broad: bool) -> (NoiseFit, f64) {
-        let Self { servo_s, window_hz, .. } = *self;
+        let Self {
+            servo_s, window_hz, ..
+        } = *self;
         let made = |[r, s, t, d, f, v]: &[f64; 6]| NoiseFit {
             encoder_rad2: libm::exp(*r) + least_rad2(),
             torque_nm: if broad { libm::exp(*s) } else { 0.0 },
             torque_s: if broad { libm::exp(*t) } else { 0.0 },
-            line_nm: if start.line_nm > 0.0 { libm::exp(*d) } else { 0.0 },
-            line_hz: if start.line_nm > 0.0 { start.line_hz + window_hz * f } else { 0.0 },
-            wander_hz: if start.line_nm > 0.0 { libm::exp(*v) } else { 0.0 },
+            line_nm: if start.line_nm > 0.0 {
+                libm::exp(*d)
+            } else {
+                0.0
+            },
+            line_hz: if start.line_nm > 0.0 {
+                start.line_hz + window_hz * f
+            } else {
+                0.0
+            },
+            wander_hz: if start.line_nm > 0.0 {
+                libm::exp(*v)
+            } else {
+                0.0
+            },
             left_rad2: start.left_rad2,
         };
         let reach_hz = BESIDE as f64 * window_hz;
         let cost = |at: &[f64; 6]| {
             let noise = made(at);
-            let is_within = (!broad || (SHORTEST_PERIODS * servo_s..=LONGEST_S).contains(&noise.torque_s))
+            let is_within = (!broad
+                || (SHORTEST_PERIODS * servo_s..=LONGEST_S).contains(&noise.torque_s))
                 && (start.line_nm == 0.0
                     || noise.line_hz > LEAST_HZ
                         && (noise.line_hz - start.line_hz).abs() < reach_hz
                         && noise.wander_hz < WIDEST * noise.line_hz);
-            if is_within { self.cost(&noise) } else { f64::INFINITY }
+            if is_within {
+                self.cost(&noise)
+            } else {
+                f64::INFINITY
+            }
         };
         let log = |x: f64, least: f64| libm::log(x.max(least));
-        let NoiseFit { encoder_rad2, torque_nm, torque_s, line_nm, wander_hz, .. } = start;
+        let NoiseFit {
+            encoder_rad2,
+            torque_nm,
+            torque_s,
+            line_nm,
+            wander_hz,
+            ..
+        } = start;
         let from = [
             libm::log(encoder_rad2),
             log(torque_nm, 1e-15),
@@ -240,7 +338,12 @@ impl Seen {
 
 /// A line beside other noise.
 fn with_line(line: &NoiseFit, noise: &NoiseFit) -> NoiseFit {
-    NoiseFit { line_nm: line.line_nm, line_hz: line.line_hz, wander_hz: line.wander_hz, ..*noise }
+    NoiseFit {
+        line_nm: line.line_nm,
+        line_hz: line.line_hz,
+        wander_hz: line.wander_hz,
+        ..*noise
+    }
 }
 
 fn least_rad2() -> f64 {

@@ -6,23 +6,28 @@
 //! gain of 2 ln L = p' G^-1 p,   p = <r, e>,  G = <r, r>,   <u, v> = sum over f of conj(U) V / S / samples
 //! ```
 //!
-//! S is the spectrum that noise makes, so that the gain has a chi-squared distribution with two degrees of freedom where there is nothing;
-//! the best of many candidates is admitted beyond [`CHANCE`].
+//! S is the spectrum that noise makes, so that the gain has a chi-squared distribution with two
+//! degrees of freedom where there is nothing; the best of many candidates is admitted beyond
+//! [`CHANCE`].
 //!
-//! Source: Rao (1948) for the score; Kay (1993), Fundamentals of Statistical Signal Processing: Estimation Theory, chapter 4, for the
-//! linear model in coloured noise, and its frequency domain; Lomb (1976) for a period in samples that are not evenly spaced.
+//! Source: Rao (1948) for the score; Kay (1993), Fundamentals of Statistical Signal Processing:
+//! Estimation Theory, chapter 4, for the linear model in coloured noise, and its frequency domain;
+//! Lomb (1976) for a period in samples that are not evenly spaced.
 
 use std::f64::consts::TAU;
 
 use super::innovation::Innovations;
 use super::noise::{LEAST_HZ, NoiseFit};
-use crate::spectrum::{Phasor, conjugate, power, times, transform, transform_back, transformed, turned};
+use crate::spectrum::{
+    Phasor, conjugate, power, times, transform, transform_back, transformed, turned,
+};
 
 /// A term that is not there is admitted once in so many times.
 const CHANCE: f64 = 1e-6;
 /// Most lines of cogging in a turn that are looked for: four times the 50 teeth of a stepper.
 const MOST_PER_REV: u32 = 200;
-/// Signal periods that are looked for, rad at the motor: 1 um and 0.2 mm of travel on a lead of 10 mm.
+/// Signal periods that are looked for, rad at the motor: 1 um and 0.2 mm of travel on a lead of 10
+/// mm.
 const SIGNAL_RAD: [f64; 2] = [TAU * 1e-4, TAU * 0.02];
 /// Most places into which a way is divided to look for a signal period.
 const MOST_PLACES: usize = 1 << 20;
@@ -70,7 +75,8 @@ pub(super) enum Through {
 }
 
 impl<'a> Weighed<'a> {
-    /// By the spectrum of a noise; the responses are over `length` samples, a power of two above the number of innovations.
+    /// By the spectrum of a noise; the responses are over `length` samples, a power of two above
+    /// the number of innovations.
     pub(super) fn new(
         innovations: &'a Innovations,
         responses: &'a [Vec<Phasor>; 2],
@@ -82,10 +88,20 @@ impl<'a> Weighed<'a> {
         let weight = |n: usize| {
             let hz = n.min(length - n) as f64 / (length as f64 * servo_s);
             // A line is as wide as it is while it is watched.
-            let s = noise.at(hz, [power(load[n]), power(encoder[n])], servo_s, 0.02 * LEAST_HZ);
+            let s = noise.at(
+                hz,
+                [power(load[n]), power(encoder[n])],
+                servo_s,
+                0.02 * LEAST_HZ,
+            );
             if hz < LEAST_HZ { 0.0 } else { 1.0 / s }
         };
-        Self { innovations, length, responses, weights: (0..length).map(weight).collect() }
+        Self {
+            innovations,
+            length,
+            responses,
+            weights: (0..length).map(weight).collect(),
+        }
     }
 
     /// Cogging, by lines in a turn, if there is any, and by how much 2 ln L grows with it.
@@ -106,20 +122,32 @@ impl<'a> Weighed<'a> {
             let gain = power(score) / information(f64::from(n)).max(f64::MIN_POSITIVE);
             candidates.push((f64::from(n), gain));
         }
-        self.best(Through::Motor, candidates, f64::from(MOST_PER_REV), least_nm)
+        self.best(
+            Through::Motor,
+            candidates,
+            f64::from(MOST_PER_REV),
+            least_nm,
+        )
     }
 
     /// As [`Self::cogging`], the interpolation error of an encoder with this step.
     pub(super) fn interpolation(&self, step_rad: f64, least_rad: f64) -> Option<(Wave, f64)> {
         let adjoint = self.adjoint(Through::Encoder);
         let angles = &self.innovations.angle_rad;
-        let ends = angles.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &x| [a.min(x), b.max(x)]);
+        let ends = angles
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &x| {
+                [a.min(x), b.max(x)]
+            });
         let way_rad = ends[1] - ends[0];
         let [shortest, longest] = SIGNAL_RAD;
         // The steps themselves repeat with place, too.
         let shortest = shortest.max(4.0 * step_rad);
-        // Four places in the shortest period, and half as much again beyond the way: the peak is never between two frequencies.
-        let places = ((4.0 * 1.5 * way_rad / shortest) as usize).next_power_of_two().min(MOST_PLACES);
+        // Four places in the shortest period, and half as much again beyond the way: the peak is
+        // never between two frequencies.
+        let places = ((4.0 * 1.5 * way_rad / shortest) as usize)
+            .next_power_of_two()
+            .min(MOST_PLACES);
         let place_rad = 1.5 * way_rad / places as f64;
         let mut binned = vec![[0.0; 2]; places];
         for (angle_rad, a) in angles.iter().zip(&adjoint) {
@@ -127,10 +155,17 @@ impl<'a> Weighed<'a> {
         }
         transform(&mut binned);
         let unit = TAU / (place_rad * places as f64);
-        let range = (TAU / longest / unit) as usize..((TAU / shortest / unit) as usize).min(places / 3);
-        let candidates: Vec<(f64, f64)> = range.clone().map(|n| (n as f64 * unit, power(binned[n]))).collect();
+        let range =
+            (TAU / longest / unit) as usize..((TAU / shortest / unit) as usize).min(places / 3);
+        let candidates: Vec<(f64, f64)> = range
+            .clone()
+            .map(|n| (n as f64 * unit, power(binned[n])))
+            .collect();
         let fine = |per_rad: f64| self.finest(&adjoint, per_rad, unit);
-        let tried = best_of(candidates, TRIED).into_iter().map(|(per_rad, gain)| (fine(per_rad), gain)).collect();
+        let tried = best_of(candidates, TRIED)
+            .into_iter()
+            .map(|(per_rad, gain)| (fine(per_rad), gain))
+            .collect();
         self.best(Through::Encoder, tried, range.len() as f64, least_rad)
     }
 
@@ -141,7 +176,13 @@ impl<'a> Weighed<'a> {
                 let [cos, sin] = turned(per_rad * angle);
                 [sum[0] + a * cos, sum[1] + a * sin]
             };
-            power(self.innovations.angle_rad.iter().zip(adjoint).fold([0.0; 2], add))
+            power(
+                self.innovations
+                    .angle_rad
+                    .iter()
+                    .zip(adjoint)
+                    .fold([0.0; 2], add),
+            )
         };
         let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
         let (mut low, mut high) = (per_rad - unit, per_rad + unit);
@@ -163,7 +204,13 @@ impl<'a> Weighed<'a> {
     }
 
     /// The best candidate itself, where it is beyond chance and above `least`.
-    fn best(&self, through: Through, candidates: Vec<(f64, f64)>, looked_at: f64, least: f64) -> Option<(Wave, f64)> {
+    fn best(
+        &self,
+        through: Through,
+        candidates: Vec<(f64, f64)>,
+        looked_at: f64,
+        least: f64,
+    ) -> Option<(Wave, f64)> {
         let least_gain = 2.0 * libm::log(looked_at / CHANCE);
         let error = self.innovations_transformed();
         best_of(candidates, TRIED)
@@ -177,9 +224,19 @@ impl<'a> Weighed<'a> {
 
     /// The same waves with the amplitudes that are most likely together.
     pub(super) fn amplitudes(&self, waves: &[(Through, Wave)]) -> Vec<(Through, Wave)> {
-        let kinds: Vec<(Through, f64)> = waves.iter().map(|(through, wave)| (*through, wave.per_rad)).collect();
-        let fitted = self.fitted(&self.innovations_transformed(), &kinds).map(|(waves, _)| waves).unwrap_or_default();
-        kinds.into_iter().map(|(through, _)| through).zip(fitted).collect()
+        let kinds: Vec<(Through, f64)> = waves
+            .iter()
+            .map(|(through, wave)| (*through, wave.per_rad))
+            .collect();
+        let fitted = self
+            .fitted(&self.innovations_transformed(), &kinds)
+            .map(|(waves, _)| waves)
+            .unwrap_or_default();
+        kinds
+            .into_iter()
+            .map(|(through, _)| through)
+            .zip(fitted)
+            .collect()
     }
 
     /// Innovations without what these waves make of them.
@@ -187,13 +244,20 @@ impl<'a> Weighed<'a> {
         let mut left = self.innovations.clone();
         for (through, wave) in waves {
             let [cos, sin] = self.regressors(*through, wave.per_rad);
-            let made = cos.iter().zip(&sin).map(|(c, s)| wave.cos * c + wave.sin * s);
-            left.error_rad.iter_mut().zip(made).for_each(|(error, made)| *error -= made);
+            let made = cos
+                .iter()
+                .zip(&sin)
+                .map(|(c, s)| wave.cos * c + wave.sin * s);
+            left.error_rad
+                .iter_mut()
+                .zip(made)
+                .for_each(|(error, made)| *error -= made);
         }
         left
     }
 
-    /// The waves, and by how much 2 ln L grows with them; none where they cannot be told from each other.
+    /// The waves, and by how much 2 ln L grows with them; none where they cannot be told from each
+    /// other.
     fn fitted(&self, error: &[Phasor], waves: &[(Through, f64)]) -> Option<(Vec<Wave>, f64)> {
         let columns: Vec<Vec<Phasor>> = waves
             .iter()
@@ -205,10 +269,17 @@ impl<'a> Weighed<'a> {
             u.iter().zip(v).zip(&self.weights).map(product).sum::<f64>() / self.length as f64
         };
         let scores: Vec<f64> = columns.iter().map(|column| inner(column, error)).collect();
-        let mut system: Vec<Vec<f64>> = columns.iter().map(|u| columns.iter().map(|v| inner(u, v)).collect()).collect();
+        let mut system: Vec<Vec<f64>> = columns
+            .iter()
+            .map(|u| columns.iter().map(|v| inner(u, v)).collect())
+            .collect();
         let solved = solved(&mut system, &scores)?;
         let gain = solved.iter().zip(&scores).map(|(x, p)| x * p).sum();
-        let wave = |(&(_, per_rad), pair): (&(Through, f64), &[f64])| Wave { per_rad, cos: pair[0], sin: pair[1] };
+        let wave = |(&(_, per_rad), pair): (&(Through, f64), &[f64])| Wave {
+            per_rad,
+            cos: pair[0],
+            sin: pair[1],
+        };
         Some((waves.iter().zip(solved.chunks(2)).map(wave).collect(), gain))
     }
 
@@ -216,12 +287,25 @@ impl<'a> Weighed<'a> {
     fn regressors(&self, through: Through, per_rad: f64) -> [Vec<f64>; 2] {
         let length = self.length;
         let mut values: Vec<Phasor> = match through {
-            Through::Encoder => self.innovations.angle_rad.iter().map(|&x| turned(per_rad * x)).collect(),
+            Through::Encoder => self
+                .innovations
+                .angle_rad
+                .iter()
+                .map(|&x| turned(per_rad * x))
+                .collect(),
             Through::Motor => {
                 // The mean over a servo period at constant speed; a torque of the motor is no load.
-                let spans = self.innovations.angle_rad.windows(2).map(|pair| 0.5 * per_rad * (pair[1] - pair[0]));
+                let spans = self
+                    .innovations
+                    .angle_rad
+                    .windows(2)
+                    .map(|pair| 0.5 * per_rad * (pair[1] - pair[0]));
                 let mean = |(middle, half): (f64, f64)| {
-                    let share = if half.abs() < 1e-4 { 1.0 } else { libm::sin(half) / half };
+                    let share = if half.abs() < 1e-4 {
+                        1.0
+                    } else {
+                        libm::sin(half) / half
+                    };
                     turned(per_rad * middle).map(|x| -share * x)
                 };
                 self.middles().zip(spans).map(mean).collect()
@@ -230,16 +314,28 @@ impl<'a> Weighed<'a> {
         values.resize(length, [0.0; 2]);
         transform(&mut values);
         let response = self.response(through);
-        values.iter_mut().zip(response).for_each(|(value, h)| *value = times(*value, *h));
+        values
+            .iter_mut()
+            .zip(response)
+            .for_each(|(value, h)| *value = times(*value, *h));
         transform_back(&mut values);
         let counts = &self.innovations.counts;
         // The response is real: real and imaginary part stay apart.
-        [0, 1].map(|part| values.iter().zip(counts).map(|(v, &counts)| if counts { v[part] } else { 0.0 }).collect())
+        [0, 1].map(|part| {
+            values
+                .iter()
+                .zip(counts)
+                .map(|(v, &counts)| if counts { v[part] } else { 0.0 })
+                .collect()
+        })
     }
 
     /// Angles in the middle of the servo periods.
     fn middles(&self) -> impl Iterator<Item = f64> + '_ {
-        self.innovations.angle_rad.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]))
+        self.innovations
+            .angle_rad
+            .windows(2)
+            .map(|pair| 0.5 * (pair[0] + pair[1]))
     }
 
     fn response(&self, through: Through) -> &[Phasor] {
@@ -255,26 +351,44 @@ impl<'a> Weighed<'a> {
     }
 
     fn innovations_transformed(&self) -> Vec<Phasor> {
-        let counted = self.innovations.error_rad.iter().zip(&self.innovations.counts);
-        let counted: Vec<f64> = counted.map(|(&error, &counts)| if counts { error } else { 0.0 }).collect();
+        let counted = self
+            .innovations
+            .error_rad
+            .iter()
+            .zip(&self.innovations.counts);
+        let counted: Vec<f64> = counted
+            .map(|(&error, &counts)| if counts { error } else { 0.0 })
+            .collect();
         self.transformed(&counted)
     }
 
     /// What the innovations say of a reading or torque at each sample.
     fn adjoint(&self, through: Through) -> Vec<f64> {
         let mut values = self.innovations_transformed();
-        for ((value, h), weight) in values.iter_mut().zip(self.response(through)).zip(&self.weights) {
+        for ((value, h), weight) in values
+            .iter_mut()
+            .zip(self.response(through))
+            .zip(&self.weights)
+        {
             *value = times(*value, conjugate(*h)).map(|x| x * weight);
         }
         transform_back(&mut values);
         values.iter().map(|value| value[0]).collect()
     }
 
-    /// How much is known of a wave of the motor, nearly: as if each servo period had the frequency of its speed for long.
+    /// How much is known of a wave of the motor, nearly: as if each servo period had the frequency
+    /// of its speed for long.
     fn information(&self, middles: &[f64]) -> impl Fn(f64) -> f64 {
         let load = self.response(Through::Motor);
-        let of: Vec<f64> = load.iter().zip(&self.weights).map(|(h, weight)| power(*h) * weight).collect();
-        let steps: Vec<f64> = middles.windows(2).map(|pair| (pair[1] - pair[0]) / TAU * of.len() as f64).collect();
+        let of: Vec<f64> = load
+            .iter()
+            .zip(&self.weights)
+            .map(|(h, weight)| power(*h) * weight)
+            .collect();
+        let steps: Vec<f64> = middles
+            .windows(2)
+            .map(|pair| (pair[1] - pair[0]) / TAU * of.len() as f64)
+            .collect();
         let length = of.len() as f64;
         move |per_rad: f64| {
             let at = |step: &f64| of[(step * per_rad).rem_euclid(length) as usize % of.len()];

@@ -1,17 +1,20 @@
 //! Which terms the law of an axis has, and where the last fit begins.
 //!
-//! Every axis begins with the four products, the delay of the record, and one of six drives. Each drive is fitted from several
-//! starts, and from the fits of drives that have less. The delay stays where it starts until the gains are near: far from the
-//! minimum the two trade places. It starts at zero, or at what the lag is more than the slowest position loop makes. Then each is
-//! fitted with friction that slides at once, with friction that slides after a deflection, and with a limit of the speed where the
-//! command is faster than the axis. The one is taken that makes held-out samples likeliest, less the cost of its terms (Schwarz),
-//! where as many samples as the residual is correlated over count as one.
+//! Every axis begins with the four products, the delay of the record, and one of six drives. Each
+//! drive is fitted from several starts, and from the fits of drives that have less. The delay stays
+//! where it starts until the gains are near: far from the minimum the two trade places. It starts
+//! at zero, or at what the lag is more than the slowest position loop makes. Then each is fitted
+//! with friction that slides at once, with friction that slides after a deflection, and with a
+//! limit of the speed where the command is faster than the axis. The one is taken that makes
+//! held-out samples likeliest, less the cost of its terms (Schwarz), where as many samples as the
+//! residual is correlated over count as one.
 //!
-//! Each further term is tried with one step of all numbers. Those that promise most are fitted. One is admitted that is above zero
-//! by its standard error, and makes held-out samples likelier by more than it costs (Schwarz).
+//! Each further term is tried with one step of all numbers. Those that promise most are fitted. One
+//! is admitted that is above zero by its standard error, and makes held-out samples likelier by
+//! more than it costs (Schwarz).
 //!
-//! Source: Schwarz (1978), Estimating the dimension of a model; forward selection as in Draper and Smith (1998), Applied Regression
-//! Analysis, chapter 15.
+//! Source: Schwarz (1978), Estimating the dimension of a model; forward selection as in Draper and
+//! Smith (1998), Applied Regression Analysis, chapter 15.
 
 use std::f64::consts::TAU;
 
@@ -32,10 +35,21 @@ pub(super) struct Admitted {
     pub(super) values: TermValues,
 }
 
-/// Terms that every axis has: where it is known how late the record is, what else is late is the drive.
+/// Terms that every axis has: where it is known how late the record is, what else is late is the
+/// drive.
 fn base(facts: &AxisFacts) -> Vec<LawTerm> {
-    let late = if facts.record_delay_s.is_some() { LawTerm::LoopDelay } else { LawTerm::RecordDelay };
-    let mut base = vec![LawTerm::LoopGain, LawTerm::Damping, LawTerm::Coulomb, LawTerm::Offset, late];
+    let late = if facts.record_delay_s.is_some() {
+        LawTerm::LoopDelay
+    } else {
+        LawTerm::RecordDelay
+    };
+    let mut base = vec![
+        LawTerm::LoopGain,
+        LawTerm::Damping,
+        LawTerm::Coulomb,
+        LawTerm::Offset,
+        late,
+    ];
     if facts.known(LawTerm::LoopDelay).is_some() && late != LawTerm::LoopDelay {
         base.push(LawTerm::LoopDelay);
     }
@@ -48,15 +62,24 @@ const DRIVES: [&[LawTerm]; 6] = [
     &[LawTerm::Integral],
     &[LawTerm::VelocityFeedforward],
     &[LawTerm::Integral, LawTerm::VelocityFeedforward],
-    &[LawTerm::VelocityFeedforward, LawTerm::AccelerationFeedforward],
-    &[LawTerm::Integral, LawTerm::VelocityFeedforward, LawTerm::AccelerationFeedforward],
+    &[
+        LawTerm::VelocityFeedforward,
+        LawTerm::AccelerationFeedforward,
+    ],
+    &[
+        LawTerm::Integral,
+        LawTerm::VelocityFeedforward,
+        LawTerm::AccelerationFeedforward,
+    ],
 ];
 
 /// Standard errors that a further term is above zero: one in a thousand that are zero is.
 const QUANTILE: f64 = 3.09;
-/// The same by which a further term makes held-out samples likelier: of those that are none, one in twenty is taken.
+/// The same by which a further term makes held-out samples likelier: of those that are none, one in
+/// twenty is taken.
 const LIKELIER: f64 = 1.645;
-/// Length of a block over which likelihoods are summed up, s: what is left is not correlated over more.
+/// Length of a block over which likelihoods are summed up, s: what is left is not correlated over
+/// more.
 const SUMMED_S: f64 = 0.25;
 /// Starts and terms that are followed up after a first look.
 const FOLLOWED_STARTS: usize = 2;
@@ -64,12 +87,14 @@ const FOLLOWED_TERMS: usize = 4;
 /// Steps of fits: of starts, and of terms.
 const START_STEPS: usize = 10;
 const TERM_STEPS: usize = 8;
-/// Steps of a fit of a drive, and the part of its squares that a step gains at least: a delay and the damping trade places slowly.
+/// Steps of a fit of a drive, and the part of its squares that a step gains at least: a delay and
+/// the damping trade places slowly.
 const DRIVE_STEPS: usize = 30;
 const DRIVE_DONE: f64 = 1e-5;
 const MOST_TERMS: usize = 8;
-/// Gains of loops that a fit begins with: of the speed loop over the inertia, of the position loop, 1/s, and 1 / Ti as a part of the first;
-/// the least friction; and feedforward of speed and acceleration.
+/// Gains of loops that a fit begins with: of the speed loop over the inertia, of the position loop,
+/// 1/s, and 1 / Ti as a part of the first; the least friction; and feedforward of speed and
+/// acceleration.
 const SPEED_GAINS_1_S: [f64; 4] = [30.0, 100.0, 300.0, 900.0];
 const POSITION_GAINS_1_S: [f64; 3] = [20.0, 60.0, 150.0];
 const INTEGRALS: [f64; 2] = [0.0, 0.25];
@@ -93,15 +118,28 @@ pub(super) fn admit(
     mut tell: impl FnMut(f64) -> bool,
 ) -> Option<Admitted> {
     let deviation_mm = record.following_mm(train);
-    let [train, valid] = [train, valid].map(|counts| OutputErrors { record, counts, deviation_mm, priors });
+    let [train, valid] = [train, valid].map(|counts| OutputErrors {
+        record,
+        counts,
+        deviation_mm,
+        priors,
+    });
     let (mut terms, mut at) = begin(record, [&train, &valid], facts);
     for round in 0..MOST_TERMS {
         if !tell((round + 1) as f64 / (MOST_TERMS + 1) as f64) {
             return None;
         }
         let train = train.scaled_by(&at);
-        let valid = OutputErrors { deviation_mm: train.deviation_mm, ..valid };
-        let Some(best) = best_term(candidates(record, facts, &terms, &at), [&train, &valid], &terms, &at) else {
+        let valid = OutputErrors {
+            deviation_mm: train.deviation_mm,
+            ..valid
+        };
+        let Some(best) = best_term(
+            candidates(record, facts, &terms, &at),
+            [&train, &valid],
+            &terms,
+            &at,
+        ) else {
             break;
         };
         terms.extend(best.terms);
@@ -111,16 +149,30 @@ pub(super) fn admit(
 }
 
 /// What a drive has beside that only all samples that are fitted tell, and not windows of them.
-pub(super) fn admit_more(errors: &OutputErrors<'_>, facts: &AxisFacts, admitted: Admitted) -> Admitted {
-    let Admitted { mut terms, values: mut at } = admitted;
+pub(super) fn admit_more(
+    errors: &OutputErrors<'_>,
+    facts: &AxisFacts,
+    admitted: Admitted,
+) -> Admitted {
+    let Admitted {
+        mut terms,
+        values: mut at,
+    } = admitted;
     for _ in 0..MOST_TERMS {
-        at = errors.scaled_by(&at).least(&at, &terms, START_STEPS, NEARLY_DONE).values;
+        at = errors
+            .scaled_by(&at)
+            .least(&at, &terms, START_STEPS, NEARLY_DONE)
+            .values;
         let errors = errors.scaled_by(&at);
         let of_drive = candidates(errors.record, facts, &terms, &at)
             .into_iter()
-            .filter(|candidate| OPTIONAL.contains(&candidate.terms[0]) || candidate.terms[0] == LawTerm::Backlash)
+            .filter(|candidate| {
+                OPTIONAL.contains(&candidate.terms[0]) || candidate.terms[0] == LawTerm::Backlash
+            })
             .collect();
-        let Some(best) = best_term(of_drive, [&errors, &errors], &terms, &at) else { break };
+        let Some(best) = best_term(of_drive, [&errors, &errors], &terms, &at) else {
+            break;
+        };
         terms.extend(best.terms);
         at = best.values;
     }
@@ -135,18 +187,28 @@ fn begin(
 ) -> (Vec<LawTerm>, TermValues) {
     let nothing = (base(facts), TermValues([0.0; TERMS]));
     let drives = drives(record, train, facts);
-    let Some(least) = drives.iter().min_by(|a, b| a.left_mm.total_cmp(&b.left_mm)) else { return nothing };
+    let Some(least) = drives.iter().min_by(|a, b| a.left_mm.total_cmp(&b.left_mm)) else {
+        return nothing;
+    };
     let train = train.weighed_by(&least.values);
-    let valid = OutputErrors { deviation_mm: train.deviation_mm, ..*valid };
-    let near = drives.iter().filter(|drive| drive.left_mm < FAR * least.left_mm);
-    let near: Vec<(Vec<LawTerm>, TermValues)> = near.flat_map(|drive| variants(record, drive)).collect();
+    let valid = OutputErrors {
+        deviation_mm: train.deviation_mm,
+        ..*valid
+    };
+    let near = drives
+        .iter()
+        .filter(|drive| drive.left_mm < FAR * least.left_mm);
+    let near: Vec<(Vec<LawTerm>, TermValues)> =
+        near.flat_map(|drive| variants(record, drive)).collect();
     let fits: Vec<(Vec<LawTerm>, TermValues, f64)> = map_in_parallel(near, |(terms, values)| {
         let values = train.least(&values, &terms, DRIVE_STEPS, DRIVE_DONE).values;
         (terms, values, square(&valid.residuals(&values)))
     });
     // In these units the least square is the number of samples that are independent.
     let independent = fits.iter().map(|fit| fit.2).fold(f64::INFINITY, f64::min);
-    let cost = |fit: &(Vec<LawTerm>, TermValues, f64)| fit.2 + fit.0.len() as f64 * libm::log(independent.max(1.0));
+    let cost = |fit: &(Vec<LawTerm>, TermValues, f64)| {
+        fit.2 + fit.0.len() as f64 * libm::log(independent.max(1.0))
+    };
     let likeliest = fits.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
     likeliest.map_or(nothing, |(terms, values, _)| (terms, values))
 }
@@ -160,45 +222,72 @@ struct FittedDrive {
     left_mm: f64,
 }
 
-/// Each drive that may be there, from its best starts and from the drives that have less. What an earlier record told stands but for the
-/// loops, which may be others.
-fn drives(record: &AxisRecord<'_>, train: &OutputErrors<'_>, facts: &AxisFacts) -> Vec<FittedDrive> {
-    let late = facts.record_delay_s.map_or_else(|| record.late_samples(train.counts), |_| 0);
+/// Each drive that may be there, from its best starts and from the drives that have less. What an
+/// earlier record told stands but for the loops, which may be others.
+fn drives(
+    record: &AxisRecord<'_>,
+    train: &OutputErrors<'_>,
+    facts: &AxisFacts,
+) -> Vec<FittedDrive> {
+    let late = facts
+        .record_delay_s
+        .map_or_else(|| record.late_samples(train.counts), |_| 0);
     let mut starts = starts(record, train.counts, late);
     if let Some(before) = facts.before {
         let loops = |at: TermValues| {
-            [LawTerm::LoopGain, LawTerm::Damping].into_iter().fold(before, |kept, term| kept.with(term, at.get(term)))
+            [LawTerm::LoopGain, LawTerm::Damping]
+                .into_iter()
+                .fold(before, |kept, term| kept.with(term, at.get(term)))
         };
-        starts = std::iter::once(before).chain(starts.into_iter().map(loops)).collect();
+        starts = std::iter::once(before)
+            .chain(starts.into_iter().map(loops))
+            .collect();
     }
     let ranked = |starts: Vec<TermValues>| {
-        let mut ranked: Vec<(f64, TermValues)> = train.all_rms_mm(&starts).into_iter().zip(starts).collect();
+        let mut ranked: Vec<(f64, TermValues)> =
+            train.all_rms_mm(&starts).into_iter().zip(starts).collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
         ranked
     };
     let begin = |at: TermValues| {
         let at = facts.start(at);
-        facts.record_delay_s.map_or(at.with(LawTerm::RecordDelay, late as f64 * record.sample_s), |_| at)
+        facts.record_delay_s.map_or(
+            at.with(LawTerm::RecordDelay, late as f64 * record.sample_s),
+            |_| at,
+        )
     };
     let starts = ranked(starts.into_iter().map(begin).collect());
     // A part that is known to be there is there, and one that is known to be zero is not.
     let may_be = |drive: &&[LawTerm]| {
-        let is = |term| facts.known(term).is_none_or(|known| drive.contains(&term) == (known.value != 0.0));
+        let is = |term| {
+            facts
+                .known(term)
+                .is_none_or(|known| drive.contains(&term) == (known.value != 0.0))
+        };
         OPTIONAL.into_iter().all(is)
     };
     let fit = |has: &'static [LawTerm]| {
-        let is_of = |at: &TermValues| OPTIONAL.into_iter().all(|term| has.contains(&term) || at.get(term) == 0.0);
-        let of_drive = starts.iter().filter(|(_, at)| facts.before.is_some() || is_of(at));
+        let is_of = |at: &TermValues| {
+            OPTIONAL
+                .into_iter()
+                .all(|term| has.contains(&term) || at.get(term) == 0.0)
+        };
+        let of_drive = starts
+            .iter()
+            .filter(|(_, at)| facts.before.is_some() || is_of(at));
         fit_drive(train, facts, has, &of_each_speed_gain(of_drive))
     };
     let fitted = map_in_parallel(DRIVES.into_iter().filter(may_be), fit);
     let mut fitted: Vec<FittedDrive> = fitted.into_iter().flatten().collect();
     for i in 0..fitted.len() {
         let has = fitted[i].has;
-        let less =
-            fitted.iter().filter(|less| less.has.len() < has.len() && less.has.iter().all(|term| has.contains(term)));
+        let less = fitted.iter().filter(|less| {
+            less.has.len() < has.len() && less.has.iter().all(|term| has.contains(term))
+        });
         let starts = ranked(less.map(|less| with_more(less, has)).collect());
-        if let Some(other) = fit_drive(train, facts, has, &starts).filter(|other| other.left_mm < fitted[i].left_mm) {
+        if let Some(other) =
+            fit_drive(train, facts, has, &starts).filter(|other| other.left_mm < fitted[i].left_mm)
+        {
             fitted[i] = other;
         }
     }
@@ -206,10 +295,15 @@ fn drives(record: &AxisRecord<'_>, train: &OutputErrors<'_>, facts: &AxisFacts) 
 }
 
 /// The best start with each gain of the speed loop: two that differ in it end in different minima.
-fn of_each_speed_gain<'a>(ranked: impl Iterator<Item = &'a (f64, TermValues)>) -> Vec<(f64, TermValues)> {
+fn of_each_speed_gain<'a>(
+    ranked: impl Iterator<Item = &'a (f64, TermValues)>,
+) -> Vec<(f64, TermValues)> {
     let mut best: Vec<(f64, TermValues)> = vec![];
     for (left_mm, at) in ranked {
-        if best.iter().all(|(_, other)| other.get(LawTerm::Damping) != at.get(LawTerm::Damping)) {
+        if best
+            .iter()
+            .all(|(_, other)| other.get(LawTerm::Damping) != at.get(LawTerm::Damping))
+        {
             best.push((*left_mm, *at));
         }
     }
@@ -225,40 +319,64 @@ fn fit_drive(
 ) -> Option<FittedDrive> {
     let terms: Vec<LawTerm> = base(facts).into_iter().chain(has.iter().copied()).collect();
     let is_delay = |term: &LawTerm| matches!(term, LawTerm::RecordDelay | LawTerm::LoopDelay);
-    let on_time: Vec<LawTerm> = terms.iter().copied().filter(|term| !is_delay(term)).collect();
-    let train = OutputErrors { deviation_mm: ranked.first()?.0.max(f64::MIN_POSITIVE), ..*train };
+    let on_time: Vec<LawTerm> = terms
+        .iter()
+        .copied()
+        .filter(|term| !is_delay(term))
+        .collect();
+    let train = OutputErrors {
+        deviation_mm: ranked.first()?.0.max(f64::MIN_POSITIVE),
+        ..*train
+    };
     let fitted = map_in_parallel(ranked.iter().take(FOLLOWED_STARTS), |(_, at)| {
         let values = train.least(at, &on_time, START_STEPS, NEARLY_DONE).values;
         (train.rms_mm(&values), values)
     });
     let (left_mm, values) = fitted.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(FittedDrive { has, terms, values, left_mm })
+    Some(FittedDrive {
+        has,
+        terms,
+        values,
+        left_mm,
+    })
 }
 
 /// A drive that was fitted with what another has beside: with the same lag at constant speed.
 fn with_more(less: &FittedDrive, has: &[LawTerm]) -> TermValues {
-    has.iter().filter(|term| !less.has.contains(term)).fold(less.values, |at, &term| match term {
-        LawTerm::Integral => at.with(term, INTEGRALS[1] * at.get(LawTerm::Damping)),
-        LawTerm::VelocityFeedforward => [LawTerm::LoopGain, LawTerm::Coulomb]
-            .into_iter()
-            .fold(at.with(term, FED), |at, term| at.with(term, (1.0 - FED) * at.get(term))),
-        _ => at.with(term, FED_ACCELERATION),
-    })
+    has.iter()
+        .filter(|term| !less.has.contains(term))
+        .fold(less.values, |at, &term| match term {
+            LawTerm::Integral => at.with(term, INTEGRALS[1] * at.get(LawTerm::Damping)),
+            LawTerm::VelocityFeedforward => [LawTerm::LoopGain, LawTerm::Coulomb]
+                .into_iter()
+                .fold(at.with(term, FED), |at, term| {
+                    at.with(term, (1.0 - FED) * at.get(term))
+                }),
+            _ => at.with(term, FED_ACCELERATION),
+        })
 }
 
 /// Feedforward that a drive begins with where one without it was fitted before.
 const FED: f64 = 0.9;
 const FED_ACCELERATION: f64 = 0.5;
 
-/// A drive as it is, with friction that slides after a deflection, and with a limit of the speed where the command is faster than the axis.
+/// A drive as it is, with friction that slides after a deflection, and with a limit of the speed
+/// where the command is faster than the axis.
 fn variants(
     record: &AxisRecord<'_>,
     FittedDrive { terms, values, .. }: &FittedDrive,
 ) -> Vec<(Vec<LawTerm>, TermValues)> {
     let fastest_mm_s = largest(&record.actual_speed_mm_s());
-    let with =
-        |term: LawTerm, value: f64| (terms.iter().copied().chain([term]).collect::<Vec<_>>(), values.with(term, value));
-    let mut variants = vec![(terms.clone(), *values), with(LawTerm::Presliding, PRESLIDING_MM)];
+    let with = |term: LawTerm, value: f64| {
+        (
+            terms.iter().copied().chain([term]).collect::<Vec<_>>(),
+            values.with(term, value),
+        )
+    };
+    let mut variants = vec![
+        (terms.clone(), *values),
+        with(LawTerm::Presliding, PRESLIDING_MM),
+    ];
     if largest(&record.command_speed_mm_s()) > FASTER * fastest_mm_s {
         variants.push(with(LawTerm::SpeedLimit, AT_LIMIT * fastest_mm_s));
     }
@@ -279,11 +397,14 @@ const PRESLIDING_MM: f64 = 0.005;
 /// Where a fit of a limit of the speed begins, part of the highest speed.
 const AT_LIMIT: f64 = 0.97;
 /// Terms that a drive may have.
-pub(super) const OPTIONAL: [LawTerm; 3] =
-    [LawTerm::Integral, LawTerm::VelocityFeedforward, LawTerm::AccelerationFeedforward];
+pub(super) const OPTIONAL: [LawTerm; 3] = [
+    LawTerm::Integral,
+    LawTerm::VelocityFeedforward,
+    LawTerm::AccelerationFeedforward,
+];
 
-/// Values before anything is known: gains on a grid, and with the lag that the following error has by the speed; friction by what it has by
-/// the direction. The record is so many samples late.
+/// Values before anything is known: gains on a grid, and with the lag that the following error has
+/// by the speed; friction by what it has by the direction. The record is so many samples late.
 fn starts(record: &AxisRecord<'_>, counts: &[bool], late: usize) -> Vec<TermValues> {
     let speed_mm_s = record.command_speed_mm_s();
     let (mut squares, mut products) = (Matrix3::zeros(), Vector3::zeros());
@@ -300,12 +421,22 @@ fn starts(record: &AxisRecord<'_>, counts: &[bool], late: usize) -> Vec<TermValu
     let mut starts = vec![];
     for damping in SPEED_GAINS_1_S {
         let of_lag = (lag_s > 1e-3).then(|| 1.0 / lag_s);
-        for kp_1_s in POSITION_GAINS_1_S.into_iter().chain(of_lag).filter(|kp_1_s| *kp_1_s < LOOPS_APART * damping) {
-            for (integral, [speed, acceleration]) in INTEGRALS.into_iter().flat_map(|i| FEEDFORWARDS.map(|f| (i, f))) {
+        for kp_1_s in POSITION_GAINS_1_S
+            .into_iter()
+            .chain(of_lag)
+            .filter(|kp_1_s| *kp_1_s < LOOPS_APART * damping)
+        {
+            for (integral, [speed, acceleration]) in INTEGRALS
+                .into_iter()
+                .flat_map(|i| FEEDFORWARDS.map(|f| (i, f)))
+            {
                 let start = TermValues([0.0; TERMS])
                     .with(LawTerm::LoopGain, kp_1_s * damping)
                     .with(LawTerm::Damping, damping)
-                    .with(LawTerm::Coulomb, (sign_mm * kp_1_s * damping).max(LEAST_COULOMB_MM_S2))
+                    .with(
+                        LawTerm::Coulomb,
+                        (sign_mm * kp_1_s * damping).max(LEAST_COULOMB_MM_S2),
+                    )
                     .with(LawTerm::StribeckSpeed, 2.0)
                     .with(LawTerm::VelocityFeedforward, speed)
                     .with(LawTerm::AccelerationFeedforward, acceleration)
@@ -325,7 +456,8 @@ struct FollowedTerm {
     gain: f64,
 }
 
-/// Of the terms that are above zero with certainty, the one that makes held-out samples likeliest; none where none makes them likelier.
+/// Of the terms that are above zero with certainty, the one that makes held-out samples likeliest;
+/// none where none makes them likelier.
 fn best_term(
     candidates: Vec<TermCandidate>,
     [train, valid]: [&OutputErrors<'_>; 2],
@@ -350,21 +482,37 @@ fn best_term(
         let values = train.least(&start, &all, TERM_STEPS, NEARLY_DONE).values;
         let [gain, error] = sum_and_error(&gains(valid, &before, &valid.residuals(&values)));
         let first = all.len() - candidate.terms.len();
-        let certainty = || values.get(candidate.terms[0]) / StandardErrors::of(train, &values, &all).errors[first];
+        let certainty = || {
+            values.get(candidate.terms[0]) / StandardErrors::of(train, &values, &all).errors[first]
+        };
         let gain = gain - candidate.terms.len() as f64 * libm::log(before.len() as f64);
-        (gain > LIKELIER * error && is_screw_or_none(&values, train.record.sample_s) && certainty() > QUANTILE)
-            .then_some(FollowedTerm { terms: candidate.terms, values, gain })
+        (gain > LIKELIER * error
+            && is_screw_or_none(&values, train.record.sample_s)
+            && certainty() > QUANTILE)
+            .then_some(FollowedTerm {
+                terms: candidate.terms,
+                values,
+                gain,
+            })
     });
-    followed.into_iter().flatten().max_by(|a, b| a.gain.total_cmp(&b.gain))
+    followed
+        .into_iter()
+        .flatten()
+        .max_by(|a, b| a.gain.total_cmp(&b.gain))
 }
 
 /// Gain in twice the log-likelihood from one set of residuals to another, for each block.
 fn gains(valid: &OutputErrors<'_>, before: &[f64], after: &[f64]) -> Vec<f64> {
     let samples = before.len() - valid.priors.len();
-    let block = ((SUMMED_S / valid.record.sample_s).ceil() as usize).clamp(1, samples.div_ceil(LEAST_BLOCKS).max(1));
+    let block = ((SUMMED_S / valid.record.sample_s).ceil() as usize)
+        .clamp(1, samples.div_ceil(LEAST_BLOCKS).max(1));
     let gain = |from: usize| {
         let to = (from + block).min(samples);
-        before[from..to].iter().zip(&after[from..to]).map(|(before, after)| before * before - after * after).sum()
+        before[from..to]
+            .iter()
+            .zip(&after[from..to])
+            .map(|(before, after)| before * before - after * after)
+            .sum()
     };
     (0..samples).step_by(block).map(gain).collect()
 }
@@ -372,7 +520,14 @@ fn gains(valid: &OutputErrors<'_>, before: &[f64], after: &[f64]) -> Vec<f64> {
 /// The sum of gains, and its standard error.
 fn sum_and_error(gains: &[f64]) -> [f64; 2] {
     let (n, sum) = (gains.len() as f64, gains.iter().sum::<f64>());
-    [sum, gains.iter().map(|gain| (gain - sum / n) * (gain - sum / n)).sum::<f64>().sqrt()]
+    [
+        sum,
+        gains
+            .iter()
+            .map(|gain| (gain - sum / n) * (gain - sum / n))
+            .sum::<f64>()
+            .sqrt(),
+    ]
 }
 
 /// Fewest blocks.
@@ -381,20 +536,28 @@ const LEAST_BLOCKS: usize = 10;
 const SLOWEST_FOR_RESONANCE_S: f64 = 0.005;
 /// Samples of a period that a swing shows in.
 const LEAST_OF_PERIOD: f64 = 5.0;
-/// Whether the screw is rigid, or compliant with a possible share of the table and a swing that shows in the samples.
+/// Whether the screw is rigid, or compliant with a possible share of the table and a swing that
+/// shows in the samples.
 pub(super) fn is_screw_or_none(values: &TermValues, sample_s: f64) -> bool {
     let period_s = TAU * values.get(LawTerm::Resonance);
     period_s == 0.0
-        || period_s >= LEAST_OF_PERIOD * sample_s && (SHARES[0]..SHARES[1]).contains(&values.get(LawTerm::TableShare))
+        || period_s >= LEAST_OF_PERIOD * sample_s
+            && (SHARES[0]..SHARES[1]).contains(&values.get(LawTerm::TableShare))
 }
 
-/// Parts of the inertia that a table behind a screw has: at an end of them a screw stands for something else.
+/// Parts of the inertia that a table behind a screw has: at an end of them a screw stands for
+/// something else.
 const SHARES: [f64; 2] = [0.08, 0.92];
 /// A start that leaves so many times more than the fit is lost.
 const LOST: f64 = 30.0;
 
 /// Terms that the law does not have yet.
-fn candidates(record: &AxisRecord<'_>, facts: &AxisFacts, terms: &[LawTerm], at: &TermValues) -> Vec<TermCandidate> {
+fn candidates(
+    record: &AxisRecord<'_>,
+    facts: &AxisFacts,
+    terms: &[LawTerm],
+    at: &TermValues,
+) -> Vec<TermCandidate> {
     let sample_s = record.sample_s;
     let speed_mm_s = record.actual_speed_mm_s();
     let acceleration_mm_s2 = largest(&record.slopes(&speed_mm_s, 3));
@@ -410,7 +573,10 @@ fn candidates(record: &AxisRecord<'_>, facts: &AxisFacts, terms: &[LawTerm], at:
         (LawTerm::Stribeck, &[0.3]),
         (LawTerm::SpeedLimit, &[AT_LIMIT * largest(&speed_mm_s)]),
         (LawTerm::AccelerationLimit, &[0.9 * acceleration_mm_s2]),
-        (LawTerm::Resonance, &[1.0 / (TAU * 40.0), 1.0 / (TAU * 90.0)]),
+        (
+            LawTerm::Resonance,
+            &[1.0 / (TAU * 40.0), 1.0 / (TAU * 90.0)],
+        ),
         (LawTerm::Backlash, &[0.003, 0.02]),
     ];
     let mut candidates = vec![];
@@ -418,9 +584,11 @@ fn candidates(record: &AxisRecord<'_>, facts: &AxisFacts, terms: &[LawTerm], at:
         // Without an integral the two parts of the damping are the same to the position.
         let is_told = match term {
             LawTerm::Viscous => terms.contains(&LawTerm::Integral) && at.get(term) == 0.0,
-            // Without velocity feedforward a command that follows the drive rings: no drive is tuned so.
+            // Without velocity feedforward a command that follows the drive rings: no drive is
+            // tuned so.
             LawTerm::AccelerationFeedforward => at.get(LawTerm::VelocityFeedforward) > 0.0,
-            // What swings faster than a fifth of the rate does not show, and what swings below 20 Hz is no screw of a machine tool.
+            // What swings faster than a fifth of the rate does not show, and what swings below 20
+            // Hz is no screw of a machine tool.
             LawTerm::Resonance => sample_s < SLOWEST_FOR_RESONANCE_S,
             // Backlash shows at the motor's encoder only where the screw is compliant.
             LawTerm::Backlash => terms.contains(&LawTerm::Resonance),
@@ -433,12 +601,18 @@ fn candidates(record: &AxisRecord<'_>, facts: &AxisFacts, terms: &[LawTerm], at:
             let start = at.with(term, *value);
             let (terms, start) = match term {
                 LawTerm::Stribeck => (vec![term, LawTerm::StribeckSpeed], start),
-                LawTerm::Resonance => (vec![term, LawTerm::TableShare], start.with(LawTerm::TableShare, 0.5)),
+                LawTerm::Resonance => (
+                    vec![term, LawTerm::TableShare],
+                    start.with(LawTerm::TableShare, 0.5),
+                ),
                 _ => (vec![term], start),
             };
             if term == LawTerm::Resonance {
                 let terms = terms.iter().copied().chain([LawTerm::Backlash]).collect();
-                candidates.push(TermCandidate { terms, start: start.with(LawTerm::Backlash, 0.005) });
+                candidates.push(TermCandidate {
+                    terms,
+                    start: start.with(LawTerm::Backlash, 0.005),
+                });
             }
             candidates.push(TermCandidate { terms, start });
         }
@@ -455,11 +629,20 @@ mod tests {
         let command_mm: Vec<f64> = (0..200).map(|k| libm::sin(0.05 * f64::from(k))).collect();
         let stretches = std::slice::from_ref(&(0..200));
         let (actual_mm, sample_s) = (&command_mm[..], 0.001);
-        let record = AxisRecord { name: "x", stretches, command_mm: &command_mm, actual_mm, sample_s, step_mm: 1e-6 };
+        let record = AxisRecord {
+            name: "x",
+            stretches,
+            command_mm: &command_mm,
+            actual_mm,
+            sample_s,
+            step_mm: 1e-6,
+        };
         let is_offered = |speed: f64| {
             let at = TermValues([0.0; TERMS]).with(LawTerm::VelocityFeedforward, speed);
             let offered = candidates(&record, &AxisFacts::default(), &[], &at);
-            offered.iter().any(|candidate| candidate.terms[0] == LawTerm::AccelerationFeedforward)
+            offered
+                .iter()
+                .any(|candidate| candidate.terms[0] == LawTerm::AccelerationFeedforward)
         };
         assert_eq!([0.0, 0.9].map(is_offered), [false, true]);
     }

@@ -16,14 +16,14 @@ pub struct AxisFacts {
     pub lead_mm_per_rev: Option<f64>,
     /// Torque, N m at the shaft, or force, N of a linear axis, for a unit of the torque column.
     pub torque_gain: Option<f64>,
-    /// Time over which the drive takes the speed from positions, s, of a drive that closes its loops once a servo period and records
-    /// itself.
+    /// Time over which the drive takes the speed from positions, s, of a drive that closes its
+    /// loops once a servo period and records itself.
     pub speed_window_s: Option<f64>,
-    /// By how much the record has the actual position later than the command, s: zero where both were taken at the same moment. What else is
-    /// late is then the drive.
+    /// By how much the record has the actual position later than the command, s: zero where both
+    /// were taken at the same moment. What else is late is then the drive.
     pub record_delay_s: Option<f64>,
-    /// Delay from the control to a position loop in the drive, s. Without it, the delay is looked for where [`Self::record_delay_s`] is
-    /// given; the log alone does not tell the two apart.
+    /// Delay from the control to a position loop in the drive, s. Without it, the delay is looked
+    /// for where [`Self::record_delay_s`] is given; the log alone does not tell the two apart.
     pub command_delay_s: Option<f64>,
     /// Position gain, 1/s.
     pub kp_1_s: Option<KnownValue>,
@@ -63,20 +63,30 @@ impl AxisFacts {
         {
             at = at.with(LawTerm::Viscous, viscous_1_s);
         }
-        for term in
-            [LawTerm::Integral, LawTerm::VelocityFeedforward, LawTerm::AccelerationFeedforward, LawTerm::LoopDelay]
-        {
-            at = self.known(term).map_or(at, |known| at.with(term, known.value));
+        for term in [
+            LawTerm::Integral,
+            LawTerm::VelocityFeedforward,
+            LawTerm::AccelerationFeedforward,
+            LawTerm::LoopDelay,
+        ] {
+            at = self
+                .known(term)
+                .map_or(at, |known| at.with(term, known.value));
         }
-        at = self.kp_1_s.map_or(at, |kp| at.with(LawTerm::LoopGain, kp.value * at.speed_gain_1_s()));
-        at = self.command_delay_s.map_or(at, |delay_s| at.with(LawTerm::CommandDelay, delay_s));
+        at = self.kp_1_s.map_or(at, |kp| {
+            at.with(LawTerm::LoopGain, kp.value * at.speed_gain_1_s())
+        });
+        at = self
+            .command_delay_s
+            .map_or(at, |delay_s| at.with(LawTerm::CommandDelay, delay_s));
         at.with(LawTerm::RecordDelay, self.record_delay_s.unwrap_or(0.0))
     }
 
     /// What nobody said is that of an axis of a machine file with this servo period.
     #[must_use]
     pub fn or_of(self, axis: &Axis, servo_s: f64) -> Self {
-        let is_same_unit = self.lead_mm_per_rev.is_some() || (self.inertia.is_none() && self.viscous.is_none());
+        let is_same_unit =
+            self.lead_mm_per_rev.is_some() || (self.inertia.is_none() && self.viscous.is_none());
         let kept = |given: Option<f64>, axis: f64| given.or_else(|| is_same_unit.then_some(axis));
         Self {
             inertia: kept(self.inertia, axis.inertia_kg_m2),

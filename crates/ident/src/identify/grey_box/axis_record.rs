@@ -21,11 +21,13 @@ pub struct AxisRecord<'a> {
     pub step_mm: f64,
 }
 
-/// Samples to each side that a speed is taken over, and an acceleration: the mean of a few keeps steps of the command out.
+/// Samples to each side that a speed is taken over, and an acceleration: the mean of a few keeps
+/// steps of the command out.
 const SPEED_REACH: usize = 3;
 const ACCELERATION_REACH: usize = 6;
 
-/// Latest record that is looked for, s: a recorder on a network is late by tenths. A record that is later hardly follows its command.
+/// Latest record that is looked for, s: a recorder on a network is late by tenths. A record that is
+/// later hardly follows its command.
 pub(super) const LATEST_S: f64 = 1.0;
 /// Lag of the slowest position loops, s: they have gains from 10 1/s on.
 const SLOWEST_LOOP_S: f64 = 0.1;
@@ -47,7 +49,10 @@ impl AxisRecord<'_> {
 
     /// Acceleration of the command at each sample, mm/s2.
     pub(super) fn command_acceleration_mm_s2(&self) -> Vec<f64> {
-        self.slopes(&self.slopes(self.command_mm, ACCELERATION_REACH), ACCELERATION_REACH)
+        self.slopes(
+            &self.slopes(self.command_mm, ACCELERATION_REACH),
+            ACCELERATION_REACH,
+        )
     }
 
     /// Slopes of a sequence by differences over a reach to both sides, within its stretch.
@@ -55,7 +60,10 @@ impl AxisRecord<'_> {
         let mut slopes = vec![0.0; values.len()];
         for stretch in self.stretches {
             for k in stretch.clone() {
-                let (from, to) = (k.saturating_sub(reach).max(stretch.start), (k + reach).min(stretch.end - 1));
+                let (from, to) = (
+                    k.saturating_sub(reach).max(stretch.start),
+                    (k + reach).min(stretch.end - 1),
+                );
                 if to > from {
                     slopes[k] = (values[to] - values[from]) / ((to - from) as f64 * self.sample_s);
                 }
@@ -81,29 +89,44 @@ impl AxisRecord<'_> {
         [mean - slope * middle, slope / self.sample_s]
     }
 
-    /// Samples by which actual positions are later than the slowest position loop makes them: the rest of the lag that has the least
-    /// squares over samples that count.
+    /// Samples by which actual positions are later than the slowest position loop makes them: the
+    /// rest of the lag that has the least squares over samples that count.
     pub(super) fn late_samples(&self, counts: &[bool]) -> usize {
-        let longest = self.stretches.iter().map(ExactSizeIterator::len).max().unwrap_or(0);
+        let longest = self
+            .stretches
+            .iter()
+            .map(ExactSizeIterator::len)
+            .max()
+            .unwrap_or(0);
         let most = ((LATEST_S / self.sample_s) as usize).min(longest / 2);
         let compared = |k: &usize| {
-            counts[*k] && self.stretches.iter().any(|stretch| stretch.contains(k) && k - most >= stretch.start)
+            counts[*k]
+                && self
+                    .stretches
+                    .iter()
+                    .any(|stretch| stretch.contains(k) && k - most >= stretch.start)
         };
         let samples: Vec<usize> = (most..self.actual_mm.len()).filter(compared).collect();
         let apart = samples.len().div_ceil(COMPARED).max(1);
         let square_mm2 = |lag: usize| -> f64 {
-            let errors = samples.iter().step_by(apart).map(|&k| self.actual_mm[k] - self.command_mm[k - lag]);
+            let errors = samples
+                .iter()
+                .step_by(apart)
+                .map(|&k| self.actual_mm[k] - self.command_mm[k - lag]);
             errors.map(|error| error * error).sum()
         };
         let squares_mm2: Vec<f64> = (0..=most).map(square_mm2).collect();
         let least_mm2 = squares_mm2.iter().copied().fold(f64::INFINITY, f64::min);
         // A motion that comes again is as near a period later.
-        let lag = squares_mm2.iter().position(|square_mm2| *square_mm2 <= NEARLY * least_mm2).unwrap_or(0);
+        let lag = squares_mm2
+            .iter()
+            .position(|square_mm2| *square_mm2 <= NEARLY * least_mm2)
+            .unwrap_or(0);
         lag.saturating_sub((SLOWEST_LOOP_S / self.sample_s).ceil() as usize)
     }
 
-    /// Samples at the beginning of a stretch that depend on commands before it, beside the time in which an axis settles: none but in a
-    /// late record.
+    /// Samples at the beginning of a stretch that depend on commands before it, beside the time in
+    /// which an axis settles: none but in a late record.
     pub(super) fn without_command(&self, counts: &[bool]) -> usize {
         match self.late_samples(counts) {
             0 => 0,
@@ -113,7 +136,9 @@ impl AxisRecord<'_> {
 
     /// RMS of the following error over samples that count, mm.
     pub(super) fn following_mm(&self, counts: &[bool]) -> f64 {
-        rms((0..counts.len()).filter(|&k| counts[k]).map(|k| self.command_mm[k] - self.actual_mm[k]))
+        rms((0..counts.len())
+            .filter(|&k| counts[k])
+            .map(|k| self.command_mm[k] - self.actual_mm[k]))
     }
 }
 

@@ -1,14 +1,15 @@
 //! Free runs of an axis: what its law makes of the commands alone, from a state.
 //!
-//! The law is that of [`feedwright_control::axis`], with the numbers of [`super::terms`]. A sample of the record is a whole number of
-//! servo periods, a servo period [`MECHANICS_PER_SERVO`] mechanics periods. Delays and the window of the speed are fractions of these, by
-//! linear interpolation, so that they can be fitted.
+//! The law is that of [`feedwright_control::axis`], with the numbers of [`super::terms`]. A sample
+//! of the record is a whole number of servo periods, a servo period [`MECHANICS_PER_SERVO`]
+//! mechanics periods. Delays and the window of the speed are fractions of these, by linear
+//! interpolation, so that they can be fitted.
 
 use std::array::from_fn;
 
 use feedwright_control::{
-    AxisLaw, AxisState, DriveLaw, DriveReference, DriveState, FrictionLaw, Periods, TransmissionLaw,
-    TransmissionParameters,
+    AxisLaw, AxisState, DriveLaw, DriveReference, DriveState, FrictionLaw, Periods,
+    TransmissionLaw, TransmissionParameters,
 };
 use feedwright_sim::Transmission;
 
@@ -16,7 +17,8 @@ use super::terms::{LawTerm, TermValues};
 
 /// Mechanics periods in a servo period: as tnv40's.
 pub(super) const MECHANICS_PER_SERVO: u32 = 10;
-/// Longest servo period that a machine is taken to have, s: a record with fewer samples is one of several servo periods a sample.
+/// Longest servo period that a machine is taken to have, s: a record with fewer samples is one of
+/// several servo periods a sample.
 const LONGEST_SERVO_S: f64 = 0.0041;
 
 /// Periods of the loops of a machine whose record has such samples.
@@ -25,7 +27,14 @@ pub(super) fn periods(sample_s: f64) -> (Periods, usize) {
     let servo_per_sample = (sample_s / LONGEST_SERVO_S).ceil().clamp(1.0, 1000.0);
     let servo_s = sample_s / servo_per_sample;
     let mechanics_s = servo_s / f64::from(MECHANICS_PER_SERVO);
-    (Periods { servo_s, mechanics_s, mechanics_per_servo: MECHANICS_PER_SERVO }, servo_per_sample as usize)
+    (
+        Periods {
+            servo_s,
+            mechanics_s,
+            mechanics_per_servo: MECHANICS_PER_SERVO,
+        },
+        servo_per_sample as usize,
+    )
 }
 
 /// Commands of an even stretch of a record, mm.
@@ -67,7 +76,9 @@ impl<T: Copy> Recent<T> {
     /// With room for so many before the newest.
     fn new(before: usize, value: impl Fn(usize) -> T) -> Self {
         let length = (before + 1).next_power_of_two();
-        let values = (0..length).map(|age| value((length - age) % length)).collect();
+        let values = (0..length)
+            .map(|age| value((length - age) % length))
+            .collect();
         Self { values, newest: 0 }
     }
 
@@ -97,7 +108,8 @@ pub(super) struct AxisRun {
     late_samples: f64,
     /// Delay within the loop, mechanics periods.
     loop_late: f64,
-    /// Ages of the two references that act in each mechanics period of a servo period, and the part of the older.
+    /// Ages of the two references that act in each mechanics period of a servo period, and the part
+    /// of the older.
     arrive: [[usize; 2]; MECHANICS_PER_SERVO as usize],
     loop_part: f64,
     /// Window of the speed, mechanics periods; none is the speed itself.
@@ -135,8 +147,13 @@ impl RunState {
     /// Speed of the mass as a whole, which a torque accelerates, and of the part that slides, mm/s.
     pub(super) fn of_whole_and_sliding_mm_s(&self, table_share: Option<f64>) -> [f64; 2] {
         let motor_mm_s = self.axis.speed_rad_s;
-        let Some(share) = table_share else { return [motor_mm_s; 2] };
-        [motor_mm_s + share * (self.table[1] - motor_mm_s), self.table[1]]
+        let Some(share) = table_share else {
+            return [motor_mm_s; 2];
+        };
+        [
+            motor_mm_s + share * (self.table[1] - motor_mm_s),
+            self.table[1],
+        ]
     }
 
     /// Friction of the presliding spring, mm/s2.
@@ -147,7 +164,10 @@ impl RunState {
     /// What an observer finds position, speed and load to be higher.
     pub(super) fn correct(&mut self, [mm, mm_s, mm_s2]: [f64; 3]) {
         self.axis.angle_rad += mm;
-        self.course.values.iter_mut().for_each(|position| *position += mm);
+        self.course
+            .values
+            .iter_mut()
+            .for_each(|position| *position += mm);
         self.axis.speed_rad_s += mm_s;
         self.table[0] += mm;
         self.table[1] += mm_s;
@@ -170,7 +190,9 @@ impl AxisRun {
             servo_per_sample,
             late_samples: values.commands_late_s() / sample_s,
             loop_late,
-            arrive: from_fn(|substep| [0.0, 1.0].map(|more| age(loop_late.floor() + more - substep as f64))),
+            arrive: from_fn(|substep| {
+                [0.0, 1.0].map(|more| age(loop_late.floor() + more - substep as f64))
+            }),
             loop_part: loop_late.fract(),
             window: (window > 1.0).then_some(window),
             screw: screw_law(values, periods.mechanics_s),
@@ -179,23 +201,51 @@ impl AxisRun {
     }
 
     /// Moving evenly at a sample: the integral carries the friction.
-    pub(super) fn state(&self, commands: &Commands<'_>, sample: usize, mm: f64, mm_s: f64) -> RunState {
-        let Periods { servo_s, mechanics_s, mechanics_per_servo } = self.law.periods;
+    pub(super) fn state(
+        &self,
+        commands: &Commands<'_>,
+        sample: usize,
+        mm: f64,
+        mm_s: f64,
+    ) -> RunState {
+        let Periods {
+            servo_s,
+            mechanics_s,
+            mechanics_per_servo,
+        } = self.law.periods;
         let per_servo = mechanics_per_servo as usize;
-        let sign = if mm_s.abs() > self.law.parameters.coulomb_smoothing_rad_s { mm_s.signum() } else { 0.0 };
-        let sliding = sign * self.values.get(LawTerm::Coulomb) + sign.abs() * self.values.get(LawTerm::Offset);
+        let sign = if mm_s.abs() > self.law.parameters.coulomb_smoothing_rad_s {
+            mm_s.signum()
+        } else {
+            0.0
+        };
+        let sliding = sign * self.values.get(LawTerm::Coulomb)
+            + sign.abs() * self.values.get(LawTerm::Offset);
         let carried = sliding + self.values.get(LawTerm::Viscous) * mm_s;
-        let mut axis = AxisState { angle_rad: mm, speed_rad_s: mm_s, error_rad: 0.0 };
+        let mut axis = AxisState {
+            angle_rad: mm,
+            speed_rad_s: mm_s,
+            error_rad: 0.0,
+        };
         let mut drive = DriveState::AT_REST;
         // What the commands before were, it remembers.
         let mut reference = DriveReference::default();
         for servo_periods in [3.0, 2.0, 1.0] {
             let at = sample as f64 - servo_periods / self.servo_per_sample as f64;
             let position_mm = mm - servo_periods * servo_s * mm_s;
-            reference =
-                self.drive.position_loop(&self.law, self.command_mm(commands, at), position_mm, &mut axis, &mut drive);
+            reference = self.drive.position_loop(
+                &self.law,
+                self.command_mm(commands, at),
+                position_mm,
+                &mut axis,
+                &mut drive,
+            );
         }
-        let integral = if self.values.get(LawTerm::Integral) > 0.0 { carried } else { 0.0 };
+        let integral = if self.values.get(LawTerm::Integral) > 0.0 {
+            carried
+        } else {
+            0.0
+        };
         drive.correct(integral, carried);
         let longest = self.window.unwrap_or(0.0).ceil() as usize + 1;
         let sent = self.loop_late.ceil() as usize / per_servo + 2;
@@ -211,12 +261,17 @@ impl AxisRun {
         }
     }
 
-    /// By how much the motor leads the table while it moves evenly: half the backlash, and what friction twists the screw by.
+    /// By how much the motor leads the table while it moves evenly: half the backlash, and what
+    /// friction twists the screw by.
     fn leads_mm(&self, sign: f64) -> f64 {
         let twist_s = self.values.get(LawTerm::Resonance);
         let share = self.values.get(LawTerm::TableShare).max(f64::MIN_POSITIVE);
         let twisted = self.values.get(LawTerm::Coulomb) / share * twist_s * twist_s;
-        if self.screw.is_some() { sign * (0.5 * self.values.get(LawTerm::Backlash) + twisted) } else { 0.0 }
+        if self.screw.is_some() {
+            sign * (0.5 * self.values.get(LawTerm::Backlash) + twisted)
+        } else {
+            0.0
+        }
     }
 
     #[inline]
@@ -226,7 +281,9 @@ impl AxisRun {
 
     /// Part of the mass that is behind a compliant screw.
     pub(super) fn table_share(&self) -> Option<f64> {
-        self.screw.as_ref().map(|_| self.values.get(LawTerm::TableShare))
+        self.screw
+            .as_ref()
+            .map(|_| self.values.get(LawTerm::TableShare))
     }
 
     /// One sample of the record goes by.
@@ -235,7 +292,8 @@ impl AxisRun {
         Self::step_abreast(&[self], commands, sample, std::array::from_mut(state));
     }
 
-    /// The same for several runs. They take turns: while one waits for its friction, the processor works on the others.
+    /// The same for several runs. They take turns: while one waits for its friction, the processor
+    /// works on the others.
     #[inline]
     pub(super) fn step_abreast<const L: usize>(
         runs: &[&Self; L],
@@ -244,7 +302,10 @@ impl AxisRun {
         states: &mut [RunState; L],
     ) {
         let [first, ..] = &runs[..] else { return };
-        let (servo_per_sample, substeps) = (first.servo_per_sample, first.law.periods.mechanics_per_servo);
+        let (servo_per_sample, substeps) = (
+            first.servo_per_sample,
+            first.law.periods.mechanics_per_servo,
+        );
         for servo in 0..servo_per_sample {
             let at = sample as f64 + servo as f64 / servo_per_sample as f64;
             for (run, state) in runs.iter().zip(&mut *states) {
@@ -253,11 +314,21 @@ impl AxisRun {
             for substep in 0..substeps {
                 let (mut forces, mut inverse, mut speeds) = ([0.0; L], [1.0; L], [0.0; L]);
                 for (i, (run, state)) in runs.iter().zip(&mut *states).enumerate() {
-                    run.push(substep as usize, state, [&mut forces[i], &mut inverse[i], &mut speeds[i]]);
+                    run.push(
+                        substep as usize,
+                        state,
+                        [&mut forces[i], &mut inverse[i], &mut speeds[i]],
+                    );
                 }
                 let mut presliding: [f64; L] = from_fn(|i| states[i].presliding);
                 let frictions = runs.map(|run| &run.friction);
-                let after = FrictionLaw::speeds_after_rad_s(&frictions, forces, inverse, speeds, &mut presliding);
+                let after = FrictionLaw::speeds_after_rad_s(
+                    &frictions,
+                    forces,
+                    inverse,
+                    speeds,
+                    &mut presliding,
+                );
                 for (i, (run, state)) in runs.iter().zip(&mut *states).enumerate() {
                     state.presliding = presliding[i];
                     run.advance(after[i], state);
@@ -270,11 +341,18 @@ impl AxisRun {
     #[inline]
     fn refer(&self, command_mm: f64, state: &mut RunState) {
         let position_mm = state.axis.angle_rad;
-        let reference = self.drive.position_loop(&self.law, command_mm, position_mm, &mut state.axis, &mut state.drive);
+        let reference = self.drive.position_loop(
+            &self.law,
+            command_mm,
+            position_mm,
+            &mut state.axis,
+            &mut state.drive,
+        );
         state.sent.push(reference);
     }
 
-    /// The reference that has arrived within a servo period, between two of them where the delay ends within a mechanics period.
+    /// The reference that has arrived within a servo period, between two of them where the delay
+    /// ends within a mechanics period.
     #[inline]
     fn arrived(&self, substep: usize, state: &RunState) -> DriveReference {
         if self.loop_late <= 0.0 {
@@ -288,7 +366,8 @@ impl AxisRun {
         }
     }
 
-    /// What pushes a mass before there is friction, one over the mass, and its speed: the table, and the motor where the screw is rigid.
+    /// What pushes a mass before there is friction, one over the mass, and its speed: the table,
+    /// and the motor where the screw is rigid.
     #[inline]
     fn push(&self, substep: usize, state: &mut RunState, [forces, inverse, speed]: [&mut f64; 3]) {
         let reference = self.arrived(substep, state);
@@ -305,14 +384,23 @@ impl AxisRun {
         if !self.holds || substep == 0 {
             state.taken_mm_s = taken_mm_s;
         }
-        let drive = self.drive.torque_nm(&self.law, reference, state.taken_mm_s, &mut state.drive);
+        let drive = self
+            .drive
+            .torque_nm(&self.law, reference, state.taken_mm_s, &mut state.drive);
         match &self.screw {
             None => (*forces, *speed) = (drive - state.load, state.axis.speed_rad_s),
             Some(screw) => {
                 let [table_mm, table_mm_s] = state.table;
-                let through = screw.torque_nm(state.axis.angle_rad - table_mm, state.axis.speed_rad_s - table_mm_s);
+                let through = screw.torque_nm(
+                    state.axis.angle_rad - table_mm,
+                    state.axis.speed_rad_s - table_mm_s,
+                );
                 state.axis.speed_rad_s += dt_s * screw.inverse_motor_inertia * (drive - through);
-                (*forces, *inverse, *speed) = (through - state.load, screw.inverse_table_inertia, table_mm_s);
+                (*forces, *inverse, *speed) = (
+                    through - state.load,
+                    screw.inverse_table_inertia,
+                    table_mm_s,
+                );
             }
         }
     }
@@ -335,10 +423,19 @@ impl AxisRun {
 
 /// The screw of an axis of inertia 1, whose motor turns by 1 for a mm.
 fn screw_law(values: &TermValues, mechanics_s: f64) -> Option<TransmissionLaw> {
-    let Transmission { table_share, resonance_hz, damping_ratio, backlash_um, .. } =
-        values.transmission(mechanics_s)?;
+    let Transmission {
+        table_share,
+        resonance_hz,
+        damping_ratio,
+        backlash_um,
+        ..
+    } = values.transmission(mechanics_s)?;
     let resonance_rad_s = std::f64::consts::TAU * resonance_hz;
-    let screw =
-        TransmissionParameters { table_share, resonance_rad_s, damping_ratio, backlash_rad: 1e-3 * backlash_um };
+    let screw = TransmissionParameters {
+        table_share,
+        resonance_rad_s,
+        damping_ratio,
+        backlash_rad: 1e-3 * backlash_um,
+    };
     TransmissionLaw::new(1.0, mechanics_s, screw)
 }

@@ -4,18 +4,20 @@
 //! S(0) - S(n) > ln N + 6       S the squares of fits with commands n servo periods late, in units in which N = S(0)
 //! ```
 //!
-//! One bus serves all axes: S is the sum over them, and n the same for all. n is the number with the least S, as far as S falls with each
-//! servo period more. It counts as one number more (Schwarz), and is taken where the evidence for it is strong (Kass and Raftery).
+//! One bus serves all axes: S is the sum over them, and n the same for all. n is the number with
+//! the least S, as far as S falls with each servo period more. It counts as one number more
+//! (Schwarz), and is taken where the evidence for it is strong (Kass and Raftery).
 //!
-//! To first order a command delay shows as what else lags at a constant speed: less feedforward, or more damping. A fit with n begins where
-//! the one with n - 1 ended, with one of these and the delay of the drive changed so that the lag stays:
+//! To first order a command delay shows as what else lags at a constant speed: less feedforward, or
+//! more damping. A fit with n begins where the one with n - 1 ended, with one of these and the
+//! delay of the drive changed so that the lag stays:
 //!
 //! ```text
 //! lag = (D - f Kv/J) J / (Kp Kv) + n Ts       f + Kp Ts, or D - Kp Kv/J Ts, for a servo period more;   D = (Kv + B) / J
 //! ```
 //!
-//! Source: Schwarz (1978), Estimating the dimension of a model; Kass and Raftery (1995), Bayes factors, Journal of the American
-//! Statistical Association 90.
+//! Source: Schwarz (1978), Estimating the dimension of a model; Kass and Raftery (1995), Bayes
+//! factors, Journal of the American Statistical Association 90.
 
 use super::axis_facts::AxisFacts;
 use super::axis_record::AxisRecord;
@@ -37,11 +39,17 @@ const STEPS: usize = 30;
 /// Part of the damping that a start leaves at least.
 const LEAST_DAMPING: f64 = 0.3;
 
-/// What is known of the axes, with the delay that their records show; none where they show none. Where the record may be late, or a drive
-/// recorded itself, nothing is looked for.
-pub(super) fn shown(records: &[AxisRecord<'_>], axes: &[FoundAxis], fit: &[bool]) -> Option<Vec<AxisFacts>> {
+/// What is known of the axes, with the delay that their records show; none where they show none.
+/// Where the record may be late, or a drive recorded itself, nothing is looked for.
+pub(super) fn shown(
+    records: &[AxisRecord<'_>],
+    axes: &[FoundAxis],
+    fit: &[bool],
+) -> Option<Vec<AxisFacts>> {
     let is_open = |facts: &AxisFacts| {
-        facts.record_delay_s.is_some() && facts.command_delay_s.is_none() && facts.speed_window_s.is_none()
+        facts.record_delay_s.is_some()
+            && facts.command_delay_s.is_none()
+            && facts.speed_window_s.is_none()
     };
     let servo_s = periods(records.first()?.sample_s).0.servo_s;
     if !axes.iter().all(|axis| is_open(&axis.facts)) {
@@ -53,17 +61,27 @@ pub(super) fn shown(records: &[AxisRecord<'_>], axes: &[FoundAxis], fit: &[bool]
         .zip(&priors)
         .zip(axes)
         .map(|((record, priors), axis)| {
-            OutputErrors { record, counts: fit, deviation_mm: 1.0, priors }.weighed_by(&axis.values)
+            OutputErrors {
+                record,
+                counts: fit,
+                deviation_mm: 1.0,
+                priors,
+            }
+            .weighed_by(&axis.values)
         })
         .collect();
-    let squares = errors.iter().zip(axes).map(|(errors, axis)| square(&errors.residuals(&axis.values)));
+    let squares = errors
+        .iter()
+        .zip(axes)
+        .map(|(errors, axis)| square(&errors.residuals(&axis.values)));
     let without: f64 = squares.sum();
     let mut best: Vec<TermValues> = axes.iter().map(|axis| axis.values).collect();
     let mut least = without;
     for _ in 0..MOST_PERIODS {
         let later = errors.iter().zip(axes).zip(&best);
-        let fits: Vec<Fitted> =
-            later.map(|((errors, axis), best)| one_period_later(errors, best, &axis.terms, servo_s)).collect();
+        let fits: Vec<Fitted> = later
+            .map(|((errors, axis), best)| one_period_later(errors, best, &axis.terms, servo_s))
+            .collect();
         let sum: f64 = fits.iter().map(|fit| fit.cost).sum();
         if sum.is_nan() || sum >= least {
             break;
@@ -74,40 +92,69 @@ pub(super) fn shown(records: &[AxisRecord<'_>], axes: &[FoundAxis], fit: &[bool]
         command_delay_s: Some(values.get(LawTerm::CommandDelay)),
         ..axis.facts
     };
-    (without - least > libm::log(without.max(1.0)) + STRONG).then(|| axes.iter().zip(&best).map(delayed).collect())
+    (without - least > libm::log(without.max(1.0)) + STRONG)
+        .then(|| axes.iter().zip(&best).map(delayed).collect())
 }
 
 /// The delay of an axis whose commands are as late as is looked for.
 pub(super) fn at_bound(axis: &FoundAxis, sample_s: f64) -> Option<SearchBound> {
-    let (term, bound) = (LawTerm::CommandDelay, f64::from(MOST_PERIODS) * periods(sample_s).0.servo_s);
+    let (term, bound) = (
+        LawTerm::CommandDelay,
+        f64::from(MOST_PERIODS) * periods(sample_s).0.servo_s,
+    );
     let value = axis.values.get(term);
     (value > 0.999 * bound).then_some(SearchBound { term, value, bound })
 }
 
 /// The fit with commands one servo period later.
-fn one_period_later(errors: &OutputErrors<'_>, before: &TermValues, terms: &[LawTerm], servo_s: f64) -> Fitted {
+fn one_period_later(
+    errors: &OutputErrors<'_>,
+    before: &TermValues,
+    terms: &[LawTerm],
+    servo_s: f64,
+) -> Fitted {
     let starts = starts(before, terms, servo_s);
-    let mut starts: Vec<(f64, TermValues)> = errors.all_rms_mm(&starts).into_iter().zip(starts).collect();
+    let mut starts: Vec<(f64, TermValues)> =
+        errors.all_rms_mm(&starts).into_iter().zip(starts).collect();
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let fits =
-        starts.iter().take(FOLLOWED_STARTS).map(|(_, start)| errors.least(start, terms, START_STEPS, NEARLY_DONE));
-    let nothing = Fitted { values: *before, cost: f64::INFINITY };
-    let best = fits.fold(nothing, |best, fit| if fit.cost < best.cost { fit } else { best });
+    let fits = starts
+        .iter()
+        .take(FOLLOWED_STARTS)
+        .map(|(_, start)| errors.least(start, terms, START_STEPS, NEARLY_DONE));
+    let nothing = Fitted {
+        values: *before,
+        cost: f64::INFINITY,
+    };
+    let best = fits.fold(
+        nothing,
+        |best, fit| if fit.cost < best.cost { fit } else { best },
+    );
     errors.least(&best.values, terms, STEPS, NEARLY_DONE)
 }
 
 /// Where a fit with commands one servo period later begins.
 fn starts(before: &TermValues, terms: &[LawTerm], servo_s: f64) -> Vec<TermValues> {
-    let [late_s, loop_s, fed, damping, loop_gain] =
-        [LawTerm::CommandDelay, LawTerm::LoopDelay, LawTerm::VelocityFeedforward, LawTerm::Damping, LawTerm::LoopGain]
-            .map(|term| before.get(term));
+    let [late_s, loop_s, fed, damping, loop_gain] = [
+        LawTerm::CommandDelay,
+        LawTerm::LoopDelay,
+        LawTerm::VelocityFeedforward,
+        LawTerm::Damping,
+        LawTerm::LoopGain,
+    ]
+    .map(|term| before.get(term));
     let later = before.with(LawTerm::CommandDelay, late_s + servo_s);
     let less_damped = (damping - loop_gain * servo_s).max(LEAST_DAMPING * damping);
     let mut starts = vec![];
-    for at in [later, later.with(LawTerm::LoopDelay, (loop_s - servo_s).max(0.0))] {
+    for at in [
+        later,
+        later.with(LawTerm::LoopDelay, (loop_s - servo_s).max(0.0)),
+    ] {
         starts.extend([at, at.with(LawTerm::Damping, less_damped)]);
         if terms.contains(&LawTerm::VelocityFeedforward) {
-            starts.push(at.with(LawTerm::VelocityFeedforward, fed + before.kp_1_s() * servo_s));
+            starts.push(at.with(
+                LawTerm::VelocityFeedforward,
+                fed + before.kp_1_s() * servo_s,
+            ));
         }
     }
     starts

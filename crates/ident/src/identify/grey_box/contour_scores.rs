@@ -28,10 +28,16 @@ const LEAST_SAMPLES: usize = 50;
 
 impl ContourScores {
     /// Of the first two axes that move together.
-    pub(super) fn of(records: &[AxisRecord<'_>], axes: &[FoundAxis], scored: &[bool]) -> Option<Self> {
+    pub(super) fn of(
+        records: &[AxisRecord<'_>],
+        axes: &[FoundAxis],
+        scored: &[bool],
+    ) -> Option<Self> {
         let speeds: Vec<Vec<f64>> = records.iter().map(AxisRecord::command_speed_mm_s).collect();
         let planes = (0..axes.len()).flat_map(|i| (i + 1..axes.len()).map(move |j| [i, j]));
-        planes.filter_map(|plane| Self::in_plane(plane, records, axes, scored, &speeds)).next()
+        planes
+            .filter_map(|plane| Self::in_plane(plane, records, axes, scored, &speeds))
+            .next()
     }
 
     fn in_plane(
@@ -41,9 +47,16 @@ impl ContourScores {
         scored: &[bool],
         speeds: &[Vec<f64>],
     ) -> Option<Self> {
-        let least = plane.map(|i| MOVES * speeds[i].iter().fold(0.0_f64, |most, speed| most.max(speed.abs())));
+        let least = plane.map(|i| {
+            MOVES
+                * speeds[i]
+                    .iter()
+                    .fold(0.0_f64, |most, speed| most.max(speed.abs()))
+        });
         let moves = |k: usize| (0..2).all(|i| speeds[plane[i]][k].abs() > least[i]);
-        let samples: Vec<usize> = (0..scored.len()).filter(|&k| scored[k] && moves(k)).collect();
+        let samples: Vec<usize> = (0..scored.len())
+            .filter(|&k| scored[k] && moves(k))
+            .collect();
         if samples.len() < LEAST_SAMPLES {
             return None;
         }
@@ -54,12 +67,17 @@ impl ContourScores {
         };
         let measured = |i: usize, k: usize| records[i].actual_mm[k] - records[i].command_mm[k];
         let missed = |of: &dyn Fn(usize, usize) -> Option<f64>| {
-            let all = samples.iter().filter_map(|&k| contour(k, &|i| Some(records[i].actual_mm[k] - of(i, k)?)));
+            let all = samples
+                .iter()
+                .filter_map(|&k| contour(k, &|i| Some(records[i].actual_mm[k] - of(i, k)?)));
             1e3 * rms(all)
         };
         Some(Self {
             plane,
-            measured_um: 1e3 * rms(samples.iter().filter_map(|&k| contour(k, &|i| Some(measured(i, k))))),
+            measured_um: 1e3
+                * rms(samples
+                    .iter()
+                    .filter_map(|&k| contour(k, &|i| Some(measured(i, k))))),
             grey_box_um: missed(&|i, k| axes[i].scores.simulated_mm[k]),
             arx_um: missed(&|i, k| axes[i].scores.arx_mm[k]),
         })

@@ -72,7 +72,8 @@ pub struct FoundAxis {
     pub at_bounds: Vec<SearchBound>,
     /// Half of the interval of 90 % of each term, in the order of [`Self::terms`].
     pub half_intervals: Vec<f64>,
-    /// Lower triangle of a root of their covariance, in their units, row by row; `None` where the fit leaves a term open.
+    /// Lower triangle of a root of their covariance, in their units, row by row; `None` where the
+    /// fit leaves a term open.
     pub uncertain: Option<Vec<Vec<f64>>>,
     /// The law with what the drive does to the speed, where a torque column or a fact tells it.
     pub resolved: Option<ResolvedLaw>,
@@ -96,7 +97,8 @@ pub struct FoundAxis {
     pub most: [f64; 2],
 }
 
-/// A law with the window over which the drive takes the speed: with that the scale of everything is told, which positions alone leave open.
+/// A law with the window over which the drive takes the speed: with that the scale of everything is
+/// told, which positions alone leave open.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResolvedLaw {
     /// Values of it.
@@ -123,8 +125,9 @@ impl ResolvedLaw {
     }
 }
 
-/// Values of terms, drawn from a normal distribution about `values`; `uncertain` is the lower triangle of a root of its covariance. The
-/// delay of the loop goes to the next multiple of `step_s`, and the others by their regression on it.
+/// Values of terms, drawn from a normal distribution about `values`; `uncertain` is the lower
+/// triangle of a root of its covariance. The delay of the loop goes to the next multiple of
+/// `step_s`, and the others by their regression on it.
 fn draw(
     values: &TermValues,
     terms: &[LawTerm],
@@ -138,12 +141,20 @@ fn draw(
     if let Some(delay) = terms.iter().position(|term| *term == LawTerm::LoopDelay) {
         let delay_s = values.get(LawTerm::LoopDelay) + changes[delay];
         let moved_s = (delay_s / step_s).round() * step_s - delay_s;
-        let (of_delay, variance_s2) = (&uncertain[delay], product(&uncertain[delay], &uncertain[delay]));
+        let (of_delay, variance_s2) = (
+            &uncertain[delay],
+            product(&uncertain[delay], &uncertain[delay]),
+        );
         for (change, row) in changes.iter_mut().zip(uncertain) {
             *change += product(row, of_delay) / variance_s2 * moved_s;
         }
     }
-    terms.iter().zip(changes).fold(*values, |drawn, (term, change)| drawn.with(*term, values.get(*term) + change))
+    terms
+        .iter()
+        .zip(changes)
+        .fold(*values, |drawn, (term, change)| {
+            drawn.with(*term, values.get(*term) + change)
+        })
 }
 
 /// A standard normal number, by the polar method (Marsaglia and Bray 1964).
@@ -176,7 +187,8 @@ impl FoundAxis {
         std::f64::consts::TAU / self.lead().0
     }
 
-    /// A mass, kg, or what of a linear axis has its unit in m, at the motor shaft of the machine file.
+    /// A mass, kg, or what of a linear axis has its unit in m, at the motor shaft of the machine
+    /// file.
     fn at_shaft(&self, linear: f64) -> f64 {
         let m_per_rad = 1e-3 / self.rad_per_mm();
         linear * m_per_rad * m_per_rad
@@ -184,46 +196,77 @@ impl FoundAxis {
 
     /// Inertia at the shaft, kg m2, its standard error, and where it comes from.
     pub fn inertia(&self) -> (f64, Option<f64>, NumberSource) {
-        let to_shaft =
-            |inertia: f64| if self.facts.lead_mm_per_rev.is_some() { inertia } else { self.at_shaft(inertia) };
+        let to_shaft = |inertia: f64| {
+            if self.facts.lead_mm_per_rev.is_some() {
+                inertia
+            } else {
+                self.at_shaft(inertia)
+            }
+        };
         if let Some(inertia) = self.facts.inertia {
             return (to_shaft(inertia), None, NumberSource::Given);
         }
-        let torque = self.resolved.as_ref().and_then(|resolved| resolved.torque.as_ref());
+        let torque = self
+            .resolved
+            .as_ref()
+            .and_then(|resolved| resolved.torque.as_ref());
         if let (Some(torque), Some(gain)) = (torque, self.facts.torque_gain) {
             // u = J a / g: N m for rad/s2 at the shaft, N for m/s2 of a linear axis.
-            let per = if self.facts.lead_mm_per_rev.is_some() { self.rad_per_mm() } else { 1e-3 };
+            let per = if self.facts.lead_mm_per_rev.is_some() {
+                self.rad_per_mm()
+            } else {
+                1e-3
+            };
             let of = |units: f64| to_shaft((units * gain / per).abs());
-            return (of(torque.units_per_mm_s2), Some(of(torque.units_error)), NumberSource::TorqueColumn);
+            return (
+                of(torque.units_per_mm_s2),
+                Some(of(torque.units_error)),
+                NumberSource::TorqueColumn,
+            );
         }
         (ASSUMED_INERTIA_KG_M2, None, NumberSource::Assumed)
     }
 
     /// Values of its law as far as it is told: with the window of the speed, where that is.
     pub fn law(&self) -> &TermValues {
-        self.resolved.as_ref().map_or(&self.values, |resolved| &resolved.values)
+        self.resolved
+            .as_ref()
+            .map_or(&self.values, |resolved| &resolved.values)
     }
 
     /// Half of the interval of a term of this law.
     pub fn half_interval(&self, term: LawTerm) -> Option<f64> {
         let half = match &self.resolved {
-            Some(resolved) => resolved.half_intervals.iter().find(|(of, _)| *of == term).map(|(_, half)| *half),
-            None => self.terms.iter().position(|fitted| *fitted == term).map(|at| self.half_intervals[at]),
+            Some(resolved) => resolved
+                .half_intervals
+                .iter()
+                .find(|(of, _)| *of == term)
+                .map(|(_, half)| *half),
+            None => self
+                .terms
+                .iter()
+                .position(|fitted| *fitted == term)
+                .map(|at| self.half_intervals[at]),
         };
         half.filter(|half| half.is_finite())
     }
 
-    /// The axis with a law that fits the record about as well: its terms are drawn from what the fit leaves open of them, and held
-    /// within their ranges. The delay of the loop is a whole multiple of `step_s`, as a machine file has it, and the other terms are those
-    /// that fit with it. The same seed draws the same axis. The terms of a law by a torque column or a given window are drawn one by
-    /// one, since their correlations are not known.
+    /// The axis with a law that fits the record about as well: its terms are drawn from what the
+    /// fit leaves open of them, and held within their ranges. The delay of the loop is a whole
+    /// multiple of `step_s`, as a machine file has it, and the other terms are those that fit with
+    /// it. The same seed draws the same axis. The terms of a law by a torque column or a given
+    /// window are drawn one by one, since their correlations are not known.
     #[must_use]
     pub fn drawn(&self, seed: u64, step_s: f64) -> Self {
         let mut rng = Rng::seed_from_u64(seed);
         let mut normal = || standard_normal(&mut rng);
         let mut drawn = self.clone();
         if let Some(resolved) = &mut drawn.resolved {
-            for (term, half) in resolved.half_intervals.iter().filter(|(_, half)| half.is_finite()) {
+            for (term, half) in resolved
+                .half_intervals
+                .iter()
+                .filter(|(_, half)| half.is_finite())
+            {
                 let value = resolved.values.get(*term) + half / HALF_INTERVAL * normal();
                 resolved.values = resolved.values.with(*term, value);
             }
@@ -241,7 +284,10 @@ impl FoundAxis {
         let mut numbers: Vec<FoundNumber> = LawTerm::ALL
             .into_iter()
             .filter(|term| {
-                let always = matches!(term, LawTerm::LoopGain | LawTerm::Damping | LawTerm::Coulomb | LawTerm::Offset);
+                let always = matches!(
+                    term,
+                    LawTerm::LoopGain | LawTerm::Damping | LawTerm::Coulomb | LawTerm::Offset
+                );
                 let needs = match term {
                     LawTerm::StribeckSpeed => told.get(LawTerm::Stribeck) > 0.0,
                     LawTerm::TableShare => told.get(LawTerm::Resonance) > 0.0,
@@ -252,22 +298,53 @@ impl FoundAxis {
             .map(|term| self.number(term, told.get(term)))
             .collect();
         let (inertia, error, source) = self.inertia();
-        let interval = error.map(|error| [inertia - HALF_INTERVAL * error, inertia + HALF_INTERVAL * error]);
-        let number =
-            |key, name, unit, value, interval, source| FoundNumber { key, name, unit, value, interval, source };
-        numbers.push(number("inertia_kg_m2", "inertia J at the shaft", "kg m2", inertia, interval, source));
+        let interval = error.map(|error| {
+            [
+                inertia - HALF_INTERVAL * error,
+                inertia + HALF_INTERVAL * error,
+            ]
+        });
+        let number = |key, name, unit, value, interval, source| FoundNumber {
+            key,
+            name,
+            unit,
+            value,
+            interval,
+            source,
+        };
+        numbers.push(number(
+            "inertia_kg_m2",
+            "inertia J at the shaft",
+            "kg m2",
+            inertia,
+            interval,
+            source,
+        ));
         let apart = self.gains_source();
         numbers.push(number("kp_1_s", "Kp", "1/s", told.kp_1_s(), None, apart));
         let kv = told.speed_gain_1_s() * inertia;
-        let of_kv = if source == NumberSource::Assumed { NumberSource::Assumed } else { apart };
-        numbers.push(number("kv_nm_s_per_rad", "Kv at the shaft", "N m s/rad", kv, None, of_kv));
+        let of_kv = if source == NumberSource::Assumed {
+            NumberSource::Assumed
+        } else {
+            apart
+        };
+        numbers.push(number(
+            "kv_nm_s_per_rad",
+            "Kv at the shaft",
+            "N m s/rad",
+            kv,
+            None,
+            of_kv,
+        ));
         numbers
     }
 
     fn number(&self, term: LawTerm, value: f64) -> FoundNumber {
         let row = term.row();
         let source = match &self.resolved {
-            _ if term == LawTerm::CommandDelay && self.facts.command_delay_s.is_some() => NumberSource::Given,
+            _ if term == LawTerm::CommandDelay && self.facts.command_delay_s.is_some() => {
+                NumberSource::Given
+            }
             _ if term == LawTerm::CommandDelay => NumberSource::Identified,
             Some(resolved) => resolved.source(term),
             None if self.terms.contains(&term) => NumberSource::Identified,
@@ -276,13 +353,26 @@ impl FoundAxis {
             None => NumberSource::Assumed,
         };
         let [least, most] = row.range;
-        let interval = self.half_interval(term).map(|half| [(value - half).max(least), (value + half).min(most)]);
-        FoundNumber { key: term.key(), name: row.name, unit: row.unit, value, interval, source }
+        let interval = self
+            .half_interval(term)
+            .map(|half| [(value - half).max(least), (value + half).min(most)]);
+        FoundNumber {
+            key: term.key(),
+            name: row.name,
+            unit: row.unit,
+            value,
+            interval,
+            source,
+        }
     }
 
     /// Whether Kp, Kv and B are told apart.
     pub fn gains_source(&self) -> NumberSource {
-        if self.resolved.as_ref().is_some_and(|resolved| resolved.torque.is_some()) {
+        if self
+            .resolved
+            .as_ref()
+            .is_some_and(|resolved| resolved.torque.is_some())
+        {
             NumberSource::TorqueColumn
         } else if self.facts.viscous.is_some() && self.facts.inertia.is_some() {
             NumberSource::Given
@@ -295,8 +385,15 @@ impl FoundAxis {
 
     /// Highest speed and acceleration of the command.
     pub(super) fn most(record: &AxisRecord<'_>) -> [f64; 2] {
-        [record.command_speed_mm_s(), record.command_acceleration_mm_s2()]
-            .map(|values| values.iter().fold(0.0_f64, |most, value| most.max(value.abs())))
+        [
+            record.command_speed_mm_s(),
+            record.command_acceleration_mm_s2(),
+        ]
+        .map(|values| {
+            values
+                .iter()
+                .fold(0.0_f64, |most, value| most.max(value.abs()))
+        })
     }
 }
 
@@ -309,7 +406,9 @@ mod tests {
     const DRAWS: usize = 20_000;
 
     fn values() -> TermValues {
-        let values = TermValues([0.0; TERMS]).with(LawTerm::LoopGain, 1e4).with(LawTerm::Coulomb, 30.0);
+        let values = TermValues([0.0; TERMS])
+            .with(LawTerm::LoopGain, 1e4)
+            .with(LawTerm::Coulomb, 30.0);
         values.with(LawTerm::LoopDelay, 1.14e-3)
     }
 
@@ -318,7 +417,9 @@ mod tests {
         let root = [vec![200.0], vec![-3.0, 4.0], vec![2e-5, 0.0, 1e-5]];
         let mut rng = Rng::seed_from_u64(1);
         let change = |_| {
-            let drawn = draw(&values(), &TERMS_OF_TEST, &root, step_s, || standard_normal(&mut rng));
+            let drawn = draw(&values(), &TERMS_OF_TEST, &root, step_s, || {
+                standard_normal(&mut rng)
+            });
             TERMS_OF_TEST.map(|term| drawn.get(term) - values().get(term))
         };
         (0..DRAWS).map(change).collect()
@@ -327,10 +428,14 @@ mod tests {
     #[test]
     fn draws_have_the_covariance_of_the_fit() {
         let changes = changes(1e-12);
-        let mean = |of: &dyn Fn(&[f64; 3]) -> f64| changes.iter().map(of).sum::<f64>() / DRAWS as f64;
+        let mean =
+            |of: &dyn Fn(&[f64; 3]) -> f64| changes.iter().map(of).sum::<f64>() / DRAWS as f64;
         let near = |found: f64, wanted: f64, size: f64| {
             // Four standard errors of a mean of products.
-            assert!((found - wanted).abs() < 4.0 * 1.5 * size / (DRAWS as f64).sqrt(), "{found} {wanted}");
+            assert!(
+                (found - wanted).abs() < 4.0 * 1.5 * size / (DRAWS as f64).sqrt(),
+                "{found} {wanted}"
+            );
         };
         near(mean(&|change| change[0]), 0.0, 200.0);
         near(mean(&|change| change[0] * change[0]), 4e4, 4e4);
@@ -346,12 +451,21 @@ mod tests {
             let steps = (1.14e-3 + change[2]) / step_s;
             assert!((steps - steps.round()).abs() < 1e-9, "{steps}");
         }
-        // Of the variance of the gain the delay explains four fifths, and takes them along: what is left is 200^2 / 5.
+        // Of the variance of the gain the delay explains four fifths, and takes them along: what is
+        // left is 200^2 / 5.
         let steps = |change: &[f64; 3]| ((1.14e-3 + change[2]) / step_s).round() as i64;
-        let same: Vec<f64> =
-            changes(step_s).iter().filter(|change| steps(change) == 11).map(|change| change[0]).collect();
+        let same: Vec<f64> = changes(step_s)
+            .iter()
+            .filter(|change| steps(change) == 11)
+            .map(|change| change[0])
+            .collect();
         let mean = same.iter().sum::<f64>() / same.len() as f64;
-        let variance = same.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / same.len() as f64;
-        assert!(same.len() > DRAWS / 2 && (variance / 8e3 - 1.0).abs() < 0.1, "{} {variance}", same.len());
+        let variance =
+            same.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / same.len() as f64;
+        assert!(
+            same.len() > DRAWS / 2 && (variance / 8e3 - 1.0).abs() < 0.1,
+            "{} {variance}",
+            same.len()
+        );
     }
 }

@@ -1,7 +1,9 @@
-//! How far predictions miss on samples that were not fitted: grey box, ARX, and the error that stays.
+//! How far predictions miss on samples that were not fitted: grey box, ARX, and the error that
+//! stays.
 //!
-//! From a sample on nothing of the record is known but the commands. An error of 20, 50, or 100 ms is that at the end of such a run, over
-//! runs from many samples; the whole run is one from the first scored sample of each stretch to its last, over the scored samples.
+//! From a sample on nothing of the record is known but the commands. An error of 20, 50, or 100 ms
+//! is that at the end of such a run, over runs from many samples; the whole run is one from the
+//! first scored sample of each stretch to its last, over the scored samples.
 
 use feedwright_sim::map_in_parallel;
 
@@ -35,7 +37,8 @@ pub struct AxisScores {
     pub following_um: f64,
     /// Of the grey box.
     pub grey_box: FreeRunErrors,
-    /// The same over that part of the scored samples in which speed or acceleration is beyond all that was fitted, um, and its share.
+    /// The same over that part of the scored samples in which speed or acceleration is beyond all
+    /// that was fitted, um, and its share.
     pub beyond: Option<(f64, f64)>,
     /// Of each ARX.
     pub arx: Vec<(LinearArx, FreeRunErrors)>,
@@ -45,7 +48,8 @@ pub struct AxisScores {
     pub simulated_mm: Vec<Option<f64>>,
     /// The same of the ARX that is best over the whole run.
     pub arx_mm: Vec<Option<f64>>,
-    /// Correlation of the filter's innovations with those one sample before, over the scored samples: zero were they white.
+    /// Correlation of the filter's innovations with those one sample before, over the scored
+    /// samples: zero were they white.
     pub innovation_correlation: f64,
     /// The same of what the whole run leaves.
     pub residual_correlation: f64,
@@ -63,7 +67,11 @@ impl AxisScores {
     }
 
     fn least(errors: impl Iterator<Item = FreeRunErrors>) -> FreeRunErrors {
-        let none = FreeRunErrors { at_um: [f64::INFINITY; 3], whole_um: f64::INFINITY, one_step_um: f64::INFINITY };
+        let none = FreeRunErrors {
+            at_um: [f64::INFINITY; 3],
+            whole_um: f64::INFINITY,
+            one_step_um: f64::INFINITY,
+        };
         errors.fold(none, |least, errors| FreeRunErrors {
             at_um: std::array::from_fn(|i| least.at_um[i].min(errors.at_um[i])),
             whole_um: least.whole_um.min(errors.whole_um),
@@ -73,8 +81,14 @@ impl AxisScores {
 }
 
 /// Scores an axis whose law is fitted.
-pub(super) fn score(record: &AxisRecord<'_>, values: &TermValues, fit: &[bool], scored: &[bool]) -> AxisScores {
-    let ahead = HORIZONS.map(|(horizon_s, _)| ((horizon_s / record.sample_s).round() as usize).max(1));
+pub(super) fn score(
+    record: &AxisRecord<'_>,
+    values: &TermValues,
+    fit: &[bool],
+    scored: &[bool],
+) -> AxisScores {
+    let ahead =
+        HORIZONS.map(|(horizon_s, _)| ((horizon_s / record.sample_s).round() as usize).max(1));
     let filter = StartFilter::best(record, values, fit);
     let run = AxisRun::new(values, record.sample_s);
     let samples = starts(record, scored, ahead[2], RUNS);
@@ -89,7 +103,13 @@ pub(super) fn score(record: &AxisRecord<'_>, values: &TermValues, fit: &[bool], 
     let mut from_samples = vec![];
     for start in filtered.starts {
         if let Some([_, last]) = parts.iter().find(|part| part[0] == start.sample) {
-            let Some(stretch) = record.stretches.iter().find(|stretch| stretch.contains(last)) else { continue };
+            let Some(stretch) = record
+                .stretches
+                .iter()
+                .find(|stretch| stretch.contains(last))
+            else {
+                continue;
+            };
             let commands = Commands::new(&record.command_mm[stretch.clone()]);
             let mut state = start.state.clone();
             for k in start.sample..=*last {
@@ -104,17 +124,26 @@ pub(super) fn score(record: &AxisRecord<'_>, values: &TermValues, fit: &[bool], 
         }
     }
     let missed = map_in_parallel(from_samples, |start| run_ahead(record, &run, start, &ahead));
-    let at_um = [0, 1, 2].map(|i| 1e3 * rms(missed.iter().filter_map(|missed| missed.get(i).copied())));
+    let at_um =
+        [0, 1, 2].map(|i| 1e3 * rms(missed.iter().filter_map(|missed| missed.get(i).copied())));
     let whole_um = 1e3 * left_rms(record, &simulated_mm, |_| true);
-    let one_step_um = 1e3 * rms((0..scored.len()).filter(|&k| scored[k]).map(|k| filtered.innovations_mm[k]));
+    let one_step_um = 1e3
+        * rms((0..scored.len())
+            .filter(|&k| scored[k])
+            .map(|k| filtered.innovations_mm[k]));
     let innovation_correlation = correlation(scored, |k| filtered.innovations_mm[k]);
-    let residual_correlation =
-        correlation(scored, |k| simulated_mm[k].map_or(0.0, |simulated| record.actual_mm[k] - simulated));
+    let residual_correlation = correlation(scored, |k| {
+        simulated_mm[k].map_or(0.0, |simulated| record.actual_mm[k] - simulated)
+    });
     let beyond = beyond(record, fit, scored, &simulated_mm);
     let (arx, arx_mm) = score_arx(record, fit, scored, &samples, &parts, ahead);
     AxisScores {
         following_um: 1e3 * record.following_mm(scored),
-        grey_box: FreeRunErrors { at_um, whole_um, one_step_um },
+        grey_box: FreeRunErrors {
+            at_um,
+            whole_um,
+            one_step_um,
+        },
         beyond,
         arx,
         stays: stays(record, scored, &samples, &parts, ahead),
@@ -132,7 +161,11 @@ fn correlation(scored: &[bool], value: impl Fn(usize) -> f64) -> f64 {
         products += value(k) * value(k - 1);
         squares += value(k) * value(k);
     }
-    if squares > 0.0 { products / squares } else { 0.0 }
+    if squares > 0.0 {
+        products / squares
+    } else {
+        0.0
+    }
 }
 
 /// First and last scored sample of each stretch.
@@ -145,9 +178,15 @@ fn parts(record: &AxisRecord<'_>, scored: &[bool]) -> Vec<[usize; 2]> {
     record.stretches.iter().filter_map(part).collect()
 }
 
-fn left_rms(record: &AxisRecord<'_>, simulated_mm: &[Option<f64>], counts: impl Fn(usize) -> bool) -> f64 {
+fn left_rms(
+    record: &AxisRecord<'_>,
+    simulated_mm: &[Option<f64>],
+    counts: impl Fn(usize) -> bool,
+) -> f64 {
     let left = |(k, simulated): (usize, &Option<f64>)| {
-        simulated.filter(|_| counts(k)).map(|simulated| record.actual_mm[k] - simulated)
+        simulated
+            .filter(|_| counts(k))
+            .map(|simulated| record.actual_mm[k] - simulated)
     };
     rms(simulated_mm.iter().enumerate().filter_map(left))
 }
@@ -155,14 +194,27 @@ fn left_rms(record: &AxisRecord<'_>, simulated_mm: &[Option<f64>], counts: impl 
 /// What is beyond all that was fitted by more than so much is told apart.
 const BEYOND: f64 = 1.05;
 
-fn beyond(record: &AxisRecord<'_>, fit: &[bool], scored: &[bool], simulated: &[Option<f64>]) -> Option<(f64, f64)> {
-    let motions = [record.command_speed_mm_s(), record.command_acceleration_mm_s2()];
-    let most = motions
-        .each_ref()
-        .map(|motion| (0..fit.len()).filter(|&k| fit[k]).fold(0.0_f64, |most, k| most.max(motion[k].abs())));
+fn beyond(
+    record: &AxisRecord<'_>,
+    fit: &[bool],
+    scored: &[bool],
+    simulated: &[Option<f64>],
+) -> Option<(f64, f64)> {
+    let motions = [
+        record.command_speed_mm_s(),
+        record.command_acceleration_mm_s2(),
+    ];
+    let most = motions.each_ref().map(|motion| {
+        (0..fit.len())
+            .filter(|&k| fit[k])
+            .fold(0.0_f64, |most, k| most.max(motion[k].abs()))
+    });
     let is_beyond = |k: usize| (0..2).any(|i| motions[i][k].abs() > BEYOND * most[i]);
     let n = scored.iter().filter(|scored| **scored).count().max(1) as f64;
-    let share = (0..scored.len()).filter(|&k| scored[k] && is_beyond(k)).count() as f64 / n;
+    let share = (0..scored.len())
+        .filter(|&k| scored[k] && is_beyond(k))
+        .count() as f64
+        / n;
     (share > 0.0).then(|| (1e3 * left_rms(record, simulated, is_beyond), share))
 }
 
@@ -199,14 +251,25 @@ fn score_arx(
         if whole_um < best.0 {
             best = (whole_um, simulated);
         }
-        scores.push((arx, FreeRunErrors { at_um: [at(0), at(1), at(2)], whole_um, one_step_um: at(3) }));
+        scores.push((
+            arx,
+            FreeRunErrors {
+                at_um: [at(0), at(1), at(2)],
+                whole_um,
+                one_step_um: at(3),
+            },
+        ));
     }
     (scores, best.1)
 }
 
 /// A run that is lost is infinitely far off.
 fn finite(value: f64) -> f64 {
-    if value.is_finite() { value } else { f64::INFINITY }
+    if value.is_finite() {
+        value
+    } else {
+        f64::INFINITY
+    }
 }
 
 fn stays(
@@ -218,8 +281,14 @@ fn stays(
 ) -> FreeRunErrors {
     let error_mm = |k: usize| record.command_mm[k] - record.actual_mm[k];
     let at = |ahead: usize| 1e3 * rms(samples.iter().map(|&k| error_mm(k + ahead) - error_mm(k)));
-    let whole = parts
-        .iter()
-        .flat_map(|&[first, last]| (first..=last).filter(|&k| scored[k]).map(move |k| error_mm(k) - error_mm(first)));
-    FreeRunErrors { at_um: ahead.map(at), whole_um: 1e3 * rms(whole), one_step_um: at(1) }
+    let whole = parts.iter().flat_map(|&[first, last]| {
+        (first..=last)
+            .filter(|&k| scored[k])
+            .map(move |k| error_mm(k) - error_mm(first))
+    });
+    FreeRunErrors {
+        at_um: ahead.map(at),
+        whole_um: 1e3 * rms(whole),
+        one_step_um: at(1),
+    }
 }

@@ -1,14 +1,16 @@
-//! What other settings of the drive would bring, on the motions of the log: by formula, and simulated.
+//! What other settings of the drive would bring, on the motions of the log: by formula, and
+//! simulated.
 //!
 //! ```text
 //! e(t) = ((Kv + B) / J - f Kv / J) / a v + acc / a + (Fc sign v + offset) / (a J)      a = Kp Kv / J
 //! ```
 //!
-//! e following error, v and acc of the command, f velocity feedforward: the law where its transients are over; with an integral part of the
-//! speed loop friction has no share. Only what the log supports is tried: its own motions, and gains within bounds that keep the loops
-//! apart.
+//! e following error, v and acc of the command, f velocity feedforward: the law where its
+//! transients are over; with an integral part of the speed loop friction has no share. Only what
+//! the log supports is tried: its own motions, and gains within bounds that keep the loops apart.
 //!
-//! Source: steady error of a cascaded loop as in Altintas (2012), Manufacturing Automation, section 5.5.
+//! Source: steady error of a cascaded loop as in Altintas (2012), Manufacturing Automation, section
+//! 5.5.
 
 use super::axis_record::AxisRecord;
 use super::axis_run::{AxisRun, Commands};
@@ -35,7 +37,8 @@ const FEEDFORWARD: f64 = 0.95;
 /// Factor on Kp that is tried, and most that it becomes of (Kv + B) / J: a damping ratio of 1.
 const FASTER: f64 = 1.5;
 const LOOPS_APART: f64 = 0.25;
-/// What changes a gain by less than this factor is left out; so is what leaves more than this part of the error.
+/// What changes a gain by less than this factor is left out; so is what leaves more than this part
+/// of the error.
 const WORTH_TRYING: f64 = 1.1;
 const WORTH_TELLING: f64 = 0.8;
 
@@ -43,24 +46,40 @@ impl GainChange {
     /// What is worth telling, the least error last.
     pub(super) fn find(record: &AxisRecord<'_>, values: &TermValues, counts: &[bool]) -> Vec<Self> {
         let now_um = simulated_um(record, values, counts);
-        let feedforward =
-            (values.get(LawTerm::VelocityFeedforward) * WORTH_TRYING < FEEDFORWARD).then_some(FEEDFORWARD);
+        let feedforward = (values.get(LawTerm::VelocityFeedforward) * WORTH_TRYING < FEEDFORWARD)
+            .then_some(FEEDFORWARD);
         let kp_1_s = (FASTER * values.kp_1_s()).min(LOOPS_APART * values.get(LawTerm::Damping));
         let faster = (kp_1_s > WORTH_TRYING * values.kp_1_s()).then_some(kp_1_s);
         let tried = [(faster, None), (None, feedforward), (faster, feedforward)];
         let mut changes: Vec<Self> = vec![];
         for (kp_1_s, velocity_feedforward) in tried {
             let is_new = kp_1_s.is_some() || velocity_feedforward.is_some();
-            if !is_new || changes.iter().any(|c| (c.kp_1_s, c.velocity_feedforward) == (kp_1_s, velocity_feedforward)) {
+            if !is_new
+                || changes
+                    .iter()
+                    .any(|c| (c.kp_1_s, c.velocity_feedforward) == (kp_1_s, velocity_feedforward))
+            {
                 continue;
             }
-            let loop_gain = kp_1_s.map_or(values.get(LawTerm::LoopGain), |kp_1_s| kp_1_s * values.speed_gain_1_s());
+            let loop_gain = kp_1_s.map_or(values.get(LawTerm::LoopGain), |kp_1_s| {
+                kp_1_s * values.speed_gain_1_s()
+            });
             let part = velocity_feedforward.unwrap_or(values.get(LawTerm::VelocityFeedforward));
-            let other = values.with(LawTerm::LoopGain, loop_gain).with(LawTerm::VelocityFeedforward, part);
-            let (predicted_um, simulated_um) =
-                (predicted_um(record, &other, counts), simulated_um(record, &other, counts));
+            let other = values
+                .with(LawTerm::LoopGain, loop_gain)
+                .with(LawTerm::VelocityFeedforward, part);
+            let (predicted_um, simulated_um) = (
+                predicted_um(record, &other, counts),
+                simulated_um(record, &other, counts),
+            );
             if simulated_um < WORTH_TELLING * now_um {
-                changes.push(Self { kp_1_s, velocity_feedforward, predicted_um, simulated_um, now_um });
+                changes.push(Self {
+                    kp_1_s,
+                    velocity_feedforward,
+                    predicted_um,
+                    simulated_um,
+                    now_um,
+                });
             }
         }
         changes.sort_by(|a, b| b.simulated_um.total_cmp(&a.simulated_um));
@@ -70,8 +89,14 @@ impl GainChange {
     /// `Kp 60.1 1/s and a velocity feedforward of 0.95`.
     pub fn words(&self) -> String {
         let kp = self.kp_1_s.map(|kp_1_s| format!("Kp {kp_1_s:.1} 1/s"));
-        let feedforward = self.velocity_feedforward.map(|part| format!("a velocity feedforward of {part}"));
-        [kp, feedforward].into_iter().flatten().collect::<Vec<_>>().join(" and ")
+        let feedforward = self
+            .velocity_feedforward
+            .map(|part| format!("a velocity feedforward of {part}"));
+        [kp, feedforward]
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+            .join(" and ")
     }
 }
 
@@ -97,16 +122,31 @@ fn simulated_um(record: &AxisRecord<'_>, values: &TermValues, counts: &[bool]) -
 /// The same by the law without its transients.
 fn predicted_um(record: &AxisRecord<'_>, values: &TermValues, counts: &[bool]) -> f64 {
     let get = |term| values.get(term);
-    let [speeds, accelerations] = [record.command_speed_mm_s(), record.command_acceleration_mm_s2()];
+    let [speeds, accelerations] = [
+        record.command_speed_mm_s(),
+        record.command_acceleration_mm_s2(),
+    ];
     let loop_gain = get(LawTerm::LoopGain);
-    let slides = if get(LawTerm::Integral) > 0.0 { 0.0 } else { 1.0 };
-    let drag_1_s = if get(LawTerm::Integral) > 0.0 { values.speed_gain_1_s() } else { get(LawTerm::Damping) }
-        - get(LawTerm::VelocityFeedforward) * values.speed_gain_1_s();
+    let slides = if get(LawTerm::Integral) > 0.0 {
+        0.0
+    } else {
+        1.0
+    };
+    let drag_1_s = if get(LawTerm::Integral) > 0.0 {
+        values.speed_gain_1_s()
+    } else {
+        get(LawTerm::Damping)
+    } - get(LawTerm::VelocityFeedforward) * values.speed_gain_1_s();
     let error_mm = |k: usize| {
-        let sign = if speeds[k] == 0.0 { 0.0 } else { speeds[k].signum() };
+        let sign = if speeds[k] == 0.0 {
+            0.0
+        } else {
+            speeds[k].signum()
+        };
         let friction = slides * (sign * get(LawTerm::Coulomb) + sign.abs() * get(LawTerm::Offset));
         let inertia = (1.0 - get(LawTerm::AccelerationFeedforward)) * accelerations[k];
-        (drag_1_s * speeds[k] + inertia + friction) / loop_gain + values.commands_late_s() * speeds[k]
+        (drag_1_s * speeds[k] + inertia + friction) / loop_gain
+            + values.commands_late_s() * speeds[k]
     };
     1e3 * rms((0..counts.len()).filter(|&k| counts[k]).map(error_mm))
 }
@@ -118,7 +158,9 @@ mod tests {
 
     #[test]
     fn formula_and_simulation_agree_on_a_slow_motion_and_feedforward_takes_the_lag_away() {
-        let command_mm: Vec<f64> = (0..4000).map(|k| 20.0 * libm::sin(f64::from(k) * 1e-3)).collect();
+        let command_mm: Vec<f64> = (0..4000)
+            .map(|k| 20.0 * libm::sin(f64::from(k) * 1e-3))
+            .collect();
         let whole = 0..4000;
         let record = AxisRecord {
             name: "x",
@@ -133,14 +175,29 @@ mod tests {
             .with(LawTerm::Damping, 200.0)
             .with(LawTerm::Coulomb, 10.0);
         let counts: Vec<bool> = (0..4000).map(|k| k > 1000).collect();
-        let (formula, run) = (predicted_um(&record, &values, &counts), simulated_um(&record, &values, &counts));
+        let (formula, run) = (
+            predicted_um(&record, &values, &counts),
+            simulated_um(&record, &values, &counts),
+        );
         assert!((formula / run - 1.0).abs() < 0.02, "{formula} {run}");
         let changes = GainChange::find(&record, &values, &counts);
         assert_eq!(changes.len(), 2 + 1, "{changes:?}");
         let [faster, fed, both] = [&changes[0], &changes[1], &changes[2]];
-        assert_eq!((faster.kp_1_s, fed.velocity_feedforward), (Some(30.0), Some(0.95)));
-        assert!((faster.simulated_um * 1.5 / run - 1.0).abs() < 0.02, "{faster:?}");
-        assert!(both.simulated_um < fed.simulated_um && fed.simulated_um < 0.2 * run, "{changes:?}");
-        assert_eq!(both.words(), "Kp 30.0 1/s and a velocity feedforward of 0.95");
+        assert_eq!(
+            (faster.kp_1_s, fed.velocity_feedforward),
+            (Some(30.0), Some(0.95))
+        );
+        assert!(
+            (faster.simulated_um * 1.5 / run - 1.0).abs() < 0.02,
+            "{faster:?}"
+        );
+        assert!(
+            both.simulated_um < fed.simulated_um && fed.simulated_um < 0.2 * run,
+            "{changes:?}"
+        );
+        assert_eq!(
+            both.words(),
+            "Kp 30.0 1/s and a velocity feedforward of 0.95"
+        );
     }
 }

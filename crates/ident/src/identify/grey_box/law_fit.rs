@@ -43,33 +43,62 @@ pub(super) fn find(
 ) -> Result<FoundAxis, NotFound> {
     let (train, valid, moving_s) = split.inner(record);
     if moving_s == 0.0 {
-        return Err(NotFound::AtRest { axis: record.name.to_owned() });
+        return Err(NotFound::AtRest {
+            axis: record.name.to_owned(),
+        });
     }
     let windows = windows(record, &split.fit);
-    let thinned = AxisRecord { stretches: &windows, ..*record };
-    let [train, valid] =
-        [train, valid].map(|counts| behind_starts(&thinned, &counts, windows.len() != record.stretches.len()));
+    let thinned = AxisRecord {
+        stretches: &windows,
+        ..*record
+    };
+    let [train, valid] = [train, valid]
+        .map(|counts| behind_starts(&thinned, &counts, windows.len() != record.stretches.len()));
     let priors = Prior::all(&facts);
-    let admitted =
-        admit(&thinned, [&train, &valid], &facts, &priors, |part| tell(PARTS[0] * part)).ok_or(NotFound::Ended)?;
+    let admitted = admit(&thinned, [&train, &valid], &facts, &priors, |part| {
+        tell(PARTS[0] * part)
+    })
+    .ok_or(NotFound::Ended)?;
     let deviation_mm = record.following_mm(&split.fit);
-    let errors = OutputErrors { record, counts: &split.fit, deviation_mm, priors: &priors };
+    let errors = OutputErrors {
+        record,
+        counts: &split.fit,
+        deviation_mm,
+        priors: &priors,
+    };
     let admitted = admit_more(&errors, &facts, admitted);
     let errors = errors.scaled_by(&admitted.values);
-    let Doubtless { terms, values, early } = without_doubtful(&errors, &facts, &admitted.values, admitted.terms);
+    let Doubtless {
+        terms,
+        values,
+        early,
+    } = without_doubtful(&errors, &facts, &admitted.values, admitted.terms);
     let errors = errors.weighed_by(&values);
     let values = errors.least(&values, &terms, STEPS, DONE).values;
     let certain = StandardErrors::of(&errors, &values, &terms);
     let rms_mm = errors.rms_mm(&values);
     go_on(tell(PARTS[1]))?;
     is_law(record, &split.fit, rms_mm)?;
-    let half_intervals = certain.errors.iter().map(|error| certain.factor * error).collect();
+    let half_intervals = certain
+        .errors
+        .iter()
+        .map(|error| certain.factor * error)
+        .collect();
     let resolved = match facts.speed_window_s {
         Some(window_s) => with_window(&errors, window_s, &values, &terms, rms_mm),
         None => torque.and_then(|torque| resolve(&errors, torque, &values, &terms, &facts, rms_mm)),
     };
     go_on(tell(0.5 * (PARTS[1] + 1.0)))?;
-    let at_bounds = early.into_iter().chain(at_bounds(&errors, &values, &terms, &facts, resolved.as_ref())).collect();
+    let at_bounds = early
+        .into_iter()
+        .chain(at_bounds(
+            &errors,
+            &values,
+            &terms,
+            &facts,
+            resolved.as_ref(),
+        ))
+        .collect();
     let scores = score(record, &values, &split.fit, &split.score);
     let (noise_um, most) = (noise_um(record), FoundAxis::most(record));
     let found = FoundAxis {
@@ -94,8 +123,9 @@ pub(super) fn find(
     Ok(found)
 }
 
-/// Values that end where their search ends, of the law by positions and of the one with the window of the speed. Where the record is said
-/// to be on time, the delay of the loop may be below zero in place of it.
+/// Values that end where their search ends, of the law by positions and of the one with the window
+/// of the speed. Where the record is said to be on time, the delay of the loop may be below zero in
+/// place of it.
 fn at_bounds(
     errors: &OutputErrors<'_>,
     values: &TermValues,
@@ -103,12 +133,16 @@ fn at_bounds(
     facts: &AxisFacts,
     resolved: Option<&ResolvedLaw>,
 ) -> Vec<SearchBound> {
-    let late = (facts.record_delay_s.is_some() && !terms.contains(&LawTerm::LoopDelay)).then_some(LawTerm::LoopDelay);
+    let late = (facts.record_delay_s.is_some() && !terms.contains(&LawTerm::LoopDelay))
+        .then_some(LawTerm::LoopDelay);
     let tested: Vec<LawTerm> = terms.iter().copied().chain(late).collect();
     let mut bounds = SearchBound::of_fitted(values, terms.iter().copied());
     bounds.extend(SearchBound::below_zero(errors, values, &tested));
     if let Some(law) = resolved {
-        bounds.extend(SearchBound::of_fitted(&law.values, law.half_intervals.iter().map(|(term, _)| *term)));
+        bounds.extend(SearchBound::of_fitted(
+            &law.values,
+            law.half_intervals.iter().map(|(term, _)| *term),
+        ));
     }
     bounds
 }
@@ -121,8 +155,9 @@ struct Doubtless {
     early: Option<SearchBound>,
 }
 
-/// Terms that stay, and a fit of them. Dropped one after the other are terms that do not differ from zero by their standard error, and
-/// terms of the drive, where their gain in likelihood is below their cost (Schwarz 1978).
+/// Terms that stay, and a fit of them. Dropped one after the other are terms that do not differ
+/// from zero by their standard error, and terms of the drive, where their gain in likelihood is
+/// below their cost (Schwarz 1978).
 fn without_doubtful(
     errors: &OutputErrors<'_>,
     facts: &AxisFacts,
@@ -142,12 +177,16 @@ fn without_doubtful(
             _ => false,
         };
         // The acceleration feedforward is dropped before the velocity feedforward.
-        let is_last =
-            |i: usize| terms[i] != LawTerm::VelocityFeedforward || !terms.contains(&LawTerm::AccelerationFeedforward);
+        let is_last = |i: usize| {
+            terms[i] != LawTerm::VelocityFeedforward
+                || !terms.contains(&LawTerm::AccelerationFeedforward)
+        };
         let is_open = |i: usize| facts.known(terms[i]).is_none() && is_last(i);
         let is_shape = |i: usize| matches!(terms[i], LawTerm::StribeckSpeed | LawTerm::TableShare);
         let mut doubtful: Vec<usize> = (0..terms.len())
-            .filter(|&i| terms[i] > LawTerm::RecordDelay && is_open(i) && !is_shape(i) && size(i) < DOUBTFUL)
+            .filter(|&i| {
+                terms[i] > LawTerm::RecordDelay && is_open(i) && !is_shape(i) && size(i) < DOUBTFUL
+            })
             .collect();
         doubtful.sort_by(|&a, &b| size(a).total_cmp(&size(b)));
         let independent = errors.weighed_by(&at);
@@ -158,19 +197,35 @@ fn without_doubtful(
         let dropped = (0..terms.len())
             .find(stands_for_another)
             .or_else(|| doubtful.into_iter().find(is_needless))
-            .or_else(|| (0..terms.len()).filter(of_drive).find(|&i| self::is_needless(errors, &at, &terms, i)));
-        let Some(i) = dropped else { return Doubtless { terms, values: at, early } };
+            .or_else(|| {
+                (0..terms.len())
+                    .filter(of_drive)
+                    .find(|&i| self::is_needless(errors, &at, &terms, i))
+            });
+        let Some(i) = dropped else {
+            return Doubtless {
+                terms,
+                values: at,
+                early,
+            };
+        };
         let term = terms[i];
-        if term == LawTerm::RecordDelay && at.get(term) + DOUBTFUL * certain.errors[i] < -EARLY * errors.record.sample_s
+        if term == LawTerm::RecordDelay
+            && at.get(term) + DOUBTFUL * certain.errors[i] < -EARLY * errors.record.sample_s
         {
             let is_told = !self::is_needless(&independent, &at, &terms, i);
-            early = is_told.then_some(SearchBound { term, value: at.get(term), bound: 0.0 });
+            early = is_told.then_some(SearchBound {
+                term,
+                value: at.get(term),
+                bound: 0.0,
+            });
         }
         at = at.with(term, 0.0);
         terms.retain(|other| {
             *other != term
                 && (term != LawTerm::Stribeck || *other != LawTerm::StribeckSpeed)
-                && (term != LawTerm::Resonance || !matches!(other, LawTerm::TableShare | LawTerm::Backlash))
+                && (term != LawTerm::Resonance
+                    || !matches!(other, LawTerm::TableShare | LawTerm::Backlash))
         });
     }
 }
@@ -178,8 +233,14 @@ fn without_doubtful(
 /// Whether a fit without a term loses less likelihood than the term costs.
 fn is_needless(errors: &OutputErrors<'_>, at: &TermValues, terms: &[LawTerm], i: usize) -> bool {
     let of_all = square(&errors.residuals(at));
-    let others: Vec<LawTerm> = terms.iter().copied().filter(|term| *term != terms[i]).collect();
-    let without = errors.least(&at.with(terms[i], 0.0), &others, WITHOUT_STEPS, NEARLY_DONE).values;
+    let others: Vec<LawTerm> = terms
+        .iter()
+        .copied()
+        .filter(|term| *term != terms[i])
+        .collect();
+    let without = errors
+        .least(&at.with(terms[i], 0.0), &others, WITHOUT_STEPS, NEARLY_DONE)
+        .values;
     // In units of what is left the square is the number of samples that are independent.
     square(&errors.residuals(&without)) - of_all < libm::log(of_all.max(1.0))
 }
@@ -188,7 +249,8 @@ fn is_needless(errors: &OutputErrors<'_>, at: &TermValues, terms: &[LawTerm], i:
 const WITHOUT_STEPS: usize = 8;
 /// Times its cost that a term gains by its standard error which is not tried without.
 const SURE: f64 = 10.0;
-/// Samples by which actual positions come before their commands in a record whose columns are a sample apart, or more.
+/// Samples by which actual positions come before their commands in a record whose columns are a
+/// sample apart, or more.
 const EARLY: f64 = 0.5;
 /// Standard errors below which a term is as well zero: the two-sided test at one in twenty.
 const DOUBTFUL: f64 = 1.96;
@@ -199,11 +261,20 @@ fn is_law(record: &AxisRecord<'_>, fit: &[bool], left_mm: f64) -> Result<(), Not
     if left_mm <= NO_LAW * following_mm {
         return Ok(());
     }
-    Err(NotFound::NoLaw { axis: record.name.to_owned(), left_um: 1e3 * left_mm, following_um: 1e3 * following_mm })
+    Err(NotFound::NoLaw {
+        axis: record.name.to_owned(),
+        left_um: 1e3 * left_mm,
+        following_um: 1e3 * following_mm,
+    })
 }
 
 /// What whole runs leave beside the noise of the encoder, as a load.
-fn residual(record: &AxisRecord<'_>, values: &TermValues, scores: &AxisScores, noise_um: f64) -> Option<ResidualNoise> {
+fn residual(
+    record: &AxisRecord<'_>,
+    values: &TermValues,
+    scores: &AxisScores,
+    noise_um: f64,
+) -> Option<ResidualNoise> {
     let encoder_mm2 = (1e-3 * noise_um).powi(2) + record.step_mm.powi(2) / 12.0;
     ResidualNoise::of(record, values, &scores.simulated_mm, encoder_mm2)
 }
@@ -212,8 +283,8 @@ fn go_on(wanted: bool) -> Result<(), NotFound> {
     if wanted { Ok(()) } else { Err(NotFound::Ended) }
 }
 
-/// The law of a drive that closes its loops once a servo period, with a window of the speed that is given. Such a drive records itself:
-/// nothing is late in the record.
+/// The law of a drive that closes its loops once a servo period, with a window of the speed that is
+/// given. Such a drive records itself: nothing is late in the record.
 fn with_window(
     errors: &OutputErrors<'_>,
     window_s: f64,
@@ -222,24 +293,53 @@ fn with_window(
     rms_mm: f64,
 ) -> Option<ResolvedLaw> {
     let servo_s = periods(errors.record.sample_s).0.servo_s;
-    let told = [LawTerm::RecordDelay, LawTerm::LoopDelay, LawTerm::FilterTime, LawTerm::SpeedWindow];
-    let free: Vec<LawTerm> = terms.iter().copied().filter(|term| !told.contains(term)).collect();
+    let told = [
+        LawTerm::RecordDelay,
+        LawTerm::LoopDelay,
+        LawTerm::FilterTime,
+        LawTerm::SpeedWindow,
+    ];
+    let free: Vec<LawTerm> = terms
+        .iter()
+        .copied()
+        .filter(|term| !told.contains(term))
+        .collect();
     // To first order: what it is late by, it is too light by.
     let late_s = 0.5 * (window_s + servo_s);
     let lighter = 1.0 / (1.0 + values.speed_gain_1_s() * late_s);
-    let start = [LawTerm::LoopGain, LawTerm::Damping, LawTerm::Coulomb, LawTerm::Offset]
+    let start = [
+        LawTerm::LoopGain,
+        LawTerm::Damping,
+        LawTerm::Coulomb,
+        LawTerm::Offset,
+    ]
+    .into_iter()
+    .fold(*values, |start, term| {
+        start.with(term, lighter * start.get(term))
+    });
+    let start = told
         .into_iter()
-        .fold(*values, |start, term| start.with(term, lighter * start.get(term)));
-    let start = told.into_iter().fold(start, |start, term| start.with(term, 0.0));
-    let start = start.with(LawTerm::SpeedWindow, window_s).with(LawTerm::SpeedHold, servo_s);
+        .fold(start, |start, term| start.with(term, 0.0));
+    let start = start
+        .with(LawTerm::SpeedWindow, window_s)
+        .with(LawTerm::SpeedHold, servo_s);
     let fitted = errors.least(&start, &free, STEPS, DONE);
     let left_mm = errors.rms_mm(&fitted.values);
     if left_mm.is_nan() || left_mm > HOLDS * rms_mm {
         return None;
     }
     let certain = StandardErrors::of(errors, &fitted.values, &free);
-    let half_intervals = free.into_iter().zip(certain.errors.iter().map(|error| certain.factor * error)).collect();
-    Some(ResolvedLaw { values: fitted.values, half_intervals, torque: None, drive: None, fit_um: 1e3 * left_mm })
+    let half_intervals = free
+        .into_iter()
+        .zip(certain.errors.iter().map(|error| certain.factor * error))
+        .collect();
+    Some(ResolvedLaw {
+        values: fitted.values,
+        half_intervals,
+        torque: None,
+        drive: None,
+        fit_um: 1e3 * left_mm,
+    })
 }
 
 /// Friction by the torque column, and the law with it.
@@ -255,36 +355,60 @@ fn resolve(
     let mut found = TorqueColumn::find(record, torque, values, errors.counts)?;
     if let (Some(viscous), Some(gain)) = (facts.viscous, facts.torque_gain) {
         // A friction that is given goes before one that is found: B / J with J of the column.
-        let per = if facts.lead_mm_per_rev.is_some() { record_per_rad(facts) } else { 1e-3 };
-        (found.viscous_1_s, found.viscous_error_1_s) = (viscous / (found.units_per_mm_s2 * gain / per).abs(), 0.0);
+        let per = if facts.lead_mm_per_rev.is_some() {
+            record_per_rad(facts)
+        } else {
+            1e-3
+        };
+        (found.viscous_1_s, found.viscous_error_1_s) =
+            (viscous / (found.units_per_mm_s2 * gain / per).abs(), 0.0);
     }
     if found.coulomb_mm_s2 < 0.0 || found.viscous_1_s < -2.0 * found.viscous_error_1_s {
         return None;
     }
     let has_integral = terms.contains(&LawTerm::Integral);
-    let drive = if has_integral { None } else { DriveColumn::find(record, torque, &found, errors.counts) };
+    let drive = if has_integral {
+        None
+    } else {
+        DriveColumn::find(record, torque, &found, errors.counts)
+    };
     let mut start = values
         .with(LawTerm::Viscous, found.viscous_1_s.max(0.0))
         .with(LawTerm::Coulomb, found.coulomb_mm_s2)
         .with(LawTerm::Offset, found.offset_mm_s2);
-    let mut fixed = vec![LawTerm::Viscous, LawTerm::Coulomb, LawTerm::Offset, LawTerm::LoopDelay];
+    let mut fixed = vec![
+        LawTerm::Viscous,
+        LawTerm::Coulomb,
+        LawTerm::Offset,
+        LawTerm::LoopDelay,
+    ];
     if let Some(drive) = &drive {
-        start = start
-            .with(LawTerm::LoopGain, drive.loop_gain_1_s2)
-            .with(LawTerm::Damping, drive.speed_gain_1_s + found.viscous_1_s.max(0.0));
+        start = start.with(LawTerm::LoopGain, drive.loop_gain_1_s2).with(
+            LawTerm::Damping,
+            drive.speed_gain_1_s + found.viscous_1_s.max(0.0),
+        );
         fixed.extend([LawTerm::LoopGain, LawTerm::Damping]);
     }
-    let mut free: Vec<LawTerm> = terms.iter().copied().filter(|term| !fixed.contains(term)).collect();
+    let mut free: Vec<LawTerm> = terms
+        .iter()
+        .copied()
+        .filter(|term| !fixed.contains(term))
+        .collect();
     free.push(LawTerm::SpeedWindow);
-    let start = start.with(LawTerm::LoopDelay, 0.0).with(LawTerm::SpeedWindow, 2.0 * record.sample_s);
+    let start = start
+        .with(LawTerm::LoopDelay, 0.0)
+        .with(LawTerm::SpeedWindow, 2.0 * record.sample_s);
     let fitted = errors.least(&start, &free, STEPS, DONE);
     let left_mm = errors.rms_mm(&fitted.values);
     if left_mm.is_nan() || left_mm > HOLDS * rms_mm {
         return None;
     }
     let certain = StandardErrors::of(errors, &fitted.values, &free);
-    let mut half_intervals: Vec<(LawTerm, f64)> =
-        free.iter().copied().zip(certain.errors.iter().map(|error| certain.factor * error)).collect();
+    let mut half_intervals: Vec<(LawTerm, f64)> = free
+        .iter()
+        .copied()
+        .zip(certain.errors.iter().map(|error| certain.factor * error))
+        .collect();
     let half = |error: f64| HALF_INTERVAL * error;
     let scale = half(found.units_error / found.units_per_mm_s2.abs());
     half_intervals.extend([
@@ -293,18 +417,30 @@ fn resolve(
     ]);
     if let Some(drive) = &drive {
         let damping = libm::hypot(scale * drive.speed_gain_1_s, half(found.viscous_error_1_s));
-        half_intervals.extend([(LawTerm::LoopGain, scale * drive.loop_gain_1_s2), (LawTerm::Damping, damping)]);
+        half_intervals.extend([
+            (LawTerm::LoopGain, scale * drive.loop_gain_1_s2),
+            (LawTerm::Damping, damping),
+        ]);
     }
-    Some(ResolvedLaw { values: fitted.values, half_intervals, torque: Some(found), drive, fit_um: 1e3 * left_mm })
+    Some(ResolvedLaw {
+        values: fitted.values,
+        half_intervals,
+        torque: Some(found),
+        drive,
+        fit_um: 1e3 * left_mm,
+    })
 }
 
 /// Turn of the motor for a travel, rad/mm; of a linear axis one.
 fn record_per_rad(facts: &AxisFacts) -> f64 {
-    facts.lead_mm_per_rev.map_or(1.0, |lead| std::f64::consts::TAU / lead)
+    facts
+        .lead_mm_per_rev
+        .map_or(1.0, |lead| std::f64::consts::TAU / lead)
 }
 
-/// Windows of a record, where it is longer than the admission of terms needs: of those that are fitted for the most part, the ones in which
-/// the command accelerates most, and some evenly over the rest, for friction at constant speed.
+/// Windows of a record, where it is longer than the admission of terms needs: of those that are
+/// fitted for the most part, the ones in which the command accelerates most, and some evenly over
+/// the rest, for friction at constant speed.
 fn windows(record: &AxisRecord<'_>, fit: &[bool]) -> Vec<std::ops::Range<usize>> {
     if fit.iter().filter(|fit| **fit).count() <= ADMISSION_SAMPLES {
         return record.stretches.to_vec();
@@ -316,7 +452,10 @@ fn windows(record: &AxisRecord<'_>, fit: &[bool]) -> Vec<std::ops::Range<usize>>
         while from < stretch.end {
             let to = (from + WINDOW_SAMPLES).min(stretch.end);
             if 2 * (from..to).filter(|&k| fit[k]).count() > WINDOW_SAMPLES {
-                let square: f64 = (from..to).filter(|&k| fit[k]).map(|k| accelerations[k] * accelerations[k]).sum();
+                let square: f64 = (from..to)
+                    .filter(|&k| fit[k])
+                    .map(|k| accelerations[k] * accelerations[k])
+                    .sum();
                 all.push((square, from..to));
             }
             from = to;
@@ -327,13 +466,17 @@ fn windows(record: &AxisRecord<'_>, fit: &[bool]) -> Vec<std::ops::Range<usize>>
     let lively = most - most / 3;
     let rest = all.split_off(lively.min(all.len()));
     let apart = rest.len().div_ceil((most / 3).max(1)).max(1);
-    let mut windows: Vec<_> =
-        all.into_iter().chain(rest.into_iter().step_by(apart)).map(|(_, window)| window).collect();
+    let mut windows: Vec<_> = all
+        .into_iter()
+        .chain(rest.into_iter().step_by(apart))
+        .map(|(_, window)| window)
+        .collect();
     windows.sort_by_key(|window| window.start);
     windows
 }
 
-/// Without the beginnings of windows, and without what is in none. A record that is late does not have the commands of a beginning.
+/// Without the beginnings of windows, and without what is in none. A record that is late does not
+/// have the commands of a beginning.
 fn behind_starts(record: &AxisRecord<'_>, counts: &[bool], is_thinned: bool) -> Vec<bool> {
     if !is_thinned {
         return counts.to_vec();
@@ -347,7 +490,8 @@ fn behind_starts(record: &AxisRecord<'_>, counts: &[bool], is_thinned: bool) -> 
     behind
 }
 
-/// RMS of the encoder's noise beside its steps, um: by third differences, in which a motion hardly shows, and their median.
+/// RMS of the encoder's noise beside its steps, um: by third differences, in which a motion hardly
+/// shows, and their median.
 fn noise_um(record: &AxisRecord<'_>) -> f64 {
     let mut differences: Vec<f64> = record
         .stretches
@@ -356,7 +500,10 @@ fn noise_um(record: &AxisRecord<'_>) -> f64 {
         .map(|y| (y[3] - 3.0 * y[2] + 3.0 * y[1] - y[0]).abs())
         .collect();
     let median = middle_of(&mut differences);
-    // A normal distribution has its median at 0.6745 deviations; the weights 1, 3, 3, 1 have a sum of squares of 20.
+    // A normal distribution has its median at 0.6745 deviations; the weights 1, 3, 3, 1 have a sum
+    // of squares of 20.
     let of_all = median / 0.6745 / 20.0_f64.sqrt();
-    1e3 * (of_all * of_all - record.step_mm * record.step_mm / 12.0).max(0.0).sqrt()
+    1e3 * (of_all * of_all - record.step_mm * record.step_mm / 12.0)
+        .max(0.0)
+        .sqrt()
 }

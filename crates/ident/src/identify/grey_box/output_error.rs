@@ -5,16 +5,19 @@
 //! (S^T S + l diag(S^T S)) dp = S^T r,   S = -dr / dp by differences
 //! ```
 //!
-//! y is the actual position, c are the commands, and y_s is a free run on the commands alone from the beginning of each stretch. s is
-//! the RMS residual of the last fit, times the square root of its correlation length in samples where priors are weighed. g, m and
-//! d are from [`super::priors`]. What is noise of the encoder or of the load does not depend on the command, and leaves the
-//! minimum where it is (see [`super::super::axis_parameters`]).
+//! y is the actual position, c are the commands, and y_s is a free run on the commands alone from
+//! the beginning of each stretch. s is the RMS residual of the last fit, times the square root of
+//! its correlation length in samples where priors are weighed. g, m and d are from
+//! [`super::priors`]. What is noise of the encoder or of the load does not depend on the command,
+//! and leaves the minimum where it is (see [`super::super::axis_parameters`]).
 //!
-//! All frequencies have the same weight. Weighting by the inverse spectrum of the residual is more efficient where the model is
-//! complete, and worse where it is not: on the bench EMPS a whitening filter of 40 lags gave 3.5 um in place of 1.6.
+//! All frequencies have the same weight. Weighting by the inverse spectrum of the residual is more
+//! efficient where the model is complete, and worse where it is not: on the bench EMPS a whitening
+//! filter of 40 lags gave 3.5 um in place of 1.6.
 //!
-//! Source: Levenberg (1944), Marquardt (1963) for the damped step; Geyer (1992), Practical Markov chain Monte Carlo, for the sum of
-//! correlations; the output error as in [`super::super::axis_parameters`].
+//! Source: Levenberg (1944), Marquardt (1963) for the damped step; Geyer (1992), Practical Markov
+//! chain Monte Carlo, for the sum of correlations; the output error as in
+//! [`super::super::axis_parameters`].
 
 use feedwright_sim::map_in_parallel;
 use nalgebra::{DMatrix, DVector};
@@ -48,7 +51,8 @@ const DAMPING_AFTER: [f64; 2] = [0.2, 6.0];
 const DAMPING_MOST: f64 = 1e5;
 /// A gain or a time is changed by no more than this in one step, up or down.
 const LARGEST_FACTOR: f64 = 2.5;
-/// Part of V below which a step gains nothing: where the fit is to be the last, and where it only chooses.
+/// Part of V below which a step gains nothing: where the fit is to be the last, and where it only
+/// chooses.
 pub(super) const DONE: f64 = 1e-6;
 pub(super) const NEARLY_DONE: f64 = 1e-4;
 /// Free runs that take turns on a processor.
@@ -57,15 +61,22 @@ const ABREAST: usize = 4;
 impl OutputErrors<'_> {
     /// The same with the deviation of what a law leaves.
     pub(super) fn scaled_by(self, values: &TermValues) -> Self {
-        Self { deviation_mm: self.rms_mm(values).max(f64::MIN_POSITIVE), ..self }
+        Self {
+            deviation_mm: self.rms_mm(values).max(f64::MIN_POSITIVE),
+            ..self
+        }
     }
 
-    /// The same where as many samples as what a law leaves is correlated over count as one: what was known before then has the weight
-    /// that it should have.
+    /// The same where as many samples as what a law leaves is correlated over count as one: what
+    /// was known before then has the weight that it should have.
     pub(super) fn weighed_by(self, values: &TermValues) -> Self {
         let left = self.left_mm(values);
-        let deviation_mm = root_mean_square(&left) * correlated_samples(&left, self.record.sample_s).sqrt();
-        Self { deviation_mm: deviation_mm.max(f64::MIN_POSITIVE), ..self }
+        let deviation_mm =
+            root_mean_square(&left) * correlated_samples(&left, self.record.sample_s).sqrt();
+        Self {
+            deviation_mm: deviation_mm.max(f64::MIN_POSITIVE),
+            ..self
+        }
     }
 
     /// What free runs leave at the samples that count, mm.
@@ -79,14 +90,18 @@ impl OutputErrors<'_> {
         let runs = runs.each_ref();
         let mut left = [const { vec![] }; L];
         for stretch in self.record.stretches {
-            let Some(last) = stretch.clone().rev().find(|&k| self.counts[k]) else { continue };
+            let Some(last) = stretch.clone().rev().find(|&k| self.counts[k]) else {
+                continue;
+            };
             let commands = Commands::new(&self.record.command_mm[stretch.clone()]);
             let [mm, mm_s] = self.record.start(stretch, stretch.start);
             let mut states = runs.map(|run| run.state(&commands, 0, mm, mm_s));
             for k in stretch.start..=last {
                 if self.counts[k] {
                     let actual_mm = self.record.actual_mm[k];
-                    left.iter_mut().zip(&states).for_each(|(left, state)| left.push(actual_mm - state.position_mm()));
+                    left.iter_mut()
+                        .zip(&states)
+                        .for_each(|(left, state)| left.push(actual_mm - state.position_mm()));
                 }
                 AxisRun::step_abreast(&runs, &commands, k - stretch.start, &mut states);
             }
@@ -106,12 +121,19 @@ impl OutputErrors<'_> {
 
     /// The same of several.
     fn residuals_of(&self, values: &[TermValues]) -> Vec<Vec<f64>> {
-        self.all_left_mm(values).into_iter().zip(values).map(|(left, values)| self.scaled(left, values)).collect()
+        self.all_left_mm(values)
+            .into_iter()
+            .zip(values)
+            .map(|(left, values)| self.scaled(left, values))
+            .collect()
     }
 
     /// RMS of what free runs by several leave, mm.
     pub(super) fn all_rms_mm(&self, values: &[TermValues]) -> Vec<f64> {
-        self.all_left_mm(values).iter().map(|left| root_mean_square(left)).collect()
+        self.all_left_mm(values)
+            .iter()
+            .map(|left| root_mean_square(left))
+            .collect()
     }
 
     fn all_left_mm(&self, values: &[TermValues]) -> Vec<Vec<f64>> {
@@ -122,18 +144,27 @@ impl OutputErrors<'_> {
                 vec![a, b, c]
             }
             [a, b] => self.left_abreast_mm(&[a, b]).into(),
-            _ => values.iter().map(|values| self.left_mm(values)).collect::<Vec<_>>(),
+            _ => values
+                .iter()
+                .map(|values| self.left_mm(values))
+                .collect::<Vec<_>>(),
         };
-        map_in_parallel(values.chunks(ABREAST), abreast).into_iter().flatten().collect()
+        map_in_parallel(values.chunks(ABREAST), abreast)
+            .into_iter()
+            .flatten()
+            .collect()
     }
 
     fn scaled(&self, mut left_mm: Vec<f64>, values: &TermValues) -> Vec<f64> {
-        left_mm.iter_mut().for_each(|left| *left /= self.deviation_mm);
+        left_mm
+            .iter_mut()
+            .for_each(|left| *left /= self.deviation_mm);
         left_mm.extend(self.priors.iter().map(|prior| prior.residual(values)));
         left_mm
     }
 
-    /// Derivatives of the residuals by differences to both sides, a column for each term, over the change that it was made with.
+    /// Derivatives of the residuals by differences to both sides, a column for each term, over the
+    /// change that it was made with.
     pub(super) fn slopes(&self, values: &TermValues, terms: &[LawTerm]) -> Vec<Vec<f64>> {
         let sides = |&term: &LawTerm| {
             let (value, by) = (values.get(term), change(values, term));
@@ -142,48 +173,93 @@ impl OutputErrors<'_> {
         let places: Vec<TermValues> = terms.iter().flat_map(sides).collect();
         let residuals = self.residuals_of(&places);
         let slope = |i: usize, term: LawTerm| {
-            let apart = (places[2 * i].get(term) - places[2 * i + 1].get(term)) / change(values, term);
+            let apart =
+                (places[2 * i].get(term) - places[2 * i + 1].get(term)) / change(values, term);
             difference(&residuals[2 * i + 1], &residuals[2 * i], apart)
         };
-        terms.iter().enumerate().map(|(i, &term)| slope(i, term)).collect()
+        terms
+            .iter()
+            .enumerate()
+            .map(|(i, &term)| slope(i, term))
+            .collect()
     }
 
-    /// The same by differences to one side, from residuals that are known: enough for a step that is not the last.
-    fn rough_slopes(&self, values: &TermValues, residuals: &[f64], terms: &[LawTerm]) -> Vec<Vec<f64>> {
+    /// The same by differences to one side, from residuals that are known: enough for a step that
+    /// is not the last.
+    fn rough_slopes(
+        &self,
+        values: &TermValues,
+        residuals: &[f64],
+        terms: &[LawTerm],
+    ) -> Vec<Vec<f64>> {
         let place = |&term: &LawTerm| {
             let (value, by) = (values.get(term), ONE_SIDED * change(values, term));
             let above = values.with(term, value + by);
-            if above.get(term) > value { above } else { values.with(term, value - by) }
+            if above.get(term) > value {
+                above
+            } else {
+                values.with(term, value - by)
+            }
         };
         let places: Vec<TermValues> = terms.iter().map(place).collect();
         let slope = |(&term, (place, at_place)): (&LawTerm, (&TermValues, &Vec<f64>))| {
-            let apart = ONE_SIDED * (place.get(term) - values.get(term)) / (ONE_SIDED * change(values, term));
+            let apart = ONE_SIDED * (place.get(term) - values.get(term))
+                / (ONE_SIDED * change(values, term));
             difference(residuals, at_place, apart)
         };
-        terms.iter().zip(places.iter().zip(&self.residuals_of(&places))).map(slope).collect()
+        terms
+            .iter()
+            .zip(places.iter().zip(&self.residuals_of(&places)))
+            .map(slope)
+            .collect()
     }
 
     /// One step of all terms from a start, with slopes that are known of the first of them.
-    pub(super) fn one_step(&self, start: &TermValues, terms: &[LawTerm], known: &[Vec<f64>]) -> Fitted {
+    pub(super) fn one_step(
+        &self,
+        start: &TermValues,
+        terms: &[LawTerm],
+        known: &[Vec<f64>],
+    ) -> Fitted {
         let left = self.residuals(start);
         let mut slopes = known.to_vec();
         slopes.extend(self.rough_slopes(start, &left, &terms[known.len()..]));
         let (curvature, gradient) = normal_equations(&slopes, &left);
-        let before = Fitted { values: *start, cost: square(&left) };
+        let before = Fitted {
+            values: *start,
+            cost: square(&left),
+        };
         let after = [DAMPING, 1.0]
             .map(|damping| stepped(start, terms, &curvature, &gradient, damping))
-            .map(|values| Fitted { values, cost: square(&self.residuals(&values)) });
-        after.into_iter().fold(before, |best, next| if next.cost < best.cost { next } else { best })
+            .map(|values| Fitted {
+                values,
+                cost: square(&self.residuals(&values)),
+            });
+        after.into_iter().fold(
+            before,
+            |best, next| if next.cost < best.cost { next } else { best },
+        )
     }
 
-    /// The least from a start, over these terms, in at most so many steps, or until one gains less than a part of V.
-    pub(super) fn least(&self, start: &TermValues, terms: &[LawTerm], steps: usize, done: f64) -> Fitted {
+    /// The least from a start, over these terms, in at most so many steps, or until one gains less
+    /// than a part of V.
+    pub(super) fn least(
+        &self,
+        start: &TermValues,
+        terms: &[LawTerm],
+        steps: usize,
+        done: f64,
+    ) -> Fitted {
         let mut at = *start;
         let mut left = self.residuals(&at);
         let (mut cost, mut damping) = (square(&left), DAMPING);
         for _ in 0..steps {
             let is_last = done <= DONE;
-            let slopes = if is_last { self.slopes(&at, terms) } else { self.rough_slopes(&at, &left, terms) };
+            let slopes = if is_last {
+                self.slopes(&at, terms)
+            } else {
+                self.rough_slopes(&at, &left, terms)
+            };
             let (curvature, gradient) = normal_equations(&slopes, &left);
             let before = cost;
             while damping < DAMPING_MOST {
@@ -205,29 +281,42 @@ impl OutputErrors<'_> {
     }
 }
 
-/// Correlation length of a residual in samples: 1 + 2 sum of its autocorrelations, up to the first that is not positive.
+/// Correlation length of a residual in samples: 1 + 2 sum of its autocorrelations, up to the first
+/// that is not positive.
 fn correlated_samples(left: &[f64], sample_s: f64) -> f64 {
-    let covariance = |lag: usize| left.iter().zip(&left[lag.min(left.len())..]).map(|(a, b)| a * b).sum::<f64>();
+    let covariance = |lag: usize| {
+        left.iter()
+            .zip(&left[lag.min(left.len())..])
+            .map(|(a, b)| a * b)
+            .sum::<f64>()
+    };
     let variance = covariance(0);
     if !(variance.is_finite() && variance > 0.0) {
         return 1.0;
     }
     let longest = ((CORRELATED_S / sample_s) as usize).min(left.len() / 4);
     let correlations = (1..=longest).map(|lag| covariance(lag) / variance);
-    1.0 + 2.0 * correlations.take_while(|correlation| *correlation > 0.0).sum::<f64>()
+    1.0 + 2.0
+        * correlations
+            .take_while(|correlation| *correlation > 0.0)
+            .sum::<f64>()
 }
 
 /// A residual is taken to be correlated over no more than this, s.
 const CORRELATED_S: f64 = 0.25;
 
-/// Part of a change that a difference to one side is made with: its error grows with it, and misleads where numbers trade places.
+/// Part of a change that a difference to one side is made with: its error grows with it, and
+/// misleads where numbers trade places.
 const ONE_SIDED: f64 = 0.1;
 
 /// What residuals lose from one place to another, over the part of a change between them.
 fn difference(from: &[f64], to: &[f64], apart: f64) -> Vec<f64> {
     // At an end of its range a number that nothing moves has no slope.
     let per = if apart == 0.0 { 0.0 } else { 1.0 / apart };
-    from.iter().zip(to).map(|(from, to)| (from - to) * per).collect()
+    from.iter()
+        .zip(to)
+        .map(|(from, to)| (from - to) * per)
+        .collect()
 }
 
 /// By how much a number is changed for a difference.
@@ -240,13 +329,15 @@ pub(super) fn change(values: &TermValues, term: LawTerm) -> f64 {
 pub(super) fn normal_equations(slopes: &[Vec<f64>], left: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
     let n = slopes.len();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let rows: Vec<Vec<f64>> = map_in_parallel(0..n, |i| (0..=i).map(|j| dot(&slopes[i], &slopes[j])).collect());
+    let rows: Vec<Vec<f64>> = map_in_parallel(0..n, |i| {
+        (0..=i).map(|j| dot(&slopes[i], &slopes[j])).collect()
+    });
     let curvature = DMatrix::from_fn(n, n, |i, j| rows[i.max(j)][i.min(j)]);
     (curvature, DVector::from_fn(n, |i, _| dot(&slopes[i], left)))
 }
 
-/// The values after a damped step. A number at an end of its range that would be left beyond it stays there, and the step is that of
-/// the others.
+/// The values after a damped step. A number at an end of its range that would be left beyond it
+/// stays there, and the step is that of the others.
 fn stepped(
     at: &TermValues,
     terms: &[LawTerm],
@@ -268,7 +359,9 @@ fn stepped(
                 towards[i] = 0.0;
             }
         }
-        let Some(cholesky) = damped.cholesky() else { return *at };
+        let Some(cholesky) = damped.cholesky() else {
+            return *at;
+        };
         let step = cholesky.solve(&towards);
         let mut is_new = false;
         for (i, &term) in terms.iter().enumerate() {
@@ -291,7 +384,11 @@ fn stepped(
                     | LawTerm::AccelerationLimit
                     | LawTerm::StribeckSpeed
             );
-            let bounded = if is_size { wanted.clamp(value / LARGEST_FACTOR, value * LARGEST_FACTOR) } else { wanted };
+            let bounded = if is_size {
+                wanted.clamp(value / LARGEST_FACTOR, value * LARGEST_FACTOR)
+            } else {
+                wanted
+            };
             next.with(term, bounded)
         });
     }

@@ -1,7 +1,9 @@
-//! What is known of an axis before its record: values with a spread, of its numbers and of what they make.
+//! What is known of an axis before its record: values with a spread, of its numbers and of what
+//! they make.
 //!
-//! A record that does not move an axis in some way cannot tell what only shows then. A prior stands in for it: of those that are not
-//! given, what axes of machine tools are, with spreads so wide that a record that tells anything outweighs them.
+//! A record that does not move an axis in some way cannot tell what only shows then. A prior stands
+//! in for it: of those that are not given, what axes of machine tools are, with spreads so wide
+//! that a record that tells anything outweighs them.
 
 use super::axis_facts::AxisFacts;
 use super::known_value::KnownValue;
@@ -23,17 +25,42 @@ impl Prior {
     /// All that are known of an axis.
     pub(super) fn all(facts: &AxisFacts) -> Vec<Self> {
         let log = |value: f64| libm::log(value.max(LEAST));
-        let of_size =
-            |of, typical: f64, factor: f64| Self { of, known: KnownValue { value: log(typical), spread: log(factor) } };
-        let about = |of, value, spread| Self { of, known: KnownValue { value, spread } };
-        let given =
-            |of, known: Option<KnownValue>, otherwise: Self| known.map_or(otherwise, |known| Self { of, known });
+        let of_size = |of, typical: f64, factor: f64| Self {
+            of,
+            known: KnownValue {
+                value: log(typical),
+                spread: log(factor),
+            },
+        };
+        let about = |of, value, spread| Self {
+            of,
+            known: KnownValue { value, spread },
+        };
+        let given = |of, known: Option<KnownValue>, otherwise: Self| {
+            known.map_or(otherwise, |known| Self { of, known })
+        };
         vec![
             of_size(|v| libm::log(v.get(LawTerm::Damping)), 150.0, 5.0),
-            of_size(|v| libm::log(v.get(LawTerm::Coulomb).max(LEAST)), 50.0, 30.0),
-            given(TermValues::kp_1_s, facts.kp_1_s, of_size(|v| libm::log(v.kp_1_s()), 50.0, 4.0)),
-            about(|v| v.get(LawTerm::Offset) / (1.0 + v.get(LawTerm::Coulomb)), 0.0, 0.3),
-            given(|v| v.get(LawTerm::LoopDelay), facts.drive_delay_s, about(|v| v.get(LawTerm::LoopDelay), 0.0, 0.002)),
+            of_size(
+                |v| libm::log(v.get(LawTerm::Coulomb).max(LEAST)),
+                50.0,
+                30.0,
+            ),
+            given(
+                TermValues::kp_1_s,
+                facts.kp_1_s,
+                of_size(|v| libm::log(v.kp_1_s()), 50.0, 4.0),
+            ),
+            about(
+                |v| v.get(LawTerm::Offset) / (1.0 + v.get(LawTerm::Coulomb)),
+                0.0,
+                0.3,
+            ),
+            given(
+                |v| v.get(LawTerm::LoopDelay),
+                facts.drive_delay_s,
+                about(|v| v.get(LawTerm::LoopDelay), 0.0, 0.002),
+            ),
             given(
                 |v| v.get(LawTerm::VelocityFeedforward),
                 facts.velocity_feedforward,
@@ -52,8 +79,16 @@ impl Prior {
             about(|v| v.get(LawTerm::FilterTime), 0.0, 5e-4),
             about(|v| v.get(LawTerm::Presliding), 0.0, 0.03),
             about(|v| v.get(LawTerm::Stribeck), 0.0, 0.5),
-            of_size(|v| libm::log(v.get(LawTerm::StribeckSpeed).max(LEAST)), 2.0, 2.5),
-            about(|v| v.get(LawTerm::Viscous) / v.get(LawTerm::Damping), 0.0, 0.05),
+            of_size(
+                |v| libm::log(v.get(LawTerm::StribeckSpeed).max(LEAST)),
+                2.0,
+                2.5,
+            ),
+            about(
+                |v| v.get(LawTerm::Viscous) / v.get(LawTerm::Damping),
+                0.0,
+                0.05,
+            ),
         ]
     }
 }

@@ -4,11 +4,13 @@
 //! S(w) = |G(jw)|^2 2 a s^2 / (a^2 + w^2)      G = 1 / (p^2 + d p + Kp Kv / J + (Kv p + Kp Kv) / (J Ti p))      a = 1 / correlation time
 //! ```
 //!
-//! G is the position for a load over the inertia; without an integral part its last term is not there.
-//! The correlation time is that with which S has the correlation of the residual over the lag of the position loop, the load s that with
-//! which it has its mean square. Noise of the encoder is white, and taken out of both.
+//! G is the position for a load over the inertia; without an integral part its last term is not
+//! there. The correlation time is that with which S has the correlation of the residual over the
+//! lag of the position loop, the load s that with which it has its mean square. Noise of the
+//! encoder is white, and taken out of both.
 //!
-//! Source: the load as an Ornstein-Uhlenbeck process, Uhlenbeck and Ornstein (1930); position loops as in `crates/control/src/axis.rs`.
+//! Source: the load as an Ornstein-Uhlenbeck process, Uhlenbeck and Ornstein (1930); position loops
+//! as in `crates/control/src/axis.rs`.
 
 use super::axis_record::AxisRecord;
 use super::terms::{LawTerm, TermValues};
@@ -34,14 +36,21 @@ const FREQUENCIES: usize = 1500;
 const LEAST_PAIRS: usize = 100;
 
 impl ResidualNoise {
-    /// Of what whole runs leave; none where that is no more than noise of the encoder, whose mean square is given, mm2.
+    /// Of what whole runs leave; none where that is no more than noise of the encoder, whose mean
+    /// square is given, mm2.
     pub(super) fn of(
         record: &AxisRecord<'_>,
         values: &TermValues,
         simulated_mm: &[Option<f64>],
         encoder_mm2: f64,
     ) -> Option<Self> {
-        let left = |k: usize| simulated_mm.get(k).copied().flatten().map(|simulated| record.actual_mm[k] - simulated);
+        let left = |k: usize| {
+            simulated_mm
+                .get(k)
+                .copied()
+                .flatten()
+                .map(|simulated| record.actual_mm[k] - simulated)
+        };
         let lag_s = 1.0 / values.kp_1_s();
         let lag = ((lag_s / record.sample_s).round() as usize).max(1);
         let (mut square, mut product, mut all, mut pairs) = (0.0, 0.0, 0_usize, 0_usize);
@@ -73,11 +82,16 @@ impl ResidualNoise {
         }
         let (correlation_s, gain_s4) = found.filter(|found| found.1 > 0.0)?;
         let load_mm_s2 = (square / gain_s4).sqrt();
-        Some(Self { load_mm_s2, correlation_s, left_um: 1e3 * square.sqrt() })
+        Some(Self {
+            load_mm_s2,
+            correlation_s,
+            left_um: 1e3 * square.sqrt(),
+        })
     }
 }
 
-/// Mean square of the position under a load whose mean square is one, s4, and the correlation of the position over a lag.
+/// Mean square of the position under a load whose mean square is one, s4, and the correlation of
+/// the position over a lag.
 fn moved(values: &TermValues, correlation_s: f64, lag_s: f64) -> [f64; 2] {
     let (loop_gain, damping) = (values.get(LawTerm::LoopGain), values.get(LawTerm::Damping));
     let (inverse_s, integral) = (1.0 / correlation_s, values.get(LawTerm::Integral));
@@ -113,19 +127,27 @@ mod tests {
     #[test]
     fn a_load_moves_a_proportional_loop_as_lyapunovs_equation_has_it() {
         let (a, d) = (9700.0, 194.0);
-        let values = TermValues([0.0; TERMS]).with(LawTerm::LoopGain, a).with(LawTerm::Damping, d);
+        let values = TermValues([0.0; TERMS])
+            .with(LawTerm::LoopGain, a)
+            .with(LawTerm::Damping, d);
         for correlation_s in [0.001, 0.01, 0.3] {
             let r = 1.0 / correlation_s;
             let wanted = (d + r) / (a * d * (a + d * r + r * r));
             let [found, _] = moved(&values, correlation_s, 0.01);
-            assert!((found / wanted - 1.0).abs() < 0.01, "{correlation_s} s: {found} instead of {wanted}");
+            assert!(
+                (found / wanted - 1.0).abs() < 0.01,
+                "{correlation_s} s: {found} instead of {wanted}"
+            );
         }
     }
 
     #[test]
     fn a_load_that_lasts_is_taken_back_by_an_integral_part() {
-        let plain = TermValues([0.0; TERMS]).with(LawTerm::LoopGain, 9700.0).with(LawTerm::Damping, 194.0);
-        let [with, without] = [plain.with(LawTerm::Integral, 50.0), plain].map(|values| moved(&values, 1.0, 0.01)[0]);
+        let plain = TermValues([0.0; TERMS])
+            .with(LawTerm::LoopGain, 9700.0)
+            .with(LawTerm::Damping, 194.0);
+        let [with, without] =
+            [plain.with(LawTerm::Integral, 50.0), plain].map(|values| moved(&values, 1.0, 0.01)[0]);
         assert!(with < 0.1 * without, "{with} {without}");
     }
 }

@@ -1,8 +1,9 @@
 //! Which samples of a record are fitted, and which are kept to judge by.
 //!
-//! By motion, not by time: the record is cut into blocks of so much time in which an axis moves, and they take turns. Standstill belongs to
-//! the block that it ends, and makes none. The length of a block is the first of some at which each direction of each axis has its share of
-//! both parts. The beginning of each stretch, where a free run still depends on how it started, is neither.
+//! By motion, not by time: the record is cut into blocks of so much time in which an axis moves,
+//! and they take turns. Standstill belongs to the block that it ends, and makes none. The length of
+//! a block is the first of some at which each direction of each axis has its share of both parts.
+//! The beginning of each stretch, where a free run still depends on how it started, is neither.
 
 use std::ops::Range;
 
@@ -15,11 +16,13 @@ pub struct SampleSplit {
     pub fit: Vec<bool>,
     /// Kept to judge by.
     pub score: Vec<bool>,
-    /// Axes by place and direction, -1 or 1, that move that way in one part alone, or hardly in one.
+    /// Axes by place and direction, -1 or 1, that move that way in one part alone, or hardly in
+    /// one.
     pub one_sided: Vec<(usize, i8)>,
 }
 
-/// Time that blocks begin with, s of motion; shorter ones are tried where directions are not shared well.
+/// Time that blocks begin with, s of motion; shorter ones are tried where directions are not shared
+/// well.
 const BLOCKS_S: [f64; 7] = [2.0, 1.4, 1.0, 0.7, 0.5, 0.35, 0.25];
 /// Fewest blocks that are told apart.
 const LEAST_BLOCKS: f64 = 4.0;
@@ -40,18 +43,29 @@ impl SampleSplit {
         for block_s in BLOCKS_S {
             let blocks = blocks(records, &motions, &settled, block_s);
             let part = |odd: bool| -> Vec<bool> {
-                blocks.iter().zip(&settled).map(|(block, settled)| *settled && (block % 2 == 1) == odd).collect()
+                blocks
+                    .iter()
+                    .zip(&settled)
+                    .map(|(block, settled)| *settled && (block % 2 == 1) == odd)
+                    .collect()
             };
             let (fit, score) = (part(false), part(true));
             let shares = shares(&motions, &fit, &score);
-            let off = shares.iter().map(|share| (share.2 - 0.5).abs()).fold(0.0, f64::max);
+            let off = shares
+                .iter()
+                .map(|share| (share.2 - 0.5).abs())
+                .fold(0.0, f64::max);
             let one_sided = shares
                 .iter()
                 .filter(|share| !(SHARE[0]..=SHARE[1]).contains(&share.2))
                 .map(|share| (share.0, share.1))
                 .collect::<Vec<_>>();
             let is_shared = one_sided.is_empty();
-            let split = Self { fit, score, one_sided };
+            let split = Self {
+                fit,
+                score,
+                one_sided,
+            };
             if is_shared {
                 return split;
             }
@@ -64,38 +78,66 @@ impl SampleSplit {
     }
 
     /// By times of the record, s.
-    pub fn by_times(records: &[AxisRecord<'_>], time_s: &[f64], fit: Range<f64>, score: Range<f64>) -> Self {
+    pub fn by_times(
+        records: &[AxisRecord<'_>],
+        time_s: &[f64],
+        fit: Range<f64>,
+        score: Range<f64>,
+    ) -> Self {
         let motions: Vec<Vec<i8>> = records.iter().map(motion).collect();
         let settled = settled(records);
         let within = |times: &Range<f64>| -> Vec<bool> {
-            time_s.iter().zip(&settled).map(|(time_s, settled)| *settled && times.contains(time_s)).collect()
+            time_s
+                .iter()
+                .zip(&settled)
+                .map(|(time_s, settled)| *settled && times.contains(time_s))
+                .collect()
         };
         let (fit, score) = (within(&fit), within(&score));
         let shares = shares(&motions, &fit, &score);
-        let one_sided =
-            shares.iter().filter(|share| share.2 <= 0.0 || share.2 >= 1.0).map(|share| (share.0, share.1)).collect();
-        Self { fit, score, one_sided }
+        let one_sided = shares
+            .iter()
+            .filter(|share| share.2 <= 0.0 || share.2 >= 1.0)
+            .map(|share| (share.0, share.1))
+            .collect();
+        Self {
+            fit,
+            score,
+            one_sided,
+        }
     }
 
     fn nothing() -> Self {
-        Self { fit: vec![], score: vec![], one_sided: vec![] }
+        Self {
+            fit: vec![],
+            score: vec![],
+            one_sided: vec![],
+        }
     }
 
-    /// The fitted samples once more in two parts, blocks of motion that take turns: what terms are fitted on, and what they are admitted
-    /// by. And the time of motion in the first, s.
+    /// The fitted samples once more in two parts, blocks of motion that take turns: what terms are
+    /// fitted on, and what they are admitted by. And the time of motion in the first, s.
     pub(super) fn inner(&self, record: &AxisRecord<'_>) -> (Vec<bool>, Vec<bool>, f64) {
         let motion = motion(record);
-        let moving = (0..motion.len()).filter(|&k| self.fit[k] && motion[k] != 0).count() as f64 * record.sample_s;
+        let moving = (0..motion.len())
+            .filter(|&k| self.fit[k] && motion[k] != 0)
+            .count() as f64
+            * record.sample_s;
         let block_s = (moving / INNER_BLOCKS).clamp(SHORTEST_INNER_S, LONGEST_INNER_S);
         let blocks = blocks(&[*record], &[motion], &self.fit, block_s);
         let part = |third: bool| -> Vec<bool> {
-            self.fit.iter().zip(&blocks).map(|(fit, block)| *fit && (block % 3 == 2) == third).collect()
+            self.fit
+                .iter()
+                .zip(&blocks)
+                .map(|(fit, block)| *fit && (block % 3 == 2) == third)
+                .collect()
         };
         (part(false), part(true), moving)
     }
 }
 
-/// Blocks that the fitted motion is cut into for the admission of terms, where there is enough, and bounds of one, s.
+/// Blocks that the fitted motion is cut into for the admission of terms, where there is enough, and
+/// bounds of one, s.
 const INNER_BLOCKS: f64 = 12.0;
 const SHORTEST_INNER_S: f64 = 0.02;
 const LONGEST_INNER_S: f64 = 1.0;
@@ -103,18 +145,32 @@ const LONGEST_INNER_S: f64 = 1.0;
 /// Direction in which an axis is commanded at each sample; zero is at rest.
 pub(super) fn motion(record: &AxisRecord<'_>) -> Vec<i8> {
     let speed_mm_s = record.command_speed_mm_s();
-    let fastest = speed_mm_s.iter().fold(0.0_f64, |most, speed| most.max(speed.abs()));
+    let fastest = speed_mm_s
+        .iter()
+        .fold(0.0_f64, |most, speed| most.max(speed.abs()));
     let least = MOVES * fastest;
-    let direction = |speed: f64| if speed > least { 1 } else { -i8::from(speed < -least) };
+    let direction = |speed: f64| {
+        if speed > least {
+            1
+        } else {
+            -i8::from(speed < -least)
+        }
+    };
     speed_mm_s.into_iter().map(direction).collect()
 }
 
 /// Samples behind the beginning of their stretch.
 fn settled(records: &[AxisRecord<'_>]) -> Vec<bool> {
-    let Some(record) = records.first() else { return vec![] };
+    let Some(record) = records.first() else {
+        return vec![];
+    };
     let mut settled = vec![false; record.command_mm.len()];
     let all = vec![true; settled.len()];
-    let late = records.iter().map(|record| record.without_command(&all)).max().unwrap_or(0);
+    let late = records
+        .iter()
+        .map(|record| record.without_command(&all))
+        .max()
+        .unwrap_or(0);
     for stretch in record.stretches {
         let most = SETTLING_PART * stretch.len() as f64;
         let beginning = (SETTLING_S / record.sample_s).min(most).ceil() as usize + late;
@@ -124,7 +180,12 @@ fn settled(records: &[AxisRecord<'_>]) -> Vec<bool> {
 }
 
 /// Number of the block of each sample.
-fn blocks(records: &[AxisRecord<'_>], motions: &[Vec<i8>], counts: &[bool], block_s: f64) -> Vec<usize> {
+fn blocks(
+    records: &[AxisRecord<'_>],
+    motions: &[Vec<i8>],
+    counts: &[bool],
+    block_s: f64,
+) -> Vec<usize> {
     let sample_s = records.first().map_or(1.0, |record| record.sample_s);
     let moves = |k: usize| counts[k] && motions.iter().any(|motion| motion[k] != 0);
     let moving_s = (0..counts.len()).filter(|&k| moves(k)).count() as f64 * sample_s;
@@ -147,7 +208,13 @@ fn shares(motions: &[Vec<i8>], fit: &[bool], score: &[bool]) -> Vec<(usize, i8, 
     let mut shares = vec![];
     for (axis, motion) in motions.iter().enumerate() {
         for direction in [-1, 1] {
-            let count = |part: &[bool]| motion.iter().zip(part).filter(|(m, p)| **p && **m == direction).count() as f64;
+            let count = |part: &[bool]| {
+                motion
+                    .iter()
+                    .zip(part)
+                    .filter(|(m, p)| **p && **m == direction)
+                    .count() as f64
+            };
             let (fitted, scored) = (count(fit), count(score));
             if fitted + scored > 0.0 {
                 shares.push((axis, direction, fitted / (fitted + scored)));

@@ -1,15 +1,17 @@
-//! Values that end where their search ends. What the record wants beyond is not known, and the other values make up for it: such a law
-//! does not hold, however little it leaves.
+//! Values that end where their search ends. What the record wants beyond is not known, and the
+//! other values make up for it: such a law does not hold, however little it leaves.
 //!
-//! Zero is the end of a search for most terms, and no fault: it is the axis without the term. It counts where the record wants less:
+//! Zero is the end of a search for most terms, and no fault: it is the axis without the term. It
+//! counts where the record wants less:
 //!
 //! ```text
 //! p_i^2 / (H^-1)_ii > ln n + 6,   p = H^-1 S^T r        where p_i < 0
 //! ```
 //!
-//! p is the step to the least of the squares that ignores the end, the left side what the squares lose by it, n the number of samples that
-//! are independent (Schwarz 1978; Kass and Raftery 1995 for 6). A delay counts from a sample below zero on: the clocks of command and
-//! actual position may be apart by one.
+//! p is the step to the least of the squares that ignores the end, the left side what the squares
+//! lose by it, n the number of samples that are independent (Schwarz 1978; Kass and Raftery 1995
+//! for 6). A delay counts from a sample below zero on: the clocks of command and actual position
+//! may be apart by one.
 
 use super::output_error::{OutputErrors, change, normal_equations};
 use super::terms::{LawTerm, TermValues};
@@ -29,20 +31,36 @@ pub struct SearchBound {
 const STRONG: f64 = 6.0;
 
 impl SearchBound {
-    /// Those of terms that were fitted. A value that no difference tells from an end of its range is at this end.
-    pub(super) fn of_fitted(values: &TermValues, terms: impl IntoIterator<Item = LawTerm>) -> Vec<Self> {
+    /// Those of terms that were fitted. A value that no difference tells from an end of its range
+    /// is at this end.
+    pub(super) fn of_fitted(
+        values: &TermValues,
+        terms: impl IntoIterator<Item = LawTerm>,
+    ) -> Vec<Self> {
         let at_bound = |term: LawTerm| {
             let value = values.get(term);
-            let is_at = |bound: &f64| *bound != 0.0 && (value - bound).abs() <= change(values, term);
-            term.range(values).into_iter().find(is_at).map(|bound| Self { term, value, bound })
+            let is_at =
+                |bound: &f64| *bound != 0.0 && (value - bound).abs() <= change(values, term);
+            term.range(values)
+                .into_iter()
+                .find(is_at)
+                .map(|bound| Self { term, value, bound })
         };
         terms.into_iter().filter_map(at_bound).collect()
     }
 
     /// Fitted terms at zero that the record wants below zero.
-    pub(super) fn below_zero(errors: &OutputErrors<'_>, values: &TermValues, terms: &[LawTerm]) -> Vec<Self> {
+    pub(super) fn below_zero(
+        errors: &OutputErrors<'_>,
+        values: &TermValues,
+        terms: &[LawTerm],
+    ) -> Vec<Self> {
         let at_zero = |term: &LawTerm| values.get(*term) == 0.0 && term.range(values)[0] == 0.0;
-        let free: Vec<LawTerm> = terms.iter().copied().filter(|term| !at_zero(term)).collect();
+        let free: Vec<LawTerm> = terms
+            .iter()
+            .copied()
+            .filter(|term| !at_zero(term))
+            .collect();
         let presses = |term: &LawTerm| {
             let all: Vec<LawTerm> = free.iter().copied().chain([*term]).collect();
             let left = errors.residuals(values);
@@ -51,22 +69,45 @@ impl SearchBound {
             let inverse = curvature.cholesky()?.inverse();
             let step = (inverse.row(last) * &gradient)[0];
             let lost = step * step / inverse[(last, last)];
-            let least = if term.is_delay() { errors.record.sample_s } else { 0.0 };
+            let least = if term.is_delay() {
+                errors.record.sample_s
+            } else {
+                0.0
+            };
             let is_below = step * change(values, *term) < -least;
             let independent = left.iter().map(|left| left * left).sum::<f64>().max(1.0);
             let counts = is_below && lost > libm::log(independent) + STRONG;
-            counts.then_some(Self { term: *term, value: 0.0, bound: 0.0 })
+            counts.then_some(Self {
+                term: *term,
+                value: 0.0,
+                bound: 0.0,
+            })
         };
-        terms.iter().filter(|term| at_zero(term)).filter_map(presses).collect()
+        terms
+            .iter()
+            .filter(|term| at_zero(term))
+            .filter_map(presses)
+            .collect()
     }
 
     /// What ended where.
     pub fn words(&self) -> String {
         let row = self.term.row();
-        let end = if self.bound <= row.range[0].max(0.0) { "smallest" } else { "largest" };
-        let (name, bound, unit) = (row.name, self.bound, if row.unit.is_empty() { "" } else { " " });
+        let end = if self.bound <= row.range[0].max(0.0) {
+            "smallest"
+        } else {
+            "largest"
+        };
+        let (name, bound, unit) = (
+            row.name,
+            self.bound,
+            if row.unit.is_empty() { "" } else { " " },
+        );
         let fact = format!("{name} ends at {:.4}{unit}{}", self.value, row.unit);
-        format!("{fact}, where its search ends ({end} value {bound}{unit}{})", row.unit)
+        format!(
+            "{fact}, where its search ends ({end} value {bound}{unit}{})",
+            row.unit
+        )
     }
 
     /// What to do.
@@ -75,8 +116,12 @@ impl SearchBound {
             LawTerm::RecordDelay => {
                 "Record command and actual position in the same servo period, or shift one column against the other"
             }
-            LawTerm::LoopDelay => "Leave out --record-delay, so that the delay of the record is searched",
-            LawTerm::CommandDelay => "Give the delay of the bus with --command-delay, or leave out --record-delay",
+            LawTerm::LoopDelay => {
+                "Leave out --record-delay, so that the delay of the record is searched"
+            }
+            LawTerm::CommandDelay => {
+                "Give the delay of the bus with --command-delay, or leave out --record-delay"
+            }
             LawTerm::SpeedWindow => "Give the window with --speed-window",
             _ => {
                 "Check with --columns that command and actual position belong together and have the right unit, then record the program of \

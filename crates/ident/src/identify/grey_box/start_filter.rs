@@ -4,12 +4,13 @@
 //! r = y - x      x += g r,   v += g^2 r / (2 Ts),   load -= h Kp Kv / J r      at every sample
 //! ```
 //!
-//! A filter of constant gains goes along the record up to that sample and no further: position, speed and a load that the law does not
-//! have. The gains are those with which runs of 50 ms over the fitted samples miss least: trust in the encoder where it is fine, in the
-//! law where it is coarse.
+//! A filter of constant gains goes along the record up to that sample and no further: position,
+//! speed and a load that the law does not have. The gains are those with which runs of 50 ms over
+//! the fitted samples miss least: trust in the encoder where it is fine, in the law where it is
+//! coarse.
 //!
-//! Source: the alpha-beta filter, Kalata (1984), The tracking index, IEEE Trans. Aerospace and Electronic Systems 20(2), with a load as
-//! the third state.
+//! Source: the alpha-beta filter, Kalata (1984), The tracking index, IEEE Trans. Aerospace and
+//! Electronic Systems 20(2), with a load as the third state.
 
 use feedwright_sim::map_in_parallel;
 
@@ -43,21 +44,39 @@ impl StartFilter {
     pub(super) fn best(record: &AxisRecord<'_>, values: &TermValues, counts: &[bool]) -> Self {
         let ahead = ((RUN_S / record.sample_s).round() as usize).max(1);
         let samples = starts(record, counts, ahead, RUNS);
-        let all: Vec<Self> = POSITION.iter().flat_map(|&position| LOAD.map(|load| Self { position, load })).collect();
+        let all: Vec<Self> = POSITION
+            .iter()
+            .flat_map(|&position| LOAD.map(|load| Self { position, load }))
+            .collect();
         let missed = map_in_parallel(&all, |filter| {
             let found = filter.along(record, values, &samples);
             let run = AxisRun::new(values, record.sample_s);
-            rms(found.starts.into_iter().map(|start| run_ahead(record, &run, start, &[ahead])[0]))
+            rms(found
+                .starts
+                .into_iter()
+                .map(|start| run_ahead(record, &run, start, &[ahead])[0]))
         });
         let best = (0..all.len()).min_by(|&a, &b| missed[a].total_cmp(&missed[b]));
         best.map_or(all[0], |best| all[best])
     }
 
     /// Goes along the record: states at samples in rising order, and its innovations, mm.
-    pub(super) fn along(&self, record: &AxisRecord<'_>, values: &TermValues, samples: &[usize]) -> Filtered {
+    pub(super) fn along(
+        &self,
+        record: &AxisRecord<'_>,
+        values: &TermValues,
+        samples: &[usize],
+    ) -> Filtered {
         let run = AxisRun::new(values, record.sample_s);
-        let Self { position: g, load: h } = *self;
-        let gains = [g, 0.5 * g * g / record.sample_s, -h * values.get(LawTerm::LoopGain)];
+        let Self {
+            position: g,
+            load: h,
+        } = *self;
+        let gains = [
+            g,
+            0.5 * g * g / record.sample_s,
+            -h * values.get(LawTerm::LoopGain),
+        ];
         let mut starts = Vec::with_capacity(samples.len());
         let mut innovations_mm = vec![0.0; record.actual_mm.len()];
         let mut wanted = samples.iter().copied().peekable();
@@ -70,12 +89,18 @@ impl StartFilter {
                 innovations_mm[k] = innovation;
                 state.correct(gains.map(|gain| gain * innovation));
                 if wanted.next_if_eq(&k).is_some() {
-                    starts.push(RunStart { sample: k, state: state.clone() });
+                    starts.push(RunStart {
+                        sample: k,
+                        state: state.clone(),
+                    });
                 }
                 run.step(&commands, k - stretch.start, &mut state);
             }
         }
-        Filtered { starts, innovations_mm }
+        Filtered {
+            starts,
+            innovations_mm,
+        }
     }
 }
 
@@ -86,7 +111,12 @@ pub(super) struct Filtered {
 }
 
 /// At most so many samples from which this many samples ahead count, too, evenly over the record.
-pub(super) fn starts(record: &AxisRecord<'_>, counts: &[bool], ahead: usize, most: usize) -> Vec<usize> {
+pub(super) fn starts(
+    record: &AxisRecord<'_>,
+    counts: &[bool],
+    ahead: usize,
+    most: usize,
+) -> Vec<usize> {
     let mut all = vec![];
     for stretch in record.stretches {
         let mut counting = 0;
@@ -102,9 +132,20 @@ pub(super) fn starts(record: &AxisRecord<'_>, counts: &[bool], ahead: usize, mos
 }
 
 /// What a run from a start misses so many samples later, each of them, mm.
-pub(super) fn run_ahead(record: &AxisRecord<'_>, run: &AxisRun, start: RunStart, ahead: &[usize]) -> Vec<f64> {
+pub(super) fn run_ahead(
+    record: &AxisRecord<'_>,
+    run: &AxisRun,
+    start: RunStart,
+    ahead: &[usize],
+) -> Vec<f64> {
     let RunStart { sample, mut state } = start;
-    let Some(stretch) = record.stretches.iter().find(|stretch| stretch.contains(&sample)) else { return vec![] };
+    let Some(stretch) = record
+        .stretches
+        .iter()
+        .find(|stretch| stretch.contains(&sample))
+    else {
+        return vec![];
+    };
     let commands = Commands::new(&record.command_mm[stretch.clone()]);
     let mut missed = Vec::with_capacity(ahead.len());
     let last = ahead.iter().copied().max().unwrap_or(0);

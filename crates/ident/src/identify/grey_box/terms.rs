@@ -1,14 +1,16 @@
-//! The numbers of an axis that commanded and actual positions determine, and the law that they make.
+//! The numbers of an axis that commanded and actual positions determine, and the law that they
+//! make.
 //!
-//! Everything is divided by the inertia, so that a torque is an acceleration of the table, mm/s2. Positions determine
+//! Everything is divided by the inertia, so that a torque is an acceleration of the table, mm/s2.
+//! Positions determine
 //!
 //! ```text
 //! Kp Kv / J    (Kv + B) / J    Fc / J    offset / J
 //! ```
 //!
-//! and not J, nor Kp, Kv and B apart, unless the speed loop has an integral part or a limit. What cannot be told is taken from
-//! outside: B / J is a number of its own here, zero where nobody knows it. Then Kv / J = (Kv + B) / J - B / J, and Kp is the first over
-//! that.
+//! and not J, nor Kp, Kv and B apart, unless the speed loop has an integral part or a limit. What
+//! cannot be told is taken from outside: B / J is a number of its own here, zero where nobody knows
+//! it. Then Kv / J = (Kv + B) / J - B / J, and Kp is the first over that.
 //!
 //! | Number | In the law of `crates/control/src/axis.rs` |
 //! |---|---|
@@ -72,9 +74,11 @@ pub enum LawTerm {
     TableShare,
     /// Backlash, mm.
     Backlash,
-    /// Servo period at which the drive takes the speed, s; zero is a drive that sees it all the time. Given, never fitted.
+    /// Servo period at which the drive takes the speed, s; zero is a drive that sees it all the
+    /// time. Given, never fitted.
     SpeedHold,
-    /// Delay from the control to a position loop in the drive, s: whole servo periods. Chosen, never fitted.
+    /// Delay from the control to a position loop in the drive, s: whole servo periods. Chosen,
+    /// never fitted.
     CommandDelay,
 }
 
@@ -151,7 +155,14 @@ impl LawTerm {
     /// Ends of the search for its value. B is part of Kv + B.
     pub(super) fn range(self, values: &TermValues) -> [f64; 2] {
         let [least, most] = self.row().range;
-        [least, if self == Self::Viscous { (1.0 - LEAST_SPEED_GAIN) * values.get(Self::Damping) } else { most }]
+        [
+            least,
+            if self == Self::Viscous {
+                (1.0 - LEAST_SPEED_GAIN) * values.get(Self::Damping)
+            } else {
+                most
+            },
+        ]
     }
 
     /// Whether it is a delay that begins at zero.
@@ -160,7 +171,12 @@ impl LawTerm {
     }
 
     pub(super) fn row(self) -> TermRow {
-        let row = |name, unit, range, change| TermRow { name, unit, range, change };
+        let row = |name, unit, range, change| TermRow {
+            name,
+            unit,
+            range,
+            change,
+        };
         match self {
             Self::LoopGain => row("Kp Kv / J", "1/s2", [0.1, 1e9], [0.01, 0.0]),
             Self::Damping => row("(Kv + B) / J", "1/s", [0.1, 1e5], [0.01, 0.0]),
@@ -169,7 +185,9 @@ impl LawTerm {
             Self::RecordDelay => row("delay of the record", "s", [-0.05, LATEST_S], [0.0, 5e-5]),
             Self::LoopDelay => row("delay within the loop", "s", [0.0, 0.02], [0.0, 1e-4]),
             Self::VelocityFeedforward => row("velocity feedforward", "", [0.0, 2.0], [0.0, 0.01]),
-            Self::AccelerationFeedforward => row("acceleration feedforward", "", [0.0, 2.0], [0.0, 0.02]),
+            Self::AccelerationFeedforward => {
+                row("acceleration feedforward", "", [0.0, 2.0], [0.0, 0.02])
+            }
             Self::Integral => row("1 / Ti", "1/s", [0.0, 2000.0], [0.02, 0.2]),
             Self::FilterTime => row("torque filter", "s", [0.0, 0.05], [0.0, 1e-4]),
             Self::SpeedWindow => row("window of the speed", "s", [0.0, 0.02], [0.0, 1e-4]),
@@ -179,11 +197,21 @@ impl LawTerm {
             Self::Stribeck => row("Stribeck", "", [0.0, 2.0], [0.0, 0.05]),
             Self::StribeckSpeed => row("Stribeck speed", "mm/s", [0.2, 1e3], [0.1, 0.02]),
             Self::Viscous => row("B / J", "1/s", [0.0, 1e4], [0.02, 0.2]),
-            Self::Resonance => row("time constant of the resonance", "s", [0.0, 0.008], [0.03, 1e-5]),
+            Self::Resonance => row(
+                "time constant of the resonance",
+                "s",
+                [0.0, 0.008],
+                [0.03, 1e-5],
+            ),
             Self::TableShare => row("part of J at the table", "", [0.05, 0.95], [0.0, 0.03]),
             Self::Backlash => row("backlash", "mm", [0.0, 0.2], [0.05, 2e-4]),
             Self::SpeedHold => row("the speed is taken every", "s", [0.0, 0.1], [0.0, 1e-4]),
-            Self::CommandDelay => row("delay before the position loop", "s", [0.0, 0.02], [0.0, 1e-4]),
+            Self::CommandDelay => row(
+                "delay before the position loop",
+                "s",
+                [0.0, 0.02],
+                [0.0, 1e-4],
+            ),
         }
     }
 }
@@ -193,32 +221,54 @@ impl LawTerm {
 pub struct TermValues(pub [f64; TERMS]);
 
 impl TermValues {
-    /// Those of an axis of a machine file with this servo period. Of its torque limit nothing is said: the log comes to it or does not.
+    /// Those of an axis of a machine file with this servo period. Of its torque limit nothing is
+    /// said: the log comes to it or does not.
     pub fn of_axis(axis: &Axis, servo_s: f64) -> Self {
         let j = axis.inertia_kg_m2;
         let per_mm = j * axis.rad_per_mm();
         let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
         let plain = Self([0.0; TERMS])
             .with(LawTerm::LoopGain, axis.kp_1_s * axis.kv_nm_s_per_rad / j)
-            .with(LawTerm::Damping, (axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) / j)
+            .with(
+                LawTerm::Damping,
+                (axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) / j,
+            )
             .with(LawTerm::Viscous, axis.viscous_friction_nm_s / j)
             .with(LawTerm::Coulomb, axis.coulomb_friction_nm / per_mm)
             .with(LawTerm::Offset, axis.coulomb_asymmetry_nm / per_mm)
-            .with(LawTerm::CommandDelay, axis.loop_delays().command_periods(servo_s) as f64 * servo_s)
+            .with(
+                LawTerm::CommandDelay,
+                axis.loop_delays().command_periods(servo_s) as f64 * servo_s,
+            )
             .with(LawTerm::LoopDelay, axis.drive_delay_s)
             .with(LawTerm::VelocityFeedforward, axis.velocity_feedforward)
-            .with(LawTerm::AccelerationFeedforward, axis.acceleration_feedforward)
+            .with(
+                LawTerm::AccelerationFeedforward,
+                axis.acceleration_feedforward,
+            )
             .with(LawTerm::Integral, inverse(axis.speed_integral_s))
-            .with(LawTerm::FilterTime, inverse(axis.torque_filter_hz) / std::f64::consts::TAU)
+            .with(
+                LawTerm::FilterTime,
+                inverse(axis.torque_filter_hz) / std::f64::consts::TAU,
+            )
             .with(LawTerm::SpeedLimit, axis.speed_limit_mm_s)
             .with(LawTerm::SpeedWindow, axis.speed_window_s)
-            .with(LawTerm::SpeedHold, if axis.speed_held { servo_s } else { 0.0 })
+            .with(
+                LawTerm::SpeedHold,
+                if axis.speed_held { servo_s } else { 0.0 },
+            )
             .with(LawTerm::Presliding, 1e-3 * axis.presliding_um)
-            .with(LawTerm::Stribeck, axis.stribeck_nm * inverse(axis.coulomb_friction_nm))
+            .with(
+                LawTerm::Stribeck,
+                axis.stribeck_nm * inverse(axis.coulomb_friction_nm),
+            )
             .with(LawTerm::StribeckSpeed, axis.stribeck_mm_s);
         axis.transmission.map_or(plain, |screw| {
             plain
-                .with(LawTerm::Resonance, 1.0 / (std::f64::consts::TAU * screw.resonance_hz))
+                .with(
+                    LawTerm::Resonance,
+                    1.0 / (std::f64::consts::TAU * screw.resonance_hz),
+                )
                 .with(LawTerm::TableShare, screw.table_share)
                 .with(LawTerm::Backlash, 1e-3 * screw.backlash_um)
         })
@@ -254,7 +304,8 @@ impl TermValues {
         self.get(LawTerm::LoopGain) / self.speed_gain_1_s()
     }
 
-    /// As the law of an axis takes them, for an inertia of 1 kg m2 and 1 rad/mm: a torque of 1 N m is 1 mm/s2.
+    /// As the law of an axis takes them, for an inertia of 1 kg m2 and 1 rad/mm: a torque of 1 N m
+    /// is 1 mm/s2.
     pub(super) fn parameters(&self, mechanics_s: f64) -> Parameters {
         let limit = self.get(LawTerm::AccelerationLimit);
         Parameters {
@@ -270,8 +321,8 @@ impl TermValues {
         }
     }
 
-    /// Speed over which friction without presliding turns its sign, mm/s: as tnv40's, and so much that a step of the integration does
-    /// not go past it.
+    /// Speed over which friction without presliding turns its sign, mm/s: as tnv40's, and so much
+    /// that a step of the integration does not go past it.
     pub(super) fn smoothing_mm_s(&self, mechanics_s: f64) -> f64 {
         let most = self.get(LawTerm::Coulomb) * (1.0 + self.get(LawTerm::Stribeck));
         (2.0 * most * mechanics_s).max(SMOOTHING_MM_S)
@@ -295,7 +346,8 @@ impl TermValues {
         }
     }
 
-    /// Motor and table as two masses; none where the screw is rigid. In um where a machine file has um.
+    /// Motor and table as two masses; none where the screw is rigid. In um where a machine file has
+    /// um.
     pub fn transmission(&self, mechanics_s: f64) -> Option<Transmission> {
         let time_s = self.get(LawTerm::Resonance);
         (time_s > STIFFEST * mechanics_s).then(|| Transmission {

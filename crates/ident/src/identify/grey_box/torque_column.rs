@@ -1,15 +1,17 @@
-//! What a torque column tells that positions do not: friction for itself, and by it the scale of everything else.
+//! What a torque column tells that positions do not: friction for itself, and by it the scale of
+//! everything else.
 //!
 //! ```text
 //! u(k) = s (a + B/J v + Fc/J sign v + offset/J)        by least squares; s = J / g, g torque for a unit of the column
 //! ```
 //!
-//! a, v and the sign are those of the free run, which has no noise of the encoder in it (instruments, as Young 1970 has them). With
-//! friction over inertia known, the delay with which the drive sees the speed is told from a smaller inertia: to first order it does
-//! the same to a position, and all products that positions determine come out larger by 1 / (1 - Kv / J T).
+//! a, v and the sign are those of the free run, which has no noise of the encoder in it
+//! (instruments, as Young 1970 has them). With friction over inertia known, the delay with which
+//! the drive sees the speed is told from a smaller inertia: to first order it does the same to a
+//! position, and all products that positions determine come out larger by 1 / (1 - Kv / J T).
 //!
-//! Source: Gautier (1997), Dynamic identification of robots with power model; Janot, Gautier and Brunot (2019) for a bench on which
-//! this is public.
+//! Source: Gautier (1997), Dynamic identification of robots with power model; Janot, Gautier and
+//! Brunot (2019) for a bench on which this is public.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -44,13 +46,19 @@ pub struct TorqueColumn {
 const LATENESSES: [i32; 5] = [-1, 0, 1, 2, 3];
 /// Samples of a block that standard errors are from: residuals are correlated within.
 const BLOCK_S: f64 = 0.25;
-/// Least that it has to explain, and least that a law of the drive has to explain to be taken for it.
+/// Least that it has to explain, and least that a law of the drive has to explain to be taken for
+/// it.
 const EXPLAINED: f64 = 0.9;
 const LAW_EXPLAINED: f64 = 0.99;
 
 impl TorqueColumn {
     /// By samples that count; none where the motion does not explain it.
-    pub(super) fn find(record: &AxisRecord<'_>, torque: &[f64], values: &TermValues, counts: &[bool]) -> Option<Self> {
+    pub(super) fn find(
+        record: &AxisRecord<'_>,
+        torque: &[f64],
+        values: &TermValues,
+        counts: &[bool],
+    ) -> Option<Self> {
         let motion = Regressors::of(record, values, counts);
         LATENESSES
             .iter()
@@ -60,7 +68,8 @@ impl TorqueColumn {
     }
 }
 
-/// What the column tells of a drive with a P speed loop, where it is the torque that the drive asks for:
+/// What the column tells of a drive with a P speed loop, where it is the torque that the drive asks
+/// for:
 ///
 /// ```text
 /// u(k) = p e(k) - q (y(k) - y(k - n)) / (n Ts) + o
@@ -82,7 +91,12 @@ const WINDOWS: [usize; 6] = [1, 2, 3, 4, 6, 8];
 
 impl DriveColumn {
     /// By samples that count; none where the column is something else.
-    pub(super) fn find(record: &AxisRecord<'_>, torque: &[f64], plant: &TorqueColumn, counts: &[bool]) -> Option<Self> {
+    pub(super) fn find(
+        record: &AxisRecord<'_>,
+        torque: &[f64],
+        plant: &TorqueColumn,
+        counts: &[bool],
+    ) -> Option<Self> {
         let with_window = |window: &usize| {
             let window = *window;
             let rows: Vec<usize> = record
@@ -98,16 +112,23 @@ impl DriveColumn {
                 let k = rows[i];
                 match j {
                     0 => record.command_mm[k] - record.actual_mm[k],
-                    1 => (record.actual_mm[k] - record.actual_mm[k - window]) / (window as f64 * record.sample_s),
+                    1 => {
+                        (record.actual_mm[k] - record.actual_mm[k - window])
+                            / (window as f64 * record.sample_s)
+                    }
                     _ => 1.0,
                 }
             };
             let matrix = DMatrix::from_fn(rows.len(), 3, row);
             let target = DVector::from_fn(rows.len(), |i, _| torque[rows[i]]);
-            let found = matrix.tr_mul(&matrix).cholesky()?.solve(&matrix.tr_mul(&target));
+            let found = matrix
+                .tr_mul(&matrix)
+                .cholesky()?
+                .solve(&matrix.tr_mul(&target));
             let mean = target.mean();
             let total: f64 = target.iter().map(|value| (value - mean).powi(2)).sum();
-            let explained = 1.0 - (&target - &matrix * &found).norm_squared() / total.max(f64::MIN_POSITIVE);
+            let explained =
+                1.0 - (&target - &matrix * &found).norm_squared() / total.max(f64::MIN_POSITIVE);
             Some(Self {
                 loop_gain_1_s2: found[0] / plant.units_per_mm_s2,
                 speed_gain_1_s: -found[1] / plant.units_per_mm_s2,
@@ -115,13 +136,19 @@ impl DriveColumn {
                 explained,
             })
         };
-        let found = WINDOWS.iter().filter_map(with_window).max_by(|a, b| a.explained.total_cmp(&b.explained))?;
-        let is_law = found.explained > LAW_EXPLAINED && found.loop_gain_1_s2 > 0.0 && found.speed_gain_1_s > 0.0;
+        let found = WINDOWS
+            .iter()
+            .filter_map(with_window)
+            .max_by(|a, b| a.explained.total_cmp(&b.explained))?;
+        let is_law = found.explained > LAW_EXPLAINED
+            && found.loop_gain_1_s2 > 0.0
+            && found.speed_gain_1_s > 0.0;
         is_law.then_some(found)
     }
 }
 
-/// Acceleration of the whole mass, speed and direction of the part that slides: of a free run, mean over each sample.
+/// Acceleration of the whole mass, speed and direction of the part that slides: of a free run, mean
+/// over each sample.
 struct Regressors {
     rows: Vec<[f64; 4]>,
 }
@@ -131,10 +158,15 @@ impl Regressors {
         let run = AxisRun::new(values, record.sample_s);
         let (periods, _) = periods(record.sample_s);
         let smoothing_mm_s = values.smoothing_mm_s(periods.mechanics_s);
-        let (coulomb, presliding) = (values.get(LawTerm::Coulomb), values.get(LawTerm::Presliding));
+        let (coulomb, presliding) = (
+            values.get(LawTerm::Coulomb),
+            values.get(LawTerm::Presliding),
+        );
         let mut rows = vec![[0.0; 4]; counts.len()];
         for stretch in record.stretches {
-            let Some(last) = stretch.clone().rev().find(|&k| counts[k]) else { continue };
+            let Some(last) = stretch.clone().rev().find(|&k| counts[k]) else {
+                continue;
+            };
             let commands = Commands::new(&record.command_mm[stretch.clone()]);
             let [mm, mm_s] = record.start(stretch, stretch.start);
             let mut state = run.state(&commands, 0, mm, mm_s);
@@ -144,7 +176,8 @@ impl Regressors {
                 let [after, sliding_after] = state.of_whole_and_sliding_mm_s(run.table_share());
                 let mean = 0.5 * (sliding_before + sliding_after);
                 let sign = if presliding > 0.0 && coulomb > 0.0 {
-                    ((state.presliding_mm_s2() - values.get(LawTerm::Offset)) / coulomb).clamp(-1.0, 1.0)
+                    ((state.presliding_mm_s2() - values.get(LawTerm::Offset)) / coulomb)
+                        .clamp(-1.0, 1.0)
                 } else {
                     libm::tanh(mean / smoothing_mm_s)
                 };
@@ -154,7 +187,13 @@ impl Regressors {
         Self { rows }
     }
 
-    fn explain(&self, torque: &[f64], counts: &[bool], late: i32, sample_s: f64) -> Option<TorqueColumn> {
+    fn explain(
+        &self,
+        torque: &[f64],
+        counts: &[bool],
+        late: i32,
+        sample_s: f64,
+    ) -> Option<TorqueColumn> {
         let pairs: Vec<([f64; 4], f64)> = (0..counts.len())
             .filter(|&k| counts[k])
             .filter_map(|k| {
@@ -190,7 +229,8 @@ impl Regressors {
         // Error of a ratio, to first order.
         let ratio_error = |i: usize| {
             let ratio = found[i] / scale;
-            let variance = covariance[(i, i)] - 2.0 * ratio * covariance[(i, 0)] + ratio * ratio * covariance[(0, 0)];
+            let variance = covariance[(i, i)] - 2.0 * ratio * covariance[(i, 0)]
+                + ratio * ratio * covariance[(0, 0)];
             variance.max(0.0).sqrt() / scale.abs()
         };
         Some(TorqueColumn {

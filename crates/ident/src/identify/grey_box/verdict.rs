@@ -24,8 +24,9 @@ pub enum LawVerdict {
 
 /// A linear model that leaves no more than this of what the law leaves does as well.
 const AS_GOOD: f64 = 1.15;
-/// So does one that leaves no more than this of the following error, and less than so many times what the law leaves, where the signs of
-/// the speed would not make it better: there is no friction to speak of.
+/// So does one that leaves no more than this of the following error, and less than so many times
+/// what the law leaves, where the signs of the speed would not make it better: there is no friction
+/// to speak of.
 const SMALL: f64 = 0.01;
 const NEAR: f64 = 2.0;
 const SIGNS_HELP: f64 = 0.9;
@@ -42,7 +43,8 @@ impl LawVerdict {
         let ratio = |of: fn(&FreeRunErrors) -> f64| of(&linear) / of(&grey_box);
         let apart = ratio(|errors| errors.at_um[2]).max(ratio(|errors| errors.whole_um));
         let best = scores.best_arx();
-        let signs_help = best.whole_um < SIGNS_HELP * linear.whole_um || best.at_um[2] < SIGNS_HELP * linear.at_um[2];
+        let signs_help = best.whole_um < SIGNS_HELP * linear.whole_um
+            || best.at_um[2] < SIGNS_HELP * linear.at_um[2];
         if !axis.at_bounds.is_empty() {
             Self::AtBound
         } else if grey_box.whole_um > TOO_MUCH * scores.following_um {
@@ -51,7 +53,9 @@ impl LawVerdict {
             Self::Open
         } else if grey_box.at_um[2] > WORSE * scores.best_arx().at_um[2] {
             Self::LinearIsBetter
-        } else if apart < AS_GOOD || (apart < NEAR && linear.whole_um < SMALL * scores.following_um && !signs_help) {
+        } else if apart < AS_GOOD
+            || (apart < NEAR && linear.whole_um < SMALL * scores.following_um && !signs_help)
+        {
             Self::LinearSuffices
         } else {
             Self::LawHolds
@@ -80,7 +84,10 @@ impl LawVerdict {
                 "a linear model is better: {missed}; {against}. Something moves this axis that the law does not have"
             ),
             Self::TooMuchLeft => format!("not good enough for control: {missed}; {against}"),
-            Self::AtBound => format!("not known: {}; {missed}; {against}", at_bounds(&axis.at_bounds)),
+            Self::AtBound => format!(
+                "not known: {}; {missed}; {against}",
+                at_bounds(&axis.at_bounds)
+            ),
             Self::Open => format!("open: {}; {missed}; {against}", open(&axis.unseen)),
         }
     }
@@ -90,7 +97,10 @@ impl LawVerdict {
 fn at_bounds(bounds: &[SearchBound]) -> String {
     let facts: Vec<String> = bounds.iter().map(SearchBound::words).collect();
     let remedy = bounds.first().map_or("", SearchBound::remedy);
-    format!("{}. All values of the axis may be wrong. {remedy}", facts.join("; "))
+    format!(
+        "{}. All values of the axis may be wrong. {remedy}",
+        facts.join("; ")
+    )
 }
 
 /// Names the parameters that the record leaves open, and the uncertainty that follows.
@@ -99,7 +109,10 @@ fn open(unseen: &UnseenMotion) -> String {
     let untold = match names.as_slice() {
         [] => "the log does not tell the parameters apart".to_owned(),
         [one] => format!("the log does not tell {one}"),
-        [first @ .., last] => format!("the log does not tell {} and {last} apart", first.join(", ")),
+        [first @ .., last] => format!(
+            "the log does not tell {} and {last} apart",
+            first.join(", ")
+        ),
     };
     let why = match unseen.never {
         Some(way) if way < 0 => ", since the axis never moves in the negative direction",

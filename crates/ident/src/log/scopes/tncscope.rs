@@ -11,7 +11,8 @@
 //! 0;1.25;1.24;                rows: the time, and the channels in their order
 //! ```
 //!
-//! A channel that is sampled more slowly than others fills the first of the rows only. The time between samples comes from the header, therefore.
+//! A channel that is sampled more slowly than others fills the first of the rows only. The time
+//! between samples comes from the header, therefore.
 
 use super::{HeaderFault, ScopeChannel, ScopeHeader, cut_off, positive};
 use crate::log::LogFormat;
@@ -25,22 +26,37 @@ pub(super) fn header(lines: &[&str]) -> Result<Option<ScopeHeader>, HeaderFault>
         return Ok(None);
     }
     // The time in the rows is that of the channel that is sampled fastest.
-    let mut channels = vec![ScopeChannel { name: "row".to_owned(), ..ScopeChannel::default() }];
+    let mut channels = vec![ScopeChannel {
+        name: "row".to_owned(),
+        ..ScopeChannel::default()
+    }];
     for (number, line) in lines.iter().enumerate() {
         if line.starts_with("%[CURVE") {
             channels.push(ScopeChannel::default());
         } else if line.starts_with("%[DATA]") {
             let first_line = number as u64 + 2;
             channels[1..].iter_mut().for_each(name);
-            if channels.iter().skip(1).all(|channel| channel.sample_time_s.is_none()) {
+            if channels
+                .iter()
+                .skip(1)
+                .all(|channel| channel.sample_time_s.is_none())
+            {
                 "time".clone_into(&mut channels[0].name);
                 "us".clone_into(&mut channels[0].unit);
             }
             let format = LogFormat::TncScope;
-            return Ok(Some(ScopeHeader { format, delimiter: b';', channels, first_line, sample_time_s: None }));
-        } else if let (Some((key, value)), true, Some(channel)) =
-            (line.split_once('='), channels.len() > 1, channels.last_mut())
-        {
+            return Ok(Some(ScopeHeader {
+                format,
+                delimiter: b';',
+                channels,
+                first_line,
+                sample_time_s: None,
+            }));
+        } else if let (Some((key, value)), true, Some(channel)) = (
+            line.split_once('='),
+            channels.len() > 1,
+            channels.last_mut(),
+        ) {
             let value = value.trim();
             match key.trim() {
                 "%CHANNELTYPE" => value.clone_into(&mut channel.name),

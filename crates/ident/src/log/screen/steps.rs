@@ -22,17 +22,27 @@ const COARSE_MM: f64 = 0.01;
 fn changes(values: &[f64]) -> Vec<f64> {
     let stride = values.len().div_ceil(CHANGES).max(1);
     let pairs = values.windows(2).step_by(stride);
-    let mut changes: Vec<f64> = pairs.map(|pair| (pair[1] - pair[0]).abs()).filter(|change| *change > 1e-12).collect();
+    let mut changes: Vec<f64> = pairs
+        .map(|pair| (pair[1] - pair[0]).abs())
+        .filter(|change| *change > 1e-12)
+        .collect();
     changes.sort_by(f64::total_cmp);
     changes
 }
 
-/// The step of a position, mm: the smallest change, where all others are whole multiples of it; 0 where they are not.
+/// The step of a position, mm: the smallest change, where all others are whole multiples of it; 0
+/// where they are not.
 pub(super) fn step(values: &[f64]) -> f64 {
     let changes = changes(values);
-    let Some(&least) = changes.first() else { return 0.0 };
+    let Some(&least) = changes.first() else {
+        return 0.0;
+    };
     // Rounding makes the smallest change uncertain; those near it tell it better.
-    let small: Vec<f64> = changes.iter().copied().take_while(|change| *change < (1.0 + NEAR) * least).collect();
+    let small: Vec<f64> = changes
+        .iter()
+        .copied()
+        .take_while(|change| *change < (1.0 + NEAR) * least)
+        .collect();
     let step = small.iter().sum::<f64>() / small.len() as f64;
     let whole = changes.iter().filter(|change| {
         let steps = *change / step;
@@ -40,7 +50,11 @@ pub(super) fn step(values: &[f64]) -> f64 {
     });
     let found = whole.count() as f64 >= WHOLE * changes.len() as f64;
     // As it would be written.
-    if found { format!("{step:.5e}").parse().unwrap_or(step) } else { 0.0 }
+    if found {
+        format!("{step:.5e}").parse().unwrap_or(step)
+    } else {
+        0.0
+    }
 }
 
 /// Positions with so few digits that the step grows with the position.
@@ -52,9 +66,13 @@ pub(super) fn too_coarse(axis: &LogAxis) -> Option<Refusal> {
         (scaled - scaled.round()).abs() < 1e-6
     };
     let has_few_digits = values.iter().all(|&value| value == 0.0 || rounded(value));
-    let largest_mm = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-    let step_mm = 10_f64.powi(libm::log10(largest_mm.max(f64::MIN_POSITIVE)).floor() as i32 - (DIGITS - 1));
-    // An encoder with coarse steps over a short way has few digits, too; but the same step everywhere.
+    let largest_mm = values
+        .iter()
+        .fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let step_mm =
+        10_f64.powi(libm::log10(largest_mm.max(f64::MIN_POSITIVE)).floor() as i32 - (DIGITS - 1));
+    // An encoder with coarse steps over a short way has few digits, too; but the same step
+    // everywhere.
     let smallest = changes(values).first().copied().unwrap_or(0.0);
     let grows = smallest < 0.5 * step_mm || step_mm >= 1.0;
     (has_few_digits && step_mm > COARSE_MM && grows).then(|| {
@@ -74,13 +92,25 @@ mod tests {
 
     #[test]
     fn steps_are_found_where_there_are_any() {
-        let smooth: Vec<f64> = (0..5000).map(|k| 10.0 * libm::sin(0.003 * f64::from(k))).collect();
+        let smooth: Vec<f64> = (0..5000)
+            .map(|k| 10.0 * libm::sin(0.003 * f64::from(k)))
+            .collect();
         assert_eq!(step(&smooth), 0.0);
         for size in [0.01, 0.001, 25.4 / 4096.0, 1e-4] {
-            let coarse: Vec<f64> = smooth.iter().map(|value| (value / size).round() * size).collect();
-            assert!((step(&coarse) / size - 1.0).abs() < 1e-4, "{size}: {}", step(&coarse));
+            let coarse: Vec<f64> = smooth
+                .iter()
+                .map(|value| (value / size).round() * size)
+                .collect();
+            assert!(
+                (step(&coarse) / size - 1.0).abs() < 1e-4,
+                "{size}: {}",
+                step(&coarse)
+            );
         }
-        let text: Vec<f64> = smooth.iter().map(|value| format!("{value:.3}").parse().unwrap()).collect();
+        let text: Vec<f64> = smooth
+            .iter()
+            .map(|value| format!("{value:.3}").parse().unwrap())
+            .collect();
         assert_eq!(step(&text), 0.001);
         assert_eq!(step(&[1.0; 10]), 0.0);
     }

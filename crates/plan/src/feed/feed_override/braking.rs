@@ -3,8 +3,9 @@
 use super::published::PublishedPlan;
 use crate::constraints::AxisLimits;
 
-/// How far an axis goes at least before it rests, from a velocity of 0 or more and an acceleration: jerk down to a deceleration, held where the limit
-/// asks for it, and back up. None where the acceleration is such that it turns round before.
+/// How far an axis goes at least before it rests, from a velocity of 0 or more and an acceleration:
+/// jerk down to a deceleration, held where the limit asks for it, and back up. None where the
+/// acceleration is such that it turns round before.
 fn braking_mm(velocity_mm_s: f64, accel_mm_s2: f64, limits: &AxisLimits) -> Option<f64> {
     let (v, a, j) = (velocity_mm_s, accel_mm_s2, limits.jerk_mm_s3);
     if a < 0.0 && v <= a * a / (2.0 * j) {
@@ -22,8 +23,9 @@ fn braking_mm(velocity_mm_s: f64, accel_mm_s2: f64, limits: &AxisLimits) -> Opti
     Some(way_mm)
 }
 
-/// The path is gone along for at least so far from a moment of a plan on before the tool can rest on it, mm: each axis has to come as
-/// far along the path as it needs for itself. Where the path leads it back before that, the axis says nothing.
+/// The path is gone along for at least so far from a moment of a plan on before the tool can rest
+/// on it, mm: each axis has to come as far along the path as it needs for itself. Where the path
+/// leads it back before that, the axis says nothing.
 pub fn shortest_stop_mm(plan: &PublishedPlan, axes: &[AxisLimits; 3], tau_s: f64) -> f64 {
     let begin = plan.at(tau_s);
     let mut until_s = tau_s;

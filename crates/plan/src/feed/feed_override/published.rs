@@ -29,7 +29,10 @@ pub struct PublishedPlan {
 impl PublishedPlan {
     /// Without spans.
     pub const fn new() -> Self {
-        Self { spans: Vec::new(), end_s: 0.0 }
+        Self {
+            spans: Vec::new(),
+            end_s: 0.0,
+        }
     }
 
     /// Adds a phase; `false` where it does not say what the axes do.
@@ -37,10 +40,18 @@ impl PublishedPlan {
         let end_mm = self.at(self.end_s).position_mm;
         let motion = match (phase.motion, phase.rest) {
             (Some(motion), _) => motion,
-            (None, Some(_)) => AxisMotion { position_mm: end_mm, ..AxisMotion::REST },
+            (None, Some(_)) => AxisMotion {
+                position_mm: end_mm,
+                ..AxisMotion::REST
+            },
             (None, None) => return false,
         };
-        self.spans.push(PublishedSpan { from_s: self.end_s, motion, cutting, is_rest: phase.rest.is_some() });
+        self.spans.push(PublishedSpan {
+            from_s: self.end_s,
+            motion,
+            cutting,
+            is_rest: phase.rest.is_some(),
+        });
         self.end_s += phase.duration_s;
         true
     }
@@ -52,13 +63,20 @@ impl PublishedPlan {
 
     /// Number of the span at a time.
     fn index(&self, tau_s: f64) -> usize {
-        self.spans.partition_point(|span| span.from_s <= tau_s).saturating_sub(1)
+        self.spans
+            .partition_point(|span| span.from_s <= tau_s)
+            .saturating_sub(1)
     }
 
     /// Span at plan time `tau_s`. After the end of the plan it is the last span; a plan without
     /// spans gives a rest.
     pub fn span_at(&self, tau_s: f64) -> PublishedSpan {
-        let none = PublishedSpan { from_s: 0.0, motion: AxisMotion::REST, cutting: false, is_rest: true };
+        let none = PublishedSpan {
+            from_s: 0.0,
+            motion: AxisMotion::REST,
+            cutting: false,
+            is_rest: true,
+        };
         self.spans.get(self.index(tau_s)).copied().unwrap_or(none)
     }
 
@@ -69,16 +87,27 @@ impl PublishedPlan {
         };
         if tau_s >= self.end_s {
             let position_mm = found.motion.after(self.end_s - found.from_s).position_mm;
-            return AxisMotion { position_mm, ..AxisMotion::REST };
+            return AxisMotion {
+                position_mm,
+                ..AxisMotion::REST
+            };
         }
         found.motion.after((tau_s - found.from_s).max(0.0))
     }
 
-    /// Number of the span that begins at a time or goes on behind it, up to rounding, and the time at which it ends.
+    /// Number of the span that begins at a time or goes on behind it, up to rounding, and the time
+    /// at which it ends.
     pub(super) fn ahead(&self, tau_s: f64) -> (usize, f64) {
         let span = self.index(tau_s + AT_S);
-        let end_s = self.spans.get(span + 1).map_or(self.end_s, |next| next.from_s);
-        if end_s > tau_s + AT_S { (span, end_s) } else { (span, f64::INFINITY) }
+        let end_s = self
+            .spans
+            .get(span + 1)
+            .map_or(self.end_s, |next| next.from_s);
+        if end_s > tau_s + AT_S {
+            (span, end_s)
+        } else {
+            (span, f64::INFINITY)
+        }
     }
 
     /// What the axes do in a span at a time; behind the end of the plan they rest.

@@ -1,9 +1,11 @@
 //! The circular arc that blends a corner of lines and circles in one plane.
 //!
-//! With `theta` half the angle between the two sides of the corner, an arc of radius `R` touches both at `d = R / tan(theta)` from the
-//! corner and passes it at `h = R (1 / sin(theta) - 1)`. `h` is bounded by the tolerance, `d` by half of each side; the speed on the arc is
-//! `sqrt(a_n R)`, with `a_n = sqrt(3) / 2` of the acceleration. Where that is more than is asked for, `R` is only as large as it has to be. A
-//! circle stands for a secant where it curves into the corner, and the centre of the arc is moved until it touches.
+//! With `theta` half the angle between the two sides of the corner, an arc of radius `R` touches
+//! both at `d = R / tan(theta)` from the corner and passes it at `h = R (1 / sin(theta) - 1)`. `h`
+//! is bounded by the tolerance, `d` by half of each side; the speed on the arc is `sqrt(a_n R)`,
+//! with `a_n = sqrt(3) / 2` of the acceleration. Where that is more than is asked for, `R` is only
+//! as large as it has to be. A circle stands for a secant where it curves into the corner, and the
+//! centre of the arc is moved until it touches.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -65,7 +67,8 @@ struct BlendCorner {
 /// One side of a corner.
 #[derive(Debug, Clone, Copy)]
 struct CornerSide {
-    /// Where it is a circle: the circle, whether it curves into the corner, and how much of it may go.
+    /// Where it is a circle: the circle, whether it curves into the corner, and how much of it may
+    /// go.
     circle: Option<(CircleShape, bool, f64)>,
     /// Length of the side that the blend may use, mm.
     length_mm: f64,
@@ -83,7 +86,11 @@ struct BlendSize {
 }
 
 /// The arc between two segments, where there is one.
-pub(super) fn arc_blend(before: &MotionSegment, after: &MotionSegment, limits: &DirectionLimits) -> Option<ArcBlend> {
+pub(super) fn arc_blend(
+    before: &MotionSegment,
+    after: &MotionSegment,
+    limits: &DirectionLimits,
+) -> Option<ArcBlend> {
     let mut corner = BlendCorner::new(before, after)?;
     let sides = corner.sides(before, after)?;
     let size = corner.size(before, after, &sides, limits)?;
@@ -95,7 +102,10 @@ pub(super) fn arc_blend(before: &MotionSegment, after: &MotionSegment, limits: &
     }
     let cut = sides.map(|side| match side.circle {
         None => corner.cut_of_line(&sides, &size, center_mm),
-        Some((circle, ..)) => angle(sub(corner.point_mm, circle.center_mm), sub(center_mm, circle.center_mm)),
+        Some((circle, ..)) => angle(
+            sub(corner.point_mm, circle.center_mm),
+            sub(center_mm, circle.center_mm),
+        ),
     });
     for (side, cut) in sides.iter().zip(cut) {
         if side.circle.is_some_and(|(_, _, most)| cut > most) {
@@ -104,36 +114,64 @@ pub(super) fn arc_blend(before: &MotionSegment, after: &MotionSegment, limits: &
     }
     let left_mm = before.length_mm - cut[0];
     let is_line = sides[0].circle.is_none();
-    let consumes = is_line && !before.is_blended_into && left_mm / size.planned_mm_s < GAP_PERIODS * PERIOD_S;
+    let consumes =
+        is_line && !before.is_blended_into && left_mm / size.planned_mm_s < GAP_PERIODS * PERIOD_S;
     let first = without(&before.shape, cut[0], false)?;
     let second = without(&after.shape, cut[1], true)?;
     let ends_mm = [first.0, second.0];
     let line_mm = if consumes { left_mm.max(0.0) } else { 0.0 };
     let shape = BlendShape::new(center_mm, ends_mm, corner.tangents[0], line_mm)?;
-    corner.is_tangent(&shape, &sides, [&first.1, &second.1], &size).then_some(ArcBlend {
-        shape,
-        feed_mm_s: size.feed_mm_s,
-        highest_mm_s: size.planned_mm_s.min(shape.length_mm() / PERIOD_S),
-        accel_mm_s2: size.accel_mm_s2,
-        before: (!consumes).then_some(first.1),
-        after: second.1,
-        cut_mm: [first.2, second.2],
-    })
+    corner
+        .is_tangent(&shape, &sides, [&first.1, &second.1], &size)
+        .then_some(ArcBlend {
+            shape,
+            feed_mm_s: size.feed_mm_s,
+            highest_mm_s: size.planned_mm_s.min(shape.length_mm() / PERIOD_S),
+            accel_mm_s2: size.accel_mm_s2,
+            before: (!consumes).then_some(first.1),
+            after: second.1,
+            cut_mm: [first.2, second.2],
+        })
 }
 
-/// A shape without a part of one end, a length of a line or an angle of a circle: where it is cut, what is left, and the length cut.
+/// A shape without a part of one end, a length of a line or an angle of a circle: where it is cut,
+/// what is left, and the length cut.
 fn without(shape: &SegmentShape, cut: f64, at_start: bool) -> Option<(Vector, SegmentShape, f64)> {
     match shape {
         SegmentShape::Line(line) => {
             let length_mm = (line.length_mm - cut).max(0.0);
-            let at_mm = if at_start { line.at(cut) } else { line.at(line.length_mm - cut) };
+            let at_mm = if at_start {
+                line.at(cut)
+            } else {
+                line.at(line.length_mm - cut)
+            };
             let start_mm = if at_start { at_mm } else { line.start_mm };
-            Some((at_mm, SegmentShape::Line(LineShape { start_mm, length_mm, ..*line }), cut))
+            Some((
+                at_mm,
+                SegmentShape::Line(LineShape {
+                    start_mm,
+                    length_mm,
+                    ..*line
+                }),
+                cut,
+            ))
         }
         SegmentShape::Circle(circle) => {
-            let left = if at_start { circle.without_start(cut) } else { circle.without_end(cut) };
-            let at_mm = if at_start { left.at(0.0) } else { left.at(left.angle) };
-            (left.angle > 0.0).then_some((at_mm, SegmentShape::Circle(left), circle.length_mm() - left.length_mm()))
+            let left = if at_start {
+                circle.without_start(cut)
+            } else {
+                circle.without_end(cut)
+            };
+            let at_mm = if at_start {
+                left.at(0.0)
+            } else {
+                left.at(left.angle)
+            };
+            (left.angle > 0.0).then_some((
+                at_mm,
+                SegmentShape::Circle(left),
+                circle.length_mm() - left.length_mm(),
+            ))
         }
         SegmentShape::Blend(_) => None,
     }
@@ -160,12 +198,16 @@ impl BlendCorner {
     /// Both sides; circles that curve into the corner change its directions.
     fn sides(&mut self, before: &MotionSegment, after: &MotionSegment) -> Option<[CornerSide; 2]> {
         let theta = self.theta;
-        let mut sides = [CornerSide { circle: None, length_mm: 0.0 }; 2];
+        let mut sides = [CornerSide {
+            circle: None,
+            length_mm: 0.0,
+        }; 2];
         for (i, segment) in [before, after].into_iter().enumerate() {
             sides[i] = match segment.shape {
-                SegmentShape::Line(_) => {
-                    CornerSide { circle: None, length_mm: segment.length_mm.min(0.5 * segment.nominal_mm) }
-                }
+                SegmentShape::Line(_) => CornerSide {
+                    circle: None,
+                    length_mm: segment.length_mm.min(0.5 * segment.nominal_mm),
+                },
                 SegmentShape::Circle(circle) => self.round_side(i, &circle, theta)?,
                 SegmentShape::Blend(_) => return None,
             };
@@ -185,20 +227,42 @@ impl BlendCorner {
         let center_mm = add_scaled(circle.center_mm, circle.growth_mm(), self.tangents[i]);
         let outward = sub(self.point_mm, center_mm);
         let radius_mm = norm(outward);
-        let curves_in =
-            if i == 0 { dot(outward, self.tangents[1]) < 0.0 } else { dot(outward, self.tangents[0]) > 0.0 };
+        let curves_in = if i == 0 {
+            dot(outward, self.tangents[1]) < 0.0
+        } else {
+            dot(outward, self.tangents[0]) > 0.0
+        };
         let part = if i == 0 { 2.0 / 3.0 } else { 1.0 / 3.0 };
         let most = (part * circle.angle).min(if curves_in { theta } else { FRAC_PI_2 });
         if curves_in {
-            let from_end = if i == 0 { circle.angle - 0.5 * most } else { 0.5 * most };
-            let secant = scale(if i == 0 { 1.0 } else { -1.0 }, sub(self.point_mm, circle.at(from_end)));
+            let from_end = if i == 0 {
+                circle.angle - 0.5 * most
+            } else {
+                0.5 * most
+            };
+            let secant = scale(
+                if i == 0 { 1.0 } else { -1.0 },
+                sub(self.point_mm, circle.at(from_end)),
+            );
             self.directions[i] = scale(1.0 / norm(secant).max(f64::MIN_POSITIVE), secant);
             self.theta = self.theta.min(theta - 0.25 * most);
         }
-        let length_mm = radius_mm * if curves_in { libm::sin(0.25 * most) } else { most };
+        let length_mm = radius_mm
+            * if curves_in {
+                libm::sin(0.25 * most)
+            } else {
+                most
+            };
         // A spiral counts as the circle that touches it.
-        let touching = CircleShape { center_mm, radius_mm, ..*circle };
-        Some(CornerSide { circle: Some((touching, curves_in, most)), length_mm })
+        let touching = CircleShape {
+            center_mm,
+            radius_mm,
+            ..*circle
+        };
+        Some(CornerSide {
+            circle: Some((touching, curves_in, most)),
+            length_mm,
+        })
     }
 
     fn size(
@@ -211,66 +275,122 @@ impl BlendCorner {
         let (theta, turn) = (self.theta, PI - 2.0 * self.theta);
         let part_mm = |segment: &MotionSegment| TOLERANCE_PART * segment.nominal_mm;
         let own_mm = |segment: &MotionSegment| {
-            if segment.tolerance_mm > 0.0 { segment.tolerance_mm } else { part_mm(segment) }
+            if segment.tolerance_mm > 0.0 {
+                segment.tolerance_mm
+            } else {
+                part_mm(segment)
+            }
         };
-        let tolerance_mm = own_mm(before).min(own_mm(after)).min(part_mm(before)).min(part_mm(after));
+        let tolerance_mm = own_mm(before)
+            .min(own_mm(after))
+            .min(part_mm(before))
+            .min(part_mm(after));
         let [plane_mm_s, accel_mm_s2] = limits.in_plane(self.across);
         let normal_mm_s2 = accel_mm_s2 * NORMAL_RATIO;
         let feed_of = |segment: &MotionSegment| segment.feed_mm_s.min(segment.highest_mm_s);
         let feed_mm_s = feed_of(before).max(feed_of(after));
         let straight = sides.iter().all(|side| side.circle.is_none());
-        let axes_mm_s = if straight { plane_mm_s.max(self.altitude_mm_s(before, after)) } else { plane_mm_s };
-        let goal_mm_s = before.overridden_mm_s().max(after.overridden_mm_s()).min(axes_mm_s);
+        let axes_mm_s = if straight {
+            plane_mm_s.max(self.altitude_mm_s(before, after))
+        } else {
+            plane_mm_s
+        };
+        let goal_mm_s = before
+            .overridden_mm_s()
+            .max(after.overridden_mm_s())
+            .min(axes_mm_s);
 
         let by_tolerance_mm = libm::cos(theta) * tolerance_mm / (1.0 - libm::sin(theta));
-        let room_mm = sides[0].length_mm.min(sides[1].length_mm).min(by_tolerance_mm);
+        let room_mm = sides[0]
+            .length_mm
+            .min(sides[1].length_mm)
+            .min(by_tolerance_mm);
         let most_mm = libm::tan(theta) * room_mm;
         let planned_mm_s = (normal_mm_s2 * most_mm).sqrt().min(goal_mm_s);
         // As long as a parabolic blend would take.
         let parabolic_mm_s2 = 0.5 * accel_mm_s2;
         let blend_s = (2.0 * parabolic_mm_s2 * room_mm).sqrt().min(planned_mm_s) / parabolic_mm_s2;
-        let radius_mm = (planned_mm_s * planned_mm_s / normal_mm_s2).max((blend_s * planned_mm_s / turn).min(most_mm));
+        let radius_mm = (planned_mm_s * planned_mm_s / normal_mm_s2)
+            .max((blend_s * planned_mm_s / turn).min(most_mm));
         let is_arc = radius_mm > NO_DISTANCE_MM && radius_mm * turn > SHORTEST_MM;
         let touches_mm = radius_mm / libm::tan(theta);
-        is_arc.then_some(BlendSize { tolerance_mm, radius_mm, touches_mm, feed_mm_s, planned_mm_s, accel_mm_s2 })
+        is_arc.then_some(BlendSize {
+            tolerance_mm,
+            radius_mm,
+            touches_mm,
+            feed_mm_s,
+            planned_mm_s,
+            accel_mm_s2,
+        })
     }
 
-    /// The least speed between two velocities on their way from one to the other: the altitude of the triangle that they make.
+    /// The least speed between two velocities on their way from one to the other: the altitude of
+    /// the triangle that they make.
     fn altitude_mm_s(&self, before: &MotionSegment, after: &MotionSegment) -> f64 {
         let turn = PI - 2.0 * self.theta;
         let cos = libm::cos(turn.min(0.49 * PI));
         let first = before.highest_mm_s.min(after.highest_mm_s / cos);
         let second = after.highest_mm_s.min(before.highest_mm_s / cos);
-        let base = norm(sub(scale(second, self.directions[1]), scale(first, self.directions[0])));
+        let base = norm(sub(
+            scale(second, self.directions[1]),
+            scale(first, self.directions[0]),
+        ));
         first * second * libm::sin(turn) / base.max(f64::MIN_POSITIVE)
     }
 
     fn center(&self, sides: &[CornerSide; 2], size: &BlendSize) -> Option<Vector> {
         let reach = |circle: &CircleShape, curves_in: bool| {
-            circle.radius_mm + if curves_in { -size.radius_mm } else { size.radius_mm }
+            circle.radius_mm
+                + if curves_in {
+                    -size.radius_mm
+                } else {
+                    size.radius_mm
+                }
         };
         match (sides[0].circle, sides[1].circle) {
-            (None, None) => Some(add_scaled(self.point_mm, size.radius_mm / libm::sin(self.theta), self.inward)),
+            (None, None) => Some(add_scaled(
+                self.point_mm,
+                size.radius_mm / libm::sin(self.theta),
+                self.inward,
+            )),
             (Some((first, in_1, _)), Some((second, in_2, _))) => {
                 self.between(&first, reach(&first, in_1), &second, reach(&second, in_2))
             }
             (round, other) => {
                 let (circle, curves_in, _) = round.or(other)?;
-                let along = if round.is_some() { self.directions[1] } else { scale(-1.0, self.directions[0]) };
-                let ahead = if round.is_some() { along } else { self.directions[0] };
+                let along = if round.is_some() {
+                    self.directions[1]
+                } else {
+                    scale(-1.0, self.directions[0])
+                };
+                let ahead = if round.is_some() {
+                    along
+                } else {
+                    self.directions[0]
+                };
                 let side = cross(self.across, ahead);
                 let to_center = sub(circle.center_mm, self.point_mm);
                 let (c_along, c_side) = (dot(to_center, along), dot(to_center, side));
                 let square = reach(&circle, curves_in).powi(2) - (size.radius_mm - c_side).powi(2);
                 let root = (square >= 0.0).then(|| square.sqrt())?;
                 let nearest = (c_along - root).abs().min((c_along + root).abs());
-                Some(add_scaled(add_scaled(self.point_mm, nearest, along), size.radius_mm, side))
+                Some(add_scaled(
+                    add_scaled(self.point_mm, nearest, along),
+                    size.radius_mm,
+                    side,
+                ))
             }
         }
     }
 
     /// The point so far from both centres that is nearer to the corner.
-    fn between(&self, first: &CircleShape, d1: f64, second: &CircleShape, d2: f64) -> Option<Vector> {
+    fn between(
+        &self,
+        first: &CircleShape,
+        d1: f64,
+        second: &CircleShape,
+        d2: f64,
+    ) -> Option<Vector> {
         let apart = sub(second.center_mm, first.center_mm);
         let way = norm(apart);
         let along = (d1 * d1 - d2 * d2 + way * way) / (2.0 * way);
@@ -309,7 +429,10 @@ impl BlendCorner {
         let growth_mm = (radii_mm[1] - radii_mm[0]) / shape.angle;
         (0..2).filter(|&i| sides[i].circle.is_some()).all(|i| {
             let round = cross(self.across, shape.ends_mm[i]);
-            angle(add_scaled(round, growth_mm / radii_mm[i], shape.ends_mm[i]), others[i]) <= most
+            angle(
+                add_scaled(round, growth_mm / radii_mm[i], shape.ends_mm[i]),
+                others[i],
+            ) <= most
         })
     }
 }

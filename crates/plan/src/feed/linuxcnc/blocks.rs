@@ -1,5 +1,6 @@
-//! Blocks as LinuxCNC's planner gets them: short lines are joined as long as every point between keeps the tolerance Q of `G64`
-//! (P where there is no Q), and arcs flatter than that count as two lines.
+//! Blocks as LinuxCNC's planner gets them: short lines are joined as long as every point between
+//! keeps the tolerance Q of `G64` (P where there is no Q), and arcs flatter than that count as two
+//! lines.
 
 use std::collections::VecDeque;
 
@@ -69,9 +70,10 @@ impl BlockMode {
     /// How far points may lie from the line that they are joined to.
     fn joins_within_mm(&self) -> f64 {
         match self.corner {
-            Corner::Continuous { tolerance_mm, merge_mm } if !self.is_rapid && !self.is_rotary => {
-                merge_mm.or(tolerance_mm).unwrap_or(0.0)
-            }
+            Corner::Continuous {
+                tolerance_mm,
+                merge_mm,
+            } if !self.is_rapid && !self.is_rotary => merge_mm.or(tolerance_mm).unwrap_or(0.0),
             _ => 0.0,
         }
     }
@@ -147,7 +149,11 @@ impl BlockMaker {
         if let Some(circle) = CircleShape::of(piece) {
             if !self.arcs.goes_on(&circle, piece.line) {
                 self.finish_arc();
-                self.arcs = ArcParts { line: piece.line, s_mm: [s_mm, s_mm], ..ArcParts::default() };
+                self.arcs = ArcParts {
+                    line: piece.line,
+                    s_mm: [s_mm, s_mm],
+                    ..ArcParts::default()
+                };
             }
             self.arcs.parts.push(circle);
             self.arcs.s_mm[1] = end_s_mm;
@@ -155,7 +161,11 @@ impl BlockMaker {
             return;
         }
         self.finish_arc();
-        let chords = if piece.curve.is_straight() { 1 } else { chords(piece) };
+        let chords = if piece.curve.is_straight() {
+            1
+        } else {
+            chords(piece)
+        };
         for i in 1..chords {
             let along_mm = piece.length_mm * i as f64 / chords as f64;
             self.see(&mode, piece.curve.at(along_mm).position_mm, s_mm + along_mm);
@@ -165,11 +175,22 @@ impl BlockMaker {
 
     /// The circles that wait are a whole motion.
     fn finish_arc(&mut self) {
-        let ArcParts { parts, s_mm, end_mm, .. } = std::mem::take(&mut self.arcs);
-        let (Some(circle), Some(mode)) = (CircleShape::spiral(&parts), self.mode) else { return };
+        let ArcParts {
+            parts,
+            s_mm,
+            end_mm,
+            ..
+        } = std::mem::take(&mut self.arcs);
+        let (Some(circle), Some(mode)) = (CircleShape::spiral(&parts), self.mode) else {
+            return;
+        };
         let away_mm = circle.radius_mm * (1.0 - libm::cos(0.5 * circle.angle));
         if circle.normal[2].abs() > IN_XY && away_mm < mode.joins_within_mm() {
-            let middle = CircleShape { growth: 0.0, ..circle }.at(0.5 * circle.angle);
+            let middle = CircleShape {
+                growth: 0.0,
+                ..circle
+            }
+            .at(0.5 * circle.angle);
             self.see(&mode, middle, 0.5 * (s_mm[0] + s_mm[1]));
             self.see(&mode, end_mm, s_mm[1]);
         } else {
@@ -213,7 +234,9 @@ impl BlockMaker {
 
     /// Makes a line of the points that wait.
     fn flush_lines(&mut self) {
-        let (Some(&(end_mm, end_s_mm)), Some(mode)) = (self.chain.last(), self.mode) else { return };
+        let (Some(&(end_mm, end_s_mm)), Some(mode)) = (self.chain.last(), self.mode) else {
+            return;
+        };
         if let Some(line) = LineShape::new(self.from.0, end_mm) {
             let mut places_mm = vec![[0.0, self.from.1]];
             let mut furthest_mm: f64 = 0.0;
@@ -225,7 +248,12 @@ impl BlockMaker {
             places_mm.push([line.length_mm, end_s_mm]);
             let highest_mm_s = self.limits.speed_mm_s(line.direction);
             let accel_mm_s2 = self.limits.accel_along_mm_s2(line.direction);
-            self.block(SegmentShape::Line(line), places_mm, &mode, [highest_mm_s, accel_mm_s2]);
+            self.block(
+                SegmentShape::Line(line),
+                places_mm,
+                &mode,
+                [highest_mm_s, accel_mm_s2],
+            );
             self.from = (end_mm, end_s_mm);
         } else {
             // Points that lead back to their start make no line: the next block includes them.
@@ -234,20 +262,32 @@ impl BlockMaker {
         self.chain.clear();
     }
 
-    /// A circle keeps the limits of the plane in every direction, and those of the chord for what goes along.
+    /// A circle keeps the limits of the plane in every direction, and those of the chord for what
+    /// goes along.
     fn circle(&mut self, circle: CircleShape, mode: &BlockMode, s_mm: [f64; 2]) {
         let [axes_mm_s, axes_mm_s2] = self.limits.of_plane(circle.normal);
         let least_mm = circle.radius_mm.min(circle.end_radius_mm());
-        let round_mm_s = (NORMAL_RATIO * axes_mm_s2 * libm::hypot(least_mm, circle.growth_mm())).sqrt();
+        let round_mm_s =
+            (NORMAL_RATIO * axes_mm_s2 * libm::hypot(least_mm, circle.growth_mm())).sqrt();
         let chord = sub(circle.at(circle.angle), circle.at(0.0));
-        let of_chord = |limits: [f64; 3]| (0..3).map(|k| chord[k].abs() / limits[k]).fold(0.0, f64::max);
+        let of_chord = |limits: [f64; 3]| {
+            (0..3)
+                .map(|k| chord[k].abs() / limits[k])
+                .fold(0.0, f64::max)
+        };
         let flat_mm = libm::hypot(least_mm * circle.angle, circle.growth * circle.radius_mm);
         let way_mm = libm::hypot(flat_mm, norm(circle.rise_mm));
-        let highest_mm_s = way_mm / (flat_mm / axes_mm_s.min(round_mm_s)).max(of_chord(self.limits.velocity_mm_s));
+        let highest_mm_s =
+            way_mm / (flat_mm / axes_mm_s.min(round_mm_s)).max(of_chord(self.limits.velocity_mm_s));
         let accel_mm_s2 = way_mm / (flat_mm / axes_mm_s2).max(of_chord(self.limits.accel_mm_s2));
         let length_mm = circle.length_mm();
         let places_mm = vec![[0.0, s_mm[0]], [length_mm, s_mm[1]]];
-        self.block(SegmentShape::Circle(circle), places_mm, mode, [highest_mm_s, accel_mm_s2]);
+        self.block(
+            SegmentShape::Circle(circle),
+            places_mm,
+            mode,
+            [highest_mm_s, accel_mm_s2],
+        );
     }
 
     fn block(
@@ -259,8 +299,17 @@ impl BlockMaker {
     ) {
         let highest_mm_s = highest_mm_s.min(mode.along_mm_s);
         let feed_mm_s = mode.feed_mm_s.min(highest_mm_s);
-        let highest_mm_s = if mode.is_rapid { feed_mm_s } else { highest_mm_s };
-        let BlockMode { is_rapid, is_rotary, corner, .. } = *mode;
+        let highest_mm_s = if mode.is_rapid {
+            feed_mm_s
+        } else {
+            highest_mm_s
+        };
+        let BlockMode {
+            is_rapid,
+            is_rotary,
+            corner,
+            ..
+        } = *mode;
         self.ready.push_back(PlannerBlock {
             shape,
             places_mm,
@@ -280,6 +329,12 @@ fn chords(piece: &Piece) -> usize {
     let curvature = (0..=64).map(at).fold(0.0, f64::max);
     let chord_mm = (8.0 * CHORD_MM / curvature.max(1e-9)).sqrt();
     let ends_mm = [0.0, piece.length_mm].map(|s_mm| piece.curve.at(s_mm).position_mm);
-    let least = if distance(ends_mm[0], ends_mm[1]) > 0.0 { 1.0 } else { 2.0 };
-    (piece.length_mm / chord_mm).ceil().clamp(least, MOST_CHORDS) as usize
+    let least = if distance(ends_mm[0], ends_mm[1]) > 0.0 {
+        1.0
+    } else {
+        2.0
+    };
+    (piece.length_mm / chord_mm)
+        .ceil()
+        .clamp(least, MOST_CHORDS) as usize
 }

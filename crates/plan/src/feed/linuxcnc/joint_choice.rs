@@ -48,7 +48,11 @@ pub(super) fn join(
         return None;
     }
     let may_blend = before.end == SegmentEnd::Parabolic && !before.is_final && !after.is_final;
-    let arc = if may_blend { arc_blend(before, after, limits) } else { None };
+    let arc = if may_blend {
+        arc_blend(before, after, limits)
+    } else {
+        None
+    };
     if before.end != SegmentEnd::Parabolic {
         return None;
     }
@@ -80,7 +84,8 @@ fn without_kink(before: &mut MotionSegment, after: &mut MotionSegment) {
     after.kink_parts[0] = 0.0;
 }
 
-/// Whether a corner takes little enough; what it takes, or the speed at which it would be little enough, is noted.
+/// Whether a corner takes little enough; what it takes, or the speed at which it would be little
+/// enough, is noted.
 fn is_tangent(
     before: &mut MotionSegment,
     after: &mut MotionSegment,
@@ -90,12 +95,19 @@ fn is_tangent(
     let speed_mm_s = before.overridden_mm_s().min(after.overridden_mm_s());
     let accel_mm_s2 = speed_mm_s / PERIOD_S + after.accel_mm_s2;
     let mut part = limits.accel_part(scale(accel_mm_s2, sub(tangents[1], tangents[0])));
-    if [&before.shape, &after.shape].iter().any(|shape| matches!(shape, SegmentShape::Circle(_))) {
+    if [&before.shape, &after.shape]
+        .iter()
+        .any(|shape| matches!(shape, SegmentShape::Circle(_)))
+    {
         part /= TANGENTIAL_RATIO;
     }
     let small = part < KINK_RATIO;
     let taken = if small { part } else { KINK_RATIO };
-    before.kink_mm_s = Some(if small { speed_mm_s } else { speed_mm_s * KINK_RATIO / part });
+    before.kink_mm_s = Some(if small {
+        speed_mm_s
+    } else {
+        speed_mm_s * KINK_RATIO / part
+    });
     before.kink_parts[1] = before.kink_parts[1].max(taken);
     after.kink_parts[0] = after.kink_parts[0].max(taken);
     small
@@ -103,26 +115,45 @@ fn is_tangent(
 
 /// Highest speed of a segment if it begins and ends at rest; as long as it may be cut, half of it.
 fn peak_mm_s(segment: &MotionSegment) -> f64 {
-    let length_mm = if segment.is_final { segment.length_mm } else { 0.5 * segment.length_mm };
+    let length_mm = if segment.is_final {
+        segment.length_mm
+    } else {
+        0.5 * segment.length_mm
+    };
     (segment.along_mm_s2() * length_mm).sqrt()
 }
 
-/// Direction of the acceleration at the beginning of a segment: on a circle at half of its speed, with what is normal.
+/// Direction of the acceleration at the beginning of a segment: on a circle at half of its speed,
+/// with what is normal.
 fn begins(segment: &MotionSegment) -> Vector {
-    let SegmentShape::Circle(circle) = segment.shape else { return segment.shape.tangents()[0] };
-    let forward = scale(segment.whole_accel_mm_s2() / circle.radius_mm, circle.second_mm);
+    let SegmentShape::Circle(circle) = segment.shape else {
+        return segment.shape.tangents()[0];
+    };
+    let forward = scale(
+        segment.whole_accel_mm_s2() / circle.radius_mm,
+        circle.second_mm,
+    );
     let inward = (0.5 * segment.feed_mm_s / circle.radius_mm).powi(2);
     let both = add_scaled(forward, -inward, circle.first_mm);
     scale(1.0 / norm(both).max(f64::MIN_POSITIVE), both)
 }
 
 /// Speeds of both segments where one slows down while the other speeds up, going for `wanted_mm_s`.
-pub(super) fn blend_speeds_mm_s(before: &MotionSegment, after: &MotionSegment, wanted_mm_s: [f64; 2]) -> [f64; 2] {
+pub(super) fn blend_speeds_mm_s(
+    before: &MotionSegment,
+    after: &MotionSegment,
+    wanted_mm_s: [f64; 2],
+) -> [f64; 2] {
     let both = [before, after];
     let accel = both.map(MotionSegment::along_mm_s2);
     let reached: [f64; 2] = std::array::from_fn(|i| peak_mm_s(both[i]).min(wanted_mm_s[i]));
-    let longest_s = (0..2).map(|i| both[i].length_mm / reached[i]).fold(f64::INFINITY, f64::min);
-    let blend_s = (0..2).map(|i| reached[i] / accel[i]).fold(0.0, f64::max).min(longest_s);
+    let longest_s = (0..2)
+        .map(|i| both[i].length_mm / reached[i])
+        .fold(f64::INFINITY, f64::min);
+    let blend_s = (0..2)
+        .map(|i| reached[i] / accel[i])
+        .fold(0.0, f64::max)
+        .min(longest_s);
     let cos = libm::cos(half_angle([before.shape.tangents()[1], begins(after)]));
     let by_tolerance = if before.tolerance_mm > 0.0 && cos > libm::sin(FLAT) {
         2.0 * (accel[0] * before.tolerance_mm / cos).sqrt()

@@ -1,8 +1,10 @@
 //! From servo periods to motion: the cubic that LinuxCNC's joints run through.
 //!
-//! Commands of servo periods are the control points of a uniform cubic B-spline: with points `p`, the position at the beginning of a period is
-//! `(p_0 + 4 p_1 + p_2) / 6`, the velocity `(p_2 - p_0) / 2 T`, the acceleration `(p_0 - 2 p_1 + p_2) / T^2`, and the jerk is constant,
-//! `(p_3 - 3 p_2 + 3 p_1 - p_0) / T^3`. The place on the program goes through the same spline, and so stays monotone.
+//! Commands of servo periods are the control points of a uniform cubic B-spline: with points `p`,
+//! the position at the beginning of a period is `(p_0 + 4 p_1 + p_2) / 6`, the velocity `(p_2 -
+//! p_0) / 2 T`, the acceleration `(p_0 - 2 p_1 + p_2) / T^2`, and the jerk is constant, `(p_3 - 3
+//! p_2 + 3 p_1 - p_0) / T^3`. The place on the program goes through the same spline, and so stays
+//! monotone.
 
 use super::limits::PERIOD_S;
 use crate::feed::AxisMotion;
@@ -45,9 +47,16 @@ impl JointSpline {
         let axis = |k: usize| cubic([a, b, c, point].map(|p| p.position_mm[k]));
         let axes = [axis(0), axis(1), axis(2)];
         let power = |i: usize| std::array::from_fn(|k| axes[k][i]);
-        let axes =
-            AxisMotion { position_mm: power(0), velocity_mm_s: power(1), accel_mm_s2: power(2), jerk_mm_s3: power(3) };
-        PeriodMotion { axes, station: cubic([a, b, c, point].map(|p| p.station_mm)) }
+        let axes = AxisMotion {
+            position_mm: power(0),
+            velocity_mm_s: power(1),
+            accel_mm_s2: power(2),
+            jerk_mm_s3: power(3),
+        };
+        PeriodMotion {
+            axes,
+            station: cubic([a, b, c, point].map(|p| p.station_mm)),
+        }
     }
 }
 

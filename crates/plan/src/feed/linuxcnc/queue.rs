@@ -1,7 +1,8 @@
 //! The queue of segments, and the look-ahead over it.
 //!
-//! With each block that comes in, the look-ahead goes back from the last: a segment of length `L` and acceleration `a` that ends at `v_f` may
-//! begin at `sqrt(v_f^2 + 2 a L)`. The last may still lose half of its length to a blend, and must be able to stop in what is left.
+//! With each block that comes in, the look-ahead goes back from the last: a segment of length `L`
+//! and acceleration `a` that ends at `v_f` may begin at `sqrt(v_f^2 + 2 a L)`. The last may still
+//! lose half of its length to a blend, and must be able to stop in what is left.
 
 use std::collections::VecDeque;
 
@@ -35,7 +36,10 @@ pub(super) struct SegmentQueue {
 impl SegmentQueue {
     /// Without segments.
     pub(super) const fn new(limits: DirectionLimits) -> Self {
-        Self { limits, segments: VecDeque::new() }
+        Self {
+            limits,
+            segments: VecDeque::new(),
+        }
     }
 
     /// Adds a block.
@@ -53,7 +57,9 @@ impl SegmentQueue {
 
     /// Puts an arc between the last segment and the next.
     fn put_between(&mut self, arc: ArcBlend, after: &mut MotionSegment) {
-        let Some(mut before) = self.segments.pop_back() else { return };
+        let Some(mut before) = self.segments.pop_back() else {
+            return;
+        };
         let line_mm = arc.shape.line_mm;
         let ends_mm = before.length_mm - arc.cut_mm[0];
         let joint_mm = after.station_mm(0.0);
@@ -95,9 +101,13 @@ impl SegmentQueue {
         let mut peaks = 0;
         let mut has_stopped = false;
         for back in 1..DEPTH + 2 {
-            let Some(i) = self.segments.len().checked_sub(back).filter(|i| *i > 0) else { return };
+            let Some(i) = self.segments.len().checked_sub(back).filter(|i| *i > 0) else {
+                return;
+            };
             let mut pair = self.segments.range_mut(i - 1..=i);
-            let (Some(before), Some(segment)) = (pair.next(), pair.next()) else { return };
+            let (Some(before), Some(segment)) = (pair.next(), pair.next()) else {
+                return;
+            };
             if before.end != SegmentEnd::Tangent {
                 if has_stopped {
                     return;
@@ -132,9 +142,15 @@ impl SegmentQueue {
 
 /// Speed between two segments, by the second.
 fn bound_before(before: &mut MotionSegment, segment: &mut MotionSegment) {
-    let reached_mm_s = (segment.final_mm_s.powi(2) + 2.0 * segment.along_mm_s2() * segment.length_mm).sqrt();
-    let most_mm_s = segment.highest_mm_s.min(before.highest_mm_s).min(before.kink_mm_s.unwrap_or(f64::INFINITY));
+    let reached_mm_s =
+        (segment.final_mm_s.powi(2) + 2.0 * segment.along_mm_s2() * segment.length_mm).sqrt();
+    let most_mm_s = segment
+        .highest_mm_s
+        .min(before.highest_mm_s)
+        .min(before.kink_mm_s.unwrap_or(f64::INFINITY));
     before.is_peak |= reached_mm_s >= most_mm_s;
     before.final_mm_s = reached_mm_s.min(most_mm_s);
-    segment.highest_mm_s = segment.highest_mm_s.min(segment.length_mm / (LEAST_PERIODS * PERIOD_S));
+    segment.highest_mm_s = segment
+        .highest_mm_s
+        .min(segment.length_mm / (LEAST_PERIODS * PERIOD_S));
 }

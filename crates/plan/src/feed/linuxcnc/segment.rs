@@ -24,7 +24,8 @@ pub(super) enum SegmentEnd {
 pub(super) struct MotionSegment {
     /// Its curve.
     pub shape: SegmentShape,
-    /// Places along it before its beginning was cut, and the arc lengths of the program that they stand for, mm.
+    /// Places along it before its beginning was cut, and the arc lengths of the program that they
+    /// stand for, mm.
     pub places_mm: Vec<[f64; 2]>,
     /// What was cut from its beginning.
     pub cut_mm: f64,
@@ -48,7 +49,8 @@ pub(super) struct MotionSegment {
     pub accel_mm_s2: f64,
     /// Part of the acceleration that is for the tangent.
     pub tangential_ratio: f64,
-    /// Speed at which the corner at the end takes no more than its part of the acceleration; none where there is no such corner.
+    /// Speed at which the corner at the end takes no more than its part of the acceleration; none
+    /// where there is no such corner.
     pub kink_mm_s: Option<f64>,
     /// Parts of the acceleration that the corners at its beginning and at its end take.
     pub kink_parts: [f64; 2],
@@ -92,12 +94,22 @@ pub(super) struct SegmentRun {
 impl MotionSegment {
     /// The segment of a block.
     pub(super) fn new(block: PlannerBlock) -> Self {
-        let PlannerBlock { shape, places_mm, is_rapid, is_rotary, feed_mm_s, highest_mm_s, accel_mm_s2, corner } =
-            block;
+        let PlannerBlock {
+            shape,
+            places_mm,
+            is_rapid,
+            is_rotary,
+            feed_mm_s,
+            highest_mm_s,
+            accel_mm_s2,
+            corner,
+        } = block;
         let (end, tolerance_mm) = match corner {
             Corner::ExactStop => (SegmentEnd::Stop, 0.0),
             Corner::ExactPath => (SegmentEnd::Exact, 0.0),
-            Corner::Continuous { tolerance_mm, .. } => (SegmentEnd::Parabolic, tolerance_mm.unwrap_or(0.0)),
+            Corner::Continuous { tolerance_mm, .. } => {
+                (SegmentEnd::Parabolic, tolerance_mm.unwrap_or(0.0))
+            }
         };
         let length_mm = shape.length_mm();
         let run = SegmentRun {
@@ -172,7 +184,12 @@ impl MotionSegment {
 
     /// Acceleration along the path.
     pub(super) fn along_mm_s2(&self) -> f64 {
-        self.whole_accel_mm_s2() * if self.shape.is_round() { self.tangential_ratio } else { 1.0 }
+        self.whole_accel_mm_s2()
+            * if self.shape.is_round() {
+                self.tangential_ratio
+            } else {
+                1.0
+            }
     }
 
     /// Highest speed at the largest override.
@@ -194,7 +211,12 @@ impl MotionSegment {
     pub(super) fn station_mm(&self, along_mm: f64) -> f64 {
         let along_mm = along_mm + self.cut_mm;
         let after = self.places_mm.partition_point(|place| place[0] < along_mm);
-        match (after.checked_sub(1).and_then(|before| self.places_mm.get(before)), self.places_mm.get(after)) {
+        match (
+            after
+                .checked_sub(1)
+                .and_then(|before| self.places_mm.get(before)),
+            self.places_mm.get(after),
+        ) {
             (Some(&[x0, s0]), Some(&[x1, s1])) => s0 + (along_mm - x0) / (x1 - x0) * (s1 - s0),
             (None, Some(place)) | (Some(place), None) => place[1],
             (None, None) => 0.0,

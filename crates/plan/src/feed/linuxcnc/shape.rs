@@ -18,7 +18,8 @@ pub(super) struct LineShape {
     pub length_mm: f64,
 }
 
-/// A circle, helix or spiral: `center + (1 + growth phi / angle) (cos(phi) first + sin(phi) second) + rise phi / angle`.
+/// A circle, helix or spiral: `center + (1 + growth phi / angle) (cos(phi) first + sin(phi)
+/// second) + rise phi / angle`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CircleShape {
     /// Centre, beside the start.
@@ -76,7 +77,11 @@ impl LineShape {
     pub(super) fn new(start_mm: Vector, end_mm: Vector) -> Option<Self> {
         let way = sub(end_mm, start_mm);
         let length_mm = norm(way);
-        (length_mm > NO_DISTANCE_MM).then(|| Self { start_mm, direction: scale(1.0 / length_mm, way), length_mm })
+        (length_mm > NO_DISTANCE_MM).then(|| Self {
+            start_mm,
+            direction: scale(1.0 / length_mm, way),
+            length_mm,
+        })
     }
 
     /// A point of it.
@@ -88,7 +93,9 @@ impl LineShape {
 impl CircleShape {
     /// The circle of a piece.
     pub(super) fn of(piece: &Piece) -> Option<Self> {
-        let Curve::Arc(arc) = &piece.curve else { return None };
+        let Curve::Arc(arc) = &piece.curve else {
+            return None;
+        };
         let at_start = piece.curve.derivatives(0.0);
         let (inward, backward) = (at_start.second_1_mm, at_start.third_1_mm2);
         let inward = scale(1.0 / norm(inward), inward);
@@ -112,19 +119,24 @@ impl CircleShape {
         (shape.angle.is_finite() && shape.angle > 0.0).then_some(shape)
     }
 
-    /// The spiral of which circles are the parts, each turning by as much: the one through the beginning, a joint, and the end.
+    /// The spiral of which circles are the parts, each turning by as much: the one through the
+    /// beginning, a joint, and the end.
     pub(super) fn spiral(parts: &[Self]) -> Option<Self> {
         let (first, last) = (parts.first()?, parts.last()?);
         let half = parts.len() / 2;
         let (joint, share) = (parts.get(half)?, half as f64 / parts.len() as f64);
-        let (angle, rise_mm) = parts
-            .iter()
-            .fold((0.0, [0.0; 3]), |(angle, rise), part| (angle + part.angle, add_scaled(rise, 1.0, part.rise_mm)));
+        let (angle, rise_mm) = parts.iter().fold((0.0, [0.0; 3]), |(angle, rise), part| {
+            (angle + part.angle, add_scaled(rise, 1.0, part.rise_mm))
+        });
         if half == 0 {
             return Some(*first);
         }
-        // In the plane, with complex numbers, from the beginning: c = (p_m - s e / E p_N) / (1 - e (1 - s) - s e / E).
-        let frame = [scale(1.0 / first.radius_mm, first.first_mm), scale(1.0 / first.radius_mm, first.second_mm)];
+        // In the plane, with complex numbers, from the beginning: c = (p_m - s e / E p_N) / (1 - e
+        // (1 - s) - s e / E).
+        let frame = [
+            scale(1.0 / first.radius_mm, first.first_mm),
+            scale(1.0 / first.radius_mm, first.second_mm),
+        ];
         let start_mm = first.at(0.0);
         let seen = |point: Vector| frame.map(|axis| dot(sub(point, start_mm), axis));
         let (middle, end) = (seen(joint.at(0.0)), seen(last.at(last.angle)));
@@ -134,28 +146,49 @@ impl CircleShape {
         let divisor = [1.0 - there[0] - back[0], -there[1] - back[1]];
         let moved = times(back, end);
         let center = over([middle[0] - moved[0], middle[1] - moved[1]], divisor)?;
-        let center_mm = add_scaled(add_scaled(start_mm, center[0], frame[0]), center[1], frame[1]);
+        let center_mm = add_scaled(
+            add_scaled(start_mm, center[0], frame[0]),
+            center[1],
+            frame[1],
+        );
         let first_mm = sub(start_mm, center_mm);
         let radius_mm = norm(first_mm);
         let end_radius_mm = libm::hypot(end[0] - center[0], end[1] - center[1]);
         let second_mm = cross(first.normal, first_mm);
         let growth = end_radius_mm / radius_mm - 1.0;
-        let shape = Self { center_mm, first_mm, second_mm, radius_mm, angle, growth, rise_mm, ..*first };
+        let shape = Self {
+            center_mm,
+            first_mm,
+            second_mm,
+            radius_mm,
+            angle,
+            growth,
+            rise_mm,
+            ..*first
+        };
         let left_over_mm = sub(last.at(last.angle), shape.at(angle));
-        growth.is_finite().then_some(Self { left_over_mm, ..shape })
+        growth.is_finite().then_some(Self {
+            left_over_mm,
+            ..shape
+        })
     }
 
     /// A point of it.
     pub(super) fn at(&self, angle: f64) -> Vector {
         let radial = self.radial_mm(angle);
         let part = angle / self.angle;
-        std::array::from_fn(|k| self.center_mm[k] + radial[k] + part * (self.rise_mm[k] + self.left_over_mm[k]))
+        std::array::from_fn(|k| {
+            self.center_mm[k] + radial[k] + part * (self.rise_mm[k] + self.left_over_mm[k])
+        })
     }
 
     /// From the axis to a point of it.
     pub(super) fn radial_mm(&self, angle: f64) -> Vector {
         let (sin, cos) = libm::sincos(angle);
-        scale(1.0 + self.growth * angle / self.angle, add_scaled(scale(cos, self.first_mm), sin, self.second_mm))
+        scale(
+            1.0 + self.growth * angle / self.angle,
+            add_scaled(scale(cos, self.first_mm), sin, self.second_mm),
+        )
     }
 
     /// Unit tangent.
@@ -214,7 +247,11 @@ impl CircleShape {
         let first_mm = self.radial_mm(angle);
         let radius_mm = norm(first_mm);
         Self {
-            center_mm: add_scaled(self.center_mm, 1.0 - part, add_scaled(self.rise_mm, 1.0, self.left_over_mm)),
+            center_mm: add_scaled(
+                self.center_mm,
+                1.0 - part,
+                add_scaled(self.rise_mm, 1.0, self.left_over_mm),
+            ),
             first_mm,
             second_mm: cross(self.normal, first_mm),
             radius_mm,
@@ -230,7 +267,13 @@ impl CircleShape {
     pub(super) fn without_end(&self, angle: f64) -> Self {
         let part = (self.angle - angle) / self.angle;
         let [rise_mm, left_over_mm] = [self.rise_mm, self.left_over_mm].map(|way| scale(part, way));
-        Self { angle: self.angle - angle, growth: part * self.growth, rise_mm, left_over_mm, ..*self }
+        Self {
+            angle: self.angle - angle,
+            growth: part * self.growth,
+            rise_mm,
+            left_over_mm,
+            ..*self
+        }
     }
 }
 
@@ -257,7 +300,15 @@ impl BlendShape {
         let cos = dot(ends_mm[0], ends_mm[1]) / (radii_mm[0] * radii_mm[1]);
         let angle = libm::acos(cos.clamp(-1.0, 1.0));
         let is_arc = radii_mm.iter().all(|mm| *mm > NO_DISTANCE_MM) && angle > 1e-9;
-        is_arc.then_some(Self { start_mm, tangent, line_mm, center_mm, ends_mm, radius_mm: radii_mm[0], angle })
+        is_arc.then_some(Self {
+            start_mm,
+            tangent,
+            line_mm,
+            center_mm,
+            ends_mm,
+            radius_mm: radii_mm[0],
+            angle,
+        })
     }
 
     /// Length, with the line before it.
@@ -272,8 +323,11 @@ impl BlendShape {
             return add_scaled(self.start_mm, on_arc_mm, self.tangent);
         }
         let angle = on_arc_mm / self.radius_mm;
-        let parts = [libm::sin(self.angle - angle), libm::sin(angle)].map(|sin| sin / libm::sin(self.angle));
-        std::array::from_fn(|k| self.center_mm[k] + parts[0] * self.ends_mm[0][k] + parts[1] * self.ends_mm[1][k])
+        let parts = [libm::sin(self.angle - angle), libm::sin(angle)]
+            .map(|sin| sin / libm::sin(self.angle));
+        std::array::from_fn(|k| {
+            self.center_mm[k] + parts[0] * self.ends_mm[0][k] + parts[1] * self.ends_mm[1][k]
+        })
     }
 }
 

@@ -1,7 +1,8 @@
 //! The bounds of a window: slacks, their multipliers, and how far a step may go.
 //!
-//! Every bound is on the unknowns of one node or step, so an iterate is strictly inside of all of them from the beginning, and stays
-//! there: `|v|, |a|, |j| <= 1` of each axis, `h > 0`, the offset within its tube and the control velocity of each step within its feedrate.
+//! Every bound is on the unknowns of one node or step, so an iterate is strictly inside of all of
+//! them from the beginning, and stays there: `|v|, |a|, |j| <= 1` of each axis, `h > 0`, the offset
+//! within its tube and the control velocity of each step within its feedrate.
 
 use super::riccati::NewtonStep;
 use super::window::{StepOfAxis, WindowProblem, WindowUnknowns};
@@ -18,7 +19,8 @@ const CURVED_HALVINGS: u32 = 12;
 /// First iterates keep this part of each bound away from it.
 const FIRST_SLACK: f64 = 0.05;
 
-/// A multiplier stays within this factor of `mu / slack`. Source: Waechter and Biegler (2006), eq. 16.
+/// A multiplier stays within this factor of `mu / slack`. Source: Waechter and Biegler (2006),
+/// eq. 16.
 const MULTIPLIER_FACTOR: f64 = 1e10;
 
 /// Multipliers of the bounds of a node: lower and upper of each axis.
@@ -37,7 +39,8 @@ pub(super) struct StepMultipliers<const D: usize> {
     pub(super) feed: f64,
 }
 
-/// The larger one; without the care of `f64::max` for what is not a number, which takes four times as long.
+/// The larger one; without the care of `f64::max` for what is not a number, which takes four times
+/// as long.
 #[inline]
 pub(super) fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
@@ -49,8 +52,8 @@ pub(super) fn feed_slack<const D: usize>(w: &[f64; D], c: &[f64; D]) -> f64 {
     1.0 - (0..D).map(|k| w[k] * c[k] * c[k]).sum::<f64>()
 }
 
-/// The control velocity of a step, `v + h a / 2`: with those of its neighbours the polygon of which the velocity is the quadratic
-/// B-spline. Where it is within a ball, so is the velocity.
+/// The control velocity of a step, `v + h a / 2`: with those of its neighbours the polygon of which
+/// the velocity is the quadratic B-spline. Where it is within a ball, so is the velocity.
 #[inline]
 pub(super) fn control<const D: usize, const N: usize, const M: usize>(
     steps: &[StepOfAxis; D],
@@ -102,12 +105,31 @@ pub(super) struct WindowIterate<'a, const D: usize, const N: usize, const M: usi
 
 impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N, M> {
     /// The first one: inside of all bounds, each multiplier `mu / slack`.
-    pub(super) fn first(problem: &'a WindowProblem<D, N>, at: WindowUnknowns<N, M>, mu: f64) -> Self {
+    pub(super) fn first(
+        problem: &'a WindowProblem<D, N>,
+        at: WindowUnknowns<N, M>,
+        mu: f64,
+    ) -> Self {
         let n = problem.way.len();
-        let node = NodeMultipliers { v: [[0.0; 2]; D], a: [[0.0; 2]; D], tube: 0.0 };
-        let step = StepMultipliers { j: [[0.0; 2]; D], h: 0.0, feed: 0.0 };
+        let node = NodeMultipliers {
+            v: [[0.0; 2]; D],
+            a: [[0.0; 2]; D],
+            tube: 0.0,
+        };
+        let step = StepMultipliers {
+            j: [[0.0; 2]; D],
+            h: 0.0,
+            feed: 0.0,
+        };
         let (nodes, steps, multipliers) = (vec![node; n + 1], vec![step; n], vec![[0.0; N]; n + 1]);
-        let mut first = Self { problem, at, multipliers, nodes, steps, mu };
+        let mut first = Self {
+            problem,
+            at,
+            multipliers,
+            nodes,
+            steps,
+            mu,
+        };
         first.put_inside();
         first.first_multipliers();
         first
@@ -124,7 +146,9 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
     pub(super) fn is_at_feed(&self) -> bool {
         let steps = self.problem.steps();
         let mut all = self.at.x.iter().zip(&self.at.u).enumerate();
-        all.any(|(i, (x, u))| feed_slack(&self.problem.feed_weights(i), &control(&steps, x, u)) < AT_FEED)
+        all.any(|(i, (x, u))| {
+            feed_slack(&self.problem.feed_weights(i), &control(&steps, x, u)) < AT_FEED
+        })
     }
 
     fn put_inside(&mut self) {
@@ -142,7 +166,11 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
             }
             let offset = (1.0 - tube_slack(1.0, x)).max(0.0).sqrt();
             let radius = most * self.problem.radius[i];
-            let nearer = if offset > radius { radius / offset } else { 1.0 };
+            let nearer = if offset > radius {
+                radius / offset
+            } else {
+                1.0
+            };
             (0..D).for_each(|k| x[3 * k] *= nearer);
         }
         for u in &mut self.at.u {
@@ -152,19 +180,24 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
         self.put_inside_feed(most);
     }
 
-    /// Slower where the control velocity is not well within the feedrate; behind the given state for a shorter time.
+    /// Slower where the control velocity is not well within the feedrate; behind the given state
+    /// for a shorter time.
     fn put_inside_feed(&mut self, most: f64) {
         let steps = self.problem.steps();
         for (i, (x, u)) in self.at.x.iter_mut().zip(&mut self.at.u).enumerate() {
             let w = self.problem.feed_weights(i);
             if i == 0 {
                 let at_once = feed_slack(&w, &std::array::from_fn(|k| x[3 * k + 1]));
-                while feed_slack(&w, &control(&steps, x, u)) < 0.5 * at_once && u[D] > 10.0 * LEAST_STEP {
+                while feed_slack(&w, &control(&steps, x, u)) < 0.5 * at_once
+                    && u[D] > 10.0 * LEAST_STEP
+                {
                     u[D] = (0.5 * u[D]).max(10.0 * LEAST_STEP);
                 }
                 continue;
             }
-            let speed = (1.0 - feed_slack(&w, &control(&steps, x, u))).max(0.0).sqrt();
+            let speed = (1.0 - feed_slack(&w, &control(&steps, x, u)))
+                .max(0.0)
+                .sqrt();
             if speed > most {
                 for k in 0..D {
                     x[3 * k + 1] *= most / speed;
@@ -188,7 +221,11 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
         for (i, (u, z)) in self.at.u.iter().zip(&mut self.steps).enumerate() {
             (0..D).for_each(|k| z.j[k] = pair(u[k]));
             z.h = mu / (u[D] - LEAST_STEP);
-            z.feed = mu / feed_slack(&self.problem.feed_weights(i), &control(&steps, &self.at.x[i], u));
+            z.feed = mu
+                / feed_slack(
+                    &self.problem.feed_weights(i),
+                    &control(&steps, &self.at.x[i], u),
+                );
         }
     }
 
@@ -203,14 +240,17 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
             if feed <= 0.0 {
                 return f64::NAN;
             }
-            sum += libm::log((0..D).fold(feed * (u[D] - LEAST_STEP), |product, k| product * (1.0 - u[k] * u[k])));
+            sum += libm::log((0..D).fold(feed * (u[D] - LEAST_STEP), |product, k| {
+                product * (1.0 - u[k] * u[k])
+            }));
         }
         for (i, x) in at.x.iter().enumerate() {
             let [moves, offset] = self.is_bounded(i);
             let mut product = 1.0;
             if moves {
                 for k in 0..D {
-                    product *= (1.0 - x[3 * k + 1] * x[3 * k + 1]) * (1.0 - x[3 * k + 2] * x[3 * k + 2]);
+                    product *=
+                        (1.0 - x[3 * k + 1] * x[3 * k + 1]) * (1.0 - x[3 * k + 2] * x[3 * k + 2]);
                 }
             }
             if offset {
@@ -221,9 +261,15 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
         sum
     }
 
-    /// The longest steps, of the unknowns and of the multipliers of bounds, that leave `1 - tau` of each.
+    /// The longest steps, of the unknowns and of the multipliers of bounds, that leave `1 - tau` of
+    /// each.
     pub(super) fn longest(&self, newton: &NewtonStep<N, M>, tau: f64) -> (f64, f64) {
-        let mut longest = Longest { unknowns: 1.0, multipliers: 1.0, mu: self.mu, tau };
+        let mut longest = Longest {
+            unknowns: 1.0,
+            multipliers: 1.0,
+            mu: self.mu,
+            tau,
+        };
         for (i, (u, du)) in self.at.u.iter().zip(&newton.du).enumerate() {
             let z = &self.steps[i];
             (0..D).for_each(|k| longest.interval(u[k], du[k], z.j[k]));
@@ -235,7 +281,10 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
             let (x, u, dx, du) = (&self.at.x[i], &self.at.u[i], &newton.dx[i], &newton.du[i]);
             let at = |t: f64| -> [f64; D] {
                 std::array::from_fn(|k| {
-                    let (v, a) = (x[3 * k + 1] + t * dx[3 * k + 1], x[3 * k + 2] + t * dx[3 * k + 2]);
+                    let (v, a) = (
+                        x[3 * k + 1] + t * dx[3 * k + 1],
+                        x[3 * k + 2] + t * dx[3 * k + 2],
+                    );
                     v + 0.5 * steps[k].d1 * (u[D] + t * du[D]) * a
                 })
             };
@@ -263,8 +312,15 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
         (longest.unknowns, longest.multipliers)
     }
 
-    /// Goes to `next`, which is `step` of the Newton step away; multipliers of bounds go `dual` of it.
-    pub(super) fn go(&mut self, next: &mut WindowUnknowns<N, M>, newton: &NewtonStep<N, M>, step: f64, dual: f64) {
+    /// Goes to `next`, which is `step` of the Newton step away; multipliers of bounds go `dual` of
+    /// it.
+    pub(super) fn go(
+        &mut self,
+        next: &mut WindowUnknowns<N, M>,
+        newton: &NewtonStep<N, M>,
+        step: f64,
+        dual: f64,
+    ) {
         let mu = self.mu;
         let update = |z: &mut f64, slack: f64, change: f64, next_slack: f64| {
             *z += dual * ((mu - *z * change) / slack - *z);
@@ -279,7 +335,8 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
         for (i, z) in self.steps.iter_mut().enumerate() {
             let (x, dx, u, du) = (&self.at.x[i], &newton.dx[i], &self.at.u[i], &newton.du[i]);
             let w = self.problem.feed_weights(i);
-            let slacks = [(x, u), (&next.x[i], &next.u[i])].map(|(x, u)| feed_slack(&w, &control(&steps, x, u)));
+            let slacks = [(x, u), (&next.x[i], &next.u[i])]
+                .map(|(x, u)| feed_slack(&w, &control(&steps, x, u)));
             let slope = feed_slope(&steps, &w, [x, dx], [u, du]);
             update(&mut z.feed, slacks[0], slope, slacks[1]);
             let next = &next.u[i];
@@ -298,7 +355,12 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
             if i < n || !self.problem.exact_end {
                 let r = self.problem.radius[i];
                 let along: f64 = (0..D).map(|k| x[3 * k] * dx[3 * k]).sum();
-                update(&mut z.tube, tube_slack(r, x), -2.0 * along, tube_slack(r, next));
+                update(
+                    &mut z.tube,
+                    tube_slack(r, x),
+                    -2.0 * along,
+                    tube_slack(r, next),
+                );
             }
         }
         for (to, from) in self.multipliers.iter_mut().zip(&newton.multipliers) {
@@ -340,7 +402,8 @@ impl Longest {
         self.bound(1.0 - value, -change, z[1]);
     }
 
-    /// A slack that is no quadratic, with its slope: the longest step by halving where it is too long.
+    /// A slack that is no quadratic, with its slope: the longest step by halving where it is too
+    /// long.
     fn curved(&mut self, slack: impl Fn(f64) -> f64, slope: f64, z: f64) {
         let now = slack(0.0);
         let least = (1.0 - self.tau) * now;
@@ -348,7 +411,11 @@ impl Longest {
             let (mut lo, mut hi) = (0.0, self.unknowns);
             for _ in 0..CURVED_HALVINGS {
                 let middle = 0.5 * (lo + hi);
-                if slack(middle) < least { hi = middle } else { lo = middle }
+                if slack(middle) < least {
+                    hi = middle;
+                } else {
+                    lo = middle;
+                }
             }
             self.unknowns = lo;
         }
@@ -361,7 +428,11 @@ impl Longest {
         let most = self.tau * slack;
         if 2.0 * along + square > most {
             let root = (along * along + square * most).sqrt();
-            let t = if along > 0.0 { most / (along + root) } else { (root - along) / square };
+            let t = if along > 0.0 {
+                most / (along + root)
+            } else {
+                (root - along) / square
+            };
             self.unknowns = self.unknowns.min(t);
         }
         self.multiplier(self.mu + z * (2.0 * along - slack), z * slack);

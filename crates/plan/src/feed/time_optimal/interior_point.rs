@@ -1,22 +1,27 @@
 //! Interior-point method for a window: the least sum of durations.
 //!
-//! Primal-dual with a barrier that falls to [`SolverSettings::last_mu`], Newton steps by [`super::riccati`], made convex by a multiple
-//! of the unit matrix where they are not, and a line search with a filter of defects and cost. Source: Waechter and Biegler (2006),
-//! "On the implementation of an interior-point filter line-search algorithm for large-scale nonlinear programming", sections 2 and 3,
-//! without its restoration and its second-order correction: a search that fails ends in a short step, and too many of them in `None`.
+//! Primal-dual with a barrier that falls to [`SolverSettings::last_mu`], Newton steps by
+//! [`super::riccati`], made convex by a multiple of the unit matrix where they are not, and a line
+//! search with a filter of defects and cost. Source: Waechter and Biegler (2006), "On the
+//! implementation of an interior-point filter line-search algorithm for large-scale nonlinear
+//! programming", sections 2 and 3, without its restoration and its second-order correction: a
+//! search that fails ends in a short step, and too many of them in `None`.
 
-use super::barrier::{LEAST_STEP, WindowIterate, control, feed_slack, larger, offset_square, tube_slack};
+use super::barrier::{
+    LEAST_STEP, WindowIterate, control, feed_slack, larger, offset_square, tube_slack,
+};
 use super::riccati::{NewtonStep, Stage};
 use super::window::{StepOfAxis, WindowProblem, WindowUnknowns};
 
-/// The equations of the last node, at rest, hold with this much of their multiplier; the defect that is left of them vanishes with the
-/// iterations.
+/// The equations of the last node, at rest, hold with this much of their multiplier; the defect
+/// that is left of them vanishes with the iterations.
 const GIVEN: f64 = 1e-7;
 
 /// The barrier falls when no defect is more than `mu`, and the error no more than this many times.
 const KAPPA: f64 = 10.0;
 
-/// Largest defect of a solution, in units: rolling out takes it away, and moves no node by more than a nanometre.
+/// Largest defect of a solution, in units: rolling out takes it away, and moves no node by more
+/// than a nanometre.
 const LARGEST_DEFECT: f64 = 1e-7;
 
 /// The barrier also falls after more than `PATIENCE` iterations that miss the condition of `KAPPA`,
@@ -25,7 +30,8 @@ const LARGEST_DEFECT: f64 = 1e-7;
 const PATIENCE: u32 = 8;
 const PATIENT_DEFECT: f64 = 1e-3;
 
-/// With the last barrier, a Newton step that would lower the cost by no more than this part of it is not worth taking.
+/// With the last barrier, a Newton step that would lower the cost by no more than this part of it
+/// is not worth taking.
 const STATIONARY: f64 = 1e-5;
 
 /// With no iterations left, a solution with a barrier up to this is better than none.
@@ -81,7 +87,8 @@ struct InteriorPoint<'a, const D: usize, const N: usize, const M: usize> {
     last_shift: f64,
 }
 
-/// The solution of a window from a first guess, and how many iterations it took; none where the method does not come to one.
+/// The solution of a window from a first guess, and how many iterations it took; none where the
+/// method does not come to one.
 pub(super) fn solve<const D: usize, const N: usize, const M: usize>(
     problem: &WindowProblem<D, N>,
     guess: WindowUnknowns<N, M>,
@@ -109,7 +116,10 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
         // What is solved, and the iteration in which it was, while it is being polished.
         let mut solved: Option<(WindowUnknowns<N, M>, u32)> = None;
         for iteration in 0..settings.most_iterations {
-            if solved.as_ref().is_some_and(|(_, since)| iteration - since > POLISHING) {
+            if solved
+                .as_ref()
+                .is_some_and(|(_, since)| iteration - since > POLISHING)
+            {
                 return solved;
             }
             self.let_shift_fall();
@@ -138,7 +148,9 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
                 error = self.assemble().max(merit.largest);
                 merit = self.merit(&self.iterate.at);
             }
-            let Some(slope) = self.newton_step() else { return solved };
+            let Some(slope) = self.newton_step() else {
+                return solved;
+            };
             if solved.is_none() && self.is_stationary(merit, slope, settings.last_mu) {
                 return Some((self.iterate.at, iteration));
             }
@@ -151,7 +163,8 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
             if failures > MOST_FAILURES || !merit.phi.is_finite() {
                 return solved;
             }
-            // So short a step comes of a Hessian that is barely convex, or nearly singular: the next one is to be more so.
+            // So short a step comes of a Hessian that is barely convex, or nearly singular: the
+            // next one is to be more so.
             if step < SHORT {
                 self.shift = (self.shift * SHIFT_AFTER_SHORT).max(FIRST_SHIFT);
             }
@@ -215,14 +228,30 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
         let n = self.newton.du.len();
         let mut slope = 0.0;
         for (i, stage) in self.stages[..n].iter().enumerate() {
-            slope += stage.gu.iter().zip(&self.newton.du[i]).map(|(g, d)| g * d).sum::<f64>();
-            slope += stage.gx.iter().zip(&self.newton.dx[i]).map(|(g, d)| g * d).sum::<f64>();
+            slope += stage
+                .gu
+                .iter()
+                .zip(&self.newton.du[i])
+                .map(|(g, d)| g * d)
+                .sum::<f64>();
+            slope += stage
+                .gx
+                .iter()
+                .zip(&self.newton.dx[i])
+                .map(|(g, d)| g * d)
+                .sum::<f64>();
         }
         slope.is_finite().then_some(slope)
     }
 
     /// A part of the Newton step that the filter takes; the trial is there then, with its merit.
-    fn search(&mut self, merit: Merit, slope: f64, longest: f64, first_theta: f64) -> Option<(f64, Merit)> {
+    fn search(
+        &mut self,
+        merit: Merit,
+        slope: f64,
+        longest: f64,
+        first_theta: f64,
+    ) -> Option<(f64, Merit)> {
         let rounding = 1e-13 * merit.phi.abs();
         let mut step = longest;
         for _ in 0..12 {
@@ -234,12 +263,17 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
             let good = if descends {
                 trial.phi <= merit.phi + 1e-4 * step * slope + rounding
             } else {
-                trial.theta <= (1.0 - 1e-5) * merit.theta || trial.phi <= merit.phi - 1e-5 * merit.theta + rounding
+                trial.theta <= (1.0 - 1e-5) * merit.theta
+                    || trial.phi <= merit.phi - 1e-5 * merit.theta + rounding
             };
-            let open = self.filter.iter().all(|&(theta, phi)| trial.theta < theta || trial.phi < phi);
+            let open = self
+                .filter
+                .iter()
+                .all(|&(theta, phi)| trial.theta < theta || trial.phi < phi);
             if good && open && trial.phi.is_finite() && trial.theta < 1e4 * first_theta {
                 if !descends {
-                    self.filter.push(((1.0 - 1e-5) * merit.theta, merit.phi - 1e-5 * merit.theta));
+                    self.filter
+                        .push(((1.0 - 1e-5) * merit.theta, merit.phi - 1e-5 * merit.theta));
                 }
                 return Some((step, trial));
             }
@@ -271,8 +305,14 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
             cost += u[D] + problem.offset_weight(i + 1) * offset_square(&at.x[i + 1]);
         }
         let last = &at.x[at.u.len()];
-        (0..N).filter(|&s| problem.is_given(s)).for_each(|s| add(last[s]));
-        Merit { theta, largest, phi: cost - self.iterate.mu * self.iterate.logarithms(at) }
+        (0..N)
+            .filter(|&s| problem.is_given(s))
+            .for_each(|s| add(last[s]));
+        Merit {
+            theta,
+            largest,
+            phi: cost - self.iterate.mu * self.iterate.logarithms(at),
+        }
     }
 
     /// Fills the stages; answers the largest residual of the gradients and of complementarity.
@@ -291,13 +331,16 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
                 for s in 0..N {
                     if self.iterate.problem.is_given(s) {
                         stage.q[s][s] += 1.0 / GIVEN;
-                        stage.gx[s] = self.iterate.multipliers[n][s] + self.iterate.at.x[n][s] / GIVEN;
+                        stage.gx[s] =
+                            self.iterate.multipliers[n][s] + self.iterate.at.x[n][s] / GIVEN;
                         residual[s] = 0.0;
                     }
                 }
             }
             if i > 0 {
-                error = residual.iter().fold(error, |error, r| larger(error, r.abs()));
+                error = residual
+                    .iter()
+                    .fold(error, |error, r| larger(error, r.abs()));
             }
             self.stages[i] = stage;
         }
@@ -306,7 +349,9 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
 
     /// What the bounds of a node come to.
     fn node(&self, i: usize, stage: &mut Stage<N, M>, residual: &mut [f64; N]) -> f64 {
-        let WindowIterate { problem, at, mu, .. } = &self.iterate;
+        let WindowIterate {
+            problem, at, mu, ..
+        } = &self.iterate;
         let (mu, x, z) = (*mu, &at.x[i], &self.iterate.nodes[i]);
         let [moves, offset] = self.iterate.is_bounded(i);
         let mut error = 0.0_f64;
@@ -317,7 +362,10 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
                     stage.q[row][row] += z[0] / below + z[1] / above;
                     stage.gx[row] += mu / above - mu / below;
                     residual[row] += z[1] - z[0];
-                    error = larger(larger(error, (z[0] * below - mu).abs()), (z[1] * above - mu).abs());
+                    error = larger(
+                        larger(error, (z[0] * below - mu).abs()),
+                        (z[1] * above - mu).abs(),
+                    );
                 }
             }
         }
@@ -341,9 +389,12 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
         error
     }
 
-    /// What the bound of a control velocity comes to; answers its part of the gradient by the duration.
+    /// What the bound of a control velocity comes to; answers its part of the gradient by the
+    /// duration.
     fn feed(&self, i: usize, stage: &mut Stage<N, M>, residual: &mut [f64; N]) -> f64 {
-        let WindowIterate { problem, at, mu, .. } = &self.iterate;
+        let WindowIterate {
+            problem, at, mu, ..
+        } = &self.iterate;
         let (x, u, z) = (&at.x[i], &at.u[i], self.iterate.steps[i].feed);
         let w = problem.feed_weights(i);
         let c = control(&self.steps, x, u);
@@ -380,7 +431,9 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
 
     /// What a step comes to: its derivatives, the second ones times their multipliers, its bounds.
     fn step(&self, i: usize, stage: &mut Stage<N, M>, residual: &mut [f64; N]) -> f64 {
-        let WindowIterate { problem, at, mu, .. } = &self.iterate;
+        let WindowIterate {
+            problem, at, mu, ..
+        } = &self.iterate;
         let (mu, x, u, z) = (*mu, &at.x[i], &at.u[i], &self.iterate.steps[i]);
         let multipliers = &self.iterate.multipliers[i + 1];
         let h = u[D];
@@ -392,10 +445,18 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
         for k in 0..D {
             let c = &self.steps[k];
             let (v, a, j) = (x[3 * k + 1], x[3 * k + 2], u[k]);
-            let [lo, lv, la] = [multipliers[3 * k], multipliers[3 * k + 1], multipliers[3 * k + 2]];
+            let [lo, lv, la] = [
+                multipliers[3 * k],
+                multipliers[3 * k + 1],
+                multipliers[3 * k + 2],
+            ];
             stage.a[k] = [c.c1 * h, 0.5 * c.c2 * h * h, c.d1 * h];
             stage.bj[k] = [c.c3 * h * h * h / 6.0, 0.5 * c.d2 * h * h, c.e1 * h];
-            stage.bh[k] = [c.c1 * v + c.c2 * a * h + 0.5 * c.c3 * j * h * h, c.d1 * a + c.d2 * j * h, c.e1 * j];
+            stage.bh[k] = [
+                c.c1 * v + c.c2 * a * h + 0.5 * c.c3 * j * h * h,
+                c.d1 * a + c.d2 * j * h,
+                c.e1 * j,
+            ];
             stage.s[D][3 * k + 1] += lo * c.c1;
             stage.s[D][3 * k + 2] += lo * c.c2 * h + lv * c.d1;
             let of_jh = lo * 0.5 * c.c3 * h * h + lv * c.d2 * h + la * c.e1;
@@ -405,7 +466,10 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
             let (below, above) = (1.0 + j, 1.0 - j);
             stage.r[k][k] += z.j[k][0] / below + z.j[k][1] / above + self.shift;
             stage.gu[k] += mu / above - mu / below;
-            error = larger(larger(error, (z.j[k][0] * below - mu).abs()), (z.j[k][1] * above - mu).abs());
+            error = larger(
+                larger(error, (z.j[k][0] * below - mu).abs()),
+                (z.j[k][1] * above - mu).abs(),
+            );
             let (bj, bh, along) = (stage.bj[k], stage.bh[k], stage.a[k]);
             let of_j = z.j[k][1] - z.j[k][0] + lo * bj[0] + lv * bj[1] + la * bj[2];
             error = larger(error, of_j.abs());

@@ -1,4 +1,5 @@
-//! Nodes on the programmed path, a step of time apart: by the solution of the window before as far as it goes on, then by an estimate.
+//! Nodes on the programmed path, a step of time apart: by the solution of the window before as far
+//! as it goes on, then by an estimate.
 
 use super::steps::{AxisCaps, PlannedStep, place_after, place_powers, time_of_place};
 use super::track::{Track, TrackPlace};
@@ -51,7 +52,8 @@ pub(super) struct Mesh<'a> {
 }
 
 impl<'a> Mesh<'a> {
-    /// With its first node; offsets of the others may use `radius_part` of the tolerance: the rest is for what lies between nodes.
+    /// With its first node; offsets of the others may use `radius_part` of the tolerance: the rest
+    /// is for what lies between nodes.
     pub(super) fn new(
         track: &'a Track,
         caps: &'a AxisCaps,
@@ -61,8 +63,21 @@ impl<'a> Mesh<'a> {
         start: MeshStart,
     ) -> Self {
         let MeshStart { s_mm, motion } = start;
-        let nodes = vec![MeshNode { s_mm, duration_s: 0.0, motion, radius_mm: 0.0, followed: true }];
-        Self { track, caps, step_s, most, radius_part, nodes }
+        let nodes = vec![MeshNode {
+            s_mm,
+            duration_s: 0.0,
+            motion,
+            radius_mm: 0.0,
+            followed: true,
+        }];
+        Self {
+            track,
+            caps,
+            step_s,
+            most,
+            radius_part,
+            nodes,
+        }
     }
 
     fn last_mm(&self) -> f64 {
@@ -75,10 +90,17 @@ impl<'a> Mesh<'a> {
 
     fn push(&mut self, s_mm: f64, duration_s: f64, motion: AxisMotion, followed: bool) {
         let mut radius_mm = self.radius_part * self.track.piece(s_mm).tolerance_mm;
-        // What was planned may use the whole tolerance between its nodes; it stays possible. An estimate lies on the path.
+        // What was planned may use the whole tolerance between its nodes; it stays possible. An
+        // estimate lies on the path.
         let planned_mm = distance(motion.position_mm, self.track.at(s_mm).position_mm);
         radius_mm = radius_mm.max((1.0 + PLANNED_SLACK) * planned_mm);
-        self.nodes.push(MeshNode { s_mm, duration_s, motion, radius_mm, followed });
+        self.nodes.push(MeshNode {
+            s_mm,
+            duration_s,
+            motion,
+            radius_mm,
+            followed,
+        });
     }
 
     /// Follows steps for a time.
@@ -86,12 +108,21 @@ impl<'a> Mesh<'a> {
         let (mut begins_s, mut last_s) = (0.0, 0.0);
         for (i, step) in steps.iter().enumerate() {
             if i < ALIGNED && begins_s + step.duration_s < until_s && step.to_mm > self.last_mm() {
-                self.push(step.to_mm, step.duration_s, step.motion.after(step.duration_s), true);
+                self.push(
+                    step.to_mm,
+                    step.duration_s,
+                    step.motion.after(step.duration_s),
+                    true,
+                );
                 begins_s += step.duration_s;
                 last_s = begins_s;
                 continue;
             }
-            let powers = place_powers(step, self.track.at(step.from_mm).tangent, self.track.at(step.to_mm).tangent);
+            let powers = place_powers(
+                step,
+                self.track.at(step.from_mm).tangent,
+                self.track.at(step.to_mm).tangent,
+            );
             loop {
                 if self.is_full() || last_s + self.step_s > until_s {
                     return;
@@ -111,14 +142,20 @@ impl<'a> Mesh<'a> {
                 if s_mm <= self.last_mm() {
                     break;
                 }
-                self.push(s_mm, next_s - last_s, step.motion.after(next_s - begins_s), true);
+                self.push(
+                    s_mm,
+                    next_s - last_s,
+                    step.motion.after(next_s - begins_s),
+                    true,
+                );
                 last_s = next_s;
             }
             begins_s += step.duration_s;
         }
     }
 
-    /// Goes on by an estimate of the speed, to the last place known or until the mesh is full; answers whether it came to the end.
+    /// Goes on by an estimate of the speed, to the last place known or until the mesh is full;
+    /// answers whether it came to the end.
     pub(super) fn estimate(&mut self) -> bool {
         let Some(from) = self.nodes.last().copied() else {
             return false;
@@ -136,7 +173,9 @@ impl<'a> Mesh<'a> {
             let next = (i + 1).min(n - 1);
             let part = (s_mm - places[i].s_mm) / (places[next].s_mm - places[i].s_mm).max(1e-12);
             let squares = [speeds[i] * speeds[i], speeds[next] * speeds[next]];
-            let here = (squares[0] + part.clamp(0.0, 1.0) * (squares[1] - squares[0])).max(0.0).sqrt();
+            let here = (squares[0] + part.clamp(0.0, 1.0) * (squares[1] - squares[0]))
+                .max(0.0)
+                .sqrt();
             let least = self.least_mm_s(places[i].tangent);
             let mut speed = here.max(least);
             // No step over a slow place.
@@ -147,12 +186,18 @@ impl<'a> Mesh<'a> {
                 speed = speed.min((0.5 * (speeds[at] + here)).max(least));
             }
             let mut next_mm = (s_mm + speed * self.step_s).min(end_mm);
-            if let Some(joint_mm) = self.track.joint(s_mm, s_mm + JOINT_AHEAD * (next_mm - s_mm)) {
+            if let Some(joint_mm) = self
+                .track
+                .joint(s_mm, s_mm + JOINT_AHEAD * (next_mm - s_mm))
+            {
                 next_mm = joint_mm.min(end_mm);
             }
             let at = self.track.at(next_mm);
-            let motion =
-                AxisMotion { position_mm: at.position_mm, velocity_mm_s: scale(speed, at.tangent), ..AxisMotion::REST };
+            let motion = AxisMotion {
+                position_mm: at.position_mm,
+                velocity_mm_s: scale(speed, at.tangent),
+                ..AxisMotion::REST
+            };
             self.push(next_mm, (next_mm - s_mm) / speed, motion, false);
             s_mm = next_mm;
         }
@@ -164,7 +209,8 @@ impl<'a> Mesh<'a> {
         0.5 * self.caps.along(tangent, |limits| limits.jerk_mm_s3) * self.step_s * self.step_s
     }
 
-    /// Speeds at places, from a speed at the first to rest at the last, without exceeding the bounds of the places.
+    /// Speeds at places, from a speed at the first to rest at the last, without exceeding the
+    /// bounds of the places.
     fn speeds(&self, places: &[TrackPlace], first_mm_s: f64) -> Vec<f64> {
         let after = |speed: f64, way_mm: f64, place: &TrackPlace| {
             let accel = ACCEL_PART * self.caps.along(place.tangent, |limits| limits.accel_mm_s2);
@@ -177,11 +223,19 @@ impl<'a> Mesh<'a> {
         speeds[0] = first_mm_s;
         speeds[n - 1] = 0.0;
         for i in 1..n {
-            let most = after(speeds[i - 1], places[i].s_mm - places[i - 1].s_mm, &places[i]);
+            let most = after(
+                speeds[i - 1],
+                places[i].s_mm - places[i - 1].s_mm,
+                &places[i],
+            );
             speeds[i] = speeds[i].min(most);
         }
         for i in (0..n - 1).rev() {
-            let most = after(speeds[i + 1], places[i + 1].s_mm - places[i].s_mm, &places[i]);
+            let most = after(
+                speeds[i + 1],
+                places[i + 1].s_mm - places[i].s_mm,
+                &places[i],
+            );
             speeds[i] = speeds[i].min(most);
         }
         speeds

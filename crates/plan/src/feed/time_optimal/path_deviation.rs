@@ -1,4 +1,5 @@
-//! What the nodes do not bound: between them, the distance of the motion from the path, of the path from the motion, and the feedrate.
+//! What the nodes do not bound: between them, the distance of the motion from the path, of the path
+//! from the motion, and the feedrate.
 
 use super::mesh::{MeshNode, NEAR_START};
 use super::steps::{AxisCaps, PlannedStep};
@@ -9,10 +10,12 @@ use crate::vector::{add_scaled, distance, dot, norm, sub};
 /// Moments within a step at which it is looked at.
 const MOMENTS: u32 = 6;
 
-/// So often the time between two of them is halved for the moment of the largest speed: it is flat there, and exact to rounding.
+/// So often the time between two of them is halved for the moment of the largest speed: it is flat
+/// there, and exact to rounding.
 const HALVINGS: u32 = 24;
 
-/// Joints of a step that are looked at closely: those that stand out most from the chord between its nodes.
+/// Joints of a step that are looked at closely: those that stand out most from the chord between
+/// its nodes.
 const JOINTS: usize = 2;
 
 /// What the tolerance may be exceeded by, mm: a hundredth of a micrometre.
@@ -31,7 +34,8 @@ const TOO_FAST_MM: f64 = 6e-5;
 /// A radius is made no smaller than this part at once.
 const LEAST_RADIUS: f64 = 0.3;
 
-/// Nodes near to the start of a window, whose state is given, can be moved by no more than a little.
+/// Nodes near to the start of a window, whose state is given, can be moved by no more than a
+/// little.
 const SLOWLY: f64 = 0.97;
 
 /// A step that exceeds something.
@@ -48,17 +52,35 @@ pub(super) struct Excess {
 }
 
 /// All steps that exceed something; whether they leave the tube is asked of the first ones only.
-pub(super) fn excesses(track: &Track, caps: &AxisCaps, steps: &[PlannedStep], first: usize) -> Vec<Excess> {
+pub(super) fn excesses(
+    track: &Track,
+    caps: &AxisCaps,
+    steps: &[PlannedStep],
+    first: usize,
+) -> Vec<Excess> {
     let mut found = Vec::new();
     for (i, step) in steps.iter().enumerate() {
-        let mut tube_mm = if i < first { away_mm(track, steps, i).max(left_out_mm(track, steps, i)) } else { 0.0 };
-        let (used, axes_mm_s) = if i < first { axis_use(caps, step) } else { (0.0, f64::INFINITY) };
+        let mut tube_mm = if i < first {
+            away_mm(track, steps, i).max(left_out_mm(track, steps, i))
+        } else {
+            0.0
+        };
+        let (used, axes_mm_s) = if i < first {
+            axis_use(caps, step)
+        } else {
+            (0.0, f64::INFINITY)
+        };
         if used > 1.0 + FAR_TOO_FAST {
             tube_mm = tube_mm.max(TOO_FAST_MM);
         }
         let feed_part = (feed_mm_s(track, step) / fastest_mm_s(step)).min(1.0);
         if tube_mm > OVER_MM || feed_part < 1.0 || axes_mm_s.is_finite() {
-            found.push(Excess { step: i, tube_mm: tube_mm.max(0.0), feed_part, axes_mm_s });
+            found.push(Excess {
+                step: i,
+                tube_mm: tube_mm.max(0.0),
+                feed_part,
+                axes_mm_s,
+            });
         }
     }
     found
@@ -66,13 +88,21 @@ pub(super) fn excesses(track: &Track, caps: &AxisCaps, steps: &[PlannedStep], fi
 
 /// The smallest feedrate within a step.
 fn feed_mm_s(track: &Track, step: &PlannedStep) -> f64 {
-    track.between(step.from_mm, step.to_mm).map(|piece| piece.feed_mm_s).fold(f64::INFINITY, f64::min)
+    track
+        .between(step.from_mm, step.to_mm)
+        .map(|piece| piece.feed_mm_s)
+        .fold(f64::INFINITY, f64::min)
 }
 
-/// The largest part of its velocity that an axis uses within a step, and the speed along the path at which it would keep it; infinite
-/// where every axis does. Between nodes the velocity of an axis has its extreme where the acceleration is zero.
+/// The largest part of its velocity that an axis uses within a step, and the speed along the path
+/// at which it would keep it; infinite where every axis does. Between nodes the velocity of an axis
+/// has its extreme where the acceleration is zero.
 fn axis_use(caps: &AxisCaps, step: &PlannedStep) -> (f64, f64) {
-    let AxisMotion { accel_mm_s2: a, jerk_mm_s3: j, .. } = step.motion;
+    let AxisMotion {
+        accel_mm_s2: a,
+        jerk_mm_s3: j,
+        ..
+    } = step.motion;
     let (mut most, mut axes_mm_s) = (0.0, f64::INFINITY);
     for k in 0..3 {
         let t = (-a[k] / j[k]).clamp(0.0, step.duration_s);
@@ -83,17 +113,24 @@ fn axis_use(caps: &AxisCaps, step: &PlannedStep) -> (f64, f64) {
         let velocity_mm_s = step.motion.after(t).velocity_mm_s;
         let used = velocity_mm_s[k].abs() / caps.axes[k].velocity_mm_s;
         if used > 1.0 + FAST_OVER {
-            axes_mm_s = axes_mm_s.min(norm(velocity_mm_s) * (1.0 - FEED_TIGHTER * (1.0 - 1.0 / used)));
+            axes_mm_s =
+                axes_mm_s.min(norm(velocity_mm_s) * (1.0 - FEED_TIGHTER * (1.0 - 1.0 / used)));
         }
         most = used.max(most);
     }
     (most, axes_mm_s)
 }
 
-/// The largest speed along the path within a step. The square of the speed has the derivative `2 v a`, a cubic in time: between moments and
-/// its own extremes, the roots of a quadratic, it changes its sign once at most, and halving finds where.
+/// The largest speed along the path within a step. The square of the speed has the derivative `2 v
+/// a`, a cubic in time: between moments and its own extremes, the roots of a quadratic, it changes
+/// its sign once at most, and halving finds where.
 fn fastest_mm_s(step: &PlannedStep) -> f64 {
-    let AxisMotion { velocity_mm_s: v, accel_mm_s2: a, jerk_mm_s3: j, .. } = step.motion;
+    let AxisMotion {
+        velocity_mm_s: v,
+        accel_mm_s2: a,
+        jerk_mm_s3: j,
+        ..
+    } = step.motion;
     let h = step.duration_s;
     let speed = |t: f64| norm(step.motion.after(t).velocity_mm_s);
     let rises = |t: f64| {
@@ -109,7 +146,11 @@ fn fastest_mm_s(step: &PlannedStep) -> f64 {
             if rises(lo) && !rises(hi) {
                 for _ in 0..HALVINGS {
                     let middle = 0.5 * (lo + hi);
-                    if rises(middle) { lo = middle } else { hi = middle }
+                    if rises(middle) {
+                        lo = middle;
+                    } else {
+                        hi = middle;
+                    }
                 }
                 most = most.max(speed(lo));
             }
@@ -118,11 +159,16 @@ fn fastest_mm_s(step: &PlannedStep) -> f64 {
     most
 }
 
-/// Middle and half distance of the roots of `rise + 3 bend t + 3/2 jerk t^2`, the derivative of `v a`; far away or together where it has none.
+/// Middle and half distance of the roots of `rise + 3 bend t + 3/2 jerk t^2`, the derivative of `v
+/// a`; far away or together where it has none.
 fn extremes_of_rise_s(rise: f64, bend: f64, jerk: f64) -> (f64, f64) {
     let middle_s = -bend / jerk;
     let square_s2 = middle_s * middle_s - rise / (1.5 * jerk);
-    if square_s2.is_finite() { (middle_s, square_s2.max(0.0).sqrt()) } else { (0.0, 0.0) }
+    if square_s2.is_finite() {
+        (middle_s, square_s2.max(0.0).sqrt())
+    } else {
+        (0.0, 0.0)
+    }
 }
 
 /// How far the motion of a step leaves the tube, mm.
@@ -130,24 +176,36 @@ fn away_mm(track: &Track, steps: &[PlannedStep], i: usize) -> f64 {
     let step = &steps[i];
     let tolerance = |step: &PlannedStep| {
         let pieces = track.between(step.from_mm, step.to_mm);
-        pieces.map(|piece| piece.tolerance_mm).fold(f64::INFINITY, f64::min)
+        pieces
+            .map(|piece| piece.tolerance_mm)
+            .fold(f64::INFINITY, f64::min)
     };
     let tolerance_mm = tolerance(step);
     // The nearest point may lie a little before or behind.
     let margin_mm = 2.0 * tolerance_mm + 0.5 * (step.to_mm - step.from_mm);
     let mut most = f64::NEG_INFINITY;
     for m in 0..=MOMENTS {
-        let motion = step.motion.after(step.duration_s * f64::from(m) / f64::from(MOMENTS));
-        let away = track.distance(motion.position_mm, step.from_mm - margin_mm, step.to_mm + margin_mm);
+        let motion = step
+            .motion
+            .after(step.duration_s * f64::from(m) / f64::from(MOMENTS));
+        let away = track.distance(
+            motion.position_mm,
+            step.from_mm - margin_mm,
+            step.to_mm + margin_mm,
+        );
         most = most.max(away - tolerance_mm);
     }
     most
 }
 
-/// How far the path between the nodes of a step stays away from the motion, mm, beyond the tolerance.
+/// How far the path between the nodes of a step stays away from the motion, mm, beyond the
+/// tolerance.
 fn left_out_mm(track: &Track, steps: &[PlannedStep], i: usize) -> f64 {
     let step = &steps[i];
-    let (from, to) = (track.at(step.from_mm).position_mm, track.at(step.to_mm).position_mm);
+    let (from, to) = (
+        track.at(step.from_mm).position_mm,
+        track.at(step.to_mm).position_mm,
+    );
     let chord = sub(to, from);
     let square = dot(chord, chord).max(1e-18);
     let mut furthest = [(0.0_f64, [0.0; 3], 0.0); JOINTS];
@@ -164,26 +222,40 @@ fn left_out_mm(track: &Track, steps: &[PlannedStep], i: usize) -> f64 {
         }
     }
     let near = &steps[i.saturating_sub(1)..(i + 2).min(steps.len())];
-    let left_out = furthest.iter().filter(|joint| joint.0 > 0.0).map(|&(_, joint, tolerance_mm)| {
-        near.iter().map(|step| motion_distance_mm(step, joint)).fold(f64::INFINITY, f64::min) - tolerance_mm
-    });
+    let left_out =
+        furthest
+            .iter()
+            .filter(|joint| joint.0 > 0.0)
+            .map(|&(_, joint, tolerance_mm)| {
+                near.iter()
+                    .map(|step| motion_distance_mm(step, joint))
+                    .fold(f64::INFINITY, f64::min)
+                    - tolerance_mm
+            });
     left_out.fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Distance of a point from the motion of a step, by chords: between them a motion of 2 ms bends by nanometres.
+/// Distance of a point from the motion of a step, by chords: between them a motion of 2 ms bends by
+/// nanometres.
 fn motion_distance_mm(step: &PlannedStep, point_mm: [f64; 3]) -> f64 {
-    let at = |m: u32| step.motion.after(step.duration_s * f64::from(m) / f64::from(2 * MOMENTS)).position_mm;
+    let at = |m: u32| {
+        step.motion
+            .after(step.duration_s * f64::from(m) / f64::from(2 * MOMENTS))
+            .position_mm
+    };
     let mut least = f64::INFINITY;
     for m in 0..2 * MOMENTS {
         let (from, to) = (at(m), at(m + 1));
         let chord = sub(to, from);
-        let along = (dot(sub(point_mm, from), chord) / dot(chord, chord).max(1e-24)).clamp(0.0, 1.0);
+        let along =
+            (dot(sub(point_mm, from), chord) / dot(chord, chord).max(1e-24)).clamp(0.0, 1.0);
         least = least.min(distance(add_scaled(from, along, chord), point_mm));
     }
     least
 }
 
-/// The same mesh with what is exceeded tightened: smaller offsets, or a node more where a step is still long, and smaller feedrates.
+/// The same mesh with what is exceeded tightened: smaller offsets, or a node more where a step is
+/// still long, and smaller feedrates.
 pub(super) fn tightened(
     nodes: &[MeshNode],
     feed_parts: &[f64],
@@ -203,7 +275,11 @@ pub(super) fn tightened(
         for i in [excess.step, excess.step + 1] {
             let node = &mut next[i];
             let offset_mm = distance(node.motion.position_mm, track.at(node.s_mm).position_mm);
-            let least = if i < NEAR_START { SLOWLY * offset_mm } else { LEAST_RADIUS * node.radius_mm };
+            let least = if i < NEAR_START {
+                SLOWLY * offset_mm
+            } else {
+                LEAST_RADIUS * node.radius_mm
+            };
             node.radius_mm = (node.radius_mm - 1.2 * excess.tube_mm).max(least.min(node.radius_mm));
         }
         // The velocity of a step is between its control velocity and those of its neighbours.
@@ -219,10 +295,23 @@ pub(super) fn tightened(
             let half_s = 0.5 * step.duration_s;
             let motion = step.motion.after(half_s);
             let offset_mm = distance(motion.position_mm, track.at(s_mm).position_mm);
-            let least = if excess.step < NEAR_START { offset_mm } else { LEAST_RADIUS * offset_mm };
+            let least = if excess.step < NEAR_START {
+                offset_mm
+            } else {
+                LEAST_RADIUS * offset_mm
+            };
             let radius_mm = (0.9 * track.piece(s_mm).tolerance_mm - excess.tube_mm).max(least);
             next[excess.step + 1].duration_s = half_s;
-            next.insert(excess.step + 1, MeshNode { s_mm, duration_s: half_s, motion, radius_mm, followed: false });
+            next.insert(
+                excess.step + 1,
+                MeshNode {
+                    s_mm,
+                    duration_s: half_s,
+                    motion,
+                    radius_mm,
+                    followed: false,
+                },
+            );
             parts.insert(excess.step + 1, parts[excess.step]);
         }
     }
@@ -244,11 +333,23 @@ mod tests {
 
     /// A track of lines through these points.
     fn track(points: &[[f64; 3]]) -> Track {
-        let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
+        let corner = Corner::Continuous {
+            tolerance_mm: None,
+            merge_mm: None,
+        };
         let line = |ends: &[[f64; 3]]| {
             let (start_mm, end_mm, others) = (ends[0], ends[1], AuxiliaryAxes::default());
             let (kind, shape) = (MotionKind::Feed, Shape::Line);
-            Canon::Motion(Motion { line: 1, kind, start_mm, end_mm, shape, feed_mm_s: FEED_MM_S, corner, others })
+            Canon::Motion(Motion {
+                line: 1,
+                kind,
+                start_mm,
+                end_mm,
+                shape,
+                feed_mm_s: FEED_MM_S,
+                corner,
+                others,
+            })
         };
         let mut track = Track::new(None);
         for step in Pieces::new(points.windows(2).map(line)) {
@@ -288,7 +389,8 @@ mod tests {
             let furthest = (0..=MOMENTS).map(to_path).fold(0.0, f64::max);
             let away = furthest - TOLERANCE_MM;
             prop_assert!((away_mm(&track, &steps, 0) - away).abs() < 1e-9);
-            // Either alone is told, and so is a speed above the feedrate; of steps that are not soon, the speed alone.
+            // Either alone is told, and so is a speed above the feedrate; of steps that are not
+            // soon, the speed alone.
             let caps = AxisCaps { axes: [AxisLimits::NONE; 3] };
             let too_fast = distance(start, end) > FEED_MM_S;
             for (first, tube_mm) in [(1, left_out.max(away).max(0.0)), (0, 0.0)] {
@@ -310,7 +412,8 @@ mod tests {
             let step = PlannedStep { from_mm: 0.0, to_mm: 1.0, duration_s: 0.5, motion };
             let speeds = (0..=5000_u32).map(|m| norm(motion.after(1e-4 * f64::from(m)).velocity_mm_s));
             let (fastest, sampled) = (fastest_mm_s(&step), speeds.fold(0.0, f64::max));
-            // Between two samples the speed changes by less than half their distance times the acceleration there.
+            // Between two samples the speed changes by less than half their distance times the
+            // acceleration there.
             prop_assert!(fastest >= sampled * (1.0 - 1e-9) && fastest <= sampled + 0.5e-4 * 100.0);
         }
     }
@@ -322,7 +425,12 @@ mod tests {
             accel_mm_s2: [7.760711513434023, 8.892475998450323, -6.638000620760462],
             jerk_mm_s3: [-24.16596683721455, -30.329215382770382, 7.513819605871589],
         };
-        let fastest = fastest_mm_s(&PlannedStep { from_mm: 0.0, to_mm: 1.0, duration_s: 0.5, motion });
+        let fastest = fastest_mm_s(&PlannedStep {
+            from_mm: 0.0,
+            to_mm: 1.0,
+            duration_s: 0.5,
+            motion,
+        });
         assert!((fastest - 2.11245).abs() < 1e-5, "{fastest}");
     }
 }

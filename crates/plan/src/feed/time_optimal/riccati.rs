@@ -1,8 +1,10 @@
-//! Newton steps of a window in time proportional to its nodes: the Riccati recursion of a linear system with a quadratic cost.
+//! Newton steps of a window in time proportional to its nodes: the Riccati recursion of a linear
+//! system with a quadratic cost.
 //!
-//! minimise `sum x'Q x / 2 + u'S x + u'R u / 2 + gx'x + gu'u` with `x+ = A x + B u + d`, `x_0 = 0`. `A` and `B` have the blocks of one
-//! axis each, with the duration common to all. Source: Rao, Wright, Rawlings (1998), "Application of interior-point methods to model
-//! predictive control", section 3.
+//! minimise `sum x'Q x / 2 + u'S x + u'R u / 2 + gx'x + gu'u` with `x+ = A x + B u + d`, `x_0 = 0`.
+//! `A` and `B` have the blocks of one axis each, with the duration common to all. Source: Rao,
+//! Wright, Rawlings (1998), "Application of interior-point methods to model predictive control",
+//! section 3.
 
 /// One node and the step behind it.
 #[derive(Debug, Clone, Copy)]
@@ -63,7 +65,13 @@ impl<const N: usize, const M: usize> Stage<N, M> {
 
     /// `Q + A'PA`, `S + B'PA`, `R + B'PB`: of the symmetric ones the lower triangles.
     #[inline]
-    fn condensed(&self, p: &[[f64; N]; N], q: &mut [[f64; N]; N], s: &mut [[f64; N]; M], r: &mut [[f64; M]; M]) {
+    fn condensed(
+        &self,
+        p: &[[f64; N]; N],
+        q: &mut [[f64; N]; N],
+        s: &mut [[f64; N]; M],
+        r: &mut [[f64; M]; M],
+    ) {
         let mut pa = [[0.0; N]; N];
         let mut pb = [[0.0; M]; N];
         for row in 0..N {
@@ -87,10 +95,12 @@ impl<const N: usize, const M: usize> Stage<N, M> {
                 s[M - 1][column] += bh[0] * po + bh[1] * pv + bh[2] * pc;
             }
             for column in 0..=k {
-                r[k][column] += bj[0] * pb[o][column] + bj[1] * pb[v][column] + bj[2] * pb[c][column];
+                r[k][column] +=
+                    bj[0] * pb[o][column] + bj[1] * pb[v][column] + bj[2] * pb[c][column];
             }
             for column in 0..M {
-                r[M - 1][column] += bh[0] * pb[o][column] + bh[1] * pb[v][column] + bh[2] * pb[c][column];
+                r[M - 1][column] +=
+                    bh[0] * pb[o][column] + bh[1] * pb[v][column] + bh[2] * pb[c][column];
             }
         }
     }
@@ -132,7 +142,9 @@ impl<const N: usize, const M: usize> NewtonStep<N, M> {
             let p = &self.p[i + 1];
             let mut pd = self.pv[i + 1];
             for row in 0..N {
-                pd[row] += (0..N).map(|column| p[row][column] * stage.d[column]).sum::<f64>();
+                pd[row] += (0..N)
+                    .map(|column| p[row][column] * stage.d[column])
+                    .sum::<f64>();
             }
             let (mut q, mut y, mut r) = ([[0.0; N]; N], [[0.0; N]; M], [[0.0; M]; M]);
             stage.condensed(p, &mut q, &mut y, &mut r);
@@ -166,7 +178,9 @@ impl<const N: usize, const M: usize> NewtonStep<N, M> {
             let dx = self.dx[i];
             let mut multipliers = self.pv[i];
             for row in 0..N {
-                multipliers[row] += (0..N).map(|column| self.p[i][row][column] * dx[column]).sum::<f64>();
+                multipliers[row] += (0..N)
+                    .map(|column| self.p[i][row][column] * dx[column])
+                    .sum::<f64>();
             }
             self.multipliers[i] = multipliers;
             if i + 1 == stages.len() {
@@ -174,7 +188,9 @@ impl<const N: usize, const M: usize> NewtonStep<N, M> {
             }
             let mut du = [0.0; M];
             for row in 0..M {
-                let along: f64 = (0..N).map(|column| self.gain[i][row][column] * dx[column]).sum();
+                let along: f64 = (0..N)
+                    .map(|column| self.gain[i][row][column] * dx[column])
+                    .sum();
                 du[row] = -self.k[i][row] - along;
             }
             let mut next = stage.d;
@@ -218,7 +234,11 @@ fn cholesky<const M: usize>(r: &[[f64; M]; M]) -> Option<[[f64; M]; M]> {
 
 /// `L^-1` times the rows of `y`, and times `k`.
 #[inline]
-fn divide_by_lower<const N: usize, const M: usize>(l: &[[f64; M]; M], y: &mut [[f64; N]; M], k: &mut [f64; M]) {
+fn divide_by_lower<const N: usize, const M: usize>(
+    l: &[[f64; M]; M],
+    y: &mut [[f64; N]; M],
+    k: &mut [f64; M],
+) {
     for row in 0..M {
         for t in 0..row {
             let f = l[row][t];
@@ -233,7 +253,11 @@ fn divide_by_lower<const N: usize, const M: usize>(l: &[[f64; M]; M], y: &mut [[
 
 /// `L'^-1` times the same.
 #[inline]
-fn divide_by_upper<const N: usize, const M: usize>(l: &[[f64; M]; M], y: &mut [[f64; N]; M], k: &mut [f64; M]) {
+fn divide_by_upper<const N: usize, const M: usize>(
+    l: &[[f64; M]; M],
+    y: &mut [[f64; N]; M],
+    k: &mut [f64; M],
+) {
     for row in (0..M).rev() {
         for t in row + 1..M {
             let f = l[t][row];

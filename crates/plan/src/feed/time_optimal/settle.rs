@@ -11,15 +11,20 @@ const SETTLING: usize = 40;
 /// What of the bounds it may use for that.
 const MOST: f64 = 0.999;
 
-/// Brings every axis to rest that the path leaves where it is up to the end of the window. The durations stay, so that its end is linear
-/// in its jerks, which change by as little as possible. An axis that would exceed a bound or leave the tube by that goes on as it was.
+/// Brings every axis to rest that the path leaves where it is up to the end of the window. The
+/// durations stay, so that its end is linear in its jerks, which change by as little as possible.
+/// An axis that would exceed a bound or leave the tube by that goes on as it was.
 pub(super) fn settle<const D: usize, const N: usize, const M: usize>(
     problem: &WindowProblem<D, N>,
     unknowns: &mut WindowUnknowns<N, M>,
 ) {
     let n = problem.way.len();
     for k in 0..D {
-        let from = problem.way.iter().rposition(|way| way[k] != 0.0).map_or(0, |last| last + 1);
+        let from = problem
+            .way
+            .iter()
+            .rposition(|way| way[k] != 0.0)
+            .map_or(0, |last| last + 1);
         let to = from + SETTLING;
         if to > n {
             continue;
@@ -49,7 +54,12 @@ fn is_possible<const D: usize, const N: usize, const M: usize>(
     [from, to]: [usize; 2],
 ) -> bool {
     let jerks = unknowns.u[from..to].iter().all(|u| u[k].abs() <= MOST);
-    let mut nodes = unknowns.x.iter().zip(&problem.radius).take(to).skip(from + 1);
+    let mut nodes = unknowns
+        .x
+        .iter()
+        .zip(&problem.radius)
+        .take(to)
+        .skip(from + 1);
     jerks
         && nodes.all(|(x, radius)| {
             let square: f64 = (0..D).map(|l| x[3 * l] * x[3 * l]).sum();

@@ -19,7 +19,8 @@ const AT_MM: f64 = 1e-9;
 /// The part by which the first control velocity may exceed the velocity that is given.
 const GIVEN_PART: f64 = 1e-7;
 
-/// So much of a turn that was planned before is reckoned with: a motion that turns less would exceed the feedrate between its nodes.
+/// So much of a turn that was planned before is reckoned with: a motion that turns less would
+/// exceed the feedrate between its nodes.
 const FOLLOWED_TURN: f64 = 0.98;
 
 /// The part by which a speed may exceed the one that was planned before, where that is above a cap.
@@ -49,11 +50,17 @@ pub(super) struct MeshProblem<'a> {
 impl MeshProblem<'_> {
     /// Steps of least time; none where the method comes to none.
     pub(super) fn solve(&self) -> Option<(Vec<PlannedStep>, u32)> {
-        let centers: Vec<[f64; 3]> = self.nodes.iter().map(|node| self.track.at(node.s_mm).position_mm).collect();
+        let centers: Vec<[f64; 3]> = self
+            .nodes
+            .iter()
+            .map(|node| self.track.at(node.s_mm).position_mm)
+            .collect();
         let first = &self.nodes.first()?.motion;
         let moves = |k: usize| {
             let from = centers[0][k];
-            centers.iter().any(|center| (center[k] - from).abs() > STILL_MM)
+            centers
+                .iter()
+                .any(|center| (center[k] - from).abs() > STILL_MM)
                 || (first.position_mm[k] - from).abs() > STILL_MM
                 || first.velocity_mm_s[k] != 0.0
                 || first.accel_mm_s2[k] != 0.0
@@ -96,7 +103,8 @@ impl MeshProblem<'_> {
             let mut u = [0.0; M];
             u[D] = h_s / units.step_s * self.slower.unwrap_or(1.0);
             for (d, &k) in axes.iter().enumerate() {
-                let change = self.guessed(i + 1, centers).accel_mm_s2[k] - self.guessed(i, centers).accel_mm_s2[k];
+                let change = self.guessed(i + 1, centers).accel_mm_s2[k]
+                    - self.guessed(i, centers).accel_mm_s2[k];
                 u[d] = change / h_s / units.jerk_mm_s3[d];
             }
             u
@@ -105,9 +113,17 @@ impl MeshProblem<'_> {
         let problem = WindowProblem {
             units,
             way: (0..n)
-                .map(|i| std::array::from_fn(|d| (centers[i + 1][axes[d]] - centers[i][axes[d]]) / units.offset_mm))
+                .map(|i| {
+                    std::array::from_fn(|d| {
+                        (centers[i + 1][axes[d]] - centers[i][axes[d]]) / units.offset_mm
+                    })
+                })
                 .collect(),
-            radius: self.nodes.iter().map(|node| node.radius_mm / units.offset_mm).collect(),
+            radius: self
+                .nodes
+                .iter()
+                .map(|node| node.radius_mm / units.offset_mm)
+                .collect(),
             feed_mm_s: (0..n).map(|i| self.feed_mm_s(i)).collect(),
             offset_cost: self.offset_cost,
             first: x[0],
@@ -116,7 +132,10 @@ impl MeshProblem<'_> {
         let (mut solution, iterations) = solve(&problem, WindowUnknowns { x, u }, self.settings)?;
         problem.roll_out(&mut solution);
         settle(&problem, &mut solution);
-        Some((self.steps_of(&problem, &solution, axes, centers), iterations))
+        Some((
+            self.steps_of(&problem, &solution, axes, centers),
+            iterations,
+        ))
     }
 
     /// What the axes do at a node by the first guess.
@@ -128,19 +147,35 @@ impl MeshProblem<'_> {
         let way = sub(centers[(i + 1).min(self.nodes.len() - 1)], centers[i - 1]);
         let speed_mm_s = (node.s_mm - self.nodes[i - 1].s_mm) / node.duration_s / slower;
         let velocity_mm_s = scale(speed_mm_s / norm(way).max(STILL_MM), way);
-        AxisMotion { position_mm: centers[i], velocity_mm_s, ..AxisMotion::REST }
+        AxisMotion {
+            position_mm: centers[i],
+            velocity_mm_s,
+            ..AxisMotion::REST
+        }
     }
 
-    /// What a control velocity may be: the feedrate, the smallest one where pieces meet, and more where the path turns: the polygon of
-    /// control velocities of a steady circle lies around it. A control velocity that is given stays possible.
+    /// What a control velocity may be: the feedrate, the smallest one where pieces meet, and more
+    /// where the path turns: the polygon of control velocities of a steady circle lies around it. A
+    /// control velocity that is given stays possible.
     fn feed_mm_s(&self, i: usize) -> f64 {
         let [from, to] = [&self.nodes[i], &self.nodes[i + 1]];
-        let feeds = self.track.between(from.s_mm - AT_MM, to.s_mm + AT_MM).map(|piece| piece.feed_mm_s);
+        let feeds = self
+            .track
+            .between(from.s_mm - AT_MM, to.s_mm + AT_MM)
+            .map(|piece| piece.feed_mm_s);
         let feed_mm_s = feeds.fold(f64::INFINITY, f64::min) * self.feed_parts[i];
-        let cap_mm_s = self.track.cap_mm_s(from.s_mm).min(self.track.cap_mm_s(to.s_mm));
-        // What was planned under a cap stays possible beside it: caps hold roughly, feedrates exactly.
+        let cap_mm_s = self
+            .track
+            .cap_mm_s(from.s_mm)
+            .min(self.track.cap_mm_s(to.s_mm));
+        // What was planned under a cap stays possible beside it: caps hold roughly, feedrates
+        // exactly.
         let planned_mm_s = norm(from.motion.velocity_mm_s).max(norm(to.motion.velocity_mm_s));
-        let cap_mm_s = if from.followed { cap_mm_s.max((1.0 + PLANNED_PART) * planned_mm_s) } else { cap_mm_s };
+        let cap_mm_s = if from.followed {
+            cap_mm_s.max((1.0 + PLANNED_PART) * planned_mm_s)
+        } else {
+            cap_mm_s
+        };
         let around_mm_s = feed_mm_s.min(cap_mm_s) / self.turn_cos(i);
         if i > 0 {
             return around_mm_s;
@@ -149,13 +184,19 @@ impl MeshProblem<'_> {
         around_mm_s.max((1.0 + GIVEN_PART) * given_mm_s)
     }
 
-    /// Cosine of half the angle by which the velocity turns within a step: on a curve by its tangents, elsewhere by what was planned
-    /// before; 1 where nothing was, and the speed then stays below the feedrate by as much as the motion turns.
+    /// Cosine of half the angle by which the velocity turns within a step: on a curve by its
+    /// tangents, elsewhere by what was planned before; 1 where nothing was, and the speed then
+    /// stays below the feedrate by as much as the motion turns.
     fn turn_cos(&self, i: usize) -> f64 {
         let [from, to] = [&self.nodes[i], &self.nodes[i + 1]];
         let piece = self.track.piece(from.s_mm);
         let directions = if piece.s_mm + piece.length_mm >= to.s_mm {
-            [from, to].map(|node| piece.curve.at((node.s_mm - piece.s_mm).max(0.0).min(piece.length_mm)).tangent)
+            [from, to].map(|node| {
+                piece
+                    .curve
+                    .at((node.s_mm - piece.s_mm).max(0.0).min(piece.length_mm))
+                    .tangent
+            })
         } else {
             [[0.0; 3]; 2]
         };
@@ -179,7 +220,10 @@ impl MeshProblem<'_> {
         let units = &problem.units;
         let mut steps = Vec::with_capacity(solution.u.len());
         for (i, u) in solution.u.iter().enumerate() {
-            let mut motion = AxisMotion { position_mm: centers[i], ..AxisMotion::REST };
+            let mut motion = AxisMotion {
+                position_mm: centers[i],
+                ..AxisMotion::REST
+            };
             let x = &solution.x[i];
             for (d, &k) in axes.iter().enumerate() {
                 motion.position_mm[k] += x[3 * d] * units.offset_mm;
@@ -188,10 +232,18 @@ impl MeshProblem<'_> {
                 motion.jerk_mm_s3[k] = u[d] * units.jerk_mm_s3[d];
             }
             if i == 0 {
-                motion = AxisMotion { jerk_mm_s3: motion.jerk_mm_s3, ..self.nodes[0].motion };
+                motion = AxisMotion {
+                    jerk_mm_s3: motion.jerk_mm_s3,
+                    ..self.nodes[0].motion
+                };
             }
             let (from_mm, to_mm) = (self.nodes[i].s_mm, self.nodes[i + 1].s_mm);
-            steps.push(PlannedStep { from_mm, to_mm, duration_s: u[D] * units.step_s, motion });
+            steps.push(PlannedStep {
+                from_mm,
+                to_mm,
+                duration_s: u[D] * units.step_s,
+                motion,
+            });
         }
         steps
     }

@@ -17,8 +17,14 @@ impl AxisCaps {
     /// Limit along `direction`: the axis that reaches its own limit first sets it. `of` selects the
     /// limit, whose unit the result has.
     pub(super) fn along(&self, direction: [f64; 3], of: impl Fn(&AxisLimits) -> f64) -> f64 {
-        let parts = self.axes.iter().zip(direction).filter(|(_, part)| part.abs() > 1e-12);
-        parts.map(|(limits, part)| of(limits) / part.abs()).fold(f64::INFINITY, f64::min)
+        let parts = self
+            .axes
+            .iter()
+            .zip(direction)
+            .filter(|(_, part)| part.abs() > 1e-12);
+        parts
+            .map(|(limits, part)| of(limits) / part.abs())
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// Whether each axis keeps its jerk in a step, up to rounding.
@@ -30,7 +36,11 @@ impl AxisCaps {
     /// How long the slowest axis takes to stop from a speed: `v / a + a / j`.
     pub(super) fn stop_s(&self, speed_mm_s: f64) -> f64 {
         let stop_s = |limits: &AxisLimits| {
-            let AxisLimits { velocity_mm_s, accel_mm_s2, jerk_mm_s3 } = *limits;
+            let AxisLimits {
+                velocity_mm_s,
+                accel_mm_s2,
+                jerk_mm_s3,
+            } = *limits;
             let speed_mm_s = velocity_mm_s.min(speed_mm_s);
             if speed_mm_s * jerk_mm_s3 < accel_mm_s2 * accel_mm_s2 {
                 2.0 * (speed_mm_s / jerk_mm_s3).sqrt()
@@ -58,8 +68,8 @@ const MOST_NEWTON: u32 = 52;
 /// Place on the programmed path over the time of a step: `s, s', s'' / 2, s''' / 6`.
 pub(super) type PlacePowers = [f64; 4];
 
-/// The place of the programmed path that stands for each moment of a step: with the speed of the motion along the path at both ends, or,
-/// where that would run backwards, evenly.
+/// The place of the programmed path that stands for each moment of a step: with the speed of the
+/// motion along the path at both ends, or, where that would run backwards, evenly.
 pub(super) fn place_powers(step: &PlannedStep, from: [f64; 3], to: [f64; 3]) -> PlacePowers {
     let h = step.duration_s;
     let way_mm = step.to_mm - step.from_mm;
@@ -68,7 +78,12 @@ pub(super) fn place_powers(step: &PlannedStep, from: [f64; 3], to: [f64; 3]) -> 
     let last = dot(step.motion.after(h).velocity_mm_s, to);
     // Fritsch and Carlson (1980): no more than three times the mean at either end is monotone.
     if (0.0..=3.0 * mean).contains(&first) && (0.0..=3.0 * mean).contains(&last) {
-        [step.from_mm, first, (3.0 * mean - 2.0 * first - last) / h, (first + last - 2.0 * mean) / (h * h)]
+        [
+            step.from_mm,
+            first,
+            (3.0 * mean - 2.0 * first - last) / h,
+            (first + last - 2.0 * mean) / (h * h),
+        ]
     } else {
         [step.from_mm, mean, 0.0, 0.0]
     }
@@ -79,7 +94,8 @@ pub(super) fn place_after(powers: &PlacePowers, t: f64) -> f64 {
     powers[0] + t * (powers[1] + t * (powers[2] + t * powers[3]))
 }
 
-/// When a place is reached: by Newton's method, and by halving where that leads out of what is known.
+/// When a place is reached: by Newton's method, and by halving where that leads out of what is
+/// known.
 pub(super) fn time_of_place(powers: &PlacePowers, place_mm: f64, duration_s: f64) -> f64 {
     let (mut lo, mut hi) = (0.0, duration_s);
     let mut t = 0.5 * duration_s;
@@ -92,7 +108,11 @@ pub(super) fn time_of_place(powers: &PlacePowers, place_mm: f64, duration_s: f64
         }
         let speed_mm_s = powers[1] + t * (2.0 * powers[2] + t * 3.0 * powers[3]);
         let next = t - missed_mm / speed_mm_s;
-        let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
+        let next = if next > lo && next < hi {
+            next
+        } else {
+            0.5 * (lo + hi)
+        };
         if (next - t).abs() <= f64::EPSILON * duration_s {
             return next;
         }

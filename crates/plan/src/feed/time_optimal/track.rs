@@ -1,4 +1,5 @@
-//! The programmed path from one rest to the next, as far as it is known, with what bounds the speed at places of it.
+//! The programmed path from one rest to the next, as far as it is known, with what bounds the speed
+//! at places of it.
 
 use super::steps::AxisCaps;
 use crate::constraints::speed_caps::SpeedCaps;
@@ -10,7 +11,8 @@ use std::sync::Arc;
 /// Where the directions of two pieces differ by this, a node lies on their joint, rad.
 const SHARP_RAD: f64 = 0.2;
 
-/// Widest span over which the path is looked at as a whole, mm; so much of it has to be known beyond a place.
+/// Widest span over which the path is looked at as a whole, mm; so much of it has to be known
+/// beyond a place.
 const WIDEST_MM: f64 = 2.56;
 
 /// Ratio of the width of each span to the width of the span before it.
@@ -60,7 +62,10 @@ pub(super) struct Track {
 impl Track {
     /// Without pieces.
     pub(super) fn new(caps: Option<Arc<SpeedCaps>>) -> Self {
-        Self { caps, ..Self::default() }
+        Self {
+            caps,
+            ..Self::default()
+        }
     }
 
     /// Bound on the speed at a place beside its feedrate, mm/s.
@@ -74,7 +79,10 @@ impl Track {
 
     /// The smallest bound and feedrate between two places, mm/s.
     pub(super) fn least_mm_s(&self, lo_mm: f64, hi_mm: f64) -> f64 {
-        let feeds = self.between(lo_mm, hi_mm).map(|piece| piece.feed_mm_s).fold(f64::INFINITY, f64::min);
+        let feeds = self
+            .between(lo_mm, hi_mm)
+            .map(|piece| piece.feed_mm_s)
+            .fold(f64::INFINITY, f64::min);
         let Some(caps) = &self.caps else {
             return feeds;
         };
@@ -85,11 +93,19 @@ impl Track {
 
     /// Adds a piece.
     pub(super) fn push(&mut self, number: u64, piece: &Piece, feed_mm_s: f64, tolerance_mm: f64) {
-        let Piece { curve, length_mm, .. } = piece;
+        let Piece {
+            curve, length_mm, ..
+        } = piece;
         if let Some(before) = self.pieces.back() {
-            let turn = angle(before.curve.at(before.length_mm).tangent, curve.at(0.0).tangent);
+            let turn = angle(
+                before.curve.at(before.length_mm).tangent,
+                curve.at(0.0).tangent,
+            );
             let long = before.length_mm.min(*length_mm) > 2.0 * tolerance_mm;
-            if (turn > SHARP_RAD && long) || before.feed_mm_s != feed_mm_s || before.tolerance_mm != tolerance_mm {
+            if (turn > SHARP_RAD && long)
+                || before.feed_mm_s != feed_mm_s
+                || before.tolerance_mm != tolerance_mm
+            {
                 self.joints.push_back(self.end_mm);
             }
         }
@@ -116,11 +132,17 @@ impl Track {
 
     /// The only piece of a path that has ended.
     pub(super) fn only(&self) -> Option<&TrackPiece> {
-        if self.pieces.len() == 1 && self.ended { self.pieces.front().filter(|piece| piece.s_mm == 0.0) } else { None }
+        if self.pieces.len() == 1 && self.ended {
+            self.pieces.front().filter(|piece| piece.s_mm == 0.0)
+        } else {
+            None
+        }
     }
 
     fn index(&self, s_mm: f64) -> usize {
-        self.pieces.partition_point(|piece| piece.s_mm <= s_mm).saturating_sub(1)
+        self.pieces
+            .partition_point(|piece| piece.s_mm <= s_mm)
+            .saturating_sub(1)
     }
 
     /// The piece at a place; at a joint the one behind it.
@@ -130,31 +152,46 @@ impl Track {
 
     /// Pieces that overlap a part of the path.
     pub(super) fn between(&self, lo_mm: f64, hi_mm: f64) -> impl Iterator<Item = &TrackPiece> {
-        self.pieces.range(self.index(lo_mm)..).take_while(move |piece| piece.s_mm < hi_mm || piece.s_mm <= lo_mm)
+        self.pieces
+            .range(self.index(lo_mm)..)
+            .take_while(move |piece| piece.s_mm < hi_mm || piece.s_mm <= lo_mm)
     }
 
     /// Position and tangent at a place.
     pub(super) fn at(&self, s_mm: f64) -> crate::path::Point {
         let piece = self.piece(s_mm);
-        piece.curve.at((s_mm - piece.s_mm).max(0.0).min(piece.length_mm))
+        piece
+            .curve
+            .at((s_mm - piece.s_mm).max(0.0).min(piece.length_mm))
     }
 
     /// The first joint with a node between two places.
     pub(super) fn joint(&self, lo_mm: f64, hi_mm: f64) -> Option<f64> {
         let first = self.joints.partition_point(|&s_mm| s_mm <= lo_mm);
-        self.joints.get(first).copied().filter(|&s_mm| s_mm <= hi_mm)
+        self.joints
+            .get(first)
+            .copied()
+            .filter(|&s_mm| s_mm <= hi_mm)
     }
 
     /// Places from a place on, with one at it or before.
     pub(super) fn places(&self, from_mm: f64) -> impl Iterator<Item = &TrackPlace> + Clone {
-        let first = self.places.partition_point(|place| place.s_mm <= from_mm).saturating_sub(1);
+        let first = self
+            .places
+            .partition_point(|place| place.s_mm <= from_mm)
+            .saturating_sub(1);
         self.places.range(first..)
     }
 
     /// Least time from a place to the last place known.
     pub(super) fn ahead_s(&self, from_mm: f64) -> f64 {
-        let here = self.places(from_mm).next().map_or(0.0, |place| place.at_cap_s);
-        self.places.back().map_or(0.0, |place| place.at_cap_s - here)
+        let here = self
+            .places(from_mm)
+            .next()
+            .map_or(0.0, |place| place.at_cap_s);
+        self.places
+            .back()
+            .map_or(0.0, |place| place.at_cap_s - here)
     }
 
     /// Drops what lies behind.
@@ -172,14 +209,22 @@ impl Track {
 
     /// Looks at all places that can be looked at now.
     pub(super) fn look(&mut self, caps: &AxisCaps) {
-        let reach_mm = if self.ended { self.end_mm } else { self.end_mm - WIDEST_MM };
+        let reach_mm = if self.ended {
+            self.end_mm
+        } else {
+            self.end_mm - WIDEST_MM
+        };
         loop {
             let s_mm = match self.places.back() {
                 None if self.ended || reach_mm >= 0.0 => 0.0,
                 Some(last) if self.ended && last.s_mm >= self.end_mm => return,
                 Some(last) => {
                     let next_mm = last.s_mm + self.spacing(last.s_mm);
-                    if self.ended { next_mm.min(self.end_mm) } else { next_mm }
+                    if self.ended {
+                        next_mm.min(self.end_mm)
+                    } else {
+                        next_mm
+                    }
                 }
                 None => return,
             };
@@ -197,14 +242,23 @@ impl Track {
         let least = GRID * piece.tolerance_mm;
         let local_mm = s_mm - piece.s_mm;
         let ahead_mm = piece.length_mm - local_mm;
-        let most: f64 = if matches!(piece.curve, Curve::Line(_)) { 2.0 } else { 0.2 };
+        let most: f64 = if matches!(piece.curve, Curve::Line(_)) {
+            2.0
+        } else {
+            0.2
+        };
         let step_mm = (0.2 * local_mm.min(ahead_mm).max(0.0)).clamp(least, most.max(least));
-        if ahead_mm > least { step_mm.min(0.8 * ahead_mm) } else { step_mm }
+        if ahead_mm > least {
+            step_mm.min(0.8 * ahead_mm)
+        } else {
+            step_mm
+        }
     }
 
-    /// Bound on the speed at a place: the turn over the widest span over which the tube lets a motion go straight on takes its time by
-    /// acceleration; the part of it that does not grow with the span, a corner, by jerk as well; the other, a bend, by the jerk of an
-    /// acceleration that turns. An estimate: it decides how far nodes are apart, not what the axes do.
+    /// Bound on the speed at a place: the turn over the widest span over which the tube lets a
+    /// motion go straight on takes its time by acceleration; the part of it that does not grow with
+    /// the span, a corner, by jerk as well; the other, a bend, by the jerk of an acceleration that
+    /// turns. An estimate: it decides how far nodes are apart, not what the axes do.
     fn place(&self, s_mm: f64, caps: &AxisCaps) -> TrackPlace {
         let piece = self.piece(s_mm);
         let here = self.at(s_mm);
@@ -212,7 +266,8 @@ impl Track {
         let first_mm = self.pieces.front().map_or(0.0, |piece| piece.s_mm);
         let (mut turn, mut used_mm, mut narrower) = ([0.0_f64; 3], 0.0, [0.0_f64; 3]);
         let mut width_mm = 2.0 * tolerance_mm;
-        while width_mm <= WIDEST_MM && s_mm - width_mm >= first_mm && s_mm + width_mm <= self.end_mm {
+        while width_mm <= WIDEST_MM && s_mm - width_mm >= first_mm && s_mm + width_mm <= self.end_mm
+        {
             let before = sub(here.position_mm, self.at(s_mm - width_mm).position_mm);
             let after = sub(self.at(s_mm + width_mm).position_mm, here.position_mm);
             let (b, a) = (norm(before).max(1e-12), norm(after).max(1e-12));
@@ -229,7 +284,9 @@ impl Track {
         let bend = norm(turn) / used_mm.max(1e-12);
         for (k, limits) in caps.axes.iter().enumerate() {
             // turn = corner + bend * span, by the last two spans.
-            let corner = (turn[k] - (turn[k] - narrower[k]) / (1.0 - 1.0 / WIDER)).abs().min(turn[k].abs());
+            let corner = (turn[k] - (turn[k] - narrower[k]) / (1.0 - 1.0 / WIDER))
+                .abs()
+                .min(turn[k].abs());
             let turn = turn[k].abs();
             if turn > 1e-9 {
                 cap_mm_s = cap_mm_s.min((limits.accel_mm_s2 * used_mm / turn).sqrt());
@@ -239,9 +296,15 @@ impl Track {
                 cap_mm_s = cap_mm_s.min(libm::cbrt(limits.jerk_mm_s3 * used_mm * used_mm / corner));
             }
         }
-        let at_cap_s =
-            self.places.back().map_or(0.0, |last| last.at_cap_s + (s_mm - last.s_mm) / cap_mm_s.max(last.cap_mm_s));
-        TrackPlace { s_mm, cap_mm_s, tangent: here.tangent, at_cap_s }
+        let at_cap_s = self.places.back().map_or(0.0, |last| {
+            last.at_cap_s + (s_mm - last.s_mm) / cap_mm_s.max(last.cap_mm_s)
+        });
+        TrackPlace {
+            s_mm,
+            cap_mm_s,
+            tangent: here.tangent,
+            at_cap_s,
+        }
     }
 
     /// Distance of a point from the part of the path between two places.

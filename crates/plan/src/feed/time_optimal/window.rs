@@ -1,9 +1,11 @@
 //! A window of the path as an optimisation problem.
 //!
-//! Nodes `c_i` lie on the programmed path. Of each node are unknown its offset `o`, velocity `v` and acceleration `a`, of each step
-//! between two nodes its duration `h` and its jerk `j`, which is constant:
+//! Nodes `c_i` lie on the programmed path. Of each node are unknown its offset `o`, velocity `v`
+//! and acceleration `a`, of each step between two nodes its duration `h` and its jerk `j`, which is
+//! constant:
 //!
-//! `c' + o' = c + o + h v + h^2 a / 2 + h^3 j / 6`, `v' = v + h a + h^2 j / 2`, `a' = a + h j` for each axis.
+//! `c' + o' = c + o + h v + h^2 a / 2 + h^3 j / 6`, `v' = v + h a + h^2 j / 2`, `a' = a + h j` for
+//! each axis.
 //!
 //! Every unknown is measured in a unit of its own, so that it is about 1.
 
@@ -20,7 +22,8 @@ pub(super) struct WindowUnits<const D: usize> {
     pub(super) jerk_mm_s3: [f64; D],
 }
 
-/// A window from node 0 to node `way.len()`, in units. `N` is `3 D`: offset, velocity, acceleration of the first axis, of the second...
+/// A window from node 0 to node `way.len()`, in units. `N` is `3 D`: offset, velocity, acceleration
+/// of the first axis, of the second...
 #[derive(Debug, Clone)]
 pub(super) struct WindowProblem<const D: usize, const N: usize> {
     pub(super) units: WindowUnits<D>,
@@ -30,7 +33,8 @@ pub(super) struct WindowProblem<const D: usize, const N: usize> {
     pub(super) radius: Vec<f64>,
     /// Largest length of the control velocity of each step, mm/s.
     pub(super) feed_mm_s: Vec<f64>,
-    /// Time that an offset at the edge of the tube costs at a node, as a part of the unit of durations.
+    /// Time that an offset at the edge of the tube costs at a node, as a part of the unit of
+    /// durations.
     pub(super) offset_cost: f64,
     /// State of the first node.
     pub(super) first: [f64; N],
@@ -59,7 +63,11 @@ pub(super) struct StepOfAxis {
 impl StepOfAxis {
     fn of<const D: usize>(units: &WindowUnits<D>, k: usize) -> Self {
         let (h, p) = (units.step_s, units.offset_mm);
-        let (v, a, j) = (units.velocity_mm_s[k], units.accel_mm_s2[k], units.jerk_mm_s3[k]);
+        let (v, a, j) = (
+            units.velocity_mm_s[k],
+            units.accel_mm_s2[k],
+            units.jerk_mm_s3[k],
+        );
         Self {
             c1: h * v / p,
             c2: h * h * a / p,
@@ -118,21 +126,28 @@ impl<const D: usize, const N: usize> WindowProblem<D, N> {
         !component.is_multiple_of(3) || self.exact_end
     }
 
-    /// The states that the jerks and durations lead to from the first state, without any defect; what that misses the last state by is
-    /// made up by the jerks.
+    /// The states that the jerks and durations lead to from the first state, without any defect;
+    /// what that misses the last state by is made up by the jerks.
     pub(super) fn roll_out<const M: usize>(&self, unknowns: &mut WindowUnknowns<N, M>) {
         let n = self.way.len();
         let mut target = unknowns.x[n];
-        (0..N).filter(|&s| self.is_given(s)).for_each(|s| target[s] = 0.0);
+        (0..N)
+            .filter(|&s| self.is_given(s))
+            .for_each(|s| target[s] = 0.0);
         unknowns.x[0] = self.first;
         for k in 0..D {
             self.roll(k, [0, n], unknowns);
-            self.steer(unknowns, k, [0, n], [target[3 * k], target[3 * k + 1], target[3 * k + 2]]);
+            self.steer(
+                unknowns,
+                k,
+                [0, n],
+                [target[3 * k], target[3 * k + 1], target[3 * k + 2]],
+            );
         }
     }
 
-    /// Changes the jerks of an axis between two nodes by as little as possible so that it comes to a state at the second one. With
-    /// durations given, that is linear in the jerks.
+    /// Changes the jerks of an axis between two nodes by as little as possible so that it comes to
+    /// a state at the second one. With durations given, that is linear in the jerks.
     pub(super) fn steer<const M: usize>(
         &self,
         unknowns: &mut WindowUnknowns<N, M>,
@@ -147,7 +162,11 @@ impl<const D: usize, const N: usize> WindowProblem<D, N> {
         let mut by_jerk = vec![[0.0; 3]; to - from];
         for i in (from..to).rev() {
             let h = unknowns.u[i][D];
-            let b = [step.c3 * h * h * h / 6.0, 0.5 * step.d2 * h * h, step.e1 * h];
+            let b = [
+                step.c3 * h * h * h / 6.0,
+                0.5 * step.d2 * h * h,
+                step.e1 * h,
+            ];
             by_jerk[i - from] = to_end.map(|row| row[0] * b[0] + row[1] * b[1] + row[2] * b[2]);
             let (ov, oa, va) = (step.c1 * h, 0.5 * step.c2 * h * h, step.d1 * h);
             to_end = to_end.map(|[o, v, a]| [o, v + o * ov, a + o * oa + v * va]);
@@ -166,7 +185,12 @@ impl<const D: usize, const N: usize> WindowProblem<D, N> {
     }
 
     /// The states of an axis from one node to another that its jerks and the durations lead to.
-    pub(super) fn roll<const M: usize>(&self, k: usize, [from, to]: [usize; 2], unknowns: &mut WindowUnknowns<N, M>) {
+    pub(super) fn roll<const M: usize>(
+        &self,
+        k: usize,
+        [from, to]: [usize; 2],
+        unknowns: &mut WindowUnknowns<N, M>,
+    ) {
         let step = StepOfAxis::of(&self.units, k);
         for i in from..to {
             let (x, u) = (&unknowns.x[i], &unknowns.u[i]);

@@ -4,18 +4,19 @@
 //!
 //! `f' = (C - p) . t`, `f'' = 1 + k (C - p) . n`
 //!
-//! Newton from the middle of the range finds a foot `s0`, at distance `b`. Along a curve whose curvature stays below `k`, for
-//! `k d < pi / 2`, the tangent turns by at most `k d` within the length `d`, so `|(C(s0 + d) - C(s0)) . n|` is at most
-//! `(1 - cos(k d)) / k`, and `f'' >= cos(k d) - k b`. Where that is positive over the whole range, f is convex and the foot
-//! is the nearest point. Otherwise all cells are searched, skipping those that the point's distance from
-//! their ends puts out of reach.
+//! Newton from the middle of the range finds a foot `s0`, at distance `b`. Along a curve whose
+//! curvature stays below `k`, for `k d < pi / 2`, the tangent turns by at most `k d` within the
+//! length `d`, so `|(C(s0 + d) - C(s0)) . n|` is at most `(1 - cos(k d)) / k`, and `f'' >= cos(k
+//! d) - k b`. Where that is positive over the whole range, f is convex and the foot is the nearest
+//! point. Otherwise all cells are searched, skipping those that the point's distance from their
+//! ends puts out of reach.
 
 use super::{Cell, MIN_SPEED_MM, Smooth};
 use crate::vector::{Vector, distance, dot, norm, sub};
 use std::f64::consts::FRAC_PI_2;
 
-/// Distances that differ by less are equal, and a foot wins over the end of a cell: rounding of a distance must not move the
-/// foot.
+/// Distances that differ by less are equal, and a foot wins over the end of a cell: rounding of a
+/// distance must not move the foot.
 const TIE_MM: f64 = 1e-12;
 
 /// Steps for a foot within a cell: halvings alone would need about 40.
@@ -24,11 +25,12 @@ const MAX_NEWTON_STEPS: usize = 100;
 /// Steps for a foot without brackets; from a few mm on a gentle curve it takes four.
 const FREE_NEWTON_STEPS: usize = 8;
 
-/// A Newton step this small leaves an error of its square times the curvature, which is below 1e-12 mm on any real curve.
+/// A Newton step this small leaves an error of its square times the curvature, which is below 1e-12
+/// mm on any real curve.
 const LAST_STEP_MM: f64 = 1e-7;
 
-/// Curvatures of cells are sampled at five points, over which the tangent turns by 0.3 rad at most: what lies between may
-/// be a little larger.
+/// Curvatures of cells are sampled at five points, over which the tangent turns by 0.3 rad at most:
+/// what lies between may be a little larger.
 const CURVATURE_MARGIN: f64 = 1.2;
 
 /// Derivatives of half the squared distance by arc length, and the distance.
@@ -41,7 +43,8 @@ struct Slope {
 impl Smooth {
     /// Arc length of the nearest point between the bounds.
     pub fn nearest(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> f64 {
-        self.sole_foot(point_mm, lo_mm, hi_mm).unwrap_or_else(|| self.search(point_mm, lo_mm, hi_mm))
+        self.sole_foot(point_mm, lo_mm, hi_mm)
+            .unwrap_or_else(|| self.search(point_mm, lo_mm, hi_mm))
     }
 
     /// The foot, where the distance is convex over the range.
@@ -50,13 +53,19 @@ impl Smooth {
         for _ in 0..FREE_NEWTON_STEPS {
             let slope = self.slope(&self.cells[self.cell_of(s_mm)], s_mm, point_mm);
             // Far from convex, Newton runs away; the tangent does not.
-            let step = if slope.second > 0.25 { slope.first / slope.second } else { slope.first };
+            let step = if slope.second > 0.25 {
+                slope.first / slope.second
+            } else {
+                slope.first
+            };
             let next = (s_mm - step).min(hi_mm).max(lo_mm);
             let moved_mm = (next - s_mm).abs();
             s_mm = next;
             if moved_mm < LAST_STEP_MM {
                 let reach_mm = (hi_mm - s_mm).max(s_mm - lo_mm);
-                return self.is_convex(lo_mm, hi_mm, reach_mm, slope.distance_mm + LAST_STEP_MM).then_some(s_mm);
+                return self
+                    .is_convex(lo_mm, hi_mm, reach_mm, slope.distance_mm + LAST_STEP_MM)
+                    .then_some(s_mm);
             }
         }
         None
@@ -64,9 +73,12 @@ impl Smooth {
 
     fn is_convex(&self, lo_mm: f64, hi_mm: f64, reach_mm: f64, distance_mm: f64) -> bool {
         let cells = &self.cells[self.cell_of(lo_mm)..=self.cell_of(hi_mm)];
-        let sharpest = cells.iter().fold(0.0, |k: f64, cell| k.max(cell.curvature_1_mm));
+        let sharpest = cells
+            .iter()
+            .fold(0.0, |k: f64, cell| k.max(cell.curvature_1_mm));
         let curvature = CURVATURE_MARGIN * sharpest;
-        curvature * reach_mm < FRAC_PI_2 && libm::cos(curvature * reach_mm) > curvature * distance_mm
+        curvature * reach_mm < FRAC_PI_2
+            && libm::cos(curvature * reach_mm) > curvature * distance_mm
     }
 
     #[cold]
@@ -81,7 +93,10 @@ impl Smooth {
         let first = self.cell_of(lo_mm);
         let last = self.cell_of(hi_mm);
         let middle = self.cell_of(s_mm).clamp(first, last);
-        let mut best = Best { s_mm, distance_mm: f64::INFINITY };
+        let mut best = Best {
+            s_mm,
+            distance_mm: f64::INFINITY,
+        };
         self.offer(middle, point_mm, lo_mm, hi_mm, &mut best);
         let mut cell = middle;
         while cell < last {
@@ -116,14 +131,19 @@ impl Smooth {
         let speed = norm(jet.first).max(MIN_SPEED_MM);
         let first = dot(away, jet.first) / speed;
         let bend = dot(away, jet.second) - first * dot(jet.first, jet.second) / speed;
-        Slope { first, second: 1.0 + bend / (speed * speed), distance_mm: norm(away) }
+        Slope {
+            first,
+            second: 1.0 + bend / (speed * speed),
+            distance_mm: norm(away),
+        }
     }
 
     fn distance(&self, point_mm: Vector, s_mm: f64) -> f64 {
         distance(self.jet_at(s_mm).position_mm, point_mm)
     }
 
-    /// Nearest point within one cell: where `(C - p).C'` changes from negative to positive, or an end.
+    /// Nearest point within one cell: where `(C - p).C'` changes from negative to positive, or an
+    /// end.
     fn offer(&self, index: usize, point_mm: Vector, lo_mm: f64, hi_mm: f64, best: &mut Best) {
         let cell = &self.cells[index];
         let mut lo = cell.s_mm.max(lo_mm);

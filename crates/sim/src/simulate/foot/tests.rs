@@ -9,7 +9,13 @@ fn machine() -> Machine {
 }
 
 fn motion(start_mm: Vector, end_mm: Vector, shape: Shape) -> Canon {
-    let (kind, corner) = (MotionKind::Feed, Corner::Continuous { tolerance_mm: None, merge_mm: None });
+    let (kind, corner) = (
+        MotionKind::Feed,
+        Corner::Continuous {
+            tolerance_mm: None,
+            merge_mm: None,
+        },
+    );
     Canon::Motion(Motion {
         line: 1,
         kind,
@@ -23,10 +29,14 @@ fn motion(start_mm: Vector, end_mm: Vector, shape: Shape) -> Canon {
 }
 
 fn lines(corners_mm: &[Vector]) -> Vec<Canon> {
-    corners_mm.windows(2).map(|ends| motion(ends[0], ends[1], Shape::Line)).collect()
+    corners_mm
+        .windows(2)
+        .map(|ends| motion(ends[0], ends[1], Shape::Line))
+        .collect()
 }
 
-/// The feet of a tool that is where `tool` says, given the reference and the time at the end of a servo period.
+/// The feet of a tool that is where `tool` says, given the reference and the time at the end of a
+/// servo period.
 fn feet(program: Vec<Canon>, mut tool: impl FnMut(&mut Reference<'_>, f64) -> Vector) -> Vec<Foot> {
     let machine = machine();
     let mut reference = Reference::of_program(program, &machine).unwrap();
@@ -44,20 +54,32 @@ fn feet(program: Vec<Canon>, mut tool: impl FnMut(&mut Reference<'_>, f64) -> Ve
 }
 
 fn largest(feet: &[Foot]) -> f64 {
-    feet.iter().fold(0.0, |largest, foot| foot.distance_mm.max(largest))
+    feet.iter()
+        .fold(0.0, |largest, foot| foot.distance_mm.max(largest))
 }
 
 fn goes_on(feet: &[Foot]) {
     let mut furthest_mm: f64 = 0.0;
     for foot in feet {
-        assert!(foot.s_mm >= furthest_mm - BACK_MM - 1e-12, "{} behind {furthest_mm}", foot.s_mm);
+        assert!(
+            foot.s_mm >= furthest_mm - BACK_MM - 1e-12,
+            "{} behind {furthest_mm}",
+            foot.s_mm
+        );
         furthest_mm = furthest_mm.max(foot.s_mm);
     }
 }
 
 fn battlement() -> Vec<Vector> {
     let teeth = (0..6).map(f64::from);
-    let tooth = |x: f64| [[x, 0.0, 0.0], [x, 0.5, 0.0], [x + 0.5, 0.5, 0.0], [x + 0.5, 0.0, 0.0]];
+    let tooth = |x: f64| {
+        [
+            [x, 0.0, 0.0],
+            [x, 0.5, 0.0],
+            [x + 0.5, 0.5, 0.0],
+            [x + 0.5, 0.0, 0.0],
+        ]
+    };
     teeth.flat_map(tooth).collect()
 }
 
@@ -75,10 +97,18 @@ fn following() -> impl FnMut(&mut Reference<'_>, f64) -> Vector {
 
 #[test]
 fn a_tool_on_the_path_has_no_error_whatever_its_lag() {
-    let spike = vec![[0.0, 0.0, 0.0], [5.0, 0.1, 0.0], [0.0, 0.2, 0.0], [0.0, 0.2, 5.0], [0.0, 0.2, 0.0]];
+    let spike = vec![
+        [0.0, 0.0, 0.0],
+        [5.0, 0.1, 0.0],
+        [0.0, 0.2, 0.0],
+        [0.0, 0.2, 5.0],
+        [0.0, 0.2, 0.0],
+    ];
     for corners in [battlement(), spike] {
         for lag_s in [-2e-3, 0.0, 5e-3, 0.02, 0.06] {
-            let feet = feet(lines(&corners), |reference, t_s| reference.at(t_s - lag_s).position_mm);
+            let feet = feet(lines(&corners), |reference, t_s| {
+                reference.at(t_s - lag_s).position_mm
+            });
             goes_on(&feet);
             // Of a servo period in which the tool turns at a tip, only both ends are known.
             assert!(largest(&feet) < 1e-4, "lag {lag_s}: {}", largest(&feet));
@@ -90,7 +120,11 @@ fn a_tool_on_the_path_has_no_error_whatever_its_lag() {
 fn a_tool_that_stays_on_a_leg_that_it_has_passed_is_seen() {
     // On the third leg, downwards, at half its height; the leg before it is no nearer than 0.25 mm.
     let stays = |reference: &mut Reference<'_>, t_s: f64| {
-        let tau_s = if (0.5..0.9).contains(&t_s) { 0.5 } else { t_s - 0.02 };
+        let tau_s = if (0.5..0.9).contains(&t_s) {
+            0.5
+        } else {
+            t_s - 0.02
+        };
         reference.at(tau_s).position_mm
     };
     let feet = feet(lines(&battlement()), stays);
@@ -147,26 +181,40 @@ fn right_angles_and_spikes_are_passed_where_the_legs_are_equally_near() {
                 distance(*tool_mm, way.map(|x| along * x))
             };
             let nearest = leg(before).min(leg(behind));
-            assert!((foot.distance_mm - nearest).abs() < BACK_MM, "{degrees}: {} {nearest}", foot.distance_mm);
+            assert!(
+                (foot.distance_mm - nearest).abs() < BACK_MM,
+                "{degrees}: {} {nearest}",
+                foot.distance_mm
+            );
         }
     }
 }
 
-/// A tool that turns before the tip of a spike, where the spike after the next comes nearer than the way back.
+/// A tool that turns before the tip of a spike, where the spike after the next comes nearer than
+/// the way back.
 #[test]
 fn of_spikes_side_by_side_the_next_but_one_is_not_reached() {
-    let corners =
-        [[0.0, 0.0, 0.0], [0.031, -0.0236, 0.0], [-0.0146, 0.0048, 0.0], [0.0365, -0.028, 0.0], [0.0, 0.0003, 0.0]];
+    let corners = [
+        [0.0, 0.0, 0.0],
+        [0.031, -0.0236, 0.0],
+        [-0.0146, 0.0048, 0.0],
+        [0.0365, -0.028, 0.0],
+        [0.0, 0.0003, 0.0],
+    ];
     let tip_mm = distance(corners[0], corners[1]);
     let short_mm = 0.0022;
     let feet = feet(lines(&corners), |reference, t_s| {
         let s_mm = reference.at(t_s - 0.02).s_mm;
         let before_tip = (tip_mm - short_mm..tip_mm + short_mm).contains(&s_mm);
-        let [from_mm, to_mm] =
-            [-short_mm, short_mm].map(|way_mm| reference.at_length([0.0; 3], tip_mm + way_mm).position_mm);
+        let [from_mm, to_mm] = [-short_mm, short_mm]
+            .map(|way_mm| reference.at_length([0.0; 3], tip_mm + way_mm).position_mm);
         let part = (s_mm - tip_mm + short_mm) / (2.0 * short_mm);
         let straight = std::array::from_fn(|k| from_mm[k] + part * (to_mm[k] - from_mm[k]));
-        if before_tip { straight } else { reference.at(t_s - 0.02).position_mm }
+        if before_tip {
+            straight
+        } else {
+            reference.at(t_s - 0.02).position_mm
+        }
     });
     goes_on(&feet);
     assert!(largest(&feet) < 0.001, "{}", largest(&feet));
@@ -175,14 +223,21 @@ fn of_spikes_side_by_side_the_next_but_one_is_not_reached() {
 #[test]
 fn vibration_along_the_path_does_not_carry_the_progress_on() {
     let mut at = Vec::new();
-    let feet = feet(lines(&[[0.0, 0.0, 0.0], [20.0, 0.0, 0.0]]), |reference, t_s| {
-        let x = reference.at(t_s - 0.03).position_mm[0];
-        let tool_mm = [x + 4e-3 * libm::sin(900.0 * t_s), 1e-3, 0.0];
-        at.push(tool_mm[0]);
-        tool_mm
-    });
+    let feet = feet(
+        lines(&[[0.0, 0.0, 0.0], [20.0, 0.0, 0.0]]),
+        |reference, t_s| {
+            let x = reference.at(t_s - 0.03).position_mm[0];
+            let tool_mm = [x + 4e-3 * libm::sin(900.0 * t_s), 1e-3, 0.0];
+            at.push(tool_mm[0]);
+            tool_mm
+        },
+    );
     for (foot, x) in feet.iter().zip(at) {
-        assert!((foot.s_mm - x.clamp(0.0, 20.0)).abs() < 1e-9 && foot.distance_mm < 5e-3, "{} {x}", foot.s_mm);
+        assert!(
+            (foot.s_mm - x.clamp(0.0, 20.0)).abs() < 1e-9 && foot.distance_mm < 5e-3,
+            "{} {x}",
+            foot.s_mm
+        );
     }
 }
 
@@ -190,9 +245,20 @@ fn vibration_along_the_path_does_not_carry_the_progress_on() {
 fn laps_over_each_other_are_told_apart() {
     for radius_mm in [0.1, 1.0, 3.0] {
         let start = [radius_mm, 0.0, 0.0];
-        let lap = || motion(start, start, Shape::Arc { plane: Plane::Xy, center_mm: [0.0; 3], turns: 1 });
-        let feet =
-            feet(vec![lap(), lap(), lap()], |reference, t_s| reference.at(t_s - 0.02).position_mm.map(|x| 0.98 * x));
+        let lap = || {
+            motion(
+                start,
+                start,
+                Shape::Arc {
+                    plane: Plane::Xy,
+                    center_mm: [0.0; 3],
+                    turns: 1,
+                },
+            )
+        };
+        let feet = feet(vec![lap(), lap(), lap()], |reference, t_s| {
+            reference.at(t_s - 0.02).position_mm.map(|x| 0.98 * x)
+        });
         goes_on(&feet);
         for (n, foot) in feet.iter().enumerate().skip(1) {
             let jump_mm = foot.s_mm - feet[n - 1].s_mm;

@@ -15,12 +15,23 @@ pub(super) fn options(args: &CompareArgs) -> Result<ComparisonOptions> {
         Work::Development => Workpiece::development(),
         Work::HeldOut => HeldOutSeeds::recorded().workpieces(),
     };
-    let mut machines: Vec<Machine> =
-        BUILT_IN_MACHINES.iter().map(|(name, _)| Machine::load(name.as_ref())).collect::<Result<_, _>>()?;
+    let mut machines: Vec<Machine> = BUILT_IN_MACHINES
+        .iter()
+        .map(|(name, _)| Machine::load(name.as_ref()))
+        .collect::<Result<_, _>>()?;
     let mut controllers: Vec<&'static Entry> = CONTROLLERS.iter().collect();
     let nominal = machines[0].clone();
-    let added: Vec<Machine> = args.machine.iter().map(|machine| Machine::load(machine)).collect::<Result<_, _>>()?;
-    check_only(&args.only, &workpieces, &[&machines[..], &added[..]].concat(), &controllers)?;
+    let added: Vec<Machine> = args
+        .machine
+        .iter()
+        .map(|machine| Machine::load(machine))
+        .collect::<Result<_, _>>()?;
+    check_only(
+        &args.only,
+        &workpieces,
+        &[&machines[..], &added[..]].concat(),
+        &controllers,
+    )?;
     let named = |name: &str| args.only.iter().any(|only| only == name);
     if workpieces.iter().any(|w| named(&w.name)) || !args.part.is_empty() && !args.only.is_empty() {
         workpieces.retain(|w| named(&w.name));
@@ -49,11 +60,17 @@ pub(super) fn options(args: &CompareArgs) -> Result<ComparisonOptions> {
     }
     let set = feedwright::command::settings(&args.set, CONTROLLERS, None, &controllers)?;
     let tuning = match args.tuning() {
-        TuningSource::Recorded => Tuning::Known(recorded::known(&machines_and(&machines, &nominal), args.seed)),
+        TuningSource::Recorded => Tuning::Known(recorded::known(
+            &machines_and(&machines, &nominal),
+            args.seed,
+        )),
         TuningSource::Search => Tuning::Search,
         TuningSource::Defaults => Tuning::Defaults,
     };
-    let machines = machines.iter().map(|machine| args.geometry.on(machine)).collect::<Result<_>>()?;
+    let machines = machines
+        .iter()
+        .map(|machine| args.geometry.on(machine))
+        .collect::<Result<_>>()?;
     Ok(ComparisonOptions {
         workpieces,
         nominal,
@@ -88,9 +105,15 @@ fn check_only(
             let names: Vec<&str> = known.iter().map(String::as_str).collect();
             let help = match nearest(name, &names) {
                 Some(meant) => format!("did you mean '{meant}'?"),
-                None => format!("there are {}; what --part and --machine add is always cut", known.join(", ")),
+                None => format!(
+                    "there are {}; what --part and --machine add is always cut",
+                    known.join(", ")
+                ),
             };
-            return Err(miette!(help = help, "--only: no contour, machine or controller is called '{name}'"));
+            return Err(miette!(
+                help = help,
+                "--only: no contour, machine or controller is called '{name}'"
+            ));
         }
     }
     Ok(())
@@ -100,7 +123,12 @@ fn check_only(
 fn ambiguous(option: &str, name: &str) -> miette::Report {
     let help = match option {
         "--part" => "the name is that of the file: give this one another",
-        _ => "give it another `name` in its file, or choose from those that are built in with --only",
+        _ => {
+            "give it another `name` in its file, or choose from those that are built in with --only"
+        }
     };
-    miette!(help = help, "{option}: there is another '{name}' in the table")
+    miette!(
+        help = help,
+        "{option}: there is another '{name}' in the table"
+    )
 }

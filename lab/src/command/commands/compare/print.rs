@@ -27,7 +27,14 @@ pub(super) fn print(args: &CompareArgs, comparison: &Comparison) -> std::io::Res
 pub(super) fn tuned(tuned: &[Tuned]) -> String {
     let mut text = String::new();
     for tuned in tuned.iter().filter(|tuned| tuned.cuts > 0) {
-        let Tuned { machine, controller, cuts, rms_um, open_um, .. } = tuned;
+        let Tuned {
+            machine,
+            controller,
+            cuts,
+            rms_um,
+            open_um,
+            ..
+        } = tuned;
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
@@ -66,8 +73,13 @@ fn rows(rows: &[ComparisonRow]) -> ConsoleTable {
             row.controller.clone(),
             format!("{:.3}", row.time_s),
             format!("{:.3}", row.rms_um),
-            if row.seeds > 1 { format!("{low:.3} to {high:.3}") } else { String::new() },
-            row.joint_rms_um.map_or(String::new(), |um| format!("{um:.3}")),
+            if row.seeds > 1 {
+                format!("{low:.3} to {high:.3}")
+            } else {
+                String::new()
+            },
+            row.joint_rms_um
+                .map_or(String::new(), |um| format!("{um:.3}")),
             format!("{:.2}", row.max_um),
             format!("{:.2}", row.uncut_um),
             format!("{:.3}", row.time_ratio),
@@ -101,8 +113,15 @@ fn print_at_tolerance(out: &mut dyn Write, rows: &[AtTolerance]) -> std::io::Res
             table.section(format!("{}, max {TOLERANCE_UM} um", row.contour));
             contour = &row.contour;
         }
-        let feed = row.feed_mm_s.map_or("-".to_owned(), |feed| format!("{feed:.1}"));
-        table.row(vec![row.controller.clone(), feed, number(row.time_s), number(row.time_ratio)]);
+        let feed = row
+            .feed_mm_s
+            .map_or("-".to_owned(), |feed| format!("{feed:.1}"));
+        table.row(vec![
+            row.controller.clone(),
+            feed,
+            number(row.time_s),
+            number(row.time_ratio),
+        ]);
     }
     table.print(out)
 }
@@ -113,12 +132,32 @@ fn print_verdicts(out: &mut dyn Write, verdicts: &[Verdict]) -> std::io::Result<
     }
     writeln!(out)?;
     for verdict in verdicts {
-        let Verdict { claim, contour, machine, value, limit, unit, against, .. } = verdict;
-        let against = if against.is_empty() { String::new() } else { format!(" ({against})") };
-        let holds = if verdict.holds { "holds" } else { "FALLS SHORT" };
-        let place = [contour.to_string(), machine.to_string()].into_iter().filter(|word| !word.is_empty());
+        let Verdict {
+            claim,
+            contour,
+            machine,
+            value,
+            limit,
+            unit,
+            against,
+            ..
+        } = verdict;
+        let against = if against.is_empty() {
+            String::new()
+        } else {
+            format!(" ({against})")
+        };
+        let holds = if verdict.holds {
+            "holds"
+        } else {
+            "FALLS SHORT"
+        };
+        let place = [contour.to_string(), machine.to_string()]
+            .into_iter()
+            .filter(|word| !word.is_empty());
         let place = place.collect::<Vec<_>>().join(" on ");
-        let text = format!("{holds}: {claim}; {place}: {value:.3}, limit {limit:.3} {unit}{against}");
+        let text =
+            format!("{holds}: {claim}; {place}: {value:.3}, limit {limit:.3} {unit}{against}");
         writeln!(out, "{}", wrapped(&text, 2))?;
     }
     let held = verdicts.iter().filter(|verdict| verdict.holds).count();

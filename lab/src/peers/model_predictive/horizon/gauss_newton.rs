@@ -1,4 +1,5 @@
-//! One step of Gauss and Newton: the minimum of the linearised problem within the limits of the accelerations.
+//! One step of Gauss and Newton: the minimum of the linearised problem within the limits of the
+//! accelerations.
 //!
 //! ```text
 //! minimise 1/2 da'(G'G + W) da + (G'r + W a)'da     -A <= a + da <= A
@@ -13,15 +14,21 @@ use super::interior_point::Quadratic;
 use super::problem::{GradientRow, HorizonProblem};
 use super::{Accelerations, MAX_KNOTS, MAX_UNKNOWNS};
 
-/// The normal equations of a tick. Kept between ticks so that none has to clear what it does not use.
+/// The normal equations of a tick. Kept between ticks so that none has to clear what it does not
+/// use.
 #[derive(Debug, Clone, Default)]
 pub struct GaussNewton {
     quadratic: Quadratic,
 }
 
 impl GaussNewton {
-    /// Changes the accelerations of a plan whose problem is this, within the limits. They are within them before.
-    pub fn improve<const N: usize>(&mut self, problem: &HorizonProblem<N>, accelerations_mm_s2: &mut Accelerations<N>) {
+    /// Changes the accelerations of a plan whose problem is this, within the limits. They are
+    /// within them before.
+    pub fn improve<const N: usize>(
+        &mut self,
+        problem: &HorizonProblem<N>,
+        accelerations_mm_s2: &mut Accelerations<N>,
+    ) {
         let unknowns = problem.unknowns();
         self.quadratic.clear(unknowns);
         self.add_errors(problem);
@@ -34,7 +41,12 @@ impl GaussNewton {
             (*least, *most) = (-limits[i % N] - now, limits[i % N] - now);
         }
         let change = self.quadratic.minimum(&least, &most);
-        for (now, change) in accelerations_mm_s2.as_flattened_mut().iter_mut().zip(change).take(unknowns) {
+        for (now, change) in accelerations_mm_s2
+            .as_flattened_mut()
+            .iter_mut()
+            .zip(change)
+            .take(unknowns)
+        {
             *now += change;
         }
     }
@@ -45,8 +57,8 @@ impl GaussNewton {
         let mut errors = [0.0; BLOCK];
         let (mut held, mut entries) = (0, 0);
         problem.rows(|knot, error, fill| {
-            // Behind its entries a row of an earlier block has none either, and is zero: rows come in the order of the knots.
-            // Of a block that is full nothing is held.
+            // Behind its entries a row of an earlier block has none either, and is zero: rows come
+            // in the order of the knots. Of a block that is full nothing is held.
             let at = held % BLOCK;
             fill(&mut rows[at]);
             errors[at] = error;
@@ -66,18 +78,26 @@ impl GaussNewton {
         }
     }
 
-    /// q: an acceleration in knot r moves the offset at the end of knot i by m_(i-r), so that the products of two knots differ
-    /// from those of the next two by one term.
+    /// q: an acceleration in knot r moves the offset at the end of knot i by m_(i-r), so that the
+    /// products of two knots differ from those of the next two by one term.
     fn add_offsets<const N: usize>(&mut self, problem: &HorizonProblem<N>) {
         let (knots, weight) = (problem.knots.min(MAX_KNOTS), problem.settings.offset_weight);
         if weight <= 0.0 {
             return;
         }
-        let moved = |since: usize| problem.moved_s2.get(knots - 1 - since).copied().unwrap_or(0.0);
+        let moved = |since: usize| {
+            problem
+                .moved_s2
+                .get(knots - 1 - since)
+                .copied()
+                .unwrap_or(0.0)
+        };
         for r in 0..knots {
             for axis in 0..N {
                 let ends = problem.ends.iter().take(knots).enumerate().skip(r);
-                let slope: f64 = ends.map(|(i, end)| moved(i - r) * end.offset_mm[axis]).sum();
+                let slope: f64 = ends
+                    .map(|(i, end)| moved(i - r) * end.offset_mm[axis])
+                    .sum();
                 self.quadratic.add_gradient(r * N + axis, weight * slope);
             }
         }
@@ -86,20 +106,29 @@ impl GaussNewton {
             for r in (apart..knots).rev() {
                 sum += moved(knots - 1 - r) * moved(knots - 1 - r + apart);
                 for axis in 0..N {
-                    self.quadratic.add(r * N + axis, (r - apart) * N + axis, weight * sum);
+                    self.quadratic
+                        .add(r * N + axis, (r - apart) * N + axis, weight * sum);
                 }
             }
         }
     }
 
     /// W: the speed v_j of the offset after knot j is the same sum of accelerations for all m <= j.
-    fn add_speeds<const N: usize>(&mut self, problem: &HorizonProblem<N>, accelerations_mm_s2: &Accelerations<N>) {
+    fn add_speeds<const N: usize>(
+        &mut self,
+        problem: &HorizonProblem<N>,
+        accelerations_mm_s2: &Accelerations<N>,
+    ) {
         let (knots, knot_s) = (problem.knots.min(MAX_KNOTS), problem.knot_s);
         let change = problem.settings.change_weight * knot_s * knot_s;
         let rate = problem.settings.rate_weight * knot_s;
         let mut sum_mm_s = [[0.0; N]; MAX_KNOTS];
         for knot in (0..knots).rev() {
-            let later = if knot + 1 < knots { sum_mm_s[knot + 1] } else { [0.0; N] };
+            let later = if knot + 1 < knots {
+                sum_mm_s[knot + 1]
+            } else {
+                [0.0; N]
+            };
             sum_mm_s[knot] = add_scaled(later, 1.0, problem.ends[knot].offset_mm_s);
         }
         for r in 0..knots {
@@ -130,7 +159,12 @@ mod tests {
 
     impl KnotSource<2> for Line {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
-            Knot { position_mm: [10.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 10.0, cutting: true }
+            Knot {
+                position_mm: [10.0 * tau_s, 0.0],
+                tangent: [1.0, 0.0],
+                feed_mm_s: 10.0,
+                cutting: true,
+            }
         }
     }
 
@@ -159,13 +193,23 @@ mod tests {
         change_weight: 1e-12,
         offset_weight: 0.7,
         last_weight: 0.1,
-        limits: CorrectionLimits { acceleration_mm_s2: [1e6; 2], ..CorrectionLimits::NONE },
+        limits: CorrectionLimits {
+            acceleration_mm_s2: [1e6; 2],
+            ..CorrectionLimits::NONE
+        },
         ..HorizonSettings::EXAMPLE
     };
 
     fn window<'a>(register: &'a Register<2>, preview: &'a Preview<2>) -> Window<'a, 2> {
         let (offset_mm, offset_mm_s) = ([0.2, -0.1], [3.0, 5.0]);
-        Window { register, preview, tau_s: 0.0, feed_period_s: 0.003, offset_mm, offset_mm_s }
+        Window {
+            register,
+            preview,
+            tau_s: 0.0,
+            feed_period_s: 0.003,
+            offset_mm,
+            offset_mm_s,
+        }
     }
 
     /// q/2 sum |o|^2 + d/2 sum |T a|^2 of a plan, rolled out.
@@ -173,7 +217,12 @@ mod tests {
         let problem = HorizonProblem::new(&Deaf, window, accelerations, &SETTINGS);
         let squares = |all: &mut dyn Iterator<Item = f64>| all.map(|x| x * x).sum::<f64>();
         let offsets = squares(&mut problem.ends[..KNOTS].iter().flat_map(|end| end.offset_mm));
-        let changes = squares(&mut accelerations[..KNOTS].as_flattened().iter().map(|a| a * problem.knot_s));
+        let changes = squares(
+            &mut accelerations[..KNOTS]
+                .as_flattened()
+                .iter()
+                .map(|a| a * problem.knot_s),
+        );
         0.5 * (SETTINGS.offset_weight * offsets + SETTINGS.change_weight * changes)
     }
 

@@ -6,13 +6,15 @@
 //! (H + Z/S + Y/T) dx = c/S - d/T     S = x - least, T = most - x; Z, Y: their multipliers
 //! ```
 //!
-//! Where the minimum without bounds is within them, that is the answer, for one factorisation. Otherwise every iteration
-//! takes one more: a predictor, and with the same factors a corrector. The number of iterations hardly depends on the problem,
-//! and is bounded; x is within the bounds after each. An active set takes about as many factorisations where it ends, but it
-//! need not: the last accelerations of a horizon hardly move the tool, H has a condition number of 1e10, and the sets cycled.
+//! Where the minimum without bounds is within them, that is the answer, for one factorisation.
+//! Otherwise every iteration takes one more: a predictor, and with the same factors a corrector.
+//! The number of iterations hardly depends on the problem, and is bounded; x is within the bounds
+//! after each. An active set takes about as many factorisations where it ends, but it need not: the
+//! last accelerations of a horizon hardly move the tool, H has a condition number of 1e10, and the
+//! sets cycled.
 //!
-//! Source: Mehrotra (1992), "On the implementation of a primal-dual interior point method"; for horizons, Rao, Wright and
-//! Rawlings (1998).
+//! Source: Mehrotra (1992), "On the implementation of a primal-dual interior point method"; for
+//! horizons, Rao, Wright and Rawlings (1998).
 
 use feedwright_control::vector::bounded;
 
@@ -72,19 +74,36 @@ impl Quadratic {
 
     /// Adds `1/2 (error + row x)^2` for a block of rows, whose first entries count.
     #[inline]
-    pub(crate) fn add_rows(&mut self, rows: &[Unknowns; BLOCK], errors: &[f64; BLOCK], entries: usize) {
+    pub(crate) fn add_rows(
+        &mut self,
+        rows: &[Unknowns; BLOCK],
+        errors: &[f64; BLOCK],
+        entries: usize,
+    ) {
         let entries = entries.min(self.number());
         for (r, sums) in self.curvature.iter_mut().enumerate().take(entries) {
             let factors = rows.each_ref().map(|row| row[r]);
-            add_products(&mut sums[..=r], factors, rows.each_ref().map(|row| &row[..=r]));
+            add_products(
+                &mut sums[..=r],
+                factors,
+                rows.each_ref().map(|row| &row[..=r]),
+            );
         }
-        add_products(&mut self.gradient[..entries], *errors, rows.each_ref().map(|row| &row[..entries]));
+        add_products(
+            &mut self.gradient[..entries],
+            *errors,
+            rows.each_ref().map(|row| &row[..entries]),
+        );
     }
 
     /// Adds to an entry of H in its lower half.
     #[inline]
     pub(crate) fn add(&mut self, row: usize, column: usize, curvature: f64) {
-        if let Some(entry) = self.curvature.get_mut(row).and_then(|row| row.get_mut(column)) {
+        if let Some(entry) = self
+            .curvature
+            .get_mut(row)
+            .and_then(|row| row.get_mut(column))
+        {
             *entry += curvature;
         }
     }
@@ -127,8 +146,11 @@ impl Quadratic {
 
     /// Near zero, with multipliers that satisfy H x + g = z - y.
     fn first_point(&self, least: &Unknowns, most: &Unknowns) -> Iterate {
-        let mut point =
-            Iterate { x: [0.0; MAX_UNKNOWNS], room: [[1.0; MAX_UNKNOWNS]; 2], multipliers: [[1.0; MAX_UNKNOWNS]; 2] };
+        let mut point = Iterate {
+            x: [0.0; MAX_UNKNOWNS],
+            room: [[1.0; MAX_UNKNOWNS]; 2],
+            multipliers: [[1.0; MAX_UNKNOWNS]; 2],
+        };
         for i in 0..self.number() {
             let within = WELL_WITHIN * (most[i] - least[i]);
             point.x[i] = bounded(0.0, least[i] + within, most[i] - within);
@@ -136,7 +158,11 @@ impl Quadratic {
             point.room[1][i] = most[i] - point.x[i];
         }
         let slopes = self.slopes(&point.x);
-        let mean = slopes[..self.number()].iter().map(|slope| slope.abs()).sum::<f64>() / self.number().max(1) as f64;
+        let mean = slopes[..self.number()]
+            .iter()
+            .map(|slope| slope.abs())
+            .sum::<f64>()
+            / self.number().max(1) as f64;
         for i in 0..self.number() {
             point.multipliers[0][i] = slopes[i].max(0.0) + 0.1 * mean;
             point.multipliers[1][i] = (-slopes[i]).max(0.0) + 0.1 * mean;
@@ -148,7 +174,13 @@ impl Quadratic {
         let number = self.number();
         let [z, y] = point.multipliers;
         let [s, t] = point.room;
-        for (r, (factors, row)) in self.factors.iter_mut().zip(&self.curvature).enumerate().take(number) {
+        for (r, (factors, row)) in self
+            .factors
+            .iter_mut()
+            .zip(&self.curvature)
+            .enumerate()
+            .take(number)
+        {
             factors.copy_from_slice(row);
             factors[r] += z[r] / s[r] + y[r] / t[r];
         }
@@ -158,11 +190,21 @@ impl Quadratic {
             core::array::from_fn(|i| -z[i] - z[i] / s[i] * predicted[i]),
             core::array::from_fn(|i| -y[i] + y[i] / t[i] * predicted[i]),
         ];
-        let ahead = point.after(&predicted, &rates, point.longest(&predicted, &rates, number)).gap(number) / gap;
+        let ahead = point
+            .after(
+                &predicted,
+                &rates,
+                point.longest(&predicted, &rates, number),
+            )
+            .gap(number)
+            / gap;
         let centre = ahead * ahead * ahead * gap / (2 * number.max(1)) as f64;
-        // What the products of room and multiplier are to become, less what they are, and what the predictor makes of them.
-        let c: Unknowns = core::array::from_fn(|i| centre - s[i] * z[i] - predicted[i] * rates[0][i]);
-        let d: Unknowns = core::array::from_fn(|i| centre - t[i] * y[i] + predicted[i] * rates[1][i]);
+        // What the products of room and multiplier are to become, less what they are, and what the
+        // predictor makes of them.
+        let c: Unknowns =
+            core::array::from_fn(|i| centre - s[i] * z[i] - predicted[i] * rates[0][i]);
+        let d: Unknowns =
+            core::array::from_fn(|i| centre - t[i] * y[i] + predicted[i] * rates[1][i]);
         let mut step: Unknowns = core::array::from_fn(|i| c[i] / s[i] - d[i] / t[i]);
         substitute(&self.factors, &mut step, number);
         let rates: [Unknowns; 2] = [
@@ -215,10 +257,14 @@ impl Iterate {
     }
 
     fn after(&self, step: &Unknowns, rates: &[Unknowns; 2], length: f64) -> Self {
-        let add = |a: &Unknowns, part: f64, b: &Unknowns| core::array::from_fn(|i| a[i] + part * b[i]);
+        let add =
+            |a: &Unknowns, part: f64, b: &Unknowns| core::array::from_fn(|i| a[i] + part * b[i]);
         Self {
             x: add(&self.x, length, step),
-            room: [add(&self.room[0], length, step), add(&self.room[1], -length, step)],
+            room: [
+                add(&self.room[0], length, step),
+                add(&self.room[1], -length, step),
+            ],
             multipliers: [0, 1].map(|side| add(&self.multipliers[side], length, &rates[side])),
         }
     }
@@ -237,13 +283,15 @@ mod tests {
             quadratic.add(r, r, 0.05 * libm::pow(10.0, -0.5 * r as f64));
             quadratic.add_gradient(r, 1e-3 * libm::sin(seed + 3.0 * r as f64));
         }
-        let rows =
-            core::array::from_fn(|k| core::array::from_fn(|i| libm::cos(seed * (k + 1) as f64 + (i * k) as f64)));
+        let rows = core::array::from_fn(|k| {
+            core::array::from_fn(|i| libm::cos(seed * (k + 1) as f64 + (i * k) as f64))
+        });
         quadratic.add_rows(&rows, &[0.03, -0.02, 0.01, 0.05], NUMBER);
         quadratic
     }
 
-    /// By duality J is above its minimum by no more than what the slopes could still gain within the bounds.
+    /// By duality J is above its minimum by no more than what the slopes could still gain within
+    /// the bounds.
     #[test]
     fn no_point_within_the_bounds_is_better_by_more_than_the_tolerance() {
         let mut binding = 0;

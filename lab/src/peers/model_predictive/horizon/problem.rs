@@ -8,30 +8,33 @@
 //!             + d/2 sum_j |v_j - v_{j-1}|^2
 //! ```
 //!
-//! A knot that counts has N rows: the errors of the tool across the path and along it. On a rapid, the rows hold the tool
-//! where it is, in each axis. Each exceeded limit adds one row with the excess. N more rows bring the offset back after the
-//! last knot.
+//! A knot that counts has N rows: the errors of the tool across the path and along it. On a rapid,
+//! the rows hold the tool where it is, in each axis. Each exceeded limit adds one row with the
+//! excess. N more rows bring the offset back after the last knot.
 
 use feedwright_control::vector::{bounded, dot, norm, reject, scale, sub};
 use feedwright_control::{PREVIEW_KNOTS, Window};
 
 use super::{
-    Accelerations, CommandedPeriod, HorizonSettings, MAX_AXES, MAX_KNOTS, MAX_UNKNOWNS, Predictor, Sensitivity,
+    Accelerations, CommandedPeriod, HorizonSettings, MAX_AXES, MAX_KNOTS, MAX_UNKNOWNS, Predictor,
+    Sensitivity,
 };
 
-/// Weight of what a change of the plan moves the tool by on a rapid: less than an error of a cut, so that it is in place when
-/// the next one begins.
+/// Weight of what a change of the plan moves the tool by on a rapid: less than an error of a cut,
+/// so that it is in place when the next one begins.
 const RAPID_WEIGHT: f64 = 0.2;
 /// Least h in the knots before and behind a point where the path turns straight back.
 const TURN_WEIGHT: f64 = 0.2;
 /// What is left from one knot to the next of how near such a point is.
 const NEAR_TURN: f64 = 0.85;
-/// A rapid counts as a cut for this part of the lag: the tool still leaves the last corner of the cut.
+/// A rapid counts as a cut for this part of the lag: the tool still leaves the last corner of the
+/// cut.
 const LATELY: f64 = 0.3;
 /// e^(1/2): weight of where the offset would come to behind the horizon.
 pub const END_WEIGHT: f64 = 0.3;
-/// Weights of what is beyond a limit, so that a hundredth of a usual limit (0.5 mm, 400 mm/s, 4000 mm/s^2) counts as much as
-/// 50 um of contour error: for the deviation, mm per mm; for the speed, s; for the drives, s^2.
+/// Weights of what is beyond a limit, so that a hundredth of a usual limit (0.5 mm, 400 mm/s, 4000
+/// mm/s^2) counts as much as 50 um of contour error: for the deviation, mm per mm; for the speed,
+/// s; for the drives, s^2.
 const DEVIATION_WEIGHT: f64 = 10.0;
 const SPEED_WEIGHT_S: f64 = 0.0125;
 const DRIVE_WEIGHT_S2: f64 = 1e-3;
@@ -67,9 +70,11 @@ pub struct End<const N: usize> {
     pub feed_mm_s: f64,
     /// Whether the tool cuts there, or soon, or lately, or is to be on the path.
     pub counts: bool,
-    /// How sharply the path turns between this knot and one beside it: 0 not at all, 1/2 at a right angle, 1 straight back.
+    /// How sharply the path turns between this knot and one beside it: 0 not at all, 1/2 at a right
+    /// angle, 1 straight back.
     pub corner: f64,
-    /// Whether it turns back there: 0 up to a right angle, 1 where straight back; and how near such a point is, by as much.
+    /// Whether it turns back there: 0 up to a right angle, 1 where straight back; and how near such
+    /// a point is, by as much.
     pub turn: f64,
     /// See above.
     pub near_turn: f64,
@@ -107,7 +112,12 @@ impl<const N: usize> HorizonProblem<N> {
         accelerations_mm_s2: &Accelerations<N>,
         settings: &HorizonSettings<N>,
     ) -> Self {
-        const { assert!(N >= 2 && N <= MAX_AXES, "a plan is made in the plane or in space") };
+        const {
+            assert!(
+                N >= 2 && N <= MAX_AXES,
+                "a plan is made in the plane or in space"
+            );
+        };
         let knots = settings.knots();
         let lag_s = bounded(model.lag_s(), 0.0, PREVIEW_KNOTS as f64 * window.servo_s());
         let mut problem = Self {
@@ -151,12 +161,16 @@ impl<const N: usize> HorizonProblem<N> {
         problem
     }
 
-    /// Where the path turns back, no part of it is nearer than its tip, and a tool that is late there leaves it uncut.
+    /// Where the path turns back, no part of it is nearer than its tip, and a tool that is late
+    /// there leaves it uncut.
     fn find_turns(&mut self) {
         let knots = self.last_knot() + 1;
         let ends = &mut self.ends[..knots];
         for knot in 1..ends.len() {
-            let turn = -dot(ends[knot - 1].directions[N - 1], ends[knot].directions[N - 1]);
+            let turn = -dot(
+                ends[knot - 1].directions[N - 1],
+                ends[knot].directions[N - 1],
+            );
             let corner = 0.5 * (1.0 + turn);
             ends[knot - 1].corner = ends[knot - 1].corner.max(corner);
             ends[knot].corner = corner;
@@ -175,12 +189,15 @@ impl<const N: usize> HorizonProblem<N> {
         }
     }
 
-    /// How far the tool is from its own point in the worst of the knots that count, along the path only as far as it turns
-    /// back near it, mm.
+    /// How far the tool is from its own point in the worst of the knots that count, along the path
+    /// only as far as it turns back near it, mm.
     pub fn need_mm(&self) -> f64 {
         let mut most = 0.0_f64;
         for end in self.ends.iter().take(self.knots).filter(|end| end.counts) {
-            let across: f64 = end.off_mm[..N - 1].iter().map(|off_mm| off_mm * off_mm).sum();
+            let across: f64 = end.off_mm[..N - 1]
+                .iter()
+                .map(|off_mm| off_mm * off_mm)
+                .sum();
             let along_mm = end.near_turn * end.off_mm[N - 1];
             most = most.max(across + along_mm * along_mm);
         }
@@ -199,11 +216,16 @@ impl<const N: usize> HorizonProblem<N> {
         most
     }
 
-    /// Mean square of the contour error over the knots that count, mm^2. Of the first half of the horizon: the second is still
-    /// to be planned.
+    /// Mean square of the contour error over the knots that count, mm^2. Of the first half of the
+    /// horizon: the second is still to be planned.
     pub fn contour_mm2(&self) -> f64 {
         let (mut sum, mut number) = (0.0, 0.0);
-        for end in self.ends.iter().take(self.knots.div_ceil(2)).filter(|end| end.counts) {
+        for end in self
+            .ends
+            .iter()
+            .take(self.knots.div_ceil(2))
+            .filter(|end| end.counts)
+        {
             for off_mm in &end.off_mm[..N - 1] {
                 sum += off_mm * off_mm;
             }
@@ -223,7 +245,8 @@ impl<const N: usize> HorizonProblem<N> {
         (self.last_knot() + 1) * N
     }
 
-    /// Weight of an error at the end of a knot, where it counts: 1 across the path, h along it, which is the last direction.
+    /// Weight of an error at the end of a knot, where it counts: 1 across the path, h along it,
+    /// which is the last direction.
     #[inline]
     pub fn error_weight(&self, knot: usize, direction: usize) -> f64 {
         if direction + 1 < N {
@@ -234,8 +257,8 @@ impl<const N: usize> HorizonProblem<N> {
         self.settings.weight_along(knot, end.feed_mm_s).max(held)
     }
 
-    /// Hands every row and its error to `take`, with the knot that it belongs to: the number of its entries is
-    /// `(knot + 1) * N`.
+    /// Hands every row and its error to `take`, with the knot that it belongs to: the number of its
+    /// entries is `(knot + 1) * N`.
     #[inline]
     pub fn rows(&self, mut take: impl FnMut(usize, f64, &dyn Fn(&mut GradientRow))) {
         for (knot, end) in self.ends.iter().enumerate().take(self.knots) {
@@ -243,7 +266,9 @@ impl<const N: usize> HorizonProblem<N> {
                 if end.counts {
                     let weight = self.error_weight(knot, d);
                     let direction = scale(weight, end.directions[d]);
-                    take(knot, weight * end.off_mm[d], &|row| self.tool_row(knot, direction, row));
+                    take(knot, weight * end.off_mm[d], &|row| {
+                        self.tool_row(knot, direction, row);
+                    });
                 } else {
                     let mut direction = [0.0; N];
                     direction[d] = RAPID_WEIGHT;
@@ -272,7 +297,12 @@ impl<const N: usize> HorizonProblem<N> {
 
     /// The rows of the limits that the plan is beyond.
     #[inline]
-    fn limit_rows(&self, knot: usize, end: &End<N>, take: &mut impl FnMut(usize, f64, &dyn Fn(&mut GradientRow))) {
+    fn limit_rows(
+        &self,
+        knot: usize,
+        end: &End<N>,
+        take: &mut impl FnMut(usize, f64, &dyn Fn(&mut GradientRow)),
+    ) {
         let limits = &self.settings.limits;
         let length_mm = norm(end.offset_mm);
         if length_mm > limits.deviation_mm {
@@ -284,27 +314,40 @@ impl<const N: usize> HorizonProblem<N> {
             let speed = end.offset_mm_s[axis];
             let beyond = speed - bounded(speed, -limits.speed_mm_s, limits.speed_mm_s);
             if beyond != 0.0 {
-                take(knot, SPEED_WEIGHT_S * beyond, &|row| self.speed_row(knot, axis, row));
+                take(knot, SPEED_WEIGHT_S * beyond, &|row| {
+                    self.speed_row(knot, axis, row);
+                });
             }
             let most = limits.drive_mm_s2[axis];
-            let Some(acceleration) = self.acceleration_mm_s2(knot, axis) else { continue };
+            let Some(acceleration) = self.acceleration_mm_s2(knot, axis) else {
+                continue;
+            };
             let beyond = acceleration - bounded(acceleration, -most, most);
             if beyond != 0.0 {
-                take(knot, DRIVE_WEIGHT_S2 * beyond, &|row| self.drive_row(knot, axis, row));
+                take(knot, DRIVE_WEIGHT_S2 * beyond, &|row| {
+                    self.drive_row(knot, axis, row);
+                });
             }
         }
     }
 
-    /// Acceleration of the tool in an axis about the knot before this one, mm/s^2; none at the first two.
+    /// Acceleration of the tool in an axis about the knot before this one, mm/s^2; none at the
+    /// first two.
     #[inline]
     fn acceleration_mm_s2(&self, knot: usize, axis: usize) -> Option<f64> {
         let [now, before, first] = [0, 1, 2].map(|back: usize| knot.checked_sub(back));
-        let at = |knot: Option<usize>| self.ends.get(knot?).and_then(|end| end.tool_mm.get(axis).copied());
+        let at = |knot: Option<usize>| {
+            self.ends
+                .get(knot?)
+                .and_then(|end| end.tool_mm.get(axis).copied())
+        };
         Some((at(now)? - 2.0 * at(before)? + at(first)?) / (self.knot_s * self.knot_s))
     }
 
     fn tool_row(&self, knot: usize, direction: [f64; N], row: &mut GradientRow) {
-        for (entries, sensitivity) in by_knot::<N>(row, knot).zip(&self.sensitivity[knot.min(MAX_KNOTS - 1)]) {
+        for (entries, sensitivity) in
+            by_knot::<N>(row, knot).zip(&self.sensitivity[knot.min(MAX_KNOTS - 1)])
+        {
             for axis in 0..N {
                 entries[axis] = direction[axis] * sensitivity[axis];
             }
@@ -330,9 +373,12 @@ impl<const N: usize> HorizonProblem<N> {
         let gain = DRIVE_WEIGHT_S2 / (self.knot_s * self.knot_s);
         for (j, entries) in by_knot::<N>(row, knot).enumerate() {
             let sensitivity = |back: usize| {
-                self.sensitivity.get(knot.saturating_sub(back)).and_then(|sensitivity| sensitivity.get(j)?.get(axis))
+                self.sensitivity
+                    .get(knot.saturating_sub(back))
+                    .and_then(|sensitivity| sensitivity.get(j)?.get(axis))
             };
-            let [now, before, first] = [0, 1, 2].map(|back| sensitivity(back).copied().unwrap_or(0.0));
+            let [now, before, first] =
+                [0, 1, 2].map(|back| sensitivity(back).copied().unwrap_or(0.0));
             *entries = only(axis, gain * (now - 2.0 * before + first));
         }
     }
@@ -340,7 +386,10 @@ impl<const N: usize> HorizonProblem<N> {
 
 /// The entries of a row, axis by axis, of each knot up to this one.
 #[inline]
-fn by_knot<const N: usize>(row: &mut GradientRow, knot: usize) -> impl Iterator<Item = &mut [f64; N]> {
+fn by_knot<const N: usize>(
+    row: &mut GradientRow,
+    knot: usize,
+) -> impl Iterator<Item = &mut [f64; N]> {
     row.as_chunks_mut().0.iter_mut().take(knot + 1)
 }
 
@@ -350,8 +399,8 @@ fn only<const N: usize>(axis: usize, value: f64) -> [f64; N] {
     core::array::from_fn(|i| if i == axis { value } else { 0.0 })
 }
 
-/// The normals of a tangent, and last itself: in the plane the left one; in space the one nearest to an axis, and the one
-/// across both.
+/// The normals of a tangent, and last itself: in the plane the left one; in space the one nearest
+/// to an axis, and the one across both.
 fn directions<const N: usize>(tangent: [f64; N]) -> [[f64; N]; N] {
     let mut directions = [[0.0; N]; N];
     directions[N - 1] = tangent;
@@ -360,7 +409,13 @@ fn directions<const N: usize>(tangent: [f64; N]) -> [[f64; N]; N] {
         return directions;
     }
     // The axis that the path runs least along.
-    let least = (0..N).fold(0, |best, i| if tangent[i].abs() < tangent[best].abs() { i } else { best });
+    let least = (0..N).fold(0, |best, i| {
+        if tangent[i].abs() < tangent[best].abs() {
+            i
+        } else {
+            best
+        }
+    });
     let mut axis = [0.0; N];
     axis[least] = 1.0;
     let first = reject(axis, tangent);

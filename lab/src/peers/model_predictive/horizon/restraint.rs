@@ -7,19 +7,23 @@
 //! l = L min(1, u / U)^2             u = max((e^2 - e_0^2)^(1/2) / e)
 //! ```
 //!
-//! n is the error of the tool in the worst knot of the horizon: across the path, and along it as far as the path turns back
-//! there (z). D is the deviation limit, or the distance that the offset covers within t under the smallest acceleration
-//! limit A, if this is less. t is the time that the tool takes to follow an offset, but at least the lag that the horizon is
-//! made for (its length / `LAGS_AHEAD`). The second case applies to a machine whose own feedforward leaves hardly any lag.
-//! Where n exceeds D, no offset within the limits undoes the whole error, and an offset cut off at a limit can be worse than
-//! none. A servo is nearly linear, however: every *part* of a correction that helps also helps.
+//! n is the error of the tool in the worst knot of the horizon: across the path, and along it as
+//! far as the path turns back there (z). D is the deviation limit, or the distance that the offset
+//! covers within t under the smallest acceleration limit A, if this is less. t is the time that the
+//! tool takes to follow an offset, but at least the lag that the horizon is made for (its length /
+//! `LAGS_AHEAD`). The second case applies to a machine whose own feedforward leaves hardly any lag.
+//! Where n exceeds D, no offset within the limits undoes the whole error, and an offset cut off at
+//! a limit can be worse than none. A servo is nearly linear, however: every *part* of a correction
+//! that helps also helps.
 //!
-//! u is 1 where the RMS contour error e over the first half of the horizon is far above e_0. The plan must then not reduce
-//! it by a tool that is late or early, because such a tool cuts corners off.
+//! u is 1 where the RMS contour error e over the first half of the horizon is far above e_0. The
+//! plan must then not reduce it by a tool that is late or early, because such a tool cuts corners
+//! off.
 //!
-//! The third term, in decision k, acts at the start, when no earlier plan exists. The last term acts for drives at their
-//! limit: a is the largest acceleration of the tool, as a share of the acceleration at the torque limit of its drive. After a
-//! rapid that demands more, the tool is late for the cut, and a correction for the wrong position goes wrong.
+//! The third term, in decision k, acts at the start, when no earlier plan exists. The last term
+//! acts for drives at their limit: a is the largest acceleration of the tool, as a share of the
+//! acceleration at the torque limit of its drive. After a rapid that demands more, the tool is late
+//! for the cut, and a correction for the wrong position goes wrong.
 
 use feedwright_control::vector::fourth_power;
 
@@ -27,15 +31,17 @@ use super::{CorrectionLimits, HorizonSettings};
 
 /// q at the most.
 const MAX_OFFSET_WEIGHT: f64 = 10.0;
-/// How far an offset that accelerates by A comes within t, in A t^2: it has some of the time before, and some behind.
+/// How far an offset that accelerates by A comes within t, in A t^2: it has some of the time
+/// before, and some behind.
 const REACH: f64 = 2.0;
-/// What is left of n and u from one tick to the next, where they become smaller: the correction that was held back comes in
-/// gently.
+/// What is left of n and u from one tick to the next, where they become smaller: the correction
+/// that was held back comes in gently.
 const LEFT: f64 = 0.97;
 /// q_s and b: q in the first decision, and what is left of it from one to the next.
 const START_WEIGHT: f64 = 0.3;
 const START_LEFT: f64 = 0.5;
-/// S, and the most of that term: at 10, drilling behind rapids at the torque limit was still worse by 2 um.
+/// S, and the most of that term: at 10, drilling behind rapids at the torque limit was still worse
+/// by 2 um.
 const DRIVE_SHARE: f64 = 0.8;
 const MAX_LIMIT_WEIGHT: f64 = 100.0;
 /// L, and U: the part of the contour error at which it is reached.
@@ -57,11 +63,17 @@ pub(super) struct Restraint {
 
 impl Restraint {
     /// Of a plan that has just begun.
-    pub(super) const START: Self = Self { need_mm: 0.0, undone: 0.0, start_weight: START_WEIGHT, drive_share: 0.0 };
+    pub(super) const START: Self = Self {
+        need_mm: 0.0,
+        undone: 0.0,
+        start_weight: START_WEIGHT,
+        drive_share: 0.0,
+    };
 
     /// Takes in n, mm; the mean square of the contour error over the horizon, mm^2; and a.
     pub(super) fn take_in(&mut self, need_mm: f64, contour_mm2: f64, drive_share: f64) {
-        let undone = libm::sqrt((contour_mm2 - NOTHING_MM2).max(0.0) / contour_mm2.max(MIN_MM2)).min(1.0);
+        let undone =
+            libm::sqrt((contour_mm2 - NOTHING_MM2).max(0.0) / contour_mm2.max(MIN_MM2)).min(1.0);
         self.need_mm = need_mm.max(LEFT * self.need_mm);
         self.undone = undone.max(LEFT * self.undone);
         self.start_weight *= START_LEFT;
@@ -69,7 +81,11 @@ impl Restraint {
     }
 
     /// The settings with q and l where an offset has the time t, s.
-    pub(super) fn on<const N: usize>(&self, settings: &HorizonSettings<N>, time_s: f64) -> HorizonSettings<N> {
+    pub(super) fn on<const N: usize>(
+        &self,
+        settings: &HorizonSettings<N>,
+        time_s: f64,
+    ) -> HorizonSettings<N> {
         let weight = settings.offset_weight
             + self.start_weight
             + fourth_power(self.need_mm / within_mm(&settings.limits, time_s));
@@ -86,8 +102,14 @@ impl Restraint {
 
 /// D, mm.
 fn within_mm<const N: usize>(limits: &CorrectionLimits<N>, time_s: f64) -> f64 {
-    let least_mm_s2 = limits.acceleration_mm_s2.iter().copied().fold(f64::INFINITY, f64::min);
-    limits.deviation_mm.min(REACH * least_mm_s2 * time_s * time_s)
+    let least_mm_s2 = limits
+        .acceleration_mm_s2
+        .iter()
+        .copied()
+        .fold(f64::INFINITY, f64::min);
+    limits
+        .deviation_mm
+        .min(REACH * least_mm_s2 * time_s * time_s)
 }
 
 #[cfg(test)]
@@ -95,7 +117,11 @@ mod tests {
     use super::*;
 
     const SETTINGS: HorizonSettings<2> = HorizonSettings {
-        limits: CorrectionLimits { acceleration_mm_s2: [400.0, 100.0], deviation_mm: 0.5, ..CorrectionLimits::NONE },
+        limits: CorrectionLimits {
+            acceleration_mm_s2: [400.0, 100.0],
+            deviation_mm: 0.5,
+            ..CorrectionLimits::NONE
+        },
         ..HorizonSettings::EXAMPLE
     };
 

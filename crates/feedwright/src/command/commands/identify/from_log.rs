@@ -19,24 +19,55 @@ use crate::output::{OutputError, OutputFile, OutputFiles};
 pub(super) fn run(paths: &[PathBuf], args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     let of_log = &args.of_log;
     let logs = paths.iter().map(|path| ("the log", Some(path.as_path())));
-    check_inputs(console, logs.chain([("--update", of_log.update.as_deref())]))?;
+    check_inputs(
+        console,
+        logs.chain([("--update", of_log.update.as_deref())]),
+    )?;
     let before = of_log.update.as_deref().map(before).transpose()?;
     // Clap asks for one of both.
-    let out = args.out.as_deref().or(of_log.update.as_deref()).unwrap_or(Path::new("mine.toml"));
+    let out = args
+        .out
+        .as_deref()
+        .or(of_log.update.as_deref())
+        .unwrap_or(Path::new("mine.toml"));
     let mut files = OutputFiles::new(paths.iter().map(PathBuf::as_path));
     let start = |files: &mut OutputFiles, path: &Path| files.start(path);
     let mut machine = start(&mut files, out)?;
-    let mut json = of_log.json.as_deref().map(|path| start(&mut files, path)).transpose()?;
-    let next = of_log.excite_next.as_deref().map(|path| start(&mut files, path)).transpose()?;
-    let mut page = of_log.report.as_deref().map(|path| start(&mut files, path)).transpose()?;
+    let mut json = of_log
+        .json
+        .as_deref()
+        .map(|path| start(&mut files, path))
+        .transpose()?;
+    let next = of_log
+        .excite_next
+        .as_deref()
+        .map(|path| start(&mut files, path))
+        .transpose()?;
+    let mut page = of_log
+        .report
+        .as_deref()
+        .map(|path| start(&mut files, path))
+        .transpose()?;
     let bar = console.bar(0);
     let log = read(paths, of_log, &bar)?;
     if !console.is_quiet() {
-        bar.aside(|| log.findings.iter().for_each(|finding| remark(&finding.to_string())));
+        bar.aside(|| {
+            log.findings
+                .iter()
+                .for_each(|finding| remark(&finding.to_string()));
+        });
     }
-    let name = paths.iter().map(|path| file_name(path)).collect::<Vec<_>>().join(", ");
+    let name = paths
+        .iter()
+        .map(|path| file_name(path))
+        .collect::<Vec<_>>()
+        .join(", ");
     let (text_before, machine_before) = before.unzip();
-    let identified = LogJob { before: machine_before, ..job(name, of_log) }.run(log, &bar)?;
+    let identified = LogJob {
+        before: machine_before,
+        ..job(name, of_log)
+    }
+    .run(log, &bar)?;
     let text = match &text_before {
         Some(before) => updated_text(&identified, before)?,
         None => machine_text(&identified, &stem(out)),
@@ -44,7 +75,9 @@ pub(super) fn run(paths: &[PathBuf], args: &IdentifyArgs, console: &Console) -> 
     // Whatever was found, the file is one that reads back.
     Machine::parse(&out.display().to_string(), &text)?;
     let written = |error, file: &OutputFile| OutputError::from_io(error, file.path());
-    machine.write_all(text.as_bytes()).map_err(|error| written(error, &machine))?;
+    machine
+        .write_all(text.as_bytes())
+        .map_err(|error| written(error, &machine))?;
     if let Some(file) = &mut json {
         write_json(file, &identified).map_err(|error| written(error, file))?;
     }
@@ -54,14 +87,18 @@ pub(super) fn run(paths: &[PathBuf], args: &IdentifyArgs, console: &Console) -> 
     let motions = identified.next_motion();
     let next = next.map(|file| Next::write(file, &motions)).transpose()?;
     let (next, said) = next.map_or((None, None), |next| (next.file, Some(next.said)));
-    let all: Vec<OutputFile> = [Some(machine), json, page, next].into_iter().flatten().collect();
+    let all: Vec<OutputFile> = [Some(machine), json, page, next]
+        .into_iter()
+        .flatten()
+        .collect();
     let places: Vec<PathBuf> = all.iter().map(|file| file.path().to_owned()).collect();
     bar.clear();
     OutputFile::commit_all(all, &bar)?;
     printed(print(&identified, said, &places), ExitCode::SUCCESS)
 }
 
-/// The program of the motion that is missing, and what to say of it. Without a program, its file is not written.
+/// The program of the motion that is missing, and what to say of it. Without a program, its file is
+/// not written.
 struct Next {
     file: Option<OutputFile>,
     said: String,
@@ -70,16 +107,23 @@ struct Next {
 impl Next {
     fn write(mut file: OutputFile, motions: &[AxisExcitation]) -> Result<Self, OutputError> {
         let Some(program) = next_excitation(motions) else {
-            let said =
-                format!("nothing is open that other motion would settle: {} is not written", file.path().display());
+            let said = format!(
+                "nothing is open that other motion would settle: {} is not written",
+                file.path().display()
+            );
             return Ok(Self { file: None, said });
         };
-        file.write_all(program.text.as_bytes()).map_err(|error| OutputError::from_io(error, file.path()))?;
+        file.write_all(program.text.as_bytes())
+            .map_err(|error| OutputError::from_io(error, file.path()))?;
         let words = |motion: &AxisExcitation| {
             let parts: Vec<&str> = motion.parts.iter().map(|part| part.word()).collect();
             format!("{} of {}", parts.join(", "), AXIS_NAMES[motion.axis])
         };
-        let needed: Vec<String> = motions.iter().filter(|motion| !motion.parts.is_empty()).map(words).collect();
+        let needed: Vec<String> = motions
+            .iter()
+            .filter(|motion| !motion.parts.is_empty())
+            .map(words)
+            .collect();
         let said = format!(
             "what is open would be settled by {}: about {:.0} s, at most {:.1} mm/s; {} has it",
             needed.join("; "),
@@ -87,7 +131,10 @@ impl Next {
             program.max_feed_mm_s,
             file.path().display()
         );
-        Ok(Self { file: Some(file), said })
+        Ok(Self {
+            file: Some(file),
+            said,
+        })
     }
 }
 
@@ -106,12 +153,28 @@ fn before(path: &Path) -> Result<(String, Machine)> {
 }
 
 fn file_name(path: &Path) -> String {
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+    path.file_name()
+        .unwrap_or(path.as_os_str())
+        .to_string_lossy()
+        .into_owned()
 }
 
 fn job(name: String, args: &LogArgs) -> LogJob {
-    let times_s = args.fit.clone().zip(args.score.clone()).map(|(fit, score)| [fit.0, score.0]);
-    let LogArgs { inertia, viscous, lead, torque_gain, speed_window, record_delay, command_delay, .. } = *args;
+    let times_s = args
+        .fit
+        .clone()
+        .zip(args.score.clone())
+        .map(|(fit, score)| [fit.0, score.0]);
+    let LogArgs {
+        inertia,
+        viscous,
+        lead,
+        torque_gain,
+        speed_window,
+        record_delay,
+        command_delay,
+        ..
+    } = *args;
     let facts = AxisFacts {
         inertia,
         viscous,
@@ -127,19 +190,36 @@ fn job(name: String, args: &LogArgs) -> LogJob {
         drive_delay_s: args.drive_delay,
         before: None,
     };
-    LogJob { name, times_s, facts, before: None }
+    LogJob {
+        name,
+        times_s,
+        facts,
+        before: None,
+    }
 }
 
 /// What the machine is called: as its file.
 fn stem(path: &Path) -> String {
-    path.file_stem().map_or_else(|| "mine".to_owned(), |stem| stem.to_string_lossy().into_owned())
+    path.file_stem().map_or_else(
+        || "mine".to_owned(),
+        |stem| stem.to_string_lossy().into_owned(),
+    )
 }
 
-fn print(identified: &LogIdentified, next: Option<String>, places: &[PathBuf]) -> std::io::Result<()> {
+fn print(
+    identified: &LogIdentified,
+    next: Option<String>,
+    places: &[PathBuf],
+) -> std::io::Result<()> {
     let places = || places.iter().map(|path| Some(path.as_path()));
     let mut out = tables(places());
     write!(out, "{}", identified.table())?;
-    for line in identified.improvements().into_iter().chain(identified.advice()).chain(next) {
+    for line in identified
+        .improvements()
+        .into_iter()
+        .chain(identified.advice())
+        .chain(next)
+    {
         writeln!(out, "{}", wrapped(&line, 2))?;
     }
     tell_written(&mut *out, places())

@@ -6,7 +6,8 @@ use std::process::ExitCode;
 
 use feedwright_gcode::input;
 use feedwright_ident::{
-    FoundGeometry, GeometryInput, KnownScrew, comp_file, fit_geometry, geometry_of_tables, sampled_table,
+    FoundGeometry, GeometryInput, KnownScrew, comp_file, fit_geometry, geometry_of_tables,
+    sampled_table,
 };
 use feedwright_sim::{AXIS_NAMES, GeometryFile, Machine, is_machine_path, to_four_digits};
 use miette::{IntoDiagnostic, Result, miette};
@@ -23,10 +24,19 @@ pub(super) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     let measured = &args.of_geometry.geometry;
     // Clap asks for it.
     let out = args.out.as_deref().unwrap_or(Path::new("geometry.toml"));
-    check_inputs(console, measured.iter().map(|of| ("--geometry", Some(of.path.as_path()))))?;
+    check_inputs(
+        console,
+        measured
+            .iter()
+            .map(|of| ("--geometry", Some(of.path.as_path()))),
+    )?;
     let machine = Machine::load(&args.machine)?;
     let machine_path = Some(PathBuf::from(&args.machine)).filter(|path| is_machine_path(path));
-    let inputs: Vec<PathBuf> = measured.iter().map(|of| of.path.clone()).chain(machine_path).collect();
+    let inputs: Vec<PathBuf> = measured
+        .iter()
+        .map(|of| of.path.clone())
+        .chain(machine_path)
+        .collect();
     let found = found(measured, &machine)?;
     // Whatever was found, the file is one that reads back.
     let text = found.file.text();
@@ -39,7 +49,11 @@ pub(super) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     }
     for AxisFile { axis, path } in &args.of_geometry.comp_file {
         let axis = axis.ok_or_else(|| {
-            miette!(help = "write --comp-file x=FILE", "which axis {} is for is not said", path.display())
+            miette!(
+                help = "write --comp-file x=FILE",
+                "which axis {} is for is not said",
+                path.display()
+            )
         })?;
         let table = sampled_table(&found.file, axis).ok_or_else(|| {
             miette!(
@@ -49,12 +63,16 @@ pub(super) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
                 path.display()
             )
         })?;
-        texts.push((path, comp_file(&table, args.of_geometry.comp_type).into_bytes()));
+        texts.push((
+            path,
+            comp_file(&table, args.of_geometry.comp_type).into_bytes(),
+        ));
     }
     let mut files = OutputFiles::new(inputs.iter().map(PathBuf::as_path));
     let written = |(path, text): &(&Path, Vec<u8>)| -> Result<OutputFile, OutputError> {
         let mut file = files.start(path)?;
-        file.write_all(text).map_err(|error| OutputError::from_io(error, path))?;
+        file.write_all(text)
+            .map_err(|error| OutputError::from_io(error, path))?;
         Ok(file)
     };
     let all: Vec<OutputFile> = texts.iter().map(written).collect::<Result<_, _>>()?;
@@ -69,18 +87,23 @@ fn found(measured: &[AxisFile], machine: &Machine) -> Result<FoundGeometry> {
     for AxisFile { axis, path } in measured {
         let name = input::name(path);
         let text = input::read(path).map_err(|error| {
-            miette!(help = "a measurement is a text file: see docs/measure-geometry.md", "cannot read {name}: {error}")
+            miette!(
+                help = "a measurement is a text file: see docs/measure-geometry.md",
+                "cannot read {name}: {error}"
+            )
         })?;
         match GeometryInput::parse(&name, &String::from_utf8_lossy(&text), *axis)? {
             GeometryInput::Sets(of_file) => sets.extend(of_file),
             GeometryInput::Table(axis, rows, _) => tables.push((axis, rows)),
         }
-        names.push(path.file_name().map_or(name.clone(), |name| name.to_string_lossy().into_owned()));
+        names.push(
+            path.file_name()
+                .map_or(name.clone(), |name| name.to_string_lossy().into_owned()),
+        );
     }
     if !sets.is_empty() && !tables.is_empty() {
         return Err(miette!(
-            help =
-                "give either the compensation files, or measurements that were made with the compensation switched off",
+            help = "give either the compensation files, or measurements that were made with the compensation switched off",
             "a compensation file says what a control adds already, and cannot be fitted together with a measurement"
         ));
     }
@@ -89,7 +112,11 @@ fn found(measured: &[AxisFile], machine: &Machine) -> Result<FoundGeometry> {
     }
     let screws = [0, 1, 2].map(|axis| KnownScrew::of(machine, axis));
     let source = format!("{}, on {}", names.join(", "), machine.name);
-    if tables.is_empty() { Ok(fit_geometry(sets, screws, &source)?) } else { Ok(geometry_of_tables(tables, &source)?) }
+    if tables.is_empty() {
+        Ok(fit_geometry(sets, screws, &source)?)
+    } else {
+        Ok(geometry_of_tables(tables, &source)?)
+    }
 }
 
 fn print(found: &FoundGeometry, places: &[&Path]) -> std::io::Result<()> {
@@ -100,6 +127,10 @@ fn print(found: &FoundGeometry, places: &[&Path]) -> std::io::Result<()> {
     }
     let check = found.check;
     let [before_um, after_um] = [check.before_um, check.after_um].map(to_four_digits);
-    writeln!(out, "the geometry leaves {after_um} um RMS of {before_um} um in {} values", check.rows)?;
+    writeln!(
+        out,
+        "the geometry leaves {after_um} um RMS of {before_um} um in {} values",
+        check.rows
+    )?;
     tell_written(&mut *out, places())
 }

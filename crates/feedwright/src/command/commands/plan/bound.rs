@@ -25,20 +25,39 @@ pub(super) struct Bound {
     pub(super) is_whole: bool,
 }
 
-/// Looks for the bound. One long path is one step of that, which nothing ends from outside: it is left to itself when the time is over.
-pub(super) fn bound(program: &Program, settings: &Settings, constraints: Constraints, bar: &Bar) -> Result<Bound> {
+/// Looks for the bound. One long path is one step of that, which nothing ends from outside: it is
+/// left to itself when the time is over.
+pub(super) fn bound(
+    program: &Program,
+    settings: &Settings,
+    constraints: Constraints,
+    bar: &Bar,
+) -> Result<Bound> {
     bar.begin("planning each path as a whole", 1);
     let (sender, receiver) = mpsc::channel();
     let (program, settings) = (program.clone(), settings.clone());
     std::thread::spawn(move || {
         let mut so_far = Bound::default();
-        let steps = || Ok(path_steps(program.reader(settings.clone())?.map_while(std::result::Result::ok)));
+        let steps = || {
+            Ok(path_steps(
+                program
+                    .reader(settings.clone())?
+                    .map_while(std::result::Result::ok),
+            ))
+        };
         let all = bound_of_motion(&constraints, steps, |phase| {
-            so_far = Bound { time_s: so_far.time_s + phase.duration_s, motions: phase.piece + 1, is_whole: false };
+            so_far = Bound {
+                time_s: so_far.time_s + phase.duration_s,
+                motions: phase.piece + 1,
+                is_whole: false,
+            };
             // Nobody listens any more: the time is over.
             sender.send(Ok(so_far)).map_err(|_| Cancelled)
         });
-        let _ = sender.send(all.map(|()| Bound { is_whole: true, ..so_far }));
+        let _ = sender.send(all.map(|()| Bound {
+            is_whole: true,
+            ..so_far
+        }));
     });
     let mut found = Bound::default();
     let until = bar.clock() + Duration::from_secs(MOST_BOUND_S);

@@ -22,7 +22,8 @@ pub(super) struct Outputs {
     pub(super) trace: Option<PathBuf>,
     /// The model that came of the cut.
     pub(super) learned: Option<PathBuf>,
-    /// Setpoints of the controller's cut (`.csv`), or the corrected program for a control without feedback (`.ngc`).
+    /// Setpoints of the controller's cut (`.csv`), or the corrected program for a control without
+    /// feedback (`.ngc`).
     pub(super) out: Option<PathBuf>,
 }
 
@@ -41,8 +42,13 @@ impl Outputs {
 
     /// What the ending of `--out` asks for.
     fn form(&self) -> Result<Option<Form>> {
-        let Some(path) = &self.out else { return Ok(None) };
-        let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+        let Some(path) = &self.out else {
+            return Ok(None);
+        };
+        let ending = path
+            .extension()
+            .and_then(|ending| ending.to_str())
+            .map(str::to_ascii_lowercase);
         match ending.as_deref() {
             Some("csv") => Ok(Some(Form::Setpoints)),
             Some("ngc" | "nc" | "gcode" | "tap") => Ok(Some(Form::Gcode)),
@@ -68,8 +74,8 @@ pub(super) struct Files {
 }
 
 impl Files {
-    /// Starts all of them, so that a place that cannot be written is known before the part is cut. None takes the place of an
-    /// input.
+    /// Starts all of them, so that a place that cannot be written is known before the part is cut.
+    /// None takes the place of an input.
     pub(super) fn create<'a>(
         outputs: &Outputs,
         inputs: impl IntoIterator<Item = &'a Path>,
@@ -80,20 +86,34 @@ impl Files {
         let form = outputs.form()?;
         let out = |wanted: Form| outputs.out.as_ref().filter(|_| form == Some(wanted));
         let of_io = |error| OutputError::from_io(error, Path::new("the output"));
-        let (report, json) = (start(outputs.report.as_ref())?, start(outputs.json.as_ref())?);
+        let (report, json) = (
+            start(outputs.report.as_ref())?,
+            start(outputs.json.as_ref())?,
+        );
         let (trace, setpoints) = (start(outputs.trace.as_ref())?, start(out(Form::Setpoints))?);
         Ok(Self {
             report,
             json,
             learned: start(outputs.learned.as_ref())?,
-            trace: trace.map(|output| TraceWriter::new(output, axes)).transpose().map_err(of_io)?,
-            setpoints: setpoints.map(|output| SetpointWriter::new(output, axes)).transpose().map_err(of_io)?,
+            trace: trace
+                .map(|output| TraceWriter::new(output, axes))
+                .transpose()
+                .map_err(of_io)?,
+            setpoints: setpoints
+                .map(|output| SetpointWriter::new(output, axes))
+                .transpose()
+                .map_err(of_io)?,
             program: start(out(Form::Gcode))?,
         })
     }
 
     /// Writes the rest and moves all files to their places.
-    pub(super) fn finish(self, job: &Job, outcome: &JobOutcome, watch: &dyn Watch) -> Result<(), OutputError> {
+    pub(super) fn finish(
+        self,
+        job: &Job,
+        outcome: &JobOutcome,
+        watch: &dyn Watch,
+    ) -> Result<(), OutputError> {
         let mut complete = Vec::new();
         let named = |path: &Path| {
             let path = path.to_owned();
@@ -101,24 +121,44 @@ impl Files {
         };
         let of_rows = |error| OutputError::from_io(error, Path::new("the output"));
         if let Some(mut output) = self.report {
-            write_html_in(&mut output, &outcome.report, page_units()).map_err(named(output.path()))?;
+            write_html_in(&mut output, &outcome.report, page_units())
+                .map_err(named(output.path()))?;
             complete.push(output);
         }
         if let Some(mut output) = self.json {
-            outcome.write_json(job, &mut output).map_err(named(output.path()))?;
+            outcome
+                .write_json(job, &mut output)
+                .map_err(named(output.path()))?;
             complete.push(output);
         }
-        complete.extend(self.trace.map(TraceWriter::finish).transpose().map_err(of_rows)?);
+        complete.extend(
+            self.trace
+                .map(TraceWriter::finish)
+                .transpose()
+                .map_err(of_rows)?,
+        );
         if let (Some(mut output), Some(model)) = (self.learned, &outcome.learned) {
-            output.write_all(model.text().as_bytes()).map_err(named(output.path()))?;
+            output
+                .write_all(model.text().as_bytes())
+                .map_err(named(output.path()))?;
             complete.push(output);
         }
         if outcome.is_of_use {
-            complete.extend(self.setpoints.map(SetpointWriter::finish).transpose().map_err(of_rows)?);
+            complete.extend(
+                self.setpoints
+                    .map(SetpointWriter::finish)
+                    .transpose()
+                    .map_err(of_rows)?,
+            );
         }
-        let program = outcome.exported.as_ref().and_then(|exported| exported.program());
+        let program = outcome
+            .exported
+            .as_ref()
+            .and_then(|exported| exported.program());
         if let (Some(mut output), Some(program)) = (self.program, program) {
-            output.write_all(program.as_bytes()).map_err(named(output.path()))?;
+            output
+                .write_all(program.as_bytes())
+                .map_err(named(output.path()))?;
             complete.push(output);
         }
         OutputFile::commit_all(complete, watch)

@@ -1,4 +1,5 @@
-//! What a run came to, as text: the headline, the table, what was assumed, and what is to be done with it.
+//! What a run came to, as text: the headline, the table, what was assumed, and what is to be done
+//! with it.
 
 use crate::command::terminal::ascii;
 use crate::report::headline::{AXES, headline};
@@ -9,7 +10,9 @@ use crate::correct::exported::ExportedFigures;
 use crate::correct::{CorrectOutcome, TargetControl};
 use crate::fastest::FastestPlan;
 use crate::job::{Job, JobOutcome, MEASURED};
-use crate::report::{AS_EXPORTED, Assumptions, CorrectionChange, Outcome as Ending, Report, ReportedRun, RunSummary};
+use crate::report::{
+    AS_EXPORTED, Assumptions, CorrectionChange, Outcome as Ending, Report, ReportedRun, RunSummary,
+};
 
 use super::files::Outputs;
 use crate::command::controls::print_correction;
@@ -17,7 +20,12 @@ use crate::command::streams::tell_written;
 use crate::command::table::{ConsoleTable, TableColumn, figure};
 use crate::command::terminal::{is_inch, wrapped};
 
-pub(super) fn print(out: &mut dyn Write, job: &Job, outputs: &Outputs, outcome: &JobOutcome) -> io::Result<()> {
+pub(super) fn print(
+    out: &mut dyn Write,
+    job: &Job,
+    outputs: &Outputs,
+    outcome: &JobOutcome,
+) -> io::Result<()> {
     let runs = &outcome.report.runs;
     let measured = runs.iter().any(|run| run.summary.measured);
     let say = |out: &mut dyn Write, text: &str| writeln!(out, "{}", wrapped(text, 2));
@@ -51,7 +59,10 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outputs: &Outputs, outcome: 
         say(out, MOSTLY_UNCORRECTED)?;
     }
     if let Some(reference) = &job.reference {
-        say(out, &format!("errors and uncut path are those to {}", reference.name()))?;
+        say(
+            out,
+            &format!("errors and uncut path are those to {}", reference.name()),
+        )?;
         if let Some(control) = job.planned_as {
             say(out, &planned_as(control))?;
         }
@@ -83,7 +94,9 @@ const MOSTLY_UNCORRECTED: &str = "most of the part, or its end, is as good as un
 
 /// How the last run leaves the programmed feedrate.
 fn chip_load(runs: &[ReportedRun]) -> Option<String> {
-    let RunSummary { controller, feed, .. } = &runs.last()?.summary;
+    let RunSummary {
+        controller, feed, ..
+    } = &runs.last()?.summary;
     let feed = feed.as_ref()?;
     let [slow, fast] = [feed.slow_share, feed.fast_share].map(|share| 100.0 * share);
     Some(format!(
@@ -94,7 +107,8 @@ fn chip_load(runs: &[ReportedRun]) -> Option<String> {
 }
 
 fn table(report: &Report, uncorrected: &[CutsUncorrected]) -> ConsoleTable {
-    // The axis of the headline: the largest torques of all axes may belong to different drives, and their ratio means nothing.
+    // The axis of the headline: the largest torques of all axes may belong to different drives, and
+    // their ratio means nothing.
     let axis = report.costly_axis();
     let mut table = ConsoleTable::new(vec![
         TableColumn::new("simulated"),
@@ -110,16 +124,31 @@ fn table(report: &Report, uncorrected: &[CutsUncorrected]) -> ConsoleTable {
         let now = &run.summary;
         let is_measured = now.controller == MEASURED;
         table.row(vec![
-            if is_measured { format!("{MEASURED}, not simulated") } else { now.controller.clone() },
+            if is_measured {
+                format!("{MEASURED}, not simulated")
+            } else {
+                now.controller.clone()
+            },
             figure(now.time_s, 3),
             figure(now.rms_um, 2),
             figure(now.max_um, 2),
             figure(now.uncut_um, 2),
-            figure(now.peak_torque_nm.map_or(f64::NAN, |peaks_nm| peaks_nm[axis]), 2),
+            figure(
+                now.peak_torque_nm
+                    .map_or(f64::NAN, |peaks_nm| peaks_nm[axis]),
+                2,
+            ),
             format!("{:.1}", now.max_deviation_um),
-            if is_measured { "-".to_owned() } else { format!("{:.0}", now.max_command_accel_mm_s2) },
+            if is_measured {
+                "-".to_owned()
+            } else {
+                format!("{:.0}", now.max_command_accel_mm_s2)
+            },
         ]);
-        if let Some(why) = uncorrected.iter().find(|why| why.controller() == now.controller) {
+        if let Some(why) = uncorrected
+            .iter()
+            .find(|why| why.controller() == now.controller)
+        {
             table.remark(why.to_string());
         }
         if let (Some(rms_um), Some(max_um)) = (now.joint_rms_um, now.joint_max_um) {
@@ -130,12 +159,21 @@ fn table(report: &Report, uncorrected: &[CutsUncorrected]) -> ConsoleTable {
             }
         }
         if let Ending::Diverged { at_s } = now.outcome {
-            table.remark(format!("diverged at {at_s:.3} s: the servo loop of this machine is unstable"));
+            table.remark(format!(
+                "diverged at {at_s:.3} s: the servo loop of this machine is unstable"
+            ));
         }
-        let left = now.transitions.iter().filter(|transition| transition.change == CorrectionChange::Left);
+        let left = now
+            .transitions
+            .iter()
+            .filter(|transition| transition.change == CorrectionChange::Left);
         if let Some(last) = left.clone().next_back() {
             let (share, times) = (100.0 * now.engaged_share, left.count());
-            let times = if times == 1 { "once".to_owned() } else { format!("{times} times") };
+            let times = if times == 1 {
+                "once".to_owned()
+            } else {
+                format!("{times} times")
+            };
             let back = if now.engaged_at_end { "" } else { ", for good" };
             let words = last.words();
             table.remark(format!(
@@ -149,20 +187,39 @@ fn table(report: &Report, uncorrected: &[CutsUncorrected]) -> ConsoleTable {
 
 /// What the figures rest on.
 fn assumed(assumed: &Assumptions, measured: bool) -> String {
-    let sentences = [assumed.machine_sentence(), assumed.disturbance_sentence(), assumed.law_sentence()];
-    format!("assumed: {}. {}", sentences.join("; "), Assumptions::cut_sentence(measured))
+    let sentences = [
+        assumed.machine_sentence(),
+        assumed.disturbance_sentence(),
+        assumed.law_sentence(),
+    ];
+    format!(
+        "assumed: {}. {}",
+        sentences.join("; "),
+        Assumptions::cut_sentence(measured)
+    )
 }
 
 /// What the corrected program is, beside the uncorrected program as its control cuts it.
 fn print_exported(out: &mut dyn Write, outcome: &CorrectOutcome) -> io::Result<()> {
-    let ExportedFigures { rms_um, max_um, time_s, completed, .. } = outcome.uncorrected;
-    let CorrectOutcome { control, planner, .. } = outcome;
+    let ExportedFigures {
+        rms_um,
+        max_um,
+        time_s,
+        completed,
+        ..
+    } = outcome.uncorrected;
+    let CorrectOutcome {
+        control, planner, ..
+    } = outcome;
     let text = format!(
         "{AS_EXPORTED}: the corrected program, cut without feedback as its control plans it ({control}, planner {planner})"
     );
     writeln!(out, "{}", wrapped(&text, 2))?;
-    let figures =
-        if completed { format!("{time_s:.3} s, RMS {rms_um:.2}, max {max_um:.2} um") } else { "diverged".to_owned() };
+    let figures = if completed {
+        format!("{time_s:.3} s, RMS {rms_um:.2}, max {max_um:.2} um")
+    } else {
+        "diverged".to_owned()
+    };
     let text = format!("uncorrected, cut in the same way: {figures}");
     writeln!(out, "{}", wrapped(&text, 2))?;
     print_correction(out, outcome)
@@ -174,32 +231,76 @@ pub(in crate::command) fn path_share(path_um: f64) -> String {
 }
 
 fn print_fastest(out: &mut dyn Write, plan: &FastestPlan) -> io::Result<()> {
-    let FastestPlan { cycle, largest_um, rounds, machine, .. } = plan;
+    let FastestPlan {
+        cycle,
+        largest_um,
+        rounds,
+        machine,
+        ..
+    } = plan;
     let moving_s = cycle.cutting_s + cycle.rapid_s;
-    let cuts = if *rounds == 1 { "1 cut".to_owned() } else { format!("{rounds} cuts") };
-    writeln!(out, "least time: {moving_s:.3} s of motion, largest error {largest_um:.2} um, found in {cuts}")?;
+    let cuts = if *rounds == 1 {
+        "1 cut".to_owned()
+    } else {
+        format!("{rounds} cuts")
+    };
+    writeln!(
+        out,
+        "least time: {moving_s:.3} s of motion, largest error {largest_um:.2} um, found in {cuts}"
+    )?;
     if let Some(bound_s) = cycle.bound_s {
-        writeln!(out, "  {bound_s:.3} s for a tool without error, motion {:.4} times that", moving_s / bound_s)?;
+        writeln!(
+            out,
+            "  {bound_s:.3} s for a tool without error, motion {:.4} times that",
+            moving_s / bound_s
+        )?;
     }
     if let Some(path_um) = machine.limits.path_tolerance_um {
         writeln!(out, "  {}", path_share(path_um))?;
     }
     for binding in &cycle.binding {
-        writeln!(out, "  {:<16} binds {:>5.1} % of the motion", binding.limit, 100.0 * binding.share)?;
+        writeln!(
+            out,
+            "  {:<16} binds {:>5.1} % of the motion",
+            binding.limit,
+            100.0 * binding.share
+        )?;
     }
     Ok(())
 }
 
 /// Which files there are, and why one is not.
 fn print_written(out: &mut dyn Write, outputs: &Outputs, outcome: &JobOutcome) -> io::Result<()> {
-    let is_good = outcome.exported.as_ref().map_or(outcome.is_of_use, |program| program.refusal.is_none());
+    let is_good = outcome
+        .exported
+        .as_ref()
+        .map_or(outcome.is_of_use, |program| program.refusal.is_none());
     let written = outputs.out.as_deref().filter(|_| is_good);
-    let Outputs { report, json, trace, learned, .. } = outputs;
-    tell_written(out, [report.as_deref(), json.as_deref(), trace.as_deref(), learned.as_deref(), written])?;
+    let Outputs {
+        report,
+        json,
+        trace,
+        learned,
+        ..
+    } = outputs;
+    tell_written(
+        out,
+        [
+            report.as_deref(),
+            json.as_deref(),
+            trace.as_deref(),
+            learned.as_deref(),
+            written,
+        ],
+    )?;
     match (outputs.out.as_deref(), &outcome.exported) {
         // Why there is no program is told above.
         (Some(path), None) if !is_good => {
-            let is_beyond = outcome.report.runs.last().is_some_and(|run| run.summary.beyond_drives().is_some());
+            let is_beyond = outcome
+                .report
+                .runs
+                .last()
+                .is_some_and(|run| run.summary.beyond_drives().is_some());
             let why = if !outcome.harm.is_empty() {
                 "the uncorrected cut is better"
             } else if is_beyond {
@@ -207,7 +308,11 @@ fn print_written(out: &mut dyn Write, outputs: &Outputs, outcome: &JobOutcome) -
             } else {
                 "the cut did not come to its end"
             };
-            writeln!(out, "{}", wrapped(&format!("{} was not written: {why}", path.display()), 2))
+            writeln!(
+                out,
+                "{}",
+                wrapped(&format!("{} was not written: {why}", path.display()), 2)
+            )
         }
         _ => Ok(()),
     }
