@@ -1,13 +1,14 @@
-//! The identifier beside FANN, a C library of small neural networks, on the same 10-12-2 network:
-//! `just bench-fann`.
+//! Compares the identifier with FANN, a C library of small neural networks, on the same 10-12-2
+//! network: `just bench-fann`.
 //!
-//! `fann/fann_bench.c` is compiled against double and single FANN and given the same weights and
-//! samples. First both must agree: double FANN's outputs and its weights after one step. Then
-//! rounds in turn, the order reversed each time; the figures are medians over rounds of medians
-//! over batches. Instructions by callgrind, where it is installed: those of two counts, subtracted.
+//! `fann/fann_bench.c` is compiled against double and single FANN, and gets the same weights and
+//! samples. First, double FANN must agree in its outputs and in its weights after one step. Then
+//! rounds alternate between the programs, each round in reverse order of the last; the figures are
+//! medians over rounds of medians over batches. If callgrind is installed, it counts the
+//! instructions of two numbers of operations, and the counts are subtracted.
 //!
-//! FANN has 14 connections from bias neurons more; no setting removes them. FANN is as its
-//! distribution compiled it, the identifier as `cargo bench` does, both for any x86-64.
+//! FANN has 14 more connections, from bias neurons; no setting removes them. FANN is used as its
+//! distribution compiled it, the identifier as `cargo bench` compiles it, both for any x86-64.
 
 #![expect(clippy::unwrap_used, reason = "a bench may stop")]
 
@@ -19,23 +20,24 @@ use std::time::Instant;
 
 use feedwright_control::{ContourIdentifier, ContourModel, Inputs};
 
-/// These are the same in `fann_bench.c`.
+/// Constants with the same values as in `fann_bench.c`.
 const SAMPLES: usize = 64;
 const BATCHES: usize = 101;
 const BATCH: usize = 4096;
 const LEARNING_STEP: f64 = 0.015625;
 
-/// Odd, so that a median is one of them.
+/// Number of rounds; odd, so that the median is one of them.
 const ROUNDS: usize = 11;
-/// Several roundings of sums of ten products below 1, and FANN's and our exponential: 1e-15 each.
+/// Largest permitted difference: several roundings of sums of ten products below 1, and the
+/// exponentials of FANN and of the identifier, 1e-15 each.
 const AGREEMENT: f64 = 1e-14;
-/// Counts whose instructions are subtracted.
+/// Numbers of operations whose instruction counts are subtracted.
 const COUNTS: [u64; 2] = [1000, 3000];
 
 type Network = ContourIdentifier<2>;
 type Sample = (Inputs<2>, [f64; 2]);
 
-/// What is compared.
+/// Compared operations.
 const WORK: [&str; 2] = ["forward", "learn"];
 
 fn main() {
@@ -62,7 +64,8 @@ fn main() {
     instructions(&libraries, &file);
 }
 
-/// Weights of the order that training gives and samples, from a linear congruential sequence.
+/// Returns weights of the magnitude that training gives, and samples, from a linear congruential
+/// sequence.
 fn material() -> (Network, Vec<Sample>) {
     let mut state = 1_u32;
     let mut next = move || {
@@ -79,13 +82,13 @@ fn material() -> (Network, Vec<Sample>) {
     (Network { hidden, output }, samples)
 }
 
-/// The weights, hidden before output.
+/// Returns the weights, hidden before output.
 fn weights(net: &Network) -> Vec<f64> {
     let hidden = net.hidden.as_flattened().as_flattened();
     [hidden, net.output.as_flattened()].concat()
 }
 
-/// What `fann_bench` reads; every number to the last bit.
+/// Returns the input of `fann_bench`, with every number to the last bit.
 fn text(net: &Network, samples: &[Sample]) -> String {
     let mut text = String::new();
     let of_samples = samples
@@ -97,8 +100,8 @@ fn text(net: &Network, samples: &[Sample]) -> String {
     text
 }
 
-/// `fann_bench` against one of FANN's libraries; `None`, said loudly, where a compiler or the
-/// library is missing.
+/// Compiles `fann_bench` against one of FANN's libraries. Returns `None`, with a notice, if a
+/// compiler or the library is missing.
 fn compiled(folder: &Path, library: &str, define: &str) -> Option<PathBuf> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/fann/fann_bench.c");
     let program = folder.join(format!("fann_bench_{library}"));
@@ -115,7 +118,7 @@ fn compiled(folder: &Path, library: &str, define: &str) -> Option<PathBuf> {
     None
 }
 
-/// The numbers that `fann_bench` prints.
+/// Returns the numbers that `fann_bench` prints.
 fn numbers(program: &Path, file: &Path, what: &str) -> Vec<f64> {
     let output = Command::new(program).arg(file).arg(what).output().unwrap();
     assert!(
@@ -130,7 +133,7 @@ fn numbers(program: &Path, file: &Path, what: &str) -> Vec<f64> {
         .collect()
 }
 
-/// Both do the same: outputs, and weights after one step.
+/// Checks that both agree: outputs, and weights after one step.
 fn agree(double: &Path, file: &Path, net: &Network, (inputs, error): &Sample) {
     let mut net = net.clone();
     let mut ours = net.predict(inputs).error.to_vec();
@@ -158,9 +161,9 @@ fn agree(double: &Path, file: &Path, net: &Network, (inputs, error): &Sample) {
     );
 }
 
-/// Medians of the rounds and their ratios.
+/// Prints the medians of the rounds and their ratios.
 fn times(libraries: &[PathBuf], file: &Path, net: &Network, samples: &[Sample]) {
-    // By program (the identifier, then the libraries) and work.
+    // First index: program (the identifier, then the libraries). Second index: operation.
     let mut rounds = vec![[Vec::new(), Vec::new()]; 1 + libraries.len()];
     for round in 0..ROUNDS {
         let mut order: Vec<usize> = (0..rounds.len()).collect();
@@ -195,7 +198,7 @@ fn row(name: &str, unit: &str, digits: usize, each: &[f64]) {
     println!();
 }
 
-/// The median over the batches of what one costs.
+/// Returns the median over the batches of the time of one operation, ns.
 fn time_ns(work: usize, net: &Network, samples: &[Sample]) -> f64 {
     let mut net = net.clone();
     let mut each_ns: Vec<f64> = (0..BATCHES)
@@ -224,7 +227,7 @@ fn median(values: &mut [f64]) -> f64 {
     values[values.len() / 2]
 }
 
-/// Instructions of one forward pass and one step.
+/// Prints the instructions of one forward pass and of one step.
 fn instructions(libraries: &[PathBuf], file: &Path) {
     for (work, name) in WORK.iter().enumerate() {
         let ours = |count: u64| {
@@ -253,7 +256,7 @@ fn instructions(libraries: &[PathBuf], file: &Path) {
     }
 }
 
-/// Instructions of one, given the command that does a number of them.
+/// Returns the instructions of one operation, from the command that runs a number of them.
 fn counted(command: impl Fn(u64) -> Vec<std::ffi::OsString>) -> Option<f64> {
     let total = |count: u64| {
         let valgrind = ["--tool=callgrind", "--callgrind-out-file=/dev/null"];

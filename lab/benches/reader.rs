@@ -1,5 +1,4 @@
-//! Megabytes a second from G-code text to canonical motions, and what of that is reading the words
-//! alone.
+//! Speed from G-code text to canonical motions, and of reading the words alone, MB/s.
 //!
 //! `cargo bench -p feedwright-lab --bench reader`; the column MB/s counts bytes of program text.
 
@@ -11,7 +10,7 @@ fn main() {
     divan::main();
 }
 
-/// A print program as slicers write it: short feed motions with an extruder word.
+/// Returns a print program as slicers write it: short feed motions with an extruder word.
 fn print_program(lines: usize) -> String {
     let mut text = String::from("M82\nG28\nG1 Z0.2 F1200\n");
     for n in 0..lines {
@@ -22,8 +21,8 @@ fn print_program(lines: usize) -> String {
     text
 }
 
-/// A milling program as CAM systems write it: numbered lines, three axes, an arc and a comment now
-/// and then.
+/// Returns a milling program as CAM systems write it: numbered lines, three axes, an arc and a
+/// comment now and then.
 fn cam_program(lines: usize) -> String {
     let mut text = String::from(
         "%\n(T1 D6 END MILL)\nG21 G17 G90 G94 G40 G64 P0.01\nT1 M6\nS12000 M3\nG0 X100.000 Y0.000 Z5.000\n",
@@ -38,7 +37,7 @@ fn cam_program(lines: usize) -> String {
         text += &match n % 50 {
             0 => format!("N{} (PASS {})\n", 10 * n, n / 50),
             1 => format!("N{} G1 X{x:.3} Y{y:.3} Z{z:.3} F1800.\n", 10 * n),
-            // Half a circle around the point 1 mm ahead, and back where the next line starts.
+            // Half a circle around the point 1 mm ahead, and back to the start of the next line.
             25 => format!("N{} G91 G2 X2. Y0. I1. J0.\n", 10 * n),
             26 => format!("N{} G90 G1 X{x:.3} Y{y:.3}\n", 10 * n),
             _ => format!("N{} X{x:.3} Y{y:.3} Z{z:.3}\n", 10 * n),
@@ -47,7 +46,7 @@ fn cam_program(lines: usize) -> String {
     text + "M5\nM30\n%\n"
 }
 
-/// A milling program with parameters and a loop.
+/// Returns a milling program with parameters and a loop.
 fn loop_program(rounds: usize) -> String {
     format!(
         "F600\n#1=0\no1 repeat [{rounds}]\n#1=[#1+0.1]\nG1 X[10*cos[#1]] Y[10*sin[#1]] Z-#1\no1 endrepeat\nM2\n"
@@ -63,7 +62,7 @@ fn read(text: &str, dialect: Dialect) -> usize {
         .map_or(0, |reader| reader.filter(Result::is_ok).count())
 }
 
-/// A program with mistakes would measure the making of messages.
+/// Counts the faults. A program with faults would measure the formatting of messages.
 fn faults(text: &str, dialect: Dialect) -> usize {
     let settings = Settings {
         dialect: Some(dialect),
@@ -73,7 +72,7 @@ fn faults(text: &str, dialect: Dialect) -> usize {
         .map_or(1, |reader| reader.filter(Result::is_err).count())
 }
 
-/// Words of the milling program, not carried out.
+/// Words of the milling program, not executed.
 #[divan::bench]
 fn cam_words_alone(bencher: Bencher<'_, '_>) {
     let text = cam_program(100_000);
@@ -82,7 +81,7 @@ fn cam_words_alone(bencher: Bencher<'_, '_>) {
         .bench(|| count_words(divan::black_box(text.as_bytes())));
 }
 
-/// Words of the print program, not carried out.
+/// Words of the print program, not executed.
 #[divan::bench]
 fn print_words_alone(bencher: Bencher<'_, '_>) {
     let text = print_program(100_000);

@@ -1,4 +1,4 @@
-//! What a servo period asks of the reference, and how fast programs are planned.
+//! Cost of the reference in a servo period, and speed of planning.
 
 #[expect(dead_code, reason = "the benches use a part")]
 #[path = "../../crates/plan/tests/common/programs.rs"]
@@ -25,13 +25,13 @@ const NAMES: [&str; 6] = [
     "10 um chords",
 ];
 
-/// Chords of 10 um of a gentle wave.
+/// Returns chords of 10 um along a gentle wave.
 fn chords(count: u32) -> impl Iterator<Item = Canon> + Send {
     let at = |i: u32| [0.01 * f64::from(i), (0.01 * f64::from(i)).sin(), 0.0];
     (0..count).map(move |i| line(at(i), at(i + 1), 50.0, BLEND))
 }
 
-/// A cubic spline through a wave of 5 mm, 100 mm long.
+/// Returns a cubic spline through a wave of 5 mm, 100 mm long.
 fn wave() -> Canon {
     const POINTS: usize = 40;
     let control_mm: Vec<[f64; 3]> = (0..POINTS)
@@ -77,7 +77,7 @@ fn reference(name: &str) -> Reference<'static> {
     reference.expect("limits are sound")
 }
 
-/// 1000 servo periods, three looks each: here and up to 50 ms ahead.
+/// 1,000 servo periods with three reads each: at the present time and up to 50 ms ahead.
 #[divan::bench(args = NAMES)]
 fn at(bencher: Bencher<'_, '_>, name: &str) {
     let mut reference = reference(name);
@@ -94,8 +94,8 @@ fn at(bencher: Bencher<'_, '_>, name: &str) {
     });
 }
 
-/// 1000 servo periods: nearest point over 50 ms behind and ahead of a point that lies up to 20 um
-/// off the path.
+/// 1,000 servo periods: nearest point, within 50 ms before and after, to a point up to 20 um off
+/// the path.
 #[divan::bench(args = NAMES)]
 fn nearest(bencher: Bencher<'_, '_>, name: &str) {
     let mut reference = reference(name);
@@ -121,7 +121,7 @@ fn nearest(bencher: Bencher<'_, '_>, name: &str) {
     });
 }
 
-/// Reading and planning, a servo period at a time, forgetting what is behind.
+/// Reads and plans in steps of 10 ms, and forgets the path behind.
 #[divan::bench(args = [1_000, 10_000, 100_000])]
 fn plan_chords(bencher: Bencher<'_, '_>, count: u32) {
     bencher.counter(ItemsCount::new(count)).bench_local(|| {
@@ -137,7 +137,7 @@ fn plan_chords(bencher: Bencher<'_, '_>, count: u32) {
     });
 }
 
-/// Tables of arc length and sections of a smooth curve.
+/// Computes the tables of arc length and the sections of a smooth curve.
 #[divan::bench(args = ["ellipse", "eight", "star", "spline"])]
 fn plan_contour(name: &str) -> f64 {
     reference(name).read_to_end_s()

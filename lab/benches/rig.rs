@@ -1,5 +1,5 @@
-//! What the benches and the instruction count share: a circle as the path, a lagging tool, and a
-//! network.
+//! Parts shared by the benchmarks and the instruction count: a circle as the path, a lagging tool,
+//! and a network.
 
 use feedwright_control::{
     AxisKnowledge, Bounds, ContourError, ContourIdentifier, Controller, Estimator,
@@ -24,7 +24,7 @@ impl<const N: usize> KnotSource<N> for Circle {
     }
 }
 
-/// Weights and inputs of the order that training gives, without symmetry.
+/// Returns weights and inputs of the magnitude that training gives, without symmetry.
 pub(crate) fn network<const N: usize>() -> (ContourIdentifier<N>, Inputs<N>) {
     let mut state = 1_u32;
     let mut next = move || {
@@ -37,14 +37,15 @@ pub(crate) fn network<const N: usize>() -> (ContourIdentifier<N>, Inputs<N>) {
     (ContourIdentifier { hidden, output }, inputs)
 }
 
-/// The paper's controller with an untrained network: the work does not depend on the weights.
+/// Returns the paper's controller with an untrained network: the work does not depend on the
+/// weights.
 pub(crate) fn paper<const N: usize>() -> TwoDimensional<N> {
     TwoDimensional::untried(network().0, InvertingSettings::DEFAULT)
 }
 
-/// The regulator of axes like those of tnv40 with quick speed loops, as the tool of a [`Rig`]
-/// follows, each with noise, a disturbance and, where `gives`, a ball screw with backlash: it
-/// decides in every servo period.
+/// Returns the regulator of axes like the axes of `tnv40`, with fast speed loops, which follow like
+/// the tool of a [`Rig`]. Each has noise, a disturbance and, with `gives`, a ball screw with
+/// backlash. The regulator decides in every servo period.
 pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgPreview<N> {
     let mut axis = AxisKnowledge::NOTHING;
     axis.periods = Periods {
@@ -88,21 +89,22 @@ pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgPreview<N> {
     LqgPreview::new([axis; N], settings)
 }
 
-/// What the tool of a [`Rig`] does; it is behind by 20 ms in either case.
+/// Behavior of the tool of a [`Rig`]; it lags by 20 ms in either case.
 #[derive(Clone, Copy)]
 pub(crate) enum Tool {
-    /// It stays on the path whatever is commanded, so that an untrained controller can do no harm.
+    /// Stays on the path whatever is commanded, so that an untrained controller can do no harm.
     OnThePath,
-    /// It follows the command with a lag of first order.
+    /// Follows the command with a first-order lag.
     Follows,
 }
 
-/// The lag of the tool, s, and the part of the way to the command that it then goes in a servo
+/// Lag of the tool, s, and part of the distance to the command that it then covers in a servo
 /// period.
 const LAG_S: f64 = 0.02;
 const FOLLOWED: f64 = 0.001 / LAG_S;
 
-/// The whole run by hand: reference, contour error, controller under the supervisor, and a tool.
+/// A whole run, stepped by hand: reference, contour error, controller under the supervisor, and a
+/// tool.
 pub(crate) struct Rig<const N: usize, C> {
     tick: Tick<N>,
     controller: C,
@@ -111,7 +113,7 @@ pub(crate) struct Rig<const N: usize, C> {
 }
 
 impl<const N: usize, C: Controller<N>> Rig<N, C> {
-    /// Warmed up by nearly a lap.
+    /// Creates a rig, warmed up by nearly a lap.
     pub(crate) fn new(controller: C, tool: Tool) -> Self {
         let tick = Tick::new(0.001, controller.schedule(), Bounds::new(0.5, 400.0, 400.0));
         let mut rig = Self {
@@ -126,7 +128,7 @@ impl<const N: usize, C: Controller<N>> Rig<N, C> {
         rig
     }
 
-    /// One servo period.
+    /// Runs one servo period.
     pub(crate) fn servo_period(&mut self) -> Setpoint<N> {
         let setpoint = self
             .tick
@@ -145,8 +147,8 @@ impl<const N: usize, C: Controller<N>> Rig<N, C> {
         setpoint
     }
 
-    /// Stops the measurement where the supervisor has taken the controller out: its work would be
-    /// missing.
+    /// Stops the measurement if the supervisor has taken the controller out of the loop: its work
+    /// would be missing.
     pub(crate) fn expect_in_the_loop(&self) {
         assert!(
             self.tick.fade().is_none(),
@@ -156,17 +158,16 @@ impl<const N: usize, C: Controller<N>> Rig<N, C> {
     }
 }
 
-/// A register filled by the circle, its preview, and the tool that lags behind by 20 ms and is 20
-/// um inside.
+/// A register filled by the circle, its preview, and a tool that lags by 20 ms and is 20 um inside.
 pub(crate) struct Surroundings<const N: usize> {
     register: Register<N>,
     preview: Preview<N>,
-    /// Where the tool is.
+    /// Position of the tool, mm.
     pub(crate) tool_mm: [f64; N],
 }
 
 impl<const N: usize> Surroundings<N> {
-    /// After 0.3 s.
+    /// Creates the state after 0.3 s.
     pub(crate) fn new() -> Self {
         let mut register = Register::default();
         for i in 0..300 {
@@ -183,7 +184,7 @@ impl<const N: usize> Surroundings<N> {
         }
     }
 
-    /// What the controller sees.
+    /// Returns the window that the controller sees.
     pub(crate) fn window(&self) -> Window<'_, N> {
         Window {
             register: &self.register,
@@ -195,7 +196,7 @@ impl<const N: usize> Surroundings<N> {
         }
     }
 
-    /// What is measured.
+    /// Returns the measured position and contour error.
     pub(crate) fn measured(&self) -> Measured<N> {
         let contour: ContourError<N> = Estimator::default().estimate(&self.window(), self.tool_mm);
         Measured {
@@ -205,7 +206,7 @@ impl<const N: usize> Surroundings<N> {
     }
 }
 
-/// One decision: observe, command.
+/// Runs one decision: observe, command.
 pub(crate) fn decide<const N: usize>(
     controller: &mut impl Controller<N>,
     window: &Window<'_, N>,

@@ -1,5 +1,5 @@
-//! Times of what runs in the servo thread: `cargo bench -p feedwright-lab --bench tick`. The
-//! figures to look at are medians.
+//! Benchmarks of the code that runs in the servo thread: `cargo bench -p feedwright-lab --bench
+//! tick`. The medians are the figures to read.
 
 #![expect(clippy::unwrap_used, reason = "a bench may stop")]
 
@@ -21,7 +21,8 @@ fn paper_tick<const N: usize>(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| rig::decide(&mut controller, black_box(&window), black_box(&measured)));
 }
 
-/// Kalman filter, regulator and inverse of each axis; behind a ball screw that gives, too.
+/// Kalman filter, regulator and inverse of each axis; with `gives`, also for a ball screw with
+/// backlash.
 #[divan::bench(consts = [2, 3], args = [false, true])]
 fn regulator_tick<const N: usize>(bencher: Bencher<'_, '_>, gives: bool) {
     let surroundings = rig::Surroundings::<N>::new();
@@ -62,8 +63,8 @@ fn back_propagation<const N: usize>(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| net.learn(black_box(&inputs), black_box(error), 0.01));
 }
 
-/// A servo period of the whole: reference, register, and in every tenth the contour error and the
-/// decision. The mean over whole feed periods.
+/// One servo period of the whole loop: reference and register, and in every tenth servo period the
+/// contour error and the decision. The mean over whole feed periods.
 #[divan::bench(consts = [2, 3], sample_size = 1000)]
 fn servo_period<const N: usize>(bencher: Bencher<'_, '_>) {
     let mut rig = rig::Rig::<N, _>::new(rig::paper(), rig::Tool::OnThePath);
@@ -71,7 +72,7 @@ fn servo_period<const N: usize>(bencher: Bencher<'_, '_>) {
     rig.expect_in_the_loop();
 }
 
-/// The same with the regulator, which decides in every one.
+/// The same with the regulator, which decides in every servo period.
 #[divan::bench(consts = [2, 3], args = [false, true], sample_size = 1000)]
 fn servo_period_of_regulator<const N: usize>(bencher: Bencher<'_, '_>, gives: bool) {
     let mut rig = rig::Rig::<N, _>::new(rig::regulator(gives), rig::Tool::Follows);

@@ -8,11 +8,11 @@
 //! 50,000 mm/s3, tolerance 10 um. The motion alone: rests are left out of all times, and so are
 //! rapids that lead from the origin to a rest before the first cut. `bound` holds the tolerance at
 //! the nodes of the whole path only, `whole` everywhere. `blocks/s`, `x real`, `latest` and `MiB`
-//! are those of the planner alone on one core: `push` and `pop`, without reading and sampling, in
-//! processor time where the system tells it. `latest` is the 99.9th percentile, over all calls that
-//! committed motion, of the time of a call by the motion that it committed: below 0.5 the motion
-//! never waits for a planner that begins when half of it is left. `MiB` is the most memory that the
-//! planner has at a time.
+//! describe the planner alone on one core: `push` and `pop`, without reading and sampling, in
+//! processor time where the system reports it. `latest` is the 99.9th percentile, over all calls
+//! that committed motion, of the time of a call divided by the motion that it committed: below 0.5
+//! the motion never waits for a planner that begins when half of it is left. `MiB` is the most
+//! memory that the planner has at a time.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -162,7 +162,7 @@ fn popped_s(planner: &mut dyn FeedPlanner) -> f64 {
         .sum()
 }
 
-/// What the planner does, and nothing else.
+/// Results of the planner alone.
 struct Alone {
     motion_s: f64,
     took_s: f64,
@@ -212,7 +212,7 @@ impl Alone {
     }
 }
 
-/// Processor time of this thread, s, where the system tells it (Linux).
+/// Returns the processor time of this thread, s, where the system reports it (Linux).
 fn processor_s() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     Some(1e-9 * text.split_whitespace().next()?.parse::<f64>().ok()?)

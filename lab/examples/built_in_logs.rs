@@ -1,5 +1,5 @@
-//! Writes what the logs of the built-in machines tell, and the models by them, which the program is
-//! shipped with: `just built-in-logs`. Some minutes.
+//! Writes the models that the logs of the built-in machines identify, which the program is shipped
+//! with: `just built-in-logs`. Takes some minutes.
 
 use std::error::Error;
 use std::path::Path;
@@ -9,7 +9,7 @@ use feedwright::{BEST, CONTROLLERS, built_in_lines};
 use feedwright_sim::{BUILT_IN_MACHINES, Machine};
 use rayon::prelude::*;
 
-/// Where the program reads it from.
+/// File from which the program reads the models.
 const FILE: &str = "../crates/feedwright/src/recorded_model/built_in.jsonl";
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -35,7 +35,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             lines
         })
         .collect();
-    // A machine whose log tells no model is told so at each cut, too.
+    // A machine whose log identifies no model is skipped: the program reports this at each cut,
+    // too.
     let lines: Vec<String> = found
         .into_iter()
         .filter_map(Result::ok)

@@ -1,6 +1,6 @@
-//! Checks plans by what they come to: positions every 0.1 ms, and nothing else of the planner.
-//! Velocity, acceleration and jerk are finite differences of them; the programmed path is laid out
-//! anew from the lines and arcs of the reader, as chords of 1e-5 mm.
+//! Checks plans by their results: positions every 0.1 ms, and nothing else of the planner.
+//! Velocity, acceleration and jerk are finite differences of the positions; the programmed path is
+//! rebuilt from the lines and arcs of the reader, as chords of 1e-5 mm.
 //!
 //!     cargo run --release -p feedwright-lab --example check_plan -- [--machine NAME] [--tolerance UM] [--bound] [--seed S --count N] [PROGRAM...]
 //!
@@ -129,7 +129,7 @@ fn summary(rows: &[Row]) {
     }
 }
 
-/// What a plan comes to.
+/// Result of a plan.
 struct Row {
     motions: usize,
     time_s: f64,

@@ -45,7 +45,7 @@ fn speed_mm_s(motion: &AxisMotion) -> f64 {
     motion.velocity_mm_s[0].hypot(motion.velocity_mm_s[1])
 }
 
-/// What the axes do every 0.1 ms on the square of 20 mm at 200 mm/s.
+/// Returns the motion of the axes every 0.1 ms on the square of 20 mm at 200 mm/s.
 fn samples() -> Result<Vec<(f64, AxisMotion)>, Failure> {
     let machine = limited_machine(10.0);
     let corner = Corner::Continuous {

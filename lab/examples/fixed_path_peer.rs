@@ -45,7 +45,7 @@ const SAMPLE_S: f64 = 1e-3;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// What the peer comes to.
+/// Result of the peer.
 struct PeerPlan {
     time_s: f64,
     /// Largest jerk as a part of its limit.

@@ -1,8 +1,8 @@
 //! `identification_figure LOG FIT SCORE SHOWN FILE.svg`: the first axis of a log, as measured and
-//! as predicted by its law and by a linear model.
+//! as predicted by its identified model and by a linear model.
 //!
-//! Times are written FROM:TO, s: those that are fitted, those that are scored, and those of the
-//! latter that the figure shows.
+//! Times are written FROM:TO, s: the times that are fitted, the times that are scored, and the part
+//! of the latter that the figure shows.
 
 use std::ops::Range;
 use std::path::Path;

@@ -80,7 +80,7 @@ fn products(axis: &Axis) -> [(&'static str, f64); 4] {
     ]
 }
 
-/// How a product came out over all logs.
+/// Statistics of a product over all logs.
 #[derive(Debug, Clone, Copy, Default)]
 struct Seen {
     largest: f64,

@@ -1,4 +1,4 @@
-//! What corrected programs deliver that learn from logs of the parts that were cut:
+//! Results of corrected programs that learn from logs of the parts that were cut:
 //! `cargo run --release -p feedwright-lab --example learned_programs [OPTION...] [SEED [COUNT]]`.
 //!
 //! The machine that cuts is one of [`MACHINES`], with disturbance, noise and encoder steps. Its
@@ -11,7 +11,7 @@
 //!
 //! | Row | Program |
 //! |---|---|
-//! | right file | corrected by the values of the machine that cuts: what could be at the best |
+//! | right file | corrected by the values of the machine that cuts: the best case |
 //! | no log | corrected by the machine file alone |
 //! | one log | corrected by the file and the log of the original |
 //! | two logs | by the file, the log of the original, and the log of `one log` |
@@ -40,7 +40,7 @@ use rayon::prelude::*;
 
 /// Machines, in turn.
 const MACHINES: [&str; 4] = ["tnv40", "stiff", "workshop", "heavy"];
-/// How many are drawn, and by how much a value is off at the most.
+/// Number of machines that are drawn, and the largest part by which a value is off.
 const COUNT: usize = 16;
 const OFF: f64 = 0.2;
 /// Programs.
@@ -169,7 +169,7 @@ fn with_unknown(machine: &Machine) -> Machine {
     }
 }
 
-/// What is off.
+/// Kind of difference between the machine and its file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Off {
     File,
@@ -304,7 +304,7 @@ fn ratios(was: &Errors, is: &Errors) -> [f64; 2] {
 struct Case {
     name: String,
     was: Errors,
-    /// With the right file, without a log, with one and with two, and what was predicted.
+    /// Results with the right file, without a log, with one and with two, and the predictions.
     ways: Vec<(Errors, Option<PredictedCut>, Option<String>)>,
 }
 

@@ -1,4 +1,4 @@
-//! What each term of the plant does to a circle: `just plant-terms`, the figure of
+//! Effect of each term of the plant on a circle: `just plant-terms`, the figure of
 //! docs/machine-file.md.
 //!
 //! `plant_terms FILE.svg` cuts the circle of radius 10 mm uncorrected on tnv40 with one term more,
@@ -46,7 +46,7 @@ const fn term(title: &'static str, feed_mm_s: f64, scale_um: f64, axes: &'static
 
 /// Slow enough for the lag to be small, mm/s.
 const SLOW: f64 = 10.0;
-/// As programs cut, mm/s.
+/// Usual feedrate of programs, mm/s.
 const FAST: f64 = 50.0;
 
 /// A PI speed loop, which takes the constant part of friction back: what is left is how it turns

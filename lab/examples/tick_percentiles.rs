@@ -80,7 +80,7 @@ fn run_us<const N: usize, C: Controller<N>>(controller: C, ticks: usize) -> Vec<
     times_us
 }
 
-/// By nearest rank.
+/// Returns the percentiles by nearest rank.
 fn percentiles(mut times_us: Vec<f64>) -> [f64; 4] {
     times_us.sort_by(f64::total_cmp);
     PER_MILLE.map(|share| times_us[(times_us.len() * share).div_ceil(1000) - 1])

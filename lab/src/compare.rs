@@ -1,9 +1,9 @@
 //! The comparison: every controller on every workpiece and machine, in one table.
 //!
 //! The unit of work is a machine and a controller: each controller is tuned on each machine by the
-//! same search, under the machine's noise ([`tuning`]), made from what it may know of that machine
-//! ([`Knowledge`]), and cut on all workpieces with several noise seeds. A table is the same bit by
-//! bit for the same options, whatever the number of threads.
+//! same search, under the machine's noise ([`tuning`]). It is made from what it may know of that
+//! machine ([`Knowledge`]), and cut on all workpieces with several noise seeds. A table is the same
+//! bit by bit for the same options, whatever the number of threads.
 //!
 //! | File | What |
 //! |---|---|
@@ -67,16 +67,16 @@ pub struct Comparison {
     pub tuned: Vec<Tuned>,
     /// All rows: by workpiece, then machine, then controller.
     pub rows: Vec<ComparisonRow>,
-    /// What is claimed, row by row.
+    /// Verdict on each claim, row by row.
     pub verdicts: Vec<Verdict>,
-    /// The same by claim.
+    /// The verdicts by claim.
     pub claims: Vec<Claimed>,
     /// Machining times at equal tolerance, where they were asked for.
     pub at_tolerance: Vec<AtTolerance>,
 }
 
 impl Comparison {
-    /// Of all that was cut.
+    /// Builds the comparison from the results of all cuts.
     fn new(options: &ComparisonOptions, results: units::UnitResults) -> Self {
         let rows = table::in_order(&results.rows, options);
         let nominal = options.nominal.name.clone();

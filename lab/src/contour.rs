@@ -28,7 +28,7 @@ use std::sync::Arc;
 pub struct Contour {
     /// Name.
     pub name: &'static str,
-    /// What it is, for lists.
+    /// Description, for lists.
     pub about: &'static str,
     outline: Outline,
 }
@@ -90,7 +90,7 @@ pub const CONTOURS: &[Contour] = &[
     },
 ];
 
-/// How a contour is put elsewhere: scaled, and turned about the origin.
+/// Placement of a contour: scaled, and turned about the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
     /// Factor on all lengths.
@@ -100,7 +100,7 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Where it is defined.
+    /// Contour at the place where it is defined.
     pub const NONE: Self = Self {
         scale: 1.0,
         turn_rad: 0.0,
@@ -123,7 +123,7 @@ pub fn contour(name: &str) -> Option<&'static Contour> {
 }
 
 impl Contour {
-    /// Whether it has no corners.
+    /// Returns true if the contour has no corners.
     pub fn is_smooth(&self) -> bool {
         match self.outline {
             Outline::Polygon(_) => false,

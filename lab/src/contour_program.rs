@@ -29,7 +29,7 @@ pub struct ContourProgram {
     pub text: String,
     /// Blocks that cut.
     pub blocks: usize,
-    /// Whether the blocks are the contour itself.
+    /// True if the blocks are the contour itself, not an approximation.
     pub is_exact: bool,
 }
 
@@ -168,7 +168,7 @@ fn word(letter: char, value_mm: f64) -> String {
     format!("{letter}{}", trimmed(value_mm, DECIMALS))
 }
 
-/// Without zeros at the end, and without a negative zero.
+/// Formats a number without zeros at the end, and without a negative zero.
 fn trimmed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let text = if text.contains('.') {

@@ -1,5 +1,5 @@
-//! Identification and controllers on the independent plant: what a user does with a machine, done
-//! with one that obeys other equations.
+//! Identification and controllers on the independent plant: the steps of a user with a machine,
+//! applied to a machine that obeys other equations.
 //!
 //! ```text
 //! data sheet -> excitation program -> cut by the plant -> log -> machine file -> model
@@ -53,12 +53,12 @@ pub(crate) const DEFAULT_CONTROLLERS: [&str; 4] =
 /// Longest excitation that is recorded, s.
 const EXCITATION_S: f64 = 600.0;
 
-/// How machines are identified and cut on.
+/// Options of the identification and of the cuts.
 #[derive(Debug, Clone)]
 pub(crate) struct IndependentOptions {
     /// Program that is recorded: name and text; none is the one that `feedwright excite` writes.
     pub excitation: Option<(String, String)>,
-    /// What the identification is told of the delay of the record, s; none leaves it open.
+    /// Delay of the record that the identification is given, s; `None` leaves it open.
     pub record_delay_s: Option<f64>,
     /// Controllers that cut, beside the uncorrected cut.
     pub controllers: Vec<&'static Entry>,
@@ -66,7 +66,7 @@ pub(crate) struct IndependentOptions {
     pub choices: Choices,
 }
 
-/// What was found of an axis beside what it is.
+/// Identified values of an axis, beside the true ones.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct IdentifiedAxis {
     /// Its name.
@@ -102,7 +102,7 @@ pub(crate) struct IndependentCut {
     /// Why nothing was identified that the controller goes by; it then cuts uncorrected.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub without_model: Option<String>,
-    /// In what it is worse than uncorrected.
+    /// Ways in which the cut is worse than uncorrected.
     pub faults: Vec<Failure>,
 }
 
@@ -111,7 +111,7 @@ pub(crate) struct IndependentCut {
 pub(crate) struct IndependentResult {
     /// The plant.
     pub machine: IndependentMachine,
-    /// What was identified; nothing where that was refused.
+    /// Identified axes; empty if the identification was rejected.
     pub axes: Vec<IdentifiedAxis>,
     /// Why it was refused.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -127,7 +127,7 @@ pub(crate) enum IndependentError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Machine(#[from] MachineError),
-    /// There is no excitation program.
+    /// The excitation program cannot be made.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Excite(#[from] ExciteError),
@@ -144,14 +144,14 @@ pub(crate) enum IndependentError {
     Diverged {
         /// The machine.
         machine: String,
-        /// When, s.
+        /// Time of the divergence, s.
         at_s: f64,
     },
     /// The log is refused.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Log(#[from] LogError),
-    /// The log does not tell the law.
+    /// The model cannot be identified from the log.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Identification(#[from] LogJobError),
@@ -162,7 +162,7 @@ pub(crate) enum IndependentError {
 }
 
 impl IndependentError {
-    /// Whether the machine could not be identified, where nothing else is wrong.
+    /// Returns true if the machine could not be identified and nothing else is wrong.
     fn is_refusal(&self) -> bool {
         matches!(
             self,
@@ -200,10 +200,11 @@ impl Mechanism for Recorded {
     }
 }
 
-/// What a recorder writes while the machine cuts its excitation program uncorrected.
+/// Returns the log that a recorder writes while the machine cuts its excitation program
+/// uncorrected.
 ///
 /// # Errors
-/// A plant that does not follow, or an end from outside.
+/// Fails if the plant does not follow, or if the work is ended from outside.
 fn recorded(
     machine: &IndependentMachine,
     options: &IndependentOptions,
@@ -260,7 +261,7 @@ impl Identified {
     /// Identifies a machine from its log alone.
     ///
     /// # Errors
-    /// A log that does not tell the law of the axes, or an end from outside.
+    /// Fails if the log does not identify the axis models, or if the work is ended from outside.
     fn of(
         machine: &IndependentMachine,
         log: &str,
@@ -335,7 +336,7 @@ impl IdentifiedAxis {
     }
 }
 
-/// Linear part of a found law.
+/// Returns the linear part of an identified axis model.
 fn linear(found: &FoundAxis) -> LinearPart {
     let values = found
         .resolved

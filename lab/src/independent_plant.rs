@@ -1,9 +1,10 @@
 //! An independent plant: a machine of other equations than the one that feedwright simulates and
 //! assumes.
 //!
-//! Identification and controllers assume the law of `crates/control/src/axis.rs`, and
-//! [`feedwright_sim::Plant`] has the same. Here they are scored on a machine that they were not
-//! written for. It uses nothing of that law or that plant, and nothing is ever tuned on it.
+//! Identification and controllers assume the model of `crates/control/src/axis.rs`, and
+//! [`feedwright_sim::Plant`] uses the same model. This plant scores them on a machine that they
+//! were not written for. It shares nothing with that model or plant, and nothing is ever tuned on
+//! it.
 //!
 //! | File | What | Unlike the simulated machine |
 //! |---|---|---|
@@ -15,9 +16,9 @@
 //! | `independent_plant/linearization.rs` | gains and delays for small motions | |
 //! | `independent_plant/machines.rs` | three machines, and others drawn around them | |
 //!
-//! The tool is where the table is and, with the lead error of the screw, A (sin(2 pi x / lead +
-//! p) - sin p), which no encoder sees. As joint counts what the position loop sees, without steps
-//! and errors of the encoder.
+//! The tool is at the table plus the lead error of the screw, A (sin(2 pi x / lead + p) - sin p),
+//! which no encoder sees. The joint position is the sensor position of the position loop, without
+//! steps and errors of the encoder.
 
 pub mod lugre;
 pub mod ball_screw;
@@ -60,11 +61,11 @@ struct RunningAxis {
     axis: IndependentAxis,
     state: FeedState,
     drive: CascadeState,
-    /// What comes from the sensors, in mm: of the position loop, and of the motor.
+    /// Sensor positions on their way to the drive, mm: of the position loop, and of the motor.
     sensors: [Late<f64>; 2],
     seen_mm: [f64; 2],
     command_mm: f64,
-    /// What the table is ahead of the encoder at rest at the start, mm: it was zeroed there.
+    /// Lead of the table over the encoder at rest at the start, mm: the table was zeroed there.
     table_zero_mm: f64,
 }
 
@@ -75,7 +76,7 @@ pub struct IndependentPlant {
 }
 
 impl IndependentPlant {
-    /// At rest with the encoders at `start_mm`.
+    /// Starts at rest with the encoders at `start_mm`.
     pub fn new(axes: &[IndependentAxis; 3], start_mm: [f64; 3]) -> Self {
         Self {
             axes: std::array::from_fn(|i| RunningAxis::new(axes[i], start_mm[i])),
@@ -128,7 +129,7 @@ impl IndependentAxis {
         [self.scale.unwrap_or(self.encoder), self.encoder]
     }
 
-    /// Where these are, mm.
+    /// Returns the positions of the two sensors, mm.
     fn places_mm(&self, state: &FeedState) -> [f64; 2] {
         let motor_mm = state.motor_rad / self.rad_per_mm();
         [
@@ -141,7 +142,7 @@ impl IndependentAxis {
         ]
     }
 
-    /// What the sensors show, mm.
+    /// Returns the readings of the two sensors, mm.
     fn shown_mm(&self, state: &FeedState) -> [f64; 2] {
         let (sensors, places_mm) = (self.sensors(), self.places_mm(state));
         [0, 1].map(|i| sensors[i].shown_mm(places_mm[i]))

@@ -1,9 +1,9 @@
 //! Machines that differ from the one that a model was identified on: each of its values alone, and
 //! several together.
 //!
-//! The model is made on the base machine, and cuts on the variant. So are the settings of peers:
-//! everybody knows the same, and is wrong in the same. A variant that changes nothing of a base is
-//! left out.
+//! The model is identified on the base machine and cuts on the variant. The settings of peers also
+//! come from the base machine, so all controllers have the same knowledge and the same errors in
+//! it. A variant that changes nothing of a base is left out.
 //!
 //! | File | What |
 //! |---|---|
@@ -15,7 +15,7 @@ use feedwright_sim::{Axis, Machine};
 
 use crate::held_out::random::Random;
 
-/// What is different in an axis.
+/// Difference of an axis from the base machine.
 #[derive(Debug, Clone, Copy)]
 enum Difference {
     /// Inertia, times.
@@ -114,7 +114,7 @@ fn friction(axis: &mut Axis) -> [&mut f64; 4] {
     ]
 }
 
-/// Which variants are cut.
+/// Choice of the variants to cut.
 #[derive(Debug, Clone, Copy)]
 pub struct Variants {
     /// Gross differences in place of everyday ones.

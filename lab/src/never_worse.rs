@@ -1,11 +1,11 @@
 //! Never worse: controllers compared with the uncorrected cut on every program and every machine,
 //! and the cuts that it made worse.
 //!
-//! A cut is worse where its RMS or its largest contour error, or the uncut path, is worse than the
-//! uncorrected cut's by the rule of [`feedwright::harm`], or where the controller is not in the
-//! loop any more at the end. Each controller is made for the machine that it cuts on, or for
-//! another one (`mismatch.rs`). Cuts depend on nothing but program, machines and seed: the rows are
-//! the same for any number of threads, and those that are [`Kept`] are not cut again.
+//! A cut is worse if its RMS or its largest contour error, or the uncut path, is worse than the
+//! uncorrected cut's by the rule of [`feedwright::harm`], or if the controller is no longer in the
+//! loop at the end. Each controller is made for the machine that it cuts on, or for another one
+//! (`mismatch.rs`). Cuts depend only on program, machines and seed: the rows are the same for any
+//! number of threads, and rows that are [`Kept`] are not cut again.
 //!
 //! | File | What |
 //! |---|---|
@@ -40,23 +40,23 @@ use program::SweepProgram;
 /// One program on one machine.
 #[derive(Debug, Clone)]
 pub struct SweepJob {
-    /// What is cut.
+    /// Program to cut.
     pub program: Arc<SweepProgram>,
-    /// On what.
+    /// Machine that cuts it.
     pub machine: Arc<Machine>,
     /// The machine that the controller is made for.
     pub model: Arc<Machine>,
 }
 
-/// What the jobs have in common.
+/// Options that all jobs share.
 #[derive(Debug, Clone)]
 pub struct SweepOptions {
     /// The controllers that are compared with the uncorrected cut.
     pub controllers: Vec<&'static Entry>,
     /// Parameters that are set.
     pub set: Vec<Setting>,
-    /// Whether a controller of which nothing is set has the values that a search found for the
-    /// machine that it is made for.
+    /// True if a controller without set parameters uses the recorded values that a search found for
+    /// the machine that it is made for.
     pub recorded: bool,
     /// Seed of the training.
     pub seed: u64,
@@ -135,7 +135,8 @@ pub(crate) fn sample(jobs: Vec<SweepJob>, count: usize, seed: u64) -> Vec<SweepJ
     drawn.into_iter().map(|i| jobs[i].clone()).collect()
 }
 
-/// What a cut with a controller depends on, apart from the program that makes it.
+/// Returns a key of everything that a cut with a controller depends on, apart from the program that
+/// makes it.
 fn key(job: &SweepJob, options: &SweepOptions, controller: &Entry) -> String {
     let machine = serde_json::json!(*job.machine).to_string();
     let set: Vec<Setting> = options
@@ -175,10 +176,10 @@ fn named(row: &SweepRow, job: &SweepJob) -> SweepRow {
     }
 }
 
-/// What a sweep came to.
+/// Results of a sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Swept {
-    /// In the order of the jobs, and for each in that of the controllers.
+    /// Rows in the order of the jobs, and within a job in the order of the controllers.
     pub rows: Vec<SweepRow>,
     /// Number of rows that were in the store.
     pub known: usize,

@@ -28,7 +28,7 @@ const SAME_TIME: f64 = 0.002;
 /// Halvings of the interval of rho: from 10^-6..10^-1 to a millionth of a decade.
 const HALVINGS: u32 = 24;
 
-/// What one cut came to.
+/// Result of one cut.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Numbers {
     /// Machining time, s.
@@ -40,7 +40,7 @@ pub struct Numbers {
     /// Weight of the machining time that the controller ran with; none in the uncorrected cut.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rho: Option<f64>,
-    /// Whether the program was cut to its end.
+    /// True if the program was cut to its end.
     pub completed: bool,
 }
 
@@ -111,7 +111,7 @@ pub fn experiment(machine: &Machine, seeds: &[u64], watch: &dyn Watch) -> Result
     })
 }
 
-/// What all cuts are made on.
+/// Machine and watch that all cuts share.
 #[derive(Clone, Copy)]
 struct Bench<'a> {
     machine: &'a Machine,

@@ -279,7 +279,7 @@ pub(crate) static ITERATIVE_LEARNING_10: Entry = controller!(
 /// All controllers: those that a machine runs, and the peers.
 pub const CONTROLLERS: Controllers = Controllers::new(&ROWS, RECORDED);
 
-/// What searches of the laboratory came to, a value of `RecordedSearch` on each line.
+/// Recorded results of the laboratory's searches, a value of `RecordedSearch` on each line.
 pub(crate) const RECORDED: &str = include_str!("compare/recorded.jsonl");
 
 static ROWS: [&Entry; 24] = [

@@ -1,5 +1,5 @@
-//! What controllers learn while cutting does no harm: not on a straight line of minutes, not with
-//! another seed of their training.
+//! Learning while cutting does no harm: not on a straight line of minutes, not with another seed of
+//! the training.
 
 use crate::sweep::part_or_whole;
 use feedwright::{Choices, Make, Setup};
@@ -8,7 +8,7 @@ use feedwright_lab::CONTROLLERS;
 use feedwright_sim::{Machine, Row, Run, Sink, path_steps};
 use rayon::prelude::*;
 
-/// Learns how much of what is measured it can believe.
+/// Controller that learns how much weight a measurement deserves.
 const REGULATOR: &str = "lqg-identified";
 const FEED_MM_S: f64 = 50.0;
 /// A minute at that feedrate in the suite, ten in the sweep.

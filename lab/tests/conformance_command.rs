@@ -1,11 +1,11 @@
-//! The command of the laboratory: what it takes and refuses, and what it writes.
+//! The command of the laboratory: accepted and rejected arguments, and written files.
 
 use crate::command::Folder;
 use serde_json::Value;
 
 const TNV40: &str = include_str!("../../crates/sim/machines/tnv40.toml");
 
-/// What `--json r.json` left.
+/// Returns the content of `r.json`, written by `--json r.json`.
 fn results(folder: &Folder) -> Value {
     serde_json::from_slice(&folder.read("r.json")).unwrap()
 }
@@ -191,7 +191,7 @@ fn a_correction_that_is_worse_is_told_and_not_written() {
 #[test]
 fn the_comparison_has_the_documented_rows_and_its_own_part() {
     let folder = Folder::new();
-    // Only a tool table tells how far beside its contour this program runs.
+    // This program runs beside its contour by a distance that only a tool table states.
     folder.file(
         "beside.ngc",
         "G21 G90 F600\nT1 M6\nG41 G1 X4\nG1 X8\nG1 Y8\nG40 G1 X9 Y9\nM2\n",

@@ -11,7 +11,7 @@ use feedwright_lab::{
 };
 use feedwright_sim::Machine;
 
-/// With encoder noise on the second machine.
+/// Returns options with encoder noise on the second machine.
 fn options() -> ComparisonOptions {
     let named = |name: &str| CONTROLLERS.find(name).unwrap();
     let [nominal, mut noisy] = ["tnv40", "rough"].map(|name| Machine::load(name.as_ref()).unwrap());
@@ -59,7 +59,7 @@ fn compared() -> &'static Comparison {
     &COMPARED
 }
 
-/// Those of one machine, without a log of it, which takes the longest.
+/// Returns the options of one machine, without a log of it, which takes the longest.
 fn few_options() -> ComparisonOptions {
     let mut options = options();
     options.machines.truncate(1);

@@ -1,8 +1,8 @@
-//! The default controller while what it measures is wrong.
+//! The default controller with wrong measurements.
 //!
-//! The position loops of the machine go on with the true position; only the controller sees a lost,
-//! frozen or leaping one. What is asked for: the correction leaves the loop at once and gently, it
-//! comes back, and the cut is no worse than uncorrected.
+//! The position loops of the machine continue with the true position; only the controller sees a
+//! lost, frozen or leaping one. The tests require that the correction leaves the loop at once and
+//! gently, that it comes back, and that the cut is no worse than uncorrected.
 
 use crate::sweep::part_or_whole;
 use feedwright::{BASELINE, BEST, Choices, MAX_UM, Make, Setup};
@@ -15,7 +15,8 @@ use rayon::prelude::*;
 
 /// Laps of a contour: a fault falls into the second, and the controller has the third to come back.
 const LAPS: usize = 3;
-/// Slower tools need not be watched, mm/s: what stands still cannot be told from what is frozen.
+/// Speed below which a tool is not checked, mm/s: a measurement at rest looks the same as a frozen
+/// one.
 const MOVING_MM_S: f64 = 10.0;
 /// Time in which a fade begins, and in which the correction is back after the fault, s.
 const BEGINS_S: f64 = 0.02;
@@ -36,14 +37,14 @@ const LAG_S: f64 = 0.022;
 const WATCHED: usize = 1400;
 /// Times of a fault on a contour, at most about.
 const TIMES: usize = 8;
-/// Those of the sweep. At 40 times, 5 of some 600 faults fail: while the controller comes back it
-/// asks for more than [`CAUTIOUS`] allows, on the star at 5,543 ms and on the square at 4,490 and
-/// 6,150 ms. The error stays below the uncorrected cut's.
+/// Times of a fault in the sweep. At 40 times, 5 of some 600 faults fail: while the controller
+/// comes back it requests more than [`CAUTIOUS`] allows, on the star at 5,543 ms and on the square
+/// at 4,490 and 6,150 ms. The error stays below the uncorrected cut's.
 const MANY_TIMES: usize = 10;
 /// A leap of the measured position, mm, in X.
 const LEAP_MM: f64 = 1.0;
 
-/// What the controller is told that is not true.
+/// Kind of wrong measurement that the controller gets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Fault {
     Lost,
@@ -62,7 +63,7 @@ const FAULTS: [Fault; 5] = [
 ];
 
 impl Fault {
-    /// How long it lasts, servo periods of 1 ms.
+    /// Returns the duration of the fault, servo periods of 1 ms.
     fn periods(self) -> usize {
         match self {
             Self::Lost | Self::Leap => 50,
@@ -72,7 +73,7 @@ impl Fault {
         }
     }
 
-    /// What is seen of a tool at `tool_mm` that was at `before_mm` when it began.
+    /// Returns the measurement of a tool at `tool_mm` that was at `before_mm` when the fault began.
     fn seen(self, tool_mm: [f64; 2], before_mm: [f64; 2]) -> [f64; 2] {
         match self {
             Self::Lost | Self::OneNotANumber => [f64::NAN; 2],
@@ -146,7 +147,7 @@ fn bounds(machine: &Machine) -> Bounds {
     )
 }
 
-/// At most `most` servo periods of a cut; `seen` is what the controller measures of the tool.
+/// Cuts at most `most` servo periods; `seen` returns the position that the controller measures.
 fn cut(
     machine: &Machine,
     steps: &[Step],
@@ -218,13 +219,13 @@ fn begins(machine: &Machine, steps: &[Step], times: usize) -> Vec<usize> {
     begins.into_iter().step_by(every).collect()
 }
 
-/// What came of a fault.
+/// Result of a fault.
 #[derive(Debug, Clone, Copy)]
 struct Outcome {
     at: usize,
     faded_after: Option<usize>,
     back_after: Option<usize>,
-    /// Of the offset while it fades, and from when it is back on.
+    /// Largest acceleration of the offset while it fades, and after its return.
     acceleration_mm_s2: f64,
     back_mm_s2: f64,
     largest_mm: f64,

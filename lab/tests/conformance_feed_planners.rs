@@ -9,7 +9,7 @@ use feedwright_plan::{
 };
 use feedwright_sim::Reference;
 
-/// What a bound on the speed may be exceeded by between the points at which it is taken: a
+/// Part by which a bound on the speed may be exceeded between the points at which it is taken: a
 /// thousandth of its square.
 const OVER: f64 = 1e-3;
 

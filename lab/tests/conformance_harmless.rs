@@ -7,12 +7,12 @@ use feedwright_lab::Workpiece;
 use feedwright_sim::{BUILT_IN_MACHINES, Machine, Run};
 use rayon::prelude::*;
 
-/// What a controller may leave beyond the uncorrected cut, um RMS and um at the largest: the last
+/// Largest error of a controller beyond the uncorrected cut, um RMS and um at the largest: the last
 /// digits of a report.
 const MORE_RMS_UM: f64 = 0.05;
 const MORE_MAX_UM: f64 = 1.0;
-/// The same without recorded values, as a part of what is left uncorrected: a trial may let a
-/// correction in for some tenths of a second.
+/// Largest ratio to the uncorrected error without recorded values: a trial may let a correction in
+/// for some tenths of a second.
 const UNRECORDED: f64 = 1.1;
 
 /// Feedforward of friction breaks the axes of `router` loose where they start slowly: 43 um of 21.

@@ -95,8 +95,8 @@ fn control_by_an_identified_file_leaves_hardly_any_error() {
     };
     let found = job.run(log_of(&machine, LOG_S, STEP_UM, 21), &()).unwrap();
     let identified = Machine::parse("mine.toml", &machine_text(&found, "mine")).unwrap();
-    // The regulator trusts a file whose encoder has steps of 1 um and whose residual is noise: it
-    // is careful on a machine that has neither.
+    // The regulator relies on a file that states encoder steps of 1 um and a residual of noise, so
+    // it is cautious on a machine that has neither.
     let by_identified_um = rms_um("lqg-identified", &identified, &machine, "circle");
     eprintln!("{by_identified_um:.4} um by the identified file");
     assert!(by_identified_um < MOST_UM, "{by_identified_um} um");

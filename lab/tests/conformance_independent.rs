@@ -1,5 +1,5 @@
-//! `feedwright-lab independent`: what it takes and refuses, what it writes, and that it writes the
-//! same again.
+//! `feedwright-lab independent`: accepted and rejected arguments, written files, and the same files
+//! in a second run.
 
 use crate::command::Folder;
 use serde_json::Value;
@@ -90,7 +90,8 @@ fn a_machine_is_identified_and_cut_on_and_the_result_is_the_same_again() {
             cut["uncorrected"]["rms_um"].as_f64().unwrap() > 0.0,
             "{cut}"
         );
-        // The lead error of 1.5 um is in the tool's error, and not in that of the encoders.
+        // The lead error of 1.5 um is part of the error at the tool, but not of the error by
+        // encoders.
         let of = |which: &str| cut[which]["rms_um"].as_f64().unwrap();
         assert!(
             of("uncorrected") != cut["encoders_um"][0][0].as_f64().unwrap()

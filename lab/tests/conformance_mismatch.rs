@@ -1,4 +1,4 @@
-//! `feedwright-lab mismatch`: several controllers, what it writes, and what it refuses.
+//! `feedwright-lab mismatch`: several controllers, written files, and rejected arguments.
 
 use crate::command::Folder;
 use crate::json_keys;
@@ -24,7 +24,7 @@ fn folder() -> Folder {
     folder
 }
 
-/// What `--json r.json` left, all keys of which are documented.
+/// Returns the content of `r.json`, written by `--json r.json`; all of its keys are documented.
 fn results(folder: &Folder) -> Value {
     let value = serde_json::from_slice(&folder.read("r.json")).unwrap();
     json_keys::hold("feedwright-lab mismatch", &value);

@@ -1,5 +1,5 @@
-//! The pages in a browser: no fault in the console, and what a reader does with mouse, keys and
-//! fingers has its effect.
+//! The pages in a browser: no fault in the console, and each action with mouse, keys and fingers
+//! has its effect.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ fn file(html: &str) -> (tempfile::TempDir, PathBuf) {
     (folder, path)
 }
 
-/// Whether every canvas of the page has something on it.
+/// Script that returns true if every canvas of the page has something on it.
 const ALL_PAINTED: &str = "[...document.querySelectorAll('#plots canvas, #others canvas, .path-view canvas:first-of-type')].every((canvas) => {
     const empty = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });
     return canvas.toDataURL() !== empty.toDataURL();
@@ -27,7 +27,7 @@ const ALL_PAINTED: &str = "[...document.querySelectorAll('#plots canvas, #others
 
 const WITHIN_THE_SCREEN: &str = "document.documentElement.scrollWidth <= innerWidth";
 
-/// What a canvas shows.
+/// Returns the picture on a canvas.
 fn picture(browser: &mut Browser, selector: &str) -> String {
     let drawn = browser.value(&format!(
         "document.querySelector({}).toDataURL()",
@@ -78,8 +78,8 @@ fn the_report_answers_mouse_and_keys() {
     assert_eq!(browser.faults(), [""; 0]);
 }
 
-/// How far the panel of the path reaches below the beginning of the charts under it, at any place
-/// that the page is scrolled to, px.
+/// Script that returns the largest overlap of the path panel with the charts below it, over all
+/// scroll positions, px.
 const OVERLAP: &str = "(() => {
     const box = (selector) => document.querySelector(selector).getBoundingClientRect();
     let most = -Infinity;
@@ -239,7 +239,8 @@ fn zoom(browser: &mut Browser) {
     }
 }
 
-/// Where the page has come to once it scrolls no more: it goes on for a while behind a finger.
+/// Waits until the page stops scrolling and returns its scroll position: the page scrolls on for a
+/// while behind a finger.
 fn at_rest(browser: &mut Browser) -> f64 {
     let (mut place, mut still) = (f64::NAN, 0);
     for _ in 0..MOST_FRAMES {
@@ -433,9 +434,9 @@ fn figures_have_contents_and_a_dark_side() {
     assert_eq!(browser.faults(), [""; 0]);
 }
 
-/// What gets into a page in spite of everything does not run: a script, the handler of an element,
-/// an address, a style. Each is reported as a violation of the policy. The page itself violates
-/// nothing, as the other tests see, and goes on.
+/// Checks that injected content does not run: a script, the handler of an element, an address, a
+/// style. Each is reported as a violation of the policy. The page itself violates nothing, as the
+/// other tests check, and keeps working.
 #[test]
 fn what_is_injected_into_a_page_does_not_run() {
     const INJECTED: &str = "<script>window.injected = 1</script><p id=\"handler\" onclick=\"window.injected = 2\">x</p>\

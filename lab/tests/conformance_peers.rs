@@ -1,5 +1,5 @@
-//! Every controller of the table does on the circle what it is there for: it reduces the contour
-//! error, or trades it for time.
+//! Every controller of the table does its job on the circle: it reduces the contour error, or
+//! trades it for time.
 //!
 //! A controller that does nothing cuts as the uncorrected cut does, and fails here.
 
@@ -7,11 +7,11 @@ use feedwright::{BASELINE, Choices, Entry, Make, Setting, Setup, Statistics};
 use feedwright_lab::{CONTROLLERS, Workpiece};
 use feedwright_sim::{Axis, Machine, Run, Squareness};
 
-/// What a controller makes of a contour at 50 mm/s on tnv40, against uncorrected.
+/// Bounds on the result of a controller on a contour at 50 mm/s on tnv40, against uncorrected.
 struct Held {
     name: &'static str,
     contour: &'static str,
-    /// Values of its parameters; the defaults where there are none.
+    /// Values of its parameters; an empty list means the defaults.
     set: &'static [Setting],
     /// The largest RMS contour error.
     rms: f64,
@@ -19,7 +19,7 @@ struct Held {
     time: [f64; 2],
 }
 
-/// At the planned feed: the command is the plan's.
+/// Machining time at the planned feed: the command is the plan's.
 const PLANNED: [f64; 2] = [1.0, 1.0];
 
 const fn held(name: &'static str, rms: f64, time: [f64; 2]) -> Held {
@@ -265,7 +265,8 @@ fn combined() -> Machine {
     Machine::read(&file).unwrap()
 }
 
-/// Of the RMS of feedforward with cross-coupled feedback under noise. Measured on the circle: 0.21.
+/// Largest part of the RMS of feedforward with cross-coupled feedback under noise. Measured on the
+/// circle: 0.21.
 const LIMIT_OF_FEEDBACK: f64 = 0.3;
 
 #[test]

@@ -9,8 +9,8 @@ use feedwright_sim::{Machine, Row, Run, path_steps};
 
 /// Rounding of coordinates of some ten millimetres, mm.
 const ROUNDING_MM: f64 = 1e-12;
-/// How well a nearest point is found, times what the path turns on the way: the tangent's share in
-/// the deviation, mm.
+/// Tolerance of the error along the tangent, mm: the accuracy of a nearest point times the turn of
+/// the path on the way.
 const ALONG_MM: f64 = 1e-7;
 
 fn rows<const N: usize>(machine: &Machine, steps: &[Step]) -> Vec<Row>

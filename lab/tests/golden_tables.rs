@@ -1,7 +1,7 @@
 //! The tables of the documents are what the program makes today: `just tables` regenerates them.
 //!
-//! Golden: that they have not changed says nothing on whether they are right; `conformance_paper`
-//! holds bounds from elsewhere.
+//! A golden test only shows that the tables have not changed, not that they are right;
+//! `conformance_paper` holds bounds from elsewhere.
 
 use crate::table::{Place, root};
 use feedwright_lab::{
@@ -83,7 +83,7 @@ pub(crate) fn of_kept(
     }
 }
 
-/// Whether the rows of a kept comparison are what the program makes.
+/// Checks that the program makes the rows of a kept comparison again.
 pub(crate) fn is_made_anew(kept: &Comparison, options: &ComparisonOptions) {
     let made = compare(options, &Kept::none(), &()).unwrap();
     assert!(

@@ -31,8 +31,8 @@ fn disturbed(axis: &FeedAxis) -> FeedState {
     }
 }
 
-/// What a free run under zero voltage is off by in its energy balance after a tenth of a second,
-/// part of the energy at its beginning.
+/// Returns the error in the energy balance of a free run under zero voltage after a tenth of a
+/// second, as a part of the energy at its beginning.
 fn imbalance(axis: &FeedAxis, step_s: f64) -> f64 {
     let mut state = disturbed(axis);
     let rest = FeedState {
@@ -57,8 +57,8 @@ fn imbalance(axis: &FeedAxis, step_s: f64) -> f64 {
 
 #[test]
 fn what_an_unforced_axis_loses_is_what_friction_damping_and_winding_take() {
-    // Of second order: what is left at 31 us falls to a quarter with half of the step, but for the
-    // corner of LuGre's law at rest.
+    // The integration is of second order: the error at 31 us falls to a quarter with half of the
+    // step, except for the corner of LuGre friction at rest.
     for name in INDEPENDENT_MACHINES {
         let (coarse, fine) = (
             imbalance(&axis(name), STEP_S),

@@ -2,9 +2,9 @@
 //! from the machine file and the cmd columns, to 1 nm, whatever controller made the command and
 //! whatever the machine has on top of a rigid axis.
 //!
-//! The script: `oracle_scripts/resimulate.py`, written from the laws. With a finer step it also
-//! measures what the program's integration adds to them, against the closed form of that error;
-//! both limits are derived in the script.
+//! The script is `oracle_scripts/resimulate.py`, written from the equations of the plant. With a
+//! finer step it also measures the error that the program's integration adds to them, against the
+//! closed form of that error; both limits are derived in the script.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -19,13 +19,13 @@ use feedwright_lab::CONTROLLERS;
 /// passes of a level.
 const POCKET_LINES: usize = 30;
 
-/// At the same step, and at a quarter of it, which leaves three quarters of what the integration
-/// adds.
+/// Refinements of the step: the same step, and a quarter of it, which leaves three quarters of the
+/// error that the integration adds.
 const BOTH: &[u32] = &[1, 4];
 
-/// What no machine of the project has: the scale on the table, with backlash inside the position
-/// loop, and with all the steps; delays that are no whole number of servo periods; a screw without
-/// damping.
+/// Machine file with features that no machine of the project has: the scale on the table, with
+/// backlash inside the position loop, and with all the steps; delays that are no whole number of
+/// servo periods; a screw without damping.
 const ODD: &str = "
 base = 'tnv40'
 name = 'odd'
@@ -82,7 +82,8 @@ fn finer(entry: &Entry) -> &'static [u32] {
     }
 }
 
-/// What the script says of a trace, its mechanics stepped `finer` times as often.
+/// Runs the script on a trace, its mechanics stepped `finer` times as often, and returns its
+/// output.
 fn resimulated(python: &str, machine: &Path, trace: &Path, finer: u32) -> Output {
     let script = root().join("crates/feedwright/tests/oracle_scripts/resimulate.py");
     Command::new(python)
@@ -178,8 +179,9 @@ fn so_they_do_with_every_controller() {
     );
 }
 
-/// With backlash a finer step has the flanks strike at other times, and what a quick command makes
-/// of that the closed form does not know: by the same step it is the same to the last digit.
+/// Returns the refinements for a machine and a controller. With backlash, a finer step moves the
+/// times at which the flanks strike, and the closed form does not cover the response to a quick
+/// command. With the same step, the results agree to the last digit.
 fn steps(machine: &str, entry: &Entry) -> &'static [u32] {
     if machine == "soft" && entry.name == BEST {
         &[1]
@@ -222,9 +224,9 @@ fn so_they_do_with_backlash_encoder_steps_delay_and_torque_steps() {
     }
 }
 
-/// Without the controllers that chatter: with backlash inside the position loop the flanks then
-/// strike each other all the time, each blow amplifies the last bits of the one before, and what is
-/// left after a square of it is 3 nm.
+/// Checks the machine without the controllers that chatter: with backlash inside the position loop
+/// the flanks then strike each other all the time, each blow amplifies the last bits of the one
+/// before, and an error of 3 nm remains after a square.
 #[test]
 fn so_they_do_on_a_machine_that_the_project_does_not_have() {
     let Some(python) = python() else { return };

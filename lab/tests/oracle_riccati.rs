@@ -11,9 +11,9 @@ use feedwright_lab::{Accelerations, END_WEIGHT, HorizonProblem, HorizonSettings}
 use material::{Material, difference};
 use riccati::{AGREEMENT, apart_from_gauss_newton};
 
-/// What J, here some 0.4 mm^2, may be above its minimum, mm^2: a tenth of a micrometre in one knot.
-/// Where the solver does not come to its own tolerance within its iterations, it is beyond it by a
-/// little; one iteration more would be enough here.
+/// Largest excess of J, here some 0.4 mm^2, over its minimum, mm^2: a tenth of a micrometre in one
+/// knot. Where the solver does not reach its own tolerance within its iterations, it exceeds it by
+/// a little; one iteration more would be enough here.
 const NEAR_ENOUGH_MM2: f64 = 6e-9;
 
 /// J of the problem linearised about the plan of the tick before, term by term as it is written,
@@ -103,7 +103,7 @@ fn nothing_beside_the_solution_costs_less() {
 /// differences are exact.
 struct KnotSource {
     curvature: Vec<Vec<f64>>,
-    /// At the plan.
+    /// Slopes at the plan.
     slopes: Vec<f64>,
 }
 

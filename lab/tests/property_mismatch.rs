@@ -1,5 +1,5 @@
-//! By a model of one machine, on machines that differ from it: the default controller learns the
-//! difference while it cuts.
+//! The default controller with a model of one machine, on machines that differ from it: it learns
+//! the difference while it cuts.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -10,10 +10,10 @@ use feedwright_lab::mismatch::{Variants, variants};
 use feedwright_lab::{CONTROLLERS, Cutter, Length, SweepOptions, SweepProgram};
 use feedwright_sim::Machine;
 
-/// What may be left of the uncorrected RMS error, beside what the exact model leaves: the first
-/// tenth of a second of motion.
+/// Largest part of the uncorrected RMS error that may remain, in addition to the error with the
+/// exact model: the first tenth of a second of motion.
 const LEFT: f64 = 0.2;
-/// Of half of the cuts.
+/// The same for half of the cuts.
 const LEFT_OF_HALF: f64 = 0.02;
 
 #[test]

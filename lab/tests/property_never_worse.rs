@@ -142,7 +142,7 @@ fn holes() -> &'static str {
     "G21 G90 F254\nG0 X0 Y0 Z25.4\nG99 G81 X0 Y25.4 Z-10 R25.4\nY50.8\nY101.6\nY152.4\nX25.4\nX76.2\nX152.4\nM2\n"
 }
 
-/// What a program comes to on a machine.
+/// Cuts a program on a machine and returns the row.
 fn judged(name: &str, text: &str, variant: &Variant) -> SweepRow {
     let machine = Arc::new(variant.machine().unwrap());
     let length = Length {

@@ -138,8 +138,8 @@ fn check_nearest(curve: &Curve, random: &mut Random, away_mm: f64) {
     );
 }
 
-/// At an inner nearest point the offset is normal to the curve: this, not the distance, shows
-/// errors of arc length.
+/// Checks that the offset at an inner nearest point is normal to the curve: this, not the distance,
+/// shows errors of arc length.
 fn check_foot(curve: &Curve, random: &mut Random, away_mm: f64) {
     let length = curve.length_mm();
     let s = random.between(0.3 * length, 0.7 * length);

@@ -1,5 +1,5 @@
-//! What holds of a time-optimal plan whatever the program: limits of axes, feedrate, tolerance both
-//! ways, continuity, rests.
+//! Properties of every time-optimal plan: limits of axes, feedrate, tolerance both ways,
+//! continuity, rests.
 
 use crate::programs::{BLEND, LIMITS, Random, arc, distance, line, polyline};
 use crate::sweep::part_or_whole;
@@ -18,10 +18,10 @@ const AXIS: AxisLimits = AxisLimits {
 };
 const TOLERANCE_MM: f64 = 0.01;
 
-/// What a limit may be exceeded by: rounding of states that were scaled and rolled out.
+/// Part by which a limit may be exceeded: rounding of states that were scaled and rolled out.
 const OVER: f64 = 1e-6;
 
-/// What the tolerance may be exceeded by at a moment that the planner did not look at, mm.
+/// Excess over the tolerance at a moment that the planner did not check, mm.
 const OVER_MM: f64 = 1e-4;
 
 fn constraints() -> Constraints {
@@ -404,7 +404,7 @@ fn how_calls_are_spread_changes_nothing() {
 /// Largest part by which a plan may take longer with more tolerance or looser limits.
 const SLOWER: f64 = 1e-3;
 
-/// And by which none may.
+/// Part by which no plan may take longer.
 const MUCH_SLOWER: f64 = 2e-2;
 
 /// Lines and arcs from a nanometre to decimeters, spikes, chains of short blocks, feed changes.
@@ -468,7 +468,8 @@ fn nasty(seed: u64) -> Vec<Canon> {
     canon
 }
 
-/// By what part the plan of a program takes longer with more tolerance, or with looser limits.
+/// Returns the parts by which the plan of a program takes longer with more tolerance, or with
+/// looser limits.
 fn slower(seed: u64) -> Vec<(f64, String)> {
     let canon = nasty(seed);
     let takes_s = |tolerance_mm: f64, axes: &[AxisLimits]| {

@@ -14,7 +14,8 @@ use rayon::prelude::*;
 
 /// Machines in the suite and in the sweep.
 const MACHINES: [u64; 2] = [6, 10];
-/// Where the uncorrected cut itself rings by more than this, the machine is broken, um.
+/// Largest error of the uncorrected cut above which the machine counts as broken, um: the cut
+/// itself rings.
 const BROKEN_UM: f64 = 400.0;
 /// Largest ratio to the uncorrected RMS: a measured value, rounded up.
 const WORST_RATIO: f64 = 1.05;
@@ -55,7 +56,7 @@ fn unseen(seed: u64) -> Machine {
     machine
 }
 
-/// A controller that knows the law of a machine.
+/// Makes a controller with the model of a machine.
 fn controller(name: &str, machine: &Machine) -> Box<dyn Controller<2>> {
     let choices = Choices::default();
     Make::<2>::make(
@@ -83,9 +84,9 @@ fn cut(
     (run, statistics)
 }
 
-/// Delays that the law does not know of, s, and the part of the uncorrected RMS that is left at the
-/// most: 0.59 and 0.95 were measured, on the square, and 0.08 and 0.22 on circle and eight. By 2 ms
-/// the law counts as wrong at corners, and is not followed from there on.
+/// Delays that the model does not contain, s, and the largest part of the uncorrected RMS that may
+/// remain: 0.59 and 0.95 were measured, on the square, and 0.08 and 0.22 on circle and eight. At 2
+/// ms the model counts as wrong at corners, and is not used from there on.
 const LEFT_BY_LATE: [(f64, f64); 2] = [(0.001, 0.65), (0.002, 1.0)];
 
 #[test]
@@ -196,8 +197,9 @@ fn torque_of_plan_nm(axis: &Axis, limits: &Limits) -> f64 {
     axis.inertia_kg_m2 * accel_mm_s2 * rad_per_mm + friction_nm + axis.disturbance_nm
 }
 
-/// By a model with another limit the default is out of the loop behind the first corner of the
-/// square, and 150 um off there: a known miss.
+/// Checks a drive whose torque limit the model knows. With a model of another limit, the default
+/// controller is out of the loop after the first corner of the square, and 150 um off there: a
+/// known miss.
 #[test]
 fn a_drive_that_is_just_strong_enough_for_the_plan_is_strong_enough() {
     let mut machine = tnv40();

@@ -1,4 +1,4 @@
-//! What went wrong once, as small as it could be made.
+//! Faults that once occurred, as small as they could be made.
 
 use feedwright::{BEST, Choices, Make, Setup, Statistics};
 use feedwright_gcode::canon::Canon;
@@ -136,8 +136,9 @@ fn a_feed_beyond_all_numbers_is_still_a_number() {
     }
 }
 
-/// Where the plan came to rest, a command a thousandth of a millimetre off was taken back to a
-/// point of the path 1.7 mm behind. Along the path a command may be ahead or behind.
+/// Checks a former fault: where the plan came to rest, a command a thousandth of a millimetre off
+/// was taken back to a point of the path 1.7 mm behind. Along the path a command may be ahead or
+/// behind.
 #[test]
 fn without_any_deviation_the_command_stays_where_the_path_is() {
     let mut machine = Machine::load("tnv40".as_ref()).unwrap();

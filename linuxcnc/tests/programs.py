@@ -43,7 +43,7 @@ def segments(mode, count=500):
 
 
 def spline(mode):
-    """Cubic splines that meet smoothly, as LinuxCNC reads G5, behind a rapid in which the law of the axes proves itself."""
+    """Cubic splines that meet smoothly, as LinuxCNC reads G5, behind a rapid in which the model of the axes is checked."""
     return (f"G21 G17 G90 G94 {mode}\nG0 X-5 Y-5\nG0 X0 Y0\nG4 P0.3\nF3000\nG5 I10 J15 P-10 Q15 X40 Y0\nG5 I10 J-15 P-10 Q-15 X80 Y0\n"
             "G5 I10 J15 P0 Q15 X100 Y-20\nG4 P0.2\nM2\n")
 

@@ -4,9 +4,9 @@
 //! Lee, Cho and Jeon (2005) call it a hyperbolic tangent; the factor 1/4 in their eqs 9 and 10
 //! shows which one: each layer contributes f'(x) = (1 - f(x)^2) / 2.
 //!
-//! Written so that a compiler vectorises it over an array: no branch, no table, no call.
+//! The code has no branch, no table and no call, so that a compiler vectorizes it over an array.
 
-/// Beyond this the result is 1 to the last bit, and e^-x stays a normal number.
+/// Argument beyond which the result is 1 to the last bit; e^-x stays a normal number.
 const SATURATED: f64 = 40.0;
 /// ln 2 in two parts, so that `x - n ln 2` is exact for |n| < 2^20 (Cody and Waite 1980).
 const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
@@ -31,7 +31,7 @@ const EXP_SERIES: [f64; 13] = [
     1.0,
 ];
 
-/// f(x) = tanh(x / 2) of every element, to 1e-15 absolute. Not a number stays not a number.
+/// f(x) = tanh(x / 2) of every element, to 1e-15 absolute. NaN stays NaN.
 #[inline]
 pub(crate) fn bipolar_sigmoid<const M: usize>(x: [f64; M]) -> [f64; M] {
     let mut f = [0.0; M];
@@ -54,7 +54,7 @@ pub(crate) fn tanh<const M: usize>(x: [f64; M]) -> [f64; M] {
     bipolar_sigmoid(x.map(|x| 2.0 * x))
 }
 
-/// e^x of -40 to 40, to the last bits; what is far beyond is wrong.
+/// Returns e^x for -40 to 40, to the last bits. The result is wrong far beyond this range.
 #[inline]
 pub(crate) fn exp(x: f64) -> f64 {
     let shifted = x * core::f64::consts::LOG2_E + ROUND_TO_EXPONENT;

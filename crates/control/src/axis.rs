@@ -1,4 +1,4 @@
-//! The law of a servo axis: position loop, speed loop with saturation, inertia and friction.
+//! Model of a servo axis: position loop, speed loop with saturation, inertia and friction.
 //!
 //! ```text
 //! w_ref = Kp e + Kd (e - e_prev) / Ts            PD position loop, once a servo period Ts
@@ -6,26 +6,26 @@
 //! J dw/dt = u - B w - Fc tanh(w / w_s) - load
 //! ```
 //!
-//! at the motor shaft, integrated by semi-implicit Euler: w first, then the angle with the new w.
-//! What simulates a machine, what predicts one and what inverts one use these lines and no others.
+//! All quantities are at the motor shaft. Semi-implicit Euler integrates them: w first, then the
+//! angle with the new w. The simulated machine, the prediction and the inverse all use this code.
 //!
-//! | File | What a machine may have beside it |
+//! | File | Optional parts of a machine |
 //! |---|---|
 //! | `axis/drive.rs` | integral of the speed loop, feedforward, speed limit, torque filter |
-//! | `axis/friction.rs` | asymmetry, Stribeck's curve, presliding |
+//! | `axis/friction.rs` | asymmetry, Stribeck curve, presliding |
 //! | `axis/transmission.rs` | motor and table as two masses: stiffness, damping, backlash of the ball screw |
 //! | `axis/delays.rs` | delays of commands, references and positions |
 //!
-//! `axis/mechanics.rs` steps motor, table and friction under given torques, `axis/inverse.rs`
-//! solves the law for the command, all of this included.
+//! `axis/mechanics.rs` steps motor, table and friction under given torques. `axis/inverse.rs`
+//! solves the complete model for the command.
 //!
-//! Symbols: e error of the position at the motor, rad; w speed of the motor, rad/s; u torque, N m;
-//! Kp, Kd gains of the position loop, 1/s and none; Kv gain of the speed loop, N m s/rad; J
-//! inertia, kg m^2; B viscous friction, N m s/rad; Fc Coulomb friction, N m, which turns its sign
+//! Symbols: e position error at the motor, rad; w speed of the motor, rad/s; u torque, N m; Kp, Kd
+//! gains of the position loop, 1/s and dimensionless; Kv gain of the speed loop, N m s/rad; J
+//! inertia, kg m^2; B viscous friction, N m s/rad; Fc Coulomb friction, N m, which changes sign
 //! over w_s, rad/s.
 //!
-//! Source: Lee, Cho and Jeon (2005), section 4, Table 1 and Fig. 6, which name the parts; the laws
-//! are written out as usual for such a loop.
+//! Source: Lee, Cho and Jeon (2005), section 4, Table 1 and Fig. 6, which name the parts. The
+//! equations have the usual form for such a loop.
 
 pub(crate) mod drive;
 pub(crate) mod friction;
@@ -45,7 +45,7 @@ pub struct Parameters {
     pub rad_per_mm: f64,
     /// Proportional gain of the position loop, 1/s.
     pub kp_1_s: f64,
-    /// Its derivative gain, dimensionless.
+    /// Derivative gain of the position loop, dimensionless.
     pub kd: f64,
     /// Gain of the speed loop, N m s/rad.
     pub kv_nm_s_per_rad: f64,
@@ -57,45 +57,45 @@ pub struct Parameters {
     pub viscous_friction_nm_s: f64,
     /// Coulomb friction, N m.
     pub coulomb_friction_nm: f64,
-    /// Speed over which it turns its sign, rad/s.
+    /// Speed over which the Coulomb friction changes sign, rad/s.
     pub coulomb_smoothing_rad_s: f64,
 }
 
 /// Periods of the loops.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Periods {
-    /// Of the position loop, s.
+    /// Period of the position loop, s.
     pub servo_s: f64,
-    /// Of the speed loop and of the integration of the mechanics, s.
+    /// Period of the speed loop and of the integration of the mechanics, s.
     pub mechanics_s: f64,
     /// Mechanics periods in a servo period.
     pub mechanics_per_servo: u32,
 }
 
-/// Where the motor of an axis is and how fast, and the error that its position loop saw last.
+/// Angle and speed of the motor of an axis, and the last error that its position loop received.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AxisState {
     /// Angle of the motor, rad.
     pub angle_rad: f64,
-    /// Its speed, rad/s.
+    /// Speed of the motor, rad/s.
     pub speed_rad_s: f64,
-    /// Error of the position at the last servo period, rad.
+    /// Position error at the last servo period, rad.
     pub error_rad: f64,
 }
 
 /// An axis, ready to be integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisLaw {
-    /// Its parameters.
+    /// Parameters of the axis.
     pub parameters: Parameters,
-    /// Periods of its loops.
+    /// Periods of the loops.
     pub periods: Periods,
     inverse_inertia: f64,
     inverse_smoothing_s: f64,
 }
 
 impl AxisLaw {
-    /// With these parameters and periods.
+    /// Creates an axis with these parameters and periods.
     pub fn new(parameters: Parameters, periods: Periods) -> Self {
         Self {
             parameters,
@@ -105,9 +105,8 @@ impl AxisLaw {
         }
     }
 
-    /// The PD position loop takes in an error of the position, rad; the speed that it asks for,
-    /// rad/s. It is linear: what it makes of a derivative of the error is the derivative of that
-    /// speed.
+    /// Passes a position error, rad, to the PD position loop. Returns the reference speed, rad/s.
+    /// The loop is linear: from the derivative of the error it makes the derivative of that speed.
     #[inline]
     pub fn position_loop(&self, error_rad: f64, state: &mut AxisState) -> f64 {
         let rate_rad_s = (error_rad - state.error_rad) / self.periods.servo_s;
@@ -115,32 +114,32 @@ impl AxisLaw {
         self.parameters.kp_1_s * error_rad + self.parameters.kd * rate_rad_s
     }
 
-    /// The torque of the speed loop, N m. Not a number stays none.
+    /// Returns the torque of the speed loop, N m. NaN stays NaN.
     #[inline]
     pub fn torque_nm(&self, reference_rad_s: f64, speed_rad_s: f64) -> f64 {
         let wanted = self.parameters.kv_nm_s_per_rad * (reference_rad_s - speed_rad_s);
         within(wanted, self.parameters.torque_limit_nm)
     }
 
-    /// Friction torque at a speed at which the Coulomb part has so much of its full size and this
-    /// sign (`signs`), N m.
+    /// Returns the friction torque at a speed, N m. `sign` is the factor of the Coulomb friction,
+    /// -1 to 1, from `friction_signs`.
     #[inline]
     pub fn friction_nm(&self, speed_rad_s: f64, sign: f64) -> f64 {
         self.parameters.viscous_friction_nm_s * speed_rad_s
             + self.parameters.coulomb_friction_nm * sign
     }
 
-    /// One mechanics period under a torque, N m.
+    /// Integrates one mechanics period under a torque, N m.
     #[inline]
     pub fn accelerate(&self, torque_nm: f64, state: &mut AxisState) {
         state.speed_rad_s += self.periods.mechanics_s * self.inverse_inertia * torque_nm;
         state.angle_rad += self.periods.mechanics_s * state.speed_rad_s;
     }
 
-    /// Derivatives of the torque left for the inertia, N m s/rad: with respect to the reference
-    /// speed, and, with the sign reversed, with respect to the speed. `torque_nm` is the torque of
-    /// the speed loop; at the torque limit its gain counts as 0. `sign` is the factor of the
-    /// Coulomb friction from `friction_signs`.
+    /// Returns the derivatives of the torque left for the inertia, N m s/rad: with respect to the
+    /// reference speed, and, with the sign reversed, with respect to the speed. `torque_nm` is the
+    /// torque of the speed loop; at the torque limit its gain counts as 0. `sign` is the factor of
+    /// the Coulomb friction from `friction_signs`.
     #[inline]
     pub fn slopes_nm_s(&self, torque_nm: f64, sign: f64) -> [f64; 2] {
         let Parameters {
@@ -160,7 +159,7 @@ impl AxisLaw {
     }
 }
 
-/// The value, or the end of -most to most that it is beyond. Not a number stays none.
+/// Limits a value to -most..most. NaN stays NaN.
 #[inline]
 fn within(value: f64, most: f64) -> f64 {
     if value > most {
@@ -172,7 +171,7 @@ fn within(value: f64, most: f64) -> f64 {
     }
 }
 
-/// tanh(w / w_s) of each axis: all at once, which is faster.
+/// Returns tanh(w / w_s) of each axis. One call for all axes is faster.
 #[inline]
 pub fn friction_signs<const N: usize>(axes: &[AxisLaw; N], speeds_rad_s: [f64; N]) -> [f64; N] {
     tanh(core::array::from_fn::<_, N, _>(|i| {

@@ -1,4 +1,4 @@
-//! What a controller is given of the machine, and what it asks for.
+//! Input and output of a controller.
 //!
 //! The command of a feed period is the path, run at `rate` times the planned feed, plus an offset
 //! that moves to `offset_mm`:
@@ -14,37 +14,39 @@ use crate::contour_error::ContourError;
 use crate::vector::{add_scaled, scale, sub};
 use crate::window::Window;
 
-/// What is known of the machine at the start of a feed period.
+/// Measured state of the machine at the start of a feed period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measured<const N: usize> {
-    /// Where the tool is, mm.
+    /// Position of the tool, mm.
     pub position_mm: [f64; N],
     /// Its contour error against the programmed path.
     pub contour: ContourError<N>,
 }
 
-/// What to do in the next feed period. Within it the offset goes from where it is to its end along
+/// Command for the next feed period. Within the period the offset moves from its start to its end
+/// along
 ///
 /// ```text
 /// o(s) = o(0) + s (o(1) - o(0)) - s (1 - s) bend      s = 0 .. 1
 /// ```
 ///
-/// a line where the bend is zero; with `bend = T^2 a / 2` it has the acceleration a throughout.
+/// This is a line where the bend is zero. With `bend = T^2 a / 2` the offset has the acceleration a
+/// throughout.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Command<const N: usize> {
     /// Speed along the path as a multiple of the planned feedrate; 1 leaves the plan as it is.
     pub rate: f64,
     /// Offset of the command from the path at the end of the feed period, mm.
     pub offset_mm: [f64; N],
-    /// How far the way of the offset is bent, mm.
+    /// Deviation of the offset's motion from a straight line, mm.
     pub bend_mm: [f64; N],
 }
 
 impl<const N: usize> Command<N> {
-    /// The path at the planned feed.
+    /// Follows the path at the planned feedrate without an offset.
     pub const AS_PLANNED: Self = Self::straight(1.0, [0.0; N]);
 
-    /// An offset that moves along a line.
+    /// Creates a command whose offset moves along a line.
     pub const fn straight(rate: f64, offset_mm: [f64; N]) -> Self {
         Self {
             rate,
@@ -53,7 +55,8 @@ impl<const N: usize> Command<N> {
         }
     }
 
-    /// An offset that accelerates by so much, from the place that it has and this speed.
+    /// Creates a command whose offset accelerates by `acceleration_mm_s2` from its present place
+    /// and `speed_mm_s`.
     #[inline]
     pub fn accelerated(
         window: &Window<'_, N>,
@@ -70,14 +73,15 @@ impl<const N: usize> Command<N> {
         }
     }
 
-    /// Offset after a part of the feed period, which begins at `from_mm`.
+    /// Returns the offset after a part of the feed period, which begins at `from_mm`.
     #[inline]
     pub fn offset_after_mm(&self, part: f64, from_mm: [f64; N]) -> [f64; N] {
         let line = add_scaled(from_mm, part, sub(self.offset_mm, from_mm));
         add_scaled(line, -part * (1.0 - part), self.bend_mm)
     }
 
-    /// Speed of the offset at the end of a feed period of `period_s`, which begins at `from_mm`.
+    /// Returns the speed of the offset at the end of a feed period of `period_s`, which begins at
+    /// `from_mm`.
     #[inline]
     pub fn offset_mm_s(&self, from_mm: [f64; N], period_s: f64) -> [f64; N] {
         scale(
@@ -87,11 +91,11 @@ impl<const N: usize> Command<N> {
     }
 }
 
-/// What was found, and from where on it is a fault, mm.
+/// Measured error that caused a fault, and the limit that it exceeded, mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FaultEvidence {
-    /// What was found.
+    /// Measured error, mm.
     pub found_mm: f64,
-    /// What it may be.
+    /// Largest permitted error, mm.
     pub limit_mm: f64,
 }

@@ -15,49 +15,49 @@
 //! goes through the corner; in space the error is a vector, and eq. 1 is its component along the
 //! left normal in the plane.
 //!
-//! The window of variable size: the search starts at the age where it ended last time and looks as
-//! far to both sides as the tool can be, given how far it was off and how fast the reference moves.
+//! The window has a variable size: the search starts at the age where it ended last time and covers
+//! both sides as far as the tool can be, given its last distance and the speed of the reference.
 //! [`MAX_ENTRIES`] bounds it.
 
 use crate::vector::{add_scaled, bounded, dot, norm, reject, scale, sub};
 use crate::window::{CORNER_COSINE, Knot, Window, corner};
 
-/// Entries looked at on either side of the start, at the least: covers a feed period in which the
+/// Least number of entries searched on either side of the start: covers a feed period in which the
 /// lag changes.
 const MIN_REACH: i32 = 12;
-/// Entries looked at on either side, at the most.
+/// Largest number of entries searched on either side.
 const MAX_REACH: i32 = 48;
-/// The most register entries that one estimate looks at.
+/// Largest number of register entries that one estimate searches.
 pub const MAX_ENTRIES: usize = 2 * MAX_REACH as usize + 1;
-/// The window reaches this many times the last distance to both sides: the nearest point beyond a
-/// right-angled corner is no further along the path than 2.4 times the distance.
+/// Half width of the window in last distances: the nearest point beyond a right-angled corner is at
+/// most 2.4 times the distance farther along the path.
 const REACH_OF_ERROR: f64 = 3.0;
-/// Entries that [`locate`] looks at on either side, at the least: between standstill and full
+/// Least number of entries that [`locate`] searches on either side: between standstill and full
 /// acceleration the lag of a servo of 20 ms changes by a third.
 const MIN_LOCATE_REACH: i32 = 8;
-/// A tool that stands becomes older by the knots of a feed period, rounded, and by as much as it
-/// trembles; entries.
+/// Entries by which the index of a standing tool can move back beyond the knots of a feed period:
+/// rounding and trembling of the tool.
 const STANDING: i32 = 2;
-/// Where the path runs back along itself, an old stretch is as near as the one that the tool is on,
-/// and following it leads out of the register: of feet whose distances differ by less than this,
-/// the newer counts, mm.
+/// Difference of distances below which the newer of two nearest points counts, mm. Where the path
+/// runs back along itself, an old stretch is as near as the present one, and following it leads out
+/// of the register.
 const AS_NEAR_MM: f64 = 1e-4;
 
-/// The nearest point of the path, as known from the register.
+/// Nearest point of the path, as known from the register.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContourError<const N: usize> {
-    /// From the tool to the nearest point of the path (desired minus actual), mm.
+    /// Vector from the tool to the nearest point of the path (desired minus actual), mm.
     pub vector_mm: [f64; N],
     /// Unit direction of travel at the nearest point.
     pub tangent: [f64; N],
     /// Index of the nearest knot, as in [`Window::knot`].
     pub index: i32,
-    /// Entries of the window looked at.
+    /// Number of entries searched.
     pub entries: usize,
 }
 
 impl<const N: usize> ContourError<N> {
-    /// No error, nothing known.
+    /// Zero error before the first estimate.
     pub const NONE: Self = Self {
         vector_mm: [0.0; N],
         tangent: [0.0; N],
@@ -65,25 +65,25 @@ impl<const N: usize> ContourError<N> {
         entries: 0,
     };
 
-    /// Eq. 1 in its own sign: positive where the path lies to the left of the tool, in the plane of
-    /// the first two axes; mm.
+    /// Returns the error of eq. 1 with its sign: positive where the path lies to the left of the
+    /// tool, in the plane of the first two axes; mm.
     pub fn signed_mm(&self) -> f64 {
         self.tangent[0] * self.vector_mm[1] - self.tangent[1] * self.vector_mm[0]
     }
 }
 
-/// The estimator: remembers where among the knots the tool was.
+/// Estimator of the contour error. Remembers the index of the knot nearest the tool.
 #[derive(Debug, Clone, Default)]
 pub struct Estimator {
     index: i32,
     distance_mm: f64,
     spacing_mm: f64,
-    /// Whether the tool seemed to move back along the path.
+    /// True where the tool seemed to move back along the path.
     backwards: bool,
 }
 
 impl Estimator {
-    /// The contour error of a tool at `tool_mm`.
+    /// Returns the contour error of a tool at `tool_mm`.
     #[inline]
     pub fn estimate<const N: usize>(
         &mut self,
@@ -95,14 +95,14 @@ impl Estimator {
             .min(last)
             .max(first);
         let reach = self.reach();
-        // On towards the current knot in any case: a tool that lags turns short of a point where
-        // the path turns back, and goes on from there on a newer stretch, which need not begin near
-        // the old one.
+        // The search always extends toward the current knot: a tool that lags turns short of a
+        // point where the path turns back, and continues from there on a newer stretch, which need
+        // not begin near the old one.
         let to = (start + reach).max((start + MAX_REACH).min(0)).min(last);
         let error = nearest(window, tool_mm, (start - reach).max(first), to);
-        // No tool moves back along its path: where it seems to, an older stretch beside the one
-        // that is cut was found, and following that would lead out of the register. The next search
-        // begins at the current knot again.
+        // A tool never moves back along its path. Where it seems to, the search found an older
+        // stretch beside the present one, and following that would lead out of the register. The
+        // next search begins at the current knot again.
         let pushed = (window.feed_period_s / window.servo_s()) as i32;
         self.backwards = error.index < self.index - pushed - STANDING;
         self.index = error.index;
@@ -120,21 +120,22 @@ impl Estimator {
         *self = Self::default();
     }
 
-    /// Entries to look at on either side of the last.
+    /// Returns the number of entries to search on either side of the last index.
     fn reach(&self) -> i32 {
         if self.spacing_mm <= 0.0 {
             return MAX_REACH;
         }
-        // A float that is too large, or not a number, saturates here.
+        // The cast saturates where the float is too large or NaN.
         MIN_REACH
             + ((REACH_OF_ERROR * self.distance_mm / self.spacing_mm) as i32)
                 .min(MAX_REACH - MIN_REACH)
     }
 }
 
-/// The contour error of a predicted tool whose nearest knot is near the index `near`: the nearest
-/// point within `reach` entries, 8 to 48. It does not look further, so that beside a corner a tool
-/// belongs to the side that its time belongs to, and not to the one that happens to be nearer.
+/// Returns the contour error of a predicted tool whose nearest knot is near the index `near`: the
+/// nearest point within `reach` entries, 8 to 48. The search stays within that reach, so that
+/// beside a corner the time of the tool decides on which side of the corner it is, not the
+/// distance.
 #[inline]
 pub fn locate<const N: usize>(
     window: &Window<'_, N>,
@@ -158,8 +159,8 @@ pub fn locate<const N: usize>(
     }
 }
 
-/// A vector across the path, carried along it from one tangent to another by the smallest rotation
-/// between them. Behind a corner only what lies across the new stretch is left.
+/// Carries a vector across the path along it from one tangent to another by the smallest rotation
+/// between them. After a corner only the part across the new stretch remains.
 pub fn carried<const N: usize>(across: [f64; N], from: [f64; N], to: [f64; N]) -> [f64; N] {
     let cosine = dot(from, to);
     if cosine < CORNER_COSINE {
@@ -172,8 +173,8 @@ pub fn carried<const N: usize>(across: [f64; N], from: [f64; N], to: [f64; N]) -
     )
 }
 
-/// The nearest point of the path near the knots of a range, which is widened while the nearest
-/// stands at an end of it. Of two points as near, the newer.
+/// Returns the nearest point of the path near the knots of a range. Widens the range while the
+/// nearest knot is at an end of it. Of two equally near points it returns the newer.
 #[inline]
 fn nearest<const N: usize>(
     window: &Window<'_, N>,
@@ -189,7 +190,7 @@ fn nearest<const N: usize>(
     };
     let newest = at(minima.newest);
     // The nearer knot need not have the nearer foot: where the path turns back, both stretches are
-    // looked at.
+    // examined.
     let older = minima.older.map_or(newest, at);
     if norm(newest.vector_mm) <= norm(older.vector_mm) + AS_NEAR_MM {
         newest
@@ -198,13 +199,13 @@ fn nearest<const N: usize>(
     }
 }
 
-/// Knots at which the distance of the tool has a minimum.
+/// Knots at which the distance to the tool has a minimum.
 struct Minima {
-    /// The newest.
+    /// Newest minimum.
     newest: i32,
-    /// The least of those behind it.
+    /// Nearest of the older minima.
     older: Option<i32>,
-    /// Entries looked at.
+    /// Number of entries searched.
     entries: usize,
 }
 
@@ -256,7 +257,7 @@ fn minima<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], from: i32, 
     }
 }
 
-/// The nearest point on the stretches before and after the knot of this index.
+/// Returns the nearest point on the stretches before and after the knot of this index.
 fn nearest_foot<const N: usize>(
     window: &Window<'_, N>,
     tool_mm: [f64; N],
@@ -278,8 +279,8 @@ fn nearest_foot<const N: usize>(
     best
 }
 
-/// The nearest points on the path between two knots: the chord, or where there is a corner the two
-/// sides of it.
+/// Returns the nearest points on the path between two knots: on the chord, or at a corner on its
+/// two sides.
 fn feet_between<const N: usize>(
     from: &Knot<N>,
     to: &Knot<N>,
@@ -303,7 +304,7 @@ fn feet_between<const N: usize>(
     [foot_on(p, q, direction, tool_mm); 2]
 }
 
-/// The nearest point on the stretch from `p` to `q`, which runs along the unit vector `direction`.
+/// Returns the nearest point on the stretch from `p` to `q` along the unit vector `direction`.
 fn foot_on<const N: usize>(
     p: [f64; N],
     q: [f64; N],
@@ -477,8 +478,8 @@ mod tests {
                 [0.0, 0.0, 3.0]
             )) < 1e-15
         );
-        // Behind a right-angled corner nothing is left, behind a point where the path runs back
-        // everything.
+        // After a right-angled corner nothing remains; where the path runs back, everything
+        // remains.
         assert_eq!(carried([0.0, 2.0], [1.0, 0.0], [0.0, 1.0]), [0.0, 0.0]);
         assert_eq!(carried([0.0, 2.0], [1.0, 0.0], [-1.0, 0.0]), [0.0, 2.0]);
     }

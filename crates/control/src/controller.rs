@@ -1,5 +1,5 @@
-//! The family of controllers: each decides, once a feed period, how fast to go on along the path
-//! and how far beside it.
+//! The family of controllers. Once a feed period, each decides the feedrate along the path and the
+//! offset from it.
 //!
 //! To add a controller: one file here and one row in the table of the library.
 
@@ -15,7 +15,7 @@ use crate::axis::knowledge::AxisKnowledge;
 use crate::command::{Command, FaultEvidence, Measured};
 use crate::window::Window;
 
-/// How often a controller wants to decide, and how far it wants to see.
+/// Feed period and preview that a controller requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Schedule {
     /// Servo periods in a feed period, at least 1.
@@ -24,58 +24,58 @@ pub struct Schedule {
     pub preview: u32,
 }
 
-/// The contract. A controller is admitted by the conformance tests of the library: rest stays rest,
-/// the same input gives the same bits, a reset is complete, a measurement that is not a number
-/// gives a command that is.
+/// Interface of a controller. The conformance tests of the library admit a controller: rest stays
+/// rest, the same input gives the same bits, a reset is complete, a NaN measurement gives a finite
+/// command.
 pub trait Controller<const N: usize> {
-    /// When and how far.
+    /// Returns the feed period and the preview.
     fn schedule(&self) -> Schedule;
-    /// Back to the state after construction.
+    /// Resets the state to the one after construction.
     fn reset(&mut self);
-    /// The same part is cut once more: what was learnt of it is kept.
+    /// Starts the same part once more and keeps what was learned from it.
     fn next_lap(&mut self) {
         self.reset();
     }
-    /// Learns from what the last feed period led to: what was really commanded on the way here is
-    /// in the window, whatever was asked for; what came of it is in `measured`, none where the
+    /// Learns from the result of the last feed period. The window has the actual commands up to
+    /// now, which can differ from the requested ones. `measured` is their result, `None` where the
     /// position was lost. Called once a feed period, before [`Self::command`], which is not called
     /// where nothing was measured.
     fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
         let _ = (window, measured);
     }
-    /// Distance between the last prediction and the measurement, mm; 0 without a prediction.
-    /// `supervisor` reads it after each decision.
+    /// Returns the distance between the last prediction and the measurement, mm; 0 without a
+    /// prediction. `supervisor` reads it after each decision.
     fn prediction_error_mm(&self) -> f64 {
         0.0
     }
-    /// Why [`Self::prediction_error_mm`] is infinite, where that rests on a comparison.
+    /// Returns why [`Self::prediction_error_mm`] is infinite, where that rests on a comparison.
     fn doubt(&self) -> Option<FaultEvidence> {
         None
     }
-    /// The axes as it knows them now, if it goes by such knowledge: one that learns knows others
-    /// than it was made with.
+    /// Returns the axes as the controller knows them now, if it uses such knowledge. A controller
+    /// that learns returns other axes than the ones of its construction.
     fn known(&self) -> Option<[AxisKnowledge; N]> {
         None
     }
-    /// Which axes it follows by what it learned while they moved.
+    /// Returns for each axis whether the controller follows a model that it learned in motion.
     fn learned(&self) -> [bool; N] {
         [false; N]
     }
-    /// Displacement of the tool by the offset, mm, as the controller's model predicts it. `None`
-    /// without such a model.
+    /// Returns the displacement of the tool by the offset, mm, as the controller's model predicts
+    /// it. `None` without such a model.
     fn moved_mm(&self) -> Option<[f64; N]> {
         None
     }
-    /// Whether it means to make the contour error smaller. One that excites the machine to identify
-    /// it does not, and is not taken out of the loop for making it larger.
+    /// Returns true if the controller reduces the contour error. A controller that excites the
+    /// machine to identify it returns false, and is not disengaged for a larger error.
     fn corrects(&self) -> bool {
         true
     }
-    /// Whether its offset is there in the servo period in which it was decided, and not only in the
-    /// next. It has to decide in every servo period, and within it.
+    /// Returns true if the offset acts in the servo period of its decision, not in the next one.
+    /// Such a controller decides in every servo period, and within it.
     fn acts_at_once(&self) -> bool {
         false
     }
-    /// Decides.
+    /// Decides the command of the next feed period.
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N>;
 }

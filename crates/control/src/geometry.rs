@@ -1,4 +1,4 @@
-//! Geometry of a machine: where the tool is, with the joints where their encoders say.
+//! Geometry of a machine: the position of the tool for given joint positions of the encoders.
 //!
 //! ```text
 //! t_i = q_i + E_i(q)
@@ -6,64 +6,64 @@
 //! skew_x = a_xy q_y + a_xz q_z,   skew_y = a_yz q_z,   skew_z = 0
 //! ```
 //!
-//! T_ii is a table of positioning errors, T_ij with j other than i one of straightness. A table is
-//! a cubic between its points with continuous slope, without overshoot; beyond its ends the error
-//! stays what it is there.
+//! T_ii is a table of positioning errors, T_ij with j other than i a table of straightness. A table
+//! is a cubic between its points with continuous slope and no overshoot. Beyond its ends the error
+//! keeps the value of the end.
 //!
-//! The inverse is a fixed point, `q <- t - E(q)`. All derivatives of E in a row sum up to L at
-//! most, and [`KnownGeometry::check`] refuses an L above [`MOST_SLOPE`]. After n steps the rest is
-//! therefore at most L^n |E| / (1 - L) in the largest coordinate. Tangents solve `(I + dE/dq) u =
-//! t` by the same steps.
+//! The inverse is a fixed point, `q <- t - E(q)`. The sum of all derivatives of E in a row is at
+//! most L, and [`KnownGeometry::check`] rejects an L above [`MOST_SLOPE`]. After n steps the
+//! remaining error is therefore at most L^n |E| / (1 - L) in the largest coordinate. Tangents solve
+//! `(I + dE/dq) u = t` by the same steps.
 //!
 //! Symbols: t tool and q joints in mm; e scale; p amplitude, k = 2 pi / period and f phase of the
 //! pitch error; a squareness, rad.
 //!
 //! Source: ISO 230-1 (2012) for the errors and their names, ISO 230-2 (2014) for positioning
 //! errors. Schwenke et al. (2008), "Geometric error measurement and compensation of machines", CIRP
-//! Annals 57, for the tool's position by them. Fritsch and Butland (1984), "A method for
-//! constructing local monotone piecewise cubic interpolants", for the tables.
+//! Annals 57, for the position of the tool. Fritsch and Butland (1984), "A method for constructing
+//! local monotone piecewise cubic interpolants", for the tables.
 
 mod numbers;
 
 use crate::vector::{bounded, norm, scale, sub};
 use crate::window::Knot;
 
-/// Points of a table at the most: as many as LinuxCNC takes of a compensation file.
+/// Largest number of points of a table: the limit of LinuxCNC for a compensation file.
 pub const TABLE_POINTS: usize = 256;
-/// Largest sum of the derivatives of the errors in a row. The worst that a machine has is some
-/// 0.01: a pitch error of 10 um over a lead of 8 mm. Above this limit a geometry is wrong, and its
-/// inverse needs more steps.
+/// Largest sum of the derivatives of the errors in a row. Machines have about 0.01 at worst: a
+/// pitch error of 10 um over a lead of 8 mm. Above this limit a geometry is wrong, and its inverse
+/// needs more steps.
 pub const MOST_SLOPE: f64 = 0.05;
-/// Steps of an inverse at the most. With L at its limit they leave 2e-12 of the error.
+/// Largest number of steps of an inverse. With L at its limit, 2e-12 of the error remains.
 const MOST_STEPS: u32 = 9;
-/// Change in a step below which an inverse is found, mm or part of a direction: it leaves L / (1 -
-/// L) of that.
+/// Change in a step below which an inverse is found, mm or part of a direction. At most L / (1 - L)
+/// of it remains as error.
 const FOUND: f64 = 1e-12;
 
-/// Geometry of an axis by itself.
+/// Geometric errors of one axis.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AxisErrors {
-    /// By which part of its way it goes farther than its encoder says.
+    /// Relative scale error: the extra travel for the travel that the encoder reports.
     pub scale: f64,
     /// Amplitude of the pitch error, mm.
     pub pitch_mm: f64,
     /// Phase of the pitch error for a travel, rad/mm: 2 pi / lead.
     pub pitch_rad_per_mm: f64,
-    /// Its phase at position 0, rad.
+    /// Phase of the pitch error at position 0, rad.
     pub pitch_phase_rad: f64,
-    /// Lost motion, mm: backlash, and what friction winds the screw up. The tool is half of it
-    /// behind in either direction. It depends on the direction, and is not part of the map.
+    /// Lost motion, mm: backlash and windup of the screw by friction. The tool lags by half of it
+    /// in either direction. It depends on the direction, and is not part of the map.
     pub backlash_mm: f64,
 }
 
-/// Why a geometry is refused.
+/// Reason why a geometry is rejected.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum GeometryFault {
     /// A value is not a finite number.
     NotFinite,
     /// A table has more than [`TABLE_POINTS`] points, or less than two.
     Points(usize),
-    /// Positions of a table do not increase from this point on.
+    /// Positions of a table do not increase after this point.
     Order(usize),
     /// Errors of this joint grow by more than [`MOST_SLOPE`] with the travel.
     Slope {
@@ -74,7 +74,7 @@ pub enum GeometryFault {
     },
 }
 
-/// Errors over the position of a joint.
+/// Table of errors over the position of a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorTable {
     len: usize,
@@ -84,10 +84,11 @@ pub struct ErrorTable {
 }
 
 impl ErrorTable {
-    /// A table from positions and errors, mm, by increasing position.
+    /// Creates a table from positions and errors, mm, by increasing position.
     ///
     /// # Errors
-    /// A number of points that it cannot have, positions out of order, and what is not a number.
+    /// Fails where the number of points is out of range, a position is out of order, or a number is
+    /// not finite.
     pub fn new(points: impl IntoIterator<Item = [f64; 2]>) -> Result<Self, GeometryFault> {
         let mut table = Self {
             len: 0,
@@ -118,7 +119,7 @@ impl ErrorTable {
         Ok(table)
     }
 
-    /// First and last position, mm.
+    /// Returns the first and the last position, mm.
     pub fn range_mm(&self) -> [f64; 2] {
         [
             self.at_mm[0],
@@ -126,7 +127,7 @@ impl ErrorTable {
         ]
     }
 
-    /// Position, error and slope of the n-th point; zero where there is none.
+    /// Returns position, error and slope of the n-th point; zero if the table has no such point.
     fn point(&self, n: usize) -> [f64; 3] {
         match (self.at_mm.get(n), self.error_mm.get(n), self.slope.get(n)) {
             (Some(&at_mm), Some(&error_mm), Some(&slope)) => [at_mm, error_mm, slope],
@@ -134,7 +135,7 @@ impl ErrorTable {
         }
     }
 
-    /// Length and slope of the chord behind the n-th point.
+    /// Returns length and slope of the chord after the n-th point.
     fn chord(&self, n: usize) -> [f64; 2] {
         let ([from_mm, from_error_mm, _], [to_mm, to_error_mm, _]) =
             (self.point(n), self.point(n + 1));
@@ -144,8 +145,8 @@ impl ErrorTable {
         ]
     }
 
-    /// Slopes at the points: those of the chords at the ends; within, their weighted harmonic mean,
-    /// and 0 at a turn.
+    /// Sets the slopes at the points: the slope of the chord at the ends, the weighted harmonic
+    /// mean of the two chords within, and 0 at a turn.
     fn set_slopes(&mut self) {
         let last = self.len.saturating_sub(1);
         for n in 0..self.len {
@@ -168,7 +169,7 @@ impl ErrorTable {
         }
     }
 
-    /// Error at a position, mm, and its derivative.
+    /// Returns the error at a position, mm, and its derivative.
     fn at(&self, position_mm: f64) -> [f64; 2] {
         let held = self.at_mm.get(..self.len).unwrap_or(&self.at_mm);
         let after = held.partition_point(|&at_mm| at_mm <= position_mm);
@@ -189,8 +190,8 @@ impl ErrorTable {
         [error_mm, slope]
     }
 
-    /// Bound of the derivative: three times the steepest chord, as for every such cubic without
-    /// overshoot.
+    /// Returns a bound of the derivative: three times the steepest chord, which holds for every
+    /// such cubic without overshoot.
     fn most_slope(&self) -> f64 {
         (1..self.len)
             .map(|n| 3.0 * self.chord(n - 1)[1].abs())
@@ -198,18 +199,19 @@ impl ErrorTable {
     }
 }
 
-/// Errors that encoders do not see, of N axes.
+/// Errors of N axes that the encoders do not see.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KnownGeometry<const N: usize> {
     axes: [AxisErrors; N],
-    /// Of y to x, z to x and z to y, rad: a_xy, a_xz, a_yz.
+    /// Squareness of y to x, z to x and z to y, rad: a_xy, a_xz, a_yz.
     squareness_rad: [f64; 3],
     /// Error of the i-th coordinate of the tool over the position of the j-th joint.
     tables: [[Option<ErrorTable>; N]; N],
 }
 
 impl<const N: usize> KnownGeometry<N> {
-    /// Of axes with these errors and this squareness of y to x, z to x and z to y, rad.
+    /// Creates a geometry from the errors of the axes and the squareness of y to x, z to x and z to
+    /// y, rad.
     pub fn new(axes: [AxisErrors; N], squareness_rad: [f64; 3]) -> Self {
         let tables = core::array::from_fn(|_| core::array::from_fn(|_| None));
         Self {
@@ -219,7 +221,7 @@ impl<const N: usize> KnownGeometry<N> {
         }
     }
 
-    /// With a table of the errors of coordinate `of` over the position of joint `over`.
+    /// Adds a table of the errors of coordinate `of` over the position of joint `over`.
     #[must_use]
     pub fn with_table(mut self, of: usize, over: usize, table: ErrorTable) -> Self {
         if let Some(place) = self.tables.get_mut(of).and_then(|row| row.get_mut(over)) {
@@ -228,7 +230,7 @@ impl<const N: usize> KnownGeometry<N> {
         self
     }
 
-    /// Of the first M axes; one that is not there has no errors.
+    /// Returns the geometry of the first M axes. An axis that does not exist has no errors.
     pub fn of_first<const M: usize>(&self) -> KnownGeometry<M> {
         let table = |i: usize, j: usize| {
             self.tables
@@ -244,10 +246,10 @@ impl<const N: usize> KnownGeometry<N> {
         }
     }
 
-    /// Whether it can be compensated: the inverse is exact then.
+    /// Checks that the geometry can be compensated: its inverse is then exact.
     ///
     /// # Errors
-    /// Values that are not numbers, and errors that grow too fast with the travel.
+    /// Fails where a value is not finite, or where the errors grow too fast with the travel.
     pub fn check(&self) -> Result<(), GeometryFault> {
         for (axis, own) in self.axes.iter().enumerate() {
             let slope = self.most_slope(axis);
@@ -264,7 +266,7 @@ impl<const N: usize> KnownGeometry<N> {
         Ok(())
     }
 
-    /// Bound of the sum of the derivatives of an axis's errors.
+    /// Returns a bound of the sum of the derivatives of an axis's errors.
     fn most_slope(&self, i: usize) -> f64 {
         let axis = self.axes[i];
         let of_tables: f64 = self.tables[i]
@@ -276,7 +278,7 @@ impl<const N: usize> KnownGeometry<N> {
         axis.scale.abs() + (axis.pitch_mm * axis.pitch_rad_per_mm).abs() + of_tables + skew
     }
 
-    /// Whether it has no error at all.
+    /// Returns true if the geometry has no error at all.
     pub fn is_exact(&self) -> bool {
         let exact = |axis: &AxisErrors| {
             axis.scale == 0.0 && axis.pitch_mm == 0.0 && axis.backlash_mm == 0.0
@@ -286,12 +288,12 @@ impl<const N: usize> KnownGeometry<N> {
             && self.tables.iter().flatten().all(Option::is_none)
     }
 
-    /// Lost motion of each axis, mm.
+    /// Returns the lost motion of each axis, mm.
     pub fn backlash_mm(&self) -> [f64; N] {
         self.axes.map(|axis| axis.backlash_mm)
     }
 
-    /// With this lost motion of each axis, mm.
+    /// Sets the lost motion of each axis, mm.
     #[must_use]
     pub fn with_backlash(mut self, backlash_mm: [f64; N]) -> Self {
         for (axis, backlash_mm) in self.axes.iter_mut().zip(backlash_mm) {
@@ -300,7 +302,7 @@ impl<const N: usize> KnownGeometry<N> {
         self
     }
 
-    /// What squareness adds to a coordinate, of each of its angles as `of` gives it.
+    /// Returns the squareness error of a coordinate. `of` maps each angle before its use.
     fn skew(&self, i: usize, joints: [f64; N], of: impl Fn(f64) -> f64) -> f64 {
         let [xy, xz, yz] = self.squareness_rad;
         let joint = |j: usize| joints.get(j).copied().unwrap_or(0.0);
@@ -311,7 +313,7 @@ impl<const N: usize> KnownGeometry<N> {
         }
     }
 
-    /// Where the tool is, mm.
+    /// Returns the position of the tool, mm.
     pub fn tool_mm(&self, joints_mm: [f64; N]) -> [f64; N] {
         core::array::from_fn(|i| {
             let (
@@ -338,7 +340,8 @@ impl<const N: usize> KnownGeometry<N> {
         })
     }
 
-    /// Extra motion of the tool when the joints move by `moved` from a place: dE/dq times `moved`.
+    /// Returns the extra motion of the tool when the joints move by `moved` from a place: dE/dq
+    /// times `moved`.
     fn stretched(&self, joints_mm: [f64; N], moved: [f64; N]) -> [f64; N] {
         core::array::from_fn(|i| {
             let AxisErrors {
@@ -361,30 +364,31 @@ impl<const N: usize> KnownGeometry<N> {
         })
     }
 
-    /// How the tool moves where the joints move by `moved` at a place: Jacobian times `moved`.
+    /// Returns the motion of the tool when the joints move by `moved` from a place: Jacobian times
+    /// `moved`.
     pub fn tool_moved(&self, joints_mm: [f64; N], moved: [f64; N]) -> [f64; N] {
         let stretched = self.stretched(joints_mm, moved);
         core::array::from_fn(|i| moved[i] + stretched[i])
     }
 
-    /// Where the joints have to be, so that the tool is at a place, mm.
+    /// Returns the joint positions that put the tool at a place, mm.
     pub fn joints_mm(&self, tool_mm: [f64; N]) -> [f64; N] {
         fixed_point(tool_mm, |joints_mm| sub(self.tool_mm(joints_mm), joints_mm))
     }
 
-    /// How the joints have to move at a place, so that the tool moves by `moved`: inverse Jacobian
-    /// times `moved`.
+    /// Returns the motion of the joints that moves the tool by `moved` from a place: inverse
+    /// Jacobian times `moved`.
     pub fn joints_moved(&self, joints_mm: [f64; N], moved: [f64; N]) -> [f64; N] {
         fixed_point(moved, |moved| self.stretched(joints_mm, moved))
     }
 
-    /// The knot of the joints for a knot of the tool.
+    /// Returns the knot of the joints for a knot of the tool.
     pub fn joint_knot(&self, tool: &Knot<N>) -> Knot<N> {
         let position_mm = self.joints_mm(tool.position_mm);
         let moved = self.joints_moved(position_mm, tool.tangent);
         let length = norm(moved);
-        // Errors are small, so that a direction keeps nearly its length; one without any, or that
-        // is no number, stays.
+        // Errors are small, so a direction nearly keeps its length. A vector without length, or
+        // with NaN, stays as it is.
         let factor = bounded(length, 1.0 - 2.0 * MOST_SLOPE, 1.0 + 2.0 * MOST_SLOPE);
         Knot {
             position_mm,
@@ -395,7 +399,7 @@ impl<const N: usize> KnownGeometry<N> {
     }
 }
 
-/// The `q` with `q + error(q) = target`, of an error that contracts.
+/// Returns the `q` with `q + error(q) = target`, for an error that contracts.
 fn fixed_point<const N: usize>(target: [f64; N], error: impl Fn([f64; N]) -> [f64; N]) -> [f64; N] {
     let mut found = target;
     for _ in 0..MOST_STEPS {

@@ -1,5 +1,5 @@
-//! The network inversion: at most five gradient steps on the feedrates of H knots, weights fixed. H
-//! = 1 is the paper's.
+//! The network inversion: at most five gradient steps on the feedrates of H knots, with fixed
+//! weights. The paper has H = 1.
 //!
 //! ```text
 //! E       = sum_i 1/2 |eps_hat(i)|^2 + rho / |F(i)|^2,  i = k..k+H-1                           (7), summed
@@ -7,51 +7,52 @@
 //! dE/dF_a = -1/4 eps_a (1 - eps_a^2) sum_j W_aj (1 - f(net_j)^2) W_ja  - 2 rho F_a / |F|^4     (9, 10)
 //! ```
 //!
-//! Over several knots the identifier is rolled out: the errors that it predicts go into its delays,
-//! as the feedrates do.
+//! Over several knots the identifier is rolled out: its delays receive the errors that it predicts
+//! and the feedrates.
 //!
 //! Source: Kindermann and Linden (1990) for the inversion; Lee, Cho and Jeon (2005), section 3.3,
 //! eqs 7 to 10; the gradient over a horizon is back-propagation through time (Werbos 1990).
 //!
-//! The error term of (9) and (10) is printed with the diagonal of the Jacobian only and with the
-//! sign turned; the true gradient of (7) is `+ sum_o eps_o d eps_o / d F_a`. Both are here, see
-//! [`Gradient`]. Departure: the term of rho has the sign and the factor of the true derivative, and
-//! its denominator is (F_x^2 + F_y^2)^2 in both axes; in print it slows the machine down where eq.
-//! 7 is meant to speed it up.
+//! In print, the error term of (9) and (10) has only the diagonal of the Jacobian and the opposite
+//! sign; the true gradient of (7) is `+ sum_o eps_o d eps_o / d F_a`. [`Gradient`] selects one of
+//! the two. Departure: the term of rho has the sign and the factor of the true derivative, and its
+//! denominator is (F_x^2 + F_y^2)^2 in both axes. In print, this term slows the machine down where
+//! eq. 7 is meant to speed it up.
 //!
 //! All quantities are scaled as in [`crate::identifier`].
 
 use crate::identifier::{ContourModel, Inputs};
 use crate::vector::{add_scaled, dot, limit_norm, norm, scale};
 
-/// Most knots of an inversion.
+/// Largest number of knots of an inversion.
 pub(crate) const MAX_KNOTS: usize = 20;
 
-/// Which gradient of the error term the inversion follows.
+/// Gradient of the error term that the inversion follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Gradient {
-    /// As in eqs 9 and 10: the diagonal, with the printed sign. Nearly all of F is the path going
-    /// on, which makes no error, and the path is not among the inputs; so the network cannot tell
-    /// it from a command that leaves the path, and learns the wrong sign for F(k). The printed sign
-    /// puts that right: the Jacobian serves as the gain of an integrating correction. Over several
-    /// knots each is corrected for itself: what a feedrate does to later errors has no printed
-    /// form.
+    /// Gradient of eqs 9 and 10: the diagonal, with the printed sign. Nearly all of F is the motion
+    /// along the path, which makes no error, and the path is not among the inputs. The network
+    /// therefore cannot distinguish it from a command that leaves the path, and learns the wrong
+    /// sign for F(k). The printed sign corrects that: the Jacobian serves as the gain of an
+    /// integrating correction. Over several knots each one is corrected by itself: the effect of a
+    /// feedrate on later errors has no printed form.
     Printed,
     /// The true gradient of eq. 7 through the network, and over several knots through its delays.
     Exact,
-    /// None: the first term of eq. 7 is zero, as in Fig. 7 of the paper.
+    /// Zero gradient: the first term of eq. 7 is zero, as in Fig. 7 of the paper.
     Absent,
 }
 
-/// Which derivative of the term of rho in eq. 7 the inversion follows.
+/// Derivative of the term of rho in eq. 7 that the inversion follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TimeTerm {
-    /// The true one, -2 rho F / |F|^4: a larger rho is faster.
+    /// The true derivative, -2 rho F / |F|^4: a larger rho is faster.
     Derivative,
-    /// With the sign and the factor of eqs 9 and 10, + rho F / |F|^4: a larger rho is slower.
+    /// Derivative with the sign and the factor of eqs 9 and 10, + rho F / |F|^4: a larger rho is
+    /// slower.
     PrintedSign,
-    /// As eqs 9 and 10 are printed: beside that, the denominator of every axis but the first is (2
-    /// F_a^2)^2.
+    /// Derivative as printed in eqs 9 and 10: in addition to `PrintedSign`, the denominator of
+    /// every axis but the first is (2 F_a^2)^2.
     Printed,
 }
 
@@ -62,7 +63,7 @@ pub struct InversionSettings {
     pub rho: f64,
     /// Step size of eq. 8, scaled units; 0 to 10.
     pub eta: f64,
-    /// Gradient steps a tick; 1 to 20, the paper allows 5.
+    /// Gradient steps in a tick; 1 to 20, the paper allows 5.
     pub steps: usize,
     /// Longest step of each F, scaled units; 0.001 to 1. Keeps the term of rho, which grows as
     /// |F|^-3, in bounds near rest.
@@ -73,11 +74,11 @@ pub struct InversionSettings {
     pub time_term: TimeTerm,
 }
 
-/// Below this feedrate (scaled; 1 mm/s) the term of rho is left out: near rest the feed plan
+/// Feedrate below which the term of rho is omitted (scaled; 1 mm/s): near rest the feed plan
 /// decides, not the inversion.
 const MIN_FEED: f64 = 0.02;
 
-/// dE/dF of the term of rho in eq. 7.
+/// Returns dE/dF of the term of rho in eq. 7.
 #[inline]
 fn time_gradient<const N: usize>(feed: [f64; N], rho: f64, term: TimeTerm) -> [f64; N] {
     let square = dot(feed, feed);
@@ -102,9 +103,9 @@ fn time_gradient<const N: usize>(feed: [f64; N], rho: f64, term: TimeTerm) -> [f
     }
 }
 
-/// Inverts in all components: both the speed and the geometry change. `inputs` are those of the
-/// first knot, of which F(k) is not read; `feeds` hold F(0) of each knot on entry and the result on
-/// return. Knots beyond [`MAX_KNOTS`] stay as they are.
+/// Inverts in all components: speed and geometry change. `inputs` belong to the first knot; their
+/// F(k) is not read. `feeds` hold F(0) of each knot on entry and the result on return. Knots beyond
+/// [`MAX_KNOTS`] stay as they are.
 #[inline]
 pub(crate) fn invert<const N: usize, D: ContourModel<N>>(
     net: &D,
@@ -116,7 +117,7 @@ pub(crate) fn invert<const N: usize, D: ContourModel<N>>(
 }
 
 /// Inverts in the magnitudes, with arguments as in [`invert`]: each F keeps the direction of its
-/// F(0), the geometry stays on the path.
+/// F(0), so the geometry stays on the path.
 ///
 /// Source: Yoon and Jeon (2000).
 #[inline]
@@ -129,7 +130,8 @@ pub(crate) fn invert_magnitude<const N: usize, D: ContourModel<N>>(
     descend(net, inputs, feeds, settings, true);
 }
 
-/// The paper's one knot has room for one knot, so that its tick has nothing to clear for others.
+/// Selects the array size: an inversion of one knot, as in the paper, clears memory for one knot
+/// only.
 #[inline]
 fn descend<const N: usize, D: ContourModel<N>>(
     net: &D,
@@ -152,7 +154,7 @@ fn descend<const N: usize, D: ContourModel<N>>(
     }
 }
 
-/// Eq. 8 on at most `H` knots.
+/// Applies eq. 8 to at most `H` knots.
 #[inline]
 fn descend_in<const N: usize, const H: usize, D: ContourModel<N>>(
     net: &D,
@@ -185,7 +187,7 @@ fn descend_in<const N: usize, const H: usize, D: ContourModel<N>>(
     }
 }
 
-/// dE/dF of each knot; those beyond `feeds` are zero.
+/// Returns dE/dF of each knot; zero beyond `feeds`.
 #[inline]
 fn gradients<const N: usize, const H: usize, D: ContourModel<N>>(
     net: &D,
@@ -195,7 +197,8 @@ fn gradients<const N: usize, const H: usize, D: ContourModel<N>>(
 ) -> [[f64; N]; H] {
     let mut gradients = [[0.0; N]; H];
     let forwards = roll_out::<N, H, D>(net, inputs, feeds);
-    // What later knots feel of the error and of the feedrate of this one, and of the one before.
+    // Derivatives of later errors with respect to the error and the feedrate of this knot and of
+    // the one before it.
     let (mut error_felt, mut feed_felt) = ([[0.0; N]; 2], [[0.0; N]; 2]);
     for (knot, ((feed, forward), gradient)) in feeds
         .iter()
@@ -215,7 +218,7 @@ fn gradients<const N: usize, const H: usize, D: ContourModel<N>>(
                 let error = add_scaled(D::error(forward), 1.0, error_felt[0]);
                 let own = add_scaled(adjoint(error, 0), 1.0, feed_felt[0]);
                 (error_felt, feed_felt) = ([error_felt[1], [0.0; N]], [feed_felt[1], [0.0; N]]);
-                // The first knot has none before it, the second one.
+                // The first knot has no predecessor, the second one has one.
                 for (back, (feed_felt, error_felt)) in feed_felt
                     .iter_mut()
                     .zip(&mut error_felt)
@@ -237,7 +240,7 @@ fn gradients<const N: usize, const H: usize, D: ContourModel<N>>(
     gradients
 }
 
-/// What the identifier predicts along the feedrates.
+/// Predicts the errors along the feedrates.
 #[inline]
 fn roll_out<const N: usize, const H: usize, D: ContourModel<N>>(
     net: &D,
@@ -260,7 +263,7 @@ fn roll_out<const N: usize, const H: usize, D: ContourModel<N>>(
     forwards
 }
 
-/// The adjoint of an error.
+/// Returns the adjoint of an error.
 #[inline]
 fn through<const N: usize>(slopes: &[[f64; N]; N], error: [f64; N]) -> [f64; N] {
     core::array::from_fn(|axis| (0..N).map(|o| error[o] * slopes[o][axis]).sum())

@@ -1,11 +1,11 @@
 //! A trained model as a block of bytes. A component in a servo thread validates the block before it
 //! uses the model.
 //!
-//! | Offset | Bytes | What |
+//! | Offset | Bytes | Content |
 //! |---|---|---|
 //! | 0 | 8 | `FWMODEL` and a zero byte |
 //! | 8 | 4 | format: 2, or 3 with a number that format 2 lacks, or 4 with a geometry |
-//! | 12 | 4 | kind of the identifier: 1 contour, 3 axes; 2 was the servo identifier, and is refused |
+//! | 12 | 4 | kind of the identifier: 1 contour, 3 axes; 2 was the servo identifier, and is rejected |
 //! | 16 | 4 | N, number of axes |
 //! | 20 | 4 | n, number of numbers that follow the periods, those of a geometry included |
 //! | 24 | 8 | servo period, s |
@@ -14,14 +14,14 @@
 //! | 40 + 8 n | 4 | CRC-32 of all bytes before it: IEEE 802.3, reflected, polynomial 0x04C11DB7 |
 //!
 //! The numbers of a contour identifier are its weights, group by group in the order of
-//! [`Identifier::weights`]. Axes have the mechanics period, s, and then [`AxisKnowledge::NUMBERS`],
-//! axis by axis. [`Number::format`] is the first format that has a number; in an earlier block the
-//! number is missing and zero. Behind the model, a block of format 4 has the geometry that the
-//! control compensates: of each axis its scale, the amplitude of its pitch error (mm), its phase
-//! for a travel (rad/mm) and at position 0 (rad); the three angles of squareness, rad; and row by
-//! row the tables of the errors of a coordinate over a joint, each as the number of its points, 0
-//! without a table, and position and error (mm) of each point. A block has the lowest format that
-//! holds its content.
+//! [`Identifier::weights`]. The numbers of axes are the mechanics period, s, and then
+//! [`AxisKnowledge::NUMBERS`], axis by axis. [`Number::format`] is the first format that has a
+//! number; in an earlier block the number is missing and zero. After the model, a block of format 4
+//! has the geometry that the control compensates: of each axis its scale, the amplitude of its
+//! pitch error (mm), its phase for a travel (rad/mm) and at position 0 (rad); the three angles of
+//! squareness, rad; and row by row the tables of the errors of a coordinate over a joint, each as
+//! the number of its points, 0 without a table, and position and error (mm) of each point. A block
+//! has the lowest format that holds its content.
 //!
 //! Integers are unsigned; all other numbers are IEEE 754 double precision. Everything is
 //! little-endian. [`ModelBlock::from_bytes`] needs no memory beyond its result and never panics,
@@ -35,28 +35,29 @@ use crate::geometry::KnownGeometry;
 use crate::identifier::contour::ContourIdentifier;
 use crate::identifier::{FEED_PERIODS_S, Identifier, IdentifierKind};
 
-/// What a block begins with.
+/// First bytes of a block.
 pub(crate) const MAGIC: [u8; 8] = *b"FWMODEL\0";
-/// The latest format that is read and written. It is raised whenever the layout or the meaning of a
+/// Latest format that is read and written. It increases whenever the layout or the meaning of a
 /// number changes.
 pub const BLOCK_FORMAT: u32 = 4;
-/// The earliest format that is read. Models without later numbers are still written in it.
+/// Earliest format that is read. Models without later numbers are still written in it.
 const EARLIEST_FORMAT: u32 = 2;
-/// The format from which on a block has a geometry.
+/// First format whose blocks have a geometry.
 const GEOMETRY_FORMAT: u32 = 4;
-/// Largest size of a number of a geometry: positions are in mm.
+/// Largest magnitude of a number of a geometry: positions are in mm.
 const MAX_GEOMETRY: f64 = 1e6;
-/// Servo periods that a machine can have, s: as a machine file bounds them.
+/// Range of the servo period of a machine, s: the bounds of a machine file.
 pub const SERVO_PERIODS_S: [f64; 2] = [1e-5, 0.1];
-/// Periods of the speed loop that it can have, s.
+/// Range of the period of the speed loop, s.
 pub const MECHANICS_PERIODS_S: [f64; 2] = [1e-7, 0.1];
-/// Most of them in a servo period. A controller is made in a time that grows with them. Usual
-/// machines have 1 to 20.
+/// Largest number of mechanics periods in a servo period. The time to construct a controller grows
+/// with it. Usual machines have 1 to 20.
 pub const MAX_MECHANICS_PER_SERVO: f64 = 1_000.0;
 /// Relative distance from a whole number below which the servo period counts as a whole multiple:
 /// rounding of decimal numbers.
 const WHOLE_RATIO_TOLERANCE: f64 = 1e-9;
-/// Largest size of a weight. A hidden node that turns its sign within 0.25 mm/s has weights of 400.
+/// Largest magnitude of a weight. A hidden node that changes sign within 0.25 mm/s has weights
+/// of 400.
 pub const MAX_WEIGHT: f64 = 1e6;
 
 /// A trained identifier and the periods that it was trained for.
@@ -66,9 +67,9 @@ pub struct ModelBlock<const N: usize> {
     pub servo_s: f64,
     /// Time between knots, s.
     pub feed_period_s: f64,
-    /// What was trained.
+    /// The trained identifier.
     pub trained: Trained<N>,
-    /// The geometry that the control compensates, without backlash; none where nothing is
+    /// The geometry that the control compensates, without backlash; `None` where nothing is
     /// compensated.
     pub geometry: Option<KnownGeometry<N>>,
 }
@@ -78,18 +79,18 @@ pub struct ModelBlock<const N: usize> {
 pub struct IdentifiedAxes<const N: usize> {
     /// Period of the speed loop and of the integration, s.
     pub mechanics_s: f64,
-    /// What was found of each, with what its drive is set to.
+    /// Identified parameters of each axis, with the settings of its drive.
     pub axes: [AxisKnowledge; N],
 }
 
 impl<const N: usize> IdentifiedAxes<N> {
-    /// All zero.
+    /// Model whose numbers are all zero.
     pub const NULL: Self = Self {
         mechanics_s: 0.0,
         axes: [AxisKnowledge::NOTHING; N],
     };
 
-    /// Its numbers in the order of the block, each with what it is bound by.
+    /// Passes its numbers to `each` in the order of the block, each with its bounds.
     fn numbers(&mut self, each: &mut impl FnMut(&NumberBounds, &mut [f64])) {
         let [least, most] = MECHANICS_PERIODS_S;
         each(
@@ -106,13 +107,13 @@ impl<const N: usize> IdentifiedAxes<N> {
         }
     }
 
-    /// With the periods that follow; none where the servo period is no whole multiple of the
-    /// mechanics period, or of too many.
+    /// Sets the periods of the axes. Returns `None` where the servo period is no whole multiple of
+    /// the mechanics period, or contains more than [`MAX_MECHANICS_PER_SERVO`] of them.
     #[must_use]
     pub fn with_periods(mut self, servo_s: f64) -> Option<Self> {
         let ratio = servo_s / self.mechanics_s;
         let whole = libm::round(ratio);
-        // What is not a number is no whole one.
+        // A NaN ratio fails this comparison.
         let is_whole = libm::fabs(ratio - whole) <= WHOLE_RATIO_TOLERANCE * ratio;
         if !(is_whole && (1.0..=MAX_MECHANICS_PER_SERVO).contains(&whole)) {
             return None;
@@ -126,7 +127,7 @@ impl<const N: usize> IdentifiedAxes<N> {
         Some(self)
     }
 
-    /// Whether all of its numbers are within their ranges, with this servo period.
+    /// Returns true if all of its numbers are within their ranges at this servo period.
     pub fn are_possible(&self, servo_s: f64) -> bool {
         let [least, most] = MECHANICS_PERIODS_S;
         let is_possible = self.mechanics_s >= least && self.mechanics_s <= most;
@@ -136,7 +137,7 @@ impl<const N: usize> IdentifiedAxes<N> {
     }
 }
 
-/// What was trained.
+/// A trained identifier.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Trained<const N: usize> {
     /// An identifier of the contour error.
@@ -145,18 +146,18 @@ pub enum Trained<const N: usize> {
     Axes(IdentifiedAxes<N>),
 }
 
-/// Why a block is no model.
+/// Reason why a block is not a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BlockError {
-    /// It does not begin as a block does.
+    /// The block does not begin with the bytes of a model.
     NoModel,
-    /// It is of this format.
+    /// The block has this format, which is not read.
     Format(u32),
-    /// Its identifier is of a kind that is not known.
+    /// The block has an identifier of this unknown kind.
     Kind(u32),
     /// The block is for this number of axes; the caller expects another.
     Axes(u32),
-    /// It is longer or shorter than its kind and axes make it.
+    /// The length of the block does not match its kind and its axes.
     Length,
     /// The checksum does not match the bytes before it.
     Checksum,
@@ -194,7 +195,7 @@ impl<const N: usize> ModelBlock<N> {
     /// Reads a block.
     ///
     /// # Errors
-    /// The first thing that is wrong with it.
+    /// Returns the first fault of the block.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, BlockError> {
         let mut rest = Bytes {
             rest: bytes,
@@ -229,7 +230,7 @@ impl<const N: usize> ModelBlock<N> {
         } else {
             numbers > expected
         };
-        // The periods are two numbers more.
+        // The two periods are not part of the count.
         if !is_whole
             || numbers.checked_add(2).and_then(|all| all.checked_mul(8))
                 != rest.rest.len().checked_sub(4)
@@ -252,7 +253,7 @@ impl<const N: usize> ModelBlock<N> {
         });
         fault.map_or(Ok(()), Err)?;
         if let Trained::Axes(axes) = &mut trained {
-            // The mechanics period is the first number behind the two others.
+            // The mechanics period is the first number after the two other periods.
             *axes = axes.with_periods(servo_s).ok_or(BlockError::Number(2))?;
         }
         let geometry = if format < GEOMETRY_FORMAT {
@@ -268,7 +269,7 @@ impl<const N: usize> ModelBlock<N> {
         })
     }
 
-    /// Hands over the block that reads as this model, piece by piece.
+    /// Writes this model as a block through `put`, piece by piece.
     pub fn to_bytes(&self, mut put: impl FnMut(&[u8])) {
         let mut trained = self.trained.clone();
         let mut format = EARLIEST_FORMAT;
@@ -312,14 +313,14 @@ impl<const N: usize> ModelBlock<N> {
     }
 }
 
-/// The kinds in a block.
+/// Kind of the contour identifier in a block.
 const CONTOUR: u32 = 1;
-/// Kind of the servo identifier of earlier versions. A block of it is refused.
+/// Kind of the servo identifier of earlier versions. A block of this kind is rejected.
 const SERVO: u32 = 2;
 const AXES: u32 = 3;
 
 impl<const N: usize> Trained<N> {
-    /// What it predicts.
+    /// Returns the kind of the identifier.
     pub fn kind(&self) -> IdentifierKind {
         match self {
             Self::Contour(_) => IdentifierKind::Contour,
@@ -327,7 +328,7 @@ impl<const N: usize> Trained<N> {
         }
     }
 
-    /// All numbers in the order of the block, group by group, with what they are bound by.
+    /// Passes all numbers to `each` in the order of the block, group by group, with their bounds.
     fn numbers(&mut self, each: &mut impl FnMut(&NumberBounds, &mut [f64])) {
         let weight = NumberBounds::Within(-MAX_WEIGHT, MAX_WEIGHT);
         match self {
@@ -336,7 +337,7 @@ impl<const N: usize> Trained<N> {
         }
     }
 
-    /// The numbers that a block of this format has.
+    /// Passes the numbers that a block of this format has to `each`.
     fn numbers_of(&mut self, format: u32, each: &mut impl FnMut(&NumberBounds, &mut [f64])) {
         self.numbers(&mut |bounds, group| {
             if bounds.format() <= format {
@@ -346,11 +347,11 @@ impl<const N: usize> Trained<N> {
     }
 }
 
-/// What a number is bound by.
+/// Bounds of a number.
 enum NumberBounds {
-    /// Least and most.
+    /// Smallest and largest value.
     Within(f64, f64),
-    /// The range of a number of an axis.
+    /// Range of a number of an axis.
     Of(&'static Number),
 }
 
@@ -359,7 +360,7 @@ impl NumberBounds {
         Self::Within(least, most)
     }
 
-    /// Format of a block from which on the block has it.
+    /// Returns the first format whose blocks have this number.
     fn format(&self) -> u32 {
         match self {
             Self::Within(..) => EARLIEST_FORMAT,
@@ -369,17 +370,17 @@ impl NumberBounds {
 
     fn hold(&self, value: f64) -> bool {
         match self {
-            // Not a number is not within.
+            // A NaN fails this comparison.
             Self::Within(least, most) => value >= *least && value <= *most,
             Self::Of(number) => number.holds(value),
         }
     }
 }
 
-/// Bytes under reading.
+/// Bytes that are being read.
 struct Bytes<'a> {
     rest: &'a [u8],
-    /// Numbers read so far.
+    /// Count of numbers read so far.
     number: usize,
 }
 
@@ -390,7 +391,7 @@ impl Bytes<'_> {
         Some(*first)
     }
 
-    /// The next number, which these are to hold.
+    /// Reads the next number, which must be within these bounds.
     fn number(&mut self, bounds: &NumberBounds) -> Result<f64, BlockError> {
         let index = self.number;
         self.number += 1;
@@ -402,7 +403,7 @@ impl Bytes<'_> {
         }
     }
 
-    /// The geometry that takes all that is left but the checksum.
+    /// Reads the geometry, which takes all remaining bytes except the checksum.
     fn geometry<const N: usize>(&mut self) -> Result<KnownGeometry<N>, BlockError> {
         let bounds = NumberBounds::Within(-MAX_GEOMETRY, MAX_GEOMETRY);
         let geometry = KnownGeometry::from_numbers(|| self.number(&bounds))?
@@ -417,7 +418,7 @@ impl Bytes<'_> {
 
 const CRC_START: u32 = !0;
 
-/// The CRC-32 goes on over more bytes: bit by bit, as in the standard; a model is read once.
+/// Continues a CRC-32 over more bytes: bit by bit, as in the standard; a model is read once.
 fn crc_on(mut crc: u32, bytes: &[u8]) -> u32 {
     for byte in bytes {
         crc ^= u32::from(*byte);
@@ -588,7 +589,7 @@ mod tests {
         );
     }
 
-    /// With every kind of error.
+    /// Adds a geometry with every kind of error.
     fn with_geometry<const N: usize>(model: ModelBlock<N>) -> ModelBlock<N> {
         let axis = AxisErrors {
             scale: 1e-5,

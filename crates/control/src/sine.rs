@@ -20,7 +20,7 @@ const TAYLOR: [f64; 8] = [
     -1.0 / 6.0,
 ];
 
-/// The sine of an angle, rad. What is not finite has none.
+/// Returns the sine of an angle, rad; NaN if the angle is not finite.
 #[inline]
 pub fn sin(angle_rad: f64) -> f64 {
     let half = angle_rad - TAU * libm::round(angle_rad / TAU);

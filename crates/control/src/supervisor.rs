@@ -1,47 +1,47 @@
-//! The supervisor: it stands between every controller and the machine, in a simulation as in a
-//! servo thread.
+//! The supervisor stands between every controller and the machine, in a simulation as in a servo
+//! thread.
 //!
-//! It holds each command within [`Bounds`], and follows a controller only while the tool is nearer
-//! to the path by it:
+//! It holds each command within [`Bounds`], and engages a controller only while the correction
+//! brings the tool nearer to the path:
 //!
-//! | Seen | Test | Then |
+//! | Observation | Test | Action |
 //! |---|---|---|
-//! | the position is lost | it is no number, moves faster than the machine can, or stands still while the command moves | out at once |
-//! | the command is no number | | out at once |
-//! | on a machine for the first time | a law that predicts half of what there is to correct, in motion without a correction | not in before |
-//! | the law of the controller is wrong | free runs by it miss more than there is to correct, twice in a row or once by twice as much | out at once |
-//! | predictions are wrong | four in a row miss by a fifth of the largest deviation | out at once |
-//! | harm | the error is beyond 1.5 times that without the correction, and 5 um (mean square over 0.25 s) or 30 um (a single error) | out at once |
-//! | [`Bounds::engaged_mm_s2`] keeps the offset from what is asked for | | less of it is commanded |
-//! | servo periods do not go as the law says | innovations, over 5 ms | it asks for less |
-//! | the command was held to a bound | | it asks for less |
-//! | nothing of this, for a while | 0.1 s of motion, and twice as long out as the last time | back in, within 40 ms or more |
+//! | the position is lost | it is NaN, moves faster than the machine can, or stands still while the command moves | disengages at once |
+//! | the command is NaN | | disengages at once |
+//! | on a machine for the first time | in motion without a correction, the model predicts half of the error to correct | does not engage before |
+//! | the model of the controller is wrong | free runs of the model miss more than the error to correct, twice in a row or once by twice as much | disengages at once |
+//! | predictions are wrong | four in a row miss by a fifth of the largest deviation | disengages at once |
+//! | harm | the error is beyond 1.5 times the error without the correction, plus 5 um (mean square over 0.25 s) or 30 um (a single error) | disengages at once |
+//! | [`Bounds::engaged_mm_s2`] keeps the offset from the requested one | | commands a smaller part of it |
+//! | servo periods deviate from the model | innovations, over 5 ms | the controller requests less |
+//! | the command was held to a bound | | the controller requests less |
+//! | none of these, for a while | 0.1 s of motion, and twice as long out as the last time | engages again, within 40 ms or more |
 //!
-//! Out is a fade within [`Bounds::fade_mm_s2`]: less and less of what is asked for now, or the way
-//! back of an offset of which nothing is known any more. While a controller is out it goes on
-//! learning.
+//! A controller disengages by a fade within [`Bounds::fade_mm_s2`]: the part of the offset that is
+//! commanded falls, or, where the offset is no longer known, the last offset returns to the path. A
+//! disengaged controller continues to learn.
 //!
-//! Each wrong prediction of a law counts only beyond four standard deviations of noise, and twice;
-//! a learned law is taken for better than a right one in one of a thousand trials
+//! A wrong prediction of a model counts only beyond four standard deviations of noise, and twice; a
+//! learned model replaces a correct one in one of a thousand trials
 //! (`controller/lqg_preview/learning.rs`).
 //!
-//! The bound of the harm, by a controller that harms as it likes within its bounds and knows what
-//! its offset does, on a machine with a lag of 20 ms: no error is beyond 1.5 times the largest
-//! without it, 30 um and half the largest deviation; none stays beyond the first two for longer
-//! than 0.15 s; and the mean square is at most 1.75 times that without it and (5 um)^2.
-//! `tests/property_supervisor.rs` attacks it.
+//! Bounds of the harm, for a controller that does any harm within its bounds and knows the effect
+//! of its offset, on a machine with a lag of 20 ms: every error is at most 1.5 times the largest
+//! without it, plus 30 um and half the largest deviation; it exceeds the first two terms for at
+//! most 0.15 s; and the mean square is at most 1.75 times the mean square without it, plus (5
+//! um)^2. `tests/property_supervisor.rs` attacks it.
 //!
-//! | File | What |
+//! | File | Content |
 //! |---|---|
-//! | `supervisor/feedback.rs` | whether the measured position can be true |
-//! | `supervisor/first_use.rs` | what a law has to show before it is used for the first time |
-//! | `supervisor/one_step.rs` | whether a servo period went as a law said |
-//! | `supervisor/proof.rs` | what a law that was wrong has to hold through |
-//! | `supervisor/validity.rs` | whether a law is good enough for the loop |
+//! | `supervisor/feedback.rs` | plausibility of the measured position |
+//! | `supervisor/first_use.rs` | test of a model before its first use |
+//! | `supervisor/one_step.rs` | comparison of a servo period with the model |
+//! | `supervisor/proof.rs` | test of a model that was wrong |
+//! | `supervisor/validity.rs` | validity of a model for engagement |
 //! | `supervisor/benefit.rs` | the contour error with and without the correction |
-//! | `supervisor/bounds.rs` | what every command is held to |
-//! | `supervisor/fade.rs` | the way of the offset back to the path |
-//! | `supervisor/dose.rs` | how much of an offset is commanded |
+//! | `supervisor/bounds.rs` | bounds of every command |
+//! | `supervisor/fade.rs` | motion of the offset back to the path |
+//! | `supervisor/dose.rs` | part of an offset that is commanded |
 //! | `supervisor/engagement.rs` | the states: shadow, engaged, fading |
 
 pub(crate) mod feedback;
@@ -65,29 +65,29 @@ pub use engagement::{Cause, FORGIVEN_S, Fade, State};
 use engagement::{DecisionInputs, Engagement};
 pub use fade::fade_acceleration;
 
-/// Decisions in a row with a wrong prediction. One is a shock, which no model foresees.
+/// Wrong predictions in a row that disengage the controller. A single one is a shock, which no
+/// model predicts.
 const WRONG_DECISIONS: u32 = 4;
-/// A prediction is wrong where it misses by this part of the largest deviation.
+/// Share of the largest deviation beyond which a prediction is wrong.
 const WRONG_SHARE: f64 = 0.2;
-/// A prediction that misses by less than this is not worth a word, mm, however small the largest
-/// deviation is.
+/// Error up to which a prediction is never wrong, mm, however small the largest deviation is.
 const MIN_WRONG_MM: f64 = 0.02;
-/// A prediction is good where it misses by less than this part of a wrong one.
+/// Share of the error of a wrong prediction below which a prediction is good.
 const GOOD_SHARE: f64 = 0.5;
-/// What a controller says of itself behind a decision.
+/// Report of a controller on itself after a decision.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SelfReport<const N: usize> {
-    /// By how much its last prediction missed, mm; infinite where its law is wrong, and what that
-    /// rests on.
+    /// Error of its last prediction, mm; infinite where its model is wrong. `doubt` is the evidence
+    /// for that.
     pub(crate) prediction_error_mm: f64,
     pub(crate) doubt: Option<FaultEvidence>,
-    /// By how much its offset has moved the tool, mm, where it knows.
+    /// Displacement of the tool by its offset, mm, where it knows.
     pub(crate) moved_mm: Option<[f64; N]>,
-    /// Whether it means to make the contour error smaller.
+    /// True if it reduces the contour error.
     pub(crate) corrects: bool,
-    /// Whether its offset is there at once.
+    /// True if its offset acts in the servo period of the decision.
     pub(crate) acts_at_once: bool,
-    /// Which axes it corrects by what it learned.
+    /// True for each axis that it corrects with a learned model.
     pub(crate) learned: [bool; N],
 }
 
@@ -99,15 +99,15 @@ pub(crate) struct Supervisor<const N: usize> {
     wrong: u32,
     benefit: Benefit<N>,
     engagement: Engagement,
-    /// How much of an offset that acts at once is commanded.
+    /// Commanded part of an offset that acts at once.
     dose: Dose<N>,
-    /// Whether a correction is wanted at all.
+    /// True if a correction is wanted at all.
     allowed: bool,
     held: bool,
 }
 
 impl<const N: usize> Supervisor<N> {
-    /// At the start of a program.
+    /// Creates a supervisor at the start of a program.
     pub(crate) fn new(bounds: Bounds) -> Self {
         Self {
             bounds,
@@ -121,43 +121,43 @@ impl<const N: usize> Supervisor<N> {
         }
     }
 
-    /// What the command is held to.
+    /// Returns the bounds of the command.
     pub(crate) fn bounds(&self) -> &Bounds {
         &self.bounds
     }
 
-    /// Holds the commands to other bounds from the next decision on.
+    /// Changes the bounds of the commands from the next decision on.
     pub(crate) fn hold_to(&mut self, bounds: Bounds) {
         self.bounds = bounds;
     }
 
-    /// Whether a correction is wanted from the next decision on.
+    /// Switches the correction on or off from the next decision on.
     pub(crate) fn allow(&mut self, allowed: bool) {
         self.allowed = allowed;
     }
 
-    /// When and why the controller was taken out of the loop last.
+    /// Returns time and cause of the last disengagement.
     pub(crate) fn fade(&self) -> Option<Fade> {
         self.engagement.fade()
     }
 
-    /// Whether the controller is in the loop.
+    /// Returns the state of the controller: engaged, fading or in shadow.
     pub(crate) fn state(&self) -> State {
         self.engagement.state()
     }
 
-    /// Whether the last command of a controller in the loop was held to a bound.
+    /// Returns true if the last command of an engaged controller was held to a bound.
     pub(crate) fn held(&self) -> bool {
         self.held
     }
 
-    /// Contour error that there would be without the correction, mm.
+    /// Returns the contour error without the correction, mm.
     pub(crate) fn without_mm(&self) -> f64 {
         self.benefit.open_mm()
     }
 
-    /// The command of the next feed period: what the controller wanted, within the bounds, or the
-    /// way back to the path. It wanted nothing where the position was lost.
+    /// Returns the command of the next feed period: the command of the controller within the
+    /// bounds, or the way back to the path. `wanted` is `None` where the position was lost.
     #[inline]
     pub(crate) fn decide(
         &mut self,
@@ -208,9 +208,9 @@ impl<const N: usize> Supervisor<N> {
         command
     }
 
-    /// The command of a controller that acts at once: the part of its offset that is due, within
-    /// the owner's acceleration. Where nothing `is_known` of what it asks for, the offset goes back
-    /// from where it is.
+    /// Returns the command of a controller that acts at once: the part of its offset that is due,
+    /// within the acceleration that the machine's owner allows. Unless `is_known`, the requested
+    /// offset is unknown, and the offset goes back from its last place.
     fn at_once(
         &mut self,
         window: &Window<'_, N>,
@@ -244,7 +244,7 @@ impl<const N: usize> Supervisor<N> {
         }
     }
 
-    /// Why a controller must not be followed, and what that rests on.
+    /// Returns the reason to disengage the controller and its evidence.
     fn judge(
         &mut self,
         window: &Window<'_, N>,
@@ -258,8 +258,7 @@ impl<const N: usize> Supervisor<N> {
             wrong_mm if wrong_mm > self.wrong_mm() => self.wrong + 1,
             _ => 0,
         };
-        // Where nothing that is predicted can be true, neither can what an offset is said to have
-        // done.
+        // Where the predictions are invalid, so is the reported effect of the offset.
         let harm = if told.prediction_error_mm < f64::INFINITY {
             self.benefit.harm(
                 window,
@@ -277,7 +276,7 @@ impl<const N: usize> Supervisor<N> {
                 found_mm: told.prediction_error_mm,
                 limit_mm: self.wrong_mm(),
             };
-            // An infinite error is the controller's own judgment: nothing was measured.
+            // An infinite error is the controller's own judgment: it has no measured value.
             let measured = Some(missed).filter(|missed| missed.found_mm < f64::INFINITY);
             Some((Cause::WrongPredictions, told.doubt.or(measured)))
         } else {
@@ -286,19 +285,20 @@ impl<const N: usize> Supervisor<N> {
         }
     }
 
-    /// A prediction that misses by more is wrong, mm.
+    /// Returns the error beyond which a prediction is wrong, mm.
     fn wrong_mm(&self) -> f64 {
         (WRONG_SHARE * self.bounds.deviation_mm).max(MIN_WRONG_MM)
     }
 
-    /// The next step of the way back to the path, at the feed of the plan.
+    /// Returns the next step of the way back to the path, at the planned feedrate.
     fn faded(&self, window: &Window<'_, N>) -> Command<N> {
         let acceleration_mm_s2 = self.fade_mm_s2(window, window.offset_mm_s);
         Command::accelerated(window, window.offset_mm_s, acceleration_mm_s2)
     }
 
-    /// Where an offset that is there at once is a period further on its way back, mm. What is there
-    /// in one step has no speed that it has to go on with where no acceleration is asked of it.
+    /// Returns the place of an offset that acts at once after one more period of its way back, mm.
+    /// Without a limit of its acceleration, an offset that was reached in one step need not
+    /// continue at the speed of that step.
     fn faded_mm(&self, window: &Window<'_, N>) -> [f64; N] {
         let mut speed_mm_s = window.offset_mm_s;
         if self.bounds.engaged_mm_s2 == f64::INFINITY {
@@ -315,7 +315,7 @@ impl<const N: usize> Supervisor<N> {
         add_scaled(window.offset_mm, window.feed_period_s, speed_mm_s)
     }
 
-    /// The acceleration of an offset on its way back that has this speed, mm/s2.
+    /// Returns the acceleration of an offset with this speed on its way back, mm/s2.
     fn fade_mm_s2(&self, window: &Window<'_, N>, speed_mm_s: [f64; N]) -> [f64; N] {
         let mut acceleration_mm_s2 = speed_mm_s;
         let axes = acceleration_mm_s2.iter_mut().zip(window.offset_mm);
@@ -326,7 +326,7 @@ impl<const N: usize> Supervisor<N> {
     }
 }
 
-/// What is due of an offset that fades, but no more than its way back has, mm.
+/// Returns the due part of an offset that fades, but no more than its way back allows, mm.
 fn nearer(due_mm: f64, faded_mm: f64) -> f64 {
     if due_mm * faded_mm > 0.0 && due_mm.abs() < faded_mm.abs() {
         due_mm

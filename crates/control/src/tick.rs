@@ -1,8 +1,8 @@
 //! The tick: from the reference and a measurement to the position command of one servo period.
 //!
 //! The same code runs around a simulated plant and in a servo thread. Once a feed period the
-//! controller observes and decides, under the supervisor; in every servo period the command moves
-//! on along the path and between the two offsets.
+//! controller observes and decides, under the supervisor. In every servo period the command
+//! advances along the path and between the two offsets.
 
 use crate::command::{Command, Measured};
 use crate::contour_error::{ContourError, Estimator};
@@ -21,12 +21,12 @@ pub struct Setpoint<const N: usize> {
     pub path: Knot<N>,
     /// Position command, mm.
     pub command_mm: [f64; N],
-    /// Whether the controller decided in this servo period.
+    /// True if the controller decided in this servo period.
     pub decided: bool,
 }
 
-/// Plan time in servo periods: whole ones and a part of one. At the planned feed it is a whole
-/// number, whatever its size; a sum of seconds would be off by rounding after minutes, and then
+/// Plan time in servo periods: whole ones and a part of one. At the planned feedrate it is a whole
+/// number, whatever its size. A sum of seconds would be off by rounding after minutes, and then
 /// lead to the servo period before.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct PlanTime {
@@ -35,12 +35,12 @@ struct PlanTime {
 }
 
 impl PlanTime {
-    /// The plan time `periods` servo periods later.
+    /// Returns the plan time `periods` servo periods later.
     #[inline]
     fn after(self, periods: f64) -> Self {
         let sum = self.part + periods;
         let whole = libm::floor(sum);
-        // A float that is not a number saturates to zero here.
+        // The cast saturates to zero where the float is NaN.
         Self {
             periods: self.periods + whole as u64,
             part: sum - whole,
@@ -53,7 +53,7 @@ impl PlanTime {
     }
 }
 
-/// The state between servo periods.
+/// State between servo periods.
 #[derive(Debug, Clone)]
 pub struct Tick<const N: usize> {
     servo_s: f64,
@@ -76,8 +76,8 @@ pub struct Tick<const N: usize> {
 }
 
 impl<const N: usize> Tick<N> {
-    /// At the start of a program, for a controller with this schedule and a servo period of
-    /// `servo_s` seconds.
+    /// Creates the state at the start of a program, for a controller with this schedule and a servo
+    /// period of `servo_s` seconds.
     pub fn new(servo_s: f64, schedule: Schedule, bounds: Bounds) -> Self {
         Self {
             servo_s,
@@ -100,8 +100,8 @@ impl<const N: usize> Tick<N> {
         }
     }
 
-    /// One servo period: the tool is at `tool_mm` at its start. Always the same work, but for the
-    /// decision.
+    /// Computes one servo period; the tool is at `tool_mm` at its start. The work is always the
+    /// same, except for the decision.
     #[inline]
     pub fn step<R, C>(
         &mut self,
@@ -167,40 +167,40 @@ impl<const N: usize> Tick<N> {
         };
     }
 
-    /// Holds the commands to other bounds from the next decision on. A smaller deviation is reached
-    /// within one step: the caller changes it no faster than the offset may move.
+    /// Changes the bounds of the commands from the next decision on. The command reaches a smaller
+    /// deviation within one step: the caller must not change it faster than the offset may move.
     pub fn hold_to(&mut self, bounds: Bounds) {
         self.supervisor.hold_to(bounds);
     }
 
-    /// Whether a correction is wanted from the next decision on. One that is not fades; one that is
-    /// again comes back as after a fault.
+    /// Switches the correction on or off from the next decision on. When switched off it fades;
+    /// when switched on again it returns as after a fault.
     pub fn allow(&mut self, allowed: bool) {
         self.supervisor.allow(allowed);
     }
 
-    /// Whether the last command of a controller in the loop was held to a bound.
+    /// Returns true if the last command of an engaged controller was held to a bound.
     pub fn held(&self) -> bool {
         self.supervisor.held()
     }
 
-    /// Contour error that there would have been at the last decision without the correction, by the
-    /// controller's model, mm.
+    /// Returns the contour error at the last decision without the correction, by the controller's
+    /// model, mm.
     pub fn without_mm(&self) -> f64 {
         self.supervisor.without_mm()
     }
 
-    /// The contour error at the last decision.
+    /// Returns the contour error at the last decision.
     pub fn contour(&self) -> &ContourError<N> {
         &self.contour
     }
 
-    /// Whether the controller is in the loop.
+    /// Returns the state of the controller: engaged, fading or in shadow.
     pub fn state(&self) -> State {
         self.supervisor.state()
     }
 
-    /// When and why the supervisor took the controller out of the loop last.
+    /// Returns time and cause of the last disengagement by the supervisor.
     pub fn fade(&self) -> Option<Fade> {
         self.supervisor.fade()
     }
@@ -264,7 +264,7 @@ mod tests {
         assert_eq!(time.after(f64::NAN).periods, 3);
     }
 
-    /// Every fifth servo period, an offset that grows by a micrometre.
+    /// Every fifth servo period, an offset that grows by a micrometer.
     struct Growing(f64);
 
     impl Controller<2> for Growing {

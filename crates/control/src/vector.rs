@@ -40,7 +40,7 @@ pub fn reject<const N: usize>(a: [f64; N], direction: [f64; N]) -> [f64; N] {
     add_scaled(a, -dot(a, direction), direction)
 }
 
-/// `a`, shortened to `limit` where it is longer. Not a number becomes zero.
+/// `a`, shortened to `limit` where it is longer. NaN becomes zero.
 #[inline]
 pub fn limit_norm<const N: usize>(a: [f64; N], limit: f64) -> [f64; N] {
     let length = norm(a);
@@ -59,8 +59,8 @@ pub fn fourth_power(x: f64) -> f64 {
     x * x * x * x
 }
 
-/// `x`, taken to the nearer end of `least` to `most` where it is beyond. Not a number becomes
-/// `least`; where the ends are crossed, or not numbers, the result is one of them or `x`.
+/// Limits `x` to `least..most`. NaN becomes `least`. Where the ends are crossed or NaN, the result
+/// is one of them or `x`.
 /// `f64::clamp` would panic.
 #[inline]
 pub fn bounded(x: f64, least: f64, most: f64) -> f64 {

@@ -7,40 +7,40 @@
 
 use crate::vector::{add_scaled, bounded, dot, norm, reject, sub};
 
-/// Reference knots that the shift register holds. At a servo period of 1 ms they reach 0.26 s back,
-/// thirteen time constants of a position loop of 50 1/s; a tool that lags further behind than that
-/// is not following.
+/// Number of reference knots that the shift register holds. At a servo period of 1 ms they reach
+/// 0.26 s back, thirteen time constants of a position loop of 50 1/s; a tool with a longer lag is
+/// not following.
 pub const REGISTER_KNOTS: usize = 256;
-/// Reference knots that the preview holds. At a servo period of 1 ms they reach as far ahead as the
-/// register reaches back, more than twice the settling time of such a loop.
+/// Number of reference knots that the preview holds. At a servo period of 1 ms they reach as far
+/// ahead as the register reaches back, more than twice the settling time of such a loop.
 pub const PREVIEW_KNOTS: usize = 256;
-/// Grid points that the preview keeps: as many behind the current knot as ahead of it.
+/// Number of grid points that the preview keeps: as many behind the current knot as ahead of it.
 const GRID_KNOTS: usize = 2 * PREVIEW_KNOTS;
-/// A plan time this near a grid point is at it, in parts of the grid's step: rounding is a
-/// millionth of that, and what the path turns by in so short a time is nothing.
+/// Distance below which a plan time counts as on a grid point, in steps of the grid. Rounding is a
+/// millionth of it, and the path does not turn in so short a time.
 const AT_A_POINT: f64 = 1e-6;
-/// Cosine of the turn between neighbouring knots above which there is a corner between them (0.1
-/// rad: a curve turns so much in one servo period only where its radius is below ten steps).
+/// Cosine of the turn between neighboring knots below which there is a corner between them (0.1
+/// rad: a curve turns this much in one servo period only where its radius is below ten steps).
 pub(crate) const CORNER_COSINE: f64 = 0.995;
-/// A knot nearer than this to the last is not stored again, mm: at rest the register keeps its
-/// history.
+/// Distance to the last knot below which a knot is not stored again, mm: at rest the register keeps
+/// its history.
 const SAME_PLACE_MM: f64 = 1e-7;
 
 /// A point of the programmed path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Knot<const N: usize> {
-    /// Where it is, mm.
+    /// Position, mm.
     pub position_mm: [f64; N],
     /// Unit vector in the direction of travel; at rest, in the direction of the adjoining motion.
     pub tangent: [f64; N],
     /// Planned feedrate, mm/s.
     pub feed_mm_s: f64,
-    /// Whether the motion cuts; a rapid does not.
+    /// True if the motion cuts, false for a rapid.
     pub cutting: bool,
 }
 
 impl<const N: usize> Knot<N> {
-    /// A knot at the origin, at rest, that looks along the first axis.
+    /// A knot at the origin, at rest, with its tangent along the first axis.
     pub const REST: Self = {
         let mut tangent = [0.0; N];
         tangent[0] = 1.0;
@@ -52,7 +52,7 @@ impl<const N: usize> Knot<N> {
         }
     };
 
-    /// Whether every number is one, and the tangent a direction.
+    /// Returns true if every number is finite and the tangent is a unit vector.
     pub fn is_valid(&self) -> bool {
         let length = norm(self.tangent);
         (length - 1.0).abs() < 1e-3
@@ -60,7 +60,7 @@ impl<const N: usize> Knot<N> {
             && self.feed_mm_s.is_finite()
     }
 
-    /// This knot if it is valid; otherwise `other` with a feedrate of 0.
+    /// Returns this knot if it is valid; otherwise `other` with a feedrate of 0.
     #[inline]
     pub fn or_as(self, other: &Self) -> Self {
         if self.is_valid() {
@@ -73,8 +73,9 @@ impl<const N: usize> Knot<N> {
         }
     }
 
-    /// The path between this knot and one `step_s` later, after `part` of the time: a cubic that
-    /// meets both with their feedrates, or where there is a corner between them, both sides of it.
+    /// Returns the path between this knot and one `step_s` later, after `part` of the time: a cubic
+    /// that meets both with their feedrates, or, with a corner between them, the two sides of the
+    /// corner.
     #[inline]
     fn after(&self, next: &Self, step_s: f64, part: f64) -> Self {
         let chord = sub(next.position_mm, self.position_mm);
@@ -114,24 +115,25 @@ impl<const N: usize> Knot<N> {
     }
 }
 
-/// How far the corner between two knots lies ahead of the first, mm: where the two tangent lines
-/// meet. None where the path is smooth, or turns back.
+/// Returns the distance from the first knot to the corner between two knots, mm: where the two
+/// tangent lines meet. `None` where the path is smooth or turns back.
 #[inline]
 pub(crate) fn corner<const N: usize>(from: &Knot<N>, to: &Knot<N>) -> Option<f64> {
     let cosine = dot(from.tangent, to.tangent);
     if cosine.is_nan() || cosine.abs() >= CORNER_COSINE {
         return None;
     }
-    // p + a t1, with a from the component of the chord across t2.
+    // The corner is at p + a t1; a follows from the component of the chord across t2.
     let chord = sub(to.position_mm, from.position_mm);
     let across = |v: [f64; N]| reject(v, to.tangent);
     let (t, c) = (across(from.tangent), across(chord));
     Some(bounded(dot(c, t) / dot(t, t), 0.0, norm(chord)))
 }
 
-/// The programmed path over plan time: where the tool is to be `tau_s` seconds into the feed plan.
+/// The programmed path over plan time: the reference position `tau_s` seconds into the feed plan.
 pub trait KnotSource<const N: usize> {
-    /// The knot at plan time `tau_s`. Before the start and beyond the end it rests there.
+    /// Returns the knot at plan time `tau_s`. Before the start and beyond the end the path rests
+    /// there.
     fn knot(&mut self, tau_s: f64) -> Knot<N>;
 }
 
@@ -154,8 +156,8 @@ impl<const N: usize> Default for Register<N> {
 }
 
 impl<const N: usize> Register<N> {
-    /// Shifts a knot in; the oldest falls out. A knot in the place of the newest replaces it. Says
-    /// whether it was shifted.
+    /// Shifts a knot in; the oldest falls out. A knot in the place of the newest replaces it.
+    /// Returns true if it was shifted.
     #[inline]
     pub fn push(&mut self, knot: Knot<N>) -> bool {
         let moved =
@@ -168,20 +170,20 @@ impl<const N: usize> Register<N> {
         moved
     }
 
-    /// Number of knots held.
+    /// Returns the number of knots in the register.
     #[inline]
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether nothing was pushed yet.
+    /// Returns true before the first push.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// The knot pushed `age` moves ago; 0 is the newest. `age` beyond the register gives the oldest
-    /// slot's content.
+    /// Returns the knot pushed `age` moves ago; 0 is the newest. An `age` beyond the register
+    /// returns the content of its oldest slot.
     #[inline]
     pub fn knot(&self, age: usize) -> &Knot<N> {
         &self.knots[(self.newest + REGISTER_KNOTS - age.min(REGISTER_KNOTS - 1)) % REGISTER_KNOTS]
@@ -192,13 +194,13 @@ impl<const N: usize> Register<N> {
 #[derive(Debug, Clone)]
 pub struct Preview<const N: usize> {
     knots: [Knot<N>; GRID_KNOTS],
-    /// Grid point that is looked up next; the ring holds the [`GRID_KNOTS`] before it.
+    /// Next grid point to look up; the ring holds the [`GRID_KNOTS`] before it.
     next: u64,
     step_s: f64,
 }
 
 impl<const N: usize> Preview<N> {
-    /// Empty, with a grid of `step_s` seconds.
+    /// Creates an empty preview with a grid of `step_s` seconds.
     pub fn new(step_s: f64) -> Self {
         Self {
             knots: [Knot::REST; GRID_KNOTS],
@@ -213,7 +215,7 @@ impl<const N: usize> Preview<N> {
     pub fn fill<R: KnotSource<N> + ?Sized>(&mut self, reference: &mut R, tau_s: f64, ahead_s: f64) {
         let (now, _) = self.place(tau_s);
         let (farthest, _) = self.place(tau_s + ahead_s);
-        // One more than the last grid point that a look between two points needs.
+        // Interpolation needs one grid point more than the last one.
         let end = farthest.min(now + PREVIEW_KNOTS as u64) + 2;
         self.next = self.next.max(end.saturating_sub(GRID_KNOTS as u64));
         while self.next < end {
@@ -224,7 +226,7 @@ impl<const N: usize> Preview<N> {
         }
     }
 
-    /// The knot at plan time `tau_s`, between two grid points.
+    /// Returns the knot at plan time `tau_s`, interpolated between two grid points.
     #[inline]
     pub fn at(&self, tau_s: f64) -> Knot<N> {
         let (point, part) = self.place(tau_s);
@@ -236,7 +238,7 @@ impl<const N: usize> Preview<N> {
         }
     }
 
-    /// The knot of a grid point; the nearest that the ring holds where it does not hold it.
+    /// Returns the knot of a grid point, or the nearest one in the ring.
     #[inline]
     pub fn grid(&self, point: u64) -> &Knot<N> {
         let held = point
@@ -245,8 +247,9 @@ impl<const N: usize> Preview<N> {
         &self.knots[(held % GRID_KNOTS as u64) as usize]
     }
 
-    /// The last grid point at or before a plan time, and the part of a step behind it. Plan time is
-    /// a multiple of the step but for rounding, which must not lead to the grid point before.
+    /// Returns the last grid point at or before a plan time, and the part of a step beyond it. Plan
+    /// time is a multiple of the step except for rounding, which must not lead to the grid point
+    /// before.
     #[inline]
     fn place(&self, tau_s: f64) -> (u64, f64) {
         let place = (tau_s / self.step_s).max(0.0);
@@ -259,12 +262,12 @@ impl<const N: usize> Preview<N> {
     }
 }
 
-/// What a controller sees of the path at the start of a feed period.
+/// The part of the path that a controller sees at the start of a feed period.
 #[derive(Debug, Clone, Copy)]
 pub struct Window<'a, const N: usize> {
     /// Knots behind, one a servo period; the newest is the current one.
     pub register: &'a Register<N>,
-    /// Knots ahead, as far as [`crate::Schedule::preview`] asks for.
+    /// Knots ahead, as far as [`crate::Schedule::preview`] requests.
     pub preview: &'a Preview<N>,
     /// Plan time of the current knot, s.
     pub tau_s: f64,
@@ -277,37 +280,38 @@ pub struct Window<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Window<'a, N> {
-    /// Servo period, s.
+    /// Returns the servo period, s.
     #[inline]
     pub fn servo_s(&self) -> f64 {
         self.preview.step_s
     }
 
-    /// The current knot.
+    /// Returns the current knot.
     #[inline]
     pub fn now(&self) -> Knot<N> {
         *self.register.knot(0)
     }
 
-    /// The knot `periods` feed periods ahead at the planned feed.
+    /// Returns the knot `periods` feed periods ahead at the planned feedrate.
     #[inline]
     pub fn ahead(&self, periods: usize) -> Knot<N> {
         self.at(periods as f64 * self.feed_period_s)
     }
 
-    /// The knot `ahead_s` from now in plan time; behind where that is negative.
+    /// Returns the knot `ahead_s` from now in plan time; behind where that is negative.
     #[inline]
     pub fn at(&self, ahead_s: f64) -> Knot<N> {
         self.preview.at(self.tau_s + ahead_s)
     }
 
-    /// Grid point of the current knot.
+    /// Returns the grid point of the current knot.
     #[inline]
     fn point(&self) -> u64 {
         self.preview.place(self.tau_s).0
     }
 
-    /// The sequence of knots: 0 is the current one, negative behind it, positive ahead of it.
+    /// Returns a knot of the sequence: 0 is the current one, negative behind it, positive ahead of
+    /// it.
     #[inline]
     pub fn knot(&self, index: i32) -> &'a Knot<N> {
         if index <= 0 {
@@ -318,7 +322,7 @@ impl<'a, const N: usize> Window<'a, N> {
         }
     }
 
-    /// The first and the last index of that sequence.
+    /// Returns the first and the last index of that sequence.
     #[inline]
     pub fn range(&self) -> [i32; 2] {
         let ahead = self

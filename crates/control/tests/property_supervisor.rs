@@ -42,7 +42,8 @@ impl KnotSource<2> for Circle {
     }
 }
 
-/// Asks for what it is told to, decision by decision, and misses by as much as it is told to.
+/// Controller that requests the command and reports the prediction error that its functions give
+/// for each decision.
 struct Script<C, M> {
     command: C,
     prediction_error_mm: M,
@@ -89,7 +90,7 @@ struct Ran {
     states: Vec<State>,
 }
 
-/// A tool that follows the command with a lag of first order, and is seen as `seen` says.
+/// Simulates a tool that follows the command with a first-order lag, and is measured by `seen`.
 fn run(
     periods: u32,
     seen: impl Fn(u32, [f64; 2]) -> [f64; 2],
@@ -132,7 +133,7 @@ fn beside(command_mm: [f64; 2]) -> f64 {
     ((command_mm[0] - RADIUS_MM).hypot(command_mm[1]) - RADIUS_MM).abs()
 }
 
-/// A number that a broken controller may come up with.
+/// Returns a number that a broken controller may produce.
 fn anything() -> impl Strategy<Value = f64> {
     prop_oneof![4 => -1.0..1.0, 2 => -1e3..1e3, 1 => any::<f64>()]
 }
@@ -189,7 +190,7 @@ proptest! {
     }
 }
 
-/// A correction that is as it should be.
+/// Returns a good correction.
 fn good(_: u32) -> Command<2> {
     Command::straight(1.0, [0.01, 0.01])
 }
@@ -199,8 +200,8 @@ fn a_controller_that_does_well_stays() {
     assert_eq!(run(3000, as_it_is, good, |_| 0.01).fade, None);
 }
 
-/// Servo periods from a fault on until the controller has left the loop, and from its end until it
-/// is back.
+/// Returns the servo periods from a fault until the controller disengages, and from the end of the
+/// fault until it engages again.
 fn left_and_back(states: &[State], from: usize, to: usize) -> (Option<usize>, Option<usize>) {
     let left = states[from..]
         .iter()
@@ -342,8 +343,8 @@ fn the_feed_rises_by_no_more_than_it_may() {
     assert!((fastest - 1.2).abs() < 1e-9, "{fastest}");
 }
 
-/// Harms as it likes, and knows what its offset does: the tool follows it with the lag of the
-/// machine.
+/// Controller that does any harm, and knows the effect of its offset: the tool follows it with the
+/// lag of the machine.
 struct Wild {
     /// Amplitude of each axis, mm, and frequency of each, Hz.
     amplitude_mm: [f64; 2],
@@ -384,7 +385,7 @@ impl Controller<2> for Wild {
 }
 
 impl Wild {
-    /// The offset of the last decision.
+    /// Returns the offset of the last decision.
     fn swing_mm(&self) -> [f64; 2] {
         let t_s = SERVO_S * f64::from(self.period);
         std::array::from_fn(|i| {
@@ -393,7 +394,7 @@ impl Wild {
     }
 }
 
-/// Contour error of the tool in each servo period, mm, and the state.
+/// Returns the contour error of the tool in each servo period, mm, and the state.
 fn wild(mut controller: Wild, allowed: bool) -> Vec<(f64, State)> {
     let mut tick = Tick::new(SERVO_S, controller.schedule(), BOUNDS);
     tick.allow(allowed);
@@ -408,15 +409,15 @@ fn wild(mut controller: Wild, allowed: bool) -> Vec<(f64, State)> {
     (0..6000).map(period).collect()
 }
 
-/// What rounding makes of a position, mm.
+/// Rounding error of a position, mm.
 const ROUNDING_MM: f64 = 1e-12;
 /// An error beyond this many times the largest without the correction, and this much, mm, is harm.
 const HARM: [f64; 2] = [1.5, 0.03];
-/// Behind it the offset goes on moving the tool by this part of its bound, and for so long, servo
-/// periods.
+/// Part of its bound by which the offset moves the tool after harm is detected, and the servo
+/// periods for which it does.
 const GOES_ON: f64 = 0.5;
 const FOR_PERIODS: usize = 150;
-/// Mean square that is harm, times that without and mm^2.
+/// Mean square that is harm: factor on the mean square without the correction, and mm^2.
 const HARM_SQUARE: [f64; 2] = [1.75, 2.5e-5];
 
 proptest! {

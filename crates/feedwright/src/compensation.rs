@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::job_error::JobError;
 use crate::report::CompensatedGeometry;
 
-/// What is known of the errors that no encoder sees.
+/// Choice of the errors to compensate that no encoder sees.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum GeometryChoice {
@@ -20,7 +20,8 @@ pub enum GeometryChoice {
     /// 0.69 and 1.35.
     #[default]
     Machine,
-    /// What a geometry file states, whatever the machine file says: the simulated machine has it.
+    /// The values in a geometry file, whatever the machine file says: the simulated machine has
+    /// them.
     File(Box<NamedGeometry>),
     /// The simulated machine has what a geometry file states, and its control compensates nothing:
     /// the program does.
@@ -30,9 +31,9 @@ pub enum GeometryChoice {
 /// A geometry file and its name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NamedGeometry {
-    /// What messages call it.
+    /// Name in messages.
     pub name: String,
-    /// What it states.
+    /// Content of the file.
     #[serde(with = "text")]
     pub geometry: GeometryFile,
 }
@@ -109,7 +110,7 @@ impl GeometryChoice {
         })
     }
 
-    /// What the report says of it; none where nothing is compensated.
+    /// Returns the compensated geometry for the report; `None` if nothing is compensated.
     pub(crate) fn reported(
         &self,
         machine: &Machine,

@@ -42,17 +42,18 @@ pub(crate) fn identifying<'a>(machine: &Machine, watch: &'a dyn Watch) -> StageS
 pub struct Entry {
     /// Name on the command line.
     pub name: &'static str,
-    /// What it does, in half a line.
+    /// Summary in half a line.
     pub summary: &'static str,
     /// Author, year.
     pub source: &'static str,
-    /// What it knows of the machine.
+    /// Knowledge of the machine.
     pub knows: Knows,
-    /// Which kind of identifier it uses, where it does.
+    /// Kind of identifier, if the controller uses one.
     pub identifier: Option<IdentifierKind>,
     /// Laps of the same part that it cuts; all but the last are practice.
     pub laps: u32,
-    /// What can be set; first what the comparison searches for the best of.
+    /// Parameters that can be set, beginning with those whose best values the comparison searches
+    /// for.
     pub parameters: &'static [Parameter],
     /// Makes it for two axes.
     #[doc(hidden)]
@@ -62,19 +63,19 @@ pub struct Entry {
     pub space: Maker<3>,
 }
 
-/// What a controller knows of the machine before it cuts.
+/// Knowledge that a controller has of the machine before it cuts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Knows {
     /// Nothing.
     Nothing,
-    /// What was identified from a recording.
+    /// Values that were identified from a recording.
     Identified,
     /// The parameters of its model.
     ExactModel,
     /// Everything that can be: the parameters, and the statistics of all noise.
     Everything,
-    /// What went wrong in earlier laps of the same part.
+    /// Errors of earlier laps of the same part.
     EarlierLaps,
 }
 
@@ -150,10 +151,11 @@ pub static TWO_DIMENSIONAL: Entry = controller!(
     |setup, values| make::two_dimensional(setup, values)
 );
 
-/// Kalman filter and linear-quadratic regulator with preview, by an identified law of each axis.
+/// Kalman filter and linear-quadratic regulator with preview, with an identified model of each
+/// axis.
 pub static LQG_IDENTIFIED: Entry = controller!(
     "lqg-identified",
-    "Kalman filter and linear-quadratic regulator with preview, by an identified law of each axis",
+    "Kalman filter and linear-quadratic regulator with preview, by an identified model of each axis",
     "Anderson and Moore (1990); Gautier, Janot and Vandanjon (2013)",
     Identified(Axes),
     laps: 1,
@@ -175,7 +177,7 @@ static ROWS: [&Entry; 5] = [
 
 /// The default.
 pub const BEST: &str = "lqg-identified";
-/// What others are compared with.
+/// Controller that others are compared with.
 pub const BASELINE: &str = "uncorrected";
 
 /// A table of controllers, in the order in which they are listed.
@@ -186,12 +188,13 @@ pub struct Controllers {
 }
 
 impl Controllers {
-    /// A table of these rows, and of what searches on machines came to: a line of JSON each.
+    /// Creates a table of these rows and of recorded search results on machines: one line of JSON
+    /// each.
     pub const fn new(rows: &'static [&'static Entry], recorded: &'static str) -> Self {
         Self { rows, recorded }
     }
 
-    /// What is recorded of a controller on a machine, if anything.
+    /// Returns the record of a controller on a machine, if there is one.
     pub fn recorded(self, machine: &Machine, entry: &'static Entry) -> Option<RecordedValues> {
         recorded::find(self.recorded, machine, entry)
     }
@@ -222,7 +225,7 @@ impl IntoIterator for Controllers {
     }
 }
 
-/// What a user can choose.
+/// Choices of the user.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Choices {
     /// Seed of the training.
@@ -233,8 +236,8 @@ pub struct Choices {
     /// on the machine.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unsuited: Vec<String>,
-    /// Whether the paper's controller has to show that it helps before it is followed. The
-    /// comparison cuts it as it was published.
+    /// True if the paper's controller must show that it helps before it is followed. The comparison
+    /// cuts it as it was published.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub tries: bool,
 }
@@ -295,7 +298,7 @@ impl Make<3> for Entry {
     }
 }
 
-/// By their names: there is one row of each.
+/// Compares rows by name: each name has one row.
 impl PartialEq for Entry {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name

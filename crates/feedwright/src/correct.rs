@@ -1,12 +1,12 @@
 //! A corrected program for a control without feedback: the program itself compensates the error
 //! that repeats.
 //!
-//! A controller of [`crate::controllers`] sees the tool while it cuts. Another control plans and
-//! cuts the program without that feedback, so the correction is computed for this case. The machine
-//! is simulated without what does not repeat ([`deterministic`]), along the plan of the target's
-//! own planner. Four steps correct the program:
+//! A controller of [`crate::controllers`] measures the tool while it cuts. The target control plans
+//! and cuts the program without that feedback, so the correction is computed for this case. The
+//! machine is simulated without the effects that do not repeat ([`deterministic`]), along the plan
+//! of the target's own planner. Four steps correct the program:
 //!
-//! 1. The program is split into stretches that are cut without a corner. All else stays as it is.
+//! 1. The program is split into stretches that are cut without a corner. The rest stays unchanged.
 //! 2. Each round plans and cuts the current program. With `e` from the tool to its foot on the
 //!    original path, the command becomes `c + e + T1 e' + T2 e''`, smoothed, with the lags of the
 //!    loop. Arcs and lines are fitted to it, and the next round begins. The best command of each
@@ -20,39 +20,39 @@
 //! Source: model-based iterative learning (Moore 1993), applied to the path of blocks rather than
 //! to samples.
 //!
-//! | File | What |
+//! | File | Content |
 //! |---|---|
 //! | `nominal.rs` | the machine without effects that do not repeat |
-//! | `file_prior.rs` | what a machine file most probably describes |
-//! | `loop_lag.rs` | how an axis lags behind its command |
-//! | `target.rs` | the controls that programs are for |
+//! | `file_prior.rs` | the machine that a machine file most probably describes |
+//! | `loop_lag.rs` | lag of an axis behind its command |
+//! | `target.rs` | the controls that programs are written for |
 //! | `kept_work.rs` | long work in parts, on threads, kept in a file |
 //! | `source.rs` | the program with its text and modes |
-//! | `stretches.rs` | stretches without a corner, and all else |
-//! | `arc_fit.rs` | points to arcs and lines |
-//! | `learned.rs` | what logs of cuts of the part tell |
-//! | `exported.rs` | a program as the other control cuts it |
-//! | `seams.rs` | where the commands of two pieces meet |
-//! | `slow_end.rs` | slow ways to where the tool would run over |
+//! | `stretches.rs` | stretches without a corner, and the parts between them |
+//! | `arc_fit.rs` | fit of arcs and lines to points |
+//! | `learned.rs` | learning from logs of cuts of the part |
+//! | `exported.rs` | a program as the target control cuts it |
+//! | `seams.rs` | places where the commands of two pieces meet |
+//! | `slow_end.rs` | slow ways to ends that the tool would overshoot |
 //! | `command_update.rs` | a better command from the errors of a cut |
 //! | `stretch_cut.rs` | errors and time of each stretch in a cut |
-//! | `budget.rs` | how many blocks and how much time a program may have |
-//! | `unchanged.rs` | why stretches stay as they are |
+//! | `budget.rs` | limits on the blocks and the time of a program |
+//! | `unchanged.rs` | reasons why stretches stay as programmed |
 //! | `stretch_rounds.rs` | a stretch under way |
-//! | `given_up.rs` | commands that are given up behind a cut of all together |
-//! | `rounds.rs` | cut, change, fit, until it gets no better |
+//! | `given_up.rs` | commands that are given up after a cut of all together |
+//! | `rounds.rs` | cut, change, fit, until the result no longer improves |
 //! | `pieces.rs` | a long program in pieces |
 //! | `block_words.rs` | motions and events as blocks |
 //! | `source_line.rs` | a line without its motion |
 //! | `program_text.rs` | the text |
 //! | `expanded_text.rs` | the text of a program with loops, subroutines and jumps written out |
-//! | `verified.rs` | what the text says when it is read again |
-//! | `feed_overrides.rs` | at which feed overrides a program is better, and at which worse |
-//! | `predicted.rs` | what logs predict of the next cut |
-//! | `outcome.rs` | the result, and why a corrected program is refused |
+//! | `verified.rs` | the text, read again and compared |
+//! | `feed_overrides.rs` | feed overrides at which a program is better or worse |
+//! | `predicted.rs` | prediction of the next cut from logs |
+//! | `outcome.rs` | the result, and reasons to reject a corrected program |
 //! | `advise.rs` | the feedrates at which a tolerance is held |
 //! | `advise/feed_cuts.rs` | a program at other feedrates |
-//! | `advise/feed_search.rs` | the search of the feedrates that hold |
+//! | `advise/feed_search.rs` | search for the feedrates that hold |
 //! | `advise/page.rs` | its figure and its page |
 
 mod nominal;
@@ -122,7 +122,7 @@ pub use unchanged::UnchangedStretch;
 use unchanged::unchanged_stretches;
 use verified::{TextComparison, TextFault};
 
-/// A program, a machine, and a control that the corrected program is for.
+/// Program, machine, and control that the corrected program is for.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct CorrectJob {
@@ -130,7 +130,7 @@ pub struct CorrectJob {
     pub program: Program,
     /// The machine that cuts it.
     pub machine: Machine,
-    /// What the correction believes of the machine; none is the machine itself.
+    /// Machine that the correction assumes; none means `machine` itself.
     pub believed: Option<Machine>,
     /// The geometry that the program compensates.
     pub compensation: GeometryChoice,
@@ -140,32 +140,33 @@ pub struct CorrectJob {
     pub feed_mm_s: Option<f64>,
     /// Settings of the reader.
     pub reader: Settings,
-    /// Logs of cuts of the part, by this program or by corrected ones.
+    /// Logs of cuts of the part, with this program or with corrected ones.
     pub logs: Vec<MeasuredLog>,
-    /// Standard deviation of each value of the machine, as a fraction of it; 0 where it is exact.
-    /// With logs or `believed` it is ignored.
+    /// Standard deviation of each value of the machine, as a fraction of it; 0 if the machine is
+    /// exact. Ignored if there are logs, or if `believed` is set.
     pub file_error: f64,
     /// Servo periods of a piece. A program of more than twice as many is corrected in pieces.
     pub piece_periods: u64,
     /// Threads that correct pieces. The result is the same with any number.
     pub threads: usize,
-    /// Where finished pieces of a long program are kept, for a run that ends early. See
+    /// File in which finished pieces of a long program are kept, in case the run ends early. See
     /// [`CorrectJob::forget_pieces`].
     pub keep: Option<PathBuf>,
 }
 
-/// Motions and events of a program, at the most: they are all in memory when the text is verified.
+/// Largest number of motions and events of a program: they are all in memory when the text is
+/// verified.
 const MOST_MOTIONS: u64 = 2_000_000;
 
-/// How the note of a corrected program begins; machine and control follow.
+/// First words of the note in a corrected program; machine and control follow.
 const CORRECTED_FOR: &str = "corrected by feedwright for the machine";
-/// The note of feed overrides before they are cut.
+/// Note of feed overrides before they are simulated.
 const NO_OVERRIDES: &str = "feed override: not simulated";
-/// Lines in which the note is looked for.
+/// Number of lines in which the note is searched for.
 #[cfg(feature = "command")]
 const NOTED_WITHIN: usize = 100;
 
-/// The control that a corrected program was made for, as its note says; none where it has no such
+/// Returns the control that a corrected program was made for, from its note; none if it has no such
 /// note or cannot be read.
 #[cfg(feature = "command")]
 pub(crate) fn corrected_for(program: &Program) -> Option<&'static TargetControl> {
@@ -197,7 +198,7 @@ struct JobMachines {
 }
 
 impl JobMachines {
-    /// The machine that programs are judged on.
+    /// Returns the machine on which programs are judged.
     fn machine(&self) -> &Machine {
         let learned = self.learned.as_ref().map(|learned| &learned.machine);
         learned
@@ -215,11 +216,12 @@ struct FoundProgram {
     pieces: usize,
 }
 
-/// Pieces that are corrected at the same time, each with its rows in memory.
+/// Largest number of pieces that are corrected at the same time, each with its rows in memory.
 const MOST_THREADS: usize = 2;
 
 impl CorrectJob {
-    /// Corrects a program for a control, as the machine is and with the feedrates of the program.
+    /// Creates a job that corrects a program for a control, with the machine as it is and the
+    /// feedrates of the program.
     pub fn new(program: Program, machine: Machine, target: &'static TargetControl) -> Self {
         Self {
             program,
@@ -238,17 +240,17 @@ impl CorrectJob {
         }
     }
 
-    /// The error of a machine, as a fraction, where the user states none: a file is uncertain, and
-    /// a built-in machine is simulated as it is written.
+    /// Returns the error of a machine, as a fraction, if the user states none: a file is uncertain,
+    /// and a built-in machine is simulated as it is written.
     pub const fn usual_file_error(is_file: bool) -> f64 {
         if is_file { FILE_ERROR } else { 0.0 }
     }
 
-    /// Corrects it and verifies the text.
+    /// Corrects the program and verifies the text.
     ///
     /// # Errors
     /// A program with mistakes, more axes than the machine has, a geometry that cannot be
-    /// compensated, or an end from outside.
+    /// compensated, or a run that was cancelled.
     pub fn run(&self, watch: &dyn Watch) -> Result<CorrectOutcome, JobError> {
         watch.begin("reading the program", 1);
         let summary = self.program.check(self.reader.clone())?;
@@ -350,7 +352,7 @@ impl CorrectJob {
         })
     }
 
-    /// The machines of the correction.
+    /// Prepares the machines of the correction.
     fn machines(
         &self,
         original: &[Step],
@@ -413,7 +415,7 @@ impl CorrectJob {
         ))
     }
 
-    /// Refuses a program that does not fit in memory, before it is read into it.
+    /// Rejects a program that does not fit in memory, before it is loaded.
     fn check_motions(&self, summary: &Summary) -> Result<(), JobError> {
         let motions = summary.motions + summary.events;
         if motions > MOST_MOTIONS {
@@ -426,8 +428,8 @@ impl CorrectJob {
         Ok(())
     }
 
-    /// The pieces of a program. Errors that logs show lie along the whole path: with logs there is
-    /// one piece.
+    /// Splits a program into pieces. Errors that logs show lie along the whole path: with logs
+    /// there is one piece.
     fn pieces(
         &self,
         cut: &ExportedCut<'_>,
@@ -439,7 +441,7 @@ impl CorrectJob {
         Ok(vec![ProgramPiece::whole(program.len())])
     }
 
-    /// Who does the work in pieces.
+    /// Creates the workers that do the work in pieces.
     fn workers(&self, source: &SourceProgram, pieces: usize) -> Workers {
         let Some(path) = self.keep.as_ref().filter(|_| pieces > 1) else {
             return Workers::new(self.threads);
@@ -453,9 +455,10 @@ impl CorrectJob {
         Workers::keeping(self.threads, path, &work)
     }
 
-    /// All that the commands of pieces depend on beside the program. With logs there is one piece.
+    /// Formats all inputs that the commands of pieces depend on, beside the program. With logs
+    /// there is one piece.
     fn depends_on(&self) -> String {
-        // Without `..`, so that a new field is not forgotten.
+        // Names all fields, without `..`, so that a new field is not forgotten.
         let Self {
             program: _,
             machine,
@@ -475,20 +478,20 @@ impl CorrectJob {
         )
     }
 
-    /// The file of finished pieces, where there is one to go on with.
+    /// Returns the file of finished pieces, if there is one to continue with.
     pub fn kept_pieces(&self) -> Option<&Path> {
         self.keep.as_deref().filter(|path| keeps_parts(path))
     }
 
-    /// Removes the finished pieces that were kept: what they were for is done.
+    /// Removes the finished pieces that were kept, after the job is done.
     ///
     /// # Errors
-    /// A file that is there and cannot be removed.
+    /// A file that exists and cannot be removed.
     pub fn forget_pieces(&self) -> std::io::Result<()> {
         self.keep.as_deref().map_or(Ok(()), forget)
     }
 
-    /// What the logs tell, where there are any.
+    /// Learns the machine from the logs, if there are any.
     fn learned(
         &self,
         machine: &Machine,
@@ -513,9 +516,9 @@ impl CorrectJob {
             .map_err(|(log, error)| JobError::of_part_log(&log, &self.program, &error))
     }
 
-    /// A text that says what was found, with as many lines of the original as can be. Where the
-    /// program cannot be written out, stretches whose lines cannot be replaced are given up, as
-    /// long as others remain.
+    /// Writes a text with the commands that were found, with as many lines of the original as
+    /// possible. If the program cannot be written out, stretches whose lines cannot be replaced are
+    /// given up, as long as others remain.
     fn written(
         &self,
         source: &SourceProgram,
@@ -533,8 +536,8 @@ impl CorrectJob {
         }
     }
 
-    /// A text with all that was found. The error says why the program cannot be written out, and
-    /// why the original lines cannot stay.
+    /// Writes a text with all commands that were found. The error says why the program cannot be
+    /// written out, and why the original lines cannot stay.
     fn written_as_found(
         &self,
         source: &SourceProgram,
@@ -595,7 +598,7 @@ impl CorrectJob {
             .map_err(|fault| (fault, unkept))
     }
 
-    /// The path of a text as the control reads it, where that is what is wanted.
+    /// Returns the path of a text as the control reads it, if it equals the wanted path.
     fn verified(
         &self,
         text: &str,

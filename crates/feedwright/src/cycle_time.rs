@@ -1,8 +1,8 @@
-//! Cycle time of a program on a machine: how long its plan takes, with which tool and in which kind
-//! of motion, what binds it, and whether it keeps what it has to.
+//! Cycle time of a program on a machine: the duration of its plan, by tool and kind of motion, the
+//! limits that bind, and the largest violation of a limit.
 //!
-//! The plan is looked at as it comes out, every 0.1 ms; memory does not grow with the program.
-//! `cycle_time/along.rs` keeps what binds where.
+//! The plan is sampled as it is generated, every 0.1 ms; memory does not grow with the program.
+//! `cycle_time/along.rs` records the limits that bind along the path.
 
 pub(crate) mod along;
 
@@ -21,34 +21,34 @@ use serde::Serialize;
 
 use along::{BindingAlong, BindingStretch, LIMITS};
 
-/// Time between two looks, s.
+/// Time between two samples, s.
 const SAMPLE_S: f64 = 1e-4;
 
-/// A limit binds where so much of it is used.
+/// Fraction of a limit from which it binds.
 const BINDS: f64 = 0.999;
 
-/// The tolerance binds where so much of it is used: a planner keeps a part of it for what it does
-/// not look at.
+/// Fraction of the tolerance from which it binds: a planner reserves a part of it for effects that
+/// it does not check.
 const TOLERANCE_BINDS: f64 = 0.8;
 
-/// A cap on the speed, which holds roughly, binds where so much of it is used.
+/// Fraction of a speed cap, which is kept only approximately, from which it binds.
 const CAP_BINDS: f64 = 0.98;
 
-/// A cut below this part of the programmed feedrate is slow: chips get thin, and a tool that only
-/// rubs wears.
+/// A cut below this fraction of the programmed feedrate is slow: chips get thin, and a tool that
+/// only rubs wears.
 const SLOW: f64 = 0.8;
 
-/// Parts of the acceleration of the axes that LinuxCNC has along the path and across it where the
+/// Fractions of the axes' acceleration that LinuxCNC uses along the path, and across it where the
 /// path turns.
 const TANGENTIAL: f64 = 0.5;
 const NORMAL: f64 = 0.866;
 
-/// First of the limits along the path, in the order of [`limit_names`].
+/// Index of the first of the limits along the path, in the order of [`limit_names`].
 const OF_PATH: usize = LIMITS - 3;
 
 /// The search for the nearest point covers this many tolerances of path to either side.
 const WAY: f64 = 10.0;
-/// Most pieces that the search for the nearest point covers to either side.
+/// Largest number of pieces that the search for the nearest point covers to either side.
 const MOST_PIECES: usize = 64;
 
 /// Time of one tool.
@@ -56,7 +56,7 @@ const MOST_PIECES: usize = 64;
 pub struct ToolTime {
     /// Its number; 0 before the first tool change.
     pub tool: u32,
-    /// Motion and rests with it, s.
+    /// Time of motion and rests with the tool, s.
     pub time_s: f64,
 }
 
@@ -65,52 +65,52 @@ pub struct ToolTime {
 pub struct LineTime {
     /// Number of the line.
     pub line: u32,
-    /// Motion and rests that it asks for, s, however often it runs.
+    /// Time of motion and rests that the line asks for, s, summed over all of its runs.
     pub time_s: f64,
-    /// Rests alone, s.
+    /// Time of rests alone, s.
     pub waiting_s: f64,
 }
 
-/// What is looked for beside the cycle time.
+/// Results to compute beside the cycle time.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct CycleTimeOptions {
-    /// Plan once more for the bound of the motion.
+    /// Plans once more for the bound of the motion.
     pub bound: bool,
-    /// Keep the time of each line.
+    /// Keeps the time of each line.
     pub lines: bool,
-    /// Length of the path, mm, for the progress; 0 where it is not known.
+    /// Length of the path, mm, for the progress; 0 if it is not known.
     pub length_mm: f64,
 }
 
 /// A limit with the part of the moving time in which it binds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BindingShare {
-    /// Such as `feedrate`, `x jerk`, `tolerance`.
+    /// Name of the limit, such as `feedrate`, `x jerk`, `tolerance`.
     pub limit: String,
     /// Part of the moving time, 0 to 1; limits bind together, so parts do not add up to 1.
     pub share: f64,
 }
 
-/// What a program takes.
+/// Cycle time of a program, its parts, and the limits that bind.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct CycleTime {
     /// Name of the planner.
     pub planner: String,
     /// Motions of the program.
     pub blocks: u64,
-    /// Everything, s.
+    /// Total time, s.
     pub time_s: f64,
-    /// At feedrates, s.
+    /// Time at feedrates, s.
     pub cutting_s: f64,
-    /// Rapids, s.
+    /// Time of rapids, s.
     pub rapid_s: f64,
-    /// Dwells, tool changes, spindle, s.
+    /// Time of dwells, tool changes and spindle starts, s.
     pub waiting_s: f64,
-    /// Motion alone with each path from rest to rest planned as a whole, s, where that was asked
-    /// for.
+    /// Time of the motion alone, s, with each path from rest to rest planned as a whole, if
+    /// requested.
     pub bound_s: Option<f64>,
     /// Largest ratio of a velocity, acceleration or jerk to its limit, or of the speed to the
-    /// feedrate; none where axes have no limits.
+    /// feedrate; none if axes have no limits.
     pub largest_violation: Option<f64>,
     /// Largest distance of the planned motion from the programmed path, um.
     pub largest_deviation_um: f64,
@@ -118,17 +118,17 @@ pub struct CycleTime {
     pub tools: Vec<ToolTime>,
     /// Part of the cutting time in which the planned speed is below 0.8 of the programmed feedrate.
     pub slow_share: f64,
-    /// What binds, the most frequent first; nothing that never does.
+    /// Limits that bind, the most frequent first; limits that never bind are left out.
     pub binding: Vec<BindingShare>,
-    /// Time of each line in their order, where that was asked for.
+    /// Time of each line in order, if requested.
     #[serde(skip)]
     pub lines: Vec<LineTime>,
-    /// What binds where.
+    /// Limits that bind along the path.
     #[serde(skip)]
     pub along: BindingAlong,
 }
 
-/// Names of limits, in the order in which they are counted everywhere.
+/// Returns the names of limits, in the order in which they are counted everywhere.
 pub(crate) fn limit_names() -> Vec<String> {
     let of_axis =
         |name: &str| ["velocity", "acceleration", "jerk"].map(|limit| format!("{name} {limit}"));
@@ -143,8 +143,8 @@ pub(crate) fn limit_names() -> Vec<String> {
     first.into_iter().chain(axes).chain(of_path).collect()
 }
 
-/// Plans a program by the stages that suit a machine, `steps` once, and once more for the bound
-/// where `bound` asks for it.
+/// Plans a program by the stages that suit a machine. It reads `steps` once, and once more for the
+/// bound if `bound` is true.
 ///
 /// # Errors
 /// Fails if the program cannot be read, a motion has no path, a limit is not a valid number, or
@@ -158,10 +158,10 @@ pub fn cycle_time<'p>(
     cycle_time_within(machine, &Constraints::from(machine), bound, steps, watch)
 }
 
-/// The same within other constraints than the machine's.
+/// Computes the cycle time within other constraints than the constraints of the machine.
 ///
 /// # Errors
-/// As [`cycle_time`].
+/// The same as [`cycle_time`].
 pub fn cycle_time_within<'p>(
     machine: &Machine,
     constraints: &Constraints,
@@ -183,10 +183,10 @@ pub fn cycle_time_within<'p>(
     )
 }
 
-/// The same by stages of one's own choice, with more of it.
+/// Computes the cycle time with given stages and further options.
 ///
 /// # Errors
-/// As [`cycle_time`].
+/// The same as [`cycle_time`].
 pub fn cycle_time_by<'p>(
     stages: Stages,
     machine: &Machine,
@@ -222,10 +222,10 @@ pub fn cycle_time_by<'p>(
 }
 
 /// Plans each path from rest to rest as a whole, and hands out the phases of motion of each path
-/// once it is planned: what no plan can be faster than by much.
+/// once it is planned. No plan can be much faster.
 ///
 /// # Errors
-/// As [`cycle_time`].
+/// The same as [`cycle_time`].
 pub(crate) fn bound_of_motion<'p>(
     constraints: &Constraints,
     mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
@@ -239,17 +239,18 @@ pub(crate) fn bound_of_motion<'p>(
     Ok(())
 }
 
-/// The same of a plan that is made in any case, for a cut: it is told of it.
+/// Cycle time of the plan of a cut. It receives that plan as a [`PlanSink`], so the program is not
+/// planned again.
 #[derive(Debug)]
 pub(crate) struct CycleTimeOfCut<'a>(Mutex<Sampler<'a>>);
 
 impl<'a> CycleTimeOfCut<'a> {
-    /// Of a plan within constraints, by a planner.
+    /// Creates the sink for a plan within constraints, by a planner.
     pub(crate) fn new(constraints: &'a Constraints, planner: &'static FeedMember) -> Self {
         Self(Mutex::new(Sampler::new(constraints, planner)))
     }
 
-    /// What the plan came to, where it was handed out to its end.
+    /// Returns the cycle time of the plan, complete if the plan was handed out to its end.
     pub(crate) fn finish(self) -> CycleTime {
         self.0
             .into_inner()
@@ -267,20 +268,20 @@ impl PlanSink for CycleTimeOfCut<'_> {
     }
 }
 
-/// What holds on a piece.
+/// Values that hold on a piece.
 #[derive(Clone, Copy)]
 struct PiecePlace {
-    /// Its index among those that are kept.
+    /// Index of the piece among the pieces that are kept.
     index: usize,
     s_mm: f64,
     line: u32,
-    /// F, where it cuts.
+    /// Programmed feedrate F, if the piece cuts.
     programmed_mm_s: Option<f64>,
     feed_mm_s: f64,
     tolerance_mm: f64,
 }
 
-/// Looks at a plan as it comes out.
+/// Samples a plan as it is generated.
 #[derive(Debug)]
 struct Sampler<'a> {
     constraints: &'a Constraints,
@@ -293,7 +294,8 @@ struct Sampler<'a> {
     selected: u32,
     /// Time in which each limit binds, in the order of [`limit_names`].
     bound_s: [f64; LIMITS],
-    /// Time of each line by its number, where it is kept; number 0 where a line has no time.
+    /// Time of each line, indexed by its number, if it is kept; `line` is 0 for a line without
+    /// time.
     lines: Option<Vec<LineTime>>,
     /// Cutting time below [`SLOW`] of the programmed feedrate, s.
     slow_s: f64,
@@ -388,7 +390,7 @@ impl<'a> Sampler<'a> {
                 duration_s / count,
             );
         }
-        // Acceleration is straight over a phase: its ends are its extremes.
+        // Acceleration is linear over a phase: the extremes are at its ends.
         for motion in phase
             .motion
             .into_iter()
@@ -398,7 +400,7 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Looks at a moment of a phase, which stands for so much time.
+    /// Samples a moment of a phase; it represents the time `time_s`.
     fn look_at(&mut self, phase: &Phase, at: PiecePlace, t: f64, time_s: f64) {
         let PiecePlace {
             index,
@@ -430,8 +432,8 @@ impl<'a> Sampler<'a> {
                 .speed_caps
                 .as_ref()
                 .map_or(f64::INFINITY, |caps| caps.at(to_mm));
-            // Where the speed is held down for the tool to stay within the tolerance, it is the
-            // tolerance that binds.
+            // A speed cap keeps the tool within the tolerance, so a speed at its cap counts as
+            // bound by the tolerance.
             let used = if speed_mm_s >= CAP_BINDS * cap_mm_s {
                 1.0
             } else {
@@ -470,9 +472,10 @@ impl<'a> Sampler<'a> {
         self.result.along.push(&self.sample);
     }
 
-    /// What binds a planner that keeps limits along and across the path, by the use of feedrate and
-    /// of both: what is slower than the feedrate, and neither speeds up nor turns as fast as it
-    /// may, is held down by a corner.
+    /// Finds the binding limits of a planner with limits along and across the path, from the used
+    /// shares of feedrate and of both limits. A motion is held down by a corner if it is slower
+    /// than the feedrate, and neither its acceleration along the path nor across it reaches the
+    /// limit.
     fn path(&mut self, [feedrate, along, across]: [f64; 3], time_s: f64) {
         self.binds(OF_PATH, along, BINDS, time_s);
         self.binds(OF_PATH + 1, across, BINDS, time_s);
@@ -481,7 +484,8 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// The acceleration along and across the motion, each over what the axes can in its direction.
+    /// Returns the acceleration along and across the motion, each relative to the axes' limits in
+    /// its direction.
     fn shares_of_acceleration(&self, motion: &AxisMotion) -> (f64, f64) {
         let AxisMotion {
             velocity_mm_s,
@@ -571,7 +575,7 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Distance of a point from the programmed path around a piece.
+    /// Returns the distance of a point from the programmed path around a piece, mm.
     fn distance_mm(&self, index: usize, point_mm: [f64; 3], tolerance_mm: f64) -> f64 {
         let mut least = f64::INFINITY;
         let mut look = |piece: &Piece| {

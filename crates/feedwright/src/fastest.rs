@@ -1,21 +1,21 @@
-//! Least time within a tolerance of the tool: speed is held down only where the simulated tool
-//! would leave it.
+//! Least time within a tolerance of the tool: speed is reduced only where the simulated tool would
+//! leave the tolerance.
 //!
 //! The tolerance of the tool is shared between the planned path and the error of the servo and its
-//! controller. The program is planned and cut. By what the cut was like the error at each place is
-//! modelled over the speeds around it, and speeds of least time are found within the tolerance;
-//! they bound the next plan, which is cut in turn. Where errors are beyond the tolerance in spite
-//! of it, less is aimed at there. The fastest plan whose cut stayed within the tolerance is taken.
+//! controller. The program is planned and cut. From this cut, the error at each place is modeled
+//! over the speeds around it, and speeds of least time are found within the tolerance. They bound
+//! the next plan, which is cut in turn. Where errors still exceed the tolerance, the aim is
+//! lowered. The result is the fastest plan whose cut stayed within the tolerance.
 //!
 //! | File | What |
 //! |---|---|
-//! | `fastest/path_grid.rs` | the path at even places |
-//! | `fastest/cut_places.rs` | what a cut was like there |
-//! | `fastest/steepness.rs` | how steeply errors answer to speeds |
-//! | `fastest/error_model.rs` | what they would be at other speeds |
+//! | `fastest/path_grid.rs` | the path at evenly spaced places |
+//! | `fastest/cut_places.rs` | results of a cut at these places |
+//! | `fastest/steepness.rs` | steepness of errors over speeds |
+//! | `fastest/error_model.rs` | errors at other speeds |
 //! | `fastest/speed_profile.rs` | speeds of least time by that model |
 //! | `fastest/tightening.rs` | bounds for the next cut |
-//! | `fastest/remaining_error.rs` | whether lower speeds help |
+//! | `fastest/remaining_error.rs` | test whether lower speeds help |
 //! | `fastest/path_share.rs` | the tolerance of the path alone, at the programmed speeds |
 
 mod path_grid;
@@ -46,25 +46,26 @@ use tightening::{LOWEST_MM_S, Tightening};
 /// Distance of bounds along the path, mm.
 const SPACING_MM: f64 = 0.1;
 
-/// How often the program is planned and cut with one share of the path at most, and after how many
-/// cuts within the tolerance without a gain it is enough.
+/// Largest number of cuts with one share of the path, and number of cuts within the tolerance
+/// without a gain after which the search ends.
 const ROUNDS: u32 = 24;
 const NO_GAIN: u32 = 3;
 
 /// Smallest reduction of the time that counts as a gain, as a fraction of the time.
 const LEAST_GAIN: f64 = 1e-3;
 
-/// From this cut on less is aimed at where errors are beyond the tolerance: before, they are beyond
-/// it since speeds still change.
+/// First cut after which the aim is lowered where errors exceed the tolerance. In earlier cuts,
+/// errors exceed it because speeds still change.
 const AIM_LOWER: u32 = 8;
 
-/// Part of the tolerance that the path has at first.
+/// Initial part of the tolerance for the path.
 const FIRST_SHARE: f64 = 0.9;
 
-/// Where the controller errs much, it errs the less the slower it is. What the path has of the
-/// tolerance then costs speed everywhere; what it lacks costs it at corners and chords. After some
-/// cuts with the first of these it shows which: where the speed is bounded by the error for all of
-/// the time but this part, the path has less; elsewhere more, as long as that gains time.
+/// Shares of the tolerance for the path if the controller's error is large; that error is smaller
+/// at lower speed. A large share costs speed everywhere; a small one costs speed at corners and
+/// chords. [`TRIED`] cuts with the first share show which matters more. If something other than the
+/// error bounds the speed for less than [`HELD_PART`] of the time, the path gets [`LITTLE_SHARE`];
+/// otherwise it gets more, as long as that gains time.
 const MUCH_SHARES: [f64; 5] = [0.03, 0.1, 0.3, 0.6, FIRST_SHARE];
 const LITTLE_SHARE: f64 = 0.01;
 const TRIED: u32 = 5;
@@ -95,25 +96,25 @@ pub struct FastestPlan {
     /// Cycle time of the plan and the limits that bind. `bound_s` is the time of a plan that gives
     /// the path the whole tolerance and has no speed caps.
     pub cycle: CycleTime,
-    /// How often it was planned and cut.
+    /// Number of times that the program was planned and cut.
     pub rounds: u32,
 }
 
-/// Why [`fastest`] finds no plan.
+/// Reason why [`fastest`] finds no plan.
 #[derive(Debug, Error, miette::Diagnostic)]
 pub enum FastestError {
-    /// The tool is too far away however slow it is.
+    /// The tool is too far away at any speed.
     #[error(
         "line {line}: the tool is {error_um:.2} um away, and {tolerance_um} um are allowed; {reason}"
     )]
     Impossible {
-        /// Where it is furthest away.
+        /// Line with the largest distance.
         line: u32,
-        /// How far, um.
+        /// Largest distance, um.
         error_um: f64,
-        /// What is allowed, um.
+        /// Allowed distance, um.
         tolerance_um: f64,
-        /// Why.
+        /// Reason.
         reason: &'static str,
     },
     /// A run did not come to its end.
@@ -160,23 +161,23 @@ struct FastestCut {
     caps: Arc<SpeedCaps>,
 }
 
-/// What is looked for, and what has been found so far.
+/// State of the search, and the best cut so far.
 struct Search<'a> {
     machine: &'a Machine,
     tolerance_um: f64,
     grid: PathGrid,
-    /// What it is called while it goes on.
+    /// Name of the stage in the progress.
     stage: &'static str,
     tightening: Tightening,
     caps: Arc<SpeedCaps>,
-    /// Part of the time in which the speed is bounded by something else than the error.
+    /// Part of the time in which something other than the error bounds the speed.
     held_part: f64,
     best: Option<FastestCut>,
     rounds: u32,
     diverged: bool,
-    /// The error stays, however slow the tool is.
+    /// True where the error stays at any speed.
     hopeless: bool,
-    /// Time of the last cut, s, its largest error, um, and the line of that.
+    /// Time of the last cut, s, its largest error, um, and the line of that error.
     time_s: f64,
     worst: (f64, u32),
 }
@@ -200,7 +201,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The machine, with a share of the tolerance for the path.
+    /// Returns the machine, with a share of the tolerance for the path.
     fn planned(&self, share: f64) -> Machine {
         self.machine.planned_by_axes(share * self.tolerance_um)
     }
@@ -209,7 +210,7 @@ impl<'a> Search<'a> {
         self.best.as_ref().map_or(f64::INFINITY, |best| best.time_s)
     }
 
-    /// Plans within the bounds as they are, and cuts.
+    /// Plans within the current bounds, and cuts.
     fn cut<'p, const N: usize>(
         &mut self,
         share: f64,
@@ -257,8 +258,7 @@ impl<'a> Search<'a> {
         cut: &mut impl FnMut(&mut Self, f64) -> Result<CutPlaces, FastestError>,
     ) -> Result<(), FastestError> {
         if error < LITTLE {
-            // What the path leaves to the servo is what the servo was seen to need; or it keeps
-            // what it has.
+            // The path gets the part that the servo did not need, or else it keeps its share.
             let needed = (1.0 - (error - FIRST_SHARE)).max(LITTLE_SHARE);
             return self.over([needed, FIRST_SHARE], cut);
         }
@@ -270,7 +270,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Gives the path more and more, as long as that gains time.
+    /// Increases the share of the path, as long as that gains time.
     fn over_much_shares(
         &mut self,
         cut: &mut impl FnMut(&mut Self, f64) -> Result<CutPlaces, FastestError>,
@@ -290,8 +290,8 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
-    /// The next share of the path: what the tool has left of the tolerance, where that is less than
-    /// the next one that is tried anyway.
+    /// Returns the next share of the path: this share plus the unused part of the tolerance, if
+    /// that sum is less than the next fixed share.
     fn larger_share(&self, share: f64) -> Option<f64> {
         let next = MUCH_SHARES.into_iter().find(|&next| next > share)?;
         let left = self
@@ -309,7 +309,7 @@ impl<'a> Search<'a> {
         self.diverged || self.hopeless
     }
 
-    /// Looks for it with one share after the other, as long as that gains time.
+    /// Searches with one share after the other, as long as that gains time.
     fn over<const K: usize>(
         &mut self,
         shares: [f64; K],
@@ -323,8 +323,8 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
-    /// Looks for it with a share; whether that has gained time beside what was known before, s, and
-    /// another may gain more.
+    /// Searches with a share. Returns true if that has gained time over `before_s`, and another
+    /// share may gain more.
     fn gains(
         &mut self,
         share: f64,
@@ -383,7 +383,7 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
-    /// Why there is no plan.
+    /// Returns the error with the reason why there is no plan.
     fn impossible(&self) -> FastestError {
         let (error_um, line) = self.worst;
         let reason = if self.diverged {
@@ -401,7 +401,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// What a cut comes to as a plan.
+    /// Builds the plan of a cut, with its cycle time.
     fn plan_of<'p>(
         &self,
         found: FastestCut,
@@ -442,7 +442,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The same path with another tolerance where it is not to be kept exactly.
+/// Returns the same path with another tolerance, except where the path must be followed exactly.
 pub(crate) fn with_tolerance<'p>(steps: Steps<'p>, tolerance_mm: f64) -> Steps<'p> {
     Box::new(steps.map(move |step| {
         step.map(|step| match step {

@@ -3,8 +3,8 @@
 //! of machine, plant or planner finds old weights. Identified axes are found by the program that
 //! identified them alone.
 //!
-//! What cannot be read, is damaged or does not hold an identifier is trained anew. Without the
-//! feature `files` nothing is kept but what logs of machines tell, by [`keep_in`].
+//! Anything that cannot be read, is damaged or does not hold an identifier is trained anew. Without
+//! the feature `files`, only the results of machine logs are kept, by [`keep_in`].
 
 #[cfg(feature = "files")]
 pub(crate) mod files;
@@ -115,7 +115,8 @@ pub(crate) fn identified_axes<const N: usize>(
     Ok(trained)
 }
 
-/// What this program kept of a content; `None` where it kept nothing, or that is damaged.
+/// Returns the text that this program kept for a content; `None` if there is no such text or it is
+/// damaged.
 pub(crate) fn kept_text(content: &str) -> Option<String> {
     checked(&kept_texts::read(&name_of(content)?)?)
 }

@@ -20,7 +20,7 @@ const UNITS: [MetricUnit; 6] = [
     ("\u{b5}m", "thou", 1.0 / INCH_MM),
 ];
 
-/// What stands between two numbers of which the last has the unit of both.
+/// Text between two numbers where the second number has the unit of both.
 const BETWEEN: [&str; 6] = [
     " and ",
     " to ",
@@ -29,7 +29,7 @@ const BETWEEN: [&str; 6] = [
     ") and max ",
     ", RMS ",
 ];
-/// What stands between two numbers of which the first has the unit of both.
+/// Text between two numbers where the first number has the unit of both.
 const COMPARED: &str = " for ";
 
 /// The text with each number that has a metric unit behind it in inches. Everything else stays,
@@ -69,7 +69,7 @@ pub(crate) fn in_inches(text: &str) -> String {
     out + rest
 }
 
-/// Whether a number that follows [`COMPARED`] has a unit of another kind, such as `for 3
+/// Returns true if a number that follows [`COMPARED`] has a unit of another kind, such as `for 3
 /// stretches`.
 fn is_compared_value_with_own_unit(behind: &str) -> bool {
     behind
@@ -85,7 +85,8 @@ fn number_of(text: &str) -> &str {
     text[..end].trim_end_matches('.')
 }
 
-/// The unit of the number before `rest`: its own, or that of the number that it is listed with.
+/// Returns the unit of the number before `rest`: its own, or the unit of the number that it is
+/// listed with.
 fn unit_behind(rest: &str) -> Option<&'static MetricUnit> {
     unit_of(rest).or_else(|| {
         let next = BETWEEN
@@ -133,7 +134,7 @@ fn unit_of(text: &str) -> Option<&'static MetricUnit> {
         .find(|(metric, ..)| text.strip_prefix(metric).is_some_and(ends))
 }
 
-/// With one decimal more than the metric number has.
+/// Formats a value with one decimal more than the metric number has.
 fn converted(metric: &str, value: f64) -> String {
     let decimals = metric
         .split_once('.')

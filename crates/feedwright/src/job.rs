@@ -72,21 +72,21 @@ pub struct Job {
     pub machine_file: Option<String>,
     /// The geometry that the control compensates, in all cuts.
     pub compensation: GeometryChoice,
-    /// The controller that is asked for.
+    /// The requested controller.
     #[serde(with = "stored::entry")]
     pub controller: &'static Entry,
-    /// What it is compared against.
+    /// Controller for comparison.
     #[serde(with = "stored::entry")]
     pub against: &'static Entry,
     /// Replaces every programmed feedrate, mm/s.
     pub feed_mm_s: Option<f64>,
     /// Settings of the controllers.
     pub choices: Choices,
-    /// A model for the controller that is asked for, in place of a training.
+    /// A model for the requested controller, in place of a training.
     #[serde(with = "stored::model")]
     pub model: Option<Model>,
-    /// Machines that fit the recording of the model: each is cut with the controller too, and what
-    /// they come to is the band of the report.
+    /// Machines that fit the recording of the model. Each is cut with the controller too, and the
+    /// results are the band of the report.
     #[serde(skip)]
     pub fitting: Vec<Machine>,
     /// The day, year-month-day, on which the model that the controller learns is written; `None`
@@ -99,7 +99,7 @@ pub struct Job {
     /// The control, without feedback, that a corrected program is made for.
     #[serde(with = "stored::target")]
     pub target: Option<&'static TargetControl>,
-    /// Plans the program with the planner of this control, not with that of the machine.
+    /// Plans the program with the planner of this control instead of the machine's planner.
     #[serde(
         default,
         with = "stored::target",
@@ -108,57 +108,57 @@ pub struct Job {
     pub planned_as: Option<&'static TargetControl>,
     /// A program that errors are measured to, in place of the one that is cut.
     pub reference: Option<Program>,
-    /// Cut as fast as the tolerance allows the controller that is asked for.
+    /// Cut as fast as the tolerance allows the requested controller.
     pub fastest: bool,
     /// Find which limit of the machine binds the feedrate along the path.
     pub with_limits: bool,
-    /// What a machine recorded while it cut the program, shown beside what is predicted.
+    /// Log that a machine recorded while it cut the program, shown beside the predicted values.
     #[serde(skip)]
     pub log: Option<MeasuredLog>,
     /// Settings of the reader.
     pub reader: feedwright_gcode::Settings,
 }
 
-/// What stands for a controller in the run of a log.
+/// Name of the run of a log, in place of a controller.
 pub const MEASURED: &str = "measured";
 
-/// What a job came to. The runs stand in the order in which they were made: what is compared
-/// against, what was measured, where there is a log, then the controller that was asked for.
+/// Result of a job. The runs stand in the order in which they were made: the run for comparison,
+/// the measured run if there is a log, then the requested controller's run.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct JobOutcome {
     /// Everything that the page shows.
     pub report: Report,
-    /// What the reader warned of.
+    /// Warnings of the reader.
     pub warnings: Vec<feedwright_gcode::Diagnostic>,
-    /// Controllers that cut uncorrected, because nothing was identified that they could go by.
+    /// Controllers that cut uncorrected, because nothing was identified that they could use.
     pub without_identification: Vec<CutsUncorrected>,
-    /// What was guessed or noticed of the log.
+    /// Guesses about the log, and remarks on it.
     pub log_findings: Vec<LogFinding>,
-    /// The model that the controller had at the end of the cut, where it was given one and that was
-    /// asked for.
+    /// The model that the controller had at the end of the cut, if it was given one and this model
+    /// was requested.
     pub learned: Option<Model>,
-    /// The corrected program for another control, where one was asked for; its run is the last.
+    /// The corrected program for another control, if one was requested; its run is the last.
     pub exported: Option<CorrectOutcome>,
-    /// The plan of least time, where that was asked for.
+    /// The plan of least time, if it was requested.
     pub fastest: Option<FastestPlan>,
     /// Tolerance of the planned path, um, where it is a part of the tolerance of the tool.
     pub path_um: Option<f64>,
-    /// In what the correction is worse than uncorrected; nothing where it is compared with
+    /// Respects in which the correction is worse than uncorrected; empty where it is compared with
     /// something else.
     pub harm: Vec<Harm>,
-    /// Whether the command of the controller may be used: it was cut to its end, does no harm, and
+    /// True if the command of the controller may be used: it was cut to its end, does no harm, and
     /// asks no drive for twice its limit.
     pub is_of_use: bool,
-    /// Whether the last run was cut to its end and within the tolerance, where one was asked for,
-    /// and a program that was asked for is better than the original.
+    /// True if the last run was cut to its end and within the requested tolerance, if any, and a
+    /// requested program is better than the original.
     pub within_tolerance: bool,
 }
 
 /// A job whose program was read to its end and has no mistakes.
 #[derive(Debug)]
 pub struct CheckedJob<'a> {
-    /// With the geometry that is compensated in its machine.
+    /// The job; its machine has the geometry that is compensated.
     job: Cow<'a, Job>,
     summary: Summary,
     axes: usize,
@@ -249,7 +249,7 @@ impl CheckedJob<'_> {
         self.axes
     }
 
-    /// What the reading of the program came to.
+    /// Returns the summary of the program from its reading.
     pub fn into_summary(self) -> Summary {
         self.summary
     }
@@ -267,10 +267,9 @@ impl CheckedJob<'_> {
         }
     }
 
-    /// Cuts it; the sinks get the rows of the controller that is asked for.
+    /// Cuts the program; the sinks receive the rows of the requested controller.
     ///
-    /// # Errors
-    /// A cut that does not come to its end, a sink that takes no more, or an end from outside.
+    /// A cut that does not come to its end, a sink that fails, or a cancellation.
     pub fn run(
         &self,
         rows: &mut [&mut dyn Sink],
@@ -279,7 +278,7 @@ impl CheckedJob<'_> {
         self.run_with(Guests::default(), rows, watch)
     }
 
-    /// As [`CheckedJob::run`], with what was made elsewhere.
+    /// Works as [`CheckedJob::run`], with parts that were made elsewhere.
     ///
     /// # Errors
     /// See there.
@@ -386,8 +385,8 @@ impl Job {
         })
     }
 
-    /// Puts what a log says of the cut, where there is one, before the run of the controller that
-    /// is asked for; returns what was guessed or noticed.
+    /// Inserts the measured run of a log, if there is one, before the run of the requested
+    /// controller. Returns guesses about the log, and remarks on it.
     fn insert_measured(
         &self,
         runs: &mut Vec<ReportedRun>,
@@ -484,7 +483,7 @@ impl Job {
         found.map_err(|error| self.of_search(error))
     }
 
-    /// The controller that is asked for, for a search beside the cut.
+    /// The requested controller, for a search beside the cut.
     fn own_controller<const N: usize>(&self) -> Result<Box<dyn Controller<N>>, JobError>
     where
         Entry: Make<N>,
@@ -538,7 +537,7 @@ impl Job {
         Ok(Some(AlignedPaths::new(&original, &other)))
     }
 
-    /// The controllers in the order in which they cut: the one that is asked for last, and once.
+    /// Returns the controllers in the order in which they cut: the requested one last, and once.
     fn controllers(&self) -> Vec<&'static Entry> {
         if self.against.name == self.controller.name {
             vec![self.controller]
@@ -547,7 +546,8 @@ impl Job {
         }
     }
 
-    /// The canonical steps of the program, with the feedrate replaced where that was asked for.
+    /// Returns the canonical steps of the program, with the feedrate replaced where that was
+    /// requested.
     fn steps(&self) -> Result<impl Iterator<Item = Canon> + Send + use<>, ReadError> {
         // The program was checked from end to end before: a mistake here means that the file
         // changed, and ends it.

@@ -9,7 +9,7 @@ use crate::controllers::ModelMisfit;
 use crate::fastest::FastestError;
 use crate::measured::MeasuredError;
 
-/// Why a job cannot be done.
+/// Reasons why a job cannot be done.
 #[derive(Debug, Error, miette::Diagnostic)]
 pub enum JobError {
     /// The program cannot be read at all.
@@ -30,7 +30,7 @@ pub enum JobError {
     Path {
         /// The program.
         part: String,
-        /// Why.
+        /// Cause.
         fault: PathError,
     },
     /// The program moves an axis that the machine does not have.
@@ -56,7 +56,7 @@ pub enum JobError {
         part: String,
         /// Motions and events that it has.
         motions: u64,
-        /// How many it may have.
+        /// Largest number allowed.
         most: u64,
     },
     /// A program without a feed motion.
@@ -83,9 +83,9 @@ pub enum JobError {
     Value {
         /// Name of the option.
         name: &'static str,
-        /// Its value.
+        /// The value.
         value: f64,
-        /// Its unit after a space, where it has one.
+        /// Unit of the value after a space, if it has one.
         unit: &'static str,
         /// The range in words.
         bounds: String,
@@ -111,7 +111,7 @@ pub enum JobError {
         log: String,
         /// The program.
         part: String,
-        /// Why.
+        /// Cause.
         error: Box<MeasuredError>,
         /// Remedy.
         #[help]
@@ -124,7 +124,7 @@ pub enum JobError {
         log: String,
         /// The program.
         part: String,
-        /// Why.
+        /// Cause.
         error: String,
         /// Remedy.
         #[help]
@@ -135,18 +135,18 @@ pub enum JobError {
     Fastest {
         /// The program.
         part: String,
-        /// Why.
+        /// Cause.
         error: FastestError,
     },
     /// The cut did not come to its end.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Run(RunError),
-    /// Ended from outside.
+    /// The work was canceled.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Cancelled(#[from] Cancelled),
-    /// What takes the rows takes no more.
+    /// A sink of the rows failed.
     #[error("the rows cannot be written: {0}")]
     Write(#[from] std::io::Error),
     /// The program went away, or changed, while it was cut.
@@ -154,7 +154,7 @@ pub enum JobError {
     Reread {
         /// The program.
         part: String,
-        /// What the system says.
+        /// Error of the operating system.
         cause: std::io::Error,
     },
 }
@@ -186,7 +186,7 @@ impl JobError {
         }
     }
 
-    /// Of a cut of a part.
+    /// Converts the error of a cut of `program`.
     pub(crate) fn of_run(program: &Program, error: RunError) -> Self {
         match error {
             RunError::Read(error) => Self::Read(error),

@@ -41,13 +41,13 @@ use manifest::SetupFile;
 use names::SetupNames;
 use netlist::Netlist;
 
-/// Where Debian keeps the HAL files that several configurations share.
+/// Debian's folder of the HAL files that several configurations share.
 pub const HALLIB: &str = "/usr/share/linuxcnc/hallib";
 
-/// What the pin `acceleration-limit` takes, mm/s2.
+/// Range of the pin `acceleration-limit`, mm/s2.
 const LIVE_ACCELERATIONS_MM_S2: [f64; 2] = [1.0, 1e6];
 
-/// What to wire.
+/// Options of a setup.
 #[derive(Debug, Clone)]
 pub struct LinuxcncSetup {
     /// The INI file of the configuration.
@@ -57,32 +57,32 @@ pub struct LinuxcncSetup {
     /// Built-in machine or machine file that stands in for drives that are simulated.
     pub simulate: Option<String>,
     /// Following error that the copy allows, in the unit of the configuration: FERROR and
-    /// MIN_FERROR of linear joints that are below it are raised to it. Without it, the copy has
-    /// those of the original.
+    /// MIN_FERROR of linear joints that are below it are raised to it. Without it, the copy keeps
+    /// the values of the original.
     pub raise_ferror: Option<f64>,
     /// Replaces copies of an earlier setup that were changed by hand.
     pub replace: bool,
 }
 
-/// What came of it.
+/// Result of a setup.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LinuxcncWiring {
-    /// What was found, in plain words; each line stands alone.
+    /// Findings in plain words; each line stands alone.
     pub findings: Vec<String>,
-    /// Why the configuration is not wired, each with its remedy; empty if it is.
+    /// Reasons why the configuration is not wired, each with its remedy; empty if it is wired.
     pub refusals: Vec<String>,
     /// Pins of hardware that the copy disconnects, because a simulated machine stands in for it.
     pub disconnected: Vec<String>,
-    /// What has to change in the configuration before the correction is enabled.
+    /// Changes that the configuration needs before the correction is enabled.
     pub changes: Vec<String>,
-    /// What to do next, with the exact commands.
+    /// Next steps, with the exact commands.
     pub steps: Vec<String>,
     /// The files that were written.
     pub written: Vec<PathBuf>,
 }
 
 impl LinuxcncWiring {
-    /// Whether the copies are written.
+    /// Returns true if the copies are written.
     pub fn is_wired(&self) -> bool {
         self.refusals.is_empty()
     }

@@ -31,39 +31,39 @@ pub use machine_text::machine_text;
 pub use page::{following as following_figure, write as write_page};
 pub use update::{UpdateError, updated_text};
 
-/// What is asked for.
+/// Options of an identification from a log.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LogJob {
-    /// What the log is called in texts.
+    /// Name of the log in texts.
     pub name: String,
     /// Times that are fitted and scored, s of the log.
     pub times_s: Option<[Range<f64>; 2]>,
-    /// What is known of every axis.
+    /// Known values of every axis.
     pub facts: AxisFacts,
-    /// The machine as it was known before: what the log does not tell stays.
+    /// The machine as it was known before: values that the log does not determine stay.
     pub before: Option<Machine>,
 }
 
-/// What it came to.
+/// Result of an identification from a log.
 #[derive(Debug, Clone)]
 pub struct LogIdentified {
     /// The job.
     pub job: LogJob,
     /// The log, or the windows of it that were used.
     pub log: Log,
-    /// What was found.
+    /// The identified machine.
     pub machine: FoundMachine,
-    /// Of how many samples these windows are, where not all were used.
+    /// Number of samples in the whole log, if only windows of it were used.
     pub of_samples: Option<usize>,
 }
 
-/// Why it came to nothing.
+/// Reasons why an identification fails.
 #[derive(Debug, Error, Diagnostic)]
 pub enum LogJobError {
-    /// The record does not tell the law.
+    /// The model cannot be identified from the record.
     #[error(transparent)]
     NotFound(#[from] NotFound),
-    /// It was ended from outside.
+    /// The work was canceled.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Cancelled(#[from] Cancelled),
@@ -76,8 +76,7 @@ const WINDOW_SAMPLES: usize = 10_000;
 impl LogJob {
     /// Identifies the axes of a log.
     ///
-    /// # Errors
-    /// A log that does not tell the law of an axis, or an end from outside.
+    /// Fails if the model of an axis cannot be identified from the log, or if the work is canceled.
     pub fn run(self, log: Log, watch: &dyn Watch) -> Result<LogIdentified, LogJobError> {
         let (log, of_samples) = informative(log);
         let records: Vec<AxisRecord<'_>> = log
@@ -114,7 +113,7 @@ impl LogJob {
 }
 
 impl LogJob {
-    /// What is known of each axis of a log.
+    /// Returns the known values of each axis of a log.
     fn facts_of(&self, log: &Log) -> Vec<AxisFacts> {
         let names: Vec<&str> = log.axes.iter().map(|axis| axis.name.as_str()).collect();
         let places = places(&names);
@@ -132,8 +131,8 @@ impl LogJob {
     }
 }
 
-/// A log of no more samples than are used: windows of a longer one, evenly over those in which it
-/// moves.
+/// Limits a log to the samples that are used: from a longer log, takes windows spread evenly over
+/// the samples in which it moves. Also returns the number of samples of a log that was shortened.
 pub fn informative(log: Log) -> (Log, Option<usize>) {
     let samples = log.time_s.len();
     if samples <= MOST_SAMPLES {
@@ -188,7 +187,7 @@ pub fn informative(log: Log) -> (Log, Option<usize>) {
 }
 
 impl LogIdentified {
-    /// Which axis of the log is x, y and z of the machine file.
+    /// Returns the axes of the log that are x, y and z of the machine file.
     fn places(&self) -> [Option<usize>; 3] {
         let names: Vec<&str> = self
             .machine
@@ -211,7 +210,7 @@ impl LogIdentified {
         }
     }
 
-    /// What to record so that what is assumed can be told.
+    /// Returns advice on what to record, so that assumed values can be identified.
     pub fn advice(&self) -> Vec<String> {
         let mut advice = vec![];
         for axis in &self.machine.axes {
@@ -227,13 +226,13 @@ impl LogIdentified {
                 advice.push(format!("axis {name}: the log leaves open what other motion would show. Record the program that --excite-next writes, or the one of feedwright excite: both directions, creeping, reversals, short strokes"));
             }
             if axis.inertia().2 == NumberSource::Assumed {
-                advice.push(format!("axis {name}: positions do not tell the inertia. Give --inertia, or record the torque and give --torque-gain; until then torques in the machine file have a scale that is assumed"));
+                advice.push(format!("axis {name}: positions do not determine the inertia. Give --inertia, or record the torque and give --torque-gain; until then torques in the machine file have a scale that is assumed"));
             }
             if axis.gains_source() == NumberSource::Assumed {
-                advice.push(format!("axis {name}: positions do not tell Kp, Kv and B apart; B is taken as zero. Give --inertia and --viscous, or record the torque"));
+                advice.push(format!("axis {name}: positions do not determine Kp, Kv and B separately; B is taken as zero. Give --inertia and --viscous, or record the torque"));
             }
             if axis.law().get(LawTerm::SpeedWindow) == 0.0 {
-                advice.push(format!("axis {name}: the drive is taken to know the speed exactly. One that takes it from positions over some samples looks like a smaller inertia: the products may be too large by 10 % and more. --speed-window says it, a torque column tells"));
+                advice.push(format!("axis {name}: the drive is taken to know the speed exactly. One that takes it from positions over some samples looks like a smaller inertia: the products may be too large by 10 % and more. State it with --speed-window, or record a torque column"));
             }
             if axis.scores.beyond.is_some() {
                 advice.push(format!("axis {name}: part of what was scored is faster than all that was fitted. Record all speeds in both parts"));
@@ -252,8 +251,8 @@ impl LogIdentified {
         advice
     }
 
-    /// What other settings of the drives would bring, as far as the log supports it: of axes whose
-    /// law holds.
+    /// Describes the effect of other settings of the drives, as far as the log supports it. Only
+    /// axes whose model holds are listed.
     pub fn improvements(&self) -> Vec<String> {
         let mut improvements = vec![];
         for (found, axis) in self.machine.axes.iter().zip(&self.log.axes) {
@@ -321,13 +320,13 @@ impl LogIdentified {
     }
 }
 
-/// With four digits, whatever its size.
+/// Formats a value with four significant digits.
 pub(crate) fn digits(value: f64) -> String {
     significant(value, 4, 5)
 }
 
-/// With so many digits. A number of more than `most` + 1 places before the point, or with zeros
-/// behind it, has an exponent.
+/// Formats a value with `digits` significant digits. A number of more than `most` + 1 places before
+/// the point, or with zeros behind it, has an exponent.
 pub(crate) fn significant(value: f64, digits: i32, most: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");

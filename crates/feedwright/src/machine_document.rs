@@ -108,7 +108,7 @@ fn overlay(below: &mut Table, above: &Table) {
     }
 }
 
-/// What stands for each key that no file states: its name and a comment.
+/// Returns the name of each key that no file states, and a comment on it.
 fn left_out<T>(keys: &[Key<T>]) -> Vec<(&'static str, String)> {
     let line = |key: &Key<T>| {
         let [least, most] = key.range;

@@ -32,12 +32,12 @@ use thiserror::Error;
 
 use pairing::PairedAxes;
 
-/// What a control may delay the command by before it goes to the drives, s.
+/// Longest delay of the command in a control before it goes to the drives, s.
 const DELAY_S: f64 = 0.05;
-/// What vibration takes a tool back by at most, mm.
+/// Largest backward motion of a tool by vibration, mm.
 const BACK_MM: f64 = 0.01;
-/// How far along the path a point may have come, times its way, and this beside, mm: corners that
-/// are rounded are shorter.
+/// Factor from the distance that a point moved to the largest arc length that it may have gained.
+/// [`REACH_MM`] is added, mm: corners that are rounded are shorter.
 const REACH: f64 = 3.0;
 const REACH_MM: f64 = 0.02;
 /// The command has come to the beginning where it is this near, mm.
@@ -48,7 +48,8 @@ const LEFT_MM: f64 = 1.0;
 /// Boxes that differ by less have the same size, mm, and lie in the same place: corners are
 /// rounded.
 const SAME_SIZE_MM: f64 = 0.05;
-/// Sizes of a unit in another that a log was read in, and both: what is mistaken for one another.
+/// Factor between two units, then the unit of the log and the unit that it was read in: the units
+/// that are mistaken for one another.
 const UNITS: [(f64, &str, &str); 5] = [
     (INCH_MM, "inch", "mm"),
     (1.0 / INCH_MM, "mm", "inch"),
@@ -71,13 +72,13 @@ const SAMPLES_BETWEEN_CHECKS: usize = 10_000;
 /// A log of a cut.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredLog {
-    /// What messages call it.
+    /// Name in messages.
     pub name: String,
     /// The log.
     pub log: Log,
 }
 
-/// Why a log cannot be compared with a program.
+/// Reasons why a log cannot be compared with a program.
 #[derive(Debug, Error, miette::Diagnostic)]
 pub enum MeasuredError {
     /// An axis is not in the log.
@@ -86,10 +87,10 @@ pub enum MeasuredError {
     MissingAxis {
         /// The axis.
         axis: &'static str,
-        /// Those of the log.
+        /// Axes of the log.
         there: String,
     },
-    /// There is nothing to compare with.
+    /// The program has no motion at a feedrate to compare with.
     #[error("the program cuts nothing: it has no motion at a feedrate")]
     NothingCut,
     /// Samples are missing.
@@ -110,9 +111,9 @@ pub enum MeasuredError {
     Unit {
         /// The axis that goes farthest.
         axis: &'static str,
-        /// How far it goes in the log, as it was read, mm.
+        /// Travel of the axis in the log, as it was read, mm.
         log_mm: f64,
-        /// How far it goes in the program, mm.
+        /// Travel of the axis in the program, mm.
         program_mm: f64,
         /// The unit that fits.
         unit: &'static str,
@@ -129,11 +130,11 @@ pub enum MeasuredError {
         shifted where the whole program was recorded"
     ))]
     NotBegun {
-        /// Where the program begins to cut, mm.
+        /// Point where the program begins to cut, mm.
         start_mm: Vector,
-        /// The nearest that the command comes, mm.
+        /// Smallest distance of the command from that point, mm.
         nearest_mm: f64,
-        /// When, s.
+        /// Time of the smallest distance, s.
         at_s: f64,
     },
     /// A command of the log is too far from the program.
@@ -141,7 +142,7 @@ pub enum MeasuredError {
         shown(*at_s), shown(*off_mm))]
     #[diagnostic(help("a log of another program, or one with more than its cut"))]
     Leaves {
-        /// When, s.
+        /// Time of the command, s.
         at_s: f64,
         /// Distance of the command from the program, mm.
         off_mm: f64,
@@ -157,10 +158,10 @@ pub enum MeasuredError {
         /// Part of the path that was cut.
         share: f64,
     },
-    /// A sink took no more, or it was ended from outside.
+    /// A sink failed, or the work was canceled.
     #[error("{}", match stopped { Stopped::Write(error) => error.to_string(), Stopped::Cancelled(cancelled) => cancelled.to_string() })]
     Stopped {
-        /// Which of them.
+        /// Cause of the stop.
         stopped: Stopped,
     },
 }
@@ -173,9 +174,9 @@ fn place(point_mm: Vector) -> String {
 /// A cut that a machine recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredRun {
-    /// What it came to.
+    /// Result of the run.
     pub run: RunResult,
-    /// What was taken for granted of its axes.
+    /// Assumptions about its axes.
     pub findings: Vec<LogFinding>,
 }
 
@@ -316,9 +317,9 @@ impl<'a> LocatedLog<'a> {
     }
 }
 
-/// What the plan of the program says of its path.
+/// Data of the path from the plan of the program.
 struct PlannedPath {
-    /// Where it begins to cut, and its arc length there, mm.
+    /// Point where the program begins to cut, and its arc length there, mm.
     start_mm: Vector,
     start_s_mm: f64,
     /// Arc length at the end of the last cut, mm.
@@ -355,14 +356,14 @@ impl PlannedPath {
         })
     }
 
-    /// How far each axis goes, mm.
+    /// Returns the travel of each axis, mm.
     fn range_mm(&self) -> Vector {
         let [low, high] = self.boxes_mm[0];
         sub(high, low)
     }
 
-    /// Refuses a log whose axes all go as far as those of the program if it is read in another
-    /// unit.
+    /// Rejects a log if the travel of all axes equals the travel in the program when the log is
+    /// read in another unit.
     fn check_unit(&self, record: &RecordedAxes<'_>, axes: usize) -> Result<(), MeasuredError> {
         let mut theirs = NO_BOX;
         (0..record.len()).for_each(|k| grow(&mut theirs, record.at(k).command_mm));
@@ -418,7 +419,8 @@ impl PlannedPath {
     }
 }
 
-/// Where the program begins to cut, and its arc length there, between two plan times.
+/// Finds the point where the program begins to cut, and its arc length there, between two plan
+/// times.
 fn first_cut(reference: &mut Reference<'_>, mut before_s: f64, mut after_s: f64) -> (Vector, f64) {
     for _ in 0..HALVINGS {
         let middle_s = 0.5 * (before_s + after_s);
@@ -446,7 +448,7 @@ struct RecordedAxes<'a> {
     axes: Vec<Option<&'a LogAxis>>,
     time_s: &'a [f64],
     shift_mm: Vector,
-    /// Where axes are that the log does not have, mm.
+    /// Positions of axes that the log does not have, mm.
     still_mm: Vector,
 }
 
@@ -519,7 +521,7 @@ impl RecordedAxes<'_> {
     }
 }
 
-/// How far along the path a point has come.
+/// Progress of a point along the path.
 struct Follower {
     s_mm: f64,
     last_mm: Option<Vector>,

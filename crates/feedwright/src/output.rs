@@ -1,7 +1,7 @@
 //! Output files that are there whole or not at all.
 //!
 //! An [`OutputFile`] is written to a temporary file beside its target and renamed by
-//! [`OutputFile::commit_all`]. Dropped before that (an error, a panic, an end from outside), it
+//! [`OutputFile::commit_all`]. Dropped before that (an error, a panic, a cancellation), it
 //! leaves nothing; what a process leaves that was killed, the next one removes. What goes to the
 //! standard output (`-`), to a pipe or to a device waits in a file without a name until all is
 //! complete. The data is not forced to the disk: it survives the end of the process, not of the
@@ -30,19 +30,19 @@ pub struct OutputFiles {
 
 /// A file under way to its target.
 pub struct OutputFile {
-    /// As the user gave it, for messages.
+    /// Path as the user gave it, for messages.
     shown: PathBuf,
-    /// Where it will stand, symbolic links resolved.
+    /// Final path, with symbolic links resolved.
     target: PathBuf,
     out: BufWriter<Named>,
     place: OutputPlace,
 }
 
-/// Where a file goes when it is complete.
+/// Destination of a complete file.
 enum OutputPlace {
-    /// To its target, from beside it.
+    /// The target; the file is written beside it.
     Beside(PartFile),
-    /// To a pipe or a device.
+    /// A pipe or a device.
     Device(File),
     StandardOutput,
 }
@@ -55,7 +55,7 @@ struct Named {
 }
 
 impl OutputFiles {
-    /// None yet; `inputs` are files of this run that no output must replace.
+    /// Creates an empty set; `inputs` are files of this run that no output may replace.
     pub fn new<'a>(inputs: impl IntoIterator<Item = &'a Path>) -> Self {
         Self {
             inputs: inputs.into_iter().map(Path::to_owned).collect(),
@@ -127,7 +127,7 @@ impl OutputFile {
         })
     }
 
-    /// Where the file will stand, as it was given.
+    /// Returns the final path of the file, as it was given.
     pub fn path(&self) -> &Path {
         &self.shown
     }
@@ -213,7 +213,7 @@ pub(crate) fn exit_without_files(code: u8) -> ! {
     std::process::exit(code.into())
 }
 
-/// Whether a target is the standard output; `./-` is a file of that name.
+/// Returns true if a target is the standard output; `./-` is a file of that name.
 pub(crate) fn is_standard_output(path: &Path) -> bool {
     path.as_os_str() == "-"
 }

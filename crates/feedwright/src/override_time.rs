@@ -1,5 +1,5 @@
-//! How long a program takes with a feed override, and where a feed hold leaves it: the plan of the
-//! program, moved along by [`TimeScaling`](feedwright_plan::TimeScaling).
+//! The time of a program with a feed override, and its stop by a feed hold: moves along the plan of
+//! the program by [`TimeScaling`](feedwright_plan::TimeScaling).
 
 use std::collections::VecDeque;
 
@@ -17,47 +17,48 @@ const PERIOD_S: f64 = 2.5e-4;
 /// held must then reach further ahead than the same number of short periods does.
 const PERIOD_ABOVE_S: f64 = 1e-3;
 
-/// Moments of a step at which limits are looked at.
+/// Number of intervals of a step at whose ends limits are checked.
 const MOMENTS: u32 = 8;
 
-/// What an operator does.
+/// Inputs of an operator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct OperatorRequest {
     /// Override of feeds, 1 for none, up to [`MOST_OVERRIDE`](feedwright_plan::MOST_OVERRIDE).
     pub override_of_feeds: f64,
-    /// When the feed hold is pressed, s.
+    /// Time at which the feed hold is pressed, s.
     pub hold_at_s: Option<f64>,
 }
 
 /// A stop by feed hold.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct HoldStop {
-    /// When it was pressed, s.
+    /// Time at which the feed hold was pressed, s.
     pub at_s: f64,
-    /// How long the tool goes on until it rests, s.
+    /// Time from the feed hold until the tool rests, s.
     pub stops_in_s: f64,
-    /// How far, along the path, mm.
+    /// Way of the tool along the path until it rests, mm.
     pub way_mm: f64,
-    /// How far at least with the limits of each axis for itself, mm.
+    /// Least possible way with the limits of each axis by itself, mm.
     pub least_mm: f64,
-    /// Where it rests, mm.
+    /// Position at rest, mm.
     pub position_mm: [f64; 3],
 }
 
-/// What becomes of a plan.
+/// Result of moving along a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct OverrideTime {
-    /// Until the program ends, or the tool rests by the hold, s.
+    /// Time until the program ends or the tool rests after the hold, s.
     pub time_s: f64,
-    /// The same without override and hold, to the end, s.
+    /// Time of the whole plan without override and hold, s.
     pub plan_s: f64,
     /// Largest ratio of a velocity, acceleration or jerk to its limit.
     pub largest_violation: f64,
-    /// The stop, where a hold was asked for before the end.
+    /// The stop, if a hold was requested before the end.
     pub hold: Option<HoldStop>,
 }
 
-/// Plans a program, and moves along the plan. None where the planner does not say what the axes do.
+/// Plans a program, and moves along the plan. None if the planner does not provide the motion of
+/// the axes.
 ///
 /// # Errors
 /// Fails if the program cannot be planned, a limit is not a valid number, or `watch` cancels the
@@ -72,7 +73,8 @@ pub(crate) fn override_time(
     let constraints = Constraints::from(machine);
     let mut plan = Plan::new(steps, &constraints, stages.planner, Plc::from(machine))?;
     let mut published = PublishedPlan::new();
-    // Whether each piece that phases may still be of is no rapid, and the number of the first.
+    // For each piece that phases may still belong to, whether it cuts, and the number of the first
+    // such piece.
     let (mut cutting, mut first) = (VecDeque::new(), 0);
     for planned in plan.by_ref() {
         watch.check()?;
@@ -140,7 +142,7 @@ fn moved_along(
             break;
         }
         if request.override_of_feeds <= 0.0 && rests && result.time_s > 0.0 {
-            // It stays there until somebody turns the override up.
+            // The tool stays there until the operator turns the override up.
             result.time_s = f64::INFINITY;
             break;
         }
@@ -153,7 +155,7 @@ fn moved_along(
     Ok(result)
 }
 
-/// The largest ratio of what an axis does in a step to its limit.
+/// Returns the largest ratio of velocity, acceleration or jerk of an axis in a step to its limit.
 fn use_of_limits(plan: &PublishedPlan, limits: &ScalingLimits, step: &ScaledStep) -> f64 {
     let ratios = (0..=MOMENTS).flat_map(|m| {
         let motion = step.motion(plan, step.duration_s * f64::from(m) / f64::from(MOMENTS));

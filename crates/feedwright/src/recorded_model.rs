@@ -1,11 +1,13 @@
-//! The model that a user has of a machine: identified from a log, and from nothing else.
+//! The model that a user has of a machine: identified only from a log.
 //!
 //! ```text
-//! program of excite -> cut uncorrected -> log of commands and encoders -> law of each axis -> machine file -> model
+//! program of excite -> cut uncorrected -> log of commands and encoders
+//!     -> model of each axis -> machine file -> model
 //! ```
 //!
-//! It is kept by content: the same program and the same machine find the same model. The built-in
-//! machines come with what their logs tell: `recorded_model/built_in.rs`.
+//! Models are kept by content: the same program and the same machine find the same model. The
+//! results of the logs of built-in machines are shipped with the program:
+//! `recorded_model/built_in.rs`.
 
 mod built_in;
 
@@ -27,10 +29,11 @@ use crate::identifier_cache::{keep_text, kept_text};
 use crate::job::Job;
 use crate::log_job::{LogIdentified, LogJob, LogJobError, machine_text};
 
-/// Machines that are drawn with a log at the most: their files stay with that of the machine.
+/// Largest number of machines that are drawn from a log. Their files are kept with the machine's
+/// own file.
 const MOST_FITTING: usize = 32;
-/// Bits by which the number of a draw is shifted before it is added to the seed of the log: seeds
-/// that are counted up draw apart.
+/// Bits by which the number of a draw is shifted before it is added to the seed of the log, so that
+/// consecutive seeds give different draws.
 const SEED_SHIFT: u32 = 32;
 
 /// Share of the log in the time of a first model, and of its recording in the time of the log: the
@@ -47,15 +50,15 @@ pub(crate) const BUILT_IN_SEED: u64 = 1;
 struct RecordedModel {
     /// The model.
     model: Model,
-    /// Axes that the log does not tell well enough, in words.
+    /// Axes that the log does not determine well enough, in words.
     doubts: Vec<String>,
 }
 
-/// Why there is none.
+/// Reasons why there is no model.
 #[derive(Debug, Error, Diagnostic)]
 pub enum RecordedModelError {
-    /// The log does not tell the law of an axis.
-    #[error("a log of {machine} tells no model: {cause}")]
+    /// The model of an axis cannot be identified from the log.
+    #[error("a log of {machine} determines no model: {cause}")]
     #[diagnostic(help(
         "give a model with --model, take the settings of the drives from the machine file with --exact-settings, or cut without \
          a correction: --controller uncorrected"
@@ -63,28 +66,28 @@ pub enum RecordedModelError {
     NotTold {
         /// Name of the machine.
         machine: String,
-        /// Why.
+        /// Cause.
         cause: String,
     },
-    /// It was ended from outside.
+    /// The work was canceled.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-/// A text that follows from a log, and the doubts about it.
+/// A text that follows from a log, and the axes in it that are uncertain.
 #[derive(Serialize, Deserialize)]
 struct Told {
     text: String,
     doubts: Vec<String>,
-    /// Further machine files that the log tells about as well.
+    /// Machine files of other machines that fit the log about as well.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     fitting: Vec<String>,
 }
 
 impl Told {
-    /// What is shipped with the program or kept for a content, with `fitting` machines at the
-    /// least; made anew where there is none.
+    /// Returns the text that is shipped with the program, with at least `fitting` machines, or that
+    /// is kept for the content; otherwise makes it.
     fn of(
         content: &str,
         fitting: usize,
@@ -104,7 +107,7 @@ impl Told {
         Ok(made)
     }
 
-    /// What a new log of a machine tells.
+    /// Identifies a machine from a new log.
     fn identified(
         machine: &Machine,
         axes: usize,
@@ -135,13 +138,12 @@ impl Told {
     }
 }
 
-/// Gives the controller of a job the model that a log of its machine tells, where it goes by one
-/// and has none: what `run` does by default. `machine` is as its file has it, whatever limits the
+/// Gives the controller of a job the model from a log of its machine, if the controller uses one
+/// and has none. `run` does this by default. `machine` is as its file has it, whatever limits the
 /// job plans with; `date` becomes the date in the model file. Returns the axes that the log does
-/// not tell well enough, in words; `None` where the job takes no such model.
+/// not determine well enough, in words; `None` if the job takes no such model.
 ///
-/// # Errors
-/// A log that does not tell the law of an axis, or an end from outside.
+/// Fails if the model of an axis cannot be identified from the log, or if the work is canceled.
 pub fn take_recorded_model(
     job: &mut Job,
     machine: &Machine,
@@ -158,12 +160,11 @@ pub fn take_recorded_model(
     Ok(Some(doubts))
 }
 
-/// The model of the first axes of a machine, two or three, for a controller that goes by one: the
-/// machine cuts the program of `excite` uncorrected, and its log tells the rest. `date` becomes the
-/// date in the model file.
+/// Returns the model of the first two or three axes of a machine, for a controller that uses one.
+/// The machine cuts the program of `excite` uncorrected, and the model is identified from the log.
+/// `date` becomes the date in the model file.
 ///
-/// # Errors
-/// A log that tells no model, or an end from outside.
+/// Fails if no model can be identified from the log, or if the work is canceled.
 fn recorded_model(
     machine: &Machine,
     axes: usize,
@@ -193,7 +194,7 @@ fn recorded_model(
     })
 }
 
-/// What the model of a log follows from.
+/// Describes the inputs that determine the model of a log.
 fn model_content(machine: &Machine, axes: usize, (entry, choices): (&Entry, &Choices)) -> String {
     format!(
         "model {axes} {} {choices:?} {}",
@@ -202,7 +203,7 @@ fn model_content(machine: &Machine, axes: usize, (entry, choices): (&Entry, &Cho
     )
 }
 
-/// The model file of a machine that a log told of.
+/// Returns the model file of a machine that was identified from a log.
 fn trained(
     machine: &Machine,
     told: &Machine,
@@ -216,10 +217,10 @@ fn trained(
     Ok(model.text())
 }
 
-/// The first axes of a machine as their log tells them, and what the log does not tell well enough.
+/// Returns the first axes of a machine as identified from their log, and the axes that the log does
+/// not determine well enough.
 ///
-/// # Errors
-/// A log that does not tell the law of an axis, or an end from outside.
+/// Fails if the model of an axis cannot be identified from the log, or if the work is canceled.
 pub fn recorded_machine(
     machine: &Machine,
     axes: usize,
@@ -234,8 +235,8 @@ pub fn recorded_machine(
     ))
 }
 
-/// Machines that fit the same log about as well, 32 at the most: their laws are drawn from what the
-/// identification leaves open, and the same log gives the same machines.
+/// Returns up to 32 machines that fit the same log about as well. Their models are drawn from the
+/// uncertainty of the identification. The same log gives the same machines.
 ///
 /// # Errors
 /// As [`recorded_machine`].
@@ -256,9 +257,9 @@ pub fn fitting_machines(
         .map_err(|error| not_told(machine, &error))
 }
 
-/// What the program is shipped with of a built-in machine, made anew: what its log tells, and the
-/// model by that for a controller, as `run` has them by default. `date` becomes the date in the
-/// model.
+/// Computes again what is shipped with the program for a built-in machine: the machine identified
+/// from its log, and the model from it for a controller, as `run` has them by default. `date`
+/// becomes the date in the model.
 ///
 /// # Errors
 /// As [`take_recorded_model`].
@@ -281,7 +282,7 @@ pub fn built_in_lines(
         &content(machine, axes, BUILT_IN_SEED),
         &told,
     )];
-    // A log that tells a machine need not tell a model: that is said at each cut.
+    // A log that identifies a machine need not give a model: each cut then reports that.
     if let Ok(text) = trained(machine, &found, axes, (entry, &choices), date) {
         let model = Told {
             text,
@@ -296,7 +297,7 @@ pub fn built_in_lines(
     Ok(lines)
 }
 
-/// What the machine of a log follows from.
+/// Describes the inputs that determine the machine of a log.
 fn content(machine: &Machine, axes: usize, seed: u64) -> String {
     format!(
         "machine and those that fit, {axes} {seed} {}",
@@ -304,15 +305,15 @@ fn content(machine: &Machine, axes: usize, seed: u64) -> String {
     )
 }
 
-/// What a log follows from, and what is written with it: a field that a machine does not use
-/// changes nothing.
+/// Describes the inputs that determine a log, and what is written with it. A field that a machine
+/// does not use changes nothing.
 fn log_content(machine: &Machine) -> String {
     let geometries = [&machine.compensated, &machine.tool]
         .map(|geometry| geometry.as_ref().map(|g| format!("{g:?}")));
     format!("{} {} {geometries:?}", machine.name, machine.fingerprint())
 }
 
-/// The machine that the log tells, and those that fit as well, `fitting` at the least: shipped with
+/// Returns the machine from the log and at least `fitting` others that fit as well: shipped with
 /// the program, kept, or identified.
 fn told_machine(
     machine: &Machine,
@@ -392,7 +393,7 @@ fn not_told(machine: &Machine, cause: &dyn Diagnostic) -> RecordedModelError {
     }
 }
 
-/// Axes whose law is not good enough for a correction, or is open.
+/// Returns the axes whose model is open or not good enough for a correction.
 fn doubts(identified: &LogIdentified) -> Vec<String> {
     let is_sound = |verdict| matches!(verdict, LawVerdict::LawHolds | LawVerdict::LinearSuffices);
     let axes = identified

@@ -1,4 +1,4 @@
-//! Report: what a run came to, as numbers ([`RunSummary`]), as one HTML page ([`write_html`]) and
+//! Report: the results of a run, as numbers ([`RunSummary`]), as one HTML page ([`write_html`]) and
 //! as figures ([`figure`]).
 //!
 //! A run hands its rows to two sinks of bounded memory: [`Statistics`] sees every row and keeps
@@ -49,8 +49,8 @@ pub use worst::WorstPlace;
 pub(crate) use feedwright_sim::CorrectionChange;
 pub(crate) use feedwright_sim::{FadedOut, Outcome, Transition};
 
-/// In place of a controller: the run of a corrected program, cut without feedback by another
-/// control.
+/// Name in place of a controller for the run of a corrected program, which the target control cuts
+/// without feedback.
 pub(crate) const AS_EXPORTED: &str = "as exported";
 
 /// Everything that the page shows.
@@ -64,33 +64,32 @@ pub struct Report {
     pub machine: Vec<(String, String)>,
     /// Settings of the run: name and value, in the order in which they are shown.
     pub settings: Vec<(String, String)>,
-    /// What the figures rest on.
+    /// Assumptions behind the figures.
     pub assumed: Assumptions,
-    /// The geometry that is compensated; none where nothing is.
+    /// The geometry that is compensated; none if no geometry is compensated.
     pub geometry: Option<CompensatedGeometry>,
-    /// Lines of the program, in their order; not all of a long one.
+    /// Lines of the program, in order; only some of a long program.
     pub program: Vec<ProgramLine>,
     /// The full circles of the program.
     pub circles: Vec<FullCircle>,
-    /// Largest contour error that the part allows, µm, where one was asked for.
+    /// Largest contour error that the part allows, µm, if one was given.
     pub tolerance_um: Option<f64>,
-    /// What binds the plan along the path, where it is planned axis by axis.
+    /// Limits that bind along the path, if the path is planned axis by axis.
     pub limits: Option<LimitBand>,
-    /// What the machine allows each axis, drawn beside what the runs ask of it.
+    /// Limits of each axis of the machine, drawn beside the loads of the runs.
     pub axis_limits: Vec<DrawnLimits>,
-    /// What other machines that fit the recording come to, where they were cut.
+    /// Errors of other machines that fit the recording, if these were cut.
     pub band: Option<Band>,
-    /// One for each controller. The first is what the others are compared with; the last is the one
-    /// that is judged.
+    /// One run for each controller. The others are compared with the first; the last one is judged.
     pub runs: Vec<ReportedRun>,
 }
 
-/// What an axis may at the most.
+/// Limits of an axis.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct DrawnLimits {
     /// Torque at which the drive saturates, N m.
     pub torque_nm: f64,
-    /// Acceleration that the plan keeps, mm/s2; none where the plan has no limits of axes.
+    /// Acceleration limit of the plan, mm/s2; none if the plan has no axis limits.
     pub accel_mm_s2: Option<f64>,
 }
 
@@ -101,16 +100,16 @@ pub struct ReportedRun {
     pub summary: RunSummary,
     /// Its record.
     pub series: Series,
-    /// The spectrum of its contour error; empty where too little was cut.
+    /// Spectrum of its contour error; empty if too little was cut.
     pub spectrum: Vec<SpectrumBand>,
-    /// How round it cut each of the circles; none where that cannot be told.
+    /// Roundness of each of the circles in this run; none where it cannot be measured.
     pub roundness: Vec<Option<Roundness>>,
     /// Events of the program in the time of this run; may be empty.
     pub events: Vec<TimelineEvent>,
 }
 
 impl ReportedRun {
-    /// How round it cut a circle of the program.
+    /// Returns the roundness of a circle of the program in this run.
     fn roundness_of(&self, circle: usize) -> Option<&Roundness> {
         self.roundness.get(circle)?.as_ref()
     }
@@ -125,18 +124,18 @@ pub struct ProgramLine {
     pub text: String,
 }
 
-/// A tool change, dwell or other event of the program at the time at which the run came to it.
+/// Tool change, dwell or other event of the program, at the time at which the run reached it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimelineEvent {
-    /// When it began, s.
+    /// Start of the event, s.
     pub t_s: f64,
-    /// How long it took, s; 0 for an event without duration.
+    /// Duration of the event, s; 0 for an event without duration.
     pub duration_s: f64,
     /// Line of the program, from 1.
     pub line: u32,
-    /// Row of the timeline that it stands in, as in "spindle" or "lamp".
+    /// Row of the timeline for the event, as in "spindle" or "lamp".
     pub row: String,
-    /// What happened, as in "tool 3" or "dwell".
+    /// Name of the event, as in "tool 3" or "dwell".
     pub label: String,
 }
 

@@ -1,8 +1,8 @@
 //! Two results, or two programs, side by side: their figures with the ratio, and one plot.
 //!
-//! Results are the JSON of `run`, `correct` and `plan`. Of a run the last cut counts, the one that
-//! is judged. The plot has the distribution of the contour error of two runs, and the paths of two
-//! programs.
+//! Results are the JSON of `run`, `correct` and `plan`. For a run, the last cut counts, which is
+//! the one that is judged. The plot has the distribution of the contour error of two runs, or the
+//! paths of two programs.
 
 use std::io::{self, Write};
 
@@ -19,7 +19,7 @@ use crate::report::plain_page::{
 };
 use crate::report::text::{change, escaped, number};
 
-/// Figures by their keys in the JSON results, and what they are called.
+/// Figures by their keys in the JSON results, and their names.
 const KEYS: [(&str, &str); 11] = [
     ("time_s", "time s"),
     ("cutting_s", "cutting s"),
@@ -34,21 +34,21 @@ const KEYS: [(&str, &str); 11] = [
     ("cutting_length_mm", "cutting length mm"),
 ];
 
-/// One of the two.
+/// One of the two results or programs.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct DiffSide {
-    /// What it is called.
+    /// Name of the result or program.
     pub(crate) name: String,
     /// Figures by their names.
     pub(crate) figures: Vec<(&'static str, f64)>,
-    /// Its curve in the plot; empty where it has none.
+    /// Its curve in the plot; empty if it has none.
     pub(crate) curve: Vec<[f64; 2]>,
-    /// Whether the curve is a path, mm; else it is a distribution.
+    /// True where the curve is a path, mm; false where it is a distribution.
     pub(crate) is_path: bool,
 }
 
 impl DiffSide {
-    /// Of a JSON result; `None` where it is none of `run`, `correct` and `plan`.
+    /// Reads a JSON result; `None` if it is not a result of `run`, `correct` or `plan`.
     pub(crate) fn of_result(name: &str, result: &Value) -> Option<Self> {
         let last = result["runs"].as_array().and_then(|runs| runs.last());
         let exported = result.get("as_exported");
@@ -68,7 +68,7 @@ impl DiffSide {
         })
     }
 
-    /// Of a program.
+    /// Reads a program.
     ///
     /// # Errors
     /// A program with mistakes.
@@ -94,12 +94,12 @@ impl DiffSide {
     }
 }
 
-/// Points of a piece of the path in the plot: an arc looks round.
+/// Number of points of a piece of the path in the plot, so that an arc looks round.
 const POINTS: usize = 24;
-/// Points of a path at the most: a page of a few MB.
+/// Largest number of points of a path: a page of a few MB.
 const MOST_POINTS: usize = 200_000;
 
-/// The path of a program in X and Y, mm.
+/// Returns the path of a program in X and Y, mm.
 fn path(steps: impl Iterator<Item = Canon> + Send) -> Vec<[f64; 2]> {
     let mut points = Vec::new();
     for step in path_steps(steps).map_while(Result::ok) {
@@ -120,8 +120,8 @@ fn path(steps: impl Iterator<Item = Canon> + Send) -> Vec<[f64; 2]> {
     points
 }
 
-/// The distribution of the contour error: share of the servo periods for each um, over the error,
-/// um.
+/// Returns the distribution of the contour error: share of the servo periods per um, over the
+/// error, um.
 fn distribution(histogram: &Value) -> Vec<[f64; 2]> {
     let Some(counts) = histogram["counts"].as_array() else {
         return Vec::new();
@@ -140,19 +140,20 @@ fn distribution(histogram: &Value) -> Vec<[f64; 2]> {
     counts.iter().enumerate().flat_map(step).collect()
 }
 
-/// A figure of both.
+/// A figure of both sides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct DiffFigure {
     /// Its name with its unit.
     pub(crate) name: &'static str,
-    /// Of the first.
+    /// Value of the first side.
     pub(crate) before: f64,
-    /// Of the second.
+    /// Value of the second side.
     pub(crate) after: f64,
 }
 
 impl DiffFigure {
-    /// The second over the first, with three decimals; a dash where the first is zero.
+    /// Formats the ratio of the second to the first, with three decimals; a dash if the first is
+    /// zero.
     pub(crate) fn ratio(&self) -> String {
         let ratio = self.after / self.before;
         if ratio.is_finite() {
@@ -163,7 +164,7 @@ impl DiffFigure {
     }
 }
 
-/// Figures that both have, in their order.
+/// Returns the figures that both sides have, in order.
 pub(crate) fn diff_figures(before: &DiffSide, after: &DiffSide) -> Vec<DiffFigure> {
     let both = |(name, value): &(&'static str, f64)| {
         let (_, after) = after.figures.iter().find(|(other, _)| other == name)?;
@@ -176,10 +177,10 @@ pub(crate) fn diff_figures(before: &DiffSide, after: &DiffSide) -> Vec<DiffFigur
     before.figures.iter().filter_map(both).collect()
 }
 
-/// Writes a page with the figures of both and their plot.
+/// Writes a page with the figures of both sides and their plot.
 ///
 /// # Errors
-/// Where `out` takes no more.
+/// A write to `out` that fails.
 pub(crate) fn write_diff_page(
     out: &mut impl Write,
     [before, after]: [&DiffSide; 2],
@@ -243,7 +244,7 @@ pub(crate) fn write_diff_page(
     write_foot(out)
 }
 
-/// Both curves over each other.
+/// Draws both curves on top of each other.
 fn figure(sides: [&DiffSide; 2]) -> Figure {
     let is_path = sides[0].is_path;
     let line = [

@@ -1,5 +1,5 @@
-//! The feedrates that are advised hold the tolerance, each way for itself, and are told with what
-//! they are cut at.
+//! The advised feedrates hold the tolerance, each way of cutting for itself, and are reported with
+//! the conditions of the cut.
 
 use feedwright::{
     Advice, AdviseJob, CONTROLLERS, CorrectJob, CutWay, ErrorPlace, JobError, PageUnits, TARGETS,
@@ -23,7 +23,7 @@ fn job(text: &str, tolerance_um: f64) -> AdviseJob {
     job
 }
 
-/// What is to be held.
+/// Tolerance that the advised feedrates must hold, um.
 const TOLERANCE_UM: f64 = 10.0;
 /// Decimals of a corrected program: an error moves by no more than the rounding of both
 /// coordinates.
@@ -115,8 +115,8 @@ fn what_no_feedrate_holds_is_said_and_a_program_that_cuts_nothing_is_refused() {
         !out_of_reach.holds() && out_of_reach.stretches[0].holds_mm_s == [None; 3],
         "{out_of_reach:?}"
     );
-    // A machine with feedforward runs over the end of a rapid whatever the feed is: the feed that
-    // holds on the way is told beside.
+    // A machine with feedforward overruns the end of a rapid at any feedrate. The feedrate that
+    // holds on the way is reported as well.
     let mut job = job(
         "G21 G90 G64\nG0 X30\nG3 X30 Y0 I-8 J0 F3000\nM2\n",
         TOLERANCE_UM,

@@ -141,7 +141,7 @@ fn subroutines_are_found_in_the_folders_that_are_named() {
         .refused(&["--subroutines none", "no folder"]);
 }
 
-/// A tool table is no program; what is wrong with it is told in the format all the same.
+/// A tool table is no program, but its mistakes are reported in the requested format, too.
 #[test]
 fn a_faulty_tool_table_is_told_in_every_format() {
     let folder = folder();

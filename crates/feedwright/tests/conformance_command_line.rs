@@ -1,4 +1,4 @@
-//! The command line as such: `-` in place of files, units, widths, colours, help, version,
+//! The command line as such: `-` in place of files, units, widths, colors, help, version,
 //! completions, manual pages.
 
 use std::collections::BTreeSet;

@@ -1,5 +1,5 @@
-//! The colours of the pages are told apart from what is behind them: the contrast ratios that WCAG
-//! 2.1 asks for at level AA, 4.5 for text and 3 for what is drawn, in light and dark.
+//! The colors of the pages reach the contrast ratios that WCAG 2.1 requires at level AA, 4.5 for
+//! text and 3 for graphics, in light and dark.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -14,7 +14,7 @@ fn asset(name: &str) -> String {
 
 type Rgb = [f64; 3];
 
-/// Custom properties with a colour for light and one for dark.
+/// Custom properties with a color for light and one for dark.
 fn colors(css: &str) -> BTreeMap<String, [Rgb; 2]> {
     let hex = |text: &str| {
         let digits = text
@@ -95,7 +95,7 @@ fn text_and_curves_of_the_report_are_told_from_their_background() {
     check(&css, &curves, &["bg", "panel"], GRAPHICS);
 }
 
-/// The scale of the error, from its first colour on.
+/// The scale of the error, from its first color on.
 #[test]
 fn every_colour_of_the_error_is_told_from_the_panel() {
     let (css, script) = (asset("colors.css"), asset("theme.js"));

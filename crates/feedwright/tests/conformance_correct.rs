@@ -1,4 +1,4 @@
-//! A corrected program delivers what is told of it: its text keeps the lines of the original, and
+//! A corrected program delivers what is reported: its text keeps the lines of the original, and it
 //! is better as the control cuts it.
 
 use feedwright::{CorrectJob, CorrectOutcome, OverrideVerdict, TARGETS, TargetControl};

@@ -1,4 +1,4 @@
-//! `feedwright correct`, and `run --out FILE.ngc`: what they write, tell and refuse.
+//! `feedwright correct`, and `run --out FILE.ngc`: what they write, report and refuse.
 
 use crate::command::Folder;
 use serde_json::Value;

@@ -29,8 +29,8 @@ fn accelerations(folder: &Folder, servo_s: f64) -> [Vec<f64>; 2] {
     })
 }
 
-/// Servo periods whose acceleration has the other sign than that of the one before, both above half
-/// the limit.
+/// Counts the servo periods whose acceleration has the opposite sign of the acceleration one period
+/// earlier, both above half the limit.
 fn alternating(accelerations: &[f64], limit: f64) -> usize {
     accelerations
         .windows(2)

@@ -76,7 +76,7 @@ fn an_axis_that_turns_alone_takes_its_time_and_is_told() {
     assert!((turned("A36") - 6.0).abs() < 0.002, "{}", turned("A36"));
     // The same in inches: the unit of length does not change angles.
     assert!((turned("G20\nF360\nC-36\nG21\nF360") - 6.0).abs() < 0.002);
-    // U in place of X Y Z: millimetres.
+    // U in place of X Y Z: millimeters.
     assert!((turned("U36") - 6.0).abs() < 0.002);
     // Inverse time: a tenth of a minute, whatever the way.
     assert!((turned("G93 F10 B90\nG94 F360") - 6.0).abs() < 0.002);

@@ -20,8 +20,8 @@ fn a_log_of_a_simulated_machine_is_recorded_while_it_cuts_the_program() {
             "{told}"
         );
         folder.run(&["check", "excite.ngc"]).succeeded();
-        // The command in the log is that of the drives: with a geometry compensated it is not the
-        // program's.
+        // The log has the commands of the drives. If a geometry were compensated, they would differ
+        // from the program.
         let open = [
             "--controller",
             "uncorrected",

@@ -70,8 +70,8 @@ fn the_programmed_feedrate_is_the_ceiling_and_feed_raises_it() {
     assert!(tight_s > 1.05 * raised_s, "{tight_s} {raised_s}");
 }
 
-/// With 20 um of encoder noise the tool is some 12 um away at any speed: that is seen before it is
-/// slow.
+/// The tool is about 12 um off at any speed with 20 um of encoder noise. The search notices that
+/// before it slows down.
 #[test]
 fn what_no_speed_brings_within_the_tolerance_is_told_with_its_line_and_nothing_is_written() {
     let folder = folder("encoder_noise_um = 20\n");

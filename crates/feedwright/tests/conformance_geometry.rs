@@ -22,7 +22,7 @@ fn rms_um(folder: &Folder, more: &[&str]) -> ([f64; 2], Value) {
     )
 }
 
-/// What is left at the tool is what the loops leave by the encoders.
+/// The remaining error at the tool equals the error of the loops by the encoders.
 #[test]
 fn the_geometry_of_the_machine_file_is_compensated_unless_that_is_turned_off() {
     let folder = Folder::new();

@@ -1,6 +1,5 @@
-//! What a job promises to whoever runs it: it can be written down and read back, it tells its
-//! progress, it ends when it is told to, it needs no file, and it shares nothing with another one
-//! beside it.
+//! Guarantees of a job to its caller: it can be written down and read back, reports its progress,
+//! ends when it is canceled, needs no file, and shares nothing with another job beside it.
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;

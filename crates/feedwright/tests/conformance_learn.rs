@@ -1,4 +1,4 @@
-//! `correct --log`: programs that learn from the parts that were cut, and logs that tell nothing.
+//! `correct --log`: programs that learn from the parts that were cut, and logs without information.
 
 use std::fmt::Write as _;
 

@@ -82,7 +82,8 @@ fn an_unknown_driver_is_not_simulated_and_is_disconnected() {
     );
 }
 
-/// Behind a scale and a limit; the enable is inverted, and the feedback goes through a sum.
+/// The driver is behind a scale and a limit; the enable is inverted, and the feedback goes through
+/// a sum.
 #[test]
 fn a_driver_behind_arithmetic_is_disconnected_and_kept_off() {
     let joint = "net cmd@ joint.@.motor-pos-cmd => scale.@.in

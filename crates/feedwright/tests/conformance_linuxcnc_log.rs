@@ -8,7 +8,7 @@ use crate::conformance_identify_log::rows as rows_of_one_axis;
 
 const INCH_MM: f64 = 25.4;
 
-/// What goes before the rows: `# sample_time_s`, the unit, and the pins.
+/// Returns the lines before the rows: `# sample_time_s`, the unit, and the pins.
 fn head(unit: &str, columns: &str) -> String {
     format!("# sample_time_s = 0.001\n{unit}# {columns}\n")
 }
@@ -53,7 +53,7 @@ const RUN: [&str; 7] = [
     "r.json",
 ];
 
-/// What it says on stderr, without the line that is drawn beside a long message.
+/// Returns the text on stderr without the line that is drawn beside a long message.
 fn unframed(ran: &Ran) -> String {
     ran.remarked().replace("\u{2502} ", "")
 }

@@ -1,6 +1,6 @@
 //! `linuxcnc setup` leaves the original as it is, can be repeated and undone, and replaces nothing
-//! that was changed by hand. Every sample configuration of Debian's LinuxCNC is wired, or told why
-//! not.
+//! that was changed by hand. Every sample configuration of Debian's LinuxCNC is wired, or refused
+//! with a reason.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use crate::golden_linuxcnc_setup::copied;
 use crate::missing::missing;
 
 const SETUP: [&str; 3] = ["linuxcnc", "setup", "my.ini"];
-/// Where Debian has the samples.
+/// Debian's folder of the samples.
 const SAMPLES: &str = "/usr/share/doc/linuxcnc/examples/sample-configs";
 
 #[test]

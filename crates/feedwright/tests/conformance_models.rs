@@ -135,8 +135,7 @@ fn a_run_without_a_model_goes_by_what_a_log_of_the_machine_tells_and_keeps_it() 
     assert_eq!(kept(), kept_first, "what is identified is written");
     assert_eq!(ratio(&folder).to_bits(), of_log.to_bits());
     assert_eq!(band(&folder), first_band);
-    // The same machine under the name that is built in: what its log tells is shipped with the
-    // program.
+    // The same machine under the built-in name: the result of its log is shipped with the program.
     folder
         .run(&[
             "run",
@@ -182,7 +181,7 @@ fn a_run_without_a_model_goes_by_what_a_log_of_the_machine_tells_and_keeps_it() 
 }
 
 const STAR: &str = include_str!("../../../parts/star.ngc");
-/// A machine whose position gain is a tenth below that of workshop.
+/// A machine with a position gain a tenth below workshop's.
 const SLOW: &str = "base = \"workshop\"\nname = \"slow\"\n[axis.x]\nkp_1_s = 45\n[axis.y]\nkp_1_s = 45\n[axis.z]\nkp_1_s = 45\n";
 
 #[test]
@@ -647,7 +646,7 @@ fn a_block_is_of_a_model_or_of_a_machine_and_nothing_is_written_where_neither_is
     }
 }
 
-/// Acceleration that is fed forward without the speed is told, axis by axis.
+/// Acceleration that is fed forward without the speed is reported, axis by axis.
 fn axes_that_no_command_follows(folder: &Folder) {
     for (parts, axes) in [
         ([0.0, 0.0], vec![]),
@@ -672,7 +671,7 @@ fn axes_that_no_command_follows(folder: &Folder) {
     }
 }
 
-/// Each way of naming a geometry, what is told of it, and whether the block then has one.
+/// Checks each way of naming a geometry: the reported text, and whether the block then has one.
 fn geometry_of_a_block(folder: &Folder) {
     let of_a_screw = "format = 1\nsource = \"a test\"\n[axis.x]\nlead_mm_per_rev = 8\npitch_error_um = 3\nbacklash_um = 2\n";
     folder.file("screw.toml", of_a_screw);

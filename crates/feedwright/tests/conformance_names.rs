@@ -32,8 +32,8 @@ const SHARED: &[(&str, &str)] = &[
     ),
 ];
 
-/// Names of the types that a source text declares outside of its tests. Associated types are none:
-/// a trait names them.
+/// Names of the types that a source text declares outside of its tests. Associated types do not
+/// count: a trait names them.
 fn declared(text: &str) -> BTreeSet<String> {
     let code = code(text);
     let mut names = BTreeSet::new();

@@ -210,7 +210,7 @@ fn a_thousand_connections_that_say_nothing_keep_the_page_for_a_short_time_only()
     assert!(served, "the page is not served any more");
 }
 
-/// In place of LinuxCNC's `halcmd`: shows the pins of a file, and keeps what it was asked.
+/// Replaces LinuxCNC's `halcmd`: shows the pins of a file, and records the requests.
 #[cfg(unix)]
 const HALCMD: &str = "#!/bin/sh
 while read -r command; do

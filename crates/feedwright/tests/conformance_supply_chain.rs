@@ -7,7 +7,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-/// What the HAL component may link beside our own crates.
+/// Packages that the HAL component may link besides our own crates.
 const IN_SERVO_THREAD: [&str; 1] = ["libm"];
 /// Packages of a build for one platform: fewer mean that nothing was read.
 const LEAST_PACKAGES: usize = 80;
@@ -60,7 +60,7 @@ fn packages() -> Vec<Value> {
     metadata["packages"].as_array().unwrap().clone()
 }
 
-/// Whether an SPDX expression can be fulfilled by these licenses: every part between `AND` has an
+/// Returns true if these licenses fulfill an SPDX expression: every part between `AND` has an
 /// allowed license.
 fn permits(expression: &str, allowed: &[String]) -> bool {
     expression
@@ -134,7 +134,7 @@ fn a_servo_thread_links_our_crates_and_the_functions_of_libm() {
     }
 }
 
-/// What a lock file says that a package of ours needs, without versions.
+/// Returns the packages that a package of ours needs by a lock file, without versions.
 fn locked<'a>(lock: &'a toml::Table, name: &str) -> Option<BTreeSet<&'a str>> {
     let package = lock["package"]
         .as_array()
@@ -153,7 +153,7 @@ fn locked<'a>(lock: &'a toml::Table, name: &str) -> Option<BTreeSet<&'a str>> {
     )
 }
 
-/// What a manifest says that its package needs on any platform: always, and with all features.
+/// Returns the packages that a manifest needs on any platform: always, and with all features.
 fn needed(manifest: &toml::Table) -> [BTreeSet<&str>; 2] {
     let platforms = manifest
         .get("target")

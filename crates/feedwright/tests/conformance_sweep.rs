@@ -62,7 +62,7 @@ fn value(text: &[u8]) -> Value {
     serde_json::from_slice(text).unwrap()
 }
 
-/// What a result has beside the keys of `run`.
+/// Selects the keys of a result that `run` does not write.
 fn of_sweep(result: &Value) -> Value {
     let keys = ["format", "version", "address", "job", "error"];
     let of_result = keys

@@ -14,7 +14,7 @@ const PROGRAM: &str = "```gcode\n";
 const MESSAGE: &str = "```text\n";
 const END: &str = "```\n";
 
-/// What is printed about a program, messages first.
+/// Returns the output of `check` for a program, messages first.
 fn told(program: &str) -> String {
     let folder = Folder::new();
     folder.file("part.ngc", program);

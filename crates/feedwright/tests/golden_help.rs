@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::command::{Folder, Ran};
 
-/// What stands before the help in the document.
+/// Heading before the help in the document.
 const HEADING: &str = "\n## Commands\n\n";
 
 fn help(folder: &Folder, arguments: &[&str], all: &str) -> String {

@@ -81,8 +81,8 @@ fn the_products_of_a_simulated_machine_are_found_from_positions_alone() {
     assert!(rms_um < 2.5, "{rms_um} um");
 }
 
-/// tnv40 without disturbance, whose commands are late by so many servo periods and whose drive by
-/// so many seconds.
+/// Returns tnv40 without disturbance, with commands late by `periods` servo periods and a drive
+/// late by `drive_delay_s`.
 fn late_machine(periods: u32, drive_delay_s: f64) -> Machine {
     let mut machine = Machine::load("tnv40".as_ref()).unwrap();
     for axis in &mut machine.axes {
@@ -216,7 +216,7 @@ fn a_log_that_moves_one_way_is_open_until_the_other_is_recorded() {
 #[test]
 fn what_is_known_stands_where_a_log_does_not_tell_it() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
-    // At a constant speed the following error tells Kp and feedforward together.
+    // A constant speed determines only Kp and feedforward together, by the following error.
     let steady: Vec<f64> = (0..6000).map(|k| 0.02 * f64::from(k)).collect();
     let mut log = logged(&machine, [steady.clone(), steady], 1.0, 8);
     log.axes.truncate(1);
@@ -368,7 +368,7 @@ fn a_window_of_the_speed_goes_into_the_machine_file_and_holds_on_pulses() {
         with < 0.2 * without,
         "{with} um, and {without} um without the window"
     );
-    // What the log does not tell stays, and the fit goes by it.
+    // Values that the log does not determine stay, and the fit uses them.
     let text = machine_text(&found, "mine");
     let kept = of(facts, Some(Machine::parse("mine.toml", &text).unwrap()));
     assert_eq!(kept.machine.axes[0].law().get(LawTerm::SpeedWindow), 0.002);

@@ -234,7 +234,8 @@ fn a_machine_that_is_another_in_one_value_is_found_out() {
     is_found(&text(&values, GEOMETRY), "speed_limit_mm_s = 0");
 }
 
-/// What two axes do in a second at 50 mm/s round a circle, with reversals and a rest.
+/// Returns the output of two axes in one second at 50 mm/s round a circle, with reversals and a
+/// rest.
 fn bits(machine: &Machine, seed: Option<u64>) -> Vec<u64> {
     let start = [0.0; 2];
     let mut plant = match seed {
@@ -301,7 +302,7 @@ fn a_zero_is_the_same_as_no_key_to_the_bit_and_anything_else_is_not() {
     }
 }
 
-/// Whether a key cannot be left out while another is there.
+/// Returns true if a key cannot be left out while another is there.
 fn is_needed(key: &str) -> bool {
     [
         "signal_period_um",
@@ -351,8 +352,8 @@ fn the_same_seed_gives_the_same_bits_and_others_give_others() {
     );
 }
 
-/// What no encoder sees changes nothing that a controller is shown: without it, the joints of both
-/// machines are the same.
+/// Errors that no encoder sees change nothing that a controller receives: without them, the joints
+/// of both machines are the same.
 #[test]
 fn the_error_of_the_joints_is_that_of_the_machine_without_its_geometry() {
     let folder = tempfile::tempdir().unwrap();

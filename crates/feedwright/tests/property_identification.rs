@@ -86,7 +86,7 @@ fn another_zero_and_another_unit_change_the_products_by_nothing_but_the_unit() {
 fn a_log_of_any_length_is_fitted_by_no_more_than_its_share_of_samples() {
     let mut long = log(5);
     long.axes.truncate(1);
-    // The same motion again and again, 240,000 samples, between standstill that tells nothing.
+    // The same motion again and again, 240,000 samples, between standstill without information.
     let times = 120;
     let once = long.time_s.len();
     let again = |values: &[f64]| {

@@ -23,7 +23,7 @@ const SIGNS: [&str; 14] = [
     "\"", "'", "[", "]", "$", "(", ")", "#", "\\", "=", "<=", "\n", " ", "\u{fc}",
 ];
 
-/// What happens to a file.
+/// Damage of a file.
 #[derive(Debug, Clone)]
 enum Damage {
     Insert { at: usize, sign: usize },

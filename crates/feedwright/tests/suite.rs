@@ -31,6 +31,7 @@ mod conformance_bad_input;
 mod conformance_check;
 mod conformance_check_formats;
 mod conformance_command_line;
+mod conformance_comments;
 mod conformance_contrast;
 mod conformance_correct;
 mod conformance_correct_command;

@@ -1,5 +1,5 @@
-//! Looks for programs that make the reader panic, hang or misplace a fault: mutates real programs
-//! for as long as it is told.
+//! Searches for programs that make the reader panic, hang or misplace a fault: mutates real
+//! programs for SECONDS.
 //!
 //! Usage: `cargo run --release -p feedwright-gcode --example mutate -- SECONDS [SEED]
 //! FILE_OR_FOLDER...`
@@ -14,12 +14,13 @@ use std::time::{Duration, Instant};
 use feedwright_gcode::canon::Canon;
 use feedwright_gcode::{Reader, Settings};
 
-/// Longest text of one round: a round must stay short, for the number of rounds finds faults.
+/// Longest text of one round, bytes: rounds must stay short, since the number of rounds finds
+/// faults.
 const MAX_BYTES: usize = 4096;
 /// A round that takes longer counts as hanging.
 const SLOW: Duration = Duration::from_secs(2);
 
-/// Pieces of the language that mutations put in.
+/// Pieces of the language that mutations insert.
 const PIECES: &[&str] = &[
     "G0",
     "G1",
@@ -129,8 +130,7 @@ const PIECES: &[&str] = &[
     "N10",
 ];
 
-/// A small generator of pseudo-random numbers (splitmix64, S. Vigna): the runs must be the same
-/// everywhere.
+/// Generator of pseudo-random numbers (splitmix64, S. Vigna): the runs are the same everywhere.
 struct Random(u64);
 
 impl Random {
@@ -231,8 +231,8 @@ fn mutated(seeds: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
     text
 }
 
-/// Reads a program; says what is wrong with the reader's answer. A program that takes too long is
-/// read `again`.
+/// Reads a program. Returns an error that states what is wrong with the answer of the reader. With
+/// `again`, reads a program that takes too long a second time.
 fn try_program(text: &[u8], again: bool) -> Result<(), String> {
     let begin = Instant::now();
     let result = std::panic::catch_unwind(|| {
@@ -262,7 +262,7 @@ fn try_program(text: &[u8], again: bool) -> Result<(), String> {
                     if numbers.clone().any(|value| !value.is_finite()) {
                         return Err(format!("a number is not finite: {motion:?}"));
                     }
-                    // Behind a fault the position is only assumed.
+                    // After a fault the position is only assumed.
                     if !faults && before.is_some_and(|before| before != motion.start_mm) {
                         return Err(format!("a gap before {motion:?}"));
                     }
@@ -276,7 +276,7 @@ fn try_program(text: &[u8], again: bool) -> Result<(), String> {
     match result {
         Err(_) => Err("it panics".to_owned()),
         Ok(Err(reason)) => Err(reason),
-        // Once more: another program may have had the processor.
+        // A second time: another program may have had the processor.
         Ok(Ok(())) if begin.elapsed() > SLOW && again => try_program(text, false),
         Ok(Ok(())) if begin.elapsed() > SLOW => Err(format!("it takes {:?}", begin.elapsed())),
         Ok(Ok(())) => Ok(()),

@@ -22,24 +22,24 @@ pub enum Canon {
 pub struct Motion {
     /// Line of the program, from 1.
     pub line: u32,
-    /// Whether the tool cuts.
+    /// Rapid or cutting feed.
     pub kind: MotionKind,
-    /// Where the motion starts.
+    /// Start point, machine coordinates, mm.
     pub start_mm: [f64; 3],
-    /// Where it ends.
+    /// End point, machine coordinates, mm.
     pub end_mm: [f64; 3],
     /// The curve between the two.
     pub shape: Shape,
     /// Programmed feedrate, mm/s; not used by a rapid.
     pub feed_mm_s: f64,
-    /// How the corner at the end of this motion is taken.
+    /// Corner mode at the end of this motion.
     pub corner: Corner,
-    /// What moves along with X, Y and Z.
+    /// Motion of the other axes and the extruder.
     #[serde(default, skip_serializing_if = "AuxiliaryAxes::is_none")]
     pub others: AuxiliaryAxes,
 }
 
-/// What moves along with X, Y and Z during a motion; `AuxiliaryAxes::default()` is nothing.
+/// Axes that move along with X, Y and Z during a motion. `AuxiliaryAxes::default()` moves none.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct AuxiliaryAxes {
     /// Filament pushed during the motion (E of 3D printers), mm; negative pulls back.
@@ -50,13 +50,13 @@ pub struct AuxiliaryAxes {
 }
 
 impl AuxiliaryAxes {
-    /// Whether nothing else moves.
+    /// Returns true if no other axis and no extruder moves.
     pub fn is_none(&self) -> bool {
         self.extruder_mm == 0.0 && self.axes.is_none()
     }
 }
 
-/// Whether a motion cuts.
+/// Rapid or cutting feed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MotionKind {
@@ -123,7 +123,7 @@ pub struct Spline {
     pub weights: Vec<f64>,
 }
 
-/// How a corner is taken.
+/// Corner mode.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Corner {
@@ -146,11 +146,11 @@ pub enum Corner {
 pub struct Event {
     /// Line of the program, from 1.
     pub line: u32,
-    /// What happens.
+    /// Kind of the event.
     pub kind: EventKind,
 }
 
-/// What happens in an [`Event`].
+/// Kind of an [`Event`].
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EventKind {

@@ -57,10 +57,11 @@
 //! # Mistakes
 //!
 //! [`ReadError`] says why a file is no program at all. A [`Diagnostic`] has a stable code, line,
-//! column, a message with value and limit, and most have a hint; each place is told once. It is a
-//! [`miette::Diagnostic`], so that miette shows it with its line and a caret. [`Reader::warnings`]
-//! has what deserves a look and stops nothing. [`Program::check`] runs through a whole program
-//! ahead of all work: every mistake, or a [`Summary`] with lengths, extent and axes.
+//! column, and a message with value and limit; most have a hint. Each place is reported once. It is
+//! a [`miette::Diagnostic`], so that miette shows it with its line and a caret.
+//! [`Reader::warnings`] lists what deserves a look but does not stop the program.
+//! [`Program::check`] runs through a whole program before any work begins and returns every
+//! mistake, or a [`Summary`] with lengths, extent and axes.
 //!
 //! # What is bounded
 //!

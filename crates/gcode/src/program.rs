@@ -52,7 +52,7 @@ impl Program {
         Self(ProgramPlace::File(path.into()))
     }
 
-    /// What messages call it: the path as the user gave it.
+    /// Returns the name that messages use: the path as the user gave it.
     pub fn name(&self) -> String {
         match &self.0 {
             ProgramPlace::Text { name, .. } => name.clone(),
@@ -60,7 +60,7 @@ impl Program {
         }
     }
 
-    /// What reports call it: the name of the file without its folder.
+    /// Returns the name that reports use: the file name without its folder.
     pub fn file_name(&self) -> String {
         let name = self.name();
         Path::new(&name)

@@ -53,12 +53,12 @@ pub enum Dialect {
 }
 
 impl Dialect {
-    /// Whether words mean what they do on Fanuc and Haas.
+    /// Returns true if words mean what they do on Fanuc and Haas controls.
     pub const fn is_fanuc(self) -> bool {
         matches!(self, Self::Fanuc | Self::Haas | Self::FanucMill) || self.is_lathe()
     }
 
-    /// Whether the program is for a lathe of theirs.
+    /// Returns true if the program is for a Fanuc or Haas lathe.
     pub const fn is_lathe(self) -> bool {
         matches!(self, Self::FanucLathe | Self::HaasLathe)
     }
@@ -85,9 +85,9 @@ impl Dialect {
 #[derive(Debug, Clone, PartialEq, Eq, Error, miette::Diagnostic)]
 #[error("no dialect is called '{name}'; there are {}", names().join(", "))]
 pub struct UnknownDialect {
-    /// What was asked for.
+    /// Name that the user gave.
     pub name: String,
-    /// Which one may be meant.
+    /// Closest known dialect, if one is close, and how to let the program decide.
     #[help]
     pub hint: String,
 }
@@ -155,7 +155,7 @@ impl Increment {
             })
     }
 
-    /// What one counts, in the unit of the program.
+    /// Returns the length of one increment, in the unit of the program.
     pub(crate) const fn units(self, inch: bool) -> f64 {
         if inch { 0.1 * self.mm } else { self.mm }
     }
@@ -182,7 +182,7 @@ impl From<Increment> for String {
 )]
 #[diagnostic(help("most controls have 0.001mm, which is 0.0001inch in programs in inches"))]
 pub struct UnknownIncrement {
-    /// What was asked for.
+    /// Increment that the user gave.
     pub name: String,
 }
 
@@ -191,10 +191,10 @@ pub struct UnknownIncrement {
 pub struct Settings {
     /// Dialect; `None` chooses by the beginning of the file.
     pub dialect: Option<Dialect>,
-    /// What a length without a decimal point counts on a Fanuc or Haas; `None` reads it as whole
-    /// millimetres or inches.
+    /// Length that one count of a number without a decimal point stands for on a Fanuc or Haas.
+    /// `None` reads such numbers as whole millimeters or inches.
     pub increment: Option<Increment>,
-    /// Whether the reader skips lines that begin with `/`. Off by default, like the block delete
+    /// True where the reader skips lines that begin with `/`. Off by default, like the block delete
     /// switch of a control.
     pub block_delete: bool,
     /// Faults that are kept before the rest is only counted.
@@ -208,7 +208,7 @@ pub struct Settings {
     pub max_motions: u64,
     /// Calls and loops inside each other.
     pub max_depth: usize,
-    /// Where files of subroutines are looked for, besides the folder of the program.
+    /// Folders searched for subroutine files, besides the folder of the program.
     pub subroutine_paths: Vec<PathBuf>,
     /// Tools: lengths and diameters.
     pub tools: ToolTable,

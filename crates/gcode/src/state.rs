@@ -44,7 +44,7 @@ pub(crate) struct LoadedTool {
     pub(crate) next: u32,
 }
 
-/// What a program has handed out.
+/// Steps and warnings that a program has produced.
 #[derive(Debug, Default)]
 pub(crate) struct Output {
     /// Steps not yet fetched.
@@ -53,13 +53,13 @@ pub(crate) struct Output {
     pub(crate) motions: u64,
     /// Warnings of the line under way.
     pub(crate) warnings: Vec<LineFault>,
-    /// Whether the line under way writes offsets or puts others in force.
+    /// True where the current line writes offsets or activates others.
     pub(crate) line_sets_offsets: bool,
     /// Text of the lines that did, since the last step was fetched.
     pub(crate) offset_lines: Vec<String>,
 }
 
-/// What the lines so far have left; `motion`, `dialects` and `flow` carry blocks out on it.
+/// State after the lines so far. `motion`, `dialects` and `flow` apply blocks to it.
 #[derive(Debug)]
 pub(crate) struct Interpreter {
     pub(crate) settings: Settings,
@@ -77,7 +77,7 @@ pub(crate) struct Interpreter {
     /// The lathe cycle whose profile is being read, and the call that it waits for.
     pub(crate) lathe: Option<Box<LatheCycle>>,
     pub(crate) wanted: Option<ProfileCall>,
-    /// What Fanuc and Haas have besides.
+    /// Additional state of the Fanuc and Haas dialects.
     pub(crate) fanuc: Fanuc,
     pub(crate) output: Output,
     /// Line under way.
@@ -167,7 +167,7 @@ impl Interpreter {
         }
     }
 
-    /// Whether cutter compensation is on.
+    /// Returns true if cutter compensation is on.
     pub(crate) const fn compensates(&self) -> bool {
         self.carried.compensation.is_some()
     }
@@ -188,7 +188,7 @@ impl Interpreter {
         }
     }
 
-    /// Whether a warning comes for the first time.
+    /// Returns true the first time that it is called with a warning code.
     pub(crate) fn warn_once(&mut self, code: &'static str) -> bool {
         let is_new = !self.fanuc.warned.contains(&code);
         if is_new {

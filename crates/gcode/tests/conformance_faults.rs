@@ -207,7 +207,7 @@ const HINTS: &[(&str, &[u32], &str)] = &[
     ("#1=5+3\nG0 X1", &[1], "#1=[5+3]"),
     ("G0 X[sin(30)]", &[1], "sin[30]"),
     ("Gl X5\nG0 X1", &[1], "write 1"),
-    // What follows from a refused motion is not told again.
+    // Faults that follow from a refused motion are not reported again.
     ("F100\nG1 X5 Y5 Z$\nX6\nG2 X9 Y0 I1", &[2], ""),
     ("F100\nG2 X5 Y5 I9\nG3 X0 Y0 I-1", &[2], ""),
     (

@@ -47,7 +47,7 @@ struct Move {
     end_mm: [f64; 3],
 }
 
-/// What an `.expected` file says of the state.
+/// State printed in an `.expected` file.
 struct Printed {
     unit_mm: f64,
     plane: [usize; 3],

@@ -9,8 +9,8 @@ use feedwright_gcode::canon::{Canon, Motion, MotionKind, Shape};
 use feedwright_gcode::{Diagnostic, Reader, Settings};
 use proptest::prelude::*;
 
-/// How far the distance may be from the radius, mm. The program is printed to 1e-9 mm; a joint may
-/// take 1e-7 mm.
+/// Largest deviation of the distance from the radius, mm. The program is printed to 1e-9 mm; a
+/// joint may take 1e-7 mm.
 const SLACK_MM: f64 = 1e-6;
 /// Points of a motion that are looked at.
 const POINTS: u32 = 40;
@@ -167,9 +167,9 @@ fn points(motion: &Motion) -> Vec<Point> {
         .collect()
 }
 
-/// Where the path, entry and exit left out, is not as far from the contour as the radius: motion,
-/// point, distance. Elements that are no neighbours of what the tool is at do not count where the
-/// tool does not fit between them.
+/// Returns the first point of the path, without entry and exit, whose distance from the contour is
+/// not the radius: line, point, distance. Only the elements next to the current one count, because
+/// the tool may not fit between others.
 fn wrong(motions: &[Motion], elements: &[Element], radius: f64) -> Option<String> {
     let last_line = 3 + elements.len() as u32;
     for pair in motions
@@ -282,7 +282,7 @@ fn a_line_too_short_for_both_its_corners_is_refused_before_an_arc_too() {
     );
 }
 
-/// LinuxCNC's rapids go straight past an outer corner, and the tool into it: it is told.
+/// LinuxCNC's rapids go straight past an outer corner, and the tool cuts into it. The reader warns.
 #[test]
 fn a_rapid_past_an_outer_corner_is_straight_and_told() {
     let text = "G21 F100\nG0 X-20 Y-30\nG1 G41.1 D5 X0 Y0\nG1 X30 Y0\nG0 X30 Y-20\nG1 X10\nG40 G1 X0 Y-40\nM2\n";

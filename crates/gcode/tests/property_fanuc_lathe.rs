@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 /// Rounding of the program to six decimals, and chords of arcs.
 const SLACK_MM: f64 = 2e-3;
-/// Where the cycle starts: radius, and before the part.
+/// Start of the cycle: radius, and distance before the part.
 const TOP_MM: f64 = 40.0;
 const BEFORE_MM: f64 = 2.0;
 const CHORDS: u32 = 200;

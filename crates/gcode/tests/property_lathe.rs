@@ -10,9 +10,9 @@ use proptest::prelude::*;
 
 /// Chords of an arc: of half a circle of 10 mm, they are 4e-4 mm off.
 const CHORDS: u32 = 256;
-/// That, and the printing of the program in six decimals.
+/// Deviation of the chords, and rounding of the program to six decimals.
 const SLACK_MM: f64 = 1e-3;
-/// Where the cycle starts: depth above everything, along the passes before everything.
+/// Start of the cycle: above the whole profile in depth, and before it along the passes.
 const TOP_MM: f64 = 40.0;
 const BEFORE_MM: f64 = 2.0;
 
@@ -115,7 +115,7 @@ impl Part {
         self.points.windows(2).map(to).fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether a point lies below the profile.
+    /// Returns true if a point lies below the profile.
     fn is_inside(&self, point: [f64; 2]) -> bool {
         self.points.windows(2).any(|pair| {
             let [from, to] = [pair[0][0], pair[1][0]];

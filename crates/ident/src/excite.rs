@@ -21,7 +21,7 @@ use feedwright_sim::{AXIS_NAMES, Machine, to_four_digits};
 use miette::Diagnostic;
 use thiserror::Error;
 
-/// What the program may do.
+/// Limits of the excitation program.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExciteOptions {
     /// Travel of each axis, mm: half of it on each side of where the machine stands.
@@ -60,7 +60,7 @@ impl MotionPart {
         }
     }
 
-    /// What it is for.
+    /// Names the motion and the parameters that it identifies.
     fn purpose(self) -> &'static str {
         match self {
             Self::Creeping => {
@@ -76,7 +76,7 @@ impl MotionPart {
     }
 }
 
-/// What an axis does in a program, and the bounds that it keeps.
+/// Motion of one axis in a program, and the bounds that it keeps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisExcitation {
     /// Its place among x, y and z.
@@ -102,7 +102,7 @@ impl AxisExcitation {
 pub struct ExciteProgram {
     /// The text.
     pub text: String,
-    /// About how long it takes, s.
+    /// Approximate run time, s.
     pub takes_s: f64,
     /// Highest programmed feed, mm/s.
     pub max_feed_mm_s: f64,
@@ -117,7 +117,7 @@ pub enum ExciteError {
     )]
     #[diagnostic(help("free travel of 20 mm about where the machine stands is enough"))]
     Travel {
-        /// What was asked for, mm.
+        /// Requested travel, mm.
         travel_mm: f64,
     },
 }
@@ -254,7 +254,8 @@ fn fastest_mm_s(machine: &Machine, axis: usize) -> f64 {
     FEED_PART * machine.limits.max_feed_mm_s.min(own_mm_s)
 }
 
-/// What to do before, while and after it runs, as comments.
+/// Writes the instructions at the top of the program, as comments: what to do before, during and
+/// after the run.
 fn head(machine: &Machine, travel_mm: f64, takes_s: f64, max_feed_mm_s: f64) -> String {
     let names = &AXIS_NAMES[..machine.axis_count()];
     let half_mm = to_four_digits(0.5 * travel_mm);
@@ -365,7 +366,7 @@ impl MoveWriter {
         };
     }
 
-    /// To one side, to the other, and back.
+    /// Moves the axis to one side, to the other side and back to the start.
     fn there_and_back(&mut self, axis: usize, length_mm: f64, feed_mm_s: f64) {
         let letter = AXIS_NAMES[axis].to_uppercase();
         let length_mm = rounded(length_mm);
@@ -465,7 +466,7 @@ impl MoveWriter {
     }
 }
 
-/// To the digits that controls read.
+/// Rounds a length to 0.0001 mm, the resolution that controllers read.
 fn rounded(length_mm: f64) -> f64 {
     (length_mm * 1e4).round() / 1e4
 }

@@ -7,7 +7,7 @@
 //! | File | What |
 //! |---|---|
 //! | `geometry/text.rs` | keys, columns and rows of a text |
-//! | `geometry/unknowns.rs` | the unknowns that a measurement may tell |
+//! | `geometry/unknowns.rs` | the unknowns that a measurement can determine |
 //! | `geometry/readings.rs` | readings before and behind the fit: bins, repeatability, tables |
 //! | `geometry/circularity.rs` | circular deviations of a ball bar |
 //! | `geometry/fit.rs` | the fit |

@@ -1,10 +1,10 @@
 //! Identification: from what a machine showed to the trained weights of an identifier.
 //!
-//! What a machine showed is a [`recording`]. A simulated machine cuts an identification excitation
-//! for it: laps of circles at random feeds, two thirds of them with random offsets of the command
-//! from the path, so that the data tell the effect of the feedrate from that of the path.
-//! [`contour`] trains the paper's network on it. [`axis_parameters`] finds what an axis is, inertia
-//! and friction, where its drive's settings are known. None of them sees the machine.
+//! A [`recording`] holds what a machine showed. A simulated machine cuts an identification
+//! excitation for it: laps of circles at random feedrates, two thirds of them with random offsets
+//! of the command from the path. The offsets separate the effect of the feedrate from the effect of
+//! the path. [`contour`] trains the paper's network on the recording. [`axis_parameters`] finds the
+//! inertia and friction of an axis whose drive settings are known. None of them sees the machine.
 
 pub(crate) mod recording;
 mod excitation;
@@ -37,7 +37,7 @@ const AXIS_PARAMETER_LAPS: u32 = 24;
 const RENEWAL_S: f64 = 6.0 * 0.003;
 const RAMP_S: f64 = 0.003;
 
-/// What the machine cuts to be identified.
+/// Motion that the machine cuts for the identification.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Excitation {
     /// Radii of the circles, in turn, mm.
@@ -64,14 +64,15 @@ impl Excitation {
         f64::from(machine.period.servo_periods(self.feed_period_s)) * machine.period.servo_s
     }
 
-    /// What a machine shows that cuts it, and the generator as it is then: a training that draws
-    /// goes on with it.
+    /// Records a machine that cuts this excitation. Also returns the state of the random number
+    /// generator after the recording; a training that draws random numbers continues with it.
     pub fn record<const N: usize>(&self, machine: &Machine, seed: u64) -> (Recording<N>, Rng) {
         let mut rng = Rng::seed_from_u64(seed);
         (excitation::record(machine, self, &mut rng), rng)
     }
 
-    /// As [`Self::record`], all laps in one cut, with noise that goes on from lap to lap.
+    /// Records all laps in one cut, with noise that continues from lap to lap. Otherwise like
+    /// [`Self::record`].
     pub fn record_in_one<const N: usize>(&self, machine: &Machine, seed: u64) -> Recording<N> {
         excitation::record_in_one(machine, self, &mut Rng::seed_from_u64(seed))
     }
@@ -100,9 +101,9 @@ impl Excitation {
         }
     }
 
-    /// For the parameters of an axis, whose motion does not depend on the path: circles in both
-    /// senses, over a wider range of feeds, with a knot in every servo period, since the model of
-    /// an axis is stepped through all of them.
+    /// Returns the excitation for the parameters of an axis, whose motion does not depend on the
+    /// path: circles in both directions, over a wider range of feedrates. It has a knot in every
+    /// servo period, since the model of an axis steps through all of them.
     pub fn axis_parameters(machine: &Machine) -> Self {
         let servo_periods = |time_s: f64| (time_s / machine.period.servo_s).round().max(1.0) as u32;
         Self {
@@ -116,8 +117,9 @@ impl Excitation {
         }
     }
 
-    /// For the statistics of the axes of a machine: a minute at its servo period, at all speeds
-    /// from slow ones, at which cogging moves the axis, without offsets.
+    /// Returns the excitation for the statistics of the axes of a machine: a minute at its servo
+    /// period, without offsets, at all speeds. The slowest are those at which cogging moves the
+    /// axis.
     pub fn statistics(machine: &Machine) -> Self {
         Self {
             radii_mm: vec![2.0, 5.0, 10.0],

@@ -43,7 +43,7 @@ use table::LogTable;
 /// Commanded and actual positions of a machine's axes, recorded at an even clock.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
-    /// What kind of file it was.
+    /// Kind of the file.
     pub format: LogFormat,
     /// Time between two samples, s.
     pub sample_time_s: f64,
@@ -57,7 +57,7 @@ pub struct Log {
     pub axes: Vec<LogAxis>,
     /// Axes that have both and whose command stands still.
     pub still: Vec<LogAxis>,
-    /// What was guessed or noticed, in the order in which it is to be told.
+    /// Guesses and observations, in the order in which they are reported.
     pub findings: Vec<LogFinding>,
 }
 
@@ -72,11 +72,11 @@ pub struct LogAxis {
     pub actual_mm: Vec<f64>,
     /// Torque, force or current, in the unit of the file.
     pub torque: Option<Vec<f64>>,
-    /// That unit.
+    /// Unit of `torque`.
     pub torque_unit: TorqueUnit,
     /// Step of the measured position, mm; 0 where none shows.
     pub step_mm: f64,
-    /// What it is good for.
+    /// Fitness of the record for a servo model.
     pub verdict: Fitness,
 }
 
@@ -88,7 +88,7 @@ pub const MAX_AXES: usize = 9;
 pub enum LogFormat {
     /// LinuxCNC's `halsampler`: columns of numbers, behind a sample number with `-t`.
     Halsampler,
-    /// What LinuxCNC's `halscope` saves.
+    /// Files that LinuxCNC's `halscope` saves.
     Halscope,
     /// Variables of MATLAB or Octave, saved as version 5 to 7.
     Matlab,
@@ -120,8 +120,8 @@ impl std::fmt::Display for LogFormat {
 }
 
 impl LogFormat {
-    /// What to record with the scope of a control; none of a format whose columns may have any
-    /// names.
+    /// Returns the channels to record with the scope of the controller. `None` for a format whose
+    /// columns may have any names.
     const fn record(self) -> Option<&'static str> {
         match self {
             Self::TncScope => {
@@ -168,7 +168,7 @@ impl std::fmt::Display for TorqueUnit {
     }
 }
 
-/// What the record of an axis is good for.
+/// Fitness of the record of an axis for a servo model.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Fitness {
     /// A servo model of it can be used for control.
@@ -190,10 +190,10 @@ impl Log {
         Self::read_watched(path, columns, &())
     }
 
-    /// The same, with somebody who is told of the progress and can end it.
+    /// Reads a log, reports the progress to `watch`, and lets it cancel the run.
     ///
     /// # Errors
-    /// As [`Log::read`]; and where it is ended.
+    /// As [`Log::read`]; and if `watch` cancels the run.
     pub fn read_watched(
         path: &Path,
         columns: &Columns,

@@ -47,7 +47,7 @@ pub struct Model {
     pub(crate) weights: Weights,
 }
 
-/// What it is and where it comes from.
+/// Description of a model and its origin.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct About {
     /// Format of the file.
@@ -58,9 +58,9 @@ pub struct About {
     pub kind: String,
     /// Number of axes.
     pub axes: u64,
-    /// What it was trained on, in words.
+    /// Description of the training data.
     pub source: String,
-    /// When, as year-month-day.
+    /// Date of the training, as year-month-day.
     pub date: String,
     /// Hash of the recording that it was trained on.
     pub training_data: String,
@@ -77,7 +77,7 @@ pub struct ModelPeriods {
     pub feed_period_s: f64,
 }
 
-/// How well it fits.
+/// Quality of the fit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Fit {
     /// RMS of the prediction error of one knot, um per axis.
@@ -98,7 +98,7 @@ pub(crate) struct Weights {
 }
 
 impl Weights {
-    /// Those of a group of [`Identifier::weights`].
+    /// Returns the weights of a group of [`Identifier::weights`].
     fn group(&mut self, name: &str) -> &mut Vec<f64> {
         match name {
             "hidden" => &mut self.hidden,
@@ -151,7 +151,7 @@ impl Weights {
     }
 }
 
-/// What a kind is called in files and messages.
+/// Returns the name of a kind in files and messages.
 pub fn identifier_name(kind: IdentifierKind) -> &'static str {
     match kind {
         IdentifierKind::Contour => "contour",
@@ -179,17 +179,17 @@ pub(crate) fn kind_named(name_of_kind: &str) -> Option<IdentifierKind> {
         .find(|kind| identifier_name(*kind) == name_of_kind)
 }
 
-/// Where a training comes from.
+/// Origin of a training.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Origin {
-    /// What was recorded, in words.
+    /// Description of the recording.
     pub source: String,
-    /// When, as year-month-day.
+    /// Date of the recording, as year-month-day.
     pub date: String,
 }
 
 impl Model {
-    /// Of an identifier of the contour error that was trained on a recording.
+    /// Makes a model of an identifier of the contour error that was trained on a recording.
     pub fn of_contour<const N: usize>(
         recording: &Recording<N>,
         trained: &contour::TrainedContour<N>,
@@ -208,7 +208,7 @@ impl Model {
         )
     }
 
-    /// Of axes that were identified from a recording.
+    /// Makes a model of axes that were identified from a recording.
     pub fn of_axes<const N: usize>(
         recording: &Recording<N>,
         identified: &axes::TrainedAxes<N>,
@@ -334,7 +334,7 @@ impl Model {
         .to_string()
     }
 
-    /// What it is and where it comes from.
+    /// Returns the description of the model and its origin.
     pub fn about(&self) -> &About {
         &self.about
     }
@@ -355,7 +355,7 @@ impl Model {
         self.period
     }
 
-    /// How well it fits.
+    /// Returns the quality of the fit.
     pub fn fit(&self) -> Fit {
         self.fit
     }
@@ -396,7 +396,8 @@ impl Model {
         (self.kind(), self.axes()) == (kind, axes)
     }
 
-    /// As `control` takes it; none where it is for another number of axes.
+    /// Returns the model in the form that `control` takes; `None` where it is for another number of
+    /// axes.
     pub fn control<const N: usize>(&self) -> Option<ModelBlock<N>> {
         let trained = match self.kind() {
             IdentifierKind::Contour => Trained::Contour(self.contour()?),

@@ -99,7 +99,7 @@ pub(crate) fn transformed(values: &[f64], length: usize) -> Vec<Phasor> {
 pub struct Spectrum {
     /// Mean square in a sample, were it white: at frequencies n / (2 (len - 1)).
     pub power: Vec<f64>,
-    /// How many independent values each stands for.
+    /// Number of independent values behind each value of `power`.
     pub weight_of_value: f64,
     /// Standard deviation to which the window widens a line, turns a sample.
     pub width: f64,
@@ -176,7 +176,8 @@ impl SpectrumSegments {
 }
 
 impl Spectrum {
-    /// Of what counts, in segments of a length that is a power of two.
+    /// Computes the spectrum of the values that count, over segments of a length that is a power of
+    /// two.
     pub fn new(values: &[f64], counts: &[bool], length: usize) -> Self {
         let mut segments = SpectrumSegments::new(length);
         let mut start = 0;

@@ -180,7 +180,7 @@ fn lines(text: &str) -> Vec<&str> {
 #[test]
 fn what_is_missing_everywhere_is_the_whole_excitation_and_what_is_not_is_left_out() {
     let mut machine = Machine::load("tnv40".as_ref()).unwrap();
-    // A log does not tell the two apart.
+    // A log does not separate the two.
     machine.limits.normal_accel_mm_s2 = machine.limits.tangential_accel_mm_s2;
     let limits = &machine.limits;
     let whole = |axis| AxisExcitation {

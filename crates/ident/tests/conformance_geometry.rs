@@ -154,7 +154,7 @@ fn a_bar_of_unknown_length_tells_the_difference_of_scales_and_says_so() {
         found
             .notes
             .iter()
-            .any(|note| note.starts_with("mean scale: not told")),
+            .any(|note| note.starts_with("mean scale: not determined")),
         "{:?}",
         found.notes
     );
@@ -295,7 +295,7 @@ fn a_test_part_tells_scale_and_squareness_and_the_size_of_the_tool() {
         found
             .notes
             .iter()
-            .any(|note| note.starts_with("backlash x: not told")),
+            .any(|note| note.starts_with("backlash x: not determined")),
         "{:?}",
         found.notes
     );
@@ -476,7 +476,7 @@ fn what_is_no_measurement_is_refused_with_a_remedy() {
     );
 }
 
-/// What a bar of 0.3 um noise finds of a machine by its plant, read against the encoders.
+/// Measures a machine with a bar of 0.3 um noise by its plant, and reads it against the encoders.
 #[test]
 fn a_ball_bar_on_a_simulated_machine_finds_its_geometry() {
     let machine = Machine::load("stiff".as_ref()).unwrap();

@@ -236,7 +236,7 @@ fn a_column_may_be_the_torque_and_a_position() {
     );
 }
 
-/// A MATLAB file with one matrix of zeros, deflated: numbers of a type with so many bytes.
+/// A MATLAB file with one matrix of zeros, deflated: `count` numbers of a type of `bytes` bytes.
 fn zeros(kind: u32, class: u32, count: usize, bytes: usize) -> Vec<u8> {
     let element = |kind: u32, data: &[u8]| {
         let size = u32::try_from(data.len()).unwrap();

@@ -247,7 +247,7 @@ fn times_and_speeds_come_in_the_units_of_their_columns() {
             );
         }
     }
-    // Without a time the speed tells the time between samples.
+    // Without a time column the speed determines the time between samples.
     let speed: Vec<f64> = (0..SAMPLES)
         .map(|k| (actual[(k + 1).min(SAMPLES - 1)] - actual[k.max(1) - 1]) / 0.004)
         .collect();

@@ -241,7 +241,7 @@ fn halsampler_is_read_with_its_overruns() {
         "{}",
         told(&log)
     );
-    // Without numbers only the word tells that some are missing.
+    // Without sample numbers only the word `overrun` shows that some are missing.
     let without: Vec<String> = with_gap
         .iter()
         .map(|line| {

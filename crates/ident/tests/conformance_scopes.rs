@@ -75,7 +75,7 @@ fn servo_guide(columns: &[&[f64]]) -> String {
     head.to_owned() + &rows(&columns, ",")
 }
 
-/// What TwinCAT Scope writes above its rows.
+/// Returns the lines that TwinCAT Scope writes above its rows.
 fn project(delimiter: &str) -> String {
     [
         "Name|record|",
@@ -334,7 +334,8 @@ fn what_is_cut_off_or_lacks_a_channel_is_said_with_its_place_and_a_remedy() {
     let x = axis(20.0, 1.0);
     let channels = [("s nominal", "X", "mm"), ("s actual", "X", "mm")];
     let whole = tncscope(&channels, &[&x.0, &x.1]);
-    // In the middle of the rows: what is there is read, and what is missing is told.
+    // Cut off in the middle of the rows: the present rows are read, and the missing ones are
+    // reported.
     let part = &whole[..whole.len() / 2];
     let log = read(part.as_bytes(), "").unwrap();
     assert!(

@@ -2,9 +2,9 @@
 //! machine files that they were simulated with. The machine file is the oracle: the identification
 //! never sees these values.
 //!
-//! Encoder noise leaves the output error where it is; linear least squares on the torque that the
-//! law makes of measured positions, `torque = J a + B v + Fc sign(v) + Fa`, has the noise in a and
-//! v, and is biased by it. Both are measured here.
+//! Encoder noise does not bias the output error. Linear least squares on a torque that is computed
+//! from measured positions, `torque = J a + B v + Fc sign(v) + Fa`, has the noise in a and v, and
+//! is biased by it. Both are measured here.
 
 use crate::sweep::part_or_whole;
 use feedwright_control::{AxisLaw, AxisState, DriveLaw, DriveState, Parameters};
@@ -34,8 +34,8 @@ fn of_file(machine: &Machine, axis: usize) -> AxisParameters {
     }
 }
 
-/// How far inertia, viscous and Coulomb friction are off, as a part, and the asymmetry, as a part
-/// of the Coulomb friction.
+/// Returns the relative errors of inertia, viscous and Coulomb friction, and the error of the
+/// asymmetry as a part of the Coulomb friction.
 fn off(found: &AxisParameters, file: &AxisParameters) -> [f64; 4] {
     let part = |value: fn(&AxisParameters) -> f64| value(found) / value(file) - 1.0;
     [
@@ -64,7 +64,7 @@ const BOUNDS: [(&str, [f64; 4]); 6] = [
 /// file has one. The Stribeck curve makes the deflection look shorter, backlash longer.
 const PRESLIDING: [f64; 2] = [0.4, 2.0];
 
-/// How many of them are left to the sweep.
+/// Number of machines that are left to the sweep.
 const SWEPT: usize = 3;
 
 /// Both axes in the sweep, the first in the suite.
@@ -211,7 +211,7 @@ fn the_standard_error_is_about_the_spread_over_noise_seeds() {
     );
 }
 
-/// Linear least squares on the torque that the law makes of measured positions.
+/// Linear least squares on the torque that the model computes from measured positions.
 fn equation_error(
     recording: &Recording<2>,
     axis: usize,
@@ -281,8 +281,8 @@ fn equation_error(
     }
 }
 
-/// Its x axis was once no law: without friction for a moment, presliding changes nothing, and the
-/// search took that for an axis that does not move.
+/// The x axis of `stiff_by_its_log.toml` once gave no model. Without friction for a moment,
+/// presliding changes nothing, and the search took that for an axis that does not move.
 #[test]
 fn a_search_that_comes_by_no_friction_goes_on() {
     let machine =

@@ -15,9 +15,9 @@ const SAMPLES: usize = 1500;
 /// Samples that HAL keeps until `halsampler` fetches them: it may be late by a minute on a busy
 /// machine.
 const KEPT: usize = 60_000;
-/// How long another HAL may go on before this one starts, s.
+/// Longest time that another HAL may continue before this one starts, s.
 const TURN_S: u32 = 200;
-/// How often a recording is tried: without a real-time kernel HAL may fail to start on a busy
+/// Number of attempts at a recording: without a real-time kernel HAL may fail to start on a busy
 /// machine.
 const TRIALS: usize = 3;
 /// Part of the way to its input that the filter goes in a period: its output is behind by (1 - g) /

@@ -53,7 +53,7 @@ fn deviation_um(axis: &LogAxis, range: Range<usize>) -> f64 {
     (following_um(axis, range).powi(2) - mean_um * mean_um).sqrt()
 }
 
-/// To the digits with which the number is known.
+/// Compares two numbers to the known digits.
 fn assert_um(found: f64, expected: f64) {
     assert!(
         (found - expected).abs() <= 0.5,
@@ -139,7 +139,8 @@ fn sine_sweeps_of_linear_actuators_are_accepted() {
         let [found] = limits[..] else {
             panic!("{limits:?}")
         };
-        // A fit of the whole law has the limit to 2 mm/s; what is told at sight, to a tenth.
+        // A fit of the whole model finds the limit to 2 mm/s; the finding of the log reader is good
+        // to a tenth.
         assert!(
             (found / limit_mm_s - 1.0).abs() < 0.1,
             "{name}: {found} mm/s, not {limit_mm_s}"

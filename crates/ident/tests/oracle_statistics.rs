@@ -9,7 +9,7 @@ use feedwright_control::AxisStatistics;
 use feedwright_ident::{Excitation, axis_statistics};
 use feedwright_sim::Machine;
 
-/// Not the seeds with which the constants were chosen.
+/// Seed that was not used to choose the constants.
 const SEED: u64 = 55_001;
 
 /// A machine of the library, or one of the examples' with one imperfection.
@@ -69,8 +69,8 @@ fn row(s: &AxisStatistics, um: f64) -> String {
     )
 }
 
-/// What is there is found within these factors, what is not comes out as zero; what is missed, in
-/// words.
+/// Lists the misses, in words. A term that is present must be found within these factors, an absent
+/// one must be zero.
 fn missed(truth: &AxisStatistics, found: &AxisStatistics) -> Vec<String> {
     let of = |s: &AxisStatistics| {
         [
@@ -174,8 +174,8 @@ fn single_imperfections_are_told_from_each_other() {
     holds(&all[part_or_whole(5, 0)..]);
 }
 
-/// A ball screw is no part of the law: above its resonance the motor alone is moved, 0.7 of the
-/// inertia, and the resonance counts as load.
+/// The axis model has no ball screw: above its resonance only the motor moves, 0.7 of the inertia,
+/// and the resonance counts as load.
 #[test]
 fn a_machine_with_a_soft_screw_shows_steps_and_cogging_and_more_load_than_it_has() {
     let [truth, found] = true_and_found("router", SEED);
@@ -194,8 +194,8 @@ fn a_machine_with_a_soft_screw_shows_steps_and_cogging_and_more_load_than_it_has
     }
 }
 
-/// Jitter and ripple are no terms of the statistics: they are told to be torque, and nothing with
-/// place.
+/// The statistics have no terms for jitter and ripple: both are reported as torque, and nothing
+/// with place.
 #[test]
 fn what_has_no_term_counts_as_torque() {
     for name in ["jitter", "ripple"] {
@@ -209,8 +209,8 @@ fn what_has_no_term_counts_as_torque() {
     }
 }
 
-/// Beside no other noise the skirts of the line are all that is seen, and they are no normal
-/// distribution's: a spindle's frequency is held for about a second.
+/// Only the skirts of the line show where there is no other noise, and they are not those of a
+/// normal distribution: a spindle's frequency is held for about a second.
 #[test]
 fn a_line_that_wanders_beside_nothing_is_found_wider_than_it_is() {
     let [truth, found] = true_and_found("wander", SEED);

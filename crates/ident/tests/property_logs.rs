@@ -5,7 +5,7 @@ use crate::logs::{axis, read, rows, time_s};
 use feedwright_ident::Log;
 use proptest::prelude::*;
 
-/// What holds for every log.
+/// Checks the properties of every log.
 fn check(log: &Log) {
     let rows = log.time_s.len();
     assert!(log.sample_time_s > 0.0 && log.sample_time_s.is_finite());

@@ -72,8 +72,8 @@ fn actual_mm(command_mm: &[f64], sample_s: f64) -> Vec<f64> {
     command_mm.iter().map(follow).collect()
 }
 
-/// What is found of a record whose actual positions are so many samples later than its commands,
-/// beside what the axis makes.
+/// Identifies a record whose actual positions are `late` samples later than its commands, in
+/// addition to the delay of the axis.
 fn found(
     sample_s: f64,
     seconds: f64,
@@ -107,7 +107,7 @@ fn found(
     Ok(machine.axes.remove(0))
 }
 
-/// Whether the verdict lets the law be used.
+/// Returns true if the verdict permits the use of the model.
 fn holds(axis: &FoundAxis) -> bool {
     matches!(
         LawVerdict::of(axis),
@@ -125,7 +125,7 @@ fn off(axis: &FoundAxis) -> f64 {
 const GAINS: f64 = 0.1;
 
 /// A search that ended at 0.1 s gave 4,174 1/s2 of 8,000 for a record that is 0.105 s late, and
-/// said that the law holds.
+/// reported that the model holds.
 #[test]
 fn a_record_that_is_a_tenth_of_a_second_late_gives_the_law_of_the_axis() {
     let all = [(0.003, 9.0, 35), (0.003, 9.0, 80), (0.002, 6.0, 75)];
@@ -142,7 +142,8 @@ fn a_record_that_is_a_tenth_of_a_second_late_gives_the_law_of_the_axis() {
     }
 }
 
-/// A law with a value at an end of its search held, however wrong its other values were.
+/// A model with a value at an end of its search was once accepted, however wrong its other values
+/// were.
 #[test]
 fn a_value_that_ends_where_its_search_ends_never_holds() {
     let on_time = AxisFacts {

@@ -58,7 +58,7 @@ pub struct LimitsError {
     pub name: &'static str,
     /// Its value.
     pub value: f64,
-    /// What it must be.
+    /// Range that the value must lie in, as text.
     pub bound: &'static str,
 }
 

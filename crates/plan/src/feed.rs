@@ -36,7 +36,7 @@ use crate::constraints::{Constraints, PathLimits};
 use crate::path::Piece;
 use sections::Capped;
 
-/// What the axes do from a moment on, at a constant jerk of each.
+/// Motion of the axes from a moment on, at a constant jerk of each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisMotion {
     /// Position at its start, mm.
@@ -50,7 +50,7 @@ pub struct AxisMotion {
 }
 
 impl AxisMotion {
-    /// At rest in the origin.
+    /// Rest at the origin.
     pub const REST: Self = Self {
         position_mm: [0.0; 3],
         velocity_mm_s: [0.0; 3],
@@ -83,9 +83,9 @@ impl AxisMotion {
 pub struct Span {
     /// Number of the piece, from 0.
     pub piece: u64,
-    /// Where it starts in the piece, mm.
+    /// Start in the piece, mm.
     pub from_mm: f64,
-    /// How long it takes, s.
+    /// Duration, s.
     pub duration_s: f64,
     /// Speed at its start.
     pub speed_mm_s: f64,
@@ -93,8 +93,8 @@ pub struct Span {
     pub accel_mm_s2: f64,
     /// Jerk.
     pub jerk_mm_s3: f64,
-    /// Where the motion leaves the piece within its tolerance: what the axes do, while the values
-    /// above say which place of the piece stands for each moment.
+    /// Motion of the axes where it leaves the piece within its tolerance. The values above then
+    /// give the place of the piece that stands for each moment.
     pub motion: Option<AxisMotion>,
 }
 
@@ -103,11 +103,11 @@ pub struct Span {
 pub struct Phase {
     /// Plan time at its start, s.
     pub tau_s: f64,
-    /// How long it takes, s.
+    /// Duration, s.
     pub duration_s: f64,
     /// Number of the piece.
     pub piece: u64,
-    /// Where it starts in the piece, mm.
+    /// Start in the piece, mm.
     pub from_mm: f64,
     /// Speed at its start.
     pub speed_mm_s: f64,
@@ -115,7 +115,7 @@ pub struct Phase {
     pub accel_mm_s2: f64,
     /// Jerk.
     pub jerk_mm_s3: f64,
-    /// What the axes do, where that is not what the piece says.
+    /// Motion of the axes, where it differs from the piece.
     pub motion: Option<AxisMotion>,
     /// Line of the event that makes the tool rest; `None` when it moves.
     pub rest: Option<u32>,
@@ -142,9 +142,9 @@ impl Phase {
 pub struct TimedEvent {
     /// Plan time, s.
     pub tau_s: f64,
-    /// How long the tool rests for it, s.
+    /// Time that the tool rests for the event, s.
     pub duration_s: f64,
-    /// What happens.
+    /// The event.
     pub event: Event,
 }
 
@@ -157,7 +157,7 @@ pub trait FeedPlanner: Send {
     /// Adds a piece behind those before; where it starts `from_rest`, so does the motion.
     fn push(&mut self, piece: &Piece, from_rest: bool);
 
-    /// There are no more pieces: the motion ends at rest.
+    /// Ends the path: no more pieces follow, and the motion ends at rest.
     fn finish(&mut self);
 
     /// Takes the next span that is final.
@@ -187,12 +187,12 @@ pub fn feed_mm_s(piece: &Piece, constraints: &Constraints) -> f64 {
 pub struct FeedMember {
     /// Name.
     pub name: &'static str,
-    /// What it does, for lists.
+    /// One-line description, for lists.
     pub about: &'static str,
-    /// Whether it needs velocity, acceleration and jerk of each axis; otherwise it keeps the bounds
-    /// along and across the path.
+    /// True where the planner needs velocity, acceleration and jerk of each axis. Otherwise it
+    /// keeps the bounds along and across the path.
     pub needs_axes: bool,
-    /// Whether it keeps the jerk of each axis.
+    /// True where the planner keeps the jerk of each axis.
     pub limits_jerk: bool,
     /// Makes one for constraints that have been checked.
     pub make: fn(&Constraints) -> Box<dyn FeedPlanner>,

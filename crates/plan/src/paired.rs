@@ -24,7 +24,7 @@ pub struct PlannedPiece {
     /// Curve, feedrate and what else the program says; its `s_mm` is the arc length of the planned
     /// path.
     pub piece: Piece,
-    /// For which part of the programmed path it stands.
+    /// Part of the programmed path for which the piece stands.
     pub origin: ProgrammedPart,
 }
 
@@ -33,11 +33,12 @@ pub struct PlannedPiece {
 pub enum ProgrammedPart {
     /// The programmed piece of this number, from 0, unchanged.
     Unchanged(u64),
-    /// From one arc length of the programmed path to another, mm, evenly along the planned piece.
+    /// Part from one arc length of the programmed path to another, mm, evenly along the planned
+    /// piece.
     Part {
-        /// Where it begins.
+        /// Start of the part, mm.
         from_mm: f64,
-        /// Where it ends, not before its beginning.
+        /// End of the part, mm, not before its start.
         to_mm: f64,
     },
 }

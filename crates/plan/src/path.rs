@@ -104,7 +104,7 @@ impl Curve {
         }
     }
 
-    /// Whether it is a straight line.
+    /// Returns true if the curve is a straight line.
     pub const fn is_straight(&self) -> bool {
         matches!(self, Self::Line(_))
     }
@@ -153,7 +153,7 @@ impl Curve {
 pub struct Piece {
     /// The curve.
     pub curve: Curve,
-    /// Where the curve starts.
+    /// Start point of the curve.
     pub start_mm: [f64; 3],
     /// Its length, mm.
     pub length_mm: f64,
@@ -161,11 +161,11 @@ pub struct Piece {
     pub s_mm: f64,
     /// Line of the program.
     pub line: u32,
-    /// Whether it cuts; a rapid does not.
+    /// True for a cutting piece, false for a rapid.
     pub cutting: bool,
     /// Programmed feedrate, mm/s; not used by a rapid.
     pub feed_mm_s: f64,
-    /// How the corner at its end is taken.
+    /// Corner mode at the end of the piece.
     pub corner: Corner,
     /// Largest angle that one of A, B and C turns in a millimetre of this piece, degrees/mm; 0
     /// where none turns.
@@ -190,7 +190,7 @@ pub enum Step {
 pub struct Rest {
     /// Line of the program.
     pub line: u32,
-    /// How long the programmed feed makes it; 0 for a rapid.
+    /// Duration by the programmed feedrate, s; 0 for a rapid.
     pub seconds: f64,
     /// Largest angle that one of A, B and C turns, degrees: at the machine's rate it takes no less.
     pub turn_deg: f64,
@@ -252,7 +252,7 @@ pub enum PathError {
     Spline {
         /// Line of the program.
         line: u32,
-        /// What is wrong with it.
+        /// Description of the fault.
         what: String,
     },
     /// A dwell that is negative, endless, or not a number.

@@ -10,7 +10,7 @@ mod rows;
 
 pub use rows::{EventName, named};
 
-/// How long PLC and spindle hold the motion up: table `[plc]`, all zero without it.
+/// Times for which PLC and spindle hold the motion: table `[plc]`. All are zero without the table.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Durations {
     /// M6, with the spindle at rest.
@@ -33,11 +33,11 @@ pub struct PlcEvent {
     pub code: u16,
     /// Its P word; `None` is any or none.
     pub p: Option<u32>,
-    /// What it belongs to: a row of the timeline, such as "lamp".
+    /// Row of the timeline to which the event belongs, such as "lamp".
     pub row: String,
-    /// What happens, such as "lamp on".
+    /// Label of the event, such as "lamp on".
     pub label: String,
-    /// How long it holds the motion up, s.
+    /// Time that the event holds the motion, s.
     pub takes_s: f64,
 }
 
@@ -53,7 +53,7 @@ pub struct Plc {
 }
 
 impl Plc {
-    /// At rest, with these durations.
+    /// Creates the state with these durations and the spindle at rest.
     pub const fn new(durations: Durations) -> Self {
         Self {
             durations,
@@ -63,15 +63,15 @@ impl Plc {
         }
     }
 
-    /// With M-codes that the machine builder gave a meaning and a duration.
+    /// Sets the M-codes to which the machine builder gave a meaning and a duration.
     #[must_use]
     pub fn with_events(mut self, events: &[PlcEvent]) -> Self {
         self.events = events.to_vec();
         self
     }
 
-    /// How long the tool waits for an event, s; also updates the spindle speed. M0 and M1 count as
-    /// 0 s, because their time depends on the operator.
+    /// Returns the time that the tool waits for an event, s, and updates the spindle speed. M0 and
+    /// M1 count as 0 s, because their time depends on the operator.
     pub fn takes_s(&mut self, kind: &EventKind) -> f64 {
         match kind {
             EventKind::Dwell { seconds } => *seconds,
@@ -92,7 +92,7 @@ impl Plc {
         }
     }
 
-    /// How long a rotary axis takes to turn, s.
+    /// Returns the time that a rotary axis takes to turn, s.
     pub fn turn_s(&self, degrees: f64) -> f64 {
         degrees / self.most_deg_s()
     }

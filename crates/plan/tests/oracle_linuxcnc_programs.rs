@@ -190,14 +190,14 @@ const LIMITS_S: [u32; 3] = [10, 60, 300];
 /// Exit codes of `timeout` where it has ended the program: by the first signal, and by one that
 /// cannot be ignored.
 const ENDED_BY_TIMEOUT: [i32; 2] = [124, 137];
-/// How often a program is tried that `rs274` crashes at.
+/// Largest number of attempts at a program that crashes `rs274`.
 const CRASHES: usize = 3;
 
-/// What `rs274` says of a program.
+/// Answer of `rs274` to a program.
 #[derive(Debug, PartialEq)]
 enum Answer {
     Accepts,
-    /// With its message. A crash counts as a refusal.
+    /// Refusal, with its message. A crash counts as a refusal.
     Refuses(String),
     /// It did not come to its end within the last of [`LIMITS_S`]. That says nothing about the
     /// program.

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-/// What the header of every curve promises.
+/// Tolerance stated in the header of every curve, mm.
 const PROMISE_MM: f64 = 0.5e-3;
 /// Coordinates are printed to 1 nm: centre and start of an arc are each off by at most half of that
 /// on either axis.

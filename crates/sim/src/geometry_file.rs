@@ -1,5 +1,4 @@
-//! Geometry files: errors of the axes that no encoder sees, as they were measured, with the
-//! measurement itself.
+//! Geometry files: axis errors that no encoder sees, as measured, together with the measurement.
 //!
 //! Position of the tool while the encoders are at q; d_i is the direction of travel of axis i, 1 or
 //! -1, and 0 where it is unknown:
@@ -48,38 +47,38 @@ const FILE_KIND: Kind = Kind {
     where_to_find: "'feedwright identify --geometry MEASUREMENT --machine MACHINE --out FILE.toml' writes one",
 };
 
-/// A geometry and the measurement that it was found from. A standard deviation of 0 is one that is
-/// not stated.
+/// A geometry and the measurement behind it. A standard deviation of 0 means that the file states
+/// none.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct GeometryFile {
-    /// Where it comes from.
+    /// Origin of the geometry.
     pub origin: GeometryOrigin,
     /// X, y and z; an axis that was not measured is all zero.
     pub axes: [AxisGeometry; 3],
     /// Angles between the axes.
     pub squareness: MeasuredSquareness,
-    /// What the values were found from.
+    /// Measured sets that the values were fitted to.
     pub measured: Vec<MeasuredSet>,
     /// Parameters that were fitted to the measurement, nuisances such as the center of a ball bar
     /// included.
     pub unknowns: u64,
 }
 
-/// Where a geometry comes from.
+/// Origin of a geometry.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct GeometryOrigin {
     /// Version of feedwright that wrote the file; may be empty.
     pub written_by: String,
-    /// Files that it was found from, or who measured.
+    /// Files that the geometry was computed from, or the name of whoever measured.
     pub source: String,
-    /// When it was measured, as year-month-day; may be empty.
+    /// Date of the measurement, as year-month-day; may be empty.
     pub date: String,
 }
 
 /// Errors of an axis.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct AxisGeometry {
-    /// Travel of the tool beyond that of the encoder.
+    /// Scale error: travel of the tool minus travel of the encoder, um per meter.
     pub scale_um_m: f64,
     /// Its standard deviation.
     pub scale_std_um_m: f64,
@@ -117,15 +116,15 @@ pub struct AxisGeometry {
 /// 90 degrees.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MeasuredSquareness {
-    /// Of y to x.
+    /// Squareness of y to x.
     pub squareness_xy_urad: f64,
     /// Its standard deviation.
     pub squareness_xy_std_urad: f64,
-    /// Of z to x.
+    /// Squareness of z to x.
     pub squareness_xz_urad: f64,
     /// Its standard deviation.
     pub squareness_xz_std_urad: f64,
-    /// Of z to y.
+    /// Squareness of z to y.
     pub squareness_yz_urad: f64,
     /// Its standard deviation.
     pub squareness_yz_std_urad: f64,
@@ -167,7 +166,7 @@ impl AxisGeometry {
         scale_um + pitch_um + table_um - 0.5 * direction * self.backlash_um
     }
 
-    /// Whether no error of this axis is known.
+    /// Returns true if no error of this axis is known.
     pub fn is_zero(&self) -> bool {
         let own = [self.scale_um_m, self.pitch_error_um, self.backlash_um]
             .iter()

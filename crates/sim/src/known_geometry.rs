@@ -1,16 +1,16 @@
-//! What is known of a machine's geometry, for a control that compensates it: from the machine file,
-//! or from a geometry file.
+//! Known geometry of a machine, for a control that compensates it: from the machine file or from a
+//! geometry file.
 //!
-//! How well a geometry file knows the tool follows from its standard deviations by linear
-//! propagation. With g_k the change of the tool by a standard deviation of value k, and n the plane
-//! across the direction of travel:
+//! The uncertainty of the tool position follows from the standard deviations in the geometry file
+//! by linear propagation. With g_k the change of the tool position by one standard deviation of
+//! value k, and n the plane normal to the direction of travel:
 //!
 //! ```text
 //! sigma^2 = sum over k of |g_k in n|^2
 //! ```
 //!
-//! Values count as independent of each other. Source: JCGM 100 (2008), Guide to the expression of
-//! uncertainty in measurement, eq. 10.
+//! The values are treated as independent of each other. Source: JCGM 100 (2008), Guide to the
+//! expression of uncertainty in measurement, eq. 10.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -25,10 +25,10 @@ use crate::geometry_file::{AxisGeometry, GeometryFile};
 use crate::machine::{AXIS_NAMES, Machine};
 use crate::number::to_four_digits;
 
-/// Leads that differ by a smaller part are equal: files state them with some digits.
+/// Largest relative difference of two leads that count as equal: files state them with few digits.
 const SAME_LEAD: f64 = 1e-6;
-/// A part may leave the measured travel by this, mm: the errors there are those of its end to
-/// within what scale and pitch say.
+/// Distance that a part may extend beyond the measured travel, mm. Within it, the errors at the end
+/// of the measured travel hold up to the change that scale and pitch state.
 const BEYOND_MM: f64 = 1.0;
 
 /// Why a geometry cannot be compensated.
@@ -38,7 +38,7 @@ pub enum CompensationError {
     #[error("the geometry cannot be compensated: {0}")]
     #[diagnostic(help("correct the geometry, or leave the compensation out with --no-geometry"))]
     Range(String),
-    /// The screw is not that of the machine.
+    /// The geometry states another screw lead than the machine.
     #[error(
         "axis {axis}: the pitch error repeats every {lead_mm} mm, and lead_mm_per_rev of the machine is {machine_mm} mm; they must be equal"
     )]
@@ -48,9 +48,9 @@ pub enum CompensationError {
     Lead {
         /// The axis.
         axis: &'static str,
-        /// Of the geometry, mm.
+        /// Lead of the geometry, mm.
         lead_mm: f64,
-        /// Of the machine, mm.
+        /// Lead of the machine, mm.
         machine_mm: f64,
     },
     /// The part is outside of what was measured.
@@ -96,7 +96,8 @@ impl From<GeometryFault> for CompensationError {
 }
 
 impl Machine {
-    /// Errors of the first N axes that no encoder sees; none where there are none.
+    /// Returns the errors of the first N axes that no encoder sees; `None` if the machine has no
+    /// such error.
     pub fn errors_of_geometry<const N: usize>(&self) -> Option<KnownGeometry<N>> {
         if let Some(tool) = &self.tool {
             return Some(tool.of_first()).filter(|tool| !tool.is_exact());
@@ -156,8 +157,9 @@ impl Machine {
         }
     }
 
-    /// The same machine with the tool where a geometry puts it, whatever its file states. A screw
-    /// gets the backlash that the geometry states; where that is none, it keeps its own.
+    /// Returns the same machine with the tool where a geometry puts it, whatever its file states. A
+    /// screw gets the backlash that the geometry states; if the geometry states no backlash, the
+    /// screw keeps its own.
     #[must_use]
     pub fn with_tool(mut self, known: KnownGeometry<3>) -> Self {
         for (axis, backlash_mm) in self.axes.iter_mut().zip(known.backlash_mm()) {
@@ -174,13 +176,14 @@ impl Machine {
         self
     }
 
-    /// Whether an axis has backlash that its encoder does not see.
+    /// Returns true if an axis has backlash that its encoder does not see.
     pub fn has_hidden_backlash(&self) -> bool {
         self.axes.iter().any(|axis| axis.hidden_backlash_mm() > 0.0)
     }
 }
 
-/// What the tool is behind in forward travel, from backward travel, over a table of both: mean, um.
+/// Returns the mean lag of the tool in forward travel against backward travel over a table of both,
+/// um.
 fn mean_reversal_um(table: &[[f64; 3]]) -> f64 {
     let sum_um: f64 = table
         .iter()
@@ -239,10 +242,10 @@ impl GeometryFile {
         Ok(known)
     }
 
-    /// Whether its screws are those of this machine.
+    /// Checks that the screw leads of the geometry match the leads of this machine.
     ///
     /// # Errors
-    /// Another lead of a screw.
+    /// Fails if the lead of a screw differs.
     pub fn suits(&self, machine: &Machine) -> Result<(), CompensationError> {
         for (i, (geometry, axis)) in self
             .axes
@@ -264,11 +267,11 @@ impl GeometryFile {
         Ok(())
     }
 
-    /// Whether it was measured where a part of this many axes with these least and greatest
-    /// positions, mm, is cut.
+    /// Checks that the measured travel covers a part that uses this many axes and spans these least
+    /// and greatest positions, mm.
     ///
     /// # Errors
-    /// A part beyond the travel that was measured.
+    /// Fails if the part extends beyond the measured travel.
     pub fn covers(
         &self,
         axes: usize,
@@ -334,7 +337,7 @@ impl GeometryFile {
         sum_um2.sqrt()
     }
 
-    /// Whether any standard deviation is stated.
+    /// Returns true if the file states any standard deviation.
     pub fn states_spread(&self) -> bool {
         let places = [[1e3, 2e3, 3e3], [1.0, 1.0, 1.0]];
         places.iter().any(|&at_mm| {
@@ -410,7 +413,7 @@ mod tests {
         );
     }
 
-    /// At x 100 and y 50 mm: scale 0.3 um, squareness 0.2 um in x, and pitch 0.05 um.
+    /// Checks x 100 and y 50 mm: scale 0.3 um, squareness 0.2 um in x, and pitch 0.05 um.
     #[test]
     fn the_spread_is_that_of_the_values_across_the_path() {
         let file = file();

@@ -1,4 +1,4 @@
-//! Machine files: what the simulated or real machine is, read from TOML and checked value by value.
+//! Machine files: describe the simulated or real machine in TOML; every value is checked.
 //!
 //! A machine is a file; `crates/sim/machines/tnv40.toml` explains every key beside its value.
 //! [`Machine::load`] takes the name of a machine that is built in or the path of a file. A later
@@ -45,8 +45,8 @@ pub const BUILT_IN_MACHINES: &[(&str, &str)] = &[
     ("sinumerik", include_str!("../machines/sinumerik.toml")),
 ];
 
-/// What is cut on where nothing else is said: the built-in machine that is most like one that
-/// somebody has.
+/// Machine that programs run on by default: of the built-in machines, the one most like a real
+/// workshop machine.
 pub const DEFAULT_MACHINE: &str = "workshop";
 
 /// Names of the axes, in the order of every `[f64; 3]` of this library.
@@ -59,11 +59,11 @@ pub struct Machine {
     pub name: String,
     /// One line for people.
     pub description: String,
-    /// Where the values come from.
+    /// Source of the values.
     pub source: String,
     /// Periods of the control and of its simulation.
     pub period: Period,
-    /// What the machine may be asked for.
+    /// Limits of speed, acceleration, jump and deviation.
     pub limits: Limits,
     /// PLC and spindle.
     pub plc: Durations,
@@ -71,10 +71,10 @@ pub struct Machine {
     pub plc_events: Vec<PlcEvent>,
     /// Two or three axes: x, y and perhaps z.
     pub axes: Vec<Axis>,
-    /// How the axes lie to each other.
+    /// Squareness of the axes to each other.
     #[serde(skip_serializing_if = "is_default")]
     pub geometry: Squareness,
-    /// What random numbers begin with.
+    /// Seed of the random numbers.
     #[serde(skip_serializing_if = "is_default")]
     pub noise: Noise,
     /// The geometry that its control compensates, by [`Machine::compensating`]; no key of the file.
@@ -86,15 +86,15 @@ pub struct Machine {
     pub tool: Option<Arc<KnownGeometry<3>>>,
 }
 
-/// How far from square the axes are: table `[geometry]`, all zero without it. Positive where the
-/// angle between the positive directions is less than 90 degrees.
+/// Squareness errors of the axes: table `[geometry]`, all zero without it. Positive where the angle
+/// between the positive directions is less than 90 degrees.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Squareness {
-    /// Of y to x, urad.
+    /// Squareness of y to x, urad.
     pub squareness_xy_urad: f64,
-    /// Of z to x, urad.
+    /// Squareness of z to x, urad.
     pub squareness_xz_urad: f64,
-    /// Of z to y, urad.
+    /// Squareness of z to y, urad.
     pub squareness_yz_urad: f64,
 }
 
@@ -120,7 +120,7 @@ pub struct Period {
 const MAX_SERVO_PERIODS: f64 = 12.0;
 
 impl Period {
-    /// As the law of an axis takes them.
+    /// Returns the periods in the form that the axis model takes.
     pub fn periods(&self) -> Periods {
         let Self {
             servo_s,
@@ -143,7 +143,7 @@ impl Period {
     }
 }
 
-/// What the machine may be asked for.
+/// Limits that a plan and a correction keep on this machine.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Limits {
     /// Speed of a rapid motion, mm/s.
@@ -158,7 +158,7 @@ pub struct Limits {
     pub corner_jump_mm_s: f64,
     /// Largest distance of the corrected command from the programmed path, mm.
     pub max_deviation_mm: f64,
-    /// How far a correction may raise the feedrate above the planned one, %; none is 200.
+    /// Largest rise of the feedrate above the planned one by a correction, %; `None` means 200.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_feed_rise_percent: Option<f64>,
     /// Largest distance of the planned path from the programmed one where the program says none
@@ -293,7 +293,8 @@ impl Machine {
         Ok((path.display().to_string(), read_text(&KIND, &path)?))
     }
 
-    /// Whether anything of it is random: then two cuts differ by the seed of the noise.
+    /// Returns true if any property of the machine is random. Two cuts then differ by the noise
+    /// seed.
     pub fn is_noisy(&self) -> bool {
         self.axes.iter().any(Axis::is_noisy)
     }
@@ -307,12 +308,12 @@ impl Machine {
         }
     }
 
-    /// The law of the first N axes.
+    /// Returns the models of the first N axes.
     pub fn law<const N: usize>(&self) -> [AxisLaw; N] {
         std::array::from_fn(|i| AxisLaw::new(self.axis(i).parameters(), self.period.periods()))
     }
 
-    /// Whether each axis has limits of its own: then it is planned axis by axis.
+    /// Returns true if each axis has its own limits. Such a machine is planned axis by axis.
     pub fn has_axis_limits(&self) -> bool {
         let limited = |axis: &Axis| {
             axis.max_velocity_mm_s.is_some()
@@ -415,8 +416,8 @@ impl Machine {
 /// same files.
 const MAX_BASES: usize = 16;
 
-/// Whether `--machine` means a file, or the standard input, rather than the name of a built-in
-/// machine.
+/// Returns true if the value of `--machine` is a file or the standard input, false if it is the
+/// name of a built-in machine.
 pub fn is_machine_path(name_or_path: &Path) -> bool {
     input::is_standard_input(name_or_path)
         || name_or_path

@@ -1,7 +1,7 @@
 //! Independent work on all processors.
 
-/// What `act` gives for each item, in the order of the items. WebAssembly has one thread, and does
-/// without the machinery of others.
+/// Applies `act` to each item and returns the results in the order of the items. WebAssembly has
+/// one thread, so it runs them one after the other.
 pub fn map_in_parallel<T: Send, R: Send>(
     items: impl IntoIterator<Item = T>,
     act: impl Fn(T) -> R + Sync,

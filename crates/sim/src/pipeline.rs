@@ -4,8 +4,8 @@
 //! pieces -> plan -> reference -> loop of controller and plant -> rows
 //! ```
 //!
-//! Whatever cuts goes through [`Run`]: the main job, the comparison, the experiments of the paper,
-//! the excitation of an identification, tests.
+//! Every cut goes through [`Run`]: the main job, the comparison, the experiments of the paper, the
+//! excitation of an identification, and tests.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -24,7 +24,7 @@ use crate::simulate::{LapSetup, PlantMaker, RunResult, Stopped, simulate};
 use crate::trace::Sink;
 use crate::watch::{Cancelled, Watch};
 
-/// What makes a plan of a path.
+/// Stages that turn a path into a plan.
 #[derive(Debug, Clone, Copy)]
 pub struct Stages {
     /// Speed over the planned path.
@@ -41,8 +41,8 @@ impl Default for Stages {
 }
 
 impl Stages {
-    /// Those that suit a machine: where each axis has limits of its own, the planner that keeps
-    /// them; otherwise the first.
+    /// Returns the stages that suit a machine: if each axis has its own limits, the planner that
+    /// keeps them; otherwise the first planner.
     pub fn of(machine: &Machine) -> Self {
         let planner = FEED_PLANNERS
             .iter()
@@ -64,7 +64,8 @@ impl Stages {
         self.reference_within(steps, machine, &Constraints::from(machine))
     }
 
-    /// As [`Stages::reference`], within `constraints` in place of the machine's.
+    /// Returns the reference of the steps within `constraints` in place of the machine's own
+    /// limits.
     ///
     /// # Errors
     /// Fails if a limit is missing or outside its allowed range.
@@ -152,7 +153,7 @@ pub enum RunError {
     TooLong {
         /// Servo periods that it may have.
         most_periods: usize,
-        /// How long they take, s.
+        /// Duration of these servo periods, s.
         most_s: f64,
     },
     /// Ended from outside.
@@ -170,7 +171,7 @@ impl From<Stopped> for RunError {
     }
 }
 
-/// What a lap cuts along.
+/// Path or pair of paths that a lap cuts along.
 enum LapPaths<'p> {
     /// The programmed path.
     One(Steps<'p>),
@@ -223,19 +224,20 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// With bounds on the speed, place by place.
+    /// Bounds the speed from place to place along the path.
     #[must_use]
     pub const fn capped(self, caps: Option<&'a Arc<SpeedCaps>>) -> Self {
         Self { caps, ..self }
     }
 
-    /// With another feed planner.
+    /// Replaces the feed planner.
     #[must_use]
     pub const fn stages(self, stages: Stages) -> Self {
         Self { stages, ..self }
     }
 
-    /// Without the compensation of the machine: as a control cuts that gets the program alone.
+    /// Turns off the compensation of the machine: cuts the way a control does that gets the program
+    /// alone.
     #[must_use]
     pub const fn uncompensated(self) -> Self {
         Self {
@@ -244,14 +246,14 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// With one who is told of the plan of the last lap.
+    /// Reports the plan of the last lap to `plan_sink`.
     #[must_use]
     pub const fn planned_to(self, plan_sink: Option<&'a dyn PlanSink>) -> Self {
         Self { plan_sink, ..self }
     }
 
-    /// With the plan of other cuts along the same path and within the same limits, which is not
-    /// made again.
+    /// Shares the plan with other cuts along the same path and within the same limits, so that it
+    /// is computed once.
     #[must_use]
     pub const fn sharing(self, memory: &'a PlanCache) -> Self {
         Self {
@@ -260,7 +262,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Ended by this one.
+    /// Lets `watch` cancel the run.
     #[must_use]
     pub const fn watched(self, watch: &'a dyn Watch) -> Self {
         Self { watch, ..self }
@@ -284,10 +286,11 @@ impl<'a> Run<'a> {
         )
     }
 
-    /// As [`Run::cut_steps`], for a path that is read anew for each lap.
+    /// Cuts a path that is read anew for each lap; otherwise the same as [`Run::cut_steps`].
     ///
     /// # Errors
-    /// As [`Run::cut_steps`]; also if the program cannot be read or a motion has no path.
+    /// Fails as [`Run::cut_steps`] does; also if the program cannot be read or a motion has no
+    /// path.
     pub fn cut<'p, const N: usize>(
         &self,
         mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
@@ -327,10 +330,11 @@ impl<'a> Run<'a> {
         Run { memory, ..*self }.lap(&mut paths, controller, sinks)
     }
 
-    /// As [`Run::cut`], along the path of another program, with errors to the programmed one.
+    /// Cuts along the path of another program, with errors measured to the programmed path;
+    /// otherwise the same as [`Run::cut`].
     ///
     /// # Errors
-    /// See there.
+    /// Fails as [`Run::cut`] does.
     pub fn cut_aligned<const N: usize>(
         &self,
         aligned: &AlignedPaths,

@@ -1,9 +1,9 @@
 //! The machine: position servo, drive and mechanics of each axis.
 //!
-//! Each axis follows the law of [`feedwright_control::axis`] under the load of a disturbance, D
-//! sin(2 pi f t), with D and f of the machine file. The command is held for one servo period; t,
-//! and with it the disturbance, is taken at the start of each mechanics period; the axis starts at
-//! rest.
+//! Each axis follows the model of [`feedwright_control::axis`] under a disturbance torque, D sin(2
+//! pi f t), with D and f from the machine file. The command is held for one servo period. The time
+//! t, and with it the disturbance, is taken at the start of each mechanics period. The axis starts
+//! at rest.
 //!
 //! A machine file may add what a real axis has on top, each in its own file:
 //!
@@ -39,7 +39,7 @@ use encoder::Moment;
 use gap::TableGap;
 use nonideal::NonidealAxis;
 
-/// What the machine did in one servo period.
+/// Motion and torque of the machine in one servo period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measurement<const N: usize> {
     /// True position of the tool at the end of the servo period, mm.
@@ -66,8 +66,8 @@ impl<const N: usize> Measurement<N> {
     }
 }
 
-/// What the closed loop moves: a [`Plant`], or a machine of other equations in its place. It has
-/// three axes; a run of two uses the first two.
+/// Machine that the closed loop moves: a [`Plant`], or a machine of other equations in its place.
+/// It has three axes; a run of two axes uses the first two.
 pub trait Mechanism {
     /// One servo period at the position command `command_mm`.
     fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3>;
@@ -75,7 +75,7 @@ pub trait Mechanism {
     /// Lets `periods` servo periods pass in which the command rests.
     fn skip(&mut self, periods: u64);
 
-    /// Whether the tool is elsewhere than the encoders say.
+    /// Returns true if the tool position differs from the encoder positions.
     fn has_geometry(&self) -> bool;
 }
 
@@ -109,12 +109,11 @@ pub struct Plant<const N: usize> {
     added_nm: [f64; N],
     /// The motors.
     states: [AxisState; N],
-    /// What a rigid axis with an ideal drive and encoder does not have; none where no axis has any
-    /// of it.
+    /// Effects beyond a rigid axis with an ideal drive and encoder; `None` if no axis has any.
     nonideal: Option<Box<[NonidealAxis; N]>>,
-    /// Geometry that no encoder sees; none where there is no error in it.
+    /// Geometric errors that no encoder sees; `None` if there is no such error.
     geometry: Option<Box<KnownGeometry<N>>>,
-    /// Gaps between joints and tables; none where there is none.
+    /// Gaps between joints and tables; `None` if no axis has a gap.
     gap: Option<Box<TableGap<N>>>,
 }
 
@@ -125,7 +124,7 @@ impl<const N: usize> Plant<N> {
         Self::with_seed(machine, start_mm, machine.noise.seed)
     }
 
-    /// As [`Self::new`], with random numbers by another seed.
+    /// Creates the plant as [`Self::new`] does, with another seed of its random numbers.
     pub fn with_seed(machine: &Machine, start_mm: [f64; N], seed: u64) -> Self {
         let each = |value: fn(&Axis) -> f64| -> [f64; N] {
             std::array::from_fn(|i| value(machine.axis(i)))
@@ -204,7 +203,7 @@ impl<const N: usize> Plant<N> {
         self.added_nm = added_nm;
     }
 
-    /// How fast the joints move, mm/s.
+    /// Returns the speeds of the joints, mm/s.
     pub fn joint_mm_s(&self) -> [f64; N] {
         match &self.nonideal {
             Some(nonideal) => self.in_mm(std::array::from_fn(|i| nonideal[i].table_rad_s())),
@@ -212,17 +211,17 @@ impl<const N: usize> Plant<N> {
         }
     }
 
-    /// Whether the tool is elsewhere than the encoders say.
+    /// Returns true if the tool position differs from the encoder positions.
     pub fn has_geometry(&self) -> bool {
         self.geometry.is_some()
     }
 
-    /// Where the tool is, mm.
+    /// Returns the tool position, mm.
     pub fn position_mm(&self) -> [f64; N] {
         self.tool_mm(self.joint_mm())
     }
 
-    /// Where the joints are, mm.
+    /// Returns the joint positions, mm.
     fn joint_mm(&self) -> [f64; N] {
         match &self.nonideal {
             Some(nonideal) => self.in_mm(std::array::from_fn(|i| nonideal[i].table_rad())),

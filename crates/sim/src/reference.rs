@@ -21,7 +21,7 @@ use feedwright_plan::{
 use kept::KeptPath;
 use std::collections::VecDeque;
 
-/// Where the reference is at a plan time.
+/// State of the reference at a plan time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// Point of the planned path, mm.
@@ -37,11 +37,11 @@ pub struct Sample {
     pub feed_mm_s: f64,
     /// Line of the program that is under way; in a dwell, the dwell's.
     pub line: u32,
-    /// Whether the motion cuts; rapids, dwells and rests do not.
+    /// True for a motion that cuts; rapids, dwells and rests do not.
     pub cutting: bool,
-    /// Whether the motion is a rapid; of a dwell, or behind the end, the motion before.
+    /// True for a rapid. In a dwell or after the end, the value of the motion before.
     pub rapid: bool,
-    /// In a dwell, or behind the end.
+    /// True in a dwell or after the end.
     pub resting: bool,
 }
 
@@ -61,7 +61,7 @@ pub struct Foot {
     /// [Distance with a sign](signed_distance_mm): positive where the other point lies left of
     /// travel in the XY plane.
     pub signed_mm: f64,
-    /// Whether the motion cuts.
+    /// True if the motion cuts.
     pub cutting: bool,
     /// Programmed feedrate, mm/s; of a rapid 0.
     pub programmed_mm_s: f64,
@@ -113,7 +113,8 @@ impl<'p> Reference<'p> {
         )
     }
 
-    /// As [`Reference::of_program`], for a path that is given as steps.
+    /// Returns the reference of a path that is given as steps; otherwise as
+    /// [`Reference::of_program`].
     ///
     /// # Errors
     /// Fails if a limit is outside its allowed range.
@@ -133,8 +134,8 @@ impl<'p> Reference<'p> {
         )?))
     }
 
-    /// Where the reference is at `tau_s`; before the start (or what has been forgotten) at the
-    /// first point, behind the end at the last.
+    /// Returns the reference at `tau_s`. Before the start (or before the part that is still kept)
+    /// it returns the first point, after the end the last one.
     #[inline]
     pub fn at(&mut self, tau_s: f64) -> Sample {
         self.read_until(tau_s);

@@ -38,10 +38,12 @@ use lost_motion::LostMotion;
 pub use tick_times::TickTimes;
 use uncut::Uncut;
 
-/// A stable loop of gain Kp lags by v / Kp. Where the command is this many times the lag of a rapid
-/// away, or [`LOST_MM`] where that is more, the tool does not follow any more.
+/// Multiple of the lag of a rapid beyond which the tool counts as lost. A stable loop of gain Kp
+/// lags by v / Kp. If the distance from the command exceeds this multiple, and [`LOST_MM`], the
+/// tool no longer follows.
 const LOST_LAGS: f64 = 4.0;
-/// As [`LOST_LAGS`], for loops so stiff that they hardly lag, mm.
+/// Least distance at which a tool counts as lost, mm, for loops so stiff that they hardly lag; see
+/// [`LOST_LAGS`].
 const LOST_MM: f64 = 2.0;
 /// The tool has arrived when it is this near a path at rest, mm: a usual in-position width.
 const ARRIVED_MM: f64 = 0.01;
@@ -50,17 +52,17 @@ const ARRIVAL_S: f64 = 0.25;
 /// The path is kept for this many times as long as a following tool needs to come to a point of it.
 const KEPT_SETTLED_TIMES: f64 = 3.0;
 
-/// Rows between two questions whether to go on: some milliseconds.
+/// Rows between two checks whether to go on: some milliseconds.
 const ROWS_BETWEEN_CHECKS: u64 = 1000;
 
-/// What a run says about itself beyond its rows.
+/// Results of a run beyond its rows.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RunResult {
-    /// How it ended.
+    /// Outcome of the run.
     pub outcome: Outcome,
-    /// When the supervisor took the controller out of the loop last.
+    /// Last time that the supervisor took the controller out of the loop, with the cause.
     pub faded_out: Option<FadedOut>,
-    /// All that changed of what corrects the command, in order.
+    /// Every change of the correction, in order.
     pub transitions: Vec<Transition>,
     /// Part of the cutting time in which the controller was in the loop, and whether it was at the
     /// end.
@@ -69,7 +71,7 @@ pub struct RunResult {
     pub engaged_at_end: bool,
     /// Machining time: when the command has ended, s.
     pub time_s: f64,
-    /// When the tool has arrived there, s.
+    /// Time at which the tool has arrived at the end, s.
     pub arrival_s: f64,
     /// The contour error without the geometry that no encoder sees; none where the machine has no
     /// such geometry.
@@ -108,16 +110,16 @@ impl From<Cancelled> for Stopped {
 /// numbers by the given seed.
 pub type PlantMaker<'a> = &'a dyn Fn([f64; 3], u64) -> Box<dyn Mechanism>;
 
-/// What a lap is cut on.
+/// Machine and options that a lap is cut with.
 #[derive(Clone, Copy)]
 pub(crate) struct LapSetup<'a, const N: usize> {
     /// The machine.
     pub(crate) machine: &'a Machine,
-    /// What takes the place of its plant.
+    /// Maker of a plant that replaces the machine's own.
     pub(crate) plant: Option<PlantMaker<'a>>,
     /// The geometry that the control compensates.
     pub(crate) known: Option<&'a KnownGeometry<N>>,
-    /// Whether the offset keeps the acceleration of the axes where the owner states none.
+    /// True if the offset keeps the acceleration limits of the axes where the owner states none.
     pub(crate) within_drives: bool,
 }
 
@@ -162,11 +164,11 @@ struct ClosedLoop<'a, const N: usize> {
     /// The measured position.
     seen_mm: [f64; N],
     run: RunResult,
-    /// When the command has ended.
+    /// Time at which the command has ended.
     ended_s: Option<f64>,
     last_tau_s: f64,
-    /// What corrects the command: the last fade, whether the controller is in the loop, and of
-    /// which axes it goes by what it learned.
+    /// State of the correction: the last fade, whether the controller is in the loop, and which
+    /// axes use a learned model.
     fade: Option<Fade>,
     engaged: bool,
     learned: [bool; N],
@@ -175,7 +177,7 @@ struct ClosedLoop<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> ClosedLoop<'a, N> {
-    /// At rest at the start of the path.
+    /// Starts at rest at the start of the path.
     fn new(
         setup: LapSetup<'a, N>,
         reference: &mut Reference<'_>,
@@ -375,7 +377,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         setpoint
     }
 
-    /// Notes what has changed of what corrects the command.
+    /// Records every change of the correction.
     fn note_changes(
         &mut self,
         t_s: f64,
@@ -438,7 +440,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         (self.fade, self.engaged, self.learned) = (fade, engaged, learned);
     }
 
-    /// Whether the tool does not follow any more; then the run ends here.
+    /// Returns true if the tool no longer follows; the run then ends here.
     fn is_lost(&mut self, t_s: f64, following_mm: f64) -> bool {
         let lost = following_mm.is_nan() || following_mm > self.lost_mm;
         if lost {
@@ -514,7 +516,7 @@ fn row<const N: usize>(
     }
 }
 
-/// When plan time passed `end_s` between the last servo period and this one.
+/// Returns the time at which plan time passed `end_s` between the last servo period and this one.
 fn crossing(t_s: f64, servo_s: f64, last_tau_s: f64, tau_s: f64, end_s: f64) -> f64 {
     if tau_s > last_tau_s {
         t_s - servo_s * (tau_s - end_s) / (tau_s - last_tau_s)
@@ -523,20 +525,20 @@ fn crossing(t_s: f64, servo_s: f64, last_tau_s: f64, tau_s: f64, end_s: f64) -> 
     }
 }
 
-/// Between the tool and the joints, by the geometry that the control knows.
+/// Conversion between tool and joints, by the geometry that the control knows.
 #[derive(Clone, Copy)]
 struct Joints<'a, const N: usize> {
     known: Option<&'a KnownGeometry<N>>,
 }
 
 impl<const N: usize> Joints<'_, N> {
-    /// Where the joints have to be, mm.
+    /// Returns the joint positions for a tool position, mm.
     fn at(&self, tool_mm: Vector) -> [f64; N] {
         let tool_mm = joints_of(tool_mm);
         self.known.map_or(tool_mm, |known| known.joints_mm(tool_mm))
     }
 
-    /// Where the tool is then, mm.
+    /// Returns the tool position for joint positions, mm.
     fn tool(&self, joints_mm: [f64; N]) -> Vector {
         tool_of(
             self.known
@@ -554,7 +556,7 @@ struct Axes<'a, 'p, 'k, const N: usize> {
 }
 
 impl<const N: usize> Axes<'_, '_, '_, N> {
-    /// By how much the joints are ahead, mm.
+    /// Returns the lead of each joint over the planned path, mm.
     fn lead_mm(&mut self, tau_s: f64) -> [f64; N] {
         let Self {
             reference,

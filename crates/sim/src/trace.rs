@@ -1,11 +1,12 @@
-//! What a run leaves behind: one [`Row`] per servo period, handed to every [`Sink`] that wants it.
+//! Rows of a run: one [`Row`] per servo period, passed to every [`Sink`].
 
 pub(crate) mod csv;
 
 use feedwright_plan::TimedEvent;
 use serde::{Deserialize, Serialize};
 
-/// What the command of a servo period does. The tool follows it by some ten milliseconds.
+/// Kind of motion that the command makes in a servo period. The tool follows some ten milliseconds
+/// later.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Commanded {
@@ -31,17 +32,17 @@ pub struct Row {
     /// Programmed feedrate at the foot, mm/s; 0 on a rapid, and where it is not known. No column of
     /// `--trace`.
     pub programmed_mm_s: f64,
-    /// Whether the tool is where the program cuts: not on a rapid, and not at rest where it has
+    /// True if the program cuts at the tool: not on a rapid, and not at rest where the tool has
     /// arrived.
     pub cutting: bool,
-    /// What the command does.
+    /// Kind of motion that the command makes.
     pub commanded: Commanded,
     /// Point of the programmed path at `s_mm`.
     pub path_mm: [f64; 3],
     /// Position command of this servo period, as the servo drive gets it.
     pub cmd_mm: [f64; 3],
-    /// Where the geometry that the control compensates puts the tool with the joints at `cmd_mm`;
-    /// without any, `cmd_mm`.
+    /// Tool position that the compensated geometry gives for joints at `cmd_mm`; without
+    /// compensation, `cmd_mm`.
     pub corrected_mm: [f64; 3],
     /// True position of the tool at the end of this servo period.
     pub act_mm: [f64; 3],
@@ -77,54 +78,54 @@ impl Row {
     };
 }
 
-/// How a run ended.
+/// Outcome of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum Outcome {
     /// The program was cut to its end.
     #[default]
     Completed,
-    /// The servo loop is unstable: the tool left the command by several times what a stable loop
-    /// lags, or is nowhere.
+    /// The servo loop is unstable: the distance of the tool from the command exceeds several times
+    /// the lag of a stable loop, or is not a number.
     Diverged {
-        /// When, s.
+        /// Time, s.
         at_s: f64,
     },
 }
 
-/// The supervisor took the controller out of the loop: the rest was cut uncorrected.
+/// The supervisor took the controller out of the loop; the rest was cut uncorrected.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FadedOut {
-    /// When, s.
+    /// Time, s.
     pub at_s: f64,
-    /// Why, in words.
+    /// Cause, in words.
     pub cause: &'static str,
 }
 
-/// A change of what corrects the command.
+/// A change of the correction.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Transition {
-    /// When, s.
+    /// Time, s.
     pub at_s: f64,
     /// Line of the program that was commanded then.
     pub line: u32,
-    /// What changed.
+    /// Kind of change.
     pub change: CorrectionChange,
-    /// The axis whose model changed, x, y or z; none where that is not what changed.
+    /// Axis whose model changed, x, y or z; `None` for a change that is not of a model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub axis: Option<char>,
-    /// Why, in words; none where nothing has to be said.
+    /// Cause, in words; `None` if the change needs no cause.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cause: Option<&'static str>,
-    /// What was found, and from where on it is a fault, um; none where nothing was compared.
+    /// Measured value that was compared with the limit, um; `None` where nothing was compared.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub found_um: Option<f64>,
-    /// See above.
+    /// Limit above which the value is a fault, um.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limit_um: Option<f64>,
 }
 
-/// What changed of what corrects the command.
+/// Kind of change of the correction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CorrectionChange {
@@ -139,7 +140,7 @@ pub enum CorrectionChange {
 }
 
 impl Transition {
-    /// In words, without the time.
+    /// Returns the change in words, without the time.
     pub fn words(&self) -> String {
         let because = |cause: &str| match (self.found_um, self.limit_um) {
             (Some(found_um), Some(limit_um)) => {

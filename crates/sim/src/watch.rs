@@ -1,14 +1,15 @@
-//! Who is told how far work has come, can end it, and has the clock.
+//! Progress, cancellation and clock of long work.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use thiserror::Error;
 
-/// Is told of the progress of long work, from any of its threads, and is asked whether it shall go
-/// on.
+/// Receives the progress of long work from any of its threads, can cancel the work, and supplies
+/// the clock.
 ///
-/// Work of one stage has a number of steps; it is asked at least every second of a core's time.
+/// The work of one stage has a number of steps. It checks for cancellation at least once per second
+/// of a core's time.
 pub trait Watch: Sync {
     /// Called when a stage of `steps` steps begins.
     fn begin(&self, stage: &str, steps: u64) {
@@ -20,7 +21,7 @@ pub trait Watch: Sync {
         let _ = steps;
     }
 
-    /// Whether to end the work: nothing that is unfinished is kept.
+    /// Returns true to cancel the work; unfinished results are discarded.
     fn is_cancelled(&self) -> bool {
         false
     }
@@ -31,7 +32,7 @@ pub trait Watch: Sync {
         Duration::ZERO
     }
 
-    /// Ends the work where that is asked for.
+    /// Fails if the work is cancelled.
     ///
     /// # Errors
     /// [`Cancelled`].
@@ -47,10 +48,10 @@ pub trait Watch: Sync {
 /// Ignores the progress, never cancels, and has no clock.
 impl Watch for () {}
 
-/// Steps of a stage that is told by parts.
+/// Steps of a stage whose progress is reported as a fraction.
 const STEPS: u64 = 1000;
 
-/// The steps of a stage by the part of it that is done.
+/// Progress of a stage, reported as a fraction of it.
 pub struct StageSteps<'a> {
     watch: &'a dyn Watch,
     done: u64,
@@ -63,7 +64,7 @@ impl<'a> StageSteps<'a> {
         Self { watch, done: 0 }
     }
 
-    /// So large a part is done, 0 to 1.
+    /// Reports that the fraction `part` is done, 0 to 1.
     pub fn reach(&mut self, part: f64) {
         // A float that is not a number saturates to zero here.
         let done = ((part * STEPS as f64) as u64).min(STEPS).max(self.done);
@@ -71,8 +72,8 @@ impl<'a> StageSteps<'a> {
         self.done = done;
     }
 
-    /// Does work that tells stages of its own: each of them fills the stage from here up to the
-    /// part `to`.
+    /// Does work that reports its own stages: each of them fills this stage from its present
+    /// progress up to the fraction `to`.
     pub fn filled<T>(&mut self, to: f64, work: impl FnOnce(&dyn Watch) -> T) -> T {
         let most = ((to * STEPS as f64) as u64).clamp(self.done, STEPS) - self.done;
         let part = StagePart {
@@ -89,10 +90,10 @@ impl<'a> StageSteps<'a> {
     }
 }
 
-/// Tells the stages of some work as a part of another stage.
+/// Reports the stages of some work as a fraction of another stage.
 struct StagePart<'a> {
     watch: &'a dyn Watch,
-    /// Steps of the other stage that the work fills, and those that it was told.
+    /// Steps of the outer stage that the work fills, and the steps that were reported to it.
     most: u64,
     told: AtomicU64,
     /// Steps of the stage of the work, and those that are done.

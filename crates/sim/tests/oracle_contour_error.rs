@@ -15,18 +15,18 @@ use feedwright_sim::{Foot, Machine, Plant, Reference};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// What is promised, mm.
+/// Largest difference that is allowed, mm.
 const PROMISED_MM: f64 = 1e-3;
-/// How far a tool is put beside the lagging reference, mm.
+/// Distance of a tool from the lagging reference, mm.
 const OFFSET_MM: f64 = 0.1;
 /// Servo periods in which a tool gets from one random place to the next: it is fast, but no tool is
 /// somewhere else in no time.
 const DRAWN_EVERY: u32 = 50;
-/// How far the tool lags behind the reference, s: kp = 50 1/s, and friction.
+/// Lag of the tool behind the reference, s: kp = 50 1/s, and friction.
 const LAG_S: f64 = 0.022;
-/// How far back the path is looked at, s: all that the register holds, and two to four times the
-/// lag. Where a path comes back beside itself an older stretch may happen to be nearer than the one
-/// that is cut; the distance to either will do.
+/// Time over which the path behind is searched, s: all that the register holds, and two to four
+/// times the lag. Where a path returns beside itself, an older stretch may be nearer than the
+/// stretch that is cut; the distance to either is accepted.
 const LOOKS_BACK_S: [f64; 4] = [f64::INFINITY, 4.0 * LAG_S, 3.0 * LAG_S, 2.0 * LAG_S];
 /// Step of the dense sampling, s: 5 um at 50 mm/s, before the refinement.
 const DENSE_S: f64 = 1e-4;
@@ -58,7 +58,7 @@ impl feedwright_control::KnotSource<3> for Axes<'_, '_> {
     }
 }
 
-/// Goes on as planned and keeps what it was told.
+/// Keeps the planned motion and records the measurement that it gets.
 struct Recorder {
     schedule: Schedule,
     measured: Option<Measured<3>>,
@@ -80,9 +80,9 @@ impl Controller<3> for Recorder {
     }
 }
 
-/// Where the tool is.
+/// Source of the tool position.
 enum Tool {
-    /// Where an uncorrected cut leaves it.
+    /// Position in an uncorrected cut.
     Machine(Box<Plant<3>>),
     /// Wandering at random beside the lagging reference.
     Random(Xoshiro256PlusPlus),

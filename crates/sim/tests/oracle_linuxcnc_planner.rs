@@ -132,7 +132,7 @@ fn square_s(modes: &str) -> f64 {
     (commands(&file, feed_planner("linuxcnc").unwrap()).len() - 1) as f64 * PERIOD_S
 }
 
-/// What LinuxCNC's modes cost is not what one would expect, and is its own.
+/// Checks the times of LinuxCNC's path modes: they are not what one would expect, and are its own.
 #[test]
 fn g61_is_slower_than_g61_1_and_g64_may_be_slower_than_both() {
     let [stop, path, tight, loose, none] =

@@ -2,7 +2,7 @@
 //! friction, cogging and noise do to it.
 //!
 //! At constant speed v, under a torque T that the speed loop has to hold, both in rad of the motor,
-//! the law of an axis gives
+//! the axis model gives
 //!
 //! ```text
 //! lag = ((1 - fv) v + T / Kv) / Kp - v d,     (1 - fa) J a / (Kv Kp) more at an acceleration a
@@ -29,8 +29,8 @@ fn machine(change: impl Fn(&mut Axis)) -> Machine {
     machine
 }
 
-/// How far the tool is behind the command, um, at the start of each servo period of a second, after
-/// one to settle. x goes by `way_mm`, y by its negative.
+/// Returns the lag of the tool behind the command, um, at the start of each servo period of a
+/// second, after one second to settle. x moves by `way_mm`, y by its negative.
 fn lags_um(machine: &Machine, way_mm: impl Fn(f64) -> f64) -> [Vec<f64>; 2] {
     let mut plant = Plant::<2>::new(machine, [0.0; 2]);
     let (mut at_mm, mut lags_um) = ([0.0; 2], [vec![], vec![]]);
@@ -178,9 +178,9 @@ fn friction_costs_its_level_each_way_and_an_integral_takes_it() {
     }
 }
 
-/// So slow that the loop yields as to a constant torque: at a tenth of a turn a second, and 5 waves
-/// to a turn, the phase goes from pi to 2 pi for x and from -pi to -2 pi for y: the sine has its
-/// least for x and its most for y. A lag of first order at Kp takes 0.2 % of it.
+/// Checks at so low a speed that the loop yields as to a constant torque: at a tenth of a turn per
+/// second and 5 waves per turn, the phase goes from pi to 2 pi for x and from -pi to -2 pi for y:
+/// the sine has its least for x and its most for y. A first-order lag at Kp takes 0.2 % of it.
 #[test]
 fn cogging_and_ripple_are_waves_over_the_turn() {
     let largest = |lags: &[f64]| lags.iter().copied().fold(f64::MIN, f64::max);

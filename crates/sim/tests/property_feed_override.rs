@@ -15,7 +15,7 @@ const AXIS: AxisLimits = AxisLimits {
     jerk_mm_s3: 50_000.0,
 };
 
-/// What a limit may be exceeded by: 0.1 %.
+/// Part by which a limit may be exceeded: 0.1 %.
 const OVER: f64 = 1e-3;
 
 /// The shortest way of a hold that a ratio is taken of. Next to rest the way is a rounding error.
@@ -210,8 +210,8 @@ fn a_hold_at_the_feedrate_on_a_circle_is_within_five_per_cent_of_the_least_way()
     }
 }
 
-/// From rest on a line at constant jerk j, the shortest stop takes -j for twice the time that has
-/// passed, then j for that time once more.
+/// Checks a hold from rest on a line at constant jerk j: the shortest stop takes -j for twice the
+/// time that has passed, then j for that time once more.
 #[test]
 fn a_hold_while_the_speed_rises_is_within_five_per_cent_or_six_micrometres_of_the_least_way() {
     let plan = published(polyline(&[[0.0; 3], [60.0, 0.0, 0.0]], 200.0, BLEND));
@@ -297,11 +297,11 @@ fn after_a_hold_the_motion_goes_on_to_the_end() {
 const SEQUENCES: u64 = 16;
 const MANY_SEQUENCES: u64 = 1000;
 /// Regression seeds: 606 and 678 once exceeded a jerk limit at the end of a plan; in 504 the least
-/// way was once that of an axis at rest.
+/// distance was once computed for an axis at rest.
 const ONCE_BEYOND: [u64; 3] = [606, 678, 504];
 
-/// What a sequence came to: ways of holds from 100 % over the ways that the axes need, each by
-/// itself.
+/// Returns, for each hold from 100 % in a sequence, the stopping distance divided by the distance
+/// that the axes need, each by itself.
 fn sequence(name: &str, plan: &PublishedPlan, feed_mm_s: f64, seed: u64) -> Vec<f64> {
     let mut random = Random(seed);
     let mut scaling = TimeScaling::new(plan, limits());

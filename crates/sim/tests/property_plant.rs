@@ -205,7 +205,8 @@ fn a_machine_that_becomes_itself_goes_on_as_it_was_and_one_that_becomes_another_
     }
 }
 
-/// Without loops and friction, an impulse P moves the center of mass of motor and table at P / J.
+/// Checks an impulse P without loops and friction: the center of mass of motor and table moves at P
+/// / J.
 #[test]
 fn a_blow_gives_the_axis_its_impulse() {
     let mut machine = Machine::load("soft".as_ref()).unwrap();

@@ -1,4 +1,4 @@
-//! What corrected programs deliver on a control without a correction of its own:
+//! Results of corrected programs on a control without a correction of its own:
 //! `cargo run --release -p feedwright-lab --example corrected_programs [MACHINE,...] [PROGRAM...]`.
 //!
 //! Each program is corrected for `generic` on each machine. The machine then cuts the uncorrected
@@ -6,12 +6,13 @@
 //! its noise. Errors are those by encoders, to the original path: scale, pitch and squareness,
 //! which no encoder sees, are zero.
 //!
-//! What repeats from cut to cut is the mean of the error vectors of all cuts in a servo period. Its
-//! square is less by a [`CUTS`]-th of the variance over the cuts, which is what the mean keeps of
-//! the rest. Ratios compare what repeats. The rest is the standard deviation over the cuts of the
-//! corrected program: no program can remove it. Some effects repeat, but no model knows their
-//! phase: cogging, ripple and errors within a period of the encoder. The ratios in brackets leave
-//! them out: those are of one cut of each program by the machine without them.
+//! The repeating error is the mean of the error vectors of all cuts in a servo period. Its square
+//! is reduced by a [`CUTS`]-th of the variance over the cuts, which is the part of the other errors
+//! that remains in the mean. Ratios compare repeating errors. The rest is the standard deviation
+//! over the cuts of the corrected program: no program can remove it. Some effects repeat, but no
+//! model knows their phase: cogging, ripple and errors within a period of the encoder. The ratios
+//! in brackets leave them out: they compare one cut of each program by the machine without these
+//! effects.
 //!
 //! With `--drawn SEED` the programs are drawn from that seed (`kinds.rs`), `--count N` of each kind
 //! that there is. With `--corpus FOLDER` N programs are drawn from the files of that folder, among
@@ -67,13 +68,13 @@ impl Sink for Errors {
     }
 }
 
-/// What a program comes to over all cuts.
+/// Errors of a program over all cuts.
 #[derive(Clone, Copy, Default)]
 struct Measured {
-    /// RMS and largest error of what repeats, um.
+    /// RMS and largest repeating error, um.
     rms_um: f64,
     max_um: f64,
-    /// RMS of what does not, um.
+    /// RMS of the rest, um.
     rest_um: f64,
     time_s: f64,
     uncut_um: f64,
@@ -306,7 +307,7 @@ fn value<'a>(arguments: &'a [String], option: &str) -> Option<&'a str> {
     arguments.get(at + 1).map(String::as_str)
 }
 
-/// Whether a program can be cut: X, Y or Z alone, in a time that is not too long.
+/// Returns true if a program can be cut: X, Y or Z alone, in a time that is not too long.
 fn is_cut(text: &str) -> bool {
     let Ok(summary) = Program::from_text("part.ngc", text).check(Settings::default()) else {
         return false;
@@ -339,7 +340,7 @@ fn program_of(path: &Path) -> (String, String, String) {
     )
 }
 
-/// As many programs as that, drawn from the files of a folder.
+/// Returns `count` programs drawn from the files of a folder.
 fn drawn_files(folder: &Path, seed: u64, count: usize) -> Vec<(String, String, String)> {
     let found = FilesToCheck::find(&[folder.to_owned()]);
     let programs = found.files.iter().map(|path| program_of(path));

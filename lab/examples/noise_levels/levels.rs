@@ -11,13 +11,13 @@ pub(crate) const LEVELS: usize = 5;
 pub(crate) struct NoiseKind {
     /// Name of its figure, and first part of the names of its machines.
     pub(crate) name: &'static str,
-    /// What a level is.
+    /// Quantity that the level sets.
     pub(crate) level: &'static str,
     /// Its unit.
     pub(crate) unit: &'static str,
     /// Key of an axis that is the level.
     key: &'static str,
-    /// What the axis needs beside.
+    /// Other keys that the axis needs.
     more: &'static str,
     /// The levels, in powers of about three.
     pub(crate) levels: [f64; LEVELS],

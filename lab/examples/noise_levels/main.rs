@@ -26,7 +26,7 @@ use miette::miette;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// What is cut.
+/// Contours to cut.
 const CONTOURS: [&str; 4] = ["circle", "eight", "star", "square"];
 /// Seed of the comparison, the default of the command line.
 const SEED: u64 = 1;

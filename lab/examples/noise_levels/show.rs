@@ -1,5 +1,4 @@
-//! What the study shows of its comparison: the table of its README and a figure for each kind of
-//! noise.
+//! Output of the study: the table of its README and a figure for each kind of noise.
 
 use std::fmt::Write;
 use std::ops::Range;
@@ -24,12 +23,12 @@ pub(crate) const DOCUMENT: &str = "README.md";
 /// Lines around the table.
 const BEGIN: &str = "<!-- table of noise levels, made by `just noise-levels` -->\n";
 const END: &str = "<!-- end of table -->\n";
-/// Behind the number of a controller that did not stay in the loop in every cut.
+/// Mark behind the number of a controller that did not stay in the loop in every cut.
 const OUT_OF_THE_LOOP: &str = "*";
 /// Room on either side of curves, powers of ten.
 const MARGIN: f64 = 0.06;
 
-/// What a controller leaves on a machine.
+/// Result of a controller on a machine.
 struct Level {
     rms_um: f64,
     /// Cuts in which the supervisor took it out of the loop.
@@ -90,7 +89,7 @@ pub(crate) fn table(comparison: &Comparison) -> Result<String, std::fmt::Error> 
     Ok(table)
 }
 
-/// How the numbers came about, in a sentence.
+/// Returns a sentence on the way in which the numbers were made.
 fn made(comparison: &Comparison) -> String {
     let evaluations: u64 = comparison.tuned.iter().map(|tuned| tuned.cuts).sum();
     let tuned = if evaluations == 0 {
@@ -123,7 +122,7 @@ fn line(
     writeln!(table)
 }
 
-/// Where in the text of the document the table stands.
+/// Returns the place of the table in the text of the document.
 pub(crate) fn place(text: &str) -> Result<Range<usize>, String> {
     let start = text
         .find(BEGIN)
@@ -196,7 +195,7 @@ fn curves(comparison: &Comparison, kind: &NoiseKind) -> Vec<Polyline> {
     CONTROLLERS.into_iter().enumerate().map(curve).collect()
 }
 
-/// With a margin; what is not finite does not count.
+/// Returns the range with a margin; values that are not finite do not count.
 fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     let finite = values.filter(|value| value.is_finite());
     let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {

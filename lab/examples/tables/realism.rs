@@ -1,5 +1,5 @@
-//! The tables of what real axes have: held-out work on machines with noise, and what each
-//! imperfection costs each controller.
+//! The tables of the effects of real axes: held-out work on machines with noise, and the cost of
+//! each imperfection for each controller.
 
 use std::fmt::Write;
 
@@ -30,7 +30,7 @@ const SHOWN: &[&str] = &[
     "lqg-preview",
 ];
 
-/// Those of them that were cut.
+/// Returns those shown controllers that were cut.
 fn shown(comparison: &Comparison) -> Vec<&'static str> {
     let was_cut = |controller: &&str| {
         comparison
@@ -41,7 +41,7 @@ fn shown(comparison: &Comparison) -> Vec<&'static str> {
     SHOWN.iter().copied().filter(was_cut).collect()
 }
 
-/// Of a controller on a machine, over all that was cut, um.
+/// Errors of a controller on a machine, over all work that was cut, um.
 struct OverAll {
     /// Half of the workpieces have a lower RMS.
     median_um: f64,

@@ -23,7 +23,7 @@ pub(crate) const COMPARISON: &str = "examples/02_contours/compare.json";
 pub(crate) const HELD_OUT: &str = "examples/03_realism/held_out.json";
 /// The comparison on machines with one imperfection each.
 pub(crate) const IMPERFECTIONS: &str = "examples/03_realism/imperfections.json";
-/// What stands after a table.
+/// Text after a table.
 const END: &str = "<!-- end of table -->\n";
 
 /// Every error here ends the program that asked.
@@ -101,7 +101,7 @@ impl Place {
         })
     }
 
-    /// Where in the text of the document the table stands.
+    /// Returns the place of the table in the text of the document.
     pub(crate) fn find(&self, text: &str) -> Result<Range<usize>> {
         let before = format!("<!-- table of {}, made by `just tables` -->\n", self.name);
         let start = text
@@ -150,7 +150,7 @@ fn find<'a>(
     Ok(row.ok_or_else(|| format!("{COMPARISON} has no {controller} on {contour} and {machine}"))?)
 }
 
-/// Of a table in Markdown: the first two lines.
+/// Writes the first two lines of a table in Markdown.
 fn heading(table: &mut String, first: &str, columns: &[&str]) -> Result<()> {
     write!(table, "| {first} |")?;
     columns
@@ -209,7 +209,7 @@ fn machines(comparison: &Comparison) -> Result<String> {
     Ok(table)
 }
 
-/// What the searches came to.
+/// Returns the table of the search results.
 fn tuned(comparison: &Comparison) -> Result<String> {
     let mut table = String::from(
         "| controller | machine | evaluations | RMS, \u{b5}m | uncorrected, \u{b5}m | values |\n|---|---|--:|--:|--:|---|\n",

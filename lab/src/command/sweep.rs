@@ -1,5 +1,5 @@
-//! What the commands share that compare controllers with the uncorrected cut on many cuts: the
-//! store, the bar, the table.
+//! Shared parts of the commands that compare controllers with the uncorrected cut on many cuts: the
+//! store, the progress bar, the table.
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -88,7 +88,7 @@ impl Sweep {
         })
     }
 
-    /// Writes what a run came to where it was asked for, and returns where tables are printed.
+    /// Writes the results of a run to the requested places, and returns where tables are printed.
     pub(crate) fn write(
         self,
         summary: &impl Serialize,
@@ -119,7 +119,7 @@ pub(super) fn code(worse: usize) -> ExitCode {
 pub(super) struct Done {
     pub(crate) rows: Vec<SweepRow>,
     known: usize,
-    /// How often each program is cut on each machine.
+    /// Number of cuts of each program on each machine.
     times: usize,
     threads: usize,
     took_s: f64,

@@ -1,4 +1,4 @@
-//! Who competes: a controller, and what it is given of the machine that it cuts on.
+//! A competitor: a controller, and its knowledge of the machine that it cuts on.
 use feedwright::{Choices, Entry, Knows, Make, Setup, recorded_machine};
 use feedwright_control::{Controller, IdentifierKind, Uncorrected};
 use feedwright_sim::Machine;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::tuned::Tuned;
 use crate::peers::CONTROLLERS;
 
-/// What a controller is given of the machine that it cuts on.
+/// Knowledge that a controller gets of the machine that it cuts on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Knowledge {
@@ -22,15 +22,16 @@ pub enum Knowledge {
     TwentyPercentOff,
     /// An identification on the nominal machine, and the values that are tuned there.
     Unseen,
-    /// What a log of the machine tells, the settings of its drives too; values that are tuned with
-    /// the exact ones.
+    /// Values identified from a log of the machine, including the settings of its drives; parameter
+    /// values tuned with the exact ones.
     Log,
 }
 
-/// Inertia that is believed where parameters are 20 % off, as a part of the true one. Opposite to
-/// friction, so that the two errors of the torque do not cancel each other where an axis speeds up.
+/// Assumed inertia where parameters are 20 % off, as a part of the true one. The error is opposite
+/// to the error in friction, so that the two errors of the torque do not cancel each other where an
+/// axis speeds up.
 const INERTIA_BELIEVED: f64 = 0.8;
-/// The same of friction.
+/// Assumed friction, as a part of the true one.
 const FRICTION_BELIEVED: f64 = 1.2;
 
 impl Knowledge {
@@ -43,7 +44,7 @@ impl Knowledge {
         Self::Log,
     ];
 
-    /// What stands behind the name of the controller.
+    /// Returns the suffix of the controller's name.
     pub const fn suffix(self) -> &'static str {
         match self {
             Self::Own => "",
@@ -54,7 +55,7 @@ impl Knowledge {
         }
     }
 
-    /// Whether it makes a row of its own for a controller.
+    /// Returns true if this knowledge makes a row of its own for a controller.
     fn is_for(self, entry: &Entry) -> bool {
         match self {
             Self::Own => true,
@@ -72,7 +73,7 @@ impl Knowledge {
 pub struct Competitor {
     /// Its row in the table of controllers.
     pub entry: &'static Entry,
-    /// What it is given.
+    /// Knowledge that it gets.
     pub knowledge: Knowledge,
 }
 

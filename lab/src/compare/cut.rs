@@ -10,20 +10,20 @@ use super::options::ComparisonOptions;
 use super::table::{ComparisonRow, CutNumbers};
 use super::work::Workpiece;
 
-/// What a run leaves for the table.
+/// Results of a run for the table.
 pub(super) struct Cut {
     pub(super) statistics: Statistics,
     pub(super) run: RunResult,
 }
 
 impl Cut {
-    /// Whether the controller brought it to its end on its own.
+    /// Returns true if the controller brought the cut to its end without the supervisor.
     pub(super) fn is_sound(&self) -> bool {
         self.run.outcome == Outcome::Completed && self.run.faded_out.is_none()
     }
 
-    /// RMS contour error without the geometry that no encoder sees, um: what a controller can do
-    /// something about.
+    /// RMS contour error without the geometry that no encoder sees, um: the part that a controller
+    /// can influence.
     pub(super) fn joint_rms_um(&self) -> f64 {
         self.run
             .joint_error

@@ -2,8 +2,8 @@
 //! after everything was tuned.
 //!
 //! The seeds are kept with the date of the draw and a fingerprint of all settings that can be
-//! tuned: defaults, searched ranges, and the recorded values. Where a setting has changed since,
-//! the work is held out no more, and a test asks for new seeds.
+//! tuned: defaults, searched ranges, and the recorded values. If a setting has changed since, the
+//! work is no longer held out, and a test demands new seeds.
 use feedwright::{BASELINE, Choices, Make, Setup};
 use feedwright_sim::{Machine, Outcome, Run, RunError};
 use serde::{Deserialize, Serialize};
@@ -16,12 +16,12 @@ use crate::peers::{CONTROLLERS, RECORDED};
 
 /// Programs of the set.
 const PROGRAMS: usize = 11;
-/// Of one family at the most: all of those in the plane have a place.
+/// Most programs of one family: all families in the plane have a place.
 const OF_A_FAMILY: usize = 2;
 /// Machining time of a program on [`MACHINE`], s: long enough for the tool to meet something, short
 /// enough for all machines and seeds.
 const TIME_S: [f64; 2] = [4.0, 8.0];
-/// Where that is measured.
+/// Machine on which the time is measured.
 const MACHINE: &str = "tnv40";
 
 /// Seeds, and when they were drawn.
@@ -38,7 +38,7 @@ pub struct HeldOutSeeds {
 }
 
 impl HeldOutSeeds {
-    /// Those that are kept with the program.
+    /// Returns the seeds that are kept with the program.
     pub fn recorded() -> Self {
         serde_json::from_str(include_str!("held_out_seeds.json"))
             .expect("the recorded seeds are read by a test")
@@ -76,7 +76,7 @@ impl HeldOutSeeds {
         })
     }
 
-    /// What they stand for.
+    /// Returns the workpieces of the seeds.
     pub fn workpieces(&self) -> Vec<Workpiece> {
         let contours = CONTOURS
             .iter()
@@ -104,7 +104,7 @@ impl HeldOutSeeds {
     }
 }
 
-/// Whether a program stays in the plane, and takes neither too short nor too long.
+/// Returns true if a program stays in the plane and has a suitable machining time.
 fn suits(drawn: &programs::RandomProgram) -> Result<bool, RunError> {
     let in_plane = drawn
         .text
@@ -123,8 +123,8 @@ fn suits(drawn: &programs::RandomProgram) -> Result<bool, RunError> {
     Ok(run.outcome == Outcome::Completed && (TIME_S[0]..=TIME_S[1]).contains(&run.time_s))
 }
 
-/// What of the program can be tuned: defaults and searched ranges of all controllers, and the
-/// recorded values.
+/// Returns a fingerprint of all settings that can be tuned: defaults and searched ranges of all
+/// controllers, and the recorded values.
 pub fn settings_fingerprint() -> String {
     let controllers: Vec<_> = CONTROLLERS
         .iter()

@@ -1,4 +1,4 @@
-//! What is compared.
+//! Options of a comparison.
 
 use feedwright::{Entry, Setting};
 use feedwright_sim::Machine;
@@ -8,7 +8,7 @@ use super::competitor::{Competitor, Knowledge};
 use super::tuned::Tuned;
 use super::work::Workpiece;
 
-/// Where the values of the controllers' parameters come from.
+/// Source of the controllers' parameter values.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub enum Tuning {
     /// A search on each machine, the same for all.
@@ -19,7 +19,7 @@ pub enum Tuning {
     Known(Vec<Tuned>),
 }
 
-/// What is to be compared.
+/// Options of a comparison.
 #[derive(Debug, Clone)]
 pub struct ComparisonOptions {
     /// Contours and parts.
@@ -30,7 +30,7 @@ pub struct ComparisonOptions {
     pub machines: Vec<Machine>,
     /// Controllers, uncorrected among them: the ratios are against it.
     pub controllers: Vec<&'static Entry>,
-    /// What they are given of the machines: a row for each kind that suits a controller.
+    /// Knowledge that controllers get of the machines: a row for each kind that suits a controller.
     pub knowledge: Vec<Knowledge>,
     /// Seed of everything random.
     pub seed: u64,
@@ -40,7 +40,7 @@ pub struct ComparisonOptions {
     pub tuning: Tuning,
     /// Parameters that are set; the others of such a controller have their defaults.
     pub set: Vec<Setting>,
-    /// Whether to look for the machining times at equal tolerance too.
+    /// True if the machining times at equal tolerance are searched too.
     pub at_tolerance: bool,
 }
 
@@ -54,12 +54,12 @@ impl ComparisonOptions {
         )
     }
 
-    /// Whether parameters of a controller are set.
+    /// Returns true if parameters of a controller are set.
     pub(super) fn is_set(&self, entry: &Entry) -> bool {
         self.set.iter().any(|set| set.controller == entry.name)
     }
 
-    /// Whether a controller runs with values other than what it always has.
+    /// Returns true if a controller runs with values other than its fixed ones.
     pub(super) fn has_values(&self, entry: &Entry) -> bool {
         entry.searched().count() > 0 || self.is_set(entry)
     }
@@ -92,7 +92,7 @@ impl ComparisonOptions {
         self.machines.iter().flat_map(on).collect()
     }
 
-    /// What the result depends on, apart from the program.
+    /// Returns a fingerprint of everything that the result depends on, apart from the program.
     pub fn fingerprint(&self) -> String {
         let workpieces: Vec<_> = self
             .workpieces

@@ -1,5 +1,5 @@
-//! What tables over many rows are made of: names in their order, a row by its names, an error over
-//! all contours, a claim over all that it was made of.
+//! Parts of tables over many rows: names in their order, a row by its names, an error over all
+//! contours, a claim over all of its verdicts.
 
 use feedwright_ident::quadratic_mean;
 use serde::{Deserialize, Serialize};
@@ -9,12 +9,12 @@ use super::table::{ComparisonRow, each_once};
 use super::tolerance::AtTolerance;
 use super::verdict::Verdict;
 
-/// One claim, and what became of it everywhere.
+/// One claim, and its results everywhere.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Claimed {
-    /// What is claimed.
+    /// Text of the claim.
     pub claim: String,
-    /// What the value may be.
+    /// Largest value at which the claim holds.
     pub limit: f64,
     /// Its unit; empty for a ratio.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -113,8 +113,8 @@ impl Comparison {
             .map(quadratic_mean)
     }
 
-    /// As [`Self::rms_over_contours_um`], without the geometry that no encoder sees where the
-    /// machine has any.
+    /// Returns the RMS contour error over all contours as [`Self::rms_over_contours_um`] does,
+    /// without the geometry that no encoder sees where the machine has any.
     pub fn controlled_rms_over_contours_um(&self, machine: &str, controller: &str) -> Option<f64> {
         self.on_contours(machine, controller, ComparisonRow::controlled_rms_um)
             .map(quadratic_mean)

@@ -1,9 +1,9 @@
-//! Values that earlier searches came to, kept with the program: `feedwright-lab compare --tuning
-//! search --record FILE` makes the file.
+//! Results of earlier searches, kept with the program: `feedwright-lab compare --tuning search
+//! --record FILE` makes the file.
 //!
 //! A search on all machines takes an hour and more; its result is the same to the bit, which a test
-//! holds for one controller. Values are of a machine file as it was: where that has changed, they
-//! are not used.
+//! checks for one controller. Values belong to one version of a machine file: if the file has
+//! changed, they are not used.
 
 use feedwright_sim::Machine;
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::tuned::Tuned;
 use crate::peers::RECORDED;
 
-/// What a search came to.
+/// Result of a search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RecordedSearch {
     /// [`Machine::fingerprint`].

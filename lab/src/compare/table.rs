@@ -70,19 +70,19 @@ pub struct ComparisonRow {
     pub max_ratio: f64,
     /// Noise seeds that it was cut with.
     pub seeds: u32,
-    /// With how many of them it was not cut to its end, or the supervisor took the controller out
-    /// of the loop.
+    /// Number of these seeds with which the cut did not come to its end, or the supervisor took the
+    /// controller out of the loop.
     pub lost: u32,
-    /// Whether it was cut to its end with all of them.
+    /// True if the cut came to its end with all of them.
     pub completed: bool,
-    /// Why the supervisor took the controller out of the loop, where it did, with the first of
-    /// them.
+    /// Cause for which the supervisor took the controller out of the loop, with the first seed for
+    /// which it did.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub faded_out: Option<String>,
 }
 
 impl ComparisonRow {
-    /// Of what was measured with each noise seed; ratios are still open.
+    /// Creates the row from the measurements with each noise seed; ratios are still open.
     pub(super) fn new(
         workpiece: &Workpiece,
         machine: &Machine,
@@ -133,7 +133,7 @@ impl ComparisonRow {
         }
     }
 
-    /// RMS contour error that a control with encoders alone can do something about, um.
+    /// RMS contour error that a control with encoders alone can influence, um.
     pub fn controlled_rms_um(&self) -> f64 {
         self.joint_rms_um.unwrap_or(self.rms_um)
     }
@@ -143,7 +143,7 @@ impl ComparisonRow {
         self.joint_max_um.unwrap_or(self.max_um)
     }
 
-    /// What became of it, where it is not just an end: in words.
+    /// Returns a note on a cut that diverged or left the loop, in words.
     pub fn note(&self) -> Option<String> {
         let of = if self.seeds > 1 {
             format!(" with {} of {} seeds", self.lost, self.seeds)

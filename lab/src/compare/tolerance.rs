@@ -1,5 +1,5 @@
 //! The machining time at which a controller just holds a tolerance: the feedrate is raised until it
-//! does not.
+//! exceeds the tolerance.
 
 use feedwright::BASELINE;
 use feedwright_control::Controller;
@@ -12,14 +12,14 @@ use super::options::ComparisonOptions;
 use super::work::{CORNER, Workpiece};
 use crate::contour::{CONTOURS, Contour};
 
-/// What the largest contour error may be, um.
+/// Largest contour error that is allowed, um.
 pub const TOLERANCE_UM: f64 = 10.0;
 /// Slowest feedrate that is tried, mm/s.
 const SLOWEST_MM_S: f64 = 1.0;
 /// Halvings of the range of the feedrate's logarithm: to half a percent.
 const HALVINGS: u32 = 10;
 
-/// What a controller comes to on one contour.
+/// Result of a controller on one contour.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AtTolerance {
     /// Contour.
@@ -50,7 +50,8 @@ pub(super) fn contours(options: &ComparisonOptions) -> Vec<&'static Contour> {
         .collect()
 }
 
-/// What a controller comes to on a contour; the ratio is still open.
+/// Raises the feedrate of a controller on a contour and returns the result; the ratio is still
+/// open.
 pub(super) fn raised(
     contour: &Contour,
     machine: &Machine,

@@ -4,14 +4,14 @@ use feedwright::{Entry, Setting};
 use feedwright_sim::to_four_digits;
 use serde::{Deserialize, Serialize};
 
-/// The values that a controller runs with on a machine, and what a search says of them.
+/// The values that a controller runs with on a machine, and the results of the search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Tuned {
     /// Machine.
     pub machine: String,
     /// Controller.
     pub controller: String,
-    /// In the order of the controller's parameters.
+    /// Values in the order of the controller's parameters.
     pub values: Vec<TunedValue>,
     /// Evaluations that the search took; 0 where nothing was searched.
     pub cuts: u64,
@@ -21,7 +21,7 @@ pub struct Tuned {
     /// RMS contour error of the uncorrected cut over the same work, um; 0 where nothing was
     /// searched.
     pub open_um: f64,
-    /// Whether the search found nothing that is better than no correction.
+    /// True if the search found nothing better than no correction.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub switched_off: bool,
 }
@@ -33,7 +33,8 @@ pub struct TunedValue {
     pub name: String,
     /// Its value.
     pub value: f64,
-    /// At which end of the searched range it is, where it is at one: a better one may lie beyond.
+    /// End of the searched range that the value is at, if it is at one: a better one may lie
+    /// beyond.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_end: Option<RangeEnd>,
 }
@@ -49,7 +50,7 @@ pub enum RangeEnd {
 }
 
 impl RangeEnd {
-    /// In words.
+    /// Returns the end in words.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Low => "low end",

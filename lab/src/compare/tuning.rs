@@ -92,7 +92,7 @@ struct Trial<'a> {
     open: Evaluation,
 }
 
-/// What some values come to, over all workpieces.
+/// Result of an evaluation over all workpieces.
 #[derive(Debug, Clone, Copy)]
 struct Evaluation {
     /// Quadratic mean.

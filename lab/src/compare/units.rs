@@ -19,14 +19,14 @@ use super::work::Workpiece;
 use crate::contour::Contour;
 use crate::kept::Kept;
 
-/// All that was worked out, ratios still open.
+/// All results, ratios still open.
 #[derive(Debug, Default)]
 pub(super) struct UnitResults {
     /// The values that the controllers ran with.
     pub(super) tuned: Vec<Tuned>,
     /// Rows by machine, competitor and workpiece.
     pub(super) rows: Vec<ComparisonRow>,
-    /// By contour and controller.
+    /// Results at equal tolerance, by contour and controller.
     pub(super) at_tolerance: Vec<AtTolerance>,
 }
 

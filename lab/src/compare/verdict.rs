@@ -25,31 +25,31 @@ use super::table::{ComparisonRow, each_once, knows};
 /// One claim on one workpiece of one machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// What is claimed.
+    /// Text of the claim.
     pub claim: String,
     /// Contour or part, or [`ALL_WORK`].
     pub contour: String,
     /// Machine.
     pub machine: String,
-    /// What it is compared with; empty where the limit stands for itself.
+    /// Row that the claim compares with; empty where the limit is absolute.
     pub against: String,
     /// Ratio, or number of `unit`.
     pub value: f64,
-    /// What it may be.
+    /// Largest value at which the claim holds.
     pub limit: f64,
     /// Unit of both; empty for a ratio.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub unit: String,
-    /// Whether it holds.
+    /// True if the claim holds.
     pub holds: bool,
 }
 
-/// In place of a workpiece: the quadratic mean over all of them.
+/// Name in place of a workpiece, for the quadratic mean over all of them.
 pub const ALL_WORK: &str = "all work";
-/// What a control without corrections has today: feedforward as machines are delivered.
+/// Baseline of a control without corrections today: feedforward as machines are delivered.
 pub const DELIVERED: &str = "feedforward-as-delivered";
-/// The peer that knows all that can be known, statistics of the noise included: a bound on what can
-/// be reached, not a competitor.
+/// The peer that knows all that can be known, including statistics of the noise: a bound on the
+/// reachable error, not a competitor.
 pub const LIMIT: &str = "lqg-preview";
 /// The same where there is no noise: it has the exact model and unlimited computing time.
 const NOISELESS_LIMIT: &str = "model-predictive";
@@ -59,7 +59,7 @@ const FEEDFORWARD_WITH_FEEDBACK: &str = "feedforward-cross-coupled";
 /// A ratio of machining times that is 1 to rounding.
 const SAME_TIME: f64 = 1.0 + 1e-9;
 
-/// What is claimed, the most at which it holds, and its unit.
+/// Text of a claim, the largest value at which it holds, and its unit.
 struct Claim(&'static str, f64, &'static str);
 
 // On the nominal machine, contours without corners.
@@ -95,7 +95,7 @@ const HELD_OUT_LOST: Claim = Claim("held-out: lost", 0.0, "seeds");
 const PEAK_TORQUE: Claim = Claim("peak torque against the baseline", 1.25, "");
 
 impl Claim {
-    /// What a row makes of it: `value` is against the row of `against`.
+    /// Builds the verdict for a row: `value` is against the row of `against`.
     fn of(&self, row: &ComparisonRow, against: &str, value: f64) -> Verdict {
         let Self(claim, limit, unit) = *self;
         Verdict {
@@ -201,8 +201,8 @@ fn square(ours: &ComparisonRow) -> [Verdict; 2] {
     ]
 }
 
-/// For each controller of a machine a row with the quadratic means over all work, and whether all
-/// was completed.
+/// Returns a row for each controller of a machine with the quadratic means over all work, and
+/// whether all cuts were completed.
 fn over_all_work(rows: &[ComparisonRow], machine: &str) -> Vec<ComparisonRow> {
     let on = || rows.iter().filter(|row| row.machine == machine);
     let mean_of = |controller: &str| {

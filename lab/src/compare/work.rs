@@ -1,4 +1,4 @@
-//! What is cut: contours and programs in the XY plane.
+//! Work of the comparison: contours and programs in the XY plane.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use crate::contour::CONTOURS;
 
 /// Feedrate of the contours, mm/s.
 pub const FEED_MM_S: f64 = 50.0;
-/// How corners of the contours are taken: at the speed that the machine's limits allow.
+/// Corner mode of the contours: corners are taken at the speed that the machine's limits allow.
 pub(crate) const CORNER: Corner = Corner::Continuous {
     tolerance_mm: None,
     merge_mm: None,
@@ -30,7 +30,7 @@ const PARTS: [(&str, &str); 6] = [
 
 /// Contours that controllers are tuned on.
 const TUNING_CONTOURS: [&str; 2] = ["eight", "square"];
-/// What they are tuned on beside: tips of 11 and 24 degrees and a short edge.
+/// Further tuning work: tips of 11 and 24 degrees and a short edge.
 const TIPS: &str = "G1 X8 Y0 F3000\nX0 Y1.5\nX4 Y4\nX1 Y0.8\nX0 Y0\nM2\n";
 
 /// Something to cut.
@@ -38,9 +38,9 @@ const TIPS: &str = "G1 X8 Y0 F3000\nX0 Y1.5\nX4 Y4\nX1 Y0.8\nX0 Y0\nM2\n";
 pub struct Workpiece {
     /// Name.
     pub name: String,
-    /// Whether it has no corners.
+    /// True if it has no corners.
     pub smooth: bool,
-    /// Whether nothing was tuned on it.
+    /// True if nothing was tuned on it.
     pub held_out: bool,
     /// Its path.
     pub steps: Vec<Step>,
@@ -62,7 +62,8 @@ impl Workpiece {
             .collect()
     }
 
-    /// What the peers are tuned on: a smooth contour, one with corners, and acute tips.
+    /// Returns the work that the peers are tuned on: a smooth contour, one with corners, and acute
+    /// tips.
     pub fn tuning() -> Vec<Self> {
         let mut all = Self::contours();
         all.retain(|workpiece| TUNING_CONTOURS.contains(&workpiece.name.as_str()));
@@ -76,8 +77,8 @@ impl Workpiece {
         all
     }
 
-    /// What everything may be tuned on: the contours, and the parts in the plane that come with the
-    /// program.
+    /// Returns the work that everything may be tuned on: the contours, and the parts in the plane
+    /// that come with the program.
     pub fn development() -> Vec<Self> {
         let part = |(name, text): &(&str, &str)| Self {
             name: (*name).to_owned(),

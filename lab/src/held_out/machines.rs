@@ -13,9 +13,9 @@
 //! delivered that way. The performance of a controller on the machine plays no part. Each torque
 //! limit is the torque that the plan needs, times a random factor from 1.5 to 4.
 //!
-//! Realistic machines have more on top (`machines/realistic.rs`). The formula above leaves out the
-//! integral of a speed loop and a ball screw. Where a machine has one of them, the answer to a blow
-//! is simulated too, and has to die away.
+//! Realistic machines add further effects (`machines/realistic.rs`). The formula above leaves out
+//! the integral of a speed loop and a ball screw. If a machine has one of them, its response to an
+//! impulse is simulated too, and has to decay.
 
 mod realistic;
 
@@ -26,12 +26,12 @@ use feedwright_sim::{Axis, Machine, Plant};
 use super::random::{Random, rounded};
 use super::variant::{AXES, Variant};
 
-/// What all of them build upon.
+/// Base of all machines.
 const BASE: &str = "tnv40";
 /// Least phase margin of a position loop, degrees: textbooks ask for 30 to 60.
 pub const PHASE_MARGIN_DEG: f64 = 40.0;
-/// Time within which the answer to a blow has to die away, s, and to what part: a screw of 40 Hz
-/// with a damping ratio of 0.02 does so by itself.
+/// Time within which the response to an impulse has to decay, s, and the part that may remain: a
+/// screw of 40 Hz with a damping ratio of 0.02 does so by itself.
 const QUIET_S: f64 = 0.5;
 const QUIET: f64 = 0.1;
 /// Range of the position loops' gain, 1/s.
@@ -54,15 +54,15 @@ const DISTURBANCE_HZ: [f64; 2] = [5.0, 120.0];
 /// Range of torque limits, in what the plan needs.
 const TORQUE: [f64; 2] = [1.5, 4.0];
 
-/// Which machines are drawn.
+/// Class of machines to draw.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Class {
     /// All of them.
     Any,
-    /// Without encoder steps and without delay.
+    /// Machines without encoder steps and without delay.
     Rigid,
-    /// As all of them, with what real axes have beside their loops: ball screw, friction, motor,
-    /// drive, noise, servo period.
+    /// Machines as in `Any`, plus the effects of real axes: ball screw, friction, motor, drive,
+    /// noise, servo period.
     Realistic,
 }
 
@@ -146,7 +146,8 @@ fn torque_of_plan_nm(axis: &Axis, machine: &Machine, accel_mm_s2: f64) -> f64 {
     axis.inertia_kg_m2 * (accel_mm_s2 + jump_mm_s2) * rad_per_mm + friction_nm + axis.disturbance_nm
 }
 
-/// Whether every position loop has its phase margin, and what the formula leaves out dies away.
+/// Returns true if every position loop has its phase margin, and the effects beyond the formula
+/// decay.
 pub fn is_stable(machine: &Machine) -> bool {
     let is_simple = |axis: &Axis| axis.transmission.is_none() && axis.speed_integral_s == 0.0;
     machine
@@ -156,9 +157,9 @@ pub fn is_stable(machine: &Machine) -> bool {
         && (machine.axes.iter().all(is_simple) || dies_away(machine))
 }
 
-/// Whether a blow dies away in every axis: after [`QUIET_S`] the table stays within [`QUIET`] of
-/// its largest deviation. The axes are simulated without friction, backlash, steps and noise: what
-/// is left is linear, and the least damped.
+/// Returns true if an impulse decays in every axis: after [`QUIET_S`] the table stays within
+/// [`QUIET`] of its largest deviation. The axes are simulated without friction, backlash, steps and
+/// noise: the remaining axis is linear, and the least damped.
 fn dies_away(machine: &Machine) -> bool {
     let mut linear = machine.clone();
     for axis in &mut linear.axes {

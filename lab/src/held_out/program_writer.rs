@@ -1,7 +1,7 @@
-//! Writes a program line by line: where the tool is, how fast it cuts, and about how long that
-//! takes.
+//! Writes a program line by line and tracks the tool position, the feedrate, and an estimate of the
+//! time.
 //!
-//! Places are absolute and every line says all that it needs but modes.
+//! Positions are absolute, and every line is complete except for modes.
 
 use feedwright_plan::vector::distance;
 
@@ -51,12 +51,12 @@ impl ProgramWriter {
         writer
     }
 
-    /// The next part may take about so long, s.
+    /// Sets the estimated time of the next part, s.
     pub(super) fn begin_part(&mut self, time_s: f64) {
         self.left_s = time_s;
     }
 
-    /// Whether there is time for more in this part.
+    /// Returns true if there is time for more in this part.
     pub(super) fn goes_on(&self) -> bool {
         self.left_s > 0.0
     }
@@ -152,7 +152,7 @@ impl ProgramWriter {
     }
 }
 
-/// As programs write places: four decimals, and no zero with a sign.
+/// Rounds to the form in which programs write positions: four decimals, and no zero with a sign.
 fn decimal(value: f64) -> f64 {
     (value * 1e4).round() / 1e4 + 0.0
 }

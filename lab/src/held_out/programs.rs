@@ -1,5 +1,5 @@
-//! Programs drawn at random, a few seconds of machining each, in families: what is cut, and what
-//! has been cut badly.
+//! Programs drawn at random, a few seconds of machining each, in families: typical parts, and
+//! programs that were once cut badly.
 
 use std::f64::consts::{PI, TAU};
 
@@ -66,7 +66,7 @@ pub const FAMILIES: [Family; 11] = [
 const PART_S: [f64; 2] = [1.0, 4.0];
 /// Most parts of a program.
 const PARTS: u32 = 3;
-/// Where parts begin, mm from the last.
+/// Largest distance of the start of a part from the last part, mm.
 const APART_MM: f64 = 20.0;
 
 /// A program of a family.
@@ -98,8 +98,8 @@ pub fn program(seed: u64) -> RandomProgram {
     }
 }
 
-/// Between two parts: a rapid, and perhaps a dwell, a tool change, another feedrate, a motion
-/// without a corner.
+/// Writes the transition between two parts: a rapid, and perhaps a dwell, a tool change, another
+/// feedrate, or a motion without a corner.
 fn interruption(writer: &mut ProgramWriter) {
     match writer.random.whole(0, 7) {
         0 => writer.say("T1 M6"),
@@ -176,7 +176,7 @@ fn cam(writer: &mut ProgramWriter) {
     }
 }
 
-/// There and almost back again.
+/// Writes spikes: lines there and almost back again.
 fn spikes(writer: &mut ProgramWriter) {
     let mut heading = writer.random.between([-PI, PI]);
     let most_mm = writer.random.by_ratio([0.5, 8.0]);
@@ -407,7 +407,7 @@ mod tests {
         assert_ne!(program(7).text, program(8).text);
     }
 
-    /// So that thousands of them can be cut.
+    /// Checks that programs are short, so that thousands of them can be cut.
     #[test]
     fn programs_are_short() {
         let lines: usize = (0..SEEDS)

@@ -33,7 +33,7 @@ impl Random {
     }
 }
 
-/// To three digits, as people write values.
+/// Rounds to three digits, as people write values.
 pub(super) fn rounded(value: f64) -> f64 {
     format!("{value:.2e}").parse().unwrap_or(value)
 }

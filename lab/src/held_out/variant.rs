@@ -1,5 +1,4 @@
-//! A machine as what differs from a built-in one: a list of changes, and the machine file that they
-//! make.
+//! A machine as a list of changes to a built-in one, and the machine file that they make.
 //!
 //! The list is what can be drawn at random.
 
@@ -7,7 +6,7 @@ use std::fmt::Write;
 
 use feedwright_sim::{Machine, MachineError};
 
-/// One key of the machine file that is not the base's.
+/// A key of the machine file whose value differs from the base's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Change {
     /// Table of the file, such as `axis.x`.
@@ -25,7 +24,7 @@ pub struct Variant {
     pub base: &'static str,
     /// Its own name.
     pub name: String,
-    /// What differs; each key once.
+    /// Changes; each key once.
     pub changes: Vec<Change>,
 }
 
@@ -42,7 +41,7 @@ impl Variant {
         }
     }
 
-    /// With one more change; in place of an earlier one of the same key.
+    /// Adds a change. It replaces an earlier change of the same key.
     #[must_use]
     pub fn with(mut self, table: &'static str, key: &'static str, value: f64) -> Self {
         self.changes
@@ -51,7 +50,7 @@ impl Variant {
         self
     }
 
-    /// With the same change in every axis.
+    /// Adds the same change to every axis.
     #[must_use]
     pub fn with_axes(self, key: &'static str, value: f64) -> Self {
         AXES.iter()

@@ -33,11 +33,11 @@ pub struct BallScrew {
     pub edge_m: f64,
 }
 
-/// Force of the screw on the table and what it changes by.
+/// Force of the screw on the table, and its derivatives.
 pub(super) struct ScrewForce {
     /// N.
     pub(super) force_n: f64,
-    /// By the lead of the nut, N/m, and by its rate, N s/m.
+    /// Derivatives of the force: by the lead of the nut, N/m, and by its rate, N s/m.
     pub(super) slopes: [f64; 2],
 }
 
@@ -79,7 +79,7 @@ impl BallScrew {
         }
     }
 
-    /// How far the nut is ahead of the table where the screw carries a load at rest, m.
+    /// Returns the lead of the nut over the table at which the screw carries a load at rest, m.
     pub(super) fn lead_under(&self, load_n: f64) -> f64 {
         let (mut low_m, mut high_m) = (0.0, self.backlash_m + load_n.abs() / self.stiffness_n_m);
         for _ in 0..80 {
@@ -103,7 +103,7 @@ impl BallScrew {
         0.5 * self.stiffness_n_m * square + 0.25 * self.hardening_n_m3 * square * square
     }
 
-    /// What its damping takes, W.
+    /// Returns the power that the damping dissipates, W.
     pub(super) fn loss_w(&self, lead_m: f64, rate_m_s: f64) -> f64 {
         let rate_m_s = self.bending(lead_m)[1] * rate_m_s;
         self.damping_n_s_m * rate_m_s * rate_m_s

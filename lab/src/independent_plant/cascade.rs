@@ -22,7 +22,7 @@ use serde::Serialize;
 use super::mechanics::WoundMotor;
 use super::position_sensor::Late;
 
-/// What a drive is set to.
+/// Settings of a drive.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct DriveCascade {
     /// Period of the current loop, s.
@@ -44,9 +44,10 @@ pub struct DriveCascade {
     pub kp_1_s: f64,
     /// Part of the command's speed that is fed forward.
     pub velocity_feedforward: f64,
-    /// By how many drive periods a command is late.
+    /// Delay of a command, in drive periods.
     pub bus_periods: u32,
-    /// Whether commands are joined by lines, which takes a servo period more, or held.
+    /// True if commands are joined by lines, which takes a servo period more; false if they are
+    /// held.
     pub interpolates: bool,
 }
 
@@ -62,7 +63,7 @@ impl DriveCascade {
     }
 }
 
-/// What the drive gets and sees in one of its periods, at the motor shaft.
+/// Inputs of the drive in one of its periods, at the motor shaft.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DriveInput {
     /// Command, rad, and its speed, rad/s.
@@ -71,7 +72,7 @@ pub(super) struct DriveInput {
     pub(super) seen_rad: [f64; 2],
 }
 
-/// What the drive remembers.
+/// State of the drive.
 #[derive(Debug, Clone)]
 pub(super) struct CascadeState {
     bus: Late<[f64; 2]>,
@@ -83,7 +84,8 @@ pub(super) struct CascadeState {
 }
 
 impl CascadeState {
-    /// At rest at a command, with the motor's encoder at an angle, holding a load with a current.
+    /// Starts at rest at a command, with the motor's encoder at an angle, holding a load with a
+    /// current.
     pub(super) fn at_rest(
         cascade: &DriveCascade,
         command_rad: f64,

@@ -1,4 +1,5 @@
-//! What an axis is for small and slow motion: gains and delays to compare an identification with.
+//! Linear part of an axis for small and slow motion: gains and delays to compare an identification
+//! with.
 //!
 //! ```text
 //! Kp Kv / J,  (Kv + B) / J     Kv = kv Kt, J = Jm + m0 r^2, B = s2 of the motor + r^2 s2 of the table
@@ -7,8 +8,8 @@
 //! lag                          (1 - f) / Kp + command delay: following error over speed, as recorded, where the integral has settled
 //! ```
 //!
-//! Delays are absolute; the law of `crates/control/src/axis.rs` holds its reference for a servo
-//! period beside its delay.
+//! Delays are absolute; the model of `crates/control/src/axis.rs` holds its reference for a servo
+//! period in addition to its delay.
 
 use serde::Serialize;
 
@@ -23,7 +24,7 @@ pub struct LinearPart {
     pub speed_loop_1_s: f64,
     /// Velocity feedforward.
     pub velocity_feedforward: f64,
-    /// By how much a command is late at the position loop, s.
+    /// Delay of a command at the position loop, s.
     pub command_delay_s: f64,
     /// Delay from the position through the loops to the torque, s.
     pub loop_delay_s: f64,
@@ -32,7 +33,7 @@ pub struct LinearPart {
 }
 
 impl LinearPart {
-    /// Of an axis.
+    /// Computes the linear part of an axis.
     pub fn of(axis: &IndependentAxis) -> Self {
         let IndependentAxis {
             feed,

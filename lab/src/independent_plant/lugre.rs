@@ -36,7 +36,7 @@ pub struct LuGre {
     pub asymmetry: f64,
 }
 
-/// Friction at a speed and a bending, and what it changes by.
+/// Friction at a speed and a bending, and its derivatives.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Bristles {
     /// Friction, N or N m.
@@ -126,7 +126,7 @@ impl LuGre {
         0.5 * self.stiffness * bending * bending
     }
 
-    /// What it dissipates, W.
+    /// Returns the power that the friction dissipates, W.
     pub(super) fn loss_w(&self, speed: f64, bending: f64) -> f64 {
         let Bristles { force, rate, .. } = self.at(speed, bending);
         force * speed - self.stiffness * bending * rate
@@ -134,8 +134,8 @@ impl LuGre {
 }
 
 impl Bristles {
-    /// What the friction at the end of a step changes by with the speed there, the bending
-    /// following by the trapezoidal rule.
+    /// Returns the derivative of the friction at the end of a step by the speed there. The bending
+    /// follows by the trapezoidal rule.
     pub(super) fn slope(&self, half_s: f64) -> f64 {
         self.force_by_speed
             + self.force_by_bending * half_s * self.rate_by_speed / (1.0 + half_s * self.decay)

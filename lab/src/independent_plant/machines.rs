@@ -50,7 +50,7 @@ pub struct IndependentMachine {
     pub axes: [IndependentAxis; 3],
 }
 
-/// What a data sheet and a drive's parameter list say of an axis, and what nobody says.
+/// Axis data from a data sheet and a drive's parameter list, and data that no document states.
 #[derive(Debug, Clone, Copy)]
 struct AxisSpec {
     lead_mm: f64,
@@ -85,8 +85,8 @@ struct AxisSpec {
     integral_s: f64,
     feedforward: f64,
     speed_filter_s: f64,
-    /// Periods of the current loop in one of the drive, and of that in a servo period; of the drive
-    /// by which a command is late.
+    /// Periods of the current loop in one of the drive; periods of the drive in a servo period;
+    /// drive periods by which a command is late.
     periods: [u32; 3],
     interpolates: bool,
     /// Step, signal period and error of the motor's encoder, um, and of the scale, where there is
@@ -209,7 +209,7 @@ impl IndependentMachine {
         Self::made(name, number, &mut random, true)
     }
 
-    /// Phases are drawn in any case: nobody knows where an axis was homed.
+    /// Draws phases in any case, because the place where an axis was homed is unknown.
     fn made(name: String, number: usize, random: &mut Random, differs: bool) -> Self {
         let (kind, limits, mut specs) = [
             (
@@ -239,8 +239,8 @@ impl IndependentMachine {
         }
     }
 
-    /// What is known of it before anything is recorded: limits of its control, nominal settings of
-    /// its drives, data sheets.
+    /// Returns the knowledge of the machine before anything is recorded: limits of its control,
+    /// nominal settings of its drives, data sheets.
     ///
     /// # Errors
     /// None, where the built-in machines are read.

@@ -96,8 +96,8 @@ pub struct FeedState {
     pub bristles: [f64; 2],
 }
 
-/// Rates of a state, and what those of the speeds change by with the speeds, the rest of the state
-/// following by the trapezoidal rule.
+/// Rates of a state, and the derivatives of the speeds' rates by the speeds. The rest of the state
+/// follows by the trapezoidal rule.
 struct Rates {
     current_a_s: f64,
     speeds: [f64; 2],
@@ -141,8 +141,8 @@ impl GuidedTable {
 }
 
 impl FeedAxis {
-    /// At rest with the motor at an angle or, where `table_m` is given, with the table at a
-    /// position; the load is carried.
+    /// Returns the state at rest with the motor at an angle or, where `is_table` is true, with the
+    /// table at a position; the load is carried.
     pub(super) fn at_rest(&self, place_m: f64, is_table: bool) -> FeedState {
         let Self {
             motor,
@@ -304,7 +304,7 @@ impl FeedAxis {
             + cogging_j
     }
 
-    /// What friction, damping and the winding take of it, W.
+    /// Returns the power that friction, damping and the winding dissipate, W.
     pub fn loss_w(&self, state: &FeedState) -> f64 {
         let Self {
             motor,
@@ -326,7 +326,7 @@ impl FeedAxis {
         self.screw.force(self.nut_lead_m(state), rate_m_s).force_n
     }
 
-    /// How far the nut is ahead of the table, m.
+    /// Returns the lead of the nut over the table, m.
     fn nut_lead_m(&self, state: &FeedState) -> f64 {
         self.screw.travel_m_rad * state.motor_rad - state.table_m
     }

@@ -1,4 +1,4 @@
-//! A position encoder or scale: what it shows of a place.
+//! A position encoder or scale, and its reading at a position.
 //!
 //! ```text
 //! shown(x) = step round((x + A sin(2 pi x / P + p)) / step)
@@ -26,12 +26,12 @@ pub struct PositionSensor {
     pub error_mm: f64,
     /// Phase of that, rad.
     pub phase_rad: f64,
-    /// By how many periods of the drive it is late.
+    /// Delay, in periods of the drive.
     pub late_periods: u32,
 }
 
 impl PositionSensor {
-    /// What it shows of a place, mm.
+    /// Returns the reading at a position, mm.
     pub fn shown_mm(&self, at_mm: f64) -> f64 {
         let error_mm = if self.error_mm == 0.0 {
             0.0
@@ -55,7 +55,7 @@ pub(super) struct Late<T> {
 }
 
 impl<T: Copy> Late<T> {
-    /// By so many periods; until then it is this value.
+    /// Delays by `periods` periods; until then the output is this value.
     pub(super) fn new(periods: u32, value: T) -> Self {
         Self {
             values: vec![value; periods as usize],

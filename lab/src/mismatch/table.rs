@@ -1,5 +1,5 @@
-//! What cuts by wrong models came to: a row for each machine of a model and each controller, and
-//! ours beside the best of the others.
+//! Results of cuts by wrong models: a row for each machine of a model and each controller, and our
+//! controller beside the best of the others.
 
 use serde::Serialize;
 
@@ -22,8 +22,8 @@ pub struct MismatchGroup {
     pub worse: usize,
     /// Cuts that ended without the controller in the loop, or not at all.
     pub lost: usize,
-    /// RMS contour error from the third second of motion on, over that of the same controller on
-    /// the variant that changes nothing.
+    /// RMS contour error from the third second of motion on, over the error of the same controller
+    /// on the variant that changes nothing.
     pub later_ratio: Option<Quantiles>,
 }
 
@@ -50,16 +50,16 @@ pub struct MismatchSummary {
     /// Cuts of our controller.
     #[serde(flatten)]
     pub ours: SweepSummary,
-    /// By machine and controller.
+    /// Groups by machine and controller.
     pub groups: Vec<MismatchGroup>,
-    /// By machine.
+    /// Verdicts by machine.
     pub verdicts: Vec<MismatchVerdict>,
     /// Cuts of the other controllers.
     pub peer_rows: Vec<SweepRow>,
 }
 
 impl MismatchSummary {
-    /// Of these rows; `ours` is one of their controllers.
+    /// Summarizes these rows; `ours` is one of their controllers.
     pub fn of(rows: Vec<SweepRow>, ours: &str) -> Self {
         let groups = groups(&rows);
         let verdicts = groups
@@ -77,7 +77,7 @@ impl MismatchSummary {
     }
 }
 
-/// In the order of the rows; without those of which nothing can be judged.
+/// Returns the groups in the order of the rows, without groups of which nothing can be judged.
 fn groups(rows: &[SweepRow]) -> Vec<MismatchGroup> {
     let mut names: Vec<(&str, &str)> = Vec::new();
     for row in rows {
@@ -128,7 +128,7 @@ impl MismatchGroup {
         })
     }
 
-    /// Beside the best of the others by the same models.
+    /// Compares the group with the best of the others by the same models.
     fn beside(&self, all: &[Self]) -> MismatchVerdict {
         let others = all
             .iter()

@@ -20,10 +20,10 @@ use super::program::SweepProgram;
 const LATER_S: f64 = 2.0;
 /// Cutting time that they need to have, s: less is a corner or two.
 const LEAST_LATER_S: f64 = 1.0;
-/// What is said of a cut that panicked.
+/// Reason that is reported for a cut that panicked.
 const PANICKED: &str = "it panicked";
 
-/// What a cut came to.
+/// Figures of a cut.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
     /// RMS contour error, um.
@@ -49,8 +49,8 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// What the verdict looks at, of all that a run says about itself: the one place that knows
-    /// where it stands.
+    /// Extracts the figures that the verdict uses from a run. No other code reads a run for this
+    /// purpose.
     pub(crate) fn of(run: &RunResult, statistics: &Statistics, entry: &Entry) -> Self {
         // The uncorrected cut has nothing that could be taken out of the loop.
         let left = run
@@ -108,17 +108,16 @@ pub struct SweepRow {
     /// Controller.
     #[serde(default)]
     pub controller: String,
-    /// Whether the machine is rigid, without encoder steps and without delay: no noise, nothing
-    /// that comes late.
+    /// True if the machine is rigid, without encoder steps and without delay.
     pub rigid: bool,
-    /// Uncorrected.
+    /// Figures of the uncorrected cut.
     pub uncorrected: Figures,
-    /// With the controller.
+    /// Figures with the controller.
     pub corrected: Figures,
 }
 
-/// Whether no axis has a compliant transmission, an encoder step, command delay or drive delay.
-/// Encoder noise and measurement delay are not checked.
+/// Returns true if no axis has a compliant transmission, an encoder step, command delay or drive
+/// delay. Encoder noise and measurement delay are not checked.
 pub(crate) fn is_rigid(machine: &Machine) -> bool {
     machine.axes.iter().all(|axis| {
         axis.transmission.is_none()
@@ -137,7 +136,7 @@ struct LaterError {
 }
 
 impl LaterError {
-    /// In um; none where less than a second of cutting was left.
+    /// Returns the RMS error, um; `None` if less than a second of cutting was left.
     fn rms_um(&self) -> Option<f64> {
         let is_enough = self.cutting as f64 * self.servo_s >= LEAST_LATER_S;
         is_enough.then(|| 1e3 * (self.square_sum_mm2 / self.cutting as f64).sqrt())
@@ -169,7 +168,7 @@ pub struct Cutter {
 }
 
 impl Cutter {
-    /// By a machine; nothing is identified yet.
+    /// Starts with a machine to make controllers for; nothing is identified yet.
     pub fn new(model: &Arc<Machine>, options: &SweepOptions) -> Self {
         let entries: Vec<_> = [&UNCORRECTED]
             .into_iter()
@@ -193,7 +192,7 @@ impl Cutter {
         }
     }
 
-    /// Whether it is by this machine.
+    /// Returns true if the controllers are made for this machine.
     pub(super) fn is_for(&self, model: &Arc<Machine>) -> bool {
         Arc::ptr_eq(&self.model, model)
     }
@@ -267,7 +266,7 @@ impl Cutter {
     }
 }
 
-/// Cuts a program once with a controller, which is made where there is none yet.
+/// Cuts a program once with a controller. Makes the controller first where needed.
 fn once<const N: usize>(
     made: &mut Option<Box<dyn Controller<N>>>,
     entry: &Entry,

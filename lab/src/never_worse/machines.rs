@@ -5,9 +5,9 @@ use feedwright_sim::{Machine, MachineError};
 
 use crate::held_out::Variant;
 
-/// What all of them build upon.
+/// Base of all machines.
 const BASE: &str = "tnv40";
-/// Those that are built in.
+/// Built-in machines of the sweep.
 const BUILT_IN_MACHINES: [&str; 4] = [BASE, "sticky", "coarse", "soft"];
 /// Gains of all position loops, 1/s: the range of published machines.
 const KP_1_S: [f64; 5] = [25.0, 40.0, 60.0, 100.0, 150.0];

@@ -21,7 +21,7 @@ pub struct SweepProgram {
     pub axes: usize,
     /// Planned time on the machine that it was shortened for, rests included, s.
     pub machining_s: f64,
-    /// Whether the rest of it was left out.
+    /// True if the rest of the program was left out.
     pub shortened: bool,
     /// Content of the path, hashed.
     pub key: String,
@@ -29,7 +29,7 @@ pub struct SweepProgram {
     pub steps: Vec<Step>,
 }
 
-/// How much of a program is cut.
+/// Part of a program to cut.
 #[derive(Debug, Clone, Copy)]
 pub struct Length<'a> {
     /// The machine whose time counts; the same part of the program is then cut on all others.
@@ -89,7 +89,7 @@ impl SweepProgram {
     }
 }
 
-/// As much of a path as is cut.
+/// Part of a path that is cut.
 struct Part {
     steps: Vec<Step>,
     time_s: f64,

@@ -46,13 +46,13 @@ pub struct Judged {
     /// The row.
     #[serde(flatten)]
     pub row: SweepRow,
-    /// In what it is worse.
+    /// Ways in which the cut is worse.
     pub faults: Vec<Failure>,
     /// Largest excess over uncorrected, in what is allowed.
     pub severity: f64,
 }
 
-/// What a sweep came to.
+/// Summary of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SweepSummary {
     /// Cuts that were judged.
@@ -77,7 +77,7 @@ pub struct SweepSummary {
 }
 
 impl SweepSummary {
-    /// Of these rows.
+    /// Summarizes these rows.
     pub fn of(rows: Vec<SweepRow>) -> Self {
         let judge = |row: SweepRow| Judged {
             faults: row.faults(),

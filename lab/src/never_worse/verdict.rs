@@ -1,4 +1,4 @@
-//! Whether a cut is worse than uncorrected, by the rule of [`feedwright::harm`].
+//! Verdict on a cut: worse than uncorrected or not, by the rule of [`feedwright::harm`].
 use feedwright::ErrorChange;
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +14,7 @@ pub enum Failure {
     Max,
     /// More of the path stays uncut.
     Uncut,
-    /// Not cut to its end, or not with the controller in the loop.
+    /// The program was not cut to its end, or not with the controller in the loop.
     Lost,
 }
 
@@ -34,12 +34,12 @@ impl Failure {
 }
 
 impl SweepRow {
-    /// Whether there is an uncorrected cut to compare with: one that came to its end.
+    /// Returns true if the uncorrected cut came to its end, so that there is a cut to compare with.
     pub fn is_judged(&self) -> bool {
         self.uncorrected.lost.is_none()
     }
 
-    /// In what it is worse; nothing where it is not judged.
+    /// Returns the ways in which the cut is worse; empty if it is not judged.
     pub fn faults(&self) -> Vec<Failure> {
         let [rms, max, uncut] = self.changes();
         let is_fault = |fault: &Failure| match fault {
@@ -62,7 +62,7 @@ impl SweepRow {
             .compared_with(&self.uncorrected.errors())
     }
 
-    /// How bad it is: the largest of the excesses, at least 1 where it is lost.
+    /// Returns the severity: the largest of the excesses, at least 1 if the cut is lost.
     pub fn severity(&self) -> f64 {
         let lost = if self.corrected.lost.is_some() {
             1.0

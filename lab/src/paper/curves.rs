@@ -2,7 +2,7 @@
 
 use feedwright_sim::{Row, Sink};
 
-/// What the figures of the paper show of a cut.
+/// Curves of a cut, as in the figures of the paper.
 #[derive(Debug, Default)]
 pub(super) struct Curves {
     /// Time and contour error, s and um.

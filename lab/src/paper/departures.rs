@@ -1,5 +1,5 @@
-//! What the paper prints and this repository does otherwise, one departure at a time and all at
-//! once, and draws of what the paper leaves open.
+//! Departures of this repository from the printed paper, one at a time and all at once, and draws
+//! of the values that the paper leaves open.
 //!
 //! The network of the paper has `f(x) = tanh(x)`, and eqs 9 and 10 have the factor 1/4 of `f(x) =
 //! tanh(x/2)`. A network of tanh(x) with weights W is one of tanh(x/2) with weights 2 W.
@@ -20,7 +20,7 @@ use crate::held_out::random::Random;
 /// into the reference speed.
 const PD_GAIN: f64 = 0.05;
 
-/// What a cut of the circle is made with.
+/// Machine and settings of a cut of the circle.
 #[derive(Debug, Clone)]
 struct PaperCase {
     machine: Machine,
@@ -29,7 +29,7 @@ struct PaperCase {
     training: Training,
 }
 
-/// Something that the paper prints, and is done otherwise here.
+/// A departure from the printed paper.
 struct Departure {
     printed: &'static str,
     taken: &'static str,
@@ -97,12 +97,12 @@ const DEPARTURES: [Departure; 7] = [
     },
 ];
 
-/// What a departure comes to, over all seeds.
+/// Result of a departure, over all seeds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct DepartureResult {
-    /// What the paper prints; what this row was cut with.
+    /// Value printed in the paper, with which this row was cut.
     pub printed: String,
-    /// What is taken in all other rows.
+    /// Value used in all other rows.
     pub taken: String,
     /// Why.
     pub reason: String,
@@ -203,7 +203,7 @@ fn over_seeds(
     ))
 }
 
-/// A draw of what the paper leaves open, and what came of it.
+/// A draw of the values that the paper leaves open, with its results.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Draw {
     /// Seed of the draw and of the training.
@@ -216,7 +216,7 @@ pub(crate) struct Draw {
     pub feed_mm_s: [f64; 2],
     /// Largest offset of its command in each axis, mm.
     pub offset_mm: f64,
-    /// Amplitude of the disturbance, as a multiple of that of the machine.
+    /// Amplitude of the disturbance, as a multiple of the machine's amplitude.
     pub disturbance: f64,
     /// Its frequency, Hz.
     pub disturbance_hz: f64,
@@ -286,7 +286,7 @@ fn drawn(machine: &Machine, seed: u64, watch: &dyn Watch) -> Result<Draw, RunErr
     })
 }
 
-/// The value below which a part of all values lies: that of rank `ceil(part n)`.
+/// Returns the value below which a part of all values lies: the value of rank `ceil(part n)`.
 pub(crate) fn quantile(draws: &[Draw], of: fn(&Draw) -> f64, part: f64) -> f64 {
     let mut values: Vec<f64> = draws.iter().map(of).collect();
     values.sort_by(f64::total_cmp);

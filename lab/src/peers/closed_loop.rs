@@ -125,8 +125,8 @@ impl ClosedAxis {
         );
     }
 
-    /// What becomes of each state over a servo period, as columns; a state that the drive does not
-    /// have is zero.
+    /// Returns the response of each state over a servo period, as columns; a state that the drive
+    /// does not have is zero.
     fn columns(&self) -> [[f64; STATES]; STATES] {
         let (is_integral, is_filter) = (
             self.parameters.speed_integral_s > 0.0,
@@ -296,7 +296,8 @@ mod tests {
         machine.known()
     }
 
-    /// Positions, rad, after commands of the linear law itself, stepped as the plant does.
+    /// Returns the positions, rad, after commands of the linear model itself, stepped as the plant
+    /// does.
     fn stepped_rad(known: &Known, commands_rad: &[f64]) -> Vec<f64> {
         let axis = known.axis(0);
         let linear = ClosedAxis::new(axis, &axis.nominal, &known.period);

@@ -124,7 +124,7 @@ pub(super) struct ConstrainedFeedrate<const N: usize> {
 }
 
 impl<const N: usize> ConstrainedFeedrate<N> {
-    /// Before the lap that records the path; all memory of a tick is taken here.
+    /// Starts before the lap that records the path. All memory of a tick is allocated here.
     pub(super) fn new(settings: Settings, axes: [LaggingAxis; N], servo_s: f64) -> Self {
         let period_s = f64::from(settings.servo_periods.max(1)) * servo_s;
         let lines = (LONGEST_S / period_s) as usize;

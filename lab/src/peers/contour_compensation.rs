@@ -7,16 +7,16 @@
 //! ```
 //!
 //! Source: Lee and Jeon (1999), whose estimator over the shift register of references is
-//! `contour_error`, as far as Lee, Cho and Jeon (2005) tell of it: the contour error is estimated
-//! in each period and the position command compensated by it.
+//! `contour_error`, as far as Lee, Cho and Jeon (2005) describe it: the contour error is estimated
+//! in each period, and the position command is compensated by it.
 //!
-//! Chosen here, for the law of the compensator was not to be had: the compensation accumulates,
-//! because one that is equal to the error leaves half of it; rate g and filter Tf are tuned; c and
-//! f turn with the path, so that the droop in a circle is one constant error and not a wave on two
-//! axes.
+//! The paper on the compensator was not available, so these are choices made here: the compensation
+//! accumulates, because a compensation equal to the error leaves half of it. Rate g and filter Tf
+//! are tuned. c and f turn with the path, so that the droop in a circle is one constant error and
+//! not a wave on two axes.
 //!
-//! Departure: while the supervisor holds the command back, the accumulation starts from what it let
-//! through.
+//! Departure: while the supervisor holds the command back, the accumulation starts from the offset
+//! that the supervisor passed.
 
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{Window, carried};
@@ -50,7 +50,7 @@ pub(super) struct ContourCompensation<const N: usize> {
 }
 
 impl<const N: usize> ContourCompensation<N> {
-    /// With these settings.
+    /// Creates the controller with these settings.
     pub(super) fn new(settings: Settings) -> Self {
         Self {
             settings,

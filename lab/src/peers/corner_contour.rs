@@ -40,7 +40,8 @@ pub(super) struct CornerContour<const N: usize> {
 }
 
 impl<const N: usize> CornerContour<N> {
-    /// From the inverse of the linear axes, with its whole weight within `reach_s` of a corner.
+    /// Creates the controller from the inverse of the linear axes; the addition has its whole
+    /// weight within `reach_s` of a corner.
     pub(super) fn new(inverse: Feedforward<N>, reach_s: f64, servo_s: f64) -> Self {
         Self {
             inverse,

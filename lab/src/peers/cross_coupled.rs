@@ -75,7 +75,7 @@ struct LastError<const N: usize> {
 }
 
 impl<const N: usize> CrossCoupled<N> {
-    /// With these gains.
+    /// Creates the controller with these gains.
     pub(super) fn new(settings: Settings) -> Self {
         Self {
             settings,

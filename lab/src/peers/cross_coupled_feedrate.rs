@@ -1,5 +1,5 @@
-//! Cross-coupled control with an adaptive feedrate: the contour error goes across the path into the
-//! command, and the feedrate is as high as keeps it within what is allowed.
+//! Cross-coupled control with an adaptive feedrate: the contour error is added to the command
+//! across the path, and the feedrate is the highest that keeps the error within the allowed value.
 //!
 //! ```text
 //! e     = theta v                                       v: rate; e: size of the contour error
@@ -10,11 +10,11 @@
 //! Source: Chuang and Liu (1996), "Techniques in cross-coupled digital adaptive feedrate control
 //! for multiaxis machine tools".
 //!
-//! The paper was not at hand. Lee, Cho and Jeon (2005) say of it: the relationship between feedrate
-//! and contour error is linear. Its title says: cross-coupled control and a digital adaptive
-//! feedrate work together. Reconstructed here: both laws. The compensation is the PID of
-//! [`super::cross_coupled`]. The slope theta is estimated by a first-order filter, which forgets
-//! over Tf, because curvature and load change along the path.
+//! The paper was not available. Lee, Cho and Jeon (2005) say of it: the relationship between
+//! feedrate and contour error is linear. Its title says: cross-coupled control and a digital
+//! adaptive feedrate work together. Reconstructed here: both parts. The compensation is the PID of
+//! [`super::cross_coupled`]. A first-order filter estimates the slope theta and forgets over Tf,
+//! because curvature and load change along the path.
 //!
 //! Departures: the feed is never above the programmed one, and changes within the acceleration that
 //! the machine allows along the path.
@@ -39,8 +39,9 @@ pub(super) struct Settings {
 }
 
 impl Settings {
-    /// About what cross-coupled control alone leaves of a circle of 10 mm at 50 mm/s on tnv40, so
-    /// that it slows down in sharper curves; two time constants of a position loop of 50 1/s.
+    /// Settings by default: about the error that cross-coupled control alone leaves on a circle of
+    /// 10 mm at 50 mm/s on tnv40, so that it slows down in sharper curves; two time constants of a
+    /// position loop of 50 1/s.
     pub(super) const DEFAULT: Self = Self {
         allowed_mm: 0.5e-3,
         filter_s: 0.04,
@@ -60,7 +61,7 @@ pub(super) struct CrossCoupledFeedrate<const N: usize> {
 }
 
 impl<const N: usize> CrossCoupledFeedrate<N> {
-    /// With these settings, on top of cross-coupled control.
+    /// Creates the controller with these settings, on top of cross-coupled control.
     pub(super) fn new(settings: Settings, cross_coupled: CrossCoupled<N>) -> Self {
         Self {
             settings,

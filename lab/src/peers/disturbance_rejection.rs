@@ -1,22 +1,22 @@
-//! Feedforward, and an observer of each axis that finds what the nominal servo does not explain and
-//! takes it out of the command: what controllers with a constant-gain observer have in common. They
-//! differ in how its gains are found.
+//! Feedforward, and an observer of each axis that estimates the disturbance that the nominal servo
+//! does not explain and removes it from the command. Controllers with a constant-gain observer
+//! share this part. They differ in how the gains are found.
 //!
-//! A sampled axis under the reference speed u, the friction f that the feedforward makes up for,
-//! and an unknown d that acts as a reference speed, with what is measured as y:
+//! A sampled axis under the reference speed u, the friction f that the feedforward compensates, an
+//! unknown d that acts as a reference speed, and the measured position y:
 //!
 //! ```text
 //! x(k+1) = x + gamma w + delta (u - f + d)     w(k+1) = alpha w + beta (u - f + d)     d(k+1) = d
 //! u(k)   = kp e(k) + kd (e(k) - e(k-1)) / Ts,   e = c - y
 //! ```
 //!
-//! is observed by `xi(k+1) = A xi + B (u - f) + L (y - x)`, and the feedforward is asked to carry
-//! d: for such an axis, the command is less by `d / (kp + kd / Ts)`. The estimate is held to what
-//! the drive can: beyond, it is the torque limit that the nominal servo does not explain.
+//! is observed by `xi(k+1) = A xi + B (u - f) + L (y - x)`, and the feedforward also carries d: the
+//! command of the axis is less by `d / (kp + kd / Ts)`. The estimate is limited to the authority of
+//! the drive: beyond it, the unexplained part is the torque limit, not a disturbance.
 //!
-//! What a drive has beside is in u: its own feedforward, the time until u acts and y is there, and
-//! the integral of its speed loop, for which no estimate is needed, since the integral of the speed
-//! is the position:
+//! u includes the other functions of a drive: its own feedforward, the time until u acts and y
+//! arrives, and the integral of its speed loop. This integral needs no estimate, since the integral
+//! of the speed is the position:
 //!
 //! ```text
 //! u_act(k) = u(k - n) + i(k) + Ts (u(k - n) - w) / 2 Ti     i(k) = i(k-1) + (Ts u(k-1-n) - (y(k) - y(k-1))) / Ti
@@ -43,7 +43,7 @@ use super::zero_phase::SampledAxis;
 /// Longest delay that is kept, servo periods: 20 ms each way, the most of a machine file, at 1 ms.
 const KEPT_PERIODS: usize = 48;
 
-/// What a drive has beside a P speed loop; all zero is nothing.
+/// Functions of a drive beside a P speed loop; all zero means none.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct ObservedDrive {
     /// Part of the command's speed that it feeds forward.
@@ -59,21 +59,23 @@ pub(super) struct ObservedDrive {
     pub command_periods: usize,
 }
 
-/// What the observer of one axis is made from.
+/// Parameters of the observer of one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ObservedAxis {
-    /// Its law between two servo periods.
+    /// Axis model between two servo periods.
     pub axis: SampledAxis,
-    /// What its drive has beside.
+    /// Functions of the drive beside a P speed loop.
     pub drive: ObservedDrive,
-    /// Largest disturbance that is believed, mm/s: what its drive can make up for.
+    /// Largest disturbance estimate that is accepted, mm/s: the largest that the drive can
+    /// compensate.
     pub limit_mm_s: f64,
     /// Observer gains L: correction of position, speed and disturbance per unit of position
     /// innovation; 1, 1/s, 1/s.
     pub gains: [f64; 3],
 }
 
-/// What leaves for a drive, mm/s: reference speed, and torque beside it as a reference speed.
+/// Reference that leaves for a drive, mm/s: reference speed, and torque as an additional reference
+/// speed.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct SentReference {
     speed_mm_s: f64,
@@ -121,7 +123,7 @@ impl AxisObserver {
         }
     }
 
-    /// At rest where the tool is.
+    /// Starts at rest at the tool position.
     fn start(&mut self, measured_mm: f64) {
         *self = Self {
             position_mm: measured_mm,
@@ -162,7 +164,7 @@ impl AxisObserver {
         self.disturbance_mm_s = bounded(disturbance_mm_s, -self.of.limit_mm_s, self.of.limit_mm_s);
     }
 
-    /// What the position loop makes of a command leaves for the drive.
+    /// Computes the reference of the position loop for a command and sends it to the drive.
     fn send(&mut self, command_mm: f64, measured_mm: f64) {
         let (SampledAxis { kp_1_s, kd, .. }, drive) = (self.of.axis, self.of.drive);
         let error_mm = command_mm - measured_mm;
@@ -181,7 +183,8 @@ impl AxisObserver {
         };
     }
 
-    /// What acts in the servo period at whose start the tool was where it is measured now.
+    /// Returns the reference that acts in the servo period at whose start the measured position was
+    /// taken.
     fn arrived(&self) -> SentReference {
         let periods = self.of.drive.delay_s / self.servo_s;
         let whole = libm::floor(periods);
@@ -205,7 +208,7 @@ impl AxisObserver {
         }
     }
 
-    /// What the integral of the speed loop adds, mm/s.
+    /// Returns the contribution of the speed loop's integral, mm/s.
     fn integrated(&mut self, asked_mm_s: f64, measured_mm: f64) -> f64 {
         let time_s = self.of.drive.speed_integral_s;
         if time_s <= 0.0 {
@@ -229,7 +232,7 @@ pub(super) struct DisturbanceRejection<const N: usize> {
 }
 
 impl<const N: usize> DisturbanceRejection<N> {
-    /// Behind a feedforward, for these axes.
+    /// Creates the controller behind a feedforward, for these axes.
     pub(super) fn new(feedforward: Feedforward<N>, axes: [ObservedAxis; N], servo_s: f64) -> Self {
         Self {
             feedforward,
@@ -346,7 +349,7 @@ pub(super) mod tests {
         (x, observer.disturbance_mm_s)
     }
 
-    /// What gains have to do for a constant disturbance.
+    /// Checks that gains find a constant disturbance and take it out.
     pub(in super::super) fn a_constant_disturbance_is_found_and_taken_out(
         gains: impl Fn(&SampledAxis) -> [f64; 3],
     ) {

@@ -11,12 +11,12 @@
 //! Source: Tsai and others (1995), "DSP-based motion control by H-infinity axis-controller and
 //! fuzzy adaptive feedrate"; here its second half alone, [`super::h_infinity`] has both.
 //!
-//! The paper was not at hand. Lee, Cho and Jeon (2005) say of it: a fuzzy adaptive feedrate. Chosen
-//! here: contour error and its change as inputs; three triangular sets on either, which overlap by
-//! half and saturate at `error_mm` and `change_mm_s`; the nine rules above, inferred by the
-//! product, with the mean of the centers as the output. Every rule of the table is then met
+//! The paper was not available. Lee, Cho and Jeon (2005) say of it: a fuzzy adaptive feedrate.
+//! Chosen here: contour error and its change as inputs; three triangular sets on either, which
+//! overlap by half and saturate at `error_mm` and `change_mm_s`; the nine rules above, inferred by
+//! the product, with the mean of the centers as the output. Every rule of the table is then met
 //! exactly, and the surface is monotonic in both inputs, which inference by the minimum does not
-//! grant.
+//! guarantee.
 //!
 //! Departures: the feed is never above the programmed one; the factor changes within the
 //! acceleration that the machine allows along the path.
@@ -26,7 +26,7 @@ use feedwright_control::vector::{bounded, norm};
 
 use feedwright_control::{Command, Controller, Measured, Schedule};
 
-/// Period in which the rules are asked, s: an interpolator's, not a servo's.
+/// Period in which the rules are evaluated, s: the period of an interpolator, not of a servo.
 pub(super) const FEED_PERIOD_S: f64 = 0.01;
 /// The consequents: error small, medium, large; within it falling, steady, rising.
 const RULES: [[f64; 3]; 3] = [[0.0, 0.0, 0.25], [0.25, 0.5, 0.75], [0.75, 1.0, 1.0]];
@@ -97,7 +97,7 @@ pub(super) struct FuzzyFeedrate {
 }
 
 impl FuzzyFeedrate {
-    /// With these settings.
+    /// Creates the controller with these settings.
     pub(super) fn new(settings: Settings) -> Self {
         Self {
             settings,

@@ -17,11 +17,10 @@
 //! "Optimal state estimation", for the filter. Tsai and others (1995), "DSP-based motion control by
 //! H-infinity axis-controller and fuzzy adaptive feedrate", for the controller.
 //!
-//! The paper of 1995 was not at hand. Known of it: an H-infinity controller of each axis and a
+//! The paper of 1995 was not available. Known of it: an H-infinity controller of each axis and a
 //! fuzzy adaptive feedrate work together. Reconstructed here: the axis controller. The drive keeps
-//! its loops and takes positions, so that the H-infinity part is the worst-case estimate of
-//! friction and load, which is taken out of the command behind feedforward of velocity and
-//! acceleration.
+//! its loops and takes positions, so the H-infinity part is the worst-case estimate of friction and
+//! load, which is removed from the command behind feedforward of velocity and acceleration.
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
 use super::disturbance_rejection::DisturbanceRejection;
@@ -87,7 +86,7 @@ pub(super) struct FuzzyHInfinity<const N: usize> {
 }
 
 impl<const N: usize> FuzzyHInfinity<N> {
-    /// Of the two parts.
+    /// Combines the two parts.
     pub(super) fn new(axes: DisturbanceRejection<N>, fuzzy: FuzzyFeedrate) -> Self {
         Self {
             axes,

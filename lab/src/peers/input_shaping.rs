@@ -41,8 +41,8 @@ pub(super) struct Settings {
 }
 
 impl Settings {
-    /// Between the 60 Hz of a table on a soft ball screw whose motor is held and the 85 Hz at which
-    /// both swing freely.
+    /// Frequency between the 60 Hz of a table on a soft ball screw with the motor held, and the 85
+    /// Hz at which both swing freely.
     pub(super) const DEFAULT: Self = Self {
         frequency_hz: 70.0,
         damping_ratio: 0.02,
@@ -54,7 +54,7 @@ impl Settings {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Impulse {
     weight: f64,
-    /// How far ahead of the mean delay it looks, s.
+    /// Lead of the impulse over the mean delay, s.
     ahead_s: f64,
 }
 
@@ -103,7 +103,7 @@ impl Shaper {
         add_scaled(here_mm, 1.0, self.0.iter().fold([0.0; N], moved))
     }
 
-    /// How far ahead it looks, s.
+    /// Returns the longest lead of an impulse over the mean delay, s.
     fn ahead_s(&self) -> f64 {
         self.0
             .iter()
@@ -121,7 +121,7 @@ pub(super) struct InputShaping<const N: usize> {
 }
 
 impl<const N: usize> InputShaping<N> {
-    /// In front of a feedforward, for a servo period of `servo_s`.
+    /// Creates the shaper in front of a feedforward, for a servo period of `servo_s`.
     pub(super) fn new(feedforward: Feedforward<N>, settings: &Settings, servo_s: f64) -> Self {
         let shaper = Shaper::new(settings);
         let Schedule { preview, .. } = feedforward.schedule();

@@ -14,12 +14,13 @@
 //! the contour error: Barton and Alleyne (2008), "A cross-coupled iterative learning control design
 //! for precision motion control".
 //!
-//! Departures: the contour error is learned alone, without the following error of each axis beside
-//! it; a proportional law with a lead in place of a derivative.
+//! Departures: only the contour error is learned, not also the following error of each axis;
+//! learning is proportional with a lead, instead of derivative.
 //!
-//! It needs the same part several times: laps of practice, each behind a [`Controller::next_lap`],
-//! before the one that counts. What repeats from lap to lap is learned whatever it is: a simulated
-//! disturbance that begins at the same phase in every lap too, which flatters the method.
+//! The method needs the same part several times: laps of practice, each behind a
+//! [`Controller::next_lap`], before the lap that counts. It learns everything that repeats from lap
+//! to lap. That includes a simulated disturbance that begins at the same phase in every lap, which
+//! flatters the method.
 
 use feedwright_control::vector::{add_scaled, norm};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
@@ -50,7 +51,7 @@ const CUT_OFF_HZ: Parameter = Parameter::number(
     Some([2.0, 400.0]),
     "frequency above which nothing is learned: beyond the bandwidth of the loop, learning grows noise",
 );
-/// Of every row, whatever its laps.
+/// Parameters of every row, whatever its laps.
 pub(super) const PARAMETERS: [Parameter; 3] = [GAIN, LEAD_S, CUT_OFF_HZ];
 
 /// The end of a program is followed until the tool has arrived; its errors are learned for as long,
@@ -78,9 +79,9 @@ pub(super) struct Settings {
 }
 
 impl Settings {
-    /// For a loop of 50 1/s: the lead is its time constant, and Q ends below the bandwidth of a
-    /// speed loop of 200 1/s. Of the settings tried on circle, star, square and figure-eight the
-    /// one with the smallest RMS errors on most.
+    /// Settings for a loop of 50 1/s: the lead is its time constant, and Q ends below the bandwidth
+    /// of a speed loop of 200 1/s. Of the settings tried on circle, star, square and figure-eight,
+    /// these have the smallest RMS errors on most.
     pub(super) const DEFAULT: Self = Self {
         servo_periods: 1,
         gain: 1.0,
@@ -101,7 +102,7 @@ pub(super) struct IterativeLearning<const N: usize> {
 }
 
 impl<const N: usize> IterativeLearning<N> {
-    /// Before the first lap, at a servo period of `servo_s`; all memory is taken here.
+    /// Starts before the first lap, at a servo period of `servo_s`. All memory is allocated here.
     pub(super) fn new(settings: Settings, servo_s: f64) -> Self {
         let settings = Settings {
             servo_periods: settings.servo_periods.max(1),

@@ -1,10 +1,9 @@
-//! The Kalman filter of position, speed and disturbance of each axis: what is estimated as a
-//! disturbance is taken out of the command behind feedforward of velocity, acceleration and
-//! friction.
+//! Kalman filter of position, speed and disturbance of each axis: the estimated disturbance is
+//! removed from the command behind feedforward of velocity, acceleration and friction.
 //!
-//! The observer of [`super::disturbance_rejection`] gets the gains that make its errors least where
-//! the disturbance wanders by `q` a servo period, the torque trembles by `t`, both as reference
-//! speeds, and the encoder by `s`:
+//! The observer of [`super::disturbance_rejection`] gets the gains that minimize its errors if the
+//! disturbance wanders by `q` per servo period, the torque has white noise `t`, both as reference
+//! speeds, and the encoder has noise `s`:
 //!
 //! ```text
 //! P = A (P - K P_x) A' + Q     K = P_x' / (P_xx + s^2)     L = A K     Q = t^2 b b' + q^2 d d'
@@ -26,19 +25,19 @@
 
 use super::zero_phase::SampledAxis;
 
-/// Iterations of the Riccati equation. Its error falls by the square of the slowest pole each time:
-/// one of 1 rad/s, slower than any that is of use, has after 20 s, at a servo period of 1 ms, left
-/// e^-40 of it.
+/// Iterations of the Riccati equation. The error falls by the square of the slowest pole each time:
+/// a pole of 1 rad/s, slower than any useful one, has left e^-40 of it after 20 s, at a servo
+/// period of 1 ms.
 const ITERATIONS: u32 = 20_000;
 
-/// What is taken to be unknown of an axis, as standard deviations for each servo period.
+/// Assumed unknowns of an axis, as standard deviations for each servo period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct AxisNoise {
     /// Change of the disturbance, as reference speed, mm/s; above 0.
     pub drift_mm_s: f64,
     /// White part of the torque, mm/s of reference speed.
     pub torque_mm_s: f64,
-    /// Of the measured position, mm; above 0.
+    /// Noise of the measured position, mm; above 0.
     pub encoder_mm: f64,
 }
 

@@ -279,7 +279,7 @@ fn inverse<const N: usize>(setup: &Setup<'_>, values: &Values) -> ZeroPhase<N> {
     )
 }
 
-/// With other lag and other inertia.
+/// Returns the parameters with a scaled lag and a scaled inertia.
 fn scaled(nominal: &Parameters, [lag_scale, inertia_scale]: [f64; 2]) -> Parameters {
     let inertia_kg_m2 = inertia_scale * nominal.inertia_kg_m2;
     Parameters {
@@ -340,8 +340,8 @@ pub(super) fn kalman_disturbance<const N: usize>(
     ))
 }
 
-/// Observers of every axis, with these gains. No more is believed than the reference speed that
-/// asks the drive for all that it has.
+/// Returns observers of every axis with these gains. The disturbance estimate is limited to the
+/// reference speed that demands the torque limit of the drive.
 fn observed_axes<const N: usize>(
     known: &Known,
     gains: impl Fn(&SampledAxis) -> [f64; 3],

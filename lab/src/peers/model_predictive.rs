@@ -1,12 +1,12 @@
 //! Model-predictive contouring with the exact model of the machine, solved to convergence.
 //!
-//! A [`horizon`] over a model that is the machine itself: its servo law, inertia, friction, period
+//! A [`horizon`] over a model that is the machine itself: servo loops, inertia and friction, period
 //! by period, with its drive, its delays and its friction. The model is as late as the encoder: its
-//! position is what is measured, and a reference acts on it both delays after it was sent. What is
-//! not known of a machine it does not know: the disturbance is predicted from what the model
-//! missed, as everywhere. It is what an identified model could reach if it were perfect and the
-//! control had all the time of the world; it allocates nothing, but takes too long for a servo
-//! thread.
+//! position is the measured one, and a reference acts on it both delays after it was sent. The
+//! model has no knowledge that is unknown of a machine: the disturbance is predicted from the
+//! earlier errors of the model, as everywhere. The result is the limit of an identified model if it
+//! were perfect and the control had unlimited time. The controller allocates nothing, but takes too
+//! long for a servo thread.
 //!
 //! Source: Lam, Manzie and Good (2010), "Model predictive contouring control", for the contour
 //! error over a horizon; the progress along the path stays as planned here, since a time bought
@@ -51,13 +51,13 @@ pub(crate) struct ModelPredictive<const N: usize> {
     model: Exact<N>,
     residuals: [Residual; N],
     plan: OffsetPlan<N>,
-    /// Where the tool was expected, mm, without and with what the model was expected to miss.
+    /// Expected tool position, mm, without and with the expected error of the model.
     expected_mm: Option<[[f64; N]; 2]>,
     prediction_error_mm: f64,
 }
 
 impl<const N: usize> ModelPredictive<N> {
-    /// With the nominal law of a machine.
+    /// Creates the controller with the nominal model of a machine.
     pub(crate) fn new(known: &Known, settings: Settings<N>) -> Self {
         let rest = Exact::new(known, settings.servo_periods);
         Self {
@@ -237,7 +237,7 @@ impl<const N: usize> Predictor<N> for Exact<N> {
 /// machine file, and some.
 const KEPT_PERIODS: usize = 48;
 
-/// What of an axis moves on: its motor, its drive, and references that are on their way, the newest
+/// State of an axis that advances: its motor, its drive, and references on their way, the newest
 /// first.
 #[derive(Debug, Clone, Copy)]
 struct Moving {
@@ -250,7 +250,7 @@ struct Moving {
 }
 
 impl Moving {
-    /// At rest at zero, with commands that are late by so many servo periods.
+    /// Starts at rest at zero, with commands that are late by `command_periods` servo periods.
     fn at_rest(command_periods: usize) -> Self {
         Self {
             commands: CommandQueue::resting(command_periods, 0.0),
@@ -354,7 +354,8 @@ impl ExactAxis {
         }
     }
 
-    /// How many servo periods ago was sent what acts in a mechanics period of this one.
+    /// Returns the age, in servo periods, of the reference that acts in a mechanics period of this
+    /// servo period.
     fn age(&self, substep: u32) -> usize {
         let per_servo = self.law.periods.mechanics_per_servo;
         (self.late.saturating_sub(substep)).div_ceil(per_servo) as usize

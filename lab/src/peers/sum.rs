@@ -32,12 +32,12 @@ use feedwright_control::{Command, Controller, Measured, Schedule};
 pub(super) struct Sum<A, B, const N: usize> {
     first: A,
     second: B,
-    /// What each asked for last, mm.
+    /// Last offset that each controller requested, mm.
     asked_mm: [[f64; N]; 2],
 }
 
 impl<A: Controller<N>, B: Controller<N>, const N: usize> Sum<A, B, N> {
-    /// Of these two.
+    /// Combines these two controllers.
     pub(super) fn new(first: A, second: B) -> Self {
         Self {
             first,
@@ -62,7 +62,7 @@ impl<A: Controller<N>, B: Controller<N>, const N: usize> Controller<N> for Sum<A
         self.asked_mm = [[0.0; N]; 2];
     }
 
-    /// Where the position is lost, the offset goes back to the path: neither has a part in it.
+    /// Sets both last offsets to zero if the position is lost: the offset then returns to the path.
     fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
         self.first.observe(window, measured);
         self.second.observe(window, measured);

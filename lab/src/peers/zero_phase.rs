@@ -69,14 +69,14 @@ pub(super) struct Filter {
     weights: [f64; MAX_WEIGHTS],
     ahead: u32,
     taps: usize,
-    /// Of the commands before: 1 - B+, and what is left for the reference, B+(1). Of a drive
-    /// without more, q and 1 - q.
+    /// Weights of the previous commands, 1 - B+, and the weight that remains for the reference,
+    /// B+(1). For a plain P speed loop these are q and 1 - q.
     feedback: [f64; MAX_CANCELLED],
     direct: f64,
 }
 
 impl Filter {
-    /// For an axis with a P speed loop and nothing beside, with a servo period of `servo_s`.
+    /// Creates the filter for an axis with a plain P speed loop, with a servo period of `servo_s`.
     pub(super) fn new(axis: &SampledAxis, servo_s: f64) -> Self {
         let SampledAxis {
             alpha,
@@ -192,7 +192,7 @@ pub(super) struct ZeroPhase<const N: usize> {
 }
 
 impl<const N: usize> ZeroPhase<N> {
-    /// Of these filters, for loops that lag by up to `lag_s`.
+    /// Creates the controller from these filters, for loops that lag by up to `lag_s`.
     pub(super) fn new(filters: [Filter; N], lag_s: f64, servo_s: f64) -> Self {
         // The plain filter looks two periods ahead, which is within the differences that every
         // preview has.
@@ -225,7 +225,8 @@ impl<const N: usize> Controller<N> for ZeroPhase<N> {
         self.commanded_mm = None;
     }
 
-    /// Where the position is lost, the command goes back to the path by itself.
+    /// Forgets the previous commands if the position is lost: the command then goes back to the
+    /// path by itself.
     fn observe(&mut self, _: &Window<'_, N>, measured: Option<&Measured<N>>) {
         if measured.is_none() {
             self.reset();

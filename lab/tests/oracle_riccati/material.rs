@@ -40,7 +40,7 @@ impl<const N: usize> KnotSource<N> for Helix {
     }
 }
 
-/// What a tick starts from.
+/// State that a tick starts from.
 pub(crate) struct Material<const N: usize> {
     slopes: RefCell<Slopes<N>>,
     register: Register<N>,

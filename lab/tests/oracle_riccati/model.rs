@@ -14,7 +14,7 @@ use feedwright_lab::{CommandedPeriod, MAX_KNOTS, Predictor, Sensitivity};
 /// of 1.
 pub(crate) type Slopes<const N: usize> = [Inputs<N>; MAX_KNOTS];
 
-/// L of a position loop like that of tnv40, mm.
+/// L of a position loop similar to tnv40, mm.
 const LINEAR: [f64; INPUTS] = [0.244, -0.101, -0.001_86, 0.2785, -0.4166];
 /// c, mm: the slopes differ by a tenth from knot to knot.
 const BENT_MM: f64 = 0.03;
@@ -32,7 +32,7 @@ pub(crate) struct Servo<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Servo<'a, N> {
-    /// At full feed along the first axis.
+    /// Starts at full feed along the first axis.
     pub(crate) fn new(slopes: &'a RefCell<Slopes<N>>) -> Self {
         let mut one = [0.0; N];
         one[0] = 1.0;
@@ -68,8 +68,8 @@ impl<'a, const N: usize> Servo<'a, N> {
     }
 }
 
-/// How fast an acceleration of 1 mm/s^2 in a knot makes the offset on the mean of the feed period
-/// `back` before this one, s.
+/// Returns the speed that an acceleration of 1 mm/s^2 in a knot gives the offset on the mean of the
+/// feed period `back` before this one, s.
 fn gained_s<const N: usize>(stretch: &CommandedPeriod<N>, knot: usize, back: usize) -> f64 {
     match stretch.period.cmp(&(knot + back)) {
         std::cmp::Ordering::Less => 0.0,
@@ -98,7 +98,7 @@ fn grown_with_slopes<const N: usize>(inputs: &Inputs<N>) -> ([f64; N], Inputs<N>
 }
 
 impl<const N: usize> Predictor<N> for Servo<'_, N> {
-    /// Of its linear part.
+    /// Returns the lag of the linear part.
     fn lag_s(&self) -> f64 {
         let [f0, f1, f2, e0, e1] = LINEAR;
         -(f0 + f1 + f2) / (e0 + e1) / FEED_SCALE_MM_S

@@ -42,14 +42,16 @@ type Vector = [f64; MAX_PLACES];
 /// comes to 1.4e-9.
 pub(crate) const AGREEMENT: f64 = 3e-9;
 
-/// How far the recursion and Gauss-Newton are apart, as a share of the largest acceleration.
+/// Returns the difference of the recursion and Gauss-Newton, as a share of the largest
+/// acceleration.
 pub(crate) fn apart_from_gauss_newton<const N: usize>(material: &Material<N>) -> f64 {
     let (problem, slopes) = material.roll_out();
     let recursion = material.after(&Riccati::default().solve(&problem, &slopes, &material.plan));
     difference(&material.improved(&problem), &recursion)
 }
 
-/// What the recursion keeps from the way back for the way forth: da = K x + k.
+/// Gains and offsets that the recursion keeps from the backward pass for the forward pass: da = K x
+/// + k.
 pub(crate) struct Riccati<const N: usize> {
     gains: [[Vector; N]; MAX_KNOTS],
     offsets: [[f64; N]; MAX_KNOTS],
@@ -140,7 +142,7 @@ impl<const N: usize> Riccati<N> {
     }
 }
 
-/// What the errors and the speed of the offset at the end of a knot cost there.
+/// Adds the cost of the errors and of the offset's speed at the end of a knot.
 fn pay_errors<const N: usize>(
     problem: &HorizonProblem<N>,
     knot: usize,
@@ -175,7 +177,7 @@ fn pay_errors<const N: usize>(
     }
 }
 
-/// What the offset behind the last knot costs: o + lag v.
+/// Adds the cost of the offset behind the last knot: o + lag v.
 fn pay_end<const N: usize>(
     problem: &HorizonProblem<N>,
     square: &mut [Vector; MAX_PLACES],
@@ -198,7 +200,7 @@ fn pay_end<const N: usize>(
     }
 }
 
-/// What the change of the speed over a knot costs.
+/// Adds the cost of the change of speed over a knot.
 fn pay_accelerations<const N: usize>(
     problem: &HorizonProblem<N>,
     knot: usize,
@@ -217,7 +219,7 @@ fn pay_accelerations<const N: usize>(
 /// A(k) and B(k): one feed period of every axis, lengths in mm, speeds in mm/s, accelerations in
 /// mm/s^2.
 struct PlanStep<const N: usize> {
-    /// What e(k+1) takes of F(k), F(k-1), F(k-2), e(k), e(k-1).
+    /// Coefficients of F(k), F(k-1), F(k-2), e(k), e(k-1) in e(k+1).
     of: [[f64; INPUTS]; N],
     period_s: f64,
 }

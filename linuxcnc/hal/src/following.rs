@@ -1,4 +1,4 @@
-//! Following errors that a control has to allow.
+//! Following errors that the control has to allow.
 
 use feedwright_servo::following::{JointLimits, least_min_ferror_mm};
 use feedwright_servo::limits::DELAYS_S;
@@ -6,23 +6,24 @@ use feedwright_servo::machine::axes_of;
 
 use crate::memory::{model, three};
 
-/// What the control allows a joint.
+/// Limits of a joint in the configuration of the control.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct CJoint {
-    /// MAX_VELOCITY.
+    /// MAX_VELOCITY, mm/s.
     speed_mm_s: f64,
     /// MAX_ACCELERATION, mm/s2.
     acceleration_mm_s2: f64,
-    /// FERROR.
+    /// FERROR, mm.
     ferror_mm: f64,
 }
 
-/// The least MIN_FERROR of each joint with the longest delay, by a model; 0 where it has no axes,
-/// or a joint no limits. Before the thread runs.
+/// Computes the least MIN_FERROR of each joint, mm, with the longest delay, from the model in
+/// `bytes`. It is 0 for a joint without limits, and for all joints if the model states no axes.
+/// Call it before the thread runs.
 ///
 /// # Safety
-/// There are so many bytes at `bytes`; the others are what they are declared to be.
+/// `bytes` is null or points to `length` bytes. The other arguments are valid as declared.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn feedwright_min_ferror(
     bytes: *const u8,

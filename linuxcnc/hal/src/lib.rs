@@ -1,6 +1,6 @@
-//! The C interface of [`feedwright_servo`], of which `feedwright.h` is made: memory comes from the
-//! caller, nothing is allocated, and a panic ends in a function of the caller, which does not come
-//! back here.
+//! The C interface of [`feedwright_servo`]; `feedwright.h` is generated from it. The caller
+//! provides the memory, and nothing is allocated. A panic ends in a function of the caller, which
+//! does not return.
 //!
 //! | Function | When |
 //! |---|---|
@@ -16,12 +16,12 @@ mod memory;
 use core::panic::PanicInfo;
 
 unsafe extern "C" {
-    /// The caller's: where a panic ends. It must not return.
+    /// Function of the caller in which a panic ends. It must not return.
     pub fn feedwright_panicked() -> !;
 }
 
 #[panic_handler]
 fn panic(_: &PanicInfo<'_>) -> ! {
-    // SAFETY: it takes nothing and does not come back.
+    // SAFETY: the function takes no argument and does not return.
     unsafe { feedwright_panicked() }
 }

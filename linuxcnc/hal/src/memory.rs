@@ -2,11 +2,11 @@
 
 use core::ptr::NonNull;
 
-/// A value for two axes, or for three.
+/// A value for two or three axes.
 pub(crate) enum TwoOrThree<A, B> {
-    /// For two.
+    /// Two axes.
     Two(A),
-    /// For three.
+    /// Three axes.
     Three(B),
 }
 
@@ -22,7 +22,7 @@ pub(crate) unsafe fn put<T>(memory: *mut T, bytes: usize, make: impl FnOnce() ->
     if bytes < size_of::<T>() || !memory.is_aligned() {
         return false;
     }
-    // SAFETY: it is aligned and large enough.
+    // SAFETY: the memory is aligned and large enough.
     unsafe { memory.write(make()) };
     true
 }
@@ -39,12 +39,12 @@ pub(crate) unsafe fn model<'a>(bytes: *const u8, length: usize) -> &'a [u8] {
     unsafe { core::slice::from_raw_parts(bytes, length) }
 }
 
-/// The first N of three numbers.
+/// Returns the first N of three numbers.
 pub(crate) fn first<const N: usize>(three: [f64; 3]) -> [f64; N] {
     core::array::from_fn(|i| three.get(i).copied().unwrap_or(0.0))
 }
 
-/// N numbers as three, zero beyond.
+/// Returns N numbers as three, zero beyond.
 pub(crate) fn three<const N: usize>(numbers: [f64; N]) -> [f64; 3] {
     core::array::from_fn(|i| numbers.get(i).copied().unwrap_or(0.0))
 }

@@ -9,16 +9,17 @@ use crate::memory::{TwoOrThree, first, model, put, three};
 /// The simulated machine.
 pub struct CPlant(TwoOrThree<SimulatedMachine<2>, SimulatedMachine<3>>);
 
-/// Bytes that a machine needs.
+/// Returns the size of a machine, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn feedwright_plant_bytes() -> usize {
     size_of::<CPlant>()
 }
 
-/// A new machine of two or three joints; whether there is one.
+/// Creates a machine of two or three joints. Returns true if it was created.
 ///
 /// # Safety
-/// There are so many bytes at `memory`, which nobody else uses, and so many at `bytes`.
+/// `memory` is null or points to `memory_bytes` bytes that nothing else uses. `bytes` is null or
+/// points to `length` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn feedwright_plant_new(
     memory: *mut CPlant,
@@ -61,10 +62,11 @@ fn made<const N: usize>(
     SimulatedMachine::new(machine, seed).with_geometry(geometry_of(bytes))
 }
 
-/// One servo period under a command; tool, measured position and torque at its end.
+/// Simulates one servo period under a command. Writes tool position, measured position and torque
+/// at its end.
 ///
 /// # Safety
-/// `plant` was made by [`feedwright_plant_new`]; the others are what they are declared to be.
+/// `plant` was made by [`feedwright_plant_new`]. The other arguments are valid as declared.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn feedwright_plant_step(
     plant: &mut CPlant,

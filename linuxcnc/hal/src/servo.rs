@@ -10,143 +10,147 @@ use feedwright_servo::through::{Carries, Through};
 
 use crate::memory::{TwoOrThree, first, model, put, three};
 
-/// The amplifiers are on.
+/// Flag: the amplifiers are on.
 pub const FEEDWRIGHT_POWERED: u32 = 1;
-/// The correction is wanted.
+/// Flag: the correction is wanted.
 pub const FEEDWRIGHT_ENABLED: u32 = 2;
-/// No delay is wanted.
+/// Flag: no delay is wanted.
 pub const FEEDWRIGHT_DIRECT: u32 = 4;
-/// A spindle is about to be followed.
+/// Flag: a motion is about to follow the spindle.
 pub const FEEDWRIGHT_SPINDLE: u32 = 8;
-/// This motion cuts.
+/// Flag: this motion cuts.
 pub const FEEDWRIGHT_CUTTING: u32 = 16;
-/// A controller that changes the feedrate leaves the geometry on the path.
+/// Flag: a controller that changes the feedrate leaves the geometry on the path.
 pub const FEEDWRIGHT_SPEED_ALONE: u32 = 32;
-/// This motion probes.
+/// Flag: this motion probes.
 pub const FEEDWRIGHT_PROBING: u32 = 64;
-/// The geometry of the model is to be compensated.
+/// Flag: the geometry that the model states is to be compensated.
 pub const FEEDWRIGHT_GEOMETRY: u32 = 128;
-/// Every corrected joint is homed, so that its motor offset says where it is.
+/// Flag: every corrected joint is homed, so that its motor offset states its position.
 pub const FEEDWRIGHT_HOMED: u32 = 256;
-/// Values that pass through at the most.
+/// Largest number of channels that pass through.
 pub const FEEDWRIGHT_CHANNELS: usize = 6;
-/// What a channel carries, in four bits of `carries` for each, the first in the lowest: this for a
-/// joint, this and 1 + n for a second motor of the corrected joint n, 0 for a signal.
+/// Kind of value that a channel carries, in four bits of `carries` for each, the first channel in
+/// the lowest: this value for a joint, this value plus 1 + n for a second motor of the corrected
+/// joint n, 0 for a signal.
 pub const FEEDWRIGHT_JOINT: u32 = 1;
-/// What [`feedwright_servo_new`] returns where it made nothing.
+/// Result of [`feedwright_servo_new`] if it created no link.
 pub const FEEDWRIGHT_NOT_MADE: u32 = 255;
-/// The fault of a link that failed: known to the caller alone.
+/// Fault of a link that failed. Only the caller detects the failure.
 pub const FEEDWRIGHT_FAILED: u32 = 14;
 
-/// What comes from the control and the drives in a servo period.
+/// Inputs from the control and the drives in a servo period.
 #[repr(C)]
 pub struct CInputs {
     /// Position commands.
     command_mm: [f64; 3],
     /// Actual positions.
     actual_mm: [f64; 3],
-    /// Motor offsets: motor position less position of the joint.
+    /// Motor offsets: motor position minus joint position.
     offset_mm: [f64; 3],
-    /// Delay of the command, 0.008 to 0.015. A setting out of its range is refused; the last good
+    /// Delay of the command, 0.008 to 0.015. A setting out of its range is rejected; the last good
     /// one stays in force.
     delay_s: f64,
     /// Largest distance of the drive's command from the path.
     deviation_mm: f64,
     /// Highest speed of the machine.
     speed_mm_s: f64,
-    /// Acceleration of an offset that fades; 0 is without limit.
+    /// Acceleration with which an offset fades; 0 is without limit.
     correction_mm_s2: f64,
-    /// Acceleration of an offset in the loop; 0 is without limit. A correction that needs more
-    /// leaves the loop.
+    /// Acceleration of an offset in the loop; 0 is without limit. If a correction needs more, only
+    /// a smaller part of it is commanded.
     engaged_mm_s2: f64,
-    /// What 1 of the requested feedrate stands for, 0.1 to 1.
+    /// Value of `adaptive_feed` that stands for the present feedrate, 0.1 to 1.
     adaptive_scale: f64,
-    /// Commands that are delayed and not corrected.
+    /// Commands of the channels that are delayed and not corrected.
     through: [f64; FEEDWRIGHT_CHANNELS],
-    /// Their actual positions; of a signal its command.
+    /// Actual positions of these channels; the command of a signal.
     through_actual: [f64; FEEDWRIGHT_CHANNELS],
-    /// The sum of FEEDWRIGHT_POWERED and so on.
+    /// Sum of the flags FEEDWRIGHT_POWERED and so on.
     flags: u32,
-    /// What the channels carry.
+    /// Kinds of values that the channels carry.
     carries: u32,
 }
 
-/// What goes to the drives and the control.
+/// Outputs to the drives and the control.
 #[repr(C)]
 pub struct COutputs {
     /// Position commands of the drives.
     drive_mm: [f64; 3],
-    /// What the control takes for the actual positions.
+    /// Actual positions reported to the control.
     feedback_mm: [f64; 3],
     /// Offsets of the drives' commands from the path.
     correction_mm: [f64; 3],
-    /// Offsets of the joints' commands from those of the control, by the geometry.
+    /// Offsets of the joint commands from the commands of the control, due to the geometry.
     geometry_mm: [f64; 3],
-    /// Commands of the drives of what passes through, and what the control takes for the actual
-    /// positions.
+    /// Drive commands of the channels that pass through, and their actual positions reported to the
+    /// control.
     through_drive: [f64; FEEDWRIGHT_CHANNELS],
     through_feedback: [f64; FEEDWRIGHT_CHANNELS],
     /// Distance of the actual position from the path.
     contour_error_mm: f64,
-    /// The same without the correction, by the model.
+    /// Contour error that the model predicts without the correction.
     without_mm: f64,
-    /// Feedrate that the control is asked for, as a multiple of its own in the scale that is set, 0
-    /// to 1.
+    /// Feedrate requested of the control, 0 to 1: multiple of its own feedrate, times
+    /// `adaptive_scale`.
     adaptive_feed: f64,
-    /// What the supervisor found when it took the correction out of the loop last, and what it may
-    /// be; 0 where nothing was compared.
+    /// Measured error when the supervisor last took the correction out of the loop, and the largest
+    /// permitted error; 0 if nothing was compared.
     found_mm: f64,
     limit_mm: f64,
-    /// 0 amplifiers off, 1 without delay, 2 delayed, 3 the correction fades, 4 it is in the loop.
+    /// State: 0 amplifiers off, 1 without delay, 2 delayed, 3 the correction fades, 4 it is in the
+    /// loop.
     state: u32,
-    /// Why there is no correction, 0 for nothing; faults.h has words for it.
+    /// Reason why there is no correction, or 0; faults.h states it in words.
     fault: u32,
-    /// Whether a limit holds the correction.
+    /// 1 if a limit holds the correction.
     saturated: u32,
     /// Servo periods of delay.
     delay_periods: u32,
-    /// Whether the control is to hold its feed.
+    /// 1 if the control is to hold its feed.
     holds_feed: u32,
-    /// Whether a motion that follows a spindle would be without delay.
+    /// 1 if a motion that follows a spindle would be without delay.
     is_settled: u32,
-    /// How often the supervisor has taken the correction out of the loop since the delay was taken
-    /// up.
+    /// Number of times that the supervisor has taken the correction out of the loop since the delay
+    /// was taken up.
     times_out: u32,
-    /// Joints that are corrected by what was learned while they moved: 1, 2 and 4.
+    /// Joints that are corrected by a model learned in motion: sum of 1, 2 and 4.
     learned: u32,
-    /// Whether the geometry is compensated, and nothing of it fades.
+    /// 1 if the geometry is compensated and no part of it fades.
     compensates: u32,
-    /// Whether the correction stays out until it is reset.
+    /// 1 if the correction stays out until it is reset.
     latched: u32,
 }
 
 /// The link between command and drives.
 pub struct CServo(TwoOrThree<Guarded<2>, Guarded<3>>);
 
-/// A link, and what stands in for it where it fails.
+/// A link, and its replacement if it fails.
 struct Guarded<const N: usize> {
     compensation: Compensation<N>,
     servo: Servo<N>,
     play_out: PlayOut<N>,
 }
 
-/// Bytes that a link needs.
+/// Returns the size of a link, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn feedwright_servo_bytes() -> usize {
     size_of::<CServo>()
 }
 
-/// Sizes of inputs and outputs, for the caller to compare with its own.
+/// Returns the size of the inputs, shifted left by 16 bits, plus the size of the outputs, for the
+/// caller to compare with its own.
 #[unsafe(no_mangle)]
 pub extern "C" fn feedwright_servo_layout() -> usize {
     size_of::<CInputs>() << 16 | size_of::<COutputs>()
 }
 
-/// A new link of two or three joints, with or without a model; the fault that it begins with, or
-/// [`FEEDWRIGHT_NOT_MADE`] where the memory is none for it.
+/// Creates a link of two or three joints, with or without a model. Returns the fault that it begins
+/// with, or [`FEEDWRIGHT_NOT_MADE`] if the memory is too small, not aligned or null.
 ///
 /// # Safety
-/// There are so many bytes at `memory`, which nobody else uses, and so many at `bytes`.
+/// `memory` is null or points to `memory_bytes` bytes that nothing else uses. `bytes` is null or
+/// points to `length` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn feedwright_servo_new(
     memory: *mut CServo,
@@ -179,7 +183,7 @@ fn made<const N: usize>(bytes: &[u8], fault: &mut u32) -> Guarded<N> {
         .as_ref()
         .err()
         .map_or(0, |refused| number(LinkFault::Model(*refused)));
-    // A model that is refused compensates nothing.
+    // A rejected model compensates nothing.
     let geometry = if model.is_ok() {
         geometry_of(bytes)
     } else {
@@ -192,7 +196,8 @@ fn made<const N: usize>(bytes: &[u8], fault: &mut u32) -> Guarded<N> {
     }
 }
 
-/// Tells the servo period of the thread, before the first step; the fault that there is then.
+/// Checks the model against the servo period of the thread, before the first step. Returns the
+/// fault of a rejected model, or 0.
 ///
 /// # Safety
 /// `servo` was made by [`feedwright_servo_new`].
@@ -204,10 +209,10 @@ pub unsafe extern "C" fn feedwright_servo_runs_at(servo: &mut CServo, servo_s: f
     })
 }
 
-/// One servo period.
+/// Computes one servo period of the link.
 ///
 /// # Safety
-/// `servo` was made by [`feedwright_servo_new`]; the others are what they are declared to be.
+/// `servo` was made by [`feedwright_servo_new`]. The other arguments are valid as declared.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn feedwright_servo_step(
     servo: &mut CServo,
@@ -220,11 +225,11 @@ pub unsafe extern "C" fn feedwright_servo_step(
     };
 }
 
-/// One servo period in place of [`feedwright_servo_step`], once that has panicked: plays out its
-/// delay, without a correction.
+/// Computes one servo period in place of [`feedwright_servo_step`], once that has panicked: plays
+/// out the delay of the link, without a correction.
 ///
 /// # Safety
-/// `servo` was made by [`feedwright_servo_new`]; the others are what they are declared to be.
+/// `servo` was made by [`feedwright_servo_new`]. The other arguments are valid as declared.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn feedwright_servo_play_out(
     servo: &mut CServo,
@@ -391,7 +396,7 @@ impl<const N: usize> Guarded<N> {
     }
 }
 
-/// As [`COutputs`] counts them.
+/// Returns the state as [`COutputs`] numbers it.
 fn state<const N: usize>(outputs: &LinkOutputs<N>) -> u32 {
     match (outputs.link, outputs.state) {
         (Link::Off, _) => 0,
@@ -402,7 +407,7 @@ fn state<const N: usize>(outputs: &LinkOutputs<N>) -> u32 {
     }
 }
 
-/// As `faults.h` counts them.
+/// Returns the fault as `faults.h` numbers it.
 fn number(fault: LinkFault) -> u32 {
     match fault {
         LinkFault::None => 0,

@@ -8,15 +8,15 @@
 //! f' = T(f - z - r) + z        feedback of the link f as the control gets it; T is the map itself
 //! ```
 //!
-//! Command and feedback always have the same map, so that a joint that is where it has to be is
-//! where it was asked to be. The following error stays what it is in the joints, to within what the
-//! geometry stretches it. A geometry comes into force while the position of every axis is known:
-//! before homing, nobody knows where on its screw an axis is. Where it comes into force or leaves,
-//! and where homing changes z, r takes over what o was, with its speed, and fades to zero within an
-//! acceleration. With the amplifiers off nothing moves, and nothing fades.
+//! Command and feedback always have the same map, so a joint that follows its command also appears
+//! to the control at the commanded place. The following error stays the same as in the joints, up
+//! to the stretch of the geometry. A geometry comes into force while the position of every axis is
+//! known: before homing, the place of an axis on its screw is unknown. Where the geometry comes
+//! into force or leaves, and where homing changes z, r takes over the old o, with its speed, and
+//! fades to zero within an acceleration. With the amplifiers off nothing moves, and nothing fades.
 //!
-//! The second motor of an axis gets the o of its axis, and its feedback loses what that of its axis
-//! loses.
+//! The second motor of an axis gets the o of its axis, and its feedback is corrected by the same
+//! amount as the feedback of its axis.
 
 use feedwright_control::KnownGeometry;
 use feedwright_control::vector::{add_scaled, norm, scale, sub};
@@ -26,14 +26,14 @@ use crate::limits::LinkLimits;
 use crate::servo::LinkInputs;
 use crate::through::{CHANNELS, Carries, PassedThrough, Through};
 
-/// What is known of the positions in a servo period.
+/// Knowledge of the positions in a servo period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MachinePlace<const N: usize> {
     /// Motor offset of each joint, mm: motor position less position of the joint.
     pub zero_mm: [f64; N],
-    /// Whether every joint is homed.
+    /// True if every joint is homed.
     pub is_known: bool,
-    /// Whether the geometry is to be compensated.
+    /// True if the geometry is to be compensated.
     pub is_wanted: bool,
 }
 
@@ -54,7 +54,7 @@ pub struct Compensation<const N: usize> {
 }
 
 impl<const N: usize> Compensation<N> {
-    /// Of this geometry, or of none: then commands and feedback pass to the bit.
+    /// Compensates this geometry. Without one, commands and feedback pass unchanged to the bit.
     pub fn new(geometry: Option<KnownGeometry<N>>) -> Self {
         Self {
             geometry,
@@ -155,7 +155,7 @@ impl<const N: usize> Compensation<N> {
         }
     }
 
-    /// The feedback of the link as the control gets it, and that of what passes through.
+    /// Returns the feedback of the link as the control gets it, and the feedback of the channels.
     pub fn tool(
         &self,
         feedback_mm: [f64; N],
@@ -186,12 +186,12 @@ impl<const N: usize> Compensation<N> {
         (tool_mm, through)
     }
 
-    /// What the command of each joint is beside that of the control, mm.
+    /// Returns the offset of each joint command from the command of the control, mm.
     pub fn offset_mm(&self) -> [f64; N] {
         self.offset_mm
     }
 
-    /// Whether the geometry is in force and nothing fades.
+    /// Returns true if the geometry is in force and nothing fades.
     pub fn compensates(&self) -> bool {
         self.geometry.is_some() && self.is_in_force && self.fading == Fading::NONE
     }

@@ -20,7 +20,7 @@ impl<const N: usize> Fading<N> {
         speed_mm_s: [0.0; N],
     };
 
-    /// From here on, with these speeds, mm/s.
+    /// Starts at these numbers, mm, with these speeds, mm/s.
     pub fn from(value_mm: [f64; N], speed_mm_s: [f64; N]) -> Self {
         Self {
             value_mm,
@@ -28,12 +28,12 @@ impl<const N: usize> Fading<N> {
         }
     }
 
-    /// From here on, at rest.
+    /// Starts at these numbers, mm, at rest.
     pub fn from_rest(value_mm: [f64; N]) -> Self {
         Self::from(value_mm, [0.0; N])
     }
 
-    /// What is left, mm.
+    /// Returns the numbers that remain, mm.
     pub fn value_mm(&self) -> [f64; N] {
         self.value_mm
     }

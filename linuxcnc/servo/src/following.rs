@@ -1,14 +1,14 @@
-//! The following error that the control sees of a joint that speeds up to its highest speed and
-//! brakes to rest, by its model, without a correction.
+//! Predicted following error as the control sees it, for a joint that speeds up to its highest
+//! speed and brakes to rest, by its model, without a correction.
 //!
 //! ```text
 //! e(n) = c(n - D) - a(n)           what the control compares with max(MIN_FERROR, FERROR |v(n)| / speed), v(n) of c(n)
 //! ```
 //!
-//! The limit follows the speed of the command now, the error that of D servo periods ago: the error
-//! is largest against its limit while the command brakes. An axis with the time constant T lags by
-//! `A T^2` where a braking of A ends, and by up to `A T (T + D)` where that of its control has
-//! ended.
+//! The limit follows the speed of the command now; the error belongs to the command D servo periods
+//! ago. The error is therefore largest against its limit while the command brakes. An axis with the
+//! time constant T lags by `A T^2` where a braking of A ends, and by up to `A T (T + D)` where the
+//! braking of its control has ended.
 
 use feedwright_control::IdentifiedAxes;
 use feedwright_control::vector::bounded;
@@ -21,7 +21,7 @@ const STEADY_S: f64 = 0.2;
 /// Longest time of speeding up that is simulated, s.
 const MOST_RAMP_S: f64 = 5.0;
 
-/// What the control allows a joint.
+/// Limits that the control sets for a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointLimits {
     /// Highest speed, mm/s.

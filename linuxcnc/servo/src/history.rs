@@ -103,7 +103,7 @@ impl<const N: usize> History<N> {
         self.at(number).position_mm
     }
 
-    /// What was passed through with the command of this number.
+    /// Returns the channel values that came with the command of this number.
     pub fn through(&self, number: u64) -> [f64; CHANNELS] {
         self.at(number).through
     }
@@ -141,12 +141,12 @@ impl<const N: usize> History<N> {
     }
 }
 
-/// Where a corner is, seen from a point.
+/// Side of a point on which a corner lies.
 enum CornerSide {
     None,
-    /// At the point, or in the chord after it.
+    /// The corner is at the point, or in the chord after it.
     Ahead,
-    /// In the chord before it.
+    /// The corner is in the chord before the point.
     Behind,
 }
 

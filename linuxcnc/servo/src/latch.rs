@@ -5,12 +5,12 @@
 //! a while, and the axes are moved off the path and back. The second time, waiting shows nothing
 //! new: somebody has to look at the machine or at the model.
 //!
-//! The count begins anew where the correction has held for [`FORGIVEN_S`] of motion, where another
-//! cause takes it out, and the first time that each axis goes by what it learned in motion: the
-//! earlier faults were those of another model. With twice the inertia from one servo period to the
+//! The count starts anew where the correction has held for [`FORGIVEN_S`] of motion, where another
+//! cause takes it out, and the first time that each axis uses a model learned in motion: the
+//! earlier faults belong to another model. With twice the inertia from one servo period to the
 //! next, a circle takes the correction out twice before both axes have learned, and never again. A
-//! lost position is nobody's fault and does not count. The reset is a correction that is switched
-//! off and on again, or amplifiers that were off.
+//! lost position is nobody's fault and does not count. The latch is reset when the correction is
+//! switched off and on again, or when the amplifiers were off.
 
 use feedwright_control::{Cause, FORGIVEN_S, Fade};
 
@@ -87,7 +87,7 @@ mod tests {
     const SERVO_S: f64 = 0.001;
     const NOTHING: [bool; 2] = [false; 2];
 
-    /// The latch after faults, with so many seconds of motion in the loop before each.
+    /// Returns the latch after faults, with this time of motion in the loop before each, s.
     fn after(faults: &[(Cause, f64)]) -> Latch<2> {
         let mut latch = Latch::OPEN;
         for (count, (cause, before_s)) in (1..).zip(faults) {

@@ -20,12 +20,12 @@ const DEVIATIONS_MM: [f64; 2] = [0.0, 10.0];
 const SPEEDS_MM_S: [f64; 2] = [1.0, 1e4];
 const ACCELERATIONS_MM_S2: [f64; 2] = [1.0, UNLIMITED_MM_S2];
 const ADAPTIVE_SCALES: [f64; 2] = [0.1, 1.0];
-/// What stands for no limit of the correction's acceleration, mm/s2: a leap within a servo period
-/// of 1 ms at the speed of a rapid.
+/// Acceleration of the correction that stands for no limit, mm/s2: a leap within a servo period of
+/// 1 ms at the speed of a rapid.
 pub const UNLIMITED_MM_S2: f64 = 1e6;
 
-/// What can be set. The delay and [`Self::speed_alone`] are taken over where the delay is taken up,
-/// all others at once.
+/// Settings that can change while the thread runs. The delay and [`Self::speed_alone`] take effect
+/// when the delay is next taken up, all others at once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkLimits {
     /// Delay of the command, s.
@@ -41,7 +41,7 @@ pub struct LinkLimits {
     pub engaged_mm_s2: f64,
     /// Multiple of the feedrate of now that a request of 1 stands for.
     pub adaptive_scale: f64,
-    /// Whether a controller that changes the feedrate leaves the geometry on the path.
+    /// True if a controller that changes the feedrate leaves the geometry on the path.
     pub speed_alone: bool,
 }
 
@@ -63,7 +63,7 @@ pub enum Setting {
 }
 
 impl LinkLimits {
-    /// In force until others are set: the defaults of the pins.
+    /// Limits in force until others are set: the defaults of the pins.
     pub const DEFAULT: Self = Self {
         delay_s: 0.010,
         deviation_mm: 0.5,

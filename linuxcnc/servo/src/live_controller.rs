@@ -77,7 +77,7 @@ const RESPONSE_S: f64 = 0.006;
 const MOST_PERIODS: u32 = 100;
 
 impl<const N: usize> LiveController<N> {
-    /// By a model, with a servo period of `servo_s`.
+    /// Creates the controller for a model, with a servo period of `servo_s`.
     pub fn new(model: &LinkModel<N>, servo_s: f64) -> Self {
         let kind = match model {
             LinkModel::Axes(identified) => {
@@ -112,7 +112,7 @@ impl<const N: usize> LiveController<N> {
         }
     }
 
-    /// Whether the paper's controllers leave the geometry on the path. Taken over at rest.
+    /// Sets whether the paper's controllers leave the geometry on the path. Takes effect at rest.
     pub fn change_speed_alone(&mut self, speed_alone: bool) {
         if let Kind::Inversion(inversion) = &mut self.kind {
             inversion.speed_alone = speed_alone;

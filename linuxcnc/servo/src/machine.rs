@@ -1,4 +1,4 @@
-//! What is read from a model file.
+//! Models and geometries read from a model file.
 
 use feedwright_control::{
     BlockError, ContourIdentifier, IdentifiedAxes, KnownGeometry, ModelBlock, Trained,
@@ -15,12 +15,12 @@ pub enum Refused {
     Period,
 }
 
-/// What a correction is by.
+/// Model behind a correction.
 #[derive(Debug, Clone)]
 pub enum LinkModel<const N: usize> {
-    /// The law of each axis.
+    /// Model of each axis.
     Axes(IdentifiedAxes<N>),
-    /// What the contour error will be.
+    /// Model of the contour error.
     Contour(TrainedContour<N>),
 }
 
@@ -71,7 +71,7 @@ pub fn model_of<const N: usize>(bytes: &[u8]) -> Result<LinkModel<N>, Refused> {
     }
 }
 
-/// The geometry in these bytes; none where there is none, or no model.
+/// Reads the geometry from these bytes; `None` if they have no geometry, or are no model.
 pub fn geometry_of<const N: usize>(bytes: &[u8]) -> Option<KnownGeometry<N>> {
     ModelBlock::from_bytes(bytes)
         .ok()
@@ -89,7 +89,8 @@ pub fn axes_of<const N: usize>(bytes: &[u8]) -> Result<IdentifiedAxes<N>, Refuse
     }
 }
 
-/// Whether a model with a servo period of `theirs_s` is for a thread of `servo_s`.
+/// Returns true if a model with a servo period of `theirs_s` suits a thread with a period of
+/// `servo_s`.
 pub fn fits(theirs_s: f64, servo_s: f64) -> bool {
     (servo_s / theirs_s - 1.0).abs() <= PERIOD_TOLERANCE
 }

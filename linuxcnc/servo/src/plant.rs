@@ -1,9 +1,9 @@
-//! A simulated machine: the servo axes of [`feedwright_control::AxisLaw`], each with what a model
-//! file has of it.
+//! A simulated machine: the servo axes of [`feedwright_control::AxisLaw`] with the parameters of a
+//! model file.
 //!
 //! Loops, inertia, friction, delays, the drive's feedforward and filter, the disturbance, cogging,
-//! broadband torque, and the encoder's noise and step are those of the file. The tool is where the
-//! geometry of the file has it. Two masses and jitter are not in a model file, and not here.
+//! broadband torque, and the encoder's noise and step come from the file. The geometry of the file
+//! gives the tool position. Two masses and jitter are not in a model file, and not here.
 //!
 //! ```text
 //! load = D sin(W t) + x                  t at the start of a mechanics period; x(c+1) = a x(c) + s sqrt(1 - a^2) n(c), a = exp(-dt / T)
@@ -34,7 +34,7 @@ pub struct SimulatedMachine<const N: usize> {
 }
 
 impl<const N: usize> SimulatedMachine<N> {
-    /// At rest at zero, with random numbers by a seed.
+    /// Starts at rest at zero, with random numbers from `seed`.
     pub fn new(machine: &IdentifiedAxes<N>, seed: u64) -> Self {
         let mut axes = machine.axes.map(SimulatedAxis::new);
         for (i, axis) in axes.iter_mut().enumerate() {
@@ -62,7 +62,7 @@ impl<const N: usize> SimulatedMachine<N> {
         }
     }
 
-    /// With this geometry, or none.
+    /// Replaces the geometry; `None` removes it.
     #[must_use]
     pub fn with_geometry(self, geometry: Option<KnownGeometry<N>>) -> Self {
         Self { geometry, ..self }
@@ -90,12 +90,12 @@ impl<const N: usize> SimulatedMachine<N> {
         self.period += 1;
     }
 
-    /// Where the joints are, mm.
+    /// Returns the joint positions, mm.
     pub fn position_mm(&self) -> [f64; N] {
         self.axes.each_ref().map(SimulatedAxis::position_mm)
     }
 
-    /// Where the tool is, mm.
+    /// Returns the tool position, mm.
     pub fn tool_mm(&self) -> [f64; N] {
         self.geometry
             .as_ref()
@@ -104,7 +104,7 @@ impl<const N: usize> SimulatedMachine<N> {
             })
     }
 
-    /// Where the control has it, mm.
+    /// Returns the joint positions that the control has, mm.
     pub fn measured_mm(&self) -> [f64; N] {
         self.axes
             .each_ref()
@@ -315,7 +315,7 @@ struct NoiseSource {
 }
 
 impl NoiseSource {
-    /// Of mean 0 and standard deviation 1.
+    /// Returns a random number with mean 0 and standard deviation 1.
     fn normal(&mut self) -> f64 {
         let mut sum = 0_i64;
         for _ in 0..3 {

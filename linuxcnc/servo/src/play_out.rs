@@ -1,11 +1,11 @@
-//! What stands in for a link that failed: plays out its delay, without a correction.
+//! Replacement for a link that failed: plays out its delay, without a correction.
 //!
 //! ```text
 //! drive = c(n - D) + o     o: the offset at the failure, which fades to zero
 //! ```
 //!
-//! The delay D ends where the command has rested for longer than it: nothing leaps. This state is
-//! apart from that of the link, so that a failure in the link leaves it whole.
+//! The delay D ends after the command has rested for longer than the delay, so nothing leaps. This
+//! state is kept apart from the state of the link, so that a failure in the link leaves it whole.
 
 use feedwright_control::vector::{add_scaled, norm, sub};
 
@@ -32,16 +32,16 @@ pub struct PlayOut<const N: usize> {
     through: Through,
 }
 
-/// What goes to the drive and to the control.
+/// Outputs to the drive and to the control.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlayedOut<const N: usize> {
     /// Command of the drive, mm.
     pub drive_mm: [f64; N],
-    /// What the control takes for the actual position, mm.
+    /// Actual position reported to the control, mm.
     pub feedback_mm: [f64; N],
     /// Offset of the command from the path, mm.
     pub correction_mm: [f64; N],
-    /// What goes through.
+    /// Channels that pass through.
     pub through: PassedThrough,
     /// Servo periods of delay.
     pub delay_periods: u32,
@@ -54,7 +54,7 @@ impl<const N: usize> Default for PlayOut<N> {
 }
 
 impl<const N: usize> PlayOut<N> {
-    /// Behind a link that has not run yet.
+    /// Starts without a command, for a link that has not run yet.
     pub fn new() -> Self {
         Self {
             servo_s: 0.001,

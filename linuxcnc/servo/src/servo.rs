@@ -62,37 +62,37 @@ const AT_REST: Schedule = Schedule {
     preview: 0,
 };
 
-/// What comes from the control and the drive.
+/// Inputs from the control and the drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkInputs<const N: usize> {
     /// Command, mm.
     pub command_mm: [f64; N],
     /// Actual position, mm.
     pub actual_mm: [f64; N],
-    /// What goes through uncorrected.
+    /// Channels that pass through uncorrected.
     pub through: Through,
-    /// Whether the amplifiers are on.
+    /// True if the amplifiers are on.
     pub powered: bool,
-    /// Whether the correction is wanted.
+    /// True if the correction is wanted.
     pub enabled: bool,
-    /// Whether no delay is wanted: jog, homing, or asked for from outside.
+    /// True if no delay is wanted: jog, homing, or a request from outside.
     pub direct: bool,
-    /// Whether this motion probes.
+    /// True if this motion probes.
     pub probing: bool,
-    /// Whether the spindle is about to be followed.
+    /// True if a motion is about to follow the spindle.
     pub spindle: bool,
-    /// Whether this motion cuts; a rapid does not.
+    /// True if this motion cuts; a rapid does not.
     pub cutting: bool,
 }
 
-/// How the drive is connected to the command.
+/// Connection of the drive to the command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Link {
-    /// Not at all.
+    /// Drive not connected.
     Off,
-    /// Without delay and correction.
+    /// Connected without delay and correction.
     Direct,
-    /// With both.
+    /// Connected with delay and correction.
     Delayed,
 }
 
@@ -115,45 +115,46 @@ pub enum LinkFault {
     NotHeld,
 }
 
-/// What goes to the drive and to the control, and what is told.
+/// Outputs to the drive and to the control, and the reported state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkOutputs<const N: usize> {
     /// Command of the drive, mm.
     pub drive_mm: [f64; N],
-    /// What the control takes for the actual position, mm.
+    /// Actual position reported to the control, mm.
     pub feedback_mm: [f64; N],
     /// Offset of the command from the path, mm.
     pub correction_mm: [f64; N],
-    /// What goes through uncorrected.
+    /// Channels that pass through uncorrected.
     pub through: PassedThrough,
     /// Contour error of the actual position, mm.
     pub contour_error_mm: f64,
-    /// What it would be without the correction, by the model, mm.
+    /// Contour error that the model predicts without the correction, mm.
     pub without_mm: f64,
     /// Feedrate that the control is asked for, as a multiple of its own.
     pub rate: f64,
     /// The same in the scale that is set, 0 to 1.
     pub adaptive_feed: f64,
-    /// How the drive is connected.
+    /// Connection of the drive to the command.
     pub link: Link,
-    /// Whether the correction is in the loop, as the supervisor sees it.
+    /// State of the correction, as the supervisor sees it.
     pub state: State,
-    /// Whether a limit holds the offset.
+    /// True if a limit holds the offset.
     pub saturated: bool,
     /// Why there is no correction now.
     pub fault: LinkFault,
-    /// When, why and how often the supervisor has taken the correction out of the loop since the
-    /// delay was taken up.
+    /// Last time that the supervisor took the correction out of the loop since the delay was taken
+    /// up: time, cause and count.
     pub left: Option<Fade>,
-    /// Whether the correction stays out until it is reset: the same cause took it out twice.
+    /// True if the correction stays out until it is reset, because the same cause took it out
+    /// twice.
     pub latched: bool,
-    /// Which axes are corrected by what was learned while they moved.
+    /// True for each axis that is corrected by a model learned in motion.
     pub learned: [bool; N],
     /// Servo periods of delay.
     pub delay_periods: u32,
-    /// Whether the control is to hold its feed until the delay has been given up, or taken up.
+    /// True if the control is to hold its feed until the delay has been given up, or taken up.
     pub holds_feed: bool,
-    /// Whether a motion that follows a spindle would be without delay.
+    /// True if a motion that follows a spindle would be without delay.
     pub is_settled: bool,
 }
 
@@ -168,26 +169,26 @@ pub struct Servo<const N: usize> {
     /// Servo periods of delay, and the number of the command at which the tick began.
     delay: u32,
     first: u64,
-    /// What is in force of the settings.
+    /// Settings in force.
     limits: LinkLimits,
-    /// What the offset is held to, less the deviation that is set: a change fades.
+    /// Bound of the offset minus the deviation that is set: a change fades.
     excess: Fading<1>,
     /// Remaining offset that fades without a correction.
     residual: Fading<N>,
-    /// Whether the delay was given up for a motion that probes, and servo periods in which the
-    /// command has moved although it was to be held.
+    /// True if the delay was given up for a motion that probes; then the servo periods in which the
+    /// command has moved despite the requested hold.
     yielded: bool,
     not_held: u64,
     actual_mm: [f64; N],
     command_mm: [f64; N],
     drive_mm: [f64; N],
     through: Through,
-    /// How large the offset of the correction was in the last servo period, mm.
+    /// Size of the correction offset in the last servo period, mm.
     offset_mm: f64,
-    /// Whether the motion follows a spindle, and servo periods since it was about to.
+    /// True if the motion follows a spindle; then the servo periods since this was last requested.
     follows: bool,
     unasked: u64,
-    /// Whether the control was heard at all.
+    /// True once the control has sent a valid command.
     heard: bool,
     /// Servo periods since the command leapt.
     since_leap: u64,
@@ -195,7 +196,7 @@ pub struct Servo<const N: usize> {
 }
 
 impl<const N: usize> Servo<N> {
-    /// By this model, or without one.
+    /// Creates the link with this model, or without a model.
     pub fn new(model: Result<LinkModel<N>, Refused>) -> Self {
         let servo_s = model.as_ref().map_or(WITHOUT_MODEL_S, LinkModel::servo_s);
         let controller = model.map(|model| LiveController::new(&model, servo_s));
@@ -265,7 +266,7 @@ impl<const N: usize> Servo<N> {
         if let (LinkFault::None, Some(cause)) = (outputs.fault, latched) {
             outputs.fault = LinkFault::Faded(cause);
         }
-        // What takes the correction away is told first.
+        // A fault of the correction has precedence over a refused setting.
         if let (LinkFault::None, Some(setting)) = (outputs.fault, refused) {
             outputs.fault = LinkFault::Setting(setting);
         }
@@ -294,7 +295,7 @@ impl<const N: usize> Servo<N> {
         refused
     }
 
-    /// What the offset is held to now, mm.
+    /// Returns the present bound of the offset, mm.
     fn deviation_mm(&self) -> f64 {
         let [excess_mm] = self.excess.value_mm();
         (self.limits.deviation_mm + excess_mm).max(0.0)
@@ -336,7 +337,7 @@ impl<const N: usize> Servo<N> {
         outputs
     }
 
-    /// Whether the control is to hold its feed, and whether it does.
+    /// Requests that the control hold its feed, and checks that it does.
     fn hold(&mut self, inputs: &LinkInputs<N>, outputs: &mut LinkOutputs<N>) {
         let is_delayed = self.link == Link::Delayed;
         let rested = self.history.at_rest();
@@ -359,7 +360,7 @@ impl<const N: usize> Servo<N> {
         }
     }
 
-    /// The amplifier is off: the drive is told to be where it is, and so is the control.
+    /// Handles amplifiers that are off: drive and control get the actual position.
     fn off(&mut self, told: bool) -> LinkOutputs<N> {
         self.link = Link::Off;
         self.history.clear();
@@ -459,7 +460,7 @@ impl<const N: usize> Servo<N> {
         (self.link, self.yielded, self.offset_mm) = (Link::Delayed, false, 0.0);
     }
 
-    /// That the model was refused, if it was.
+    /// Returns the reason why the model was rejected, or no fault.
     fn refused(&self) -> LinkFault {
         self.controller
             .as_ref()
@@ -518,8 +519,8 @@ impl<const N: usize> Servo<N> {
         self.tick.hold_to(bounds);
         self.tick
             .allow(inputs.enabled && self.latch.latched().is_none());
-        // Until no part of it is ahead any more: what no machine can follow says nothing of the
-        // law.
+        // Reset until no part of the leap is ahead any more. The response to a leap that no machine
+        // can follow says nothing about the model.
         if self.since_leap <= u64::from(self.delay) {
             controller.reset();
         }

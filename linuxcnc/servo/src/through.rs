@@ -1,4 +1,4 @@
-//! Values that are delayed as the corrected axes are, and otherwise stay as they are: rotary
+//! Values that get the same delay as the corrected axes and otherwise stay unchanged: rotary
 //! joints, second motors, signals of a program.
 //!
 //! ```text
@@ -6,13 +6,13 @@
 //! feedback = c(n) + (a - c(n - D))
 //! ```
 //!
-//! The delay D, and whether there is one, are those of the link. It changes only while the command
-//! rests; that of a joint counts, that of a signal does not.
+//! The link sets the delay D, and whether there is one. It changes only while the command rests:
+//! the command of a joint counts for this, the command of a signal does not.
 
 /// Channels at the most.
 pub const CHANNELS: usize = 6;
 
-/// What a channel carries.
+/// Kind of value that a channel carries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Carries {
     /// Nothing, or a number that may change while the joints rest.
@@ -23,23 +23,23 @@ pub enum Carries {
     Tandem(usize),
 }
 
-/// What comes from the control and the drives.
+/// Inputs from the control and the drives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Through {
     /// Commands, mm or degrees.
     pub command: [f64; CHANNELS],
     /// Actual positions; the command of a signal.
     pub actual: [f64; CHANNELS],
-    /// What the channels carry.
+    /// Kind of value of each channel.
     pub carries: [Carries; CHANNELS],
 }
 
-/// What goes to the drives and the control.
+/// Outputs to the drives and the control.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PassedThrough {
     /// Commands of the drives.
     pub drive: [f64; CHANNELS],
-    /// What the control takes for the actual positions.
+    /// Actual positions reported to the control.
     pub feedback: [f64; CHANNELS],
 }
 
@@ -66,13 +66,13 @@ impl Through {
         inputs.command.iter().all(|command| command.is_finite())
     }
 
-    /// Whether a joint has moved since these commands.
+    /// Returns true if a joint has moved since these commands.
     pub fn has_moved(&self, since: &[f64; CHANNELS]) -> bool {
         let is_joint = |carries: &Carries| *carries != Carries::Signal;
         (0..CHANNELS).any(|i| is_joint(&self.carries[i]) && self.command[i] != since[i])
     }
 
-    /// While the amplifiers are off.
+    /// Returns the outputs while the amplifiers are off.
     pub fn off(&self) -> PassedThrough {
         PassedThrough {
             drive: self.actual,
@@ -80,7 +80,8 @@ impl Through {
         }
     }
 
-    /// With the commands of the delay before, or without a delay, and the corrections of the axes.
+    /// Returns the outputs with the delayed commands `before`, or without a delay, plus the
+    /// corrections of the axes.
     pub fn passed<const N: usize>(
         &self,
         before: Option<[f64; CHANNELS]>,

@@ -1,6 +1,6 @@
-//! The C interface of `hal/` as C calls it. It refuses memory that is too small, not aligned or
-//! null, and bytes that are no model. What it makes runs in exactly the bytes that it asked for.
-//! `just miri` runs this file in Miri, which stops at every access beyond them.
+//! Tests the C interface of `hal/` as C calls it. The interface rejects memory that is too small,
+//! not aligned or null, and bytes that are no model. What it creates runs in exactly the bytes that
+//! it requires. `just miri` runs this file in Miri, which stops at every access beyond them.
 
 #![expect(
     unreachable_pub,
@@ -87,10 +87,10 @@ fn written<const N: usize>(trained: Trained<N>) -> Vec<u8> {
     bytes
 }
 
-/// A link in the bytes that it asks for, and the fault that it begins with.
+/// Creates a link in the bytes that it requires. Returns it with the fault that it begins with.
 fn link(joints: u32, bytes: &[u8]) -> (Box<MaybeUninit<CServo>>, u32) {
     let mut memory = Box::new_uninit();
-    // SAFETY: the memory and the bytes are there.
+    // SAFETY: the memory and the bytes are valid.
     let fault = unsafe {
         feedwright_servo_new(
             memory.as_mut_ptr(),
@@ -104,9 +104,9 @@ fn link(joints: u32, bytes: &[u8]) -> (Box<MaybeUninit<CServo>>, u32) {
     (memory, fault)
 }
 
-/// Steps a link that was made; with `fails`, as the caller does once a step has panicked.
+/// Steps a link; with `fails`, plays out its delay, as the caller does once a step has panicked.
 fn steps(memory: &mut MaybeUninit<CServo>, fails: bool) -> Outputs {
-    // SAFETY: `link` made it.
+    // SAFETY: `link` initialized it.
     let servo = unsafe { memory.assume_init_mut() };
     let mut outputs = Outputs {
         numbers: [f64::NAN; RESULTS],
@@ -119,7 +119,7 @@ fn steps(memory: &mut MaybeUninit<CServo>, fails: bool) -> Outputs {
         numbers[0] = 0.05 * moved;
         numbers[3..6].copy_from_slice(&drive_mm);
         numbers[9..15].copy_from_slice(&[0.01, 0.5, 100.0, 500.0, 0.0, 1.0]);
-        // A position that is lost, and what passes through.
+        // A lost position, and a channel that passes through.
         numbers[4] = if n % 7 == 3 { f64::NAN } else { numbers[4] };
         numbers[15] = moved;
         let flags = FEEDWRIGHT_POWERED | FEEDWRIGHT_ENABLED | FEEDWRIGHT_CUTTING;
@@ -128,7 +128,7 @@ fn steps(memory: &mut MaybeUninit<CServo>, fails: bool) -> Outputs {
             flags,
             carries: FEEDWRIGHT_JOINT | 0xF0,
         };
-        // SAFETY: the layouts are the same, as the sizes say that the library tells.
+        // SAFETY: the layouts are the same: the library reports the same sizes.
         unsafe {
             let (inputs, outputs) = (
                 &*(&raw const inputs).cast::<CInputs>(),
@@ -167,7 +167,7 @@ fn memory_that_is_none_for_it_is_refused() {
     let aligned = begin.align_offset(align_of::<CServo>());
     let [good, odd] = [aligned, aligned + 1].map(|at| begin.wrapping_add(at).cast::<CServo>());
     let (needs, plant_needs) = (feedwright_servo_bytes(), feedwright_plant_bytes());
-    // SAFETY: what is no memory for it is not written to; the last one is.
+    // SAFETY: invalid memory is not written to; the memory of the last call is valid.
     unsafe {
         assert_eq!(
             feedwright_servo_new(null_mut(), needs, 2, bytes, length),
@@ -205,7 +205,7 @@ fn memory_that_is_none_for_it_is_refused() {
 fn a_model_that_is_none_leaves_a_link_that_passes_commands_on() {
     let whole = block::<2>();
     let mut limits = [0.0; 3];
-    // SAFETY: a null pointer may stand for a missing model, and the memory is there.
+    // SAFETY: a null pointer may stand for a missing model, and the memory is valid.
     unsafe {
         let mut memory = Box::new_uninit();
         let fault = feedwright_servo_new(
@@ -227,7 +227,7 @@ fn a_model_that_is_none_leaves_a_link_that_passes_commands_on() {
     }
     assert_eq!(limits, [0.0; 3]);
     for length in (0..whole.len()).step_by(if cfg!(miri) { 97 } else { 1 }) {
-        // In memory of its own, beyond which Miri lets nothing be read.
+        // Memory of its own: Miri stops at every read beyond it.
         let cut: Box<[u8]> = whole[..length].into();
         let (_, fault) = link(2, &cut);
         assert!(fault == 1 || fault == 5, "{length}: {fault}");
@@ -242,7 +242,7 @@ fn two_and_three_joints_run_in_the_bytes_that_they_ask_for() {
         (3, block::<3>(), contour::<3>()),
     ] {
         let (mut memory, fault) = link(joints, if cfg!(miri) { &of_errors } else { &bytes });
-        // SAFETY: `link` made it.
+        // SAFETY: `link` initialized it.
         let at_another_period =
             unsafe { feedwright_servo_runs_at(memory.assume_init_mut(), SERVO_S) };
         assert_eq!((fault, at_another_period), (0, 0));
@@ -255,7 +255,8 @@ fn two_and_three_joints_run_in_the_bytes_that_they_ask_for() {
         assert_eq!(steps(&mut memory, true).whole[1], 14);
         let mut plant = Box::<CPlant>::new_uninit();
         let [mut tool_mm, mut measured_mm, mut torque_nm] = [[f64::NAN; 3]; 3];
-        // SAFETY: the memory and the bytes are there, and a machine is made before it is stepped.
+        // SAFETY: the memory and the bytes are valid, and the machine is created before it is
+        // stepped.
         unsafe {
             assert!(feedwright_plant_new(
                 plant.as_mut_ptr(),

@@ -1,5 +1,5 @@
-//! `components/feedwright.h` is what the library of `hal/` declares: made anew where
-//! FEEDWRIGHT_UPDATE_DOCUMENTS is set.
+//! Tests that `components/feedwright.h` is the header that cbindgen generates from `hal/`. With
+//! FEEDWRIGHT_UPDATE_DOCUMENTS set, writes the file.
 
 use std::path::Path;
 

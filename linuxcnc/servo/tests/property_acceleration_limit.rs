@@ -1,4 +1,4 @@
-//! With an acceleration limit of the correction cuts are no worse than without a correction, and
+//! Cuts with an acceleration limit of the correction are no worse than without a correction, and
 //! the offset keeps the limit in every servo period.
 
 #[path = "common/axis.rs"]
@@ -20,14 +20,14 @@ use common::{LIMITS, SERVO_S, cutting};
 use paths::{REST, circle, commands, error_mm, square, star, stopping};
 
 const ACCELERATIONS_MM_S2: [f64; 4] = [2000.0, 8000.0, 20_000.0, 80_000.0];
-/// What is no worse, um: RMS and largest.
+/// Permitted increase of the contour error, um: RMS and largest.
 const NO_WORSE_UM: [f64; 2] = [0.05, 1.0];
-/// What rounding makes of an acceleration, mm/s2.
+/// Rounding error of an acceleration, mm/s2.
 const ROUNDING_MM_S2: f64 = 1e-3;
 
 type Machine = IdentifiedAxes<2>;
 
-/// Two axes alike whose gain is this many times that of the model.
+/// Returns two equal axes whose gain is `gain` times the gain of the model.
 fn machine(gain: f64) -> Machine {
     let mut axis = axis();
     axis.parameters.kp_1_s *= gain;
@@ -67,7 +67,7 @@ fn cut(
         plant.step(outputs.drive_mm, true, 1.0);
         path_mm.push(*command_mm);
         if outputs.link == Link::Delayed && n > REST / 2 {
-            // The drive has what was commanded by the delay before, and the offset.
+            // The drive gets the command of one delay earlier (10 servo periods), plus the offset.
             let before_mm = path_mm[path_mm.len() - 1 - 10];
             offsets = [
                 [
@@ -137,7 +137,7 @@ fn within_any_limit_no_cut_is_worse_and_the_offset_keeps_it() {
             }
         }
     }
-    // The circle with a gain 5 % off, at 8,000 mm/s2 where this machine needs 40,000: 18.6 um of
-    // 16.2.
+    // One exception: the circle with a gain that is 5 % off, at 8,000 mm/s2 where this machine
+    // needs 40,000. Its largest error is 18.6 um, and 16.2 um without correction.
     assert!(worse <= 1, "the largest error of {worse} cuts is worse");
 }

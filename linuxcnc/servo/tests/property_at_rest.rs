@@ -1,6 +1,6 @@
 //! Evidence for the correction counts only while the commanded path moves, and a cause that comes
-//! back latches: on `tnv40` with the model of `workshop`, whose drives have feedforward, friction
-//! and an integral that `tnv40` has not.
+//! back latches. The tests run on `tnv40`, with the model of `workshop`, whose drives have
+//! feedforward, friction and an integral part that `tnv40` does not have.
 
 #[path = "common/axis.rs"]
 mod axis;
@@ -24,14 +24,14 @@ use axis::axis;
 use common::{LIMITS, SERVO_S, cutting};
 use paths::{ACCELERATION_MM_S2, FEED_MM_S, way_mm};
 
-/// Servo periods of a rest, and of rest until the tool has settled: the delay, and nine time
-/// constants of the position loop.
+/// Servo periods of a rest, and servo periods of rest until the tool has settled: the delay, and
+/// nine time constants of the position loop.
 const REST: usize = 2000;
 const SETTLED: usize = 200;
-/// Largest distance of a tool at rest from the command, um. Uncorrected, it is 0.7 um.
+/// Largest distance of a tool at rest from the command, um. Without correction it is 0.7 um.
 const AT_REST_UM: f64 = 2.0;
-/// Servo periods of a test, the one in which the machine changes, and the one, at rest, in which it
-/// is repaired and the operator resets the correction.
+/// Servo periods of a test; the one in which the machine changes; and the one, at rest, in which
+/// the machine is restored and the operator resets the correction.
 const PERIODS: usize = 14_000;
 const CHANGES: usize = 3_000;
 const RESET: usize = 8_000;
@@ -106,8 +106,8 @@ fn workshop() -> IdentifiedAxes<2> {
     machine
 }
 
-/// Commands of rests, and between them turns of a circle of 10 mm or the sides of a square of 20
-/// mm.
+/// Returns commands: rests, and between them turns of a circle of 10 mm or the sides of a square of
+/// 20 mm.
 fn commands(square: bool) -> impl Fn(usize) -> [f64; 2] {
     let length_mm = if square { 20.0 } else { TAU * 10.0 };
     let periods = ((length_mm / FEED_MM_S + FEED_MM_S / ACCELERATION_MM_S2) / SERVO_S) as usize + 1;
@@ -130,15 +130,16 @@ fn commands(square: bool) -> impl Fn(usize) -> [f64; 2] {
     }
 }
 
-/// What came of a servo period.
+/// Outputs and position of a servo period.
 struct Period {
     outputs: LinkOutputs<2>,
-    /// Servo periods for which the command has rested, and distance of the tool from it, um.
+    /// Servo periods for which the command has rested, and distance of the tool from the command,
+    /// um.
     rested: usize,
     off_um: f64,
 }
 
-/// Programs on `tnv40`, with a model and inputs that may change.
+/// Runs programs on `tnv40`, with a model and inputs that may change.
 fn cut(
     model: IdentifiedAxes<2>,
     inertia: impl Fn(usize) -> f64,
@@ -170,7 +171,7 @@ fn cut(
         .collect()
 }
 
-/// How often the correction came into the loop.
+/// Counts how often the correction engaged.
 fn times_in(periods: &[Period]) -> usize {
     let engaged = |period: &Period| {
         period.outputs.link == Link::Delayed && period.outputs.state == State::Engaged
@@ -204,8 +205,8 @@ fn by_the_model_of_another_machine_the_axes_stand_where_the_command_does() {
     }
 }
 
-/// The sides of a square with the right model, on a machine that is three times as heavy after a
-/// while, until [`RESET`].
+/// Cuts the sides of a square with the right model, on a machine that is three times as heavy from
+/// [`CHANGES`] until [`RESET`].
 fn heavy_for_a_while(change: impl Fn(usize, &mut LinkInputs<2>)) -> Vec<Period> {
     cut(
         tnv40(),

@@ -1,5 +1,5 @@
 //! The geometry between the control and the link: whatever is homed, switched and moved, the joints
-//! go smoothly, and the control sees its following error as without a geometry.
+//! move smoothly, and the control sees the same following error as without a geometry.
 
 #[path = "common/axis.rs"]
 mod axis;
@@ -22,17 +22,17 @@ use feedwright_servo::through::{CHANNELS, Carries, PassedThrough, Through};
 use common::{LIMITS, SERVO_S, cutting};
 use turning::{SETTLE, TURN, command_mm, machine};
 
-/// Most speed and acceleration of each axis of the command, mm/s and mm/s2.
+/// Highest speed and acceleration of each axis of the command, mm/s and mm/s2.
 const SPEED_MM_S: f64 = 200.0;
 const ACCELERATION_MM_S2: f64 = 2000.0;
-/// What the errors of the geometry below grow by with the travel, and what this changes by, 1/mm:
-/// some more than their sums.
+/// Bounds of the slope of the geometric errors below over the travel, and of the change of this
+/// slope, 1/mm. Both are somewhat larger than the sums over the errors.
 const SLOPE: f64 = 0.008;
 const BEND_PER_MM: f64 = 0.004;
-/// Rounding of positions, mm.
+/// Rounding error of positions, mm.
 const ROUNDING_MM: f64 = 1e-11;
 
-/// Some times as wrong as a machine.
+/// Returns a geometry with errors several times as large as the errors of a machine.
 fn geometry() -> KnownGeometry<2> {
     let axis = AxisErrors {
         scale: 2e-4,
@@ -52,7 +52,7 @@ fn geometry() -> KnownGeometry<2> {
     known
 }
 
-/// Random numbers of a seed.
+/// Random numbers from a seed.
 struct Random(u64);
 
 impl Random {
@@ -69,7 +69,7 @@ impl Random {
     }
 }
 
-/// A command that speeds up and brakes at random, within the limits.
+/// A command that accelerates and brakes at random, within the limits.
 struct Wandering {
     at_mm: [f64; 2],
     speed_mm_s: [f64; 2],
@@ -103,7 +103,7 @@ fn plain(command_mm: [f64; 2], actual_mm: [f64; 2], powered: bool) -> LinkInputs
     }
 }
 
-/// Carries the feedback of the link back to the control.
+/// Converts the feedback of the link to the feedback of the control.
 fn back(compensation: &Compensation<2>, feedback_mm: [f64; 2]) -> [f64; 2] {
     let none = PassedThrough {
         drive: [0.0; CHANNELS],
@@ -114,7 +114,7 @@ fn back(compensation: &Compensation<2>, feedback_mm: [f64; 2]) -> [f64; 2] {
         .0
 }
 
-/// Second difference over the servo period, of each axis, mm/s2.
+/// Returns the second difference over the servo period, of each axis, mm/s2.
 fn acceleration_mm_s2(three: &[[f64; 2]]) -> [f64; 2] {
     [0, 1].map(|i| (three[2][i] - 2.0 * three[1][i] + three[0][i]) / (SERVO_S * SERVO_S))
 }
@@ -139,8 +139,8 @@ fn whatever_is_homed_and_switched_the_joints_go_smoothly_and_the_following_error
         };
         let (mut commands, mut joints) = (Vec::new(), Vec::new());
         for n in 0..6000 {
-            // Homing ends, begins and moves the zero; somebody switches. The fades in between are
-            // cut short, too.
+            // Homing ends, begins and moves the zero, and the operator switches. Fades in between
+            // are interrupted, too.
             place.is_known ^= random.happens(0.002);
             place.is_wanted ^= random.happens(0.001);
             if random.happens(0.001) {
@@ -149,7 +149,7 @@ fn whatever_is_homed_and_switched_the_joints_go_smoothly_and_the_following_error
             let command_mm = wandering.step(&mut random);
             let of = compensation.joints(&plain(command_mm, [0.0; 2], true), &place, &LIMITS);
             assert!(of.command_mm.iter().all(|mm| mm.is_finite()), "{seed} {n}");
-            // A drive that is behind by up to 4 mm.
+            // The drive lags by up to 4 mm.
             let behind_mm = [random.within(-4.0, 4.0), random.within(-4.0, 4.0)];
             let feedback_mm = back(
                 &compensation,
@@ -216,12 +216,12 @@ fn without_power_nothing_fades_and_the_command_at_switching_on_is_where_the_join
         for n in 0..2000 {
             let powered = n / 100 % 2 == 1;
             if !powered {
-                // Somebody turns the screws by hand.
+                // The operator turns the screws by hand.
                 actual_mm = actual_mm.map(|mm| mm + random.within(-0.05, 0.05));
                 place.is_wanted ^= random.happens(0.05);
                 place.is_known ^= random.happens(0.05);
             }
-            // LinuxCNC commands what was fed back in the servo period before.
+            // LinuxCNC commands the feedback of the previous servo period.
             let of = compensation.joints(&plain(command_mm, actual_mm, powered), &place, &LIMITS);
             if powered {
                 let off_mm = [0, 1].map(|i| (of.command_mm[i] - actual_mm[i]).abs());
@@ -282,7 +282,7 @@ fn what_is_not_a_number_moves_nothing() {
     for bad in [f64::NAN, f64::INFINITY, 1e300] {
         compensation.joints(&plain([bad, 1.0], good, true), &place, &LIMITS);
         assert_eq!(compensation.offset_mm(), offset_mm, "{bad}");
-        // A zero that is none is not known: the geometry fades from where it is.
+        // An invalid zero counts as unknown: the geometry fades from its present value.
         let lost = MachinePlace {
             zero_mm: [bad, 0.0],
             ..place
@@ -324,7 +324,7 @@ fn a_second_motor_gets_the_offset_of_its_axis_and_its_feedback_loses_that_of_its
         of.through.command,
         [41.0 + y_mm, 7.0, 30.5 + x_mm, 1.0, 0.0, 0.0]
     );
-    // Drives that are where they were asked to be.
+    // The drives are at their commanded positions.
     let passed = PassedThrough {
         drive: of.through.command,
         feedback: of.through.command,
@@ -338,7 +338,7 @@ fn a_second_motor_gets_the_offset_of_its_axis_and_its_feedback_loses_that_of_its
     }
 }
 
-/// Distance of the tool from the circle of the command while it cuts: root of the mean square, mm.
+/// Returns the RMS distance of the tool from the commanded circle while it cuts, mm.
 fn off_circle_mm(compensates: bool, corrects: bool) -> f64 {
     let mut compensation = Compensation::new(Some(geometry()));
     let (mut plant, mut servo) = (

@@ -1,5 +1,5 @@
-//! Motion that must not be delayed behind motion that is: probing, following a spindle, and what is
-//! left of a link that failed.
+//! Motion that must not be delayed, behind motion that is: probing, following a spindle, and the
+//! delay of a link that failed.
 
 #[path = "common/axis.rs"]
 mod axis;
@@ -18,20 +18,20 @@ use turning::{Period, SETTLE, TURN, command_mm, machine, turn, turn_on};
 
 /// Acceleration of the control, mm/s2.
 const ACCELERATION_MM_S2: f64 = 2000.0;
-/// Servo periods in which a hold has to be over: braking, the delay, and some.
+/// Servo periods within which a hold must end: braking, the delay, and a margin.
 const HELD: usize = 25;
-/// The same behind a probing motion, which takes 0.1 s of rest.
+/// The same after a probing motion, which takes 0.1 s of rest.
 const HELD_AFTER: usize = 110;
-/// What the command may go while it is held, mm: two servo periods of speeding up, and braking from
-/// there.
+/// Distance that the command may move while it is held, mm: two servo periods of acceleration, and
+/// braking from there.
 const CREPT_MM: f64 = 0.012;
 
-/// Farthest that the drive's command goes in a servo period, mm: the correction as it takes up 50
-/// mm/s. A delay given up at that speed is 0.5 mm.
+/// Largest step of the drive's command in a servo period, mm: the correction as it takes up 50
+/// mm/s. To give up a delay at that speed would be a step of 0.5 mm.
 const STEP_MM: f64 = 0.15;
 
-/// A control that moves one axis by one block after another, with rests of two servo periods, and
-/// heeds a hold of the feed or does not.
+/// A control that moves one axis block by block, with rests of two servo periods. With `heeds`, it
+/// holds its feed on request.
 struct Control {
     heeds: bool,
     position_mm: f64,
@@ -39,7 +39,7 @@ struct Control {
 }
 
 impl Control {
-    /// A servo period on the way to `end_mm`, or the place where it rests.
+    /// Moves for one servo period toward `end_mm`, and rests there. Returns the position, mm.
     fn step(&mut self, end_mm: f64, feed_mm_s: f64, holds: bool) -> f64 {
         let left_mm = end_mm - self.position_mm;
         let brakes_mm_s =
@@ -59,8 +59,8 @@ impl Control {
     }
 }
 
-/// A cut of 5 mm, two servo periods of rest, a probing motion of 2 mm, two of rest, and a cut
-/// again: what came of each servo period.
+/// Runs a cut of 5 mm, two servo periods of rest, a probing motion of 2 mm, two servo periods of
+/// rest, and another cut. Returns every servo period with the number of its block.
 fn probing(heeds: bool, changed: impl Fn(usize, &mut LinkInputs<2>)) -> Vec<(usize, Period)> {
     let (mut plant, mut servo) = (
         SimulatedMachine::new(&machine(), 1),
@@ -189,7 +189,7 @@ fn motion_that_follows_a_spindle_waits_until_it_would_be_without_delay() {
         inputs.probing = false;
     };
     let periods = probing(true, waits);
-    // The mock does not wait, and is told so; up to there the link is not settled.
+    // The mock control does not wait, and the fault reports it. Before, the link is not settled.
     let (first, cut) = (of(&periods, 2), of(&periods, 1));
     assert!(cut.iter().skip(5).all(|period| !period.outputs.is_settled));
     assert!(
@@ -203,7 +203,7 @@ fn motion_that_follows_a_spindle_waits_until_it_would_be_without_delay() {
         .take(100)
         .map(|(_, period)| &period.outputs);
     assert!(rest.clone().all(|outputs| outputs.is_settled));
-    // One that waits is without delay from its first servo period on.
+    // A motion that waits is without delay from its first servo period on.
     let (mut servo, mut settled) = (Servo::new(Ok(LinkModel::Axes(machine()))), 0);
     servo.runs_at(SERVO_S);
     let mut step = |mm: f64, spindle: bool| {
@@ -225,8 +225,8 @@ fn motion_that_follows_a_spindle_waits_until_it_would_be_without_delay() {
     assert_eq!(step(1.01, false).link, Link::Direct);
 }
 
-/// Drive's commands of a turn in which the link fails at a servo period, and the servo periods of
-/// delay at the end.
+/// Returns the drive's commands of a turn in which the link fails at `period`, and the servo
+/// periods of delay at the end.
 fn failed_at(period: usize, powered: impl Fn(usize) -> bool) -> (Vec<[f64; 2]>, u32) {
     let good = turn(Ok(machine()), &LIMITS, |_, _| {});
     let mut play_out = PlayOut::<2>::new();
@@ -280,8 +280,8 @@ fn the_delay_of_a_link_that_failed_is_played_out() {
         SETTLE + TURN + TURN / 4,
     ] {
         let (drives_mm, delay) = failed_at(period, |_| true);
-        // The offset of some 1 mm leads the drive; where it stops to follow, its speed is the
-        // path's alone.
+        // The offset of about 1 mm leads the drive. Once the offset no longer follows the path, the
+        // drive moves at the speed of the path alone.
         let with = speed_changes(&drives_mm);
         println!("{period}: speed changes by {with} of {without} mm/s");
         assert!(with <= 2.0 * without, "{period}: {with} {without}");

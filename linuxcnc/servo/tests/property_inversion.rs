@@ -1,5 +1,5 @@
-//! The paper's controllers in the link: what they ask of feedrate and geometry, whatever the
-//! identifier has learnt.
+//! The paper's controllers in the link: bounds of the feedrate and the geometry that they request,
+//! whatever the identifier has learned.
 
 #[path = "common/inputs.rs"]
 mod common;
@@ -12,17 +12,17 @@ use feedwright_servo::servo::{Link, LinkInputs, LinkOutputs, Servo};
 use common::{LIMITS, SERVO_S, cutting};
 
 const FEED_PERIOD_S: f64 = 0.01;
-/// Servo periods of rest before and behind a turn, and of the turn.
+/// Servo periods of rest before and after a turn, and of the turn.
 const REST: usize = 100;
 const TURN: usize = 1257;
-/// What rounding leaves of the part of a feedrate across the path, mm.
+/// Rounding error across the path of a feedrate change, mm.
 const ROUNDING_MM: f64 = 1e-12;
-/// An uncorrected cut may be exceeded by this, um: RMS and largest.
+/// Permitted increase over the error of an uncorrected cut, um: RMS and largest.
 const NO_WORSE_UM: [f64; 2] = [0.05, 1.0];
-/// Slowest and fastest that a controller may ask for.
+/// Slowest and fastest feedrate that a controller may request, as multiples of the present one.
 const RATES: [f64; 2] = [0.5, 1.2];
 
-/// Numbers within -size and size, by a seed.
+/// Returns a generator of numbers within -size and size, from a seed.
 fn sequence(seed: u64, size: f64) -> impl FnMut() -> f64 {
     let mut state = seed;
     move || {
@@ -33,7 +33,7 @@ fn sequence(seed: u64, size: f64) -> impl FnMut() -> f64 {
     }
 }
 
-/// An identifier whose weights are drawn.
+/// Returns a model whose identifier has random weights.
 fn drawn(seed: u64, size: f64) -> LinkModel<2> {
     let mut next = sequence(seed, size);
     let mut identifier = ContourIdentifier::<2>::NULL;
@@ -55,14 +55,14 @@ fn drawn(seed: u64, size: f64) -> LinkModel<2> {
     })
 }
 
-/// Rest, a turn of a circle of 10 mm, rest.
+/// Returns the command in a servo period: rest, a turn of a circle of 10 mm, rest.
 fn command_mm(n: usize) -> [f64; 2] {
     let part = (n.saturating_sub(REST) as f64 / TURN as f64).min(1.0);
     let angle = std::f64::consts::TAU * part * part * (3.0 - 2.0 * part);
     [10.0 - 10.0 * angle.cos(), 10.0 * angle.sin()]
 }
 
-/// What the link makes of a turn; the axes follow with a time constant of 20 ms.
+/// Runs a turn with the link; the axes follow with a time constant of 20 ms.
 fn turn(
     model: LinkModel<2>,
     limits: &LinkLimits,
@@ -117,7 +117,7 @@ fn whatever_was_learnt_feedrate_and_geometry_keep_their_bounds() {
     }
 }
 
-/// RMS and largest contour error of the actual position, um.
+/// Returns RMS and largest contour error of the actual position, um.
 fn error_um(periods: &[LinkOutputs<2>]) -> [f64; 2] {
     let errors_um = periods.iter().map(|period| 1e3 * period.contour_error_mm);
     let [squares, largest] = errors_um.fold([0.0_f64; 2], |[sum, most], um| {
@@ -149,7 +149,7 @@ fn whatever_was_learnt_the_cut_is_no_worse_than_without_correction() {
 fn the_feedrate_falls_where_the_identifier_predicts_an_error_that_grows_with_it() {
     let mut identifier = ContourIdentifier::<2>::NULL;
     for axis in 0..2 {
-        // One hidden node an axis, and the feedrate of now is the first of its inputs.
+        // One hidden node per axis; the present feedrate is the first of its inputs.
         identifier.hidden[axis][0][axis] = 1.0;
         identifier.output[axis][axis] = 1.0;
     }
@@ -158,7 +158,7 @@ fn the_feedrate_falls_where_the_identifier_predicts_an_error_that_grows_with_it(
         servo_s: SERVO_S,
         feed_period_s: FEED_PERIOD_S,
     });
-    // It predicts more than the axes do: a wide limit keeps it in the loop.
+    // The identifier predicts more than the axes do: a wide limit keeps it in the loop.
     let periods = turn(
         model,
         &LinkLimits {
@@ -184,7 +184,7 @@ fn the_delay_is_what_a_decision_looks_ahead() {
     assert!(delayed.len() > TURN);
     for (n, period) in delayed {
         assert_eq!(period.delay_periods, 13);
-        // Nothing that is learnt, nothing that is moved.
+        // All weights are zero, so nothing is moved.
         let off = (0..2)
             .map(|i| (period.drive_mm[i] - command_mm(n - 13)[i]).abs())
             .fold(0.0, f64::max);

@@ -1,5 +1,5 @@
-//! The link in a closed loop with the simulated machine: what it does to the contour error, and
-//! what it never does.
+//! The link in a closed loop with the simulated machine: its effect on the contour error, and
+//! effects that it must never have.
 
 #[path = "common/axis.rs"]
 mod axis;
@@ -18,10 +18,10 @@ use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkOutputs, Servo};
 use common::{LIMITS, SERVO_S, cutting};
 use turning::{Period, SETTLE, TURN, command_mm, machine, turn, turn_on};
 
-/// Of the contour error without the correction: as a sweep in a real control has it.
+/// Part of the uncorrected contour error that may remain, the same as in a sweep in a real control.
 const LEFT: f64 = 0.05;
 
-/// RMS of the distance of the tool from the circle while it goes round, mm.
+/// Returns the RMS distance of the tool from the circle during the turn, mm.
 fn rms_mm(periods: &[Period]) -> f64 {
     let cut = &periods[SETTLE + 100..SETTLE + TURN];
     let off =
@@ -29,7 +29,8 @@ fn rms_mm(periods: &[Period]) -> f64 {
     (cut.iter().map(off).sum::<f64>() / cut.len() as f64).sqrt()
 }
 
-/// What is no worse, mm RMS: a drive that is 3 ms late costs 0.4 um until the correction is out.
+/// Permitted increase of the contour error, mm RMS: a drive that is 3 ms late costs 0.4 um until
+/// the correction is out of the loop.
 const NO_WORSE_MM: f64 = 5e-4;
 
 #[test]
@@ -112,7 +113,7 @@ fn without_power_the_drive_and_the_control_have_the_actual_position() {
 
 #[test]
 fn the_delay_comes_and_goes_at_rest_alone_and_nothing_leaps() {
-    // Wanted and unwanted every 70 ms, through rest and motion.
+    // `direct` changes every 70 ms, through rest and motion.
     let periods = turn(Ok(machine()), &LIMITS, |n, inputs| {
         inputs.direct = n / 70 % 2 == 0;
     });
@@ -130,17 +131,18 @@ fn the_delay_comes_and_goes_at_rest_alone_and_nothing_leaps() {
     );
 }
 
-/// Servo periods from the beginning of a turn to that of the next, some rest behind it.
+/// Servo periods from the start of a turn to the start of the next, with some rest after it.
 const AGAIN: usize = 1_600;
 
 #[test]
 fn what_is_not_a_number_goes_no_further() {
-    // Behind the last there is time for two ways back: one that has just begun may do harm once.
+    // After the last loss, there is time to engage twice: a correction that has just engaged may do
+    // harm once.
     for from in [0, 500, 700] {
         let spoilt = [f64::NAN, f64::INFINITY];
         for which in 0..4 {
             let periods = turn(Ok(machine()), &LIMITS, |n, inputs| {
-                // It comes back in motion alone, so the turn begins again.
+                // The correction engages again only in motion, so the turn begins again.
                 if n >= SETTLE + AGAIN {
                     inputs.command_mm = command_mm(n - AGAIN);
                 }
@@ -218,8 +220,8 @@ fn enabling_and_disabling_in_motion_fades() {
 
 #[test]
 fn the_simulated_axis_lags_as_its_loops_say() {
-    // At constant speed the position error is v (1 + B / Kv) / kp and what Coulomb friction takes,
-    // Fc / Kv kp at the motor.
+    // At constant speed the position error is v (1 + B / Kv) / kp, plus the part due to Coulomb
+    // friction, Fc / (Kv kp) at the motor.
     let mut plant = SimulatedMachine::new(&machine(), 1);
     let v = 50.0;
     for n in 0..1000_u32 {
@@ -229,7 +231,7 @@ fn the_simulated_axis_lags_as_its_loops_say() {
     let friction_mm_s = axis.coulomb_friction_nm / axis.kv_nm_s_per_rad / axis.rad_per_mm;
     let error_mm = (v * (1.0 + axis.viscous_friction_nm_s / axis.kv_nm_s_per_rad) + friction_mm_s)
         / axis.kp_1_s;
-    // Delays are within the loop: what it sees is the same error.
+    // The delays are inside the loop, so the loop measures the same error.
     let measured_mm = v * SERVO_S * 1000.0 - plant.measured_mm()[0];
     assert!(
         (measured_mm - error_mm).abs() < 1e-9,
@@ -268,7 +270,7 @@ fn behind_a_short_loss_of_the_position_drives_with_an_integral_part_are_known_ag
 
 #[test]
 fn the_least_min_ferror_is_what_the_control_sees_of_the_link() {
-    // From rest to 200 mm/s, on for 0.2 s, and to rest again at 2,000 mm/s2.
+    // From rest to 200 mm/s, 0.2 s at that speed, and back to rest, at 2,000 mm/s2.
     let joint = JointLimits {
         speed_mm_s: 200.0,
         acceleration_mm_s2: 2000.0,

@@ -1,5 +1,5 @@
-//! Settings that change while the machine cuts: a number that is none has no effect, and a lower
-//! deviation takes effect at once.
+//! Settings that change while the machine cuts: an invalid number has no effect, and a lower
+//! deviation takes effect during the cut.
 
 #[path = "common/axis.rs"]
 mod axis;
@@ -14,14 +14,14 @@ use feedwright_servo::servo::LinkFault;
 use common::{LIMITS, SERVO_S};
 use turning::{Period, SETTLE, TURN, machine, turn, turn_on};
 
-/// In mid-cut, and within a turn from there.
+/// Servo period in which a setting changes: 300 servo periods into the cut of a turn.
 const CHANGED: usize = SETTLE + 300;
 /// Time in which a lower deviation is reached, s.
 const REACHED_S: f64 = 0.2;
-/// The drive's path of points is a polygon, mm.
+/// Permitted distance beyond the set deviation, mm: the drive's path of points is a polygon.
 const ROUND_MM: f64 = 1e-4;
 
-/// A name, the setting that is refused, and how the numbers are spoilt.
+/// Name, rejected setting, and function that sets a bad number.
 type Spoilt = (&'static str, Setting, fn(&mut LinkLimits, f64));
 
 const SPOILT: [Spoilt; 6] = [
@@ -88,7 +88,7 @@ fn a_number_that_is_none_changes_nothing_and_is_told() {
     }
 }
 
-/// Farthest that the drive's command goes in a servo period, mm: a correction within the widest
+/// Largest step of the drive's command in a servo period, mm, with a correction within the widest
 /// limits of this test.
 const STEP_MM: f64 = 0.2;
 
@@ -122,13 +122,14 @@ fn whatever_is_set_in_the_cut_the_drive_gets_numbers_that_do_not_leap() {
     }
 }
 
-/// Distance of the drive's command from the circle, mm.
+/// Returns the distance of the drive's command from the circle, mm.
 fn off_mm(period: &Period) -> f64 {
     let [x, y] = period.outputs.drive_mm;
     ((x - 10.0).hypot(y) - 10.0).abs()
 }
 
-/// Largest change of the speed of the drive's command from one servo period to the next, mm/s.
+/// Returns the largest change of the speed of the drive's command from one servo period to the
+/// next, mm/s.
 fn jolt_mm_s(periods: &[Period]) -> f64 {
     let second = |three: &[Period], i: usize| {
         let at = |k: usize| three[k].outputs.drive_mm[i];

@@ -1,5 +1,5 @@
-//! Channels that are delayed and not corrected: the same delay to the bit as the corrected axes,
-//! through every transition.
+//! Channels that are delayed and not corrected get the same delay as the corrected axes, to the
+//! bit, through every transition.
 
 #[path = "common/axis.rs"]
 mod axis;
@@ -26,10 +26,11 @@ const CARRIES: [Carries; CHANNELS] = [
     Carries::Signal,
     Carries::Signal,
 ];
-/// Where the second motor of each axis stands beside the first, mm.
+/// Offset of the second motor of each axis from the first, mm.
 const BESIDE_MM: [f64; 2] = [0.25, -1.0 / 3.0];
 
-/// A rotary axis that goes with the circle, and a signal that never rests.
+/// Returns the commands of a rotary axis that moves with the circle, of two second motors, and of a
+/// signal that never rests.
 fn through(n: usize) -> Through {
     let [x, y] = command_mm(n);
     let mut command = [0.0; CHANNELS];
@@ -39,7 +40,7 @@ fn through(n: usize) -> Through {
         y + BESIDE_MM[1],
         (n as f64).sqrt(),
     ]);
-    // Each drive is off its command by something of its own.
+    // Each drive has a following error of its own.
     let actual = core::array::from_fn(|i| command[i] - 0.01 * (i + n % 7) as f64);
     Through {
         command,
@@ -55,8 +56,8 @@ fn with_channels(change: impl Fn(usize, &mut LinkInputs<2>)) -> Vec<Period> {
     })
 }
 
-/// Checks every servo period against the commands of the delay before. Returns the links that there
-/// were, and how often the delay changed.
+/// Checks every servo period against the commands one delay earlier. Returns the links in their
+/// order, and the number of changes of the delay.
 fn check(periods: &[Period]) -> (Vec<Link>, usize) {
     let (mut links, mut changes) = (Vec::new(), 0);
     for (
@@ -80,7 +81,7 @@ fn check(periods: &[Period]) -> (Vec<Link>, usize) {
                 Carries::Tandem(axis) => outputs.correction_mm[axis],
                 Carries::Signal | Carries::Joint => 0.0,
             };
-            // To the bit: nothing is added to what is not in tandem.
+            // To the bit: nothing is added to a channel that is not in tandem.
             assert_eq!(drive.to_bits(), (due + offset_mm).to_bits(), "{n} {i}");
             let seen = if delay == 0 {
                 given.actual[i]
@@ -90,7 +91,8 @@ fn check(periods: &[Period]) -> (Vec<Link>, usize) {
             assert_eq!(feedback.to_bits(), seen.to_bits(), "{n} {i}");
         }
         for axis in 0..2 {
-            // Both motors of an axis get the same corrected command, each from its own home.
+            // Both motors of an axis get the same corrected command, each from its own home
+            // position.
             let apart_mm =
                 outputs.through.drive[1 + axis] - outputs.drive_mm[axis] - BESIDE_MM[axis];
             assert!(
@@ -104,8 +106,8 @@ fn check(periods: &[Period]) -> (Vec<Link>, usize) {
             && ![last.outputs.link, outputs.link].contains(&Link::Off)
         {
             changes += 1;
-            // Rest lies between: a joint that begins to move in this servo period goes by its own
-            // step.
+            // The joint rests at the change. If it begins to move in this servo period, its drive
+            // moves by the step of the command.
             let [leap, step] = [
                 outputs.through.drive[ROTARY] - last.outputs.through.drive[ROTARY],
                 given.command[ROTARY] - last.inputs.through.command[ROTARY],
@@ -124,8 +126,7 @@ fn check(periods: &[Period]) -> (Vec<Link>, usize) {
 fn channels_keep_the_delay_of_the_corrected_axes_to_the_bit() {
     let (links, changes) = check(&with_channels(|_, _| {}));
     assert_eq!((links, changes), (vec![Link::Direct, Link::Delayed], 1));
-    // Uncorrected, the axes themselves get the delayed command: with what the channels add nothing
-    // is changed in it.
+    // Without correction the axes get the delayed command, and the channels change nothing in it.
     let (with, without) = (
         with_channels(|_, inputs| inputs.enabled = false),
         turn(Ok(machine()), &LIMITS, |_, inputs| inputs.enabled = false),
@@ -164,7 +165,7 @@ fn the_delay_ends_and_begins_for_all_of_them_at_once() {
             Link::Delayed
         ]
     );
-    // Without a model there never is one.
+    // Without a model there is never a delay.
     let none = turn(
         Err(feedwright_servo::machine::Refused::Block(
             feedwright_control::BlockError::NoModel,

@@ -1,6 +1,6 @@
-//! By the law of another machine the link is never worse than without a correction, and by the
-//! right one far better: on paths that begin where the machine stands, without any motion before in
-//! which a law could prove itself.
+//! With the model of another machine, the link is never worse than without a correction; with the
+//! right model it is far better. The paths begin where the machine stands, so the supervisor cannot
+//! test a model in earlier motion.
 
 #[path = "common/axis.rs"]
 mod axis;
@@ -19,18 +19,19 @@ use axis::axis;
 use common::{LIMITS, SERVO_S, cutting};
 use paths::{REST, circle, commands, eight, error_mm, star};
 
-/// What is no worse, um: RMS and largest; and what is left by the right law, of both.
+/// Permitted increase of the error with a wrong model, um: RMS and largest; and the part of the RMS
+/// and of the largest error that may remain with the right model.
 const NO_WORSE_UM: [f64; 2] = [0.05, 1.0];
 const LEFT: [f64; 2] = [0.05, 0.2];
-/// A drive that is asked for so much of its 30 N m is spent, N m; and how many times as large its
-/// largest error may be then.
+/// Torque of a drive of 30 N m above which it has no reserve, N m; and the factor by which its
+/// largest error may grow then.
 const SPENT_NM: f64 = 27.0;
 const SPENT: f64 = 1.2;
 
 type Machine = IdentifiedAxes<2>;
 type Change = fn(&mut AxisKnowledge);
 
-/// Two axes alike, with the numbers of the machine of Lee, Cho and Jeon (2005).
+/// Returns two equal axes with the numbers of the machine of Lee, Cho and Jeon (2005).
 fn machine() -> Machine {
     let axis = axis();
     IdentifiedAxes {
@@ -45,7 +46,7 @@ fn changed(change: Change) -> Machine {
     machine
 }
 
-/// RMS and largest contour error, um, and what was told.
+/// RMS and largest contour error, um, and the reported faults.
 struct Cut {
     error_um: [f64; 2],
     /// Largest torque of a motor, N m.
@@ -90,7 +91,7 @@ fn cut(real: &Machine, inertia: f64, points: &[[f64; 2]], enabled: bool) -> Cut 
     }
 }
 
-/// Programs that bend late, early and all the time.
+/// Returns programs with curvature that comes late, that comes early and that is always there.
 fn programs() -> [(&'static str, Vec<[f64; 2]>); 3] {
     [("circle", circle()), ("eight", eight()), ("star", star())]
 }
@@ -156,7 +157,7 @@ fn by_the_law_of_another_machine_nothing_is_worse() {
                 "{how:30} {name:8} {:7.2?} of {:7.2?} {:?}",
                 on.error_um, off.error_um, on.told
             );
-            // A machine whose drives have no torque left as it is swings further at its corners.
+            // A machine whose drives have no torque reserve overshoots more at its corners.
             let most = [
                 1.0,
                 if off.largest_nm > SPENT_NM {

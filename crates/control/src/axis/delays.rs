@@ -7,32 +7,33 @@
 //!
 //! A drive that closes the position loop itself gets its commands over a bus, one to three bus
 //! cycles late. A synchronous bus delays by whole cycles, so n is a whole number of servo periods;
-//! put any rest into the drive delay. The position comes back over the same bus. The control sees
-//! only the round trip: an axis whose commands are late by i periods and whose positions by j
-//! behaves, from outside, as one whose commands are late by i + j. One number is therefore enough.
+//! put any remainder into the drive delay. The position comes back over the same bus. The control
+//! sees only the round trip: an axis whose commands are late by i periods and whose positions by j
+//! behaves, from outside, like one whose commands are late by i + j. One number is therefore
+//! enough.
 //!
 //! Source: Franklin, Powell and Workman (1998), Digital Control of Dynamic Systems, chapter 4, for
 //! delays of whole periods.
 
-/// Most servo periods by which commands are late: the controller looks one servo period ahead for
-/// each. A bus takes one to three.
+/// Largest number of servo periods by which commands are late: the controller looks one servo
+/// period ahead for each. A bus takes one to three.
 pub const MAX_COMMAND_PERIODS: usize = 8;
 
-/// How late commands, references and positions are, s.
+/// Delays of commands, references and positions, s.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct LoopDelays {
-    /// From the control to the position loop; rounded to whole servo periods.
+    /// Delay from the control to the position loop, rounded to whole servo periods.
     pub command_s: f64,
-    /// From the position loop to the speed loop.
+    /// Delay from the position loop to the speed loop.
     pub drive_s: f64,
-    /// From the encoder to the position loop.
+    /// Delay from the encoder to the position loop.
     pub measurement_s: f64,
 }
 
 impl LoopDelays {
-    /// Servo periods from a command until the position loop has it.
+    /// Returns the servo periods from a command until the position loop has it.
     pub fn command_periods(&self, servo_s: f64) -> usize {
-        // A float that is negative or not a number saturates to zero here.
+        // The cast saturates to zero where the float is negative or NaN.
         (libm::round(self.command_s / servo_s) as usize).min(MAX_COMMAND_PERIODS)
     }
 }
@@ -40,13 +41,13 @@ impl LoopDelays {
 /// Position commands on their way to the position loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CommandQueue {
-    /// The newest first.
+    /// Sent commands, the newest first.
     sent: [f64; MAX_COMMAND_PERIODS + 1],
     periods: usize,
 }
 
 impl CommandQueue {
-    /// A queue of so many servo periods; all commands so far were this one.
+    /// Creates a queue of `periods` servo periods in which every earlier command was `command`.
     pub fn resting(periods: usize, command: f64) -> Self {
         Self {
             sent: [command; MAX_COMMAND_PERIODS + 1],
@@ -54,8 +55,8 @@ impl CommandQueue {
         }
     }
 
-    /// A queue of so many servo periods on an even motion: `next` is the command that is sent next,
-    /// `change` the one over a servo period.
+    /// Creates a queue of `periods` servo periods on an even motion: `next` is the next command to
+    /// send, `change` its change over a servo period.
     pub fn moving(periods: usize, next: f64, change: f64) -> Self {
         let mut queue = Self::resting(periods, next);
         let ago = (1..).zip(&mut queue.sent);
@@ -63,12 +64,12 @@ impl CommandQueue {
         queue
     }
 
-    /// Servo periods by which commands are late.
+    /// Returns the servo periods by which commands are late.
     pub fn periods(&self) -> usize {
         self.periods
     }
 
-    /// The same commands, late by another number of servo periods.
+    /// Returns the same commands, late by another number of servo periods.
     #[must_use]
     pub fn with_periods(self, periods: usize) -> Self {
         Self {
@@ -85,7 +86,7 @@ impl CommandQueue {
         self.arrived()
     }
 
-    /// The command that the position loop has.
+    /// Returns the command that the position loop has.
     #[inline]
     pub fn arrived(&self) -> f64 {
         self.sent.get(self.periods).copied().unwrap_or_default()

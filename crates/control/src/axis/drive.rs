@@ -1,5 +1,5 @@
-//! What a servo drive has beside the P speed loop: an integral part, feedforward, a speed limit, a
-//! torque filter, a window of the speed.
+//! Parts of a servo drive in addition to the P speed loop: an integral part, feedforward, a speed
+//! limit, a torque filter, a window of the speed.
 //!
 //! ```text
 //! w_ref = Kp e + Kd (e - e_prev) / Ts + fv v                    position loop, once a servo period Ts
@@ -12,17 +12,17 @@
 //! ```
 //!
 //! Anti-windup by clamping: where u is at its limit and d pushes it further, I stays as it is. Both
-//! w_ref and u_ff go from the control to the drive, as velocity offset and torque offset do. What
-//! is zero is not there.
+//! w_ref and u_ff go from the control to the drive, as velocity offset and torque offset do. A part
+//! whose parameter is zero is absent.
 //!
-//! Symbols: c command at the motor, rad; fv, fa parts of the nominal feedforward, 1 being all of
-//! it; W speed limit, rad/s; Ti integral time, s; f corner of the filter, Hz; T window of the
-//! speed, s; the others as in [`super`].
+//! Symbols: c command at the motor, rad; fv, fa shares of the nominal feedforward, 1 is the full
+//! feedforward; W speed limit, rad/s; Ti integral time, s; f corner of the filter, Hz; T window of
+//! the speed, s; the others as in [`super`].
 //!
-//! A drive that takes the speed from positions, (x(t) - x(t - T)) / T, sees its mean over the
-//! window, late by L. A lag of first order that is as late stands in for the mean, which would need
-//! as many positions as the window has mechanics periods. Both see a speed that grows evenly the
-//! same.
+//! A drive that computes the speed from positions, (x(t) - x(t - T)) / T, sees its mean over the
+//! window, late by L. A first-order lag with the same delay replaces the mean, which would need one
+//! position for every mechanics period of the window. A speed with constant acceleration appears
+//! the same in both.
 //!
 //! Source: PI loop and clamping as in Åström and Hägglund (2006), Advanced PID Control, sections
 //! 3.2 and 3.5; feedforward as in Altintas (2012), Manufacturing Automation, section 5; offsets as
@@ -33,40 +33,40 @@ use core::f64::consts::TAU;
 
 use super::{AxisLaw, AxisState, within};
 
-/// What a drive is set to beside the gains of its loops; zero is without.
+/// Settings of a drive in addition to the gains of its loops. Zero omits a part.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct DriveParameters {
     /// Integral time of the speed loop, s.
     pub speed_integral_s: f64,
-    /// Part of the command's speed that goes to the speed loop.
+    /// Share of the command's speed that goes to the speed loop.
     pub velocity_feedforward: f64,
-    /// Part of the torque for the command's acceleration that goes to the torque.
+    /// Share of the torque for the command's acceleration that goes to the torque.
     pub acceleration_feedforward: f64,
     /// Corner of the torque filter, Hz.
     pub torque_filter_hz: f64,
     /// Highest reference speed, rad/s.
     pub speed_limit_rad_s: f64,
-    /// Time over which the drive takes the speed from positions, s; no more than a mechanics period
-    /// is the speed itself.
+    /// Time over which the drive takes the speed from positions, s. Up to one mechanics period the
+    /// drive sees the speed itself.
     pub speed_window_s: f64,
 }
 
 impl DriveParameters {
-    /// How late the speed loop sees the speed, s.
+    /// Returns the delay with which the speed loop sees the speed, s.
     pub fn speed_late_s(&self, mechanics_s: f64) -> f64 {
         (0.5 * (self.speed_window_s - mechanics_s)).max(0.0)
     }
 
-    /// Delay that the torque filter adds to a slow change of the torque, s; 0 without a filter. It
-    /// follows from y' - y = k (u - y), which gives u = y + (1/k - 1) (y' - y).
+    /// Returns the delay that the torque filter adds to a slow change of the torque, s; 0 without a
+    /// filter. It follows from y' - y = k (u - y), which gives u = y + (1/k - 1) (y' - y).
     pub fn filter_lag_s(&self, mechanics_s: f64) -> f64 {
         let part = filter_part(self.torque_filter_hz, mechanics_s);
         mechanics_s * (1.0 / part - 1.0)
     }
 }
 
-/// Gain of the torque filter, k: the share of the step to a new torque that it makes in one
-/// mechanics period. It is 1, which is no filter, unless the corner frequency is above 0.
+/// Returns the gain of the torque filter, k: the share of the step to a new torque that it makes in
+/// one mechanics period. It is 1, which is no filter, unless the corner frequency is above 0.
 fn filter_part(corner_hz: f64, mechanics_s: f64) -> f64 {
     if corner_hz > 0.0 {
         1.0 - libm::exp(-TAU * corner_hz * mechanics_s)
@@ -75,7 +75,7 @@ fn filter_part(corner_hz: f64, mechanics_s: f64) -> f64 {
     }
 }
 
-/// What goes from the position loop to the drive.
+/// Reference from the position loop to the drive.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct DriveReference {
     /// Reference speed, rad/s.
@@ -84,7 +84,7 @@ pub struct DriveReference {
     pub torque_nm: f64,
 }
 
-/// What a drive remembers, and what the control does for it.
+/// State of a drive, including the values that the control keeps for it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct DriveState {
     /// The last command, rad; none before the first.
@@ -94,14 +94,14 @@ pub struct DriveState {
     commanded_rad_s: f64,
     /// Integral part of the speed loop, N m.
     integral_nm: f64,
-    /// Behind the filter, N m.
+    /// Torque after the filter, N m.
     filtered_nm: f64,
-    /// Speed as the drive sees it, rad/s, where that is late; none before it has seen one.
+    /// Speed as the drive sees it, rad/s, where it is late; `None` before the first value.
     seen_rad_s: Option<f64>,
 }
 
 impl DriveState {
-    /// Before the first command.
+    /// State before the first command.
     pub const AT_REST: Self = Self {
         commanded_rad: None,
         commanded_rad_s: 0.0,
@@ -110,17 +110,17 @@ impl DriveState {
         seen_rad_s: None,
     };
 
-    /// Integral of the speed loop, N m.
+    /// Returns the integral part of the speed loop, N m.
     pub fn integral_nm(&self) -> f64 {
         self.integral_nm
     }
 
-    /// Torque behind the filter, N m.
+    /// Returns the torque after the filter, N m.
     pub fn filtered_nm(&self) -> f64 {
         self.filtered_nm
     }
 
-    /// What an observer finds integral and filter to be higher, N m.
+    /// Adds the corrections of an observer to integral and filter, N m.
     pub fn correct(&mut self, integral_nm: f64, filtered_nm: f64) {
         self.integral_nm += integral_nm;
         self.filtered_nm += filtered_nm;
@@ -131,20 +131,20 @@ impl DriveState {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DriveLaw {
     parameters: DriveParameters,
-    /// Whether it is a P speed loop and nothing else.
+    /// True for a P speed loop without any further part.
     plain: bool,
     /// Torque of the acceleration feedforward for a difference of speeds, N m s/rad.
     torque_for_change: f64,
     /// Integral for an error of the speed over one mechanics period, N m s/rad.
     integral_gain: f64,
-    /// Part of the way that the filter goes in one mechanics period.
+    /// Share of the step to a new torque that the filter makes in one mechanics period.
     filter: f64,
-    /// The same of the speed as the drive sees it; none where it sees the speed itself.
+    /// The same share for the speed as the drive sees it; `None` where it sees the speed itself.
     seeing: Option<f64>,
 }
 
 impl DriveLaw {
-    /// Of an axis; a filter is the exact step over a mechanics period.
+    /// Creates the drive of an axis. The filter is the exact step over a mechanics period.
     pub fn new(law: &AxisLaw, parameters: DriveParameters) -> Self {
         let dt_s = law.periods.mechanics_s;
         let DriveParameters {
@@ -169,8 +169,8 @@ impl DriveLaw {
         }
     }
 
-    /// What the drive remembers, and what it was sent, where the axis has gone at a speed for long,
-    /// which takes this torque.
+    /// Returns state and reference of the drive after a long motion at a constant speed that needs
+    /// this torque.
     pub fn moving(
         &self,
         law: &AxisLaw,
@@ -195,7 +195,8 @@ impl DriveLaw {
         )
     }
 
-    /// The position loop with its feedforward takes in a command and the position, rad.
+    /// Passes a command and the position, rad, to the position loop with its feedforward. Returns
+    /// the reference for the drive.
     #[inline]
     pub fn position_loop(
         &self,
@@ -222,8 +223,8 @@ impl DriveLaw {
         }
     }
 
-    /// One mechanics period of the speed loop at a speed of the motor: the torque that reaches the
-    /// motor, N m. Not a number stays none.
+    /// Computes one mechanics period of the speed loop at a speed of the motor. Returns the torque
+    /// that reaches the motor, N m. NaN stays NaN.
     #[inline]
     pub fn torque_nm(
         &self,
@@ -239,7 +240,7 @@ impl DriveLaw {
         }
     }
 
-    /// As [`Self::torque_nm`], of a drive that is more than a P speed loop.
+    /// Computes [`Self::torque_nm`] for a drive that is more than a P speed loop.
     fn regulated_nm(
         &self,
         law: &AxisLaw,
@@ -266,7 +267,7 @@ impl DriveLaw {
         state.filtered_nm
     }
 
-    /// The speed as the drive sees it.
+    /// Returns the speed as the drive sees it.
     #[inline]
     fn seen_rad_s(&self, speed_rad_s: f64, state: &mut DriveState) -> f64 {
         let Some(part) = self.seeing else {

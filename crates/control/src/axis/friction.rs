@@ -1,5 +1,5 @@
-//! Friction as machines have it: another level each way, more of it at low speed, and a way before
-//! it slides.
+//! Friction of real machines: a level that depends on the direction and increases at low speed, and
+//! presliding.
 //!
 //! ```text
 //! g(w, d) = Fc + Fa d + Fs exp(-(w / ws)^2)             level, N m, of a motion in the direction d = -1, 1
@@ -7,12 +7,11 @@
 //! F = B w + f,  df/dt = S (w - |w| f / g),  S = (Fc + Fs) / z         with it
 //! ```
 //!
-//! The second is LuGre's model without its bristles' damping, which is Dahl's where there is no
-//! Stribeck part: a spring S that gives way as it comes to the level, over the deflection z.
+//! The second is the LuGre model without the damping of its bristles, which is Dahl's model without
+//! a Stribeck part: a spring S that yields as it approaches the level, over the deflection z.
 //!
-//! Over a mechanics period dt of constant w, f has a closed form, which is what is integrated; the
-//! speed takes it implicitly, linearised about w = 0, so that a spring stiffer than dt could follow
-//! is stable:
+//! Over a mechanics period dt of constant w, f has a closed form, which is integrated. The speed
+//! enters it implicitly, linearized about w = 0, so that a spring too stiff for dt is stable:
 //!
 //! ```text
 //! a  = w + dt / J (forces - B w - f),   d = sgn a
@@ -20,9 +19,9 @@
 //! f' = d g + (f - d g) exp(-S |w'| dt / g)
 //! ```
 //!
-//! Symbols: Fc Coulomb friction; Fa its asymmetry; Fs what the breakaway torque has above it; ws
+//! Symbols: Fc Coulomb friction; Fa its asymmetry; Fs excess of the breakaway torque over Fc; ws
 //! Stribeck speed, rad/s; z presliding deflection, rad at the motor shaft; B viscous friction; w_s
-//! speed over which friction turns its sign.
+//! speed over which friction changes sign.
 //!
 //! Source: Dahl (1968), A solid friction model; Canudas de Wit, Olsson, Åström and Lischinsky
 //! (1995), A new model for control of systems with friction, eqs 1 to 4; Armstrong-Hélouvry, Dupont
@@ -34,26 +33,27 @@ use core::array::from_fn;
 use super::AxisLaw;
 use crate::activation::{exp, tanh};
 
-/// Least level as a part of Fc + Fs: an asymmetry as large as the Coulomb friction leaves none, by
-/// which nothing can be divided.
+/// Smallest level as a part of Fc + Fs: an asymmetry as large as the Coulomb friction makes the
+/// level 0, and the level is a divisor.
 const LEAST_LEVEL: f64 = 1e-9;
-/// Beyond this e^-x is nothing beside 1; what it is there.
+/// Exponent x beyond which e^-x is negligible beside 1, and its value there.
 const FORGOTTEN: f64 = 40.0;
 const LEAST_DECAY: f64 = 4.248_354_255_291_589e-18;
-/// Beyond this tanh is 1 to the last bit.
+/// Argument beyond which tanh is 1 to the last bit.
 const SATURATED: f64 = 20.0;
 
-/// Friction beside the Coulomb and viscous friction of [`super::Parameters`]; zero is without.
+/// Friction in addition to the Coulomb and viscous friction of [`super::Parameters`]. Zero omits a
+/// part.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct FrictionParameters {
-    /// What the Coulomb friction is higher in the positive direction, and lower in the negative, N
-    /// m.
+    /// Excess of the Coulomb friction in the positive direction, N m. In the negative direction it
+    /// is lower by the same amount.
     pub coulomb_asymmetry_nm: f64,
-    /// What friction has at rest above the Coulomb friction, N m.
+    /// Excess of the friction at rest over the Coulomb friction, N m.
     pub stribeck_nm: f64,
-    /// Speed over which that goes, rad/s.
+    /// Speed over which the Stribeck part decays, rad/s.
     pub stribeck_rad_s: f64,
-    /// Deflection before it slides, rad.
+    /// Deflection before the axis slides, rad.
     pub presliding_rad: f64,
 }
 
@@ -71,7 +71,8 @@ pub struct FrictionLaw {
 }
 
 impl FrictionLaw {
-    /// Of an axis, beside what its own parameters have of friction.
+    /// Creates the friction of an axis; the parameters of the axis have the Coulomb and viscous
+    /// parts.
     pub fn new(law: &AxisLaw, parameters: FrictionParameters) -> Self {
         let FrictionParameters {
             stribeck_nm,
@@ -100,7 +101,7 @@ impl FrictionLaw {
         }
     }
 
-    /// Speed behind a mechanics period under forces without friction, N m at the shaft;
+    /// Returns the speed after a mechanics period under forces without friction, N m at the shaft.
     /// `presliding_nm` is f.
     #[inline]
     pub fn speed_after_rad_s(
@@ -121,8 +122,8 @@ impl FrictionLaw {
         after
     }
 
-    /// The same of several masses at once: a processor has the exponentials of two or four of them
-    /// in the time of one.
+    /// Computes [`Self::speed_after_rad_s`] for several masses at once: a processor computes two or
+    /// four exponentials in the time of one.
     #[inline]
     pub fn speeds_after_rad_s<const L: usize>(
         laws: &[&Self; L],
@@ -168,8 +169,8 @@ impl FrictionLaw {
         after
     }
 
-    /// The mean of the friction without its viscous part over a time at a constant speed that is
-    /// forced upon the axis, N m.
+    /// Returns the mean of the friction without its viscous part, N m, over a time at a constant
+    /// speed that is imposed on the axis.
     #[inline]
     pub fn along_nm(&self, speed_rad_s: f64, time_s: f64, presliding_nm: &mut f64) -> f64 {
         if self.stiffness_nm_rad == 0.0 {
@@ -182,7 +183,7 @@ impl FrictionLaw {
         let (sliding_nm, left) = (direction * level_nm, decay(slid));
         let beyond_nm = *presliding_nm - sliding_nm;
         *presliding_nm = sliding_nm + beyond_nm * left;
-        // The mean of e^-x from 0 to `slid`; of a short way its series, which does not cancel.
+        // The mean of e^-x from 0 to `slid`; for a short travel its series, which does not cancel.
         let mean = if slid < 1e-4 {
             1.0 - 0.5 * slid
         } else {
@@ -195,7 +196,7 @@ impl FrictionLaw {
         }
     }
 
-    /// Level at a speed, in a direction from -1 to 1, N m.
+    /// Returns the level at a speed, in a direction from -1 to 1, N m.
     #[inline]
     fn level_nm(&self, speed_rad_s: f64, direction: f64) -> f64 {
         let [level_nm] = Self::levels_nm(&[self], &[speed_rad_s], &[direction]);
@@ -227,7 +228,7 @@ impl FrictionLaw {
     }
 }
 
-/// tanh(x), which most of the time is 1 or -1 to the last bit.
+/// Returns tanh(x), which is 1 or -1 to the last bit most of the time.
 #[inline]
 fn signs<const L: usize>(x: [f64; L]) -> [f64; L] {
     if x.iter().all(|x| x.abs() >= SATURATED) {
@@ -237,7 +238,7 @@ fn signs<const L: usize>(x: [f64; L]) -> [f64; L] {
     }
 }
 
-/// e^-x of what is not negative.
+/// Returns e^-x of non-negative numbers.
 #[inline]
 fn decays<const L: usize>(x: [f64; L]) -> [f64; L] {
     if x.iter().all(|x| *x >= FORGOTTEN) {

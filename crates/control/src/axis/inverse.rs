@@ -7,7 +7,8 @@
 //! w = (r(m+1) - r(m)) / Ts. Its mean acceleration a follows from the change of the central
 //! differences (r(m+1) - r(m-1)) / 2 Ts. Both are evaluated d later. At the end of each mechanics
 //! period the speed loop acts on the speed at the start of the period, so it sees w - a (dt + l),
-//! where l is how late the drive sees the speed. With o = 0 the loops do not supply these parts:
+//! where l is the delay with which the drive sees the speed. With o = 0 the loops do not supply
+//! these parts:
 //!
 //! ```text
 //! M_w = g_v (w - kp (r - y) - kd (r - y)' - fv r') - g_a a (dt + l)   reference speed
@@ -56,29 +57,29 @@ use super::friction::{FrictionLaw, FrictionParameters};
 use crate::activation::tanh;
 use crate::vector::bounded;
 
-/// Steps in a servo period along which friction that has a memory is taken: at 0.1 ms the breakaway
+/// Steps in a servo period along which friction with a memory is computed: at 0.1 ms the breakaway
 /// over 10 um at 50 mm/s is two steps.
 const FRICTION_STEPS: u32 = 10;
 
-/// How much of each part is fed forward; 1 is the exact model.
+/// Shares of the parts that are fed forward; 1 is the exact model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gains {
-    /// Of what grows with the speed.
+    /// Share of the part that grows with the speed.
     pub velocity: f64,
-    /// Of what grows with the acceleration.
+    /// Share of the part that grows with the acceleration.
     pub acceleration: f64,
-    /// Of the Coulomb friction.
+    /// Share of the Coulomb friction.
     pub friction: f64,
 }
 
 impl Gains {
-    /// The exact model.
+    /// Full compensation by the model.
     pub const EXACT: Self = Self {
         velocity: 1.0,
         acceleration: 1.0,
         friction: 1.0,
     };
-    /// Nothing at all: the axis lags as it does.
+    /// No compensation: the axis keeps its lag.
     pub const NONE: Self = Self {
         velocity: 0.0,
         acceleration: 0.0,
@@ -86,46 +87,47 @@ impl Gains {
     };
 }
 
-/// What an axis needs that its loops do not ask for, mm/s of reference speed.
+/// Reference speed and torque that the axis needs and its loops do not supply, mm/s of reference
+/// speed.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Missing {
     speed_mm_s: f64,
     torque_mm_s: f64,
 }
 
-/// Mean speed and acceleration of the reference over a servo period, and its two ends.
+/// Mean speed and mean acceleration of the reference over a servo period.
 #[derive(Debug, Clone, Copy)]
 struct ReferenceMotion {
     speed_mm_s: f64,
     acceleration_mm_s2: f64,
 }
 
-/// The inverse of an axis, with what it remembers.
+/// Inverse of an axis, with its state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisInverse {
     law: AxisLaw,
     drive: DriveParameters,
     delays: LoopDelays,
-    /// What friction has beside smoothed Coulomb friction.
+    /// Friction in addition to smoothed Coulomb friction.
     friction: Option<FrictionLaw>,
     /// Delay of the torque filter, s.
     filter_lag_s: f64,
-    /// How late the drive sees the speed, s.
+    /// Delay with which the drive sees the speed, s.
     speed_late_s: f64,
     /// Friction of the presliding spring, N m.
     presliding_nm: f64,
-    /// Friction that was last made up for, mm/s of reference speed.
+    /// Friction that the last lead compensates, mm/s of reference speed.
     friction_mm_s: f64,
-    /// Integral of the speed loop, mm/s of reference speed, before the period that was last asked
-    /// for, and what was missing in that.
+    /// Integral of the speed loop, mm/s of reference speed, before the last computed period, and
+    /// the part that the loops did not supply in that period.
     integral_mm_s: f64,
     missing: Missing,
-    /// Lead of the period before that.
+    /// Lead of the period before the last one.
     lead_before_mm: f64,
 }
 
 impl AxisInverse {
-    /// Of an axis.
+    /// Creates the inverse of an axis.
     pub fn new(
         law: AxisLaw,
         drive: DriveParameters,
@@ -148,7 +150,7 @@ impl AxisInverse {
         }
     }
 
-    /// Inverts another law from now on, with what it remembers.
+    /// Inverts another model from now on. Its state stays.
     pub fn follow(
         &mut self,
         law: AxisLaw,
@@ -167,7 +169,7 @@ impl AxisInverse {
             (friction, filter_lag_s, speed_late_s);
     }
 
-    /// Of an axis that has nothing beside its law.
+    /// Creates the inverse of an axis whose drive, friction and delays have no further parts.
     pub fn plain(law: AxisLaw) -> Self {
         Self::new(
             law,
@@ -177,42 +179,43 @@ impl AxisInverse {
         )
     }
 
-    /// The law that it inverts.
+    /// Returns the model that it inverts.
     pub fn law(&self) -> &AxisLaw {
         &self.law
     }
 
-    /// At rest.
+    /// Resets the state to rest.
     pub fn reset(&mut self) {
         (self.presliding_nm, self.friction_mm_s, self.integral_mm_s) = (0.0, 0.0, 0.0);
         (self.missing, self.lead_before_mm) = (Missing::default(), 0.0);
     }
 
-    /// Sum of the time constants of the position loop and the speed loop, s. The command leads the
-    /// reference by about this time.
+    /// Returns the sum of the time constants of the position loop and the speed loop, s. The
+    /// command leads the reference by about this time.
     pub fn lag_s(&self) -> f64 {
         let parameters = &self.law.parameters;
         1.0 / parameters.kp_1_s + parameters.inertia_kg_m2 / parameters.kv_nm_s_per_rad
     }
 
-    /// How far beyond the moment at which the position loop has a command the motion is looked at,
-    /// s, but for the differences.
+    /// Returns the time from the arrival of a command at the position loop to the motion that the
+    /// inverse evaluates, s, without the differences.
     pub fn ahead_s(&self) -> f64 {
         self.delays.drive_s + self.filter_lag_s
     }
 
-    /// How late the position loop has a command, s.
+    /// Returns the delay until the position loop has a command, s.
     pub fn command_delay_s(&self) -> f64 {
         let servo_s = self.law.periods.servo_s;
         self.delays.command_periods(servo_s) as f64 * servo_s
     }
 
-    /// How long after the measured position it was last made up for, a friction acts, s.
+    /// Returns the time from a measured position to the action of the friction that was compensated
+    /// for it, s.
     pub fn late_s(&self) -> f64 {
         self.command_delay_s() + self.ahead_s() + self.delays.measurement_s
     }
 
-    /// Friction that the last lead makes up for, mm/s of reference speed.
+    /// Returns the friction that the last lead compensates, mm/s of reference speed.
     pub fn friction_mm_s(&self) -> f64 {
         self.friction_mm_s
     }
@@ -233,8 +236,7 @@ impl AxisInverse {
         if late_s == 0.0 {
             return self.prompt_lead_mm(gains, at_mm, last_mm, load_mm_s);
         }
-        // What the reference moves by until the position loop has the command: it grows with the
-        // speed.
+        // Travel of the reference until the position loop has the command: it grows with the speed.
         let moves_mm = |from_s: f64| gains.velocity * (at_mm(from_s + late_s) - at_mm(from_s));
         let last_mm = last_mm - moves_mm(-servo_s);
         let lead_mm =
@@ -242,7 +244,8 @@ impl AxisInverse {
         lead_mm + moves_mm(0.0)
     }
 
-    /// The same over the reference at the moment at which the position loop has the command.
+    /// Computes [`Self::lead_mm`] over the reference at the time at which the position loop has the
+    /// command.
     #[inline]
     fn prompt_lead_mm(
         &mut self,
@@ -267,9 +270,9 @@ impl AxisInverse {
         needed_mm_s / ((1.0 + within) * (parameters.kp_1_s + change_1_s) + torque_1_s)
     }
 
-    /// Reference speed, mm/s, with which the speed loop follows the motion over the period in which
-    /// the reference acts that is sent at the beginning of `at_mm`, from an integral and a friction
-    /// of the presliding spring that are known there, N m.
+    /// Returns the reference speed, mm/s, with which the speed loop follows the motion in the
+    /// period in which that reference acts. The period begins at 0 of `at_mm`. Integral and
+    /// presliding friction at its start are known, N m.
     pub fn reference_mm_s(
         &mut self,
         at_mm: impl Fn(f64) -> f64,
@@ -287,8 +290,8 @@ impl AxisInverse {
         speed_mm_s + (torque_mm_s - integral_mm_s) / (1.0 + within)
     }
 
-    /// What the integral has become in the period that was asked for last, with the lead that it
-    /// really had.
+    /// Updates the integral for the last computed period, with the lead that the command really
+    /// had.
     #[inline]
     fn take_in(&mut self, last_mm: f64) {
         let [_, over] = self.integral_gains();
@@ -304,8 +307,8 @@ impl AxisInverse {
         }
     }
 
-    /// What the integral makes of an error of the speed that lasts for a servo period: its mean
-    /// within, and its end.
+    /// Returns the gains of the integral for a speed error that lasts for a servo period: its mean
+    /// within the period and its value at the end.
     #[inline]
     fn integral_gains(&self) -> [f64; 2] {
         let time_s = self.drive.speed_integral_s;
@@ -320,8 +323,8 @@ impl AxisInverse {
         }
     }
 
-    /// Torque of the drive's acceleration feedforward for a second difference of the lead, as a
-    /// reference speed, 1/s.
+    /// Returns the torque of the drive's acceleration feedforward for a second difference of the
+    /// lead, as a reference speed, 1/s.
     #[inline]
     fn torque_for_lead_1_s(&self) -> f64 {
         let (parameters, servo_s) = (&self.law.parameters, self.law.periods.servo_s);
@@ -369,8 +372,8 @@ impl AxisInverse {
         }
     }
 
-    /// What the loops ask for where the command is the reference: reference speed, mm/s, and torque
-    /// for a rad/mm, N m s.
+    /// Returns the requests of the loops where the command equals the reference: reference speed,
+    /// mm/s, and torque for a rad/mm, N m s.
     #[inline]
     fn without_lead(&self, at_mm: &impl Fn(f64) -> f64) -> [f64; 2] {
         let servo_s = self.law.periods.servo_s;
@@ -397,7 +400,8 @@ impl AxisInverse {
         [asked_mm_s, fed_nm_s]
     }
 
-    /// Mean of the friction without its viscous part over a servo period of the motion, N m.
+    /// Returns the mean of the friction without its viscous part over a servo period of the motion,
+    /// N m.
     #[inline]
     fn friction_nm(&mut self, motion: ReferenceMotion) -> f64 {
         let (parameters, servo_s) = (&self.law.parameters, self.law.periods.servo_s);

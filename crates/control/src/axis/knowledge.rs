@@ -1,8 +1,7 @@
-//! What a controller is given of an axis: the law, what drive and friction have beside, delays, and
-//! statistics of its noise.
+//! Knowledge of an axis that a controller receives: the model, further parts of drive and friction,
+//! delays, and statistics of its noise.
 //!
-//! Where it comes from is another matter: a machine file, an identification, or the simulation
-//! itself.
+//! It comes from a machine file, an identification, or the simulation itself.
 
 use super::delays::LoopDelays;
 use super::drive::DriveParameters;
@@ -11,22 +10,22 @@ use super::statistics::AxisStatistics;
 use super::transmission::TransmissionParameters;
 use super::{AxisLaw, Parameters, Periods};
 
-/// What is given of an axis.
+/// Knowledge of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisKnowledge {
     /// Loops, inertia, friction.
     pub parameters: Parameters,
     /// Periods of the loops.
     pub periods: Periods,
-    /// What the drive has beside.
+    /// Parts of the drive in addition to the loops.
     pub drive: DriveParameters,
-    /// What friction has beside.
+    /// Parts of the friction in addition to Coulomb and viscous friction.
     pub friction: FrictionParameters,
-    /// Its ball screw.
+    /// Ball screw.
     pub transmission: TransmissionParameters,
-    /// How late commands, the drive and the encoder are.
+    /// Delays of commands, drive and encoder.
     pub delays: LoopDelays,
-    /// Noise, and what depends on the angle of the motor.
+    /// Noise, and parts that depend on the angle of the motor.
     pub statistics: AxisStatistics,
 }
 
@@ -72,13 +71,13 @@ impl AxisKnowledge {
         statistics: AxisStatistics::NOTHING,
     };
 
-    /// The law, ready to be integrated.
+    /// Returns the model, ready to be integrated.
     pub fn law(&self) -> AxisLaw {
         AxisLaw::new(self.parameters, self.periods)
     }
 
-    /// What is stored of it, in this order: all but the periods. Ranges are those of a machine
-    /// file, and keep out what cannot be computed with.
+    /// Stored numbers of an axis, in this order: all except the periods. The ranges are the ranges
+    /// of a machine file, and exclude values that computation cannot use.
     pub const NUMBERS: &[Number] = &[
         Number::within("rad_per_mm", "rad/mm", 1e-3, 1e3, |axis| {
             &mut axis.parameters.rad_per_mm
@@ -200,14 +199,14 @@ impl AxisKnowledge {
         },
     ];
 
-    /// Whether a command can follow the drive. Where its damping is below 0.3, the acceleration
-    /// feedforward makes of an offset one that rings, and takes all the torque: random machines
-    /// with 0.7 of it and no velocity feedforward came to 2 mm where 6 um were left uncorrected.
+    /// Returns true if a command can follow the drive. With a damping below 0.3 the acceleration
+    /// feedforward makes the offset ring and take all the torque: random machines with 0.7 of it
+    /// and no velocity feedforward reached 2 mm, where 6 um remained uncorrected.
     pub fn is_followed(&self) -> bool {
         self.command_damping() >= LEAST_DAMPING
     }
 
-    /// Damping ratio of the command that asks the drive for a given speed:
+    /// Returns the damping ratio of the command that asks the drive for a given speed:
     ///
     /// ```text
     /// w = kp (c - x) + F c' + (J A / Kv) c''      zeta = F / (2 (kp J A / Kv)^(1/2))
@@ -228,7 +227,7 @@ impl AxisKnowledge {
         }
     }
 
-    /// Whether each of its numbers is within its range.
+    /// Returns true if each of its numbers is within its range.
     pub fn is_possible(mut self) -> bool {
         Self::NUMBERS
             .iter()
@@ -236,21 +235,21 @@ impl AxisKnowledge {
     }
 }
 
-/// Damping of a command that follows a drive, at the least.
+/// Smallest damping of a command that follows a drive.
 const LEAST_DAMPING: f64 = 0.3;
 
 /// Smallest gain of a position loop, 1/s. An axis with it takes 9 s to come within 1 % of a new
-/// position, and is 33 mm behind at 1 m/min; the slowest machine tools have ten times this gain. A
-/// gain in 1/ms, or one of a controller whose output is in volts, is usually smaller.
+/// position, and lags by 33 mm at 1 m/min; the slowest machine tools have ten times this gain. A
+/// gain in 1/ms, or a gain of a controller whose output is in volts, is usually smaller.
 const LEAST_POSITION_GAIN_1_S: f64 = 0.5;
 
-/// Product of position gain Kp and servo period T from which on the loop diverges. With a drive
-/// that follows at once an error e becomes (1 - Kp T) e within a period, which diverges from 2 on.
-/// A drive of first order keeps the loop stable up to 4.1, where its time constant is T / 3.7.
+/// Product of position gain Kp and servo period T above which the loop diverges. With a drive that
+/// follows at once, an error e becomes (1 - Kp T) e within a period, which diverges above 2. A
+/// first-order drive keeps the loop stable up to 4.1, where its time constant is T / 3.7.
 const DIVERGING_GAIN: f64 = 5.0;
 
-/// Range of the position gain in a loop with this servo period, 1/s. A gain outside is of another
-/// unit or of another loop.
+/// Returns the range of the position gain in a loop with this servo period, 1/s. A gain outside it
+/// has another unit or belongs to another loop.
 pub fn position_gains_1_s(servo_s: f64) -> [f64; 2] {
     [LEAST_POSITION_GAIN_1_S, DIVERGING_GAIN / servo_s]
 }
@@ -258,23 +257,22 @@ pub fn position_gains_1_s(servo_s: f64) -> [f64; 2] {
 /// A number of an axis.
 #[derive(Debug, Clone, Copy)]
 pub struct Number {
-    /// Name; its end is the unit.
+    /// Name, which ends in the unit.
     pub name: &'static str,
     /// Unit for messages; empty for a dimensionless number.
     pub unit: &'static str,
-    /// Least and most.
+    /// Smallest and largest value.
     pub range: [f64; 2],
-    /// Whether zero is valid although it is below the range. Zero then means that the axis lacks
+    /// True if zero is valid although it is below the range. Zero then means that the axis lacks
     /// this part. Other values below the range are rejected, so that nothing is divided by a tiny
     /// number.
     pub or_none: bool,
-    /// Whether a model file may leave it out, as those do that were written before there was such a
-    /// number. It is zero then.
-    pub optional: bool,
-    /// Format of a model block from which on the block has this number. An earlier block leaves it
+    /// True if a model file may omit it: files from before this number existed lack it. It is then
     /// zero.
+    pub optional: bool,
+    /// First format of a model block that has this number. An earlier block leaves it zero.
     pub format: u32,
-    /// The field.
+    /// Field of the axis.
     pub of: fn(&mut AxisKnowledge) -> &mut f64,
 }
 
@@ -319,7 +317,7 @@ impl Number {
         }
     }
 
-    /// Whether it may have this value. What is not a number it may not have.
+    /// Returns true if the number may have this value. NaN is never valid.
     pub fn holds(&self, value: f64) -> bool {
         let [least, most] = self.range;
         (value >= least && value <= most) || (self.or_none && value == 0.0)

@@ -1,8 +1,8 @@
-//! A mechanics period of an axis under given torques: motor, table where the ball screw gives,
+//! A mechanics period of an axis under given torques: motor, table on a compliant ball screw,
 //! friction.
 //!
-//! What simulates a machine, what estimates one and what runs freely to identify one step their
-//! masses by this and nothing else.
+//! Simulation, estimation and the free runs of the identification all step their masses with this
+//! code.
 
 use core::array::from_fn;
 
@@ -14,30 +14,30 @@ use super::{AxisLaw, AxisState, friction_signs};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MechanicsLaw {
     law: AxisLaw,
-    /// What friction has beside smoothed Coulomb friction.
+    /// Friction in addition to smoothed Coulomb friction.
     friction: Option<FrictionLaw>,
     transmission: Option<TransmissionLaw>,
     inverse_inertia: f64,
 }
 
-/// What moves.
+/// State of the moving masses.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MechanicsState {
-    /// The motor, with what its position loop saw last.
+    /// Motor, with the last error of its position loop.
     pub motor: AxisState,
-    /// The table: the motor's angle and speed where the screw is rigid.
+    /// Table: angle and speed of the motor where the screw is rigid.
     pub table: TableState,
     /// Friction of the presliding spring, N m.
     pub presliding_nm: f64,
 }
 
 impl MechanicsState {
-    /// At rest at an angle, in the middle of the backlash.
+    /// Creates a state at rest at an angle, in the middle of the backlash.
     pub fn at_rest(angle_rad: f64) -> Self {
         Self::moving(angle_rad, 0.0)
     }
 
-    /// At a speed, motor and table alike.
+    /// Creates a state in which motor and table move at one speed.
     pub fn moving(angle_rad: f64, speed_rad_s: f64) -> Self {
         Self {
             motor: AxisState {
@@ -55,7 +55,7 @@ impl MechanicsState {
 }
 
 impl MechanicsLaw {
-    /// Of an axis with this friction and this screw.
+    /// Creates the mechanics of an axis with this friction and this screw.
     pub fn new(
         law: &AxisLaw,
         friction: FrictionParameters,
@@ -74,12 +74,12 @@ impl MechanicsLaw {
         }
     }
 
-    /// The screw, where it gives.
+    /// Returns the screw, if it is compliant.
     pub fn transmission(&self) -> Option<&TransmissionLaw> {
         self.transmission.as_ref()
     }
 
-    /// One mechanics period under a torque of the motor and a load on the table, N m.
+    /// Integrates one mechanics period under a torque of the motor and a load on the table, N m.
     #[inline]
     pub fn advance(&self, state: &mut MechanicsState, motor_nm: f64, load_nm: f64) {
         match &self.friction {
@@ -97,8 +97,8 @@ impl MechanicsLaw {
         }
     }
 
-    /// The same of several axes without a load, in about the time of one: the processor works on
-    /// the others while the friction of one is computed.
+    /// Integrates several axes without a load, in about the time of one: the processor works on the
+    /// others while it computes the friction of one.
     #[inline]
     pub fn advance_abreast<const L: usize>(
         laws: &[&Self; L],
@@ -131,8 +131,8 @@ impl MechanicsLaw {
         }
     }
 
-    /// What pushes the mass that slides, N m, one over its inertia and its speed: the table, and
-    /// the motor where the screw is rigid.
+    /// Returns the torque on the sliding mass, N m, the inverse of its inertia, and its speed. The
+    /// sliding mass is the table, and includes the motor where the screw is rigid.
     #[inline]
     fn push(&self, state: &mut MechanicsState, motor_nm: f64, load_nm: f64) -> [f64; 3] {
         let MechanicsState { motor, table, .. } = state;
@@ -152,7 +152,7 @@ impl MechanicsLaw {
         ]
     }
 
-    /// The way of a mechanics period, at the end of which what slides has a speed.
+    /// Moves the masses through a mechanics period at whose end the sliding mass has a speed.
     #[inline]
     fn go_on(&self, state: &mut MechanicsState, after_rad_s: f64) {
         let dt_s = self.law.periods.mechanics_s;
@@ -171,7 +171,7 @@ impl MechanicsLaw {
         }
     }
 
-    /// A mechanics period with smoothed Coulomb friction alone.
+    /// Integrates a mechanics period with smoothed Coulomb friction only.
     #[inline]
     fn advance_smoothly(&self, state: &mut MechanicsState, motor_nm: f64, load_nm: f64) {
         if self.transmission.is_none() {
@@ -194,7 +194,7 @@ impl MechanicsLaw {
         );
     }
 
-    /// Viscous and Coulomb friction alone, N m.
+    /// Returns the viscous and Coulomb friction, N m.
     #[inline]
     fn friction_nm(&self, speed_rad_s: f64) -> f64 {
         let [sign] = friction_signs(&[self.law], [speed_rad_s]);
@@ -238,7 +238,8 @@ mod tests {
         }
     }
 
-    /// After a tenth of a second under 1 N m at the motor and 0.3 N m against the table.
+    /// Returns the state after a tenth of a second under 1 N m at the motor and 0.3 N m against the
+    /// table.
     fn driven(mechanics: &MechanicsLaw) -> MechanicsState {
         let mut state = MechanicsState::at_rest(0.0);
         (0..10_000).for_each(|_| mechanics.advance(&mut state, 1.0, 0.3));

@@ -4,34 +4,34 @@
 //! The random numbers themselves remain unknown to a controller. Symbols and spectra follow
 //! `docs/machine-file.md`.
 
-/// What is true of an axis; at the motor shaft, zero is without.
+/// Noise statistics of an axis at the motor shaft. Zero omits a part.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AxisStatistics {
     /// RMS of the encoder's white noise, rad.
     pub encoder_noise_rad: f64,
-    /// Its step, rad.
+    /// Step of the encoder, rad.
     pub encoder_step_rad: f64,
-    /// Amplitude of its error within a signal period, rad.
+    /// Amplitude of the encoder's error within a signal period, rad.
     pub interpolation_rad: f64,
-    /// Phase of that where the angle is zero, rad.
+    /// Phase of that error at angle zero, rad.
     pub interpolation_phase_rad: f64,
-    /// Turns of the signal in a radian, times 2 pi.
+    /// Signal periods in a radian, times 2 pi.
     pub signal_per_rad: f64,
-    /// RMS of the broadband torque, N m, and its correlation time, s.
+    /// RMS of the broadband torque, N m.
     pub torque_noise_nm: f64,
-    /// See above.
+    /// Correlation time of the broadband torque, s.
     pub torque_noise_s: f64,
     /// Amplitude of the disturbance, N m.
     pub disturbance_nm: f64,
-    /// Its frequency, rad/s.
+    /// Frequency of the disturbance, rad/s.
     pub disturbance_rad_s: f64,
-    /// RMS by which that wanders, a part of it.
+    /// RMS variation of that frequency, as a part of it.
     pub disturbance_wander: f64,
     /// Amplitude of the cogging torque, N m.
     pub cogging_nm: f64,
-    /// Its phase where the angle is zero, rad.
+    /// Phase of the cogging torque at angle zero, rad.
     pub cogging_phase_rad: f64,
-    /// Its periods in a turn.
+    /// Periods of the cogging torque in a turn.
     pub cogging_per_rev: f64,
 }
 

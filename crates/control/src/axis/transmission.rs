@@ -17,21 +17,21 @@
 //! Source: two-mass drive as in Altintas (2012), Manufacturing Automation, section 5; backlash as a
 //! dead zone with damping in contact, Nordin and Gutman (2002), eq. 4.
 
-/// What a ball screw is, at the motor shaft; all zero is a rigid one.
+/// Parameters of a ball screw at the motor shaft. With all of them zero it is rigid.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TransmissionParameters {
-    /// Part of the axis's inertia that is on the table's side.
+    /// Part of the axis's inertia on the side of the table.
     pub table_share: f64,
     /// Resonance of the table on the screw while the motor is held, rad/s.
     pub resonance_rad_s: f64,
-    /// Its damping ratio.
+    /// Damping ratio of that resonance.
     pub damping_ratio: f64,
     /// Backlash, rad.
     pub backlash_rad: f64,
 }
 
 impl TransmissionParameters {
-    /// A screw that does not give.
+    /// A rigid screw.
     pub const RIGID: Self = Self {
         table_share: 0.0,
         resonance_rad_s: 0.0,
@@ -39,8 +39,8 @@ impl TransmissionParameters {
         backlash_rad: 0.0,
     };
 
-    /// What the friction of both directions winds the screw of an axis up, rad: 2 Fc / k. 0 where
-    /// it is rigid.
+    /// Returns the windup of the screw of an axis by the friction of both directions, rad: 2 Fc /
+    /// k. It is 0 for a rigid screw.
     pub fn windup_rad(&self, inertia_kg_m2: f64, coulomb_friction_nm: f64) -> f64 {
         let stiffness_nm_rad =
             inertia_kg_m2 * self.table_share * self.resonance_rad_s * self.resonance_rad_s;
@@ -52,21 +52,21 @@ impl TransmissionParameters {
     }
 }
 
-/// Where the table is and how fast, at the motor shaft.
+/// Angle and speed of the table at the motor shaft.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TableState {
-    /// Its angle, rad.
+    /// Angle of the table, rad.
     pub angle_rad: f64,
-    /// Its speed, rad/s.
+    /// Speed of the table, rad/s.
     pub speed_rad_s: f64,
 }
 
 /// A ball screw, ready to be integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TransmissionLaw {
-    /// Of the motor's side, 1/(kg m2).
+    /// Inverse inertia of the motor's side, 1/(kg m2).
     pub inverse_motor_inertia: f64,
-    /// Of the table's side, 1/(kg m2).
+    /// Inverse inertia of the table's side, 1/(kg m2).
     pub inverse_table_inertia: f64,
     /// Stiffness, N m/rad.
     pub stiffness_nm_rad: f64,
@@ -78,13 +78,13 @@ pub struct TransmissionLaw {
     pub resonance_rad_s: f64,
 }
 
-/// Most that the two masses may turn against each other in a mechanics period, rad: from 2 on the
+/// Largest phase of the oscillation of the two masses in a mechanics period, rad: above 2 the
 /// integration is unstable.
 const MOST_PHASE_RAD: f64 = 1.0;
 
 impl TransmissionLaw {
-    /// Of an axis with this inertia, kg m2; none where the screw is rigid, or so stiff that no
-    /// mechanics period could follow it.
+    /// Creates the screw of an axis with this inertia, kg m2. Returns `None` where the screw is
+    /// rigid, or too stiff for the mechanics period.
     pub fn new(
         inertia_kg_m2: f64,
         mechanics_s: f64,
@@ -111,13 +111,13 @@ impl TransmissionLaw {
         })
     }
 
-    /// Static twist of the screw under a constant torque, rad: the angle of the motor less the
-    /// angle of the table. It includes half the backlash.
+    /// Returns the static twist of the screw under a constant torque, rad: the angle of the motor
+    /// minus the angle of the table. It includes half the backlash.
     pub fn twist_rad(&self, torque_nm: f64) -> f64 {
         torque_nm / self.stiffness_nm_rad + libm::copysign(self.half_gap_rad, torque_nm)
     }
 
-    /// The torque from motor to table, N m.
+    /// Returns the torque from motor to table, N m.
     #[inline]
     pub fn torque_nm(&self, twist_rad: f64, twist_rad_s: f64) -> f64 {
         let damped = self.damping_nm_s * twist_rad_s;

@@ -1,12 +1,12 @@
 //! Velocity, acceleration and friction feedforward with the exact model of the machine.
 //!
 //! The drive takes position commands only, so the inverse dynamics go into the position command:
-//! each axis leads the reference as [`crate::axis::inverse`] has it, with what its drive feeds
-//! forward by itself, the integral of its speed loop, its delays, its torque filter and its
-//! friction. What the drive does by itself is not done twice. Cogging and ripple of the motor are
-//! not known here.
+//! each axis leads the reference as [`crate::axis::inverse`] computes it, from the feedforward of
+//! its drive, the integral of its speed loop, its delays, its torque filter and its friction. The
+//! feedforward of the drive is not applied twice. Cogging and ripple of the motor are not known
+//! here.
 //!
-//! For an axis that is no more than a position loop, a P speed loop and smoothed Coulomb friction:
+//! For an axis with only a position loop, a P speed loop and smoothed Coulomb friction:
 //!
 //! ```text
 //! w_ref(m) = g_v w + [ g_a J a + g_v B w + g_f Fc tanh(w / w_s) ] / kv
@@ -23,8 +23,8 @@
 //! survey of models, analysis tools and compensation methods for the control of machines with
 //! friction".
 //!
-//! Departures: the feedforward enters before the position loop instead of after it. The offset that
-//! it makes is mostly along the path, 1 mm at 50 mm/s and 50 1/s.
+//! Departures: the feedforward enters before the position loop instead of after it. The resulting
+//! offset is mostly along the path, 1 mm at 50 mm/s and 50 1/s.
 
 use super::{Controller, Schedule};
 use crate::axis::inverse::AxisInverse;
@@ -32,20 +32,21 @@ use crate::axis::inverse::Gains;
 use crate::command::{Command, Measured};
 use crate::window::Window;
 
-/// Preview behind the command of the next servo period that the differences need, servo periods.
+/// Preview beyond the command of the next servo period that the differences need, servo periods.
 const DIFFERENCES: f64 = 3.0;
-/// The supervisor knows the path as far as the preview goes, and the command leads by the lag of
-/// the loop: this many lags leave room for a command that leads a slowing motion.
+/// Preview in lags of the loop. The supervisor knows the path only within the preview, and the
+/// command leads by the lag of the loop: three lags leave room for a command that leads a slowing
+/// motion.
 const PREVIEW_LAGS: f64 = 3.0;
-/// Of the `PREVIEW_KNOTS`; the others reach behind.
+/// Largest preview, out of the `PREVIEW_KNOTS`; the others reach behind.
 pub const MAX_PREVIEW: f64 = 240.0;
-/// Periods of friction that are kept for an observer: the longest delays of a machine file, 20 ms
-/// each way, at a servo period of 1 ms.
+/// Number of periods for which friction is kept for an observer: the longest delays of a machine
+/// file, 20 ms each way, at a servo period of 1 ms.
 const KEPT_PERIODS: usize = 48;
 
-/// Preview for a command that leads the path by the lag of a loop, servo periods.
+/// Returns the preview for a command that leads the path by the lag of a loop, servo periods.
 pub fn preview(lag_s: f64, servo_s: f64) -> u32 {
-    // A float that is too large, or not a number, saturates here.
+    // The cast saturates where the float is too large or NaN.
     libm::ceil(PREVIEW_LAGS * lag_s / servo_s + DIFFERENCES).min(MAX_PREVIEW) as u32
 }
 
@@ -55,13 +56,13 @@ pub struct Feedforward<const N: usize> {
     axes: [AxisInverse; N],
     gains: [Gains; N],
     preview: u32,
-    /// Friction that was made up for in the last periods, the newest first, mm/s of reference
+    /// Friction that was compensated in the last periods, the newest first, mm/s of reference
     /// speed.
     friction_mm_s: [[f64; N]; KEPT_PERIODS],
 }
 
 impl<const N: usize> Feedforward<N> {
-    /// For these axes, with so much of each part.
+    /// Creates the feedforward of these axes with these shares of each part.
     pub fn new(axes: [AxisInverse; N], gains: [Gains; N]) -> Self {
         let most = |of: fn(&AxisInverse) -> f64| axes.iter().map(of).fold(0.0, f64::max);
         let servo_s = axes
@@ -70,7 +71,7 @@ impl<const N: usize> Feedforward<N> {
             .fold(f64::INFINITY, f64::min);
         let late = libm::ceil(most(|axis| axis.command_delay_s() + axis.ahead_s()) / servo_s)
             .min(MAX_PREVIEW);
-        // A float that is not a number saturates to zero here.
+        // The cast saturates to zero where the float is NaN.
         let preview =
             (preview(most(AxisInverse::lag_s), servo_s) + late as u32).min(MAX_PREVIEW as u32);
         Self {
@@ -101,7 +102,7 @@ impl<const N: usize> Feedforward<N> {
             .zip(&mut lead_mm)
             .enumerate();
         for (i, ((((axis, gains), last_mm), load_mm_s), lead_mm)) in axes {
-            // Every axis has its reference, which the linker cannot see.
+            // Every axis has its reference. `get` avoids a panic that the linker could not remove.
             let at_mm = |after_s| at_mm(after_s).get(i).copied().unwrap_or_default();
             *lead_mm = axis.lead_mm(gains, at_mm, last_mm, load_mm_s);
         }
@@ -112,19 +113,20 @@ impl<const N: usize> Feedforward<N> {
         lead_mm
     }
 
-    /// The lead of the next servo period on the path, against a load, mm/s of reference speed.
+    /// Returns the lead of the next servo period on the path, against a load, mm/s of reference
+    /// speed.
     pub fn command_against(&mut self, window: &Window<'_, N>, load_mm_s: [f64; N]) -> Command<N> {
         let next_s = window.tau_s + window.feed_period_s;
         let at_mm = |after_s: f64| window.preview.at(next_s + after_s).position_mm;
         Command::straight(1.0, self.lead_mm(at_mm, window.offset_mm, load_mm_s))
     }
 
-    /// The part of the reference speed that makes up for Coulomb friction in the servo period at
-    /// whose start the position was that is measured now, mm/s.
+    /// Returns the part of the reference speed that compensates Coulomb friction in the servo
+    /// period that began at the position measured now, mm/s.
     pub fn friction_mm_s(&self) -> [f64; N] {
         core::array::from_fn(|i| {
             let axis = &self.axes[i];
-            // A float that is not a number saturates to zero here.
+            // The cast saturates to zero where the float is NaN.
             let age = libm::round(axis.late_s() / axis.law().periods.servo_s) as usize;
             let of_axes = self
                 .friction_mm_s

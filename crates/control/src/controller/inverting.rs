@@ -1,5 +1,5 @@
-//! What the controllers that invert the paper's identifier share: learn, invert, and turn the
-//! result into a command.
+//! Common part of the controllers that invert the paper's identifier: they learn, invert, and turn
+//! the result into a command.
 //!
 //! ```text
 //! F(0)(k)   = (P*(tau + T) - P*(tau)) / T
@@ -9,9 +9,8 @@
 //!
 //! Source: Lee, Cho and Jeon (2005), section 3 and Fig. 5. The anchoring of F(0) to the original
 //! path keeps P' from drifting: the part of F - F(0) along F(0) changes the speed, the part across
-//! it the offset P' - P*, and nothing else moves either. Over a horizon,
-//! [`InvertingSettings::knots`], each knot has its F(0) from the preview, all F are inverted
-//! together and the first is commanded.
+//! path keeps P' from drifting: the part of F - F(0) along F(0) changes the speed, and the part
+//! across it changes the offset P' - P*; both affect nothing else. Over a horizon,
 //!
 //! Departures: between two knots the command follows the path instead of its chord (at 50 mm/s, 10
 //! ms and a radius of 10 mm the chord alone misses the path by 3 um); rates and offsets are
@@ -47,13 +46,13 @@ pub struct InvertingSettings {
     pub tangential_leak: f64,
     /// Slowest and fastest the controller may run, as a multiple of the planned feedrate.
     pub rate_range: [f64; 2],
-    /// Whether another planner is told the rate and goes by it later: the path ahead is then what
-    /// will be commanded, and the rate is no part of this feed period.
+    /// True if another planner receives the rate and follows it later. The path ahead is then the
+    /// path that will be commanded, and the rate does not apply to this feed period.
     pub is_planned_elsewhere: bool,
 }
 
 impl InvertingSettings {
-    /// The paper's setting where it names one, the prototype's otherwise.
+    /// Settings of the paper where it states them, of the prototype otherwise.
     pub const DEFAULT: Self = Self {
         servo_periods: 10,
         knots: 1,
@@ -72,22 +71,21 @@ impl InvertingSettings {
     };
 }
 
-/// Below this planned feedrate, mm/s, the machine is held to the plan: at rest there is no
-/// direction to correct in.
+/// Planned feedrate below which the machine follows the plan, mm/s: at rest there is no direction
+/// for a correction.
 const MIN_FEED_MM_S: f64 = 0.05;
 
-/// Part of the offset along the path that is taken back in each feed period. Offsets are made
-/// across the path; where the path has turned since, what is left of them along it corrects
-/// nothing, and without this the tool would end a circle of 10 mm radius a tenth of a millimetre
-/// short.
+/// Part of the offset along the path that is taken back in each feed period. Offsets arise across
+/// the path. After a turn of the path, their part along it corrects nothing, and without this leak
+/// the tool would end a circle of 10 mm radius a tenth of a millimeter short.
 const TANGENTIAL_LEAK: f64 = 0.05;
 /// Part of the offset that is taken back in each feed period at rest: a tool at rest has no error
 /// to correct.
 const REST_LEAK: f64 = 0.3;
 
-/// How a controller inverts: the only thing in which the members differ.
+/// Method of inversion, in which the members of the family differ.
 pub trait Invert {
-    /// Improves the F(0) of one or more knots, scaled, in place. `inputs` are those of the first.
+    /// Improves the F(0) of one or more knots, scaled, in place. `inputs` belong to the first knot.
     fn invert<const N: usize, D: ContourModel<N>>(
         net: &D,
         inputs: &Inputs<N>,
@@ -97,7 +95,7 @@ pub trait Invert {
 }
 
 /// A controller that inverts an identifier of the contour error, usually the paper's. Between ticks
-/// it keeps the identifier, the delays, and what was asked for last.
+/// it keeps the identifier, the delays, and its last inputs.
 #[derive(Debug, Clone)]
 pub struct Inverting<const N: usize, I, D = ContourIdentifier<N>> {
     trained: D,
@@ -133,7 +131,7 @@ impl<const N: usize, I, D: ContourModel<N>> Inverting<N, I, D> {
         }
     }
 
-    /// Knots that are inverted together; all of them within the preview.
+    /// Returns the number of knots that are inverted together; all of them are within the preview.
     fn knots(&self) -> usize {
         let seen = PREVIEW_KNOTS / self.settings.servo_periods.max(1) as usize;
         self.settings.knots.min(seen).clamp(1, MAX_KNOTS)
@@ -156,9 +154,9 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
         self.trial = self.tried_response_s.map(CorrectionTrial::new);
     }
 
-    /// One step of back-propagation on the last command and its outcome, then both move into the
-    /// delays. In a trial, on the error that the whole correction would have left, and without the
-    /// step.
+    /// Does one step of back-propagation on the last command and its result, then moves both into
+    /// the delays. In a trial, the error is the one that the whole correction would have left, and
+    /// the step is zero.
     fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
         let Some(measured) = measured else { return };
         let error_mm = self
@@ -180,8 +178,8 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
             let error = error_mm.map(|e| e / D::ERROR_SCALE_MM);
             let cost = self.net.learn(&inputs, error, step);
             self.prediction_error_mm = D::ERROR_SCALE_MM * libm::sqrt(2.0 * cost);
-            // As every feedrate, this one comes in mm/s: the delays then hold what a recording of
-            // it would give.
+            // Like every feedrate, this one is converted to mm/s: the delays then hold the same
+            // values as from a recording.
             let feed_mm_s = inputs.map(|axis| axis[0] * FEED_SCALE_MM_S);
             self.delays.push(seen_feed(feed_mm_s), error);
         }
@@ -205,7 +203,7 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
 }
 
 impl<const N: usize, I: Invert, D: ContourModel<N>> Inverting<N, I, D> {
-    /// The command that goes on from an offset.
+    /// Returns the command that continues from an offset.
     fn wanted(&mut self, window: &Window<'_, N>, offset_mm: [f64; N]) -> Command<N> {
         let period_s = window.feed_period_s;
         let planned = scale(

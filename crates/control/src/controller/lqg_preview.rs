@@ -1,50 +1,50 @@
-//! The limit: linear-quadratic-Gaussian control with preview, by everything that can be known of
-//! the machine.
+//! The limit: linear-quadratic-Gaussian control with preview and complete knowledge of the machine.
 //!
 //! ```text
 //! v = v_r - G (x - x_r)        x by a Kalman filter, G of a linear-quadratic regulator, v_r the exact inverse along the reference ahead
 //! ```
 //!
-//! It knows what the peers know, and the statistics of the noise, the amplitude, the frequency and
-//! the wandering of the disturbance, cogging and interpolation error with their phases; the random
-//! numbers, and the phase of the disturbance, it does not. It decides in every servo period, within
-//! it. Nobody has all this: it says how much of an error nobody can take away.
+//! It knows the model that the other controllers know, and also the statistics of the noise, the
+//! amplitude, frequency and wander of the disturbance, and cogging and interpolation error with
+//! their phases. It does not know the random numbers and the phase of the disturbance. It decides
+//! in every servo period, within it. No real controller has all this knowledge: the result shows
+//! the part of an error that no controller can remove.
 //!
-//! What acts at the motor is the reference speed v of the speed loop: the command is solved for it,
-//! with the position that is measured, so that noise goes through the position loop only as far as
-//! the filter lets it. v_r carries friction (stepped from where it is estimated to be), cogging,
-//! the integral of the speed loop, and what the reference needs,
-//! [`reference_mm_s`](crate::axis::inverse::AxisInverse::reference_mm_s). The regulator is that of
-//! the axis without integral and filter; the loads that the filter finds are among its states.
-//! Ripple is in the estimate and not in v_r. Where the ball screw gives, it is the table that is
-//! held on the reference: the motor's is ahead by the twist, and both masses are states.
+//! The reference speed v of the speed loop acts at the motor: the command is solved for it with the
+//! measured position, so that noise passes the position loop only as far as the filter permits. v_r
+//! carries friction (stepped from its estimated state), cogging, the integral of the speed loop,
+//! and the need of the reference,
+//! [`reference_mm_s`](crate::axis::inverse::AxisInverse::reference_mm_s). The regulator is designed
+//! for the axis without integral and filter; the loads that the filter finds are among its states.
+//! Ripple is in the estimate and not in v_r. With a compliant ball screw, the table is held on the
+//! reference: the motor leads its reference by the twist, and both masses are states.
 //!
-//! Where the position loop is in the drive, it has a command n servo periods late. The axis then
-//! first looks ahead by these n periods, by the law and the commands on their way, and decides for
-//! the moment at which the position loop has the command. The tool is behind the plan by n servo
-//! periods more, as it is without any correction.
+//! A position loop in the drive has a command n servo periods late. The axis then first predicts
+//! these n periods, by the model and the commands on their way, and decides for the time at which
+//! the position loop has the command. The tool lags by n more servo periods, as it does without any
+//! correction.
 //!
-//! | File | What |
+//! | File | Content |
 //! |---|---|
 //! | `lqg_preview/control_weight.rs` | control weight and bounds of the offset |
 //! | `lqg_preview/riccati.rs` | the gains |
-//! | `lqg_preview/linear.rs` | the linear part of an axis and of what acts on it |
+//! | `lqg_preview/linear.rs` | the linear part of an axis and of its loads |
 //! | `lqg_preview/command_weight.rs` | a regulator whose command is quiet |
-//! | `lqg_preview/screw.rs` | where the motor has to be behind a ball screw that gives |
-//! | `lqg_preview/approach.rs` | the way back of a tool that is far off, with no more than there is for it |
-//! | `lqg_preview/feasible.rs` | whether there is torque for the reference ahead |
-//! | `lqg_preview/outliers.rs` | measurements that cannot be true |
-//! | `lqg_preview/whiteness.rs` | how much of what is measured the filter believes |
+//! | `lqg_preview/screw.rs` | position of the motor on a compliant ball screw |
+//! | `lqg_preview/approach.rs` | the way back of a tool that is far off, within the available control authority |
+//! | `lqg_preview/feasible.rs` | check of the torque for the reference ahead |
+//! | `lqg_preview/outliers.rs` | implausible measurements |
+//! | `lqg_preview/whiteness.rs` | weight of the measurements in the filter |
 //! | `lqg_preview/estimate.rs` | the filter |
-//! | `lqg_preview/learning.rs` | what the law gets wrong, learned while the axis moves |
+//! | `lqg_preview/learning.rs` | model errors, learned while the axis moves |
 //! | `lqg_preview/regulated_axis.rs` | an axis: filter, regulator and inverse |
 //!
 //! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, chapters 7 and 8;
 //! Tomizuka and Rosenthal (1979), "On the optimal digital state vector feedback controller with
 //! integral and preview actions".
 //!
-//! Departures: the part of the preview is the inverse of the known law, with which a reference is
-//! followed at no cost.
+//! Departures: the preview part is the inverse of the known model, which follows a reference at no
+//! cost.
 
 mod control_weight;
 mod riccati;
@@ -74,14 +74,14 @@ use regulated_axis::AxisLqg;
 pub use control_weight::{IDENTIFIED_WEIGHT, LqgSettings, OffsetBounds};
 pub use regulated_axis::LqgGains;
 
-/// Servo periods beyond the command that the inverse looks at.
+/// Servo periods beyond the command that the inverse evaluates.
 const DIFFERENCES: f64 = 3.0;
 
-/// An offset that differs by less from what was asked for is that, mm.
+/// Difference from the requested offset up to which an offset counts as followed, mm.
 const FOLLOWED_MM: f64 = 1e-4;
 
-/// For so long a lost position is taken to be as the law says, s: a free run of it. Where it is
-/// there again and further from that, mm, everything begins anew.
+/// Time for which a lost position is predicted by a free run of the model, s, and the distance from
+/// the prediction, mm, beyond which everything begins anew when the position returns.
 const FORESEEN_S: f64 = 0.03;
 const FORESEEN_MM: f64 = 0.05;
 
@@ -89,22 +89,22 @@ const FORESEEN_MM: f64 = 0.05;
 #[derive(Debug, Clone)]
 pub struct LqgPreview<const N: usize> {
     axes: [AxisLqg; N],
-    /// By how much the tool is to be behind the plan, s.
+    /// Lag of the tool behind the plan, s.
     lag_s: f64,
     preview: u32,
-    /// Where the law may be wrong.
+    /// Validity of the model; `None` if the model is exact.
     validity: Option<Validity<N>>,
-    /// What the laws have yet to show on this machine.
+    /// Test of the models before their first use on this machine.
     first_use: Option<FirstUse>,
     feasibility: Feasibility,
-    /// The offset that was asked for last, mm.
+    /// The last requested offset, mm.
     asked_mm: [f64; N],
-    /// For how long the position has been lost, s.
+    /// Time since the position was lost, s.
     lost_s: f64,
 }
 
 impl<const N: usize> LqgPreview<N> {
-    /// For a machine of which all this is known.
+    /// Creates the controller of a machine with this knowledge of its axes.
     pub fn new(known: [AxisKnowledge; N], settings: LqgSettings) -> Self {
         let axes = known.map(|axis| AxisLqg::new(axis, settings));
         let preview_knots = |axis: &AxisLqg| preview(axis.ahead_s(), axis.law().periods.servo_s);
@@ -123,13 +123,14 @@ impl<const N: usize> LqgPreview<N> {
         }
     }
 
-    /// Another machine may be there.
+    /// Forgets the machine: another one may be present.
     pub fn forget_machine(&mut self) {
         self.reset();
         self.first_use.iter_mut().for_each(FirstUse::forget);
     }
 
-    /// What the laws alone miss, and what there is to correct, mm^2, in motion.
+    /// Returns the squared error of the models alone and the squared error to correct, mm^2; `None`
+    /// at rest.
     fn seen_alone_mm2(&self, window: &Window<'_, N>, position_mm: [f64; N]) -> Option<[f64; 2]> {
         let mut seen_mm2 = [0.0; 2];
         for (i, (axis, position_mm)) in self.axes.iter().zip(position_mm).enumerate() {
@@ -145,17 +146,17 @@ impl<const N: usize> LqgPreview<N> {
         (window.now().feed_mm_s > 0.0).then_some(seen_mm2)
     }
 
-    /// Holds offsets to other bounds from now on.
+    /// Changes the bounds of the offsets.
     pub fn hold_to(&mut self, bounds: OffsetBounds) {
         self.axes.iter_mut().for_each(|axis| axis.hold_to(bounds));
     }
 
-    /// Of each axis, near the reference.
+    /// Returns the gains of each axis near the reference.
     pub fn gains(&self) -> [LqgGains; N] {
         self.axes.each_ref().map(AxisLqg::gains)
     }
 
-    /// A servo period without a position.
+    /// Predicts a servo period without a position.
     fn foresee(&mut self, window: &Window<'_, N>) {
         self.lost_s += window.feed_period_s;
         if self.lost_s > FORESEEN_S {
@@ -173,19 +174,19 @@ impl<const N: usize> LqgPreview<N> {
         self.asked_mm = [0.0; N];
     }
 
-    /// Begins anew where the position was lost.
+    /// Begins anew after the position was lost.
     fn begin_anew(&mut self) {
         self.axes.iter_mut().for_each(AxisLqg::begin_anew);
         self.know_nothing();
     }
 
-    /// Forgets what was known of the laws, and of the reference.
+    /// Forgets the results on the models and on the reference.
     fn know_nothing(&mut self) {
         self.validity.iter_mut().for_each(Validity::forget);
         (self.feasibility, self.asked_mm, self.lost_s) = (Feasibility::FOLLOWED, [0.0; N], 0.0);
     }
 
-    /// By how much the last position was not expected, mm.
+    /// Returns the distance between the last position and its prediction, mm.
     fn missed_mm(&self) -> f64 {
         norm(
             self.axes
@@ -194,7 +195,7 @@ impl<const N: usize> LqgPreview<N> {
         )
     }
 
-    /// Takes in what comes to be known of the reference.
+    /// Takes in the next part of the reference.
     fn look_ahead(&mut self, window: &Window<'_, N>) {
         let servo_s = window.servo_s();
         let end_s = f64::from(self.preview) * servo_s;
@@ -208,7 +209,7 @@ impl<const N: usize> LqgPreview<N> {
             .take_in(beyond, end_s + self.lag_s, servo_s);
     }
 
-    /// Speed of the machine on the path, so far behind it, mm/s.
+    /// Returns the speed of the path at the lag of the machine, mm/s.
     fn lagging_mm_s(&self, window: &Window<'_, N>) -> [f64; N] {
         let behind_mm = [-self.lag_s, -self.lag_s - window.servo_s()]
             .map(|after_s| window.at(after_s).position_mm);
@@ -233,8 +234,8 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         self.know_nothing();
     }
 
-    /// Without a position for longer than it can be foreseen it begins anew: what the tool does
-    /// meanwhile nobody knows.
+    /// Begins anew where the position is lost for longer than it can be predicted: the motion of
+    /// the tool is then unknown.
     fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
         let position_mm = measured
             .map(|measured| measured.position_mm)
@@ -319,7 +320,7 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         }
     }
 
-    /// Infinite where the law is wrong, or no command follows it.
+    /// Returns infinity if the model is wrong, or if no command can follow the drive.
     fn prediction_error_mm(&self) -> f64 {
         let is_followed = self.axes.iter().all(|axis| axis.known().is_followed());
         if self
@@ -362,7 +363,7 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         self.look_ahead(window);
         let open = self.feasibility.open();
         for (i, (axis, offset_mm)) in self.axes.iter_mut().zip(&mut offset_mm).enumerate() {
-            // There is an i-th axis; the compiler is not to leave a panic for where there is none.
+            // The i-th element exists. `get` avoids a panic that the compiler would leave in.
             let of_axis = |position_mm: [f64; N]| position_mm.get(i).copied().unwrap_or(0.0);
             let late_s = axis.command_delay_s();
             let at_mm = |after_s: f64| of_axis(window.at(after_s + late_s - lag_s).position_mm);

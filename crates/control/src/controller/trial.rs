@@ -1,9 +1,9 @@
 //! The trial of a correction: it enters the loop when the measured errors show that it helps, and
 //! leaves when they show harm.
 //!
-//! Out of the loop the controller decides on an offset that nobody commands. What it would leave
-//! follows from the measured error and the linear servo G. Its lag L is the time by which the tool
-//! is behind, its response M what is known of the speed loop:
+//! Outside the loop the controller decides on an offset that is not commanded. The error that it
+//! would leave follows from the measured error and the linear servo G. Its lag L is the time by
+//! which the tool lags, its response M is known of the speed loop:
 //!
 //! ```text
 //! G        = 1 / (1 + L s + L M s^2)
@@ -15,11 +15,11 @@
 //!
 //! with the squares summed over a block of decisions. If the correction does not help, that is if r
 //! has no positive mean given the past, W reaches 1/alpha with probability alpha at most (Ville
-//! 1939). So a wrong gain or a wrong sign enters the loop with that probability. Each further trial
+//! 1939). A wrong gain or a wrong sign therefore engages with that probability. Each further trial
 //! has half of alpha; all trials of a cut together err with at most 2 alpha.
 //!
-//! While W grows from 1 to 1/alpha, the share `ln W / ln(1/alpha)` of the offset is commanded.
-//! Behind that all of it is.
+//! While W grows from 1 to 1/alpha, the share `ln W / ln(1/alpha)` of the offset is commanded, and
+//! after that all of it.
 //!
 //! In the loop the same bet is made on r < 0, decision by decision, with its wealth held above 1 (a
 //! CUSUM, Page 1954). If it reaches 1/alpha, the offset goes back to the path and the next trial
@@ -29,8 +29,8 @@
 //! betting".
 //!
 //! Departures: errors of successive blocks are correlated through G. A block is as long as the time
-//! constant of a usual position loop, so that a third of what was in the last block is left in it.
-//! The error rate is therefore nominal.
+//! constant of a usual position loop, so that a third of the last block remains in it. The error
+//! rate is therefore nominal.
 
 use super::{Command, Measured};
 use crate::vector::{add_scaled, bounded, dot, norm, reject, scale, sub};
@@ -44,14 +44,14 @@ const BET: f64 = 0.9;
 const BLOCK: u32 = 2;
 /// Errors below this are noise, mm.
 const NOISE_MM: f64 = 1e-3;
-/// Largest change of the share that is commanded, per decision: all of it enters within four.
+/// Largest change of the commanded share per decision: the full correction enters within four.
 const SHARE_STEP: f64 = 0.25;
-/// An offset that differs by more from what was asked for was not followed, mm.
+/// Difference from the requested offset beyond which it was not followed, mm.
 const FOLLOWED_MM: f64 = 0.01;
-/// A wanted correction that would leave this many times the error without it begins anew.
+/// Ratio to the error without the correction beyond which a wanted correction begins anew.
 const HOPELESS: f64 = 4.0;
 
-/// An offset as the tool has felt it: `x'' = (o - x - L x') / (L M)`.
+/// An offset as it moves the tool: `x'' = (o - x - L x') / (L M)`.
 #[derive(Debug, Clone, Copy)]
 struct FeltOffset<const N: usize> {
     last_mm: [f64; N],
@@ -66,7 +66,7 @@ impl<const N: usize> FeltOffset<N> {
         felt_mm_s: [0.0; N],
     };
 
-    /// Goes on by a feed period at whose end the offset is `offset_mm`, in implicit steps of a
+    /// Advances by a feed period at whose end the offset is `offset_mm`, in implicit steps of a
     /// servo period.
     fn go_on(
         &mut self,
@@ -75,7 +75,7 @@ impl<const N: usize> FeltOffset<N> {
         [lag_s, response_s]: [f64; 2],
     ) {
         let step_s = window.servo_s();
-        // A float that is not a number saturates to zero here.
+        // The cast saturates to zero where the float is NaN.
         let steps = libm::round(window.feed_period_s / step_s).max(1.0) as u32;
         let change_mm = scale(1.0 / f64::from(steps), sub(offset_mm, self.last_mm));
         let denominator_s2 = lag_s * response_s + lag_s * step_s + step_s * step_s;
@@ -98,12 +98,14 @@ pub(super) struct CorrectionTrial<const N: usize> {
     wanted_mm: [f64; N],
     /// M, s.
     response_s: f64,
-    /// Part of the wanted offset that is commanded, and whether that grows.
+    /// Share of the wanted offset that is commanded; `engaged`: true if the correction has passed
+    /// its trial.
     share: f64,
     engaged: bool,
     commanded: FeltOffset<N>,
     wanted: FeltOffset<N>,
-    /// Squares of the block under way, without the correction and with it, mm^2, and its decisions.
+    /// Sums of squares of the present block, without the correction and with it, mm^2, and its
+    /// decisions.
     block_mm2: [f64; 2],
     decisions: u32,
     help: f64,
@@ -112,7 +114,7 @@ pub(super) struct CorrectionTrial<const N: usize> {
 }
 
 impl<const N: usize> CorrectionTrial<N> {
-    /// Before a program, on axes whose speed loops respond within `response_s`.
+    /// Creates the trial before a program, for axes whose speed loops respond within `response_s`.
     pub(super) const fn new(response_s: f64) -> Self {
         Self {
             wanted_mm: [0.0; N],
@@ -129,22 +131,22 @@ impl<const N: usize> CorrectionTrial<N> {
         }
     }
 
-    /// The offset that the next decision goes on from, mm.
+    /// Returns the offset from which the next decision continues, mm.
     pub(super) fn wanted_mm(&self) -> [f64; N] {
         self.wanted_mm
     }
 
-    /// Whether all of the correction is commanded.
+    /// Returns true if the full correction is commanded.
     pub(super) fn is_whole(&self) -> bool {
         self.engaged && self.share >= 1.0
     }
 
-    /// Takes in a measurement; the error that the whole correction would have left, mm.
+    /// Takes in a measurement. Returns the error that the full correction would have left, mm.
     pub(super) fn observe(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> [f64; N] {
         let error_mm = measured.contour.vector_mm;
         let off_mm = norm(sub(window.offset_mm, scale(self.share, self.wanted_mm)));
         if off_mm > FOLLOWED_MM {
-            // Someone else took the correction out.
+            // The correction was removed outside the trial.
             self.begin_anew(window.offset_mm);
         } else if self.is_whole() {
             self.wanted_mm = window.offset_mm;
@@ -173,7 +175,7 @@ impl<const N: usize> CorrectionTrial<N> {
         with_mm
     }
 
-    /// The command that is given for the wanted one.
+    /// Returns the command for the wanted one.
     pub(super) fn follow(&mut self, wanted: Command<N>) -> Command<N> {
         self.wanted_mm = wanted.offset_mm;
         let grown = libm::log(self.help.max(1.0)) / libm::log(self.enough);
@@ -188,8 +190,8 @@ impl<const N: usize> CorrectionTrial<N> {
         )
     }
 
-    /// Bets on a decision: the squares of the errors without the correction, with all of it, and as
-    /// it is.
+    /// Bets on a decision: the squares of the errors without the correction, with the full
+    /// correction, and as measured.
     fn judge(&mut self, open_mm2: f64, with_mm2: f64, now_mm2: f64) {
         let gained = |open_mm2: f64, with_mm2: f64| {
             (open_mm2 - with_mm2) / (open_mm2 + with_mm2 + NOISE_MM * NOISE_MM)
@@ -218,7 +220,7 @@ impl<const N: usize> CorrectionTrial<N> {
         }
     }
 
-    /// From an offset that is commanded, with no evidence.
+    /// Begins anew from a commanded offset, without evidence.
     fn begin_anew(&mut self, offset_mm: [f64; N]) {
         self.engaged = false;
         (self.share, self.help) = (0.0, self.help.min(1.0));

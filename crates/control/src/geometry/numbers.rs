@@ -1,4 +1,4 @@
-//! A geometry as numbers in a row, as a model block has it.
+//! A geometry as a sequence of numbers, as in a model block.
 //!
 //! | Numbers | What |
 //! |---|---|
@@ -12,7 +12,7 @@
 use super::{AxisErrors, ErrorTable, GeometryFault, KnownGeometry, TABLE_POINTS};
 
 impl<const N: usize> KnownGeometry<N> {
-    /// Hands over its numbers in their order.
+    /// Passes its numbers to `each` in their order.
     pub(crate) fn numbers(&self, mut each: impl FnMut(f64)) {
         for axis in &self.axes {
             let AxisErrors {
@@ -36,11 +36,11 @@ impl<const N: usize> KnownGeometry<N> {
         }
     }
 
-    /// The geometry of the numbers that `next` returns, one after another, and whether it can be
-    /// compensated.
+    /// Reads a geometry from the numbers that `next` returns, one after another. The inner result
+    /// states whether it can be compensated.
     ///
     /// # Errors
-    /// The first error of `next`.
+    /// Returns the first error of `next`.
     pub(crate) fn from_numbers<E>(
         mut next: impl FnMut() -> Result<f64, E>,
     ) -> Result<Result<Self, GeometryFault>, E> {
@@ -59,7 +59,7 @@ impl<const N: usize> KnownGeometry<N> {
         found.squareness_rad = [next()?, next()?, next()?];
         for table in found.tables.as_flattened_mut() {
             let count = next()?;
-            // A float that is not a number, or below zero, saturates to 0.
+            // The cast saturates to zero where the float is negative or NaN.
             let points = count as usize;
             if points as f64 != count || points > TABLE_POINTS {
                 return Ok(Err(GeometryFault::Points(points)));

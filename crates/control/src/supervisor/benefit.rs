@@ -1,14 +1,13 @@
-//! Whether the correction does any good: the contour error as it is against what it would be
-//! without.
+//! Compares the contour error with the error that the tool would have without the correction.
 //!
 //! ```text
-//! eps: of the tool p     eps_open: of p - g     g: by how much the offset has moved the tool
+//! eps: error of the tool p     eps_open: error of p - g     g: displacement of the tool by the offset
 //! ```
 //!
-//! g is the controller's own, from its model; of one without a model, the offset behind a lag of
-//! first order with the time by which the tool is behind. Both errors are taken as mean squares and
-//! as largest values over the last [`MEMORY_S`]. The model may be wrong by some per cent, so that g
-//! is no better than that: harm counts where it is beyond doubt.
+//! g comes from the controller's model. For a controller without a model it is the offset after a
+//! first-order lag, with the time by which the tool lags. Both errors are compared as mean squares
+//! and as largest values over the last [`MEMORY_S`]. The model may be wrong by some percent, and g
+//! with it: harm counts only beyond that margin.
 
 use crate::command::FaultEvidence;
 use crate::contour_error::{ContourError, locate};
@@ -17,19 +16,21 @@ use crate::window::Window;
 
 /// Time over which errors are compared, s: longer than a corner, shorter than a scrapped part.
 const MEMORY_S: f64 = 0.25;
-/// Harm in the mean square: beyond this many times that without, and this much, mm^2 (5 um).
+/// Harm in the mean square: the error is beyond this many times the error without the correction,
+/// plus this much, mm^2 (5 um).
 const CERTAIN: f64 = 1.5;
 const MIN_MM2: f64 = 2.5e-5;
-/// Harm in a single error: beyond this many times the largest without, and this much, mm.
+/// Harm in a single error: it is beyond this many times the largest error without the correction,
+/// plus this much, mm.
 const CERTAIN_PEAK: f64 = 1.5;
 const MIN_PEAK_MM: f64 = 0.03;
-/// Part by which g may be wrong.
+/// Relative error of g that is tolerated.
 const DOUBT: f64 = 0.1;
-/// As those, for a g that is only a guess.
+/// Limits of the mean square where g is only a guess: the factor, and the constant part, mm^2.
 const GUESSED: f64 = 2.0;
 const GUESSED_MM2: f64 = 1e-4;
 
-/// Errors lately, as they are and without the correction.
+/// Recent errors, measured and without the correction.
 #[derive(Debug, Clone)]
 pub(super) struct Benefit<const N: usize> {
     filtered_mm: [f64; N],
@@ -37,7 +38,7 @@ pub(super) struct Benefit<const N: usize> {
     square_mm2: f64,
     open_square_mm2: f64,
     open_peak_mm: f64,
-    /// Without the correction, at the last decision, mm.
+    /// Error without the correction at the last decision, mm.
     open_mm: f64,
 }
 
@@ -51,13 +52,13 @@ impl<const N: usize> Benefit<N> {
         open_mm: 0.0,
     };
 
-    /// Contour error that there would be without the correction, mm.
+    /// Returns the contour error without the correction, mm.
     pub(super) fn open_mm(&self) -> f64 {
         self.open_mm
     }
 
-    /// Takes in the error at a decision; `moved_mm` is g, where the controller knows it. What is
-    /// harm, if anything is: the root mean square, or a single error.
+    /// Takes in the error at a decision; `moved_mm` is g, where the controller knows it. Returns
+    /// the harm, if there is any: the root mean square, or a single error.
     pub(super) fn harm(
         &mut self,
         window: &Window<'_, N>,
@@ -70,7 +71,7 @@ impl<const N: usize> Benefit<N> {
         let reach = contour.index.saturating_neg();
         let open = locate(window, open_mm, contour.index, reach);
         let part = (window.feed_period_s / MEMORY_S).min(1.0);
-        // On a rapid nothing is cut, and nothing is harm.
+        // A rapid cuts nothing, so no error on it is harm.
         let vector_mm = if window.knot(contour.index).cutting {
             contour.vector_mm
         } else {
@@ -111,7 +112,8 @@ impl<const N: usize> Benefit<N> {
     fn guessed_mm(&mut self, window: &Window<'_, N>, contour: &ContourError<N>) -> [f64; N] {
         let period_s = window.feed_period_s;
         let lag_s = f64::from((-contour.index).max(0)) * window.servo_s();
-        // The tool has felt the offset of the feed period that ends, not the one that it ends with.
+        // The tool has followed the mean offset of the feed period that ends, not the offset at its
+        // end.
         let felt = scale(0.5, add_scaled(window.offset_mm, 1.0, self.last_mm));
         self.last_mm = window.offset_mm;
         let change = sub(felt, self.filtered_mm);
@@ -129,14 +131,14 @@ mod tests {
     const SERVO_S: f64 = 0.001;
     const PERIOD_S: f64 = 0.003;
 
-    /// Harm after a second in which the tool is at `error_mm` beside the path, and the offset has
-    /// moved it by `moved_mm`.
+    /// Returns true if there is harm after a second in which the tool is `error_mm` beside the path
+    /// and the offset has moved it by `moved_mm`.
     fn after_a_second(error_mm: f64, moved_mm: f64) -> bool {
         after(1000, |_| [error_mm, moved_mm])
     }
 
-    /// Harm after so many servo periods; in each the tool is `place_mm[0]` beside the path, and the
-    /// offset has moved it by `place_mm[1]`, mm.
+    /// Returns true if there is harm after `periods` servo periods. In each the tool is
+    /// `place_mm[0]` beside the path, and the offset has moved it by `place_mm[1]`, mm.
     fn after(periods: u32, place_mm: impl Fn(u32) -> [f64; 2]) -> bool {
         let (mut register, mut preview) = (Register::default(), Preview::new(SERVO_S));
         let mut benefit = Benefit::NONE;
@@ -173,7 +175,7 @@ mod tests {
 
     #[test]
     fn harm_is_an_error_that_is_clearly_larger_than_without_the_correction() {
-        // 0.05 mm with it, nothing without; then the other way round; then hardly different.
+        // 0.05 mm with the correction, 0 without; then the reverse; then hardly different.
         assert!(after_a_second(0.05, 0.05));
         assert!(!after_a_second(0.0, -0.05));
         assert!(!after_a_second(0.01, 0.001));

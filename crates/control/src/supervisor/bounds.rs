@@ -1,61 +1,62 @@
-//! What every command is held to, whoever asks for it.
+//! Bounds of every command, for every controller.
 //!
-//! | Bound | Of what | Value |
+//! | Bound | Quantity | Value |
 //! |---|---|---|
-//! | deviation | distance of the command from the path; it goes before the others | of the machine |
-//! | speed | of the offset | that of a rapid motion |
-//! | acceleration | of the offset, and of the feed against the plan | the speed within [`TAKE_UP_S`] |
-//! | rate | of plan time | [`SLOWEST`] to [`FASTEST`], or what the feed may rise by |
+//! | deviation | distance of the command from the path; it has priority over the others | set for the machine |
+//! | speed | speed of the offset | the speed of a rapid motion |
+//! | acceleration | acceleration of the offset, and of the feed against the plan | the speed within [`TAKE_UP_S`] |
+//! | rate | rate of plan time | [`SLOWEST`] to [`FASTEST`], or the permitted rise of the feed |
 //!
-//! An offset along the path is none from the path. The path is known as chords between the knots of
-//! the window.
+//! An offset along the path does not count as a deviation. The path is known as chords between the
+//! knots of the window.
 
 use crate::command::Command;
 use crate::contour_error::locate;
 use crate::vector::{add_scaled, bounded, dot, limit_norm, norm, scale, sub};
 use crate::window::Window;
 
-/// Slowest that any controller may run the plan: a program always ends.
+/// Slowest rate at which a controller may run the plan: a program always ends.
 const SLOWEST: f64 = 0.1;
-/// Fastest where nobody says otherwise: no command leaps.
+/// Fastest rate without another setting: no command leaps.
 const FASTEST: f64 = 3.0;
-/// Time in which the correction may take up the highest speed it is allowed, s. Feedforward of the
-/// exact model takes as little at a corner; of what leaps more, no machine could follow any.
+/// Time in which the correction may reach its highest speed, s. Feedforward of the exact model
+/// takes as little at a corner; no machine could follow a command that leaps more.
 const TAKE_UP_S: f64 = 0.001;
-/// An offset is braked with half of this part of the acceleration that is allowed: 2 is all of it.
+/// Braking of an offset: half of this part of the permitted acceleration; 2 is all of it.
 const BRAKES: f64 = 1.2;
-/// Parts of the way of the offset in a feed period at which its deviation is looked at.
+/// Parts of the motion of the offset in a feed period at which its deviation is checked.
 const ON_THE_WAY: [f64; 3] = [0.75, 0.5, 0.25];
-/// The bound of the deviation may move the command by this many times the highest speed of the
-/// offset.
+/// Factor on the highest speed of the offset with which the bound of the deviation may move the
+/// command.
 const MAX_TAKEN_BACK: f64 = 2.0;
-/// Offsets closer than this differ by rounding only, mm.
+/// Difference of offsets up to which they differ by rounding only, mm.
 const SAME_MM: f64 = 1e-12;
-/// Looks at the path, of eight knots to either side each, before the nearest point counts as found.
+/// Number of searches of the path, of eight knots to either side each, before the nearest point
+/// counts as found.
 const MAX_LOOKS: usize = 8;
 
-/// What the command is held to.
+/// Bounds of the command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
     /// Distance of the command from the path, mm.
     pub deviation_mm: f64,
     /// Speed of the offset, mm/s.
     pub speed_mm_s: f64,
-    /// Acceleration of the offset and, along the path, of the feed against the planned, mm/s2, of
-    /// any controller. Its jerk is bounded with it: the acceleration changes only from one feed
+    /// Acceleration of the offset and, along the path, of the feed against the planned feed, mm/s2,
+    /// for every controller. It also bounds the jerk: the acceleration changes only from one feed
     /// period to the next, by no more than twice this.
     pub acceleration_mm_s2: f64,
     /// Acceleration of an offset that fades, mm/s2.
     pub fade_mm_s2: f64,
-    /// Acceleration of each axis of an offset in the loop that is there at once, mm/s2.
+    /// Acceleration of each axis of an engaged offset that acts at once, mm/s2.
     pub engaged_mm_s2: f64,
-    /// Fastest that a controller may run the plan, as a part of its speed.
+    /// Fastest rate at which a controller may run the plan, as a part of its speed.
     pub fastest: f64,
 }
 
 impl Bounds {
-    /// For a machine whose rapid motions run at `rapid_mm_s` and whose corrections accelerate by
-    /// `correction_mm_s2`.
+    /// Creates the bounds of a machine whose rapid motions run at `rapid_mm_s` and whose
+    /// corrections accelerate by `correction_mm_s2`.
     pub fn new(deviation_mm: f64, rapid_mm_s: f64, correction_mm_s2: f64) -> Self {
         let acceleration_mm_s2 = rapid_mm_s / TAKE_UP_S;
         let fade_mm_s2 = correction_mm_s2;
@@ -69,8 +70,9 @@ impl Bounds {
         }
     }
 
-    /// The next step towards an offset that is due, within the owner's acceleration: as fast as it
-    /// can be braked there. What takes no more than that is followed to the bit.
+    /// Returns the next step toward a due offset within the acceleration that the machine's owner
+    /// allows: as fast as it can still be braked there. A step within this acceleration is followed
+    /// to the bit.
     pub(super) fn accelerated_mm<const N: usize>(
         &self,
         window: &Window<'_, N>,
@@ -93,7 +95,7 @@ impl Bounds {
         offset_mm
     }
 
-    /// With at most `percent` above the planned feedrate.
+    /// Limits the feedrate to `percent` above the planned one.
     pub fn feed_rise(self, percent: Option<f64>) -> Self {
         Self {
             fastest: percent.map_or(FASTEST, |percent| 1.0 + percent / 100.0),
@@ -101,9 +103,9 @@ impl Bounds {
         }
     }
 
-    /// The command within the bounds, `last_rate` being the rate until now. An offset that is there
-    /// at once is one from the path as it is now, any other from where it leads to in a feed
-    /// period.
+    /// Returns the command within the bounds; `last_rate` is the rate until now. An offset that
+    /// acts at once refers to the present point of the path, any other to the point of the path at
+    /// the end of the feed period.
     pub(super) fn hold<const N: usize>(
         &self,
         window: &Window<'_, N>,
@@ -119,8 +121,8 @@ impl Bounds {
             fastest,
             ..
         } = *self;
-        // One that acts at once may step as far in a shorter period as in the time in which a
-        // correction takes up its speed, and may stop at once.
+        // An offset that acts at once may step as far in a shorter period as in the time in which a
+        // correction reaches its speed, and may stop at once.
         let longer = if at_once {
             (TAKE_UP_S / period_s).max(1.0)
         } else {
@@ -143,7 +145,7 @@ impl Bounds {
             last_rate - step,
             last_rate + step,
         );
-        // Where nothing binds, the offset is the controller's to the bit.
+        // Where no bound acts, the offset equals the controller's to the bit.
         let free = add_scaled(window.offset_mm, period_s, velocity);
         let same = norm(sub(free, wanted.offset_mm)) <= SAME_MM;
         let offset_mm = if same { wanted.offset_mm } else { free };
@@ -156,7 +158,7 @@ impl Bounds {
         if same && near_mm == offset_mm {
             return Command { rate, ..wanted };
         }
-        // What the path takes back comes on top, but not without bound.
+        // The step back to the path adds to the motion of the offset, within a bound.
         let step_mm = limit_norm(
             sub(near_mm, window.offset_mm),
             MAX_TAKEN_BACK * longer * speed_mm_s * period_s,
@@ -164,9 +166,10 @@ impl Bounds {
         Command::straight(rate, add_scaled(window.offset_mm, 1.0, step_mm))
     }
 
-    /// The offset moves along a line, the path perhaps not: on the way it may be too far where
-    /// neither end is. Its end then moves towards the path, and the step is no longer than it may
-    /// be.
+    /// Keeps the deviation within its bound between the two ends of the motion. The offset moves
+    /// along a line and the path may curve: the command may be too far from the path on the way
+    /// even if it is not at either end. The end then moves toward the path, within the permitted
+    /// step.
     fn near_on_the_way<const N: usize>(
         &self,
         window: &Window<'_, N>,
@@ -196,8 +199,8 @@ impl Bounds {
     }
 }
 
-/// The offset `ahead_s` from now in plan time, taken back towards the path where the command would
-/// be further from it than `limit_mm`. An offset along the path is none from the path.
+/// Returns the offset `ahead_s` from now in plan time, moved back toward the path where the command
+/// would be farther from it than `limit_mm`. An offset along the path does not count as a distance.
 fn near_the_path<const N: usize>(
     window: &Window<'_, N>,
     ahead_s: f64,
@@ -208,7 +211,7 @@ fn near_the_path<const N: usize>(
         return offset_mm;
     }
     let next = window.preview.at(window.tau_s + ahead_s);
-    // Beyond the knots that the window holds nobody knows where the path is.
+    // The path is unknown beyond the knots of the window.
     let [oldest, farthest] = window.range();
     let known = window.knot(if dot(offset_mm, next.tangent) < 0.0 {
         oldest
@@ -219,8 +222,8 @@ fn near_the_path<const N: usize>(
     let offset_mm = limit_norm(offset_mm, known_mm.max(limit_mm));
     let command_mm = add_scaled(next.position_mm, 1.0, offset_mm);
     let lead_s = dot(offset_mm, next.tangent) / next.feed_mm_s;
-    // Near rest the lead says nothing, and the point of the same instant is on the path, too: what
-    // is found must be nearer.
+    // Near rest the lead is not meaningful, and the point of the same time is on the path, too: a
+    // result must be nearer than that.
     let guesses =
         [ahead_s + lead_s, ahead_s].map(|guess_s| way_to_the_path(window, command_mm, guess_s));
     let nearer = |a: [f64; N], b: [f64; N]| if norm(b) < norm(a) { b } else { a };
@@ -232,16 +235,18 @@ fn near_the_path<const N: usize>(
     add_scaled(offset_mm, too_far_mm / norm(back_mm), back_mm)
 }
 
-/// From a command to the nearest point of the path, looked for from a time after now on.
+/// Returns the vector from a command to the nearest point of the path. The search begins at a time
+/// from now.
 fn way_to_the_path<const N: usize>(
     window: &Window<'_, N>,
     command_mm: [f64; N],
     guess_s: f64,
 ) -> [f64; N] {
-    // A float that is too large, or not a number, saturates; the window clamps it.
+    // The cast saturates where the float is too large or NaN; the window clamps it.
     let near = libm::round(guess_s / window.servo_s()) as i32;
     let mut nearest = locate(window, command_mm, near, 0);
-    // Behind, the knots are as far apart as the rate made them, and the guess may be off.
+    // Behind the current knot, the distance of the knots depends on the past rate, and the guess
+    // may be off.
     for _ in 0..MAX_LOOKS {
         let again = locate(window, command_mm, nearest.index, 0);
         if again.index == nearest.index {

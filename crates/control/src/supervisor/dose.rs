@@ -1,60 +1,61 @@
-//! How much of an offset that is there at once is commanded.
+//! Commanded part of an offset that acts at once.
 //!
 //! ```text
-//! o = s(p) d c             c is what the controller asks for now, s(p) = 3 p^2 - 2 p^3
-//! p                        rises to 1 in the loop and falls to 0 out of it, in T = max(40 ms, sqrt(6 |o| / A)), A that of a fade
+//! o = s(p) d c             c is the present request of the controller, s(p) = 3 p^2 - 2 p^3
+//! p                        rises to 1 when engaged and falls to 0 when disengaged, in T = max(40 ms, sqrt(6 |o| / A)); A is the acceleration of a fade
 //! d <- d + Ts / 5 s (1 - d)      in an axis where o is followed
 //! d <- d - Ts / 5 ms d           where the owner's acceleration keeps the command from it
 //! ```
 //!
-//! p scales what is asked for now: an offset that was frozen and taken back would still be there
-//! after its corner has passed. On the way out o is no more than the way back of the last offset
-//! has (`supervisor/fade.rs`): what is asked for may be what does the harm.
+//! p scales the present request: an offset that was frozen and taken back would still act after its
+//! corner has passed. During disengagement o is at most the fade of the last offset
+//! (`supervisor/fade.rs`), because the request itself may do the harm.
 //!
-//! Where an axis goes by another law from now on, its d is 1 again, and stays that for 50 ms.
+//! Where an axis changes to another model, its d returns to 1, and stays there for 50 ms.
 //!
-//! d keeps the loop stable at the bound: a controller whose command is cut off asks for more and
-//! more, and the axis swings. With less of the offset the loop is that of the axis by itself, which
-//! is stable. A controller that asks for more than there is all the time ends where its offset just
-//! fits in.
+//! d keeps the loop stable at the bound: a controller whose command is cut off requests more and
+//! more, and the axis swings. With a smaller offset the loop approaches the loop of the axis
+//! without correction, which is stable. A controller that always requests more than the bound
+//! allows ends where its offset just fits.
 //!
-//! Source: s(p) is at most 6 o / T^2 steep in its slope; for d, the reduction of a gain at a bound,
-//! as in Hanus, Kinnaert and Henrotte (1987), "Conditioning technique, a general anti-windup and
+//! Source: o s(p) accelerates by at most 6 o / T^2; for d, the reduction of a gain at a bound, as
+//! in Hanus, Kinnaert and Henrotte (1987), "Conditioning technique, a general anti-windup and
 //! bumpless transfer method", Automatica 23(6), in a form of our own.
 
 use crate::vector::{bounded, norm, smooth_step};
 
-/// A correction that acts at once takes at least this long to come and to go, s: twice the time
+/// Shortest time in which a correction that acts at once engages or disengages, s: twice the time
 /// constant of a usual position loop.
 const LEAST_S: f64 = 0.04;
-/// An offset that is kept from what is due by no more than this is followed, mm: what is harm in
-/// the mean (`supervisor/benefit.rs`). With 2 um workshop leaves 8.9 um on the star in place of
-/// 0.29.
+/// Difference between the due and the commanded offset up to which the offset counts as followed,
+/// mm: the mean error that is harm (`supervisor/benefit.rs`). With 2 um, 8.9 um remain on the star
+/// on `workshop` in place of 0.29.
 const BEHIND_MM: f64 = 0.005;
-/// Times in which d falls and rises, s. What did not fit at the beginning of a block is small at
-/// its end, where it would have to vanish: with a rise in 2 s two of 24 cuts within a limit are
-/// worse than uncorrected, with this one is, by 2.4 um in its largest error
+/// Times in which d falls and rises, s. The part that did not fit at the beginning of a block is
+/// small at its end, where it would have to vanish: with a rise in 2 s two of 24 cuts within a
+/// limit are worse than uncorrected, with this rise one is, by 2.4 um in its largest error
 /// (`linuxcnc/servo/tests/property_acceleration_limit.rs`).
 const FALLS_S: f64 = 0.005;
 const RISES_S: f64 = 5.0;
-/// Time in which an axis takes up a law that it learned, s.
+/// Time in which an axis takes up a model that it learned, s.
 const SPARED_S: f64 = 0.05;
-/// A dose that is closer to all is all.
+/// Difference from 1 up to which a dose counts as 1.
 const ROUNDING: f64 = 1e-6;
 
-/// p and d.
+/// The factors p and d.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Dose<const N: usize> {
     part: f64,
     take_up_s: f64,
     dose: [f64; N],
-    /// Which axes go by what was learned, and for how long nothing is held against that, s.
+    /// True for each axis that follows a learned model, and the remaining time in which its d does
+    /// not fall, s.
     learned: [bool; N],
     spared_s: [f64; N],
 }
 
 impl<const N: usize> Dose<N> {
-    /// All of it.
+    /// The full offset.
     pub(super) const ALL: Self = Self {
         part: 1.0,
         take_up_s: LEAST_S,
@@ -63,8 +64,8 @@ impl<const N: usize> Dose<N> {
         spared_s: [0.0; N],
     };
 
-    /// An axis that goes by another law from now on begins anew: what did not fit was asked for by
-    /// a law that was wrong.
+    /// Sets d to 1 in each axis that changes to another model: the wrong model requested the offset
+    /// that did not fit.
     pub(super) fn learn(&mut self, learned: [bool; N]) {
         for axis in 0..N {
             if learned[axis] != self.learned[axis] {
@@ -74,13 +75,14 @@ impl<const N: usize> Dose<N> {
         self.learned = learned;
     }
 
-    /// The correction comes or goes from now on; the offset that it asks for is this, and its
-    /// acceleration is at most `fade_mm_s2` then.
+    /// Begins to engage or disengage the correction. Its requested offset is `asked_mm`, and its
+    /// acceleration stays within `fade_mm_s2`.
     pub(super) fn turn(&mut self, asked_mm: [f64; N], fade_mm_s2: f64) {
         self.take_up_s = libm::sqrt(6.0 * norm(asked_mm) / fade_mm_s2).max(LEAST_S);
     }
 
-    /// What of an offset is commanded a period later, in the loop or on the way out of it.
+    /// Returns the part of an offset that is commanded a period later, while the correction is
+    /// engaged or disengages.
     pub(super) fn of(&mut self, asked_mm: [f64; N], is_in: bool, period_s: f64) -> [f64; N] {
         let change = period_s / self.take_up_s;
         self.part = bounded(self.part + if is_in { change } else { -change }, 0.0, 1.0);
@@ -88,17 +90,17 @@ impl<const N: usize> Dose<N> {
         core::array::from_fn(|axis| part * self.dose[axis] * asked_mm[axis])
     }
 
-    /// Whether less than all is commanded at the bound.
+    /// Returns true if a bound reduces the offset.
     pub(super) fn is_reduced(&self) -> bool {
         self.dose.iter().any(|dose| *dose < 1.0)
     }
 
-    /// Nothing of it is commanded.
+    /// Commands no part of the offset.
     pub(super) fn none(&mut self) {
         self.part = 0.0;
     }
 
-    /// By how much the offset was kept from what was due in a period, mm.
+    /// Takes in the difference between the due and the commanded offset in a period, mm.
     pub(super) fn take_in(&mut self, behind_mm: [f64; N], period_s: f64) {
         for ((dose, spared_s), behind_mm) in
             self.dose.iter_mut().zip(&mut self.spared_s).zip(behind_mm)

@@ -1,57 +1,56 @@
-//! The live state machine: when a correction is in the loop, when it leaves, and when it comes
-//! back.
+//! The live state machine: when a correction engages, disengages, and engages again.
 //!
 //! ```text
 //! Shadow --good for the wait--> Engaged --bad--> Fading --offset at rest--> Shadow
 //! ```
 //!
-//! In Shadow and Fading the controller goes on deciding and learning, from what is commanded and
-//! measured, and nobody follows it. *Good* is a position that is there, predictions that hold with
-//! a margin (hysteresis), and a correction that would do no harm, for `GOOD_S` in a row. The first
-//! wait after a fault is `FIRST_WAIT_S`; each further one of the same making takes twice as long,
-//! and a correction that has held for `FORGIVEN_S` begins anew.
+//! In Shadow and Fading the controller continues to decide and to learn, from the actual commands
+//! and measurements, but its command is not used. *Good* means a valid position, predictions that
+//! hold with a margin (hysteresis), and a correction that would do no harm, for `GOOD_S` in a row.
+//! The first wait after a fault is `FIRST_WAIT_S`; each further wait for the same kind of fault
+//! takes twice as long, and after `FORGIVEN_S` without a fault the wait is the first one again.
 //!
 //! `GOOD_S` and `FORGIVEN_S` count only while the commanded path moves: a machine at rest confirms
 //! every model. Bad evidence counts at any time. A controller that was switched off without bad
-//! evidence comes back without new good evidence.
+//! evidence engages again without new good evidence.
 
 use crate::command::FaultEvidence;
 
-/// Predictions that hold for so long in a row are good, s of motion.
+/// Time for which predictions must hold in a row to be good, s of motion.
 const GOOD_S: f64 = 0.1;
-/// The least time out of the loop, s, at first and at the most.
+/// Shortest time out of the loop, s: the first wait and the longest wait.
 const FIRST_WAIT_S: f64 = 0.2;
 const LONGEST_WAIT_S: f64 = 3.2;
-/// Motion in the loop without a fault, s, after which earlier faults no longer count. Below, the
-/// next fault adds to them.
+/// Motion without a fault while engaged, s, after which earlier faults no longer count. Below it,
+/// the next fault adds to them.
 pub const FORGIVEN_S: f64 = 5.0;
 
-/// Where a correction is.
+/// State of a correction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum State {
-    /// It decides and nobody follows: the command is the path.
+    /// It decides, but its command is not used: the command is the path.
     Shadow,
-    /// It is in the loop.
+    /// It is engaged.
     Engaged,
-    /// It has left the loop, and its offset is on the way back to the path.
+    /// It was disengaged, and its offset returns to the path.
     Fading,
 }
 
-/// Why a controller was taken out of the loop.
+/// Reason why a controller was disengaged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cause {
-    /// Its command was not a number.
+    /// Its command was NaN or infinite.
     NotANumber,
-    /// The position was not a number, leapt, or stood still while the command went on.
+    /// The position was NaN, leaped, or stood still while the command moved.
     LostFeedback,
     /// Its predictions were wrong for several decisions in a row.
     WrongPredictions,
-    /// It made the contour error larger than it would have been without.
+    /// It made the contour error larger than the error without it.
     Harmful,
 }
 
 impl Cause {
-    /// In words, after "because".
+    /// Returns the cause in words, to follow "because".
     pub fn words(self) -> &'static str {
         match self {
             Self::NotANumber => "its command was not a number",
@@ -62,44 +61,44 @@ impl Cause {
     }
 }
 
-/// When and why a controller was taken out of the loop.
+/// Time and cause of a disengagement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fade {
-    /// Why.
+    /// Cause of the disengagement.
     pub cause: Cause,
-    /// What that rests on; none where nothing was compared.
+    /// Evidence for the cause; `None` where nothing was compared.
     pub evidence: Option<FaultEvidence>,
     /// Decisions made before it.
     pub decision: u64,
-    /// How often it has been taken out by then.
+    /// Number of disengagements, including this one.
     pub count: u32,
 }
 
-/// What a decision goes by.
+/// Inputs of a decision.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DecisionInputs {
-    /// Whether a correction is wanted at all.
+    /// True if a correction is wanted at all.
     pub(super) allowed: bool,
-    /// Why the controller must not be followed, and what that rests on.
+    /// Reason to disengage the controller, with its evidence.
     pub(super) bad: Option<(Cause, Option<FaultEvidence>)>,
-    /// Whether it may be followed again, and whether its offset has come to rest.
+    /// True if the controller may engage again; `over`: true if its offset has come to rest.
     pub(super) good: bool,
     pub(super) over: bool,
-    /// Whether the commanded path moves.
+    /// True if the commanded path moves.
     pub(super) moves: bool,
     /// Time since the last decision, s.
     pub(super) period_s: f64,
 }
 
-/// The state and what it follows.
+/// State of the engagement and its inputs.
 #[derive(Debug, Clone)]
 pub(super) struct Engagement {
     state: State,
     decisions: u64,
     /// The last fade.
     fade: Option<Fade>,
-    /// Time in the loop, or out of it, s; motion in the loop, and motion in which everything has
-    /// been good, s.
+    /// Time since the last change of the state, s; motion while engaged, and motion in which
+    /// everything was good, s.
     for_s: f64,
     held_s: f64,
     good_s: f64,
@@ -107,7 +106,7 @@ pub(super) struct Engagement {
 }
 
 impl Engagement {
-    /// At the start of a program: in the loop.
+    /// State at the start of a program: engaged.
     pub(super) const START: Self = Self {
         state: State::Engaged,
         decisions: 0,
@@ -126,7 +125,7 @@ impl Engagement {
         self.fade
     }
 
-    /// Goes on by a decision.
+    /// Takes in a decision and returns the new state.
     pub(super) fn go_on(&mut self, seen: &DecisionInputs) -> State {
         let DecisionInputs {
             allowed,

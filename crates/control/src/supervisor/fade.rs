@@ -4,22 +4,22 @@
 //! v(o) = min(o / T, sqrt(c A o))     a = (v - v(o)) / dt, at most A
 //! ```
 //!
-//! towards zero, in each axis: near the plan the offset decays with the time constant T, further
+//! toward zero, in each axis: near the plan the offset decays with the time constant T; farther
 //! away it brakes along the parabola that A allows, with a margin c.
 
 use crate::vector::bounded;
 
-/// T, s: twice that of a usual position loop, so that the tool follows without a transient of its
-/// own.
+/// T, s: twice the time constant of a usual position loop, so that the tool follows without a
+/// transient of its own.
 const TIME_S: f64 = 0.03;
-/// c: 2 is all that A allows.
+/// c: 2 uses all of A.
 const MARGIN: f64 = 1.2;
-/// An offset this small at this speed is none, mm and mm/s.
+/// Offset and speed below which a fade is over, mm and mm/s.
 const NONE_MM: f64 = 1e-6;
 const NONE_MM_S: f64 = 1e-3;
 
-/// The acceleration of the next period, mm/s^2, at most `most_mm_s2`, of an offset in one axis that
-/// fades to zero.
+/// Returns the acceleration of the next period, mm/s^2, at most `most_mm_s2`, of an offset in one
+/// axis that fades to zero.
 #[inline]
 pub fn fade_acceleration(offset_mm: f64, offset_mm_s: f64, period_s: f64, most_mm_s2: f64) -> f64 {
     let wanted_mm_s = wanted_mm_s(offset_mm, most_mm_s2);
@@ -30,7 +30,7 @@ pub fn fade_acceleration(offset_mm: f64, offset_mm_s: f64, period_s: f64, most_m
     )
 }
 
-/// The speed that an offset is to have on its way.
+/// Returns the speed of a fade at this offset.
 #[inline]
 fn wanted_mm_s(offset_mm: f64, most_mm_s2: f64) -> f64 {
     let distance_mm = offset_mm.abs();
@@ -38,8 +38,8 @@ fn wanted_mm_s(offset_mm: f64, most_mm_s2: f64) -> f64 {
     if offset_mm > 0.0 { -speed } else { speed }
 }
 
-/// The speed with which an offset begins its way that has come where it is in one step: that of the
-/// step is none that it has to go on with, unless it leads back to the plan and can be braked
+/// Returns the initial speed of the fade of an offset that was reached in one step. The fade need
+/// not continue at the speed of that step, unless the step leads back to the plan and can be braked
 /// there.
 #[inline]
 pub(super) fn begins_mm_s(offset_mm: f64, stepped_mm_s: f64, most_mm_s2: f64) -> f64 {
@@ -47,7 +47,7 @@ pub(super) fn begins_mm_s(offset_mm: f64, stepped_mm_s: f64, most_mm_s2: f64) ->
     bounded(stepped_mm_s, wanted_mm_s.min(0.0), wanted_mm_s.max(0.0))
 }
 
-/// Whether there is nothing left to fade.
+/// Returns true if the fade is over.
 #[inline]
 pub(super) fn is_over<const N: usize>(offset_mm: [f64; N], offset_mm_s: [f64; N]) -> bool {
     (0..N).all(|axis| offset_mm[axis].abs() < NONE_MM && offset_mm_s[axis].abs() < NONE_MM_S)

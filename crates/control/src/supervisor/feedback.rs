@@ -1,29 +1,30 @@
-//! Whether the measured position can be true: looked at in every servo period.
+//! Checks in every servo period whether the measured position is plausible.
 
 use crate::vector::{norm, sub};
 
-/// A position that has not changed at all for so long while the command moved is frozen, s.
+/// Time after which a position that does not change while the command moves is frozen, s.
 const FROZEN_S: f64 = 0.012;
-/// The command moves where it is so far from where it was when the position changed last, mm: what
-/// comes before breaks loose no tool. Its way does not count, but where it leads to: a correction
-/// that holds a tool back goes to and fro.
+/// Distance of the command from its place at the last change of the position beyond which it counts
+/// as moving, mm: less does not overcome the static friction of a machine. The distance counts, not
+/// the travel: a correction that holds a tool back moves to and fro.
 const STIRRED_MM: f64 = 0.02;
-/// So far has the command come by then, mm: the loop of a machine that follows at all has broken
-/// its tool loose, and moved it by more than an encoder step of a few micrometres.
+/// Distance of the command beyond which a position is frozen, mm: the loop of any machine that
+/// follows has then overcome its friction and moved the tool by more than an encoder step of a few
+/// micrometers.
 const FROZEN_MM: f64 = 0.12;
-/// No tool moves faster than this many times the highest speed.
+/// Factor on the highest speed that no tool exceeds.
 const LEAP: f64 = 2.0;
 
-/// What was measured lately.
+/// Recent measurements.
 #[derive(Debug, Clone)]
 pub(crate) struct Feedback<const N: usize> {
-    /// The last position that can be true, mm, and how many servo periods ago that was.
+    /// Last plausible position, mm, and the servo periods since then.
     last_mm: Option<[f64; N]>,
     since: u32,
-    /// How long it has not changed, s, and where the command was when it did, mm.
+    /// Time without a change of the position, s, and the place of the command when that began, mm.
     still_s: f64,
     commanded_mm: Option<[f64; N]>,
-    /// Whether a servo period since the last decision had no true position.
+    /// True if a servo period since the last decision had no plausible position.
     lost: bool,
 }
 
@@ -59,7 +60,7 @@ impl<const N: usize> Feedback<N> {
         if there && moved_mm > 0.0 {
             (self.still_s, self.commanded_mm) = (0.0, None);
         }
-        // One that comes to where the tool rests goes no further.
+        // A command that comes to the place where the tool rests goes no farther.
         let since_mm = norm(sub(
             command_mm,
             *self.commanded_mm.get_or_insert(command_mm),
@@ -69,7 +70,7 @@ impl<const N: usize> Feedback<N> {
         self.lost |= !there || (self.still_s > FROZEN_S && way_mm > FROZEN_MM);
     }
 
-    /// Whether the position was lost since the last decision.
+    /// Returns true if the position was lost since the last decision, and clears the record.
     #[inline]
     pub(crate) fn take_lost(&mut self) -> bool {
         core::mem::replace(&mut self.lost, false)
@@ -113,7 +114,7 @@ mod tests {
             feedback.take_in([0.0], [8e-4 * f64::from(n * n)], 0.001, 400.0);
             assert!(!feedback.take_lost(), "{n}");
         }
-        // A correction goes to and fro to hold the tool back while the path begins.
+        // A correction moves to and fro to hold the tool back while the path begins.
         let mut feedback = Feedback::<1>::NONE;
         for n in 0..40 {
             feedback.take_in(

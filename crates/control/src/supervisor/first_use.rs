@@ -1,42 +1,41 @@
-//! What a law has to show on a machine before it is used there for the first time, in motion
-//! without a correction.
+//! Test of a model before its first use on a machine, in motion without a correction.
 //!
 //! ```text
-//! m  measured position less that of the axes by their law alone, simulated along the same path
-//! d  measured position less the path, taken as far back as these axes lag at constant speed
+//! m  measured position minus the one of the axes by the model alone, simulated along the same path
+//! d  measured position minus the path, taken as far back as these axes lag at constant speed
 //!
-//! <m^2> <= <d^2> / 4      after 20 ms of motion, where <d^2> > (2 um)^2 + 20 s^2: the law is used
+//! <m^2> <= <d^2> / 4      after 20 ms of motion, where <d^2> > (2 um)^2 + 20 s^2: it is used
 //! ```
 //!
-//! d is what a correction takes away, and m what it leaves: by a law that predicts half of d a
-//! correction takes away half of it at least. s^2 is what noise makes of a position. The test needs
-//! motion that changes its speed: along a straight line d is zero.
+//! A correction removes d, and m remains: with a model that predicts half of d, a correction
+//! removes at least half of it. s^2 is the variance of the position by noise. The test needs motion
+//! that changes its speed: along a straight line d is zero.
 //!
-//! A law that has not shown this is not used. A learned law that takes its place has to show the
-//! same. Then the correction comes in within
-//! [`IN_S`]: with 0.065 s a helix and a figure of eight that begin where the machine stands are cut within 2.1 and 6 um, with 0.1 s the helix within
-//! 3.9, with 0.03 s the eight within 17, since the axis is then ahead of where it is to be.
+//! A model that has not passed the test is not used. A learned model that replaces it has to pass
+//! the same test. Then the correction engages within [`IN_S`]: with 0.065 s a helix and a figure of
+//! eight that begin where the machine stands are cut within 2.1 and 6 um, with 0.1 s the helix
+//! within 3.9, with 0.03 s the eight within 17, because the axis is then ahead of its reference.
 //!
 //! Source: a simulation without feedback compared with the measurement as in Ljung (1999), System
 //! Identification, section 16.6; the share is our own.
 
 use crate::vector::bounded;
 
-/// Share of d^2 that may be missed.
+/// Largest share of d^2 that may remain as m^2.
 const SHARE: f64 = 0.25;
-/// Time of motion after which it counts, s, and that over which squares are averaged.
+/// Time of motion after which the test counts, s, and time over which squares are averaged, s.
 const SHOWN_S: f64 = 0.02;
 const MEMORY_S: f64 = 1.0;
-/// The least d^2 that shows anything, mm^2 (2 um), and in variances of the noise.
+/// Smallest d^2 that counts, mm^2 (2 um), and the part of it in variances of the noise.
 const LEAST_MM2: f64 = 4e-6;
 const BEYOND_NOISE: f64 = 20.0;
-/// Time in which the correction comes in, s.
+/// Time in which the correction engages, s.
 const IN_S: f64 = 0.065;
 
-/// What motion without a correction has shown.
+/// Results of motion without a correction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FirstUse {
-    /// Least d^2, mm^2.
+    /// Smallest d^2 that counts, mm^2.
     least_mm2: f64,
     moved_s: f64,
     missed_mm2: f64,
@@ -46,7 +45,8 @@ pub(crate) struct FirstUse {
 }
 
 impl FirstUse {
-    /// Nothing yet, where noise makes so much of a position, mm^2.
+    /// Creates the test before any motion; `noise_mm2` is the variance of the position by noise,
+    /// mm^2.
     pub(crate) fn new(noise_mm2: f64) -> Self {
         let least_mm2 = LEAST_MM2 + BEYOND_NOISE * noise_mm2;
         Self {
@@ -59,7 +59,7 @@ impl FirstUse {
         }
     }
 
-    /// Nothing any more.
+    /// Forgets all results.
     pub(crate) fn forget(&mut self) {
         *self = Self {
             least_mm2: self.least_mm2,
@@ -67,14 +67,14 @@ impl FirstUse {
         };
     }
 
-    /// The law is another one from now on.
+    /// Restarts an unfinished test for another model.
     pub(crate) fn begin_law(&mut self) {
         if !self.is_shown {
             (self.moved_s, self.missed_mm2, self.distance_mm2) = (0.0, 0.0, 0.0);
         }
     }
 
-    /// A servo period, with m^2 and d^2 where the machine moves.
+    /// Takes in a servo period, with m^2 and d^2 where the machine moves.
     pub(crate) fn take_in(&mut self, seen_mm2: Option<[f64; 2]>, servo_s: f64) {
         self.share = bounded(
             self.share + if self.is_shown { servo_s / IN_S } else { 0.0 },
@@ -85,7 +85,7 @@ impl FirstUse {
             return;
         };
         self.moved_s += servo_s;
-        // At first the mean of all.
+        // Until then the mean of all periods.
         let part = servo_s / self.moved_s.min(MEMORY_S);
         self.missed_mm2 += part * (missed_mm2 - self.missed_mm2);
         self.distance_mm2 += part * (distance_mm2 - self.distance_mm2);
@@ -93,12 +93,12 @@ impl FirstUse {
         self.is_shown = is_enough && self.missed_mm2 <= SHARE * self.distance_mm2;
     }
 
-    /// Whether the law has shown itself.
+    /// Returns true if the model has passed the test.
     pub(crate) fn is_shown(&self) -> bool {
         self.is_shown
     }
 
-    /// The part of the correction that is used, 0 to 1.
+    /// Returns the part of the correction that is used, 0 to 1.
     pub(crate) fn share(&self) -> f64 {
         self.share
     }

@@ -1,53 +1,53 @@
-//! Whether a servo period went as the law said: what the law gets wrong at once, long before it
-//! leads anywhere else.
+//! Compares each servo period with the model. A wrong model shows at once, long before its error
+//! accumulates.
 //!
 //! ```text
-//! n  innovation: measured less expected a servo period before
+//! n  innovation: measured minus expected one servo period before
 //! S  its mean square by the statistics
-//! p  way by which the torque of the servo period moved the axis beside its speed
+//! p  travel that the torque of the servo period added to the travel by the speed of the axis
 //!
-//! <n^2> > (0.1 um)^2 + 16 S + (1.5 p)^2     over the last 5 ms: it does not go as the law said
+//! <n^2> > (0.1 um)^2 + 16 S + (1.5 p)^2     over the last 5 ms: deviation from the model
 //! ```
 //!
 //! Along a plan a drive that is 2 ms late misses a hundredth of its following error in 30 ms, and
-//! goes as the law says. Within a servo period what it does has nothing to do with what the law
-//! says: there the loop swings. Loads are what the filter makes of such innovations, and feeding
-//! them back is the fast part of the loop: they are not taken up there. A straight line shows
-//! nothing again, so that the law is believed four times later each time that it was found out. Of
-//! a force that nobody foresees the test does not tell it: such a force is answered by the slow
-//! part alone.
+//! agrees with the model. Within a servo period its motion has nothing to do with the model: there
+//! the loop swings. The filter computes the loads from such innovations, and their feedback is the
+//! fast part of the loop: these loads are therefore not used then. A straight line shows no
+//! deviation again, so the return to the model takes four times longer after each deviation. The
+//! test does not distinguish a deviation from an unforeseen force: only the slow part of the loop
+//! answers such a force.
 //!
-//! By the law of tnv40 on tnv40 with drives that are 1 and 2 ms late the circle was cut with 31 and
-//! 32 um RMS where the uncorrected cut leaves 13 and 9; now with 0.9 and 1.8, and the square with
-//! jumps at its corners with 0.3 of 2.1 and 0.8 of 1.7. With 0.8 p it leaves 4.0 um of 5.3 on the
-//! circle with twice the inertia, with 1.5 p 0.6; with 2 p the square 2 ms late is worse than
+//! With the model of `tnv40` on `tnv40` with drives that are 1 and 2 ms late the circle was cut
+//! with 31 and 32 um RMS, where 13 and 9 remain uncorrected; now with 0.9 and 1.8, and the square
+//! with jumps at its corners with 0.3 of 2.1 and 0.8 of 1.7. With 0.8 p, 4.0 um of 5.3 remain on
+//! the circle with twice the inertia, with 1.5 p 0.6; with 2 p the square 2 ms late is worse than
 //! uncorrected.
 //!
-//! Source: the mean square of innovations against what is predicted for it is the usual test of a
-//! filter, Bar-Shalom, Li and Kirubarajan (2001), Estimation with Applications to Tracking and
-//! Navigation, section 5.4; p, and what follows from it, are our own.
+//! Source: the comparison of the mean square of innovations with its predicted value is the usual
+//! test of a filter, Bar-Shalom, Li and Kirubarajan (2001), Estimation with Applications to
+//! Tracking and Navigation, section 5.4; p and its consequences are our own.
 
 use crate::vector::{bounded, smooth_step};
 
-/// What may always be unexpected, mm^2 (0.1 um): the filter does not know the loads yet where it
-/// begins.
+/// Innovation that is always permitted, mm^2 (0.1 um): at its start the filter does not know the
+/// loads yet.
 pub(crate) const LEAST_MM2: f64 = 1e-8;
-/// Standard deviations of what the statistics say, and the part of p.
+/// Standard deviations by the statistics, and the factor of p.
 const DEVIATIONS: f64 = 4.0;
 const PUSHED_SHARE: f64 = 1.5;
 /// Time over which squares are averaged, s.
 const MEMORY_S: f64 = 0.005;
 /// Time of a free run, s: about the time constant of a usual position loop.
 pub(crate) const RUN_S: f64 = 0.03;
-/// Time after which a law is not trusted at all, s.
+/// Time in which the weight of a model falls to zero, s.
 pub(crate) const TO_DOUBT_S: f64 = 0.005;
-/// Time of the contrary after which it is in full, s: so many times longer each time that loads
-/// were let go, up to the longest.
+/// Time in which the weight of a model rises to its full value, s. It grows by the factor `LONGER`
+/// each time that the loads were dropped, up to `LONGEST_S`.
 const TO_TRUST_S: f64 = 0.3;
 const LONGER: f64 = 4.0;
 const LONGEST_S: f64 = 20.0;
 
-/// Servo periods of a free run.
+/// Returns the servo periods of a free run.
 pub(crate) fn run_periods(servo_s: f64) -> u32 {
     libm::ceil(RUN_S / servo_s) as u32
 }
@@ -61,19 +61,19 @@ pub(crate) struct OneStep {
 }
 
 impl OneStep {
-    /// Nothing.
+    /// Zero of all three.
     pub(crate) const NONE: Self = Self {
         missed_mm2: 0.0,
         expected_mm2: 0.0,
         pushed_mm2: 0.0,
     };
 
-    /// Of all axes.
+    /// Returns the sum over all axes.
     pub(crate) fn sum(axes: impl Iterator<Item = Self>) -> Self {
         axes.fold(Self::NONE, |sum, axis| sum.with(1.0, axis))
     }
 
-    /// And so many times another.
+    /// Adds `times` times another one.
     fn with(self, times: f64, other: Self) -> Self {
         Self {
             missed_mm2: self.missed_mm2 + times * other.missed_mm2,
@@ -83,25 +83,25 @@ impl OneStep {
     }
 }
 
-/// How servo periods have gone.
+/// Agreement of recent servo periods with the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Course {
     mean: OneStep,
-    /// How far loads are taken up, 0 to 1.
+    /// Weight of the loads, 0 to 1, before smoothing.
     loads: f64,
-    /// Time until they are in full again, s.
+    /// Time in which the weight of the loads rises from 0 to 1, s.
     to_trust_s: f64,
 }
 
 impl Course {
-    /// Nothing is known to the contrary.
+    /// Start: no deviation is known.
     pub(crate) const AS_SAID: Self = Self {
         mean: OneStep::NONE,
         loads: 1.0,
         to_trust_s: TO_TRUST_S,
     };
 
-    /// A servo period.
+    /// Takes in a servo period.
     pub(crate) fn take_in(&mut self, step: OneStep, servo_s: f64) {
         let part = (servo_s / MEMORY_S).min(1.0);
         self.mean = self.mean.with(part, step).with(-part, self.mean);
@@ -117,7 +117,7 @@ impl Course {
         self.loads = loads;
     }
 
-    /// Whether it goes as the law says; what is not a number does not.
+    /// Returns true if the servo periods agree with the model. NaN counts as a deviation.
     pub(crate) fn is_as_said(&self) -> bool {
         let OneStep {
             missed_mm2,
@@ -130,12 +130,12 @@ impl Course {
                 + PUSHED_SHARE * PUSHED_SHARE * pushed_mm2
     }
 
-    /// Time after which a law is trusted, s.
+    /// Returns the time in which the weight of a model rises from 0 to 1, s.
     pub(crate) fn trust_time_s(&self) -> f64 {
         self.to_trust_s
     }
 
-    /// The part of the loads that is taken up.
+    /// Returns the part of the loads that is used.
     pub(crate) fn loads(&self) -> f64 {
         smooth_step(self.loads)
     }

@@ -1,43 +1,44 @@
-//! What a law has to hold through before it is taken for right again.
+//! Test that a model has to pass after it was wrong.
 //!
 //! ```text
-//! c  change of the commanded speed: against its mean over the last 30 ms
+//! c  change of the commanded speed: difference from its mean over the last 30 ms
 //!
-//! c0 the largest c when it was wrong
+//! c0 largest c while the model was wrong
 //!
-//! c falls below c0 / 2, comes to 0.9 c0, and the law holds for 60 ms from there; or it holds for T at 0.9 c0
+//! c falls below c0 / 2, reaches 0.9 c0, and the model holds for 60 ms from there; or it holds for T at 0.9 c0
 //! ```
 //!
-//! By a law with three times the inertia every corner is wrong, and every straight line in between
-//! right: taken for right there, it did harm in each corner anew. On a circle, where c is the same
-//! all the time, time is the proof: T is 60 ms at first, and four times as long each time that the
-//! law was wrong again, up to 1 s. With 1 s from the beginning a law by which friction is twice as
-//! large leaves 15.5 um on a circle in place of 0.9, since the first 60 ms of a motion miss a
-//! larger part of the following error than all that follows. A shock on a straight line needs no
-//! more than the time.
+//! With three times the inertia in the model, every corner is wrong and every straight line in
+//! between is right: such a model, accepted on the line, did harm in each corner again. On a
+//! circle, where c is constant, time decides: T is 60 ms at first, and four times as long each time
+//! that the model was wrong again, up to 1 s. With 1 s from the beginning, a model with twice the
+//! friction leaves 15.5 um on a circle in place of 0.9, because the first 60 ms of a motion miss a
+//! larger part of the following error than the rest. After a shock on a straight line only the time
+//! counts.
 //!
 //! These times count only while the path moves: at rest every model holds.
 
 use crate::vector::{add_scaled, norm, sub};
 
-/// Time of the mean, s: that of a free run.
+/// Time of the mean, s: the length of a free run.
 const MEAN_S: f64 = 0.03;
-/// Time over which an error of the law shows, s: two free runs.
+/// Time over which an error of the model shows, s: two free runs.
 const TO_SHOW_S: f64 = 0.06;
-/// T at the most, s, and by what it grows.
+/// Largest T, s, and its growth factor.
 const MOST_S: f64 = 1.0;
 const AGAIN: f64 = 4.0;
-/// Part of c0 that is as much, and that which is little; the c0 that is none, mm/s.
+/// Part of c0 that counts as reached, part below which c is small, and the c0 that counts as zero,
+/// mm/s.
 const AS_MUCH: f64 = 0.9;
 const LITTLE: f64 = 0.5;
 const NO_CHANGE_MM_S: f64 = 1.0;
 
-/// What a law has held through since it was wrong last.
+/// Progress of the test since the model was last wrong.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct ProofTrial {
-    /// Whether c was little.
+    /// True once c was small.
     calm: bool,
-    /// Time since it was as much again, and time at as much, s.
+    /// Time since c was reached again, s, and time for which it was reached, s.
     since_s: Option<f64>,
     at_as_much_s: f64,
 }
@@ -49,7 +50,7 @@ impl ProofTrial {
         at_as_much_s: 0.0,
     };
 
-    /// Takes in a servo period of motion with a c, of a model that was wrong at c0. Returns whether
+    /// Takes in a servo period of motion with a c, of a model that was wrong at c0. Returns true if
     /// the model has held for long enough.
     fn holds_through(
         &mut self,
@@ -70,23 +71,23 @@ impl ProofTrial {
     }
 }
 
-/// Changes of the commanded speed, when the law was wrong and since.
+/// Changes of the commanded speed, while the model was wrong and since then.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Proof<const N: usize> {
     path_mm: Option<[f64; N]>,
-    /// None until the speed is known.
+    /// `None` until the speed is known.
     mean_mm_s: Option<[f64; N]>,
-    /// The largest c lately, and when the law was wrong.
+    /// Largest recent c, and its value when the model was wrong.
     lately_mm_s: f64,
     wrong_mm_s: f64,
-    /// Whether it has yet to hold, and T, s.
+    /// True if the model has not passed the test yet; `needs_s` is T, s.
     needed: bool,
     needs_s: f64,
     trial: ProofTrial,
 }
 
 impl<const N: usize> Proof<N> {
-    /// Of a law that was never wrong.
+    /// State of a model that was never wrong.
     pub(super) const NOT_NEEDED: Self = Self {
         path_mm: None,
         mean_mm_s: None,
@@ -97,14 +98,14 @@ impl<const N: usize> Proof<N> {
         trial: ProofTrial::BEGUN,
     };
 
-    /// Takes in a servo period in which the model is wrong, or holds; at rest it shows nothing that
-    /// it holds.
+    /// Takes in a servo period in which the model is wrong or holds. At rest it gives no evidence
+    /// that the model holds.
     pub(super) fn take_in(&mut self, path_mm: [f64; N], moves: bool, wrong: bool, servo_s: f64) {
         let part = (servo_s / MEAN_S).min(1.0);
         let mut change_mm_s = 0.0;
         if let Some(last_mm) = self.path_mm.replace(path_mm) {
             let speed_mm_s = sub(path_mm, last_mm).map(|mm| mm / servo_s);
-            // One that begins in motion has changed nothing yet.
+            // A program that begins in motion has no change yet.
             let mean_mm_s = self.mean_mm_s.unwrap_or(speed_mm_s);
             let off_mm_s = sub(speed_mm_s, mean_mm_s);
             self.mean_mm_s = Some(add_scaled(mean_mm_s, part, off_mm_s));
@@ -126,7 +127,7 @@ impl<const N: usize> Proof<N> {
         }
     }
 
-    /// Whether the law has yet to hold.
+    /// Returns true if the model has not passed the test yet.
     pub(super) fn is_needed(&self) -> bool {
         self.needed
     }

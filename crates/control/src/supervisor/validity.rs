@@ -1,38 +1,38 @@
-//! Whether the law is good enough for the loop. A law that is wrong makes a regulator swing, and
-//! its filter takes that for loads.
+//! Validity of a model for engagement. A wrong model makes a regulator swing, and its filter
+//! interprets the swing as loads.
 //!
 //! ```text
-//! m  measured position less that of a free run by the law, restarted every 30 ms from what the filter has
-//! o  by how much the open loop would be off the reference, without loads; the largest of the last 30 ms, since m stems from all of them
+//! m  measured position minus the position of a free run of the model, restarted every 30 ms from the state of the filter
+//! o  distance of the open loop from the reference, without loads; the largest of the last 30 ms, because m depends on all of them
 //!
-//! max <m^2> > (2 um)^2 + (4 s)^2 + <o^2>     over the last 20 ms, m of the axis that misses most: the law is wrong
+//! max <m^2> > (2 um)^2 + (4 s)^2 + <o^2>     over the last 20 ms, m of the axis with the largest one: the model is wrong
 //! ```
 //!
-//! where that is so in two free runs in a row, or in one by twice as much. One alone may have begun
-//! with a speed that the steps of an encoder made: a law that is wrong misses in each.
+//! if that holds in two free runs in a row, or in one by twice as much. A single run may have begun
+//! with a speed from the steps of an encoder: a wrong model misses in each run.
 //!
-//! s is what noise and loads that nobody foresees move the axis by in a free run, by the
-//! statistics. Where innovations are larger than that, an encoder is coarser than it is known to
-//! be: what they make of m, if they are white, is added with three deviations.
+//! s is the motion of the axis in a free run by noise and unforeseen loads, by the statistics.
+//! Where innovations are larger than that, an encoder is coarser than known: their contribution to
+//! m, if they are white, is added with three deviations.
 //!
-//! A law that misses more than it is to correct leaves more than no correction would; one that
-//! misses less leaves less. The first motion is corrected in full: a correction that came in over
-//! the first 50 um left 13.8 um of the figure of eight on workshop in place of 0.4, and took 21 N m
-//! in place of 10.5. A wrong inertia shows where the speed changes, and not on the straight line
-//! behind: a law that was wrong is wrong until it has held while the commanded speed changed as
-//! much as then (`proof.rs`). A law that was learned (`controller/lqg_preview/learning.rs`) takes
-//! the place of the nominal one without the record of that.
+//! A model that misses more than the error to correct leaves a larger error than no correction; a
+//! model that misses less leaves a smaller one. The first motion is corrected in full: a correction
+//! that engaged over the first 50 um left 13.8 um of the figure of eight on `workshop` in place of
+//! 0.4, and took 21 N m in place of 10.5. A wrong inertia shows where the speed changes, and not on
+//! the straight line after it: a wrong model stays wrong until it has held while the commanded
+//! speed changed as much as then (`proof.rs`). A learned model
+//! (`controller/lqg_preview/learning.rs`) replaces the nominal one without this record.
 //!
-//! A law that has begun just now, that is not followed, that is wrong, or by which servo periods do
-//! not go (`one_step.rs`) is not trusted, and asks for little; trust takes 0.3 s. With all of it
-//! from the beginning, the way back behind a lost position takes up to 44,000 mm/s^2 on tnv40, and
-//! by the law of another machine three of 28 cuts are worse, one five times.
+//! A model has little weight and requests little if it has just begun, is not followed, is wrong,
+//! or if servo periods deviate from it (`one_step.rs`); the weight rises in 0.3 s. With full weight
+//! from the beginning, the way back after a lost position takes up to 44,000 mm/s^2 on `tnv40`, and
+//! with the model of another machine three of 28 cuts are worse, one five times.
 //!
-//! In place of o a twentieth of the following error, which feedforward makes small, took the
-//! correction out of the loop in 97 of 108 cuts on workshop by laws whose gains, inertia, friction
-//! or delay were a few parts in a hundred off. On 424 such cuts of four machines o / 2 leaves 0.37
-//! of the error in the median, o 0.31, and 2 o 0.25, but makes 12 cuts worse in place of 5; all
-//! without learning. Over 5 ms references that are up to 1 ms late by chance make a law wrong.
+//! In place of o, a twentieth of the following error, which feedforward makes small, disengaged the
+//! correction in 97 of 108 cuts on `workshop` with models whose gains, inertia, friction or delay
+//! were a few percent off. On 424 such cuts of four machines o / 2 leaves 0.37 of the error in the
+//! median, o 0.31, and 2 o 0.25, but makes 12 cuts worse in place of 5; all without learning. With
+//! an average over 5 ms, references that happen to be up to 1 ms late make a model wrong.
 //!
 //! Source: the free run as in Ljung (1999), System Identification, section 16.6, where models are
 //! validated by simulation; the rule is our own.
@@ -43,79 +43,78 @@ use crate::vector::{bounded, dot, smooth_step};
 use super::one_step::{Course, OneStep, RUN_S, TO_DOUBT_S};
 use super::proof::Proof;
 
-/// Time over which what is missed is averaged, s.
+/// Time over which m^2 is averaged, s.
 const MEMORY_S: f64 = 0.02;
-/// What may be missed without any noise, mm^2 (2 um).
+/// Permitted m^2 without any noise, mm^2 (2 um).
 const LEAST_MM2: f64 = 4e-6;
-/// Standard deviations of what nobody foresees.
+/// Standard deviations of unforeseen loads and noise.
 const DEVIATIONS: f64 = 4.0;
-/// Standard deviations of what the innovations show, if they are white. Those of a law that is
-/// wrong are alike, and add up to 5 of them.
+/// Standard deviations of the part that the innovations show, if they are white. The innovations of
+/// a wrong model are alike, and add up to 5 of them.
 const SHOWN_DEVIATIONS: f64 = 3.0;
-/// Laws that have held in motion for longer than this, s, and are wrong then, are those of a
-/// machine that has changed.
+/// Time in motion after which a model that becomes wrong indicates a changed machine, s.
 const CHANGED_S: f64 = 1.0;
-/// Times what may be missed that are far more.
+/// Factor on the permitted m at which one free run is enough.
 const FAR: f64 = 2.0;
 
-/// How far a law is followed, both 0 to 1.
+/// Weights of a model, both 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Trusted {
-    /// Its lowest price.
+    /// Weight of the model near the reference: at 1 the regulator uses its lowest control weight.
     pub(crate) near: f64,
-    /// Loads that the filter finds by it.
+    /// Weight of the loads that the filter finds with the model.
     pub(crate) loads: f64,
 }
 
 impl Trusted {
-    /// In everything.
+    /// Full weight.
     pub(crate) const FULLY: Self = Self {
         near: 1.0,
         loads: 1.0,
     };
 }
 
-/// What the axes showed in a servo period.
+/// Result of a servo period of all axes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shown<const N: usize> {
     /// m, mm.
     pub(crate) missed_mm: [f64; N],
     /// o, mm.
     pub(crate) open_mm: [f64; N],
-    /// Mean square of m by the last innovations, if they are white, mm^2.
+    /// Mean square of m from the last innovations, if they are white, mm^2.
     pub(crate) by_noise_mm2: f64,
     /// Position that the plan commands, mm.
     pub(crate) path_mm: [f64; N],
-    /// Whether the plan moves.
+    /// True if the plan moves.
     pub(crate) moves: bool,
 }
 
-/// What is known of the laws of all axes.
+/// Validity of the models of all axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Validity<const N: usize> {
-    /// What may always be missed, mm^2.
+    /// Permitted m^2 at any time, mm^2.
     always_mm2: f64,
     missed_mm2: f64,
     open_mm2: f64,
     largest_open_mm2: f64,
     by_noise_mm2: f64,
-    /// Whether more was missed than may be in this free run and in the last, and for how long this
-    /// one goes, s.
+    /// True if m was larger than permitted in this free run and in the last one, and the time since
+    /// this one began, s.
     beyond: [bool; 2],
     for_s: f64,
     proof: Proof<N>,
     course: Course,
-    /// How far the laws are trusted near the reference, 0 to 1.
+    /// Weight of the models near the reference, 0 to 1.
     near: f64,
-    /// For how long they have held in motion, s, and whether they have just come to be wrong behind
-    /// long enough of that.
+    /// Time for which the models have held in motion, s, and whether they have just become wrong
+    /// after a long enough time.
     held_s: f64,
     has_changed: bool,
 }
 
 impl<const N: usize> Validity<N> {
-    /// Nothing yet, of laws that noise and loads that nobody foresees make miss by a mean square of
-    /// `unforeseen_mm2`.
+    /// Creates the validity before any motion, of models whose mean square error by noise and
+    /// unforeseen loads is `unforeseen_mm2`.
     pub(crate) fn unknown(unforeseen_mm2: f64) -> Self {
         Self {
             always_mm2: LEAST_MM2 + DEVIATIONS * DEVIATIONS * unforeseen_mm2,
@@ -133,7 +132,7 @@ impl<const N: usize> Validity<N> {
         }
     }
 
-    /// Nothing any more.
+    /// Forgets all results.
     pub(crate) fn forget(&mut self) {
         *self = Self {
             always_mm2: self.always_mm2,
@@ -141,19 +140,19 @@ impl<const N: usize> Validity<N> {
         };
     }
 
-    /// The laws are others from now on: what the ones before them missed says nothing of them.
+    /// Restarts for other models: the errors of the earlier ones give no evidence on them.
     pub(crate) fn begin_law(&mut self) {
         (self.missed_mm2, self.beyond, self.proof) = (0.0, [false; 2], Proof::NOT_NEEDED);
-        // Where the tool is by then, it is led back gently.
+        // The tool returns gently from its present place.
         self.near = 0.0;
     }
 
-    /// How a servo period went within itself, before [`Self::take_in`].
+    /// Takes in the agreement within a servo period, before [`Self::take_in`].
     pub(crate) fn take_in_step(&mut self, step: OneStep, servo_s: f64) {
         self.course.take_in(step, servo_s);
     }
 
-    /// A servo period.
+    /// Takes in a servo period.
     pub(crate) fn take_in(&mut self, shown: &Shown<N>, followed: bool, servo_s: f64) {
         let Shown {
             missed_mm,
@@ -190,32 +189,31 @@ impl<const N: usize> Validity<N> {
         };
     }
 
-    /// Whether the machine has become another one: laws that have held for long are wrong from this
+    /// Returns true if the machine has changed: models that have held for long are wrong from this
     /// servo period on.
     pub(crate) fn has_machine_changed(&self) -> bool {
         self.has_changed
     }
 
-    /// Whether free runs miss more than they may: twice in a row, or once by far.
+    /// Returns true if free runs miss more than permitted: twice in a row, or once by far.
     fn misses(&self) -> bool {
         self.is_beyond(FAR) || self.beyond == [true; 2]
     }
 
-    /// Whether so many times more is missed than noise and what there is to correct; what is not a
-    /// number is.
+    /// Returns true if m is larger than `times` times the permitted value. NaN counts as larger.
     fn is_beyond(&self, times: f64) -> bool {
         let holds = self.missed_mm2 <= times * times * self.allowed_mm2();
         !holds
     }
 
-    /// What may be missed, mm^2: what noise makes, and what there is to correct.
+    /// Returns the permitted m^2, mm^2: noise plus the error to correct.
     fn allowed_mm2(&self) -> f64 {
         self.always_mm2
             + SHOWN_DEVIATIONS * SHOWN_DEVIATIONS * self.by_noise_mm2
             + self.largest_open_mm2
     }
 
-    /// How far the laws are followed.
+    /// Returns the weights of the models.
     pub(crate) fn trusted(&self) -> Trusted {
         Trusted {
             near: smooth_step(self.near),
@@ -223,12 +221,12 @@ impl<const N: usize> Validity<N> {
         }
     }
 
-    /// Whether the laws are wrong.
+    /// Returns true if the models are wrong.
     pub(crate) fn is_wrong(&self) -> bool {
         self.misses() || self.proof.is_needed()
     }
 
-    /// What is missed, and what may be, where that is too much.
+    /// Returns m and its permitted value if m is too large.
     pub(crate) fn doubt(&self) -> Option<FaultEvidence> {
         let [found_mm, limit_mm] = [self.missed_mm2, self.allowed_mm2()].map(libm::sqrt);
         self.misses()
@@ -236,7 +234,7 @@ impl<const N: usize> Validity<N> {
     }
 }
 
-/// The largest of the squares; not a number where one is none.
+/// Returns the largest of the squares, or NaN if one is NaN.
 fn largest_square<const N: usize>(vector: [f64; N]) -> f64 {
     let larger = |a: f64, b: f64| if a >= b || a.is_nan() { a } else { b };
     vector.iter().map(|x| x * x).fold(0.0, larger)

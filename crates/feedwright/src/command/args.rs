@@ -72,9 +72,9 @@ pub struct CommonArgs {
     /// Print results and errors only: no progress, no remarks.
     #[arg(short, long, global = true, help_heading = EVERYWHERE)]
     pub quiet: bool,
-    /// When messages are coloured.
+    /// Color messages always, never, or automatically.
     ///
-    /// auto colours on a terminal, unless NO_COLOR is set or TERM is dumb.
+    /// auto colors messages on a terminal, unless NO_COLOR is set or TERM is dumb.
     #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = ColorWhen::Auto, help_heading = EVERYWHERE, hide_short_help = true)]
     pub color: ColorWhen,
     /// Units of what is printed: metric (mm, um) or inch (in, thousandths of an inch). The pages of
@@ -124,7 +124,7 @@ pub(crate) enum CommandArgs {
     Machines(MachinesArgs),
     /// List the controllers, or the parameters of one
     Controllers {
-        /// Its name.
+        /// Name of the controller.
         name: Option<String>,
     },
     Canon(CanonArgs),
@@ -168,7 +168,7 @@ pub(crate) struct CacheArgs {
 }
 
 impl CommandArgs {
-    /// Whether it writes files, which an interrupt must not leave half-written.
+    /// Returns true if the command writes files. An interrupt must not leave them half-written.
     pub(crate) const fn writes_files(&self) -> bool {
         !matches!(
             self,
@@ -201,8 +201,8 @@ pub(crate) fn parse_from<T: Parser>(arguments: &[OsString]) -> T {
     T::from_arg_matches(&matches).unwrap_or_else(|error| leave::<T>(color, arguments, error))
 }
 
-/// Ends the process with help, or with what is wrong with the command line: that of the same
-/// command line without what is hidden in it, because clap quotes its words.
+/// Ends the process with help, or with the error of the command line. Clap quotes words of the
+/// command line, so the line is parsed again without its hidden characters and that error is shown.
 fn leave<T: CommandFactory>(color: ColorWhen, arguments: &[OsString], error: clap::Error) -> ! {
     let shown = arguments
         .iter()
@@ -235,7 +235,8 @@ fn command<T: CommandFactory>(color: ColorWhen, arguments: &[OsString]) -> Comma
     }
 }
 
-/// What `--color` says, before the command line is read: its mistakes are coloured, too.
+/// Reads the value of `--color` before the command line is parsed, because errors of the command
+/// line are colored, too.
 fn color_said(arguments: &[OsString]) -> ColorWhen {
     let arguments: Vec<String> = arguments
         .iter()

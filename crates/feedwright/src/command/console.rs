@@ -30,9 +30,9 @@ impl Console {
         }
     }
 
-    /// From here on Ctrl-C, or a request to terminate, ends the work at the next chance, so that no
-    /// file is left half-written. Work that has no such chance within [`GRACE`] ends with the
-    /// process; so does all work at another signal, [`PATIENCE`] later or more.
+    /// Ends the work at the next chance after Ctrl-C or a request to terminate, so that no file is
+    /// left half-written. Work without such a chance within [`GRACE`] ends with the process.
+    /// Another signal [`PATIENCE`] later or more also ends all work.
     pub(crate) fn listen(&self) {
         let interrupted = self.interrupted.clone();
         let mut first: Option<Instant> = None;
@@ -63,7 +63,7 @@ impl Console {
         Bar::new(self.quiet || hidden, steps, self.interrupted.clone())
     }
 
-    /// Whether remarks and progress are left out.
+    /// Returns true if remarks and progress are left out.
     pub const fn is_quiet(&self) -> bool {
         self.quiet
     }

@@ -16,8 +16,8 @@ pub fn find(name: &str, table: Controllers) -> Result<&'static Entry> {
     })
 }
 
-/// What `--set` asks for, of controllers that take part; names without a controller are those of
-/// `of`.
+/// Parses the values of `--set` for the controllers that take part. A name without a controller
+/// belongs to `of`.
 pub fn settings(
     texts: &[String],
     table: Controllers,

@@ -1,5 +1,5 @@
-//! What several commands take from their arguments: the control, the machine's error and model, and
-//! what they tell of a corrected program.
+//! Shared helpers of several commands: read the control, the machine's error and the model from the
+//! arguments, and print what is known of a corrected program.
 
 use std::ffi::OsStr;
 use std::io::{self, Write};
@@ -45,7 +45,7 @@ pub(crate) fn control(name: &str) -> Result<&'static TargetControl> {
     })
 }
 
-/// What is compensated by `--geometry` and `--no-geometry`.
+/// Returns the geometry that `--geometry` and `--no-geometry` select for compensation.
 pub(crate) fn compensation(args: &GeometryArgs) -> Result<GeometryChoice> {
     Ok(match &args.geometry {
         _ if args.no_geometry => GeometryChoice::Off,
@@ -87,7 +87,7 @@ pub(crate) fn file_error(percent: Option<f64>, machine: &OsStr) -> Result<f64> {
     ))
 }
 
-/// What was changed, and why nothing is written.
+/// Prints what was changed, and the reason if no program is written.
 pub(crate) fn print_correction(out: &mut dyn Write, outcome: &CorrectOutcome) -> io::Result<()> {
     let CorrectOutcome {
         stretches,

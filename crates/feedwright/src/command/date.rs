@@ -9,7 +9,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use miette::Diagnostic;
 use thiserror::Error;
 
-/// What the variable holds is no time.
+/// Error of a `SOURCE_DATE_EPOCH` that is not a time.
 #[derive(Debug, Clone, PartialEq, Eq, Error, Diagnostic)]
 #[error("SOURCE_DATE_EPOCH is '{0}', which is no time in whole seconds since 1970")]
 #[diagnostic(help("set it to such a time, as 'date +%s' prints it, or unset it"))]

@@ -15,7 +15,7 @@ const MAX_DEPTH: usize = 64;
 pub struct FilesToCheck {
     /// Files, in the order of the arguments, those of a folder by name.
     pub files: Vec<PathBuf>,
-    /// What was left out, as remarks for people.
+    /// Remarks for people about the files that were left out.
     pub(crate) remarks: Vec<String>,
     /// Folders that cannot be looked into, or that hold nothing to check.
     pub faults: Vec<String>,
@@ -112,7 +112,7 @@ impl FilesToCheck {
     }
 }
 
-/// What a folder holds besides programs to check.
+/// Counts of the files and folders in a folder that are not checked.
 #[derive(Debug, Default)]
 struct LeftOut {
     endings: usize,

@@ -5,7 +5,7 @@ use feedwright_gcode::{Diagnostic, Severity, visible};
 use miette::Report;
 use serde_json::{Value, json};
 
-/// Where SARIF's structure is defined.
+/// Address of the schema of SARIF 2.1.0.
 const SARIF_SCHEMA: &str = "https://json.schemastore.org/sarif-2.1.0.json";
 /// The project's page, for viewers of SARIF.
 const HOME: &str = "https://github.com/feedwright/feedwright";
@@ -16,9 +16,10 @@ pub(crate) struct Finding {
     pub(crate) file: String,
     pub(crate) is_error: bool,
     pub(crate) code: String,
-    /// From 1; 0 where it belongs to the file as a whole.
+    /// Line, from 1; 0 where the finding belongs to the file as a whole.
     pub(crate) line: u32,
-    /// In characters, from 1; 0 where it belongs to the line or the file as a whole.
+    /// Column in characters, from 1; 0 where the finding belongs to the line or the file as a
+    /// whole.
     pub(crate) column: u32,
     /// Characters.
     pub(crate) span: u32,
@@ -62,7 +63,7 @@ impl Finding {
         if self.is_error { "error" } else { "warning" }
     }
 
-    /// As an object of JSON.
+    /// Returns the finding as a JSON object.
     pub(crate) fn json(&self) -> Value {
         json!({
             "severity": self.level(),
@@ -75,7 +76,7 @@ impl Finding {
         })
     }
 
-    /// As a command of GitHub's workflows, which shows it beside the line.
+    /// Returns the finding as a GitHub workflow command. GitHub shows it beside the line.
     pub(crate) fn github(&self) -> String {
         let mut place = format!("file={}", github_property(&visible(&self.file)));
         if self.line > 0 {

@@ -1,5 +1,4 @@
-//! Faults of one kind that repeat in a program: the first ones are told, and how many more there
-//! are.
+//! Folds faults of one kind that repeat in a program: shows the first ones and counts the rest.
 
 use feedwright_gcode::Diagnostic;
 use miette::Report;
@@ -7,11 +6,11 @@ use thiserror::Error;
 
 use crate::job::JobError;
 
-/// Faults of one kind that are told.
+/// Number of faults of one kind that are shown.
 const TOLD: usize = 3;
 
-/// The faults with those left out that repeat others of the same kind more than [`TOLD`] times; the
-/// last that is told counts them.
+/// Returns the faults without repeats: of each kind, the first [`TOLD`] remain, and the last of
+/// them gives the number of those left out.
 pub(crate) fn folded(faults: &[Diagnostic]) -> Vec<Diagnostic> {
     let mut told: Vec<Diagnostic> = Vec::new();
     for (at, fault) in faults.iter().enumerate() {

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 
 /// Time between two readings. A reading takes 0.1 ms.
 const PERIOD: Duration = Duration::from_millis(40);
-/// Where nothing can be read, it is tried again after so long.
+/// Wait before the next attempt after a failed reading.
 const AGAIN: Duration = Duration::from_secs(1);
 /// A page asks five times a second. When the last one is gone, reading ends.
 const UNASKED: Duration = Duration::from_secs(3);
@@ -21,7 +21,7 @@ const UNASKED: Duration = Duration::from_secs(3);
 const LATE: Duration = Duration::from_secs(3);
 /// Readings that a page gets that comes later: those of a minute.
 const KEPT: usize = 1500;
-/// What the faults are in words, as the component installs it.
+/// File with the text of each fault, as the component installs it.
 const FAULTS: &str = "/usr/share/feedwright/faults.h";
 
 const NOT_RUNNING: &str =
@@ -55,8 +55,7 @@ struct RecentPins {
 impl HalWatch {
     /// Begins to watch.
     ///
-    /// # Errors
-    /// Where there is no `halcmd`.
+    /// Fails if `halcmd` cannot be started.
     pub(crate) fn start(unit_mm: f64) -> io::Result<Arc<Self>> {
         let halcmd = Halcmd::start()?;
         let now = Instant::now();
@@ -241,7 +240,7 @@ impl Halcmd {
 }
 
 impl Drop for Halcmd {
-    /// At the end of its commands it leaves HAL by itself, which an ended process would not.
+    /// Closes the input of `halcmd`, which then leaves HAL by itself. A killed process would not.
     fn drop(&mut self) {
         drop(self.commands.take());
         let _ = self.child.wait();

@@ -17,11 +17,11 @@ use crate::command::terminal::{
 
 /// The result is out of tolerance.
 pub const OUT_OF_TOLERANCE: u8 = 1;
-/// What was checked has mistakes.
+/// Exit code if a checked file has mistakes.
 pub(crate) const MISTAKES: u8 = 1;
-/// Something is wrong with what was asked for.
+/// Exit code if the command fails with an error.
 pub(crate) const ERROR: u8 = 2;
-/// As shells have it for SIGINT.
+/// Exit code of an interrupt, as shells define it for SIGINT.
 pub(crate) const INTERRUPTED: u8 = 130;
 
 /// Shows an error.
@@ -30,7 +30,7 @@ pub(crate) fn fail(report: &Report) -> ExitCode {
     ExitCode::from(ERROR)
 }
 
-/// Tells that an interrupt ended the work.
+/// Reports that an interrupt ended the work.
 pub(crate) fn interrupted() -> ExitCode {
     eprintln!("{}", feedwright_sim::Cancelled);
     ExitCode::from(INTERRUPTED)
@@ -47,12 +47,12 @@ pub fn printed(result: io::Result<()>, code: ExitCode) -> Result<ExitCode> {
     }
 }
 
-/// Tells something that is no warning.
+/// Prints a remark, which is not a warning.
 pub fn remark(text: &str) {
     eprintln!("{}", wrapped(text, 2));
 }
 
-/// Tells which limits of the axes are assumed, where a planner needs some that the machine file
+/// Reports the axis limits that are assumed because the planner needs limits that the machine file
 /// does not have.
 pub(crate) fn tell_assumed_limits(machine: &Machine, stages: Stages) {
     if let Some(text) = machine
@@ -68,13 +68,13 @@ pub(crate) fn warn(report: Report) {
     show(&report);
 }
 
-/// Shows an error of something that is checked: it is no error of the command.
+/// Shows an error in a checked file, which is not an error of the command.
 pub(crate) fn tell(report: &Report) {
     show(report);
 }
 
-/// Plain text where stderr shows no colours, ASCII where it shows no more. Causes that the message
-/// tells already are not told twice.
+/// Prints plain text where stderr shows no colors, and ASCII where it shows no more. Leaves out
+/// causes that the message already contains.
 fn show(report: &Report) {
     let characters = if shows_unicode() {
         ThemeCharacters::unicode()
@@ -115,7 +115,7 @@ struct VisibleReport<'a> {
     inner: Option<Box<Self>>,
 }
 
-/// What a report is caused by, and what caused that.
+/// Cause of a report, and the cause of that cause.
 #[derive(Debug)]
 struct VisibleCause {
     text: String,
@@ -213,7 +213,7 @@ impl Diagnostic for VisibleReport<'_> {
 /// miette labels a remedy `help:` without a way to choose; ours are hints.
 fn with_hints(text: &str) -> String {
     let label = |line: &str| match line.split_once("  help: ") {
-        // The label stands at the start of its line, perhaps behind a colour; program text may
+        // The label stands at the start of its line, perhaps behind a color; program text may
         // contain anything.
         Some((before, rest)) if before.trim().is_empty() || before.starts_with('\u{1b}') => {
             format!(

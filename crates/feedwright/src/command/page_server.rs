@@ -59,7 +59,7 @@ const PAGE: &[(&str, &str, &[u8])] = &[
 #[cfg(not(has_page))]
 const PAGE: &[(&str, &str, &[u8])] = &[];
 
-/// Whether this command has the page.
+/// True if this command was built with the page.
 pub(crate) const HAS_PAGE: bool = !PAGE.is_empty();
 
 /// Headers of every answer. Frames of other sites cannot show the page; its own policy stands in
@@ -89,7 +89,7 @@ pub(crate) struct PageServer {
     site: Arc<Site>,
 }
 
-/// What is served, and to whom.
+/// The files that are served, with the port and the secret that an address must have.
 #[derive(Debug)]
 struct Site {
     port: u16,
@@ -120,7 +120,7 @@ impl PageServer {
         })
     }
 
-    /// Where the page is.
+    /// Returns the address of the page.
     pub(crate) fn address(&self) -> String {
         format!("http://127.0.0.1:{}/{}/", self.site.port, self.site.secret)
     }

@@ -17,7 +17,7 @@ use crate::command::terminal::{is_dumb, shows_unicode};
 /// Time between two drawings of the bar: short enough that a stage seems to show at once.
 const DRAWN_EACH: Duration = Duration::from_millis(100);
 
-/// Shows the progress of work, tells it of an interrupt, and has its clock.
+/// Shows the progress of work, passes an interrupt on to it, and provides its clock.
 pub struct Bar {
     bar: ProgressBar,
     interrupted: Arc<AtomicBool>,
@@ -25,7 +25,7 @@ pub struct Bar {
 }
 
 impl Bar {
-    /// Where stderr is no terminal, or one without a cursor, nothing is drawn.
+    /// Creates the bar. Nothing is drawn where stderr is not a terminal or has no cursor.
     pub(crate) fn new(quiet: bool, steps: u64, interrupted: Arc<AtomicBool>) -> Self {
         let bar = if quiet || is_dumb() {
             ProgressBar::hidden()
@@ -77,8 +77,8 @@ impl Bar {
     }
 }
 
-/// How much of a stage is done; nothing before its first step, as a stage may have no other. 100 %
-/// stands for the end alone.
+/// Formats the completed share of a stage. The text is empty before the first step, because a stage
+/// may have only one. 100 % appears only at the end.
 fn done(done: u64, steps: u64) -> String {
     match done {
         0 => String::new(),
@@ -86,7 +86,7 @@ fn done(done: u64, steps: u64) -> String {
     }
 }
 
-/// How long a stage still takes; nothing where that cannot be told.
+/// Formats the remaining time of a stage; empty before the first step and at the end.
 fn left(eta: Duration, done: u64, steps: u64) -> String {
     if done == 0 || done >= steps {
         return String::new();

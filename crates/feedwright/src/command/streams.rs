@@ -44,7 +44,7 @@ pub(crate) struct ProgramInputs<'a> {
 }
 
 impl<'a> ProgramInputs<'a> {
-    /// Those that these arguments name.
+    /// Collects the files that these arguments name.
     pub(crate) fn of(
         part: &'a Path,
         machine: &'a (impl AsRef<OsStr> + ?Sized),
@@ -63,7 +63,7 @@ impl<'a> ProgramInputs<'a> {
         Self { geometry, ..self }
     }
 
-    /// As [`check_inputs`].
+    /// Calls [`check_inputs`] for these files.
     pub(crate) fn check(&self, console: &Console) -> Result<()> {
         let named = [
             ("the program", Some(self.part)),
@@ -77,7 +77,7 @@ impl<'a> ProgramInputs<'a> {
         )
     }
 
-    /// Outputs that are none of these files.
+    /// Returns output files that must differ from these files.
     pub(crate) fn outputs(&self) -> OutputFiles {
         let machine = Some(self.machine).filter(|path| is_machine_path(path));
         OutputFiles::new(
@@ -105,7 +105,7 @@ pub fn make_folder(folder: &Path) -> Result<()> {
     })
 }
 
-/// Where tables and remarks go: to stdout, or to stderr where data go to stdout.
+/// Returns the output for tables and remarks: stdout, or stderr where data go to stdout.
 pub fn tables<'a>(outputs: impl IntoIterator<Item = Option<&'a Path>>) -> Box<dyn Write> {
     let out: Box<dyn Write> = if outputs.into_iter().flatten().any(is_standard_output) {
         Box::new(io::stderr().lock())
@@ -147,7 +147,8 @@ impl Write for InchLines {
     }
 }
 
-/// Tells which files there are now; what went to the standard output is no file.
+/// Reports the files that were written. The standard output is not listed, because it is not a
+/// file.
 pub fn tell_written<'a>(
     out: &mut dyn Write,
     outputs: impl IntoIterator<Item = Option<&'a Path>>,

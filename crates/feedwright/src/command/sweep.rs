@@ -27,7 +27,7 @@ use result_store::ResultStore;
 pub struct JobDone {
     /// Address of the result.
     pub address: String,
-    /// Whether the result was there before.
+    /// True if the result was already in the store.
     pub found: bool,
     /// The message of the error that is the result, if it is one.
     pub error: Option<String>,
@@ -36,7 +36,7 @@ pub struct JobDone {
 /// Does a job, unless its result is in the store.
 ///
 /// # Errors
-/// A file that cannot be read, a result that cannot be written, or an end from outside: nothing is
+/// A file that cannot be read, a result that cannot be written, or a cancellation: nothing is
 /// stored, and the job may be done again. The mistakes of a program, a machine or a model are a
 /// result.
 pub fn do_job(store: &ResultStore, job: &ListedJob, watch: &dyn Watch) -> Result<JobDone> {

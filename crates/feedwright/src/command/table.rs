@@ -17,7 +17,7 @@ pub struct TableColumn {
 }
 
 impl TableColumn {
-    /// One that is always there.
+    /// Creates a column that is always shown.
     pub const fn new(heading: &'static str) -> Self {
         Self {
             heading: Cow::Borrowed(heading),
@@ -25,7 +25,7 @@ impl TableColumn {
         }
     }
 
-    /// One that may be left out, those of the highest number first.
+    /// Creates a column that may be left out. Columns with the highest number are left out first.
     pub const fn optional(heading: &'static str, importance: u8) -> Self {
         Self {
             heading: Cow::Borrowed(heading),
@@ -44,7 +44,7 @@ pub struct ConsoleTable {
 #[derive(Debug)]
 enum TableRow {
     Cells(Vec<String>),
-    /// What is said of the row above.
+    /// Remark about the row above.
     Remark(String),
     /// The heading is repeated, with this in its first column.
     Section(String),
@@ -59,11 +59,11 @@ pub(crate) fn figure(value: f64, decimals: usize) -> String {
     }
 }
 
-/// Names are no longer; what is cut off is their beginning.
+/// Longest name, columns. The beginning of a longer name is cut off.
 const MOST_NAME: usize = 44;
 
 impl ConsoleTable {
-    /// Without rows.
+    /// Creates a table without rows.
     pub fn new(columns: Vec<TableColumn>) -> Self {
         Self {
             columns,

@@ -1,4 +1,4 @@
-//! The terminal: how wide it is, and whether it shows colours.
+//! The terminal: how wide it is, and whether it shows colors.
 
 use std::borrow::Cow;
 use std::io::{self, IsTerminal};
@@ -10,22 +10,22 @@ use feedwright_gcode::visible;
 use crate::inches::in_inches;
 use crate::report::PageUnits;
 
-/// Columns where there is no terminal to ask.
+/// Width without a terminal, in columns.
 const COLUMNS: usize = 80;
 /// Longer lines are hard to read.
 const MOST_COLUMNS: usize = 120;
 /// Fewer are as good as none.
 const LEAST_COLUMNS: usize = 40;
 
-/// When text is coloured.
+/// Setting of `--color`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum ColorWhen {
-    /// On a terminal, unless NO_COLOR is set or TERM is dumb
+    /// Color on a terminal, unless NO_COLOR is set or TERM is dumb
     #[default]
     Auto,
-    /// Into files and pipes, too
+    /// Color everywhere, also in files and pipes
     Always,
-    /// Nowhere
+    /// Never color
     Never,
 }
 
@@ -35,11 +35,11 @@ pub enum LengthUnits {
     /// mm, um, mm/min
     #[default]
     Metric,
-    /// in, thousandths of an inch, in/min
+    /// inches, thousandths of an inch, in/min
     Inch,
 }
 
-/// As `--units` says.
+/// Value of `--units`.
 static UNITS: OnceLock<LengthUnits> = OnceLock::new();
 
 /// Takes what `--units` says.
@@ -48,7 +48,7 @@ pub(crate) fn set_units(units: LengthUnits) {
     let _ = UNITS.set(units);
 }
 
-/// Whether lengths are printed in inches.
+/// Returns true if lengths are printed in inches.
 pub(crate) fn is_inch() -> bool {
     UNITS.get() == Some(&LengthUnits::Inch)
 }
@@ -62,7 +62,7 @@ pub(crate) fn page_units() -> PageUnits {
     }
 }
 
-/// As `--color` says, from when the command line is read.
+/// Value of `--color`, set when the command line is read.
 static COLOR: OnceLock<ColorWhen> = OnceLock::new();
 
 /// Takes what `--color` says.
@@ -71,7 +71,7 @@ pub(crate) fn set_color(when: ColorWhen) {
     let _ = COLOR.set(when);
 }
 
-/// Whether messages on stderr are coloured.
+/// Returns true if messages on stderr are colored.
 pub(crate) fn is_stderr_colored() -> bool {
     let wants_none = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     match COLOR.get().copied().unwrap_or_default() {
@@ -81,12 +81,12 @@ pub(crate) fn is_stderr_colored() -> bool {
     }
 }
 
-/// Whether the terminal can do no more than print: no colours, no cursor, no lines.
+/// Returns true if the terminal can only print: no colors, no cursor, no lines.
 pub(crate) fn is_dumb() -> bool {
     std::env::var_os("TERM").is_some_and(|term| term == "dumb")
 }
 
-/// Whether stderr shows characters beyond ASCII. What goes to a file does.
+/// Returns true if stderr shows characters beyond ASCII. Files always do.
 pub(crate) fn shows_unicode() -> bool {
     if is_dumb() {
         return false;
@@ -117,7 +117,7 @@ pub(crate) fn columns() -> usize {
     }
 }
 
-/// How reasons of the libraries begin the line of their remedy.
+/// Text that separates a library's reason from its remedy.
 const REMEDY: &str = "\n  hint: ";
 
 /// A message without what is hidden in it; the line of its remedy stays one.
@@ -145,7 +145,7 @@ pub fn wrapped(text: &str, indent: usize) -> String {
     textwrap::fill(text, options).replace(KEPT, " ")
 }
 
-/// A text in the units that `--units` asks for.
+/// Converts a text to the units of `--units`.
 pub(crate) fn in_units(text: &str) -> Cow<'_, str> {
     if is_inch() {
         Cow::Owned(in_inches(text))

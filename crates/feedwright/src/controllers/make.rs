@@ -72,7 +72,7 @@ pub(super) fn two_dimensional<const N: usize>(
     })
 }
 
-/// What the supervisor holds an offset to.
+/// Returns the bounds that the supervisor applies to an offset.
 pub fn offset_bounds(known: &Known) -> OffsetBounds {
     let limits = known.limits;
     OffsetBounds {

@@ -14,19 +14,20 @@ pub struct Parameter {
     pub name: &'static str,
     /// Value where none is given.
     pub default: f64,
-    /// Least and most that it can be set to.
+    /// Least and largest value that it can be set to.
     pub allowed: [f64; 2],
-    /// Where the comparison searches for its best; by ratios where that begins above zero.
+    /// Range in which the comparison searches for the best value; by ratios where the range begins
+    /// above zero.
     pub searched: Option<[f64; 2]>,
-    /// Which of the values between are allowed.
+    /// Kind of the values that are allowed in this range.
     pub kind: ParameterKind,
-    /// What it is, and what goes wrong on either side.
+    /// Description of the parameter, and of what goes wrong if it is too small or too large.
     pub reason: &'static str,
     /// Unit of a value that is no plain number.
     pub unit: Option<&'static str>,
 }
 
-/// Which values a parameter can have.
+/// Kind of the values that a parameter can have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ParameterKind {
     /// All.
@@ -81,7 +82,7 @@ impl Parameter {
         }
     }
 
-    /// What it can be set to, in words.
+    /// Describes the values that the parameter can be set to.
     pub fn range(&self) -> String {
         let [least, most] = self.allowed;
         match self.kind {
@@ -108,7 +109,7 @@ pub struct Setting {
     pub value: f64,
 }
 
-/// As it is read back, before names and value are checked.
+/// A setting as it is read back, before its names and value are checked.
 #[derive(Deserialize)]
 struct StoredSetting {
     controller: String,
@@ -128,7 +129,7 @@ impl<'d> Deserialize<'d> for Setting {
     }
 }
 
-/// Why `--set` cannot be done.
+/// Reason why `--set` cannot be done.
 #[derive(Debug, Clone, PartialEq, Error, Diagnostic)]
 #[error("--set {text}: {message}")]
 pub struct SettingError {
@@ -255,7 +256,7 @@ impl Values {
         Self(entry.parameters.iter().map(value).collect())
     }
 
-    /// A value by its name, which the row of the table has.
+    /// Returns a value by its name, which the row of the table must have.
     pub fn number(&self, name: &str) -> f64 {
         let found = self.0.iter().find(|(of, _)| *of == name);
         found

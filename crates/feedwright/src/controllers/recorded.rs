@@ -1,4 +1,4 @@
-//! Values of the parameters that a search on a machine file came to: a line of JSON for each
+//! Values of the parameters that a search on a machine file found: a line of JSON for each
 //! controller and machine.
 //!
 //! The laboratory searches them (`feedwright-lab compare --record`) and holds the lines of the
@@ -38,7 +38,7 @@ struct ValueLine {
     value: f64,
 }
 
-/// What is recorded of a controller on a machine.
+/// Recorded result of the search for a controller's values on a machine.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RecordedValues {
     /// Values that are better than no correction.
@@ -47,8 +47,8 @@ pub enum RecordedValues {
     Unsuited,
 }
 
-/// What is recorded of a controller on a machine, if anything. A line that cannot be read counts as
-/// none.
+/// Finds the record of a controller on a machine, if there is one. Ignores lines that cannot be
+/// read.
 pub(super) fn find(
     lines: &str,
     machine: &Machine,

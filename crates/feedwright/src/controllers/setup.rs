@@ -1,7 +1,8 @@
-//! What a controller is made from: what is known of its machine, and a trained model.
+//! Inputs from which a controller is made: the known values of its machine, and a trained model.
 //!
-//! The machine itself stays in here: what makes a controller gets no hold of it, and cannot tell it
-//! what only the simulation knows. A training sees a recording of it.
+//! The machine itself stays in here. Code that makes a controller has no access to it, so that the
+//! controller cannot use values that only the simulation knows. A training uses a recording of the
+//! machine.
 use feedwright_control::{AxisKnowledge, ContourIdentifier, IdentifiedAxes, IdentifierKind};
 use feedwright_ident::{
     AxisEstimate, AxisRecordings, DriveSettings, Excitation, Model, NotIdentified, Origin,
@@ -15,29 +16,29 @@ use super::parameters::Values;
 use super::{CONTROLLERS, Choices, Entry};
 use crate::identifier_cache::{identified, identified_axes};
 
-/// What a controller is made from.
+/// Inputs from which a controller is made.
 pub struct Setup<'a> {
-    /// What is known of the machine it is for.
+    /// Known values of the controller's machine.
     pub known: Known,
     /// The user's choices.
     pub choices: &'a Choices,
-    /// Is recorded where a model has to be trained.
+    /// Machine that is recorded where a model has to be trained.
     machine: &'a Machine,
-    /// Was trained before, and suits.
+    /// Model that was trained before, and that suits.
     model: Option<&'a Model>,
-    /// Told of the progress of a training, 0 to 1.
+    /// Receives the progress of a training, 0 to 1.
     progress: Option<&'a mut dyn FnMut(f64)>,
-    /// What was found of each axis, where axes were identified, or why nothing was.
+    /// Estimate of each axis, where axes were identified, or the reason why they could not be.
     found: Option<Result<Vec<AxisEstimate>, NotIdentified>>,
 }
 
-/// Why a controller cannot be made with a model.
+/// Reasons why a controller cannot be made with a model.
 #[derive(Debug, Clone, PartialEq, Error, Diagnostic)]
 pub enum ModelMisfit {
-    /// It has no use for one.
+    /// The controller uses no model.
     #[error("{controller} uses no trained identifier")]
     NoIdentifier {
-        /// Its name.
+        /// Name of the controller.
         controller: &'static str,
         /// Remedy.
         #[help]
@@ -48,9 +49,9 @@ pub enum ModelMisfit {
     Kind {
         /// Name of the controller.
         controller: &'static str,
-        /// What the model holds.
+        /// Kind of the model.
         found: &'static str,
-        /// What is needed.
+        /// Kind that is needed.
         needed: &'static str,
         /// Remedy.
         #[help]
@@ -67,7 +68,7 @@ pub enum ModelMisfit {
         #[help]
         hint: String,
     },
-    /// There are no such axes to train on.
+    /// The machine does not have as many axes as the model would need.
     #[error("the machine `{machine}` has {has} axes, and a model for {asked} was asked for")]
     #[diagnostic(help(
         "a program that stays in the XY plane is cut with a model for 2 axes, any other with one for 3"
@@ -75,17 +76,17 @@ pub enum ModelMisfit {
     NoSuchAxes {
         /// Name of the machine.
         machine: String,
-        /// Its axes.
+        /// Number of axes of the machine.
         has: usize,
-        /// Axes that were asked for.
+        /// Number of axes that the model is requested for.
         asked: usize,
     },
-    /// The recording does not tell what an axis is.
+    /// An axis cannot be identified from the recording.
     #[error("the axes of `{machine}` cannot be identified: {cause}")]
     NotIdentified {
         /// Name of the machine.
         machine: String,
-        /// Why.
+        /// Cause.
         cause: NotIdentified,
     },
     /// The model was trained for another period.
@@ -95,11 +96,11 @@ pub enum ModelMisfit {
     Period {
         /// Servo period or feed period.
         period: &'static str,
-        /// Whose it is.
+        /// Owner of the needed period, as the message names it.
         of: &'static str,
-        /// Of the model, s.
+        /// Period of the model, s.
         found_s: f64,
-        /// What is needed, s.
+        /// Period that is needed, s.
         needed_s: f64,
         /// Remedy.
         #[help]
@@ -111,22 +112,22 @@ pub enum ModelMisfit {
 #[derive(Debug, Clone, PartialEq, Error, Diagnostic)]
 #[diagnostic(severity(Warning))]
 pub enum CutsUncorrected {
-    /// Nothing was identified that it could go by.
+    /// No axes were identified that the controller could use.
     #[error("{controller} cuts uncorrected: the axes of `{machine}` cannot be identified: {cause}")]
     NothingIdentified {
-        /// Its name.
+        /// Name of the controller.
         controller: &'static str,
         /// Name of the machine.
         machine: String,
-        /// Why.
+        /// Cause.
         cause: NotIdentified,
     },
-    /// It does not suit the machine.
+    /// The controller does not suit the machine.
     #[error(
         "{controller} does not suit `{machine}` and cuts uncorrected: no values of its parameters are better there"
     )]
     Unsuited {
-        /// Its name.
+        /// Name of the controller.
         controller: &'static str,
         /// Name of the machine.
         machine: String,
@@ -137,7 +138,7 @@ pub enum CutsUncorrected {
 }
 
 impl CutsUncorrected {
-    /// Which controller.
+    /// Returns the name of the controller.
     pub fn controller(&self) -> &'static str {
         match self {
             Self::NothingIdentified { controller, .. } | Self::Unsuited { controller, .. } => {
@@ -151,10 +152,10 @@ impl CutsUncorrected {
 const SAME_PERIOD: f64 = 1e-9;
 
 impl Entry {
-    /// Whether a model suits this controller, as it is set, for a machine and a number of axes.
+    /// Checks that a model suits this controller, with its settings, for a machine and a number of
+    /// axes.
     ///
-    /// # Errors
-    /// The first thing that does not suit.
+    /// Returns the first mismatch.
     pub fn suits(
         &self,
         model: &Model,
@@ -240,7 +241,7 @@ impl Entry {
 }
 
 impl<'a> Setup<'a> {
-    /// For a machine, which is recorded where a model has to be trained.
+    /// Prepares a setup for a machine. The machine is recorded where a model has to be trained.
     pub fn new(machine: &'a Machine, choices: &'a Choices) -> Self {
         Self {
             known: machine.known(),
@@ -252,7 +253,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// Tells of the progress of a training, 0 to 1.
+    /// Reports the progress of a training to `progress`, 0 to 1.
     pub fn telling(self, progress: &'a mut dyn FnMut(f64)) -> Self {
         Self {
             progress: Some(progress),
@@ -260,7 +261,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// What is to be told of a controller that was made from this and cuts uncorrected.
+    /// Returns the remark on a controller that was made from this setup and cuts uncorrected.
     pub fn remark(&self, entry: &Entry) -> Option<CutsUncorrected> {
         let (controller, machine) = (entry.name, self.machine.name.clone());
         if self.is_unsuited(entry) {
@@ -285,13 +286,13 @@ impl<'a> Setup<'a> {
         })
     }
 
-    /// Whether a controller cuts uncorrected because it does not suit the machine.
+    /// Returns true if a controller cuts uncorrected because it does not suit the machine.
     pub(super) fn is_unsuited(&self, entry: &Entry) -> bool {
         self.choices.unsuited.iter().any(|name| name == entry.name)
     }
 
-    /// What was found of each axis by the last training of a model of axes, or why nothing was;
-    /// none where there was none.
+    /// Returns the estimate of each axis from the last training of a model of axes, or the reason
+    /// why it failed; `None` if there was no such training.
     pub fn found(&self) -> Option<&Result<Vec<AxisEstimate>, NotIdentified>> {
         self.found.as_ref()
     }
@@ -302,8 +303,8 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// What is true of the axes of the machine: for the limit alone. A screw with a scale on the
-    /// table counts as rigid.
+    /// Returns the true values of the machine's axes, for the limit alone. A screw with a scale on
+    /// the table counts as rigid.
     pub fn truth<const N: usize>(&self) -> [AxisKnowledge; N] {
         let (periods, statistics) = (self.known.period.periods(), self.machine.statistics::<N>());
         std::array::from_fn(|i| {

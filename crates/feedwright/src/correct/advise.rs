@@ -1,5 +1,5 @@
-//! At which feed a tolerance is held: by the program as it is, by the corrected program, and with a
-//! controller that sees the tool.
+//! Finds the feedrates at which a tolerance is held: by the program as it is, by the corrected
+//! program, and with a controller that measures the tool position.
 //!
 //! The program is cut with all its feedrates at factors that go up and down by the root of two,
 //! until it is within the tolerance. Where the error passes the tolerance the factor is
@@ -54,22 +54,23 @@ pub struct AdviseJob {
     pub file_error: f64,
 }
 
-/// How a program is cut.
+/// Way in which a program is cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CutWay {
-    /// As it is, without feedback.
+    /// The program as it is, without feedback.
     Uncorrected,
     /// Corrected for that feedrate, without feedback.
     Corrected,
-    /// With a controller.
+    /// The program as it is, with a controller in the loop.
     Controlled,
 }
 
-/// All of them, in the order in which they are told.
+/// All ways, in the order of the report.
 pub(crate) const WAYS: [CutWay; 3] = [CutWay::Uncorrected, CutWay::Corrected, CutWay::Controlled];
 
-/// What a program comes to, at a factor on all of its feedrates or at one for each stretch.
+/// Time and errors of a program, with one factor on all of its feedrates or one factor for each
+/// stretch.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FeedCut {
     /// Factor on the programmed feedrates; none where each stretch has its own.
@@ -83,18 +84,20 @@ pub struct FeedCut {
     pub max_um: f64,
 }
 
-/// What holds the tolerance, in one way.
+/// Feedrates that hold the tolerance when the program is cut in one way.
 #[derive(Debug, Clone, Serialize)]
 pub struct WayAdvice {
     /// The way.
     pub way: CutWay,
     /// Cuts by rising factor.
     pub cuts: Vec<FeedCut>,
-    /// The fastest factor on the whole program that holds; none where the least does not.
+    /// The fastest factor on the whole program that holds the tolerance; none if the smallest
+    /// factor does not hold it.
     pub whole: Option<FeedCut>,
-    /// Each stretch at its own feed; none where one of them holds at none.
+    /// Result with a separate feedrate for each stretch; none if a stretch holds the tolerance at
+    /// no feedrate.
     pub by_stretch: Option<FeedCut>,
-    /// Where no factor on the whole program holds: what comes nearest.
+    /// The cut that comes nearest to the tolerance, if no factor on the whole program holds it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nearest: Option<NearestCut>,
 }
@@ -102,14 +105,14 @@ pub struct WayAdvice {
 /// The cut that comes nearest to a tolerance that is not held.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct NearestCut {
-    /// What it comes to.
+    /// Factor, time and errors of the cut.
     pub cut: FeedCut,
     /// First and last line of the stretch with the largest error.
     pub lines: [u32; 2],
-    /// Where on that stretch it is.
+    /// Part of that stretch with the largest error.
     pub place: ErrorPlace,
-    /// The fastest factor that holds beside the ends of the stretches, where the tool comes from
-    /// rest or goes there.
+    /// The fastest factor that holds the tolerance away from the ends of the stretches, where the
+    /// tool comes from rest or stops.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub beside_ends: Option<FeedCut>,
 }
@@ -121,25 +124,26 @@ pub struct StretchAdvice {
     pub lines: [u32; 2],
     /// Largest programmed feedrate, mm/s.
     pub feed_mm_s: f64,
-    /// Largest feedrate that holds, mm/s, in each of [`WAYS`]; none where the least that was cut
-    /// does not.
+    /// Largest feedrate that holds the tolerance, mm/s, in each of [`WAYS`]; none if the smallest
+    /// feedrate that was cut does not hold it.
     pub holds_mm_s: [Option<f64>; 3],
-    /// Where none does: what comes nearest.
+    /// The feedrate that comes nearest to the tolerance, for each way in which no feedrate holds
+    /// it.
     pub nearest: [Option<NearestFeed>; 3],
 }
 
-/// What comes nearest where no feedrate of a stretch holds.
+/// The feedrate of a stretch that comes nearest to the tolerance, if no feedrate holds it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct NearestFeed {
-    /// Least of its largest errors, um.
+    /// Smallest of the largest errors of all its cuts, um.
     pub max_um: f64,
-    /// Where that is.
+    /// Part of the stretch with that error.
     pub place: ErrorPlace,
-    /// Largest feedrate that holds beside its ends, mm/s.
+    /// Largest feedrate that holds the tolerance away from the ends of the stretch, mm/s.
     pub beside_ends_mm_s: Option<f64>,
 }
 
-/// What holds the tolerance.
+/// Feedrates that hold the tolerance, in every way and for every stretch.
 #[derive(Debug, Clone, Serialize)]
 pub struct Advice {
     /// Name of the control that cuts without feedback.
@@ -156,16 +160,16 @@ pub struct Advice {
     pub ways: Vec<WayAdvice>,
     /// The stretches in the order of the program.
     pub stretches: Vec<StretchAdvice>,
-    /// What is assumed beside the machine file; none of an exact one.
+    /// Assumptions beside the machine file; none if the file is exact.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub assumed: Option<FileAssumption>,
-    /// What the reader warned of.
+    /// Warnings of the reader.
     #[serde(skip)]
     pub warnings: Vec<Diagnostic>,
 }
 
 impl Advice {
-    /// Whether any way holds the tolerance.
+    /// Returns true if any way holds the tolerance.
     pub fn holds(&self) -> bool {
         self.ways.iter().any(|way| way.whole.is_some())
     }
@@ -302,7 +306,7 @@ impl AdviseJob {
 }
 
 impl CutWay {
-    /// How it is called; a cut with a controller by the controller's name.
+    /// Returns the name of the way; for a cut with a controller, the name of the controller.
     pub const fn name(self, controller: &'static str) -> &'static str {
         match self {
             Self::Uncorrected => "uncorrected",
@@ -322,7 +326,8 @@ fn feed_mm_s(stretch: &SmoothStretch) -> f64 {
 }
 
 impl NearestCut {
-    /// In words, with a sign for micrometres; `largest_mm_s` is the largest programmed feedrate.
+    /// Describes the cut in one sentence. `um` is the sign for micrometers, `largest_mm_s` the
+    /// largest programmed feedrate.
     pub fn sentence(&self, um: &str, largest_mm_s: f64) -> String {
         let [first, last] = self.lines;
         let place = match self.place {
@@ -350,7 +355,7 @@ impl NearestCut {
         }
     }
 
-    /// Why no feed holds, and what would, in one sentence.
+    /// Explains in one sentence why no feedrate holds the tolerance, and what would help.
     pub fn why(&self) -> String {
         let [first, last] = self.lines;
         match self.place {
@@ -372,8 +377,8 @@ impl NearestCut {
 }
 
 impl StretchAdvice {
-    /// The feedrate that holds in one of [`WAYS`], mm/min or in/min: in brackets where it holds
-    /// beside the ends of the stretch only.
+    /// Returns the feedrate that holds the tolerance in one of [`WAYS`], mm/min or in/min. It
+    /// stands in brackets if it holds only away from the ends of the stretch.
     pub fn cell(&self, way: usize, units: PageUnits) -> String {
         let per_minute = |mm_s: f64| units.fixed(60.0 * mm_s, 0);
         let beside_ends = self.nearest[way].and_then(|nearest| nearest.beside_ends_mm_s);
@@ -384,8 +389,8 @@ impl StretchAdvice {
         }
     }
 
-    /// The error that no feedrate takes back, and where it is, with a sign for micrometres; none
-    /// where each way holds at some feedrate.
+    /// Returns the error that no feedrate removes and its place, with `um` as the sign for
+    /// micrometers; none if each way holds the tolerance at some feedrate.
     pub fn remark(&self, um: &str) -> Option<String> {
         let largest = self
             .nearest
@@ -401,7 +406,7 @@ impl StretchAdvice {
     }
 }
 
-/// What brackets, dashes and the last column in the table of stretches mean.
+/// Legend of the table of stretches: explains the brackets, the dashes and the last column.
 pub(crate) const STRETCH_LEGEND: &str = "in brackets: holds beside the ends of the stretch, where the tool comes from rest or goes there and is off by more at every feed that was cut (a \
                                   corrected program goes there slowly); -: holds at no feed that was cut; left: the error that no feed takes back, at its start, \
                                   its end, or on its way";

@@ -42,7 +42,7 @@ const TWO_FOR_ONE: usize = 2;
 /// A point to be passed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FitPoint {
-    /// Where it is, along the axes of the plane and its normal, mm.
+    /// Position along the axes of the plane and its normal, mm.
     pub at_mm: Vector,
     /// Direction of travel, of length 1 in the plane; zero where there is no way in the plane.
     pub tangent: [f64; 2],
@@ -229,14 +229,14 @@ impl<'a> ArcFit<'a> {
         }
     }
 
-    /// Whether arcs pass all points between two, and none turns too far.
+    /// Returns true if the arcs pass all points between `from` and `to`, and no arc turns too far.
     fn passes(&self, arcs: &[FitArc], from: usize, to: usize) -> bool {
         let gentle = |arc: &FitArc| arc.sweep_rad.abs() < MOST_RAD;
         let passed = |point: &FitPoint| {
             arcs.iter()
                 .any(|arc| arc.distance_mm(point.at_mm) <= self.tolerance_mm)
         };
-        // An arc of many turns' worth of points may come near all of them and still not go along.
+        // An arc with the length of many turns may come near all points and still not follow them.
         let way_mm: f64 = arcs.iter().map(|arc| arc.length_mm).sum();
         let points_mm: f64 = self.points[from..=to]
             .windows(2)
@@ -247,7 +247,7 @@ impl<'a> ArcFit<'a> {
             && self.points[from + 1..to].iter().all(passed)
     }
 
-    /// As the reader gives it in G17.
+    /// Returns the shape as the reader gives it in G17.
     fn shape(&self, arc: &FitArc) -> Shape {
         let Some(radius_mm) = arc.radius_mm else {
             return Shape::Line;

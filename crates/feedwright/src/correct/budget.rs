@@ -2,8 +2,8 @@
 
 /// A stretch may take longer by this fraction of its programmed time and by [`STRETCH_DWELLS`].
 const MORE_TIME: f64 = 0.065;
-/// Extra time that a stretch may take, in dwells: the rests of both of its ends and as much again,
-/// if the others leave it that.
+/// Extra time that a stretch may take, in dwells: the rests at both of its ends, and the same time
+/// again if the other stretches do not use it.
 const STRETCH_DWELLS: f64 = 3.0;
 /// Extra time that a program may take for itself and for each stretch that is not a detail, in
 /// dwells.
@@ -38,24 +38,25 @@ const STRETCH_MORE: f64 = 15.0;
 /// [`MORE_DWELLS`] for itself and for each stretch that is not a detail.
 const PROGRAM_TIME: f64 = 0.065;
 
-/// What a stretch is as programmed.
+/// Size of a stretch as programmed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StretchBudget {
     pub(super) time_s: f64,
     pub(super) blocks: usize,
-    /// Those of them that are straight.
+    /// Straight blocks among `blocks`.
     pub(super) lines: usize,
     /// Time constant of the position loop, s.
     pub(super) loop_s: f64,
 }
 
-/// How much longer than `time_s` a program may take that has several stretches or one, s.
+/// Returns the time by which a program may take longer than `time_s`, s; the fraction depends on
+/// whether it has several stretches or one.
 pub(super) fn program_more_s(time_s: f64, several: bool) -> f64 {
     PROGRAM_MORE_TIME[usize::from(several)] * time_s
 }
 
 impl StretchBudget {
-    /// How many blocks count as few, and how many it may have at all.
+    /// Returns the limit for few blocks and the limit for many blocks.
     pub(super) fn most_blocks(&self) -> [f64; 2] {
         let blocks = self.blocks as f64;
         let few = FEW_BLOCKS * blocks
@@ -64,7 +65,8 @@ impl StretchBudget {
         [few, if self.is_detail() { few } else { few.max(many) }]
     }
 
-    /// How many it may have where fewer would do.
+    /// Returns the largest number of blocks for a fine fit, used where a coarser fit would need
+    /// fewer.
     pub(super) fn most_fine_blocks(&self) -> f64 {
         let chords = self.lines > CHORDS && 2 * self.lines > self.blocks;
         if chords {
@@ -74,27 +76,27 @@ impl StretchBudget {
         }
     }
 
-    /// How long it may take, s.
+    /// Returns the longest time that the stretch may take, s.
     pub(super) fn most_s(&self, dwell_s: f64) -> f64 {
         (1.0 + MORE_TIME) * self.time_s + STRETCH_DWELLS * dwell_s
     }
 
-    /// Whether the stretch is a detail: so short that it shares the limits of the program with the
-    /// others.
+    /// Returns true if the stretch is a detail: so short that it shares the limits of the program
+    /// with the other stretches.
     pub(super) fn is_detail(&self) -> bool {
         self.time_s < DETAIL * self.loop_s
     }
 }
 
-/// What a stretch that has another command costs, and what that gains.
+/// Cost and gain of a new command for a stretch.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StretchCost {
     pub(super) budget: StretchBudget,
-    /// Blocks more than programmed, rests included.
+    /// Blocks added to the program, rests included.
     pub(super) blocks: f64,
-    /// Time more than programmed, rests included, s.
+    /// Time added to the program, rests included, s.
     pub(super) time_s: f64,
-    /// Squares of errors that are gone, mm2; none where the stretch stays as it is.
+    /// Sum of squared errors that the command removes, mm2; none where the stretch stays as it is.
     pub(super) gain_mm2: Option<f64>,
 }
 

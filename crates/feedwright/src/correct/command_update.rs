@@ -7,9 +7,9 @@
 //! c + e + T1 e' + T2 e'',
 //! ```
 //!
-//! what the loop turns into `e` more of the tool. `e` is smoothed by a Gaussian first: a command
-//! that shakes is slow on the other control and tears at the machine. At the ends of a stretch the
-//! change fades out, so that it starts and ends where the program says.
+//! which the loop turns into a tool position that is moved by `e`. A Gaussian smooths `e` first: a
+//! command that shakes is slow on the target control and strains the machine. At the ends of a
+//! stretch the change fades out, so that the stretch starts and ends where the program says.
 
 use std::ops::Range;
 
@@ -21,16 +21,16 @@ use super::loop_lag::LoopLag;
 use super::slow_end::SlowEnd;
 use super::stretches::SmoothStretch;
 
-/// What is smoothed and how.
+/// Settings of the smoothing and limits of a new command.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct UpdateSettings {
     /// Standard deviation of the Gaussian over errors, s.
     pub(super) smoothing_s: f64,
-    /// The same over the command, s.
+    /// Standard deviation of the Gaussian over the command, s.
     pub(super) command_smoothing_s: f64,
     /// Time over which a change fades in and out at the ends of a stretch, s.
     pub(super) fade_s: f64,
-    /// Points nearer to the last than this are left out, mm.
+    /// Points closer to the previous one than this are left out, mm.
     pub(super) least_mm: f64,
     /// Largest distance of the command from the path, mm.
     pub(super) most_mm: f64,

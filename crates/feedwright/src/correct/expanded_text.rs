@@ -1,9 +1,9 @@
-//! The text of a corrected program whose lines are not carried out once and in their order: loops,
-//! subroutines and jumps.
+//! The text of a corrected program with loops, subroutines or jumps: the control does not run its
+//! lines once and in order.
 //!
-//! Each motion and event is written as it is carried out, in the unit and the coordinates of its
-//! place, with a comment that says so. Offsets come in the words of the lines that set them, in the
-//! order in which these are carried out: what they come to on the control is the control's.
+//! Each motion and event is written in the order of execution, in the unit and the coordinates of
+//! its place. A comment marks the program as expanded. Offsets are written with the words of the
+//! lines that set them, in the order of execution: the control computes their effect.
 
 use feedwright_gcode::canon::{Canon, Corner, EventKind, Motion, MotionKind, Shape};
 
@@ -15,9 +15,9 @@ use super::stretches::{ProgramPart, dwells};
 /// A line that cannot be written out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct UnwritableLine {
-    /// Its number.
+    /// Its number in the program.
     pub(super) line: usize,
-    /// What of it.
+    /// The element of the line that cannot be written out.
     pub(super) what: &'static str,
     /// A remedy.
     pub(super) hint: &'static str,
@@ -53,7 +53,7 @@ const OFFSETS_WITHIN: (&str, &str) = (
     "put G10, G43, G54 and G92 before a rapid",
 );
 
-/// What an expanded program has put in force, and its lines so far.
+/// Modes that the expanded program has set so far, and its lines.
 #[derive(Debug)]
 struct ExpandedText {
     unit_mm: f64,
@@ -62,10 +62,11 @@ struct ExpandedText {
 }
 
 impl TextParts<'_> {
-    /// Every motion and event as it is carried out, in the unit and the coordinates of its place.
+    /// Returns the text: every motion and event in the order of execution, in the unit and the
+    /// coordinates of its place.
     ///
     /// # Errors
-    /// The first line of which one of them cannot be said.
+    /// The first line with a motion or an event that cannot be written.
     pub(super) fn expanded(&self) -> Result<String, UnwritableLine> {
         let mut lines = self.tape_head();
         let is_tape = lines.first().is_some_and(|line| line.starts_with('%'));
@@ -127,7 +128,7 @@ impl TextParts<'_> {
         Ok(joined(&lines))
     }
 
-    /// `%` and the number of a program for Fanuc: by these it is known for one.
+    /// Returns `%` and the program number for Fanuc, which identify the text as a Fanuc program.
     fn tape_head(&self) -> Vec<String> {
         let head = self
             .source
@@ -191,8 +192,8 @@ impl TextParts<'_> {
         Ok(())
     }
 
-    /// The unit of a step, and the words of the lines before it that set offsets. What changes
-    /// coordinates without such words cannot be said.
+    /// Writes the unit of a step, and the words of the lines before it that set offsets. A change
+    /// of coordinates without such words cannot be written.
     fn put_place(&self, step: usize, text: &mut ExpandedText) -> Result<(), UnwritableLine> {
         if step >= self.source.steps.len() {
             return Ok(());

@@ -1,9 +1,9 @@
-//! A program as the other control would cut it: planned as it plans, without feedback, measured
+//! Cuts a program as the target control would: planned by that control, without feedback, measured
 //! against the original.
 //!
-//! What disturbs has another phase, and noise other random numbers, each time a part is cut. So it
-//! is cut several times, with a rest before the start that is another part of a period of the
-//! disturbance, and with other seeds.
+//! The disturbance has another phase, and the noise other random numbers, each time a part is cut.
+//! So the program is cut several times. Each cut rests before the start for another part of a
+//! period of the disturbance, and has another seed.
 use std::ops::Range;
 
 use feedwright_control::Uncorrected;
@@ -21,16 +21,16 @@ use super::learned::{PathTrack, PlaceError};
 use crate::report::Statistics;
 use crate::report::harm::{CutErrors, MAX_UM};
 
-/// Cuts of a machine that disturbs or has noise.
+/// Number of cuts for a machine with a disturbance or noise.
 const CUTS: u32 = 4;
 
 /// A corrected program is no better than the uncorrected program if its RMS error is not smaller by
-/// this share, nor its largest error by [`MAX_UM`], by which it varies with noise. A smaller gain
-/// does not pay for a longer program.
+/// this share, nor its largest error by [`MAX_UM`], the variation by noise. A smaller gain does not
+/// justify a longer program.
 pub(super) const LEAST_GAIN: f64 = 0.02;
 
-/// What a program comes to, cut without feedback. Errors and time of a cut that diverged are not a
-/// number, null in JSON.
+/// Errors, time and size of a program that is cut without feedback. The errors and the time of a
+/// cut that diverged are NaN, null in JSON.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ExportedFigures {
     /// Contour error against the original: quadratic mean of the RMS over the cuts, um.
@@ -43,7 +43,7 @@ pub struct ExportedFigures {
     pub time_s: f64,
     /// Motions of the program.
     pub blocks: u64,
-    /// Whether the loop stayed stable.
+    /// True where the loop stayed stable in all cuts.
     pub completed: bool,
     /// Number of the cut with the largest error.
     #[serde(skip)]
@@ -51,7 +51,8 @@ pub struct ExportedFigures {
 }
 
 impl ExportedFigures {
-    /// Without those of a cut that diverged: they would be those of its beginning.
+    /// Sets errors and time to NaN if a cut diverged: they would describe only the beginning of the
+    /// cut.
     const fn of_whole(mut self) -> Self {
         if !self.completed {
             (self.rms_um, self.max_um, self.uncut_um, self.time_s) =
@@ -60,8 +61,8 @@ impl ExportedFigures {
         self
     }
 
-    /// Whether this program gains too little to replace the uncorrected one, though it need not be
-    /// worse.
+    /// Returns true if this program gains too little to replace the uncorrected one, even if it is
+    /// not worse.
     pub(super) fn is_no_better_than(&self, uncorrected: &Self) -> bool {
         self.rms_um > (1.0 - LEAST_GAIN) * uncorrected.rms_um
             && self.max_um > uncorrected.max_um - MAX_UM
@@ -77,31 +78,31 @@ impl ExportedFigures {
     }
 }
 
-/// What a servo period of a cut tells of the command and the error.
+/// Command and error of a cut in one servo period.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CutRow {
     pub(super) t_s: f64,
     /// Line of the motion under way; 0 in a rest.
     pub(super) line: u32,
-    /// What kind of motion the command is in.
+    /// Kind of motion of the command.
     pub(super) commanded: Commanded,
-    /// Whether the tool is where the program cuts.
+    /// True where the tool is in a cutting part of the program.
     pub(super) cutting: bool,
-    /// Whether the row is in the piece that is corrected, and not in a lead.
+    /// True where the row belongs to the piece that is corrected, not to a lead.
     pub(super) own: bool,
     pub(super) cmd_mm: Vector,
-    /// From the tool to its foot; zero where it does not cut.
+    /// Vector from the tool to its foot, mm; zero where the program does not cut.
     pub(super) error_mm: Vector,
     /// The point of the original path that the command stands for.
     pub(super) path_mm: Vector,
-    /// Feedrate that the original has there, mm/s.
+    /// Feedrate of the original at that point, mm/s.
     pub(super) feed_mm_s: f64,
 }
 
-/// Rows that are kept of a cut, at the most: some 2 GB.
+/// Largest number of rows that are kept of a cut: some 2 GB.
 const MOST_ROWS: usize = 10_000_000;
 
-/// Refuses a cut that takes longer than its rows can be kept.
+/// Rejects a cut that takes longer than its rows can be kept.
 pub(super) fn check_rows(time_s: f64, servo_s: f64) -> Result<(), RunError> {
     let most_s = MOST_ROWS as f64 * servo_s;
     if time_s > most_s {
@@ -131,7 +132,7 @@ impl<'a> CutRows<'a> {
         }
     }
 
-    /// What is wrong with a cut that could not be kept.
+    /// Returns `TooLong` if the rows of the cut could not all be kept, or else `error`.
     pub(super) fn fault(&self, error: RunError, servo_s: f64) -> RunError {
         if self.rows.len() < MOST_ROWS {
             return error;
@@ -199,7 +200,7 @@ const SHARED_STEPS: usize = 300_000;
 /// Progress of a cut, steps.
 const CUT_STEPS: u64 = 100;
 
-/// Tells the progress of a cut along the original path.
+/// Reports the progress of a cut along the original path.
 struct ExportedProgress<'a> {
     watch: &'a dyn Watch,
     length_mm: f64,
@@ -231,13 +232,13 @@ pub(super) fn length_mm(path: &[Step]) -> f64 {
         .sum()
 }
 
-/// The machine of one cut, and how long it rests before.
+/// Machine of one cut, and the rest before it.
 pub(super) struct CutPhase {
     pub(super) machine: Machine,
     pub(super) wait_s: f64,
 }
 
-/// A program behind a rest.
+/// Returns a program that begins with a rest.
 pub(super) fn waited(program: &[Step], wait_s: f64) -> Vec<Step> {
     let wait = Step::Event(Event {
         line: 0,
@@ -256,32 +257,32 @@ fn path_steps(program: &[Step]) -> u64 {
         .count() as u64
 }
 
-/// A program beside the original.
+/// Settings for cuts of a program, which are measured against the original.
 pub struct ExportedCut<'a> {
     /// The machine that cuts it.
     pub machine: &'a Machine,
-    /// What its joints have beside, as logs of the part show.
+    /// Errors of the joints beside the model, as logs of the part show them.
     pub error: Option<&'a PlaceError>,
-    /// How the control plans.
+    /// Feed planner of the control.
     pub stages: Stages,
     /// The path that errors are measured to.
     pub original: &'a [Step],
     /// Axes that move, 2 or 3.
     pub axes: usize,
-    /// Is told whether to go on.
+    /// Receives the progress, and reports whether the run is cancelled.
     pub watch: &'a dyn Watch,
 }
 
 impl ExportedCut<'_> {
-    /// What a program comes to, over several cuts.
+    /// Cuts a program several times and returns its errors and time.
     ///
     /// # Errors
-    /// A machine without sensible limits, or an end from outside.
+    /// A machine without sensible limits, or a run that was cancelled.
     pub fn figures(&self, program: &[Step]) -> Result<ExportedFigures, RunError> {
         self.figures_by(program, "cutting", &Workers::new(1))
     }
 
-    /// The same, a part of the work for each cut, as a stage of this name.
+    /// Computes the same figures with one work part for each cut, as a stage named `stage`.
     pub(super) fn figures_by(
         &self,
         program: &[Step],
@@ -323,7 +324,7 @@ impl ExportedCut<'_> {
         Ok(figures.of_whole())
     }
 
-    /// What differs from cut to cut.
+    /// Returns the machine and the rest of each cut; these differ from cut to cut.
     pub(super) fn phases(&self) -> Vec<CutPhase> {
         let disturbs = self
             .machine
@@ -358,7 +359,7 @@ impl ExportedCut<'_> {
         (0..cuts).map(phase).collect()
     }
 
-    /// The cut of a program that has the largest error of all that its figures are of.
+    /// Repeats the cut with the largest error of all cuts behind `figures`.
     pub(crate) fn worst(
         &self,
         program: &[Step],
@@ -373,11 +374,11 @@ impl ExportedCut<'_> {
         }
     }
 
-    /// What one cut comes to, after a rest; its time is that without the rest. The rows go to
-    /// sinks, those of the rest too.
+    /// Cuts a program once after a rest and returns its figures; the time excludes the rest. The
+    /// rows go to `sinks`, including the rows of the rest.
     ///
     /// # Errors
-    /// As [`ExportedCut::figures`].
+    /// The same as [`ExportedCut::figures`].
     pub fn once(
         &self,
         program: &[Step],
@@ -414,7 +415,7 @@ impl ExportedCut<'_> {
         self.original.iter().map(time_s).sum()
     }
 
-    /// Cuts a program once; the rows go to sinks.
+    /// Cuts a program once; the rows go to `sinks`.
     pub(super) fn cut(
         &self,
         program: &[Step],
@@ -423,7 +424,7 @@ impl ExportedCut<'_> {
         self.cut_along(&AlignedPaths::new(self.original, program), sinks)
     }
 
-    /// The same of a program beside the original.
+    /// Cuts a program that is aligned with the original.
     fn cut_along(
         &self,
         aligned: &AlignedPaths,
@@ -497,8 +498,8 @@ impl ExportedCut<'_> {
             .map(|_| ())
     }
 
-    /// Servo periods that are simulated until the end of each line, up to `lines`, as the control
-    /// plans a program.
+    /// Returns the number of servo periods that are simulated until the end of each line, up to
+    /// `lines`, as the control plans the program.
     pub(super) fn periods(&self, program: &[Step], lines: usize) -> Result<Vec<u64>, RunError> {
         let mut kept = LinePeriods {
             until: vec![0; lines],
@@ -538,7 +539,7 @@ impl Mechanism for IdealMachine {
     }
 }
 
-/// Keeps the command of a run; what is skipped of a rest too.
+/// Keeps the command of a run, and fills in the rows that a rest skips.
 struct KeptTrack<'a> {
     track: &'a mut PathTrack,
 }
@@ -588,7 +589,7 @@ impl Sink for LinePeriods {
 /// A machine whose joints have an error beside the model.
 struct BesideModel {
     plant: Plant<3>,
-    /// By servo period, mm.
+    /// Error of the joints in each servo period, mm.
     error_mm: Vec<Vector>,
     period: usize,
 }
@@ -602,7 +603,7 @@ impl Mechanism for BesideModel {
             torque_nm,
         } = self.plant.step(command_mm);
         self.period += 1;
-        // A position is that at the end of the period.
+        // A position is the one at the end of the period.
         let error_mm = self
             .error_mm
             .get(self.period)

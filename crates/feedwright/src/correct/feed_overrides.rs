@@ -14,8 +14,8 @@ use super::exported::{ExportedCut, ExportedFigures};
 use super::kept_work::Workers;
 use crate::report::harm::{Harm, harm};
 
-/// Overrides at which the programs are cut, %: those that operators use to run a program in, and to
-/// hurry.
+/// Feed overrides at which both programs are cut, %: the values that operators use to run in a
+/// program and to speed it up.
 const OVERRIDES: [u32; 6] = [50, 75, 90, 100, 110, 120];
 
 /// Comparison of a corrected program with the uncorrected one.
@@ -60,7 +60,7 @@ impl OverrideFigures {
         }
     }
 
-    /// The RMS error where that is worse, or else the first error that is.
+    /// Returns the RMS error if it is worse, or else the first error that is worse.
     fn harm(&self) -> Option<Harm> {
         harm(&self.uncorrected.errors(), &self.as_exported.errors())
             .first()
@@ -69,7 +69,8 @@ impl OverrideFigures {
 }
 
 impl ExportedCut<'_> {
-    /// Both programs at the overrides that the machine allows; those at 100 % are known.
+    /// Cuts both programs at the overrides that the machine allows; the figures at 100 % are given
+    /// as `known`.
     pub(super) fn at_overrides(
         &self,
         programs: [&[Step]; 2],
@@ -166,7 +167,8 @@ pub(super) fn override_note(cuts: &[OverrideFigures]) -> String {
     format!("feed override: {}", all.collect::<Vec<_>>().join("; "))
 }
 
-/// The same in a sentence, with the errors where it is worst; none of no cuts.
+/// Describes the overrides in one sentence, with the errors where they are worst; none if there are
+/// no cuts.
 pub(crate) fn override_sentence(cuts: &[OverrideFigures]) -> Option<String> {
     let one = |[first, last]: [u32; 2]| {
         if first == last {

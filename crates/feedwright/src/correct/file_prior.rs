@@ -1,5 +1,5 @@
-//! The machine that a machine file most probably describes, and others that it may describe as
-//! well.
+//! The machine that a machine file most probably describes, and other machines that it may describe
+//! as well.
 //!
 //! Values of a machine file are typed in or estimated. Their error `s` counts as normal, in natural
 //! logarithms, each value of each axis by itself. Builders match the axes that interpolate: the
@@ -44,20 +44,20 @@ const SPEED_LOOP_COLUMNS: [usize; 3] = [5, 6, 7];
 /// A value that counts as equal in all axes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AssumedValue {
-    /// Which value.
+    /// Name of the value.
     pub value: &'static str,
-    /// What the machine file has, axis by axis.
+    /// Values in the machine file, axis by axis.
     pub file: Vec<f64>,
-    /// What is assumed for each axis.
+    /// Assumed values, axis by axis.
     pub assumed: Vec<f64>,
 }
 
-/// What a correction assumes of the machine beside its file.
+/// Assumptions of a correction about the machine, beside its file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FileAssumption {
     /// Standard deviation of each value of the machine file, as a fraction of it.
     pub file_error: f64,
-    /// Values that are not those of the file.
+    /// Values that are not the values of the file.
     pub values: Vec<AssumedValue>,
     /// Values in which the axes differ by more than chance.
     pub different: Vec<&'static str>,
@@ -78,7 +78,7 @@ pub(super) struct FileModel {
 struct MatchedValue {
     name: &'static str,
     of: fn(&mut Axis) -> &mut f64,
-    /// Where it usually lies.
+    /// Usual range of the value.
     usual: [f64; 2],
     column: usize,
 }
@@ -118,8 +118,8 @@ const fn sign(run: usize, column: usize) -> f64 {
 }
 
 impl MatchedValue {
-    /// Gives all axes the most probable value: the geometric mean of theirs, or the nearer end of
-    /// what is usual.
+    /// Gives all axes the most probable value: the geometric mean of their values, or the nearer
+    /// end of the usual range.
     fn match_axes(&self, axes: &mut [Axis], file_error: f64) {
         let logs: f64 = axes
             .iter_mut()
@@ -136,8 +136,8 @@ impl MatchedValue {
         axes.iter_mut().for_each(|axis| *(self.of)(axis) = value);
     }
 
-    /// The value one standard deviation further, up or down; `sd` is the one by the file, as a
-    /// fraction.
+    /// Returns the value moved by one standard deviation, up or down. `sd` is the standard
+    /// deviation of the file, as a fraction.
     fn moved(&self, value: f64, sd: f64, sign: f64) -> f64 {
         let [least, most] = self.usual;
         if most.is_finite() && (least..=most).contains(&value) {
@@ -225,7 +225,7 @@ fn plausible(machine: &Machine, axes: usize, file_error: f64, run: usize) -> Mac
             let now = (value.of)(axis);
             *now = value.moved(*now, common, sign(run, value.column));
         }
-        // What counts of inertia and gain of the speed loop is their ratio.
+        // Only the ratio of inertia to speed loop gain counts.
         axis.inertia_kg_m2 *= times(
             std::f64::consts::SQRT_2 * file_error,
             SPEED_LOOP_COLUMNS[i % 3],
@@ -240,7 +240,7 @@ fn plausible(machine: &Machine, axes: usize, file_error: f64, run: usize) -> Mac
 }
 
 impl FileAssumption {
-    /// What was assumed, as a sentence.
+    /// Describes the assumptions in one sentence.
     pub(crate) fn sentence(&self) -> String {
         let list = |value: &AssumedValue| {
             let typed: Vec<String> = AXIS_NAMES

@@ -1,4 +1,4 @@
-//! Commands that are given up behind a cut of all together.
+//! Gives up commands after a cut with all commands together.
 
 use std::ops::RangeInclusive;
 
@@ -8,11 +8,11 @@ use super::stretch_rounds::StretchRounds;
 use super::unchanged::UnchangedReason;
 use crate::report::harm::{MAX_UM, RMS_UM};
 
-/// Gives up the commands that make a stretch of a common cut worse, and returns whether any was
-/// given up.
+/// Gives up the commands that make a stretch worse in a cut of all stretches together. Returns true
+/// if any was given up.
 ///
-/// A stretch as it is programmed is worse at its start because of the command of the one before.
-/// That command is weighed by the largest error of both.
+/// A stretch that stays as programmed can be worse at its start because of the command of the
+/// stretch before it. That command is judged by the largest error of both stretches.
 pub(super) fn give_up_culprits(under_way: &mut [StretchRounds], cuts: &[StretchCut]) -> bool {
     let is_worse = |range: RangeInclusive<usize>| {
         let programmed = StretchCut::together(
@@ -34,8 +34,9 @@ pub(super) fn give_up_culprits(under_way: &mut [StretchRounds], cuts: &[StretchC
     !culprits.is_empty()
 }
 
-/// Gives up commands until the RMS error of a common cut is no worse than that of the uncorrected
-/// program. Those that add the most error go first. Returns whether any was given up.
+/// Gives up commands until the RMS error of the common cut is no worse than the RMS error of the
+/// uncorrected program. The commands that add the most error go first. Returns true if any was
+/// given up.
 pub(super) fn give_up_losses(under_way: &mut [StretchRounds], cuts: &[StretchCut]) -> bool {
     let programmed = StretchCut::together(under_way.iter().map(|stretch| &stretch.programmed));
     let mut left = StretchCut::together(cuts);
@@ -58,9 +59,9 @@ pub(super) fn give_up_losses(under_way: &mut [StretchRounds], cuts: &[StretchCut
     any
 }
 
-/// Gives up the commands that gain the least for their time, until `more_s` is saved: those of
-/// stretches whose largest error is no more than what is left in others anyway. Whether any was
-/// given up.
+/// Gives up the commands that gain the least for their time, until `more_s` is saved. Only
+/// stretches qualify whose largest error is no more than the largest error of the stretches that
+/// stay unchanged. Returns true if any was given up.
 pub(super) fn give_up_slow(own: &mut [StretchRounds], more_s: f64, dwell_s: f64) -> bool {
     let unchanged = own.iter().filter(|stretch| stretch.best.is_none());
     let left_mm = unchanged

@@ -1,5 +1,5 @@
-//! Long work in parts: on several threads, and kept in a file, so that a run that was killed goes
-//! on where it was.
+//! Long work in parts: on several threads, and kept in a file, so that a run that was killed can
+//! continue.
 //!
 //! The file has a line of JSON for each finished part, with a checksum. The first line says what
 //! the file is and which work it belongs to. A line that is not complete, and all behind it, counts
@@ -22,11 +22,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::checked_json::{checked, with_check};
 
-/// Raised whenever the same work has another result.
+/// Format of the file. Increase it whenever the same work has another result.
 const FORMAT: u32 = 2;
 const ABOUT: &str = "finished parts of a feedwright correct that has not ended; the same command goes on with them; may be deleted";
 
-/// How often, and after which wait, a lock is tried that another process holds.
+/// Number of tries for a lock that another process holds, and the wait between them.
 const LOCK_TRIES: u32 = 20;
 const LOCK_WAIT: Duration = Duration::from_millis(10);
 
@@ -41,7 +41,7 @@ struct KeptHead {
 }
 
 impl KeptHead {
-    /// What a line says; none of a line that is not what was written.
+    /// Parses a line; none if the checksum does not match or the line is not a head.
     fn of(line: &str) -> Option<Self> {
         serde_json::from_str(&checked(line)?).ok()
     }
@@ -54,16 +54,16 @@ struct KeptPart<T> {
     result: T,
 }
 
-/// Why parts of a file are not taken, or none is kept.
+/// Reason why parts of a file are not used, or no parts are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum KeptFault {
-    /// The work of the file is another one.
+    /// The file belongs to other work.
     OtherWork,
-    /// A line is not what was written.
+    /// A line was changed after it was written.
     Damaged,
-    /// The file is something else.
+    /// The file is not a file of finished parts.
     Foreign,
-    /// It cannot be opened or written, or another process has it.
+    /// The file cannot be opened or written, or another process uses it.
     Unwritable,
 }
 
@@ -81,18 +81,18 @@ impl fmt::Display for KeptFault {
 /// Does work in parts.
 pub(super) struct Workers {
     threads: usize,
-    /// Lines of the parts that an earlier run has finished, by their name.
+    /// Lines of the parts that an earlier run finished, by their name.
     found: HashMap<String, String>,
-    /// Where finished parts go.
+    /// File for finished parts.
     file: Mutex<Option<File>>,
-    /// What was wrong with the file when it was opened.
+    /// Fault of the file when it was opened.
     fault: Option<KeptFault>,
-    /// Whether a part could not be written.
+    /// True where a part could not be written.
     is_lost: AtomicBool,
 }
 
 impl Workers {
-    /// Keeps nothing.
+    /// Creates workers that keep nothing.
     pub(super) fn new(threads: usize) -> Self {
         Self {
             threads,
@@ -103,8 +103,8 @@ impl Workers {
         }
     }
 
-    /// Keeps finished parts in a file, and goes on with those that it has; `work` is a hash of all
-    /// that the work depends on.
+    /// Creates workers that keep finished parts in a file, and continue with the parts that it has.
+    /// `work` is a hash of all that the work depends on.
     pub(super) fn keeping(threads: usize, path: &Path, work: &str) -> Self {
         let head = KeptHead {
             about: ABOUT.to_owned(),
@@ -126,7 +126,7 @@ impl Workers {
         }
     }
 
-    /// What is wrong with the file, where something is.
+    /// Returns the fault of the file, if it has one.
     pub(super) fn fault(&self) -> Option<KeptFault> {
         self.fault.or_else(|| {
             self.is_lost
@@ -135,11 +135,11 @@ impl Workers {
         })
     }
 
-    /// The results of `count` parts in their order, whatever the number of threads, which is up to
-    /// `threads`. Parts are kept by the name of the work and their number.
+    /// Returns the results of `count` parts in their order, for any number of threads, which is at
+    /// most `threads`. Parts are kept by the name of the work and their number.
     ///
     /// # Errors
-    /// The error of the first part that failed. No part is begun after that.
+    /// The error of the first part that failed. No part starts after that.
     pub(super) fn each<T, E>(
         &self,
         name: &str,
@@ -177,7 +177,7 @@ impl Workers {
             .collect()
     }
 
-    /// The result of a part, from the file where it is there.
+    /// Returns the result of a part, from the file if the file has it.
     fn kept<T: Serialize + DeserializeOwned, E>(
         &self,
         name: &str,
@@ -206,7 +206,7 @@ impl Workers {
     }
 }
 
-/// Whether a file keeps finished parts.
+/// Returns true if a file keeps finished parts.
 pub(super) fn keeps_parts(path: &Path) -> bool {
     let mut first = String::new();
     let read = File::open(path).and_then(|file| BufReader::new(file).read_line(&mut first));
@@ -214,7 +214,7 @@ pub(super) fn keeps_parts(path: &Path) -> bool {
     head.is_some_and(|head| head.about == ABOUT)
 }
 
-/// Removes a file that keeps finished parts; one of something else stays.
+/// Removes a file that keeps finished parts. Other files stay.
 ///
 /// # Errors
 /// A file that cannot be removed.
@@ -226,7 +226,7 @@ pub(super) fn forget(path: &Path) -> std::io::Result<()> {
     }
 }
 
-/// Puts a line behind the others; where it does not fit, none of it stays.
+/// Appends a line to the file; if it does not fit, the file keeps none of it.
 fn append(file: &mut File, line: &impl Serialize) -> std::io::Result<()> {
     let end = file.seek(SeekFrom::End(0))?;
     let line = format!("{}\n", with_check(&serde_json::to_string(line)?));
@@ -234,18 +234,18 @@ fn append(file: &mut File, line: &impl Serialize) -> std::io::Result<()> {
         .write_all(line.as_bytes())
         .and_then(|()| file.sync_data());
     written.inspect_err(|_| {
-        // What cannot be taken back is found by its checksum.
+        // If this fails too, the checksum reveals the torn line.
         let _ = file.set_len(end);
     })
 }
 
-/// The finished parts of a file by their names, the file, and why there are not all.
+/// Finished parts of a file by their names, the file, and the reason why some are missing.
 type OpenedParts = (HashMap<String, String>, File, Option<KeptFault>);
 
-/// Opens a file of finished parts, and begins it anew where it has none.
+/// Opens a file of finished parts, and starts it anew if it has no parts.
 ///
 /// # Errors
-/// A file of something else, and one that cannot be had.
+/// A file that holds something else, and one that cannot be opened or locked.
 fn opened(path: &Path, head: &KeptHead) -> Result<OpenedParts, KeptFault> {
     let unwritable = |_: std::io::Error| KeptFault::Unwritable;
     let mut file = File::options()
@@ -291,8 +291,8 @@ fn opened(path: &Path, head: &KeptHead) -> Result<OpenedParts, KeptFault> {
     Ok((found, file, fault))
 }
 
-/// Locks a file for this run. A process that is just being started holds what was locked before for
-/// a moment.
+/// Locks a file for this run. A process that is just being started holds earlier locks for a
+/// moment.
 fn lock(file: &File) -> Result<(), TryLockError> {
     for _ in 0..LOCK_TRIES {
         if file.try_lock().is_ok() {
@@ -303,7 +303,8 @@ fn lock(file: &File) -> Result<(), TryLockError> {
     file.try_lock()
 }
 
-/// Whether a run was killed, or the disk full, while the first line was written.
+/// Returns true if the first line is incomplete: a run was killed, or the disk was full, while it
+/// was written.
 fn is_torn_head(text: &str) -> bool {
     text.len() < 2 * ABOUT.len() + 200
         && !text.contains('\n')
@@ -326,7 +327,7 @@ impl fmt::Write for HashedText {
     }
 }
 
-/// A hash of all that some values print, as hexadecimal digits.
+/// Returns a hash of the printed form of some values, as hexadecimal digits.
 pub(super) fn hash_of(values: fmt::Arguments<'_>) -> String {
     let mut text = HashedText(blake3::Hasher::new());
     // Writing to a hash does not fail.

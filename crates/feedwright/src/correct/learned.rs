@@ -1,27 +1,27 @@
-//! What logs of cuts of the part tell of the machine, for the next correction: iterative learning
+//! Learns the machine from logs of cuts of the part, for the next correction: iterative learning
 //! from part to part.
 //!
 //! Each log is the cut of a program: the original, or one that was corrected before. The log has
 //! that program's command, so its text is not needed.
 //!
 //! 1. The log is checked and aligned with the original by its command (`part_record.rs`).
-//! 2. The [values of the model](model_fit) are corrected as far as the logs show them: what was
-//!    seen at one command then holds at another.
-//! 3. What the model still does not say is laid over the path. [What of it repeats](repeats) is
-//!    added to the simulated tool.
+//! 2. The [values of the model](model_fit) are corrected as far as the logs show them. Values
+//!    that were learned at one command then hold at another.
+//! 3. The error that the model still does not explain is laid over the path. [The part that
+//!    repeats](repeats) is added to the simulated tool.
 //!
-//! The correction then goes by the simulated tool as before. What it predicts has a band: values of
-//! the model that are as likely, and what did not repeat.
+//! The correction then uses the simulated tool as before. Its prediction has a band, which covers
+//! other likely values of the model and the error that did not repeat.
 //!
 //! Source: iterative learning control (Bristow, Tharayil and Alleyne 2006).
 //!
-//! | File | What |
+//! | File | Content |
 //! |---|---|
-//! | `error.rs` | why nothing is learned from a log |
+//! | `error.rs` | reasons why nothing is learned from a log |
 //! | `part_record.rs` | a log in the coordinates of the program |
 //! | `model_fit.rs` | values of the model |
-//! | `repeats.rs` | what repeats |
-//! | `place_error.rs` | errors from the samples of one command to those of another |
+//! | `repeats.rs` | the error that repeats |
+//! | `place_error.rs` | errors moved from the samples of one command to the samples of another |
 
 mod error;
 mod part_record;
@@ -45,22 +45,24 @@ pub(super) use place_error::PathTrack;
 pub use place_error::PlaceError;
 use repeats::repeating;
 
-/// Seed of the example of noise.
+/// Seed of the sample of noise.
 const SEED: u64 = 0x5eed;
-/// What a model leaves across the path may be so much of the contour error that it explains, and
-/// this beside, um. Beyond it, a log tells nothing.
+/// Largest error across the path that a model may leave unexplained: this fraction of the contour
+/// error that it explains, plus [`MOST_LEFT_UM`], um. A log with a larger remainder is rejected as
+/// too noisy.
 const MOST_LEFT: f64 = 0.7;
 const MOST_LEFT_UM: f64 = 0.5;
-/// A cut of the program that takes longer or shorter by this part than it was planned is told.
+/// A cut of the original is reported if its time differs from the planned time by more than this
+/// fraction.
 #[cfg(feature = "command")]
 const SAME_TIME: f64 = 0.02;
 
-/// What a log was of and showed.
+/// Source and content of one log.
 #[derive(Debug, Clone, Serialize)]
 pub struct LearnedLog {
     /// The log.
     pub log: String,
-    /// Which program it was cut by.
+    /// Program that was cut.
     pub program: CutProgram,
     /// RMS distance of its command from the original program, um.
     pub off_um: f64,
@@ -74,9 +76,10 @@ pub struct LearnedLog {
     pub rms_um: f64,
     /// Largest measured contour error, um.
     pub max_um: f64,
-    /// RMS by which the model of the machine file misses the measured position across the path, um.
+    /// RMS distance across the path between the model of the machine file and the measured
+    /// position, um.
     pub model_missed_um: f64,
-    /// The same at the values that the logs show, um.
+    /// The same distance with the values that the logs show, um.
     pub missed_um: f64,
 }
 
@@ -93,16 +96,16 @@ pub struct PredictedCut {
     pub max_um: f64,
 }
 
-/// What was learned from logs.
+/// Result of learning from logs.
 #[derive(Debug, Clone, Serialize)]
 pub struct LearnedOutcome {
     /// The logs, in their order.
     pub logs: Vec<LearnedLog>,
     /// Values of the model.
     pub values: Vec<LearnedValue>,
-    /// RMS across the path of what repeats beside the model, and is corrected, um.
+    /// RMS across the path of the error that repeats beside the model and is corrected, um.
     pub repeats_um: f64,
-    /// The same of what does not, um.
+    /// RMS across the path of the error that does not repeat, um.
     pub rest_um: f64,
     /// The next cut, where a program was written.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -110,7 +113,7 @@ pub struct LearnedOutcome {
 }
 
 impl LearnedLog {
-    /// Whether the control took another time for the program than is planned.
+    /// Returns true if the control took another time for the program than planned.
     #[cfg(feature = "command")]
     pub(crate) fn takes_another_time(&self) -> bool {
         self.program == CutProgram::Original
@@ -120,16 +123,16 @@ impl LearnedLog {
 
 /// The machine as the logs show it.
 pub(super) struct LearnedMachine {
-    /// The machine file with values that the logs show.
+    /// Machine of the file, with the values that the logs show.
     pub(super) machine: Machine,
-    /// The same at values that are as likely.
+    /// The same machine with other values that are as likely.
     pub(super) likely: Vec<Machine>,
-    /// What repeats beside the model.
+    /// Error that repeats beside the model.
     pub(super) error: PlaceError,
     pub(super) outcome: LearnedOutcome,
 }
 
-/// The program that logs are of.
+/// Program that the logs belong to.
 pub(super) struct LoggedProgram<'a> {
     pub(super) machine: &'a Machine,
     pub(super) stages: Stages,
@@ -139,10 +142,10 @@ pub(super) struct LoggedProgram<'a> {
 }
 
 impl LoggedProgram<'_> {
-    /// What logs tell.
+    /// Learns the machine from logs.
     ///
     /// # Errors
-    /// The name of a log that tells nothing, and why.
+    /// The name of a log that cannot be used, and the reason.
     pub(super) fn learned(
         &self,
         logs: &[MeasuredLog],
@@ -170,8 +173,8 @@ impl LoggedProgram<'_> {
         let outcomes = self
             .outcomes(&records, &fit)
             .map_err(|error| (all(), error))?;
-        // A corrected part has less error than the noise of its log: the largest error of all
-        // counts.
+        // A corrected part has less error than the noise of its log, so the largest error of all
+        // logs counts.
         let error = |log: &LearnedLog| (log.rms_um.powi(2) - log.missed_um.powi(2)).max(0.0).sqrt();
         let error_um = outcomes.iter().map(error).fold(0.0, f64::max);
         if let Some(log) = outcomes
@@ -186,7 +189,7 @@ impl LoggedProgram<'_> {
                 },
             ));
         }
-        // The cut that is nearest to the next is the best.
+        // The best record is the one with the smallest error: it is nearest to the next cut.
         let best = (0..records.len())
             .min_by(|&a, &b| records[a].rms_mm.total_cmp(&records[b].rms_mm))
             .unwrap_or(0);
@@ -265,7 +268,7 @@ impl LoggedProgram<'_> {
     }
 }
 
-/// RMS of what vectors beside the rows have across the path, where the tool cuts, um.
+/// Computes the RMS across the path of the vectors of the rows, where the tool cuts, um.
 fn across_um(rows: &[Row], vectors_mm: &[Vector]) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for (row, vector) in rows.iter().zip(vectors_mm).filter(|(row, _)| row.cutting) {
@@ -276,8 +279,8 @@ fn across_um(rows: &[Row], vectors_mm: &[Vector]) -> f64 {
     1e3 * (f64::max(sum, 0.0) / f64::max(count, 1.0)).sqrt()
 }
 
-/// What the fit leaves of all records, laid over the samples of the best: what repeats of it, and
-/// what does not in the best.
+/// Lays the remainders of all records over the samples of the best record. Returns the error that
+/// repeats, and the error of the best record that does not.
 fn placed(records: &[PartRecord], fit: &ModelFit, best: usize) -> (PlaceError, Vec<Vector>) {
     let track = |record: &PartRecord| PathTrack {
         sample_s: record.cut.sample_s,

@@ -1,20 +1,20 @@
-//! How an axis lags behind its command: two terms of the series of its closed loop, as its
-//! simulation shows them.
+//! Lag of an axis behind its command: two terms of the series of its closed loop, measured in a
+//! simulation.
 //!
 //! ```text
 //! X(s) = (1 - T1 s + (T1^2 - T2) s^2 - ...) C(s),    so    C = (1 + T1 s + T2 s^2 + ...) X
 //! ```
 //!
-//! A position loop without feedforward has T1 = 1 / Kp and T2 = J / (Kp Kv); feedforward takes part
-//! of both away, a delay adds to them. The axis is asked for `a t^2 / 2` without friction, and then
-//! is `a t^2 / 2 - T1 a t + (T1^2 - T2) a`.
+//! A position loop without feedforward has T1 = 1 / Kp and T2 = J / (Kp Kv). Feedforward reduces
+//! both, a delay increases them. The axis follows the command `a t^2 / 2` without friction, and
+//! then is at `a t^2 / 2 - T1 a t + (T1^2 - T2) a`.
 
 use feedwright_sim::{Axis, Machine, Plant};
 
-/// Acceleration of the test, mm/s2, and how long it lasts, in time constants of the position loop.
+/// Acceleration of the test, mm/s2, and its duration, in time constants of the position loop.
 const TEST_MM_S2: f64 = 100.0;
 const TEST_TIME_CONSTANTS: f64 = 30.0;
-/// Two moments at which the axis is looked at, parts of the test.
+/// Two moments at which the position is read, as fractions of the test.
 const MOMENTS: [f64; 2] = [0.8, 1.0];
 
 /// T1 and T2 of the axes.
@@ -63,7 +63,7 @@ pub(super) fn loop_lags<const N: usize>(machine: &Machine) -> [LoopLag; N] {
         let behind = |at: f64, t: f64| 0.5 * t * t - at / TEST_MM_S2;
         let (early, late) = (behind(seen[0][i], t0), behind(seen[1][i], t1));
         let first_s = (late - early) / (t1 - t0);
-        // What is behind is T1 t - (T1^2 - T2).
+        // The distance behind the command is T1 t - (T1^2 - T2).
         let second_s2 = first_s * first_s - (first_s * t1 - late);
         LoopLag { first_s, second_s2 }
     })

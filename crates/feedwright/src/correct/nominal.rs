@@ -1,5 +1,5 @@
-//! The machine for which a correction is computed: the effects that repeat from cut to cut and can
-//! be known.
+//! The machine for which a correction is computed: it has only the effects that repeat from cut to
+//! cut and are known.
 //!
 //! Loops, masses, friction and the ball screw stay. Random effects are left out, and so are effects
 //! with an unknown phase or position: the disturbance, noise and steps of the encoder, jitter,
@@ -9,7 +9,7 @@
 
 use feedwright_sim::{Axis, Machine, Noise, Squareness};
 
-/// The machine without what does not repeat or is not known.
+/// Returns the machine without the effects that do not repeat or are not known.
 pub fn deterministic(machine: &Machine) -> Machine {
     let axis = |axis: &Axis| Axis {
         disturbance_nm: 0.0,

@@ -1,4 +1,4 @@
-//! What came of a correction, and why a program is not to be used.
+//! Result of a correction, and the reasons to reject a program.
 
 use crate::report::harm::{MAX_UM, harm, listed};
 use std::fmt;
@@ -16,7 +16,7 @@ use super::learned::LearnedOutcome;
 use super::unchanged::UnchangedStretch;
 use super::verified::TextFault;
 
-/// What came of it; serialised, its figures.
+/// Result of a correction; the serialized form holds its figures.
 #[derive(Debug, Clone, Serialize)]
 pub struct CorrectOutcome {
     /// Name of the control.
@@ -37,31 +37,31 @@ pub struct CorrectOutcome {
     pub feed_overrides: Vec<OverrideFigures>,
     /// Stretches without a corner.
     pub stretches: usize,
-    /// Those that have another command.
+    /// Number of stretches that have another command.
     pub stretches_changed: usize,
-    /// Those that stay as they are, and why.
+    /// Stretches that stay as they are, with the reason.
     pub unchanged: Vec<UnchangedStretch>,
-    /// Whether loops and subroutines had to be written out.
+    /// True where loops and subroutines had to be written out.
     pub expanded: bool,
-    /// Cuts that the correction was found in.
+    /// Number of cuts in which the correction was found.
     pub rounds: u32,
-    /// Pieces that the program was corrected in.
+    /// Number of pieces in which the program was corrected.
     pub pieces: usize,
-    /// Longest rest that was put in, s.
+    /// Longest rest that was inserted, s.
     pub dwell_s: f64,
-    /// What was wrong with the file of finished pieces, where something was.
+    /// Fault of the file of finished pieces, if it has one.
     #[serde(skip)]
     pub kept_fault: Option<String>,
-    /// What the reader warned of.
+    /// Warnings of the reader.
     #[serde(skip)]
     pub warnings: Vec<Diagnostic>,
-    /// What was learned from logs of the part.
+    /// Result of learning from logs of the part.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub learned: Option<LearnedOutcome>,
-    /// What is assumed of the machine beside its file, where there is no log.
+    /// Assumptions about the machine beside its file, if there is no log.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub assumed: Option<FileAssumption>,
-    /// The text that was cut, whether it is to be used or not.
+    /// The text that was cut, even if it is rejected.
     #[serde(skip)]
     pub(crate) written: Option<WrittenProgram>,
     /// The path of the original.
@@ -75,7 +75,7 @@ pub struct CorrectOutcome {
     pub(crate) axes: usize,
 }
 
-/// A text and the path that it says.
+/// A text and its path.
 #[derive(Debug, Clone)]
 pub(crate) struct WrittenProgram {
     pub(crate) text: String,
@@ -83,14 +83,14 @@ pub(crate) struct WrittenProgram {
     pub(super) expanded: bool,
 }
 
-/// Why there is no text.
+/// Reason why there is no text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum UnwrittenProgram {
-    /// A line of the original.
+    /// A line of the original cannot be written.
     Line(UnwritableLine),
-    /// Longer lines than the control takes.
+    /// Lines are longer than the control accepts.
     Columns(usize),
-    /// The control does not read what was meant.
+    /// The control reads the text in another way than intended.
     Text(TextFault),
 }
 
@@ -122,7 +122,7 @@ impl fmt::Display for UnwrittenProgram {
 }
 
 impl CorrectOutcome {
-    /// The text of the corrected program, where it is better.
+    /// Returns the text of the corrected program, if it is better.
     pub fn program(&self) -> Option<&str> {
         self.written
             .as_ref()
@@ -131,8 +131,8 @@ impl CorrectOutcome {
     }
 }
 
-/// Why a corrected program is not to be used: by the figures of the uncorrected program and of its
-/// text, or by what keeps it from being written.
+/// Returns the reason to reject a corrected program: the figures of its text are not better than
+/// the figures of the uncorrected program, or the text cannot be written.
 pub(super) fn refusal(
     uncorrected: &ExportedFigures,
     corrected: Option<&ExportedFigures>,

@@ -1,11 +1,11 @@
 //! A long program in pieces, so that the rows of a cut fit in memory.
 //!
-//! Each piece is corrected by itself, with budgets of blocks and time of its own. Before and behind
-//! its own steps it has a lead: steps of the program that are corrected with it, and belong to
-//! another piece. They count in no budget. The lead is as long as the loop remembers, plus the time
-//! in which the control stops from its highest feedrate, which bounds its look-ahead. So neither
-//! the tool nor the control tells the piece from the whole program. A program that is short enough
-//! is one piece, without a lead.
+//! Each piece is corrected by itself, with budgets of blocks and time of its own. Before and after
+//! its own steps it has a lead: steps of the program that are corrected with it, but belong to
+//! another piece. They do not count in any budget. The lead is as long as the loop remembers, plus
+//! the time in which the control stops from its highest feedrate, which bounds its look-ahead. So
+//! the tool and the control behave as in the whole program. A program that is short enough is one
+//! piece, without a lead.
 //!
 //! A piece ends where the machine stands or moves rapidly; where there is no such place, at a
 //! corner. Where there is no corner either, it ends where the path bends least, and the commands of
@@ -34,13 +34,14 @@ pub(super) const PIECE_PERIODS: u64 = 500_000;
 const WHOLE_PIECES: u64 = 2;
 /// A piece ends within these parts of its length.
 const ENDS_WITHIN: [f64; 2] = [0.75, 1.25];
-/// Time constants of the position loop after which the tool no longer shows how it started: less
-/// than 1e-8 is left.
+/// Time constants of the position loop after which less than 1e-8 of the tool's starting error
+/// remains.
 const MEMORY: f64 = 20.0;
-/// A motion takes no longer than at its programmed feedrate plus this, s: an estimate that spares
-/// short programs a plan.
+/// A motion takes no longer than its time at the programmed feedrate plus this, s. With this
+/// estimate, short programs need no plan.
 const STOP_S: f64 = 0.2;
-/// The rest at the end of a step belongs to the next, mm: rounding does not decide.
+/// Tolerance for assigning the rest at the end of a step to the next step, mm, so that rounding
+/// does not decide.
 const AT_END_MM: f64 = 1e-6;
 /// Progress of a piece, steps.
 const STEPS: u64 = 1000;
@@ -50,7 +51,7 @@ const STEPS: u64 = 1000;
 pub(super) struct ProgramPiece {
     /// Its own steps.
     own: Range<usize>,
-    /// Those, and the leads.
+    /// Its own steps and the leads.
     cut: Range<usize>,
 }
 
@@ -64,12 +65,12 @@ impl ProgramPiece {
     }
 }
 
-/// The steps at which pieces begin behind others.
+/// Returns the first steps of all pieces but the first.
 pub(super) fn splits(pieces: &[ProgramPiece]) -> Vec<usize> {
     pieces.iter().skip(1).map(|piece| piece.own.start).collect()
 }
 
-/// The pieces of a program, of about `periods` servo periods each, as the control plans it.
+/// Splits a program into pieces of about `periods` servo periods each, as the control plans it.
 pub(super) fn pieces(
     cut: &ExportedCut<'_>,
     program: &[Canon],
@@ -102,7 +103,7 @@ pub(super) fn pieces(
         .collect())
 }
 
-/// How long a lead is, s.
+/// Computes the length of a lead, s.
 fn lead_s(machine: &Machine) -> f64 {
     let limits = &machine.limits;
     let fastest_mm_s = limits.rapid_mm_s.max(limits.max_feed_mm_s);
@@ -142,7 +143,7 @@ fn begins(program: &[Canon], until: &[u64], periods: u64) -> Vec<usize> {
         let [earliest, latest] = ENDS_WITHIN.map(|part| from + (part * periods as f64) as u64);
         let first = until.partition_point(|&until| until < earliest) + 1;
         let last = (until.partition_point(|&until| until <= latest) + 1).min(program.len());
-        // Where a single step is longer than all that, the piece ends behind it.
+        // A step that is longer than the whole range ends its piece.
         let best = (first..last.max(first + 1)).filter(|&step| step < program.len());
         let Some(best) = best
             .max_by(|&a, &b| fitness(program, &corner, a).total_cmp(&fitness(program, &corner, b)))
@@ -155,8 +156,8 @@ fn begins(program: &[Canon], until: &[u64], periods: u64) -> Vec<usize> {
     begins
 }
 
-/// How well a piece begins with a step: 3 before a rapid or an event, 2 behind one, 1 at a corner,
-/// less where the path goes on smoothly.
+/// Rates a step as the start of a piece: 3 before a rapid or an event, 2 after one, 1 at a corner,
+/// less where the path continues smoothly.
 fn fitness(program: &[Canon], corner: &[bool], step: usize) -> f64 {
     let rests = |step: usize| !matches!(&program[step], Canon::Motion(motion) if motion.kind == MotionKind::Feed);
     match (&program[step - 1], &program[step]) {
@@ -215,7 +216,7 @@ pub(super) struct LongProgram<'a> {
 }
 
 impl LongProgram<'_> {
-    /// Whether it has several stretches, before it is split.
+    /// Returns true if the program has several stretches, before it is split.
     fn of_several(&self) -> bool {
         let splits = splits(self.pieces);
         stretches(self.parts)
@@ -295,7 +296,7 @@ fn seam(steps: &[Canon], step: usize) -> Option<Seam> {
     }
 }
 
-/// What of a command is between seams; none where it does not cross one.
+/// Returns the part of a command between the seams; none if it does not cross one of them.
 fn within(mut command: NewMotions, [first, last]: [Option<Seam>; 2]) -> Option<NewMotions> {
     if let Some(seam) = first {
         (command.motions, command.approach) = (seam.behind_it(&command.motions)?, None);

@@ -1,4 +1,4 @@
-//! What the logs predict of the next cut, and whether that is better than what was cut.
+//! Predicts the next cut from the logs, and compares it with the cuts that were logged.
 
 use feedwright_plan::Step;
 use feedwright_sim::{Axis, Machine, RunError, Squareness};
@@ -7,14 +7,14 @@ use super::exported::{ExportedCut, ExportedFigures};
 use super::learned::{CutProgram, LearnedLog, LearnedMachine, LearnedOutcome, PredictedCut};
 use super::nominal::deterministic;
 
-/// Standard deviations of the model's values in the band.
+/// Number of standard deviations of the model's values in the band.
 const DEVIATIONS: f64 = 2.0;
-/// Part by which what does not repeat differs from cut to cut in the band, and the part for what
-/// fits and planners leave.
+/// Fraction by which the error that does not repeat varies from cut to cut in the band, and the
+/// fraction for the error that fits and planners leave.
 const REST: f64 = 0.3;
 const FIT: f64 = 0.25;
-/// A program that was cut is replaced where the next is predicted to have less RMS error by this
-/// part.
+/// A corrected program that was already cut is replaced only if the next is predicted to have an
+/// RMS error that is smaller by this fraction.
 const LEAST_GAIN: f64 = 0.1;
 
 /// A machine without the errors that its encoders do not see.
@@ -33,7 +33,7 @@ fn as_encoders_see(machine: &Machine) -> Machine {
     }
 }
 
-/// What was learned, with the next cut by a program where there is one.
+/// Returns the result of learning, with the predicted next cut if there is a program.
 pub(super) fn learned_outcome(
     learned: &LearnedMachine,
     cut: &ExportedCut<'_>,
@@ -48,14 +48,14 @@ pub(super) fn learned_outcome(
     })
 }
 
-/// The next cut at the encoders:
+/// Predicts the errors of the next cut at the encoders:
 ///
 /// ```text
 /// RMS^2 = q^2 + r^2,    q^2 (1 - 0.25)^2 + r^2 (1 - 0.3)^2  to  q^2 (1 + 0.25)^2 + 2^2 v + r^2 (1 + 0.3)^2
 /// ```
 ///
-/// with `q` of the simulated cut, `r` of what does not repeat in the logs, and `v`, by which the
-/// mean of `q^2` grows over values of the model that are as likely.
+/// where `q` is the RMS error of the simulated cut, `r` the RMS error that does not repeat in the
+/// logs, and `v` the mean growth of `q^2` over values of the model that are as likely.
 fn predicted_cut(
     learned: &LearnedMachine,
     cut: &ExportedCut<'_>,
@@ -95,7 +95,7 @@ fn predicted_cut(
     })
 }
 
-/// Why the next cut is not told to be better than what the logs are of.
+/// Returns the reason why the next cut is not predicted to be better than the logged cuts.
 pub(super) fn no_gain(learned: &LearnedOutcome, uncorrected: &ExportedFigures) -> Option<String> {
     let PredictedCut {
         rms_um, repeats_um, ..
@@ -118,13 +118,13 @@ pub(super) fn no_gain(learned: &LearnedOutcome, uncorrected: &ExportedFigures) -
     let original_um = of(CutProgram::Original)
         .min_by(least)
         .map_or(uncorrected.rms_um, |log| log.rms_um);
-    // What does not repeat is in both.
+    // Both errors include the part that does not repeat.
     let original_um = (original_um.powi(2) - learned.rest_um.powi(2))
         .max(0.0)
         .sqrt();
     (repeats_um >= original_um).then(|| {
         format!(
-            "the logs do not tell whether it is better: of the error that repeats, up to RMS {repeats_um:.2} um may be left, and the original \
+            "the logs do not show whether it is better: of the error that repeats, up to RMS {repeats_um:.2} um may be left, and the original \
              program has {original_um:.2} um"
         )
     })
@@ -175,7 +175,7 @@ mod tests {
         assert_eq!(why(&[original], 6.1, 7.9), None);
         assert!(
             why(&[original], 6.1, 8.1)
-                .is_some_and(|why| why.contains("do not tell") && why.contains("8.00 um"))
+                .is_some_and(|why| why.contains("do not show") && why.contains("8.00 um"))
         );
         // Without a log of the original, what is predicted of it counts.
         assert!(why(&[corrected], 6.1, 6.8).is_some_and(|why| why.contains("6.71 um")));

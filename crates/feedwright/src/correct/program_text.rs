@@ -1,10 +1,10 @@
 //! The text of a corrected program.
 //!
-//! Where every line of the original is carried out once and in its order, all lines stay but those
-//! of the stretches that have another command: comments, cycles, rapids, tool changes and line
-//! numbers are the original's, and new blocks are written in the coordinates, the unit and the
-//! modes of their place. Otherwise (loops, subroutines, jumps) the program is
-//! [expanded](super::expanded_text). What is written is read again by [`super::verified`].
+//! If the control runs every line of the original once and in order, all lines stay except the
+//! lines of the stretches that have another command. Comments, cycles, rapids, tool changes and
+//! line numbers stay as they are in the original. New blocks are written in the coordinates, the
+//! unit and the modes of their place. Otherwise (loops, subroutines, jumps) the program is
+//! [expanded](super::expanded_text). [`super::verified`] reads the written text again.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use super::source_line::{PartedLine, has_macros, with_dwell, with_feed, with_wor
 use super::stretches::{ProgramPart, SmoothStretch, StretchCommand, dwells, stretches};
 use super::target::TargetControl;
 
-/// What the text is made of.
+/// Inputs of the text.
 pub(super) struct TextParts<'a> {
     pub(super) source: &'a SourceProgram,
     pub(super) parts: &'a [ProgramPart],
@@ -25,23 +25,22 @@ pub(super) struct TextParts<'a> {
     /// A dwell for each stretch, s.
     pub(super) rests_s: &'a [f64],
     pub(super) target: &'a TargetControl,
-    /// What the program says of itself.
+    /// Comments that the program carries about itself.
     pub(super) notes: &'a [String],
 }
 
-/// What happens to lines of the original.
+/// Change to lines of the original.
 #[derive(Debug, Default)]
 struct LineEdit {
-    /// Last line that it is about; before the first where lines are only put in front.
+    /// Last line of the edit; it is before the first line if the edit only inserts text.
     to: usize,
     text: Vec<String>,
-    /// Whether the lines stay, behind the text, and what comes behind them.
+    /// True where the lines stay, between `text` and `behind`.
     stay: bool,
     behind: Vec<String>,
 }
 
-/// Words that the next line that moves has to say itself, since a line that said them has been
-/// replaced.
+/// Words that the next moving line must contain, because the line that held them has been replaced.
 #[derive(Debug, Default)]
 struct NeededWords {
     code: bool,
@@ -55,26 +54,26 @@ pub(super) fn line_of(step: &Canon) -> usize {
     }
 }
 
-/// Why the lines of the original cannot stay.
+/// Reason why the lines of the original cannot stay.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum UnkeptLines {
-    /// They are not carried out in their order, the control does not run their macros, or lines
-    /// between corrected ones cannot stay alone.
+    /// The lines are not executed in order, the control does not run their macros, or lines between
+    /// corrected ones cannot stay alone.
     Program,
     /// Lines of these stretches, which have another command, cannot be taken apart.
     Stretches(Vec<usize>),
 }
 
 impl TextParts<'_> {
-    /// The dialect of the text: the control reads it.
+    /// Returns the dialect in which the control reads the text.
     pub(super) fn dialect(&self) -> Dialect {
         self.target.reads_as(self.source.dialect)
     }
 
-    /// The original with new blocks in place of those that have another command.
+    /// Returns the original with new blocks for the stretches that have another command.
     ///
     /// # Errors
-    /// What stands against it.
+    /// The reason why the lines of the original cannot stay.
     pub(super) fn kept(&self) -> Result<String, UnkeptLines> {
         let runs = self.target.runs_macros_of(self.source.dialect)
             || !self.source.lines.iter().any(|line| has_macros(line));
@@ -83,7 +82,7 @@ impl TextParts<'_> {
         }
         let mut edits: BTreeMap<usize, LineEdit> = BTreeMap::new();
         let all: Vec<&SmoothStretch> = stretches(self.parts).collect();
-        // A stretch as it is programmed has an edit where the command before it needs a rest.
+        // A stretch that stays as programmed has an edit if the command before it needs a rest.
         let of_command = |number: usize| {
             if self.commands[number].is_some() {
                 number
@@ -102,7 +101,7 @@ impl TextParts<'_> {
         self.edited(edits).ok_or(UnkeptLines::Program)
     }
 
-    /// Adds what happens to the lines of a stretch; none where they cannot be taken apart.
+    /// Adds the edits of the lines of a stretch; none if the lines cannot be taken apart.
     fn edit(
         &self,
         stretch: &SmoothStretch,
@@ -143,7 +142,7 @@ impl TextParts<'_> {
         Some(())
     }
 
-    /// The line of a rest, where there is one.
+    /// Returns the line of a rest, if there is one.
     fn rest(&self, seconds: Option<f64>) -> Vec<String> {
         seconds
             .map(|seconds| dwell(seconds, self.dialect()))
@@ -151,8 +150,8 @@ impl TextParts<'_> {
             .collect()
     }
 
-    /// The line on which a step begins: the line of its motion, or the first line of its curve.
-    /// None if a line of the curve cannot be taken apart.
+    /// Returns the line on which a step begins: the line of its motion, or the first line of its
+    /// curve. None if a line of the curve cannot be taken apart.
     fn begins(&self, step: usize) -> Option<usize> {
         let steps = &self.source.steps;
         let ends = line_of(&steps[step]);
@@ -176,7 +175,7 @@ impl TextParts<'_> {
         Some(ends)
     }
 
-    /// The lines of the original with their edits.
+    /// Returns the lines of the original with their edits.
     fn edited(&self, edits: BTreeMap<usize, LineEdit>) -> Option<String> {
         let mut text = Vec::new();
         let mut next = 1;
@@ -203,8 +202,8 @@ impl TextParts<'_> {
         Some(joined(&text))
     }
 
-    /// Lines as they are; the first that moves gets its code, and its feedrate, where the one that
-    /// said it has gone.
+    /// Copies lines unchanged. The first line that moves gets its code and its feedrate if the line
+    /// that held them was replaced.
     fn copy(
         &self,
         lines: std::ops::Range<usize>,
@@ -244,14 +243,14 @@ impl TextParts<'_> {
         Some(())
     }
 
-    /// Steps that a line makes, in the order of the program.
+    /// Returns the steps of a line, in the order of the program.
     fn steps_of(&self, line: usize) -> impl Iterator<Item = &Canon> {
         let steps = &self.source.steps;
         let of_line = &steps[steps.partition_point(|step| line_of(step) < line)..];
         of_line.iter().take_while(move |step| line_of(step) == line)
     }
 
-    /// Feedrate of the feed motion that a line makes.
+    /// Returns the feedrate of the feed motion on a line, mm/s.
     fn feed_of(&self, line: usize) -> Option<f64> {
         self.steps_of(line).find_map(|step| match step {
             Canon::Motion(motion) if motion.kind == MotionKind::Feed => Some(motion.feed_mm_s),
@@ -259,7 +258,7 @@ impl TextParts<'_> {
         })
     }
 
-    /// Time of the dwell of a line that the control would read otherwise, s.
+    /// Returns the time of the dwell on a line if the control would read it in another unit, s.
     fn dwell_of(&self, line: usize) -> Option<f64> {
         if self.dialect() == self.source.dialect {
             return None;
@@ -273,7 +272,7 @@ impl TextParts<'_> {
         })
     }
 
-    /// A feedrate as an F word of a line says it.
+    /// Formats a feedrate for an F word on a line.
     fn feed(&self, feed_mm_s: f64, line: usize) -> String {
         let steps = &self.source.steps;
         let step = steps
@@ -282,7 +281,7 @@ impl TextParts<'_> {
         feed_number(feed_mm_s, self.source.modes(step).unit_mm)
     }
 
-    /// A line that moves by the code of a line before, with that code.
+    /// Adds the motion code to a line that moves by the code of an earlier line.
     fn with_code(&self, number: usize, line: &str) -> Option<String> {
         let moves = |step: &&Canon| matches!(step, Canon::Motion(_)) && line_of(step) == number;
         let Some(Canon::Motion(motion)) = self.source.steps.iter().find(moves) else {
@@ -312,7 +311,7 @@ impl TextParts<'_> {
         ))
     }
 
-    /// New blocks for the lines of some steps, with rests before and behind.
+    /// Writes new blocks for the lines of some steps, with rests before and after.
     fn replaced(
         &self,
         [first, last]: [usize; 2],
@@ -373,7 +372,7 @@ impl TextParts<'_> {
         })
     }
 
-    /// Notes as comments behind `%` and the program's number.
+    /// Inserts the notes as comments after `%` and the program number.
     pub(super) fn put_notes(&self, text: &mut Vec<String>) {
         let at = text.iter().take_while(|line| is_head(line)).count();
         let notes = self
@@ -384,7 +383,7 @@ impl TextParts<'_> {
     }
 }
 
-/// Whether a line before the first block is `%` or the program's number.
+/// Returns true if a line before the first block is empty, `%` or the program number.
 pub(super) fn is_head(line: &str) -> bool {
     let line = line.trim_start();
     line.is_empty() || line.starts_with('%') || line.starts_with(['O', 'o']) && !line.contains(' ')
@@ -395,8 +394,8 @@ pub(super) fn joined(lines: &[String]) -> String {
 }
 
 impl TextParts<'_> {
-    /// Codes that put the modes in force that blocks need, and those that put in force what the
-    /// program has behind them.
+    /// Returns the codes that set the modes that the new blocks need, and the codes that restore
+    /// the modes of the program after them.
     fn around(
         &self,
         [before, behind]: [&ModesInForce; 2],

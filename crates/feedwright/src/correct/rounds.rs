@@ -1,8 +1,10 @@
-//! Rounds: cut, change the command where the tool was off, fit blocks to it, cut again.
+//! Corrects a program in rounds: cut, change the command where the tool was off, fit blocks to it,
+//! cut again.
 //!
-//! Each stretch is judged by itself: the tool rests at its ends, so that it does not see the
-//! others. The best command of each is kept, and a stretch whose command gets no better is left
-//! alone. One that is cut within [`GOOD_MM`] from the start stays as it is programmed.
+//! Each stretch is judged by itself: the tool rests at its ends, so that other stretches do not
+//! affect it. The best command of each stretch is kept, and a stretch whose command no longer
+//! improves is finished. A stretch that is cut within [`GOOD_MM`] from the start stays as
+//! programmed.
 
 use std::ops::Range;
 
@@ -28,9 +30,9 @@ use super::stretches::{
 use super::target::PrintedTarget;
 use super::unchanged::UnchangedReason;
 
-/// Cuts at the most.
+/// Largest number of cuts.
 const ROUNDS: u32 = 12;
-/// Cuts at the most in which commands are given up that are worse together.
+/// Largest number of cuts in which commands are given up that are worse together.
 const CHECKS: u32 = 4;
 /// Standard deviations of the Gaussians over errors and over the command, time constants of the
 /// position loop.
@@ -38,10 +40,10 @@ const SMOOTHING: f64 = 0.15;
 const COMMAND_SMOOTHING: f64 = 0.4;
 /// Time in which a change fades at the ends of a stretch, s.
 const FADE_S: f64 = 0.01;
-/// Least distance of points that blocks are fitted to, mm.
+/// Least distance between the points that blocks are fitted to, mm.
 const LEAST_MM: f64 = 0.005;
-/// A tool that runs over the end of a stretch, or of the rapid to it, by more goes there slowly,
-/// mm.
+/// A tool that overshoots the end of a stretch, or of the rapid to it, by more than this gets a
+/// slow end, mm.
 const OVERSHOOT_MM: f64 = 2e-3;
 /// A slow end that is shorter than this part of a usual one gets no slower: the tool would run
 /// ahead over all of it.
@@ -50,33 +52,32 @@ const SLOWEST: f64 = 0.4;
 const DWELL_TIME_CONSTANTS: f64 = 5.0;
 const DWELL_LAGS: f64 = 3.0;
 const DWELL_S: [f64; 2] = [0.03, 0.06];
-/// Where a program takes too long in one of the first rounds, its dwells and its slow ends get
-/// shorter, down to these parts: on a slow end that is shorter, the tool does not come back from
-/// running ahead. No dwell is shorter than this, s.
+/// Number of first rounds in which a program that takes too long gets shorter dwells and slow ends,
+/// and the smallest part of each that remains. On a shorter slow end, the tool does not return from
+/// running ahead. No dwell is shorter than [`LEAST_DWELL_S`], s.
 const HASTY_ROUNDS: u32 = 5;
 const MOST_HASTE: [f64; 2] = [0.05, 0.7];
 const LEAST_DWELL_S: f64 = 0.002;
-/// Part of the time that a program may take longer that is for its rests, as long as no command is
-/// corrected.
+/// Share for rests of the extra time that a program may take, as long as no command is corrected.
 const FOR_RESTS: f64 = 0.6;
 
-/// What the rounds have come to.
+/// Result of the rounds.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct RoundsResult {
     /// A command for each stretch.
     pub(super) commands: Vec<StretchCommand>,
-    /// Why stretches stay as they are; none of those that have another command.
+    /// Reason why a stretch stays as programmed; none for a stretch that has another command.
     pub(super) reasons: Vec<Option<UnchangedReason>>,
-    /// How long the tool rests where it has to come to rest, for each stretch, s.
+    /// Length of a rest of each stretch, where the tool has to come to rest, s.
     pub(super) rests_s: Vec<f64>,
-    /// The longest of them, s.
+    /// Longest rest, s.
     pub(super) dwell_s: f64,
     /// Cuts that were simulated.
     pub(super) rounds: u32,
 }
 
 impl RoundsResult {
-    /// Whether stretches beside these, which are in order, have another command.
+    /// Returns true if stretches other than `numbers`, which is sorted, have another command.
     pub(super) fn has_other_commands(&self, numbers: &[usize]) -> bool {
         (0..self.commands.len())
             .any(|k| self.commands[k].is_some() && numbers.binary_search(&k).is_err())
@@ -90,15 +91,15 @@ impl RoundsResult {
     }
 }
 
-/// The part of a program that is judged; what is before and behind it leads to it, and is corrected
-/// for that alone.
+/// Part of a program that is judged. The steps before and after it lead to it, and are corrected
+/// only for that.
 #[derive(Debug, Clone)]
 pub(super) struct JudgedPart {
     /// Numbers of its stretches.
     pub(super) stretches: Range<usize>,
     /// Its arc lengths along the program, mm.
     pub(super) path_mm: Range<f64>,
-    /// Whether the whole program has several stretches.
+    /// True where the whole program has several stretches.
     pub(super) of_several: bool,
 }
 
@@ -119,7 +120,7 @@ pub(super) fn steps_of(program: &[Canon]) -> Result<Vec<Step>, PathError> {
     Pieces::new(program.iter().cloned()).collect()
 }
 
-/// Finds commands for the stretches of a program, on the machine of `cut`. Budgets are those of
+/// Finds commands for the stretches of a program, on the machine of `cut`. The budgets belong to
 /// `judged`.
 pub(super) fn rounds(
     cut: &ExportedCut<'_>,
@@ -208,12 +209,13 @@ pub(super) fn rounds(
     })
 }
 
-/// Parts of what dwells and slow ends usually take.
+/// Factors on the usual time of dwells and of slow ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Haste([f64; 2]);
 
 impl Haste {
-    /// Shortens one of them, which takes `takes_s` now, by up to `more_s`. By how much, s.
+    /// Shortens the dwells or the slow ends, which take `takes_s` now, by up to `more_s`. Returns
+    /// the time saved, s.
     fn shorten(&mut self, which: usize, takes_s: f64, more_s: f64) -> f64 {
         if takes_s <= 0.0 || more_s <= 0.0 {
             return 0.0;
@@ -226,7 +228,7 @@ impl Haste {
     }
 }
 
-/// What every round needs.
+/// Settings and program that all rounds share.
 #[derive(Clone)]
 struct RoundsBench<'a> {
     cut: &'a ExportedCut<'a>,
@@ -234,9 +236,9 @@ struct RoundsBench<'a> {
     target: PrintedTarget<'a>,
     lags: Vec<LoopLag>,
     settings: UpdateSettings,
-    /// In which the tool settles, s.
+    /// Time in which the tool settles, s.
     settles_s: f64,
-    /// How long it rests, s.
+    /// Time of a dwell, s.
     dwell_s: f64,
     haste: Haste,
     count: usize,
@@ -244,13 +246,13 @@ struct RoundsBench<'a> {
 }
 
 impl RoundsBench<'_> {
-    /// Refuses a program whose cut cannot be kept, before it is cut: by the time that it takes at
-    /// the programmed feedrates.
+    /// Rejects a program whose cut cannot be kept, before it is cut, by its time at the programmed
+    /// feedrates.
     fn check_length(&self) -> Result<(), RunError> {
         check_rows(self.cut.programmed_s(0.0), self.settings.servo_s)
     }
 
-    /// Time of what is judged in a cut, s.
+    /// Computes the time of the judged part in a cut, s.
     fn time_s(&self, rows: &[CutRow]) -> f64 {
         rows.iter().filter(|row| row.own).count() as f64 * self.settings.servo_s
     }
@@ -260,7 +262,7 @@ impl RoundsBench<'_> {
         vec![self.dwell_s; self.count]
     }
 
-    /// What every stretch comes to, and the rows.
+    /// Cuts the program and returns the errors of every stretch, and the rows.
     fn cut(&self, commands: &[StretchCommand]) -> Result<(Vec<StretchCut>, Vec<CutRow>), RunError> {
         let steps = steps_of(&assembled(self.parts, commands, &self.rests_s()))?;
         let mut kept = CutRows {
@@ -275,7 +277,7 @@ impl RoundsBench<'_> {
         ))
     }
 
-    /// From the cut of the program as it is.
+    /// Begins the rounds of a stretch from the cut of the uncorrected program.
     fn begun(&self, stretch: &SmoothStretch, cut: &StretchCut, rows: &[CutRow]) -> StretchRounds {
         let servo_s = self.settings.servo_s;
         let budget = StretchBudget {
@@ -304,8 +306,8 @@ impl RoundsBench<'_> {
         begun
     }
 
-    /// Makes a program faster that takes longer than it may by `more_s`: first its dwells get
-    /// shorter, then its slow ends. The stretches are judged again.
+    /// Shortens a program that takes `more_s` longer than it may: first its dwells, then its slow
+    /// ends. The stretches are judged again.
     fn hurry(&mut self, under_way: &mut [StretchRounds], more_s: f64) {
         if more_s <= 0.0 {
             return;
@@ -351,7 +353,7 @@ impl RoundsBench<'_> {
         }
     }
 
-    /// New commands for those that are not done; an end from outside is an error.
+    /// Computes new commands for the stretches that are not done. A cancelled run is an error.
     fn update(
         &self,
         under_way: &mut [StretchRounds],
@@ -415,8 +417,8 @@ impl RoundsBench<'_> {
         Ok(())
     }
 
-    /// Takes details back to what they were until the program has few enough blocks and is fast
-    /// enough.
+    /// Restores details to their programmed form until the program has few enough blocks and is
+    /// fast enough.
     fn give_up_details(&self, under_way: &mut [StretchRounds]) {
         let dwell_s = self.settles_s;
         let own = self.judged.stretches.clone();
@@ -488,9 +490,9 @@ impl RoundsBench<'_> {
         Ok(())
     }
 
-    /// Cuts the best of all together: where the tool does not come to rest between them, they are
-    /// not what they were each by itself, and they may take longer than `most_s`. How often it was
-    /// cut.
+    /// Cuts all best commands together. Where the tool does not come to rest between stretches, the
+    /// results differ from the separate cuts, and the program may take longer than `most_s`.
+    /// Returns the number of cuts.
     fn give_up_what_is_worse(
         &self,
         under_way: &mut [StretchRounds],

@@ -1,9 +1,9 @@
-//! Where the commands of two pieces meet in the middle of a stretch.
+//! Seams: places in the middle of a stretch where the commands of two pieces meet.
 //!
 //! Both pieces correct the path around the seam, and each has a lead on its other side. The seam is
-//! the plane through a programmed point, across the direction of travel there. Each command is cut
-//! where it crosses that plane. Then the second begins where the first ends. Where one of the two
-//! stays as it is programmed, the other meets it in the programmed point.
+//! the plane through a programmed point, normal to the direction of travel there. Each command is
+//! cut where it crosses that plane. Then the second begins where the first ends. If one of the two
+//! stays as programmed, the other meets it in the programmed point.
 
 use feedwright_gcode::canon::{Motion, Shape};
 use feedwright_plan::vector::{Vector, add_scaled, distance, dot, sub};
@@ -14,7 +14,7 @@ use super::stretches::{ProgramPart, SmoothStretch, StretchCommand, directions, p
 const NEAR_MM: f64 = 1.0;
 /// A block that is cut to less than this is left out, mm.
 const SLIVER_MM: f64 = 0.02;
-/// Halvings of a block by which the crossing is found: 1e-9 of its length.
+/// Halvings of a block to find the crossing: to 1e-9 of its length.
 const HALVINGS: u32 = 30;
 
 /// A plane across a path.
@@ -32,7 +32,7 @@ enum MotionEnd {
 }
 
 impl Seam {
-    /// At the start of a programmed motion; none where it has no length.
+    /// Returns the seam at the start of a programmed motion; none if the motion has no length.
     pub(super) fn before(motion: &Motion) -> Option<Self> {
         let [direction, _] = directions(motion)?;
         Some(Self {
@@ -41,12 +41,12 @@ impl Seam {
         })
     }
 
-    /// How far a point is behind the plane, mm.
+    /// Returns the distance of a point behind the plane, mm.
     fn behind_mm(&self, at_mm: Vector) -> f64 {
         dot(sub(at_mm, self.at_mm), self.direction)
     }
 
-    /// Where a motion crosses the plane forwards.
+    /// Returns the point at which a motion crosses the plane forwards.
     fn crossing_mm(&self, motion: &Motion) -> Option<Vector> {
         if matches!(motion.shape, Shape::Spline(_))
             || self.behind_mm(motion.start_mm) > 0.0
@@ -70,7 +70,8 @@ impl Seam {
         Some(piece.curve.at(high).position_mm)
     }
 
-    /// The motion that crosses the plane next to the programmed point, and where.
+    /// Returns the motion that crosses the plane nearest to the programmed point, and the point of
+    /// crossing.
     fn crossing(&self, motions: &[Motion]) -> Option<(usize, Vector)> {
         let crossings = motions
             .iter()
@@ -82,7 +83,7 @@ impl Seam {
             .min_by(|&(_, a), &(_, b)| off_mm(a).total_cmp(&off_mm(b)))
     }
 
-    /// The motions before the plane; none where they do not cross it.
+    /// Returns the motions before the plane; none if they do not cross it.
     pub(super) fn before_it(&self, motions: &[Motion]) -> Option<Vec<Motion>> {
         let (last, at_mm) = self.crossing(motions)?;
         let mut kept = motions[..=last].to_vec();
@@ -94,7 +95,7 @@ impl Seam {
         Some(kept)
     }
 
-    /// The motions behind the plane; none where they do not cross it.
+    /// Returns the motions behind the plane; none if they do not cross it.
     pub(super) fn behind_it(&self, motions: &[Motion]) -> Option<Vec<Motion>> {
         let (mut first, at_mm) = self.crossing(motions)?;
         let is_sliver = distance(at_mm, motions[first].end_mm) < SLIVER_MM;
@@ -105,8 +106,8 @@ impl Seam {
     }
 }
 
-/// Moves an end of a motion. The center of an arc moves by as little as leaves it as far from one
-/// end as from the other.
+/// Moves an end of a motion. The center of an arc moves by the smallest distance that keeps it
+/// equally far from both ends.
 fn end_at(motion: &mut Motion, end: MotionEnd, at_mm: Vector) {
     match end {
         MotionEnd::Start => motion.start_mm = at_mm,
@@ -129,13 +130,13 @@ fn end_at(motion: &mut Motion, end: MotionEnd, at_mm: Vector) {
     }
 }
 
-/// Whether a stretch and the one before it are one that was parted at `splits`. At a corner the
-/// tool rests.
+/// Returns true if a stretch and the one before it are one stretch that was split at `splits`. At a
+/// corner the tool rests.
 pub(super) fn is_parted(stretch: &SmoothStretch, splits: &[usize]) -> bool {
     stretch.follows && !stretch.rests[0] && splits.binary_search(&stretch.steps[0]).is_ok()
 }
 
-/// Lets commands meet where stretches of a program were parted at `splits`.
+/// Lets commands meet where stretches of a program were split at `splits`.
 pub(super) fn meet(commands: &mut [StretchCommand], parts: &[ProgramPart], splits: &[usize]) {
     for (number, stretch) in stretches(parts).enumerate().skip(1) {
         if !is_parted(stretch, splits) {

@@ -1,10 +1,10 @@
-//! Slow ways to where a tool would run over the end: of a stretch, and of the rapid that leads to
-//! one.
+//! Slow ways to an end that the tool would overshoot: the end of a stretch, and the end of the
+//! rapid that leads to one.
 //!
-//! A drive with feedforward runs over by `a (T1^2 - T2)` where the command decelerates at `a` until
-//! it rests. No geometry takes that back; a last piece at a speed from which it brakes in a
-//! fraction of the loop's time constant does. Where that is not slow enough, it is halved from
-//! round to round.
+//! A drive with feedforward overshoots by `a (T1^2 - T2)` where the command decelerates at `a`
+//! until it rests. No geometry removes that. A last piece at a speed from which the drive brakes in
+//! a fraction of the loop's time constant does. If that is not slow enough, it is halved from round
+//! to round.
 
 use feedwright_gcode::canon::{Motion, MotionKind, Shape};
 use feedwright_plan::vector::{add_scaled, distance, norm, sub};
@@ -14,14 +14,15 @@ use super::arc_fit::FitPoint;
 use super::stretches::SmoothStretch;
 use super::target::PrintedTarget;
 
-/// A straight motion is slowed down before its end where it is longer than what is slow by this
+/// A straight motion is slowed down before its end if it is longer than the slow piece by this
 /// factor.
 const LEAST_WAY: f64 = 4.0;
-/// Time constants of the loop in which it brakes from there, and that the slow way takes.
+/// Time constants of the loop in which the drive brakes from the slow speed, and time constants
+/// that the slow way takes.
 const BRAKES_IN: f64 = 0.25;
 const SETTLES_IN: f64 = 2.0;
 
-/// A slow way to an end that the tool would run over.
+/// A slow way to an end that the tool would overshoot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SlowEnd {
     /// Speed of the last piece, mm/s.
@@ -31,7 +32,7 @@ pub(super) struct SlowEnd {
 }
 
 impl SlowEnd {
-    /// Half as fast, and as long.
+    /// Returns a way at half the speed and half the length.
     pub(super) fn slower(self) -> Self {
         Self {
             speed_mm_s: 0.5 * self.speed_mm_s,
@@ -39,7 +40,7 @@ impl SlowEnd {
         }
     }
 
-    /// As fast, and this part as long.
+    /// Returns a way at the same speed with `part` of the length.
     pub(super) fn shorter(self, part: f64) -> Self {
         Self {
             length_mm: part * self.length_mm,
@@ -47,7 +48,7 @@ impl SlowEnd {
         }
     }
 
-    /// How long it takes, s.
+    /// Returns the time of the slow way, s.
     pub(super) fn time_s(self) -> f64 {
         self.length_mm / self.speed_mm_s
     }
@@ -68,8 +69,8 @@ impl SlowEnd {
     }
 }
 
-/// A way to the end that is so slow that it brakes in a part of the loop's time constant, and as
-/// long as that takes to settle.
+/// Returns a way to the end. It is so slow that the drive brakes in a part of the loop's time
+/// constant, and as long as the loop takes to settle.
 pub(super) fn slow_end(machine: &Machine) -> SlowEnd {
     let slowest_s = 1.0 / machine.slowest_kp_1_s();
     let speed_mm_s = machine.limits.tangential_accel_mm_s2 * BRAKES_IN * slowest_s;
@@ -79,8 +80,8 @@ pub(super) fn slow_end(machine: &Machine) -> SlowEnd {
     }
 }
 
-/// The rapid to a stretch, the last of it at the slow end's speed; none where it is not much
-/// longer.
+/// Returns the rapid to a stretch, with its last piece at the slow end's speed; none if the rapid
+/// is not much longer.
 pub(super) fn slow_approach(
     stretch: &SmoothStretch,
     slow: SlowEnd,
@@ -90,8 +91,8 @@ pub(super) fn slow_approach(
     slow.parted(rapid, target)
 }
 
-/// Programmed motions, the last of them slow at its end; none where that is no straight line, or
-/// not much longer.
+/// Returns the programmed motions, with the last of them slow at its end; none if the last is not a
+/// straight line or not much longer.
 pub(super) fn slow_last(
     motions: &[Motion],
     slow: SlowEnd,
@@ -110,7 +111,7 @@ pub(super) fn slow_last(
 }
 
 impl SlowEnd {
-    /// A straight motion in two, the second of them slow.
+    /// Splits a straight motion in two, the second of them slow.
     fn parted(self, motion: &Motion, target: PrintedTarget<'_>) -> Option<[Motion; 2]> {
         let way = sub(motion.end_mm, motion.start_mm);
         let length_mm = norm(way);

@@ -6,28 +6,28 @@ use std::io::Read;
 use feedwright_gcode::canon::{Canon, MotionKind};
 use feedwright_gcode::{Dialect, ModesInForce, Program, ReadError, Settings};
 
-/// A program that is to be corrected.
+/// A program to be corrected.
 #[derive(Debug, Clone)]
 pub(super) struct SourceProgram {
     /// Its lines, without their ends.
     pub(super) lines: Vec<String>,
-    /// What it asks for.
+    /// Motions and events of the program.
     pub(super) steps: Vec<Canon>,
-    /// Whose G-code it is.
+    /// Dialect of its G-code.
     pub(super) dialect: Dialect,
     /// Feedrate in place of every programmed one, mm/s.
     pub(super) feed_mm_s: Option<f64>,
     /// Modes before its first line.
     start: ModesInForce,
     modes: Vec<ModesInForce>,
-    /// Which of them are in force behind each step.
+    /// Index into `modes` of the modes in force after each step.
     in_force: Vec<usize>,
     /// Text of the lines before a step that set offsets, for those steps that have any.
     offset_lines: BTreeMap<usize, Vec<String>>,
 }
 
 impl SourceProgram {
-    /// A program that has been checked, with another feedrate where one is given.
+    /// Reads a program that has been checked, with another feedrate if one is given.
     pub(super) fn read(
         program: &Program,
         settings: &Settings,
@@ -85,14 +85,14 @@ impl SourceProgram {
             .zip(self.in_force.iter().map(|&modes| &self.modes[modes]))
     }
 
-    /// The lines, carried out between the step before and this one, that write offsets or put
-    /// others in force.
+    /// Returns the lines, executed between the previous step and this one, that write offsets or
+    /// put others in force.
     pub(super) fn offset_lines(&self, step: usize) -> &[String] {
         self.offset_lines.get(&step).map_or(&[], Vec::as_slice)
     }
 
-    /// Whether offsets are written or put in force behind the first of some steps and before the
-    /// last.
+    /// Returns true if offsets are written or put in force after the first of some steps and before
+    /// the last.
     pub(super) fn sets_offsets_within(&self, [first, last]: [usize; 2]) -> bool {
         self.offset_lines
             .range(first + 1..)

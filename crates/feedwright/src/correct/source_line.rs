@@ -1,4 +1,4 @@
-//! A line of a program as words, as far as its motion can be taken out of it.
+//! A line of a program as words, so that its motion can be taken out.
 
 /// A line whose motion is replaced.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -11,7 +11,7 @@ pub(super) struct PartedLine {
 
 /// Words of a motion.
 const OF_MOTION: &str = "NXYZIJKRF";
-/// Words that are of a motion where a line has no other code: turns of an arc, tangents, weights
+/// Words that belong to a motion if a line has no other code: turns of an arc, tangents, weights
 /// and the order of a curve.
 const ALONE_OF_MOTION: &str = "PQLD";
 /// Codes of motions that may be replaced, and those of them that collect a curve over lines.
@@ -19,7 +19,7 @@ const MOTIONS: [f64; 9] = [0.0, 1.0, 2.0, 3.0, 5.0, 5.1, 5.2, 5.3, 6.2];
 const COLLECTING: [f64; 2] = [5.2, 6.2];
 
 impl PartedLine {
-    /// The words of a line; none where it has more than letters and numbers: expressions,
+    /// Parses the words of a line; none if it has more than letters and numbers: expressions,
     /// parameters, O-words, a deleted block.
     pub(super) fn parse(line: &str) -> Option<Self> {
         let mut parsed = Self::default();
@@ -55,7 +55,7 @@ impl PartedLine {
         Some(parsed)
     }
 
-    /// What stays of it when the motion is taken out, as text.
+    /// Returns the rest of the line without the motion, as text.
     pub(super) fn without_motion(&self) -> String {
         let stays = |(letter, number): &&(char, String)| {
             !(OF_MOTION.contains(*letter) || *letter == 'G' && Self::is_motion(number))
@@ -74,22 +74,23 @@ impl PartedLine {
             .join(" ")
     }
 
-    /// Whether it has a word of this letter.
+    /// Returns true if the line has a word of any of these letters.
     pub(super) fn has(&self, letters: &str) -> bool {
         self.words
             .iter()
             .any(|(letter, _)| letters.contains(*letter))
     }
 
-    /// Whether it says itself how it moves, or has a code that moves or sets otherwise.
+    /// Returns true if the line has its own motion code, or a code that moves or sets in another
+    /// way.
     pub(super) fn has_code(&self) -> bool {
         self.words.iter().any(|(letter, number)| {
             *letter == 'G' && (Self::is_motion(number) || Self::takes_axes(number))
         })
     }
 
-    /// The words that say what coordinates mean, as text; none where it has none. Offsets and
-    /// rotations come with all of their words, all else alone.
+    /// Returns the words that define what coordinates mean, as text; none if the line has no such
+    /// words. Offsets and rotations come with all of their words, other codes alone.
     pub(super) fn frame_words(&self) -> Option<String> {
         let codes = |wanted: fn(f64) -> bool| {
             let is = move |(letter, number): &&(char, String)| {
@@ -121,7 +122,7 @@ impl PartedLine {
         (!with_axes.is_empty() || !alone.is_empty()).then(|| all.join(" "))
     }
 
-    /// Whether it begins or goes on with a curve that a later line completes.
+    /// Returns true if the line begins or continues a curve that a later line completes.
     pub(super) fn collects_curve(&self) -> bool {
         self.words.iter().any(|(letter, number)| {
             *letter == 'G' && number.parse().is_ok_and(|code| COLLECTING.contains(&code))
@@ -144,8 +145,8 @@ impl PartedLine {
     }
 }
 
-/// Whether a line has words of a macro language: O-words, statements, parameters or expressions.
-/// `O1000` alone is a program's number.
+/// Returns true if a line has words of a macro language: O-words, statements, parameters or
+/// expressions. `O1000` alone is a program number.
 pub(super) fn has_macros(line: &str) -> bool {
     let words = line.split([';']).next().unwrap_or_default();
     let mut depth = 0;
@@ -168,7 +169,7 @@ pub(super) fn has_macros(line: &str) -> bool {
     has_o_word || bare.contains(['#', '[']) || calls_or_jumps(words)
 }
 
-/// M97 to M99, G65 and GOTO.
+/// Returns true if the words contain M97 to M99, G65 or GOTO.
 fn calls_or_jumps(words: &str) -> bool {
     let compact: String = words.chars().filter(|c| !c.is_whitespace()).collect();
     let has_code = |code: &str| {
@@ -182,7 +183,7 @@ fn calls_or_jumps(words: &str) -> bool {
         || compact.contains("goto")
 }
 
-/// A line with one word more behind its words.
+/// Adds one word to a line, after its words.
 pub(super) fn with_word(line: &str, word: &str) -> String {
     let words = line.find(['(', ';']).unwrap_or(line.len());
     let (before, behind) = line.split_at(words);
@@ -190,8 +191,8 @@ pub(super) fn with_word(line: &str, word: &str) -> String {
     format!("{} {word}{gap}{behind}", before.trim_end())
 }
 
-/// A line with other words of its dwell in place of `G4` and its time; a line that has more than
-/// letters and numbers, or no `G4`, stays as it is.
+/// Replaces `G4` and its time by other words of a dwell. A line that has more than letters and
+/// numbers, or no `G4`, stays as it is.
 pub(super) fn with_dwell(line: &str, dwell: &str) -> String {
     let Some(parsed) = PartedLine::parse(line) else {
         return line.to_owned();
@@ -215,7 +216,7 @@ pub(super) fn with_dwell(line: &str, dwell: &str) -> String {
     words.join(" ")
 }
 
-/// A line with another F word in place of each; comments stay.
+/// Replaces each F word of a line; comments stay.
 pub(super) fn with_feed(line: &str, feed: &str) -> String {
     let (mut text, mut rest) = (String::new(), line);
     while let Some(first) = rest.chars().next() {

@@ -1,4 +1,4 @@
-//! What each stretch comes to in a cut.
+//! Errors and time of each stretch in a cut.
 
 use std::ops::Range;
 
@@ -10,20 +10,21 @@ use feedwright_sim::Commanded;
 use super::exported::CutRow;
 use super::stretches::{CORNER_RAD, SmoothStretch};
 
-/// Weight of the largest error beside the RMS.
+/// Weight of the largest error relative to the RMS.
 const MAX_WEIGHT: f64 = 0.3;
-/// How long before and behind the end of a stretch the tool may run over it, s.
+/// Time before and after the end of a stretch in which the tool may overshoot it, s.
 const AROUND_END_S: f64 = 0.02;
 
-/// Standard deviations that a gain has to be: a normal value is negative with 5 %.
+/// Standard deviations that a gain must exceed: a normal value is then negative with 5 %
+/// probability.
 const CERTAIN: f64 = 1.645;
 
-/// What a stretch came to in a cut.
+/// Errors and time of a stretch in a cut.
 #[derive(Debug, Clone, Default)]
 pub(super) struct StretchCut {
     /// Rows in which the stretch is commanded.
     pub(super) rows: Range<usize>,
-    /// Errors of those rows, and of those behind until the next stretch begins.
+    /// Errors of those rows, and of the rows after them until the next stretch begins.
     pub(super) square_sum_mm2: f64,
     pub(super) max_mm: f64,
     /// The row with the largest error.
@@ -35,7 +36,7 @@ pub(super) struct StretchCut {
 }
 
 impl StretchCut {
-    /// RMS of its errors, mm.
+    /// Returns the RMS of its errors, mm.
     pub(super) fn rms_mm(&self) -> f64 {
         if self.cutting == 0 {
             0.0
@@ -44,12 +45,12 @@ impl StretchCut {
         }
     }
 
-    /// One figure of it, mm.
+    /// Returns the error figure of the stretch: RMS plus weighted largest error, mm.
     pub(super) fn figure_mm(&self) -> f64 {
         self.rms_mm() + MAX_WEIGHT * self.max_mm
     }
 
-    /// Several as one; only its errors mean something.
+    /// Combines several stretches into one; only its errors are meaningful.
     pub(super) fn together<'a>(cuts: impl IntoIterator<Item = &'a Self>) -> Self {
         cuts.into_iter().fold(Self::default(), |all, cut| Self {
             square_sum_mm2: all.square_sum_mm2 + cut.square_sum_mm2,
@@ -60,7 +61,7 @@ impl StretchCut {
     }
 }
 
-/// How far the tool runs over the end of a stretch, mm.
+/// Returns the distance by which the tool overshoots the end of a stretch, mm.
 pub(super) fn overshoot_mm(
     rows: &[CutRow],
     cut: &StretchCut,
@@ -76,7 +77,8 @@ pub(super) fn overshoot_mm(
         .fold(0.0, f64::max)
 }
 
-/// How far the tool runs over the end of the rapid that leads to a stretch, mm.
+/// Returns the distance by which the tool overshoots the end of the rapid that leads to a stretch,
+/// mm.
 pub(super) fn rapid_overshoot_mm(
     rows: &[CutRow],
     cut: &StretchCut,
@@ -107,9 +109,9 @@ pub(super) fn rapid_overshoot_mm(
     near.iter().map(over_mm).fold(0.0, f64::max)
 }
 
-/// Rows and errors of each stretch. What the tool still does when the command has gone on belongs
-/// to it, until the next begins; what it does at the end of a rapid belongs to the stretch that the
-/// rapid leads to. Errors in a lead do not count for the stretches of `own`.
+/// Returns rows and errors of each stretch. Rows after the end of its command count for it until
+/// the next stretch begins. Rows at the end of a rapid count for the stretch that the rapid leads
+/// to. Errors in a lead do not count for the stretches of `own`.
 pub(super) fn by_stretch(rows: &[CutRow], count: usize, own: &Range<usize>) -> Vec<StretchCut> {
     let mut cuts = vec![StretchCut::default(); count];
     let (mut last, mut behind_rapid) = (None, None);
@@ -163,17 +165,17 @@ impl StretchCut {
     }
 }
 
-/// What a command gains in a stretch on one machine.
+/// Gain of a command in a stretch on one machine.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StretchGain {
-    /// Mean square of the errors that is gone, mm2.
+    /// Reduction of the mean square of the errors, mm2.
     square_mm2: f64,
-    /// By how much the largest error is less than a worse one may be, mm.
+    /// Distance of the largest error below the limit at which it counts as worse, mm.
     max_mm: f64,
 }
 
 impl StretchGain {
-    /// From the cuts of the programmed and of another command.
+    /// Computes the gain from the cuts of the programmed command and of another command.
     pub(super) fn new(was: &StretchCut, is: &StretchCut) -> Self {
         let square = |cut: &StretchCut| cut.rms_mm() * cut.rms_mm();
         Self {
@@ -201,8 +203,8 @@ impl StretchGain {
         [of(|gain| gain.square_mm2), of(|gain| gain.max_mm)]
     }
 
-    /// Whether a gain over machines is so much larger than its standard deviation that a loss is
-    /// unlikely.
+    /// Returns true if the gain over all machines exceeds its standard deviation by enough to make
+    /// a loss unlikely.
     pub(super) fn is_certain(all: &[Self]) -> bool {
         Self::certainty(all)
             .iter()

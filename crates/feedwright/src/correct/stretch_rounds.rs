@@ -1,4 +1,4 @@
-//! A stretch under way: its commands so far, and what came of them.
+//! A stretch under way: its commands so far, and their results.
 
 use std::iter;
 
@@ -9,24 +9,24 @@ use super::stretch_cut::StretchCut;
 use super::stretches::{StretchCommand, rest_s};
 use super::unchanged::UnchangedReason;
 
-/// Cuts without a gain after which a stretch is left alone.
+/// Cuts without a gain after which a stretch is finished.
 const NO_GAIN: u32 = 3;
 /// Smallest reduction of a stretch's error figure that counts as a gain, as a fraction of it.
 const LEAST_GAIN: f64 = 0.02;
-/// A stretch whose largest error is less stays as it is, mm: what blocks that fit a command miss it
-/// by.
+/// A stretch whose largest error is less stays as programmed, mm: this is the distance by which
+/// fitted blocks miss a command.
 const GOOD_MM: f64 = 1e-3;
-/// Distance of blocks from the command, mm: the finest at which they are few enough, from this part
-/// of the RMS error that they are to correct and no less than this and a printed step, in steps of
-/// this factor.
+/// Distance of blocks from the command, mm: the finest at which the blocks are few enough. The
+/// search starts at this part of the RMS error that the blocks are to correct, and no less than
+/// [`FINEST_MM`] and a printed step. It gets coarser by the factor [`COARSER`].
 const FIT_SHARE: f64 = 0.04;
 const FINEST_MM: f64 = 5e-5;
 const COARSER: f64 = 1.25;
-/// Where no such distance is left, mm, and whether blocks may be many.
+/// Distances that follow if no finer distance fits, mm, each with a flag: true allows many blocks.
 const TOLERANCES_MM: [(f64, bool); 4] = [(1e-3, false), (2e-3, false), (1e-3, true), (4e-3, true)];
-/// Where a stretch takes too long, the Gaussian over its command gets wider by a factor between
-/// these: what the command bends more than the path slows the control down. It gets wider by so
-/// much at the most.
+/// Factors by which the Gaussian over a command gets wider if the stretch takes too long, least and
+/// largest: a command that bends more than the path slows the control down. It is not widened once
+/// it has reached [`WIDEST`] times its usual width.
 const WIDER: [f64; 2] = [1.15, 1.6];
 const WIDEST: f64 = 4.0;
 
@@ -34,17 +34,19 @@ const WIDEST: f64 = 4.0;
 pub(super) struct StretchRounds {
     pub(super) current: StretchCommand,
     pub(super) best: StretchCommand,
-    /// Figure and time, s, of the best; those of the programmed command first.
+    /// Figure of the best command, mm, and its time, s; at first they belong to the programmed
+    /// command.
     pub(super) best_mm: f64,
     pub(super) best_s: f64,
     pub(super) budget: StretchBudget,
     /// The cut of the programmed command.
     pub(super) programmed: StretchCut,
-    /// Its figure, beside commands that spoil it where they do.
+    /// Figure of the programmed command, mm, next to commands that spoil it if they do.
     pub(super) programmed_mm: f64,
-    /// Distance of blocks from the command that is small beside what they are to correct, mm.
+    /// Distance of blocks from the command that is small compared with the error that they correct,
+    /// mm.
     pub(super) tolerance_mm: f64,
-    /// Sum of the squares of the errors of the best, mm2.
+    /// Sum of the squared errors of the best command, mm2.
     pub(super) square_sum_mm2: f64,
     /// Lowest figure of the commands that were tried, mm, and for how many rounds there was no
     /// lower one.
@@ -52,15 +54,15 @@ pub(super) struct StretchRounds {
     pub(super) since: u32,
     pub(super) slow_end: Option<SlowEnd>,
     pub(super) slow_rapid: Option<SlowEnd>,
-    /// Width of the Gaussian over the command, in its usual width.
+    /// Width of the Gaussian over the command, relative to its usual width.
     pub(super) width: f64,
-    /// What has last kept it from a better command.
+    /// Last reason that kept the stretch from a better command.
     pub(super) reason: UnchangedReason,
     pub(super) done: bool,
 }
 
 impl StretchRounds {
-    /// From the cut of the uncorrected program, with blocks no finer than the printed steps.
+    /// Begins from the cut of the uncorrected program, with blocks no finer than the printed steps.
     pub(super) fn begun(cut: &StretchCut, budget: StretchBudget, steps_per_mm: f64) -> Self {
         let done = cut.max_mm < GOOD_MM || cut.rows.is_empty();
         let finest_mm = (1.0 / steps_per_mm).clamp(FINEST_MM, TOLERANCES_MM[0].0);
@@ -88,7 +90,7 @@ impl StretchRounds {
         }
     }
 
-    /// What its best command costs and gains.
+    /// Returns the cost and the gain of its best command.
     pub(super) fn cost(&self, dwell_s: f64) -> StretchCost {
         let Self { best, budget, .. } = self;
         let Some(best) = best else {
@@ -107,7 +109,7 @@ impl StretchRounds {
         }
     }
 
-    /// Takes in how its command was cut.
+    /// Judges the current command by its cut.
     pub(super) fn judge(&mut self, cut: &StretchCut, servo_s: f64, dwell_s: f64) {
         if self.reason == UnchangedReason::Good && cut.max_mm > self.programmed.max_mm.max(GOOD_MM)
         {
@@ -129,8 +131,8 @@ impl StretchRounds {
             return;
         }
         let better = figure_mm < self.best_mm && time_s < most_s;
-        // A command that gets better from round to round is followed, also where the programmed one
-        // is still ahead.
+        // A command that improves from round to round is followed, even if the programmed one is
+        // still better.
         self.since = if figure_mm < (1.0 - LEAST_GAIN) * self.lowest_mm {
             0
         } else {
@@ -146,15 +148,14 @@ impl StretchRounds {
         }
     }
 
-    /// Takes up a stretch that needed no other command until those around it had others: the tool
-    /// rests at its end now.
+    /// Reopens a stretch that needed no other command until the stretches around it had others: the
+    /// tool now rests at its end.
     fn reopen(&mut self, cut: &StretchCut) {
         (self.programmed_mm, self.best_mm) = (cut.figure_mm(), cut.figure_mm());
         (self.reason, self.done) = (UnchangedReason::NoGain, false);
     }
 
-    /// Blocks along the points of a command, as fine as they may be; none where they would be too
-    /// many.
+    /// Fits blocks to the points of a command, as fine as allowed; none if there would be too many.
     pub(super) fn fitted(&self, points: &[FitPoint], steps_per_mm: f64) -> Option<Vec<FitMotion>> {
         let fine = iter::successors(Some(self.tolerance_mm), |mm| Some(COARSER * mm));
         let fine = fine
@@ -168,14 +169,15 @@ impl StretchRounds {
         })
     }
 
-    /// Is judged anew, since rests and slow ends have got shorter.
+    /// Judges the stretch anew, because rests and slow ends have become shorter.
     pub(super) fn again(&mut self) {
         (self.best, self.best_mm) = (None, self.programmed_mm);
         (self.lowest_mm, self.since) = (f64::INFINITY, 0);
         self.done = self.current.is_none();
     }
 
-    /// A command that does not fit gets wider, where it may; what bends less takes fewer blocks.
+    /// Widens the Gaussian over a command whose blocks do not fit, if it may: a command that bends
+    /// less takes fewer blocks.
     pub(super) fn widen(&mut self) {
         if self.width < WIDEST {
             self.width *= WIDER[1];
@@ -184,12 +186,12 @@ impl StretchRounds {
         }
     }
 
-    /// Goes back to the programmed command, for this reason.
+    /// Returns to the programmed command, for this reason.
     pub(super) fn take_back(&mut self, reason: UnchangedReason) {
         (self.best, self.reason) = (None, reason);
     }
 
-    /// Stays with its best command, for this reason where that is the programmed one.
+    /// Keeps its best command; `reason` applies if that is the programmed one.
     pub(super) fn give_up(&mut self, reason: UnchangedReason) {
         self.reason = reason;
         self.finish();

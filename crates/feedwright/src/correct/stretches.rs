@@ -1,9 +1,9 @@
-//! A program as stretches that are cut without a corner, and all else.
+//! A program as stretches that are cut without a corner, and the parts between them.
 //!
-//! A stretch is what a correction may bend as a whole: feed motions of X, Y and Z, one behind the
-//! other, that meet within [`CORNER_RAD`], without anything between them. At its ends the tool is
-//! to be where the program says, so the command rests there until the tool has come: a dwell at
-//! true corners and beside rapids.
+//! A stretch is the unit that a correction may bend: feed motions of X, Y and Z, one after the
+//! other, that meet within [`CORNER_RAD`], without anything between them. At its ends the tool must
+//! be where the program says, so the command rests there until the tool has arrived: a dwell at
+//! true corners and next to rapids.
 
 use std::f64::consts::PI;
 
@@ -12,18 +12,18 @@ use feedwright_plan::vector::{Vector, angle};
 use feedwright_plan::{Piece, Pieces, Step};
 use serde::{Deserialize, Serialize};
 
-/// A sharper turn is a corner: no arc is to replace it.
+/// A sharper turn is a corner: no arc may replace it.
 pub(super) const CORNER_RAD: f64 = 25.0 / 180.0 * PI;
 /// A turn from which G61 stops, as in feed planners.
 const TANGENT_RAD: f64 = 1e-3;
 
-/// Where the tool comes slowly it rests so much of a dwell.
+/// Fraction of a dwell for which the tool rests where it arrives slowly.
 const SETTLED: f64 = 0.25;
 
 /// Part of a program.
 #[derive(Debug, Clone)]
 pub(super) enum ProgramPart {
-    /// Stays what it is.
+    /// Stays as programmed.
     Kept(Canon),
     /// May be bent.
     Stretch(SmoothStretch),
@@ -32,13 +32,13 @@ pub(super) enum ProgramPart {
 /// Feed motions that are cut without a corner.
 #[derive(Debug, Clone)]
 pub(super) struct SmoothStretch {
-    /// As they are programmed.
+    /// Motions as programmed.
     pub(super) motions: Vec<Motion>,
     /// Numbers of its first and last step in the program.
     pub(super) steps: [usize; 2],
-    /// Whether the tool has to come to rest before and behind.
+    /// True where the tool has to come to rest before and after the stretch.
     pub(super) rests: [bool; 2],
-    /// Whether the motion before belongs to the stretch before.
+    /// True where the previous motion belongs to the previous stretch.
     pub(super) follows: bool,
     /// The straight rapid that leads to its start, and its step in the program.
     pub(super) rapid: Option<(usize, Motion)>,
@@ -63,12 +63,12 @@ pub(super) fn pieces(motion: &Motion) -> Vec<Piece> {
         .collect()
 }
 
-/// How long the path of a motion is, mm.
+/// Returns the length of the path of a motion, mm.
 pub(super) fn length_mm(motion: &Motion) -> f64 {
     pieces(motion).iter().map(|piece| piece.length_mm).sum()
 }
 
-/// Direction of travel at both ends of a motion; none of one without length.
+/// Returns the direction of travel at both ends of a motion; none if it has no length.
 pub(super) fn directions(motion: &Motion) -> Option<[Vector; 2]> {
     let pieces = pieces(motion);
     let (first, last) = (pieces.first()?, pieces.last()?);
@@ -78,8 +78,8 @@ pub(super) fn directions(motion: &Motion) -> Option<[Vector; 2]> {
     ])
 }
 
-/// The parts of a program, in order. A stretch ends before each step of `splits`, which is sorted;
-/// the tool does not rest there.
+/// Splits a program into its parts, in order. A stretch ends before each step of `splits`, which is
+/// sorted; the tool does not rest there.
 pub(super) fn parts(program: &[Canon], splits: &[usize]) -> Vec<ProgramPart> {
     let mut parts: Vec<ProgramPart> = Vec::new();
     // Direction at the end of the last motion, and whether nothing has happened since.
@@ -141,7 +141,7 @@ pub(super) fn parts(program: &[Canon], splits: &[usize]) -> Vec<ProgramPart> {
     parts
 }
 
-/// The stretch that the last motion belongs to.
+/// Returns the stretch that the last motion belongs to.
 fn last_stretch(parts: &mut [ProgramPart]) -> Option<&mut SmoothStretch> {
     let last = parts
         .iter_mut()
@@ -154,7 +154,7 @@ fn last_stretch(parts: &mut [ProgramPart]) -> Option<&mut SmoothStretch> {
     }
 }
 
-/// Turn at which a motion that ends by `corner` ends a stretch.
+/// Returns the turn at which a motion that ends by `corner` ends a stretch, rad.
 fn most_turn_rad(corner: Corner) -> f64 {
     match corner {
         Corner::ExactStop => 0.0,
@@ -164,23 +164,23 @@ fn most_turn_rad(corner: Corner) -> f64 {
 }
 
 impl SmoothStretch {
-    /// Where it starts.
+    /// Returns the start of the stretch, mm.
     pub(super) fn start_mm(&self) -> Vector {
         self.motions[0].start_mm
     }
 
-    /// Where it ends.
+    /// Returns the end of the stretch, mm.
     pub(super) fn end_mm(&self) -> Vector {
         self.motions[self.motions.len() - 1].end_mm
     }
 
-    /// Directions of travel at both ends.
+    /// Returns the directions of travel at both ends.
     pub(super) const fn directions(&self) -> [Vector; 2] {
         self.ends
     }
 
-    /// The plane of the arcs that may replace its motions: the one that its arcs and splines share,
-    /// or XY if they share none.
+    /// Returns the plane of the arcs that may replace its motions: the plane that its arcs and
+    /// splines share, or XY if they share none.
     pub(super) fn plane(&self) -> Plane {
         let shares = |plane: &Plane| self.motions.iter().all(|motion| has_plane(motion, *plane));
         let bends = self
@@ -194,7 +194,7 @@ impl SmoothStretch {
     }
 }
 
-/// Whether a motion is straight, or bends in a plane.
+/// Returns true if a motion is straight, or bends in this plane.
 fn has_plane(motion: &Motion, plane: Plane) -> bool {
     match &motion.shape {
         Shape::Line => true,
@@ -209,25 +209,26 @@ fn has_plane(motion: &Motion, plane: Plane) -> bool {
     }
 }
 
-/// Motions in place of those of a stretch.
+/// Motions that replace the motions of a stretch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct NewMotions {
-    /// In place of those of the stretch.
+    /// Motions that replace the motions of the stretch.
     pub(super) motions: Vec<Motion>,
-    /// In place of the rapid that leads to it: a rapid most of the way, and a slow feed motion to
-    /// its end.
+    /// Motions that replace the rapid to the stretch: a rapid for most of the way, and a slow feed
+    /// motion to its end.
     pub(super) approach: Option<[Motion; 2]>,
-    /// Whether the last of it is so slow that the tool has settled at its end.
+    /// True where the last motion is so slow that the tool has settled at its end.
     pub(super) settles: bool,
 }
 
-/// What a stretch becomes; none where it stays as it is.
+/// New command of a stretch; none if it stays as programmed.
 pub(super) type StretchCommand = Option<NewMotions>;
 
-/// The program with other motions in place of its stretches, and dwells where the tool has to come
-/// to rest.
+/// Returns the program with new motions for its stretches, and dwells where the tool has to come to
+/// rest.
 ///
-/// The line of a motion is the number of its stretch, from 1, and 0 of all that is kept.
+/// The line of a motion is the number of its stretch, from 1; it is 0 for all motions that are
+/// kept.
 pub(super) fn assembled(
     parts: &[ProgramPart],
     commands: &[StretchCommand],
@@ -268,7 +269,7 @@ pub(super) fn assembled(
     program
 }
 
-/// Puts an approach in the place of the last rapid.
+/// Replaces the last rapid by an approach.
 fn slow_down(program: &mut Vec<Canon>, approach: &[Motion; 2]) {
     if let Some(at) = program
         .iter()
@@ -284,7 +285,7 @@ fn slow_down(program: &mut Vec<Canon>, approach: &[Motion; 2]) {
     }
 }
 
-/// How long a dwell is, s, where the tool comes slowly or does not.
+/// Returns the time of a dwell, s. It is shorter if the tool arrives slowly.
 pub(super) fn rest_s(comes_slowly: bool, dwell_s: f64) -> f64 {
     if comes_slowly {
         (SETTLED * dwell_s * 1e3).round().max(1.0) / 1e3
@@ -293,9 +294,9 @@ pub(super) fn rest_s(comes_slowly: bool, dwell_s: f64) -> f64 {
     }
 }
 
-/// How long the tool rests before and behind a stretch, s: where it, or the stretch before, has
-/// another command, a dwell, and less where the tool comes so slowly that it has settled. `rests_s`
-/// has a dwell for each stretch.
+/// Returns the times for which the tool rests before and after a stretch, s. It rests if the
+/// stretch, or the one before it, has another command. The time is a full dwell, or less if the
+/// tool arrives so slowly that it has settled. `rests_s` has a dwell for each stretch.
 pub(super) fn dwells(
     stretch: &SmoothStretch,
     commands: &[StretchCommand],
@@ -320,8 +321,8 @@ pub(super) fn dwells(
     ]
 }
 
-/// Printed ends need not be those of the program to the last digit: each motion begins where the
-/// one before has ended.
+/// Makes each motion begin where the previous one ended: printed ends may differ from the program
+/// in the last digit.
 fn join(program: &mut [Canon]) {
     let mut here_mm = None;
     for step in program {
@@ -332,7 +333,7 @@ fn join(program: &mut [Canon]) {
     }
 }
 
-/// The stretches among the parts.
+/// Returns the stretches among the parts.
 pub(super) fn stretches(parts: &[ProgramPart]) -> impl Iterator<Item = &SmoothStretch> {
     parts.iter().filter_map(|part| {
         if let ProgramPart::Stretch(stretch) = part {

@@ -1,7 +1,7 @@
-//! The controls that a corrected program is for.
+//! The controls that a corrected program can be written for.
 //!
-//! A row says how the control plans the speed, by the name of a [feed
-//! planner](feedwright_plan::feed), and what its programs may hold. To add a control is one row.
+//! A row names the [feed planner](feedwright_plan::feed) of the control and sets the limits of its
+//! programs. To add a control, add a row.
 
 use feedwright_gcode::Dialect;
 use feedwright_gcode::canon::Corner;
@@ -13,18 +13,19 @@ use feedwright_sim::{Machine, Stages};
 pub struct TargetControl {
     /// Name, as in `--for`.
     pub name: &'static str,
-    /// What it stands for, for lists.
+    /// Description of the control, for lists.
     pub about: &'static str,
     /// Name of its feed planner.
     pub planner: &'static str,
-    /// How blocks of a corrected stretch meet; none is as in the program, and without exact stops.
+    /// Way in which blocks of a corrected stretch meet; none means as in the program, but without
+    /// exact stops.
     pub corner: Option<Corner>,
-    /// Most characters of a line.
+    /// Largest number of characters in a line.
     pub columns: usize,
     /// Decimals of a coordinate in mm.
     pub decimals: u32,
-    /// Dialect that it reads; none is the dialect of the program: it is the control that the
-    /// program was written for.
+    /// Dialect that the control reads; none means the dialect of the program: it is the control
+    /// that the program was written for.
     pub dialect: Option<Dialect>,
 }
 
@@ -72,12 +73,12 @@ pub const TARGETS: &[TargetControl] = &[
 ];
 
 impl TargetControl {
-    /// The target of that name.
+    /// Finds the target with this name.
     pub fn find(name: &str) -> Option<&'static Self> {
         TARGETS.iter().find(|target| target.name == name)
     }
 
-    /// How it plans on a machine.
+    /// Returns the feed planner of the control on a machine.
     pub fn stages(&self, machine: &Machine) -> Stages {
         let own = Stages::of(machine);
         Stages {
@@ -85,8 +86,8 @@ impl TargetControl {
         }
     }
 
-    /// The dialect in which it reads a program that was written in another. A control of Fanuc
-    /// reads those of its relatives.
+    /// Returns the dialect in which the control reads a program that was written in another
+    /// dialect. A Fanuc control reads the dialects of its relatives.
     pub(super) fn reads_as(&self, dialect: Dialect) -> Dialect {
         match self.dialect {
             Some(Dialect::FanucMill) if dialect.is_fanuc() => dialect,
@@ -95,7 +96,8 @@ impl TargetControl {
         }
     }
 
-    /// Whether it runs loops, subroutines and parameters as a program of a dialect has them.
+    /// Returns true if the control runs loops, subroutines and parameters as in a program of this
+    /// dialect.
     pub(super) fn runs_macros_of(&self, dialect: Dialect) -> bool {
         match self.reads_as(dialect) {
             Dialect::Grbl => self.dialect.is_none(),
@@ -103,18 +105,19 @@ impl TargetControl {
         }
     }
 
-    /// Decimals of a length. Inches have one more: an inch is 25 mm, and then the step is small
-    /// enough.
+    /// Returns the decimals of a length. Inches have one more: an inch is 25 mm, and then the step
+    /// is small enough.
     pub(super) fn decimals_of(&self, unit_mm: f64) -> usize {
         self.decimals as usize + usize::from(unit_mm > 1.0)
     }
 
-    /// Printed step of a length in a unit, mm.
+    /// Returns the printed step of a length in a unit, mm.
     pub(super) fn step_mm(&self, unit_mm: f64) -> f64 {
         unit_mm / 10_f64.powi(self.decimals_of(unit_mm) as i32)
     }
 
-    /// The control with the steps in which a program prints lengths whose largest unit is this, mm.
+    /// Returns the control with the steps in which a program prints lengths; `unit_mm` is its
+    /// largest unit.
     pub(super) fn printed(&self, unit_mm: f64) -> PrintedTarget<'_> {
         PrintedTarget {
             control: self,

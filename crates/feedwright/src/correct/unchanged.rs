@@ -1,4 +1,4 @@
-//! Why a stretch stays as it is programmed, and what would help.
+//! Reasons why a stretch stays as programmed, and remedies.
 
 use std::fmt;
 
@@ -7,15 +7,15 @@ use serde::{Deserialize, Serialize};
 
 use super::stretches::{ProgramPart, SmoothStretch};
 
-/// Why a stretch has no other command.
+/// Reason why a stretch has no other command.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) enum UnchangedReason {
     /// Its largest error is below what blocks can correct.
     Good,
-    /// Another command does not lower its error by enough.
+    /// No other command lowers its error by enough.
     NoGain,
-    /// Every better command takes longer than it may: by this share of its time, %. `rests` is the
-    /// share of a slow way to its end, %.
+    /// Every better command takes too long: by this share of its time, %. `rests` is the share of a
+    /// slow way to its end, %.
     TooSlow { percent: f64, rests: f64 },
     /// A better command takes more blocks than the stretch may have.
     Blocks,
@@ -23,11 +23,11 @@ pub(super) enum UnchangedReason {
     LeavesPath,
     /// Other stretches gain more from the blocks and the time that the program may have.
     Detail,
-    /// Beside the other stretches its command makes an error larger.
+    /// Its command makes an error larger next to the other stretches.
     Worse,
     /// A machine that the file may describe as well would cut it worse.
     Uncertain,
-    /// Its lines hold what no other lines can take the place of.
+    /// Its lines hold content that new lines cannot replace.
     Unwritable,
     /// It moves axes beside X, Y and Z.
     OtherAxes,
@@ -91,12 +91,12 @@ impl fmt::Display for UnchangedReason {
 pub struct UnchangedStretch {
     /// First and last line.
     pub lines: [u32; 2],
-    /// Why it stays, and what would help.
+    /// Reason why it stays, and a remedy.
     pub reason: String,
 }
 
-/// The stretches that stay as they are, in the order of the program; `reasons` has one entry for
-/// each stretch.
+/// Returns the stretches that stay as programmed, in the order of the program; `reasons` has one
+/// entry for each stretch.
 pub(super) fn unchanged_stretches(
     parts: &[ProgramPart],
     reasons: &[Option<UnchangedReason>],
@@ -123,14 +123,14 @@ pub(super) fn unchanged_stretches(
     parts.iter().filter_map(of_part).collect()
 }
 
-/// First and last line of a stretch.
+/// Returns the first and the last line of a stretch.
 pub(super) fn lines_of(stretch: &SmoothStretch) -> [u32; 2] {
     [0, stretch.motions.len() - 1].map(|n| stretch.motions[n].line)
 }
 
 impl UnchangedStretch {
-    /// One line for each reason, with the lines that it holds for, at most the first `most` of
-    /// them.
+    /// Returns one line for each reason, with the program lines that it holds for: at most the
+    /// first `most` of them.
     #[cfg(feature = "command")]
     pub(crate) fn sentences(all: &[Self], most: usize) -> Vec<String> {
         let mut reasons: Vec<&str> = Vec::new();

@@ -1,4 +1,4 @@
-//! Whether a text says what it is meant to say: it is read again and compared, step by step.
+//! Verifies that a text has the intended content: reads it again and compares it, step by step.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -10,7 +10,7 @@ use feedwright_plan::vector::distance;
 
 use super::stretches::length_mm;
 
-/// Feedrates may differ by this part: their printed digits.
+/// Feedrates may differ by this fraction: the resolution of their printed digits.
 const FEED_PART: f64 = 1e-3;
 /// Dwells may differ by this, s.
 const DWELL_S: f64 = 1e-3;
@@ -19,25 +19,25 @@ const DWELL_S: f64 = 1e-3;
 const CENTER_STEPS: f64 = 100.0;
 const CENTER_PART: f64 = 1e-3;
 
-/// Tolerances of `G64` may differ by this, mm: their printed digits in inches.
+/// Tolerances of `G64` may differ by this, mm: the resolution of their printed digits in inches.
 const TOLERANCE_MM: f64 = 1e-6;
 
-/// The steps of a text, and the modes behind each. Steps with the same modes share them.
+/// Steps of a text, and the modes after each. Steps with the same modes share them.
 type ReadSteps = (Vec<Canon>, Vec<Arc<ModesInForce>>);
 
-/// Difference between a text and what it is meant to say.
+/// Difference between a text and its intended content.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum TextFault {
-    /// The control does not take a line of it.
+    /// The control rejects a line.
     Unreadable {
         /// The line.
         text: String,
         /// Its fault.
         fault: String,
     },
-    /// It says something else.
+    /// The control reads something else.
     Otherwise {
-        /// Line of the original; 0 behind the last motion.
+        /// Line of the original; 0 after the last motion.
         line: u32,
         /// The difference.
         what: &'static str,
@@ -58,10 +58,10 @@ impl fmt::Display for TextFault {
     }
 }
 
-/// Reads a text as a control of a dialect does.
+/// Reads a text as a control of this dialect does.
 ///
 /// # Errors
-/// The first mistake of it.
+/// The first mistake in the text.
 pub(super) fn read(
     text: &str,
     settings: &Settings,
@@ -84,20 +84,20 @@ pub(super) fn read(
     Ok((steps, modes))
 }
 
-/// Compares what two programs say.
+/// Compares the content of two programs.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TextComparison {
     /// Printed step, mm.
     pub(super) step_mm: f64,
-    /// Whether the control knows tolerances of corners and messages. Those that it does not know
-    /// are its own, and comments.
+    /// True where the control knows corner tolerances and messages. Other controls choose their own
+    /// tolerances and read messages as comments.
     pub(super) of_linuxcnc: bool,
 }
 
 impl TextComparison {
-    /// The first difference between the frames of the motions of two programs, one behind the
-    /// other, up to their printed steps: a coordinate system with other offsets on the control than
-    /// here is no place in the machine.
+    /// Returns the first difference between the frames of the motions of two programs, in order, up
+    /// to their printed steps. Positions in the machine are not enough: the control may have other
+    /// offsets for a coordinate system than assumed here.
     pub(super) fn frames<'a>(
         self,
         found: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>,
@@ -122,8 +122,8 @@ impl TextComparison {
         }
     }
 
-    /// The first difference between what two programs ask for, up to their printed steps; events
-    /// between two motions may have another order.
+    /// Returns the first difference between the steps of two programs, up to their printed steps;
+    /// events between two motions may have another order.
     pub(super) fn steps(self, found: &[Canon], wanted: &[Canon]) -> Result<(), TextFault> {
         let (found, wanted) = (self.legs(found), self.legs(wanted));
         for (k, leg) in wanted.iter().enumerate() {
@@ -239,7 +239,7 @@ impl TextComparison {
     }
 }
 
-/// The frames of a program's motions, each with the line of the first motion in it.
+/// Returns the frames of a program's motions, each with the line of the first motion in it.
 fn frames<'a>(
     steps: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>,
     step_mm: f64,
@@ -257,10 +257,11 @@ fn frames<'a>(
     frames
 }
 
-/// A motion, none behind the last, and the events before it in an order of their own.
+/// A motion, none after the last, and the events before it in a sorted order.
 type Leg<'a> = (Vec<&'a EventKind>, Option<&'a Motion>);
 
-/// Whether a line has less than half a printed step: printed, it has none or at least one.
+/// Returns true if a line is shorter than half a printed step: printed, it has no length or at
+/// least one step.
 fn is_nothing(motion: &Motion, step_mm: f64) -> bool {
     let is_short = distance(motion.start_mm, motion.end_mm) < 0.5 * step_mm;
     is_short && matches!(motion.shape, Shape::Line) && motion.others.is_none()
@@ -319,7 +320,7 @@ mod tests {
             .unwrap_or_else(|fault| panic!("{fault}\n{text}"))
     }
 
-    /// Whether the program says the same with something in place of a part of it.
+    /// Returns true if the program reads the same with `other` in place of `part`.
     fn is_same(part: &str, other: &str) -> bool {
         assert!(PROGRAM.contains(part), "{part}");
         let [wanted, found] =

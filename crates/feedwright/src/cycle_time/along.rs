@@ -1,15 +1,15 @@
-//! What binds where: a record of bounded size of the motion along its path.
+//! Limits that bind along the path: a record of bounded size of the motion along its path.
 //!
-//! Samples are gathered in stretches of equal time. When 2000 of them are full, neighbours merge in
+//! Samples are gathered in stretches of equal time. When 2000 of them are full, neighbors merge in
 //! pairs and each takes twice the time.
 
 use serde::Serialize;
 
-/// Most stretches: a pixel each on a wide screen. Even, so that a full record merges without a
-/// remainder.
+/// Largest number of stretches: a pixel each on a wide screen. Even, so that a full record merges
+/// without a remainder.
 const MOST: usize = 2000;
 
-/// Time of a stretch at first, s.
+/// Initial time of a stretch, s.
 const FIRST_S: f64 = 1e-3;
 
 /// Number of limits: feedrate, tolerance, velocity, acceleration and jerk of three axes, and
@@ -19,11 +19,11 @@ pub(crate) const LIMITS: usize = 14;
 /// A stretch of the motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct BindingStretch {
-    /// How long it takes, s; rests are left out.
+    /// Duration of the stretch, s; rests are left out.
     pub duration_s: f64,
     /// Arc length of the programmed path at its end, mm.
     pub to_mm: f64,
-    /// Way of the tool, mm.
+    /// Way of the tool in the stretch, mm.
     pub way_mm: f64,
     /// Lines of the program at its start and its end.
     pub lines: [u32; 2],
@@ -32,7 +32,7 @@ pub struct BindingStretch {
 }
 
 impl BindingStretch {
-    /// With the one behind it.
+    /// Merges this stretch with the next one.
     #[must_use]
     pub fn merged(&self, next: &Self) -> Self {
         Self {
@@ -44,7 +44,7 @@ impl BindingStretch {
         }
     }
 
-    /// The limit that binds for the longest time, if one does.
+    /// Returns the limit that binds for the longest time, if any binds.
     pub fn longest(&self) -> Option<usize> {
         let longest = (0..LIMITS).max_by(|&a, &b| self.bound_s[a].total_cmp(&self.bound_s[b]));
         longest.filter(|&limit| self.bound_s[limit] > 0.0)
@@ -68,12 +68,12 @@ impl Default for BindingAlong {
 }
 
 impl BindingAlong {
-    /// In the order of time.
+    /// Returns the stretches in the order of time.
     pub fn stretches(&self) -> &[BindingStretch] {
         &self.stretches
     }
 
-    /// The stretches, merged into at most `parts` of about equal time.
+    /// Returns the stretches, merged into at most `parts` of about equal time.
     pub fn in_parts(&self, parts: usize) -> Vec<BindingStretch> {
         let each = self.stretches.len().div_ceil(parts.max(1)).max(1);
         let merged = |chunk: &[BindingStretch]| {
@@ -85,7 +85,7 @@ impl BindingAlong {
         self.stretches.chunks(each).map(merged).collect()
     }
 
-    /// Adds a sample behind those before.
+    /// Adds a sample after the earlier ones.
     pub(crate) fn push(&mut self, sample: &BindingStretch) {
         match self.stretches.last_mut() {
             Some(last) if last.duration_s + 0.5 * sample.duration_s < self.stretch_s => {

@@ -1,5 +1,5 @@
-//! What a cut was like at even places of the path: how fast the plan was there, and how far the
-//! tool was away when it came by.
+//! Records a cut at evenly spaced places of the path: the planned speed, and the distance of the
+//! tool when it passed.
 
 use std::collections::VecDeque;
 use std::io;
@@ -7,29 +7,29 @@ use std::io;
 use feedwright_plan::vector::{distance, sub};
 use feedwright_sim::{Row, Sink};
 
-/// Rows that are kept to find the place of the tool's foot.
+/// Number of rows that are kept to find the place of the tool's foot.
 const KEPT: usize = 1000;
 
 /// A place of the path in a cut.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct CutPlace {
-    /// From the foot to the tool where it was furthest away, mm.
+    /// Vector from the foot to the tool at the largest distance, mm.
     pub(super) away_mm: [f64; 3],
-    /// Largest contour error, mm; 0 where nothing is cut.
+    /// Largest contour error, mm; 0 if nothing is cut here.
     pub(super) error_mm: f64,
     pub(super) line: u32,
     /// Planned speed, mm/s.
     pub(super) speed_mm_s: f64,
 }
 
-/// Sorts what rows say by places.
+/// Sorts the data of rows by places.
 #[derive(Debug)]
 pub(super) struct CutPlaces {
     pub(super) spacing_mm: f64,
     pub(super) places: Vec<CutPlace>,
-    /// Places of the command that the tool may still be at.
+    /// Places of the command where the tool may still be.
     behind: VecDeque<(f64, [f64; 3])>,
-    /// Place and speed of the last row, and of the tool in it.
+    /// Place, mm, and planned speed, mm/s, of the last row.
     last: Option<(f64, f64)>,
     last_foot_mm: f64,
     pub(super) time_s: f64,
@@ -62,7 +62,8 @@ impl CutPlaces {
         ((s_mm / self.spacing_mm).round().max(0.0) as usize).min(self.places.len() - 1)
     }
 
-    /// The plan goes on to a place with a speed: those between have speeds between.
+    /// Records that the plan has reached a place with a speed. Speeds between the places are
+    /// interpolated.
     fn planned(&mut self, s_mm: f64, speed_mm_s: f64) {
         let (from_mm, from_mm_s) = self.last.unwrap_or((s_mm, speed_mm_s));
         let first = (from_mm / self.spacing_mm).ceil().max(0.0) as usize;
@@ -81,7 +82,8 @@ impl CutPlaces {
         self.last = Some((s_mm, speed_mm_s));
     }
 
-    /// Where the tool is by its foot: at the nearest place that the command has passed.
+    /// Returns the place of the tool, mm: the place passed by the command that is nearest to the
+    /// tool's foot.
     fn foot_mm(&mut self, row: &Row) -> f64 {
         self.behind.push_back((row.s_mm, row.path_mm));
         if self.behind.len() > KEPT {
@@ -105,7 +107,7 @@ impl Sink for CutPlaces {
         self.last_foot_mm = foot_mm;
         if row.cutting {
             let error_mm = row.contour_error_mm.abs();
-            // The tool has passed the places between, too.
+            // The tool has also passed the places between.
             let first = if to > from { from + 1 } else { to };
             for place in &mut self.places[first..=to] {
                 if error_mm > place.error_mm {

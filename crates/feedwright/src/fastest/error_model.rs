@@ -1,12 +1,12 @@
-//! How the contour error answers to the speed of the plan.
+//! The response of the contour error to the speed of the plan.
 //!
 //! A servo loop that follows is `x = r(t - T) + C a(t - T) + ..`, with the acceleration a of the
-//! plan: what lies in the lag T is along the path and no contour error, so the error across it is
+//! plan. The lag T acts along the path and makes no contour error, so the error across the path is
 //! `u' C a` with the direction u from the path to the tool. C has one number for each axis, `1 /
-//! 2k^2 - 1 / ak` for a position loop of bandwidth k around a speed loop of bandwidth a; they are
-//! fitted to a cut. Since `a = t (v^2)' / 2 + t' v^2`, the error is linear in the squares of the
-//! speeds at three places. What the model does not know, friction or a controller of its own, is
-//! held to grow with the square of the speed.
+//! 2k^2 - 1 / ak` for a position loop of bandwidth k around a speed loop of bandwidth a; these
+//! numbers are fitted to a cut. Since `a = t (v^2)' / 2 + t' v^2`, the error is linear in the
+//! squares of the speeds at three places. Effects that the model does not include, friction or a
+//! controller, are assumed to grow with the square of the speed.
 
 use feedwright_plan::vector::{dot, scale};
 use nalgebra::{Matrix3, Vector3};
@@ -14,17 +14,17 @@ use nalgebra::{Matrix3, Vector3};
 use super::cut_places::CutPlace;
 use super::path_grid::PathGrid;
 
-/// Axes differ from each other by no more than is seen: a part of the whole information is added
-/// that they do not.
+/// Weight of the assumption that all axes are alike: this fraction of the total information. Axes
+/// then differ only as far as the data show it.
 const ALIKE: f64 = 1e-3;
 
-/// Least square of a speed that anything is divided by, (mm/s)^2.
+/// Smallest square of a speed that is used as a divisor, (mm/s)^2.
 const LEAST_SQUARE: f64 = 1e-2;
 
 /// An error below this has no direction, mm.
 const LEAST_MM: f64 = 1e-9;
 
-/// The error at each place and what it would be at other speeds.
+/// Error at each place, and its change with the speeds.
 #[derive(Debug)]
 pub(super) struct ErrorModel {
     /// Contour errors, mm.
@@ -35,7 +35,8 @@ pub(super) struct ErrorModel {
 }
 
 impl ErrorModel {
-    /// Fitted to a cut, with errors that answer as steeply ([`super::steepness`]).
+    /// Fits the model to a cut, with errors that respond as steeply as `steepness`
+    /// ([`super::steepness`]).
     pub(super) fn of(grid: &PathGrid, places: &[CutPlace], steepness: f64) -> Self {
         let squares: Vec<f64> = places
             .iter()
@@ -57,16 +58,16 @@ impl ErrorModel {
     }
 }
 
-/// `u_k a_k` of each axis k, as factors on the squares of three speeds, with the direction u of the
-/// error.
+/// Returns `u_k a_k` of each axis k, as factors on the squares of three speeds, with the direction
+/// u of the error.
 fn parts_of(grid: &PathGrid, i: usize, place: &CutPlace) -> [[f64; 3]; 3] {
     let direction = scale(1.0 / place.error_mm.max(LEAST_MM), place.away_mm);
     grid.acceleration(i)
         .map(|accel| std::array::from_fn(|k| direction[k] * accel[k]))
 }
 
-/// The sum of factors times values at the place before, there, and behind; places beyond the ends
-/// count as the ends.
+/// Returns the sum of factors times values at the place before, at the place itself, and after it.
+/// Places beyond the ends count as the ends.
 pub(super) fn at(factors: &[f64; 3], i: usize, values: &[f64]) -> f64 {
     let last = values.len() - 1;
     factors[0] * values[i.saturating_sub(1)]
@@ -74,7 +75,7 @@ pub(super) fn at(factors: &[f64; 3], i: usize, values: &[f64]) -> f64 {
         + factors[2] * values[(i + 1).min(last)]
 }
 
-/// C of each axis, by least squares.
+/// Fits C of each axis, by least squares.
 fn lag_of_axes(grid: &PathGrid, places: &[CutPlace], squares: &[f64]) -> [f64; 3] {
     let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for (i, place) in places
@@ -88,7 +89,7 @@ fn lag_of_axes(grid: &PathGrid, places: &[CutPlace], squares: &[f64]) -> [f64; 3
         matrix += row * row.transpose();
         right += place.error_mm * row;
     }
-    // Deviations from what all have in common cost: c = m (1, 1, 1) + d, with a weight on d.
+    // Deviations from the common value have a cost: c = m (1, 1, 1) + d, with a weight on d.
     let information = ALIKE * matrix.trace();
     let ones = Vector3::repeat(1.0);
     let apart = Matrix3::identity() - ones * ones.transpose() / 3.0;

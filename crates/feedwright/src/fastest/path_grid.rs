@@ -1,12 +1,12 @@
-//! The programmed path at places that are evenly apart: its tangent, and how that turns.
+//! The programmed path at evenly spaced places: its tangent, and the turn of the tangent.
 
 use feedwright_plan::vector::{add_scaled, scale, sub};
 use feedwright_plan::{Step, Steps};
 
-/// Most places: where a path has more, they are twice as far apart.
+/// Largest number of places: a path that has more gets twice the spacing.
 const MOST: usize = 1 << 20;
 
-/// Tangents at even places.
+/// Tangents at evenly spaced places.
 #[derive(Debug, Default)]
 pub(super) struct PathGrid {
     pub(super) spacing_mm: f64,
@@ -14,7 +14,7 @@ pub(super) struct PathGrid {
 }
 
 impl PathGrid {
-    /// Of a path, as far as it can be read: why it ends early its cut says.
+    /// Samples a path, as far as it can be read. If it ends early, the cut reports the reason.
     pub(super) fn of(steps: Steps<'_>, mut spacing_mm: f64) -> Self {
         let mut tangents: Vec<[f64; 3]> = Vec::new();
         let mut last = [0.0; 3];
@@ -38,13 +38,13 @@ impl PathGrid {
         }
     }
 
-    /// Number of places: the last is at the end of the path or behind it.
+    /// Returns the number of places: the last is at the end of the path or after it.
     pub(super) const fn len(&self) -> usize {
         self.tangents.len()
     }
 
-    /// What the acceleration at a place is made of: `a = t (v^2)' / 2 + t' v^2`, as factors on the
-    /// squares of the speeds at the place before, there, and behind.
+    /// Returns the acceleration at a place, `a = t (v^2)' / 2 + t' v^2`, as factors on the squares
+    /// of the speeds at the place before, at the place itself, and after it.
     pub(super) fn acceleration(&self, i: usize) -> [[f64; 3]; 3] {
         let (lo, hi) = (i.saturating_sub(1), (i + 1).min(self.len() - 1));
         let way_mm = (hi - lo).max(1) as f64 * self.spacing_mm;

@@ -1,5 +1,5 @@
-//! The part of the tolerance of the tool that the planned path may use: what the machine leaves of
-//! it.
+//! The part of the tool's tolerance that the planned path may use: the remainder that the machine
+//! does not need.
 
 use feedwright_control::Controller;
 use feedwright_gcode::ReadError;
@@ -9,15 +9,15 @@ use feedwright_sim::{Machine, Watch};
 use super::path_grid::PathGrid;
 use super::{FIRST_SHARE, FastestError, SPACING_MM, Search};
 
-/// Most cuts of a search.
+/// Largest number of cuts in a search.
 const CUTS: u32 = 6;
 
-/// Largest and smallest tolerance of the path, um: beyond a tenth of a millimetre a path gains
+/// Largest and smallest tolerance of the path, um: beyond a tenth of a millimeter a path gains
 /// hardly any time and loses its shape.
 const MOST_UM: f64 = 100.0;
 const LEAST_UM: f64 = 0.01;
 
-/// Part of the tolerance by which the next path keeps away from it.
+/// Margin of the next path to the tolerance, as a fraction of the tolerance.
 const SPARE: f64 = 0.01;
 
 /// A plan at the programmed feedrates whose cut stays within a tolerance of the tool.

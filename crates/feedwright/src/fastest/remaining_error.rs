@@ -8,11 +8,11 @@
 
 use super::cut_places::{CutPlace, CutPlaces};
 
-/// Two cuts are compared where the speed has come down to this part, r at the most.
+/// Largest speed ratio r of two cuts that are compared.
 const SLOWER: f64 = 0.5;
 
-/// Where the tool is far away the speed so long before and behind may be to blame, s: as long as a
-/// servo loop remembers.
+/// Time before and after a place within which the speed may cause an error at that place, s: as
+/// long as a servo loop remembers.
 const AROUND_S: f64 = 0.03;
 
 /// No speed helps if more than [`LEFT`] tolerances remain at rest in [`IN_A_ROW`] comparisons of
@@ -21,23 +21,23 @@ const AROUND_S: f64 = 0.03;
 const LEFT: f64 = 1.25;
 const IN_A_ROW: u32 = 3;
 
-/// What later cuts are compared with, place by place.
+/// Reference for later cuts, place by place.
 #[derive(Debug, Default)]
 pub(super) struct RemainingError {
     places: Vec<ComparedPlace>,
 }
 
-/// A place as it was when it was last compared.
+/// A place at its last comparison.
 #[derive(Debug, Clone, Copy)]
 struct ComparedPlace {
     speed_mm_s: f64,
     error_mm: f64,
-    /// Comparisons in a row that left too much.
+    /// Number of successive comparisons with too much remaining error.
     in_a_row: u32,
 }
 
 impl RemainingError {
-    /// Takes in a cut; whether speed no longer matters somewhere.
+    /// Adds a cut. Returns true if speed no longer matters at some place.
     pub(super) fn take_in(&mut self, cut: &CutPlaces, tolerance_mm: f64) -> bool {
         let place_of = |place: &CutPlace, in_a_row: u32| ComparedPlace {
             speed_mm_s: place.speed_mm_s,
@@ -68,7 +68,7 @@ impl RemainingError {
         self.places.iter().any(|place| place.in_a_row >= IN_A_ROW)
     }
 
-    /// n at a place that is out of tolerance and slower, mm.
+    /// Returns n at a place that is out of tolerance and slower, mm.
     fn left_mm(&self, cut: &CutPlaces, i: usize, tolerance_mm: f64) -> Option<f64> {
         let (now, before) = (&cut.places[i], &self.places[i]);
         if now.error_mm <= tolerance_mm || now.speed_mm_s > SLOWER * before.speed_mm_s {
@@ -94,8 +94,8 @@ mod tests {
 
     const TOLERANCE_MM: f64 = 0.01;
 
-    /// Whether speed no longer matters after four cuts, each slower than the one before by the
-    /// factor `slower`.
+    /// Returns true if speed no longer matters after four cuts, each slower than the one before by
+    /// the factor `slower`.
     fn given_up(slower: f64, error_mm: impl Fn(f64) -> f64) -> bool {
         let mut remaining = RemainingError::default();
         (0..4)

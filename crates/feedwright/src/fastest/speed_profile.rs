@@ -1,53 +1,55 @@
-//! Speeds of least time at even places of a path, so that errors that are linear in the squares of
-//! the speeds stay within what is allowed.
+//! Speeds of least time at evenly spaced places of a path. Errors that are linear in the squares of
+//! the speeds stay within the allowed errors.
 //!
 //! ```text
 //! min sum_i 2 d / (v_i + v_(i+1))  +  P sum_i h_i max(0, |e_i| / aim_i - 1)^2  +  W sum_i h_i (q_i / q0_i - 1)^2
 //! e_i = e0_i + sum_j s_ij (q_j - q0_j)        q = v^2
 //! ```
 //!
-//! with the spacing d and the time h_i of a place before. Convex in q; Newton's method with a
-//! matrix of two off-diagonals. The last term keeps near to what the errors were measured at.
+//! where d is the spacing and h_i the time of a place in the last cut. The problem is convex in q;
+//! the solver is Newton's method with a matrix of two off-diagonals. The last term keeps the speeds
+//! near those at which the errors were measured.
 
 use super::error_model::{ErrorModel, at};
 
-/// P: at the end the time that an error saves is worth `1 / 2` of its part, so that what is allowed
-/// is exceeded by `1 / 4P` of it.
+/// P. At the optimum, a relative change of an error is worth `1 / 2` of it in time, so the allowed
+/// error is exceeded by the fraction `1 / 4P`.
 const EXCESS_WEIGHT: f64 = 100.0;
 
-/// W at the least of a place where something else than a bound of ours holds the speed down: it is
-/// not raised in vain.
+/// Least W at a place whose speed is held down by something other than these bounds: a higher bound
+/// would have no effect there.
 const HELD: f64 = 2.0;
 
-/// Newton steps, the least gain of one, s, and how often a step is halved.
+/// Largest number of Newton steps, the least gain of one, s, and the largest number of times that a
+/// step is halved.
 const STEPS: u32 = 60;
 const LEAST_GAIN_S: f64 = 1e-9;
 const HALVED: u32 = 20;
 
-/// A step takes no square of a speed below this part of itself.
+/// A step reduces a squared speed to no less than this fraction of itself.
 const LEAST_PART: f64 = 0.3;
 
 /// Off-diagonals of the matrix.
 const BAND: usize = 2;
 
-/// The problem.
+/// The optimization problem.
 #[derive(Debug)]
 pub(super) struct SpeedProfile<'a> {
     pub(super) spacing_mm: f64,
-    /// Squares of the speeds of the cut, (mm/s)^2, and those below which nothing goes.
+    /// Squares of the speeds of the cut, (mm/s)^2, and their lower limit.
     pub(super) squares: &'a [f64],
     pub(super) least_square: f64,
     pub(super) model: &'a ErrorModel,
-    /// What is allowed, mm.
+    /// Allowed errors, mm.
     pub(super) aims_mm: &'a [f64],
-    /// Where the speed is not bounded by what is looked for here.
+    /// True where something other than these bounds limits the speed.
     pub(super) held: &'a [bool],
     /// W.
     pub(super) near: f64,
 }
 
 impl SpeedProfile<'_> {
-    /// Squares of the speeds of least time.
+    /// Returns the squares of the speeds of least time.
     pub(super) fn solve(&self) -> Vec<f64> {
         let mut q: Vec<f64> = self
             .squares
@@ -88,7 +90,7 @@ impl SpeedProfile<'_> {
         self.squares[i].max(self.least_square)
     }
 
-    /// Time that a place stands for, s.
+    /// Returns the time that a place represents, s.
     fn time_s(&self, i: usize) -> f64 {
         self.spacing_mm / self.base(i).sqrt()
     }
@@ -101,7 +103,8 @@ impl SpeedProfile<'_> {
         }
     }
 
-    /// By which part an error is beyond what is allowed, with its sign.
+    /// Returns the fraction by which an error exceeds the allowed error, with the sign of the
+    /// error.
     fn beyond(&self, i: usize, q: &[f64]) -> f64 {
         let change = &self.model.changes[i];
         let error_mm = self.model.errors_mm[i] + at(change, i, q) - at(change, i, self.squares);
@@ -126,7 +129,7 @@ impl SpeedProfile<'_> {
         time_s + penalties
     }
 
-    /// Matrix and right side of a Newton step.
+    /// Returns the matrix and the right side of a Newton step.
     fn newton(&self, q: &[f64]) -> (BandMatrix, Vec<f64>) {
         let n = q.len();
         let (mut matrix, mut right) = (
@@ -144,7 +147,7 @@ impl SpeedProfile<'_> {
             right[i] -= weight * (q[i] / base - 1.0) / base;
             matrix.rows[i][0] += weight / (base * base);
         }
-        // Where it rests, it rests.
+        // Places at rest stay at rest.
         for i in (0..n).filter(|&i| self.squares[i] <= self.least_square) {
             matrix.isolate(i);
             right[i] = 0.0;
@@ -152,7 +155,7 @@ impl SpeedProfile<'_> {
         (matrix, right)
     }
 
-    /// `2 d / (v + w)` with its derivatives by `v^2` and `w^2`.
+    /// Adds `2 d / (v + w)` with its derivatives by `v^2` and `w^2`.
     fn add_time(&self, i: usize, q: &[f64], matrix: &mut BandMatrix, right: &mut [f64]) {
         let [v, w] = [q[i].sqrt(), q[i + 1].sqrt()];
         let sum = v + w;
@@ -186,14 +189,14 @@ impl SpeedProfile<'_> {
     }
 }
 
-/// A symmetric matrix: of each row its diagonal and what is right of it.
+/// A symmetric matrix: the diagonal of each row and the elements to its right.
 #[derive(Debug)]
 struct BandMatrix {
     rows: Vec<[f64; BAND + 1]>,
 }
 
 impl BandMatrix {
-    /// Sets row `i` and its column to those of the identity matrix.
+    /// Sets row `i` and its column to the row and the column of the identity matrix.
     fn isolate(&mut self, i: usize) {
         self.rows[i] = [1.0, 0.0, 0.0];
         for before in 1..=BAND.min(i) {

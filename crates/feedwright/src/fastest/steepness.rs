@@ -1,25 +1,25 @@
-//! How steeply errors respond to the speed, from one cut to the next.
+//! The steepness of errors over the speed, from one cut to the next.
 //!
 //! A servo loop alone makes errors that grow with the square q of the speed. A controller that
-//! corrects less the more is asked of it makes errors that grow with a higher power p of q. With p
+//! corrects less under a higher load makes errors that grow with a higher power p of q. With p
 //! taken as 1, speeds fall much too far and oscillate from cut to cut. For errors near the
 //! tolerance, p is the slope of the logarithm of the error over the logarithm of q. A least-squares
 //! fit over all places of two cuts gives this slope.
 
 use super::cut_places::CutPlace;
 
-/// Places count whose larger error is this part of the tolerance or more, and whose q has changed
-/// by this part.
+/// A place counts if the larger of its two errors exceeds this fraction of the tolerance, and the
+/// logarithm of its q changes by more than [`CHANGED`].
 const ERROR_PART: f64 = 0.7;
 const CHANGED: f64 = 0.02;
 
-/// The error of a place that has none, as a part of the tolerance.
+/// Error of a place that has none, as a fraction of the tolerance.
 const LEAST_PART: f64 = 0.01;
 
-/// Most of p: beyond it errors do not follow from the speed there.
+/// Largest p: beyond it, errors do not follow from the speed at their place.
 const MOST: f64 = 6.0;
 
-/// p by two cuts; none where too little has changed.
+/// Computes p from two cuts; none if too little has changed.
 pub(super) fn steepness(before: &[CutPlace], now: &[CutPlace], tolerance_mm: f64) -> Option<f64> {
     let logarithms = before.iter().zip(now).filter_map(|(before, now)| {
         let counts = before.error_mm.max(now.error_mm) > ERROR_PART * tolerance_mm;

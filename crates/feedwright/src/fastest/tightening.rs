@@ -1,4 +1,4 @@
-//! Bounds on the speed for the next cut, from what the last one was like.
+//! Bounds on the speed for the next cut, from the results of the last one.
 
 use feedwright_plan::SpeedCaps;
 
@@ -8,55 +8,55 @@ use super::path_grid::PathGrid;
 use super::speed_profile::SpeedProfile;
 use super::steepness::steepness;
 
-/// Part of the tolerance that is aimed at.
+/// Aim of the error, as a fraction of the tolerance.
 const AIM: f64 = 0.995;
 
-/// An error beyond the tolerance lowers what is aimed at where the plan is so long before and
-/// behind, s: as long as a servo loop remembers.
+/// Time before and after a place with an error beyond the tolerance in which the aim is lowered, s:
+/// as long as a servo loop remembers.
 const AROUND_S: f64 = 0.03;
 
-/// What is aimed at goes down by a little more than what is exceeded, and no further than to this
-/// part.
+/// Extra factor on the aim, which is lowered by the ratio of tolerance to error. The aim stays
+/// above [`LEAST_AIM`], a fraction of the tolerance.
 const LOWERED: f64 = 0.997;
 const LEAST_AIM: f64 = 0.2;
 
-/// Lowest bound: where the tool is too far away at this speed, speed is not what takes it there,
-/// mm/s.
+/// Lowest bound, mm/s: where the tool is too far away at this speed, speed is not the cause.
 pub(super) const LOWEST_MM_S: f64 = 0.2;
 
-/// A bound holds the speed where so much of it is used.
+/// A bound holds the speed if the speed reaches this fraction of it.
 const HOLDS: f64 = 0.95;
 
-/// What keeps speeds near to those of the last cut ([`SpeedProfile::near`]): little in the first
-/// cuts, then twice as much each time, up to where speeds change by some percent. Errors that
-/// answer to the speed more steeply than the model has it would swing without it.
+/// Weight that keeps speeds near the speeds of the last cut ([`SpeedProfile::near`]): small in the
+/// first cuts, then doubled each time, up to a value at which speeds change by a few percent.
+/// Without it, errors that respond to the speed more steeply than in the model would oscillate.
 const NEAR: f64 = 0.02;
 const FREE_CUTS: i32 = 4;
 const MOST_NEAR: f64 = 5.0;
 
-/// Speeds that are lowered by no more than this part are not.
+/// A speed that would fall by no more than this fraction stays.
 const LOWER: f64 = 2e-3;
 
 /// Bounds for the next cut.
 #[derive(Debug)]
 pub(super) struct NextCaps {
     pub(super) caps: SpeedCaps,
-    /// Part of the time of the last cut in which its speed was bounded by something else.
+    /// Part of the time of the last cut in which something other than these bounds limited its
+    /// speed.
     pub(super) held_part: f64,
 }
 
-/// What is aimed at, place by place.
+/// Aims of the error, place by place.
 #[derive(Debug)]
 pub(super) struct Tightening {
     tolerance_mm: f64,
     aims_mm: Vec<f64>,
-    /// What the last cut was like.
+    /// Places of the last cut.
     last: Vec<CutPlace>,
     steepness: f64,
 }
 
 impl Tightening {
-    /// The same everywhere.
+    /// Creates the same aim everywhere.
     pub(super) fn new(tolerance_mm: f64, count: usize) -> Self {
         Self {
             tolerance_mm,
@@ -66,8 +66,8 @@ impl Tightening {
         }
     }
 
-    /// Where errors are beyond the tolerance although the speed was chosen for what is aimed at,
-    /// less is aimed at.
+    /// Lowers the aim where errors are beyond the tolerance although the speed was chosen for the
+    /// current aim.
     pub(super) fn aim_lower(&mut self, cut: &CutPlaces, spacing_mm: f64) {
         let n = self.aims_mm.len();
         let mut factors = vec![1.0_f64; n];
@@ -88,8 +88,8 @@ impl Tightening {
         }
     }
 
-    /// The speed bounds for the next cut. `cut` was made within the bounds `caps`; `cuts` is the
-    /// number of cuts so far.
+    /// Returns the speed bounds for the next cut. `cut` was made within the bounds `caps`; `cuts`
+    /// is the number of cuts so far.
     pub(super) fn caps(
         &mut self,
         grid: &PathGrid,

@@ -35,12 +35,14 @@ pub fn folder() -> Option<PathBuf> {
     }
 }
 
-/// What tells this program from others that may identify otherwise, where there is a cache.
+/// Returns text that distinguishes this program from others that may identify differently; `None`
+/// without a cache.
 pub(super) fn program() -> Option<&'static str> {
     folder().and_then(|_| PROGRAM.as_deref())
 }
 
-/// The text of a file of the cache. Its time is that of its last use, by which the oldest is found.
+/// Returns the text of a file of the cache. Sets its time to the time of this use, so that the file
+/// unused for longest can be found.
 pub(super) fn read(name: &str) -> Option<String> {
     let path = folder()?.join(name);
     let text = std::fs::read_to_string(&path).ok()?;
@@ -101,7 +103,7 @@ fn remove(path: &Path) -> std::io::Result<()> {
 pub(crate) struct CacheFile {
     pub(crate) path: PathBuf,
     pub(crate) bytes: u64,
-    /// When it was used last.
+    /// Time of the last use.
     pub(crate) used: SystemTime,
 }
 

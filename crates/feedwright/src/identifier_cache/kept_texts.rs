@@ -19,7 +19,8 @@ pub fn keep_in(texts: &'static dyn KeptTexts) {
     let _ = ELSEWHERE.set(texts);
 }
 
-/// What tells this program from others that may identify otherwise, where anything is kept.
+/// Returns text that distinguishes this program from others that may identify differently; `None`
+/// if nothing is kept.
 pub(super) fn program() -> Option<&'static str> {
     if ELSEWHERE.get().is_some() {
         Some("")

@@ -7,10 +7,10 @@ use super::Job;
 use crate::controllers::{CutsUncorrected, Knows};
 use crate::report::{Assumptions, LawKnowledge};
 
-/// Whether an axis has something.
+/// Tests an axis for one property.
 type Has = fn(&Axis) -> bool;
 
-/// What can disturb an axis, and whether it does.
+/// Sources of disturbance of an axis, each with its test.
 const DISTURBANCES: [(&str, Has); 8] = [
     ("encoder noise", |axis| axis.encoder_noise_um > 0.0),
     ("encoder steps", |axis| axis.encoder_step_um > 0.0),
@@ -24,8 +24,8 @@ const DISTURBANCES: [(&str, Has); 8] = [
     ("late references", |axis| axis.jitter_s > 0.0),
 ];
 
-/// What an axis may have besides loops, inertia, viscous and Coulomb friction, and whether it has
-/// it.
+/// Properties that an axis may have besides loops, inertia, viscous and Coulomb friction, each with
+/// its test.
 const IMPERFECTIONS: [(&str, Has); 4] = [
     ("friction that sticks", |axis| {
         axis.stribeck_nm > 0.0 || axis.presliding_um > 0.0
@@ -42,8 +42,8 @@ const IMPERFECTIONS: [(&str, Has); 4] = [
 ];
 
 impl Job {
-    /// What the figures of its runs rest on; `axes` of the machine were simulated, `unidentified`
-    /// are the controllers that nothing was identified for.
+    /// Returns the assumptions behind the figures of its runs. `axes` of the machine were
+    /// simulated. `unidentified` are the controllers for which nothing was identified.
     pub(super) fn assumptions(&self, axes: usize, unidentified: &[CutsUncorrected]) -> Assumptions {
         let (law, law_from) = self.law(unidentified);
         let simulated = &self.machine.axes[..axes.min(self.machine.axes.len())];
@@ -78,7 +78,7 @@ impl Job {
         }
     }
 
-    /// How the controller that is asked for knows the law of the axes, and from what.
+    /// Returns how the requested controller knows the model of the axes, and its source.
     fn law(&self, unidentified: &[CutsUncorrected]) -> (LawKnowledge, String) {
         match unidentified
             .iter()

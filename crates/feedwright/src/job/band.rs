@@ -13,7 +13,7 @@ use crate::report::{Band, BandErrors, RunSummary, Statistics};
 /// Machining time that a band covers at the most, s: of a longer cut only the beginning.
 const MOST_S: f64 = 30.0;
 
-/// What a cut on one machine came to: RMS and largest error at the tool and by the encoders, um;
+/// Result of a cut on one machine: RMS and largest error at the tool and by the encoders, um;
 /// `None` where it diverged.
 type CutOfOne = Option<([f64; 2], Option<[f64; 2]>)>;
 
@@ -125,7 +125,7 @@ impl Sink for Beginning {
     }
 }
 
-/// Lets a watch cancel a cut whose progress it is not told of.
+/// Lets a watch cancel a cut without receiving its progress.
 struct CancelsOnly<'a>(&'a dyn Watch);
 
 impl Watch for CancelsOnly<'_> {

@@ -18,22 +18,22 @@ use crate::controllers::{CutsUncorrected, Entry, Make, Setup, identifying};
 use crate::fastest::with_tolerance;
 use crate::report::{CompensatedGeometry, FullCircle, ReportedRun};
 
-/// What the cuts of all controllers came to.
+/// Results of the cuts of all controllers.
 #[derive(Default)]
 pub(super) struct Cuts {
     pub(super) runs: Vec<ReportedRun>,
-    /// For which controllers nothing was identified.
+    /// Controllers for which nothing was identified.
     pub(super) without_identification: Vec<CutsUncorrected>,
     pub(super) learned: Option<Model>,
     pub(super) geometry: Option<CompensatedGeometry>,
 }
 
-/// What a cut is made by, besides the controller.
+/// Inputs of a cut besides the controller.
 #[derive(Clone, Copy)]
 pub(super) struct PlannedCut<'a> {
     /// The machine of the job, perhaps with another tolerance of the path.
     pub(super) machine: &'a Machine,
-    /// What moves in place of its axes.
+    /// Plant that moves in place of the machine's axes.
     pub(super) plant: Option<SharedPlantMaker<'a>>,
     /// Feedrates of the motions in place of the program's, mm/s.
     pub(super) feeds_mm_s: Option<&'a [f64]>,
@@ -45,7 +45,7 @@ pub(super) struct PlannedCut<'a> {
     pub(super) kept: &'a PlanCache,
     pub(super) aligned: Option<&'a AlignedPaths>,
     pub(super) circles: &'a [FullCircle],
-    /// Who is told of the plan.
+    /// Receives the plan.
     pub(super) looked_at: Option<&'a dyn PlanSink>,
 }
 
@@ -66,7 +66,7 @@ pub(super) fn with_feeds(
     })
 }
 
-/// Tells the progress of a cut by its arc length.
+/// Reports the progress of a cut by its arc length.
 struct CutProgress<'a> {
     steps: StageSteps<'a>,
     length_mm: f64,

@@ -9,8 +9,8 @@ use crate::correct::{CorrectJob, CorrectOutcome, TargetControl};
 use crate::report::{AS_EXPORTED, FullCircle, ReportedRun, RunSummary};
 
 impl Job {
-    /// The corrected program, where one is asked for; its run, where a text could be written, goes
-    /// behind the others.
+    /// Returns the corrected program, if one is requested. Its run, if a text could be written, is
+    /// added behind the others.
     pub(super) fn push_exported(
         &self,
         runs: &mut Vec<ReportedRun>,

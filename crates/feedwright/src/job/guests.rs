@@ -7,20 +7,19 @@ use crate::controllers::Make;
 /// A [`feedwright_sim::PlantMaker`] for cuts on several threads.
 pub(super) type SharedPlantMaker<'a> = &'a (dyn Fn([f64; 3], u64) -> Box<dyn Mechanism> + Sync);
 
-/// What takes part in the cuts of a job in place of its own parts. None of it leaves the part of
-/// the job.
+/// Substitutes for components of a job in its cuts. The part stays the job's own.
 ///
 /// The search for a plan that holds a tolerance, and the band of other machines, take the job's own
 /// controller.
 #[derive(Clone, Copy, Default)]
 pub struct Guests<'a> {
-    /// Makes the controller that is asked for where two axes are controlled.
+    /// Makes the requested controller where two axes are controlled.
     pub plane: Option<&'a dyn Make<2>>,
     /// The same where three axes are.
     pub space: Option<&'a dyn Make<3>>,
-    /// Feedrates of the motions of the program in its order, mm/s, in the cut of the controller
-    /// that is asked for: a planner's. Those of rapids are not used. A motion that has none keeps
-    /// its own. The limits of the machine hold as always.
+    /// Feedrates of the motions of the program in its order, mm/s, in the cut of the requested
+    /// controller: a planner's. Feedrates of rapids are not used. A motion without one keeps its
+    /// own. The limits of the machine hold as always.
     pub feeds_mm_s: Option<&'a [f64]>,
     /// Makes the plant of every cut.
     pub plant: Option<SharedPlantMaker<'a>>,

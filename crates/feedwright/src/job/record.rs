@@ -21,7 +21,7 @@ pub(super) struct RunRecord<'a> {
 }
 
 impl<'a> RunRecord<'a> {
-    /// Nothing yet.
+    /// Creates an empty record.
     pub(super) fn new(axes: usize, servo_s: f64, circles: &'a [FullCircle]) -> Self {
         Self {
             axes,
@@ -32,7 +32,7 @@ impl<'a> RunRecord<'a> {
         }
     }
 
-    /// What takes the rows.
+    /// Returns the sinks of the rows.
     pub(super) fn sinks(&mut self) -> [&mut dyn Sink; 4] {
         [
             &mut self.statistics,
@@ -51,7 +51,7 @@ const MAX_EVENTS: usize = 500;
 #[derive(Debug)]
 pub(super) struct Timeline<'a> {
     pub(super) events: Vec<TimelineEvent>,
-    /// What the machine builder named.
+    /// Events that the machine builder named.
     named: &'a [PlcEvent],
 }
 

@@ -13,7 +13,7 @@ use crate::report::{
     DrawnLimits, FullCircle, LimitBand, Outcome, Report, ReportedRun, RunSummary, WorstPlace,
 };
 
-/// What the machine allows each axis.
+/// Returns the limits of each axis that the page draws.
 fn drawn_limits(machine: &Machine) -> Vec<DrawnLimits> {
     let planned = machine.has_axis_limits();
     let limits = |axis: &feedwright_sim::Axis| DrawnLimits {
@@ -24,7 +24,7 @@ fn drawn_limits(machine: &Machine) -> Vec<DrawnLimits> {
 }
 
 impl Job {
-    /// That the program could not be read once more.
+    /// Returns the error that the program could not be read again.
     pub(super) fn reread(&self, cause: std::io::Error) -> JobError {
         JobError::Reread {
             part: self.program.name(),
@@ -113,8 +113,8 @@ impl Job {
         })
     }
 
-    /// Whether the command of the controller that is asked for may be used: it was cut to its end,
-    /// is not worse than uncorrected, and a drive may get it.
+    /// Returns true if the command of the requested controller may be used: it was cut to its end,
+    /// is not worse than uncorrected, and a drive may receive it.
     pub(super) fn is_of_use(&self, report: &Report) -> bool {
         let mut runs = report.runs.iter().map(|run| &run.summary);
         let of_use =
@@ -123,7 +123,8 @@ impl Job {
             && report.harm().is_empty()
     }
 
-    /// Whether to find what binds along the path: on machines that are planned axis by axis.
+    /// Returns true if the binding limits along the path are to be found: on machines that are
+    /// planned axis by axis.
     fn shows_limits(&self) -> bool {
         self.with_limits && Stages::of(&self.machine).planner.needs_axes
     }

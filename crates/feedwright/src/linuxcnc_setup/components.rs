@@ -6,7 +6,7 @@
 
 use super::netlist::{Netlist, instance_of, last_part};
 
-/// What a pin does with its signal.
+/// Role of a pin on its signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PinSide {
     /// LinuxCNC or a component that computes writes it.
@@ -141,7 +141,7 @@ const HALUI_OUTPUTS: [&str; 9] = [
 /// Last parts of pins of LinuxCNC that are true while it commands nothing.
 const TRUE_AT_REST: [&str; 4] = ["brake", "brake-is-on", "is-activated", "is-off"];
 
-/// Whether LinuxCNC itself has a pin.
+/// Returns true if the pin belongs to LinuxCNC itself.
 pub(crate) fn is_planner(pin: &str) -> bool {
     [
         "joint.",
@@ -156,7 +156,7 @@ pub(crate) fn is_planner(pin: &str) -> bool {
     .any(|name| pin.starts_with(name))
 }
 
-/// What a pin does with its signal.
+/// Returns the role of a pin on its signal.
 pub(crate) fn side(netlist: &Netlist, pin: &str) -> PinSide {
     let last = last_part(pin);
     let writes = if is_planner(pin) {
@@ -195,7 +195,7 @@ fn computing<'a>(netlist: &'a Netlist, pin: &str) -> Option<&'a str> {
         .then_some(module)
 }
 
-/// Value of an output at rest; none where the pin is no output.
+/// Value of an output at rest; `None` if the pin is not an output.
 fn output_at_rest(module: &str, last: &str) -> Option<AtRest> {
     let is_named = |name: &&'static str| match name.strip_prefix('*') {
         Some(end) => last.ends_with(end),
@@ -252,7 +252,8 @@ pub(crate) fn hardware_behind(netlist: &Netlist, pin: &str) -> Option<String> {
 /// Components in a row that a value at rest is followed through, at most.
 const MOST_IN_A_ROW: usize = 12;
 
-/// Value of an output while LinuxCNC commands and enables nothing; none where setup cannot tell.
+/// Returns the value of an output while LinuxCNC commands and enables nothing; `None` if it is
+/// unknown.
 pub(crate) fn at_rest(netlist: &Netlist, output: &str, depth: usize) -> Option<f64> {
     if is_planner(output) {
         return Some(f64::from(u8::from(

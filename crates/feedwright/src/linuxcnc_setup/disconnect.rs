@@ -16,7 +16,7 @@ pub(crate) struct CutPin {
     pub(crate) pin: String,
     /// The pin that writes its signal.
     pub(crate) writer: String,
-    /// Value of the signal while the machine is off; none where setup cannot tell.
+    /// Value of the signal while the machine is off; `None` if it is unknown.
     pub(crate) at_rest: Option<f64>,
 }
 
@@ -41,7 +41,7 @@ pub(crate) fn cut_pins(netlist: &Netlist) -> Vec<CutPin> {
     cut
 }
 
-/// What was disconnected, a line for each part of the hardware.
+/// Describes the disconnected pins, one line for each part of the hardware.
 pub(crate) fn cut_words(cut: &[CutPin]) -> Vec<String> {
     let mut lines: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for CutPin {
@@ -64,7 +64,7 @@ pub(crate) fn cut_words(cut: &[CutPin]) -> Vec<String> {
         .collect()
 }
 
-/// Why the hardware cannot be disconnected.
+/// Returns the reasons why the hardware cannot be disconnected.
 pub(crate) fn refusals(ini: &IniFile, script: &HalScript, cut: &[CutPin]) -> Vec<String> {
     let unclear = cut.iter().filter(|cut| cut.at_rest.is_none()).map(|CutPin { pin, writer, .. }| {
         format!(

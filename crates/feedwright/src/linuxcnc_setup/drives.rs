@@ -8,7 +8,7 @@ use super::netlist::{Netlist, instance_of, last_part};
 /// Components between a joint and its hardware that are followed, at most.
 const MOST_BETWEEN: usize = 40;
 
-/// What takes the position command of a joint.
+/// Device that receives the position command of a joint.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum DriveKind {
     /// A `pid` whose output is a speed or torque for an analog or PWM amplifier.
@@ -27,7 +27,7 @@ pub(crate) enum DriveKind {
     Nothing,
 }
 
-/// Where the position of a joint comes from.
+/// Source of the position of a joint.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum FeedbackKind {
     /// An encoder or another sensor.
@@ -62,7 +62,7 @@ const CARDS: [&str; 9] = [
     "8i20",
     "opto",
 ];
-/// What takes the position command of a joint.
+/// Finds the device that receives the position command of a joint.
 pub(crate) fn drive_of(netlist: &Netlist, command_pin: &str) -> DriveKind {
     let sinks: Vec<&str> = netlist
         .beside(command_pin)
@@ -130,7 +130,7 @@ fn is_ethercat(pin: &str) -> bool {
     pin.starts_with("lcec") || pin.starts_with("cia402")
 }
 
-/// Where the position of a joint comes from.
+/// Finds the source of the position of a joint.
 pub(crate) fn feedback_of(
     netlist: &Netlist,
     command_pin: &str,
@@ -216,7 +216,7 @@ impl FeedbackTrace<'_> {
     }
 }
 
-/// What a pin says of a position, if its name tells.
+/// Classifies the source of a position by the name of a pin; `None` if the name does not show it.
 fn source(pin: &str) -> Option<FeedbackKind> {
     let (lower, last) = (pin.to_lowercase(), last_part(pin));
     let owned = pin.to_owned();

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use crate::output::OutputError;
 
-/// Why there is no wiring.
+/// Reasons why there is no wiring.
 #[derive(Debug, Error, Diagnostic)]
 pub enum LinuxcncSetupError {
     /// A file of the configuration cannot be read.
@@ -17,9 +17,9 @@ pub enum LinuxcncSetupError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// Where it is named, if another file names it.
+        /// Place that names the file, if another file does.
         named: Option<String>,
-        /// Why.
+        /// Cause.
         source: io::Error,
         /// Remedy.
         #[help]
@@ -30,7 +30,7 @@ pub enum LinuxcncSetupError {
     Line {
         /// File and line.
         place: String,
-        /// What is wrong.
+        /// Description of the mistake.
         message: String,
         /// Remedy.
         #[help]
@@ -50,7 +50,7 @@ pub enum LinuxcncSetupError {
         /// The file.
         path: PathBuf,
     },
-    /// Nothing to undo.
+    /// No earlier setup to undo was found.
     #[error("nothing to undo: there is no {}", path.display())]
     #[diagnostic(help("name the INI file that setup was given, not the copy"))]
     NothingToUndo {
@@ -62,7 +62,7 @@ pub enum LinuxcncSetupError {
     Removing {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Cause.
         source: io::Error,
     },
     /// The machine that stands in for drives is not known.

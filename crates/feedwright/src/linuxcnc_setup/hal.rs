@@ -1,9 +1,10 @@
 //! The HAL lines of a configuration, in the order in which LinuxCNC executes them.
 //!
-//! A line is words between blanks; quotation marks hold blanks together; `#` at the beginning of a
-//! word starts a comment; a backslash at the end joins the next line. `[SECTION]KEY`,
-//! `[SECTION](KEY)` and `$NAME` are replaced before the words are told apart. Each word keeps its
-//! place in its line, so that a copy can replace it and leave the rest as it is.
+//! A line consists of words between blanks. Quotation marks hold blanks together, `#` at the
+//! beginning of a word starts a comment, and a backslash at the end joins the next line.
+//! `[SECTION]KEY`, `[SECTION](KEY)` and `$NAME` are replaced before a line is split into words.
+//! Each word keeps its place in its line, so that a copy can replace it and leave the rest as it
+//! is.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -13,15 +14,15 @@ use super::ini::{IniEntry, IniFile, expanded, read_text, shown};
 
 /// Files that name one another with `source`, at most.
 const MOST_SOURCED: usize = 8;
-/// Before the name of a file in the shared folder.
+/// Prefix of the name of a file in the shared folder.
 const LIB: &str = "LIB:";
 
 /// A word of a line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct HalWord {
-    /// With values of the INI file in place.
+    /// Text with the values of the INI file in place.
     pub(crate) text: String,
-    /// Where it stands in [`HalLine::text`].
+    /// Range of the word in [`HalLine::text`].
     pub(crate) span: Range<usize>,
 }
 
@@ -51,7 +52,7 @@ pub(crate) struct HalFile {
 /// Place of a line: number of the file, number of the line in it, both from 0.
 pub(crate) type HalPlace = (usize, usize);
 
-/// Who names a file: the entry of the INI file, by its number, or a line with `source`.
+/// Origin of a file name: the entry of the INI file, by its number, or a line with `source`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NamedBy {
     Entry(usize),
@@ -62,13 +63,13 @@ pub(crate) enum NamedBy {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HalScript {
     pub(crate) files: Vec<HalFile>,
-    /// Which lines are executed, in their order.
+    /// Executed lines, in their order.
     pub(crate) order: Vec<HalPlace>,
-    /// Who names which file.
+    /// Files and the entries or lines that name them.
     pub(crate) named: Vec<(NamedBy, usize)>,
-    /// What was noticed.
+    /// Remarks on the files.
     pub(crate) notes: Vec<String>,
-    /// Why the configuration cannot be wired.
+    /// Reasons why the configuration cannot be wired.
     pub(crate) refusals: Vec<String>,
 }
 
@@ -181,7 +182,8 @@ impl HalReader<'_> {
         }
     }
 
-    /// Where LinuxCNC looks for a HAL file: beside the INI file, then in the shared folder.
+    /// Returns the path where LinuxCNC finds a HAL file: beside the INI file, then in the shared
+    /// folder.
     fn found(&self, name: &str) -> PathBuf {
         if let Some(name) = name.strip_prefix(LIB) {
             return self.hallib.join(name);
@@ -344,7 +346,7 @@ fn name_in(text: &str) -> Option<(&str, usize)> {
     (length > 0).then(|| (&text[..length], length))
 }
 
-/// Where the words of a line stand, and whether they are in quotation marks.
+/// Returns the range of each word of a line, and whether the word is in quotation marks.
 fn spans(text: &str) -> Vec<(Range<usize>, bool)> {
     let mut spans = Vec::new();
     let mut signs = text.char_indices().peekable();

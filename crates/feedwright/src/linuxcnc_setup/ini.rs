@@ -10,7 +10,7 @@ use super::error::LinuxcncSetupError;
 
 /// Includes inside includes, at most: more are a circle.
 const MOST_INCLUDES: usize = 8;
-/// With which an included file is named.
+/// Keyword in front of the name of an included file.
 const INCLUDE: &str = "#INCLUDE";
 
 /// An INI file, includes in place.

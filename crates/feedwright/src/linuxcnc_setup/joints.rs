@@ -26,7 +26,7 @@ pub(crate) struct PidGains {
     pub(crate) feedforward: [Option<f64>; 4],
 }
 
-/// What the component does with a joint.
+/// Role of a joint in the component.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum JointRole {
     /// Corrects it, as this axis.
@@ -35,7 +35,7 @@ pub(crate) enum JointRole {
     Second(usize),
     /// Delays it: a rotary or parallel axis.
     Passes,
-    /// Nothing: no axis of a program moves it.
+    /// Leaves it as it is: no axis of a program moves it.
     Stays,
 }
 
@@ -52,7 +52,7 @@ pub(crate) struct SetupJoint {
     pub(crate) stepgen_limits: [Option<f64>; 2],
 }
 
-/// What the INI file says of a joint, in mm where a length is in it.
+/// Value from the INI file, in mm where it contains a length.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct JointValue {
     pub(crate) value: f64,
@@ -149,7 +149,7 @@ impl SetupJoints {
         )
     }
 
-    /// What the component does with a joint.
+    /// Returns the role of the joint in the component.
     pub(crate) fn role(&self, joint: &SetupJoint) -> JointRole {
         let axis = self.wired().position(|wired| wired.letter == joint.letter);
         match axis.filter(|_| !joint.is_rotary) {
@@ -172,8 +172,9 @@ impl SetupJoints {
         self.number(joint.section(), key)
     }
 
-    /// A limit of a joint in a program, and its section: LinuxCNC plans programs by the section of
-    /// the axis, and jogs of a joint by that of the joint. The larger one counts.
+    /// Returns a limit of a joint in a program, and its section. LinuxCNC plans programs by the
+    /// section of the axis, and jogs of a joint by the section of the joint. The larger limit
+    /// counts.
     pub(crate) fn planned(&self, joint: &SetupJoint, key: &str) -> Option<(String, f64)> {
         let values = self
             .sections(joint)
@@ -232,7 +233,7 @@ impl SetupJoints {
         if self.unit_mm == 1.0 { "mm" } else { "inch" }
     }
 
-    /// What was found, a line for each joint.
+    /// Describes the configuration and each joint, one line for each.
     pub(crate) fn findings(&self) -> Vec<String> {
         let mut lines = vec![format!(
             "{} joints, kinematics {}, lengths in {}, a servo period of {} ms",
@@ -254,8 +255,8 @@ impl SetupJoints {
         lines
     }
 
-    /// What LinuxCNC compensates itself of the joints that are wired: the geometry of a model must
-    /// not have it, too.
+    /// Describes what LinuxCNC itself compensates for the wired joints: the geometry of a model
+    /// must not contain it, too.
     pub(crate) fn compensated(&self) -> Vec<String> {
         let of = |joint: &SetupJoint| {
             let section = joint.section();
@@ -285,7 +286,7 @@ impl SetupJoints {
         self.wired().flat_map(of).collect()
     }
 
-    /// Why the joints cannot be wired.
+    /// Returns the reasons why the joints cannot be wired.
     pub(crate) fn refusals(&self, simulates: bool) -> Vec<String> {
         let mut refusals = self.structure();
         if !refusals.is_empty() {
@@ -308,7 +309,7 @@ impl SetupJoints {
         refusals
     }
 
-    /// Why these joints do not fit the component.
+    /// Returns the reasons why these joints do not fit the component.
     fn structure(&self) -> Vec<String> {
         let mut refusals = Vec::new();
         if self.kinematics != "trivkins" {
@@ -382,7 +383,7 @@ impl SetupJoint {
         format!("JOINT_{}", self.number)
     }
 
-    /// Whether there are no drives behind the joint.
+    /// Returns true if there are no drives behind the joint.
     pub(crate) fn is_simulated(&self) -> bool {
         matches!(
             self.feedback,
@@ -390,14 +391,14 @@ impl SetupJoint {
         )
     }
 
-    /// Whether the output of its `pid` is a speed in the unit of the configuration, so that P is in
-    /// 1/s and FF1 a part of 1. A step generator takes a speed by its own definition. What an
-    /// amplifier makes of a value, such as volts, no file states.
+    /// Returns true if the output of its `pid` is a speed in the unit of the configuration, so that
+    /// P is in 1/s and FF1 is a fraction of 1. The input of a step generator is a speed by
+    /// definition. No file states how an amplifier converts its input, such as volts.
     pub(crate) fn commands_speed(&self) -> bool {
         matches!(self.drive, DriveKind::PidStepgen { .. })
     }
 
-    /// Whether a simulated machine can stand in for what is behind the joint.
+    /// Returns true if a simulated machine can stand in for the hardware behind the joint.
     fn is_replaced(&self) -> bool {
         self.is_simulated()
             || matches!(
@@ -461,7 +462,7 @@ impl SetupJoint {
         }
     }
 
-    /// What can be corrected, in a few words.
+    /// Describes in a few words whether the joint can be corrected.
     fn verdict(&self, role: JointRole) -> &'static str {
         match role {
             JointRole::Corrected(_) => {}
@@ -480,7 +481,7 @@ impl SetupJoint {
         }
     }
 
-    /// Why the joint cannot be corrected, and what to do.
+    /// Returns the reason why the joint cannot be corrected, and the remedy.
     fn refusal(&self, simulates: bool) -> Option<String> {
         let number = self.number;
         match &self.feedback {
@@ -496,7 +497,7 @@ impl SetupJoint {
         }
     }
 
-    /// That the joint is not connected, and what to do.
+    /// Returns the message that the joint is not connected, with the remedy.
     fn unconnected(&self) -> Option<String> {
         let number = self.number;
         (self.feedback == FeedbackKind::Nothing).then(|| {

@@ -30,12 +30,13 @@ const MARGIN: f64 = 1.1;
 const LEAST_LAG_S: f64 = 0.002;
 /// FF1 from which on a drive counts as one with feedforward.
 const FEEDFORWARD: f64 = 0.9;
-/// Acceleration of the corrected command in that of LinuxCNC's: with feedforward, and without.
+/// Acceleration of the corrected command as a multiple of LinuxCNC's acceleration: with
+/// feedforward, and without.
 const ACCELERATIONS: [f64; 2] = [4.0, 40.0];
 /// Room between HOME and a limit of travel for a position that is measured, mm: a pid leaves less
 /// when it is at rest.
 const HOME_ROOM_MM: f64 = 0.1;
-/// Highest speed of the corrected command in MAX_VELOCITY.
+/// Highest speed of the corrected command as a multiple of MAX_VELOCITY.
 const SPEEDS: f64 = 1.4;
 
 /// Following errors that a joint needs, in the unit of the configuration.
@@ -49,8 +50,8 @@ struct NeededFerror {
     unit: &'static str,
 }
 
-/// What the joints need, as far as their lag is known: from their `pid`, or of the machine that
-/// stands in for them. `raised` is the following error that the copy allows.
+/// Returns the following errors that the joints need where their lag is known: from their `pid`, or
+/// from the machine that stands in for them. `raised` is the following error that the copy allows.
 fn needed(
     joints: &SetupJoints,
     simulated: Option<&Machine>,
@@ -69,7 +70,7 @@ fn needed(
                 .map(|raised| given.map_or(raised, |given| given.max(raised)))
                 .or(given)
         });
-        // Rounded up to a hundredth of a millimetre, and a thousandth of an inch.
+        // Rounded up to a hundredth of a millimeter, and a thousandth of an inch.
         let digit = if joints.unit_mm == 1.0 { 100.0 } else { 1000.0 };
         let up = |value: f64| (digit * value).ceil() / digit;
         let (lag, behind) = (
@@ -109,7 +110,7 @@ fn needed(
 }
 
 impl NeededFerror {
-    /// Whether the configuration allows less.
+    /// Returns true if the configuration allows less than the joint needs.
     fn is_more(&self) -> bool {
         let [ferror, min_ferror] = self.given;
         ferror.is_none_or(|given| given < self.ferror)
@@ -125,8 +126,8 @@ pub(crate) struct IniValue {
     pub(crate) value: f64,
 }
 
-/// The values that the copy has in place of those of the original. `raised` is the following error
-/// that the user names.
+/// Returns the values that replace those of the original in the copy. `raised` is the following
+/// error that the user names.
 pub(crate) fn written(joints: &SetupJoints, simulates: bool, raised: Option<f64>) -> Vec<IniValue> {
     let mut values: Vec<IniValue> = raised
         .map(|value| ferrors(joints, value))
@@ -167,7 +168,7 @@ fn travels(joints: &SetupJoints) -> impl Iterator<Item = IniValue> {
         .flat_map(|joint| travel(joints, joint))
 }
 
-/// What is said of them, a line for each value.
+/// Describes the changed limits of travel, one line for each value.
 fn travel_words(joints: &SetupJoints) -> Vec<String> {
     let mut sections: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for IniValue {
@@ -236,7 +237,8 @@ fn lag_s(
         .then(|| ((1.0 - ff1) / p).max(LEAST_LAG_S))
 }
 
-/// What must change, in plain words. `raised` is the following error that the copy allows already.
+/// Describes the values that must change. `raised` is the following error that the copy already
+/// allows.
 pub(crate) fn changes(
     joints: &SetupJoints,
     simulated: Option<&Machine>,
@@ -300,7 +302,7 @@ pub(crate) fn changes(
     lines
 }
 
-/// Where the copy allows the following error that the user names.
+/// Lists the sections of the copy that allow the following error `value`, which the user names.
 fn raised_words(joints: &SetupJoints, value: f64) -> Option<String> {
     let mut sections: Vec<String> = ferrors(joints, value)
         .into_iter()

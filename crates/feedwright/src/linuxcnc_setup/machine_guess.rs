@@ -94,7 +94,7 @@ fn limits(text: &mut String, joints: &SetupJoints) {
     );
 }
 
-/// What is known of an axis; the rest is that of the base.
+/// Writes the known values of an axis; the base supplies the rest.
 fn axis(text: &mut String, joints: &SetupJoints, joint: &SetupJoint, name: &str) {
     let _ = writeln!(text, "\n[axis.{name}] # joint {}", joint.number);
     if let Some(speed) = joints.program_mm(joint, "MAX_VELOCITY") {

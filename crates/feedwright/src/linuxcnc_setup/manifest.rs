@@ -20,7 +20,7 @@ pub(crate) struct SetupFile {
     pub(crate) bytes: Vec<u8>,
 }
 
-/// What an earlier setup wrote: names and checksums.
+/// Names and checksums of the files that an earlier setup wrote.
 type Written = Vec<(String, String)>;
 
 /// Writes the files and the manifest; files that are as wanted stay untouched. Returns all files in

@@ -42,19 +42,19 @@ impl HalLoad {
 pub(crate) struct HalFunction {
     pub(crate) name: String,
     pub(crate) thread: String,
-    /// Where it is put in the thread; none is the end.
+    /// Position in the thread; `None` is the end.
     pub(crate) position: Option<i32>,
     pub(crate) place: HalPlace,
 }
 
-/// What the HAL lines build.
+/// The pins, signals, components and functions that the HAL lines create.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Netlist {
     /// Pins of each signal, in the order in which they are connected.
     signals: BTreeMap<String, Vec<String>>,
     /// The signal of each pin.
     of_pin: BTreeMap<String, String>,
-    /// What `setp` and `sets` set last.
+    /// Last values that `setp` and `sets` set.
     values: BTreeMap<String, String>,
     pub(crate) loads: Vec<HalLoad>,
     pub(crate) functions: Vec<HalFunction>,
@@ -207,12 +207,12 @@ impl Netlist {
             .filter(move |pin| instance_of(pin) == instance)
     }
 
-    /// What a pin or signal was set to.
+    /// Returns the value that a pin or signal was set to.
     pub(crate) fn value(&self, name: &str) -> Option<&str> {
         self.values.get(name).map(String::as_str)
     }
 
-    /// What a pin or signal was set to, as a number.
+    /// Returns the value that a pin or signal was set to, as a number.
     pub(crate) fn number(&self, name: &str) -> Option<f64> {
         match self.value(name)? {
             "TRUE" | "True" | "true" => Some(1.0),
@@ -255,7 +255,7 @@ impl Netlist {
         self.functions.iter().find(|function| function.name == name)
     }
 
-    /// What was noticed.
+    /// Returns the first remark on the HAL lines, if there is one.
     pub(crate) fn findings(&self) -> Vec<String> {
         self.notes.iter().take(1).cloned().collect()
     }
@@ -271,7 +271,7 @@ pub(crate) fn last_part(pin: &str) -> &str {
     pin.rsplit('.').next().unwrap_or(pin)
 }
 
-/// Whether a pin of a joint has the name that it had before LinuxCNC 2.8.
+/// Returns true if a pin of a joint has its name from before LinuxCNC 2.8.
 fn is_old_joint_pin(pin: &str) -> bool {
     let number = pin
         .strip_prefix("axis.")

@@ -24,7 +24,7 @@ use super::names::SetupNames;
 use super::netlist::{HalFunction, Netlist, last_part};
 use super::steps::SAMPLED;
 
-/// What is written of the HAL files.
+/// The HAL files that setup writes.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct WiredHal {
     /// Name and text of each changed copy.
@@ -40,7 +40,7 @@ const CONTROLLER: &str = "motion-controller";
 /// Commands whose pins are replaced.
 const WITH_PINS: [&str; 6] = ["net", "linksp", "linkps", "linkpp", "setp", "unlinkp"];
 
-/// Why the HAL files have no place for the component.
+/// Returns the reasons why the HAL files have no place for the component.
 pub(crate) fn refusals(ini: &IniFile, netlist: &Netlist) -> Vec<String> {
     let mut refusals = Vec::new();
     if ini
@@ -135,10 +135,10 @@ pub(crate) fn wire(
     })
 }
 
-/// Where a joint goes through the component.
+/// Connections of one joint through the component.
 struct Passage<'a> {
     joint: &'a SetupJoint,
-    /// Its place among all nets of the component.
+    /// Its position among all nets of the component.
     net: usize,
     /// Beginning of its pins' names, and its number behind them.
     prefix: &'static str,
@@ -146,14 +146,14 @@ struct Passage<'a> {
 }
 
 impl Passage<'_> {
-    /// Whether the component corrects the joint.
+    /// Returns true if the component corrects the joint.
     fn is_corrected(&self) -> bool {
         self.prefix.is_empty()
     }
 
-    /// Whether the joint keeps its feedback where the drives are simulated. A simulated machine
-    /// stands in for the drives of corrected joints, and the command itself for unknown ones that
-    /// pass through.
+    /// Returns true if the joint keeps its feedback where the drives are simulated. A simulated
+    /// machine stands in for the drives of corrected joints. The command itself stands in for
+    /// unknown drives of joints that pass through.
     fn keeps_feedback(&self) -> bool {
         !self.is_corrected() && self.joint.is_simulated()
     }
@@ -347,8 +347,8 @@ impl HalEdits<'_> {
         }
     }
 
-    /// What takes the speed of LinuxCNC's command takes that of the drive's command. Returns the
-    /// function that has to run behind the component.
+    /// Connects the pins that take the speed of LinuxCNC's command to the speed of the drive's
+    /// command. Returns the function that has to run behind the component.
     fn velocity(&mut self, passage: &Passage<'_>, function: &HalFunction) -> Option<String> {
         let pin = passage.joint_pin("vel-cmd");
         let sinks: Vec<String> = self.netlist.beside(&pin).map(str::to_owned).collect();

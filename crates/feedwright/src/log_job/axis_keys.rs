@@ -17,11 +17,11 @@ const LEAST_SMOOTHING_RAD_S: f64 = 1e-6;
 
 /// Keys of an axis, and remarks on it.
 pub(super) struct AxisKeys {
-    /// Those of its table.
+    /// Keys of the table of the axis.
     pub(super) keys: Vec<AxisKey>,
-    /// Those of the table of its transmission; none where it is rigid.
+    /// Keys of the table of its transmission; empty where it is rigid.
     pub(super) transmission: Vec<AxisKey>,
-    /// What no key says.
+    /// Remarks on properties that no key describes.
     pub(super) remarks: Vec<String>,
 }
 
@@ -30,7 +30,7 @@ pub(super) struct AxisKey {
     pub(super) name: &'static str,
     pub(super) value: f64,
     pub(super) comment: String,
-    /// Whether the value comes from the log. Other values are given, kept from before, or assumed.
+    /// True if the value comes from the log. Other values are given, kept from before, or assumed.
     pub(super) is_told: bool,
 }
 
@@ -65,7 +65,7 @@ fn assumed(name: &'static str, value: f64, comment: impl Into<String>) -> AxisKe
     }
 }
 
-/// What a log tells has no more.
+/// Rounds a value to six digits: a log determines no more.
 fn in_six_digits(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }
@@ -116,7 +116,7 @@ fn noise(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
 fn remarks(found: &FoundAxis) -> Vec<String> {
     let late = digits(found.law().get(LawTerm::RecordDelay));
     vec![format!(
-        "the log has actual positions {late} s later than the commands; no machine shows that of itself"
+        "the log has actual positions {late} s later than the commands; no machine shows that by itself"
     )]
 }
 
@@ -206,7 +206,7 @@ fn loops(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
     }
 }
 
-/// What an axis may have beside.
+/// Adds the keys of further properties of an axis.
 fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
     let get = |term| found.law().get(term);
     let late_s = get(LawTerm::CommandDelay);
@@ -287,7 +287,7 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
     friction_extras(keys, found);
 }
 
-/// What its friction may have beside.
+/// Adds the keys of further properties of its friction.
 fn friction_extras(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
     let get = |term| found.law().get(term);
     optional(

@@ -8,10 +8,9 @@ use serde_json::{Map, Value, json};
 use super::LogIdentified;
 use crate::results_format::{stamped, write_json};
 
-/// Writes it.
+/// Writes the results as JSON.
 ///
-/// # Errors
-/// Where `out` takes no more.
+/// Fails if `out` fails.
 pub fn write(out: &mut impl io::Write, identified: &LogIdentified) -> io::Result<()> {
     let axes: Map<String, Value> = identified
         .machine

@@ -42,7 +42,7 @@ pub fn machine_text(identified: &LogIdentified, name: &str) -> String {
     text
 }
 
-/// What stands before the axes.
+/// Returns the text before the axes.
 fn head(identified: &LogIdentified, name: &str, servo_s: f64) -> String {
     let machine = &identified.machine;
     let most = |i: usize| {

@@ -1,10 +1,8 @@
 //! The motion that would settle what a log leaves open, axis by axis.
 //!
-//! A part of the excitation is needed where a parameter is open that it shows: creeping for
-//! friction, reversals for what goes with the speed, strokes for what goes with the acceleration.
 //! Axes keep to positions, speeds and accelerations that the log has, or to the limits of the
-//! machine file that is updated where those are higher. What no motion tells (inertia, the scale of
-//! torques) asks for none.
+//! updated machine file where those are higher. Parameters that no motion determines (inertia, the
+//! scale of torques) need no motion.
 
 use feedwright_ident::{AxisExcitation, FoundAxis, LawTerm, MotionPart};
 use feedwright_sim::Machine;
@@ -17,15 +15,16 @@ const FEED_PART: f64 = 0.8;
 const REACHED_S: f64 = 0.05;
 
 impl LogIdentified {
-    /// What each axis is to move, in the order of the log; one that no machine file has is left
-    /// out.
+    /// Returns the motion that each axis is to make, in the order of the log. Axes that no machine
+    /// file has are left out.
     pub fn next_motion(&self) -> Vec<AxisExcitation> {
         (0..self.machine.axes.len())
             .filter_map(|i| self.next_motion_of(i))
             .collect()
     }
 
-    /// What an axis of the log is to move; none where no machine file has it.
+    /// Returns the motion that an axis of the log is to make; `None` if no machine file has the
+    /// axis.
     pub(super) fn next_motion_of(&self, i: usize) -> Option<AxisExcitation> {
         let axis = self.places().iter().position(|place| *place == Some(i))?;
         let found = self.machine.axes.get(i)?;

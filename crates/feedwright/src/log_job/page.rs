@@ -22,8 +22,7 @@ const SEGMENT: usize = 1024;
 
 /// Writes the page.
 ///
-/// # Errors
-/// Where `out` takes no more.
+/// Fails if `out` fails.
 pub fn write(out: &mut impl Write, identified: &LogIdentified) -> io::Result<()> {
     let log = &identified.log;
     let used = identified
@@ -181,7 +180,7 @@ fn write_errors(out: &mut impl Write, axis: &FoundAxis) -> io::Result<()> {
             "<tr{class}><td>{name}</td><td>{a}</td><td>{b}</td><td>{c}</td><td>{whole}</td><td>{step}</td></tr>"
         )
     };
-    row(" class=\"ours\"", "law of the axis", &axis.scores.grey_box)?;
+    row(" class=\"ours\"", "model of the axis", &axis.scores.grey_box)?;
     for (arx, errors) in &axis.scores.arx {
         row("", &format!("ARX, {}", arx.words()), errors)?;
     }
@@ -190,7 +189,7 @@ fn write_errors(out: &mut impl Write, axis: &FoundAxis) -> io::Result<()> {
     if let Some((um, share)) = axis.scores.beyond {
         writeln!(
             out,
-            "<p>{:.0} % of what was scored is faster than all that was fitted; there the law misses {} µm.</p>",
+            "<p>{:.0} % of what was scored is faster than all that was fitted; there the model misses {} µm.</p>",
             100.0 * share,
             number(um)
         )?;
@@ -206,8 +205,8 @@ fn micrometres(um: f64) -> String {
     }
 }
 
-/// A curve of no more points than can be seen: the first, the least and the largest of each piece
-/// would be too many colours; every n-th.
+/// Draws every n-th point of a curve, so that it has no more points than can be seen. The first,
+/// the least and the largest of each piece would be too many colors.
 fn curve(label: &str, color: &str, line: LineStyle, points: &[[f64; 2]]) -> Polyline {
     let apart = points.len().div_ceil(POINTS).max(1);
     let points = points.iter().copied().step_by(apart).collect();
@@ -251,11 +250,11 @@ pub fn following(identified: &LogIdentified, i: usize, times_s: Range<f64>) -> F
     let above = vec![
         curve("measured", COLORS[0], LineStyle::Solid, &measured),
         curve("best ARX", COLORS[2], LineStyle::Thin, &by_arx),
-        curve("law of the axis", COLORS[1], LineStyle::Dashed, &predicted),
+        curve("model of the axis", COLORS[1], LineStyle::Dashed, &predicted),
     ];
     let below = vec![
         curve("best ARX", COLORS[2], LineStyle::Thin, &of_arx),
-        curve("law of the axis", COLORS[1], LineStyle::Solid, &left),
+        curve("model of the axis", COLORS[1], LineStyle::Solid, &left),
     ];
     let panels = vec![
         panel("", "Following error [µm]", above),
@@ -299,7 +298,7 @@ fn spectrum(identified: &LogIdentified, i: usize, found: &FoundAxis) -> Figure {
             &of(&found.scores.arx_mm),
         ),
         curve(
-            "law of the axis",
+            "model of the axis",
             COLORS[1],
             LineStyle::Solid,
             &of(&found.scores.simulated_mm),

@@ -1,4 +1,5 @@
-//! A machine file with what a new log tells of it; everything else stays as it is, comments too.
+//! Updates a machine file with the results of a new log. Everything else stays as it is, including
+//! comments.
 
 use feedwright_gcode::visible;
 use feedwright_sim::AXIS_NAMES;
@@ -9,10 +10,10 @@ use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
 use super::LogIdentified;
 use super::axis_keys::{AxisKey, axis_keys};
 
-/// Why a machine file cannot be updated.
+/// Reasons why a machine file cannot be updated.
 #[derive(Debug, Error, Diagnostic)]
 pub enum UpdateError {
-    /// It is no TOML.
+    /// The text is not TOML.
     #[error("the machine file cannot be updated: {0}")]
     NotToml(#[from] toml_edit::TomlError),
     /// Something is a value where a table has to be.
@@ -23,10 +24,9 @@ pub enum UpdateError {
     },
 }
 
-/// The text of a machine file, with what the log told of its axes in place of what it said.
+/// Returns the text of a machine file in which the identified values of its axes are replaced.
 ///
-/// # Errors
-/// A text that is no machine file.
+/// Fails if the text is not a machine file.
 pub fn updated_text(identified: &LogIdentified, before: &str) -> Result<String, UpdateError> {
     let mut document: DocumentMut = before.parse()?;
     let servo_s = feedwright_ident::servo_period_s(identified.machine.sample_s);
@@ -53,7 +53,7 @@ pub fn updated_text(identified: &LogIdentified, before: &str) -> Result<String, 
     let log = visible(&identified.job.name);
     let text = document.to_string();
     Ok(format!(
-        "# Updated by feedwright from {log}; intervals of 90 % beside what it told.\n{text}"
+        "# Updated by feedwright from {log}; intervals of 90 % beside what it determined.\n{text}"
     ))
 }
 

@@ -35,20 +35,20 @@ pub enum OutputError {
         /// The target.
         path: PathBuf,
     },
-    /// The run was ended from outside.
+    /// The work was canceled.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Cancelled(#[from] Cancelled),
     /// The operating system refuses.
     #[error("cannot {step} {}: {source}{}", target(path), room(*free_bytes))]
     Io {
-        /// What was under way.
+        /// Operation that failed.
         step: FileOperation,
         /// The target.
         path: PathBuf,
-        /// Bytes free where it goes; known where the disk is full.
+        /// Free bytes at the target; known where the disk is full.
         free_bytes: Option<u64>,
-        /// Why.
+        /// Cause.
         source: io::Error,
         /// Remedy.
         #[help]
@@ -56,7 +56,7 @@ pub enum OutputError {
     },
 }
 
-/// What was under way when the operating system refused.
+/// Operation that the operating system refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FileOperation {
     /// Creating the file beside its target.
@@ -139,7 +139,7 @@ impl OutputError {
     }
 }
 
-/// What messages call a target.
+/// Returns the name of a target in messages.
 fn target(path: &Path) -> String {
     if is_standard_output(path) {
         "the standard output".to_owned()

@@ -1,5 +1,5 @@
-//! What the logs of the built-in machines tell, and the models by that, shipped with the program:
-//! their first cut waits for no identification.
+//! The machines identified from the logs of the built-in machines, and the models from them,
+//! shipped with the program: their first cut waits for no identification.
 //!
 //! `just built-in-logs` writes the file, for each machine and number of axes a line of the log and
 //! one of the model for the default controller. A line is found by a hash of what it follows from:
@@ -16,7 +16,7 @@ const BUILT_IN: &str = include_str!("built_in.jsonl");
 /// Machines that fit a log as well, in each line: as many as `run` cuts without `--band`.
 pub(super) const FITTING: usize = 8;
 
-/// What a log tells, in short: a machine that fits as well differs in some lines of the text.
+/// Result of a log, shortened: a machine that fits as well differs in some lines of the text.
 #[derive(Serialize, Deserialize)]
 struct BuiltInLog {
     /// Hash of the content. It is the first key: lines are found by it without parsing the others.
@@ -31,12 +31,12 @@ pub(super) fn lines() -> impl Iterator<Item = &'static str> {
     BUILT_IN.lines()
 }
 
-/// How the line of a content begins.
+/// Returns the beginning of the line of a content.
 fn beginning(content: &str) -> String {
     format!("{{\"content\":\"{}\"", key_of(&[content.as_bytes()]))
 }
 
-/// What the program was shipped with of a content.
+/// Returns the result that is shipped with the program for a content.
 pub(super) fn told(content: &str) -> Option<Told> {
     let beginning = beginning(content);
     let BuiltInLog {

@@ -1,53 +1,53 @@
-//! What was assumed of the machine that a run was simulated on.
+//! Assumptions about the machine that a run was simulated on.
 
 use serde::Serialize;
 
-/// What the figures of a run rest on. Nothing was cut: a real machine differs.
+/// Assumptions behind the figures of a run. Nothing was cut: a real machine differs.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct Assumptions {
     /// Name of the machine.
     pub machine: String,
-    /// What it is.
+    /// Description of the machine.
     pub description: String,
-    /// The machine file; none where the machine is built in.
+    /// The machine file; none if the machine is built in.
     pub machine_file: Option<String>,
-    /// Where its values come from.
+    /// Source of its values.
     pub machine_source: String,
     /// Position gains of the axes that were simulated, 1/s, as text.
     pub position_gains_1_s: Vec<String>,
-    /// What disturbs it; nothing where it is ideal.
+    /// Disturbances of the machine; empty if it is ideal.
     pub disturbed_by: Vec<&'static str>,
-    /// What else is simulated, beside loops, inertia and friction.
+    /// Effects that are simulated beside loops, inertia and friction.
     pub with: Vec<&'static str>,
-    /// What is not.
+    /// Effects that are not simulated.
     pub without: Vec<&'static str>,
-    /// Seed of what is random of that.
+    /// Seed of the random effects.
     pub noise_seed: u64,
     /// Name of the controller.
     pub controller: &'static str,
-    /// How it knows the law of the axes.
+    /// Knowledge that the controller has of the axis model.
     pub law: LawKnowledge,
-    /// From what it knows it, in words.
+    /// Source of that knowledge, in words.
     pub law_from: String,
 }
 
-/// How a controller knows the law of the axes that it corrects.
+/// Knowledge that a controller has of the model of the axes that it corrects.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LawKnowledge {
-    /// It goes by none.
+    /// The controller uses no model.
     #[default]
     None,
-    /// Identified from what the machine did.
+    /// Identified from recorded motion of the machine.
     Identified,
     /// The exact parameters of the simulated machine. For a real machine they are not available.
     Exact,
-    /// From earlier laps of the same part.
+    /// Learned in earlier laps of the same part.
     Learned,
 }
 
 impl Assumptions {
-    /// What was cut, with or without a run that was measured.
+    /// Returns a sentence on what was cut, with or without a measured run.
     pub const fn cut_sentence(measured: bool) -> &'static str {
         if measured {
             "Nothing was cut but what the log shows."
@@ -56,7 +56,7 @@ impl Assumptions {
         }
     }
 
-    /// Which machine it is, and where its values come from.
+    /// Returns a sentence with the machine and the source of its values.
     pub fn machine_sentence(&self) -> String {
         let file = self
             .machine_file
@@ -68,7 +68,7 @@ impl Assumptions {
         )
     }
 
-    /// What disturbs it.
+    /// Returns a sentence with the disturbances of the machine.
     pub fn disturbance_sentence(&self) -> String {
         if self.disturbed_by.is_empty() {
             return "nothing disturbs it".to_owned();
@@ -80,7 +80,7 @@ impl Assumptions {
         )
     }
 
-    /// What is simulated of it, and what is not.
+    /// Returns a sentence with the effects that are simulated, and those that are not.
     pub fn simulation_sentence(&self) -> String {
         let listed = |names: &[&'static str]| {
             names
@@ -106,7 +106,7 @@ impl Assumptions {
         )
     }
 
-    /// What the controller goes by.
+    /// Returns a sentence with the axis model that the controller uses.
     pub fn law_sentence(&self) -> String {
         let Self {
             controller,
@@ -115,10 +115,10 @@ impl Assumptions {
             ..
         } = self;
         match law {
-            LawKnowledge::None => format!("{controller} goes by no law of the axes ({law_from})"),
+            LawKnowledge::None => format!("{controller} uses no model of the axes ({law_from})"),
             LawKnowledge::Identified => {
                 format!(
-                    "{controller} goes by an identified law of the axes (from {law_from}); a real machine that differs from it comes out worse"
+                    "{controller} uses an identified model of the axes (from {law_from}); a real machine that differs from it comes out worse"
                 )
             }
             LawKnowledge::Exact => {

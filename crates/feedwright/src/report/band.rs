@@ -7,7 +7,7 @@ use super::text::number;
 /// Share of the machines that stay within the upper end of the band.
 const SHARE: f64 = 0.9;
 
-/// What machines that fit the recording of a model come to, each cut with the controller of that
+/// Errors of machines that fit the recording of a model, each cut with the controller of that
 /// model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Band {
@@ -15,33 +15,34 @@ pub struct Band {
     pub machines: usize,
     /// Machines whose servo loop is unstable: their errors are not in the band.
     pub diverged: usize,
-    /// Beginning of the cut that the band covers, s; `None` for all of it.
+    /// Length of the beginning of the cut that the band covers, s; `None` if it covers the whole
+    /// cut.
     pub first_s: Option<f64>,
     /// RMS contour error, um.
     pub rms_um: BandErrors,
     /// Largest contour error, um.
     pub max_um: BandErrors,
-    /// RMS contour error by the encoders, um, where the machine has geometry that they do not see
-    /// and all was cut.
+    /// RMS contour error at the encoders, um, if the machine has geometry errors that the encoders
+    /// do not measure and all was cut.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joint_rms_um: Option<BandErrors>,
-    /// Largest contour error by the encoders, um.
+    /// Largest contour error at the encoders, um.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joint_max_um: Option<BandErrors>,
 }
 
-/// An error of the machines of a band, um.
+/// One error over the machines of a band, um.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BandErrors {
     /// The median.
     pub median: f64,
-    /// The value that a further machine exceeds with a probability of one in ten: of n machines the
-    /// one of rank 0.9 (n + 1), the largest where there are fewer than nine.
+    /// The value that a further machine exceeds with a probability of one in ten: of n machines,
+    /// the value of rank 0.9 (n + 1), or the largest if there are fewer than nine.
     pub p90: f64,
 }
 
 impl BandErrors {
-    /// Of errors in any order; `None` without one.
+    /// Computes the band of errors in any order; `None` if there are no errors.
     pub fn of(mut errors_um: Vec<f64>) -> Option<Self> {
         errors_um.sort_by(f64::total_cmp);
         let n = errors_um.len();
@@ -53,7 +54,7 @@ impl BandErrors {
 }
 
 impl Band {
-    /// The band in a sentence.
+    /// Describes the band in one sentence.
     pub fn sentence(&self) -> String {
         let Self {
             machines,

@@ -1,4 +1,4 @@
-//! The full circles of a program, and how round each was cut: what a circular test shows (ISO
+//! The full circles of a program, and the roundness of each as cut, as in a circular test (ISO
 //! 230-4).
 //!
 //! ```text
@@ -7,8 +7,8 @@
 //! G = max - min of F - b cos(theta) - c sin(theta)      circular deviation, about the least-squares circle
 //! ```
 //!
-//! Unlike a circular test, which leaves out where the axes start and stop, all of the circle
-//! counts, its beginning and its end, too.
+//! A circular test leaves out the parts where the axes start and stop. Here the whole circle
+//! counts, with its beginning and its end.
 
 use std::f64::consts::TAU;
 use std::io;
@@ -18,15 +18,15 @@ use feedwright_plan::{Curve, Piece, Step};
 use feedwright_sim::{Row, Sink};
 use serde::Serialize;
 
-/// Circles that are kept, the longest of a program: a page shows no more.
+/// Largest number of circles that are kept, the longest of a program: a page shows no more.
 const MOST_CIRCLES: usize = 12;
 /// Arcs whose centres and radii differ by less belong to one circle, mm: programs round them.
 const SAME_MM: f64 = 0.005;
-/// What is missing of a full turn, rad.
+/// Largest angle by which a full turn may be incomplete, rad.
 const OPEN_RAD: f64 = 1e-6;
-/// How far a tool lags behind its command at the most, mm.
+/// Largest lag of a tool behind its command, mm.
 const LAG_MM: f64 = 10.0;
-/// Parts of a turn that a circle is recorded in.
+/// Number of parts of a turn in which a circle is recorded.
 pub(super) const BINS: usize = 720;
 
 /// A full circle of the program, of one arc or of several.
@@ -40,14 +40,15 @@ pub struct FullCircle {
     pub radius_mm: f64,
     /// Its plane by the axes that span it, as in "XY".
     pub plane: &'static str,
-    /// Whether it turns counter-clockwise, seen from the positive normal of the plane.
+    /// True where it turns counter-clockwise, seen from the positive normal of the plane.
     pub counter_clockwise: bool,
     /// Arc length of the path where it begins and ends, mm.
     pub s_mm: [f64; 2],
 }
 
 impl FullCircle {
-    /// Indices of the axes of its plane: the angle is counted from the first towards the second.
+    /// Returns the indices of the axes of its plane: the angle counts from the first towards the
+    /// second.
     fn axes(&self) -> [usize; 2] {
         match self.plane {
             "XY" => [0, 1],
@@ -78,8 +79,8 @@ impl FullCircle {
             && (self.plane, self.counter_clockwise) == (next.plane, next.counter_clockwise)
     }
 
-    /// Angle of a point of the circle as part of a turn, and the outward unit vector there; none
-    /// where it is not on the circle.
+    /// Returns the angle of a point of the circle as a fraction of a turn, and the outward unit
+    /// vector there; none if the point is not on the circle.
     fn place(&self, point_mm: [f64; 3]) -> Option<(f64, [f64; 3])> {
         let from_center = sub(point_mm, self.center_mm);
         let [first, second] = self.axes();
@@ -92,8 +93,8 @@ impl FullCircle {
     }
 }
 
-/// The full circles of a path in the order in which they are cut: the longest, where there are
-/// many.
+/// Returns the full circles of a path in the order in which they are cut; if there are many, only
+/// the longest.
 pub(crate) fn full_circles(steps: impl Iterator<Item = Step>) -> Vec<FullCircle> {
     let mut found = Vec::new();
     let mut open: Option<(FullCircle, f64)> = None;
@@ -134,7 +135,7 @@ fn keep_longest(circles: &mut Vec<FullCircle>) {
     circles.sort_by(|a, b| a.s_mm[0].total_cmp(&b.s_mm[0]));
 }
 
-/// How round a circle was cut.
+/// Roundness of a circle as cut.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Roundness {
     /// Circular deviation G about the least-squares circle, µm.
@@ -143,8 +144,8 @@ pub struct Roundness {
     pub radial_max_um: f64,
     /// Least radial deviation Fmin, µm.
     pub radial_min_um: f64,
-    /// Radial deviation of largest magnitude in each part of a turn from the first axis of the
-    /// plane on, µm; none where it was not cut.
+    /// Radial deviation of largest magnitude in each part of a turn, starting at the first axis of
+    /// the plane, µm; none in parts that were not cut.
     #[serde(skip)]
     pub radial_um: Vec<Option<f64>>,
 }
@@ -158,7 +159,7 @@ pub(crate) struct RadialDeviations<'a> {
 }
 
 impl<'a> RadialDeviations<'a> {
-    /// Nothing yet.
+    /// Creates an empty record.
     pub(crate) fn of(circles: &'a [FullCircle]) -> Self {
         let none = (vec![None; BINS], [f64::INFINITY, f64::NEG_INFINITY]);
         Self {
@@ -167,7 +168,7 @@ impl<'a> RadialDeviations<'a> {
         }
     }
 
-    /// One for each circle; none where too little of it was cut to say.
+    /// Returns the roundness of each circle; none if too little of the circle was cut.
     pub(crate) fn roundness(self) -> Vec<Option<Roundness>> {
         self.recorded
             .into_iter()
@@ -184,7 +185,7 @@ impl Sink for RadialDeviations<'_> {
         if !row.cutting || !row.act_mm.iter().all(|x| x.is_finite()) {
             return Ok(());
         }
-        // The tool may still be on the circle before the one that the command is on.
+        // The tool may still be on the previous circle when the command is on the next one.
         for i in (reached.saturating_sub(2)..reached).rev() {
             let circle = &self.circles[i];
             if row.s_mm > circle.s_mm[1] + LAG_MM {
@@ -205,7 +206,7 @@ impl Sink for RadialDeviations<'_> {
     }
 }
 
-/// Of a circle of which at least three quarters were seen.
+/// Computes the roundness of a circle; none if a quarter of it was not cut at all.
 fn roundness(bins_mm: &[Option<f64>], [least_mm, most_mm]: [f64; 2]) -> Option<Roundness> {
     let angle = |i: usize| (i as f64 + 0.5) / bins_mm.len() as f64 * TAU;
     let places: Vec<([f64; 3], f64)> = (0..bins_mm.len())
@@ -233,7 +234,7 @@ fn roundness(bins_mm: &[Option<f64>], [least_mm, most_mm]: [f64; 2]) -> Option<R
     })
 }
 
-/// The factors of least squares, by the normal equations of three unknowns, which are near to
+/// Returns the least-squares factors, from the normal equations of three unknowns, which are nearly
 /// diagonal here.
 fn least_squares(places: &[([f64; 3], f64)]) -> Option<[f64; 3]> {
     let mut rows = [[0.0; 4]; 3];

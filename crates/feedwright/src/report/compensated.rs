@@ -1,4 +1,4 @@
-//! What a report says of the geometry that is compensated.
+//! Description of the compensated geometry in a report.
 
 use serde::Serialize;
 
@@ -7,22 +7,22 @@ use super::text::number;
 /// The geometry that the control compensates.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CompensatedGeometry {
-    /// The geometry file; none where the machine file states the values.
+    /// The geometry file; none if the machine file states the values.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from: Option<String>,
-    /// What is compensated.
+    /// Names of the compensated errors.
     pub terms: Vec<&'static str>,
-    /// Standard deviation of the tool across the path by those of the file: root mean square over
-    /// the cut, um.
+    /// Standard deviation of the tool across the path that follows from the standard deviations of
+    /// the file: root mean square over the cut, um.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spread_rms_um: Option<f64>,
-    /// Its largest value, um.
+    /// Largest value of that standard deviation over the cut, um.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spread_max_um: Option<f64>,
 }
 
 impl CompensatedGeometry {
-    /// In a sentence, without its full stop.
+    /// Describes the geometry in one sentence, without its full stop.
     pub fn sentence(&self) -> String {
         let from = self.from.as_ref().map_or_else(
             || {

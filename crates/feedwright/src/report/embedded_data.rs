@@ -21,13 +21,13 @@ use super::{
 /// Level of the compression, of 10: the default of zlib.
 const LEVEL: u8 = 6;
 
-/// What one count of a column stands for.
+/// Value of one count of a column.
 mod units {
     pub(super) const TIME_S: f64 = 1e-5;
     pub(super) const LENGTH_MM: f64 = 1e-3;
     /// Coordinates of the path: a tenth of the smallest contour error worth drawing.
     pub(super) const POINT_MM: f64 = 1e-4;
-    /// Contour errors and deviations, at the most: see [`super::error_unit_mm`].
+    /// Contour errors and deviations: largest unit, see [`super::error_unit_mm`].
     pub(super) const ERROR_MM: f64 = 1e-5;
     pub(super) const FEED_MM_S: f64 = 1e-2;
     pub(super) const TORQUE_NM: f64 = 1e-4;
@@ -63,7 +63,7 @@ pub(super) fn write_json(
     out.write_all(b"]}")
 }
 
-/// Lengths, errors and speeds are in units of the page: the keys have the names of the metric ones.
+/// Lengths, errors and speeds are in units of the page; the keys keep their metric names.
 fn meta(report: &Report, of: PageUnits) -> serde_json::Value {
     let factor = of.factor();
     let runs: Vec<_> = report
@@ -87,10 +87,10 @@ fn meta(report: &Report, of: PageUnits) -> serde_json::Value {
     })
 }
 
-/// What a count of an error stands for, mm: a thousandth to a ten-thousandth of the largest, so
-/// that the drawing of a small one has no steps.
+/// Returns the value of one count of an error, mm: a thousandth to a ten-thousandth of the largest
+/// error, so that the drawing of a small error has no steps.
 fn error_unit_mm(summary: &RunSummary) -> f64 {
-    // Of a run that diverged it is not known.
+    // The largest error of a run that diverged is not known.
     let largest_mm = if summary.max_um.is_finite() {
         (1e-3 * summary.max_um).clamp(1e-6, 1.0)
     } else {
@@ -123,12 +123,12 @@ fn run_meta(run: &ReportedRun, factor: f64) -> serde_json::Value {
     })
 }
 
-/// What an axis may, in the units in which it is drawn.
+/// Returns the limits of an axis, in the units in which they are drawn.
 fn limits_meta(limits: &DrawnLimits) -> serde_json::Value {
     json!({"torque_nm": limits.torque_nm, "accel_m_s2": limits.accel_mm_s2.map(|accel_mm_s2| accel_mm_s2 * 1e-3)})
 }
 
-/// A circle, and the radial deviation of each run from it in counts of [`error_unit_mm`].
+/// Returns a circle, and the radial deviation of each run from it in counts of [`error_unit_mm`].
 fn circle_meta(
     report: &Report,
     (index, circle): (usize, &FullCircle),
@@ -148,7 +148,7 @@ fn circle_meta(
     })
 }
 
-/// Lines that follow on each other as one text behind the number of the first.
+/// Joins successive lines into one text, after the number of the first line.
 fn listing(report: &Report) -> serde_json::Value {
     let pieces = report.program.chunk_by(|a, b| a.line + 1 == b.line);
     let piece = |lines: &[ProgramLine]| {
@@ -158,7 +158,7 @@ fn listing(report: &Report) -> serde_json::Value {
     pieces.map(piece).collect()
 }
 
-/// Four significant digits: more are not drawn.
+/// Rounds to four significant digits: more are not drawn.
 fn digits(value: f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return 0.0;
@@ -236,7 +236,7 @@ fn write_run(out: &mut impl Write, run: &ReportedRun) -> io::Result<()> {
     object.end()
 }
 
-/// A JSON object of columns, written as it comes.
+/// A JSON object of columns that is written column by column.
 struct Object<'a, W> {
     out: &'a mut W,
     separator: &'static str,
@@ -258,7 +258,8 @@ impl<'a, W: Write> Object<'a, W> {
         self.separator = ",";
         let mut before = 0;
         for (i, value) in values.enumerate() {
-            // Saturates: what is out of range of an i64 is out of any drawing, too.
+            // The cast saturates: a value out of the range of an i64 is outside of any drawing,
+            // too.
             let count = (value / unit).round() as i64;
             if i > 0 {
                 self.out.write_all(b",")?;

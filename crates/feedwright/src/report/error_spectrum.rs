@@ -1,4 +1,4 @@
-//! The spectrum of the contour error, in bounded memory: what of it is at which frequency.
+//! The spectrum of the contour error, in bounded memory: RMS error by frequency.
 //!
 //! ```text
 //! rms(band)^2 = 1/L sum over the frequencies n of the band of I(n), twice but for the first and the last
@@ -25,18 +25,18 @@ const LEAST_SAMPLES: usize = 64;
 const BAND_WIDTH: f64 = 1.059_463_094_359_295_3;
 const LEAST_FREQUENCIES: usize = 3;
 
-/// What of the contour error lies in a band of frequencies.
+/// Contour error in a band of frequencies.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct SpectrumBand {
-    /// Its beginning, Hz.
+    /// Lower end of the band, Hz.
     pub from_hz: f64,
-    /// Its end, Hz.
+    /// Upper end of the band, Hz.
     pub to_hz: f64,
-    /// RMS of what lies in it, µm.
+    /// RMS of the contour error in the band, µm.
     pub rms_um: f64,
 }
 
-/// Collects it.
+/// Collector of the spectrum of the contour error.
 #[derive(Debug, Clone)]
 pub struct ErrorSpectrum {
     servo_s: f64,
@@ -88,7 +88,7 @@ impl ErrorSpectrum {
         }
     }
 
-    /// Adds the segment that is full.
+    /// Adds the full segment.
     fn close(&mut self) {
         for (segments, errors_mm) in self.segments.iter_mut().zip(&mut self.errors_mm) {
             if !errors_mm.is_empty() {
@@ -100,7 +100,7 @@ impl ErrorSpectrum {
         self.open = 0;
     }
 
-    /// The bands from low to high; none where too little was cut.
+    /// Returns the bands from low to high; empty if too little was cut.
     pub fn bands(mut self) -> Vec<SpectrumBand> {
         if self.seen < LEAST_SAMPLES {
             return Vec::new();
@@ -126,7 +126,7 @@ impl ErrorSpectrum {
         )
     }
 
-    /// A run that is shorter than a segment gets shorter segments.
+    /// Shortens the segments for a run that is shorter than a segment.
     fn shorten(&mut self) {
         let errors_mm = std::mem::take(&mut self.errors_mm);
         let cutting = std::mem::take(&mut self.cutting);
@@ -150,7 +150,7 @@ impl Sink for ErrorSpectrum {
         if !error_mm.iter().all(|x| x.is_finite()) {
             return Ok(());
         }
-        // Of a rest that was left out no more is filled in than there is room for.
+        // A rest that was left out is filled in up to one segment.
         let left_out = self.last_s.map_or(0.0, |last_s| {
             ((row.t_s - last_s) / self.servo_s).round() - 1.0
         });
@@ -163,7 +163,7 @@ impl Sink for ErrorSpectrum {
     }
 }
 
-/// Power at frequencies n / (2 (len - 1)) turns a sample as bands; mm to um.
+/// Converts the power at frequencies n / (2 (len - 1)) turns per sample to bands, and mm to um.
 fn banded(power: &[f64], servo_s: f64) -> Vec<SpectrumBand> {
     let last = power.len() - 1;
     let hz = |n: f64| 0.5 * n / last as f64 / servo_s;
@@ -259,7 +259,7 @@ mod tests {
         assert!(found.len() < 120, "{}", found.len());
     }
 
-    /// What is not cut counts nowhere, nor does a rest that was left out.
+    /// Rows that do not cut, and rests that were left out, do not count.
     #[test]
     fn rapids_and_rests_do_not_count() {
         let mut spectrum = ErrorSpectrum::new(2, SERVO_S);

@@ -1,9 +1,9 @@
-//! Figures as a paper prints them: line charts in panels, as SVG, and a page that holds several
-//! with captions.
+//! Figures as printed in a paper: line charts in panels, as SVG, and a page that holds several with
+//! captions.
 //!
-//! Equal figures give equal bytes. As a file the drawing is black on a white plate, so that it is
-//! read on any page; a page takes the plate away and has colours for light and dark. Text is text,
-//! so that it can be searched and edited.
+//! Equal figures give equal bytes. In a file, the drawing is black on a white plate, so that it is
+//! legible on any page. A page removes the plate and has colors for light and dark. Text stays
+//! text, so that it can be searched and edited.
 
 mod axis;
 mod svg;
@@ -33,12 +33,12 @@ pub struct Panel {
     pub x_title: String,
     /// Title of the vertical axis with its unit.
     pub y_title: String,
-    /// What is drawn, the first at the bottom.
+    /// Curves, the first at the bottom.
     pub curves: Vec<Polyline>,
-    /// Whether a unit has the same length on both axes, as a path needs it.
+    /// True where a unit has the same length on both axes, as a path needs it.
     pub equal_axes: bool,
-    /// Whether both axes are logarithmic: points and ranges are the powers of ten, and ticks tell
-    /// the numbers.
+    /// True where both axes are logarithmic: points and ranges are the powers of ten, and ticks
+    /// show the numbers.
     pub powers_of_ten: bool,
     /// Range of the horizontal axis; `None` takes it from the curves.
     pub x_range: Option<[f64; 2]>,
@@ -63,25 +63,25 @@ pub struct Polyline {
 /// Stroke of a [`Polyline`].
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum LineStyle {
-    /// Drawn through.
+    /// Solid line.
     #[default]
     Solid,
     /// Long dashes.
     Dashed,
     /// Short dashes.
     Dotted,
-    /// Drawn through and thin: a reference, such as the programmed path.
+    /// Thin solid line: a reference, such as the programmed path.
     Thin,
 }
 
-/// Colours that stay apart for the colour-blind and in grey print: black, vermilion, blue, green,
-/// purple, orange. After Okabe and Ito, "Color Universal Design", 2008, darkened where thin lines
-/// need it.
+/// Colors that remain distinct for the color-blind and in gray print: black, vermilion, blue,
+/// green, purple, orange. After Okabe and Ito, "Color Universal Design", 2008, darkened where thin
+/// lines need it.
 pub const COLORS: [&str; 6] = [
     "#111111", "#c8500a", "#0067a8", "#00805f", "#a8568a", "#c98a00",
 ];
 
-/// A figure with what stands below it.
+/// A figure with its number and caption.
 #[derive(Debug, Clone, Default)]
 pub struct CaptionedFigure {
     /// The figure.
@@ -93,13 +93,13 @@ pub struct CaptionedFigure {
 }
 
 impl Figure {
-    /// The figure as an SVG document.
+    /// Returns the figure as an SVG document.
     pub fn to_svg(&self) -> String {
         svg::write(self, svg::WIDTH)
     }
 
-    /// The figure for a page: once as wide as a text column, and once for phones; the style sheet
-    /// shows one of the two.
+    /// Returns the figure for a page: once as wide as a text column, and once for phones; the style
+    /// sheet shows one of the two.
     pub fn to_html(&self) -> String {
         let [roomy, narrow] = [svg::WIDTH, svg::NARROW].map(|page_px| svg::write(self, page_px));
         format!("<div class=\"roomy\">{roomy}</div><div class=\"narrow\">{narrow}</div>")
@@ -110,7 +110,7 @@ impl Figure {
 /// other.
 ///
 /// # Errors
-/// Where `out` takes no more.
+/// A write to `out` that fails.
 pub fn write_figure_page(
     out: &mut impl Write,
     title: &str,
@@ -126,7 +126,7 @@ pub fn write_figure_page(
     write_foot(out)
 }
 
-/// The parts of a page that figures are.
+/// Returns the parts of a page that contain these figures.
 pub fn figure_parts(figures: &[CaptionedFigure]) -> impl Iterator<Item = PagePart> {
     figures
         .iter()
@@ -134,7 +134,7 @@ pub fn figure_parts(figures: &[CaptionedFigure]) -> impl Iterator<Item = PagePar
         .map(|(i, entry)| PagePart::new(&format!("figure-{}", i + 1), entry.number.as_str()))
 }
 
-/// One of them.
+/// Writes one part of a page with its figure.
 pub fn write_figure_part(
     out: &mut impl Write,
     part: &PagePart,

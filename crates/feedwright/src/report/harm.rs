@@ -65,14 +65,14 @@ pub struct ErrorChange {
 }
 
 impl ErrorChange {
-    /// Whether the error is worse. An error that is not a number is worse.
+    /// Returns true if the error is worse. An error that is not a number is worse.
     pub fn is_worse(&self) -> bool {
         let is_allowed = self.harm.after_um - self.harm.before_um <= self.allowed_um;
         !is_allowed
     }
 
-    /// The increase in units of the allowance: above 1 is worse. Infinite for an error that is not
-    /// a number.
+    /// Returns the increase in units of the allowance: above 1 is worse. Infinite for an error that
+    /// is not a number.
     pub fn excess(&self) -> f64 {
         let excess = (self.harm.after_um - self.harm.before_um) / self.allowed_um;
         if excess.is_nan() {
@@ -94,7 +94,7 @@ pub struct Harm {
     pub after_um: f64,
 }
 
-/// The errors of `after` that are worse than those of `before`.
+/// Returns the errors of `after` that are worse than the errors of `before`.
 pub fn harm(before: &CutErrors, after: &CutErrors) -> Vec<Harm> {
     let changes = after.compared_with(before).into_iter();
     changes

@@ -1,5 +1,5 @@
-//! The headline: what came out of the runs of a report and what it costs. The terminal and the page
-//! show the same text.
+//! The headline: results and cost of the runs of a report. The terminal and the page show the same
+//! text.
 //!
 //! The run that is judged, the last, is compared with the first run that was simulated.
 
@@ -12,7 +12,7 @@ use crate::controllers::BASELINE;
 
 pub(crate) const AXES: [&str; 3] = ["X", "Y", "Z"];
 
-/// Part of the headline. Only the page sets the kinds apart.
+/// Part of the headline. Only the page distinguishes the kinds.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum HeadlinePart {
     /// Text between the others.
@@ -62,17 +62,18 @@ impl fmt::Display for Headline {
 }
 
 impl Report {
-    /// What came out of the runs and what it costs, in words.
+    /// Returns the results and the cost of the runs, in words.
     pub fn verdict(&self) -> String {
         headline(self).to_string()
     }
 
-    /// The run that is judged: the last.
+    /// Returns the run that is judged: the last.
     fn judged(&self) -> Option<&RunSummary> {
         self.runs.last().map(|run| &run.summary)
     }
 
-    /// The run that it is compared with: the first that was simulated to its end, if there are two.
+    /// Returns the run that it is compared with: the first that was simulated to its end, if there
+    /// are two.
     fn compared(&self) -> Option<&RunSummary> {
         let (_, others) = self.runs.split_last()?;
         others
@@ -81,8 +82,8 @@ impl Report {
             .find(|run| !run.measured && run.outcome == Outcome::Completed)
     }
 
-    /// Whether the run that is judged reached its end within the tolerance. Without a tolerance the
-    /// end is enough.
+    /// Returns true if the run that is judged reached its end within the tolerance. Without a
+    /// tolerance, reaching the end is enough.
     pub fn is_within_tolerance(&self) -> bool {
         self.judged().is_some_and(|run| {
             run.outcome == Outcome::Completed
@@ -92,28 +93,28 @@ impl Report {
         })
     }
 
-    /// The run of the controller that was asked for. A corrected program is cut without it.
+    /// Returns the run of the requested controller. A corrected program is cut without it.
     fn controlled(&self) -> Option<&RunSummary> {
         let runs = self.runs.iter().map(|run| &run.summary);
         runs.rev()
             .find(|run| !run.measured && run.controller != AS_EXPORTED)
     }
 
-    /// Whether the controller that was asked for left most of the part uncorrected, or its end.
+    /// Returns true if the requested controller left most of the part, or its end, uncorrected.
     pub fn is_mostly_uncorrected(&self) -> bool {
         self.controlled()
             .is_some_and(RunSummary::is_mostly_uncorrected)
     }
 
-    /// Index of the axis whose peak torque the headline names; the table of the terminal shows that
-    /// axis, too.
+    /// Returns the index of the axis whose peak torque the headline names; the table of the
+    /// terminal shows that axis, too.
     #[cfg(feature = "command")]
     pub(crate) fn costly_axis(&self) -> usize {
         self.judged()
             .map_or(0, |judged| costly_axis(self.compared(), judged).0)
     }
 
-    /// The errors of the controller that was asked for that are worse than the uncorrected errors.
+    /// Returns the errors of the requested controller that are worse than the uncorrected errors.
     /// Empty if one of the two runs is missing or diverged.
     pub fn harm(&self) -> Vec<Harm> {
         let is_whole = |run: &&RunSummary| run.outcome == Outcome::Completed;
@@ -155,7 +156,7 @@ impl Headline {
         self.parts.push(HeadlinePart::Name(controller.to_owned()));
     }
 
-    /// Writes a value of a run behind `what`, and the same value of `before`.
+    /// Writes a value of a run after `what`, and the same value of `before`.
     fn value(
         &mut self,
         what: &str,
@@ -173,7 +174,7 @@ impl Headline {
         });
     }
 
-    /// A run that reached its end.
+    /// Describes a run that reached its end.
     fn completed(&mut self, report: &Report, judged: &RunSummary) {
         let compared = report.compared();
         let runs = [compared, Some(judged)];
@@ -206,7 +207,7 @@ impl Headline {
         self.measured(report);
     }
 
-    /// That no drive may get this command.
+    /// Warns if the command exceeds what any drive may get.
     fn beyond_drives(&mut self, judged: &RunSummary) {
         if let Some(CommandShare { axis, share }) = judged.beyond_drives() {
             self.text(&format!(
@@ -216,7 +217,7 @@ impl Headline {
         }
     }
 
-    /// That a run has no figures.
+    /// States that a run diverged and has no figures.
     fn diverged(&mut self, run: &RunSummary) {
         let Outcome::Diverged { at_s } = run.outcome else {
             return;
@@ -231,7 +232,7 @@ impl Headline {
         ));
     }
 
-    /// That the correction is worse than none.
+    /// States that the correction is worse than no correction.
     fn harm(&mut self, report: &Report) {
         let harm = report.harm();
         if let Some(run) = report.controlled().filter(|_| !harm.is_empty()) {
@@ -244,7 +245,7 @@ impl Headline {
         }
     }
 
-    /// What drives and command do for the result.
+    /// States the cost of the result: torque, command deviation and acceleration.
     fn cost(&mut self, runs: [Option<&RunSummary>; 2], judged: &RunSummary) {
         let (axis, why) = costly_axis(runs[0], judged);
         let torque_nm = |run: &RunSummary| run.peak_torque_nm.map_or(f64::NAN, |peaks| peaks[axis]);
@@ -283,7 +284,7 @@ impl Headline {
         self.text(".");
     }
 
-    /// That the controller was taken out of the loop.
+    /// States that the supervisor took the controller out of the loop.
     fn faded(&mut self, judged: &RunSummary) {
         let Some(faded) = judged.faded_out else {
             return;
@@ -303,7 +304,7 @@ impl Headline {
         }
     }
 
-    /// What a log shows, if there is one.
+    /// States the errors in a log, if there is one.
     fn measured(&mut self, report: &Report) {
         let Some(run) = report
             .runs
@@ -328,7 +329,7 @@ fn um(value: f64) -> String {
     format!("{} µm", number(value))
 }
 
-/// The axis whose peak torque is told, and why it is that one.
+/// Returns the axis whose peak torque the headline states, and the reason for this choice.
 ///
 /// Each axis has a drive of its own, so its peak is compared with its own peak in the other run.
 /// The largest peaks of all axes may belong to different drives, and their ratio hides a drive

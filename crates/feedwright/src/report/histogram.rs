@@ -1,18 +1,18 @@
-//! How often each contour error occurs, counted in bounded memory.
+//! Distribution of the contour error, counted in bounded memory.
 
 use serde::Serialize;
 
 /// Bins on either side of zero while counting.
 const BINS_PER_SIDE: usize = 512;
 
-/// Width of a bin to begin with, µm. It doubles until all errors fit, so that a full histogram has
-/// 256 to 512 bins on a side.
+/// Initial width of a bin, µm. It doubles until all errors fit, so that a full histogram has 256 to
+/// 512 bins on a side.
 const FIRST_BIN_UM: f64 = 1e-3;
 
 /// Most bins of a finished [`Histogram`]: what a plot can show.
 const SHOWN_BINS: usize = 96;
 
-/// How often each contour error occurs in the rows that cut. Bin `i` of `counts` holds errors from
+/// Distribution of the contour error over the rows that cut. Bin `i` of `counts` holds errors from
 /// `(first_bin + i) * bin_um` up to the next multiple.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Histogram {
@@ -25,8 +25,8 @@ pub struct Histogram {
     pub counts: Vec<u64>,
 }
 
-/// Counts of a histogram under way: as many bins on either side of zero, wide enough for all so
-/// far.
+/// Counts of a histogram under way: the same number of bins on either side of zero, wide enough for
+/// all errors so far.
 #[derive(Debug, Clone)]
 pub(super) struct Counts {
     bin_um: f64,
@@ -34,7 +34,7 @@ pub(super) struct Counts {
 }
 
 impl Counts {
-    /// None yet.
+    /// Creates an empty histogram.
     pub(super) fn new() -> Self {
         Self {
             bin_um: FIRST_BIN_UM,
@@ -42,7 +42,7 @@ impl Counts {
         }
     }
 
-    /// One more of so much, um.
+    /// Counts one error, um.
     pub(super) fn add(&mut self, error_um: f64) {
         let side = BINS_PER_SIDE as f64;
         while !(-side..side).contains(&(error_um / self.bin_um).floor()) {
@@ -62,7 +62,7 @@ impl Counts {
         self.bin_um *= 2.0;
     }
 
-    /// What a plot shows.
+    /// Returns the histogram for a plot.
     pub(super) fn histogram(&self) -> Histogram {
         let first = self.counts.iter().position(|&n| n > 0);
         let last = self.counts.iter().rposition(|&n| n > 0);
@@ -88,7 +88,7 @@ impl Counts {
 }
 
 impl Histogram {
-    /// The same counts in bins of twice the width.
+    /// Returns the same counts in bins of twice the width.
     pub fn widened(&self) -> Self {
         let first_bin = self.first_bin.div_euclid(2);
         let mut counts = Vec::with_capacity(self.counts.len() / 2 + 1);

@@ -40,15 +40,15 @@ const SCRIPTS: [&str; 11] = [
 /// Writes `report` as one HTML page that refers to nothing outside it.
 ///
 /// # Errors
-/// Where `out` takes no more.
+/// A write to `out` that fails.
 pub fn write_html(out: &mut impl Write, report: &Report) -> io::Result<()> {
     write_html_in(out, report, PageUnits::Metric)
 }
 
-/// As [`write_html`], with lengths and speeds in other units.
+/// Writes the same page as [`write_html`], with lengths and speeds in other units.
 ///
 /// # Errors
-/// Where `out` takes no more.
+/// A write to `out` that fails.
 pub fn write_html_in(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
     let frame = PageFrame::new(
         &[UPLOT_CSS, COLORS_CSS, PAGE_CSS],
@@ -76,7 +76,7 @@ pub fn write_html_in(out: &mut impl Write, report: &Report, units: PageUnits) ->
 /// Writes the data that the scripts of the page draw, as JSON.
 ///
 /// # Errors
-/// Where `out` takes no more.
+/// A write to `out` that fails.
 pub fn write_html_data(out: &mut impl Write, report: &Report) -> io::Result<()> {
     embedded_data::write_json(out, report, PageUnits::Metric)
 }
@@ -107,7 +107,7 @@ fn write_header(out: &mut impl Write, report: &Report, units: PageUnits) -> io::
     )
 }
 
-/// The band of the prediction, in one paragraph.
+/// Returns the band of the prediction, in one paragraph.
 fn band(report: &Report, units: PageUnits) -> String {
     report.band.as_ref().map_or_else(String::new, |band| {
         format!(
@@ -117,7 +117,7 @@ fn band(report: &Report, units: PageUnits) -> String {
     })
 }
 
-/// What was assumed, in one paragraph.
+/// Returns the assumptions, in one paragraph.
 fn assumed(report: &Report, units: PageUnits) -> String {
     let assumed = &report.assumed;
     if assumed.machine.is_empty() {
@@ -142,5 +142,5 @@ fn assumed(report: &Report, units: PageUnits) -> String {
     )
 }
 
-/// The places that the scripts fill.
+/// The elements that the scripts fill.
 const DRAWINGS: &str = include_str!("../../assets/report/drawings.html");

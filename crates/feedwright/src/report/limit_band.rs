@@ -1,8 +1,8 @@
-//! Which limit binds where along the path: a row for each limit over the time of the plan, below
-//! its feedrate.
+//! The limits that bind along the path: a row for each limit over the time of the plan, below its
+//! feedrate.
 //!
-//! An SVG in the page, drawn here, so that it is there without scripts; each stretch says its place
-//! and lines where the pointer rests on it.
+//! The band is an SVG in the page, drawn here, so that it is there without scripts. A stretch shows
+//! its place and its lines when the pointer rests on it.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -11,8 +11,8 @@ use super::page_units::PageUnits;
 use super::text::escaped;
 use crate::cycle_time::along::{BindingAlong, BindingStretch, LIMITS};
 
-/// Size of the drawing: width, height of the feedrate, of a row, and of the numbers below; left of
-/// them stand the names.
+/// Size of the drawing: width, height of the feedrate, of a row, and of the numbers below; the
+/// names stand to the left.
 const WIDTH: f64 = 1200.0;
 const FEED: f64 = 120.0;
 const ROW: f64 = 18.0;
@@ -21,7 +21,7 @@ const LEFT: f64 = 150.0;
 const RIGHT: f64 = 12.0;
 const ABOVE: f64 = 14.0;
 
-/// Stretches that are drawn at the most: about one for two pixels.
+/// Largest number of stretches that are drawn: about one for two pixels.
 const DRAWN: usize = 600;
 
 /// A stretch is colored if a limit binds for more than this fraction of its time.
@@ -29,7 +29,7 @@ const LEAST: f64 = 0.02;
 /// Levels of opacity that show this fraction, in equal steps.
 const LEVELS: u32 = 4;
 
-/// What binds along the path of a plan, for the page.
+/// Limits that bind along the path of a plan, for the page.
 #[derive(Debug, Clone, Default)]
 pub struct LimitBand {
     /// Names of the limits.
@@ -39,8 +39,8 @@ pub struct LimitBand {
 }
 
 impl LimitBand {
-    /// Each limit that binds: its name, its part of the time in percent, and the line of the
-    /// stretch in which it binds longest. Largest parts first.
+    /// Returns each limit that binds: its name, its part of the time in percent, and the line of
+    /// the stretch in which it binds longest. Largest parts first.
     pub fn shares(&self) -> Vec<(&str, f64, u32)> {
         let stretches = self.along.stretches();
         let mut shares: Vec<_> = self
@@ -64,7 +64,7 @@ impl LimitBand {
     }
 }
 
-/// Part of the time in which a limit binds, percent.
+/// Returns the part of the time in which a limit binds, percent.
 fn percent(stretches: &[BindingStretch], limit: usize) -> f64 {
     let [bound_s, total_s] = stretches
         .iter()
@@ -77,7 +77,7 @@ fn percent(stretches: &[BindingStretch], limit: usize) -> f64 {
     100.0 * bound_s / total_s.max(f64::MIN_POSITIVE)
 }
 
-/// Colour of a limit by its kind, of those that stay apart for the colour-blind.
+/// Returns the color of a limit by its kind, from colors that remain distinct for the color-blind.
 fn color(name: &str) -> &'static str {
     match name {
         "feedrate" => "#00805f",
@@ -88,7 +88,7 @@ fn color(name: &str) -> &'static str {
     }
 }
 
-/// The section, where there is something to show.
+/// Writes the section, if there is anything to show.
 pub(super) fn write(
     out: &mut impl Write,
     band: Option<&LimitBand>,
@@ -130,7 +130,7 @@ fn drawing(band: &LimitBand) -> String {
     svg
 }
 
-/// Mean feedrate of each stretch, mm/min as programs have it.
+/// Draws the mean feedrate of each stretch, mm/min as in programs.
 fn write_feed(svg: &mut String, stretches: &[BindingStretch], scale: f64) {
     let feed = |stretch: &BindingStretch| {
         60.0 * stretch.way_mm / stretch.duration_s.max(f64::MIN_POSITIVE)
@@ -155,7 +155,7 @@ fn write_feed(svg: &mut String, stretches: &[BindingStretch], scale: f64) {
     );
 }
 
-/// A row of one limit, with its name and its part of the time.
+/// Draws the row of one limit, with its name and its part of the time.
 fn write_row(
     svg: &mut String,
     band: &LimitBand,
@@ -196,7 +196,7 @@ fn write_row(
     svg.push_str("</g>\n");
 }
 
-/// How much of a stretch a limit binds, in steps; 0 where it hardly does.
+/// Returns the part of a stretch in which a limit binds, in steps; 0 for a part up to [`LEAST`].
 fn level(stretch: &BindingStretch, limit: usize) -> u32 {
     let part = stretch.bound_s[limit] / stretch.duration_s.max(f64::MIN_POSITIVE);
     if part > LEAST {
@@ -208,7 +208,7 @@ fn level(stretch: &BindingStretch, limit: usize) -> u32 {
     }
 }
 
-/// Neighbours of one colour: where they begin, their step, and all of them together.
+/// Draws adjacent stretches of one color: their start, their step, and all of them merged.
 fn write_run(
     svg: &mut String,
     name: &str,
@@ -237,7 +237,7 @@ fn write_run(
     );
 }
 
-/// Times below.
+/// Draws the times below the rows.
 fn write_times(svg: &mut String, total_s: f64, scale: f64, height: f64) {
     const TICKS: u32 = 5;
     for tick in 0..=TICKS {

@@ -10,7 +10,7 @@ use feedwright_plan::vector::{add_scaled, dot, sub};
 /// Most vertices kept. A page holds one outline; deflated, this many are some 60 kB of it.
 const MAX_VERTICES: usize = 20_000;
 
-/// Tolerance to begin with, mm: a tenth of the smallest contour error that a drawing shows.
+/// Initial tolerance, mm: a tenth of the smallest contour error that a drawing shows.
 const FIRST_TOLERANCE_MM: f64 = 1e-5;
 
 /// Points between two vertices that are checked against the chord. More points make longer chords
@@ -57,7 +57,7 @@ impl OutlineBuilder {
         }
     }
 
-    /// The vertices, the newest point included.
+    /// Returns the vertices, including the newest point.
     pub(super) fn vertices(&self) -> impl Iterator<Item = Vertex> {
         self.vertices.iter().chain(self.open.last()).copied()
     }
@@ -76,8 +76,8 @@ impl OutlineBuilder {
         if newest == vertex {
             return;
         }
-        // A change between rapid and cut is a vertex, unless it is lost in the tolerance: a record
-        // that never thinned out would never be bounded.
+        // A change between rapid and cut is a vertex, unless it is smaller than the tolerance:
+        // otherwise a record might never become short enough.
         let same_kind = newest.cutting == vertex.cutting
             || self.near(newest.point_mm, newest.point_mm, vertex.point_mm);
         let fits = same_kind
@@ -93,7 +93,7 @@ impl OutlineBuilder {
         self.open.push(vertex);
     }
 
-    /// Whether `p` is within the tolerance of the chord from `a` to `b`.
+    /// Returns true if `p` is within the tolerance of the chord from `a` to `b`.
     fn near(&self, a: [f64; 3], b: [f64; 3], p: [f64; 3]) -> bool {
         let (chord, to_p) = (sub(b, a), sub(p, a));
         let length2 = dot(chord, chord);

@@ -1,7 +1,7 @@
-//! What every page begins and ends with. A page is one file without references to anything outside
-//! it, and its content security policy names the style and the scripts that a browser may use: by
-//! their hash (CSP3, section 8.3), so that nothing else runs, whatever a program or a log brings
-//! into the page.
+//! Beginning and end of every page. A page is one file without references to anything outside it,
+//! and its content security policy names the style and the scripts that a browser may use, by their
+//! hash (CSP3, section 8.3). So nothing else runs, whatever a program or a log brings into the
+//! page.
 
 use std::io::{self, Write};
 
@@ -18,7 +18,7 @@ pub(super) struct PageFrame {
 }
 
 impl PageFrame {
-    /// Styles that follow on each other, and scripts that run one after the other.
+    /// Creates a frame from styles, which are joined, and scripts, which run one after the other.
     pub(super) fn new(styles: &[&str], scripts: Vec<String>) -> Self {
         Self {
             style: styles.join("\n"),
@@ -26,7 +26,7 @@ impl PageFrame {
         }
     }
 
-    /// The head, up to the body.
+    /// Writes the head, up to the body.
     pub(super) fn write_head(&self, out: &mut impl Write, title: &str) -> io::Result<()> {
         let scripts: String = self.scripts.iter().map(|script| allowed(script)).collect();
         write!(
@@ -51,7 +51,7 @@ impl PageFrame {
         )
     }
 
-    /// The scripts, and the end of the page.
+    /// Writes the scripts and the end of the page.
     pub(super) fn write_end(&self, out: &mut impl Write) -> io::Result<()> {
         for script in &self.scripts {
             writeln!(out, "<script>{script}</script>")?;
@@ -60,7 +60,7 @@ impl PageFrame {
     }
 }
 
-/// Scripts that share one scope of their own. What they export is for the page in a browser.
+/// Puts scripts into one scope of their own. Their exports are for the page in a browser.
 pub(super) fn in_one_scope(scripts: &[&str]) -> String {
     format!(
         "(async () => {{\n\"use strict\";\n{}}})();\n",
@@ -68,7 +68,7 @@ pub(super) fn in_one_scope(scripts: &[&str]) -> String {
     )
 }
 
-/// The expression of a policy that allows `text`.
+/// Returns the expression of a policy that allows `text`.
 fn allowed(text: &str) -> String {
     format!(
         " 'sha256-{}'",

@@ -15,12 +15,12 @@ pub enum PageUnits {
     /// mm, µm, mm/min.
     #[default]
     Metric,
-    /// in, thousandths of an inch, in/min.
+    /// Inches, thousandths of an inch, in/min.
     Inch,
 }
 
 impl PageUnits {
-    /// By which a value in mm, µm or mm/s is multiplied.
+    /// Returns the factor on a value in mm, µm or mm/s.
     pub(crate) const fn factor(self) -> f64 {
         match self {
             Self::Metric => 1.0,
@@ -28,7 +28,7 @@ impl PageUnits {
         }
     }
 
-    /// Name of the unit of errors.
+    /// Returns the name of the unit of errors.
     pub(crate) const fn error(self) -> &'static str {
         match self {
             Self::Metric => "µm",
@@ -36,7 +36,7 @@ impl PageUnits {
         }
     }
 
-    /// Name of the unit of lengths.
+    /// Returns the name of the unit of lengths.
     pub(super) const fn length(self) -> &'static str {
         match self {
             Self::Metric => "mm",
@@ -44,7 +44,7 @@ impl PageUnits {
         }
     }
 
-    /// Name of the unit of feedrates.
+    /// Returns the name of the unit of feedrates.
     pub(crate) const fn feed(self) -> &'static str {
         match self {
             Self::Metric => "mm/min",
@@ -52,8 +52,8 @@ impl PageUnits {
         }
     }
 
-    /// An error in µm, to three digits; a thousandth of an inch has a decimal more, as it is 25.4
-    /// µm.
+    /// Formats an error in µm to three digits. A thousandth of an inch has one more decimal,
+    /// because it is 25.4 µm.
     pub(crate) fn number(self, um: f64) -> String {
         let value = self.factor() * um;
         match self {
@@ -62,12 +62,12 @@ impl PageUnits {
         }
     }
 
-    /// A length in mm, or an error in µm, with so many decimals, and one more in inches.
+    /// Formats a length in mm, or an error in µm, with `decimals` decimals, and one more in inches.
     pub(crate) fn fixed(self, value: f64, decimals: usize) -> String {
         fixed(self.factor() * value, self.decimals(decimals))
     }
 
-    /// As [`Self::fixed`], with a plus sign before what is larger than zero.
+    /// Formats like [`Self::fixed`], with a plus sign before a value above zero.
     pub(super) fn signed(self, value: f64, decimals: usize) -> String {
         signed(self.factor() * value, self.decimals(decimals))
     }
@@ -76,7 +76,7 @@ impl PageUnits {
         metric + usize::from(self == Self::Inch)
     }
 
-    /// A text with metric figures.
+    /// Converts a text with metric figures.
     pub(crate) fn text(self, text: &str) -> String {
         match self {
             Self::Metric => text.to_owned(),

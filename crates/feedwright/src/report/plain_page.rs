@@ -1,5 +1,5 @@
 //! Pages of tables and figures: head, table of contents, parts that fold, foot. Without scripts
-//! everything is there, but nothing is sorted.
+//! everything is there, but tables cannot be sorted.
 
 use std::io::{self, Write};
 
@@ -12,22 +12,22 @@ const PAGE_JS: &str = include_str!("../../assets/report/pages.js");
 /// A part of a page, as its table of contents has it.
 #[derive(Debug, Clone, Default)]
 pub struct PagePart {
-    /// What a link leads to: letters, digits and dashes.
+    /// Target of links to the part: letters, digits and dashes.
     pub id: String,
     /// Heading.
     pub title: String,
-    /// What stands beside the heading while it is folded; may be empty.
+    /// Text beside the heading while the part is folded; may be empty.
     pub note: String,
-    /// Whether it is folded to begin with.
+    /// True where the part is folded at first.
     pub folded: bool,
-    /// What it stands under in the contents; may be empty.
+    /// Group of the part in the contents; may be empty.
     pub group: String,
-    /// What it is called there, where not by its title.
+    /// Name of the part in the contents, if it is not its title.
     pub short: Option<String>,
 }
 
 impl PagePart {
-    /// One that is open, under no group.
+    /// Creates a part that is open and has no group.
     pub fn new(id: &str, title: impl Into<String>) -> Self {
         Self {
             id: id.to_owned(),
@@ -36,7 +36,7 @@ impl PagePart {
         }
     }
 
-    /// Its beginning.
+    /// Writes the beginning of the part.
     pub fn begin(&self, out: &mut impl Write) -> io::Result<()> {
         let note = if self.note.is_empty() {
             String::new()
@@ -52,14 +52,14 @@ impl PagePart {
         )
     }
 
-    /// Its end.
+    /// Writes the end of a part.
     pub fn end(out: &mut impl Write) -> io::Result<()> {
         out.write_all(b"</details>\n")
     }
 }
 
-/// The beginning of a page, up to its first part. `class` is "tables" or "figures": the second is
-/// narrow, to be read.
+/// Writes the beginning of a page, up to its first part. `class` is "tables" or "figures": the
+/// second is narrow, for reading.
 pub fn write_head(
     out: &mut impl Write,
     class: &str,
@@ -98,7 +98,7 @@ fn write_contents(out: &mut impl Write, parts: &[PagePart]) -> io::Result<()> {
     out.write_all(b"</ol></details></nav>\n")
 }
 
-/// The end of such a page.
+/// Writes the end of such a page.
 pub fn write_foot(out: &mut impl Write) -> io::Result<()> {
     out.write_all(b"</main>\n</div>\n")?;
     frame().write_end(out)
@@ -108,13 +108,13 @@ fn frame() -> PageFrame {
     PageFrame::new(&[PAGE_CSS], vec![in_one_scope(&[PAGE_JS])])
 }
 
-/// The beginning of a table, up to its first row.
+/// Writes the beginning of a table, up to its first row.
 pub fn write_table_head<'a>(
     out: &mut impl Write,
     heads: impl IntoIterator<Item = &'a str>,
 ) -> io::Result<()> {
-    // With the keyboard a table that is wider than the screen is moved once it has the focus. A
-    // heading says something.
+    // With the keyboard, a table that is wider than the screen scrolls once it has the focus. A
+    // heading must not be empty.
     out.write_all(b"<div class=\"wide\" tabindex=\"0\"><table><thead><tr>")?;
     for head in heads {
         match head {
@@ -125,7 +125,7 @@ pub fn write_table_head<'a>(
     out.write_all(b"</tr></thead><tbody>\n")
 }
 
-/// Its end.
+/// Writes the end of a table.
 pub fn write_table_end(out: &mut impl Write) -> io::Result<()> {
     out.write_all(b"</tbody></table></div>\n")
 }

@@ -1,7 +1,7 @@
-//! Series: the record of a run that is drawn, bounded whatever the run's length.
+//! Series: the record of a run for drawing, bounded for any length of the run.
 //!
 //! Rows are gathered in buckets of equal row count. When [`Series::MAX_POINTS`] buckets are full,
-//! neighbours merge in pairs and each bucket takes twice as many rows. A bucket is represented by
+//! neighbors merge in pairs and each bucket takes twice as many rows. A bucket is represented by
 //! its row of largest contour error, and it keeps the least and the largest error, so that no peak
 //! is lost at any resolution.
 
@@ -15,7 +15,7 @@ use super::outline::{OutlineBuilder, Vertex};
 /// One point of a [`Series`]: a few successive rows, represented by the one with the largest
 /// contour error.
 ///
-/// Where at least one of the rows cuts, only those that cut are considered for the error.
+/// If any of the rows cuts, only rows that cut count for the error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeriesPoint {
     /// Time of the row, s.
@@ -24,7 +24,7 @@ pub struct SeriesPoint {
     pub s_mm: f64,
     /// Line of the program.
     pub line: u32,
-    /// Whether any of the rows cuts.
+    /// True where any of the rows cuts.
     pub cutting: bool,
     /// Contour error of the row, mm, signed as in [`Row`].
     pub error_mm: f64,
@@ -34,7 +34,8 @@ pub struct SeriesPoint {
     pub error_max_mm: f64,
     /// Point of the programmed path nearest to the tool, mm.
     pub foot_mm: [f64; 3],
-    /// From there to the tool, mm: as long as `error_mm`, which it draws with its direction.
+    /// Vector from `foot_mm` to the tool, mm: it has the length of `error_mm` and its direction in
+    /// the drawing.
     pub deviation_mm: [f64; 3],
     /// Mean planned feedrate, mm/s.
     pub feed_plan_mm_s: f64,
@@ -48,7 +49,7 @@ pub struct SeriesPoint {
     pub accel_mm_s2: [f64; 3],
 }
 
-/// Periods that differ by less are the same: times are rounded.
+/// Relative difference below which two periods are the same: times are rounded.
 const SAME_PERIOD: f64 = 1e-3;
 
 /// Acceleration of the command, by second differences over servo periods.
@@ -59,8 +60,8 @@ pub(super) struct CommandAcceleration {
 }
 
 impl CommandAcceleration {
-    /// Takes the command of a row; the acceleration of each axis, mm/s2, where the rows before are
-    /// a period apart.
+    /// Takes the command of a row. Returns the acceleration of each axis, mm/s2, if the previous
+    /// rows are one period apart.
     pub(super) fn push(&mut self, t_s: f64, command_mm: [f64; 3]) -> Option<[f64; 3]> {
         let [last, before] = self.commands;
         self.commands = [Some((t_s, command_mm)), last];
@@ -84,7 +85,7 @@ pub struct Series {
 
 #[derive(Debug, Clone, Copy)]
 struct Bucket {
-    /// The representative; its feeds are filled in when it is read.
+    /// Representative row; its feedrates are filled in when it is read.
     point: SeriesPoint,
     rows: u64,
     plan_sum_mm_s: f64,
@@ -99,11 +100,11 @@ impl Default for Series {
 }
 
 impl Series {
-    /// Most points kept: on a wide screen ten for each pixel, and with two controllers a page of
-    /// less than 2 MB. Even, so that a full record merges without a remainder.
+    /// Largest number of points: ten for each pixel on a wide screen, and a page of less than 2 MB
+    /// with two controllers. Even, so that a full record merges without a remainder.
     pub const MAX_POINTS: usize = 20_000;
 
-    /// An empty record.
+    /// Creates an empty record.
     pub fn new() -> Self {
         Self {
             buckets: Vec::new(),
@@ -114,17 +115,17 @@ impl Series {
         }
     }
 
-    /// Rows that one point stands for.
+    /// Returns the number of rows that one point represents.
     pub fn rows_per_point(&self) -> u64 {
         self.rows_per_point
     }
 
-    /// The points in order of time.
+    /// Returns the points in order of time.
     pub fn points(&self) -> impl ExactSizeIterator<Item = SeriesPoint> {
         self.buckets.iter().map(Bucket::point)
     }
 
-    /// The programmed path, with its corners.
+    /// Returns the programmed path, with its corners.
     pub(super) fn outline(&self) -> impl Iterator<Item = Vertex> {
         self.outline.vertices()
     }
@@ -151,7 +152,7 @@ impl Series {
 }
 
 impl Sink for Series {
-    /// Rows with a number that is not finite are left out: only a run that diverged has them.
+    /// Leaves out rows with a number that is not finite: only a run that diverged has them.
     fn row(&mut self, row: &Row) -> io::Result<()> {
         let numbers = [
             row.path_mm,
@@ -220,7 +221,7 @@ impl Bucket {
         }
     }
 
-    /// This bucket followed by `next`.
+    /// Merges this bucket with `next`, which follows it.
     fn merged(&self, next: &Self) -> Self {
         let (a, b) = (&self.point, &next.point);
         let mut point = match (a.cutting, b.cutting) {

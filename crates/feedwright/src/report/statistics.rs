@@ -25,11 +25,11 @@ use super::series::CommandAcceleration;
 use super::summary::{FeedShares, RunFacts, RunSummary};
 use super::worst::WorstFinder;
 
-/// Parts of the programmed feedrate that a tool is slow below and fast above: the chip is then a
-/// fifth thinner or thicker than it was programmed.
+/// Fractions of the programmed feedrate below which a tool is slow and above which it is fast: the
+/// chip is then a fifth thinner or thicker than programmed.
 const SLOW_AND_FAST: [f64; 2] = [0.8, 1.2];
 
-/// Times in which the tool is slower and faster than its program says.
+/// Times in which the tool is slower or faster than programmed.
 #[derive(Debug, Clone, Copy, Default)]
 struct FeedMeter {
     time_s: f64,
@@ -77,7 +77,7 @@ pub struct Statistics {
     max_mm: f64,
     max_deviation_mm: f64,
     max_command_accel_mm_s2: f64,
-    /// Of each axis.
+    /// Largest acceleration of the command of each axis, mm/s2.
     axis_accel_mm_s2: [f64; 3],
     acceleration: CommandAcceleration,
     peak_torque_nm: [f64; 3],
@@ -96,7 +96,7 @@ impl Default for Statistics {
 }
 
 impl Statistics {
-    /// Before the first row.
+    /// Creates statistics without any rows.
     pub fn new() -> Self {
         Self {
             rows: 0,
@@ -117,8 +117,8 @@ impl Statistics {
         }
     }
 
-    /// The summary of the run; `text` gives the text of a program line. The errors and times of a
-    /// cut that diverged are not a number: they would be those of its beginning.
+    /// Returns the summary of the run; `text` gives the text of a program line. The errors and
+    /// times of a cut that diverged are NaN: they would describe only its beginning.
     pub fn summary(&self, facts: RunFacts, text: impl FnMut(u32) -> String) -> RunSummary {
         let completed = facts.run.outcome == Outcome::Completed;
         let of_whole = |value: f64| if completed { value } else { f64::NAN };
@@ -159,7 +159,8 @@ impl Statistics {
         }
     }
 
-    /// Root mean square of the contour error over the rows that cut, µm; 0 without such rows.
+    /// Returns the root mean square of the contour error over the rows that cut, µm; 0 without such
+    /// rows.
     pub fn rms_um(&self) -> f64 {
         if self.cutting_rows == 0 {
             0.0
@@ -168,23 +169,23 @@ impl Statistics {
         }
     }
 
-    /// Largest distance of the corrected reference from the programmed path's point of the same
-    /// row, µm.
+    /// Returns the largest distance of the corrected reference from the programmed path's point of
+    /// the same row, µm.
     pub fn max_deviation_um(&self) -> f64 {
         self.max_deviation_mm * 1e3
     }
 
-    /// Largest acceleration of the command of any axis, mm/s2.
+    /// Returns the largest acceleration of the command of any axis, mm/s2.
     pub fn max_command_accel_mm_s2(&self) -> f64 {
         self.max_command_accel_mm_s2
     }
 
-    /// Largest torque of each axis, N m.
+    /// Returns the largest torque of each axis, N m.
     pub fn peak_torque_nm(&self) -> [f64; 3] {
         self.peak_torque_nm
     }
 
-    /// Largest |contour error| over the rows that cut, µm.
+    /// Returns the largest |contour error| over the rows that cut, µm.
     pub fn max_um(&self) -> f64 {
         self.max_mm * 1e3
     }

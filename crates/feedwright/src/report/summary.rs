@@ -1,4 +1,4 @@
-//! The numbers of one run, as the page's tables and `--json` give them.
+//! The numbers of one run, for the page's tables and `--json`.
 
 use feedwright_sim::{FadedOut, Machine, Outcome, RunResult, Transition};
 use serde::Serialize;
@@ -7,7 +7,7 @@ use super::headline::AXES;
 use super::histogram::Histogram;
 use super::worst::WorstPlace;
 
-/// What [`Statistics`](super::Statistics) cannot see in the rows of a run.
+/// Facts about a run that [`Statistics`](super::Statistics) cannot compute from its rows.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RunFacts {
     /// Name of the controller.
@@ -18,15 +18,15 @@ pub struct RunFacts {
     pub part: String,
     /// Axes of the machine, 2 or 3.
     pub axes: usize,
-    /// Whether the rows are those of a log, not of a simulation.
+    /// True where the rows come from a log, not from a simulation.
     pub measured: bool,
-    /// What the drives can, where that is known.
+    /// Limits of the drives, if known.
     pub drives: Option<DriveLimits>,
-    /// What the loop says about the run.
+    /// Result of the control loop.
     pub run: RunResult,
 }
 
-/// What the drive of each axis can.
+/// Limits of the drive of each axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DriveLimits {
     /// Acceleration that a command may have, mm/s2.
@@ -36,7 +36,7 @@ pub struct DriveLimits {
 }
 
 impl DriveLimits {
-    /// Of a machine.
+    /// Returns the limits of a machine.
     pub fn of(machine: &Machine) -> Self {
         Self {
             accel_mm_s2: std::array::from_fn(|i| machine.accel_limit_mm_s2(i)),
@@ -44,7 +44,7 @@ impl DriveLimits {
         }
     }
 
-    /// What of them is used by the axis that uses most.
+    /// Returns the largest used shares of the limits, each with its axis.
     pub(super) fn shares(
         &self,
         axes: usize,
@@ -73,7 +73,8 @@ impl DriveLimits {
     }
 }
 
-/// What of the limits of its drives a cut takes, at the moment and on the axis that take most.
+/// Largest shares of the drive limits that a cut uses, each at the moment and on the axis of its
+/// maximum.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CommandShares {
     /// Acceleration of the command.
@@ -91,29 +92,30 @@ pub struct CommandShare {
     pub share: f64,
 }
 
-/// A command that asks for more than this of an acceleration limit must not go to a drive, in
-/// percent as the user reads them: the plan may ask for all of it, and the correction for as much.
+/// Largest allowed share of an acceleration limit, in percent as the user reads it. The plan may
+/// ask for all of the limit, and the correction for as much again. A command above this share must
+/// not go to a drive.
 const MOST_PERCENT: f64 = 200.0;
 
-/// How the speed of the tool leaves the programmed feedrate F, over the time that it cuts.
+/// Deviation of the tool speed from the programmed feedrate F, over the cutting time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FeedShares {
     /// Share of the time below 0.8 of F.
     pub slow_share: f64,
     /// Share of the time above 1.2 of F.
     pub fast_share: f64,
-    /// Largest speed, as a part of F.
+    /// Largest speed, as a fraction of F.
     pub largest: f64,
 }
 
 impl RunSummary {
-    /// Whether most of the part was cut without the correction, or its end.
+    /// Returns true if most of the part, or its end, was cut without the correction.
     pub fn is_mostly_uncorrected(&self) -> bool {
         self.faded_out.is_some() && (self.engaged_share < LEAST_SHARE || !self.engaged_at_end)
     }
 
-    /// The share of the acceleration limit that its command asks for, where that is more than any
-    /// drive may get.
+    /// Returns the share of the acceleration limit that its command asks for, if it is more than
+    /// any drive may get.
     pub fn beyond_drives(&self) -> Option<CommandShare> {
         self.command_share
             .map(|shares| shares.acceleration)
@@ -121,11 +123,12 @@ impl RunSummary {
     }
 }
 
-/// Part of the cutting time in which a correction is to be in the loop at least.
+/// Smallest part of the cutting time in which a correction must be in the loop, so that the part
+/// counts as corrected.
 const LEAST_SHARE: f64 = 0.5;
 
 /// The numbers of one run. [`Statistics`](super::Statistics) has their exact definitions. Errors
-/// and times of a run that diverged are not a number, null in JSON.
+/// and times of a run that diverged are NaN, null in JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunSummary {
     /// Name of the controller.
@@ -136,49 +139,50 @@ pub struct RunSummary {
     pub part: String,
     /// Axes of the machine, 2 or 3.
     pub axes: usize,
-    /// Whether it was measured on a machine; simulated where not.
+    /// True where the run was measured on a machine; false where it was simulated.
     pub measured: bool,
-    /// How the run ended.
+    /// Outcome of the run.
     pub outcome: Outcome,
-    /// When and why the supervisor took the controller out of the loop last.
+    /// Time and reason of the last disengagement by the supervisor.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub faded_out: Option<FadedOut>,
-    /// All that changed of what corrects the command, in order.
+    /// All changes in what corrects the command, in order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub transitions: Vec<Transition>,
     /// Part of the cutting time in which the controller was in the loop.
     pub engaged_share: f64,
-    /// Whether it was at the end.
+    /// True where the controller was in the loop at the end.
     pub engaged_at_end: bool,
-    /// Machining time: when the command has ended, s.
+    /// Machining time: end of the command, s.
     pub time_s: f64,
     /// Root mean square of the contour error over the rows that cut, µm.
     pub rms_um: f64,
     /// Largest contour error of the rows that cut, µm.
     pub max_um: f64,
-    /// The same two by the encoders and the compensated geometry, µm; none where the machine has no
-    /// geometry that no encoder sees.
+    /// RMS contour error at the encoders, with the compensated geometry, µm; none if the machine
+    /// has no geometry errors that the encoders do not measure.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joint_rms_um: Option<f64>,
-    /// See above.
+    /// Largest contour error at the encoders, with the compensated geometry, µm; none in the same
+    /// case.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joint_max_um: Option<f64>,
-    /// Uncut path: largest distance from a programmed point to what the tool did in the time that
-    /// it has for it, µm.
+    /// Uncut path: largest distance from a programmed point to the path of the tool in the time
+    /// that the tool has for that point, µm.
     pub uncut_um: f64,
     /// Largest distance of the corrected reference from the programmed path's point of the same
     /// row, µm.
     pub max_deviation_um: f64,
     /// Largest acceleration of the command from one servo period to the next, mm/s2.
     pub max_command_accel_mm_s2: f64,
-    /// What it takes of the limits of the drives; none of a log.
+    /// Shares of the drive limits that the command uses; none for a log.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub command_share: Option<CommandShares>,
-    /// Largest torque of each axis, N m; none of a log: torques of logs are not read.
+    /// Largest torque of each axis, N m; none for a log: torques of logs are not read.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub peak_torque_nm: Option<[f64; 3]>,
-    /// The speed of the tool beside the programmed feedrate; none where that is not known, as of a
-    /// log.
+    /// Deviation of the tool speed from the programmed feedrate; none if that is not known, as for
+    /// a log.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub feed: Option<FeedShares>,
     /// Arc length that was cut, mm.
@@ -187,14 +191,14 @@ pub struct RunSummary {
     pub cutting_time_s: f64,
     /// Servo periods simulated.
     pub rows: u64,
-    /// When the tool has arrived at the end, s.
+    /// Time at which the tool has arrived at the end, s.
     pub arrival_s: f64,
-    /// Computing time of the ticks in which the controller decides, us: half of them take less. Not
-    /// shown on the page, which must not depend on the computer.
+    /// Median computing time of the ticks in which the controller decides, us. Not shown on the
+    /// page, which must not depend on the computer.
     pub tick_median_us: f64,
-    /// 99.9 % of them take less, us.
+    /// Computing time that 99.9 % of these ticks stay below, us.
     pub tick_p999_us: f64,
-    /// The most register entries that one estimate of the contour error looked at.
+    /// Largest number of register entries that one estimate of the contour error looked at.
     pub most_register_entries: usize,
     /// Largest contour errors, largest first, each place once.
     pub worst: Vec<WorstPlace>,

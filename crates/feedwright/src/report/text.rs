@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use feedwright_gcode::visible;
 
-/// `text` with the characters that HTML gives a meaning replaced, and nothing hidden; for element
-/// content and quoted attributes.
+/// Escapes `text` for HTML element content and quoted attributes, and makes hidden characters
+/// visible.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in visible(text).chars() {
@@ -21,7 +21,7 @@ pub fn escaped(text: &str) -> String {
     out
 }
 
-/// Three significant digits, at most two decimals, with a true minus sign.
+/// Formats a number with three significant digits, at most two decimals, and a true minus sign.
 pub fn number(value: f64) -> String {
     if !value.is_finite() {
         return "–".to_owned();
@@ -34,7 +34,7 @@ pub fn number(value: f64) -> String {
     fixed(value, decimals)
 }
 
-/// `decimals` decimals, with a true minus sign and none before a zero.
+/// Formats a number with `decimals` decimals and a true minus sign, but no sign before a zero.
 pub(super) fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return "–".to_owned();
@@ -48,7 +48,7 @@ pub(super) fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// As [`fixed`], with a plus sign before what is larger than zero.
+/// Formats like [`fixed`], with a plus sign before a value above zero.
 pub(super) fn signed(value: f64, decimals: usize) -> String {
     let text = fixed(value, decimals);
     if value > 0.0 && text.bytes().any(|b| (b'1'..=b'9').contains(&b)) {
@@ -58,7 +58,7 @@ pub(super) fn signed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// A time with its unit: "1.76 s", "10 min 03.2 s", "2 h 05 min 10 s".
+/// Formats a time with its unit: "1.76 s", "10 min 03.2 s", "2 h 05 min 10 s".
 pub(super) fn duration(seconds: f64) -> String {
     if !seconds.is_finite() {
         return "–".to_owned();
@@ -88,8 +88,8 @@ pub(super) fn duration(seconds: f64) -> String {
     out
 }
 
-/// Change from `before` to `after` in per cent: "−87 %"; nothing where `before` is zero. Near −100
-/// % it is what is left that tells, and beyond ten times it is the factor.
+/// Formats the change from `before` to `after` in percent: "−87 %"; none if `before` is zero. Near
+/// −100 % it has more decimals, because the remainder matters. From ten times on it is the factor.
 pub(crate) fn change(before: f64, after: f64) -> Option<String> {
     let percent = (after / before - 1.0) * 100.0;
     if before == 0.0 || !percent.is_finite() {

@@ -1,22 +1,21 @@
 //! The worst places of a run: its largest contour errors, each listed once.
 //!
-//! A place is a peak of |contour error|: it is over when the error has fallen below [`PEAK_ENDS`]
-//! times the peak, and the next begins when it rises again by the same factor above the least
-//! since. Of peaks closer than [`APART_MM`] or [`APART_S`] to one that is larger, only the larger
-//! counts. Memory does not grow with the run.
+//! A place is a peak of |contour error|. It ends when the error has fallen below [`PEAK_ENDS`]
+//! times the peak. The next one begins when the error rises again by the same factor above its
+//! least value since then. If a peak is closer than [`APART_MM`] or [`APART_S`] to a larger one,
+//! only the larger counts. Memory does not grow with the run.
 
 use feedwright_sim::Row;
 use serde::Serialize;
 
-/// Places listed.
+/// Largest number of places in the list.
 const PLACES: usize = 10;
 
-/// A peak is over when the error is this fraction of it. Nearer to 1, ripple on one bump makes many
-/// places of it; nearer to 0, neighbouring corners join.
+/// A peak ends when the error falls to this fraction of it. Closer to 1, ripple on one bump makes
+/// many places of it; closer to 0, neighboring corners join.
 const PEAK_ENDS: f64 = 0.7;
 
-/// Peaks smaller than this fraction of the largest are not listed: they are not what is wrong with
-/// the part.
+/// Peaks smaller than this fraction of the largest are not listed: they do not matter for the part.
 const MIN_SHARE: f64 = 0.01;
 
 /// Peaks nearer to each other than this along the path are one place, mm.
@@ -51,7 +50,7 @@ struct Peak {
     s_mm: f64,
 }
 
-/// Whether the error is on its way up to a peak or has left one.
+/// Trend of the error: rising to a peak, or falling after one.
 #[derive(Debug, Clone, Copy)]
 enum Trend {
     Rising(Peak),
@@ -62,7 +61,7 @@ enum Trend {
 #[derive(Debug, Clone)]
 pub(super) struct WorstFinder {
     trend: Trend,
-    /// The last peak, which a larger one close behind may still replace.
+    /// The last peak, which a larger one shortly after may still replace.
     pending: Option<Peak>,
     /// Largest first, at most [`PLACES`].
     found: Vec<Peak>,
@@ -97,7 +96,7 @@ impl WorstFinder {
         }
     }
 
-    /// The places, largest first; `text` gives the text of a program line.
+    /// Returns the places, largest first; `text` gives the text of a program line.
     pub(super) fn places(&self, mut text: impl FnMut(u32) -> String) -> Vec<WorstPlace> {
         let mut last = self.clone();
         if let Trend::Rising(peak) = last.trend {

@@ -250,7 +250,7 @@ impl Browser {
         self.frames();
     }
 
-    /// What the page's scripts threw, and what the console holds against it.
+    /// Returns the errors that the page's scripts threw, and those in the console.
     pub(crate) fn faults(&mut self) -> &[String] {
         self.frames();
         &self.faults

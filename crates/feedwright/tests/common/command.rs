@@ -99,7 +99,7 @@ impl Folder {
     }
 }
 
-/// What a run of the command left.
+/// Result of a run of the command.
 #[derive(Debug)]
 pub(crate) struct Ran {
     pub(crate) code: Option<i32>,
@@ -124,12 +124,12 @@ impl Ran {
         self
     }
 
-    /// What it printed, as one line: lines are wrapped to the width of the terminal.
+    /// Returns its stdout as one line: lines are wrapped to the width of the terminal.
     pub(crate) fn told(&self) -> String {
         self.stdout.split_whitespace().collect::<Vec<_>>().join(" ")
     }
 
-    /// What it says on stderr, as one line.
+    /// Returns its stderr as one line.
     pub(crate) fn remarked(&self) -> String {
         self.stderr.split_whitespace().collect::<Vec<_>>().join(" ")
     }

@@ -181,7 +181,7 @@ fn look(head: &[u8], name: &Arc<str>) -> Result<(Dialect, &'static str), ReadErr
     })
 }
 
-/// Whether there are names of parameters or O-words, which only LinuxCNC has.
+/// Returns true if there are named parameters or O-words, which only LinuxCNC has.
 fn has_owords(head: &[u8]) -> bool {
     memchr::memmem::find(head, b"#<").is_some()
         || head
@@ -189,7 +189,7 @@ fn has_owords(head: &[u8]) -> bool {
             .any(|line| is_oword(line.trim_ascii()))
 }
 
-/// Whether a line is an O-word with a keyword, as only LinuxCNC has.
+/// Returns true if a line is an O-word with a keyword, which only LinuxCNC has.
 fn is_oword(line: &[u8]) -> bool {
     let Some(label) = line.strip_prefix(b"o").or_else(|| line.strip_prefix(b"O")) else {
         return false;
@@ -306,7 +306,8 @@ fn is_okuma(line: &str) -> bool {
     starts.iter().any(|start| line.starts_with(start))
 }
 
-/// Whether digits stand alone, or before a comment: O-words of LinuxCNC have a keyword behind them.
+/// Returns true if digits stand alone or before a comment. In O-words of LinuxCNC a keyword follows
+/// them.
 fn is_program_number(text: &[u8]) -> bool {
     let digits = text.iter().take_while(|byte| byte.is_ascii_digit()).count();
     (1..=8).contains(&digits)
@@ -316,7 +317,7 @@ fn is_program_number(text: &[u8]) -> bool {
         )
 }
 
-/// Whether a line ends with `*` and a number.
+/// Returns true if a line ends with `*` and a number.
 fn has_checksum(code: &str) -> bool {
     let number = code
         .rsplit_once('*')

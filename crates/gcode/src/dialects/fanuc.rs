@@ -1,10 +1,10 @@
 //! What Fanuc and Haas mean by words that LinuxCNC reads otherwise.
 //!
-//! `mill_or_lathe` tells a program for a lathe from one for a mill, and `text/codes/fanuc.rs` holds
-//! the G-codes that are theirs. Of lathes, G-code system A is read: X, U and the position are
-//! diameters, U and W are distances, F is a feed per revolution (G99) unless G98 makes it one per
-//! minute. `turning` has the cycles of one block, `repetitive` those of two (G70 to G76), `profile`
-//! the blocks P to Q that they refer to.
+//! `mill_or_lathe` distinguishes programs for a lathe from programs for a mill, and
+//! `text/codes/fanuc.rs` holds the G-codes that only Fanuc and Haas have. Lathe programs are read
+//! in G-code system A: X, U and the position are diameters, U and W are distances, F is a feed per
+//! revolution (G99) unless G98 makes it one per minute. `turning` has the cycles of one block,
+//! `repetitive` those of two (G70 to G76), `profile` the blocks P to Q that they refer to.
 
 pub(super) mod mill_or_lathe;
 mod words;
@@ -29,7 +29,7 @@ use crate::text::codes::fanuc::{LATHE_OWN, OWN, SYSTEM_A, row};
 use crate::text::codes::{AXES, Group, bit, spelled};
 use crate::text::diagnostic::{LineFault, Read, Short};
 
-/// Whether a code of the line other than a motion uses its axis words.
+/// Returns true if a code of the line other than a motion uses its axis words.
 pub(crate) fn uses_axes(block: &Block) -> bool {
     block.g.iter().any(|word| {
         word.number >= OWN
@@ -39,8 +39,8 @@ pub(crate) fn uses_axes(block: &Block) -> bool {
     })
 }
 
-/// Whether a line bounds the spindle speed: G50 S, and G92 S of G-code systems B and C and of
-/// mills.
+/// Returns true if a line bounds the spindle speed: G50 S, or G92 S of mills and of G-code systems
+/// B and C.
 pub(crate) fn bounds_spindle(block: &Block) -> bool {
     block.has(b's')
         && block
@@ -49,7 +49,7 @@ pub(crate) fn bounds_spindle(block: &Block) -> bool {
 }
 
 impl Interpreter {
-    /// What has to be done to a line before it is carried out.
+    /// Prepares a line before it is carried out.
     pub(crate) fn prepare(&mut self, block: &mut Block) -> Read<()> {
         self.count_increments(block);
         self.fanuc.resolved = None;

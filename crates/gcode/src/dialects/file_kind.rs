@@ -3,11 +3,11 @@
 /// A kind of file that is given for a program now and then.
 #[derive(Debug)]
 pub(super) struct FileKind {
-    /// What it is.
+    /// Name of the kind, for the message.
     pub(super) kind: &'static str,
-    /// What to do.
+    /// Remedy, for the message.
     pub(super) hint: &'static str,
-    /// How it begins; text in lower case.
+    /// Bytes with which such files begin; text in lower case.
     starts: &'static [&'static [u8]],
 }
 

@@ -5,7 +5,7 @@ use crate::dialects::choice::GRBL_COMMANDS;
 use crate::settings::Dialect;
 use crate::text::diagnostic::LineFault;
 
-/// What such a line is.
+/// Kind of a firmware command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FirmwareCommand {
     /// The machine acts by itself: a macro, a probing of the bed. What it moves is not known here.
@@ -26,7 +26,8 @@ const PRINTER_TEXT: [&[u8]; 11] = [
     b"m16", b"m23", b"m28", b"m32", b"m110", b"m115", b"m117", b"m118", b"m486", b"m862", b"m928",
 ];
 
-/// Whether a line is a command to the firmware of this dialect.
+/// Returns the kind of firmware command on a line of this dialect, or `None` if the line is not
+/// one.
 pub(crate) fn command(line: &[u8], dialect: Dialect) -> Option<FirmwareCommand> {
     let line = line.trim_ascii();
     match dialect {

@@ -18,7 +18,7 @@ type Place = (Arc<str>, u32, u32, &'static str);
 /// Faults so far.
 #[derive(Debug, Default)]
 pub(super) struct Faults {
-    /// Those of new places.
+    /// Faults at new places.
     count: usize,
     /// All, with those of loops.
     met: usize,
@@ -45,7 +45,7 @@ impl Faults {
         self.count <= most
     }
 
-    /// Whether the place had this fault or warning before; counts it.
+    /// Returns true if this fault or warning has come up at its place before, and counts it.
     pub(super) fn is_known(&mut self, diagnostic: &Diagnostic) -> bool {
         if let Some(times) = self.times.get_mut(&place(diagnostic)) {
             *times += 1;
@@ -57,17 +57,18 @@ impl Faults {
         false
     }
 
-    /// How often a fault or warning has come up.
+    /// Returns how often a fault or warning has come up at its place.
     pub(super) fn times(&self, diagnostic: &Diagnostic) -> u64 {
         self.times.get(&place(diagnostic)).copied().unwrap_or(1)
     }
 
-    /// Whether reading on makes no sense.
+    /// Returns true if there are too many faults to read on.
     pub(super) const fn are_hopeless(&self) -> bool {
         self.met >= HOPELESS
     }
 
-    /// What is said behind the last line of those that were not shown; once.
+    /// Returns the closing message with the number of faults that were not shown, and resets the
+    /// counts. Returns `None` if all were shown.
     pub(super) fn rest(&mut self, most: usize) -> Option<String> {
         let more = self.count.saturating_sub(most);
         let unread = if self.are_hopeless() {

@@ -68,7 +68,7 @@ impl Flow {
     }
 }
 
-/// What a line begins with.
+/// Label at the beginning of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Label {
     Program,

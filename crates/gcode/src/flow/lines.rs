@@ -13,7 +13,7 @@ use crate::text::expression::Evaluator;
 use crate::text::lexer::Cursor;
 
 impl Flow {
-    /// What the end of the file leaves open: the line that began it and the message.
+    /// Returns what is still open at the end of the file: the line that began it and the message.
     pub(super) fn unfinished(&self) -> Option<(u32, String)> {
         if let Some(skip) = &self.skip {
             if let Some(number) = skip

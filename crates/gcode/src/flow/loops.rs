@@ -97,7 +97,7 @@ impl Flow {
     /// branch is read, the loop passed over.
     #[cold]
     pub(super) fn begin_anyway(&mut self, head: &Head, line: u32) {
-        // Behind one fault, another in the same line is not told.
+        // This line already has a fault. Another one is not reported.
         let _ = match head.keyword {
             Keyword::If => self.take_label(head, line),
             Keyword::Repeat => self
@@ -173,7 +173,7 @@ impl Flow {
         Ok(&mut self.loops[base + found])
     }
 
-    /// Whether a `while` ends a loop that began with `do`.
+    /// Returns true if a `while` ends a loop that began with `do`.
     fn ends_do(&self, head: &Head) -> bool {
         let base = self.frames.last().map_or(0, |frame| frame.loops);
         self.loops[base..]

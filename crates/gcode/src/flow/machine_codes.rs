@@ -232,7 +232,7 @@ const fn jump(number: u16) -> Option<(&'static str, &'static str)> {
     }
 }
 
-/// When an M-code acts relative to the others of its line.
+/// Returns the rank of an M-code among those of its line: lower ranks act first.
 pub(super) const fn order(number: u16) -> u8 {
     match number {
         6 | 61 => 0,

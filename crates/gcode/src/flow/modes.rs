@@ -10,7 +10,7 @@ use crate::text::codes::fanuc::OWN;
 use crate::text::codes::{self, Group};
 use crate::text::diagnostic::{LineFault, Read, Short};
 
-/// From this time on a dwell of whole seconds may be meant in milliseconds: 0.1 s is a usual dwell,
+/// Dwell in whole seconds from which on it may be meant in milliseconds: 0.1 s is a usual dwell,
 /// 100 s is not.
 const LONG_DWELL_S: f64 = 100.0;
 

@@ -6,7 +6,7 @@ use crate::text::diagnostic::{LineFault, Read, Short};
 use crate::text::expression::{Evaluator, INTEGER_WITHIN, ParameterSource};
 use crate::text::lexer::{Cursor, END};
 
-/// What an O-word asks for.
+/// Keyword of an O-word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Keyword {
     Sub,
@@ -48,7 +48,7 @@ const KEYWORDS: [(&[u8], Keyword); 15] = [
 ];
 
 impl Keyword {
-    /// How it is written.
+    /// Returns the keyword as it is written.
     pub(super) fn spelled(self) -> String {
         let row = KEYWORDS.iter().find(|row| row.1 == self);
         row.map_or_else(String::new, |row| {
@@ -63,7 +63,7 @@ pub(super) struct Head {
     /// Digits or a name, lower case without blanks.
     pub(super) label: Vec<u8>,
     pub(super) keyword: Keyword,
-    /// Where it stands in the line.
+    /// Byte range of the O-word in its line.
     pub(super) at: std::ops::Range<usize>,
 }
 
@@ -203,7 +203,7 @@ pub(super) fn read_arguments<V: ParameterSource>(
     Ok(arguments)
 }
 
-/// What follows the O-word: nothing, or a comment.
+/// Reads the rest of the line behind the O-word. Fails if it holds anything but comments.
 pub(super) fn read_rest(cursor: &mut Cursor<'_>) -> Read<()> {
     loop {
         let start = cursor.at;
@@ -223,7 +223,7 @@ pub(super) fn read_rest(cursor: &mut Cursor<'_>) -> Read<()> {
     }
 }
 
-/// Whether the line is an O-word; steps over its line number.
+/// Returns true if the line is an O-word. Moves the cursor past the line number.
 pub(super) fn at_o_word(cursor: &mut Cursor<'_>) -> bool {
     if cursor.peek() == b'/' {
         cursor.bump();

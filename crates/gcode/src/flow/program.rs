@@ -11,7 +11,7 @@ use crate::state::parameters::MACRO_LOCALS;
 use crate::text::diagnostic::{LineFault, Read};
 use crate::text::source::{Mark, Source};
 
-/// How a subroutine is written and called.
+/// Syntax in which a subroutine is written and called.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum SubroutineKind {
     /// `O1 sub` ... `O1 endsub`, called by `O1 call`.
@@ -74,10 +74,10 @@ pub(super) struct Skip {
 pub(super) enum Purpose {
     /// A false `if`: up to a true `elseif`, `else`, `endif`.
     Branch,
-    /// Behind a branch that was taken: up to `endif`.
+    /// Branches that follow the one taken: up to `endif`.
     EndOfBranches,
     Definition,
-    /// Out of a loop.
+    /// A loop that ends or is not entered: up to its end.
     EndOfLoop,
     /// `continue`: to the end of the loop, which is then carried out.
     NextRound,
@@ -106,7 +106,7 @@ pub(super) struct Flow {
     /// The line of the last `break`, obeyed or passed over: LinuxCNC 2.9 ends the next do at its
     /// `while`, whatever its condition says.
     pub(super) broke: Option<u32>,
-    /// What deserves a look in the line under way.
+    /// Warning about the current line.
     pub(super) warning: Option<Box<LineFault>>,
     pub(super) max_depth: usize,
     /// Lines of the branches and loops met so far, by file, subroutine and label; and room for such
@@ -155,7 +155,7 @@ impl Flow {
         &self.files[self.current].source
     }
 
-    /// Whether lines are passed over.
+    /// Returns true if lines are being skipped.
     #[inline]
     pub(super) const fn is_skipping(&self) -> bool {
         self.skip.is_some()

@@ -46,7 +46,7 @@ pub struct Reader {
     dialect_reason: &'static str,
 }
 
-/// Where the program stands between its `%` lines.
+/// Position of the reader relative to the `%` lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Percent {
     /// Nothing but comments so far.
@@ -234,8 +234,8 @@ impl Reader {
         self.watch()
     }
 
-    /// A fault of the line under way. One that only follows from the fault of an earlier line is
-    /// not told.
+    /// Reports a fault of the current line. Drops a fault that only follows from the fault of an
+    /// earlier line.
     #[cold]
     pub(super) fn refuse(&mut self, fault: LineFault) -> Result<(), Box<Diagnostic>> {
         let follows = self.interpreter.behind_fault && FOLLOWING.contains(&fault.code);
@@ -266,8 +266,8 @@ impl Reader {
         }
     }
 
-    /// What stands before the words of a line; returns where they begin, or nothing where the line
-    /// has none.
+    /// Reads what comes before the words of a line. Returns the position of the words, or `None` if
+    /// the line has none.
     #[inline]
     fn begin(&mut self, range: &Range<usize>) -> Read<Option<usize>> {
         let Self {
@@ -511,7 +511,7 @@ impl Reader {
         ))
     }
 
-    /// How often a fault or warning has come up at its place.
+    /// Returns how often a fault or warning has come up at its place.
     pub(super) fn times(&self, diagnostic: &Diagnostic) -> u64 {
         self.faults.times(diagnostic)
     }
@@ -524,7 +524,7 @@ impl Reader {
         }
     }
 
-    /// After the last line: how many faults were not shown.
+    /// Returns the closing message after the last line: how many faults were not shown.
     fn rest(&mut self) -> Option<Box<Diagnostic>> {
         let said = self.faults.rest(self.interpreter.settings.max_errors)?;
         Some(self.of_file("gcode::more", said))

@@ -9,7 +9,7 @@ use crate::text::diagnostic::{LineFault, Read, Short};
 use crate::text::expression::{Evaluator, ParameterSource};
 use crate::text::lexer::Cursor;
 
-/// What a line of a macro asks for.
+/// Statement of a macro line.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Statement {
     /// A condition that does not hold: the next line.
@@ -64,7 +64,7 @@ pub(super) fn statement<V: ParameterSource>(
     Ok(Some(statement))
 }
 
-/// Whether a line that is passed over ends the loop with the label `do1`.
+/// Returns the end of the loop with the label `do1` if this skipped line is one.
 pub(super) fn ends_loop(line: &[u8], label: &[u8]) -> Option<Head> {
     let number = label.strip_prefix(b"do")?;
     let mut cursor = Cursor::new(line);

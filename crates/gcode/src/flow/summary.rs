@@ -10,7 +10,7 @@ use crate::settings::Dialect;
 use crate::text::diagnostic::{Diagnostic, Severity};
 use crate::text::read_error::ReadError;
 
-/// What a program amounts to.
+/// Totals of a program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
     /// File as the user named it.
@@ -19,9 +19,9 @@ pub struct Summary {
     pub motions: u64,
     /// Events.
     pub events: u64,
-    /// Which of X, Y and Z move.
+    /// True for each of X, Y and Z that moves.
     pub moves: [bool; 3],
-    /// Whether A B C U V W or an extruder moves.
+    /// True where A, B, C, U, V, W or an extruder moves.
     pub moves_others: bool,
     /// First line in which each of A, B, C, U, V and W moves.
     pub others_move: [Option<u32>; 6],
@@ -35,7 +35,7 @@ pub struct Summary {
     pub box_mm: [[f64; 3]; 2],
     /// Dialect and why it was chosen.
     pub dialect: (Dialect, &'static str),
-    /// What deserves a look.
+    /// Warnings, which do not stop the program.
     pub warnings: Vec<Diagnostic>,
 }
 

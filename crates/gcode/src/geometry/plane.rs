@@ -91,8 +91,8 @@ impl PlaneCurve {
         }
     }
 
-    /// How much farther from an arc's centre, or nearer, one point is than another, mm; 0 for a
-    /// line.
+    /// Returns the difference between the distances of two points from the center of an arc, mm; 0
+    /// for a line.
     pub(crate) fn off_mm(&self, point: PlanePoint, other: PlanePoint) -> f64 {
         match *self {
             Self::Line { .. } => 0.0,
@@ -115,8 +115,8 @@ impl PlaneCurve {
         }
     }
 
-    /// Where the one curve can end and the other begin: the meeting nearest to a point, of two as
-    /// near the one that `other` has first.
+    /// Returns the point where this curve can end and the other begin: the intersection nearest to
+    /// a point. Of two equally near ones, it is the first along `other`.
     pub(crate) fn meet(&self, other: &Self, near: PlanePoint) -> Option<PlanePoint> {
         let candidates = self.candidates(other);
         let fits = |point: &PlanePoint| self.ends_at(*point) && other.begins_at(*point);
@@ -141,7 +141,7 @@ impl PlaneCurve {
         }
     }
 
-    /// Where the curves cross between their ends, the first along `other`.
+    /// Returns the first point along `other` where the two curves cross between their ends.
     pub(crate) fn first_crossing(&self, other: &Self) -> Option<PlanePoint> {
         let on_both = |point: &PlanePoint| {
             [self, other]
@@ -152,7 +152,7 @@ impl PlaneCurve {
         candidates.min_by(|a, b| other.way_to(*a).total_cmp(&other.way_to(*b)))
     }
 
-    /// Where the lines and circles that the curves lie on cross.
+    /// Returns the intersections of the lines or circles that the curves lie on.
     fn candidates(&self, other: &Self) -> [Option<PlanePoint>; 2] {
         match (*self, *other) {
             (Self::Line { start: a, end: b }, Self::Line { start: c, end: d }) => {
@@ -186,7 +186,7 @@ impl PlaneCurve {
         }
     }
 
-    /// How far along the curve a point lies, mm or rad.
+    /// Returns the distance of a point along the curve, mm or rad.
     pub(crate) fn way_to(&self, point: PlanePoint) -> f64 {
         match *self {
             Self::Line { start, end } => dot(minus(point, start), unit(minus(end, start))),
@@ -233,7 +233,7 @@ impl PlaneCurve {
         }
     }
 
-    /// Whether the curve, shortened at its end, can end at `point`.
+    /// Returns true if the curve, shortened at its end, can end at `point`.
     pub(crate) fn ends_at(&self, point: PlanePoint) -> bool {
         match *self {
             Self::Line { start, end } => {
@@ -252,7 +252,7 @@ impl PlaneCurve {
         }
     }
 
-    /// Whether the curve, shortened at its start, can begin at `point`.
+    /// Returns true if the curve, shortened at its start, can begin at `point`.
     pub(crate) fn begins_at(&self, point: PlanePoint) -> bool {
         match *self {
             Self::Line { start, end } => Self::Line {
@@ -349,7 +349,7 @@ fn circle_circle(c: PlanePoint, r: f64, d: PlanePoint, q: f64) -> [Option<PlaneP
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PlaneArc {
     pub(crate) center: [f64; 2],
-    /// As in [`Shape::Arc`](crate::canon::Shape::Arc).
+    /// Turns as in [`Shape::Arc`](crate::canon::Shape::Arc).
     pub(crate) turns: i32,
 }
 

@@ -31,7 +31,7 @@ const RADIUS_SLACK_MOST: [f64; 2] = [
     2.0 * std::f64::consts::SQRT_2,
     0.2 * std::f64::consts::SQRT_2,
 ];
-/// Between the two, the difference must be below this share of the radius.
+/// Share of the radius that the difference must stay below where it lies between these two limits.
 const RADIUS_SLACK_SHARE: f64 = 1e-3;
 /// Smallest radius of an arc given by its centre, mm: 0.00005 inch, in both units.
 const MIN_RADIUS_MM: f64 = 0.000_05 * INCH_MM;

@@ -485,8 +485,8 @@ fn check_entry(block: &Block, way: f64, radius: f64) -> Read<()> {
     )
 }
 
-/// How far the end of one offset curve lies within the other's distance, where the contour turns by
-/// an angle: r (1 - cos).
+/// Returns how far the end of one offset curve lies within the tool radius of the other curve,
+/// where the contour turns by an angle: r (1 - cos), mm.
 fn cut_mm(radius_mm: f64, angle: f64) -> f64 {
     2.0 * radius_mm * libm::sin(0.5 * angle).powi(2)
 }

@@ -253,8 +253,8 @@ impl Interpreter {
         Ok(())
     }
 
-    /// From R to the bottom and, where the cycle feeds out, back: of G85 to R, of the others all
-    /// the way.
+    /// Drills from R to the bottom. Cycles that feed out also return: G85 to R, the others all the
+    /// way.
     fn drill(&mut self, block: &Block, hole: &Hole, plane: [usize; 2]) -> Read<()> {
         let &Hole {
             normal,

@@ -19,11 +19,11 @@ pub(crate) const PRINTER_FEED_MM_S: f64 = 25.0;
 /// Nothing is turned closer to the axis than this, mm: the speed there is what it is here.
 pub(super) const MIN_RADIUS_MM: f64 = 0.01;
 
-/// How fast a motion goes.
+/// Speed of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Speed {
     Rapid,
-    /// By F.
+    /// Programmed feedrate F.
     Programmed,
 }
 
@@ -37,7 +37,7 @@ impl Speed {
 }
 
 impl Interpreter {
-    /// Whether the feedrate depends on X.
+    /// Returns true if the feedrate depends on X.
     #[inline]
     pub(super) fn follows_surface(&self) -> bool {
         self.modal.constant_surface.is_some() && self.modal.feed_mode == FeedMode::PerRevolution
@@ -140,7 +140,7 @@ impl Interpreter {
     }
 }
 
-/// What moves besides X, Y and Z.
+/// Returns the motion of the axes other than X, Y and Z.
 #[inline]
 pub(super) fn others(start: &Position, end: &Position, extruder_mm: f64) -> AuxiliaryAxes {
     let axes = (start[3..] != end[3..]).then(|| {
@@ -163,7 +163,7 @@ pub(super) fn distance(start: &Position, end: &Position) -> f64 {
         .unwrap_or(0.0)
 }
 
-/// Whether rotary axes are all that moves, so that F is in degrees.
+/// Returns true if only rotary axes move, so that F is in degrees.
 pub(super) fn turns_only(start: &Position, end: &Position) -> bool {
     start[..3] == end[..3] && start[6..] == end[6..] && start[3..6] != end[3..6]
 }

@@ -300,7 +300,7 @@ impl Interpreter {
         self.spline_to(block, spline, self.at)
     }
 
-    /// What happens in the middle of a curve that is not complete.
+    /// Fails if a spline is still incomplete at this line.
     pub(crate) fn check_no_curve(&mut self, block: &Block) -> Read<()> {
         match self.carried.collected.take() {
             None => Ok(()),

@@ -55,7 +55,8 @@ impl Interpreter {
         feed
     }
 
-    /// Where the pieces of a way from one X to another end, as shares of it.
+    /// Returns the ends of the pieces into which a motion from one X to another is divided, as
+    /// shares of it.
     fn shares(&self, from: f64, to: f64, highest: f64) -> Vec<f64> {
         let mut shares = Vec::new();
         let crosses = from * to < 0.0;

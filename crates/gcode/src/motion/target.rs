@@ -10,7 +10,7 @@ use crate::text::diagnostic::{LineFault, Read};
 const STEPS: [(u8, usize, u8); 2] = [(b'u', 0, b'x'), (b'w', 2, b'z')];
 
 impl Interpreter {
-    /// Where the axis words lead, in program coordinates.
+    /// Returns the target of the axis words, in program coordinates.
     #[inline]
     pub(crate) fn target(&self, block: &Block) -> Read<Position> {
         let mut target = self.at;
@@ -133,7 +133,7 @@ impl Interpreter {
         Ok(())
     }
 
-    /// Where X (a radius) and Y (an angle) of G16 lead.
+    /// Sets the target from X (a radius) and Y (an angle) of G16.
     fn own_polar(&self, block: &Block, target: &mut Position) -> Read<()> {
         if !block.has(b'x') && !block.has(b'y') {
             return Ok(());
@@ -170,7 +170,8 @@ impl Interpreter {
         Ok(())
     }
 
-    /// Where a distance U, V or W leads along X, Y or Z.
+    /// Returns the target along X, Y or Z of a distance U, V or W. Fails if the line also has X, Y
+    /// or Z.
     fn stepped(&self, block: &Block, letter: u8, axis: usize, value: f64) -> Read<f64> {
         let place = b"xyz"[axis];
         if block.has(place) {

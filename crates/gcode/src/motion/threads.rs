@@ -272,7 +272,7 @@ impl Interpreter {
 /// A thread, mm.
 struct Thread {
     pitch: f64,
-    /// From the drive line to the peaks, along X.
+    /// Distance from the drive line to the peaks, along X.
     offset: f64,
     /// Depth of the finished thread.
     full: f64,

@@ -202,16 +202,16 @@ pub enum ToolTableError {
     /// No such file, no permission, or the disk fails.
     #[error("{}: the tool table cannot be read: {cause}", path.display())]
     Io {
-        /// As the user named it.
+        /// Path as the user gave it.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the operating system.
         #[source]
         cause: io::Error,
     },
     /// Lines that are not understood.
     #[error("{}: {} fault{} in the tool table", path.display(), faults.len(), if faults.len() == 1 { "" } else { "s" })]
     Faults {
-        /// As the user named it.
+        /// Path as the user gave it.
         path: PathBuf,
         /// All of them, in the order of the lines.
         #[related]

@@ -13,7 +13,7 @@ use crate::text::source::Mark;
 /// Motions of a profile: they are kept in memory, and a drawing has far fewer.
 const MAX_MOTIONS: usize = 100_000;
 
-/// What a cycle does with its profile, mm.
+/// Operation of a cycle on its profile, mm.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ProfileWork {
     /// G70.
@@ -42,7 +42,7 @@ pub(crate) struct ProfileBlocks {
     pub(crate) code: u16,
     pub(crate) block: Block,
     pub(crate) line: u32,
-    /// Where it began, machine coordinates, and its modes.
+    /// Start of the cycle in machine coordinates, and its modes.
     pub(crate) start: Position,
     pub(crate) modal: Modal,
 }
@@ -57,7 +57,7 @@ pub(crate) struct Capture {
     /// Line of the cycle, and where the program goes on, if not behind the profile.
     pub(crate) mark: Mark,
     pub(crate) back: Option<Mark>,
-    /// What does not belong in a profile, by its line.
+    /// First motion that does not belong in a profile: its line and the message.
     pub(crate) fault: Option<(u32, &'static str)>,
 }
 

@@ -4,7 +4,7 @@ use crate::canon::Canon;
 use crate::geometry::plane::{PlaneCurve, PlanePoint};
 use crate::state::frame::Position;
 
-/// What the lines before leave to those behind them.
+/// State that earlier lines pass on to later ones.
 #[derive(Debug, Default)]
 pub(crate) struct CarriedOver {
     /// Cutter compensation, if it is on.
@@ -13,7 +13,7 @@ pub(crate) struct CarriedOver {
     pub(crate) left_compensation: bool,
     /// Steps that wait until compensation knows where the first of them ends.
     pub(crate) held: Vec<Canon>,
-    /// What canned cycles keep from line to line.
+    /// State of the canned cycles from line to line.
     pub(crate) cycle: Cycle,
     /// The NURBS that is being collected.
     pub(crate) collected: Option<Collected>,
@@ -42,7 +42,8 @@ pub(crate) struct CycleLength {
 }
 
 impl CycleLength {
-    /// In this unit: as written where that is its unit, which a way over mm would round.
+    /// Returns the length in this unit. If it was written in this unit, returns the written number,
+    /// because a conversion through mm would round it.
     pub(crate) fn in_unit(self, unit_mm: f64) -> f64 {
         if unit_mm == self.unit_mm {
             self.written
@@ -52,7 +53,7 @@ impl CycleLength {
     }
 }
 
-/// What a cycle keeps for the next line, mm and seconds.
+/// Values that a canned cycle keeps for the next line, mm and seconds.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Cycle {
     /// The code; 0 before the first.
@@ -86,7 +87,7 @@ pub(crate) struct Pecks {
 pub(crate) struct Collected {
     pub(crate) code: u16,
     pub(crate) order: usize,
-    /// Where it starts, in program coordinates.
+    /// Start point, in program coordinates.
     pub(crate) start: Position,
     pub(crate) points: Vec<[f64; 3]>,
     pub(crate) weights: Vec<f64>,

@@ -33,7 +33,7 @@ pub(crate) struct Fanuc {
     pub(crate) points: Points,
     /// Number N of the line under way.
     pub(crate) block_number: u64,
-    /// What has been warned of already, by its code.
+    /// Codes of the warnings that were already given.
     pub(super) warned: Vec<&'static str>,
 }
 
@@ -52,16 +52,17 @@ pub(crate) struct TurningWords {
 pub(crate) struct RepetitiveWords {
     /// Depth of a pass of G71 and of G72.
     pub(crate) depth_mm: [Option<f64>; 2],
-    /// How far a pass of G71, G72 goes off before it returns.
+    /// Distance that a pass of G71, G72 retracts before it returns.
     pub(crate) escape_mm: Option<f64>,
-    /// Of G73: from the first pass to the last along X (radius) and Z, and passes.
+    /// Values of G73: distance from the first pass to the last along X (radius) and Z, and number
+    /// of passes.
     pub(crate) pattern: Option<([f64; 2], u32)>,
-    /// Of G74, G75: how far a peck goes back.
+    /// Retraction of a peck of G74, G75.
     pub(crate) back_mm: f64,
     pub(crate) thread: Option<ThreadingWords>,
 }
 
-/// What the first block of G76 says.
+/// Values of the first block of G76.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ThreadingWords {
     pub(crate) finishing: u32,
@@ -76,21 +77,21 @@ pub(crate) struct ThreadingWords {
 #[derive(Debug)]
 pub(crate) struct Pending {
     pub(crate) block: Block,
-    /// Where it leads without its corner, and its circle.
+    /// Target of the motion without its corner, and its circle.
     pub(crate) goal: Goal,
     pub(crate) corner: CornerWord,
     pub(crate) line: u32,
     pub(crate) feed: (f64, f64),
 }
 
-/// Where a motion leads, in program coordinates.
+/// Target of a motion, in program coordinates.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Goal {
     pub(crate) target: Position,
     pub(crate) round: Option<PlaneArc>,
 }
 
-/// What is written without a decimal point in a program, and whether anything has one.
+/// Count of the lengths without a decimal point in a program, and whether any length has one.
 #[derive(Debug, Default)]
 pub(crate) struct Points {
     pub(crate) has_point: bool,

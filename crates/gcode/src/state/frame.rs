@@ -21,7 +21,7 @@ impl Turn {
     }
 }
 
-/// From program coordinates to machine coordinates:
+/// Transformation from program coordinates to machine coordinates:
 /// machine = rotate_xy(turn(program) + g92) + system + tool.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Frame {
@@ -47,8 +47,8 @@ impl Frame {
         }
     }
 
-    /// Whether both have the same system and rotations, and offsets that differ by less than
-    /// `within_mm`.
+    /// Returns true if both have the same system and rotations, and offsets that differ by less
+    /// than `within_mm`.
     pub(super) fn is_near(&self, other: &Self, within_mm: f64) -> bool {
         let near =
             |a: &Position, b: &Position| a.iter().zip(b).all(|(a, b)| (a - b).abs() < within_mm);

@@ -5,23 +5,23 @@ use super::frame::{Frame, Position};
 use super::modal::FeedMode;
 use crate::canon::{Corner, Plane};
 
-/// What a block that is written behind a step of a program would mean.
+/// Modes that decide the meaning of a block inserted after a step of a program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModesInForce {
     /// Millimetres of a unit of length: 1, or 25.4 of an inch.
     pub unit_mm: f64,
-    /// Whether coordinates count from where the tool is (G91).
+    /// True where coordinates count from the current position (G91).
     pub incremental: bool,
-    /// Whether centres of arcs are coordinates (G90.1).
+    /// True where centers of arcs are absolute coordinates (G90.1).
     pub arc_absolute: bool,
     /// Plane of arcs.
     pub plane: Plane,
-    /// Whether F is a way in a minute (G94).
+    /// True where F is a distance per minute (G94).
     pub feed_per_minute: bool,
-    /// Whether cutter compensation or the diameters of a lathe make another path of coordinates
-    /// than they say.
+    /// True where cutter compensation or diameter programming of a lathe makes the path differ from
+    /// the programmed coordinates.
     pub changes_coordinates: bool,
-    /// How corners are taken.
+    /// Corner mode.
     pub corner: Corner,
     frame: Frame,
 }
@@ -41,7 +41,7 @@ impl ModesInForce {
         }
     }
 
-    /// Whether coordinates of the program mean the same places: coordinate system, offsets,
+    /// Returns true if program coordinates mean the same places: coordinate system, offsets,
     /// rotation and tool length are the same.
     pub fn same_frame(&self, other: &Self) -> bool {
         self.frame == other.frame

@@ -14,7 +14,7 @@ pub(crate) const MAX_MOTIONS: usize = 100_000;
 
 pub(crate) const CHANGED: &str = "it changes the unit, the plane, offsets, G90 or G91, G7 or G8, G90.1, cutter compensation or the mode of F";
 
-/// What the words of the cycle ask for, mm.
+/// Operation that the words of the cycle request, mm.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum LatheWork {
     /// G70: passes from one distance off the profile to another.
@@ -40,7 +40,7 @@ pub(crate) struct LatheCycle {
     pub(crate) line: u32,
     pub(crate) mark: Mark,
     pub(crate) level: usize,
-    /// Where the cycle begins, machine coordinates.
+    /// Start of the cycle in machine coordinates.
     pub(crate) start: Position,
     pub(crate) feed: (f64, f64),
     pub(crate) modes: ProfileModes,
@@ -50,7 +50,7 @@ pub(crate) struct LatheCycle {
     pub(crate) corners: Vec<(usize, CornerCut)>,
     /// The corner word of the block under way.
     pub(crate) corner: Option<CornerCut>,
-    /// What does not belong in a profile, by its line.
+    /// First line that does not belong in a profile, and the message.
     pub(crate) fault: Option<(u32, String)>,
 }
 

@@ -5,7 +5,7 @@ use crate::canon::{Corner, Plane};
 /// Millimetres of an inch.
 pub const INCH_MM: f64 = 25.4;
 
-/// What F means.
+/// Meaning of F.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FeedMode {
     /// G94.
@@ -29,8 +29,8 @@ pub(crate) struct Modal {
     pub(crate) feed_mode: FeedMode,
     /// F: mm/min, 1/min or mm/rev by `feed_mode`.
     pub(crate) feed: f64,
-    /// What F was multiplied by to become millimetres. Rotary axes that move alone take F in
-    /// degrees, whatever the unit.
+    /// Factor that converted F to millimeters. Rotary axes that move alone take F in degrees in
+    /// either unit.
     pub(crate) feed_unit_mm: f64,
     pub(crate) corner: Corner,
     /// G99: canned cycles retract to R; G98: to where they began.

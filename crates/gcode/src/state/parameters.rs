@@ -21,7 +21,7 @@ const MAX_NAMES: usize = 100_000;
 pub(crate) const HOME_1: usize = 5161;
 /// First of the nine coordinates that G30 goes to.
 pub(crate) const HOME_2: usize = 5181;
-/// Whether G92 is active.
+/// Parameter that is 1 while G92 is active.
 pub(super) const G92_ACTIVE: usize = 5210;
 /// First of the nine G92 offsets.
 pub(super) const G92_FIRST: usize = 5211;

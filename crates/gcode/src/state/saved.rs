@@ -13,7 +13,7 @@ use crate::text::diagnostic::{LineFault, Read};
 struct Saved {
     modal: Modal,
     frame: Frame,
-    /// Whether G92 was in effect.
+    /// True where G92 was active.
     shifted: bool,
     /// M73: they come back when the subroutine returns.
     automatic: bool,
@@ -23,11 +23,11 @@ struct Saved {
 /// Calls of subroutines under way.
 #[derive(Debug, Default)]
 pub(crate) struct Calls {
-    /// How deep.
+    /// Depth of nested calls.
     pub(crate) level: usize,
     /// Result of the last subroutine.
     pub(crate) returned: Option<f64>,
-    /// What M70 and M73 have put away.
+    /// States saved by M70 and M73.
     saved: Vec<Saved>,
 }
 

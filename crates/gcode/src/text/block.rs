@@ -50,15 +50,15 @@ pub(crate) struct Block {
     pub(crate) assignments: Vec<(Target, f64)>,
     /// Text of the last comment, without its brackets.
     pub(crate) comment: Option<Range<usize>>,
-    /// Whether a letter may stand without a value where it only names an axis.
+    /// True where a letter may stand without a value if it only names an axis.
     bare_words: bool,
-    /// Whether to look for decimal points, and the letters whose numbers have one.
+    /// True where decimal points are recorded; `pointed` has the letters whose numbers have one.
     points: bool,
     pub(crate) pointed: u32,
     /// The letters whose values are computed.
     pub(crate) computed: u32,
     codes: CodeSet,
-    /// Whether a word E follows a number without a blank, as an exponent does.
+    /// True where a word E follows a number without a blank, as an exponent does.
     pub(crate) exponent: bool,
     /// `,R` or `,C` of Fanuc.
     pub(crate) corner: Option<CornerWord>,
@@ -133,25 +133,25 @@ impl Block {
         self.set &= !bit(letter);
     }
 
-    /// Whether the line has the letter.
+    /// Returns true if the line has the letter.
     #[inline]
     pub(crate) const fn has(&self, letter: u8) -> bool {
         self.set & bit(letter) != 0
     }
 
-    /// Whether the number of a letter is written with a decimal point; known where
-    /// [`Style::points`] asks for it.
+    /// Returns true if the number of a letter is written with a decimal point. It is known only
+    /// with [`Style::points`].
     pub(crate) const fn has_point(&self, letter: u8) -> bool {
         self.pointed & bit(letter) != 0
     }
 
-    /// Where the word of a letter stands.
+    /// Returns the byte range of the word of a letter.
     pub(crate) fn at(&self, letter: u8) -> Range<usize> {
         let (start, end) = self.place[slot(letter)];
         start as usize..end as usize
     }
 
-    /// Where the first word of a set of letters stands.
+    /// Returns the byte range of the first word of a set of letters.
     pub(crate) fn at_any(&self, letters: u32) -> Range<usize> {
         let first = (0..LETTERS)
             .filter(|slot| self.set & letters & (1 << slot) != 0)
@@ -166,7 +166,7 @@ impl Block {
         0..self.end
     }
 
-    /// Whether the line has a word of an axis.
+    /// Returns true if the line has a word of an axis.
     #[inline]
     pub(crate) const fn has_axes(&self) -> bool {
         self.set & AXES != 0
@@ -178,8 +178,8 @@ impl Block {
         self.group[group as usize]
     }
 
-    /// Whether it has G10, or a code that puts a coordinate system or the length of a tool in
-    /// force.
+    /// Returns true if the line has G10, or a code that activates a coordinate system or a tool
+    /// length.
     pub(crate) fn names_offsets(&self) -> bool {
         let writes = self
             .code(Group::NonModal)

@@ -58,7 +58,7 @@ const MINUS: &str = "write the hyphen `-` of the keyboard; the text was perhaps 
 const BLANK: &str =
     "write the blank of the keyboard; the text was perhaps copied from a page or a word processor";
 
-/// What is wrong with the byte at `start`, which is no ASCII.
+/// Returns the fault for the byte at `start`, which is not ASCII.
 #[cold]
 pub(super) fn not_ascii(bytes: &[u8], start: usize) -> Box<LineFault> {
     // Up to four bytes make one character; what follows may be the beginning of another.
@@ -89,7 +89,8 @@ pub(super) fn not_ascii(bytes: &[u8], start: usize) -> Box<LineFault> {
     }
 }
 
-/// Whether a file's beginning is UTF-16: it has its byte order mark, or a NUL in every other byte.
+/// Returns true if the beginning of a file is UTF-16: it has a byte order mark, or a NUL in every
+/// other byte.
 pub(crate) fn is_utf16(head: &[u8]) -> bool {
     let pairs = head.as_chunks::<2>().0;
     let most = pairs.len().min(64);

@@ -15,10 +15,10 @@ use crate::text::visible::visible;
 /// Longest excerpt of a line that a diagnostic keeps, bytes: a row of a terminal, so that the caret
 /// stands below its fault.
 const EXCERPT_BYTES: usize = 100;
-/// What stands where an excerpt is cut.
+/// Mark where an excerpt is cut.
 const CUT: &str = "…";
 
-/// How bad it is.
+/// Severity of a diagnostic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Severity {
     /// The program must not run.
@@ -42,8 +42,8 @@ pub struct Diagnostic {
     pub column: u32,
     /// Length of the faulty text in characters.
     pub span: u32,
-    /// What is wrong, with value, limit and unit. What the program hides in its text shows here, as
-    /// in the hint: see [`visible`].
+    /// Description of the fault, with value, limit and unit. Hidden characters of the program are
+    /// visible here and in the hint: see [`visible`].
     pub message: String,
     /// Likely remedy.
     pub hint: Option<String>,

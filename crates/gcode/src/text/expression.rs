@@ -26,13 +26,13 @@ const MAX_DEPTH: u32 = 200;
 /// An index or number this close to an integer is that integer, as in LinuxCNC.
 pub(crate) const INTEGER_WITHIN: f64 = 1e-4;
 
-/// Where parameter values come from.
+/// Source of parameter values.
 pub(crate) trait ParameterSource {
     /// Value of `#index`, `index` from 1 to 5601.
     fn numbered(&self, index: usize) -> f64;
     /// Value of `#<name>`, lower case without blanks.
     fn named(&self, name: &[u8]) -> Option<f64>;
-    /// Whether expressions are those of Fanuc's macros.
+    /// Returns true if expressions follow the rules of Fanuc macros.
     fn is_fanuc(&self) -> bool {
         false
     }
@@ -55,7 +55,7 @@ impl ParameterSource for NoParameters {
     }
 }
 
-/// What stands behind `#`.
+/// Parameter that `#` refers to.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Target {
     /// A number.
@@ -78,7 +78,7 @@ const FUNCTIONS: [&[u8]; 14] = [
     b"sin", b"sqrt", b"tan",
 ];
 
-/// What signs of other languages are told.
+/// Hint for the comparison signs of other languages.
 const COMPARISONS: &str = "comparisons are spelled out: EQ, NE, GT, GE, LT, LE, as in [#1 EQ 5]";
 
 /// Words of Fanuc macros and of other languages, which programs for them hold in place of O-words.
@@ -128,7 +128,7 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
         }
     }
 
-    /// Whether values are those of Fanuc's macros.
+    /// Returns true if values follow the rules of Fanuc macros.
     pub(super) fn is_fanuc(&self) -> bool {
         self.values.is_fanuc()
     }
@@ -307,7 +307,7 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
         .hint("write exists[#<name>]"))
     }
 
-    /// What stands behind the `#` under the cursor.
+    /// Reads the parameter that the `#` under the cursor refers to.
     pub(super) fn target(&mut self) -> Read<Target> {
         let start = self.cursor.at;
         self.cursor.bump();
@@ -330,7 +330,7 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
         Ok(Target::Numbered(number as usize))
     }
 
-    /// The whole number behind a `#`, which may be that of no parameter.
+    /// Reads the whole number behind a `#`. A parameter with this number need not exist.
     fn parameter_number(&mut self, start: usize) -> Read<f64> {
         let index = self.deeper(start, Self::value)?;
         let rounded = index.round();

@@ -82,7 +82,7 @@ const CODES: &[(&[u16], &str, &str)] = &[
     ),
 ];
 
-/// What a code of another control does, and what helps.
+/// Returns what a code of another control does, and the remedy.
 pub(super) fn what(tenths: f64) -> Option<(&'static str, &'static str)> {
     let row = CODES
         .iter()

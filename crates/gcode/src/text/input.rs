@@ -10,13 +10,13 @@ use std::sync::OnceLock;
 
 use crate::text::visible::visible;
 
-/// What stands for the standard input.
+/// Path that stands for the standard input.
 const STANDARD_INPUT: &str = "-";
 
-/// What came from the standard input, or why nothing did.
+/// Bytes read from the standard input, or the error.
 static KEPT: OnceLock<Result<Vec<u8>, (io::ErrorKind, String)>> = OnceLock::new();
 
-/// Whether a path stands for the standard input.
+/// Returns true if a path stands for the standard input.
 pub fn is_standard_input(path: &Path) -> bool {
     path.as_os_str() == STANDARD_INPUT
 }

@@ -9,7 +9,7 @@
 use crate::text::characters::not_ascii;
 use crate::text::diagnostic::{LineFault, Read};
 
-/// What [`Cursor::peek`] gives behind the last byte: no line contains it.
+/// Byte that [`Cursor::peek`] returns behind the last byte. No line contains it.
 pub(crate) const END: u8 = b'\n';
 
 /// Powers of ten that f64 holds exactly.
@@ -22,7 +22,7 @@ const EXACT_MANTISSA: u64 = 1 << 53;
 /// Digits that always fit a u64.
 const SAFE_DIGITS: usize = 19;
 
-/// What a number with an exponent is told.
+/// Message for a number with an exponent.
 pub(crate) const NO_EXPONENT: &str =
     "G-code has no exponents: write the digits out, 1500 for 1.5e3 and 0.0015 for 1.5e-3";
 
@@ -84,8 +84,8 @@ impl<'a> Cursor<'a> {
         true
     }
 
-    /// Whether an `e` under the cursor looks like an exponent: between a digit or point and a digit
-    /// or sign.
+    /// Returns true if an `e` under the cursor looks like an exponent: between a digit or point and
+    /// a digit or sign.
     pub(super) fn is_exponent(&self) -> bool {
         let before = self
             .at
@@ -97,7 +97,7 @@ impl<'a> Cursor<'a> {
             && after.is_some_and(|byte| byte.is_ascii_digit() || matches!(byte, b'+' | b'-'))
     }
 
-    /// Whether a number follows the `$` under the cursor: the `$` then selects a spindle.
+    /// Returns true if a number follows the `$` under the cursor. The `$` then selects a spindle.
     pub(super) fn is_spindle(&self) -> bool {
         let after = self.bytes[self.at..]
             .iter()

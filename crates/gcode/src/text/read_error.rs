@@ -15,9 +15,9 @@ pub enum ReadError {
         "give the path to the program from the current folder, or - for the standard input"
     ))]
     Io {
-        /// As the user named it.
+        /// Path as the user gave it.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the operating system.
         #[source]
         cause: io::Error,
     },
@@ -25,14 +25,14 @@ pub enum ReadError {
     #[error("{path}: this is a folder, not a G-code program")]
     #[diagnostic(help("name a program in it; `feedwright check` takes folders"))]
     Directory {
-        /// As the user named it.
+        /// Path as the user gave it.
         path: PathBuf,
     },
     /// Bytes that no text has.
     #[error("{name}: byte {offset} is NUL: this is no G-code program but a binary file")]
     #[diagnostic(help("G-code is plain text; a slicer or CAM system exports it"))]
     Binary {
-        /// As the user named it.
+        /// Name as the user gave it.
         name: Arc<str>,
         /// Offset of the first NUL byte.
         offset: usize,
@@ -41,11 +41,11 @@ pub enum ReadError {
     #[error("{name}: this is {kind}, not a G-code program")]
     #[diagnostic(help("{hint}"))]
     OtherFile {
-        /// As the user named it.
+        /// Name as the user gave it.
         name: Arc<str>,
-        /// What it is.
+        /// Kind of file.
         kind: &'static str,
-        /// What to do.
+        /// Remedy.
         hint: &'static str,
     },
     /// Two bytes a character.
@@ -54,7 +54,7 @@ pub enum ReadError {
         "save it as UTF-8 or plain ASCII; editors ask for the encoding in \"Save as\""
     ))]
     Utf16 {
-        /// As the user named it.
+        /// Name as the user gave it.
         name: Arc<str>,
     },
     /// Nothing in it.
@@ -63,7 +63,7 @@ pub enum ReadError {
         "the export may have failed; a program has at least a motion such as G1 X10 F100"
     ))]
     Empty {
-        /// As the user named it.
+        /// Name as the user gave it.
         name: Arc<str>,
     },
     /// Another language.
@@ -72,7 +72,7 @@ pub enum ReadError {
         "export the program as ISO G-code (RS-274), for instance with a LinuxCNC or Fanuc post-processor"
     ))]
     Refused {
-        /// As the user named it.
+        /// Name as the user gave it.
         name: Arc<str>,
         /// The control whose language it is.
         language: &'static str,
@@ -89,15 +89,15 @@ pub enum ReadError {
         "say which: --dialect fanuc-lathe, haas-lathe or fanuc-mill; of lathes, G-code system A is read, in which U and W are distances and G90 is a cycle"
     ))]
     MillOrLathe {
-        /// As the user named it.
+        /// Name as the user gave it.
         name: Arc<str>,
         /// The first line that shows a lathe, from 1.
         lathe_line: u32,
-        /// What is on it.
+        /// Sign of a lathe on that line.
         lathe: &'static str,
         /// The first line that shows a mill, from 1.
         mill_line: u32,
-        /// What is on it.
+        /// Sign of a mill on that line.
         mill: &'static str,
     },
 }

@@ -29,14 +29,14 @@ pub(crate) enum SourceLine {
     Text(Range<usize>),
     /// A line of more than [`MAX_LINE_BYTES`], skipped; the range holds its beginning.
     TooLong(Range<usize>),
-    /// No more lines.
+    /// End of the file.
     End,
 }
 
 /// A program as a sequence of lines.
 #[derive(Debug)]
 pub(crate) struct Source {
-    /// As the user named it.
+    /// Name as the user gave it.
     pub(crate) name: Arc<str>,
     file: Option<File>,
     buffer: Vec<u8>,
@@ -45,7 +45,7 @@ pub(crate) struct Source {
     /// Next unread byte of the buffer.
     next: usize,
     at_end: bool,
-    /// Where the line begins that `next_line` returned last.
+    /// Start of the line that `next_line` returned last.
     pub(crate) line_start: Mark,
     /// Number of that line, from 1.
     pub(crate) line: u32,
@@ -128,7 +128,7 @@ impl Source {
         }
     }
 
-    /// What stands behind the last line end.
+    /// Returns the text after the last line end.
     fn last_line(&mut self) -> SourceLine {
         let range = self.next..self.buffer.len();
         if range.is_empty() {
@@ -143,7 +143,7 @@ impl Source {
         }
     }
 
-    /// What has been read of the file behind the last line.
+    /// Returns the bytes already read from the file after the last line.
     #[inline]
     pub(crate) fn unread(&self) -> &[u8] {
         &self.buffer[self.next..]
@@ -238,7 +238,7 @@ impl Source {
         }
     }
 
-    /// Where the next line begins.
+    /// Returns the start of the next line.
     pub(crate) fn here(&self) -> Mark {
         Mark {
             offset: self.buffer_start + self.next as u64,

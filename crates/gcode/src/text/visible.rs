@@ -8,8 +8,8 @@
 
 use std::borrow::Cow;
 
-/// Whether a character shows nothing of itself: a control, or a mark that only changes how others
-/// are shown.
+/// Returns true if a character has no visible form: a control character, or a mark that only
+/// changes how others are shown.
 pub const fn is_hidden(c: char) -> bool {
     matches!(c,
         '\0'..='\x1f' | '\x7f'..='\u{9f}'

@@ -218,8 +218,8 @@ fn uses(
         .collect()
 }
 
-/// What goes upwards, and how many uses there are at all; `outside` are names of other crates that
-/// the root gives as its own.
+/// Returns the violations (uses of a module that stands below its user, paths through the root) and
+/// the number of all uses. `outside` lists names of other crates that the root re-exports.
 pub(crate) fn check(files: &[File], spread: Spread<'_>, outside: &[&str]) -> (Vec<String>, usize) {
     let methods = methods(files, spread);
     let (mut violations, mut seen) = (Vec::new(), 0);

@@ -26,7 +26,7 @@ pub(crate) fn code(text: &str) -> String {
     code
 }
 
-/// Where the string that starts the text ends.
+/// Returns the position behind the string that starts the text.
 fn end_of_string(text: &str) -> usize {
     let mut escaped = false;
     for (at, c) in text.char_indices().skip(1) {

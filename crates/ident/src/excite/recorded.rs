@@ -5,14 +5,14 @@ use std::fmt::Write;
 use feedwright_gcode::{Program, Settings};
 use feedwright_sim::{AXIS_NAMES, Machine, Plant, RunError, Stages, joints_of, path_steps};
 
-/// Rest that is recorded behind the end, s: what rings is seen to its end.
+/// Rest that is recorded after the end, s: oscillations are recorded until they have decayed.
 const REST_S: f64 = 0.3;
 
-/// What `halsampler -t` would write of the first N axes: the command and the position that the
-/// encoders show, mm, both taken at the same moment, once a servo period.
+/// Returns the lines that `halsampler -t` would write of the first N axes: the command and the
+/// position that the encoders show, mm, both sampled at the same moment, once a servo period.
 ///
 /// # Errors
-/// A program that cannot be read, or a machine without a plan.
+/// Fails if a program cannot be read, or if the machine has no plan.
 pub fn recorded_log<const N: usize>(
     machine: &Machine,
     program: &Program,

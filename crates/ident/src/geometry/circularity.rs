@@ -5,9 +5,9 @@
 //! H = max |r_ccw - r_cw| at the same angle about the center of both
 //! ```
 //!
-//! r is the mean radius over 1 degree, R the nominal one. A center is that of a least-squares
-//! circle. F needs a calibrated bar, and H both directions. Source: ISO 230-4 (2005), circular
-//! tests for numerically controlled machine tools, clause 3.
+//! r is the mean radius over 1 degree, R the nominal one. The center is the center of a
+//! least-squares circle. F needs a calibrated bar, and H both directions. Source: ISO 230-4 (2005),
+//! circular tests for numerically controlled machine tools, clause 3.
 
 use feedwright_sim::{MeasuredSet, RankedLeastSquares, to_four_digits};
 
@@ -27,7 +27,7 @@ pub struct Circularity {
 const PLACES: usize = 360;
 
 impl Circularity {
-    /// Of a set; none where it is not of a ball bar.
+    /// Computes the deviations of a set; `None` if it does not come from a ball bar.
     pub fn of(set: &MeasuredSet) -> Option<Self> {
         if set.kind != "bar" {
             return None;
@@ -53,7 +53,7 @@ impl Circularity {
         })
     }
 
-    /// In a line for people.
+    /// Writes them as a line for the user.
     pub fn line(&self) -> String {
         let [ccw, cw] = self
             .deviation_um

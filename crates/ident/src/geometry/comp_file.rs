@@ -104,7 +104,7 @@ pub fn sampled_table(file: &GeometryFile, axis: usize) -> Option<Vec<[f64; 3]>> 
     (travel_mm > 0.0).then(|| (0..=steps as u32).map(row).collect())
 }
 
-/// Noise that stands for that of a table that is exact to its digits, um.
+/// Noise that is assumed for a table that is exact to its digits, um.
 const EXACT_UM: f64 = 0.01;
 
 /// The geometry that compensation files state: axis and rows of each.

@@ -4,13 +4,13 @@
 //! deviation / noise = (nuisances of its set + sum of unknowns times the prediction of one unit) / noise + residual
 //! ```
 //!
-//! The noise of a set is what the fit leaves of it; fit and noise are found in turns. Residuals
-//! that follow each other alike, as those of a servo that lags, tell less than independent ones:
-//! standard deviations are multiplied by sqrt(tau), tau = 1 + 2 times the sum of the
-//! autocorrelations up to the first that is negative (Geyer 1992, Practical Markov chain Monte
-//! Carlo). A pitch error that an F-test at 0.1 % does not tell from none is left out. The windup of
-//! a screw is taken off the deviations. It is known to a tenth, which adds to the variance of the
-//! backlash.
+//! The noise of a set is the residual of the fit; fit and noise are found in turns. Residuals that
+//! follow each other alike, such as the residuals of a servo that lags, contain less information
+//! than independent ones: standard deviations are multiplied by sqrt(tau), tau = 1 + 2 times the
+//! sum of the autocorrelations up to the first that is negative (Geyer 1992, Practical Markov chain
+//! Monte Carlo). A pitch error that is not significant in an F-test at 0.1 % is left out. The
+//! windup of a screw is taken off the deviations. It is known to a tenth, which adds to the
+//! variance of the backlash.
 
 use feedwright_sim::{
     AXIS_NAMES, CHECK_ERROR_RATE, GeometryCheck, GeometryFile, GeometryOrigin, GeometryRefused,
@@ -29,7 +29,7 @@ use crate::model::version;
 /// Why a measurement gives no geometry.
 #[derive(Debug, Clone, PartialEq, Error, Diagnostic)]
 pub enum NoGeometry {
-    /// There are no more rows than unknowns.
+    /// The measurement has no more rows than unknowns.
     #[error("the measurement has {rows} values for {unknowns} unknowns")]
     #[diagnostic(
         code(geometry::rows),
@@ -60,7 +60,7 @@ pub enum NoGeometry {
 /// A value that was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundGeometryValue {
-    /// What it is, such as `scale x`.
+    /// Name of the value, such as `scale x`.
     pub name: String,
     /// Its unit.
     pub unit: &'static str,
@@ -70,7 +70,7 @@ pub struct FoundGeometryValue {
     pub std: f64,
 }
 
-/// What a set tells about itself.
+/// Quality of a set in the fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundSet {
     /// Name of the set.
@@ -84,7 +84,7 @@ pub struct FoundSet {
     /// Standard deviation of values that were measured at the same place in the same direction, um;
     /// none where each was measured once.
     pub repeatability_um: Option<f64>,
-    /// Factor tau by which its residuals tell less than independent ones.
+    /// Factor tau by which its residuals contain less information than independent ones.
     pub correlation: f64,
     /// Circular deviations of a ball bar, as it was read.
     pub circularity: Option<Circularity>,
@@ -99,9 +99,9 @@ pub struct FoundGeometry {
     pub file: GeometryFile,
     /// Every value with its standard deviation.
     pub values: Vec<FoundGeometryValue>,
-    /// What each measurement tells about itself.
+    /// Quality of each measurement.
     pub sets: Vec<FoundSet>,
-    /// What could not be told, in sentences.
+    /// Quantities that could not be determined, in sentences.
     pub notes: Vec<String>,
     /// The test that a reader of the file makes.
     pub check: GeometryCheck,
@@ -208,7 +208,7 @@ impl GeometryFit {
                 .filter(|&&axis| turns[axis].is_none())
                 .map(|&axis| {
                     format!(
-                        "pitch error of {}: not told, the positions are too far apart for its lead",
+                        "pitch error of {}: not determined, the positions are too far apart for its lead",
                         AXIS_NAMES[axis]
                     )
                 }),
@@ -329,7 +329,7 @@ impl GeometryFit {
         }
         for &axis in &dropped {
             self.notes.push(format!(
-                "pitch error of {}: not told from none",
+                "pitch error of {}: not distinguishable from zero",
                 AXIS_NAMES[axis]
             ));
         }
@@ -529,13 +529,13 @@ impl GeometryFit {
         {
             let why = match unknown.kind {
                 UnknownKind::MeanScale => {
-                    "no calibrated length tells it; the scales are differences, split evenly. Calibrate the bar, or measure an axis by laser"
+                    "it needs a calibrated length; the scales are differences, split evenly. Calibrate the bar, or measure an axis by laser"
                 }
                 UnknownKind::Backlash(_) => "measure in both directions",
                 _ => "measure at more places",
             };
             self.notes
-                .push(format!("{}: not told, {why}", unknown.kind.name()));
+                .push(format!("{}: not determined, {why}", unknown.kind.name()));
         }
         if self
             .sets
@@ -548,8 +548,8 @@ impl GeometryFit {
         }
     }
 
-    /// Adds what repeats at the targets of an axis in spite of scale and backlash, where an F-test
-    /// tells it from noise.
+    /// Adds deviations that repeat at the targets of an axis in spite of scale and backlash, where
+    /// an F-test separates them from noise.
     fn tables(&mut self, file: &mut GeometryFile) {
         for (at, set) in self
             .sets
@@ -653,7 +653,7 @@ fn left_um(seen: &[Observation], file: &GeometryFile) -> (Vec<f64>, Vec<f64>) {
     (fit.values, left)
 }
 
-/// To a hundredth of the standard deviation.
+/// Rounds a value to a hundredth of its standard deviation.
 fn rounded(value: f64, std: f64) -> f64 {
     if !(std.is_finite() && std > 0.0 && value.is_finite()) {
         return value;

@@ -5,7 +5,7 @@ use feedwright_sim::{AXIS_NAMES, MeasuredSet};
 use super::comp_file;
 use super::text::{MeasurementError, TextBlock, blocks};
 
-/// What a file holds.
+/// Content of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub enum GeometryInput {
     /// Sets to fit.
@@ -356,8 +356,8 @@ fn grid(block: &TextBlock) -> Result<MeasuredSet, MeasurementError> {
     Ok(set)
 }
 
-/// Names of distances of a test part: direction in degrees, and by how much more than once each
-/// side moves with the size of the tool.
+/// Names of distances of a test part: direction in degrees, and the factor by which each side moves
+/// with the size of the tool.
 const DISTANCES: [(&str, f64, f64); 8] = [
     ("circle_0", 0.0, 1.0),
     ("circle_45", 45.0, 1.0),

@@ -7,18 +7,18 @@ use std::f64::consts::TAU;
 
 use feedwright_sim::{GeometryFile, Machine, MeasuredSet};
 
-/// What is known of the screw of an axis.
+/// Known properties of the screw of an axis.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct KnownScrew {
     /// Travel of a turn, mm.
     pub lead_mm: f64,
-    /// Lost motion by friction that winds the screw up, um. A law of the axis that has the screw
+    /// Lost motion by friction that winds the screw up, um. A model of the axis with the screw
     /// predicts it; it is no geometry.
     pub windup_um: f64,
 }
 
 impl KnownScrew {
-    /// Of an axis of a machine file; `None` where the machine has no such axis.
+    /// Returns the screw of an axis of a machine file; `None` where the machine has no such axis.
     ///
     /// The screw of stiffness k = Jt (2 pi f)^2 gives way by Fc / k in either direction.
     pub fn of(machine: &Machine, axis: usize) -> Option<Self> {
@@ -96,7 +96,7 @@ pub(super) fn binned(mut set: MeasuredSet, lead_mm: f64) -> MeasuredSet {
 /// there is no geometry.
 const REVERSAL_DEG: f64 = 4.0;
 
-/// Whether no axis has just reversed at an angle.
+/// Returns true if no axis has just reversed at an angle.
 fn settled(angle_deg: f64, way: f64) -> bool {
     let behind_deg = way * angle_deg - 90.0 * (way * angle_deg / 90.0).floor();
     behind_deg > REVERSAL_DEG

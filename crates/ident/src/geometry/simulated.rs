@@ -22,9 +22,9 @@ pub struct SimulatedBallBar {
     pub noise_um: f64,
     /// Samples of a circle, about.
     pub samples: u32,
-    /// Whether its length is known.
+    /// True where its length is known.
     pub calibrated: bool,
-    /// Whether the radius by the encoders is recorded with it.
+    /// True where the radius by the encoders is recorded with it.
     pub has_encoders: bool,
     /// Seed of the noise of bar and machine.
     pub seed: u64,
@@ -90,15 +90,15 @@ impl SimulatedBallBar {
     }
 }
 
-/// What a bar has recorded.
+/// Record of a bar.
 struct BarRecord<'b> {
     bar: &'b SimulatedBallBar,
     text: String,
     rng: Rng,
     /// Directions of the arcs that come.
     ways: std::array::IntoIter<f64, 2>,
-    /// On an arc: its direction, the last angle, that counted on over full turns, and the angle of
-    /// the next sample.
+    /// State on an arc: its direction, the last angle, this angle counted on over full turns, and
+    /// the angle of the next sample.
     arc: Option<[f64; 4]>,
 }
 

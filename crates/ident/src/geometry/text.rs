@@ -18,7 +18,7 @@ pub struct MeasurementError {
     pub file: String,
     /// Its line, from 1.
     pub line: usize,
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
     /// Remedy.
     #[help]
@@ -111,7 +111,7 @@ impl TextBlock {
         }
     }
 
-    /// Whether a key is `yes`, `true` or `1`.
+    /// Returns true if a key is `yes`, `true` or `1`.
     pub(super) fn flag(&self, key: &str) -> bool {
         self.keys
             .get(key)

@@ -1,11 +1,11 @@
-//! The unknowns that a measurement may tell, each as the geometry that it has when it is 1.
+//! The unknowns that a measurement can determine, each as the geometry that it has when it is 1.
 //!
 //! The scales of n axes are fitted as n - 1 differences and their mean. A ball bar of unknown
-//! length does not tell the mean, which is then dropped; the differences remain, split evenly.
+//! length does not determine the mean, which is then dropped; the differences remain, split evenly.
 
 use feedwright_sim::{AXIS_NAMES, GeometryFile, Observation};
 
-/// What an unknown is.
+/// Kind of an unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum UnknownKind {
     /// Squareness of a pair: 0 xy, 1 xz, 2 yz.
@@ -14,7 +14,7 @@ pub(super) enum UnknownKind {
     ScaleDifference,
     /// See there.
     MeanScale,
-    /// Of an axis.
+    /// Backlash of an axis.
     Backlash(usize),
     /// Pitch error of an axis that is zero at position 0.
     PitchSine(usize),
@@ -34,7 +34,7 @@ pub(super) struct Unknown {
 /// turn.
 const STEPS_PER_TURN: f64 = 5.0;
 
-/// Whether steps of this length along an axis show what is within a turn.
+/// Returns true if steps of this length along an axis resolve a turn of the screw.
 pub(super) fn shows_turns(observations: &[Observation], axis: usize, lead_mm: f64) -> bool {
     let moves = observations
         .windows(2)
@@ -46,7 +46,7 @@ pub(super) fn shows_turns(observations: &[Observation], axis: usize, lead_mm: f6
         .is_some_and(|median_mm| *median_mm <= lead_mm / STEPS_PER_TURN)
 }
 
-/// The unknowns of some axes and planes, the ones that are most surely told first.
+/// Returns the unknowns of some axes and planes, the best determined ones first.
 pub(super) fn unknowns(
     axes: &[usize],
     planes: &[[usize; 2]],

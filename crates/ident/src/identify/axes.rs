@@ -1,8 +1,8 @@
-//! Axes identified from a recording: what each is, by its law, and the statistics of its noise.
+//! Axes identified from a recording: the parameters of each axis, and the statistics of its noise.
 //!
-//! What a drive is set to is known; [`super::axis_parameters`] finds inertia and friction,
-//! [`super::axis_statistics`] the noise. Of an axis that does not move so that they show, nothing
-//! is found.
+//! The drive settings are known. [`super::axis_parameters`] finds inertia and friction,
+//! [`super::axis_statistics`] the noise. If the motion of an axis does not show them, nothing is
+//! found for it.
 
 use feedwright_control::IdentifiedAxes;
 use feedwright_sim::{Known, Machine, map_in_parallel};
@@ -17,7 +17,7 @@ use super::recording::Recording;
 pub struct TrainedAxes<const N: usize> {
     /// The axes.
     pub axes: IdentifiedAxes<N>,
-    /// What was found of each, with standard errors.
+    /// Estimates of each axis, with standard errors.
     pub estimates: Vec<AxisEstimate>,
     /// RMS of what a free run leaves of the measured positions, um per axis.
     pub fit_um: f64,
@@ -25,17 +25,17 @@ pub struct TrainedAxes<const N: usize> {
     pub samples: usize,
 }
 
-/// What a machine showed, each at its servo period.
+/// Recordings of a machine, each at its servo period.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisRecordings<const N: usize> {
-    /// With offsets, for the law: [`Excitation::axis_parameters`].
+    /// Recording with offsets, for the parameters: [`Excitation::axis_parameters`].
     pub parameters: Recording<N>,
-    /// Without, for the statistics: [`Excitation::statistics`].
+    /// Recording without offsets, for the statistics: [`Excitation::statistics`].
     pub statistics: Recording<N>,
 }
 
 impl<const N: usize> AxisRecordings<N> {
-    /// Of a simulated machine.
+    /// Records a simulated machine.
     pub fn of(machine: &Machine, seed: u64) -> Self {
         let (parameters, _) = Excitation::axis_parameters(machine).record(machine, seed);
         Self {

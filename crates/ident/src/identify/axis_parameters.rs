@@ -1,19 +1,18 @@
-//! What an axis is, inertia and friction, from commanded and measured positions, where what its
-//! drive is set to is known.
+//! Inertia and friction of an axis from commanded and measured positions, where the drive settings
+//! are known.
 //!
 //! ```text
 //! minimise  V(p) = sum_k (y(k) - y_s(k; c, p))^2        over all knots of all stretches but their beginnings
 //! dp = (S^T S)^-1 S^T (y - y_s),   S = dy_s / dp         Gauss and Newton, in shorter steps where V grows
 //! ```
 //!
-//! y measured position, c commands, y_s the free run of the axis's law on the commands alone
+//! y measured position, c commands, y_s the free run of the axis model on the commands alone
 //! (`axis_parameters/free_run.rs`), p the parameters. This is the output error of the closed loop.
-//! What is random, encoder and torque noise, does not depend on the command, so that it is
-//! uncorrelated with S and leaves the minimum where it is; the torque that is recomputed from
-//! measured positions, and linear least squares on it, would have the noise in its regressors,
-//! twice differentiated (errors in variables). By how much the inertia comes out wrong, measured
-//! over both axes (`crates/ident/tests/oracle_axis_parameters.rs` has the method, the bounds, and
-//! holds them):
+//! Encoder noise and torque noise do not depend on the command. They are uncorrelated with S and do
+//! not move the minimum. Linear least squares on a torque that is recomputed from measured
+//! positions would have the noise in its regressors, twice differentiated (errors in variables).
+//! Error of the inertia, measured over both axes (`crates/ident/tests/oracle_axis_parameters.rs`
+//! has the method, the bounds, and holds them):
 //!
 //! | Machine | output error | least squares on the torque |
 //! |---|--:|--:|
@@ -24,22 +23,21 @@
 //! | stiff | 0.0 % | +8 % |
 //! | router, with backlash and a late bus | +4 to +6 % | -64 to -65 % |
 //!
-//!
-//! Standard errors take each stretch for one observation, since what is left is correlated within
-//! (a vibration, torque noise):
+//! Standard errors count each stretch as one observation, because the residuals are correlated
+//! within a stretch (a vibration, torque noise):
 //!
 //! ```text
 //! cov p = H^-1 (sum_stretches g g^T) H^-1 n / (n - 1),   H = S^T S,  g = S^T (y - y_s) over a stretch
 //! ```
 //!
-//! They tell what the noise does, not what the law does not have: Stribeck's curve goes into the
-//! Coulomb friction and the presliding, a bus that is late at random into all of them.
+//! They show the effect of the noise, not of effects that the model lacks: Stribeck's curve goes
+//! into the Coulomb friction and the presliding, a bus that is late at random into all parameters.
 //!
 //! | File | What |
 //! |---|---|
-//! | `axis_parameters/free_run.rs` | what the law makes of the commands alone |
+//! | `axis_parameters/free_run.rs` | response of the model to the commands alone |
 //! | `axis_parameters/output_error_fit.rs` | the steps of Gauss and Newton, and the standard errors |
-//! | `axis_parameters/screw_fit.rs` | whether the ball screw gives, and by how much |
+//! | `axis_parameters/screw_fit.rs` | compliance of the ball screw, if it shows |
 //!
 //! Source: Gautier, Janot and Vandanjon (2013), A new closed-loop output error method for parameter
 //! identification of robot dynamics, IEEE Trans. Control Systems Technology 21(2), for the output
@@ -63,7 +61,7 @@ use thiserror::Error;
 use super::recording::Recording;
 use output_error_fit::{OutputErrorFit, START_KNOTS, Stretch};
 
-/// What a drive is set to: any control shows it.
+/// Settings of a drive, which any controller shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DriveSettings {
     /// Turn of the motor for a travel of the table, rad/mm.
@@ -76,21 +74,21 @@ pub struct DriveSettings {
     pub kv_nm_s_per_rad: f64,
     /// Torque at which it saturates, N m.
     pub torque_limit_nm: f64,
-    /// What it has beside; its acceleration feedforward is [`Self::fed_kg_m2`].
+    /// Other settings of the drive; its acceleration feedforward is [`Self::fed_kg_m2`].
     pub drive: DriveParameters,
     /// Torque that it feeds forward for an acceleration of the command, N m s^2/rad.
     pub fed_kg_m2: f64,
-    /// How late bus and encoder are.
+    /// Delays of bus and encoder.
     pub delays: LoopDelays,
-    /// Whether the position is measured at the table, behind the screw.
+    /// True where the position is measured at the table, after the screw.
     pub scale_on_table: bool,
     /// Periods of its loops.
     pub periods: Periods,
 }
 
 impl DriveSettings {
-    /// Those of an axis; its inertia and its friction are not looked at but for the torque that is
-    /// fed forward.
+    /// Returns the drive settings of an axis. Its inertia and its friction are used only for the
+    /// torque that the drive feeds forward.
     pub fn of(axis: &KnownAxis, period: &Period) -> Self {
         let nominal = &axis.nominal;
         Self {
@@ -107,8 +105,8 @@ impl DriveSettings {
         }
     }
 
-    /// What the drive has beside its loops, where the inertia is taken for this: the torque that it
-    /// feeds forward stays what it is.
+    /// Returns the drive settings beside the loops for a given inertia. The torque that the drive
+    /// feeds forward stays the same.
     pub fn drive_of(&self, inertia_kg_m2: f64) -> DriveParameters {
         DriveParameters {
             acceleration_feedforward: self.fed_kg_m2 / inertia_kg_m2,
@@ -117,7 +115,7 @@ impl DriveSettings {
     }
 }
 
-/// What an axis is, at the motor shaft.
+/// Parameters of an axis, at the motor shaft.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(into = "[f64; PARAMETERS]", from = "[f64; PARAMETERS]")]
 pub struct AxisParameters {
@@ -127,23 +125,23 @@ pub struct AxisParameters {
     pub viscous_friction_nm_s: f64,
     /// Coulomb friction, N m.
     pub coulomb_friction_nm: f64,
-    /// What it is higher in the positive direction, and lower in the negative: also a weight that
-    /// hangs on the axis, N m.
+    /// Amount by which Coulomb friction is higher in the positive direction and lower in the
+    /// negative, N m. It includes a weight that hangs on the axis.
     pub coulomb_asymmetry_nm: f64,
-    /// Deflection before it slides, rad; zero where it cannot be told from none.
+    /// Deflection before the axis slides, rad; zero where the recording does not show it.
     pub presliding_rad: f64,
     /// The ball screw; rigid where nothing of it shows.
     pub transmission: TransmissionParameters,
 }
 
-/// Speed over which Coulomb friction turns its sign where nothing of presliding is seen, mm/s of
-/// travel: as tnv40's. It only keeps the law smooth, and is no parameter that a recording could
-/// tell: a millisecond of a reversal.
+/// Speed over which Coulomb friction changes its sign where no presliding shows, mm/s of travel:
+/// the value of tnv40. It only keeps the model smooth. No recording could determine it, since it
+/// acts for a millisecond of a reversal.
 const SMOOTHING_MM_S: f64 = 0.08;
 
-/// How many they are: inertia and friction, and those of the screw.
+/// Number of parameters: inertia, friction and the screw.
 const PARAMETERS: usize = 9;
-/// Those of an axis with a rigid screw.
+/// Number of parameters of an axis with a rigid screw.
 const RIGID_PARAMETERS: usize = 5;
 
 impl From<AxisParameters> for [f64; PARAMETERS] {
@@ -206,13 +204,13 @@ impl From<[f64; PARAMETERS]> for AxisParameters {
 }
 
 impl AxisParameters {
-    /// Whether anything shows of a ball screw that gives.
+    /// Returns true if the recording shows a compliant ball screw.
     pub fn has_screw(&self) -> bool {
         self.transmission != TransmissionParameters::RIGID
     }
 
-    /// What is then believed of an axis with these settings: nothing of its data sheets but the
-    /// drive.
+    /// Returns the axis as known after the identification with these settings. Only the drive comes
+    /// from its data sheets.
     #[must_use]
     pub fn believed(&self, axis: &KnownAxis, settings: &DriveSettings) -> KnownAxis {
         let nominal = self.law(settings);
@@ -227,7 +225,7 @@ impl AxisParameters {
         }
     }
 
-    /// As the law of an axis takes them.
+    /// Returns the parameters in the form that the axis model takes.
     fn law(&self, settings: &DriveSettings) -> Parameters {
         let DriveSettings {
             rad_per_mm,
@@ -250,7 +248,7 @@ impl AxisParameters {
         }
     }
 
-    /// What of it the law of an axis has beside.
+    /// Returns the friction parameters of the axis model beyond its nominal parameters.
     fn friction(&self) -> FrictionParameters {
         FrictionParameters {
             coulomb_asymmetry_nm: self.coulomb_asymmetry_nm,
@@ -260,7 +258,7 @@ impl AxisParameters {
     }
 }
 
-/// What was found of an axis.
+/// Result of the identification of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AxisEstimate {
     /// The parameters.
@@ -276,14 +274,14 @@ pub struct AxisEstimate {
 /// Why nothing was found.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum NotIdentified {
-    /// The law needs each command that the drive had.
+    /// The knots are not one servo period apart. The model needs every command that the drive had.
     #[error(
         "the recording has a knot each {found_s} s, and the servo period is {needed_s} s\n  hint: record in every servo period"
     )]
     Period {
-        /// Of the recording, s.
+        /// Time between the knots of the recording, s.
         found_s: f64,
-        /// Of the drive, s.
+        /// Servo period of the drive, s.
         needed_s: f64,
     },
     /// No stretch is left behind its beginning, or one alone, which says nothing of the errors.
@@ -293,7 +291,7 @@ pub enum NotIdentified {
     TooShort {
         /// Stretches that are long enough.
         stretches: usize,
-        /// How long its beginning takes, s.
+        /// Time in which an axis settles at the start of a stretch, s.
         settled_s: f64,
     },
     /// The axis does not move so that a parameter shows.
@@ -312,7 +310,7 @@ const SETTLED_CONSTANTS: f64 = 5.0;
 /// Finds the parameters of an axis.
 ///
 /// # Errors
-/// A recording that does not tell them.
+/// Fails if the recording does not determine them.
 pub fn identify_axis<const N: usize>(
     recording: &Recording<N>,
     axis: usize,

@@ -1,8 +1,8 @@
-//! Statistics of an axis from a recording: noise of the encoder, what acts on the motor beside its
-//! law, and what repeats with place.
+//! Statistics of an axis from a recording: noise of the encoder, disturbances on the motor that the
+//! axis model does not have, and deviations that repeat with place.
 //!
-//! The law is given, by data sheets or identified. A filter that has nothing but the law goes along
-//! the recording; what it is surprised by holds everything else:
+//! The model of the axis is given, by data sheets or identified. A filter that knows only this
+//! model follows the recording. Its innovations contain everything else:
 //!
 //! | File | What |
 //! |---|---|
@@ -34,19 +34,21 @@ use innovation::{AxisFilter, Innovations};
 use noise::{NoiseFit, Seen};
 use place::{Through, Wave, Weighed};
 
-/// Length of a segment of the spectrum, s: 0.2 Hz are told apart, and a minute has some twenty.
+/// Length of a segment of the spectrum, s: the spectrum separates 0.2 Hz, and a minute has some
+/// twenty segments.
 const SEGMENT_S: f64 = 4.0;
-/// Part of the Coulomb friction below which no torque is told from what a friction law leaves: laws
-/// of friction fit to some per cent.
+/// Smallest torque that is reported, as a part of the Coulomb friction. Friction models fit to some
+/// per cent, so smaller torques look like their residual.
 const LEAST_TORQUE: f64 = 0.05;
 /// Differences of positions from which the step is found: enough for the least common one.
 const STEP_SAMPLES: usize = 4000;
-/// Part of the way of a recording that is rounding of numbers: ten thousand times that of a double.
+/// Rounding of numbers, as a part of the travel of a recording: ten thousand times the rounding of
+/// a double.
 const ROUNDING: f64 = 1e-12;
-/// A step is at least so many times that: of numbers without a common divisor, one larger is left
-/// once in a hundred times, and then not by the next number.
+/// Smallest step, in units of [`ROUNDING`] of the travel. Numbers without a common divisor give a
+/// larger divisor once in a hundred times, and the next number then corrects it.
 const LEAST_STEP: f64 = 1e3;
-/// Part of the encoder's RMS noise below which its interpolation error is of no use: it is 2 % of
+/// Smallest interpolation error that is kept, as a part of the encoder's RMS noise: it is 2 % of
 /// the mean square.
 const LEAST_INTERPOLATION: f64 = 0.2;
 /// The same in least noises of an encoder, for those without noise: 0.005 um on a lead of 10 mm.
@@ -57,8 +59,8 @@ const APART: f64 = 1.0;
 /// rounding of a slow motion is not quite white.
 const STEPS_ALONE: f64 = 1.3;
 
-/// What a recording shows of the axes beside what is known of them. The recording is one at the
-/// servo period.
+/// Estimates the statistics of all axes of a recording, beyond what is known of them. The recording
+/// must have one knot per servo period.
 pub fn axis_statistics<const N: usize>(
     recording: &Recording<N>,
     known: &Known,
@@ -70,7 +72,8 @@ pub fn axis_statistics<const N: usize>(
     })
 }
 
-/// Of an axis, from commands and measured positions, mm, servo period by servo period.
+/// Estimates the statistics of one axis from commands and measured positions, mm, one pair per
+/// servo period.
 fn of_axis(stretches: &[Vec<[f64; 2]>], known: &KnownAxis, period: &Period) -> AxisStatistics {
     let rad_per_mm = AxisLaw::new(known.nominal, period.periods())
         .parameters
@@ -127,7 +130,7 @@ fn of_axis(stretches: &[Vec<[f64; 2]>], known: &KnownAxis, period: &Period) -> A
     statistics(&noise_of(&weighed.without(&kept)), &kept, step_rad)
 }
 
-/// What repeats with place: the stronger kind first, the other in what is left.
+/// Finds the waves that repeat with place: the stronger kind first, the other in the residual.
 fn waves(
     weighed: &Weighed<'_>,
     responses: &[Vec<spectrum::Phasor>; 2],
@@ -207,7 +210,8 @@ fn statistics(noise: &NoiseFit, waves: &[(Through, Wave)], step_rad: f64) -> Axi
     }
 }
 
-/// Step of the encoder: the common divisor of what was measured, mm; zero where there is none.
+/// Returns the step of the encoder, mm: the common divisor of the measured positions. Zero if they
+/// have no common divisor.
 fn step_mm(stretches: &[Vec<[f64; 2]>]) -> f64 {
     let measured = || {
         stretches
@@ -245,7 +249,7 @@ fn step_mm(stretches: &[Vec<[f64; 2]>]) -> f64 {
     }
 }
 
-/// What is left of a division to the nearest whole number.
+/// Returns the distance of `of` from the nearest whole multiple of `by`.
 fn remainder(of: f64, by: f64) -> f64 {
     (of - by * (of / by).round()).abs()
 }

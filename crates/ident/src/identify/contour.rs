@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::Rng;
 use super::recording::{RecordedKnot, Recording};
 
-/// How the network is trained.
+/// Settings of the training of the network.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Training {
     /// Passes over the samples.
@@ -74,7 +74,7 @@ pub fn train_contour<const N: usize>(
     descend(samples, training, &mut rng, progress)
 }
 
-/// What the network would have seen from knot to knot of a stretch.
+/// Returns the inputs and errors that the network would have seen from knot to knot of a stretch.
 fn samples<const N: usize>(stretch: &[RecordedKnot<N>], period_s: f64) -> Vec<ContourSample<N>> {
     let mut delays = Delays::REST;
     stretch

@@ -130,7 +130,7 @@ struct ExcitationController<'a, const N: usize> {
     servo_periods: u32,
     reach_mm: f64,
     rng: &'a mut Rng,
-    /// Where the offset goes from, and to.
+    /// Offset at the start and at the end of a ramp.
     from_mm: [f64; N],
     to_mm: [f64; N],
     lap: Vec<RecordedKnot<N>>,

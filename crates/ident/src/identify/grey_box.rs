@@ -1,10 +1,11 @@
-//! Grey box: the law of each axis of a real machine, from commanded and actual positions that it
-//! recorded.
+//! Grey box: identifies a model of each axis of a real machine from recorded commanded and actual
+//! positions.
 //!
-//! Nothing is known of the drive. What is fitted is the law of [`feedwright_control::axis`],
-//! divided by the inertia, by output error over free runs: the model gets the commands and nothing
-//! else. Terms are admitted one by one, by samples that were not fitted; how far it misses is told
-//! by samples that neither saw, beside linear models and the guess that the error stays.
+//! The drive is unknown. The identification fits the model of [`feedwright_control::axis`], divided
+//! by the inertia, by output error over free runs: the model gets the commands and nothing else.
+//! Terms are admitted one by one, by samples that were not fitted. Samples that served neither
+//! purpose score the prediction error, next to linear models and the assumption that the error
+//! stays constant.
 //!
 //! | File | What |
 //! |---|---|
@@ -18,7 +19,7 @@
 //! | `grey_box/command_delay.rs` | by how many servo periods the position loop has commands late |
 //! | `grey_box/standard_errors.rs` | intervals where what is left is coloured |
 //! | `grey_box/unseen_motion.rs` | what a record leaves open |
-//! | `grey_box/torque_column.rs` | what a torque column tells beside |
+//! | `grey_box/torque_column.rs` | what a torque column adds |
 //! | `grey_box/linear_arx.rs`, `grey_box/start_filter.rs`, `grey_box/free_run_scores.rs` | how far predictions miss |
 //! | `grey_box/residual_noise.rs` | what free runs leave, as a load |
 //! | `grey_box/gain_changes.rs` | what other gains would bring |
@@ -59,23 +60,23 @@ use contour_scores::ContourScores;
 use found_axis::FoundAxis;
 use sample_split::SampleSplit;
 
-/// What an identification is told beside the record.
+/// Inputs of an identification besides the record.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct GreyBoxOptions {
-    /// Times that are fitted, and times that are scored, s of the record; blocks of motion that
-    /// take turns where there are none.
+    /// Times that are fitted and times that are scored, s of the record. `None`: blocks of motion
+    /// alternate.
     pub times_s: Option<[Range<f64>; 2]>,
-    /// What is known of each axis, in the order of the records; of one that is not there nothing
-    /// is.
+    /// Known facts of each axis, in the order of the records. Nothing is known of an axis that is
+    /// missing here.
     pub facts: Vec<AxisFacts>,
 }
 
-/// What was found of a machine.
+/// Result of the identification of a machine.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundMachine {
     /// Its axes, in the order of the records.
     pub axes: Vec<FoundAxis>,
-    /// Which samples were fitted and scored.
+    /// Fitted samples and scored samples.
     pub split: SampleSplit,
     /// The contour error, where two axes move.
     pub contour: Option<ContourScores>,
@@ -114,9 +115,9 @@ pub enum NotFound {
     /// Ended from outside.
     #[error("interrupted")]
     Ended,
-    /// No law fits.
+    /// No model fits.
     #[error(
-        "no law of a servo axis fits axis {axis}: the best leaves {left_um:.1} um RMS of a following error of {following_um:.1} um\n  hint: check with --columns that command and actual position belong to this axis"
+        "no model of a servo axis fits axis {axis}: the best leaves {left_um:.1} um RMS of a following error of {following_um:.1} um\n  hint: check with --columns that command and actual position belong to this axis"
     )]
     NoLaw {
         /// Its name.
@@ -145,11 +146,11 @@ pub(crate) type TorqueValues<'a> = Option<&'a [f64]>;
 /// Part of the work until it is known whether position loops have commands late.
 const WITHOUT_DELAY: f64 = 0.6;
 
-/// Identifies axes that were recorded together. `tell` is told which part of the work is done, 0 to
-/// 1, and answers whether to go on.
+/// Identifies axes that were recorded together. `tell` receives the completed part of the work, 0
+/// to 1, and returns whether to go on.
 ///
 /// # Errors
-/// A record that does not tell the law of an axis, or an end from outside.
+/// Fails if a record does not determine the model of an axis, or if `tell` ends the run.
 pub fn identify_machine(
     records: &[AxisRecord<'_>],
     torques: &[TorqueValues<'_>],

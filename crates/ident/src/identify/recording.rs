@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What was commanded and measured at the start of a feed period.
+/// Command and measurement at the start of a feed period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RecordedKnot<const N: usize> {
     /// Command, mm.
@@ -18,7 +18,7 @@ pub struct RecordedKnot<const N: usize> {
     pub contour_mm: [f64; N],
 }
 
-/// What a machine showed.
+/// Commands and measurements of a machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(into = "StoredRecording", try_from = "StoredRecording")]
 pub struct Recording<const N: usize> {
@@ -75,7 +75,8 @@ impl<const N: usize> Recording<N> {
     }
 }
 
-/// As it is serialised: a knot is a row of 3N numbers, in the order of [`RecordedKnot`].
+/// Serialized form of [`Recording`]: a knot is a row of 3N numbers, in the order of
+/// [`RecordedKnot`].
 #[derive(Clone, Serialize, Deserialize)]
 struct StoredRecording {
     axes: usize,

@@ -149,7 +149,7 @@ fn units(
         let lag = axis
             .lag
             .map_or(Ok(None), |lag| of_column(path, table, roles, lag))?;
-        // The unit of one column of an axis is that of the other, where that has none.
+        // Where one column of an axis has no unit, it has the unit of the other.
         written.push([command.or(actual), actual.or(command), lag]);
     }
     let positions = || {
@@ -235,7 +235,7 @@ fn of_file(
     }
 }
 
-/// What to do about a unit of length that is not known.
+/// Advice about a unit of length that is not known.
 const UNKNOWN_UNIT: &str = "convert the positions to one of these; or, if they are in one of them, say which: --columns unit=mm";
 
 /// The unit that is written above a column; none where nothing is.

@@ -13,7 +13,7 @@ use super::table::LogTable;
 use super::units::{PositionUnit, TimeUnit, is_unstated, speed_unit};
 use crate::average::middle_of;
 
-/// When the samples were taken.
+/// Sample times of a log.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Clock {
     pub(super) sample_time_s: f64,
@@ -26,13 +26,13 @@ pub(super) struct Clock {
 /// Servo period, s, assumed when neither the file, the options nor a recorded speed gives it:
 /// LinuxCNC's default.
 const USUAL_SERVO_S: f64 = 1e-3;
-/// From how many times the usual step on samples are missing.
+/// Samples are missing where a step exceeds this many times the usual step.
 const GAP_STEPS: f64 = 1.5;
 /// The same where the clock is uneven anyway.
 const UNEVEN_GAP_STEPS: f64 = 3.0;
 /// Part of the usual step by which steps differ on an even clock.
 const EVEN: f64 = 0.1;
-/// Gaps that are told one by one.
+/// Number of gaps that are reported one by one.
 const GAPS_TOLD: usize = 5;
 
 /// The clock of a table.
@@ -304,7 +304,7 @@ fn without_column(
 }
 
 fn no_time(path: &Path) -> LogError {
-    let message = "no column is the time, and nothing tells the time between samples";
+    let message = "no column is the time, and nothing states the time between samples";
     LogError::columns(
         path,
         message,

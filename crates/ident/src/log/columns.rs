@@ -35,7 +35,7 @@ pub struct AxisChoice {
     pub torque: Option<ColumnChoice>,
 }
 
-/// What is said of the columns of a log; whatever is not said is guessed.
+/// Assignment of the columns of a log; the rest is guessed.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Columns {
     /// Column of the time.
@@ -50,25 +50,25 @@ pub struct Columns {
     pub sample_time_s: Option<f64>,
 }
 
-/// What is wrong with `--columns`.
+/// Error in `--columns`.
 #[derive(Debug, Clone, PartialEq, Eq, Error, Diagnostic)]
 #[error("--columns: '{item}': {message}")]
 pub struct ColumnsError {
     /// The part of it that is wrong.
     pub item: String,
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
     /// Remedy.
     #[help]
     pub hint: String,
 }
 
-/// How it is written.
+/// Example for messages.
 const EXAMPLE: &str =
     "such as t=0,x.cmd=1,x.act=3,x.torque=5; columns by number from 0, or by name";
-/// What may stand before `=`.
+/// Keys that may stand before `=`.
 const KEYS: [&str; 4] = ["t", "unit", "time", "period_s"];
-/// What may stand behind the name of an axis.
+/// Names that may follow the name of an axis.
 const PARTS: [&str; 4] = ["cmd", "act", "err", "torque"];
 
 impl FromStr for Columns {

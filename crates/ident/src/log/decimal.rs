@@ -23,7 +23,7 @@ pub(super) fn parse(field: &[u8], point: u8) -> Option<f64> {
     short(field, point).or_else(|| long(field, point))
 }
 
-/// Without spaces, and without quotes around it.
+/// Removes surrounding spaces and quotes.
 pub(super) fn trimmed(field: &[u8]) -> &[u8] {
     let field = field.trim_ascii();
     match field {

@@ -7,10 +7,10 @@ use super::names::{Quantity, is_known_unit, understand};
 use super::scopes::{ScopeChannel, ScopeHeader};
 use super::{LogFormat, decimal};
 
-/// How a text table is written.
+/// Notation of a text table.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TableDialect {
-    /// Between columns; a space is any number of spaces and tabs.
+    /// Character between columns; a space is any number of spaces and tabs.
     pub(super) delimiter: u8,
     /// Decimal point.
     pub(super) point: u8,
@@ -26,7 +26,7 @@ pub(super) struct TableDialect {
     pub(super) sample_time_s: Option<f64>,
     /// Line before the rows that states the unit of the positions, from 1, and the unit.
     pub(super) position_unit: Option<(u64, String)>,
-    /// Whether the rows are names and numbers by turns, as `halscope` wrote them before LinuxCNC
+    /// True where names and numbers alternate in the rows, as `halscope` wrote them before LinuxCNC
     /// 2.9.
     pub(super) names_in_rows: bool,
     /// The scope that wrote the table, and what its header says of each column; none of any other
@@ -36,16 +36,17 @@ pub(super) struct TableDialect {
 
 /// Lines that are looked at.
 const LINES: usize = 400;
-/// What may stand between columns, the likelier first; where two do equally well, the first is it.
+/// Possible delimiters of columns, the likelier first; where two do equally well, the first is
+/// used.
 const DELIMITERS: [u8; 5] = [b'\t', b';', b',', b'|', b' '];
 
-/// With which `halscope` begins, in lower case.
+/// First words of a `halscope` file, in lower case.
 const SAMPLING_PERIOD: &str = "sampling period is";
 
 /// The word with which `halsampler` says that samples were lost.
 pub(super) const OVERRUN: &[u8] = b"overrun";
 
-/// What a line is, apart from a row.
+/// Kind of a line that is no row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum LineKind {
     Blank,
@@ -263,7 +264,8 @@ fn sample_time_s(line: &str) -> Option<f64> {
 /// Signs in front of the text of a comment.
 const BEFORE_TEXT: [char; 6] = ['#', '%', '!', '/', ';', ' '];
 
-/// What a line such as `# unit = inch` states of one of these names, in lower case.
+/// Returns the value that a line such as `# unit = inch` states for one of these names, in lower
+/// case.
 fn stated(line: &str, names: &[&str]) -> Option<String> {
     let text = line.trim_start_matches(BEFORE_TEXT).to_lowercase();
     let (name, value) = text.split_once('=')?;
@@ -319,7 +321,7 @@ fn header(before: &[&[u8]], delimiter: u8, columns: usize) -> (Vec<String>, Vec<
     }
 }
 
-/// Whether words below others are their units: they say less of what the columns are, and are
+/// Returns true if words below others are their units: they say less about the columns, and are
 /// short, in brackets, or known.
 fn are_units(words: &[String], above: &[String]) -> bool {
     let bare = |word: &str| word.trim_matches(['[', ']', '(', ')', ' ']).to_owned();

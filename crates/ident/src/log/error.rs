@@ -28,7 +28,7 @@ pub enum LogError {
         path: PathBuf,
         /// Line of the text, from 1, where it is text.
         line: Option<u64>,
-        /// What is wrong.
+        /// Description of the error.
         message: String,
         /// Remedy.
         #[help]
@@ -39,7 +39,7 @@ pub enum LogError {
     Columns {
         /// The file.
         path: PathBuf,
-        /// What is missing or wrong.
+        /// Description of the missing or wrong assignment.
         message: String,
         /// Remedy: how to assign the columns with `--columns`.
         #[help]
@@ -59,7 +59,7 @@ pub enum LogError {
     Apart {
         /// The file.
         path: PathBuf,
-        /// What differs.
+        /// Description of the difference.
         message: String,
         /// Remedy.
         #[help]
@@ -75,7 +75,7 @@ pub enum LogError {
 #[derive(Debug, Clone, PartialEq, Eq, Error, Diagnostic)]
 #[error("{message}")]
 pub struct Refusal {
-    /// Which of the reasons it is.
+    /// Reason of the refusal.
     pub reason: RefusalReason,
     /// Place, value, limit, unit.
     pub message: String,
@@ -199,7 +199,7 @@ fn line_of(line: Option<u64>) -> String {
     line.map_or_else(String::new, |line| format!(", line {line}"))
 }
 
-/// One reason is told at once; several are listed below.
+/// Returns the message of a single reason; several are listed below the error.
 fn listed(refusals: &[Refusal]) -> String {
     match refusals {
         [only] => only.message.clone(),

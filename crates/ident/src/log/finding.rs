@@ -1,4 +1,4 @@
-//! What is told of a log: guesses, and what is not as it should be.
+//! Findings about a log: guesses, and deviations from what is expected.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ use super::units::{PositionUnit, TimeUnit};
 /// A guess that was made, or something that was noticed.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LogFinding {
-    /// Which columns are an axis.
+    /// Columns of an axis.
     AxisColumns {
         /// The axis.
         axis: String,
@@ -22,7 +22,7 @@ pub enum LogFinding {
         torque: Option<String>,
         /// Unit of the torque.
         torque_unit: TorqueUnit,
-        /// Whether the data said so, and not the names.
+        /// True where the data identified the columns, and not their names.
         by_data: bool,
     },
     /// Another log of the same machine goes on here.
@@ -36,40 +36,40 @@ pub enum LogFinding {
     PositionUnit {
         /// The unit.
         unit: PositionUnit,
-        /// Where it comes from.
+        /// Source of the unit.
         because: String,
     },
     /// Unit of the time.
     TimeUnit {
         /// The unit.
         unit: TimeUnit,
-        /// Where it comes from.
+        /// Source of the unit.
         because: String,
     },
     /// Time between samples, where the file does not have it.
     SampleTime {
         /// The time, s.
         sample_time_s: f64,
-        /// Where it comes from.
+        /// Source of the time.
         because: String,
     },
     /// The clock is not even.
     UnevenClock {
         /// Shortest and longest usual time between samples, s.
         range_s: [f64; 2],
-        /// What is taken, s.
+        /// Time between samples that is used, s.
         taken_s: f64,
     },
     /// Samples are missing.
     Gap {
-        /// Where the record stops, s.
+        /// End of the record before the gap, s.
         from_s: f64,
-        /// Where it goes on, s.
+        /// Start of the record after the gap, s.
         to_s: f64,
     },
-    /// More gaps than are told one by one.
+    /// More gaps than are reported one by one.
     MoreGaps {
-        /// How many more.
+        /// Number of further gaps.
         count: usize,
     },
     /// The last line is not whole.
@@ -96,7 +96,7 @@ pub enum LogFinding {
     },
     /// An axis without a name that is taken for one of the program.
     TakenFor {
-        /// What the log calls it.
+        /// Name of the axis in the log.
         axis: String,
         /// The axis of the program.
         program: String,
@@ -110,14 +110,14 @@ pub enum LogFinding {
     Endless {
         /// The axis.
         axis: String,
-        /// How far it goes, mm.
+        /// Travel of the axis, mm.
         range_mm: f64,
     },
     /// An axis that lacks a column.
     Incomplete {
         /// The axis.
         axis: String,
-        /// What it lacks.
+        /// Missing column.
         lacks: &'static str,
     },
     /// Command and actual position have different zeros, which was taken out.
@@ -127,7 +127,7 @@ pub enum LogFinding {
         /// Command minus actual position, mm.
         offset_mm: f64,
     },
-    /// How far the actual position is behind.
+    /// Lag of the actual position behind the command.
     Following {
         /// The axis.
         axis: String,
@@ -147,7 +147,7 @@ pub enum LogFinding {
     TorqueLimit {
         /// The axis.
         axis: String,
-        /// That value.
+        /// Largest value, at which the torque stays.
         limit: f64,
         /// Its unit.
         unit: TorqueUnit,
@@ -288,7 +288,7 @@ impl fmt::Display for LogFinding {
 }
 
 impl LogFinding {
-    /// What is told of an axis that is accepted.
+    /// Describes a finding about an accepted axis.
     fn of_axis(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Offset { axis, offset_mm } => {
@@ -376,7 +376,7 @@ impl LogFinding {
                 "axis {axis} stands still in the program, and the log has no record of it: it is taken to be where it was; hint: --columns \
                  {axis}.cmd=COLUMN,{axis}.act=COLUMN says which columns are its"
             ),
-            // All others are told above.
+            // All other findings are described above.
             _ => Ok(()),
         }
     }

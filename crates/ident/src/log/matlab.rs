@@ -22,9 +22,9 @@ use super::table::{LineNumbers, LogColumn, LogTable};
 use super::{LogError, LogFormat};
 
 const HEADER_BYTES: usize = 128;
-/// Bytes that the numbers of a file may take in memory: these, and so many for each byte of the
-/// file. Measured positions deflate to a quarter and more of their size; zeros to a thousandth, so
-/// that a small file could fill the memory.
+/// Limit of the memory for the numbers of a file, bytes: this constant, and [`BYTES_PER_BYTE`] for
+/// each byte of the file. Measured positions deflate to a quarter and more of their size; zeros to
+/// a thousandth, so that a small file could fill the memory.
 const FREE_BYTES: usize = 16 << 20;
 const BYTES_PER_BYTE: usize = 16;
 /// Bytes of a number in memory.
@@ -37,7 +37,8 @@ const SAMPLE_TIMES: [&str; 6] = ["ts", "dt", "t_s", "sample_time", "sampletime",
 const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
 
-/// Whether a file begins as one, or as its successor does, which is refused with a hint.
+/// Returns true if a file begins as a MATLAB file, or as its successor, which is refused with a
+/// hint.
 pub(super) fn is_matlab(head: &[u8]) -> bool {
     head.starts_with(b"MATLAB 5.0 MAT-file") || is_hdf5(head)
 }
@@ -184,7 +185,8 @@ impl From<&str> for VariableFault {
     }
 }
 
-/// The numbers of an element, which may take so many bytes; none where it holds anything else.
+/// Returns the numbers of an element, which may take `most_bytes` bytes; `None` where it holds
+/// anything else.
 fn variable(
     element: Element<'_>,
     order: ByteOrder,

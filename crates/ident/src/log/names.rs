@@ -3,7 +3,7 @@
 use super::TorqueUnit;
 use super::units::{PositionUnit, TimeUnit};
 
-/// What a column holds, by its name.
+/// Content of a column, by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
     Time,
@@ -30,7 +30,8 @@ pub(super) struct Meaning {
     pub(super) axis: String,
     /// Unit in the name; empty if the name states no unit.
     pub(super) unit: String,
-    /// How well the word fits, the more the better: of two columns of a kind the better is taken.
+    /// Quality of the match of the word: of two columns of a kind the one with the higher value is
+    /// used.
     pub(super) fit: u8,
 }
 
@@ -54,7 +55,7 @@ const COMMANDS: [&str; 18] = [
     "comm",
     "rpos",
 ];
-/// Where the command is to end up, perhaps only later.
+/// Words for the final position of a command, which may be reached only later.
 const TARGETS: [&str; 3] = ["target", "goal", "ziel"];
 const ACTUALS: [&str; 16] = [
     "act", "actual", "fb", "fbk", "feedback", "meas", "measured", "measure", "enc", "encoder",
@@ -78,7 +79,7 @@ const COUNTERS: [&str; 9] = [
     "n", "sample", "samples", "cycle", "index", "idx", "counter", "count", "k",
 ];
 const SPEEDS: [&str; 6] = ["velocity", "vel", "velo", "speed", "geschwindigkeit", "v"];
-/// Words of quantities that are none of these.
+/// Words of other quantities.
 const OTHERS: [&str; 37] = [
     "modulo",
     "acceleration",
@@ -132,7 +133,7 @@ const LETTERS: &str = "xyzabcuvw";
 /// Words before the letter or the number of an axis.
 const AXIS_WORDS: [&str; 6] = ["joint", "axis", "motor", "drive", "pid", "ax"];
 
-/// What a name says.
+/// Interprets the name of a column.
 pub(super) fn understand(name: &str) -> Meaning {
     if let Some(meaning) = of_component(name).or_else(|| of_scope(name)) {
         return meaning;
@@ -158,7 +159,7 @@ pub(super) fn understand(name: &str) -> Meaning {
     }
 }
 
-/// What the words of a name say.
+/// Interprets the words of a name.
 fn of_words(words: &[String], unit: &str) -> Meaning {
     let axis = Some(axis(words))
         .filter(|axis| !axis.is_empty())
@@ -222,8 +223,8 @@ fn of_words(words: &[String], unit: &str) -> Meaning {
     }
 }
 
-/// A pin of the HAL component `feedwright`, whose number is that of the joint. LinuxCNC's own
-/// command fits better than that of the drive.
+/// Interprets a pin of the HAL component `feedwright`, whose number is the joint number. LinuxCNC's
+/// own command fits better than the command of the drive.
 fn of_component(name: &str) -> Option<Meaning> {
     let (kind, number) = name.strip_prefix("feedwright.")?.rsplit_once('-')?;
     number.parse::<u8>().ok()?;
@@ -285,13 +286,12 @@ fn of_scope(name: &str) -> Option<Meaning> {
     })
 }
 
-/// Whether an axis is a spindle by its name.
+/// Returns true if the name of an axis says that it is a spindle.
 pub(super) fn is_spindle(axis: &str) -> bool {
     ["s", "sp", "spindle"].contains(&axis.trim_end_matches(|c: char| c.is_ascii_digit()))
 }
 
-/// What is left of a name without the words that are known: what those columns have in common that
-/// belong together.
+/// Returns a name without its known words: the part that columns of the same axis share.
 fn remainder(words: &[String]) -> String {
     let lists: [&[&str]; 8] = [
         &COMMANDS, &TARGETS, &ACTUALS, &TORQUES, &POSITIONS, &SPEEDS, &TIMES, &COUNTERS,
@@ -335,14 +335,14 @@ fn split_unit(name: &str) -> (String, String) {
     }
 }
 
-/// Whether a text is a unit of length, time or torque.
+/// Returns true if a text is a unit of length, time or torque.
 pub(super) fn is_known_unit(text: &str) -> bool {
     PositionUnit::from_name(text).is_some()
         || TimeUnit::from_name(text).is_some()
         || TorqueUnit::from_name(text).is_some()
 }
 
-/// Whether a text in brackets is an axis, a number or a quantity.
+/// Returns true if a text in brackets is an axis, a number or a quantity.
 fn is_part_of_name(text: &str) -> bool {
     let lists: [&[&str]; 7] = [
         &COMMANDS, &TARGETS, &ACTUALS, &TORQUES, &POSITIONS, &SPEEDS, &OTHERS,
@@ -381,7 +381,8 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
-/// Whether a word is one of a list with the letter of an axis before or behind it, as in `xfb`.
+/// Returns true if a word is one of a list with the letter of an axis before or behind it, as in
+/// `xfb`.
 fn without_axis(word: &str, list: &[&str]) -> bool {
     let is_letter = |c: Option<char>| c.is_some_and(|c| LETTERS.contains(c));
     list.iter().filter(|known| known.len() > 1).any(|known| {

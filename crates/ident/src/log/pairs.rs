@@ -36,7 +36,7 @@ fn moments(values: &[f64], stride: usize) -> (f64, f64) {
     (mean, square.sqrt())
 }
 
-/// By how many samples `b` is behind `a`; zero where nothing moves.
+/// Computes the delay of `b` behind `a`, samples; zero where nothing moves.
 pub(super) fn delay_samples(a: &[f64], b: &[f64]) -> f64 {
     let (mut above, mut below) = (0.0, 0.0);
     for k in 1..a.len().min(b.len()).saturating_sub(1) {

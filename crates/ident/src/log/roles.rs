@@ -14,7 +14,7 @@ use super::table::LogTable;
 use super::units::is_unstated;
 use super::{LogFormat, MAX_AXES, TorqueUnit};
 
-/// Which column is what.
+/// Roles of the columns.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Roles {
     pub(super) time: Option<TimeColumn>,
@@ -46,12 +46,12 @@ pub(super) struct AxisRoles {
     pub(super) torque_unit: TorqueUnit,
     /// Torque for a number of its column, in that unit.
     pub(super) torque_scale: f64,
-    /// Measured speed, from which the time between samples can be told.
+    /// Measured speed, from which the time between samples can be computed.
     pub(super) velocity: Option<usize>,
 }
 
 impl AxisRoles {
-    /// What the axis takes from a column, if it takes anything.
+    /// Returns the role of a column in the axis, if it has one.
     fn role_of(&self, column: usize) -> Option<&'static str> {
         let command = Some(self.command).filter(|_| self.lag.is_none());
         let roles = [
@@ -83,7 +83,7 @@ const SAME_RATE: f64 = 1e-3;
 /// Names of axes that have none.
 const NAMES: [&str; MAX_AXES] = ["x", "y", "z", "a", "b", "c", "u", "v", "w"];
 
-/// Which columns have to be kept to know the roles: all of them, where the data has to tell.
+/// Marks the columns that are needed to find the roles: all of them, where the data has to decide.
 pub(super) fn needed(table: &LogTable, columns: &Columns) -> Vec<bool> {
     let meanings = meanings(table);
     let axes = match chosen(table, columns) {
@@ -197,7 +197,7 @@ fn torques_are_known(
     Err(LogError::columns(path, message, hint))
 }
 
-/// Which columns an axis is.
+/// Reports the columns of an axis.
 fn columns_of(table: &LogTable, axis: &AxisRoles, by_data: bool) -> LogFinding {
     let command = table.label(axis.command);
     LogFinding::AxisColumns {
@@ -280,12 +280,12 @@ fn not_the_time(
     Err(LogError::columns(path, message, hint))
 }
 
-/// Whether the name of an axis says that it turns.
+/// Returns true if the name of an axis says that it is rotary.
 fn is_rotary_name(name: &str) -> bool {
     ["a", "b", "c"].contains(&name.trim_end_matches(|c: char| c.is_ascii_digit()))
 }
 
-/// Whether the positions of an axis are angles by their unit.
+/// Returns true if the unit of the positions of an axis is an angle.
 fn is_angle(meanings: &[Meaning], axis: &AxisRoles) -> bool {
     let is_angle = |at: usize| {
         let unit = meanings[at].unit.to_lowercase();
@@ -294,7 +294,7 @@ fn is_angle(meanings: &[Meaning], axis: &AxisRoles) -> bool {
     is_angle(axis.command) || is_angle(axis.actual)
 }
 
-/// What columns there are, and how to say which is which.
+/// Lists the columns, and explains how to assign them.
 fn there_are(table: &LogTable) -> String {
     const SHOWN: usize = 30;
     let mut labels: Vec<String> = (0..table.columns.len().min(SHOWN))
@@ -542,7 +542,7 @@ fn clock_like(table: &LogTable, meanings: &[Meaning]) -> Option<TimeColumn> {
     })
 }
 
-/// Whether most steps of a column are alike: within a half of the median.
+/// Returns true if most steps of a column differ from their median by at most half of it.
 fn is_even(values: &[f64]) -> bool {
     let mut steps: Vec<f64> = values
         .windows(2)

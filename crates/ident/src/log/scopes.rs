@@ -12,11 +12,11 @@ use std::path::Path;
 
 use super::{LogError, LogFormat};
 
-/// What the header of an export says.
+/// Content of the header of an export.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ScopeHeader {
     pub(super) format: LogFormat,
-    /// Between columns.
+    /// Character between columns.
     pub(super) delimiter: u8,
     /// The columns of the rows.
     pub(super) channels: Vec<ScopeChannel>,
@@ -102,7 +102,7 @@ fn positive(text: &str) -> Option<f64> {
     Some(value).filter(|value| value.is_finite() && *value > 0.0)
 }
 
-/// Whether a line is a row: two numbers or more, and nothing else.
+/// Returns true if a line is a row: two numbers or more, and nothing else.
 fn is_row(line: &str, delimiter: u8) -> bool {
     let fields = fields(line, delimiter);
     let is_number = |field: &&&str| field.replacen(',', ".", 1).parse::<f64>().is_ok();

@@ -1,5 +1,5 @@
-//! Screening: what is told of the record of each axis, and records of which no servo model can be
-//! made.
+//! Screening: findings about the record of each axis, and refusal of records from which no servo
+//! model can be made.
 
 mod steps;
 mod limits;
@@ -34,12 +34,13 @@ const LONGEST_MM: f64 = 30e3;
 const COPY_SAMPLES: usize = 4;
 /// Part of the moving samples in which a copy equals the command.
 const COPY_PART: f64 = 0.99;
-/// By how many samples an actual position may lead its command: one where it is recorded at the end
-/// of the servo period and the command at its start, and what feedforward adds.
+/// Most samples by which an actual position may lead its command: one where it is recorded at the
+/// end of the servo period and the command at its start, and the lead that feedforward adds.
 const LEAD_SAMPLES: f64 = 2.0;
 /// Part of the following error that a lead explains, where columns are swapped.
 const EXPLAINED: f64 = 0.5;
-/// How much nearer the actual position is to the command of another axis, where columns are mixed.
+/// Distance of the actual position to the command of another axis, relative to its own, below which
+/// columns are mixed.
 const NEARER: f64 = 0.5;
 /// Least correlation of a position with its command.
 const MIN_CORRELATION: f64 = 0.3;
@@ -313,7 +314,7 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
     if scale > 0.0 { product / scale } else { 0.0 }
 }
 
-/// What is told of an axis that is accepted.
+/// Reports the findings about an accepted axis.
 fn tell(axis: &LogAxis, clock: &Clock, findings: &mut Vec<LogFinding>) {
     let name = || axis.name.clone();
     let following_um = 1e3 * following_mm(axis);
@@ -334,7 +335,7 @@ fn tell(axis: &LogAxis, clock: &Clock, findings: &mut Vec<LogFinding>) {
     findings.extend(lines::of_axis(axis, clock));
 }
 
-/// Whether a model of it can be used for control.
+/// Decides if a model of the axis can be used for control.
 fn verdict(axis: &LogAxis, clock: &Clock) -> Fitness {
     let mut reasons = Vec::new();
     let following_mm = following_mm(axis);

@@ -19,7 +19,7 @@ use super::columns::Columns;
 use super::table::{LineNumbers, LogColumn, LogTable};
 use super::{LogError, LogFormat, roles};
 
-/// Whether a file begins as JSON does.
+/// Returns true if a file begins as JSON does.
 pub(super) fn is_json(head: &[u8]) -> bool {
     let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
     head.trim_ascii_start().starts_with(b"{")
@@ -71,7 +71,7 @@ fn skip_mark(reader: &mut impl io::BufRead) -> io::Result<()> {
     Ok(())
 }
 
-/// A file that tells how much of it is read.
+/// File that reports the part of it that has been read.
 struct Watched<'a, 'b> {
     file: &'a mut dyn Read,
     done_bytes: u64,
@@ -103,7 +103,7 @@ impl Read for Watched<'_, '_> {
     }
 }
 
-/// What is needed of the header.
+/// Keys of the header that are needed.
 #[derive(Deserialize)]
 #[serde(rename_all = "PascalCase")]
 struct Header {
@@ -216,7 +216,7 @@ fn table_of(header: Header) -> LogTable {
     }
 }
 
-/// How deep the rows are being read.
+/// Depth of the rows that are being read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Level {
     /// A list of elements.

@@ -7,13 +7,13 @@ use super::LogFormat;
 /// Columns of numbers, whatever the file.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LogTable {
-    /// What kind of file it was.
+    /// Kind of the file.
     pub format: LogFormat,
     /// The columns in the order of the file.
     pub columns: Vec<LogColumn>,
     /// Rows before which samples are known to be missing.
     pub breaks: Vec<usize>,
-    /// Where rows stand.
+    /// Line numbers of the rows.
     pub lines: LineNumbers,
     /// Time between rows, s, where the file says so.
     pub sample_time_s: Option<f64>,
@@ -43,7 +43,7 @@ pub(crate) struct LogColumn {
 }
 
 impl LogTable {
-    /// What the file says of its columns goes into messages.
+    /// Makes the file's texts about its columns safe to show in messages.
     pub(super) fn make_visible(&mut self) {
         let of_columns = self.columns.iter_mut().flat_map(|column| {
             [&mut column.name, &mut column.unit]
@@ -55,7 +55,7 @@ impl LogTable {
             .for_each(|text| *text = visible(text).into_owned());
     }
 
-    /// What a column is called in messages: its name, or its number from 0.
+    /// Returns the name of a column for messages, or its number from 0.
     pub(crate) fn label(&self, column: usize) -> String {
         let name = self
             .columns
@@ -77,7 +77,7 @@ impl LogTable {
             .unwrap_or(0)
     }
 
-    /// Where a row stands, for messages.
+    /// Returns the place of a row for messages.
     pub(crate) fn place(&self, row: usize) -> String {
         match self.lines.of(row) {
             Some(line) => format!("line {line}"),
@@ -86,7 +86,7 @@ impl LogTable {
     }
 }
 
-/// Which line a row stands in.
+/// Line number of every row.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct LineNumbers {
     /// A row and a shift, in the order of rows: from this row on, the line number is the row plus

@@ -108,13 +108,13 @@ struct TextRows<'a> {
     path: &'a Path,
     dialect: TableDialect,
     table: LogTable,
-    /// Which columns are kept.
+    /// True for each column that is kept.
     kept: Vec<bool>,
     row: usize,
     /// Lines so far.
     line: u64,
     is_last: bool,
-    /// What follows is no part of the record.
+    /// True once the record is complete; the following lines are no part of it.
     is_over: bool,
 }
 

@@ -19,7 +19,7 @@ pub enum PositionUnit {
     Inch,
 }
 
-/// Whether the text in the place of a unit states none.
+/// Returns true if the text in the place of a unit states none.
 pub(super) fn is_unstated(text: &str) -> bool {
     ["", "-", "--", "1", "none", "n/a"].contains(&text.to_lowercase().as_str())
 }
@@ -40,7 +40,8 @@ impl PositionUnit {
     /// Units that are known, for messages.
     pub(super) const KNOWN: &'static str = "mm, um, m or inch";
 
-    /// By the name that somebody gives it. A micro sign that is no UTF-8 has become U+FFFD.
+    /// Finds a unit by the name that somebody gives it. A micro sign that is no UTF-8 has become
+    /// U+FFFD.
     pub fn from_name(name: &str) -> Option<Self> {
         match name.to_lowercase().as_str() {
             "m" | "meter" | "metre" | "meters" | "metres" => Some(Self::Metre),
@@ -95,7 +96,7 @@ impl TimeUnit {
     /// Units that are known, for messages.
     pub(super) const KNOWN: &'static str = "s, ms, us, ns or samples";
 
-    /// By the name that somebody gives it.
+    /// Finds a unit by the name that somebody gives it.
     pub fn from_name(name: &str) -> Option<Self> {
         match name.to_lowercase().as_str() {
             "s" | "sec" | "second" | "seconds" => Some(Self::Second),
@@ -136,7 +137,7 @@ impl TorqueUnit {
     /// Units that are known, for messages.
     pub(super) const KNOWN: &'static str = "N m, mN m, N cm, kN m, N, kN, V, mV, A, mA or %";
 
-    /// By the name that a file gives it, and how much of it one is.
+    /// Finds a unit by the name that a file gives it, and the amount of it that one named unit is.
     pub(super) fn from_name(name: &str) -> Option<(Self, f64)> {
         Some(
             match name

@@ -9,12 +9,12 @@ use feedwright_sim::toml_file::key::{Value, key};
 
 use super::{About, Fit, ModelPeriods, Weights};
 
-/// Most samples of a training that are believed: a century of decisions.
+/// Most samples of a training that a file may state: a century of decisions.
 const MAX_SAMPLES: f64 = 1e12;
 /// Largest error of a fit, um: a metre.
 const MAX_FIT_UM: f64 = 1e6;
 
-/// Of the top of the file.
+/// Keys at the top of the file.
 pub(crate) const ABOUT: &[Key<About>] = &[
     key!(whole format, "", 1.0, 1e9),
     key!(text written_by),
@@ -26,19 +26,19 @@ pub(crate) const ABOUT: &[Key<About>] = &[
     key!(text checksum),
 ];
 
-/// Of `[period]`.
+/// Keys of `[period]`.
 pub(crate) const PERIOD: &[Key<ModelPeriods>] = &[
     key!(servo_s, "s", SERVO_PERIODS_S[0], SERVO_PERIODS_S[1]),
     key!(feed_period_s, "s", FEED_PERIODS_S[0], FEED_PERIODS_S[1]),
 ];
 
-/// Of `[fit]`.
+/// Keys of `[fit]`.
 pub(crate) const FIT: &[Key<Fit>] = &[
     key!(fit_um, "um", 0.0, MAX_FIT_UM),
     key!(whole samples, "", 0.0, MAX_SAMPLES),
 ];
 
-/// Of `[weights]`.
+/// Returns the keys of `[weights]`.
 pub(crate) const fn weights(kind: IdentifierKind) -> &'static [Key<Weights>] {
     match kind {
         IdentifierKind::Contour => CONTOUR,

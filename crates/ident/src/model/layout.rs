@@ -87,7 +87,7 @@ fn of_this_format(document: &Document<'_>) -> Result<(), Fault> {
     let mut faults = Vec::new();
     let mut root = Table::root(document, None);
     let found = root.whole("format", "", 1.0..=1e9, &mut faults);
-    // What is no number is told of with everything else.
+    // A value that is no number is reported with everything else.
     if found.is_none_or(|found| found == FORMAT) {
         return Ok(());
     }
@@ -205,7 +205,7 @@ fn refused(model: &Model) -> Option<String> {
     error.map(|error| format!("no training gives these weights: {error}"))
 }
 
-/// What a range alone does not tell of axes.
+/// Checks of axes beyond the range of each number.
 fn refused_axes(model: &Model) -> Option<String> {
     if model.block(None).is_empty() {
         return Some(format!(

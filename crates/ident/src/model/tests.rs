@@ -91,7 +91,7 @@ fn told(text: &str) -> Vec<String> {
     problems(text).iter().map(told).collect()
 }
 
-/// What is told of a contour model of two axes once `from` is replaced by `to`.
+/// Messages about a contour model of two axes once `from` is replaced by `to`.
 fn told_after(from: &str, to: &str) -> Vec<String> {
     let text = contour::<2>().text();
     assert!(text.contains(from), "the file has no '{from}'");
@@ -312,7 +312,7 @@ fn every_number_of_an_axis_has_its_key_its_bounds_and_one_for_each_axis() {
     );
 }
 
-/// With the checksum that belongs to it.
+/// Messages about a model with the checksum that belongs to it.
 fn told_of(mut model: Model) -> Vec<String> {
     model.about.checksum = model.checksum();
     told(&model.text())

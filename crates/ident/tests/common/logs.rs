@@ -52,7 +52,7 @@ pub(crate) fn file(content: &[u8]) -> (tempfile::TempDir, PathBuf) {
     (folder, path)
 }
 
-/// What is read from this content.
+/// Reads a log with this content.
 pub(crate) fn read(content: &[u8], columns: &str) -> Result<Log, LogError> {
     let (_folder, path) = file(content);
     Log::read(&path, &columns.parse::<Columns>().unwrap())

@@ -1,4 +1,5 @@
-//! How deep LinuxCNC's compensated tool cuts into the contour where this reader refuses.
+//! Depth to which LinuxCNC's compensated tool cuts into the contour where this reader rejects the
+//! program.
 
 use feedwright_gcode::canon::{Canon, Plane};
 use feedwright_gcode::{Dialect, Reader, Settings};
@@ -7,12 +8,12 @@ use crate::linuxcnc::{
     Spiral, Theirs, away_from, compensated_radius, path_of, point, without_compensation,
 };
 
-/// Points of a motion that are looked at for the depth of a cut.
+/// Number of points of a motion at which the depth of a cut is computed.
 const CUT_POINTS: u32 = 65;
 
-/// How deep LinuxCNC's compensated tool cuts into the contour about a line, mm: its motions of that
-/// line and of the one before it into the contour from there to the line behind. The entry has no
-/// contour.
+/// Returns the depth to which LinuxCNC's compensated tool cuts into the contour near a line, mm:
+/// its motions of this line and of the line before, into the contour from the line before to the
+/// line after. The entry has no contour.
 pub(crate) fn cut_mm(text: &str, theirs: &Theirs, line: u32) -> f64 {
     let settings = Settings {
         dialect: Some(Dialect::LinuxCnc),

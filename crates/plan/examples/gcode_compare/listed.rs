@@ -1,16 +1,16 @@
 //! Differences from LinuxCNC that are intended: the rows of docs/gcode-differences.md that a random
 //! program can meet.
 //!
-//! A row names what is told and what the program has where it is told, so that another difference
-//! nearby does not hide behind it. `crates/plan/tests/oracle_linuxcnc_listed.rs` has a program for
-//! every row.
+//! A row states the reported difference and the features of the program at that place, so that it
+//! does not cover another difference nearby. `crates/plan/tests/oracle_linuxcnc_listed.rs` has a
+//! program for every row.
 
 use std::path::Path;
 
 use crate::cut::cut_mm;
 use crate::linuxcnc::{Theirs, Totals, compare, flat_lines, ours};
 
-/// What came of a program.
+/// Result of the comparison for one program.
 pub(crate) enum Verdict {
     /// LinuxCNC's module crashed or hung.
     Unknown,
@@ -19,7 +19,7 @@ pub(crate) enum Verdict {
     Differ(String),
 }
 
-/// Reads the program as well, and compares.
+/// Reads the program, and compares the result with LinuxCNC's.
 pub(crate) fn judge(path: &Path, text: &str, theirs: &Theirs, totals: &mut Totals) -> Verdict {
     if !theirs.complete {
         return Verdict::Unknown;
@@ -34,7 +34,7 @@ pub(crate) fn judge(path: &Path, text: &str, theirs: &Theirs, totals: &mut Total
     difference.map_or(Verdict::Same, Verdict::Differ)
 }
 
-/// The G- and M-codes of a line or a program, in their order, without leading zeros.
+/// Returns the G- and M-codes of a line or a program, in order, without leading zeros.
 pub(crate) fn codes_of(text: &str) -> Vec<String> {
     let upper = text.to_ascii_uppercase();
     let code = |(at, letter): (usize, &str)| {
@@ -50,13 +50,13 @@ pub(crate) fn codes_of(text: &str) -> Vec<String> {
     upper.match_indices(['G', 'M']).filter_map(code).collect()
 }
 
-/// A difference and the program that it is in.
+/// A difference and its program.
 struct Case<'a> {
     text: &'a str,
     theirs: &'a Theirs,
-    /// In capitals.
+    /// Lines of the program, in capitals.
     lines: Vec<String>,
-    /// The line where it is, from 0.
+    /// Index of the line of the difference, from 0.
     at: usize,
 }
 
@@ -68,8 +68,8 @@ const MOTIONS: &[&str] = &[
 ];
 
 impl<'a> Case<'a> {
-    /// The line of a difference. LinuxCNC names that behind a line that it could read and not carry
-    /// out: then one `earlier`.
+    /// Returns the case at the line that `difference` names. If LinuxCNC can read a line but not
+    /// execute it, it names the line after it: `earlier` is then 1.
     fn new(text: &'a str, theirs: &'a Theirs, difference: &str, earlier: usize) -> Option<Self> {
         let number = difference.split_once("line ")?.1;
         let number: usize = number
@@ -94,12 +94,12 @@ impl<'a> Case<'a> {
         &self.lines[self.at]
     }
 
-    /// Whether the line has one of the codes.
+    /// Returns true if the line has one of the codes.
     fn has(&self, codes: &[&str]) -> bool {
         has(self.line(), codes)
     }
 
-    /// Whether the line has a word with this letter; O-words have none.
+    /// Returns true if the line has a word with this letter; O-words do not count.
     fn has_word(&self, letter: char) -> bool {
         !self.line().starts_with('O') && self.line().contains(letter)
     }
@@ -131,7 +131,7 @@ fn has(line: &str, codes: &[&str]) -> bool {
         .any(|code| codes.contains(&code.as_str()))
 }
 
-/// A row: how the difference begins, a part of it, what the program has, the row of the table.
+/// A row: start of the difference, a part of its text, test of the program, and row of the table.
 struct Row {
     who: &'static str,
     says: &'static str,
@@ -141,9 +141,9 @@ struct Row {
 
 const WE: &str = "only we refuse";
 const THEY: &str = "only they refuse";
-/// What counts as a cut into the contour, mm: far above rounding.
+/// Depth above which a cut into the contour counts, mm: far above rounding.
 const CUT_MM: f64 = 1e-3;
-/// Both read the program, and a motion is not the same.
+/// Both read the program, and a motion differs.
 const MOTION: &str = "motion";
 
 const fn row(
@@ -188,7 +188,8 @@ const ROWS: &[Row] = &[
     row(
         THEY,
         "cannot be reached by the tool without gouging",
-        // The motion may be held back, and another line stand between.
+        // LinuxCNC may hold a motion back, with another line in between: the flat corner is at this
+        // line or at the line before.
         |case| (case.at..case.at + 2).any(|line| flat_lines(case.text).contains(&(line as u32))),
         "a flat corner of compensation that LinuxCNC refuses by rounding",
     ),
@@ -400,15 +401,16 @@ const ROWS: &[Row] = &[
     ),
 ];
 
-/// Whether an O-word with this keyword is anywhere: the line of the motion may be in a subroutine
-/// before it.
+/// Returns true if any line has an O-word with this keyword. The line of the motion may be in a
+/// subroutine before that line.
 fn has_flow(case: &Case, keyword: &str) -> bool {
     case.lines
         .iter()
         .any(|line| line.starts_with('O') && line.contains(keyword))
 }
 
-/// Whether the line is in a do that LinuxCNC may have left: a break stands before its end.
+/// Returns true if the line is in a do loop that LinuxCNC may have left: a break stands before the
+/// end of the loop.
 fn in_do_behind_break(case: &Case) -> bool {
     let ends_behind = |label: &str| {
         let end = case.lines[case.at..]
@@ -426,8 +428,8 @@ fn in_do_behind_break(case: &Case) -> bool {
     })
 }
 
-/// Whether the first motion of a profile does not go down from where its cycle with D starts: it
-/// has no word of that axis.
+/// Returns true if the first motion of a profile has no word of the depth axis, so that it does not
+/// go down from the start of its cycle with D.
 fn level_entry(case: &Case) -> bool {
     let depth = if case.has(&["G71", "G71.1", "G71.2"]) {
         'X'
@@ -445,7 +447,8 @@ fn level_entry(case: &Case) -> bool {
         && first.is_some_and(|line| !line.contains(depth))
 }
 
-/// M-codes of two groups of ours, and of one of LinuxCNC's.
+/// Returns true if the line has M-codes of two groups of this reader that are one group in
+/// LinuxCNC.
 fn free_pair(case: &Case) -> bool {
     let codes = codes_of(case.line());
     let one_of = |group: &[&str]| codes.iter().any(|code| group.contains(&code.as_str()));
@@ -455,7 +458,7 @@ fn free_pair(case: &Case) -> bool {
         || one_of(&["M5"]) && one_of(&["M19"])
 }
 
-/// Whether the line is that behind the entry into compensation.
+/// Returns true if the line is the one after the entry into compensation.
 fn behind_entry(case: &Case) -> bool {
     let Some((begin, _)) = case.last(&["G41", "G41.1", "G42", "G42.1"]) else {
         return false;
@@ -467,8 +470,8 @@ fn behind_entry(case: &Case) -> bool {
         == 1
 }
 
-/// Whether G28, G30, G53 or another length stands behind a change of the unit, and that behind
-/// G43.1.
+/// Returns true if G43.1 is followed by a change of the unit, and this by G28, G30, G53 or another
+/// tool length.
 fn unit_under_offset(case: &Case) -> bool {
     let leaving = ["G28", "G30", "G43", "G43.1", "G43.2", "G49", "G53"];
     let behind =
@@ -477,7 +480,7 @@ fn unit_under_offset(case: &Case) -> bool {
     unit.is_some_and(|unit| behind(unit, &leaving).is_some())
 }
 
-/// Whether G94 was written where it was active, and no F since.
+/// Returns true if G94 was written while it was active, and no F since.
 fn feed_forgotten(case: &Case) -> bool {
     let modes = ["G93", "G94", "G95"];
     let Some((last, code)) = case.last(&modes) else {
@@ -491,14 +494,15 @@ fn feed_forgotten(case: &Case) -> bool {
             .any(|line| line.contains('F'))
 }
 
-/// Whether a MOD stands in the line or the two before it, of whose values the motion is made.
+/// Returns true if MOD is in this line or in one of the two before it, whose values the motion
+/// uses.
 fn of_multiple(case: &Case) -> bool {
     case.lines[case.at.saturating_sub(2)..=case.at]
         .iter()
         .any(|line| line.contains(" MOD "))
 }
 
-/// Whether the value of a subroutine was used that is defined before and called nowhere.
+/// Returns true if the value of a subroutine was used that is defined before and called nowhere.
 fn value_of_definition(case: &Case) -> bool {
     let Some(used) = (0..=case.at).rfind(|at| case.lines[*at].contains("#<_VALUE>")) else {
         return false;
@@ -516,7 +520,7 @@ fn value_of_definition(case: &Case) -> bool {
     })
 }
 
-/// Whether the active system was turned while G92 or G52 was in effect.
+/// Returns true if the active coordinate system was rotated while G92 or G52 was in effect.
 fn turned_under_g92(case: &Case) -> bool {
     let shifts = ["G52", "G92", "G92.1", "G92.2", "G92.3"];
     (0..=case.at).any(|at| {
@@ -530,7 +534,7 @@ fn turned_under_g92(case: &Case) -> bool {
     })
 }
 
-/// The row that a difference belongs to.
+/// Returns the name of the row that a difference belongs to.
 pub(crate) fn find(text: &str, theirs: &Theirs, difference: &str) -> Option<&'static str> {
     let fits = |row: &Row| {
         let earlier = if row.who == THEY { 0..2 } else { 0..1 };
@@ -542,7 +546,7 @@ pub(crate) fn find(text: &str, theirs: &Theirs, difference: &str) -> Option<&'st
     ROWS.iter().find(|row| fits(row)).map(|row| row.what)
 }
 
-/// What the rows are called.
+/// Returns the names of the rows.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     ROWS.iter().map(|row| row.what)
 }

@@ -1,12 +1,12 @@
-//! Compares this reader with LinuxCNC on random programs: verdicts, end points, centres and arcs,
+//! Compares this reader with LinuxCNC on random programs: verdicts, end points, centers and arcs,
 //! all to 1e-6 mm.
 //!
 //! Usage: `cargo run --release -p feedwright-plan --example gcode_compare -- [PROGRAMS] [FIRST]
-//! [nested]`, with `nested` programs of control flow from a generator of their own. Needs the
+//! [nested]`. With `nested`, a separate generator writes programs of control flow. Needs the
 //! interpreter's Python module (Debian: `linuxcnc-uspace`). The same numbers give the same
-//! programs. Every difference that is not listed is written to `gcode_compare_NUMBER.ngc` and ends
-//! the run with exit code 1; in the end it says which codes the programs had. A program alone is
-//! printed.
+//! programs. Every difference that is not listed is written to `gcode_compare_NUMBER.ngc`, and the
+//! exit code is then 1. At the end, the codes that occurred in the programs are printed. A single
+//! program is printed as well.
 
 #![expect(clippy::unwrap_used, reason = "shared with tests, which may stop")]
 
@@ -25,17 +25,17 @@ use feedwright_gcode::{Reader, Settings};
 use linuxcnc::{Theirs, Totals, theirs};
 use listed::{Verdict, codes_of};
 
-/// Programs that LinuxCNC is asked about at a time.
+/// Number of programs per call of LinuxCNC.
 const BATCH: u64 = 500;
-/// Tenths of the largest G-code, and the largest M-code that the interpreter itself has.
+/// Tenths of the largest G-code, and the largest M-code of the interpreter itself.
 const MAX_CODES: [u32; 2] = [1000, 100];
 
-/// What came of all programs.
+/// Results of all programs.
 #[derive(Default)]
 struct Outcome {
     totals: Totals,
     counts: BTreeMap<String, u64>,
-    /// Programs whose motions were compared, by the codes in them.
+    /// Number of compared programs for each code in them.
     codes: BTreeMap<String, u64>,
     unlisted: u64,
 }
@@ -78,7 +78,8 @@ impl Outcome {
         }
         let mut paths: Vec<PathBuf> = Vec::new();
         for (number, text) in (begin..).zip(&texts) {
-            // Not a number alone: LinuxCNC looks for O9000 in a file of that name first.
+            // The name is not a number alone: LinuxCNC first looks for O9000 in a file of that
+            // name.
             let path = folder.path().join(format!("program_{number}.ngc"));
             std::fs::write(&path, text)?;
             paths.push(path);
@@ -183,7 +184,7 @@ impl Outcome {
     }
 }
 
-/// Every G- and M-code that the reader knows, found by asking it.
+/// Returns every G- and M-code that the reader accepts.
 fn known_codes() -> Vec<String> {
     let is_known = |line: &str| {
         let settings = Settings {

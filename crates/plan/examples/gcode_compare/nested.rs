@@ -1,41 +1,41 @@
-//! Random programs of control flow: loops in loops with `break` and `continue`, subroutines with
-//! arguments, and cycles, polar words and cutter compensation inside of them. Lines are written in
-//! all the ways that the language lets one write them.
+//! Random programs of control flow: nested loops with `break` and `continue`, subroutines with
+//! arguments, and cycles, polar words and cutter compensation inside them. Lines are written in all
+//! the ways that the language allows.
 //!
-//! It shares no grammar with `programs.rs`, so that what the one never writes the other may.
+//! The grammar is independent of `programs.rs`, so that each covers what the other never writes.
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// Blocks within blocks, and statements of a program.
+/// Largest depth of nested blocks, and range of the number of statements of a program.
 const MOST_DEPTH: u32 = 4;
 const STATEMENTS: [u32; 2] = [3, 12];
-/// Subroutines of a program, at most.
+/// Largest number of subroutines of a program.
 const MOST_ROUTINES: u32 = 3;
-/// Numbers of variables that anything may be assigned to, and before the first counter of a loop,
-/// which nothing else changes.
+/// First number of the variables that any statement may assign, and the number before the first
+/// loop counter. Nothing else changes a loop counter.
 const FREE: u32 = 41;
 const COUNTERS: u32 = 100;
-/// First axis, second axis, normal, and letters of the center, by plane.
+/// First axis, second axis, normal, and letters of the center, for each plane.
 const PLANE_LETTERS: [(&str, [char; 5]); 3] = [
     ("G17", ['X', 'Y', 'Z', 'I', 'J']),
     ("G18", ['Z', 'X', 'Y', 'K', 'I']),
     ("G19", ['Y', 'Z', 'X', 'J', 'K']),
 ];
-/// Positive whole steps of a repeat, also as expressions.
+/// Numbers of rounds of a repeat loop, also as expressions.
 const TIMES: [&str; 6] = ["2", "3", "1", "0", "1+1", "#5420*0+2"];
 
-/// What encloses a statement.
+/// Block that encloses a statement.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Enclosure {
-    /// A while or a do, by its label: what break and continue are for.
+    /// A while or do loop, by its label: the target of break and continue.
     Loop(u32),
     Repeat,
     Routine(u32),
 }
 
-/// What the loops of a program have. LinuxCNC 2.9 mixes up a do and loops that were left before, so
-/// that few programs have both.
+/// Statements that the loops of a program may contain. LinuxCNC 2.9 confuses a do loop with loops
+/// that were left earlier, so only few programs have both.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum LoopUses {
     Leaving,
@@ -43,7 +43,7 @@ enum LoopUses {
     Both,
 }
 
-/// Writes a program.
+/// Writes one program.
 struct NestedWriter {
     rng: Xoshiro256PlusPlus,
     text: String,
@@ -51,12 +51,13 @@ struct NestedWriter {
     counters: u32,
     routines: Vec<(u32, u32)>,
     uses: LoopUses,
-    /// Turns the active system, and then does not shift it: LinuxCNC 2.9 mixes up the two.
+    /// True if the program rotates the active coordinate system. It then does not shift it:
+    /// LinuxCNC 2.9 confuses the two.
     turns: bool,
     around: Vec<Enclosure>,
 }
 
-/// The program of a number.
+/// Returns the program with this number.
 pub(crate) fn nested(number: u64) -> String {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(number ^ 0x6E65_7374_6564);
     let uses = match rng.random_range(0..16) {
@@ -107,7 +108,7 @@ impl NestedWriter {
         }
     }
 
-    /// Appends a line, in capitals or not, with numbers close to their letters or not.
+    /// Appends a line, in capitals or not, with or without spaces between the words.
     fn line(&mut self, words: &str) {
         let words = match self.below(6) {
             0 => words.to_ascii_lowercase(),
@@ -124,13 +125,13 @@ impl NestedWriter {
         self.text += &format!("{number}{words}{comment}\n");
     }
 
-    /// Appends a line of an O-word.
+    /// Appends a line with an O-word.
     fn flow(&mut self, label: u32, rest: &str) {
         let letter = self.pick(&["o", "O"]);
         self.text += &format!("{letter}{label} {rest}\n");
     }
 
-    /// A number in one of its spellings.
+    /// Returns a number in one of its spellings.
     fn spelled(&mut self, value: f64) -> String {
         let value = (value * 1000.0).round() / 1000.0;
         match self.below(7) {
@@ -242,7 +243,7 @@ impl NestedWriter {
         self.flow(label, "endrepeat");
     }
 
-    /// A break, a continue or a return, on a condition.
+    /// Appends a break, a continue or a return, on a condition.
     fn leave(&mut self) {
         let Some(enclosure) = self.around.last().copied() else {
             return;
@@ -278,7 +279,7 @@ impl NestedWriter {
         if self.routines.is_empty() {
             return;
         }
-        // A routine calls only those before it.
+        // A routine calls only earlier routines.
         let within = self.around.iter().find_map(|enclosure| match enclosure {
             Enclosure::Routine(label) => Some(*label),
             _ => None,
@@ -308,7 +309,7 @@ impl NestedWriter {
         if self.below(9) == 0 {
             words.push(format!("F{}", 100 + self.below(900)));
         }
-        // The order of words means nothing.
+        // The order of the words has no meaning.
         let other = self.rng.random_range(0..words.len());
         words.swap(0, other);
         self.line(&words.join(" "));
@@ -326,7 +327,7 @@ impl NestedWriter {
         self.line(&line);
     }
 
-    /// An arc from anywhere in any plane: its words are distances.
+    /// Appends an arc that fits anywhere, in any plane: its words are distances.
     fn arc(&mut self) {
         let (plane, [first, second, normal, i, j]) = self.pick(&PLANE_LETTERS);
         let code = self.pick(&["G2", "G3"]);
@@ -355,13 +356,13 @@ impl NestedWriter {
             1 => format!("G0 X{radius} Y1\nG1 ^[{angle} + #{counter}] Z1"),
             2 => format!("G0 X{radius} Y2\nG91 G1 @1 ^{angle}\nG90"),
             3 => format!("G0 @{radius} ^{angle}\nG91 ^15\n@.5\nG90"),
-            // A flatter arc would count as one around a flat corner of compensation.
+            // A flatter arc would count as an arc around a flat corner of compensation.
             _ => format!("G3 @{radius} ^{angle} R30"),
         };
         line.lines().for_each(|line| self.line(line));
     }
 
-    /// A series of holes, with repeats and polar places.
+    /// Appends a series of holes, with repeats and polar coordinates.
     fn cycle(&mut self) {
         let (plane, [first, second, normal, ..]) = self.pick(&PLANE_LETTERS);
         let code = self.pick(&["G81", "G82", "G83", "G73", "G85", "G89"]);
@@ -421,9 +422,9 @@ impl NestedWriter {
         lines.lines().for_each(|line| self.line(line));
     }
 
-    /// A polygon with cutter compensation in any plane, its corners counted by a loop.
+    /// Appends a polygon with cutter compensation in any plane; a loop counts its corners.
     fn compensation(&mut self) {
-        // G19 has no compensation: both refuse it.
+        // G19 has no compensation: both readers reject it.
         let plane = if self.below(16) == 0 {
             2
         } else {

@@ -1,8 +1,6 @@
-//! Random programs in LinuxCNC's language: most of them mean something, some have a slip of the
-//! pen.
+//! Random programs in LinuxCNC's language: most are valid, some have a slip of the pen.
 //!
-//! Arcs, cycles and curves are written so that they fit wherever the program stands: their
-//! coordinates are distances.
+//! Arcs, cycles and curves fit at any position of the program: their coordinates are distances.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,7 +9,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// One program in this many has a slip.
 const SLIPS: u32 = 8;
-/// Tokens of a slip: what a hand writes in the wrong place.
+/// Tokens of a slip: words in the wrong place.
 const SLIP_WORDS: [&str; 16] = [
     "G1", "G2", "G17", "G40", "X1", "R5", "I2", "K1", "P2", "L3", "M3", "M4", "D2", "(open",
     "o9 endif", "#<none>",
@@ -21,7 +19,7 @@ const SLIP_WORDS: [&str; 16] = [
 struct Writer {
     rng: Xoshiro256PlusPlus,
     text: String,
-    /// First axis, second axis, normal, and letters of the centre, by the plane that is active.
+    /// Index of the active plane.
     plane: usize,
     incremental: bool,
     labels: u32,
@@ -33,7 +31,7 @@ const PLANES: [(&str, [char; 3], [char; 2]); 3] = [
     ("G19", ['Y', 'Z', 'X'], ['J', 'K']),
 ];
 
-/// The program of a number.
+/// Returns the program with this number.
 pub(crate) fn program(number: u64) -> String {
     let mut writer = Writer {
         rng: Xoshiro256PlusPlus::seed_from_u64(number),
@@ -70,7 +68,7 @@ impl Writer {
         from[self.rng.random_range(0..from.len())]
     }
 
-    /// A number with up to four decimals.
+    /// Returns a number with up to four decimals.
     fn number(&mut self, low: f64, high: f64) -> f64 {
         let decimals = self.pick(&[1.0, 10.0, 1000.0, 10000.0]);
         (self.rng.random_range(low..high) * decimals).round() / decimals
@@ -158,7 +156,7 @@ impl Writer {
         }
     }
 
-    /// An arc from anywhere: its words are distances.
+    /// Appends an arc that fits anywhere: its words are distances.
     fn arc(&mut self) {
         let plane = self.rng.random_range(0..3);
         self.choose_plane(plane);
@@ -273,7 +271,7 @@ impl Writer {
         }
     }
 
-    /// G90.1, from a point that the program has just gone to.
+    /// Appends an arc with G90.1, from a point to which the program has just moved.
     fn absolute_arc(&mut self) {
         self.choose_plane(0);
         self.distance(false);
@@ -364,8 +362,8 @@ impl Writer {
         let code = self.pick(&[
             "G81", "G82", "G83", "G73", "G84", "G74", "G85", "G86", "G88", "G89", "G87",
         ]);
-        // G88 leaves the height to the operator, so that nothing behind it could be compared.
-        // In other planes LinuxCNC 2.9 exchanges the axes of tapping.
+        // G88 leaves the height to the operator, so nothing after it could be compared. In other
+        // planes LinuxCNC 2.9 swaps the axes of tapping.
         self.choose_plane(if code == "G84" || code == "G74" {
             0
         } else {
@@ -380,7 +378,7 @@ impl Writer {
             "G87" => " I1 J0.5 K-1".to_owned(),
             _ => String::new(),
         };
-        // LinuxCNC refuses L with G74.
+        // LinuxCNC rejects L with G74.
         if self.below(4) == 0 && code != "G74" {
             words += &format!(" L{}", 1 + self.below(3));
         }
@@ -409,7 +407,7 @@ impl Writer {
         self.choose_plane(0);
         let was = self.incremental;
         self.distance(true);
-        // LinuxCNC's preview module keeps Z of straight motions only.
+        // LinuxCNC's preview module keeps Z only of straight motions.
         self.line("G1 Z0.5".to_owned());
         let mut three = || [(); 4].map(|()| self.rng.random_range(1.0..9.0_f64));
         let ([a, b, c, d], [e, f, g, h]) = (three(), three());
@@ -492,7 +490,8 @@ impl Writer {
         }
     }
 
-    /// A contour with cutter compensation: lines and arcs, corners of all kinds, many of them flat.
+    /// Appends a contour with cutter compensation: lines and arcs, corners of all kinds, many of
+    /// them flat.
     fn compensation(&mut self) {
         let radius = self.pick(&[0.5, 2.0, 5.0, 10.0]);
         let side = self.pick(&[1.0, -1.0]);
@@ -501,7 +500,7 @@ impl Writer {
         let beside = self.number(-30.0, 30.0);
         self.line(format!("G0 X-40 Y{beside}"));
         if self.below(6) == 0 {
-            // Of the tool table: all are an eighth of an inch thick.
+            // The diameter comes from the tool table, in which all tools have an eighth of an inch.
             self.line(format!("T3 M6\nG43 H3\n{} D2 G1 X0 Y0", &code[..3]));
         } else {
             self.line(format!("{code} D{} G1 X0 Y0", 2.0 * radius));
@@ -550,7 +549,7 @@ impl Writer {
         ));
     }
 
-    /// A subroutine as Fanuc has them, called in the first line behind the modes.
+    /// Appends a subroutine in Fanuc style, called in the first line after the modes.
     fn numbered_subroutine(&mut self) {
         let (times, step) = (1 + self.below(3), self.number(-3.0, 3.0));
         let called = format!("M98 P9000 L{times}\n");
@@ -559,7 +558,7 @@ impl Writer {
         self.line(format!("O9000\nG1 X{step} Y2\nG0 Z1\nM99"));
     }
 
-    /// Threads and roughing cycles of a lathe.
+    /// Appends threads and roughing cycles of a lathe.
     fn turning(&mut self) {
         self.line("G18 G8".to_owned());
         self.plane = 1;

@@ -28,8 +28,8 @@ use crate::vector::angle;
 /// seen on the part.
 pub(crate) const TANGENT_TOLERANCE_RAD: f64 = 1e-3;
 
-/// How much longer than its neighbour a block may be and still count with its full length; CAM
-/// programs cut curves into blocks whose neighbours seldom differ more.
+/// Largest ratio of the lengths of neighboring blocks at which the longer one counts with its full
+/// length. CAM programs cut curves into blocks whose neighbors seldom differ more.
 const LENGTH_RATIO: f64 = 3.0;
 
 /// One side of a joint.

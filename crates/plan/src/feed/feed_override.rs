@@ -36,7 +36,7 @@ pub const MOST_OVERRIDE: f64 = 2.0;
 /// More than any change of the slope, 1/s2.
 const MOST_BEND_1_S2: f64 = 1e12;
 
-/// A velocity and an acceleration that are none.
+/// Velocity and acceleration below which an axis counts as still.
 const STILL_MM_S: f64 = 1e-9;
 const STILL_MM_S2: f64 = 1e-3;
 
@@ -46,13 +46,13 @@ const ROUNDING: f64 = 1e-9;
 /// Most periods of a way to an override above 1 that ends without a slope.
 const SETTLING: u32 = 16;
 
-/// So often the interval between a choice that can be taken and one that cannot is halved.
+/// Number of times that the interval between a feasible and an infeasible choice is halved.
 const HALVINGS: u32 = 6;
 
 /// Limits, and the period in which the rate changes.
 #[derive(Debug, Clone, Copy)]
 pub struct ScalingLimits {
-    /// Of each axis.
+    /// Limits of each axis.
     pub axes: [AxisLimits; 3],
     /// Largest speed along the path, mm/s.
     pub speed_mm_s: f64,
@@ -60,7 +60,7 @@ pub struct ScalingLimits {
     pub period_s: f64,
 }
 
-/// Where plan time is, and how it runs.
+/// Plan time, and the rate at which it runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScaledTime {
     /// Plan time, s.
@@ -72,7 +72,7 @@ pub struct ScaledTime {
 }
 
 impl ScaledTime {
-    /// After a time at a constant change of the slope, 1/s2.
+    /// Returns the state after a time at a constant change of the slope, 1/s2.
     #[inline]
     pub fn after(&self, t: f64, bend_1_s2: f64) -> Self {
         let Self {
@@ -87,7 +87,7 @@ impl ScaledTime {
         }
     }
 
-    /// What the axes do where the plan has them do `planned`.
+    /// Returns the motion of the axes at this rate where the plan has the motion `planned`.
     #[inline]
     pub fn motion(&self, planned: &AxisMotion, bend_1_s2: f64) -> AxisMotion {
         let (r, s) = (self.rate, self.slope_1_s);
@@ -111,24 +111,24 @@ impl ScaledTime {
 /// A time in which the slope changes evenly, within one span of the plan.
 #[derive(Debug, Clone, Copy)]
 pub struct ScaledStep {
-    /// Where it begins.
+    /// State at the start of the step.
     pub from: ScaledTime,
     /// Change of the slope, 1/s2.
     pub bend_1_s2: f64,
-    /// How long it takes, s: a period or less.
+    /// Duration, s: a period or less.
     pub duration_s: f64,
     /// Number of the span.
     span: usize,
 }
 
 impl ScaledStep {
-    /// After a time.
+    /// Returns the state after a time.
     #[inline]
     pub fn after(&self, t: f64) -> ScaledTime {
         self.from.after(t, self.bend_1_s2)
     }
 
-    /// What the axes do after a time.
+    /// Returns the motion of the axes after a time.
     pub fn motion(&self, plan: &PublishedPlan, t: f64) -> AxisMotion {
         let now = self.after(t);
         now.motion(&plan.in_span(self.span, now.tau_s), self.bend_1_s2)
@@ -146,7 +146,7 @@ pub struct TimeScaling<'a> {
 }
 
 impl<'a> TimeScaling<'a> {
-    /// At the beginning of a plan, at rest.
+    /// Creates the scaling at the beginning of a plan, at rest.
     pub fn new(plan: &'a PublishedPlan, limits: ScalingLimits) -> Self {
         let now = ScaledTime {
             tau_s: 0.0,
@@ -161,7 +161,7 @@ impl<'a> TimeScaling<'a> {
         }
     }
 
-    /// From a moment of the plan on, at the rate 1.
+    /// Creates the scaling at a moment of the plan, at the rate 1.
     pub fn from_moment(plan: &'a PublishedPlan, limits: ScalingLimits, tau_s: f64) -> Self {
         let now = ScaledTime {
             tau_s,
@@ -174,12 +174,12 @@ impl<'a> TimeScaling<'a> {
         }
     }
 
-    /// Where plan time is.
+    /// Returns the current plan time and rate.
     pub const fn now(&self) -> ScaledTime {
         self.now
     }
 
-    /// Whether the plan rests here, whatever the rate.
+    /// Returns true if the plan rests here, whatever the rate.
     pub fn rests(&self) -> bool {
         let AxisMotion {
             velocity_mm_s,
@@ -189,7 +189,7 @@ impl<'a> TimeScaling<'a> {
         norm(velocity_mm_s) < STILL_MM_S && norm(accel_mm_s2) < STILL_MM_S2
     }
 
-    /// Whether the plan has come to its end.
+    /// Returns true if the plan has ended.
     pub fn has_ended(&self) -> bool {
         self.now.tau_s >= self.plan.end_s()
     }
@@ -326,7 +326,7 @@ mod tests {
 
     use super::*;
 
-    /// Of a central difference, s, and what it may be off: the square of it times higher
+    /// Step of a central difference, s, and its allowed error: the square of the step times higher
     /// derivatives below 1000.
     const H_S: f64 = 1e-3;
     const OFF: f64 = 1e-3;

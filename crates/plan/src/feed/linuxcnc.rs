@@ -76,7 +76,7 @@ const BESIDE_MM: f64 = 1e-8;
 /// Servo periods in which a segment may stand still.
 const MOST_STILL: u32 = 1000;
 
-/// What the queue is given.
+/// Input of the queue.
 #[derive(Debug)]
 enum QueueInput {
     /// The tool starts from rest, at a point.
@@ -120,7 +120,7 @@ pub(crate) struct Linuxcnc {
 }
 
 impl Linuxcnc {
-    /// At rest before the first piece.
+    /// Creates the planner at rest before the first piece.
     pub(crate) fn new(constraints: &Constraints) -> Self {
         let limits = DirectionLimits::new(constraints);
         let at = PeriodPoint {
@@ -282,7 +282,7 @@ impl Linuxcnc {
     }
 }
 
-/// When a place that does not go back comes to a bound, within this period.
+/// Returns the time within this period at which a place that does not go back reaches a bound, s.
 fn time_of(place: impl Fn(f64) -> f64, bound_mm: f64, from_s: f64) -> f64 {
     let (mut lo_s, mut hi_s) = (from_s, PERIOD_S);
     for _ in 0..60 {

@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// outputs synchronised with motion.
 const CODES_THAT_DO_NOT_STOP: [u16; 3] = [62, 63, 67];
 
-/// What a plan hands out.
+/// Item that a plan hands out.
 #[derive(Debug, Clone)]
 pub enum Planned {
     /// The next piece of the programmed path.
@@ -29,9 +29,9 @@ pub enum Planned {
     Event(TimedEvent),
 }
 
-/// Is told of all that a plan hands out, in order.
+/// Receives everything that a plan hands out, in order.
 pub trait PlanSink: Sync {
-    /// The next of it.
+    /// Receives the next item.
     fn planned(&self, planned: &Planned);
 }
 
@@ -51,10 +51,10 @@ pub struct Plan<'p> {
     sink: Option<&'p dyn PlanSink>,
 }
 
-/// Where a plan comes from.
+/// Source of a plan.
 enum PlanSource<'p> {
     Made(Box<PlanInMaking<'p>>),
-    /// From this place on.
+    /// Kept plan, and the index of its next item.
     Kept(KeptPlan, usize),
 }
 
@@ -69,7 +69,7 @@ struct PlanInMaking<'p> {
     last_mm: f64,
     /// The next piece starts from rest.
     stop: bool,
-    /// What happens between pieces, in order.
+    /// Events and rests between pieces, in order.
     between: VecDeque<Between>,
     clock: ArcLength,
     ready: VecDeque<Planned>,
@@ -82,11 +82,11 @@ struct PlanInMaking<'p> {
 struct Between {
     /// Number of the planned piece that it comes before.
     before: u64,
-    /// Where the tool is then.
+    /// Place of the tool then: its piece, and the arc length in it, mm.
     piece: u64,
     from_mm: f64,
     event: Option<Event>,
-    /// How long the tool rests, s, and for which line.
+    /// Time that the tool rests, s, and the line that causes it.
     rest: Option<(f64, u32)>,
 }
 
@@ -110,10 +110,10 @@ impl<'p> Plan<'p> {
         )
     }
 
-    /// As [`Plan::new`], along a planned path beside the programmed one.
+    /// Plans as [`Plan::new`] does, along a planned path beside the programmed one.
     ///
     /// # Errors
-    /// See there.
+    /// Fails as [`Plan::new`] does.
     pub fn of_paired(
         steps: PairedSteps<'p>,
         constraints: &Constraints,
@@ -176,7 +176,7 @@ impl<'p> Plan<'p> {
         self.keeps.filter(|_| ended).map(|all| KeptPlan(all.into()))
     }
 
-    /// With one who is told of what it hands out.
+    /// Reports everything that the plan hands out to `sink`.
     #[must_use]
     pub fn told_to(self, sink: Option<&'p dyn PlanSink>) -> Self {
         Self { sink, ..self }

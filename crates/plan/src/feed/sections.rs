@@ -39,9 +39,9 @@ const MIN_PART: f64 = 1.0 / 4096.0;
 pub struct Section {
     /// Number of the piece, from 0.
     pub piece: u64,
-    /// Where it starts in the piece, mm.
+    /// Start in the piece, mm.
     pub from_mm: f64,
-    /// How long it is, mm, more than 0.
+    /// Length, mm, more than 0.
     pub length_mm: f64,
     /// Bound on the square of the speed at the joint before it, mm2/s2.
     pub joint_cap: f64,
@@ -57,7 +57,7 @@ pub trait SectionPlanner: Send {
     /// Adds a section behind those before.
     fn push(&mut self, section: Section);
 
-    /// There are no more sections: the motion ends at rest.
+    /// Ends the path: no more sections follow, and the motion ends at rest.
     fn finish(&mut self);
 
     /// Takes the next span that is final.
@@ -69,14 +69,14 @@ pub trait SectionPlanner: Send {
 pub(crate) struct Capped<P> {
     constraints: Constraints,
     planner: P,
-    /// Where the last piece ends, and how its corner is taken.
+    /// End of the last piece, and its corner mode.
     last: Option<(JointSide, Corner)>,
     /// Pieces so far.
     pieces: u64,
 }
 
 impl<P> Capped<P> {
-    /// At rest before the first piece.
+    /// Creates the planner at rest before the first piece.
     pub(crate) fn new(constraints: &Constraints, planner: P) -> Self {
         Self {
             constraints: constraints.clone(),

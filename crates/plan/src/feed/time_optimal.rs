@@ -56,8 +56,8 @@ const BEYOND_S: f64 = 0.5;
 /// Part of a window that is committed.
 const COMMITTED: f64 = 0.6;
 
-/// Where a window comes to no solution, so much of that goes on along the one before: the next one
-/// begins elsewhere, and still at speed.
+/// Part of the usual commit that is taken from the previous window if a window has no solution. The
+/// next window then begins elsewhere, and still at speed.
 const GOING_ON: f64 = 0.25;
 
 /// Step of time, in times `(tolerance / jerk)^(1/3)`: within it jerk leads away from a chord by
@@ -67,8 +67,8 @@ const STEP: f64 = 0.35;
 /// Shortest and longest step of time, s.
 const STEPS_S: [f64; 2] = [2e-4, 5e-3];
 
-/// Where the feedrate is so low that a step is less than this part of the tolerance, steps are
-/// longer.
+/// Least length of a step at the feedrate, as a part of the tolerance. At low feedrates steps
+/// therefore take longer.
 const LEAST_WAY: f64 = 0.1;
 
 /// Fewest and most steps of a window.
@@ -91,13 +91,14 @@ const TOLERANCE_PARTS: [f64; 4] = [1.0, 0.5, 0.25, 0.1];
 /// whole tube for nothing.
 const OFFSET_COST: f64 = 0.02;
 
-/// How often a window is solved again with what it exceeded tightened.
+/// Largest number of rounds in which a window is solved. After each one, whatever it exceeded is
+/// tightened.
 const ROUNDS: usize = 5;
 
-/// In the last round so much beyond the tolerance is taken, mm.
+/// Tolerance violation accepted in the last round, mm.
 const LAST_OVER_MM: f64 = 5e-5;
 
-/// And so much beyond the feedrate, as a part of it.
+/// Feedrate violation accepted in the last round, as a part of the feedrate.
 const LAST_OVER: f64 = 1e-9;
 
 /// First guesses, tried in turn: a motion and the first barrier. The motion is the motion of the
@@ -127,9 +128,10 @@ const CORNER_RAD: f64 = 1e-3;
 const DEFAULT_MM: f64 = 0.01;
 const LEAST_MM: f64 = 1e-5;
 
-/// How far a window's first guess follows what is known. Up to where that brakes for its rest, an
-/// estimate goes on at speed; where that comes to no solution, as with tolerances of 1 um, what is
-/// known is followed down to the last of its speed: a guess that is possible.
+/// Extent to which the first guess of a window follows the known motion. `UntilBraking` follows it
+/// until it brakes for its rest; from there an estimate goes on at speed. Where that has no
+/// solution, as with tolerances of 1 um, `AlmostToRest` follows it down to the last of its speed.
+/// That guess is feasible.
 #[derive(Debug, Clone, Copy)]
 enum Followed {
     UntilBraking,
@@ -139,14 +141,14 @@ enum Followed {
 /// Steps before a rest that are not followed: they come nowhere.
 const NEARLY_AT_REST: f64 = 20.0;
 
-/// What has been done, for benches and tests.
+/// Counts of the work done, for benchmarks and tests.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct PlanCounts {
     /// Windows that were committed.
     pub windows: u64,
     /// Solutions that were looked for.
     pub solutions: u64,
-    /// Those that were not found.
+    /// Solutions that failed.
     pub failed: u64,
     /// Windows in whose place the motion went on along the one before.
     pub went_on: u64,
@@ -182,8 +184,8 @@ pub struct TimeOptimal {
 }
 
 impl TimeOptimal {
-    /// At rest before the first piece. An axis without limits of its own is like the last that has
-    /// some.
+    /// Creates the planner at rest before the first piece. An axis without limits of its own takes
+    /// those of the last axis that has some.
     pub fn new(constraints: &Constraints) -> Self {
         let limits = |k: usize| constraints.axis(k).unwrap_or(AxisLimits::NONE);
         Self {
@@ -226,7 +228,7 @@ impl TimeOptimal {
         }
     }
 
-    /// What has been done so far.
+    /// Returns the counts so far.
     pub const fn counts(&self) -> PlanCounts {
         self.counts
     }
@@ -275,7 +277,7 @@ impl TimeOptimal {
         (self.tolerance_mm, self.feed_mm_s) = (f64::INFINITY, 0.0);
     }
 
-    /// Whether enough is known for the next window.
+    /// Returns true if enough of the path is known for the next window.
     fn is_due(&self) -> bool {
         if self.track.ended {
             return self.from.s_mm < self.track.end_mm;
@@ -424,7 +426,7 @@ impl TimeOptimal {
         (mesh.nodes, ends)
     }
 
-    /// With nodes in times of what is known, solved until nothing is exceeded.
+    /// Solves a window whose nodes follow the times of the known steps, until nothing is exceeded.
     fn solve_behind(
         &mut self,
         known: &[PlannedStep],
@@ -511,8 +513,8 @@ impl TimeOptimal {
         None
     }
 
-    /// How many steps may be committed before another window is solved: of the others, the tube at
-    /// nodes is enough.
+    /// Returns the number of steps that may be committed before another window is solved. For the
+    /// other steps, the tube at the nodes is enough.
     fn soon(&self, steps: &[PlannedStep]) -> usize {
         let until_s = 2.0 * self.committed_s(steps);
         let mut time_s = 0.0;
@@ -523,7 +525,8 @@ impl TimeOptimal {
         soon.count() + 1
     }
 
-    /// How much of a window is committed, s: less where it came out shorter than it was estimated.
+    /// Returns the time of a window that is committed, s; less if the window came out shorter than
+    /// estimated.
     fn committed_s(&self, steps: &[PlannedStep]) -> f64 {
         let time_s: f64 = steps.iter().map(|step| step.duration_s).sum();
         COMMITTED * time_s.min(self.window() as f64 * self.step_s())
@@ -563,7 +566,7 @@ impl TimeOptimal {
         self.track.forget_before(self.from.s_mm);
     }
 
-    /// From rest straight to a place of the path, to rest: as far as the tolerance lets it.
+    /// Moves straight from rest to rest, to a place of the path as far as the tolerance allows.
     fn go_straight(&mut self) {
         self.counts.straight += 1;
         let MeshStart { s_mm, motion } = self.from;
@@ -595,8 +598,8 @@ impl TimeOptimal {
         self.track.forget_before(end_mm);
     }
 
-    /// Whether a straight line and a part of the path are within the tolerance of each other,
-    /// looked at closely.
+    /// Returns true if a straight line and a part of the path stay within the tolerance of each
+    /// other, checked at close points.
     fn is_within(&self, from_mm: [f64; 3], to_mm: [f64; 3], [lo_mm, hi_mm]: [f64; 2]) -> bool {
         let most_mm = 0.95 * self.tolerance_mm;
         let chord = sub(to_mm, from_mm);

@@ -13,16 +13,16 @@ use crate::vector::{Vector, distance};
 
 /// Distance of places on the other path at which a foot is looked for, mm.
 const STEP_MM: f64 = 0.25;
-/// How much further than the nearest place the path may be on the way to a nearer one: at a right
-/// angle sqrt(2).
+/// Largest ratio of the distance on the way to a nearer place to the smallest distance so far. At a
+/// right angle the ratio is sqrt(2).
 const HILL: f64 = 1.5;
-/// How far ahead a foot is looked for, in steps and in distances of the last foot.
+/// Search range ahead of the last foot, in steps and in distances of the last foot.
 const AHEAD_STEPS: f64 = 8.0;
 const AHEAD_DISTANCES: f64 = 4.0;
 /// Least part of a step in which places are looked at, mm.
 const LEAST_MM: f64 = 1e-3;
-/// What a foot may be further away for each mm by which it is nearer to where an even pace leads:
-/// of a line there and back, and of two laps over each other, the one that is due counts.
+/// Cost of a deviation from an even pace, mm of distance per mm. It selects the pass that is due on
+/// a line there and back, or on two laps over each other.
 const LEAN: f64 = 0.05;
 /// Distances that differ by less are equal, mm.
 const TIE_MM: f64 = 1e-9;
@@ -35,8 +35,8 @@ const LEFT_OUT_PLACES: u32 = 200;
 #[derive(Debug, Clone)]
 pub struct AlignedPaths {
     steps: Vec<PairedStep>,
-    /// How far the programmed cutting path that the other program leaves out at its end is from the
-    /// other path, mm; 0 where it leaves out nothing.
+    /// Largest distance from the other path of the programmed cutting path that the other program
+    /// leaves out at its end, mm; 0 if it leaves out nothing.
     pub left_out_mm: f64,
 }
 
@@ -187,7 +187,7 @@ impl ProgrammedPath {
         best.0
     }
 
-    /// How far cutting path behind a place is from another path, at the most.
+    /// Returns the largest distance of the cutting path behind a place from another path, mm.
     fn left_out_mm(&self, foot_mm: f64, other: &[Piece]) -> f64 {
         let end_mm = self.end_mm();
         if end_mm - foot_mm < CUT_MM {

@@ -13,7 +13,7 @@ pub(crate) struct UnchangedSteps<'p> {
 }
 
 impl<'p> UnchangedSteps<'p> {
-    /// Of the steps of a program.
+    /// Creates the steps of both paths from the steps of a program.
     pub(crate) const fn new(steps: Steps<'p>) -> Self {
         Self {
             steps,

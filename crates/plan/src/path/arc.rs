@@ -25,7 +25,7 @@ pub struct Arc {
     start_mm: Vector,
     /// Tangent at the start, in the plane of the circle.
     tangent0: Vector,
-    /// From the start to the centre.
+    /// Unit vector from the start to the center.
     normal0: Vector,
     /// Rise per mm of path, along the plane's normal.
     rise: Vector,
@@ -104,7 +104,7 @@ impl Arc {
         self.turn_rad_mm * self.length_mm
     }
 
-    /// Whether it stays in the plane of the circle.
+    /// Returns true if the arc stays in the plane of the circle.
     pub fn is_flat(&self) -> bool {
         self.rise == [0.0; 3]
     }
@@ -220,7 +220,7 @@ impl Arc {
         best.1
     }
 
-    /// How far the end is from `end_mm`; for tests and for those who build arcs.
+    /// Returns the distance of the end from `end_mm`, for tests.
     #[cfg(test)]
     pub(super) fn end_error_mm(&self, end_mm: Vector) -> f64 {
         distance(self.at(self.length_mm).position_mm, end_mm)

@@ -41,10 +41,11 @@ const SPIRAL_KINK_RAD: f64 = 5e-4;
 /// A spiral has no more arcs than this, so that memory stays bounded whatever a motion says.
 const MAX_ARCS: f64 = 4096.0;
 
-/// With more turns than this the spiral is in the last turn only: its arcs would be too many.
+/// Largest number of turns that are all spiral. With more, only the last turn is: the arcs would be
+/// too many.
 const MAX_SPIRAL_TURNS: f64 = 1000.0;
 
-/// What an arc motion says.
+/// Data of an arc motion.
 pub(super) struct Request {
     pub(super) line: u32,
     pub(super) start_mm: Vector,

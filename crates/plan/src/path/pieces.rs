@@ -92,7 +92,8 @@ impl<I: Iterator<Item = Canon>> Pieces<I> {
         Ok(())
     }
 
-    /// Tells the pieces from `first` on what else moves: evenly over their length.
+    /// Distributes the motion of the other axes evenly over the length of the pieces from `first`
+    /// on.
     fn take_along(&mut self, first: usize, axes: &[[f64; 6]; 2]) {
         let lengths = self.ready.range(first..).map(|step| {
             if let Step::Piece(piece) = step {
@@ -198,8 +199,8 @@ impl<I: Iterator<Item = Canon>> Iterator for Pieces<I> {
     }
 }
 
-/// What moves while X, Y and Z stand still. The feedrate refers to U, V, W in mm if they move, else
-/// to A, B, C in degrees, else to the extruder.
+/// Returns the rest of X, Y and Z during which only other axes move. The feedrate refers to U, V, W
+/// in mm if they move, else to A, B, C in degrees, else to the extruder.
 fn rest(motion: &Motion) -> Step {
     let still = [[0.0; 6]; 2];
     let axes = motion.others.axes.as_deref().unwrap_or(&still);

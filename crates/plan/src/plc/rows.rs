@@ -9,7 +9,7 @@ use super::PlcEvent;
 pub struct EventName {
     /// Row of the timeline: the unit of the machine that is at work.
     pub row: String,
-    /// What happens.
+    /// Label of the event.
     pub label: String,
 }
 
@@ -45,7 +45,8 @@ pub fn named(kind: &EventKind, events: &[PlcEvent]) -> EventName {
     }
 }
 
-/// What the machine builder made of an M-code: the entry with its P word before the one for any.
+/// Returns the machine builder's entry for an M-code: the entry with its P word before the entry
+/// for any P word.
 pub(super) fn builders<'a>(kind: &EventKind, events: &'a [PlcEvent]) -> Option<&'a PlcEvent> {
     let EventKind::MCode { code, p, .. } = kind else {
         return None;

@@ -81,9 +81,9 @@ pub(crate) fn theirs(paths: &[PathBuf]) -> Vec<Theirs> {
 #[derive(Debug, Clone)]
 pub(crate) struct Ours {
     motion: Motion,
-    /// In LinuxCNC the operator does it: the retraction of G88.
+    /// True where the operator makes the motion in LinuxCNC: the retraction of G88.
     by_hand: bool,
-    /// How far its end may be from LinuxCNC's, mm.
+    /// Allowed distance of its end from LinuxCNC's, mm.
     within_mm: f64,
 }
 
@@ -148,7 +148,7 @@ fn end_of(motion: &Motion) -> [f64; 9] {
     end
 }
 
-/// Whether two points differ; numbers that are none do.
+/// Returns true if two points differ. NaN always differs.
 fn far(a: &[f64], b: &[f64], limit: f64) -> bool {
     let distance = apart(a, b);
     distance.is_nan() || distance > limit || a.iter().chain(b).any(|value| value.is_nan())
@@ -260,8 +260,8 @@ impl Spiral {
         (speed(0.0) + 4.0 * speed(0.5) + speed(1.0)) / 6.0
     }
 
-    /// How far our path is from it: the largest distance of its points from our path, and the
-    /// difference of the lengths; mm.
+    /// Returns the deviation of our path, mm: the largest distance of the points of this spiral
+    /// from our path, and the difference of the lengths.
     fn apart(&self, motion: &Motion) -> [f64; 2] {
         let pieces = path_of(motion);
         let distance = (0..ARC_POINTS)
@@ -277,7 +277,7 @@ impl Spiral {
     }
 }
 
-/// What a comparison has come to.
+/// Totals of a comparison.
 #[derive(Debug, Default)]
 pub(crate) struct Totals {
     /// Largest differences of arcs, their lengths and points of splines, mm.
@@ -403,7 +403,7 @@ pub(crate) fn flat_lines(text: &str) -> HashSet<u32> {
     flat
 }
 
-/// Whether a motion is an arc that turns no farther than a flat corner.
+/// Returns true if a motion is an arc that turns no farther than a flat corner.
 fn turns_little(motion: &Motion) -> bool {
     let Shape::Arc { center_mm, .. } = &motion.shape else {
         return false;
@@ -452,7 +452,8 @@ fn without_flat_corners(text: &str, ours: &[Ours], totals: &mut Totals) -> Vec<O
     kept
 }
 
-/// Whether a straight motion goes on in the next: at a surface speed (G96) ours are cut in pieces.
+/// Returns true if a straight motion continues in the next one. At a surface speed (G96) our
+/// motions are cut into pieces.
 fn goes_on(motion: &Motion, next: &Motion) -> bool {
     let way = |motion: &Motion| -> [f64; 3] {
         std::array::from_fn(|axis| motion.end_mm[axis] - motion.start_mm[axis])
@@ -581,7 +582,7 @@ pub(crate) fn compare(
     moves.next().map(moves_on)
 }
 
-/// What is different about LinuxCNC's arc.
+/// Returns the difference between LinuxCNC's arc and ours, if there is one.
 fn wrong_arc(motion: &Motion, value: &serde_json::Value, totals: &mut Totals) -> Option<String> {
     let Shape::Arc {
         plane,
@@ -620,8 +621,8 @@ fn wrong_arc(motion: &Motion, value: &serde_json::Value, totals: &mut Totals) ->
     (!is_same).then(|| format!("another arc, {distance} mm apart, {length} mm longer or shorter"))
 }
 
-/// What is different about the chords and arcs that LinuxCNC cuts a spline into, whose ends lie on
-/// it; and where.
+/// Returns the difference between a spline and the chords and arcs that LinuxCNC cuts it into,
+/// whose ends must lie on it, and the move with the difference.
 fn wrong_spline<'a>(
     motion: &Motion,
     end: &[f64; 9],

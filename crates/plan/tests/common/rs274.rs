@@ -4,7 +4,7 @@ use std::process::{Command, Stdio};
 
 use crate::missing::missing;
 
-/// Whether `rs274` can be run; it is said where it cannot, and under CI the test fails.
+/// Returns true if `rs274` can be run. If it cannot, reports that; under CI the test fails.
 pub(crate) fn is_installed() -> bool {
     let runs = Command::new("rs274")
         .arg("-h")

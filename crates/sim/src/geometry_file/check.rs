@@ -1,17 +1,17 @@
 //! Tests a geometry against the measurement in its own file.
 //!
 //! Q(g) is the sum of the squares of (deviation - prediction by g) / noise over all rows, after the
-//! nuisances of each set are fitted. The file states what the fit left: Q_min. With p values of the
-//! geometry and m = rows - unknowns:
+//! nuisances of each set are fitted. The file states the residual of the fit, Q_min. With p values
+//! of the geometry and m = rows - unknowns:
 //!
 //! ```text
 //! fits     ((Q(g) - Q_min) / p) / (Q_min / m)   exceeds F(p, m) with probability 1e-3 only: else the values are not those found
-//! reduces  ((Q(0) - Q(g)) / p) / (Q_min / m)    exceeds it: else the geometry cannot be told from none
+//! reduces  ((Q(0) - Q(g)) / p) / (Q_min / m)    exceeds it: else the geometry explains no error
 //! ```
 //!
-//! The first catches wrong signs, exchanged axes, and another lead, as far as the value concerned
-//! is above the noise. Source: Draper and Smith (1998), Applied regression analysis, chapter 6
-//! (extra sum of squares).
+//! The first test catches wrong signs, exchanged axes, and another lead, as long as the value is
+//! above the noise. Source: Draper and Smith (1998), Applied regression analysis, chapter 6 (extra
+//! sum of squares).
 
 use miette::Diagnostic;
 use thiserror::Error;
@@ -25,7 +25,7 @@ use crate::number::to_four_digits;
 /// deviations.
 pub const CHECK_ERROR_RATE: f64 = 1e-3;
 
-/// What the test found.
+/// Result of the test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GeometryCheck {
     /// Root mean square of the measured deviations, um, without nuisances.
@@ -47,11 +47,11 @@ pub enum GeometryRefused {
     )]
     #[diagnostic(code(geometry::fit))]
     DoesNotFit {
-        /// What the geometry leaves, um.
+        /// Deviation that remains with the geometry, um.
         after_um: f64,
-        /// Without geometry, um.
+        /// Deviation without the geometry, um.
         before_um: f64,
-        /// What the fit left, um.
+        /// Deviation that the fit left, um.
         left_um: f64,
         /// Quotient of the test.
         quotient: f64,
@@ -74,16 +74,16 @@ pub enum GeometryRefused {
         )
     )]
     DoesNotReduce {
-        /// What the geometry leaves, um.
+        /// Deviation that remains with the geometry, um.
         after_um: f64,
-        /// Without geometry, um.
+        /// Deviation without the geometry, um.
         before_um: f64,
         /// Quotient of the test.
         quotient: f64,
         /// Its probability by chance.
         probability: f64,
     },
-    /// There are no more rows than unknowns.
+    /// The measurement has no more rows than unknowns.
     #[error(
         "the measurement has {rows} values for {unknowns} unknowns: there is nothing to test the geometry by"
     )]
@@ -217,8 +217,8 @@ impl GeometryFile {
         (self.by_chance(quotient) < CHECK_ERROR_RATE && !rounding).then_some(quotient)
     }
 
-    /// What is left of this file's measurement by a geometry, once the nuisances of each set are
-    /// fitted.
+    /// Returns the residual of this file's measurement with a geometry, after the nuisances of each
+    /// set are fitted.
     fn misfit(&self, geometry: &Self) -> Misfit {
         let mut misfit = Misfit::default();
         for set in &self.measured {

@@ -5,14 +5,15 @@ use super::{AxisGeometry, GeometryOrigin, MeasuredSquareness};
 use crate::toml_file::Key;
 use crate::toml_file::key::key;
 
-/// Of the top of the file.
+/// Keys at the top of the file.
 pub(crate) const ORIGIN: &[Key<GeometryOrigin>] = &[
     key!(optional text written_by),
     key!(text source),
     key!(optional text date),
 ];
 
-/// Of `[axis.x]` and its like. The ranges of values are those of machine files.
+/// Keys of `[axis.x]`, `[axis.y]` and `[axis.z]`. The ranges of values are the same as in machine
+/// files.
 pub(crate) const AXIS: &[Key<AxisGeometry>] = &[
     key!(scale_um_m or zero, "um/m", -1e4, 1e4),
     key!(scale_std_um_m or zero, "um/m", 0.0, 1e4),
@@ -29,7 +30,7 @@ pub(crate) const AXIS: &[Key<AxisGeometry>] = &[
     key!(straightness_std_um or zero, "um", 0.0, 1e4),
 ];
 
-/// Of `[geometry]`.
+/// Keys of `[geometry]`.
 pub(crate) const SQUARENESS: &[Key<MeasuredSquareness>] = &[
     key!(squareness_xy_urad or zero, "urad", -1e4, 1e4),
     key!(squareness_xy_std_urad or zero, "urad", 0.0, 1e4),
@@ -39,7 +40,7 @@ pub(crate) const SQUARENESS: &[Key<MeasuredSquareness>] = &[
     key!(squareness_yz_std_urad or zero, "urad", 0.0, 1e4),
 ];
 
-/// Of a table below `[measured.set]`.
+/// Keys of a table below `[measured.set]`.
 pub(crate) const SET: &[Key<MeasuredSet>] = &[
     key!(text kind),
     key!(text axes),

@@ -1,11 +1,12 @@
-//! Least squares that says which unknowns it cannot tell apart, and the F distribution.
+//! Rank-revealing least squares, which finds the unknowns that cannot be separated, and the F
+//! distribution.
 //!
 //! Columns are orthogonalized one after the other (modified Gram-Schmidt, twice). A column of which
-//! nearly nothing is left is dropped: its unknown cannot be told from those before it. Source:
+//! nearly nothing is left is dropped: its unknown cannot be separated from those before it. Source:
 //! Bjorck (1996), Numerical methods for least squares problems.
 
-/// Part of a column that has to be left for its unknown to count as identified: below, rounding and
-/// small faults of the model decide.
+/// Part of a column that has to remain for its unknown to count as identified. Below it, rounding
+/// and small faults of the model decide the value.
 const LEAST_LEFT: f64 = 1e-3;
 
 /// A solution.
@@ -13,7 +14,7 @@ const LEAST_LEFT: f64 = 1e-3;
 pub struct RankedLeastSquares {
     /// The unknowns; 0 where one was dropped.
     pub values: Vec<f64>,
-    /// Which were found.
+    /// True for each unknown that was found.
     pub found: Vec<bool>,
     /// Inverse of the normal matrix: times the variance of a row the covariance of the unknowns.
     pub covariance: Vec<Vec<f64>>,

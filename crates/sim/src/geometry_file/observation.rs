@@ -1,4 +1,4 @@
-//! What each row of a measurement says about the geometry.
+//! Rows of a measurement as linear equations of the geometry.
 //!
 //! A row is a deviation in um that is linear in the errors of the geometry, at one place or as the
 //! difference of two:
@@ -36,9 +36,9 @@ pub struct MeasuredSet {
     pub axes: String,
     /// File that it comes from; may be empty.
     pub source: String,
-    /// When it was measured; may be empty.
+    /// Date of the measurement; may be empty.
     pub date: String,
-    /// Whether the length of the bar, or the size of the tool, is known.
+    /// True if the length of the bar, or the size of the tool, is known.
     pub calibrated: bool,
     /// Machine position of the center of a bar or of the origin of the points; of axes that are not
     /// in `axes`, where they stand.
@@ -60,7 +60,7 @@ pub struct MeasuredSet {
 /// A place of the encoders, directions of travel there, and the direction that is measured along.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MeasuredPlace {
-    /// Where the encoders are, mm.
+    /// Encoder positions, mm.
     pub at_mm: [f64; 3],
     /// Directions of travel.
     pub direction: [f64; 3],

@@ -38,8 +38,8 @@ pub struct Axis {
     /// fades.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub correction_accel_mm_s2: Option<f64>,
-    /// That of a correction that fades, of a machine that was planned by other limits in its file,
-    /// mm/s2.
+    /// Acceleration of a correction that fades, mm/s2, kept where a plan by axes adds limits that
+    /// the file does not state.
     #[serde(skip)]
     pub fade_accel_mm_s2: Option<f64>,
     /// Delay between the control and the position loop, s; rounded to whole servo periods.
@@ -82,17 +82,17 @@ pub struct Axis {
     /// Latency of the measured position, s.
     #[serde(skip_serializing_if = "is_zero")]
     pub measurement_delay_s: f64,
-    /// How much later than usual a reference reaches the drive at the most, s.
+    /// Largest extra delay of a reference on its way to the drive, s.
     #[serde(skip_serializing_if = "is_zero")]
     pub jitter_s: f64,
-    /// What the Coulomb friction is higher in the positive direction, and lower in the negative, N
-    /// m.
+    /// Asymmetry of the Coulomb friction, N m: the friction is higher by this in the positive
+    /// direction, and lower by it in the negative.
     #[serde(skip_serializing_if = "is_zero")]
     pub coulomb_asymmetry_nm: f64,
-    /// What friction has at rest above the Coulomb friction, N m.
+    /// Friction at rest above the Coulomb friction, N m.
     #[serde(skip_serializing_if = "is_zero")]
     pub stribeck_nm: f64,
-    /// Speed over which that goes, mm/s of travel.
+    /// Speed over which this extra friction decays, mm/s of travel.
     #[serde(skip_serializing_if = "is_zero")]
     pub stribeck_mm_s: f64,
     /// Deflection before friction slides, um of travel.
@@ -119,7 +119,7 @@ pub struct Axis {
     /// RMS of the disturbance's frequency, part of it.
     #[serde(skip_serializing_if = "is_zero")]
     pub disturbance_wander: f64,
-    /// What the tool goes farther than the encoder says, um for a metre.
+    /// Scale error: extra travel of the tool beyond the encoder reading, um per meter.
     #[serde(skip_serializing_if = "is_zero")]
     pub scale_um_m: f64,
     /// Amplitude of the error within a turn of the screw, um.
@@ -129,10 +129,10 @@ pub struct Axis {
     /// is the speed itself.
     #[serde(skip_serializing_if = "is_zero")]
     pub speed_window_s: f64,
-    /// Whether the drive takes the speed at the start of each servo period, and holds it.
+    /// True if the drive samples the speed at the start of each servo period and holds it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub speed_held: bool,
-    /// Whether the speed loop takes the speed from differences of the encoder.
+    /// True if the speed loop computes the speed from differences of the encoder.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub speed_from_encoder: bool,
     /// Most that the axis can, for planners that plan axis by axis; none is what [`super::Limits`]
@@ -151,7 +151,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Whether anything of it is random.
+    /// Returns true if any property of the axis is random.
     pub(super) fn is_noisy(&self) -> bool {
         [
             self.encoder_noise_um,
@@ -163,7 +163,7 @@ impl Axis {
         .any(|&size| size > 0.0)
     }
 
-    /// As the law of an axis takes them.
+    /// Returns the parameters in the form that the axis model takes.
     pub fn parameters(&self) -> Parameters {
         Parameters {
             rad_per_mm: self.rad_per_mm(),
@@ -178,7 +178,7 @@ impl Axis {
         }
     }
 
-    /// What its drive has beside the gains of its loops.
+    /// Returns the drive parameters other than the gains of its loops.
     pub fn drive(&self) -> DriveParameters {
         DriveParameters {
             speed_integral_s: self.speed_integral_s,
@@ -190,7 +190,7 @@ impl Axis {
         }
     }
 
-    /// How late commands, references and positions are.
+    /// Returns the delays of commands, references and positions.
     pub fn loop_delays(&self) -> LoopDelays {
         LoopDelays {
             command_s: self.command_delay_s,
@@ -199,7 +199,7 @@ impl Axis {
         }
     }
 
-    /// What its friction has beside the Coulomb and viscous part.
+    /// Returns the friction parameters other than the Coulomb and viscous part.
     pub fn friction(&self) -> FrictionParameters {
         FrictionParameters {
             coulomb_asymmetry_nm: self.coulomb_asymmetry_nm,
@@ -228,8 +228,8 @@ impl Axis {
             .map_or(0.0, |screw| 1e-3 * screw.backlash_um)
     }
 
-    /// What the friction of both directions winds the screw up before the table moves, without the
-    /// encoder seeing it, mm.
+    /// Returns the windup of the screw by the friction of both directions before the table moves,
+    /// mm: the part that the encoder does not see.
     pub fn hidden_windup_mm(&self) -> f64 {
         let windup_rad = self
             .transmission()
@@ -260,7 +260,7 @@ pub struct Transmission {
     pub damping_ratio: f64,
     /// Backlash, um of travel.
     pub backlash_um: f64,
-    /// Whether the position is measured at the table (a linear scale) instead of the motor.
+    /// True if the position is measured at the table (a linear scale) instead of the motor.
     pub scale_on_table: bool,
 }
 

@@ -22,9 +22,9 @@ pub enum MachineError {
     /// No built-in machine has this name.
     #[error("no machine is called '{name}'; there is {known}")]
     UnknownName {
-        /// As it was given.
+        /// Name as it was given.
         name: String,
-        /// The names there are, for people.
+        /// Names of the built-in machines, for people.
         known: String,
         /// Remedy.
         #[help]

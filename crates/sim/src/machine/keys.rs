@@ -1,7 +1,7 @@
 //! The keys of a machine file that are numbers: name, unit, range, and the field that each fills.
 //!
-//! Reading, writing, the bounds in messages and the tables of docs/machine-file.md all go by these
-//! tables, see [`crate::toml_file::key`]. To add a key is one field and one row.
+//! Reading, writing, the bounds in messages and the tables of docs/machine-file.md all use these
+//! tables, see [`crate::toml_file::key`]. A new key needs one field and one row.
 //!
 //! Ranges keep out what no machine has (a negative inertia, a unit mistaken by a factor of a
 //! million), not what is unusual: a machine that is tuned badly is a result of the simulation, not
@@ -13,13 +13,13 @@ use super::{Axis, Limits, Noise, Period, Squareness, Transmission};
 use crate::toml_file::Key;
 use crate::toml_file::key::{Value, key};
 
-/// Of `[period]`.
+/// Keys of `[period]`.
 pub const PERIOD: &[Key<Period>] = &[
     key!(servo_s, "s", 1e-5, 0.1),
     key!(mechanics_s, "s", 1e-7, 0.1),
 ];
 
-/// Of `[limits]`.
+/// Keys of `[limits]`.
 pub const LIMITS: &[Key<Limits>] = &[
     key!(rapid_mm_s, "mm/s", 0.01, 1e4),
     key!(max_feed_mm_s, "mm/s", 0.01, 1e4),
@@ -31,7 +31,7 @@ pub const LIMITS: &[Key<Limits>] = &[
     key!(optional path_tolerance_um, "um", 0.01, 1e4),
 ];
 
-/// Of `[axis.x]`, `[axis.y]` and `[axis.z]`.
+/// Keys of `[axis.x]`, `[axis.y]` and `[axis.z]`.
 pub const AXIS: &[Key<Axis>] = &[
     key!(lead_mm_per_rev, "mm/rev", 0.01, 1e3),
     key!(inertia_kg_m2, "kg m2", 1e-9, 1e3),
@@ -89,7 +89,7 @@ pub const AXIS: &[Key<Axis>] = &[
     key!(optional max_jerk_mm_s3, "mm/s3", 1.0, 1e9),
 ];
 
-/// Of `[axis.x.transmission]` and its like.
+/// Keys of `[axis.x.transmission]`, `[axis.y.transmission]` and `[axis.z.transmission]`.
 pub const TRANSMISSION: &[Key<Transmission>] = &[
     key!(table_share, "(no unit)", 0.01, 0.99),
     key!(resonance_hz, "Hz", 0.1, 1e4),
@@ -98,14 +98,14 @@ pub const TRANSMISSION: &[Key<Transmission>] = &[
     key!(flag scale_on_table),
 ];
 
-/// Of `[geometry]`.
+/// Keys of `[geometry]`.
 pub const GEOMETRY: &[Key<Squareness>] = &[
     key!(squareness_xy_urad or zero, "urad", -1e4, 1e4),
     key!(squareness_xz_urad or zero, "urad", -1e4, 1e4),
     key!(squareness_yz_urad or zero, "urad", -1e4, 1e4),
 ];
 
-/// Of `[noise]`.
+/// Keys of `[noise]`.
 pub const NOISE: &[Key<Noise>] = &[Key {
     name: "seed",
     unit: "",
@@ -118,7 +118,7 @@ pub const NOISE: &[Key<Noise>] = &[Key {
     },
 }];
 
-/// Of `[plc]`.
+/// Keys of `[plc]`.
 pub const PLC: &[Key<Durations>] = &[
     key!(tool_change_s, "s", 0.0, 1e4),
     key!(coolant_s, "s", 0.0, 1e4),

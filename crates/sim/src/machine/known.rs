@@ -1,9 +1,9 @@
-//! What may be known of a machine before it is identified: what its control is set to, and what its
-//! maker says of its axes.
+//! Properties of a machine that may be known before it is identified: the settings of its control,
+//! and the maker's data of its axes.
 //!
-//! Controllers are made from this and from a trained model, never from a [`Machine`]. What is true
-//! of a simulated machine alone is not here: encoder, jitter, steps of the drive, ball screw,
-//! cogging and ripple, geometry, noise, phase and frequency of the disturbance.
+//! Controllers are made from this and from a trained model, never from a [`Machine`]. Properties of
+//! a simulated machine alone are not here: encoder, jitter, steps of the drive, ball screw, cogging
+//! and ripple, geometry, noise, phase and frequency of the disturbance.
 
 use std::f64::consts::TAU;
 
@@ -14,40 +14,39 @@ use feedwright_control::{
 
 use super::{Limits, Machine, Period};
 
-/// What is known of a machine.
+/// Known properties of a machine.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Known {
     /// Periods of the control, including the period of the speed loop, which the drive's manual
     /// states.
     pub period: Period,
-    /// What the machine may be asked for.
+    /// Limits that a plan and a correction keep on this machine.
     pub limits: Limits,
     axes: Vec<KnownAxis>,
 }
 
-/// What is known of an axis.
+/// Known properties of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KnownAxis {
     /// Travel for one motor turn, mm.
     pub lead_mm_per_rev: f64,
-    /// Its law by the data sheets: loops, inertia, friction, and the torque at which the drive
+    /// Axis model by the data sheets: loops, inertia, friction, and the torque at which the drive
     /// saturates.
     pub nominal: Parameters,
-    /// What its drive is set to beside.
+    /// Other settings of the drive.
     pub drive: DriveParameters,
-    /// What the data sheets say of friction beside.
+    /// Other friction data of the data sheets.
     pub friction: FrictionParameters,
     /// Its ball screw: rigid, until it is identified.
     pub transmission: TransmissionParameters,
-    /// Whether the position is measured at the table.
+    /// True if the position is measured at the table.
     pub scale_on_table: bool,
-    /// How late the bus and the encoder are; a manual has both.
+    /// Delays of the bus and the encoder; a manual states both.
     pub delays: LoopDelays,
     /// Acceleration that a correction may add to the plan's, mm/s2.
     pub correction_accel_mm_s2: f64,
-    /// Torque that is left for acceleration, N m: less friction, and less what the load takes at
-    /// the most. The amplitude of a load is known, since drives are chosen by it; its course is
-    /// not.
+    /// Torque left for acceleration, N m: the limit less friction and less the largest load. The
+    /// amplitude of a load is known, since drives are chosen by it; its course is not.
     pub spare_torque_nm: f64,
 }
 
@@ -62,9 +61,9 @@ impl Known {
         std::array::from_fn(|i| *self.axis(i))
     }
 
-    /// The same with wrong values of the axes: inertia and all friction by these factors. What the
-    /// control is set to (gains, feedforward, delays) is read off it and stays right. The torque
-    /// that is left for acceleration follows from what is believed.
+    /// Returns the same machine with wrong axis values: inertia and all friction multiplied by
+    /// these factors. Settings of the control (gains, feedforward, delays) are read from it and
+    /// stay right. The torque left for acceleration follows from the wrong values.
     #[must_use]
     pub fn misjudged(&self, inertia: f64, friction: f64) -> Self {
         let axis = |axis: &KnownAxis| {
@@ -96,7 +95,7 @@ impl Known {
         }
     }
 
-    /// The nominal law of the first N axes.
+    /// Returns the nominal models of the first N axes.
     pub fn law<const N: usize>(&self) -> [AxisLaw; N] {
         std::array::from_fn(|i| AxisLaw::new(self.axis(i).nominal, self.period.periods()))
     }
@@ -112,7 +111,7 @@ impl Known {
 }
 
 impl KnownAxis {
-    /// With periods and statistics, as a controller takes it.
+    /// Adds periods and statistics and returns the axis in the form that a controller takes.
     pub fn with_statistics(&self, periods: Periods, statistics: AxisStatistics) -> AxisKnowledge {
         let Self {
             nominal: parameters,
@@ -140,7 +139,7 @@ impl KnownAxis {
 }
 
 impl Machine {
-    /// What is known of it.
+    /// Returns the known properties of this machine.
     pub fn known(&self) -> Known {
         let axis = |(i, axis): (usize, &super::Axis)| KnownAxis {
             lead_mm_per_rev: axis.lead_mm_per_rev,

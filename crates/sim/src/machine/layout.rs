@@ -272,7 +272,7 @@ fn m_code(key: &str) -> Option<(u16, Option<u32>)> {
         .map(|code| (code, p))
 }
 
-/// As the reader has it.
+/// Largest M-code; the reader of programs has the same limit.
 const LAST_M_CODE: u16 = 9999;
 
 fn axes(mut table: Table<'_, '_>, period: Period, faults: &mut Vec<Fault>) -> Vec<Axis> {
@@ -409,7 +409,7 @@ fn all_limits(axis: &Axis, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
     }
 }
 
-/// What holds between the values of an axis.
+/// Checks the conditions between the values of an axis.
 fn between_keys(axis: &Axis, period: &Period, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
     let pairs = [
         (

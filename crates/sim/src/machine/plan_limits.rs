@@ -1,5 +1,5 @@
-//! What a machine file says to the planner: limits along the path and of each axis, and how long
-//! PLC and spindle take.
+//! Planner inputs from a machine file: limits along the path and of each axis, and durations of PLC
+//! and spindle.
 
 use feedwright_plan::{AxisLimits, Constraints, PathLimits, Plc};
 
@@ -67,8 +67,8 @@ impl Machine {
         machine
     }
 
-    /// What a planner that plans axis by axis assumes where the file says nothing; `None` where it
-    /// says all.
+    /// Describes the axis limits that a planner assumes where the file states none; `None` if the
+    /// file states the limits of all axes.
     pub fn assumed_axis_limits(&self) -> Option<String> {
         let AxisLimits {
             velocity_mm_s,

@@ -1,8 +1,8 @@
 //! True properties of a simulated axis beyond those that may be known ([`super::Known`]): the
 //! statistics of its noise, what depends on the angle of the motor, with its phase, and the load.
 //!
-//! The limit ([`feedwright::lqg_preview`]) uses them: it shows what a controller would reach that
-//! knew everything that can be known. The random numbers themselves cannot be known.
+//! The limit ([`feedwright::lqg_preview`]) uses them: it shows the result of a controller that
+//! knows everything that can be known. The random numbers themselves cannot be known.
 //! `feedwright_ident::exact_block` also writes these properties into a model block.
 
 use std::f64::consts::TAU;
@@ -12,7 +12,7 @@ use feedwright_control::AxisStatistics;
 use super::Machine;
 
 impl Machine {
-    /// What is true of its axes.
+    /// Returns the true statistics of the axes.
     pub fn statistics<const N: usize>(&self) -> [AxisStatistics; N] {
         std::array::from_fn(|i| {
             let axis = self.axis(i);

@@ -29,7 +29,7 @@ const MAX_PERIODS: usize = 64;
 pub(super) struct Delay {
     /// A ring, one reference a servo period.
     sent: [DriveReference; MAX_PERIODS],
-    /// How late each arrives beyond the delay, mechanics periods.
+    /// Extra delay of each reference beyond the fixed delay, mechanics periods.
     late: [u32; MAX_PERIODS],
     newest: usize,
     /// Whole servo periods of the delay, and the mechanics periods beyond.
@@ -63,7 +63,7 @@ impl Delay {
         }
     }
 
-    /// What is on its way in `before` arrives by this delay.
+    /// Takes over the references on their way in `before`; they arrive with this delay.
     pub(super) fn take_over(&mut self, before: &Self) {
         (self.sent, self.late, self.newest) = (before.sent, before.late, before.newest);
     }
@@ -90,15 +90,16 @@ impl Delay {
         }
     }
 
-    /// As [`Self::arrived`], the newest that is no later than that; without jitter it would be the
-    /// one of this age.
+    /// Returns the newest reference that has arrived, as [`Self::arrived`] does, for an axis with
+    /// jitter. Without jitter it would be the reference of this age.
     fn arrived_late(&self, substep: u32, mut age: usize) -> DriveReference {
         let mut since = if substep < self.substeps {
             substep + self.per_servo
         } else {
             substep
         } - self.substeps;
-        // No reference is later than a servo period, so that this ends with the next but one.
+        // A reference is late by at most a servo period, so this ends at the next reference but
+        // one.
         while self.late[self.at(age)] > since {
             age += 1;
             since += self.per_servo;

@@ -1,5 +1,5 @@
-//! What is measured of a position: interpolation error, noise and steps of the encoder, and the
-//! time until the control has it.
+//! Measured position: interpolation error, noise and steps of the encoder, and the time until the
+//! control gets the value.
 //!
 //! ```text
 //! y = q round((x + A sin(2 pi x / P) + s n(c)) / q)       at mechanics period c
@@ -64,7 +64,7 @@ impl Encoder {
         }
     }
 
-    /// What it shows at an angle, in a mechanics period.
+    /// Returns the reading at an angle, in a mechanics period.
     #[inline]
     pub(super) fn read(&self, angle_rad: f64, counter: u64) -> f64 {
         let mut shown_rad = angle_rad;
@@ -132,7 +132,7 @@ impl DriveSpeed {
         }
     }
 
-    /// Over the window that ends with this mechanics period.
+    /// Returns the speed over the window that ends with this mechanics period.
     #[inline]
     pub(super) fn speed_rad_s(&mut self, motor: &AxisState, moment: Moment, dt_s: f64) -> f64 {
         let shown_rad = self.encoder.map_or(motor.angle_rad, |encoder| {
@@ -162,7 +162,7 @@ impl DriveSpeed {
         self.taken_rad_s
     }
 
-    /// The position so many mechanics periods before the newest.
+    /// Returns the position `age` mechanics periods before the newest.
     #[inline]
     fn before_rad(&self, age: usize) -> f64 {
         let length = self.course_rad.len();
@@ -179,7 +179,7 @@ const MAX_PERIODS: usize = 64;
 pub(super) struct Latency {
     taken_rad: [f64; MAX_PERIODS],
     newest: usize,
-    /// How many taken after the one that is there.
+    /// Number of positions taken after the one that has arrived.
     age: usize,
     /// Mechanics period of a servo period in which it is taken.
     substep: u32,
@@ -203,12 +203,12 @@ impl Latency {
         })
     }
 
-    /// What is on its way in `before` arrives by this latency.
+    /// Takes over the positions on their way in `before`; they arrive with this latency.
     pub(super) fn take_over(&mut self, before: &Self) {
         (self.taken_rad, self.newest) = (before.taken_rad, before.newest);
     }
 
-    /// Whether it is taken in this mechanics period of a servo period.
+    /// Returns true if the position is taken in this mechanics period of a servo period.
     #[inline]
     pub(super) fn takes(&self, substep: u32) -> bool {
         substep == self.substep
@@ -220,7 +220,7 @@ impl Latency {
         self.taken_rad[self.newest] = measured_rad;
     }
 
-    /// What the control has at the start of a servo period.
+    /// Returns the position that the control has at the start of a servo period.
     #[inline]
     pub(super) fn arrived_rad(&self) -> f64 {
         self.taken_rad[(self.newest + MAX_PERIODS - self.age) % MAX_PERIODS]
@@ -345,8 +345,8 @@ mod tests {
     #[test]
     fn a_speed_over_a_window_is_late_by_half_of_it_and_one_that_is_held_by_half_a_servo_period_more()
      {
-        // So late: half of what the window is longer than a mechanics period, and of what it is
-        // held beyond one.
+        // Expected delay: half of the window beyond one mechanics period, plus half of the hold
+        // time beyond one.
         for (speed_window_s, speed_held, late_s) in [
             (0.002_868, false, 0.001_384),
             (0.0003, false, 0.0001),

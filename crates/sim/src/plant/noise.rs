@@ -32,7 +32,7 @@ const MEAN_OF_TWELVE: i64 = 393_210;
 /// 2^-53: the spacing of the uniform numbers.
 const LAST_BIT: f64 = 1.0 / 9_007_199_254_740_992.0;
 
-/// What random numbers are for; what one does with its numbers changes none of the others'.
+/// Purpose of a random number. Using more numbers for one purpose does not change those of others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum RandomUse {
     /// The encoder of the position loop.
@@ -60,13 +60,13 @@ impl RandomStream {
         }
     }
 
-    /// From 0 to below 1.
+    /// Returns a uniform number from 0 to below 1.
     #[inline]
     pub(super) fn uniform(self, counter: u64) -> f64 {
         (splitmix(self.key, counter) >> 11) as f64 * LAST_BIT
     }
 
-    /// Of mean 0 and standard deviation 1.
+    /// Returns a normal number with mean 0 and standard deviation 1.
     #[inline]
     pub(super) fn normal(self, counter: u64) -> f64 {
         let first = counter.wrapping_mul(3);
@@ -102,7 +102,7 @@ pub(super) struct CorrelatedNoise {
 }
 
 impl CorrelatedNoise {
-    /// Of a standard deviation and a correlation time, for steps of `dt_s`.
+    /// Creates noise with a standard deviation and a correlation time, for steps of `dt_s`.
     pub(super) fn new(stream: RandomStream, deviation: f64, correlation_s: f64, dt_s: f64) -> Self {
         let keep = if correlation_s > 0.0 {
             libm::exp(-dt_s / correlation_s)

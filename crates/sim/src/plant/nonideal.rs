@@ -1,10 +1,10 @@
-//! An axis with what real ones have, and one mechanics period of it.
+//! An axis with the imperfections of real ones, and one mechanics period of it.
 //!
 //! ```text
 //! command -> [queue ->] position loop -> reference that has arrived -> drive -> steps of the torque -> ripple, cogging -> motor [-> screw -> table] <- load, friction
 //! ```
 //!
-//! What the machine file does not name is passed over, to the bit.
+//! Effects that the machine file does not name are skipped, with results identical to the bit.
 
 use feedwright_control::{
     AxisLaw, AxisState, CommandQueue, DriveLaw, DriveParameters, DriveState, FrictionParameters,
@@ -17,7 +17,7 @@ use super::noise::{CorrelatedNoise, RandomStream, RandomUse};
 use super::torque::{MotorTorque, Wander, broadband};
 use crate::machine::{Axis, Machine};
 
-/// What an axis has on top of the ideal one, and its state.
+/// Imperfections that an axis has on top of the ideal one, and its state.
 #[derive(Debug, Clone)]
 pub(super) struct NonidealAxis {
     /// Commands on their way to the position loop, rad.
@@ -29,7 +29,7 @@ pub(super) struct NonidealAxis {
     encoder: Encoder,
     latency: Option<Latency>,
     speed: Option<DriveSpeed>,
-    /// Whether there is any of the two.
+    /// True if either of the two is present.
     is_sensed: bool,
     motor: Option<MotorTorque>,
     mechanics: MechanicsLaw,
@@ -83,7 +83,7 @@ impl NonidealAxis {
         }
     }
 
-    /// Whether an axis has nothing of this.
+    /// Returns true if an axis has no such imperfection.
     pub(super) fn is_ideal(axis: &Axis) -> bool {
         let absent = [
             axis.encoder_step_um,
@@ -167,7 +167,7 @@ impl NonidealAxis {
         self.masses.table.speed_rad_s
     }
 
-    /// What the encoder shows.
+    /// Returns the reading of the encoder.
     #[inline]
     fn shown_rad(&self, motor: &AxisState, counter: u64) -> f64 {
         self.encoder.read(

@@ -51,7 +51,7 @@ impl MotorTorque {
         })
     }
 
-    /// What the motor makes of the drive's torque at an angle, N m.
+    /// Returns the motor torque for a drive torque at an angle, N m.
     pub(super) fn at_nm(&self, drive_nm: f64, angle_rad: f64) -> f64 {
         let mut torque_nm = drive_nm;
         if self.ripple > 0.0 {
@@ -64,7 +64,7 @@ impl MotorTorque {
     }
 }
 
-/// Broadband torque of an axis; none where it has none.
+/// Returns the broadband torque of an axis; `None` if it has none.
 pub(super) fn broadband(
     axis: &Axis,
     dt_s: f64,

@@ -159,7 +159,7 @@ impl KeptPath {
         })
     }
 
-    /// As [`Self::nearest`], between two arc lengths of the path.
+    /// Returns the nearest point between two arc lengths of the path.
     #[inline]
     pub(super) fn nearest_along(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> Foot {
         if self.programmed.is_empty() {
@@ -252,8 +252,8 @@ impl KeptPath {
     }
 }
 
-/// Where the reference is that leaves its piece, while `at`, at `s_mm`, is the point of the
-/// programmed path that stands for it.
+/// Returns the reference where it leaves its piece. `at`, at `s_mm`, is the matching point of the
+/// programmed path.
 fn beside(piece: &Piece, s_mm: f64, at: Point, motion: &AxisMotion, ended: bool) -> Sample {
     let speed_mm_s = norm(motion.velocity_mm_s);
     Sample {

@@ -29,14 +29,16 @@ use crate::reference::{Foot, Reference};
 
 /// Time constants after which a loop of first order has followed.
 const SETTLED_TIME_CONSTANTS: f64 = 5.0;
-/// How far the tool can be ahead of the reference, in plan time, s.
+/// Largest lead of the tool over the reference, in plan time, s.
 const LEAD_S: f64 = 0.05;
-/// How far ahead what is reached over a hill can be: a tool rounds a corner when the reference has
-/// come to it, not before. Of spikes side by side the next but one is not reached.
+/// Largest lead over the reference of a stretch that is reached over a hill, s. A tool rounds a
+/// corner when the reference has come to it, not before. Of spikes side by side, the next but one
+/// is not reached.
 const HILL_LEAD_S: f64 = 0.005;
-/// What vibration and settling take the tool back by at most, mm: a usual in-position width.
+/// Largest distance that vibration and settling take the tool back, mm: a usual in-position width.
 const BACK_MM: f64 = 0.01;
-/// How much further than the nearest point the path may be on the way: at a right angle sqrt(2).
+/// Largest factor by which the path on the way may be further away than the nearest point; at a
+/// right angle it is sqrt(2).
 const HILL: f64 = 1.5;
 /// Cosine of the angle within which the tool moves along its own stretch: there is nothing to look
 /// for beyond.
@@ -49,7 +51,8 @@ const TIE_MM: f64 = 1e-9;
 /// Steps over the whole stretch, at most.
 const MAX_STEPS: f64 = 512.0;
 
-/// How long after the reference a following tool has reached a point of the path, s.
+/// Returns the time after the reference within which a following tool has reached a point of the
+/// path, s.
 pub fn settled_s(machine: &Machine) -> f64 {
     let slowest_1_s = machine.slowest_kp_1_s();
     let delay_s = machine
@@ -72,13 +75,13 @@ pub(super) struct FootTracker {
     /// Arc lengths of the reference over the last [`settled_s`], oldest first.
     passed_mm: VecDeque<f64>,
     periods: usize,
-    /// What a loop of first order has left of a rapid after [`settled_s`].
+    /// Rest of a rapid that a first-order loop still has to go after [`settled_s`].
     left_mm: f64,
     furthest_mm: f64,
     tool_mm: Vector,
 }
 
-/// What the tool does in a servo period.
+/// Tool motion in a servo period, and the path that is searched.
 struct FootSearch<'a, 'p> {
     reference: &'a mut Reference<'p>,
     tool_mm: Vector,
@@ -89,7 +92,7 @@ struct FootSearch<'a, 'p> {
 }
 
 impl FootTracker {
-    /// At rest at the start of the path.
+    /// Starts at rest at the start of the path.
     pub(super) fn new(machine: &Machine, start_mm: Vector) -> Self {
         let slowest_1_s = machine.slowest_kp_1_s();
         Self {

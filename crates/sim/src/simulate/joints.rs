@@ -1,8 +1,8 @@
-//! The contour error by the encoders: that of the joints, where the control's geometry puts the
-//! tool with them.
+//! Contour error by the encoders: the error of the joints, with the tool where the control's
+//! geometry puts it.
 //!
-//! It is measured as the tool's is, with a foot of its own, over the same servo periods. The rest
-//! of the tool's error is geometry that the control does not know.
+//! It is measured in the same way as the error of the tool, with its own foot, over the same servo
+//! periods. The rest of the tool's error is geometry that the control does not know.
 
 use feedwright_plan::vector::Vector;
 
@@ -29,7 +29,7 @@ pub(super) struct JointErrorMeter {
 }
 
 impl JointErrorMeter {
-    /// At rest at the start of the path.
+    /// Starts at rest at the start of the path.
     pub(super) fn new(machine: &Machine, start_mm: Vector) -> Self {
         Self {
             foot: FootTracker::new(machine, start_mm),

@@ -21,19 +21,19 @@
 /// Half of the largest second derivative of tanh, 4 / (3 sqrt 3).
 const STEEPEST: f64 = 0.385;
 
-/// What compensates the lost motion of N axes.
+/// Compensation of the lost motion of N axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LostMotion<const N: usize> {
     half_mm: [f64; N],
     /// Speed over which the lead turns its sign, mm/s.
     turns_mm_s: [f64; N],
-    /// To both sides of the moment whose speed counts, s.
+    /// Time before and after the present moment over which the speed is averaged, s.
     window_s: f64,
 }
 
 impl<const N: usize> LostMotion<N> {
-    /// Of axes with this lost motion, mm, and acceleration, mm/s2, where the lead may have
-    /// `lead_mm_s2`.
+    /// Creates the compensation of axes with this lost motion, mm, and acceleration, mm/s2. The
+    /// lead accelerates by at most `lead_mm_s2`.
     pub(super) fn new(lost_mm: [f64; N], accel_mm_s2: [f64; N], lead_mm_s2: [f64; N]) -> Self {
         let turns_mm_s = std::array::from_fn(|i| {
             accel_mm_s2[i] * (STEEPEST * lost_mm[i].abs() / lead_mm_s2[i]).sqrt()
@@ -48,7 +48,7 @@ impl<const N: usize> LostMotion<N> {
         }
     }
 
-    /// How far the command of each axis is ahead at plan time `tau_s`, mm; `at_mm` is the reference
+    /// Returns the lead of each axis command at plan time `tau_s`, mm; `at_mm` is the reference
     /// over plan time.
     pub(super) fn lead_mm(&self, tau_s: f64, mut at_mm: impl FnMut(f64) -> [f64; N]) -> [f64; N] {
         if self.window_s == 0.0 {

@@ -10,11 +10,11 @@ use crate::reference::Reference;
 
 /// Rests up to this long are simulated as a whole, s.
 const LONGEST_S: f64 = 1.0;
-/// What is simulated at either end, s.
+/// Simulated time at either end of a long rest, s.
 const SIMULATED_S: f64 = 0.5;
 
-/// How many servo periods follow the one at plan time `tau_s` that need not be simulated: a
-/// multiple of `feed_periods`. The tool has at least `settled_s` to settle.
+/// Returns the number of servo periods after plan time `tau_s` that need no simulation: a multiple
+/// of `feed_periods`. The tool has at least `settled_s` to settle.
 pub(super) fn left_out(
     reference: &mut Reference<'_>,
     tau_s: f64,

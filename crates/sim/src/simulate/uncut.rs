@@ -11,10 +11,11 @@
 //! was left out. Feedforward can take the tool ahead of the command, so that it has been at a feed
 //! point before the command comes there; the time before `t` counts for that reason.
 //!
-//! A feed point no further from the trace than the largest found so far is done with. One that is
-//! further by `g` is looked at again when the tool has gone `g`, since nothing nearer can come
-//! before; what is left at the end of its time is measured against all of it, and then is the new
-//! largest, but for a few. A servo period so takes some comparisons.
+//! Skip a feed point once its distance from the trace is no more than the largest found so far. A
+//! point that is further by `g` is checked again when the tool has moved by `g`, since it cannot
+//! come nearer before. A point that remains at the end of its time is measured against the trace
+//! over all of its time; it then nearly always is the new largest. One servo period therefore takes
+//! only a few comparisons.
 
 use std::collections::VecDeque;
 
@@ -29,7 +30,7 @@ pub struct Uncut {
     /// Servo periods so far.
     rows: u64,
     largest_mm: f64,
-    /// Where the tool was at the start of servo period `rows`, and of those before; the newest
+    /// Tool positions at the start of servo period `rows` and of the periods before; the newest is
     /// last.
     trace_mm: VecDeque<Vector>,
     /// Length of the trace.
@@ -49,7 +50,8 @@ struct FeedPoint {
 }
 
 impl Uncut {
-    /// For a tool at rest at `start_mm` that has `periods` servo periods for each feed point.
+    /// Starts with a tool at rest at `start_mm` that has `periods` servo periods for each feed
+    /// point.
     pub fn new(periods: usize, start_mm: Vector) -> Self {
         Self {
             periods: periods.max(1) as u64,
@@ -183,7 +185,7 @@ mod tests {
         uncut.finish(0.01)
     }
 
-    /// By its definition.
+    /// Computes the uncut path by its definition.
     fn by_definition(path: &[Vector], tool: impl Fn(usize) -> Vector, periods: usize) -> f64 {
         let at = |n: usize| if n == 0 { path[0] } else { tool(n - 1) };
         let nearest = |n: usize| {

@@ -1,5 +1,4 @@
-//! What can be wrong with a file of TOML text, each with its place and, where one is likely, a
-//! remedy.
+//! Faults of a file of TOML text, each with its place and, where one is likely, a remedy.
 
 use std::io;
 use std::ops::Range;
@@ -9,26 +8,26 @@ use feedwright_gcode::visible;
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceSpan};
 use thiserror::Error;
 
-/// What sort of file it is, for messages.
+/// Kind of file, for messages.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Kind {
-    /// As in "cannot read machine file".
+    /// Name, as in "cannot read machine file".
     pub name: &'static str,
-    /// What such a file is, as a hint.
+    /// Description of such a file, as a hint.
     pub is: &'static str,
     /// Code of its faults.
     pub code: &'static str,
-    /// Where to find one, for a file that is not there.
+    /// Hint on where to find such a file, for a file that does not exist.
     pub where_to_find: &'static str,
 }
 
-/// Why a file does not say what it should.
+/// Reason why a file cannot be used.
 #[derive(Debug, Error, Diagnostic)]
 pub enum FileError {
     /// The file cannot be read.
     #[error("cannot read {} {}: {source}", kind.name, path.display())]
     Unreadable {
-        /// What it should be.
+        /// Expected kind of file.
         kind: &'static Kind,
         /// The file.
         path: PathBuf,
@@ -41,7 +40,7 @@ pub enum FileError {
     /// The file is far larger than any of its kind.
     #[error("{} is larger than {limit_bytes} bytes: this is no {}", path.display(), kind.name)]
     TooLarge {
-        /// What it should be.
+        /// Expected kind of file.
         kind: &'static Kind,
         /// The file.
         path: PathBuf,
@@ -58,7 +57,7 @@ pub enum FileError {
         path: PathBuf,
         /// Offset of the first byte that is no text.
         offset: usize,
-        /// That byte.
+        /// Value of that byte.
         byte: u8,
         /// Remedy.
         #[help]
@@ -67,7 +66,7 @@ pub enum FileError {
     /// The text has faults; all that were found.
     #[error("{} {} has {} {}", kind.name, text.name(), problems.len(), if problems.len() == 1 { "fault" } else { "faults" })]
     Invalid {
-        /// What it should be.
+        /// Expected kind of file.
         kind: &'static Kind,
         /// The text with the name of the file, for carets.
         #[source_code]
@@ -82,10 +81,9 @@ pub enum FileError {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{message}")]
 pub struct Problem {
-    /// Which sort of file it is in.
+    /// Code of the kind of file.
     pub code: &'static str,
-    /// What is wrong: key, value, limit, unit.
-    /// What is wrong.
+    /// Message: key, value, limit, unit.
     pub message: String,
     /// Line of the text, from 1.
     pub line: usize,
@@ -93,10 +91,8 @@ pub struct Problem {
     pub column: usize,
     /// Place in the text.
     pub span: SourceSpan,
-    /// Short word beside the caret.
-    /// What stands below the place.
+    /// Short label below the place.
     pub label: &'static str,
-    /// Remedy.
     /// Remedy, where there is one.
     pub hint: Option<String>,
 }
@@ -106,9 +102,9 @@ pub struct Problem {
 pub struct Fault {
     /// Bytes of the text that it is about.
     pub at: Range<usize>,
-    /// What stands below the place.
+    /// Short label below the place.
     pub label: &'static str,
-    /// What is wrong.
+    /// Message: key, value, limit, unit.
     pub message: String,
     /// Remedy, where there is one.
     pub hint: Option<String>,

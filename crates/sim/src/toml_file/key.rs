@@ -1,7 +1,7 @@
 //! Keys declared in tables: name, unit, range, and the field that each fills.
 //!
-//! Reading, writing, the bounds in messages and the tables of the documents all go by such tables.
-//! To add a key is one field and one row.
+//! Reading, writing, the bounds in messages and the tables of the documents all use such tables. A
+//! new key needs one field and one row.
 
 use super::{Fault, Table, quoted};
 
@@ -13,9 +13,9 @@ pub struct Key<T> {
     pub unit: &'static str,
     /// Least and most of its number or numbers; of a text they say nothing.
     pub range: [f64; 2],
-    /// Whether it may be left out.
+    /// True if the key may be left out.
     pub optional: bool,
-    /// What it holds.
+    /// Kind of value, with access to its field.
     pub value: Value<T>,
 }
 
@@ -24,30 +24,30 @@ pub struct Key<T> {
 pub enum Value<T> {
     /// A number.
     Number {
-        /// From the field.
+        /// Reads the field.
         get: fn(&T) -> Option<f64>,
-        /// Into it.
+        /// Writes the field.
         set: fn(&mut T, f64),
     },
     /// A whole number.
     Whole {
-        /// From the field.
+        /// Reads the field.
         get: fn(&T) -> Option<u64>,
-        /// Into it.
+        /// Writes the field.
         set: fn(&mut T, u64),
     },
     /// Numbers in a row.
     Numbers {
-        /// From the field; empty where it was left out.
+        /// Reads the field; empty if it was left out.
         get: fn(&T) -> &[f64],
-        /// Into it.
+        /// Writes the field.
         set: fn(&mut T, Vec<f64>),
     },
     /// A text that is not blank.
     Text {
-        /// From the field.
+        /// Reads the field.
         get: fn(&T) -> &str,
-        /// Into it.
+        /// Writes the field.
         set: fn(&mut T, String),
     },
 }
@@ -159,7 +159,7 @@ pub fn write<T>(keys: &[Key<T>], part: &T) -> String {
     keys.iter().filter_map(line).collect()
 }
 
-/// A line of rows of numbers, a row in a line; nothing where there is none.
+/// Returns the rows of numbers of a key, one row per line; empty if there are no rows.
 pub(crate) fn write_rows<'r>(name: &str, rows: impl IntoIterator<Item = &'r [f64]>) -> String {
     let row = |row: &[f64]| {
         row.iter()

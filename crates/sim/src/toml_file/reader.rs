@@ -24,10 +24,10 @@ pub struct Table<'t, 'i> {
     name: String,
     /// Place of the table's header, where a missing key is reported.
     at: Range<usize>,
-    /// What it holds; none where it stands in the base alone, or nowhere: then it reports nothing.
+    /// Entries of the table; `None` if the table is in the base alone or missing. It then reports
+    /// nothing.
     entries: Option<&'t DeTable<'i>>,
-    /// What the file that this one builds upon has in its place: without faults, and its places are
-    /// in another text.
+    /// Same table in the base file: it has no faults, and its places refer to another text.
     base: Option<&'t DeTable<'i>>,
     asked: Vec<&'static str>,
 }
@@ -45,7 +45,7 @@ impl<'t, 'i> Table<'t, 'i> {
         }
     }
 
-    /// Whether a key that may be left out is there.
+    /// Returns true if an optional key is present.
     pub(crate) fn has(&mut self, key: &'static str) -> bool {
         self.asked.push(key);
         self.value(key).is_some()
@@ -90,8 +90,8 @@ impl<'t, 'i> Table<'t, 'i> {
         (value.is_finite() && value.fract() == 0.0).then_some(value as u64)
     }
 
-    /// Numbers within `range`; empty and faults, the first few of them, where there is one that is
-    /// not.
+    /// Returns the numbers of a key within `range`. If any number is outside, returns none and
+    /// reports the first few as faults.
     pub(crate) fn numbers(
         &mut self,
         key: &'static str,

@@ -35,22 +35,21 @@ pub(crate) struct CompareArgs {
     /// them.
     #[arg(long, value_name = "NAME.PARAMETER=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Where the values of the controllers' parameters come from: stored searches (a new search if
-    /// none is stored), a search for each controller and machine (an hour and more), or the
-    /// defaults.
+    /// Source of the controllers' parameter values: stored searches (a new search if none is
+    /// stored), a search for each controller and machine (an hour and more), or the defaults.
     #[arg(long, value_name = "SOURCE", value_enum, default_value_t = TuningSource::Recorded)]
     tuning: TuningSource,
     /// Search, and keep the values in this file beside those that it has; cut nothing. The program
     /// keeps lab/src/compare/recorded.jsonl.
     #[arg(long, value_name = "FILE.jsonl", conflicts_with_all = ["json", "at_tolerance"])]
     pub(crate) record: Option<PathBuf>,
-    /// What is cut.
+    /// Work to cut.
     #[arg(long, value_name = "WORK", value_enum, default_value_t = Work::Contours)]
     pub(crate) work: Work,
     /// Noise seeds that everything is cut with on a machine that has noise: the table has medians.
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SEEDS)))]
     pub(crate) seeds: u32,
-    /// What controllers are given of the machine; a row for each.
+    /// Knowledge of the machine that controllers get; one row for each.
     #[arg(long, value_name = "GIVEN,...", value_enum, value_delimiter = ',', default_values_t = [Given::Own, Given::Identified, Given::TwentyPercentOff, Given::Unseen])]
     pub(crate) knowledge: Vec<Given>,
     /// Geometry that every control compensates, uncorrected or not: none, known (as the machine
@@ -74,7 +73,7 @@ pub(crate) struct CompareArgs {
     pub(crate) reader: ReaderArgs,
 }
 
-/// Where values of parameters come from.
+/// Source of parameter values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum TuningSource {
     /// Stored searches; a new search if none is stored.
@@ -85,7 +84,7 @@ pub(crate) enum TuningSource {
     Defaults,
 }
 
-/// What is cut.
+/// Work to cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Work {
     /// Seven contours at 50 mm/s.
@@ -97,16 +96,16 @@ pub(crate) enum Work {
     HeldOut,
 }
 
-/// What geometry a control compensates.
+/// Geometry that a control compensates.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Compensated {
     /// None.
     None,
-    /// What the machine file states, as `feedwright run` compensates it.
+    /// Geometry in the machine file, as `feedwright run` compensates it.
     Known,
     /// The same with wrong signs.
     Opposite,
-    /// What a geometry file states.
+    /// Geometry in a geometry file.
     File(PathBuf),
 }
 
@@ -157,7 +156,7 @@ impl Compensated {
     }
 }
 
-/// What controllers are given of a machine.
+/// Knowledge of a machine that controllers get.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Given {
     /// Its parameters, an identification on it, or nothing, by the kind of the controller.
@@ -169,7 +168,7 @@ pub enum Given {
     TwentyPercentOff,
     /// An identification on tnv40.
     Unseen,
-    /// What a log of the machine tells, the settings of its drives too.
+    /// Values identified from a log of the machine, including the settings of its drives.
     Log,
 }
 

@@ -33,7 +33,7 @@ pub(crate) struct IndependentArgs {
     /// data sheet].
     #[arg(long, value_name = "FILE.ngc")]
     pub(crate) excitation: Option<PathBuf>,
-    /// Leave the delay of the record open; without it the identification is told that it is 0,
+    /// Leave the delay of the record open; without this option the identification gets the delay 0,
     /// which is true.
     #[arg(long)]
     pub(crate) open_delay: bool,

@@ -20,7 +20,7 @@ pub(crate) struct OneController {
     pub(crate) controller: String,
 }
 
-/// How controllers are compared with the uncorrected cut.
+/// Options of a comparison with the uncorrected cut.
 #[derive(Debug, Args)]
 pub(crate) struct SweepArgs {
     /// Set a parameter of the controller, such as knots=10; may be given several times.

@@ -87,7 +87,7 @@ pub(crate) fn run(args: &IndependentArgs, console: &Console) -> Result<ExitCode>
     )
 }
 
-/// Machines that are asked for.
+/// Returns the requested machines.
 fn machines(args: &IndependentArgs) -> Result<Vec<IndependentMachine>> {
     let names: Vec<&str> = if args.machine.is_empty() && args.random == 0 {
         INDEPENDENT_MACHINES.to_vec()
@@ -110,7 +110,7 @@ fn machines(args: &IndependentArgs) -> Result<Vec<IndependentMachine>> {
     Ok(machines)
 }
 
-/// How they are identified, and what cuts on them.
+/// Reads the options of the identification and the cuts.
 fn options(args: &IndependentArgs) -> Result<IndependentOptions> {
     let excitation = args.excitation.as_ref().map(|path| {
         let text = std::fs::read_to_string(path).into_diagnostic();
@@ -136,7 +136,7 @@ fn options(args: &IndependentArgs) -> Result<IndependentOptions> {
     })
 }
 
-/// What a machine was found to be, and its cuts.
+/// Prints the identified values of a machine, and its cuts.
 fn print(result: &IndependentResult, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "{}", result.machine.name)?;
     if let Some(refused) = &result.refused {

@@ -41,7 +41,7 @@ pub(crate) fn run(args: &PaperArgs, console: &Console) -> Result<ExitCode> {
     )
 }
 
-/// What is asked for beside the experiments.
+/// Results requested in addition to the experiments.
 struct Extra {
     departures: Option<Vec<DepartureResult>>,
     draws: Option<Vec<Draw>>,

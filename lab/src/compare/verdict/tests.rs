@@ -66,7 +66,7 @@ fn options() -> ComparisonOptions {
     }
 }
 
-/// What is compared with, the value in thousandths, and whether the claim holds.
+/// Returns, for each verdict, its peer, the value in thousandths, and whether the claim holds.
 fn told(rows: &[ComparisonRow]) -> Vec<(String, f64, bool)> {
     let verdicts = verdicts(rows, &options());
     verdicts

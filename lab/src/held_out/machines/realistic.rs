@@ -1,5 +1,5 @@
-//! What real axes have beside their loops, drawn on top of a drawn machine: each within what the
-//! built-in machines span, or not at all.
+//! Effects of real axes beside their loops, drawn on top of a drawn machine: each within the range
+//! of the built-in machines, or not at all.
 
 use feedwright_sim::Axis;
 
@@ -48,8 +48,8 @@ const TORQUE_NOISE: [f64; 2] = [0.1, 1.0];
 const TORQUE_NOISE_S: f64 = 0.005;
 const WANDER: [f64; 2] = [0.01, 0.05];
 
-/// With what is drawn of all this. Motors, screws and drives of a machine are of one make; friction
-/// differs from axis to axis.
+/// Adds the effects that are drawn. Motors, screws and drives of a machine are of one make;
+/// friction differs from axis to axis.
 pub(super) fn with_imperfections(variant: Variant, axes: &[Axis], random: &mut Random) -> Variant {
     let servo_s = SERVO_S[random.whole(0, 2) as usize];
     let variant = variant.with("period", "servo_s", servo_s).with(

@@ -14,16 +14,16 @@
 //! v_j = v_0 + T sum_{m<=j} a_m     |a_j| <= A in each axis
 //! ```
 //!
-//! and J is made smaller by [`GaussNewton`], from last tick's plan, shifted. Where the tool lags
-//! behind its time, or leads, nothing is cut wrong, and theta counts little (h is small); but it
-//! counts, so that no tool stays on a stretch of the path that is over: a nearest point would let
-//! it.
+//! and J is made smaller by [`GaussNewton`], from last tick's plan, shifted. A tool that lags
+//! behind its time, or leads, cuts nothing wrong, so theta counts little (h is small). It still
+//! counts, so that no tool stays on a stretch of the path that is over; with the nearest point as
+//! the reference it could.
 //!
-//! What holds the plan back from doing harm:
+//! The plan must do no harm. These terms limit it:
 //!
-//! - q, the weight of the offset itself, where it cannot undo all that is wrong, at the start,
-//!   where drives are at their limit ([`restraint`]): then the plan asks for a part of it.
-//! - e, at the end of the horizon: behind it nothing is foreseen, and the offset is to be on its
+//! - q, the weight of the offset itself, where it cannot undo the whole error, at the start,
+//!   where drives are at their limit ([`restraint`]): the plan then corrects only a part.
+//! - e, at the end of the horizon: nothing beyond it is predicted, and the offset is to be on its
 //!   way back.
 //!
 //! The limits of the plan are those of the machine file: what the plan asks for is carried out as
@@ -63,12 +63,12 @@ pub(crate) const MAX_AXES: usize = 3;
 /// Most unknowns.
 pub(crate) const MAX_UNKNOWNS: usize = MAX_KNOTS * MAX_AXES;
 
-/// Where the path runs this slowly, mm/s, an error along it is on its way to be one across it: at
+/// Speed of the path, mm/s, below which an error along it is about to become an error across it: at
 /// rest it leads beyond the end.
 const RESTING_MM_S: f64 = 0.5;
 
-/// How many times the lag of the machine the horizon reaches ahead, or more: what is commanded
-/// later hardly moves the tool that is foreseen now.
+/// Least reach of the horizon, as a multiple of the lag of the machine: later commands hardly move
+/// the tool that is predicted now.
 pub(crate) const LAGS_AHEAD: f64 = 3.6;
 
 /// Part of the largest deviation that a plan uses: the rest is for what it misses, before the
@@ -100,7 +100,7 @@ pub struct HorizonSettings<const N: usize> {
     /// Weight of a tool that is further from its time than without the offset; about points where
     /// the path turns back, more.
     pub late_weight: f64,
-    /// What the plan keeps to.
+    /// Limits that the plan keeps.
     pub limits: CorrectionLimits<N>,
 }
 
@@ -126,7 +126,7 @@ impl<const N: usize> CorrectionLimits<N> {
         drive_mm_s2: [f64::INFINITY; N],
     };
 
-    /// What a machine allows a correction.
+    /// Returns the limits that a machine sets for a correction.
     pub fn of(known: &Known) -> Self {
         Self {
             acceleration_mm_s2: core::array::from_fn(|i| known.axis(i).correction_accel_mm_s2),
@@ -140,17 +140,17 @@ impl<const N: usize> CorrectionLimits<N> {
 /// The accelerations of a plan, knot by knot, mm/s^2.
 pub type Accelerations<const N: usize> = [[f64; N]; MAX_KNOTS];
 
-/// What the tool feels at the end of a knot: its displacement in each axis, mm, for an acceleration
-/// of the offset of 1 mm/s^2 in that axis in each of the knots so far, s^2.
+/// Response of the tool at the end of a knot: its displacement in each axis, mm, for an
+/// acceleration of the offset of 1 mm/s^2 in that axis in each of the knots so far, s^2.
 pub type Sensitivity<const N: usize> = [[f64; N]; MAX_KNOTS];
 
-/// What predicts the tool: a model of the machine, with its state at the current knot.
+/// Model of the machine that predicts the tool, with its state at the current knot.
 pub trait Predictor<const N: usize>: Clone {
-    /// How far the tool is behind the command in the long run, s.
+    /// Returns the lag of the tool behind the command in the long run, s.
     fn lag_s(&self) -> f64;
 
-    /// How long the tool takes to follow an offset, s: its lag, but where a drive feeds forward of
-    /// the path what it does not lag by.
+    /// Returns the time that the tool takes to follow an offset, s: its lag, unless the drive feeds
+    /// part of the path forward and so lags less behind the path than behind an offset.
     fn response_s(&self) -> f64 {
         self.lag_s()
     }
@@ -165,10 +165,10 @@ pub trait Predictor<const N: usize>: Clone {
     ) -> [f64; N];
 }
 
-/// What is commanded in a feed period of the horizon.
+/// Command in a feed period of the horizon.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CommandedPeriod<const N: usize> {
-    /// Its number, from 0: that of its knot.
+    /// Number of the period, from 0, equal to the number of its knot.
     pub period: usize,
     /// Its length, s.
     pub period_s: f64,
@@ -181,7 +181,7 @@ pub struct CommandedPeriod<const N: usize> {
 }
 
 impl<const N: usize> CommandedPeriod<N> {
-    /// Before the first feed period: where the command is now.
+    /// Starts before the first feed period, at the present command.
     pub fn now(window: &Window<'_, N>) -> Self {
         Self {
             period: usize::MAX,
@@ -211,7 +211,7 @@ impl<const N: usize> CommandedPeriod<N> {
         self.command_mm = [self.command_mm[1], add_scaled(path_mm, 1.0, to_mm)];
     }
 
-    /// How far the way of the offset is bent, mm: see [`feedwright_control::Command`].
+    /// Returns the bend of the offset's course, mm: see [`feedwright_control::Command`].
     #[inline]
     pub fn bend_mm(&self) -> [f64; N] {
         scale(
@@ -220,8 +220,8 @@ impl<const N: usize> CommandedPeriod<N> {
         )
     }
 
-    /// How far an acceleration of 1 mm/s^2 in a knot has moved the offset after `part` of this feed
-    /// period, s^2.
+    /// Returns the displacement of the offset by an acceleration of 1 mm/s^2 in a knot after `part`
+    /// of this feed period, s^2.
     #[inline]
     pub fn moved_s2(&self, knot: usize, part: f64) -> f64 {
         let since = self.period as f64 + part - knot as f64;
@@ -334,7 +334,7 @@ impl<const N: usize> HorizonSettings<N> {
         limits: CorrectionLimits::NONE,
     };
 
-    /// For tests.
+    /// Settings for tests.
     #[cfg(test)]
     pub(crate) const EXAMPLE: Self = Self {
         knots: 4,

@@ -1,4 +1,4 @@
-//! What the model misses, predicted from what it missed before: friction of today, cutting force, a
+//! Prediction of the model's errors from its earlier errors: friction of the day, cutting force, a
 //! vibration.
 //!
 //! ```text
@@ -105,13 +105,13 @@ impl Residual {
         }
     }
 
-    /// What is expected next, mm.
+    /// Returns the expected next residual, mm.
     #[inline]
     pub(super) fn expected_mm(&self) -> f64 {
         self.forecast.expected_mm()
     }
 
-    /// What is expected from here on.
+    /// Returns the forecast of the residuals from here on.
     #[inline]
     pub(super) fn forecast(&self) -> DisturbanceForecast {
         self.forecast

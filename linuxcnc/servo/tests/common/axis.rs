@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use feedwright_control::{AxisKnowledge, LoopDelays, Parameters, Periods};
 
-/// With the numbers of the machine of Lee, Cho and Jeon (2005), in a servo period of 1 ms.
+/// Returns an axis with the numbers of the machine of Lee, Cho and Jeon (2005), in a servo period
+/// of 1 ms.
 pub(crate) fn axis() -> AxisKnowledge {
     let parameters = Parameters {
         rad_per_mm: TAU / 10.0,

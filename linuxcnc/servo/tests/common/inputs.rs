@@ -1,4 +1,4 @@
-//! What the link is given in every servo period of a test, where nothing is wrong.
+//! Inputs of the link in a servo period of a test in which nothing is wrong.
 
 use feedwright_servo::limits::LinkLimits;
 use feedwright_servo::servo::LinkInputs;
@@ -9,7 +9,7 @@ pub(crate) const SERVO_S: f64 = 0.001;
 /// Limits as in a configuration.
 pub(crate) const LIMITS: LinkLimits = LinkLimits::DEFAULT;
 
-/// A powered machine that cuts.
+/// Returns the inputs of a powered machine that cuts.
 pub(crate) const fn cutting(command_mm: [f64; 2], actual_mm: [f64; 2]) -> LinkInputs<2> {
     LinkInputs {
         command_mm,

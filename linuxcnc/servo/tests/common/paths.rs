@@ -1,18 +1,18 @@
-//! Paths, the commands along them, and how far a tool is from them.
+//! Paths, the commands along them, and the distance of a tool from them.
 
 use std::f64::consts::TAU;
 
 use crate::common::SERVO_S;
 
-/// Feedrate and acceleration of the programs.
+/// Feedrate and acceleration of the programs, mm/s and mm/s2.
 pub(crate) const FEED_MM_S: f64 = 50.0;
 pub(crate) const ACCELERATION_MM_S2: f64 = 2000.0;
-/// Servo periods of rest before and behind.
+/// Servo periods of rest before and after a program.
 pub(crate) const REST: usize = 300;
 /// Points of a path.
 const POINTS: usize = 4000;
 
-/// A curve of a parameter from 0 to 1, as points.
+/// Returns the points of a curve whose parameter goes from 0 to 1.
 fn curve(at: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
     (0..=POINTS).map(|k| at(k as f64 / POINTS as f64)).collect()
 }
@@ -32,7 +32,7 @@ pub(crate) fn star() -> Vec<[f64; 2]> {
     })
 }
 
-/// Sides of a square, and the points along it.
+/// Returns points along the sides of a square.
 pub(crate) fn square() -> Vec<[f64; 2]> {
     curve(|t| match 4.0 * t {
         way if way < 1.0 => [20.0 * way, 0.0],
@@ -42,8 +42,8 @@ pub(crate) fn square() -> Vec<[f64; 2]> {
     })
 }
 
-/// Commands of a program that stops so often along points at equal distances, with rest before and
-/// behind.
+/// Returns the commands of a program that stops `times` times along points at equal distances, with
+/// rest before and after.
 pub(crate) fn stopping(points: &[[f64; 2]], times: usize) -> Vec<[f64; 2]> {
     let pieces = points
         .windows(points.len() / times + 1)
@@ -57,7 +57,7 @@ pub(crate) fn stopping(points: &[[f64; 2]], times: usize) -> Vec<[f64; 2]> {
     commands
 }
 
-/// Lengths along points, mm.
+/// Returns the lengths along points, mm.
 fn lengths(points: &[[f64; 2]]) -> Vec<f64> {
     let mut length_mm = 0.0;
     let step = |pair: &[[f64; 2]]| {
@@ -73,7 +73,7 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// The way of a motion from rest to rest at the feedrate, mm.
+/// Returns the distance traveled from rest to rest at the feedrate, after `t_s`, mm.
 pub(crate) fn way_mm(t_s: f64, length_mm: f64) -> f64 {
     let (ramp_s, whole_s) = (
         FEED_MM_S / ACCELERATION_MM_S2,
@@ -89,7 +89,7 @@ pub(crate) fn way_mm(t_s: f64, length_mm: f64) -> f64 {
     }
 }
 
-/// Commands of a program along points, with rest before and behind.
+/// Returns the commands of a program along points, with rest before and after.
 pub(crate) fn commands(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let lengths = lengths(points);
     let whole_mm = lengths[lengths.len() - 1];
@@ -106,7 +106,7 @@ pub(crate) fn commands(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     (0..periods + 2 * REST).map(at).collect()
 }
 
-/// Distance of a tool from the path about the point that was nearest before.
+/// Returns the distance of a tool from the path, mm, near the point that was nearest before.
 pub(crate) fn error_mm(points: &[[f64; 2]], near: &mut usize, tool_mm: [f64; 2]) -> f64 {
     let about = near.saturating_sub(20)..(*near + 40).min(points.len());
     *near = about

@@ -1,4 +1,4 @@
-//! A turn of a circle in a closed loop of the link and the simulated machine.
+//! A turn of a circle, with the link and the simulated machine in a closed loop.
 
 use std::f64::consts::TAU;
 
@@ -11,11 +11,12 @@ use feedwright_servo::servo::{LinkFault, LinkInputs, LinkOutputs, Servo};
 use crate::axis::axis;
 use crate::common::{SERVO_S, cutting};
 
-/// Servo periods until the link has settled, and of a turn of the circle.
+/// Servo periods until the link has settled, and servo periods of a turn.
 pub(crate) const SETTLE: usize = 400;
 pub(crate) const TURN: usize = 1257;
 
-/// Two axes alike, with the numbers of the machine of Lee, Cho and Jeon (2005).
+/// Returns two axes with the numbers of the machine of Lee, Cho and Jeon (2005); the second has
+/// more inertia and Coulomb friction.
 pub(crate) fn machine() -> IdentifiedAxes<2> {
     let (axis, mut slower) = (axis(), axis());
     slower.parameters.inertia_kg_m2 = 0.012;
@@ -26,10 +27,10 @@ pub(crate) fn machine() -> IdentifiedAxes<2> {
     }
 }
 
-/// Rest, a turn of a circle of 10 mm at 50 mm/s with soft ends, rest.
+/// Returns the command: rest, a turn of a circle of 10 mm at 50 mm/s with soft ends, rest.
 pub(crate) fn command_mm(n: usize) -> [f64; 2] {
     let part = (n.saturating_sub(SETTLE) as f64 / (1.25 * TURN as f64)).min(1.0);
-    // A fifth of the time to take up the speed, and a fifth to give it up.
+    // A fifth of the time to accelerate, and a fifth to brake.
     let ramp = 0.2;
     let gone = |t: f64| {
         if t < ramp {
@@ -48,14 +49,14 @@ pub(crate) fn command_mm(n: usize) -> [f64; 2] {
     [10.0 - 10.0 * angle.cos(), 10.0 * angle.sin()]
 }
 
-/// What happened in a servo period.
+/// Inputs, outputs and tool position of a servo period.
 pub(crate) struct Period {
     pub(crate) inputs: LinkInputs<2>,
     pub(crate) outputs: LinkOutputs<2>,
     pub(crate) tool_mm: [f64; 2],
 }
 
-/// A turn, with inputs that are changed on the way.
+/// Runs a turn with inputs that `change` may modify.
 pub(crate) fn turn(
     model: Result<IdentifiedAxes<2>, Refused>,
     limits: &LinkLimits,
@@ -64,8 +65,8 @@ pub(crate) fn turn(
     turn_on(&machine(), model, |_| *limits, change)
 }
 
-/// A turn on a machine that may differ from the model, with settings that may change from one servo
-/// period to the next.
+/// Runs a turn on a machine that may differ from the model, with settings that may change from one
+/// servo period to the next.
 pub(crate) fn turn_on(
     real: &IdentifiedAxes<2>,
     model: Result<IdentifiedAxes<2>, Refused>,

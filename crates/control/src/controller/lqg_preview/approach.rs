@@ -1,26 +1,28 @@
-//! The way back to a reference that is far off, with no more than there is for it.
+//! The way back to a reference that is far off, within the available control authority.
 //!
 //! ```text
-//! u_k = G_k x                        G_k by the prices 4^k p and 4^k q, k = 0 to 11
+//! u_k = G_k x                        G_k by the weights 4^k p and 4^k q, k = 0 to 11
 //! U_k = min(U, R 3 2^k sqrt(p))
 //! u   = u_k of the first k with |u_k| <= U_k, and no less than U_k-1
 //! ```
 //!
-//! x is by how much the axis is off the reference, u by how much less reference speed is asked for,
-//! beside what loads take. U is what there is for that: what torque is left, and the largest
-//! offset; R is how fast an offset may change, and sqrt(p) the time constant of a law of price p:
-//! within three of them an error is closed. A linear regulator that asks for more than there is
-//! acts later than it reckons with: it overshoots as far as it came, or swings for good. The law of
-//! a higher price asks for less, and closes more slowly; as the axis comes nearer, a lower one
-//! takes over. Near the reference it is the lowest; k begins at 4 where the law is not trusted, at
-//! 6 where loads are not taken up, and comes down to 0 with that.
+//! x is the distance of the axis from the reference, u the reduction of its reference speed,
+//! without the part for the loads. U is the control authority for that: the remaining torque, and
+//! the largest offset; R is the largest rate of change of an offset, and sqrt(p) the time constant
+//! of a regulator with weight p: within three of them an error is closed. A linear regulator that
+//! requests more than the authority acts later than it computes: it overshoots as far as it came,
+//! or swings without end. A regulator with a higher weight requests less, and closes more slowly;
+//! as the axis comes nearer, a lower weight takes over. Near the reference the weight is the
+//! lowest; k begins at 4 where the model has no weight, 2 higher where loads are not used, and
+//! comes down to 0 as these weights rise.
 //!
-//! Of 180 random cuts with the lowest price of a hundredth of the servo period squared 14 are worse
-//! than uncorrected with one price, none in RMS or in the largest error with these.
+//! Of 180 random cuts with a lowest weight of a hundredth of the servo period squared, 14 are worse
+//! than uncorrected with a single weight, and with these weights no cut is worse in RMS or in its
+//! largest error.
 //!
 //! Source: Wredenhagen and Belanger (1994), "Piecewise-linear LQ control for systems with input
-//! constraints", Automatica 30(3); the bound by the rate, and the way from one law to the next, are
-//! our own.
+//! constraints", Automatica 30(3); the bound by the rate, and the transition from one regulator to
+//! the next, are our own.
 
 use crate::supervisor::validity::Trusted;
 
@@ -28,31 +30,32 @@ use super::command_weight::REGULATED;
 use super::linear;
 use super::riccati::inner;
 
-/// Part of the torque that is left that is relied on: the loops answer late.
+/// Usable part of the remaining torque: the loops answer late.
 const RELIED_ON: f64 = 0.5;
-/// Part of the torque limit that counts as left where the reference takes more.
+/// Part of the torque limit that counts as remaining where the reference takes more.
 const LEAST_LEFT: f64 = 0.1;
-/// Prices, and the ratio of the time of one to that of the one before.
+/// Number of weights, and the ratio of the time constant of one to the time constant of the one
+/// before.
 const PRICES: usize = 12;
 const RATIO: f64 = 2.0;
-/// Time constants in which an error is closed. On router 1 leaves half as much again on the square,
-/// and 10 runs into the supervisor on the star; a double integrator whose input takes 20 ms from
-/// nothing to its most swings by 3 and not by 1, one that takes 5 ms by neither.
+/// Time constants in which an error is closed. On `router`, 1 leaves 50 % more error on the square,
+/// and 10 triggers the supervisor on the star; a double integrator whose input takes 20 ms from
+/// zero to its maximum swings with 3 and not with 1, one that takes 5 ms with neither.
 const CLOSED: f64 = 3.0;
-/// The lowest price that counts where the law is not trusted, 4^k p, and by how much k is higher
-/// where loads are not taken up. By a law that does not know that the drives are 2 ms late the
-/// square with jumps at its corners is cut with 3.2 um RMS of 1.7 with 1 of the second, with 0.5
-/// with 2; the circle with 1.1 of 9 and with 1.8, and with 3.1 with 3.
+/// Lowest k where the model has no weight, and the addition to k where loads are not used. With a
+/// model that omits a delay of the drives of 2 ms, the square with jumps at its corners is cut with
+/// 3.2 um RMS of 1.7 with 1 as the second value, with 0.5 with 2; the circle with 1.1 of 9 and with
+/// 1.8, and with 3.1 with 3.
 const UNTRUSTED: f64 = 4.0;
 const WITHOUT_LOADS: f64 = 2.0;
 
-/// Torque that is relied on beside what the reference takes, N m.
+/// Returns the usable torque in addition to the torque of the reference, N m.
 pub(super) fn left_nm(torque_limit_nm: f64, reference_nm: f64) -> f64 {
     let left_nm = torque_limit_nm - reference_nm.abs();
     RELIED_ON * left_nm.max(LEAST_LEFT * torque_limit_nm)
 }
 
-/// What there is for an error, in reference speed of the axis.
+/// Control authority for error correction, as reference speed of the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Room {
     /// U, rad/s.
@@ -61,8 +64,8 @@ pub(super) struct Room {
     pub(super) change_rad_s2: f64,
 }
 
-/// Gains of the regulator by price, from the lowest on: [`RATIO`]^2 times as high from one to the
-/// next.
+/// Gains of the regulator by weight, from the lowest on: each weight is [`RATIO`]^2 times the one
+/// before.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct WeightedGains {
     /// sqrt(p), s.
@@ -71,8 +74,8 @@ pub(super) struct WeightedGains {
 }
 
 impl WeightedGains {
-    /// By the lowest prices, s^2 and of the second difference of the command, of a regulator whose
-    /// gains are known for any.
+    /// Creates the gains from the lowest weights, of the speed, s^2, and of the second difference
+    /// of the command. `gains` returns the gains of the regulator for any two weights.
     pub(super) fn new(
         [lowest_s2, command]: [f64; 2],
         gains: impl Fn([f64; 2]) -> [f64; REGULATED],
@@ -88,18 +91,18 @@ impl WeightedGains {
         }
     }
 
-    /// Near the reference.
+    /// Returns the gains near the reference.
     pub(super) fn near(&self) -> [f64; REGULATED] {
         let [near, ..] = self.gains;
         near
     }
 
-    /// By how much less reference speed is asked for where the axis is so far off, rad/s, by a law
-    /// that is `trusted` so far.
+    /// Returns the reduction of the reference speed for an axis with the deviation `off`, rad/s,
+    /// with the weights `trusted` of the model.
     pub(super) fn asked_rad_s(&self, off: &[f64; REGULATED], room: Room, trusted: Trusted) -> f64 {
         let [error, loads] = linear::error_and_loads(off);
         let loads_rad_s = trusted.loads * inner(&self.near(), &loads);
-        // A float that is not a number saturates to zero here.
+        // The cast saturates to zero where the float is NaN.
         let lowest = UNTRUSTED * (1.0 - trusted.near) + WITHOUT_LOADS * (1.0 - trusted.loads);
         let below = lowest as usize;
         let part = lowest - below as f64;
@@ -112,7 +115,7 @@ impl WeightedGains {
         }
     }
 
-    /// u, from a price on.
+    /// Returns u, from a weight on.
     fn closing_rad_s(
         &self,
         error: &[f64; REGULATED],
@@ -142,7 +145,8 @@ impl WeightedGains {
 mod tests {
     use super::*;
 
-    /// Of a double integrator that is closed in the time of the price, critically damped.
+    /// Returns the gains of a double integrator that closes in the time of the weight, critically
+    /// damped.
     fn of_double_integrator([control_weight_s2, _]: [f64; 2]) -> [f64; REGULATED] {
         let time_s = libm::sqrt(control_weight_s2);
         core::array::from_fn(|state| match state {

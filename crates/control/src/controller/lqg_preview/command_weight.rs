@@ -1,5 +1,5 @@
-//! The regulator whose command is quiet: it pays for the second difference of the command, beside
-//! the position error and the speed.
+//! The regulator whose command is quiet: its cost includes the second difference of the command, in
+//! addition to the position error and the speed.
 //!
 //! ```text
 //! v - v_r = K0 o - K1 o1 + K2 o2 - kp (x - x_r) - kd (w - w_r)
@@ -7,21 +7,21 @@
 //! mean (x - x_r)^2 + p (v - v_r)^2 + q (K0 Ts)^2 (o - 2 o1 + o2)^2          cost of a servo period
 //! ```
 //!
-//! o is by how much the command is off the ideal one, with which the position loop asks an axis on
-//! the reference for v_r; o1 and o2 are those of the last two periods, and states. Here the
-//! position loop sees x as it is when the command acts. A delay makes no difference to v: the
+//! o is the deviation of the command from the ideal one, with which the position loop requests v_r
+//! for an axis on the reference; o1 and o2 are its values of the last two periods, and states. Here
+//! the position loop sees x as it is when the command acts. A delay makes no difference to v: the
 //! command is solved for it.
 //!
 //! x and w are angle and speed of the motor. Without q the regulator answers noise of the encoder
-//! with a command that alternates. A price for the speed alone does the same to the error that it
-//! does to the noise; a price for the second difference lets what is slow pass.
+//! with a command that alternates. A weight on the speed alone attenuates the error as much as the
+//! noise; a weight on the second difference lets slow changes pass.
 //!
-//! A law that is lighter than the machine, under gains of the nominal law, has a pole that moves
-//! towards -1: the command alternates. So no inertia is learned below which a real pole of the
-//! regulator's loop is left of [`LEFTMOST_POLE`].
+//! A model that is lighter than the machine, with the gains of the nominal model, has a pole that
+//! moves toward -1: the command alternates. The smallest inertia that is learned therefore keeps
+//! every real pole of the regulator's loop right of [`LEFTMOST_POLE`].
 //!
 //! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, section 9.2, for a
-//! price on the rate of the input; the price on the difference from an ideal command is our own.
+//! weight on the rate of the input; the weight on the difference from an ideal command is our own.
 
 use crate::axis::AxisLaw;
 use crate::axis::drive::DriveParameters;
@@ -31,20 +31,20 @@ use crate::axis::mechanics::MechanicsLaw;
 use super::linear::{LinearAxis, STATES};
 use super::riccati::{PeriodCost, StateMatrix, inner, regulator};
 
-/// States of the regulator: those of the axis, and then o1 and o2, rad.
+/// Number of states of the regulator: the states of the axis, and then o1 and o2, rad.
 pub(super) const REGULATED: usize = STATES + 2;
-/// Angle and speed of the motor among them.
+/// Index of the angle and of the speed of the motor among them.
 const ANGLE: usize = 0;
 const SPEED: usize = 1;
-/// No real pole of the loop of a learned law is left of this.
+/// Leftmost permitted real pole of the loop of a learned model.
 const LEFTMOST_POLE: f64 = -0.25;
-/// Commands that differ by less are the same, rad: by rounding.
+/// Difference up to which commands are equal, rad: rounding.
 const SAME_RAD: f64 = 1e-9;
-/// Differences of the inertia that are looked at, a part of it.
+/// Step of the inertia in the search, as a part of it, and the number of steps.
 const INERTIA_STEP: f64 = 0.02;
 const INERTIA_STEPS: u32 = 35;
 
-/// What the position loop makes of commands: K0, K1, K2, kp and kd.
+/// Coefficients of the position loop for commands: K0, K1, K2, kp and kd.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct CommandLaw {
     of_commands: [f64; 3],
@@ -54,7 +54,7 @@ pub(super) struct CommandLaw {
 }
 
 impl CommandLaw {
-    /// Of an axis with this drive.
+    /// Creates the coefficients of an axis with this drive.
     pub(super) fn new(law: &AxisLaw, drive: &DriveParameters) -> Self {
         let (parameters, servo_s) = (law.parameters, law.periods.servo_s);
         let by_speed = (drive.velocity_feedforward + parameters.kd) / servo_s;
@@ -72,7 +72,7 @@ impl CommandLaw {
         }
     }
 
-    /// v - v_r by each state, beside K0 o.
+    /// Returns v - v_r by each state, without K0 o.
     fn row(&self) -> [f64; REGULATED] {
         let Self {
             of_commands: [_, k1, k2],
@@ -86,28 +86,28 @@ impl CommandLaw {
     }
 }
 
-/// What commands were off the ideal ones, rad.
+/// Deviations of the commands from the ideal ones, rad.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CommandHistory {
     /// o1 and o2.
     off_rad: [f64; 2],
-    /// The command that was decided on, and its o.
+    /// The decided command, and its o.
     decided_rad: Option<[f64; 2]>,
 }
 
 impl CommandHistory {
-    /// Ideal ones.
+    /// State after ideal commands.
     pub(super) const IDEAL: Self = Self {
         off_rad: [0.0; 2],
         decided_rad: None,
     };
 
-    /// o1 and o2.
+    /// Returns o1 and o2.
     pub(super) fn off_rad(&self) -> [f64; 2] {
         self.off_rad
     }
 
-    /// A command was decided on by which the reference speed is less by so much than v_r.
+    /// Stores a decided command, whose reference speed is `asked_rad_s` below v_r.
     pub(super) fn decide(
         &mut self,
         law: &CommandLaw,
@@ -119,8 +119,8 @@ impl CommandHistory {
         self.decided_rad = Some([command_rad, (-asked_rad_s - inner(&law.row(), off)) / k0]);
     }
 
-    /// A command was sent. One that was not decided on counts as ideal: what holds it back is not
-    /// to be made up for smoothly.
+    /// Takes in a sent command. A command that was not decided counts as ideal: the regulator must
+    /// not compensate smoothly for a bound that changed it.
     pub(super) fn sent(&mut self, command_rad: f64) {
         let off_rad = match self.decided_rad.take() {
             Some([decided_rad, off_rad]) if (command_rad - decided_rad).abs() <= SAME_RAD => {
@@ -133,8 +133,8 @@ impl CommandHistory {
     }
 }
 
-/// Gains of the regulator by prices p, s^2, and q: the reference speed is less by so much for a
-/// unit of each state.
+/// Returns the gains of the regulator by the weights p, s^2, and q: the reduction of the reference
+/// speed for a unit of each state.
 pub(super) fn gains<'a>(
     axis: &'a LinearAxis,
     law: &'a CommandLaw,
@@ -143,8 +143,8 @@ pub(super) fn gains<'a>(
     move |[p_s2, q]| priced(&states, &input, &axis.cost(p_s2), law, q)
 }
 
-/// The gains of an axis with these states, this input and this cost of a servo period, and with the
-/// price q.
+/// Returns the gains of an axis with these states, this input and this cost of a servo period, and
+/// with the weight q.
 fn priced(
     states: &StateMatrix<STATES>,
     input: &[f64; STATES],
@@ -182,8 +182,8 @@ fn priced(
     core::array::from_fn(|i| k0 * of_offset[i] - row[i])
 }
 
-/// The least difference of the inertia, a part of it, at which the loop of these gains has no real
-/// pole left of [`LEFTMOST_POLE`].
+/// Returns the smallest difference of the inertia, as a part of it, at which the loop of these
+/// gains has no real pole left of [`LEFTMOST_POLE`].
 pub(super) fn least_inertia(known: &AxisKnowledge, gains: &[f64; REGULATED]) -> f64 {
     let holds = |part: &f64| {
         let mut lighter = *known;
@@ -194,7 +194,7 @@ pub(super) fn least_inertia(known: &AxisKnowledge, gains: &[f64; REGULATED]) -> 
         let (states, input, _) = axis.sampled();
         let (states, input, k0, row) = commanded(&states, &input, &law);
         let by_offset: [f64; REGULATED] = core::array::from_fn(|i| (gains[i] + row[i]) / k0);
-        // The characteristic polynomial has the sign that it has far to the left.
+        // The characteristic polynomial has the same sign as far to the left.
         determinant(core::array::from_fn(|i| {
             core::array::from_fn(|j| {
                 let pole = if i == j { LEFTMOST_POLE } else { 0.0 };
@@ -209,7 +209,8 @@ pub(super) fn least_inertia(known: &AxisKnowledge, gains: &[f64; REGULATED]) -> 
         .unwrap_or(0.0)
 }
 
-/// The axis that is regulated: without the integral of its speed loop and its torque filter.
+/// Returns the axis that is regulated: without the integral of its speed loop and its torque
+/// filter.
 pub(super) fn regulated_axis(known: &AxisKnowledge) -> LinearAxis {
     let AxisKnowledge {
         drive,
@@ -232,7 +233,7 @@ pub(super) fn regulated_axis(known: &AxisKnowledge) -> LinearAxis {
     )
 }
 
-/// States and input of the axis with o for its input; K0, and v - v_r by each state.
+/// Returns states and input of the axis with o as its input, K0, and v - v_r by each state.
 fn commanded(
     states: &StateMatrix<STATES>,
     input: &[f64; STATES],
@@ -255,19 +256,19 @@ fn commanded(
     (commanded, of_offset, k0, row)
 }
 
-/// States of the axis with o1 and o2 behind them.
+/// Returns the states of the axis followed by o1 and o2.
 pub(super) fn with_commands(states: &[f64; STATES], commands: [f64; 2]) -> [f64; REGULATED] {
     let mut all = widened(states);
     (all[STATES], all[STATES + 1]) = (commands[0], commands[1]);
     all
 }
 
-/// With nothing of o1 and o2.
+/// Returns the states of the axis with zero o1 and o2.
 fn widened(states: &[f64; STATES]) -> [f64; REGULATED] {
     core::array::from_fn(|i| states.get(i).copied().unwrap_or(0.0))
 }
 
-/// By elimination with the largest pivot of each column.
+/// Computes the determinant by elimination with the largest pivot of each column.
 fn determinant(mut a: StateMatrix<REGULATED>) -> f64 {
     let mut determinant = 1.0;
     for i in 0..REGULATED {

@@ -2,17 +2,17 @@
 
 use crate::axis::transmission::TransmissionParameters;
 
-/// What an offset is held to, whatever is asked for.
+/// Bounds of an offset, whatever the request.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OffsetBounds {
-    /// How large it may be, mm.
+    /// Largest offset, mm.
     pub largest_mm: f64,
-    /// How fast it may change, mm/s.
+    /// Largest rate of change of the offset, mm/s.
     pub fastest_mm_s: f64,
 }
 
 impl OffsetBounds {
-    /// To nothing.
+    /// No bounds.
     pub const NONE: Self = Self {
         largest_mm: f64::INFINITY,
         fastest_mm_s: f64::INFINITY,
@@ -25,32 +25,32 @@ pub struct LqgSettings {
     /// Weight of the reference speed against the position error near the reference, s^2.
     pub control_weight_s2: f64,
     /// Weight of the second difference of the command against the position error near the
-    /// reference; 0 is none.
+    /// reference; 0 omits it.
     pub command_weight: f64,
-    /// What the offset is held to.
+    /// Bounds of the offset.
     pub bounds: OffsetBounds,
-    /// Whether law and statistics may be wrong: both are learned, and a wrong law is not followed.
-    /// Otherwise both are exact.
+    /// True if model and statistics may be wrong: both are learned, and a wrong model is not
+    /// followed. Otherwise both are exact.
     pub learns: bool,
-    /// Whether it has been used on this machine before. Otherwise the laws have to show that they
-    /// are of this machine before anything is corrected.
+    /// True if the controller was used on this machine before. Otherwise the models have to pass a
+    /// test on this machine before anything is corrected.
     pub is_known: bool,
 }
 
 /// Control weight used with an identified model, in servo periods squared. A weight of 1 leaves 50
-/// % more error on workshop. While the model is not followed, both weights are 256 times as high.
+/// % more error on `workshop`. While the model is not followed, both weights are 256 times as high.
 pub const IDENTIFIED_WEIGHT: f64 = 0.01;
 /// Weight of the second difference of the command with an identified model: the fourth power of
-/// half a servo period, in servo periods. With it a plate in inches alternates in 9 servo periods
-/// on workshop, and in 130 on stiff; without any in 11,292 and 1,523.
+/// half a servo period, in servo periods. With it the command for a plate in inches alternates in 9
+/// servo periods on `workshop`, and in 130 on `stiff`; without it in 11,292 and 1,523.
 const COMMAND_WEIGHT: f64 = 0.0625;
-/// By a law that may be wrong a screw that gives is regulated in no less than so many radians of
-/// its resonance: backlash is not in the law of the regulator. On soft 2 leaves 0.6 of what 0
-/// leaves on star, circle and square, and 0.1 on pocket.
+/// Shortest time constant of the regulator of a compliant screw, in radians of its resonance, where
+/// the model may be wrong: the model of the regulator has no backlash. On `soft`, 2 leaves 0.6 of
+/// the error that 0 leaves on star, circle and square, and 0.1 on pocket.
 const SCREW_RAD: f64 = 2.0;
 
 impl LqgSettings {
-    /// A tenth of the travel of a servo period, squared.
+    /// Control weight of a tenth of a servo period of 1 ms, squared.
     pub const DEFAULT: Self = Self {
         control_weight_s2: 1e-8,
         command_weight: 0.0,
@@ -59,8 +59,8 @@ impl LqgSettings {
         is_known: true,
     };
 
-    /// Settings for an identified model; `control_weight` is in servo periods squared, with a servo
-    /// period of `servo_s`.
+    /// Creates the settings for an identified model; `control_weight` is in servo periods squared,
+    /// with a servo period of `servo_s`.
     pub fn identified(control_weight: f64, servo_s: f64, bounds: OffsetBounds) -> Self {
         Self {
             control_weight_s2: control_weight * servo_s * servo_s,
@@ -71,7 +71,7 @@ impl LqgSettings {
         }
     }
 
-    /// Near the reference, for an axis with this screw.
+    /// Returns the control weight near the reference, for an axis with this screw.
     pub(super) fn lowest_control_weight_s2(&self, screw: &TransmissionParameters) -> f64 {
         if self.learns && screw.resonance_rad_s > 0.0 {
             let slow_s = SCREW_RAD / screw.resonance_rad_s;

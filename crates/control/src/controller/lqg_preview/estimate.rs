@@ -1,16 +1,16 @@
-//! What is estimated of an axis: the law of the axis itself, stepped with everything that is known,
-//! and corrected by a Kalman filter.
+//! Estimate of an axis: the model of the axis, stepped with all known inputs and corrected by a
+//! Kalman filter.
 //!
 //! ```text
 //! x <- f(x, what was sent)      between two measurements, every mechanics period, with friction, limits and cogging as they are
 //! x <- x + K (y - h(x))         h with the interpolation error of the encoder at the estimated angle
 //! ```
 //!
-//! Time is that of the measurement, which is late; [`Estimate::ahead`] goes on from there to the
-//! moment at which a reference acts that is sent now, with those that are under way.
+//! Time is the time of the measurement, which is late. [`Estimate::ahead`] advances from there to
+//! the time at which a reference that is sent now acts, with the references on their way.
 //!
 //! Source: Gelb (1974), Applied Optimal Estimation, section 6.1, the extended filter; its gain is
-//! that of the linear part, constant.
+//! the constant gain of the linear part.
 
 use crate::axis::drive::{DriveLaw, DriveReference, DriveState};
 use crate::axis::knowledge::AxisKnowledge;
@@ -25,21 +25,22 @@ use super::outliers::{self, Outliers};
 use super::riccati::{StateMatrix, applied, filter};
 use super::whiteness::{GainTable, LEVELS, Whiteness};
 
-/// References that are kept, servo periods: 20 ms each way at 1 ms, the most of a machine file, and
-/// some.
+/// Number of references that are kept, servo periods: 20 ms each way at 1 ms, the longest of a
+/// machine file, and a margin.
 pub(super) const KEPT_PERIODS: usize = 48;
 
-/// Innovations that are smaller than this part of the measurement's noise are not learnt from.
+/// Innovations that are smaller than this part of the measurement's noise are not used for
+/// learning.
 const LEAST_SHARE: f64 = 0.01;
 
-/// Least part of an innovation that counts as noise of the measurement.
+/// Smallest part of an innovation that counts as noise of the measurement.
 const LEAST_SHARE_LEFT: f64 = 1e-6;
 
-/// Largest load that counts as one, a part of the torque limit: about what a drive that may reach
+/// Largest load that is plausible, as a part of the torque limit: about the load that a drive with
 /// three times its rated torque for a moment can hold.
 const LARGEST_LOAD: f64 = 1.0 / 3.0;
 
-/// What does not change of an axis.
+/// Constant part of an axis.
 #[derive(Debug, Clone)]
 pub(super) struct AxisModel {
     pub(super) law: AxisLaw,
@@ -48,38 +49,39 @@ pub(super) struct AxisModel {
     statistics: AxisStatistics,
     pub(super) linear: LinearAxis,
     gains: GainTable,
-    /// Mean square of what a free run misses by white innovations of unit variance, for each level
-    /// of the gains.
+    /// Mean square error of a free run by white innovations of unit variance, for each level of the
+    /// gains.
     amplified: [f64; LEVELS],
-    /// Variance of the measurement as given, rad^2.
+    /// Variance of the measurement by the statistics, rad^2.
     measured_rad2: f64,
-    /// Innovations that are smaller are not learnt from, and those that are larger are believed in
-    /// part, rad.
+    /// Innovation below which nothing is learned, and innovation above which only a part is used,
+    /// rad.
     least_rad: f64,
     believed_rad: f64,
     /// Servo periods from a command until the position loop has it.
     pub(super) command_periods: usize,
-    /// Mechanics periods from a measurement until it is there, and from a reference until it acts.
+    /// Mechanics periods from a measurement until it is available, and from a reference until it
+    /// acts.
     late: [u32; 2],
 }
 
-/// State of an axis, and what acts on it.
+/// State of an axis, and its loads.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Estimate {
     pub(super) masses: MechanicsState,
     pub(super) drive: DriveState,
-    /// Broadband torque, the disturbance and its quadrature, and what is left, N m.
+    /// Broadband torque, the disturbance and its quadrature, and the remaining drift, N m.
     pub(super) acting_nm: [f64; 4],
 }
 
 impl Estimate {
-    /// What acts on it, N m.
+    /// Returns the load on the axis, N m.
     pub(super) fn load_nm(&self) -> f64 {
         let [broadband, disturbance, _, drift] = self.acting_nm;
         broadband + disturbance + drift
     }
 
-    /// What the filter finds them to be higher.
+    /// Adds the corrections of the filter to the states.
     pub(super) fn correct(&mut self, corrections: [f64; STATES]) {
         let [x, w, i, y, n, p, q, d, xt, wt] = corrections;
         let MechanicsState { motor, table, .. } = &mut self.masses;
@@ -95,7 +97,7 @@ impl Estimate {
     }
 }
 
-/// What is learnt from innovations.
+/// State that is learned from innovations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Learnt {
     pub(super) whiteness: Whiteness,
@@ -103,30 +105,30 @@ pub(super) struct Learnt {
 }
 
 impl Learnt {
-    /// Nothing yet.
+    /// Start: nothing is learned.
     pub(super) const NOTHING: Self = Self {
         whiteness: Whiteness::GIVEN,
         outliers: Outliers::NONE,
     };
 }
 
-/// What a measurement told.
+/// Result of a measurement.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Innovation {
-    /// By how much it was not expected, rad.
+    /// Difference between the measurement and its prediction, rad.
     pub(super) missed_rad: f64,
-    /// As what it is taken, rad.
+    /// Measurement as it is used after the bound of the innovation, rad.
     pub(super) measured_rad: f64,
-    /// Mean square of what is not expected by the statistics, rad^2.
+    /// Mean square of the innovation by the statistics, rad^2.
     pub(super) expected_rad2: f64,
-    /// By how much the torque has moved the axis, beside its speed, rad.
+    /// Travel that the torque added to the travel by the speed of the axis, rad.
     pub(super) pushed_rad: f64,
-    /// What each state was corrected by, for a rad of innovation.
+    /// Correction of each state for a rad of innovation.
     pub(super) gains: [f64; STATES],
 }
 
 impl Innovation {
-    /// As that of a servo period, with so many mm to a rad.
+    /// Returns the values of the servo period, with `mm` mm to a rad.
     pub(super) fn step(&self, mm: f64) -> OneStep {
         OneStep {
             missed_mm2: self.missed_rad * self.missed_rad * mm * mm,
@@ -136,26 +138,26 @@ impl Innovation {
     }
 }
 
-/// What was sent to the drive, the newest first.
+/// References sent to the drive, the newest first.
 pub(super) type Sent = [DriveReference; KEPT_PERIODS];
 
-/// Mechanics periods by which a measurement and a drive are late.
+/// Returns the mechanics periods by which a measurement and a drive are late.
 fn late(
     AxisKnowledge {
         delays, periods, ..
     }: &AxisKnowledge,
 ) -> [u32; 2] {
     let longest = (KEPT_PERIODS as u32 - 2) / 2 * periods.mechanics_per_servo;
-    // A float that is not a number saturates to zero here.
+    // The cast saturates to zero where the float is NaN.
     [delays.measurement_s, delays.drive_s]
         .map(|s| (libm::round(s / periods.mechanics_s) as u32).min(longest))
 }
 
-/// Mean square of the angle that white innovations of unit variance make of a free run through
-/// gains.
+/// Returns the mean square error of the angle in a free run by white innovations of unit variance
+/// through these gains.
 ///
-/// What a free run misses at its end is the sum of the innovations since its start, each carried on
-/// from where the filter took it in.
+/// The error of a free run at its end is the sum of the innovations since its start, each carried
+/// on from the period in which the filter took it in.
 fn amplified(states: &StateMatrix<STATES>, gains: [f64; STATES], servo_s: f64) -> f64 {
     let (mut carried, mut sum) = (gains, 1.0);
     for _ in 1..run_periods(servo_s) {
@@ -167,7 +169,7 @@ fn amplified(states: &StateMatrix<STATES>, gains: [f64; STATES], servo_s: f64) -
 }
 
 impl AxisModel {
-    /// Of an axis; where it `learns`, with gains for other statistics, too.
+    /// Creates the model of an axis. If it `learns`, it also has gains for other statistics.
     pub(super) fn new(known: &AxisKnowledge, learns: bool) -> Self {
         let AxisKnowledge {
             drive,
@@ -207,13 +209,13 @@ impl AxisModel {
         }
     }
 
-    /// Gains of the filter by the statistics as given.
+    /// Returns the gains of the filter by the statistics.
     pub(super) fn gains_as_given(&self) -> [f64; STATES] {
         Whiteness::GIVEN.gains(&self.gains)
     }
 
-    /// At an angle, at a speed at which it has gone for long, with nothing that is known to act;
-    /// and what was sent to the drive for it.
+    /// Returns the estimate of an axis at an angle, after a long motion at a constant speed without
+    /// known loads, and the references that were sent to the drive for it.
     pub(super) fn moving(&self, angle_rad: f64, speed_rad_s: f64) -> (Estimate, Sent) {
         let [sign] = axis::friction_signs(&[self.law], [speed_rad_s]);
         let (drive, sent) = self.drive.moving(
@@ -232,7 +234,7 @@ impl AxisModel {
         )
     }
 
-    /// Torque of the motor beside the drive's at an angle, N m.
+    /// Returns the cogging torque of the motor at an angle, N m.
     pub(super) fn cogging_nm(&self, angle_rad: f64) -> f64 {
         let AxisStatistics {
             cogging_nm,
@@ -243,21 +245,20 @@ impl AxisModel {
         cogging_nm * sin(cogging_per_rev * angle_rad + cogging_phase_rad)
     }
 
-    /// One servo period on.
+    /// Predicts one servo period.
     pub(super) fn predict(&self, estimate: &mut Estimate, sent: &Sent) {
         let [measured_late, _] = self.late;
         let periods = self.law.periods.mechanics_per_servo;
         self.go_on(estimate, sent, measured_late + periods, periods);
     }
 
-    /// Mean square of what noise and loads that nobody foresees move the axis by, and the encoder
-    /// adds, in a free run of so many servo periods, rad^2.
+    /// Returns the mean square error of a free run of `periods` servo periods by noise, unforeseen
+    /// loads and the encoder, rad^2.
     pub(super) fn unforeseen_rad2(&self, periods: u32) -> f64 {
         self.linear.spread_rad2(&self.statistics, periods) + measured_rad2(&self.statistics)
     }
 
-    /// Mean square of what a free run misses by the innovations that were told, if they are white,
-    /// rad^2.
+    /// Returns the mean square error of a free run by these innovations, if they are white, rad^2.
     pub(super) fn by_noise_rad2(&self, told: &Innovation, learnt: &Learnt) -> f64 {
         let amplified = self
             .amplified
@@ -267,7 +268,7 @@ impl AxisModel {
         told.missed_rad * told.missed_rad * amplified
     }
 
-    /// What the encoder shows, rad.
+    /// Returns the angle that the encoder shows, rad.
     pub(super) fn shown_rad(&self, estimate: &Estimate) -> f64 {
         let AxisStatistics {
             interpolation_rad,
@@ -279,8 +280,8 @@ impl AxisModel {
         angle_rad + interpolation_rad * sin(signal_per_rad * angle_rad + interpolation_phase_rad)
     }
 
-    /// One servo period on, and what was measured at its end: by how much that was not expected,
-    /// rad, and as what it is taken.
+    /// Predicts one servo period and corrects the estimate by the measurement at its end. Returns
+    /// the innovation and the measurement as it was used.
     pub(super) fn correct(
         &self,
         estimate: &mut Estimate,
@@ -307,7 +308,8 @@ impl AxisModel {
         let [of_angle, ..] = gains;
         let expected_rad2 = learnt.whiteness.variance() * self.measured_rad2
             / (1.0 - of_angle).max(LEAST_SHARE_LEFT);
-        // A frozen encoder is for the supervisor to see: it tells nothing of the predictions.
+        // The supervisor detects a frozen encoder: its measurement is no evidence on the
+        // predictions.
         let missed_rad = if taken_rad == 0.0 { 0.0 } else { missed_rad };
         let believed = if missed_rad == 0.0 {
             1.0
@@ -324,7 +326,7 @@ impl AxisModel {
         }
     }
 
-    /// Friction of the table by the law, N m.
+    /// Returns the friction of the table by the model, N m.
     pub(super) fn friction_nm(&self, estimate: &Estimate) -> f64 {
         let MechanicsState {
             table,
@@ -338,8 +340,8 @@ impl AxisModel {
         self.law.friction_nm(table.speed_rad_s, sign)
     }
 
-    /// The age of the newest reference that acts before a measurement, servo periods, and the part
-    /// of the time in which the one before it does.
+    /// Returns the age of the newest reference that acts before a measurement, servo periods, and
+    /// the part of the time in which the one before it acts.
     pub(super) fn acting(&self) -> (usize, f64) {
         let [measured_late, drive_late] = self.late;
         let (late, per_servo) = (
@@ -353,7 +355,7 @@ impl AxisModel {
         )
     }
 
-    /// Goes by this knowledge of the axis from now on. Its filter stays.
+    /// Changes to this knowledge of the axis. Its filter stays.
     pub(super) fn follow(&mut self, known: &AxisKnowledge) {
         self.law = known.law();
         self.drive = DriveLaw::new(&self.law, known.drive);
@@ -361,14 +363,14 @@ impl AxisModel {
         self.late = late(known);
     }
 
-    /// Whether there can be such a load. One that is larger is a law that is not that of the axis:
-    /// other gains, another inertia.
+    /// Returns true if a load of this size is plausible. A larger one indicates a wrong model of
+    /// the axis: other gains, another inertia.
     pub(super) fn is_possible(&self, estimate: &Estimate) -> bool {
-        // What is not a number is none.
+        // A NaN load fails this comparison.
         estimate.load_nm().abs() <= LARGEST_LOAD * self.law.parameters.torque_limit_nm
     }
 
-    /// As it will be when what is sent now begins to act.
+    /// Returns the estimate at the time at which a reference that is sent now begins to act.
     pub(super) fn ahead(&self, estimate: &Estimate, sent: &Sent) -> Estimate {
         let [measured_late, drive_late] = self.late;
         let mut ahead = *estimate;
@@ -376,14 +378,14 @@ impl AxisModel {
         ahead
     }
 
-    /// So many mechanics periods on, from one that is `before` the start of this servo period.
-    /// `sent` holds what was sent until the last one.
+    /// Advances by `periods` mechanics periods, from an estimate that is `before` the start of this
+    /// servo period. `sent` holds the references up to the last one.
     fn go_on(&self, estimate: &mut Estimate, sent: &Sent, before: u32, periods: u32) {
         let [_, drive_late] = self.late;
         let per_servo = self.law.periods.mechanics_per_servo;
         for n in 0..periods {
-            // So long ago was sent what acts: a servo period ago it was the newest, up to two the
-            // one before.
+            // Age of the reference that acts: up to one servo period ago it is the newest, up to
+            // two the one before.
             let ago = (before + drive_late).saturating_sub(n).max(1);
             let age = (ago - 1).checked_div(per_servo).unwrap_or(0);
             let reference = sent.get(age as usize).copied().unwrap_or_default();
@@ -408,7 +410,7 @@ impl AxisModel {
     }
 }
 
-/// A free run beside the filter, of an axis.
+/// A free run of an axis in parallel with the filter.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LawTrial {
     free: Estimate,
@@ -417,7 +419,7 @@ pub(super) struct LawTrial {
 }
 
 impl LawTrial {
-    /// From an estimate on.
+    /// Begins a free run from an estimate.
     pub(super) fn from(estimate: &Estimate) -> Self {
         Self {
             free: *estimate,
@@ -426,12 +428,13 @@ impl LawTrial {
         }
     }
 
-    /// m, rad.
+    /// Returns m, rad.
     pub(super) fn missed_rad(&self) -> f64 {
         self.missed_rad
     }
 
-    /// One servo period on; `estimate` is that of the filter, which has taken in what was measured.
+    /// Advances by one servo period. `estimate` belongs to the filter, which has taken in the
+    /// measurement.
     pub(super) fn go_on(
         &mut self,
         model: &AxisModel,

@@ -1,37 +1,38 @@
-//! Whether there is torque for the reference ahead.
+//! Check of the torque for the reference ahead.
 //!
 //! ```text
 //! a = (r(t) - 2 r(t - h) + r(t - 2h)) / h^2           at the far end of what is known of the reference
-//! |J a + B v + Fc sgn v| > 0.9 Tmax                   there is none
+//! |J a + B v + Fc sgn v| > 0.9 Tmax                   the torque is not sufficient
 //! ```
 //!
-//! A reference that takes more torque than there is cannot be followed: the law falls behind, and
-//! swings in behind it. The axis by itself rounds it off. Until it has passed, the law is held on
-//! the way of the axis by itself, without any offset, in place of the reference: all axes of a
-//! machine over the same [`TO_OPEN_S`], before it comes to be. A corner of the path is averaged
-//! over h: what takes less time is made up for by the regulator.
+//! A reference that takes more torque than available cannot be followed: the axis falls behind, and
+//! swings when it catches up. The axis without correction rounds the reference off. Until such a
+//! reference has passed, the motion of the axis without any offset replaces the reference: for all
+//! axes of a machine over the same [`TO_OPEN_S`], before the reference acts. A corner of the path
+//! is averaged over h: the regulator compensates for a shorter demand.
 //!
-//! Source: the reference is changed where a bound would be met, as by a reference governor,
+//! Source: the reference is changed where it would violate a bound, as by a reference governor,
 //! Gilbert, Kolmanovsky and Tan (1995), "Discrete-time reference governors and the nonlinear
-//! control of systems with state and control constraints"; the one that it is changed to is our
-//! own.
+//! control of systems with state and control constraints"; the replacement is our own.
 
 use crate::axis::AxisLaw;
 use crate::vector::{bounded, smooth_step};
 
-/// h, s. With 4 ms a drive that is just strong enough for its plan leaves as much as uncorrected at
-/// the corners of a square, with 10 and 20 ms a fifth.
+/// h, s. With 4 ms a drive that is just strong enough for its plan leaves as much error as
+/// uncorrected at the corners of a square, with 10 and 20 ms a fifth.
 const AVERAGED_S: f64 = 0.01;
-/// Part of the torque that is there for the reference.
+/// Part of the torque that is available for the reference.
 const FOR_REFERENCE: f64 = 0.9;
-/// Time in which the way of the axis by itself takes over, s, and that in which it hands back.
+/// Time in which the motion of the axis without correction takes over, s, and time in which it
+/// hands back.
 const TO_OPEN_S: f64 = 0.02;
 const BACK_S: f64 = 0.05;
 
-/// Times before the end of what is known of the reference at which [`is_beyond`] asks for it, s.
+/// Times before the end of the known reference at which [`is_beyond`] needs it, s.
 pub(super) const BEFORE_END_S: [f64; 3] = [0.0, AVERAGED_S, 2.0 * AVERAGED_S];
 
-/// Whether an axis takes more torque than there is along its reference, mm at [`BEFORE_END_S`].
+/// Returns true if an axis takes more torque than available along its reference, mm at
+/// [`BEFORE_END_S`].
 pub(super) fn is_beyond(law: &AxisLaw, [newest_mm, middle_mm, oldest_mm]: [f64; 3]) -> bool {
     let parameters = &law.parameters;
     let speed_rad_s = (newest_mm - oldest_mm) / (2.0 * AVERAGED_S) * parameters.rad_per_mm;
@@ -47,22 +48,23 @@ pub(super) fn is_beyond(law: &AxisLaw, [newest_mm, middle_mm, oldest_mm]: [f64; 
         > FOR_REFERENCE * parameters.torque_limit_nm
 }
 
-/// How far the way of the axes by themselves takes the place of the reference.
+/// Degree to which the motion of the axes without correction replaces the reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Feasibility {
-    /// Time until what is beyond the torque has passed, s.
+    /// Time until a reference beyond the torque has passed, s.
     until_s: f64,
     open: f64,
 }
 
 impl Feasibility {
-    /// Not at all.
+    /// The reference is followed.
     pub(super) const FOLLOWED: Self = Self {
         until_s: 0.0,
         open: 0.0,
     };
 
-    /// A servo period on; whether there is no torque for what comes to be followed in `ahead_s`.
+    /// Takes in a servo period; `beyond` is true if the torque is not sufficient for the reference
+    /// that acts in `ahead_s`.
     pub(super) fn take_in(&mut self, beyond: bool, ahead_s: f64, servo_s: f64) {
         self.until_s = if beyond {
             ahead_s
@@ -77,7 +79,7 @@ impl Feasibility {
         self.open = bounded(self.open + change, 0.0, 1.0);
     }
 
-    /// The part of the way of the axes by themselves, 0 to 1.
+    /// Returns the weight of the motion of the axes without correction, 0 to 1.
     pub(super) fn open(&self) -> f64 {
         smooth_step(self.open)
     }

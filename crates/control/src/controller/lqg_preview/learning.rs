@@ -1,8 +1,8 @@
-//! What the law gets wrong, learned while the axis moves.
+//! Model errors, learned while the axis moves.
 //!
-//! Beside the filter of the nominal law runs another one, of a law that is learned. The differences
-//! theta between the two are constant, or nearly so. To first order they add to the error of the
-//! filter:
+//! In parallel with the filter of the nominal model runs another one, of a model that is learned.
+//! The differences theta between the two are constant, or nearly so. To first order they add to the
+//! error of the filter:
 //!
 //! ```text
 //! s_i <- A s_i + b phi_i        before a measurement: what a unit of difference i has made of the state since the last one
@@ -10,55 +10,54 @@
 //! nu   = sum_i h s_i (theta_i - applied_i) + w
 //! ```
 //!
-//! nu is the innovation of the filter that is learned, w what noise makes of it. Theta is found by
-//! recursive least squares, whether the correction is in the loop or not. They forget in the
-//! direction of what is measured only (Kulhavy): a long straight line, which tells of few
-//! differences, leaves the others as they are. A difference beyond its bounds is put on them, and
-//! the others where they are likeliest then. What is found is applied at once, and the estimate
-//! moves by s_i with it: filter and least squares together are the filter that has theta among its
-//! states.
+//! nu is the innovation of the filter that is learned, w its part by noise. Recursive least squares
+//! find theta, whether the correction is engaged or not. They forget only in the direction of the
+//! measurement (Kulhavy): a long straight line, which is evidence on few differences, leaves the
+//! others as they are. A difference beyond its bounds is set to them, and the others to their most
+//! likely values then. The result is applied at once, and the estimate moves by s_i with it: filter
+//! and least squares together are the filter that has theta among its states.
 //!
 //! | i | Difference | phi |
 //! |---|---|---|
-//! | 0 | position gain, part of it | reference speed that the gain asks for |
+//! | 0 | position gain, part of it | reference speed that the gain requests |
 //! | 1 | velocity feedforward | commanded speed, as reference speed |
 //! | 2 | delay of the drive, servo periods | change of the reference over a servo period, reversed |
 //! | 3 | inertia, part of it | J a, as a load |
-//! | 4 | friction, part of it | friction by the law, as a load |
-//! | 5 | constant load, N m | 1; it is left to the filter, and only kept apart from the others |
+//! | 4 | friction, part of it | friction by the model, as a load |
+//! | 5 | constant load, N m | 1; the filter compensates it, and it is only kept apart from the others |
 //! | 6 | acceleration feedforward | torque for the commanded acceleration |
 //!
-//! Free runs decide which of the two laws is followed. Both begin where their filters are, and miss
-//! what is measured by m:
+//! Free runs decide which of the two models is followed. Both begin at the states of their filters,
+//! and miss the measurement by m:
 //!
 //! ```text
 //! l <- l + ln (<m^2> + e^2) / (<m_learned^2> + e^2)        over a free run
-//! e^2 = (0.1 um)^2 + 16 variances of the measurement + the mean square that loads nobody foresees make of a free run
+//! e^2 = (0.1 um)^2 + 16 variances of the measurement + the mean square error of a free run by unforeseen loads
 //! ```
 //!
-//! The learned law is followed from l = 6.9 on, and no more below 0: of nominal laws that are
-//! right, one in a thousand is taken for wrong (Wald). Where another axis of the machine follows
-//! what it learned, one in ten, l = 2.3: axes of which one is corrected by the right law and the
-//! other by a wrong one lag by different times. With 2.3 in place of 6.9, 36 cuts by wrong laws
-//! leave 0.069 of the error in the median in place of 0.087, and with 0 one of them is worse. A run
-//! counts once, however long: what it misses at its end stems from its beginning. Every 4 ms it is
-//! looked at: a run that proves the learned law by itself is not waited for. l counts up to 13.8
-//! (Page), so that a change is noticed. A learned law that is certainly worse is begun anew. A
-//! nominal law that misses no more than noise explains stays as it is to the bit.
+//! The learned model is followed from l = 6.9 on, and no longer below 0: of correct nominal models,
+//! one in a thousand is replaced (Wald). Where another axis of the machine follows its learned
+//! model, one in a hundred, l = 4.6: with a correct model in one axis and a wrong one in the other,
+//! the axes lag by different times. With 2.3 in place of 6.9, 36 cuts with wrong models leave 0.069
+//! of the error in the median in place of 0.087, and with 0 one of them is worse. A run counts once,
+//! however long: its error at its end stems from its beginning. Every 4 ms the run is checked: a
+//! run that alone is sufficient evidence for the learned model counts at once. l counts up to 13.8
+//! (Page), so that a change is noticed. A learned model that is certainly worse is begun anew. A
+//! nominal model whose errors are within the noise stays as it is to the bit.
 //!
 //! Differences 2, 3 and 6 are learned only within [`EVEN_S`] of an acceleration of the path. At
-//! constant speed nothing tells of them, and what the law does not have, such as cogging, passes
-//! for them: on a plate in inches an inertia that is right is then taken for half of it.
+//! constant speed there is no evidence on them, and effects outside the model, such as cogging, are
+//! mistaken for them: on a plate in inches a correct inertia is then halved.
 //!
-//! What was tried: innovations in place of free runs took laws for wrong that were right, since
-//! steps of an encoder are not white noise. One filter with the nominal law whose innovations would
-//! have been is no judge: its own first order says that they are large. Least squares on the
-//! innovations of the nominal filter go astray where those are bounded as outliers. Where both laws
+//! Rejected alternatives: innovations in place of free runs rejected correct models, because steps
+//! of an encoder are not white noise. A single filter with the nominal model, whose innovations are
+//! computed, cannot decide: its own first order states that they are large. Least squares on the
+//! innovations of the nominal filter diverge where those are bounded as outliers. Where both models
 //! miss alike, by a load that neither has, l is a random walk, which reaches 6.9 sooner or later:
-//! along 20 programs recorded in LinuxCNC, a law identified on tnv40 left 0.063 and 0.059 of the
-//! error in two, and 0.023 and 0.010 where it was kept. Less d^2 / 2 in each run, with d the
-//! logarithm, l hardly gets there (de la Pena, 1999). But then one of the cuts by laws of other
-//! machines is worse (linuxcnc/servo/tests/property_wrong_law.rs).
+//! along 20 programs recorded in LinuxCNC, a model identified on `tnv40` left 0.063 and 0.059 of
+//! the error in two, and 0.023 and 0.010 where it was kept. With d^2 / 2 subtracted in each run,
+//! where d is the logarithm, l hardly reaches it (de la Pena, 1999). But then one of the cuts with
+//! models of other machines is worse (linuxcnc/servo/tests/property_wrong_law.rs).
 //!
 //! Source: Friedland (1969), Treatment of bias in recursive filtering, IEEE Trans. Automatic
 //! Control 14(4), for the two filters; Kulhavy (1987), Restricted exponential forgetting in
@@ -74,9 +73,9 @@ use super::estimate::{AxisModel, Estimate, Innovation, KEPT_PERIODS, Sent};
 use super::linear::{LinearAxis, PeriodInputs, STATES, measured_rad2};
 use super::riccati::{StateMatrix, applied as carried};
 
-/// How many differences there are.
+/// Number of differences.
 pub(super) const DIFFERENCES: usize = 7;
-/// Standard deviations of differences before anything is known, and their bounds.
+/// Standard deviations of the differences before any measurement, and their bounds.
 const PRIORS: [f64; DIFFERENCES] = [0.1, 0.1, 0.5, 0.3, 0.6, 0.1, 0.3];
 const BOUNDS: [[f64; 2]; DIFFERENCES] = [
     [-0.5, 1.0],
@@ -87,41 +86,42 @@ const BOUNDS: [[f64; 2]; DIFFERENCES] = [
     [-1e3, 1e3],
     [-1.0, 1.0],
 ];
-/// The constant load among them.
+/// Index of the constant load.
 const LOAD: usize = 5;
-/// Those that show while the path accelerates; what counts as that, mm/s^2, and for how long after
-/// it they still do, s.
+/// Differences that show while the path accelerates, the smallest such acceleration, mm/s^2, and
+/// the time after it for which they still show, s.
 const OF_ACCELERATION: [usize; 3] = [2, 3, 6];
 const ACCELERATED_MM_S2: f64 = 100.0;
 const EVEN_S: f64 = 0.1;
-/// Time over which what was measured is forgotten, s.
+/// Time over which measurements are forgotten, s.
 const DRIFT_S: f64 = 100.0;
 /// Factor on the variance of the residual, which is not white.
 const COLOURED: f64 = 4.0;
-/// Time over which what is left is averaged, s.
+/// Time over which the residual is averaged, s.
 const LEFT_S: f64 = 0.25;
-/// Error of the first order, as a part of what the differences do.
+/// Error of the first order, as a part of the effect of the differences.
 const FIRST_ORDER: f64 = 0.3;
-/// A residual counts up to this many standard deviations.
+/// Standard deviations up to which a residual counts.
 const BELIEVED: f64 = 3.0;
-/// An axis that moves more slowly shows its friction at rest, mm/s.
+/// Speed below which an axis shows its friction at rest, mm/s.
 const SLOWEST_MM_S: f64 = 1.0;
-/// l from which on the learned law is followed: of nominal laws that are right one in a thousand is
-/// taken for wrong.
+/// l above which the learned model is followed: of correct nominal models, one in a thousand is
+/// replaced.
 const CERTAIN: f64 = 6.9;
+/// The same where another axis follows its learned model: one in a hundred.
 const LIKELY: f64 = 4.6;
-/// Most that l counts, and most that it changes by at once.
+/// Largest l, and its largest change at once.
 const MOST_CERTAIN: f64 = 2.0 * CERTAIN;
 const MOST_OF_RUN: f64 = 7.0;
 /// Standard deviations of the measurement that the encoder explains.
 const DEVIATIONS: f64 = 4.0;
-/// Time between two looks at what free runs miss, s.
+/// Time between two checks of the free runs, s.
 const COMPARED_S: f64 = 0.004;
 
 /// Differences between a machine and its model.
 pub(super) type Differences = [f64; DIFFERENCES];
 
-/// What an axis is with these differences.
+/// Returns the axis with these differences.
 pub(super) fn with(nominal: &AxisKnowledge, differences: &Differences) -> AxisKnowledge {
     let [
         position_gain,
@@ -138,7 +138,7 @@ pub(super) fn with(nominal: &AxisKnowledge, differences: &Differences) -> AxisKn
     known.drive.velocity_feedforward = (known.drive.velocity_feedforward + velocity).max(0.0);
     known.delays.drive_s = (known.delays.drive_s + delay * servo_s).max(0.0);
     known.parameters.inertia_kg_m2 *= 1.0 + inertia;
-    // The torque that the drive adds does not know of another inertia.
+    // The torque that the drive adds does not follow another inertia.
     let of_nominal = (known.drive.acceleration_feedforward + acceleration).max(0.0);
     known.drive.acceleration_feedforward = of_nominal / (1.0 + inertia);
     for friction_nm in [
@@ -152,7 +152,7 @@ pub(super) fn with(nominal: &AxisKnowledge, differences: &Differences) -> AxisKn
     known
 }
 
-/// What does not change of the learning of an axis.
+/// Constant part of the learning of an axis.
 #[derive(Debug, Clone)]
 pub(super) struct Learner {
     nominal: AxisKnowledge,
@@ -160,20 +160,19 @@ pub(super) struct Learner {
     inputs: PeriodInputs,
     priors: Differences,
     bounds: [[f64; 2]; DIFFERENCES],
-    /// What the encoder and loads that nobody foresees explain of the square of a servo period,
-    /// rad^2.
+    /// Mean square error of a servo period by the encoder and unforeseen loads, rad^2.
     noise_rad2: f64,
     compared_periods: u32,
 }
 
-/// What free runs by the two laws have missed.
+/// Errors of free runs of the two models.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Runs {
-    /// Squares by the law that is followed, and by the other, rad^2, and for how long these runs
-    /// go, servo periods.
+    /// Sums of squares of the followed model and of the other one, rad^2, and the length of these
+    /// runs, servo periods.
     missed_rad2: [f64; 2],
     periods: u32,
-    /// l before these runs, and with what they have shown.
+    /// l before these runs, and l with their evidence.
     before: f64,
     learned: f64,
 }
@@ -186,9 +185,9 @@ impl Runs {
         learned: 0.0,
     };
 
-    /// Looks at what the runs have missed, in which the learned law was followed or not; what noise
-    /// explains of a servo period is `noise_rad2`. Runs that go on count only where they prove the
-    /// learned law by themselves.
+    /// Evaluates the errors of the runs, in which the learned model was followed or not;
+    /// `noise_rad2` is the part of a servo period that noise explains. Unfinished runs count only
+    /// if they alone are sufficient evidence for the learned model.
     fn look(&mut self, is_followed: bool, noise_rad2: f64, is_over: bool) {
         let explained_rad2 = f64::from(self.periods) * noise_rad2;
         let [followed, other] = self.missed_rad2.map(|rad2| rad2 + explained_rad2);
@@ -211,16 +210,16 @@ impl Runs {
     }
 }
 
-/// What a comparison of the two laws came to.
+/// Result of a comparison of the two models.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct LawChoice {
-    /// Whether the other law is followed from now on.
+    /// True if the other model is followed from now on.
     pub(super) turns: bool,
-    /// Whether the learned law is the nominal one again.
+    /// True if the learned model is the nominal one again.
     pub(super) begins_anew: bool,
 }
 
-/// What is learned of an axis, and what that takes.
+/// State of the learning of an axis.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Learning {
     sensitivities: [[f64; STATES]; DIFFERENCES],
@@ -229,21 +228,21 @@ pub(super) struct Learning {
     applied: Differences,
     is_followed: bool,
     moves: bool,
-    /// Mean square of what is left, rad^2.
+    /// Mean square of the residual, rad^2.
     left_rad2: f64,
     runs: Runs,
     /// Commanded speeds and errors of the position, rad/s and rad, the newest first.
     commanded_rad_s: [f64; KEPT_PERIODS],
     error_rad: [f64; KEPT_PERIODS],
     command_rad: Option<f64>,
-    /// The last two angles of the path, rad, the newest first, and for how long it has not
+    /// The last two angles of the path, rad, the newest first, and the time since it last
     /// accelerated, s.
     path_rad: Option<[f64; 2]>,
     even_s: f64,
 }
 
 impl Learner {
-    /// Of an axis by its model.
+    /// Creates the learner of an axis from its model.
     /// `least_inertia` is the least difference of the inertia that may be learned.
     pub(super) fn new(nominal: AxisKnowledge, linear: &LinearAxis, least_inertia: f64) -> Self {
         let (states, ..) = linear.sampled();
@@ -258,7 +257,7 @@ impl Learner {
         let mut bounds = BOUNDS;
         let [_, velocity, delay, inertia, .., acceleration] = &mut bounds;
         inertia[0] = inertia[0].max(least_inertia);
-        // No feedforward and no delay is negative.
+        // Neither a feedforward nor a delay can be negative.
         velocity[0] = -nominal.drive.velocity_feedforward;
         delay[0] = -nominal.delays.drive_s / nominal.periods.servo_s;
         acceleration[0] = -nominal.drive.acceleration_feedforward;
@@ -268,7 +267,7 @@ impl Learner {
             linear.spread_rad2(&nominal.statistics, run_periods(nominal.periods.servo_s));
         let noise_rad2 =
             least_rad2 + loads_rad2 + DEVIATIONS * DEVIATIONS * measured_rad2(&nominal.statistics);
-        // A float that is too large, or not a number, saturates here.
+        // The cast saturates where the float is too large or NaN.
         let compared_periods = (libm::round(COMPARED_S / nominal.periods.servo_s) as u32).max(1);
         Self {
             nominal,
@@ -281,7 +280,7 @@ impl Learner {
         }
     }
 
-    /// Before anything was measured.
+    /// Returns the state before any measurement.
     pub(super) fn begin(&self) -> Learning {
         let mut covariance = [[0.0; DIFFERENCES]; DIFFERENCES];
         covariance
@@ -305,7 +304,7 @@ impl Learner {
         }
     }
 
-    /// Where the path was while a command was sent, rad.
+    /// Takes in the angle of the path at which a command was sent, rad.
     pub(super) fn along(&self, learning: &mut Learning, path_rad: f64) {
         let servo_s = self.nominal.periods.servo_s;
         let [last_rad, earlier_rad] = learning.path_rad.unwrap_or([path_rad; 2]);
@@ -320,13 +319,12 @@ impl Learner {
         };
     }
 
-    /// The machine is another one from now on: what is known of the differences is no better than
-    /// at first.
+    /// Restores the initial uncertainty of the differences after a change of the machine.
     pub(super) fn doubt(&self, learning: &mut Learning) {
         learning.covariance = self.begin().covariance;
     }
 
-    /// A command was sent while a position was measured, rad.
+    /// Takes in a sent command and the position measured with it, rad.
     pub(super) fn sent(&self, learning: &mut Learning, command_rad: f64, measured_rad: f64) {
         let servo_s = self.nominal.periods.servo_s;
         let before_rad = learning
@@ -345,7 +343,7 @@ impl Learner {
         }
     }
 
-    /// What was measured behind it.
+    /// Takes in the measurement after that command.
     pub(super) fn take_in(
         &self,
         learning: &mut Learning,
@@ -368,7 +366,8 @@ impl Learner {
         }
     }
 
-    /// A servo period of the sensitivities. The commanded speed that acted in it, rad/s.
+    /// Advances the sensitivities by a servo period. Returns the commanded speed that acted in it,
+    /// rad/s.
     fn predict(
         &self,
         learning: &mut Learning,
@@ -426,7 +425,7 @@ impl Learner {
         speed_rad_s
     }
 
-    /// A step of recursive least squares.
+    /// Does a step of recursive least squares.
     fn learn(&self, learning: &mut Learning, told: &Innovation) {
         let servo_s = self.nominal.periods.servo_s;
         let mut shows: Differences = learning.sensitivities.map(|[angle, ..]| angle);
@@ -446,7 +445,7 @@ impl Learner {
             return;
         }
         let shown = dot(&shows, &spreads) / noise_rad2;
-        // What is known along what is shown is forgotten over DRIFT_S, and nothing else.
+        // Only the knowledge in the direction of the measurement is forgotten, over `DRIFT_S`.
         let forgets = (servo_s / DRIFT_S).min(1.0);
         let kept = (1.0 - forgets) * shown - forgets;
         let narrows = kept / (noise_rad2 * shown * (1.0 + kept));
@@ -461,7 +460,7 @@ impl Learner {
             (servo_s / LEFT_S).min(1.0) * (left_rad * left_rad - learning.left_rad2);
     }
 
-    /// The likeliest differences within the bounds, one bound after the other.
+    /// Sets the most likely differences within the bounds, one bound after the other.
     fn bound(&self, learning: &mut Learning) {
         for i in 0..DIFFERENCES {
             let [lowest, highest] = self.bounds[i];
@@ -475,7 +474,7 @@ impl Learner {
         }
     }
 
-    /// Of what is found what can be applied.
+    /// Returns the part of the differences that can be applied.
     fn wanted(&self, found: &Differences) -> Differences {
         core::array::from_fn(|i| {
             let [lowest, highest] = self.bounds[i];
@@ -487,8 +486,8 @@ impl Learner {
         })
     }
 
-    /// Applies what is found to the learned law. Returns the change of its estimate, if anything
-    /// changed.
+    /// Applies the differences to the learned model. Returns the change of its estimate, if
+    /// anything changed.
     pub(super) fn apply(&self, learning: &mut Learning) -> Option<[f64; STATES]> {
         let wanted = self.wanted(&learning.found);
         if wanted == learning.applied {
@@ -499,8 +498,9 @@ impl Learner {
         Some(moved)
     }
 
-    /// What free runs by the law that is followed and by the other missed in a servo period, rad;
-    /// `is_likely` where another axis of the machine follows what it learned.
+    /// Takes in the errors of the free runs of the followed model and of the other one in a servo
+    /// period, rad. `is_likely` is true where another axis of the machine follows its learned
+    /// model.
     pub(super) fn compare(
         &self,
         learning: &mut Learning,
@@ -560,25 +560,25 @@ impl Learner {
         LawChoice { turns, begins_anew }
     }
 
-    /// The axis without any difference.
+    /// Returns the axis without any difference.
     pub(super) fn nominal(&self) -> AxisKnowledge {
         self.nominal
     }
 
-    /// The axis with what is applied.
+    /// Returns the axis with the applied differences.
     pub(super) fn known(&self, learning: &Learning) -> AxisKnowledge {
         with(&self.nominal, &learning.applied)
     }
 }
 
 impl Learning {
-    /// Whether the learned law is followed.
+    /// Returns true if the learned model is followed.
     pub(super) fn is_followed(&self) -> bool {
         self.is_followed
     }
 }
 
-/// Change of the estimate from the applied differences to these.
+/// Returns the change of the estimate from the applied differences to these.
 fn moved(learning: &Learning, differences: &Differences) -> [f64; STATES] {
     let mut moved = [0.0; STATES];
     for ((sensitivity, wanted), applied) in learning
@@ -603,8 +603,8 @@ fn dot(a: &Differences, b: &Differences) -> f64 {
 mod tests {
     use super::*;
 
-    /// l after a number of comparisons. The nominal law misses by the first angle, the learned one
-    /// by the second, rad; noise is 1 rad.
+    /// Returns l after a number of comparisons. The nominal model misses by the first angle, the
+    /// learned one by the second, rad; noise is 1 rad.
     fn after(times: u32, [nominal_rad, learned_rad]: [f64; 2]) -> f64 {
         let mut runs = Runs::NONE;
         for _ in 0..times {

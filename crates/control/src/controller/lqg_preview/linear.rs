@@ -1,25 +1,24 @@
-//! The linear part of an axis and of what acts on it, over a mechanics period and over a servo
-//! period.
+//! The linear part of an axis and of its loads, over a mechanics period and over a servo period.
 //!
 //! | State | Unit | |
 //! |---|---|---|
-//! | x, w | rad, rad/s | of the motor |
-//! | i, y | N m | integral of the speed loop, torque behind the filter |
+//! | x, w | rad, rad/s | angle and speed of the motor |
+//! | i, y | N m | integral of the speed loop, torque after the filter |
 //! | n | N m | broadband torque, noise with a correlation time |
 //! | p, q | N m | the disturbance and its quadrature: an oscillator that forgets its phase |
-//! | d | N m | what is left, a random walk |
-//! | xt, wt | rad, rad/s | of the table; those of the motor where the ball screw is rigid |
+//! | d | N m | the remaining load, a random walk |
+//! | xt, wt | rad, rad/s | angle and speed of the table; equal to the motor's where the ball screw is rigid |
 //!
-//! Backlash is not linear, and not here: the flanks are taken to be in contact. A drive that sees
-//! the speed late by L, w - L dw/dt, is one whose motor is lighter by Kv L, to first order: that is
-//! how it is here.
+//! Backlash is not linear, and not included: the flanks are assumed to be in contact. A drive that
+//! sees the speed late by L, w - L dw/dt, corresponds to first order to a motor whose inertia is
+//! lower by Kv L, which is used here.
 //!
-//! A sine whose frequency wanders by s, of standard deviation, keeps its phase for about 1 / s:
-//! that long the oscillator remembers, and the noise that it is given holds its amplitude up.
+//! A sine whose frequency wanders with a standard deviation s keeps its phase for about 1 / s: the
+//! oscillator has this memory, and its noise maintains its amplitude.
 //!
-//! Source: Gelb (1974), Applied Optimal Estimation, section 3.6, for shaping filters of coloured
+//! Source: Gelb (1974), Applied Optimal Estimation, section 3.6, for shaping filters of colored
 //! noise; sampling as in Franklin, Powell and Workman (1998), section 4.3, here by the same steps
-//! as the plant's.
+//! as in the plant.
 
 use crate::axis::AxisLaw;
 use crate::axis::drive::DriveParameters;
@@ -30,44 +29,45 @@ use super::riccati::{PeriodCost, StateMatrix, applied, inner, product, sum, tran
 
 /// Number of states.
 pub(super) const STATES: usize = 10;
-/// Loads among them: the broadband torque, the disturbance, and then its quadrature.
+/// Index of the broadband torque, of the disturbance, and then of its quadrature.
 const BROADBAND: usize = 4;
 const DISTURBANCE: usize = 5;
-/// What is left.
+/// Index of the remaining load.
 const DRIFT: usize = 7;
-/// The table's angle: it is what cuts.
+/// Index of the table's angle: the table moves the cut.
 const TABLE: usize = 8;
-/// Longest time for which the oscillator remembers its phase, s: one that remembers longer takes
-/// longer to find it at the start. On tnv40 with 0.5 um of encoder noise 10 s leave 0.08 um RMS,
-/// 100 s 0.09.
+/// Longest time for which the oscillator remembers its phase, s: with a longer memory it takes
+/// longer to find the phase at the start. On `tnv40` with 0.5 um of encoder noise 10 s leave 0.08
+/// um RMS, 100 s 0.09.
 const LONGEST_MEMORY_S: f64 = 10.0;
-/// The random walk, N m in a second for a N m of Coulomb friction and disturbance: there is none in
-/// the simulation, but for what the linear part leaves out. On tnv40 with 0.5 um of encoder noise
-/// 0.1 leaves 0.12 um RMS, 0.003 0.08; no other machine minds.
+/// Random walk of the remaining load, N m in a second for a N m of Coulomb friction and
+/// disturbance. The simulation has no such load, except for the parts outside the linear model. On
+/// `tnv40` with 0.5 um of encoder noise 0.1 leaves 0.12 um RMS, 0.003 0.08; other machines do not
+/// depend on it.
 const DRIFT_SHARE: f64 = 0.003;
-/// Part of the motor's inertia that is left at least where the drive sees the speed late. A loop
-/// with less of it would oscillate.
+/// Smallest part of the motor's inertia that remains where the drive sees the speed late. A loop
+/// with less would oscillate.
 const LEAST_INERTIA: f64 = 0.5;
-/// Least noise of an encoder, rad: 0.001 um on a lead of 10 mm. Without any the equations have no
-/// solution.
+/// Smallest noise of an encoder, rad: 0.001 um on a lead of 10 mm. Without noise the equations have
+/// no solution.
 const LEAST_NOISE_RAD: f64 = 6e-7;
 
 /// The linear model of an axis.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LinearAxis {
-    /// Over a mechanics period.
+    /// Transition over a mechanics period.
     substep: StateMatrix<STATES>,
-    /// What a reference speed of 1 rad/s adds in it, and what a torque beside the speed loop of 1 N
-    /// m does.
+    /// Change of the states in it by a reference speed of 1 rad/s, and by a torque of 1 N m added
+    /// to the speed loop.
     substep_input: [f64; STATES],
     substep_torque: [f64; STATES],
-    /// Noise that comes in it, covariance.
+    /// Covariance of the noise in it.
     substep_noise: StateMatrix<STATES>,
     substeps: u32,
 }
 
-/// What a unit that is held over a servo period adds to each state: of reference speed, rad/s, of
-/// torque beside the speed loop and of load, N m.
+/// Change of each state by a unit that is held over a servo period: of reference speed, rad/s, of
+/// torque added to the speed loop, and of load, N m.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PeriodInputs {
     pub(super) reference: [f64; STATES],
@@ -76,7 +76,7 @@ pub(super) struct PeriodInputs {
 }
 
 impl LinearAxis {
-    /// Of an axis, with what its drive has beside and what acts on it.
+    /// Creates the linear model of an axis with its drive, its screw and its loads.
     pub(super) fn new(
         law: &AxisLaw,
         drive: &DriveParameters,
@@ -95,7 +95,7 @@ impl LinearAxis {
         let part_left =
             |inverse_inertia: f64| (1.0 - late_nm_s2 * inverse_inertia).max(LEAST_INERTIA);
         let inertia_kg_m2 = parameters.inertia_kg_m2 * part_left(1.0 / parameters.inertia_kg_m2);
-        // Columns: what becomes of a unit of each state; the last are those of what goes to the
+        // Each column is the result of a unit of one state; the second argument is the input of the
         // drive.
         let after = |state: [f64; STATES], [reference_rad_s, torque_nm]: [f64; 2]| {
             let [x, w, i, y, n, p, q, d, xt, wt] = state;
@@ -150,8 +150,8 @@ impl LinearAxis {
         }
     }
 
-    /// Over a servo period with a reference speed that is held: the states, the input, the
-    /// covariance of the noise.
+    /// Returns the states, the input and the covariance of the noise over a servo period with a
+    /// held reference speed.
     pub(super) fn sampled(&self) -> (StateMatrix<STATES>, [f64; STATES], StateMatrix<STATES>) {
         let mut states = core::array::from_fn(unit);
         let mut covariance = [[0.0; STATES]; STATES];
@@ -166,8 +166,8 @@ impl LinearAxis {
         (states, self.held(&self.substep_input), covariance)
     }
 
-    /// What an input that adds this in each mechanics period makes of the states over a servo
-    /// period.
+    /// Returns the change of the states over a servo period by an input that adds this in each
+    /// mechanics period.
     fn held(&self, substep_input: &[f64; STATES]) -> [f64; STATES] {
         (0..self.substeps).fold([0.0; STATES], |input, _| {
             let carried = applied(&self.substep, &input);
@@ -175,7 +175,7 @@ impl LinearAxis {
         })
     }
 
-    /// What each input makes of the states where it is held over a servo period.
+    /// Returns the change of the states by each input that is held over a servo period.
     pub(super) fn inputs(&self) -> PeriodInputs {
         let (states, reference, _) = self.sampled();
         let torque = self.held(&self.substep_torque);
@@ -187,8 +187,8 @@ impl LinearAxis {
         }
     }
 
-    /// Variance of the motor's angle after so many servo periods, of which nothing but the state at
-    /// their start is known: no load, no noise, rad^2.
+    /// Returns the variance of the motor's angle after `periods` servo periods, rad^2. Only the
+    /// state at their start is known, not the loads and the noise.
     pub(super) fn spread_rad2(&self, statistics: &AxisStatistics, periods: u32) -> f64 {
         let (states, _, noise) = self.sampled();
         let swing_nm2 = 0.5 * statistics.disturbance_nm * statistics.disturbance_nm;
@@ -210,7 +210,8 @@ impl LinearAxis {
         covariance[0][0]
     }
 
-    /// Mean square of the table's position over the servo period, and a price for the input.
+    /// Returns the cost of a servo period: the mean square of the table's position, and a weight on
+    /// the input.
     pub(super) fn cost(&self, control_weight_s2: f64) -> PeriodCost<STATES> {
         let mut cost = PeriodCost {
             states: [[0.0; STATES]; STATES],
@@ -236,7 +237,7 @@ impl LinearAxis {
         cost
     }
 
-    /// What acts a mechanics period later.
+    /// Returns the loads a mechanics period later.
     pub(super) fn acting_after(&self, acting: &[f64; 4]) -> [f64; 4] {
         let [n, p, q, d] = *acting;
         let state = [0.0, 0.0, 0.0, 0.0, n, p, q, d, 0.0, 0.0];
@@ -245,14 +246,14 @@ impl LinearAxis {
     }
 }
 
-/// Variance of what is measured, rad^2.
+/// Returns the variance of the measurement, rad^2.
 pub(super) fn measured_rad2(statistics: &AxisStatistics) -> f64 {
     let step_rad2 = statistics.encoder_step_rad * statistics.encoder_step_rad / 12.0;
     (statistics.encoder_noise_rad * statistics.encoder_noise_rad + step_rad2)
         .max(LEAST_NOISE_RAD * LEAST_NOISE_RAD)
 }
 
-/// Of states, those of the axis, and the loads.
+/// Splits states into the states of the axis and the loads.
 pub(super) fn error_and_loads<const S: usize>(states: &[f64; S]) -> [[f64; S]; 2] {
     let of = |loads: bool| {
         core::array::from_fn(|i| {
@@ -270,7 +271,7 @@ fn unit(j: usize) -> [f64; STATES] {
     core::array::from_fn(|i| if i == j { 1.0 } else { 0.0 })
 }
 
-/// How long the disturbance keeps its phase, s.
+/// Returns the time for which the disturbance keeps its phase, s.
 fn memory_s(statistics: &AxisStatistics) -> f64 {
     let wander_rad_s = statistics.disturbance_wander * statistics.disturbance_rad_s;
     if wander_rad_s > 0.0 {
@@ -280,7 +281,7 @@ fn memory_s(statistics: &AxisStatistics) -> f64 {
     }
 }
 
-/// Covariance of what comes in a mechanics period.
+/// Returns the covariance of the noise in a mechanics period.
 fn noise(law: &AxisLaw, statistics: &AxisStatistics) -> StateMatrix<STATES> {
     let dt_s = law.periods.mechanics_s;
     let fresh = |time_s: f64| {

@@ -1,15 +1,15 @@
-//! Measurements that cannot be true are believed in part: an encoder that is frozen, or that leaps
-//! by less than the supervisor sees.
+//! Bounds of implausible measurements: from an encoder that is frozen, or leaps by less than the
+//! supervisor detects.
 //!
 //! ```text
 //! |nu| <= 4 sigma + (Tmax / J) Ts^2 / 2
 //! ```
 //!
-//! is what an innovation nu is bounded to; of a measurement that repeats itself to the bit while
-//! the axis moves, nothing is believed. The bound is noise, and the way on which a force as large
-//! as the drive's own takes the axis in a servo period. Beyond, it is the encoder and not the axis,
-//! or the law is not that of the axis. The first does not last: the supervisor has found out by
-//! then. What is still there after [`LASTS_S`] is taken for the second, and believed.
+//! is the bound of an innovation nu. A measurement that repeats itself to the bit while the axis
+//! moves is not used. The bound is the noise, plus the travel of the axis in a servo period under a
+//! force as large as the drive's own. A larger innovation comes from the encoder and not from the
+//! axis, or the model is not the axis's. The first does not last, because the supervisor detects it
+//! by then. An innovation that remains after [`LASTS_S`] counts as the second, and is used in full.
 //!
 //! Source: bounded innovations as in Masreliez and Martin (1977), "Robust Bayesian estimation for
 //! the linear model and robustifying the Kalman filter", IEEE Trans. Automatic Control 22(3); the
@@ -18,12 +18,13 @@
 use crate::axis::AxisLaw;
 use crate::vector::bounded;
 
-/// Standard deviations of the measurement that are believed.
+/// Standard deviations of the measurement within the bound.
 const DEVIATIONS: f64 = 4.0;
-/// What lasts for so long is believed, s: the supervisor sees a frozen encoder within 20 ms.
+/// Time after which a large innovation is used in full, s: the supervisor detects a frozen encoder
+/// within 20 ms.
 const LASTS_S: f64 = 0.025;
 
-/// Largest innovation that is believed in full, rad.
+/// Returns the largest innovation that is used in full, rad.
 pub(super) fn believed_rad(law: &AxisLaw, measured_rad2: f64) -> f64 {
     let servo_s = law.periods.servo_s;
     let accelerated_rad =
@@ -31,7 +32,7 @@ pub(super) fn believed_rad(law: &AxisLaw, measured_rad2: f64) -> f64 {
     DEVIATIONS * libm::sqrt(measured_rad2) + accelerated_rad
 }
 
-/// For how long innovations were larger than believed, and what was measured last.
+/// Time for which innovations were larger than the bound, and the last measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Outliers {
     for_s: f64,
@@ -39,13 +40,13 @@ pub(super) struct Outliers {
 }
 
 impl Outliers {
-    /// There were none.
+    /// State before any measurement.
     pub(super) const NONE: Self = Self {
         for_s: 0.0,
         measured_rad: f64::NAN,
     };
 
-    /// The part of the innovation of a measurement that is believed, rad.
+    /// Returns the part of the innovation of a measurement that is used, rad.
     pub(super) fn bounded_rad(
         &mut self,
         measured_rad: f64,

@@ -1,5 +1,5 @@
-//! An axis: its filter, its regulator and its inverse, and the command that asks its drive for what
-//! they want.
+//! An axis: its filter, regulator and inverse, and the command that makes its drive supply their
+//! reference speed.
 
 use crate::axis::delays::CommandQueue;
 use crate::axis::drive::{DriveReference, DriveState};
@@ -18,16 +18,16 @@ use super::learning::{LawChoice, Learner, Learning};
 use super::linear;
 use super::screw::{ScrewTwist, TwistCourse};
 
-/// Stationary gains of an axis: by state, as in `lqg_preview/linear.rs`.
+/// Stationary gains of an axis, by state as in `lqg_preview/linear.rs`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LqgGains {
-    /// How much of what is measured beyond the prediction, rad, is added to each state.
+    /// Correction of each state for an innovation of 1 rad.
     pub filter: [f64; linear::STATES],
-    /// By how much the reference speed, rad/s, is less for a unit of each state.
+    /// Reduction of the reference speed, rad/s, for a unit of each state.
     pub regulator: [f64; linear::STATES],
 }
 
-/// An axis, its gains, and what it remembers.
+/// An axis, its gains, and its state.
 #[derive(Debug, Clone)]
 pub(super) struct AxisLqg {
     model: AxisModel,
@@ -37,40 +37,39 @@ pub(super) struct AxisLqg {
     command_law: CommandLaw,
     bounds: OffsetBounds,
     known: AxisKnowledge,
-    /// What finds where the law is wrong, of a law that may be.
+    /// Learner of the model errors; `None` if the model is exact.
     learner: Option<Learner>,
-    /// The law that stands beside it: the one that is learned until that is followed, the nominal
-    /// one then.
+    /// The model in parallel: the learned one until it is followed, the nominal one after that.
     other: AxisModel,
     other_known: AxisKnowledge,
     may_learn: bool,
     state: Option<Running>,
 }
 
-/// What an axis remembers while it runs.
+/// State of an axis while it runs.
 #[derive(Debug, Clone, Copy)]
 struct Running {
-    /// As the law that is followed has it, and as the other one has it: the learned law until that
-    /// is followed, the nominal one then.
+    /// Runs of the followed model and of the other one: the learned model until it is followed, the
+    /// nominal one after that.
     real: LawRun,
     beside: LawRun,
-    /// As it would be without any offset, under the same load.
+    /// State without any offset, under the same load.
     open: Tracked,
-    /// Where the path was at the last decision, mm; the command was an offset beside it.
+    /// Position of the path at the last decision, mm; the command had an offset from it.
     path_mm: Option<f64>,
     commands: CommandHistory,
-    /// What was measured beyond what was expected, rad.
+    /// Difference between the last measurement and its prediction, rad.
     missed_rad: f64,
-    /// How the last servo period went, and what its innovation makes of a free run, if it is noise,
-    /// rad^2.
+    /// Agreement of the last servo period, and the mean square error of a free run by its
+    /// innovation, if it is noise, rad^2.
     step: OneStep,
     by_noise_rad2: f64,
-    /// What is learned of a law that may be wrong.
+    /// State of the learning; `None` if the model is exact, or learning is off.
     learning: Option<Learning>,
 }
 
 impl Running {
-    /// Where nothing is known yet but an angle and a speed.
+    /// Creates the state from an angle and a speed.
     fn at(model: &AxisModel, learning: Option<Learning>, angle_rad: f64, speed_rad_s: f64) -> Self {
         let moving = Tracked::moving(model, angle_rad, speed_rad_s);
         Self {
@@ -87,16 +86,16 @@ impl Running {
     }
 }
 
-/// An axis behind its position loop.
+/// An axis with its position loop.
 #[derive(Debug, Clone, Copy)]
 struct Tracked {
     /// Commands on their way to the position loop, rad.
     commands: CommandQueue,
     estimate: Estimate,
     sent: Sent,
-    /// The position loop as the control or the drive has it.
+    /// Position loop, in the control or in the drive.
     position_loop: (AxisState, DriveState),
-    /// What is measured now, rad.
+    /// Present measurement, rad.
     measured_rad: f64,
 }
 
@@ -113,24 +112,23 @@ impl Tracked {
         }
     }
 
-    /// As it will be when the position loop has the command that is sent now: by the commands on
-    /// their way and the law alone.
+    /// Returns the state at the time at which the position loop has the command that is sent now,
+    /// by the commands on their way and the model alone.
     fn at_position_loop(&self, model: &AxisModel) -> Self {
         let mut later = *self;
-        // What is sent meanwhile does not arrive.
+        // A command that is sent meanwhile does not arrive.
         (0..self.commands.periods()).for_each(|_| later.foresee(model, 0.0));
         later
     }
 
-    /// Its commands so far were those of a path that is at an angle now, with the speed that it
-    /// has.
+    /// Sets the earlier commands to a path that is at an angle now, and moves at the present speed.
     fn commanded_along(&mut self, here_rad: f64, servo_s: f64) {
         let change_rad = self.estimate.masses.motor.speed_rad_s * servo_s;
         self.commands = CommandQueue::moving(self.commands.periods(), here_rad, change_rad);
     }
 
-    /// The reference speed that the position loop makes of a command; torque beside it counts as
-    /// that.
+    /// Returns the reference speed that the position loop makes of a command. It includes the
+    /// torque, converted to a speed.
     fn asked_rad_s(&self, model: &AxisModel, command_rad: f64) -> f64 {
         let (mut axis, mut drive) = self.position_loop;
         let DriveReference {
@@ -146,15 +144,15 @@ impl Tracked {
         speed_rad_s + torque_nm / model.law.parameters.kv_nm_s_per_rad
     }
 
-    /// A servo period by a command and the law alone.
+    /// Advances by a servo period with a command, by the model alone.
     fn foresee(&mut self, model: &AxisModel, command_rad: f64) {
         self.send(model, command_rad);
         model.predict(&mut self.estimate, &self.sent);
         self.measured_rad = self.estimate.masses.motor.angle_rad;
     }
 
-    /// A command is sent. What the position loop makes of the one that has arrived goes to the
-    /// drive.
+    /// Sends a command. The output of the position loop for the command that has arrived goes to
+    /// the drive.
     fn send(&mut self, model: &AxisModel, command_rad: f64) {
         let command_rad = self.commands.pass(command_rad);
         let (axis, drive) = &mut self.position_loop;
@@ -168,7 +166,7 @@ impl Tracked {
     }
 }
 
-/// An axis as a law has it: its filter, and a free run beside that.
+/// An axis under one model: its filter, and a free run in parallel.
 #[derive(Debug, Clone, Copy)]
 struct LawRun {
     tracked: Tracked,
@@ -185,7 +183,7 @@ impl LawRun {
         }
     }
 
-    /// A servo period by a command, and what was measured at its end.
+    /// Advances by a servo period with a command and the measurement at its end.
     fn go_on(&mut self, model: &AxisModel, command_rad: f64, measured_rad: f64) -> Innovation {
         let Self {
             tracked,
@@ -199,7 +197,7 @@ impl LawRun {
         told
     }
 
-    /// A servo period by a command and the law alone.
+    /// Advances by a servo period with a command, by the model alone.
     fn foresee(&mut self, model: &AxisModel, command_rad: f64) {
         self.tracked.foresee(model, command_rad);
         self.trial = LawTrial::from(&self.tracked.estimate);
@@ -207,7 +205,7 @@ impl LawRun {
 }
 
 impl AxisLqg {
-    /// Of an axis of which this is known.
+    /// Creates an axis from this knowledge.
     pub(super) fn new(known: AxisKnowledge, settings: LqgSettings) -> Self {
         let AxisKnowledge {
             drive,
@@ -251,12 +249,12 @@ impl AxisLqg {
         &self.model.law
     }
 
-    /// What is known of it now.
+    /// Returns the present knowledge of the axis.
     pub(super) fn known(&self) -> AxisKnowledge {
         self.known
     }
 
-    /// Whether the law that is followed was learned.
+    /// Returns true if the followed model was learned.
     pub(super) fn is_learned(&self) -> bool {
         self.state
             .as_ref()
@@ -264,7 +262,7 @@ impl AxisLqg {
             .is_some_and(Learning::is_followed)
     }
 
-    /// Near the reference.
+    /// Returns the gains near the reference.
     pub(super) fn gains(&self) -> LqgGains {
         let near = self.regulator.near();
         LqgGains {
@@ -273,24 +271,24 @@ impl AxisLqg {
         }
     }
 
-    /// How far ahead the inverse looks, s.
+    /// Returns the time that the inverse looks ahead, s.
     pub(super) fn ahead_s(&self) -> f64 {
         let twist_s = self.twist.map_or(0.0, |twist| twist.ahead_s());
         self.inverse.lag_s() + self.inverse.ahead_s() + twist_s
     }
 
-    /// Holds offsets to other bounds from now on.
+    /// Changes the bounds of the offsets.
     pub(super) fn hold_to(&mut self, bounds: OffsetBounds) {
         self.bounds = bounds;
     }
 
-    /// Begins anew where the position was lost. If the law seems to be another one from there on,
-    /// it is the position that is: nothing more is learned.
+    /// Begins anew after the position was lost. If the model seems wrong from there on, the
+    /// position is the cause: nothing more is learned.
     pub(super) fn begin_anew(&mut self) {
         (self.state, self.may_learn) = (None, false);
     }
 
-    /// The axis is another one from now on.
+    /// Takes in that the machine has changed.
     pub(super) fn doubt(&mut self) {
         if let (
             Some(learner),
@@ -304,7 +302,7 @@ impl AxisLqg {
         }
     }
 
-    /// Forgets all that came.
+    /// Forgets all measurements.
     pub(super) fn forget(&mut self) {
         (self.state, self.may_learn) = (None, true);
         let Some(learner) = &self.learner else { return };
@@ -320,28 +318,28 @@ impl AxisLqg {
         );
     }
 
-    /// Whether nothing has come yet.
+    /// Returns true before the first measurement.
     pub(super) fn begins(&self) -> bool {
         self.state.is_none()
     }
 
-    /// How far the axis is behind the command at constant speed where nothing is added to it, s.
+    /// Returns the lag of the axis behind the command at constant speed without an offset, s.
     pub(super) fn lag_s(&self) -> f64 {
         self.measured_lag_s() - self.known.delays.measurement_s
     }
 
-    /// The same of its position as it is measured, s.
+    /// Returns that lag for the measured position, s.
     pub(super) fn measured_lag_s(&self) -> f64 {
         self.position_loop_lag_s() + self.command_delay_s()
     }
 
-    /// How late the position loop has a command, s.
+    /// Returns the delay until the position loop has a command, s.
     pub(super) fn command_delay_s(&self) -> f64 {
         self.model.command_periods as f64 * self.model.law.periods.servo_s
     }
 
-    /// How far the measured position is behind the command that the position loop has, at constant
-    /// speed, s.
+    /// Returns the lag of the measured position behind the command that the position loop has, at
+    /// constant speed, s.
     fn position_loop_lag_s(&self) -> f64 {
         let (parameters, AxisKnowledge { drive, .. }) = (self.model.law.parameters, self.known);
         let friction = if drive.speed_integral_s > 0.0 {
@@ -352,9 +350,10 @@ impl AxisLqg {
         (1.0 + friction - drive.velocity_feedforward) / parameters.kp_1_s
     }
 
-    /// What was commanded in the last servo period, as an offset from the path, has led to this
-    /// position. Where it begins it has about this speed. `is_alone` leaves out of the axis by
-    /// itself what loads the filter finds. Whether another law is followed from now on.
+    /// Takes in the position that followed from the command of the last servo period, an offset
+    /// from the path. At the start the axis has about this speed. With `is_alone`, the run without
+    /// offset omits the loads that the filter finds. Returns true if another model is followed from
+    /// now on.
     pub(super) fn observe(
         &mut self,
         offset_mm: f64,
@@ -421,8 +420,9 @@ impl AxisLqg {
         turned
     }
 
-    /// Learns of a servo period, in which the law that is followed was told this, a command went
-    /// out at one angle, and another was measured. Whether another law is followed from now on.
+    /// Learns from a servo period: from the innovation of the followed model, the command, the
+    /// angle at which it was sent and the measured angle. Returns true if another model is followed
+    /// from now on.
     fn learn(
         &mut self,
         told: &Innovation,
@@ -490,8 +490,8 @@ impl AxisLqg {
         turns
     }
 
-    /// What was commanded in the last servo period, as an offset from the path, which is at a place
-    /// now, has led to where the law says.
+    /// Takes in a servo period without a measurement: the command of the last period, an offset
+    /// from the path, led to the position that the model predicts. The path is at `here_mm` now.
     pub(super) fn foresee(&mut self, offset_mm: f64, here_mm: f64) {
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
         let Some(running) = &mut self.state else {
@@ -516,7 +516,8 @@ impl AxisLqg {
         (*missed_rad, *step) = (0.0, OneStep::NONE);
     }
 
-    /// By how much the offset has moved it, and what was measured beyond what was expected, mm.
+    /// Returns the displacement by the offset, and the difference between the measurement and its
+    /// prediction, mm.
     pub(super) fn moved_and_missed_mm(&self) -> [f64; 2] {
         let mm = 1.0 / self.model.law.parameters.rad_per_mm;
         self.state.as_ref().map_or(
@@ -534,23 +535,23 @@ impl AxisLqg {
         )
     }
 
-    /// By how much the law has missed what was measured, mm.
+    /// Returns the error of the free run of the model, mm.
     pub(super) fn law_missed_mm(&self) -> f64 {
         self.state.as_ref().map_or(0.0, |running| {
             running.real.trial.missed_rad() / self.model.law.parameters.rad_per_mm
         })
     }
 
-    /// Where it would be measured without any offset, mm.
+    /// Returns the position that would be measured without any offset, mm.
     pub(super) fn alone_mm(&self) -> f64 {
         self.state.as_ref().map_or(0.0, |running| {
             running.open.measured_rad / self.model.law.parameters.rad_per_mm
         })
     }
 
-    /// By how much it would be measured off the reference without any offset, mm; `at_mm` is the
-    /// reference so long before now. What loads make of that does not count: a law that is wrong
-    /// finds them.
+    /// Returns the distance of the measured position from the reference that would occur without
+    /// any offset, mm. `at_mm` is the reference at a time before now. The contribution of loads is
+    /// subtracted, because a wrong model finds loads.
     pub(super) fn open_off_mm(&self, at_mm: impl Fn(f64) -> f64) -> f64 {
         let Some(Running { open, .. }) = &self.state else {
             return 0.0;
@@ -562,7 +563,7 @@ impl AxisLqg {
             ..
         } = self.model.law.parameters;
         let off_mm = open.measured_rad / rad_per_mm - at_mm(self.known.delays.measurement_s);
-        // The integral of a speed loop takes up what is constant.
+        // The integral of a speed loop compensates constant loads.
         let takes_up = self.known.drive.speed_integral_s > 0.0;
         let by_loads_mm = if takes_up {
             0.0
@@ -572,7 +573,7 @@ impl AxisLqg {
         (off_mm.abs() - by_loads_mm.abs()).max(0.0)
     }
 
-    /// Mean square of what a free run misses by the last innovation, if it is noise, mm^2.
+    /// Returns the mean square error of a free run by the last innovation, if it is noise, mm^2.
     pub(super) fn by_noise_mm2(&self) -> f64 {
         let Parameters { rad_per_mm, .. } = self.model.law.parameters;
         self.state
@@ -581,14 +582,14 @@ impl AxisLqg {
             / (rad_per_mm * rad_per_mm)
     }
 
-    /// How the last servo period went.
+    /// Returns the agreement of the last servo period.
     pub(super) fn step(&self) -> OneStep {
         self.state
             .as_ref()
             .map_or(OneStep::NONE, |running| running.step)
     }
 
-    /// What noise and loads that nobody foresees make it miss, mm^2.
+    /// Returns the mean square error of a free run by noise and unforeseen loads, mm^2.
     pub(super) fn unforeseen_mm2(&self) -> f64 {
         let Parameters { rad_per_mm, .. } = self.model.law.parameters;
         self.model
@@ -596,9 +597,9 @@ impl AxisLqg {
             / (rad_per_mm * rad_per_mm)
     }
 
-    /// The offset of the command in this servo period, by a law that is `trusted` so far; `at_mm`
-    /// is the reference so many seconds after the position loop has that command, in whose place
-    /// the `open` loop is followed in part.
+    /// Returns the offset of the command in this servo period, with the weights `trusted` of the
+    /// model. `at_mm` is the reference at a time after the position loop has that command. The
+    /// motion without offset replaces it by the part `open`.
     pub(super) fn offset_mm(
         &mut self,
         here_mm: f64,
@@ -662,8 +663,8 @@ impl AxisLqg {
         offset_mm
     }
 
-    /// The reference speed of the axis by itself, without any offset, and by how much the axis is
-    /// off it.
+    /// Returns the reference speed of the axis without any offset, and the deviation of the axis
+    /// from that motion.
     fn beside_open(&self, here_mm: f64, ahead: &Estimate) -> (f64, [f64; linear::STATES]) {
         let Some(Running { open, .. }) = &self.state else {
             return (0.0, [0.0; linear::STATES]);
@@ -689,7 +690,7 @@ impl AxisLqg {
         )
     }
 
-    /// By how much the regulator asks for less speed than the reference has, which takes this
+    /// Returns the reduction of the reference speed by the regulator. The reference takes this
     /// torque.
     fn asked_rad_s(&self, reference_nm: f64, off: &[f64; REGULATED], trusted: Trusted) -> f64 {
         let Parameters {
@@ -708,8 +709,8 @@ impl AxisLqg {
         self.regulator.asked_rad_s(off, room, trusted)
     }
 
-    /// By how much the axis is off the reference when what is sent now begins to act, and what acts
-    /// on it.
+    /// Returns the deviation of the axis from the reference at the time at which the present
+    /// command begins to act, and the loads.
     fn off(
         &self,
         ahead: &Estimate,
@@ -734,7 +735,7 @@ impl AxisLqg {
         ]
     }
 
-    /// By how much an angle, rad, and its speed, rad/s, are off theirs.
+    /// Returns the deviations of an angle, rad, and of its speed, rad/s, from the reference.
     fn off_reference(
         &self,
         [angle_rad, speed_rad_s]: [f64; 2],
@@ -744,7 +745,8 @@ impl AxisLqg {
         let servo_s = periods.servo_s;
         let [before_mm, there_mm, after_mm] =
             [-1.0, 0.0, 1.0].map(|n: f64| at_mm(self.known.delays.drive_s + n * servo_s));
-        // The speed of the law is that of the mechanics period that has ended: half of one ago.
+        // The speed of the model belongs to the mechanics period that has ended: it is half a
+        // period old.
         let change_mm = (after_mm - there_mm) - (there_mm - before_mm);
         let late_mm_s = 0.5 * periods.mechanics_s * change_mm / (servo_s * servo_s);
         let there_mm_s = (after_mm - before_mm) / (2.0 * servo_s) - late_mm_s;
@@ -754,8 +756,8 @@ impl AxisLqg {
         ]
     }
 
-    /// What cogging takes along the reference in the period in which what is sent now acts, mm/s of
-    /// reference speed; by Simpson's rule.
+    /// Returns the reference speed that cogging takes along the reference in the period in which
+    /// the present command acts, mm/s; by Simpson's rule.
     fn cogging_mm_s(&self, at_mm: &impl Fn(f64) -> f64) -> f64 {
         let (parameters, servo_s) = (self.model.law.parameters, self.model.law.periods.servo_s);
         let cogging_nm = |n: f64| {
@@ -766,11 +768,12 @@ impl AxisLqg {
         -mean_nm / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm)
     }
 
-    /// The offset with which the position loop asks for a reference speed, once it has the command.
+    /// Returns the offset for which the position loop requests a reference speed, once it has the
+    /// command.
     fn solved_mm(&self, tracked: &Tracked, here_mm: f64, wanted_rad_s: f64) -> f64 {
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
         let asked = |command_mm: f64| tracked.asked_rad_s(&self.model, command_mm * rad_per_mm);
-        // It is linear.
+        // The request is linear in the command.
         let (here, beyond) = (asked(here_mm), asked(here_mm + 1.0));
         (wanted_rad_s - here) / (beyond - here)
     }

@@ -9,27 +9,27 @@
 //! ```
 //!
 //! for x' = A x + b v, y = c' x with noise of covariance Q and variance r, and the cost x' W x + 2
-//! x' n v + m v^2 of a period; n is taken out first, by v = u - n' x / m. H_k is the solution over
-//! 2^k periods. States that the input does not reach (a load, an oscillator) are no harm: their
-//! part of X grows, the gains do not contain it.
+//! x' n v + m v^2 of a period; n is eliminated first, by v = u - n' x / m. H_k is the solution over
+//! 2^k periods. States that the input does not reach (a load, an oscillator) do no harm: their part
+//! of X grows, but the gains do not contain it.
 //!
 //! Source: Anderson (1978), "Second-order convergent algorithms for the steady-state Riccati
 //! equation", Int. J. Control 28(2); Anderson and Moore (1979), Optimal Filtering, section 4.4;
 //! Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, section 2.4, and exercises
 //! for the cross term.
 
-/// Most doublings: a million periods, beyond which nothing is of use.
+/// Largest number of doublings: a million periods; a longer horizon changes nothing.
 const DOUBLINGS: u32 = 20;
-/// Converged: no gain changes by a greater part of the largest.
+/// Convergence: no gain changes by a greater part of the largest one.
 const CONVERGED: f64 = 1e-12;
-/// Doublings before that is looked at: nothing moves in the first ones where a noise needs several
-/// periods to be seen.
+/// Smallest number of doublings before that is checked: nothing changes in the first ones where a
+/// noise needs several periods to be seen.
 const LEAST_DOUBLINGS: u32 = 8;
 
 /// A matrix, by rows.
 pub(super) type StateMatrix<const S: usize> = [[f64; S]; S];
 
-/// `a b`.
+/// Returns `a b`.
 pub(super) fn product<const S: usize>(a: &StateMatrix<S>, b: &StateMatrix<S>) -> StateMatrix<S> {
     let mut product = [[0.0; S]; S];
     for (row, a) in product.iter_mut().zip(a) {
@@ -44,27 +44,27 @@ pub(super) fn product<const S: usize>(a: &StateMatrix<S>, b: &StateMatrix<S>) ->
     product
 }
 
-/// `a'`.
+/// Returns `a'`.
 pub(super) fn transposed<const S: usize>(a: &StateMatrix<S>) -> StateMatrix<S> {
     core::array::from_fn(|i| core::array::from_fn(|j| a[j][i]))
 }
 
-/// `a x`.
+/// Returns `a x`.
 pub(super) fn applied<const S: usize>(a: &StateMatrix<S>, x: &[f64; S]) -> [f64; S] {
     a.map(|row| inner(&row, x))
 }
 
-/// `a' b`.
+/// Returns `a' b`.
 pub(super) fn inner<const S: usize>(a: &[f64; S], b: &[f64; S]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// `a + b`.
+/// Returns `a + b`.
 pub(super) fn sum<const S: usize>(a: &StateMatrix<S>, b: &StateMatrix<S>) -> StateMatrix<S> {
     core::array::from_fn(|i| core::array::from_fn(|j| a[i][j] + b[i][j]))
 }
 
-/// Gains of the filter: how much of what is measured beyond the prediction is added to each state.
+/// Returns the gains of the filter: the correction of each state for a unit of the innovation.
 pub(super) fn filter<const S: usize>(
     a: &StateMatrix<S>,
     noise: &StateMatrix<S>,
@@ -78,18 +78,18 @@ pub(super) fn filter<const S: usize>(
     })
 }
 
-/// What a servo period costs.
+/// Cost of a servo period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PeriodCost<const S: usize> {
-    /// Of states.
+    /// Cost of the states.
     pub(super) states: StateMatrix<S>,
-    /// Of a state and the input.
+    /// Cost of each state times the input.
     pub(super) cross: [f64; S],
-    /// Of the input.
+    /// Cost of the input.
     pub(super) input: f64,
 }
 
-/// Gains of the regulator: the input is less by so much for a unit of each state.
+/// Returns the gains of the regulator: the reduction of the input for a unit of each state.
 pub(super) fn regulator<const S: usize>(
     a: &StateMatrix<S>,
     b: &[f64; S],
@@ -114,7 +114,7 @@ pub(super) fn regulator<const S: usize>(
     })
 }
 
-/// Doubles the horizon until the gains by its solution change no more.
+/// Doubles the horizon until the gains of its solution no longer change.
 fn doubled<const S: usize>(
     mut a: StateMatrix<S>,
     mut g: StateMatrix<S>,
@@ -146,12 +146,12 @@ fn doubled<const S: usize>(
     gains
 }
 
-/// Rounding turns it unsymmetric, and that grows.
+/// Restores the symmetry: rounding removes it, and the difference grows.
 fn symmetric<const S: usize>(a: &StateMatrix<S>) -> StateMatrix<S> {
     sum(a, &transposed(a)).map(|row| row.map(|a| 0.5 * a))
 }
 
-/// `w^-1 a`, by elimination with the largest pivot of each column.
+/// Returns `w^-1 a`, by elimination with the largest pivot of each column.
 fn solved<const S: usize>(w: &StateMatrix<S>, a: &StateMatrix<S>) -> StateMatrix<S> {
     let (mut w, mut x) = (*w, *a);
     for i in 0..S {
@@ -225,7 +225,7 @@ mod tests {
 
     #[test]
     fn a_load_that_the_input_does_not_reach_is_carried() {
-        // x' = x + v - d: without a price for v it is v = d - x at once.
+        // x' = x + v - d: without a weight on v it is v = d - x at once.
         let a = [[1.0, -1.0], [0.0, 1.0]];
         let cost = PeriodCost {
             states: [[1.0, 0.0], [0.0, 0.0]],

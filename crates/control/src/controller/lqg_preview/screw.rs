@@ -1,18 +1,18 @@
-//! Where the motor has to be, so that the table is on the reference behind a ball screw that gives.
+//! Position of the motor that holds the table on the reference with a compliant ball screw.
 //!
 //! ```text
 //! x_m = r + <T / k + b/2 sgn T>         T = J_t r'' + B r' + Fc sgn r'       torque through the screw; its sign is the flank in contact
 //! ```
 //!
-//! The motor cannot leap from flank to flank where T turns its sign, nor twist the screw at once
+//! The motor cannot leap from flank to flank where T changes sign, nor twist the screw at once
 //! where the plan's acceleration steps: <> is the mean over the time W to both sides, with weights
-//! of a triangle, so that the way across the backlash b has the acceleration b / W^2 in both
-//! halves. W is the time in which a part of the drive's torque is enough for that, and no less than
-//! that of a radian of the resonance. The damping of the screw is left out: it takes c/k of the
+//! of a triangle, so that the motion across the backlash b has the acceleration b / W^2 in both
+//! halves. W is the time in which a part of the drive's torque is enough for that, and at least the
+//! time of a radian of the resonance. The damping of the screw is left out: it adds c/k times the
 //! speed of the twist, next to nothing.
 //!
 //! Symbols: r reference, k stiffness, J_t inertia of the table, B viscous and Fc Coulomb friction,
-//! which the table has.
+//! both at the table.
 //!
 //! Source: the flexible joint is flat in its load's position, Spong (1987), "Modeling and control
 //! of elastic joint robots", J. Dynamic Systems, Measurement, and Control 109; backlash as in
@@ -23,15 +23,15 @@ use crate::axis::AxisLaw;
 use crate::axis::transmission::TransmissionLaw;
 use crate::vector::bounded;
 
-/// Part of the torque limit that the way across the backlash may take.
+/// Part of the torque limit that the motion across the backlash may take.
 const CROSSING_TORQUE: f64 = 0.25;
 /// Shortest and longest W, s.
 const CROSSING_S: [f64; 2] = [0.001, 0.01];
-/// Points of the triangle to each side of its middle.
+/// Number of points of the triangle to each side of its middle.
 const POINTS: i32 = 3;
 /// Part of the Coulomb friction below which the torque through the screw has no clear sign.
 const UNCLEAR: f64 = 0.2;
-/// The same in parts of the backlash, where there is no friction.
+/// The same limit in parts of the backlash, where there is no friction.
 const UNCLEAR_GAP: f64 = 0.01;
 
 /// The twist of a ball screw along a reference.
@@ -45,12 +45,13 @@ pub(super) struct ScrewTwist {
     smoothing_s_mm: f64,
     half_gap_mm: f64,
     crossing_s: f64,
-    /// J_t / Kv, s: what the motor's acceleration beyond the table's does not take.
+    /// J_t / Kv, s: factor of the acceleration of the motor beyond the table's, which takes no
+    /// torque.
     table_s: f64,
 }
 
 impl ScrewTwist {
-    /// Of an axis with such a screw.
+    /// Creates the twist of an axis with this screw.
     pub(super) fn new(law: &AxisLaw, screw: &TransmissionLaw) -> Self {
         let axis = law.parameters;
         let table_kg_m2 = 1.0 / screw.inverse_table_inertia;
@@ -71,14 +72,14 @@ impl ScrewTwist {
         }
     }
 
-    /// How far ahead of a moment it looks, s.
+    /// Returns the time that it looks ahead, s.
     pub(super) fn ahead_s(&self) -> f64 {
         self.crossing_s + self.step_s
     }
 
-    /// By how much the motor is ahead of the table so many seconds from now, mm.
+    /// Returns the lead of the motor over the table at a time from now, mm.
     pub(super) fn mm(&self, at_mm: &impl Fn(f64) -> f64, after_s: f64) -> f64 {
-        // Where there is no friction, a sign is clear beyond a part of the backlash.
+        // Without friction, a sign is clear beyond a part of the backlash.
         let unclear_mm =
             (UNCLEAR * self.coulomb_mm + UNCLEAR_GAP * self.half_gap_mm).max(f64::MIN_POSITIVE);
         let (mut sum_mm, mut weights) = (0.0, 0.0);
@@ -93,7 +94,7 @@ impl ScrewTwist {
         sum_mm / weights
     }
 
-    /// T / k.
+    /// Returns T / k.
     fn elastic_mm(&self, at_mm: &impl Fn(f64) -> f64, after_s: f64) -> f64 {
         let [before, here, after] = [-1.0, 0.0, 1.0].map(|n: f64| at_mm(after_s + n * self.step_s));
         let speed_mm_s = (after - before) / (2.0 * self.step_s);
@@ -102,7 +103,7 @@ impl ScrewTwist {
         self.inertia_s2 * acceleration_mm_s2 + self.viscous_s * speed_mm_s + self.coulomb_mm * sign
     }
 
-    /// The twist over the servo periods about a moment.
+    /// Returns the twist over the servo periods around a time.
     pub(super) fn course(&self, at_mm: &impl Fn(f64) -> f64, moment_s: f64) -> TwistCourse {
         let from_s = moment_s - self.step_s;
         let at = |n: usize| self.mm(at_mm, from_s + n as f64 * self.step_s);
@@ -115,7 +116,7 @@ impl ScrewTwist {
     }
 }
 
-/// Twists that are known, one a servo period: the first before the moment for which they are.
+/// Number of known twists, one a servo period: the first is before the time of the course.
 const COURSE: usize = 5;
 
 /// The twist of a ball screw over some servo periods.
@@ -128,7 +129,7 @@ pub(super) struct TwistCourse {
 }
 
 impl TwistCourse {
-    /// Of a rigid screw.
+    /// Twist of a rigid screw.
     pub(super) const NONE: Self = Self {
         from_s: 0.0,
         step_s: 1.0,
@@ -136,22 +137,22 @@ impl TwistCourse {
         twists_mm: [0.0; COURSE],
     };
 
-    /// The twist so many seconds from now, mm.
+    /// Returns the twist at a time from now, mm.
     pub(super) fn mm(&self, after_s: f64) -> f64 {
         let place = bounded(
             (after_s - self.from_s) / self.step_s,
             0.0,
             (COURSE - 1) as f64,
         );
-        // A float that is not a number saturates to zero here.
+        // The cast saturates to zero where the float is NaN.
         let before = (libm::floor(place + 1e-6) as usize).min(COURSE - 2);
         let [a, b] = [before, before + 1].map(|n| self.twists_mm.get(n).copied().unwrap_or(0.0));
         a + (place - before as f64) * (b - a)
     }
 
-    /// What the inverse asks too much of for a motor that accelerates otherwise than its table,
-    /// mm/s of reference speed: it takes all of the inertia to be the motor's. With its
-    /// differences.
+    /// Returns the excess of the inverse for a motor whose acceleration differs from its table's,
+    /// mm/s of reference speed: the inverse assigns all of the inertia to the motor. It uses the
+    /// differences of the inverse.
     pub(super) fn spared_mm_s(&self) -> f64 {
         let [before, here, after, beyond, _] = self.twists_mm;
         self.table_s * ((beyond - here) - (after - before)) / (2.0 * self.step_s * self.step_s)

@@ -1,43 +1,44 @@
-//! How much of what is measured the filter believes, learnt from whether its innovations are white.
+//! Weight of the measurements in the filter, learned from the whiteness of its innovations.
 //!
 //! ```text
-//! c = 2 nu(k) nu(k-1) / (nu(k)^2 + nu(k-1)^2 + 2 e^2)      in -1 to 1, none in the mean where the innovations nu are white
+//! c = 2 nu(k) nu(k-1) / (nu(k)^2 + nu(k-1)^2 + 2 e^2)      in -1 to 1, zero in the mean where the innovations nu are white
 //! l <- l - m c,   L0 <= l <= L1                             the variance of the measurement is taken to be 4^l times as given
 //! ```
 //!
-//! A gain that is too high follows the noise of the encoder and has to go back on it: innovations
-//! next to each other are of opposite sign, c is negative, and the noise is taken to be larger. One
-//! that is too low leaves what really happens in several innovations: c is positive. The gains of a
-//! filter depend on the ratio of measurement noise to what disturbs, so that one number follows
-//! both. There is one of them for each whole l, between which they are interpolated.
+//! A gain that is too high follows the noise of the encoder and has to reverse it: adjacent
+//! innovations have opposite signs, c is negative, and the noise is taken to be larger. A gain that
+//! is too low spreads a real motion over several innovations: c is positive. The gains of a filter
+//! depend on the ratio of measurement noise to disturbance, so that one number is enough for both.
+//! There is one set of gains for each whole l; between them they are interpolated.
 //!
 //! The division makes a shock, however large, one step of m. A frozen encoder, and an axis that
-//! stands still between two steps of its encoder, say nothing of noise: a measurement that repeats
-//! itself to the bit is not learnt from.
+//! stands still between two steps of its encoder, give no evidence on noise: a measurement that
+//! repeats itself to the bit is not used.
 //!
 //! Source: Mehra (1970), "On the identification of variances and adaptive Kalman filtering", IEEE
-//! Trans. Automatic Control 15(2): a filter with the optimal gain, and no other, has white
-//! innovations. The recursion with normalised products is our own.
+//! Trans. Automatic Control 15(2): only a filter with the optimal gain has white innovations. The
+//! recursion with normalized products is our own.
 
 use super::linear::STATES;
 
 /// Lowest and highest power of four.
 const LOWEST: i32 = 0;
 const HIGHEST: i32 = 6;
-/// How many there are.
+/// Number of levels.
 pub(super) const LEVELS: usize = (HIGHEST - LOWEST + 1) as usize;
 /// Step of the power for innovations that are alike.
 const STEP: f64 = 0.01;
 
-/// Gains of the filter by how much the variance of the measurement is above what is given.
+/// Gains of the filter by the ratio of the measurement's variance to the given one, in powers of
+/// four.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct GainTable {
     gains: [[f64; STATES]; LEVELS],
 }
 
 impl GainTable {
-    /// Of a filter whose gains for a measurement of some variance are known; `given_rad2` is that
-    /// of the statistics.
+    /// Creates the table of a filter; `gains` returns its gains for a variance of the measurement,
+    /// and `given_rad2` is the variance by the statistics.
     pub(super) fn new(given_rad2: f64, gains: impl Fn(f64) -> [f64; STATES]) -> Self {
         let at =
             |level: usize| gains(given_rad2 * libm::exp2(2.0 * f64::from(LOWEST + level as i32)));
@@ -46,12 +47,13 @@ impl GainTable {
         }
     }
 
-    /// By each level.
+    /// Returns the gains of each level.
     pub(super) fn levels(&self) -> &[[f64; STATES]; LEVELS] {
         &self.gains
     }
 
-    /// For a measurement whose variance is as given.
+    /// Creates a table with the same gains at each level, for a measurement with the given
+    /// variance.
     pub(super) fn constant(gains: [f64; STATES]) -> Self {
         Self {
             gains: [gains; LEVELS],
@@ -60,7 +62,7 @@ impl GainTable {
 
     fn at(&self, power: f64) -> [f64; STATES] {
         let level = power - f64::from(LOWEST);
-        // A float that is not a number saturates to zero here.
+        // The cast saturates to zero where the float is NaN.
         let below = (libm::floor(level) as usize).min(LEVELS - 2);
         let part = level - below as f64;
         let [lower, upper] =
@@ -69,7 +71,7 @@ impl GainTable {
     }
 }
 
-/// What is known of the innovations.
+/// State of the whiteness test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Whiteness {
     /// Power of four by which the variance of the measurement is taken to be larger than given.
@@ -79,30 +81,30 @@ pub(super) struct Whiteness {
 }
 
 impl Whiteness {
-    /// As given.
+    /// State for the variance as given.
     pub(super) const GIVEN: Self = Self {
         power: 0.0,
         before_rad: 0.0,
         measured_rad: f64::NAN,
     };
 
-    /// Variance of the measurement, in parts of what is given.
+    /// Returns the variance of the measurement as a multiple of the given one.
     pub(super) fn variance(&self) -> f64 {
         libm::exp2(2.0 * self.power)
     }
 
-    /// Gains of the filter.
+    /// Returns the gains of the filter.
     pub(super) fn gains(&self, table: &GainTable) -> [f64; STATES] {
         table.at(self.power)
     }
 
-    /// Of a whole number of levels, the one that is next.
+    /// Returns the nearest whole level.
     pub(super) fn level(&self) -> usize {
-        // A float that is not a number saturates to zero here.
+        // The cast saturates to zero where the float is NaN.
         (libm::round(self.power - f64::from(LOWEST)) as usize).min(LEVELS - 1)
     }
 
-    /// A measurement and the innovation in it; innovations below `least_rad` are rounding.
+    /// Takes in a measurement and its innovation; innovations below `least_rad` are rounding.
     pub(super) fn take_in(&mut self, measured_rad: f64, innovation_rad: f64, least_rad: f64) {
         let repeats = measured_rad.to_bits() == self.measured_rad.to_bits();
         let squares = innovation_rad * innovation_rad + self.before_rad * self.before_rad;

@@ -88,13 +88,13 @@ models! {
     model_3: 3;
 }
 
-/// The knot of the joints.
+/// Exports the conversion of a knot of the tool into the knot of the joints.
 #[unsafe(no_mangle)]
 pub extern "C" fn geometry_3(geometry: &KnownGeometry<3>, knot: &mut Knot<3>) {
     *knot = geometry.joint_knot(knot);
 }
 
-/// What does panic.
+/// Panics for an index out of range.
 #[cfg(feature = "one-panic")]
 #[unsafe(no_mangle)]
 pub extern "C" fn one_panic(values: &[f64; 4], i: usize) -> f64 {

@@ -11,11 +11,12 @@ use super::headings::{CONTROLLER, CUT, RESULTS};
 use super::quantity::length_um;
 use super::reader::ReaderArgs;
 
-/// Tell the feedrates at which a program holds a tolerance
+/// List the feedrates at which a program holds a tolerance
 ///
-/// For the program as it is, corrected, and cut with a controller that sees the tool: for all of
-/// it, and for each stretch between corners and stops. Where no feed holds, the table tells which
-/// error stays, and where.
+/// Three ways of cutting are compared: the program as it is, the corrected program, and a
+/// controller that sees the tool. Feedrates are listed for the whole program, and for each stretch
+/// between corners and stops. Where no feedrate holds the tolerance, the table lists which error
+/// remains, and where.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Example:
@@ -34,9 +35,9 @@ pub(crate) struct AdviseArgs {
     /// Control that cuts the program without feedback, as it is and corrected.
     #[arg(long = "for", value_name = "CONTROL", default_value = crate::correct::TARGETS[0].name, long_help = controls("Control that cuts the program without feedback, as it is and corrected."), help_heading = CUT)]
     pub(crate) target: String,
-    /// How exact the values of the machine file are: standard deviation of each, %. 0: exact. As of
-    /// `feedwright correct`: by default a file has 10 %, and a built-in machine, which is simulated
-    /// as it is written, 0.
+    /// Standard deviation of each value of the machine file, %; 0 if the values are exact. The
+    /// default is the same as for `feedwright correct`: 10 % for a file, and 0 for a built-in
+    /// machine, which is simulated as it is written.
     #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, help_heading = CUT, hide_short_help = true)]
     pub(crate) file_error: Option<f64>,
     /// Controller of the cut with feedback; `feedwright controllers` lists them.

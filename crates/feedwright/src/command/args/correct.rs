@@ -37,13 +37,13 @@ pub(crate) struct CorrectArgs {
     /// Several logs: repeat the option.
     #[arg(long, value_name = "FILE", help_heading = MEASURED)]
     pub(crate) log: Vec<PathBuf>,
-    /// How exact the values of the machine file are: standard deviation of each, %. 0: exact. By
-    /// default a file has 10 %, and a built-in machine, which is simulated as it is written, 0.
-    /// Without a log, axes whose gains differ by chance count as matched, and a stretch is changed
-    /// only where a gain is likely on every machine that the file may describe.
+    /// Standard deviation of each value of the machine file, %; 0 if the values are exact. The
+    /// default is 10 % for a file, and 0 for a built-in machine, which is simulated as it is
+    /// written. Without a log, axes whose gains differ by chance count as matched, and a stretch is
+    /// changed only where a gain is likely on every machine that the file may describe.
     #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, help_heading = CUT)]
     pub(crate) file_error: Option<f64>,
-    /// Which column of the logs is what, by number from 0 or by name, and units:
+    /// Columns of the logs, by number from 0 or by name, and units:
     /// t=0,x.cmd=1,x.act=3,unit=mm,time=ms.
     #[arg(long, value_name = "COLUMNS", requires = "log", help_heading = MEASURED)]
     pub(crate) columns: Option<String>,
@@ -64,7 +64,7 @@ pub(crate) struct CorrectArgs {
     pub(crate) reader: ReaderArgs,
 }
 
-/// What `--for` is, and its controls, one a line.
+/// Returns `about` followed by the controls of `--for`, one per line.
 pub(super) fn controls(about: &str) -> String {
     let rows = crate::correct::TARGETS
         .iter()

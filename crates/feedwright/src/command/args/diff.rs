@@ -16,10 +16,10 @@ Examples:
   feedwright diff before.json after.json --report diff.html
   feedwright diff part.ngc corrected.ngc")]
 pub(crate) struct DiffArgs {
-    /// Before: JSON of run, correct or plan (.json), or a G-code program.
+    /// JSON of run, correct or plan (.json), or a G-code program.
     #[arg(value_name = "BEFORE")]
     pub(crate) before: PathBuf,
-    /// After: the same of another run, or another program.
+    /// JSON of another run, or another program, to compare with BEFORE.
     #[arg(value_name = "AFTER")]
     pub(crate) after: PathBuf,
     /// Write a page: the figures and the plot.

@@ -13,8 +13,8 @@ pub(crate) struct GeometryArgs {
     /// scale, pitch and squareness of the machine file do not move the tool off the path.
     #[arg(long, help_heading = CUT, hide_short_help = true)]
     pub(crate) no_geometry: bool,
-    /// Compensate the geometry of this file in place of that of the machine file, and give it to
-    /// the simulated machine; `feedwright identify --geometry` writes one.
+    /// Compensate the geometry in this file instead of the geometry in the machine file, and give
+    /// it to the simulated machine; `feedwright identify --geometry` writes one.
     #[arg(long, value_name = "GEOMETRY.toml", conflicts_with = "no_geometry", help_heading = CUT)]
     pub(crate) geometry: Option<PathBuf>,
 }

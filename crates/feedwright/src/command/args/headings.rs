@@ -1,10 +1,10 @@
 //! Headings of the options in the help, in the order in which the commands declare them.
 
-/// What is cut, and on which machine.
+/// The machine and the cut.
 pub(crate) const CUT: &str = "Machine and cut";
 /// The controller and its model.
 pub(crate) const CONTROLLER: &str = "Controller";
-/// What a cut is compared with, and what was recorded of it.
+/// Comparison of a cut, and its recording.
 pub(crate) const MEASURED: &str = "Comparison and measurement";
 /// Files that are written.
 pub(crate) const RESULTS: &str = "Results";

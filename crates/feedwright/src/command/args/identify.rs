@@ -54,16 +54,16 @@ pub(crate) struct IdentifyArgs {
     pub(crate) out: Option<PathBuf>,
 }
 
-/// What is said of a log.
+/// Options that describe a log.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Options of a LOG")]
 pub(crate) struct LogArgs {
-    /// Which column is what, by number from 0 or by name, and units:
+    /// Columns of the log, by number from 0 or by name, and units:
     /// t=0,x.cmd=1,x.act=3,x.torque=5,unit=mm,time=ms.
     #[arg(long, value_name = "COLUMNS", requires = "log")]
     pub(crate) columns: Option<feedwright_ident::Columns>,
-    /// Machine file that is updated: what the logs do not tell stays as it is. It is written to
-    /// --out, without that in its place.
+    /// Machine file that is updated: values that the logs do not determine stay as they are. The
+    /// result is written to --out, or over this file if there is no --out.
     #[arg(long, value_name = "FILE.toml", requires = "log")]
     pub(crate) update: Option<PathBuf>,
     /// Identify from this part of the log, s; --score says by which to judge. Without both, blocks
@@ -89,7 +89,8 @@ pub(crate) struct LogArgs {
     /// axis counts as linear: kg, N s/m, N.
     #[arg(long, value_name = "LENGTH", requires = "log", value_parser = lead_mm)]
     pub(crate) lead: Option<f64>,
-    /// Inertia at the motor, kg m2; without --lead the mass, kg. Positions do not tell it.
+    /// Inertia at the motor, kg m2; without --lead the mass, kg. It cannot be identified from
+    /// positions.
     #[arg(long, value_name = "KG_M2|KG", requires = "log", value_parser = positive)]
     pub(crate) inertia: Option<f64>,
     /// Viscous friction at the motor, N m s/rad; without --lead N s/m.
@@ -135,12 +136,12 @@ pub(crate) struct LogArgs {
     )]
     pub(crate) drive_delay: Option<KnownValue>,
     /// Delay from the control to a position loop in the drive, s: a whole number of servo periods.
-    /// Without it the log tells the delay, where --record-delay is given.
+    /// Without it, the delay is identified from the log, where --record-delay is given.
     #[arg(long, value_name = "S", requires = "log", value_parser = command_delay, hide_short_help = true)]
     pub(crate) command_delay: Option<f64>,
     /// Time over which the drive takes the speed from positions, s, of one that closes its loops at
-    /// the rate of the log and recorded it itself: two samples are 0.002 at 1 kHz. Positions do not
-    /// tell it.
+    /// the rate of the log and recorded it itself: two samples are 0.002 at 1 kHz. It cannot be
+    /// identified from positions.
     #[arg(long, value_name = "S", requires = "log", value_parser = positive, hide_short_help = true)]
     pub(crate) speed_window: Option<f64>,
     /// Delay of the recorded actual position behind the recorded command, s: 0 if both are sampled
@@ -166,7 +167,7 @@ pub(crate) struct LogArgs {
     pub(crate) json: Option<PathBuf>,
 }
 
-/// What is said of measurements of the geometry.
+/// Options that describe measurements of the geometry.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Options of the geometry")]
 pub(crate) struct MeasuredGeometryArgs {

@@ -10,10 +10,10 @@ use super::headings::{CUT, RESULTS};
 use super::quantity::length_um;
 use super::reader::ReaderArgs;
 
-/// Tell the cycle time of a program, and what limits it
+/// Compute the cycle time of a program, and what limits it
 ///
-/// By tool, by kind of motion, and by the limit that binds: feedrate, acceleration or jerk of an
-/// axis.
+/// The time is listed by tool, by kind of motion, and by the limit that binds: feedrate,
+/// acceleration or jerk of an axis.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Example:
@@ -39,15 +39,15 @@ pub(crate) struct PlanArgs {
     /// Write the time of each line as a table: line, time_s, waiting_s and its text.
     #[arg(long, value_name = "FILE.csv", help_heading = RESULTS)]
     pub(crate) lines: Option<PathBuf>,
-    /// Plan each path from rest to rest as a whole too, and tell its time: what no plan can be
-    /// faster than by much.
+    /// Also plan each path as a whole from rest to rest, and print its time. No plan can be much
+    /// faster.
     #[arg(long, help_heading = CUT, hide_short_help = true)]
     pub(crate) bound: bool,
-    /// Tell how long it takes with this override of feeds, 0 to 200 %, while it is cut: the path
-    /// stays as planned.
+    /// Print the cutting time at this feed override, 0 to 200 %, which is applied during the cut:
+    /// the path stays as planned.
     #[arg(long = "override", value_name = "PERCENT", allow_negative_numbers = true, help_heading = CUT)]
     pub(crate) override_percent: Option<f64>,
-    /// Tell where the tool rests when feed hold is pressed so long after the start, s.
+    /// Print where the tool rests if feed hold is pressed this long after the start, s.
     #[arg(long, value_name = "S", allow_negative_numbers = true, help_heading = CUT)]
     pub(crate) hold_at: Option<f64>,
     /// Write all results as JSON.

@@ -13,7 +13,7 @@ const LENGTHS: [(&str, f64); 8] = [
     ("mil", 1e-3 * INCH_MM),
     ("m", 1e3),
 ];
-/// Those that a message lists.
+/// Units that a message lists.
 const SHOWN_LENGTHS: &str = "um, mm, in, thou";
 
 /// Units of a feedrate, and what one of them is in mm/min.
@@ -112,7 +112,8 @@ struct UnitValue<'a> {
 }
 
 impl<'a> UnitValue<'a> {
-    /// Splits a text; `examples` are told where it begins with no number.
+    /// Splits a text into number and unit. The error shows `examples` if the text does not begin
+    /// with a number.
     fn read(text: &'a str, examples: &str) -> Result<Self, String> {
         let text = text.trim();
         let unit_at = text.char_indices().find(|&(at, c)| {

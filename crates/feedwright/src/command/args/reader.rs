@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use feedwright_gcode::{AUTO, Dialect, INCH_MM, Increment, Settings, ToolTable};
 use miette::{Result, miette};
 
-/// How programs are read; the same for all commands that read one.
+/// Options for reading a program, the same for all commands that read one.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Reading the program")]
 pub struct ReaderArgs {
@@ -15,8 +15,8 @@ pub struct ReaderArgs {
     /// looks at the beginning.
     #[arg(long, value_name = "NAME", default_value = AUTO, hide_short_help = true)]
     pub dialect: String,
-    /// What a length without a decimal point counts on a Fanuc or Haas: 0.01mm, 0.001mm or 0.0001mm
-    /// [default: whole units].
+    /// Length of one unit of a number without a decimal point on a Fanuc or Haas: 0.01mm, 0.001mm
+    /// or 0.0001mm [default: whole units].
     #[arg(long, value_name = "LENGTH", value_parser = Increment::named, hide_short_help = true)]
     pub increment: Option<Increment>,
     /// Motions after which a program counts as endless.
@@ -45,7 +45,7 @@ pub enum Unit {
 }
 
 impl ReaderArgs {
-    /// What the reader has to know.
+    /// Returns the settings of the reader.
     pub fn settings(&self) -> Result<Settings> {
         let unit_mm = match self.tool_unit {
             Unit::Mm => 1.0,

@@ -38,7 +38,7 @@ pub struct RunArgs {
     /// lists them.
     #[arg(long, value_name = "NAME", help_heading = CONTROLLER, hide_short_help = true)]
     pub(crate) controller: Option<String>,
-    /// What it is compared with.
+    /// Controller to compare with.
     #[arg(long, value_name = "NAME", default_value = crate::controllers::BASELINE, help_heading = CONTROLLER, hide_short_help = true)]
     pub(crate) against: String,
     /// Feedrate in place of every programmed one, with its unit: 3000mm/min, 50mm/s or 120ipm.
@@ -102,7 +102,7 @@ pub struct RunArgs {
     /// contour error measured is shown beside those predicted.
     #[arg(long, value_name = "LOG", help_heading = MEASURED)]
     pub(crate) log: Option<PathBuf>,
-    /// Which column of the log is what, by number from 0 or by name, and units:
+    /// Columns of the log, by number from 0 or by name, and units:
     /// t=0,x.cmd=1,x.act=3,unit=mm,time=ms.
     #[arg(long, value_name = "COLUMNS", requires = "log", help_heading = MEASURED)]
     pub(crate) columns: Option<String>,

@@ -110,7 +110,7 @@ fn ringing<const N: usize>(block: &[u8]) -> Vec<&'static str> {
         .collect()
 }
 
-/// What is told of such an axis.
+/// Returns the warning about such an axis.
 fn rings(axis: &str) -> String {
     format!(
         "axis {axis}: its drive has acceleration feedforward and hardly any velocity feedforward, by this model. A command that follows it rings: the component will \
@@ -119,14 +119,14 @@ fn rings(axis: &str) -> String {
     )
 }
 
-/// The geometry of a block, and what is told of it.
+/// The geometry of a block, and the text that describes it.
 struct BlockGeometry {
     known: Option<KnownGeometry<3>>,
     told: String,
 }
 
 impl BlockGeometry {
-    /// What is chosen of a machine, if there is one.
+    /// Selects the geometry from `choice` and the machine, if there is one.
     fn of(choice: &GeometryChoice, machine: Option<&Machine>) -> Result<Self> {
         let known = match (choice, machine) {
             (_, Some(machine)) => choice.on_any_part(machine)?.compensated.as_deref().cloned(),

@@ -1,7 +1,7 @@
-//! `feedwright check`: all mistakes of programs and machine files, as a compiler tells them.
+//! `feedwright check`: reports all mistakes of programs and machine files, as a compiler does.
 //!
-//! Files are read in parallel, each as a stream; what is printed comes in the order of the
-//! arguments, whatever the number of threads.
+//! Files are read in parallel, each as a stream. The output is in the order of the arguments,
+//! whatever the number of threads.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -28,7 +28,7 @@ use crate::command::progress::Bar;
 use crate::command::streams::check_inputs;
 use crate::results_format::{stamped, write_json};
 
-/// What came of one file, best first: the worst of all files is the exit code.
+/// Outcome of one file, from best to worst. The worst of all files is the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum FileOutcome {
     /// Warnings at most.
@@ -55,10 +55,10 @@ impl FileOutcome {
     }
 }
 
-/// What was found in one file.
+/// Findings of one file.
 struct CheckedFile {
     outcome: FileOutcome,
-    /// What it amounts to; `None` where it has mistakes.
+    /// Summary of the file; `None` where it has mistakes.
     line: Option<String>,
     /// The mistakes, or the warnings of a file without mistakes.
     reports: Vec<Report>,
@@ -66,7 +66,7 @@ struct CheckedFile {
     findings: Vec<Finding>,
 }
 
-/// What was printed so far, and what is printed at the end.
+/// State of the output: what was printed, and what is printed at the end.
 struct CheckOutput {
     format: Format,
     worst: FileOutcome,
@@ -107,8 +107,8 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<ExitCode> {
     printed(result, ExitCode::from(output.worst.code()))
 }
 
-/// Tells what is wrong with the tool table, in the format that is asked for; any other error is one
-/// of the command line.
+/// Reports the mistakes of the tool table in the requested format. Any other error is an error of
+/// the command line.
 fn tool_table(args: &CheckArgs, report: Report) -> Result<ExitCode> {
     let Some((error, table)) = report
         .downcast_ref::<ToolTableError>()
@@ -256,7 +256,7 @@ fn check_file(file: &Path, settings: &Settings) -> CheckedFile {
     }
 }
 
-/// What is told where a file as a whole is wrong.
+/// Reports a file that is wrong as a whole.
 fn refused(file: &Path, outcome: FileOutcome, report: Report) -> CheckedFile {
     let findings = vec![Finding::of_file(&input::name(file), &report)];
     CheckedFile {

@@ -105,8 +105,8 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     printed(print(args, &outcome, within), code)
 }
 
-/// Where finished pieces of a long program are kept: beside the corrected program, where that is a
-/// file.
+/// Returns the path where finished pieces of a long program are kept: beside the corrected program,
+/// if that is a file.
 fn kept_beside(args: &CorrectArgs) -> Option<PathBuf> {
     let is_file = |path: &&Path| {
         !is_standard_output(path) && !std::fs::metadata(path).is_ok_and(|found| !found.is_file())
@@ -222,7 +222,7 @@ fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io:
     tell_written(&mut *out, [written, args.json.as_deref()])
 }
 
-/// What the logs told, and what the next cut is to show.
+/// Prints the results of the logs, and the expected result of the next cut.
 fn print_learned(out: &mut dyn Write, learned: &LearnedOutcome) -> std::io::Result<()> {
     let mut table = ConsoleTable::new(vec![
         TableColumn::new("log"),

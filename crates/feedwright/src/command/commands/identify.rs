@@ -80,7 +80,7 @@ fn print(
     tell_written(&mut *out, [Some(place)])
 }
 
-/// What was found of each axis, with standard errors.
+/// Prints the estimated parameters of each axis, with standard errors.
 fn print_axes(
     out: &mut dyn Write,
     found: &[AxisEstimate],
@@ -134,11 +134,11 @@ fn print_axes(
     table.print(out)?;
     writeln!(
         out,
-        "left: what the law found leaves of the measured position"
+        "left: what the identified model leaves of the measured position"
     )
 }
 
-/// With three digits, whatever its size.
+/// Formats a value with three significant digits.
 fn three_digits(value: f64) -> String {
     significant(value, 3, 2)
 }

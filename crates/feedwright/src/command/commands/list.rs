@@ -110,11 +110,11 @@ pub fn controller(name: &str, table: Controllers) -> Result<ExitCode> {
     print(&lines)
 }
 
-/// Where the gains of a controller come from.
+/// Describes the source of the gains of a controller.
 const fn gains(entry: &Entry) -> &'static str {
     match (entry.identifier, entry.knows) {
         (Some(IdentifierKind::Axes), _) => {
-            "computed when it starts, from the identified law of each axis and the parameters below; none is typed in"
+            "computed when it starts, from the identified model of each axis and the parameters below; none is typed in"
         }
         (Some(_), _) => "none; it follows the gradient of a trained network",
         (None, Knows::Nothing) if entry.parameters.is_empty() => "none",

@@ -35,7 +35,8 @@ pub(crate) fn run(args: &MergeArgs, console: &Console) -> Result<ExitCode> {
     printed(told, ExitCode::SUCCESS)
 }
 
-/// What writes a table of this ending; the standard output gets CSV.
+/// Returns the function that writes a table with the ending of `path`. The standard output gets
+/// CSV.
 fn writer(path: &Path) -> Result<fn(&ResultTable, &mut OutputFile) -> io::Result<()>> {
     match path.extension().and_then(|ending| ending.to_str()) {
         Some("csv") => Ok(ResultTable::write_csv),

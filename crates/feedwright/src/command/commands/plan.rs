@@ -117,7 +117,6 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     printed(outcome.print(args), ExitCode::SUCCESS)
 }
 
-/// What planning came to.
 struct PlanOutcome {
     found: CycleTime,
     bound: Option<Bound>,
@@ -176,7 +175,7 @@ fn print_lines(out: &mut impl Write, found: &CycleTime) -> std::io::Result<()> {
 const WRITTEN: usize = 500;
 const SHOWN: usize = 10;
 
-/// What binds where, as JSON.
+/// Returns the binding limits along the motion as JSON.
 fn along(found: &CycleTime) -> serde_json::Value {
     let names = limit_names();
     let stretch = |stretch: &BindingStretch| {
@@ -250,9 +249,9 @@ fn machine(args: &PlanArgs) -> Result<Machine> {
     Ok(planned)
 }
 
-/// With a tolerance of the tool, the machine whose path uses what the machine leaves of it, and the
-/// tolerance of that path, um. The default controller is simulated for it, with the model that
-/// `run` has of the machine.
+/// Divides a tolerance of the tool: returns the machine whose path uses the share that the
+/// machine's error leaves, and the tolerance of that path, um. The default controller is simulated
+/// for it, with the model that `run` has of the machine.
 fn within_tolerance(
     args: &PlanArgs,
     machine: Machine,
@@ -325,7 +324,7 @@ fn stages(args: &PlanArgs, machine: &Machine) -> Result<Stages> {
     Ok(Stages { planner })
 }
 
-/// What the operator does, by the arguments.
+/// Returns the operator's actions that the arguments request.
 fn request(args: &PlanArgs, stages: Stages) -> Result<Option<OperatorRequest>> {
     if args.override_percent.is_none() && args.hold_at.is_none() {
         return Ok(None);
@@ -397,7 +396,7 @@ impl PlanOutcome {
         write_json(out, &entries).into_diagnostic()
     }
 
-    /// How far the plan is from its bound, its limits and its tolerance.
+    /// Prints the ratio of the plan to its bound, its use of the limits, and its deviation.
     fn print_limits(&self, out: &mut dyn Write) -> std::io::Result<()> {
         let Self {
             found,
@@ -535,7 +534,7 @@ const LEAST_TIMED: u64 = 1000;
 /// Time-optimal plans stay below, since only rounding puts them above it.
 const LARGEST_KEPT: f64 = 1.01;
 
-/// As in a machine file.
+/// Smallest tolerance, um, as in a machine file.
 const LEAST_UM: f64 = 0.01;
 const MOST_UM: f64 = 1e4;
 

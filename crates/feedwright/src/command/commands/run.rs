@@ -114,7 +114,7 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
     printed(summary::print(&mut *table, &job, &outputs, &outcome), code)
 }
 
-/// What the arguments ask for.
+/// The job, and the files, that the arguments request.
 struct Asked {
     job: Job,
     /// Files that no output may take the place of.
@@ -213,7 +213,7 @@ fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
     })
 }
 
-/// A corrected program was asked for, and a controller.
+/// Returns the error of a request for a corrected program together with a controller.
 fn no_part(controller: &str, part: &Path, out: &Path) -> miette::Report {
     miette!(
         help = format!(

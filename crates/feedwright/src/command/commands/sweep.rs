@@ -53,7 +53,7 @@ pub(crate) fn run(args: &SweepJobsArgs, console: &Console) -> Result<ExitCode> {
     tally.finish()
 }
 
-/// What the threads share.
+/// State that the threads share.
 struct SharedWork {
     list: JobList,
     store: ResultStore,
@@ -62,7 +62,7 @@ struct SharedWork {
     tally: Mutex<Tally>,
 }
 
-/// What has come of the jobs.
+/// Counts of the jobs by outcome.
 #[derive(Default)]
 struct Tally {
     computed: usize,
@@ -72,7 +72,7 @@ struct Tally {
     mistaken: usize,
     /// Jobs without a result.
     missing: usize,
-    /// Why the sweep ends early.
+    /// Reason why the sweep ends early.
     stopped: Option<Report>,
 }
 

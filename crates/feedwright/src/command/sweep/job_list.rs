@@ -16,7 +16,7 @@ use crate::command::args::sweep::JobShard;
 use crate::command::files_to_check::FilesToCheck;
 use crate::identifier_cache::key_of;
 
-/// What JOBS.toml holds.
+/// Content of JOBS.toml.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct JobFile {
@@ -203,8 +203,9 @@ fn programs(places: &[String], folder: &Path) -> Result<Vec<Value>> {
 }
 
 impl ListedJob {
-    /// Whether the job belongs to a part of the jobs. The hash of its keys decides: a job stays in
-    /// its part, whatever is added to the list or removed from it, and no file is read for it.
+    /// Returns true if the job belongs to this shard. The hash of its keys decides. A job therefore
+    /// stays in its shard when jobs are added to the list or removed from it, and no file is read
+    /// for this.
     pub(crate) fn is_in(&self, shard: JobShard) -> bool {
         let keys = serde_json::json!(self.spec).to_string();
         let hash = u64::from_str_radix(&key_of(&[keys.as_bytes()])[..16], 16).unwrap_or_default();

@@ -194,8 +194,9 @@ impl ListedJob {
         })
     }
 
-    /// Where the result is stored: a hash of the keys of the job, the version of feedwright, and
-    /// the contents of all files that the job reads, with the subroutines that the program calls.
+    /// Returns the address of the result in the store: a hash of the keys of the job, the version
+    /// of feedwright, and the contents of all files that the job reads, including the subroutines
+    /// that the program calls.
     ///
     /// # Errors
     /// A file that cannot be read.
@@ -239,8 +240,8 @@ impl ListedJob {
         Ok(key_of(&parts.iter().map(AsRef::as_ref).collect::<Vec<_>>()))
     }
 
-    /// The files of subroutines that the program calls; none if it cannot be read, because its
-    /// result tells why.
+    /// Returns the files of the subroutines that the program calls. The list is empty if the
+    /// program cannot be read; the result of the job then has the error.
     fn subroutine_files(&self) -> Vec<PathBuf> {
         let Some(mut reader) = self
             .reader()
@@ -253,10 +254,10 @@ impl ListedJob {
         reader.subroutine_files().map(Path::to_owned).collect()
     }
 
-    /// The result: the figures that `run --json` writes, or why there are none.
+    /// Returns the result: the figures that `run --json` writes, or the error of the job.
     ///
     /// # Errors
-    /// What does not follow from the job: a file that cannot be read, or an end from outside.
+    /// What does not follow from the job: a file that cannot be read, or a cancellation.
     pub(super) fn result(&self, address: &str, watch: &dyn Watch) -> Result<Value> {
         let mut result = match self.cut(&Unwatched(watch)) {
             Ok(result) => result,
@@ -378,7 +379,7 @@ pub(super) fn error_of(result: &Value) -> Option<String> {
     )
 }
 
-/// Whether another attempt may go otherwise: the error is no result of the job.
+/// Returns true if another attempt may succeed: the error is not a result of the job.
 fn passes(error: &Report) -> bool {
     use JobError::{Cancelled as Ended, Read, Reread, Write};
     let of_job = matches!(

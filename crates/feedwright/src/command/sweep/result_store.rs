@@ -54,7 +54,7 @@ impl ResultStore {
             .join(format!("{address}.json"))
     }
 
-    /// A result; `None` if there is none, or its file is damaged.
+    /// Returns the stored result; `None` if its file is missing or damaged.
     pub fn get(&self, address: &str) -> Option<Value> {
         read(&self.path(address))
             .ok()
@@ -117,7 +117,7 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Whether the name, without its ending, has so many hexadecimal digits and nothing else.
+/// Returns true if the name without its ending consists of exactly `digits` hexadecimal digits.
 fn has_digits(path: &Path, digits: usize) -> bool {
     let stem = path
         .file_stem()

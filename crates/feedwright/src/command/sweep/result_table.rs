@@ -14,7 +14,7 @@ use super::job_spec::error_of;
 use super::result_store::{ResultStore, read};
 use crate::results_format::spelled_out;
 
-/// Where a column comes from.
+/// Source of the values of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ColumnSource {
     /// The result.
@@ -34,7 +34,7 @@ enum ColumnSource {
 pub struct ResultColumn {
     /// Name.
     pub name: &'static str,
-    /// Whether it has numbers.
+    /// True if the column has numbers.
     pub is_number: bool,
     source: ColumnSource,
     pointer: &'static str,
@@ -125,7 +125,7 @@ impl ResultTable {
     /// The results of all stores; one that several have is one row.
     ///
     /// # Errors
-    /// A file that cannot be read, or an end from outside.
+    /// A file that cannot be read, or a cancellation.
     pub fn of(stores: &[ResultStore], watch: &dyn Watch) -> Result<Self> {
         let mut files: BTreeMap<_, PathBuf> = BTreeMap::new();
         for store in stores {

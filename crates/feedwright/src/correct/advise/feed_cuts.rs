@@ -1,4 +1,4 @@
-//! A program at other feedrates, cut in one of the ways, stretch by stretch.
+//! Cuts a program at other feedrates, in one of the ways, stretch by stretch.
 
 use feedwright_control::Controller;
 use feedwright_plan::Step;
@@ -15,10 +15,10 @@ use crate::correct::stretch_cut::{StretchCut, by_stretch};
 use crate::correct::stretches::{ProgramPart, assembled, stretches};
 use crate::correct::target::TargetControl;
 
-/// What cuts.
+/// Machine, program and controller of the cuts.
 pub(super) struct FeedBench<'a, const N: usize> {
     pub(super) machine: &'a Machine,
-    /// Machines that an uncertain file may describe: the corrected program is to be good on all of
+    /// Machines that an uncertain file may describe: the corrected program must be good on all of
     /// them.
     pub(super) file: Option<&'a FileModel>,
     pub(super) target: &'a TargetControl,
@@ -30,36 +30,36 @@ pub(super) struct FeedBench<'a, const N: usize> {
     pub(super) watch: &'a dyn Watch,
 }
 
-/// What a program comes to, over the cuts.
+/// Errors and time of a program, over its cuts.
 #[derive(Debug, Clone)]
 pub(super) struct FeedErrors {
     pub(super) time_s: f64,
     rms_um: f64,
     pub(super) max_um: f64,
-    /// Those of each stretch.
+    /// Errors of each stretch.
     pub(super) stretches: Vec<StretchErrors>,
 }
 
-/// What a stretch comes to, over the cuts.
+/// Errors and time of a stretch, over its cuts.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StretchErrors {
     pub(super) time_s: f64,
-    /// Its largest error, um, and where that is.
+    /// Largest error, um, and its place.
     pub(super) max_um: f64,
     pub(super) place: ErrorPlace,
-    /// The largest beside its ends, um.
+    /// Largest error away from the ends of the stretch, um.
     pub(super) way_um: f64,
 }
 
-/// Where on a stretch an error is.
+/// Part of a stretch with an error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ErrorPlace {
-    /// Where it begins: the tool has still to come to rest there.
+    /// The start: the tool still has to come to rest there.
     Start,
-    /// Where the command does not come from rest, or go there.
+    /// The middle, where the command neither comes from rest nor stops.
     Way,
-    /// Where it ends.
+    /// The end.
     End,
 }
 
@@ -77,7 +77,7 @@ impl FeedErrors {
     }
 }
 
-/// Tells nothing of its own progress, and ends with the others.
+/// Hides the progress of its own work, and passes on cancellation.
 struct Silent<'a>(&'a dyn Watch);
 
 impl Watch for Silent<'_> {
@@ -172,7 +172,7 @@ fn mean_square_um2(rows: &[CutRow]) -> f64 {
 }
 
 impl FeedErrors {
-    /// Takes in a cut of several, all but its RMS.
+    /// Adds one of several cuts to all figures but the RMS.
     fn take(&mut self, run: &RunResult, rows: &[CutRow], machine: &Machine, wait_s: f64) {
         self.time_s = run.time_s - wait_s;
         let cutting = rows

@@ -1,10 +1,11 @@
-//! The search of the feedrates at which one way of cutting holds a tolerance.
+//! Searches for the feedrates at which one way of cutting holds a tolerance.
 //!
-//! All feedrates go up and down by a factor until the program is within the tolerance, and no
-//! stretch is any longer. Between two factors the error is a power of the feed; a cut shows whether
-//! what is found so holds. Where a tool that comes to rest runs over, it does so at every feed from
-//! which it brakes for longer than the loop settles: what no feed takes back is told apart, as the
-//! error at the ends of the stretches.
+//! All feedrates go up and down by a factor until the program is within the tolerance, and up to a
+//! factor at which no stretch is within it. Between two factors the error is taken as a power of
+//! the feedrate; a cut verifies the factor that results. A tool that overshoots when it comes to
+//! rest does so at every feedrate from which it brakes for longer than the loop settles. The error
+//! that no feedrate removes is therefore reported separately, as the error at the ends of the
+//! stretches.
 
 use feedwright_sim::{RunError, StageSteps};
 
@@ -17,21 +18,21 @@ use crate::correct::unchanged::lines_of;
 const STEP: f64 = std::f64::consts::SQRT_2;
 const LEAST: f64 = 0.125;
 pub(super) const LARGEST: f64 = 4.0;
-/// Most cuts in which a factor is lowered until the tolerance holds.
+/// Largest number of cuts in which a factor is lowered until the tolerance holds.
 const TRIES: u32 = 8;
 /// Least and largest ratio of a lowered factor to the one before.
 const LOWER: [f64; 2] = [0.7, 0.96];
-/// A cut that takes longer by no more than this factor is as fast.
+/// A cut that takes no more than this factor longer counts as equally fast.
 const AS_FAST: f64 = 1.001;
-/// Cuts of a way that are expected, for the progress.
+/// Expected number of cuts in a way, for the progress.
 const EXPECTED: f64 = 20.0;
 
-/// What was found of a stretch, as factors on its feedrate.
+/// Result for one stretch, as factors on its feedrate.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StretchFactors {
     pub(super) holds: Option<f64>,
     beside_ends: Option<f64>,
-    /// The errors of the cut in which its largest is least.
+    /// Errors of the cut with the smallest largest error.
     least: StretchErrors,
 }
 
@@ -47,17 +48,17 @@ impl StretchFactors {
     }
 }
 
-/// Which errors are to be within a tolerance.
+/// Errors that must be within a tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ErrorFigure {
-    /// All.
+    /// All errors.
     All,
-    /// Those beside the ends of the stretches.
+    /// Errors away from the ends of the stretches.
     BesideEnds,
 }
 
 impl ErrorFigure {
-    /// The largest of a stretch, um.
+    /// Returns the largest error of a stretch, um.
     const fn of(self, errors: &StretchErrors) -> f64 {
         match self {
             Self::All => errors.max_um,
@@ -65,7 +66,7 @@ impl ErrorFigure {
         }
     }
 
-    /// The largest of a program, um.
+    /// Returns the largest error of a program, um.
     fn of_program(self, errors: &FeedErrors) -> f64 {
         match self {
             Self::All => errors.max_um,
@@ -95,7 +96,7 @@ impl<const N: usize> FeedSearch<'_, '_, N> {
         Ok(errors)
     }
 
-    /// What holds, and the factors of the stretches.
+    /// Finds the feedrates that hold the tolerance, and the factors of the stretches.
     pub(super) fn advice(
         &mut self,
         most: f64,
@@ -135,8 +136,8 @@ impl<const N: usize> FeedSearch<'_, '_, N> {
         Ok((advice, found))
     }
 
-    /// Cuts by rising factor: down until all is within the tolerance, and up while a stretch is,
-    /// but for its ends.
+    /// Cuts by rising factor: down until the whole program is within the tolerance, and up while a
+    /// stretch is within it, except for its ends.
     fn cuts(&mut self, most: f64, tolerance_um: f64) -> Result<Vec<(f64, FeedErrors)>, RunError> {
         let count = stretches(self.bench.parts).count();
         let first = most.min(1.0);
@@ -158,8 +159,8 @@ impl<const N: usize> FeedSearch<'_, '_, N> {
         Ok(cuts)
     }
 
-    /// What comes nearest where no factor holds, and the factor that holds beside the ends of the
-    /// stretches.
+    /// Returns the cut with the smallest largest error, and the factor that holds away from the
+    /// ends of the stretches.
     fn nearest(
         &mut self,
         cuts: &[(f64, FeedErrors)],
@@ -183,8 +184,7 @@ impl<const N: usize> FeedSearch<'_, '_, N> {
         }))
     }
 
-    /// The cut of the largest factor on the whole program by which `figure` is within the
-    /// tolerance.
+    /// Cuts the whole program at the largest factor by which `figure` is within the tolerance.
     fn whole(
         &mut self,
         cuts: &[(f64, FeedErrors)],
@@ -201,8 +201,8 @@ impl<const N: usize> FeedSearch<'_, '_, N> {
         Ok(verified.map(|(factors, errors)| errors.cut(factors.first().copied())))
     }
 
-    /// Factors by which `figure` is within the tolerance, lowered from those that are to hold, all
-    /// by as much or each by itself; none where it is not.
+    /// Verifies factors by cuts, and lowers them until `figure` is within the tolerance: all by the
+    /// same ratio or each by its own. None if it does not get within the tolerance.
     fn verified(
         &mut self,
         mut factors: Vec<f64>,
@@ -240,7 +240,7 @@ impl<const N: usize> FeedSearch<'_, '_, N> {
     }
 }
 
-/// The factor up to which a figure of cuts, um, is within a tolerance.
+/// Returns the largest factor at which a figure of the cuts, um, is within a tolerance.
 fn held_by(
     cuts: &[(f64, FeedErrors)],
     tolerance_um: f64,
@@ -257,7 +257,7 @@ fn held_by(
     held(&cuts.iter().map(point).collect::<Vec<_>>(), tolerance_um)
 }
 
-/// What cuts tell of a stretch.
+/// Evaluates the cuts for one stretch.
 fn of_stretch(cuts: &[(f64, FeedErrors)], k: usize, tolerance_um: f64) -> StretchFactors {
     let by = |figure: ErrorFigure| {
         held_by(cuts, tolerance_um, &|errors| {
@@ -281,7 +281,7 @@ fn of_stretch(cuts: &[(f64, FeedErrors)], k: usize, tolerance_um: f64) -> Stretc
     }
 }
 
-/// What a program or a stretch comes to at a factor on its feedrates.
+/// Error and time of a program or a stretch at a factor on its feedrates.
 #[derive(Debug, Clone, Copy)]
 struct FactorPoint {
     factor: f64,
@@ -289,9 +289,10 @@ struct FactorPoint {
     time_s: f64,
 }
 
-/// The largest factor at which an error, by rising factor, is within a tolerance; between it and
-/// the next by logarithms. Where the largest that was cut is, the least that is as fast as it,
-/// without one beyond between them.
+/// Returns the largest factor at which an error, by rising factor, is within a tolerance. It
+/// interpolates by logarithms to the next factor. If the largest factor that was cut is within the
+/// tolerance, it returns the smallest factor that is equally fast, with no factor beyond the
+/// tolerance between them.
 fn held(points: &[FactorPoint], tolerance_um: f64) -> Option<f64> {
     let within = |point: &FactorPoint| point.error_um <= tolerance_um;
     let at = points.iter().rposition(within)?;
@@ -308,7 +309,7 @@ fn held(points: &[FactorPoint], tolerance_um: f64) -> Option<f64> {
     };
     let from = &points[at];
     let part = libm::log(tolerance_um / from.error_um) / libm::log(to.error_um / from.error_um);
-    // An error that is no number, or none, has no place between.
+    // An error that is not a number, or zero, allows no interpolation.
     Some(if part.is_finite() {
         from.factor * libm::pow(to.factor / from.factor, part)
     } else {

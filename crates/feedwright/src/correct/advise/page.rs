@@ -1,4 +1,4 @@
-//! The figure and the page of an advice.
+//! Figure and page of an advice.
 
 use std::io::{self, Write};
 
@@ -10,11 +10,12 @@ use crate::report::plain_page::{
 };
 use crate::report::text::escaped;
 
-/// Rows of the table of stretches at the most: those that hold the least feed, uncorrected.
+/// Largest number of rows in the table of stretches: the stretches that hold the tolerance
+/// uncorrected at the smallest fraction of their feedrate.
 const ROWS: usize = 200;
 impl Advice {
-    /// Largest error over the feedrate, for each way, and the feedrates that hold, stretch by
-    /// stretch.
+    /// Draws the largest error over the feedrate, for each way, and the feedrates that hold the
+    /// tolerance, stretch by stretch.
     pub fn figure(&self, units: PageUnits) -> Figure {
         let per_minute = 60.0 * units.factor();
         let largest_per_minute = per_minute * self.programmed_mm_s[1];
@@ -103,7 +104,7 @@ impl Advice {
     /// Writes the page: the table, the figure, and the stretches.
     ///
     /// # Errors
-    /// Where `out` takes no more.
+    /// A write to `out` that fails.
     pub fn write_page(
         &self,
         out: &mut impl Write,
@@ -251,7 +252,7 @@ impl Advice {
         }
     }
 
-    /// At most `most` stretches, in the order of the program: those that hold the tolerance
+    /// Selects at most `most` stretches, in the order of the program: those that hold the tolerance
     /// uncorrected only at the smallest fractions of their programmed feedrates.
     pub fn slowest(&self, most: usize) -> Vec<&StretchAdvice> {
         let part =

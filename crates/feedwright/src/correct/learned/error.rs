@@ -1,4 +1,4 @@
-//! Why nothing can be learned from a log.
+//! Reasons why nothing can be learned from a log.
 
 use feedwright_plan::LimitsError;
 use feedwright_sim::{Cancelled, shown, to_four_digits};
@@ -6,10 +6,10 @@ use thiserror::Error;
 
 use crate::measured::MeasuredError;
 
-/// Why nothing can be learned from a log.
+/// Reason why nothing can be learned from a log.
 #[derive(Debug, Error, miette::Diagnostic)]
 pub enum LearnError {
-    /// The log is not one of the program.
+    /// The log does not match the program.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Measured(#[from] MeasuredError),
@@ -27,7 +27,7 @@ pub enum LearnError {
         /// Longest that is allowed, s.
         most_s: f64,
     },
-    /// The machine of the log is not that of the file.
+    /// The machine of the log is not the machine of the file.
     #[error("axis {axis} of the log has {} times the {value} of the machine file; {} to {} are allowed",
         to_four_digits(*factor), shown(bounds[0]), shown(bounds[1]))]
     #[diagnostic(help(
@@ -37,21 +37,21 @@ pub enum LearnError {
     OtherMachine {
         /// The axis.
         axis: &'static str,
-        /// What is different.
+        /// The value that differs.
         value: &'static str,
-        /// How many times the value of the file.
+        /// Ratio of the value in the log to the value in the file.
         factor: f64,
-        /// Least and most that is allowed.
+        /// Least and largest allowed ratio.
         bounds: [f64; 2],
     },
-    /// What the log shows is not what the model says, whatever its values.
+    /// The model does not explain the log at any values.
     #[error("the model of the machine misses the log by {} um RMS across the path, and explains {} um of its contour error: at most 0.7 of that and 0.5 um are allowed",
         to_four_digits(*rest_um), to_four_digits(*error_um))]
     #[diagnostic(help(
         "the log is too noisy or of another machine: record the encoders with all their digits, or identify the machine anew"
     ))]
     TooNoisy {
-        /// RMS of what the model does not say across the path, um.
+        /// RMS of the error across the path that the model does not explain, um.
         rest_um: f64,
         /// RMS contour error that the model explains, um.
         error_um: f64,

@@ -7,14 +7,14 @@
 //! min over q, d:  sum_k |a(k) - m(c, p exp(q))(k ts + d)|^2 / (S^2 L)  +  sum q^2 / Q^2  +  sum d^2 / D^2
 //! ```
 //!
-//! by Gauss and Newton. `S` is the RMS of what is left of an axis, `L` the samples of a time
-//! constant of the loop, within which errors of a model are not independent. `Q` = 0.2 is how far a
-//! machine file is off; values that the log does not show stay as they are. `d` is the time between
-//! the samples of the log and those of the model. The curvature at the minimum gives the standard
-//! deviations.
+//! by Gauss and Newton. `S` is the RMS of the remainder of an axis, `L` the samples of a time
+//! constant of the loop, within which errors of a model are not independent. `Q` = 0.2 is the error
+//! of a machine file; values that the log does not show stay as they are. `d` is the time between
+//! the samples of the log and the samples of the model. The curvature at the minimum gives the
+//! standard deviations.
 //!
 //! Source: iterative learning with basis functions (van de Wijdeven and Bosgra 2010), which carries
-//! what was learned over to another command. The functions are the changes of the simulated
+//! the learned values over to another command. The functions are the changes of the simulated
 //! position with each value.
 
 use feedwright_plan::vector::{Vector, add_scaled, distance, sub};
@@ -30,24 +30,25 @@ const FILE_SD: f64 = 0.2;
 /// Standard deviation of the time between the samples of log and model, s: recorders take positions
 /// at either end of a period, and controls delay commands by some periods.
 const LATE_SD_S: f64 = 0.005;
-/// A value that differs from the file by more is that of another machine, times.
+/// Range of a value relative to the file. A value outside of it belongs to another machine.
 const BOUNDS: [f64; 2] = [0.6, 1.667];
-/// Steps of Gauss and Newton at most, the change by which the derivatives are taken, and the step
-/// that is small, natural logarithms.
+/// Largest number of steps of Gauss and Newton, the change for the numerical derivatives, and the
+/// length of a step that counts as small, natural logarithms.
 const STEPS: u32 = 8;
 const DIFFERENCE: f64 = 0.01;
 const SMALL: f64 = 1e-3;
 /// Longest step of a value, natural logarithm.
 const LONGEST: f64 = 0.4;
-/// Halvings of a step that does not lead down.
+/// Halvings of a step that does not lower the cost.
 const HALVINGS: u32 = 4;
-/// Least RMS of what is left, mm: a model is not better than the digits of a log.
+/// Least RMS of the remainder, mm: a model is no better than the digits of a log.
 const LEAST_MM: f64 = 2e-5;
-/// Longest part of a log that values are found from, s.
+/// Longest part of a log that the fit uses, s.
 const MOST_S: f64 = 120.0;
-/// A tool that is further from the command than this in the first sample is under way, mm.
+/// The machine moves already if the tool is further from the command than this in the first sample,
+/// mm.
 const RESTS_MM: f64 = 0.01;
-/// Time constants of the position loop in which a model forgets how it began.
+/// Time constants of the position loop after which a model no longer depends on its start.
 const FORGETS: f64 = 6.0;
 
 /// A value of an axis that may be wrong.
@@ -70,7 +71,7 @@ pub enum ModelValue {
     AccelerationFeedforward,
 }
 
-/// All of them.
+/// All values.
 const VALUES: [ModelValue; 7] = [
     ModelValue::PositionGain,
     ModelValue::SpeedGain,
@@ -82,7 +83,7 @@ const VALUES: [ModelValue; 7] = [
 ];
 
 impl ModelValue {
-    /// What messages call it.
+    /// Name of the value for messages.
     pub(crate) const fn words(self) -> &'static str {
         match self {
             Self::PositionGain => "position gain",
@@ -95,7 +96,7 @@ impl ModelValue {
         }
     }
 
-    /// Multiplies it, and returns whether the axis has any of it.
+    /// Multiplies the value. Returns true if the value is not zero on the axis.
     fn scale(self, axis: &mut Axis, factor: f64) -> bool {
         let scaled = |values: &mut [&mut f64]| {
             values.iter_mut().for_each(|value| **value *= factor);
@@ -123,24 +124,24 @@ impl ModelValue {
 pub struct LearnedValue {
     /// The axis.
     pub axis: &'static str,
-    /// Which value.
+    /// Name of the value.
     pub value: ModelValue,
-    /// How many times the value of the machine file.
+    /// Factor on the value of the machine file.
     pub factor: f64,
-    /// Standard deviation of the factor, part of it.
+    /// Standard deviation of the factor, as a fraction of it.
     pub standard_deviation: f64,
 }
 
-/// The model at the values that the logs show.
+/// Model with the values that the logs show.
 pub(super) struct ModelFit {
-    /// The machine file with them.
+    /// Machine of the file with these values.
     pub(super) machine: Machine,
     pub(super) values: Vec<LearnedValue>,
-    /// Time by which samples of each log are later than those of the model, s.
+    /// Time by which the samples of each log are later than the samples of the model, s.
     pub(super) late_s: Vec<f64>,
-    /// What the model leaves of each log, sample by sample, mm.
+    /// Error of each log that the model does not explain, sample by sample, mm.
     pub(super) left_mm: Vec<Vec<Vector>>,
-    /// The machine at values that are as likely, in pairs about the best.
+    /// Machines with values that are as likely, in pairs around the best.
     pub(super) likely: Vec<Machine>,
 }
 
@@ -160,8 +161,8 @@ pub(super) fn at(series: &[Vector], index: f64) -> Vector {
     })
 }
 
-/// Positions of a model at the starts of its servo periods, mm, that follow the command of a
-/// record.
+/// Simulates a model that follows the command of a record. Returns its positions at the starts of
+/// its servo periods, mm.
 pub(super) fn followed(
     machine: &Machine,
     record: &PartRecord,
@@ -199,7 +200,7 @@ pub(super) fn followed(
 /// A matrix, row by row.
 type RowMatrix = Vec<Vec<f64>>;
 
-/// The search under way.
+/// State of the search for values.
 struct ValueSearch<'a> {
     base: &'a Machine,
     records: &'a [PartRecord],
@@ -208,7 +209,7 @@ struct ValueSearch<'a> {
     watch: &'a dyn Watch,
 }
 
-/// What a point of the search leaves, and the model there.
+/// Point of the search: the model there, and the remainders.
 struct SearchPoint {
     /// Logarithms of the factors, axis by axis, and times, in samples.
     at: Vec<f64>,
@@ -217,13 +218,13 @@ struct SearchPoint {
 }
 
 impl ValueSearch<'_> {
-    /// Samples of a record that values are found from.
+    /// Returns the number of samples of a record that the fit uses.
     fn samples(&self, record: &PartRecord) -> usize {
         let most = (MOST_S / record.cut.sample_s) as usize;
         record.cut.command_mm.len().min(record.cut.first + most)
     }
 
-    /// The first sample that the model says something of.
+    /// Returns the first sample that the model can predict.
     fn begin(&self, record: &PartRecord) -> usize {
         let rests = distance(record.cut.command_mm[0], record.cut.actual_mm[0]) < RESTS_MM;
         if rests {
@@ -243,7 +244,7 @@ impl ValueSearch<'_> {
         machine
     }
 
-    /// What the model leaves of a record.
+    /// Computes the difference between a record and the model, sample by sample, mm.
     fn left(&self, record: &PartRecord, followed_mm: &[Vector], late: f64) -> Vec<Vector> {
         let ratio = record.cut.sample_s / self.base.period.servo_s;
         let model = |k: usize| at(followed_mm, (k as f64 + late) * ratio);
@@ -280,7 +281,7 @@ impl ValueSearch<'_> {
         })
     }
 
-    /// Mean square of what is left of each axis, mm2.
+    /// Computes the mean square of the remainder of each axis, mm2.
     fn spread_mm2(&self, point: &SearchPoint) -> Vector {
         let (mut sum, mut count) = ([0.0; 3], 0.0);
         for (record, left_mm) in self.records.iter().zip(&point.left_mm) {
@@ -292,7 +293,7 @@ impl ValueSearch<'_> {
         sum.map(|sum| (sum / f64::max(count, 1.0)).max(LEAST_MM * LEAST_MM))
     }
 
-    /// Weight of a square of a record, by axis, 1/mm2.
+    /// Computes the weight of a squared error of a record, by axis, 1/mm2.
     fn weights(&self, record: &PartRecord, spread_mm2: Vector) -> Vector {
         let alike = (1.0 / self.base.slowest_kp_1_s() / record.cut.sample_s).max(1.0);
         spread_mm2.map(|spread| 1.0 / (spread * alike))
@@ -324,7 +325,7 @@ impl ValueSearch<'_> {
         cost
     }
 
-    /// Curvature and slope of the cost at a point.
+    /// Computes curvature and slope of the cost at a point.
     fn normal(
         &self,
         point: &SearchPoint,
@@ -381,7 +382,7 @@ impl ValueSearch<'_> {
         Ok((curvature, slope))
     }
 
-    /// The values at a point, with the triangle of the curvature there.
+    /// Returns the values at a point. `factor` is the triangular factor of the curvature there.
     fn learned(
         &self,
         point: &SearchPoint,
@@ -412,8 +413,8 @@ impl ValueSearch<'_> {
         (0..self.axes * own).map(value).collect()
     }
 
-    /// A point further down, the curvature there before, and how far it is away; none where no step
-    /// leads down.
+    /// Takes a step to a point with a lower cost. Returns that point, the factor of the curvature
+    /// before the step, and the length of the step; no point if no step lowers the cost.
     fn step(&self, from: &SearchPoint) -> Result<(Option<SearchPoint>, RowMatrix, f64), Cancelled> {
         let spread_mm2 = self.spread_mm2(from);
         let (curvature, slope) = self.normal(from, spread_mm2)?;
@@ -423,7 +424,7 @@ impl ValueSearch<'_> {
         let longest = values
             .iter()
             .fold(0.0_f64, |most, step| most.max(step.abs()));
-        // A time is found where it changes by less than a fiftieth of a sample.
+        // A time counts as found when it changes by less than a fiftieth of a sample.
         let way = step[values.len()..]
             .iter()
             .fold(longest, |most, step| most.max(SMALL / 0.02 * step.abs()));
@@ -462,7 +463,7 @@ fn factor_of(matrix: &[Vec<f64>]) -> RowMatrix {
     lower
 }
 
-/// The solution of L' x = right.
+/// Solves L' x = right.
 fn backward(lower: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     let mut x = right.to_vec();
     for i in (0..x.len()).rev() {
@@ -471,7 +472,7 @@ fn backward(lower: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     x
 }
 
-/// The solution of L L' x = right.
+/// Solves L L' x = right.
 fn solved(lower: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     let mut x = right.to_vec();
     for i in 0..x.len() {
@@ -480,8 +481,8 @@ fn solved(lower: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     backward(lower, &x)
 }
 
-/// Points of the standard normal distribution: the signs of their parts alternate in another rhythm
-/// for each.
+/// Returns a point of the standard normal distribution: the signs of its components alternate with
+/// the period `rhythm`.
 fn alternating(size: usize, rhythm: usize) -> Vec<f64> {
     (0..size)
         .map(|k| {
@@ -497,7 +498,7 @@ fn alternating(size: usize, rhythm: usize) -> Vec<f64> {
 /// Finds the values of a machine that its logs show.
 ///
 /// # Errors
-/// Values that are those of another machine, or an end from outside.
+/// Values that belong to another machine, or a run that was cancelled.
 pub(super) fn fit(
     base: &Machine,
     records: &[PartRecord],
@@ -565,8 +566,8 @@ pub(super) fn fit(
     })
 }
 
-/// What a machine with all its noise adds to the positions of a record, mm: an example of what does
-/// not repeat.
+/// Computes the error that all noise of a machine adds to the positions of a record, mm: a sample
+/// of the error that does not repeat.
 pub(super) fn noise_of(machine: &Machine, record: &PartRecord, seed: u64) -> Vec<Vector> {
     let samples = record.cut.command_mm.len();
     let [noisy, quiet] = [

@@ -1,5 +1,5 @@
 //! A log of one cut of the part: checked, in the coordinates of the program, and with the program
-//! that it was cut by.
+//! that was cut.
 
 use feedwright_ident::{Log, LogAxis};
 use feedwright_plan::Step;
@@ -13,22 +13,22 @@ use crate::measured::{MeasuredLog, RecordedCut, recorded_cut};
 /// A log needs this many samples in a time constant of the position loop; fewer do not show the
 /// transients.
 const LEAST_SAMPLES: f64 = 4.0;
-/// So many lost samples in a row are filled in; a longer gap refuses the log.
+/// Largest number of lost samples in a row that are filled in. A log with a longer gap is rejected.
 const MOST_LOST: f64 = 3.0;
-/// A command whose RMS distance from the program is less is that of the program, mm: a control's
-/// own blends are larger than its numbers.
+/// A command whose RMS distance from the original is smaller belongs to the original, mm. The
+/// blends of a control are larger than its rounding errors.
 const SAME_PROGRAM_MM: f64 = 2e-3;
 /// A corrected program rests where the original does not, for more than this, s: its shortest dwell
 /// is a quarter of 30 ms.
 const DWELL_S: f64 = 5e-3;
 
-/// Which program a log was cut by.
+/// Program that a log is a cut of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CutProgram {
     /// The program that is corrected.
     Original,
-    /// One that was corrected before.
+    /// A program that was corrected before.
     Corrected,
 }
 
@@ -116,7 +116,7 @@ fn longest_rest(rests: impl Iterator<Item = bool>) -> f64 {
     longest.into()
 }
 
-/// The command of the original as it is planned.
+/// Planned command of the original.
 struct PlannedCommand {
     /// Arc length and position, mm.
     places: Vec<(f64, Vector)>,
@@ -140,11 +140,12 @@ impl PlannedCommand {
         }
     }
 
-    /// RMS distance of a cutting command from it, mm; both at the same arc length.
+    /// Computes the RMS distance between a cutting command and the plan, mm; both at the same arc
+    /// length.
     fn off_mm(&self, rows: &[Row]) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
         for row in rows.iter().filter(|row| row.commanded == Commanded::Cut) {
-            // A control may round corners in another way than is planned.
+            // A control may round corners differently from the plan.
             sum += distance(self.at(row.s_mm), row.cmd_mm)
                 .min(distance(row.path_mm, row.cmd_mm))
                 .powi(2);
@@ -169,7 +170,7 @@ impl PlannedCommand {
     }
 }
 
-/// A log whose short gaps are filled in along straight lines.
+/// Returns a log whose short gaps are filled in along straight lines.
 fn filled(log: &Log) -> Log {
     let missing = |pair: &[std::ops::Range<usize>]| {
         let gap_s = log.time_s[pair[1].start] - log.time_s[pair[0].end - 1];

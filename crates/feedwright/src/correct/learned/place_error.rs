@@ -1,10 +1,10 @@
-//! What was learned, carried over from the samples of a record to those of another command along
+//! Carries learned errors over from the samples of a record to the samples of another command along
 //! the same path.
 //!
-//! Samples belong together where the command has come equally far along the programmed path; in a
-//! rest, those that are equally long behind its begin. The error of a model depends on how the
-//! command moves, so it is carried over as far as both move alike: with the commanded speeds `u`
-//! and `v`, times
+//! Samples correspond if the command has come equally far along the programmed path; in a rest, if
+//! they are equally long after its start. The error of a model depends on how the command moves, so
+//! it is carried over only as far as both commands move alike: with the commanded speeds `u` and
+//! `v`, the factor is
 //!
 //! ```text
 //! 1 / (1 + (|u - v| / (0.2 max(|u|, |v|)))^2)
@@ -14,11 +14,12 @@ use feedwright_plan::vector::{Vector, distance, norm, sub};
 
 use super::model_fit::at;
 
-/// Part of the speed by which commands differ that are only half alike.
+/// Relative difference of speed at which commands count as half alike.
 const ALIKE: f64 = 0.2;
-/// Least speed that speeds are compared with, mm/s.
+/// Smallest reference speed for a comparison of speeds, mm/s.
 const LEAST_MM_S: f64 = 1.0;
-/// A command that goes less in a sample rests, mm; and arc lengths of one rest.
+/// A command that moves less than this in a sample rests, mm; and tolerance for the arc lengths of
+/// one rest, mm.
 const RESTS_MM: f64 = 1e-6;
 const SAME_MM: f64 = 5e-3;
 
@@ -44,11 +45,11 @@ impl PathTrack {
         k > 0 && distance(self.command_mm[k], self.command_mm[k - 1]) < RESTS_MM
     }
 
-    /// The first sample at an arc length, and how many are there.
+    /// Returns the first sample at an arc length, and the number of samples there.
     fn samples_at(&self, s_mm: f64) -> [usize; 2] {
         let [first, end] =
             [s_mm - SAME_MM, s_mm + SAME_MM].map(|s_mm| self.s_mm.partition_point(|s| *s < s_mm));
-        // Of those that are near, the ones at rest.
+        // If some of the near samples are at rest, only these count.
         let rest = (first..end).find(|&k| self.rests(k));
         let [first, end] = rest.map_or([first, first], |rest| {
             [
@@ -62,7 +63,8 @@ impl PathTrack {
         [first, end - first]
     }
 
-    /// Where in this track each sample of another is; none before its begin.
+    /// Returns the index in this track of each sample of another track; none before the start of
+    /// this track.
     pub(super) fn places_of(&self, other: &Self) -> Vec<Option<f64>> {
         let mut rested = 0.0;
         let place = |k: usize| {
@@ -99,16 +101,16 @@ impl PathTrack {
     }
 }
 
-/// An error of the model along the path, and the command that it was seen at.
+/// An error of the model along the path, and the command of its record.
 #[derive(Debug, Clone, Default)]
 pub struct PlaceError {
     pub(super) track: PathTrack,
-    /// From the model's position to that of the machine, sample by sample, mm.
+    /// Vector from the model's position to the machine's position, sample by sample, mm.
     pub(super) error_mm: Vec<Vector>,
 }
 
 impl PlaceError {
-    /// The same for the samples of another command, mm.
+    /// Carries the error over to the samples of another command, mm.
     pub(in crate::correct) fn along(&self, other: &PathTrack) -> Vec<Vector> {
         let places = self.track.places_of(other);
         let error = |(k, place): (usize, &Option<f64>)| {

@@ -1,28 +1,29 @@
-//! What of the records repeats, and what does not.
+//! Splits the error of the records into the part that repeats and the part that does not.
 //!
 //! A sequence is split into bands: the differences of moving averages over 1, 3, 7, 15, ...
-//! samples. In each band and axis, what repeats is the mean of the records times the weight of
-//! Wiener (1949),
+//! samples. In each band and axis, the part that repeats is the mean of the records times the
+//! weight of Wiener (1949),
 //!
 //! ```text
 //! w = max(0, 1 - N / P),
 //! ```
 //!
-//! with the mean square `P` of the mean, and `N` that of what does not repeat in it. Of several
-//! records, the differences from their mean show `N`. One record does not tell it: `N` is twice
-//! what the machine file says of disturbance and noise, since that scatters from cut to cut, and at
-//! least half of `P`.
+//! where `P` is the mean square of the mean, and `N` is the mean square of the part of the mean
+//! that does not repeat. With several records, the differences from their mean show `N`. One record
+//! does not show it: `N` is then twice the disturbance and noise of the machine file, because they
+//! scatter from cut to cut, and at least half of `P`.
 
 use feedwright_plan::vector::{Vector, add_scaled, sub};
 
-/// Bands: the last has everything slower.
+/// Number of bands: the last one has all slower parts.
 const BANDS: u32 = 9;
-/// Least part of one record that is taken not to repeat.
+/// Smallest part of one record that counts as not repeating.
 const DOUBT: f64 = 0.5;
-/// Power of disturbance and noise in one record, times that of the machine file.
+/// Power of disturbance and noise in one record, relative to the machine file.
 const SCATTER: f64 = 2.0;
 
-/// Moving average over `reach` samples to both sides, twice: the ends of a sequence go on.
+/// Computes a moving average over `reach` samples to both sides, twice; a sequence continues with
+/// its end values.
 fn averaged(values: &[Vector], reach: usize) -> Vec<Vector> {
     let once = |values: &[Vector]| -> Vec<Vector> {
         let last = values.len() as isize - 1;
@@ -45,7 +46,7 @@ fn averaged(values: &[Vector], reach: usize) -> Vec<Vector> {
     }
 }
 
-/// A sequence in bands, fast ones first; their sum is the sequence.
+/// Splits a sequence into bands, fast ones first; their sum is the sequence.
 fn bands(values: &[Vector]) -> Vec<Vec<Vector>> {
     let mut rest = values.to_vec();
     let mut bands = Vec::new();
@@ -71,8 +72,8 @@ fn mean_square(values: &[Vector], axis: usize) -> f64 {
         / values.len().max(1) as f64
 }
 
-/// What repeats of records that stand beside each other sample by sample; `noise` is an example of
-/// what does not by the machine file.
+/// Returns the repeating part of records that correspond sample by sample. `noise` is a sample of
+/// the part that does not repeat according to the machine file.
 pub(super) fn repeating(records: &[Vec<Vector>], noise: &[Vector]) -> Vec<Vector> {
     let count = records.len() as f64;
     let samples = records.iter().map(Vec::len).min().unwrap_or(0);

@@ -1,7 +1,7 @@
 //! Range and ticks of an axis.
 
-/// The range of the data with `margin` times its span left free at either end; `values` that are
-/// not finite do not count.
+/// Returns the range of the data, with `margin` times its span left free at either end. `values`
+/// that are not finite do not count.
 pub(super) fn range(values: impl Iterator<Item = f64>, margin: f64) -> [f64; 2] {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for v in values.filter(|v| v.is_finite()) {
@@ -11,8 +11,8 @@ pub(super) fn range(values: impl Iterator<Item = f64>, margin: f64) -> [f64; 2] 
     if low > high {
         return [0.0, 1.0];
     }
-    // What is constant but for its rounding is drawn in the middle of a tenth of its size: its
-    // ticks are then short numbers.
+    // Data that is constant except for rounding is drawn in the middle of a range of a tenth of its
+    // size: its ticks are then short numbers.
     let size = low.abs().max(high.abs());
     if high - low <= 1e-6 * size {
         let (middle, half) = (
@@ -25,7 +25,8 @@ pub(super) fn range(values: impl Iterator<Item = f64>, margin: f64) -> [f64; 2] 
     [low - margin * span, high + margin * span]
 }
 
-/// Ticks at multiples of 1, 2 or 5 times a power of ten, about `wanted` of them, with their texts.
+/// Returns ticks at multiples of 1, 2 or 5 times a power of ten, about `wanted` of them, with their
+/// texts.
 pub(super) fn ticks([low, high]: [f64; 2], wanted: f64) -> Vec<(f64, String)> {
     let raw = (high - low) / wanted.max(1.0);
     let power = libm::pow(10f64, libm::log10(raw).floor());
@@ -46,8 +47,8 @@ pub(super) fn ticks([low, high]: [f64; 2], wanted: f64) -> Vec<(f64, String)> {
         .collect()
 }
 
-/// Ticks of a logarithmic axis whose range is in powers of ten: at 1, 2 and 5 times each, or at the
-/// powers alone where that is too many.
+/// Returns ticks of a logarithmic axis whose range is in powers of ten: at 1, 2 and 5 times each
+/// power, or at the powers alone if that is too many.
 pub(super) fn ticks_of_powers([low, high]: [f64; 2], wanted: f64) -> Vec<(f64, String)> {
     let powers = (low.floor() as i32)..=(high.ceil() as i32);
     let at = |digits: &[f64]| -> Vec<(f64, String)> {

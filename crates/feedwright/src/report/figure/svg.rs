@@ -18,17 +18,17 @@ const LABELS_PX: f64 = 26.0;
 const AXIS_TITLE_PX: f64 = 20.0;
 const GAP_PX: f64 = 22.0;
 const LEGEND_PX: f64 = 28.0;
-/// Of each line of the legend behind the first.
+/// Height of each further line of the legend, px.
 const LEGEND_LINE_PX: f64 = 18.0;
 const TICK_PX: f64 = 5.0;
-/// Distance of ticks aimed at.
+/// Target distance between ticks, px.
 const X_TICK_PX: f64 = 75.0;
 const Y_TICK_PX: f64 = 42.0;
 const DEFAULT_ASPECT: f64 = 0.62;
-/// Part of the span that curves leave free above and below. Sideways they fill the panel, unless
-/// its axes are equal.
+/// Part of the span that curves leave free above and below. Horizontally they fill the panel,
+/// unless its axes are equal.
 const MARGIN: f64 = 0.04;
-/// Points nearer than this to the last one drawn are left out, px: less than a print shows.
+/// Points closer than this to the last one drawn are left out, px: less than print shows.
 const THIN_PX: f64 = 0.3;
 
 /// `write!` to a string, which cannot fail.
@@ -36,7 +36,7 @@ macro_rules! put {
     ($out:expr, $($arg:tt)*) => { let _ = write!($out, $($arg)*); };
 }
 
-/// Where a panel's area lies, and what it shows.
+/// Position of a panel's area, px, and its ranges and ticks.
 struct Area {
     left: f64,
     top: f64,
@@ -57,7 +57,7 @@ impl Area {
     }
 }
 
-/// The figure, `page_px` wide.
+/// Returns the figure as SVG, `page_px` wide.
 pub(super) fn write(figure: &Figure, page_px: f64) -> String {
     let columns = if page_px < WIDTH {
         1
@@ -111,7 +111,7 @@ pub(super) fn write(figure: &Figure, page_px: f64) -> String {
     )
 }
 
-/// What a screen reader says of the figure: what its panels show.
+/// Returns the description of the figure for screen readers: the contents of its panels.
 fn spoken(figure: &Figure) -> String {
     let panel = |panel: &Panel| match (panel.title.as_str(), panel.y_title.as_str()) {
         (title, "") => title.to_owned(),
@@ -131,9 +131,9 @@ fn spoken(figure: &Figure) -> String {
     }
 }
 
-/// Room for the vertical axis: its title and its widest label.
+/// Returns the room for the vertical axis: its title and its widest label.
 fn left_room(panel: &Panel, aspect: f64, cell_px: f64) -> f64 {
-    // What the room leaves is not known yet; a tenth more or less makes the same labels.
+    // The width of the plotting area is not known yet; a tenth more or less makes the same labels.
     let width = 0.85 * cell_px;
     let area = fitted(panel, 0.0, 0.0, width, width * aspect);
     let labels = (area.ticks)(area.y, area.height / Y_TICK_PX);
@@ -183,7 +183,8 @@ fn fitted(panel: &Panel, left: f64, top: f64, width: f64, height: f64) -> Area {
     }
 }
 
-/// `title_x` is where the title of the vertical axis stands, from the left of the area.
+/// Draws a panel. `title_x` is the position of the title of the vertical axis, from the left of the
+/// area.
 fn put_panel(out: &mut String, panel: &Panel, area: &Area, title_x: f64) {
     let Area {
         left,
@@ -207,7 +208,7 @@ fn put_panel(out: &mut String, panel: &Panel, area: &Area, title_x: f64) {
             "<path d=\"M0 {zero:.2}H{width:.2}\" stroke=\"currentColor\" stroke-opacity=\"0.25\" fill=\"none\"/>\n"
         );
     }
-    // A nested drawing clips what leaves the area, without ids that would clash in a page of
+    // A nested drawing clips the parts outside the area, without ids that would clash in a page of
     // several figures.
     put!(
         out,
@@ -236,7 +237,7 @@ fn put_panel(out: &mut String, panel: &Panel, area: &Area, title_x: f64) {
     );
 }
 
-/// Frame, and ticks to the inside on all four sides.
+/// Draws the frame, and ticks to the inside on all four sides.
 fn put_axes(out: &mut String, area: &Area) {
     let (width, height) = (area.width, area.height);
     let (mut marks, mut labels) = (String::new(), String::new());
@@ -298,7 +299,7 @@ fn stroke(curve: &Polyline) -> String {
     format!("stroke=\"{color}\" stroke-width=\"{width}\"{dash}")
 }
 
-/// The first curve of each name.
+/// Returns the first curve of each name.
 fn legend(figure: &Figure) -> Vec<&Polyline> {
     let mut entries: Vec<&Polyline> = Vec::new();
     for curve in figure.panels.iter().flat_map(|p| &p.curves) {
@@ -309,7 +310,7 @@ fn legend(figure: &Figure) -> Vec<&Polyline> {
     entries
 }
 
-/// Puts the legend; its lines.
+/// Draws the legend and returns the number of its lines.
 fn put_legend(out: &mut String, entries: &[&Polyline], page_px: f64) -> usize {
     let (mut x, mut lines) = (0.0, usize::from(!entries.is_empty()));
     for curve in entries {
@@ -336,7 +337,7 @@ fn put_legend(out: &mut String, entries: &[&Polyline], page_px: f64) -> usize {
     lines
 }
 
-/// Width of a text, roughly: what the reader's font makes of it is not known here.
+/// Estimates the width of a text: the width in the reader's font is not known here.
 fn text_px(text: &str) -> f64 {
     let em = |c: char| match c {
         'f' | 'i' | 'j' | 'l' | 'r' | 't' | ' ' | '.' | ',' | ':' | '(' | ')' | '\'' => 0.36,

@@ -1,4 +1,4 @@
-//! How round the circles of the program were cut, as a table: ISO 230-4 names its numbers.
+//! Table of the roundness of the circles of the program; ISO 230-4 names its numbers.
 
 use std::io::{self, Write};
 
@@ -6,7 +6,7 @@ use super::tables::swatch;
 use crate::report::text::escaped;
 use crate::report::{PageUnits, Report};
 
-/// A row for each circle and run; nothing where the program has no circle.
+/// Writes a row for each circle and run; nothing if the program has no circle.
 pub(super) fn write_circularity(
     out: &mut impl Write,
     report: &Report,

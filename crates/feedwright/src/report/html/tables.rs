@@ -10,11 +10,12 @@ use crate::report::{
 
 const AXES: [&str; 3] = ["X", "Y", "Z"];
 
-/// Events drawn on a strip; the rest is given as a number. More would be a solid bar.
+/// Largest number of events drawn on a strip; the rest is given as a number. More would be a solid
+/// bar.
 const SHOWN_EVENTS: usize = 200;
 
-/// A row for each controller; behind them `assumed`, what they rest on, and what happened in each
-/// run.
+/// Writes a row for each controller, then `assumed`, the assumptions of the figures, and the events
+/// of each run.
 pub(super) fn write_summary(
     out: &mut impl Write,
     report: &Report,
@@ -91,7 +92,7 @@ fn write_summary_row(
         })
     };
     let mut cell = |label: &str, text: String, value: fn(&RunSummary, usize) -> f64, k: usize| {
-        // A value that a run does not have is no number, and has no ratio.
+        // A value that a run does not have is NaN, and has no ratio.
         let ratio = first.and_then(|f| change(value(f, k), value(run, k)));
         let ratio = ratio.map_or(String::new(), |r| format!("<small>{r}</small>"));
         write!(
@@ -151,15 +152,14 @@ pub(super) fn swatch(index: usize) -> String {
     format!("<span class=\"swatch run-{}\"></span>", index % 6)
 }
 
-/// Behind this part of the machining time only the end of the program comes.
+/// Fraction of the machining time after which only the end of the program counts as an event.
 const ENDS_WITHIN: f64 = 0.995;
 
-/// Rows of a timeline. A machine has a dozen units; a file that names hundreds is not drawn
-/// further.
+/// Largest number of rows of a timeline. A machine has a dozen units; of a file that names
+/// hundreds, only these are drawn.
 const SHOWN_ROWS: usize = 24;
 
-/// The events of a run on strips as long as the run, one for each unit of the machine, and as a
-/// list. When and why the correction came into the loop and left it.
+/// Lists when and why the correction engaged and disengaged in a run.
 fn write_transitions(out: &mut impl Write, index: usize, run: &RunSummary) -> io::Result<()> {
     let transitions = &run.transitions;
     if transitions.is_empty() {
@@ -197,8 +197,9 @@ fn write_moments(
     out.write_all(b"</ol></details>\n")
 }
 
+/// Writes the events of a run as a list, and on strips as long as the run, one for each unit.
 fn write_events(out: &mut impl Write, index: usize, run: &ReportedRun) -> io::Result<()> {
-    // That a program ends is no event: every one does.
+    // The end of a program is not an event: every program has one.
     if run
         .events
         .iter()
@@ -234,7 +235,7 @@ fn write_events(out: &mut impl Write, index: usize, run: &ReportedRun) -> io::Re
     )
 }
 
-/// A strip for each unit of the machine that has events, in the order in which they first come.
+/// Draws a strip for each unit of the machine that has events, in the order of their first events.
 fn write_rows(
     out: &mut impl Write,
     run: &ReportedRun,
@@ -288,7 +289,7 @@ fn event_text(event: &TimelineEvent) -> String {
     }
 }
 
-/// The worst places, a table for each controller.
+/// Writes the worst places, a table for each controller.
 pub(super) fn write_worst(
     out: &mut impl Write,
     report: &Report,
@@ -354,7 +355,7 @@ fn write_place(
     )
 }
 
-/// How to read the page, the settings and the machine.
+/// Writes the notes on how to read the page, the settings and the machine.
 pub(super) fn write_notes(
     out: &mut impl Write,
     report: &Report,

@@ -4,7 +4,7 @@ use crate::report::headline::{HeadlinePart, headline};
 use crate::report::text::escaped;
 use crate::report::{PageUnits, Report};
 
-/// The headline, escaped, with names and values set apart.
+/// Returns the headline, escaped, with names and values highlighted.
 pub(super) fn verdict(report: &Report, units: PageUnits) -> String {
     headline(report)
         .parts

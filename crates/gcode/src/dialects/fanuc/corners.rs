@@ -47,7 +47,7 @@ impl Interpreter {
         Ok(())
     }
 
-    /// Whether the motion of a line begins or ends at a corner.
+    /// Returns true if the motion of a line begins or ends at a corner.
     pub(crate) fn has_own_corner(&self, block: &Block) -> bool {
         block.corner.is_some() || self.fanuc.resolved.is_some()
     }

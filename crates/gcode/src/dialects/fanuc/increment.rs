@@ -70,7 +70,8 @@ impl Interpreter {
         }
     }
 
-    /// What deserves a look at the end of a program, once: line, message and hint.
+    /// Returns the warning about decimal points for the end of a program, once: line, message and
+    /// hint.
     pub(crate) fn warning_of_points(&mut self) -> Option<(u32, String, &'static str)> {
         let points = std::mem::take(&mut self.fanuc.points);
         let (line, word, value) = points.first?;

@@ -7,16 +7,16 @@
 
 use crate::text::codes::{AXES, bit};
 
-/// What shows the machine, and where.
+/// Text that shows the machine, and its line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Sign {
-    /// From 1.
+    /// Line of the program, from 1.
     pub(crate) line: u32,
     pub(crate) what: &'static str,
     is_certain: bool,
 }
 
-/// What the beginning of a program shows.
+/// Signs found at the beginning of a program.
 #[derive(Debug, Default)]
 pub(crate) struct Evidence {
     lathe: Vec<Sign>,
@@ -68,7 +68,8 @@ impl Evidence {
         evidence
     }
 
-    /// Whether something has no meaning but on a lathe of Fanuc or Haas, LinuxCNC included.
+    /// Returns a sign that only a lathe program of Fanuc or Haas can have, not even one of
+    /// LinuxCNC.
     pub(crate) fn certain_lathe(&self) -> Option<Sign> {
         // U may be an axis there, and G32 something else.
         let others = ["G28", "G32"];
@@ -242,7 +243,7 @@ struct LineWords {
     m: Vec<u32>,
     letters: u32,
     feed: Option<f64>,
-    /// Whether a T word has three or four digits: the tool number, then the offset number.
+    /// True where a T word has three or four digits: the tool number, then the offset number.
     lathe_tool: bool,
 }
 

@@ -36,7 +36,7 @@ struct Roughing<'a> {
     curves: Vec<PlaneCurve>,
     depth_mm: f64,
     escape_mm: f64,
-    /// How the first block of the profile moves.
+    /// Speed of the first block of the profile.
     infeed: Speed,
 }
 
@@ -100,7 +100,7 @@ impl<'a> Roughing<'a> {
         Ok(roughing)
     }
 
-    /// What no pass of this kind can cut.
+    /// Fails if the profile has a motion that no pass of this kind can cut.
     fn check(&self, motions: &[Motion], shift: PlanePoint) -> Read<()> {
         let name = ["X", "Y", "Z"][self.plane.axes[0]];
         let depth = ["X", "Y", "Z"][self.plane.axes[1]];
@@ -150,7 +150,8 @@ impl<'a> Roughing<'a> {
             .fold(self.entry()[1], f64::min)
     }
 
-    /// Where the profile lies below a level: beginnings and ends along the passes.
+    /// Returns the stretches along the passes in which the profile lies below a level: start and
+    /// end of each.
     fn open_at(&self, level: f64) -> Vec<[f64; 2]> {
         let mut open = (self.entry()[1] < level - SLACK_MM).then_some(self.start[0]);
         let mut found = Vec::new();
@@ -196,7 +197,8 @@ fn lowest_of(curve: &PlaneCurve) -> f64 {
     }
 }
 
-/// How far a curve goes back along the passes.
+/// Returns the distance that a curve goes back along the passes, mm; infinity for an arc well
+/// beyond half a turn.
 fn goes_back_mm(curve: &PlaneCurve) -> f64 {
     let straight = (curve.start()[0] - curve.end()[0]).max(0.0);
     let PlaneCurve::Arc {
@@ -226,7 +228,7 @@ fn goes_back_mm(curve: &PlaneCurve) -> f64 {
     straight.max(before).max(behind)
 }
 
-/// Whether a curve goes down anywhere.
+/// Returns true if a curve goes down anywhere by more than `MIN_TURN_MM`.
 fn comes_down(curve: &PlaneCurve) -> bool {
     parted_at_tops(vec![*curve])
         .iter()

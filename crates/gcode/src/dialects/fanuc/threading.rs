@@ -24,9 +24,9 @@ struct FanucThread {
     height: f64,
     taper: f64,
     run_out: f64,
-    /// Of half the angle.
+    /// Tangent of half the thread angle.
     tangent: f64,
-    /// Away from the part along X, and of the cut along Z.
+    /// Signs, 1 or -1: away from the part along X, and the cutting direction along Z (`ahead`).
     outward: f64,
     ahead: f64,
 }
@@ -119,7 +119,7 @@ impl Interpreter {
         self.go(block, start, Speed::Rapid)
     }
 
-    /// What the first block says, or the words of a thread in one block.
+    /// Returns the values of the first block, or those of a thread in one block.
     fn first_of_thread(
         &mut self,
         block: &Block,

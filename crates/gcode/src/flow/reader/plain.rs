@@ -121,7 +121,7 @@ fn straight_code(bytes: &[u8], at: &mut usize) -> Option<u16> {
     Some(code)
 }
 
-/// How many digits come first, at least one and few.
+/// Returns the number of leading digits, if it is from 1 to `MAX_DIGITS`.
 pub(super) fn digits(bytes: &[u8]) -> Option<usize> {
     let count = bytes
         .iter()
@@ -168,8 +168,8 @@ fn take_digits(bytes: &[u8], at: &mut usize, mantissa: &mut u64) {
 }
 
 impl Interpreter {
-    /// Whether a straight motion goes to where its words say and nowhere else, and nothing waits
-    /// for it.
+    /// Returns true if a straight motion goes only to the target in its words and nothing waits for
+    /// it.
     #[inline]
     fn is_plain(&self) -> bool {
         self.modal.feed_mode == FeedMode::PerMinute
@@ -249,7 +249,8 @@ impl Interpreter {
         })
     }
 
-    /// Where X, Y and Z lead, in program coordinates; nothing where that is too far.
+    /// Returns the target of X, Y and Z in program coordinates, or `None` if it is beyond the
+    /// limit.
     #[inline]
     fn plain_target(&self, words: &PlainWords) -> Option<[f64; 9]> {
         let limit_mm = self.settings.coordinate_limit_mm;

@@ -36,7 +36,8 @@ impl CyclePlane {
         position
     }
 
-    /// Whether an arc that turns left here turns counter-clockwise in G18 (Z, then X).
+    /// Converts the turn of an arc from the cycle's plane to G18 (Z, then X), where 1 is
+    /// counter-clockwise.
     fn turns(self, turn: f64) -> f64 {
         let exchanged = if self.axes == [2, 0] { 1.0 } else { -1.0 };
         turn * exchanged * self.signs[0] * self.signs[1]
@@ -59,7 +60,7 @@ impl CyclePlane {
     }
 }
 
-/// Which way a distance goes, if it is one.
+/// Returns the sign of a distance, or `None` if it is 0 up to `SLACK_MM`.
 pub(crate) fn clear(way: f64) -> Option<f64> {
     (way.abs() > SLACK_MM).then(|| way.signum())
 }
@@ -86,8 +87,8 @@ impl Interpreter {
         curve: &PlaneCurve,
     ) -> Read<()> {
         match *curve {
-            // A piece of an arc too short to be told from a full circle is as straight as it is
-            // short.
+            // A piece of an arc that is too short to distinguish from a full circle deviates from a
+            // straight line by no more than its length.
             PlaneCurve::Arc {
                 start,
                 end,

@@ -19,14 +19,14 @@ use crate::text::diagnostic::Read;
 const TOUCH_RAD: f64 = 1e-9;
 /// Corners that turn back on themselves but for this, rad, leave walls that are one to rounding.
 const REVERSAL_RAD: f64 = 1e-6;
-/// As LinuxCNC (measured), lines whose ends at the distance lie closer along the passes, mm, meet
-/// in a corner instead of an arc.
+/// Distance below which two lines meet in a corner instead of an arc, mm: between their ends along
+/// the passes, after the offset. LinuxCNC does the same (measured).
 const SHARP_MM: f64 = 0.01;
-/// That corner is 3 % farther away than the arc at a bend of this, rad; one that bends more is
-/// rounded in any case.
+/// Largest bend at which two lines meet in such a corner, rad; sharper corners are always rounded.
+/// At this bend the corner lies 3 % farther away than the arc.
 const SHARP_RAD: f64 = 0.5;
-/// Where what is beside it covers the first or the last line, it is met within this many distances
-/// before or behind that line.
+/// Search range for the start of the first line and the end of the last line where neighboring
+/// pieces cover them, in offset distances before or behind the line.
 const GO_ON: f64 = 4.0;
 /// Comparisons of pieces with those before them: a distance much larger than the details of a long
 /// profile makes their number grow with its square.
@@ -106,7 +106,7 @@ struct UpperEnvelope {
     is_lost: bool,
     comparisons: usize,
     distance_mm: f64,
-    /// Where the profile begins.
+    /// Start of the profile.
     first: PlanePoint,
 }
 
@@ -181,8 +181,8 @@ impl UpperEnvelope {
         }
     }
 
-    /// Where a piece meets the first line, were it to begin earlier; nothing of what is there is
-    /// kept.
+    /// Returns the point where a piece meets the first line, extended backward. No existing piece
+    /// is kept then, so the number is 0.
     fn comes_before(&self, piece: &PlaneCurve) -> Option<(usize, PlanePoint)> {
         let Some(&PlaneCurve::Line { start, end }) = self.curves.first() else {
             return None;
@@ -198,8 +198,8 @@ impl UpperEnvelope {
         (length(minus(point, self.first)) >= self.distance_mm - SLACK_MM).then_some((0, point))
     }
 
-    /// Where a piece that begins below the others comes through them first, and how many of them
-    /// stay.
+    /// Returns where a piece that begins below the others first rises through them, and how many of
+    /// them are kept.
     fn comes_through(&mut self, piece: &PlaneCurve) -> Option<(usize, PlanePoint)> {
         let mut found: Option<(usize, PlanePoint, f64)> = None;
         for (number, curve) in self.curves.iter().enumerate().rev() {

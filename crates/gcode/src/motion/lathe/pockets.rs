@@ -3,7 +3,7 @@
 
 use crate::geometry::plane::{PlaneCurve, PlanePoint, SLACK_MM, length, minus};
 
-/// Whether a curve goes down from its start.
+/// Returns true if a curve goes down from its start.
 pub(crate) fn falls(curve: &PlaneCurve) -> bool {
     match *curve {
         PlaneCurve::Line { start, end } => end[1] < start[1] - SLACK_MM,
@@ -19,7 +19,7 @@ pub(crate) fn falls(curve: &PlaneCurve) -> bool {
     }
 }
 
-/// Whether a curve comes down to its end; a hollow that comes up again does not.
+/// Returns true if a curve goes down all the way to its end. A hollow that rises again does not.
 pub(super) fn ends_falling(curve: &PlaneCurve) -> bool {
     falls(curve) && bottom(curve).is_none()
 }
@@ -78,7 +78,7 @@ fn half_chord(start: PlanePoint, center: PlanePoint, level: f64) -> f64 {
         .sqrt()
 }
 
-/// Where a falling curve crosses `level`; its start counts, its end does not.
+/// Returns the point where a falling curve crosses `level`. Its start counts, its end does not.
 pub(crate) fn falls_through(curve: &PlaneCurve, level: f64) -> Option<PlanePoint> {
     let (start, end) = (curve.start(), curve.end());
     if !falls(curve) || level > start[1] + SLACK_MM {
@@ -103,7 +103,8 @@ pub(crate) fn falls_through(curve: &PlaneCurve, level: f64) -> Option<PlanePoint
     Some([along.min(end[0]).max(start[0]), level])
 }
 
-/// Where a curve that is below `level` at its start, or falls from it, rises to it.
+/// Returns the coordinate along the passes where a curve that starts below `level`, or falls from
+/// it, rises to it.
 fn rises_to(curve: &PlaneCurve, level: f64) -> f64 {
     let (start, end) = (curve.start(), curve.end());
     match *curve {
@@ -119,7 +120,8 @@ fn rises_to(curve: &PlaneCurve, level: f64) -> f64 {
     }
 }
 
-/// Where curves first rise to `level`: which of them, and where along it.
+/// Returns the first curve that rises to `level`, and the coordinate along the passes where it
+/// does.
 pub(crate) fn first_at(curves: &[PlaneCurve], level: f64) -> Option<(usize, f64)> {
     let number = curves
         .iter()

@@ -91,13 +91,13 @@ impl Profile {
         })
     }
 
-    /// Where the entry ends.
+    /// Returns the end point of the entry.
     pub(super) fn entry(&self) -> PlanePoint {
         self.curves.first().map_or(self.start, PlaneCurve::start)
     }
 }
 
-/// Whether a curve goes against the passes anywhere.
+/// Returns true if a curve goes against the passes anywhere.
 pub(super) fn goes_back(curve: &PlaneCurve) -> bool {
     if curve.end()[0] < curve.start()[0] - SLACK_MM {
         return true;
@@ -135,8 +135,9 @@ impl LatheCycle {
         LineFault::new("gcode::lathe", self.block.at(b'q'), message)
     }
 
-    /// Whether the stock is above (1) or below (-1) the profile's entry: where the cycle starts,
-    /// or, if that is as deep as the entry, where the profile ends.
+    /// Returns the side of the profile's entry on which the stock lies: 1 above, -1 below. The
+    /// start of the cycle decides, or the end of the profile if the start is as deep as the entry.
+    /// Fails if the two disagree, except for finishing (G70).
     fn stock_side(&self, [start_mm, entry_mm, last_mm]: [f64; 3], axis: usize) -> Read<f64> {
         let [to_start, to_last] = [start_mm, last_mm].map(|mm| clear(mm - entry_mm));
         // Finishing (G70) needs the side for its distances only. LinuxCNC uses the start's side.
@@ -194,8 +195,8 @@ impl Interpreter {
             .try_for_each(|curve| self.lathe_curve(lathe, profile.plane, curve))
     }
 
-    /// Whether the entry of the profile is a rapid: into the cut it is, along the surface it is
-    /// not.
+    /// Returns the speed of the entry to the profile: rapid if the entry goes into the cut,
+    /// programmed if it follows the surface.
     pub(super) fn lathe_entry_speed(profile: &Profile) -> Speed {
         if profile.entry()[1] < profile.start[1] - SLACK_MM {
             Speed::Rapid

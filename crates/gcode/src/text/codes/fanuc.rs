@@ -10,7 +10,7 @@ pub(crate) const OWN: u16 = 20_000;
 /// Added to ten times a code that lathes alone have.
 pub(crate) const LATHE_OWN: u16 = 2 * OWN;
 
-/// What is told where G90, G92 or G94 of a lathe stand as modes.
+/// Hint for G90, G92 or G94 used as modes in a lathe program.
 pub(crate) const SYSTEM_A: &str = "G90, G92 and G94 are cycles in G-code system A, the only one that is read of lathes; there U and W are distances, and \
      G98 and G99 feeds per minute and per revolution";
 

@@ -111,8 +111,9 @@ pub(super) const fn without_vacancy(value: f64) -> f64 {
 }
 
 impl Operator {
-    /// As Fanuc's macros have it: a vacant variable equals only another, AND, OR and XOR join the
-    /// bits of integers, and values are equal or not.
+    /// Applies the operator as Fanuc macros do: a vacant variable equals only another vacant one;
+    /// AND, OR and XOR join the bits of integers; values are equal up to the relative difference
+    /// `SAME_WITHIN`.
     pub(super) fn apply_to_variables(self, left: f64, right: f64) -> Result<f64, String> {
         let truth = |value: bool| Ok(f64::from(u8::from(value)));
         let is_same = (left.is_nan() && right.is_nan())

@@ -1,10 +1,10 @@
-//! The free run of an axis: what its law makes of the commands alone, with the drive's known
+//! The free run of an axis: the response of its model to the commands alone, with the drive's known
 //! settings and any parameters.
 //!
-//! It steps the law of [`feedwright_control::axis`] as the plant does, with the delays of the drive
-//! and of the measurement in whole mechanics periods, and takes nothing of the recording but the
-//! commands that the position loop had and where the axis starts: no measured position comes in, so
-//! neither does its noise.
+//! It steps the model of [`feedwright_control::axis`] as the plant does, with the delays of the
+//! drive and of the measurement in whole mechanics periods. From the recording it takes only the
+//! commands that the position loop had and the start of the axis. No measured position enters, so
+//! no measurement noise does either.
 
 use feedwright_control::{
     AxisLaw, DriveLaw, DriveReference, DriveState, LoopDelays, MechanicsLaw, MechanicsState,
@@ -71,7 +71,7 @@ struct FreeAxis<'a> {
     start_rad: f64,
     masses: MechanicsState,
     drive: DriveState,
-    /// Angle at the start of each mechanics period, to that of the next, rad.
+    /// Angle at the start of each mechanics period up to the next one, rad.
     course_rad: Vec<f64>,
     sent: Vec<DriveReference>,
     measured_mm: Vec<f64>,
@@ -95,7 +95,7 @@ impl<'a> FreeAxis<'a> {
         }
     }
 
-    /// The mechanics period so many before the next, if the run had begun then.
+    /// Returns the mechanics period `late` periods before the next, if the run had begun then.
     fn moment(&self, late: usize) -> Option<usize> {
         (self.course_rad.len() - 1).checked_sub(late)
     }

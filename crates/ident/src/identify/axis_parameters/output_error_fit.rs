@@ -19,8 +19,8 @@ const LOOPS_APART: f64 = 4.0;
 /// Coulomb friction before anything is known, a part of the torque limit; the first steps find it
 /// from anywhere.
 const FRICTION_SHARE: f64 = 0.01;
-/// Presliding before anything is known, and the least that is told from none, mm of travel: a
-/// fiftieth of the usual 10 um.
+/// Presliding before anything is known, and the least that is distinguished from zero, mm of
+/// travel: a fiftieth of the usual 10 um.
 const PRESLIDING_MM: [f64; 2] = [0.005, 0.0002];
 /// Scales of a screw: share of the table, damping ratio, and backlash, mm of travel; the resonance
 /// is its own.
@@ -29,8 +29,8 @@ const SCREW_SCALES: [f64; 3] = [0.5, 0.05, 0.005];
 /// sticks and slips is not smooth: over differences of a thousandth the derivatives on workshop are
 /// mostly that, and 30 steps do not suffice where these need four to six.
 const DIFFERENCES: [f64; PARAMETERS] = [0.05, 0.5, 0.1, 0.1, 0.1, 0.05, 0.02, 0.2, 0.1];
-/// The inertia is no smaller than this part of what it was a step before: below zero there is no
-/// law.
+/// Smallest inertia after a step, as a part of the inertia before it: the model does not exist
+/// below zero.
 const LEAST_INERTIA_STEP: f64 = 0.3;
 /// Bounds of the table's share, of the damping ratio, and of the resonance: 1/s, and turns in a
 /// servo period beyond which it is not sampled.
@@ -56,7 +56,7 @@ pub(super) struct Stretch {
     pub(super) measured_mm: Vec<f64>,
 }
 
-/// What is fitted.
+/// Data and settings of a fit.
 pub(super) struct OutputErrorFit<'a> {
     pub(super) settings: &'a DriveSettings,
     pub(super) stretches: Vec<Stretch>,
@@ -72,11 +72,11 @@ struct Linearised {
     scatter: DMatrix<f64>,
 }
 
-/// Where a search is.
+/// State of a search.
 pub(super) struct FitState {
     pub(super) at: AxisParameters,
     scales: [f64; PARAMETERS],
-    /// How many of the parameters are searched, from the first on.
+    /// Number of parameters that are searched, from the first on.
     free: usize,
     left: Vec<Vec<f64>>,
     here: Linearised,
@@ -100,7 +100,7 @@ impl FitState {
 }
 
 impl OutputErrorFit<'_> {
-    /// Of an axis with a rigid screw.
+    /// Identifies an axis with a rigid screw.
     pub(super) fn rigid(&self) -> Result<AxisEstimate, NotIdentified> {
         let [inertia, _, coulomb, _, presliding, ..] = self.scales(TransmissionParameters::RIGID);
         let start = AxisParameters {
@@ -124,7 +124,7 @@ impl OutputErrorFit<'_> {
         }
     }
 
-    /// Begins a search of the first so many parameters.
+    /// Begins a search of the first `free` parameters.
     pub(super) fn start(&self, at: AxisParameters, free: usize) -> FitState {
         let scales = self.scales(at.transmission);
         let left = self.left_mm(&at);
@@ -141,7 +141,7 @@ impl OutputErrorFit<'_> {
         }
     }
 
-    /// At most so many steps more.
+    /// Continues a search by at most `most` steps.
     pub(super) fn steps(&self, state: &mut FitState, most: u32) -> Result<(), NotIdentified> {
         for _ in 0..most {
             if state.done || state.damping >= DAMPING_MOST {
@@ -204,7 +204,8 @@ impl OutputErrorFit<'_> {
         ]
     }
 
-    /// What the free run of these parameters leaves of each measured position, mm, by stretch.
+    /// Returns the residual of each measured position against the free run of these parameters, mm,
+    /// by stretch.
     fn left_mm(&self, at: &AxisParameters) -> Vec<Vec<f64>> {
         self.left_of_each_mm([*at])
             .into_iter()
@@ -286,7 +287,7 @@ impl OutputErrorFit<'_> {
         }
     }
 
-    /// The parameters after a step, where there is a law.
+    /// Returns the parameters after a step, held within the range in which the model exists.
     fn stepped(&self, state: &FitState, step: &DVector<f64>) -> AxisParameters {
         let mut values = <[f64; PARAMETERS]>::from(state.at);
         for (i, step) in step.iter().enumerate() {
@@ -317,7 +318,7 @@ impl OutputErrorFit<'_> {
         next
     }
 
-    /// What a search has found.
+    /// Returns the result of a search.
     pub(super) fn estimate(&self, state: &FitState) -> Result<AxisEstimate, NotIdentified> {
         let inverse = state
             .here

@@ -1,12 +1,12 @@
-//! Whether the ball screw gives: table, resonance, damping and backlash, where a free run with them
-//! leaves clearly less.
+//! Compliance of the ball screw: table, resonance, damping and backlash, where a free run with them
+//! has clearly smaller residuals.
 //!
-//! The resonance has many local minima: a search begins at each of [`STARTS_HZ`], on every
-//! [`SUBSET`]th stretch of the recording, and is given up that is no better than a rigid screw
-//! after [`TRIED`]. The best goes on over the whole recording. It is taken where it leaves less
-//! than a rigid screw from stretch to stretch, beyond doubt, and where its resonance and its share
-//! of the inertia are certain. Positions are the motor's: the table shows in how the motor swings,
-//! and backlash in how it turns.
+//! The resonance has many local minima. A search begins at each of [`STARTS_HZ`], on every
+//! [`SUBSET`]th stretch of the recording. It is given up if it is no better than a rigid screw
+//! after [`TRIED`]. The best search continues over the whole recording. Its result is used if it
+//! leaves significantly less than a rigid screw from stretch to stretch, and if its resonance and
+//! its share of the inertia are certain. Positions are measured at the motor: the table shows in
+//! how the motor oscillates, and backlash in how it reverses.
 
 use std::f64::consts::TAU;
 
@@ -22,22 +22,22 @@ const STARTS_HZ: [f64; 4] = [30.0, 60.0, 110.0, 200.0];
 const START_SHARE: f64 = 0.5;
 const START_DAMPING: f64 = 0.05;
 const START_BACKLASH_MM: f64 = 0.002;
-/// What a rigid screw takes for presliding is mostly backlash where there is some: parts of it that
-/// are tried, the second where the first leads nowhere.
+/// Parts of the presliding of a rigid screw that are tried as backlash, the second where the first
+/// leads nowhere. Where there is backlash, this presliding is mostly backlash.
 const BACKLASH_SHARES: [f64; 2] = [0.0, 0.6];
 /// Presliding that may be backlash, mm.
 const LEAST_PRESLIDING_MM: f64 = 0.005;
 /// A start above this many turns in a servo period is left out: nothing of it would be seen.
 const MOST_TURNS: f64 = 0.25;
-/// One stretch in so many serves to try the starts.
+/// The starts are tried on every `SUBSET`th stretch.
 const SUBSET: usize = 8;
-/// Steps after which a start may leave so many times the squares of a rigid screw, all steps, and
-/// those over the whole recording.
+/// Trials of a start: number of steps, and the most that it may leave after them, in squares of a
+/// rigid screw. Then the further steps of a start, and the steps over the whole recording.
 const TRIED: [(u32, f64); 2] = [(2, 1.5), (2, 1.0)];
 const MORE_STEPS: u32 = 15;
 const LAST_STEPS: u32 = 6;
-/// Part of the squares of a rigid screw that may be left at the most, and by how many standard
-/// errors less it is from stretch to stretch.
+/// Largest part of the squares of a rigid screw that may be left, and standard errors by which less
+/// is left from stretch to stretch.
 const LESS: f64 = 0.97;
 const BEYOND_DOUBT: f64 = 4.0;
 /// Standard errors of resonance and share at the most, parts of them.
@@ -86,14 +86,14 @@ pub(super) fn with_screw(fit: &OutputErrorFit<'_>, rigid: &AxisEstimate) -> Opti
     (is_certain && is_less(&whole, &fit.start(rigid.parameters, 0))).then_some(found)
 }
 
-/// Whether less is left of the stretches, beyond doubt.
+/// Returns true if the screw leaves significantly less of the stretches.
 fn is_less(with_screw: &FitState, rigid: &FitState) -> bool {
     with_screw.squares_mm2() < LESS * rigid.squares_mm2()
         && is_below(rigid.by_stretch_mm2().zip(with_screw.by_stretch_mm2()))
 }
 
-/// Whether the second of pairs of squares is below the first, beyond doubt. A stretch in which the
-/// axis stands still leaves nothing, and says nothing.
+/// Returns true if the second of pairs of squares is significantly below the first. A stretch in
+/// which the axis stands still leaves nothing and does not count.
 fn is_below(pairs_mm2: impl Iterator<Item = (f64, f64)>) -> bool {
     let less: Vec<f64> = pairs_mm2
         .map(|(a, b)| libm::log(a / b))

@@ -1,5 +1,5 @@
-//! What an axis does beside its law: the innovations of a filter that knows the law, and what a
-//! load and the encoder make of them.
+//! Innovations of a filter that knows the axis model, and their response to a load and to the
+//! encoder.
 //!
 //! ```text
 //! x <- f(x, reference sent) - load d       every mechanics period, friction and limits as they are
@@ -7,10 +7,10 @@
 //! e = H_t (load) + H_n (encoder)           linear while friction slides: the linear part of f and K alone are in it
 //! ```
 //!
-//! Whatever K is, the innovations hold all that the recording shows: K decides for how long a
-//! deviation is remembered, not what is found. Where friction turns its sign, f has no linear part,
-//! and what the law misses of it is large for a moment: there innovations are held to the size of
-//! the others.
+//! The innovations hold all that the recording shows, whatever K is: K decides how long a deviation
+//! is remembered, not what is found. Where friction changes its sign, f has no linear part, and the
+//! error of the model is large for a moment. The innovations there are limited to the size of the
+//! others.
 //!
 //! Source: Kailath (1968), An innovations approach to least-squares estimation; Gelb (1974),
 //! Applied Optimal Estimation, section 6.1.
@@ -33,20 +33,21 @@ type Matrix = [FilterVector; STATES];
 const LOAD_SHARE: f64 = 0.3;
 /// See above.
 const LOAD_S: f64 = 0.005;
-/// Least noise of an encoder, rad: as that of the filter of a controller has it, 0.001 um on a lead
-/// of 10 mm.
+/// Least noise of an encoder, rad: the value of the controller's filter, 0.001 um on a lead of 10
+/// mm.
 pub(super) const LEAST_NOISE_RAD: f64 = 6e-7;
 /// Steps of the Riccati equation: a second at 1 ms, in which all but the load's slowest part has
 /// converged.
 const RICCATI_STEPS: u32 = 1000;
-/// Beyond so many of the speeds and deflections over which friction turns, it has turned.
+/// Friction has changed its sign beyond this many of the speeds and deflections over which it
+/// changes.
 const TURNED: f64 = 4.0;
-/// For so long a deviation is remembered at the most, s: after friction has turned, and at the
-/// start of a stretch.
+/// Longest time for which a deviation is remembered, s: after friction has changed its sign, and at
+/// the start of a stretch.
 const REMEMBERED_S: f64 = 0.02;
 /// See above.
 const START_S: f64 = 0.1;
-/// Innovations are held to so many times the median of their sizes where friction turns: 2.7
+/// Limit of the innovations where friction changes its sign, in medians of their sizes: 2.7
 /// standard deviations.
 const MOST_MEDIANS: f64 = 4.0;
 
@@ -65,7 +66,7 @@ pub(super) struct AxisFilter {
     turning: [f64; 2],
 }
 
-/// What is estimated of an axis.
+/// Estimated state of an axis.
 #[derive(Debug, Clone, Copy, Default)]
 struct FilterState {
     masses: MechanicsState,
@@ -73,16 +74,16 @@ struct FilterState {
     load_nm: f64,
 }
 
-/// What a filter found along a recording, one number a servo period.
+/// Innovations of the filter along a recording, one per servo period.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Innovations {
     /// Measured less expected, rad.
     pub(super) error_rad: Vec<f64>,
     /// Expected angle of the motor at the measurement, rad.
     pub(super) angle_rad: Vec<f64>,
-    /// Whether it counts: at the start of a stretch it does not.
+    /// True where the innovation counts: not at the start of a stretch.
     pub(super) counts: Vec<bool>,
-    /// Whether friction turns there.
+    /// True where friction changes its sign.
     turns: Vec<bool>,
 }
 
@@ -111,7 +112,7 @@ impl Innovations {
 }
 
 impl AxisFilter {
-    /// Of an axis whose encoder has at least this noise, rad.
+    /// Creates the filter of an axis whose encoder has at least this noise, rad.
     pub(super) fn new(known: &KnownAxis, period: &Period, noise_rad: f64) -> Self {
         let law = AxisLaw::new(known.nominal, period.periods());
         let substeps = |s: f64| (s / period.mechanics_s).round().max(0.0) as u32;
@@ -208,12 +209,12 @@ impl AxisFilter {
         state.load_nm += d;
     }
 
-    /// From a measurement to the next: what was sent last acts only as many mechanics periods later
-    /// as everything is late.
+    /// Predicts from one measurement to the next. The reference that was sent last acts only after
+    /// the whole delay, in mechanics periods.
     fn servo_period(&self, state: &mut FilterState, sent: &[DriveReference]) {
         let per_servo = self.law.periods.mechanics_per_servo;
         for n in 0..per_servo {
-            // Time is that of the measurement.
+            // Time is the time of the measurement.
             let age = (self.late + per_servo - 1 - n) / per_servo;
             let reference = sent
                 .len()
@@ -298,7 +299,8 @@ impl AxisFilter {
         std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]))
     }
 
-    /// What a load of 1 N m in a servo period adds to the states at its end; it leaves none behind.
+    /// Returns the states at the end of a servo period after a load of 1 N m within it. No load
+    /// remains after the period.
     fn push(&self) -> FilterVector {
         let mut push: FilterVector = std::array::from_fn(|i| self.linear[i][STATES - 1]);
         push[STATES - 1] = 0.0;
@@ -338,8 +340,8 @@ impl AxisFilter {
         gains
     }
 
-    /// What becomes of the innovations after 1 N m of load in a servo period, and after 1 rad of
-    /// the encoder at a measurement: as transforms over `length` samples.
+    /// Returns the response of the innovations to a load of 1 N m in one servo period, and to 1 rad
+    /// of the encoder at one measurement: as transforms over `length` samples.
     pub(super) fn responses(&self, length: usize) -> [Vec<Phasor>; 2] {
         let run = |mut off: FilterVector, first: f64| {
             let mut response = vec![first];
@@ -354,7 +356,7 @@ impl AxisFilter {
         [run(self.push(), 0.0), run(of_noise, 1.0)]
     }
 
-    /// By how much true states are ahead of estimated ones a servo period later, after such an
+    /// Returns the difference between true and estimated states one servo period after such an
     /// innovation.
     fn off_after(&self, off: FilterVector, innovation_rad: f64) -> FilterVector {
         let corrected: FilterVector =

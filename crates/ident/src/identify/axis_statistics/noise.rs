@@ -23,9 +23,9 @@ use crate::spectrum::{Phasor, Spectrum, power};
 /// Growth of ln L beyond which a term is admitted: chance gives 9.2 for three variables once in
 /// 10,000 times, and twice that lets the frequency be searched for.
 const ADMITTED: f64 = 20.0;
-/// Below this frequency the recording tells of slow drift, Hz.
+/// Frequency below which the recording shows slow drift, Hz.
 pub(super) const LEAST_HZ: f64 = 3.0;
-/// Longest correlation time that is told from drift, s.
+/// Longest correlation time that is distinguished from drift, s.
 const LONGEST_S: f64 = 0.05;
 /// Shortest one, servo periods: below, it is white.
 const SHORTEST_PERIODS: f64 = 0.2;
@@ -42,7 +42,7 @@ const GROUP: usize = 8;
 /// Frequencies on each side whose median a line is above.
 const BESIDE: usize = 60;
 
-/// What the spectrum shows.
+/// Noise of an axis, as the spectrum shows it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct NoiseFit {
     /// Variance of the encoder, noise and steps, rad^2.
@@ -57,7 +57,7 @@ pub(super) struct NoiseFit {
     pub(super) line_hz: f64,
     /// See above.
     pub(super) wander_hz: f64,
-    /// What no term explains, in the innovations, rad^2.
+    /// Mean square of the innovations that no term explains, rad^2.
     pub(super) left_rad2: f64,
 }
 
@@ -93,7 +93,7 @@ pub(super) struct Seen {
     hz: Vec<f64>,
     power: Vec<f64>,
     responses: Vec<[f64; 2]>,
-    /// How many frequencies of the spectrum each stands for.
+    /// Number of frequencies of the spectrum behind each value.
     counts: Vec<f64>,
     servo_s: f64,
     window_hz: f64,
@@ -102,7 +102,8 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// With responses over as many samples as the segments of the spectrum.
+    /// Prepares a spectrum for the fit. The responses cover as many samples as the segments of the
+    /// spectrum.
     pub(super) fn new(
         spectrum: &Spectrum,
         [load, encoder]: &[Vec<Phasor>; 2],
@@ -112,8 +113,8 @@ impl Seen {
         let mean_rad2 = range.clone().map(|n| spectrum.power[n]).sum::<f64>()
             / range.clone().count().max(1) as f64;
         let left_rad2 = LEFT_SHARE * mean_rad2;
-        // Where there is less than that, or than the least noise, it is made up to it: nothing is
-        // told from it.
+        // Each value gets the unexplained part and the least noise added, so that values far below
+        // them have no effect.
         let least = |n: usize| left_rad2 + least_rad2() * power(encoder[n]);
         Self {
             hz: range.clone().map(|n| spectrum.at(n) / servo_s).collect(),
@@ -172,7 +173,7 @@ impl Seen {
         grouped
     }
 
-    /// What is most likely; of a torque below `least_nm` nothing is said.
+    /// Returns the most likely noise. A torque below `least_nm` is left out.
     pub(super) fn noise(&self, least_nm: f64) -> NoiseFit {
         let line = self.line();
         let seen = self.grouped(line.map(|line| line.line_hz));
@@ -198,8 +199,9 @@ impl Seen {
         noise
     }
 
-    /// An encoder alone: by the median in the upper half of the frequencies, that of an exponential
-    /// distribution being ln 2 times its mean and that of many of them near to it.
+    /// Returns the noise of an encoder alone: by the median over the upper half of the frequencies.
+    /// The median of an exponential distribution is ln 2 times its mean, and the median of many
+    /// such values is near to it.
     fn white(&self) -> NoiseFit {
         let upper = self.power.len() / 2..;
         let mut shares: Vec<f64> = self.power[upper.clone()]
@@ -248,7 +250,7 @@ impl Seen {
             .unwrap_or((white, f64::INFINITY))
     }
 
-    /// Where a line may be: what is furthest above its surroundings.
+    /// Returns the candidate for a line: the frequency that is furthest above its surroundings.
     fn line(&self) -> Option<NoiseFit> {
         let beside = |n: usize| {
             let mut around =

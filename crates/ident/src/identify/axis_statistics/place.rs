@@ -22,7 +22,7 @@ use crate::spectrum::{
     Phasor, conjugate, power, times, transform, transform_back, transformed, turned,
 };
 
-/// A term that is not there is admitted once in so many times.
+/// Probability that a term is admitted although it is absent.
 const CHANCE: f64 = 1e-6;
 /// Most lines of cogging in a turn that are looked for: four times the 50 teeth of a stepper.
 const MOST_PER_REV: u32 = 200;
@@ -65,7 +65,7 @@ pub(super) struct Weighed<'a> {
     weights: Vec<f64>,
 }
 
-/// What a wave acts through.
+/// Input through which a wave acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Through {
     /// Torque of the motor.
@@ -75,8 +75,8 @@ pub(super) enum Through {
 }
 
 impl<'a> Weighed<'a> {
-    /// By the spectrum of a noise; the responses are over `length` samples, a power of two above
-    /// the number of innovations.
+    /// Weighs innovations by the spectrum of a noise. The responses cover `length` samples, a power
+    /// of two above the number of innovations.
     pub(super) fn new(
         innovations: &'a Innovations,
         responses: &'a [Vec<Phasor>; 2],
@@ -104,7 +104,7 @@ impl<'a> Weighed<'a> {
         }
     }
 
-    /// Cogging, by lines in a turn, if there is any, and by how much 2 ln L grows with it.
+    /// Returns the cogging by lines in a turn, if it shows, and the gain in 2 ln L.
     pub(super) fn cogging(&self, least_nm: f64) -> Option<(Wave, f64)> {
         let adjoint = self.adjoint(Through::Motor);
         let middles: Vec<f64> = self.middles().collect();
@@ -130,7 +130,8 @@ impl<'a> Weighed<'a> {
         )
     }
 
-    /// As [`Self::cogging`], the interpolation error of an encoder with this step.
+    /// Returns the interpolation error of an encoder with this step, and the gain in 2 ln L, like
+    /// [`Self::cogging`].
     pub(super) fn interpolation(&self, step_rad: f64, least_rad: f64) -> Option<(Wave, f64)> {
         let adjoint = self.adjoint(Through::Encoder);
         let angles = &self.innovations.angle_rad;
@@ -256,8 +257,8 @@ impl<'a> Weighed<'a> {
         left
     }
 
-    /// The waves, and by how much 2 ln L grows with them; none where they cannot be told from each
-    /// other.
+    /// Fits waves, and returns them with the gain in 2 ln L. `None` if the data do not separate
+    /// them.
     fn fitted(&self, error: &[Phasor], waves: &[(Through, f64)]) -> Option<(Vec<Wave>, f64)> {
         let columns: Vec<Vec<Phasor>> = waves
             .iter()
@@ -283,7 +284,7 @@ impl<'a> Weighed<'a> {
         Some((waves.iter().zip(solved.chunks(2)).map(wave).collect(), gain))
     }
 
-    /// What cos and sin of an angle make of the innovations.
+    /// Returns the response of the innovations to the cosine and the sine of an angle.
     fn regressors(&self, through: Through, per_rad: f64) -> [Vec<f64>; 2] {
         let length = self.length;
         let mut values: Vec<Phasor> = match through {
@@ -362,7 +363,7 @@ impl<'a> Weighed<'a> {
         self.transformed(&counted)
     }
 
-    /// What the innovations say of a reading or torque at each sample.
+    /// Projects the innovations onto a reading or a torque at each sample.
     fn adjoint(&self, through: Through) -> Vec<f64> {
         let mut values = self.innovations_transformed();
         for ((value, h), weight) in values
@@ -376,8 +377,8 @@ impl<'a> Weighed<'a> {
         values.iter().map(|value| value[0]).collect()
     }
 
-    /// How much is known of a wave of the motor, nearly: as if each servo period had the frequency
-    /// of its speed for long.
+    /// Approximates the information about a wave of the motor: each servo period counts as if it
+    /// had the frequency of its speed for a long time.
     fn information(&self, middles: &[f64]) -> impl Fn(f64) -> f64 {
         let load = self.response(Through::Motor);
         let of: Vec<f64> = load
@@ -392,13 +393,13 @@ impl<'a> Weighed<'a> {
         let length = of.len() as f64;
         move |per_rad: f64| {
             let at = |step: &f64| of[(step * per_rad).rem_euclid(length) as usize % of.len()];
-            // Every eighth tells as much as all.
+            // Every eighth step represents all of them.
             8.0 * steps.iter().step_by(8).map(at).sum::<f64>()
         }
     }
 }
 
-/// Those with the greatest gain, not counting neighbours of a greater one.
+/// Returns the local maxima with the greatest gain.
 fn best_of(mut candidates: Vec<(f64, f64)>, most: usize) -> Vec<(f64, f64)> {
     let peaks: Vec<bool> = (0..candidates.len())
         .map(|n| {

@@ -1,17 +1,17 @@
-//! Which terms the law of an axis has, and where the last fit begins.
+//! Selects the terms of the model of an axis, and the start of the last fit.
 //!
 //! Every axis begins with the four products, the delay of the record, and one of six drives. Each
-//! drive is fitted from several starts, and from the fits of drives that have less. The delay stays
-//! where it starts until the gains are near: far from the minimum the two trade places. It starts
-//! at zero, or at what the lag is more than the slowest position loop makes. Then each is fitted
-//! with friction that slides at once, with friction that slides after a deflection, and with a
-//! limit of the speed where the command is faster than the axis. The one is taken that makes
-//! held-out samples likeliest, less the cost of its terms (Schwarz), where as many samples as the
+//! drive is fitted from several starts, and from the fits of drives that have fewer terms. The
+//! delay stays at its start until the gains are near, since the two are exchangeable far from the
+//! minimum. It starts at zero, or at the lag beyond the slowest position loop. Each drive is then
+//! fitted with friction that slides at once, with friction that slides after a deflection, and with
+//! a limit of the speed where the command is faster than the axis. The selected drive makes
+//! held-out samples likeliest, less the cost of its terms (Schwarz). As many samples as the
 //! residual is correlated over count as one.
 //!
-//! Each further term is tried with one step of all numbers. Those that promise most are fitted. One
-//! is admitted that is above zero by its standard error, and makes held-out samples likelier by
-//! more than it costs (Schwarz).
+//! Each further term is tried with one step of all numbers. The most promising ones are fitted. A
+//! term is admitted if it exceeds zero by its standard error, and if it makes held-out samples
+//! likelier by more than it costs (Schwarz).
 //!
 //! Source: Schwarz (1978), Estimating the dimension of a model; forward selection as in Draper and
 //! Smith (1998), Applied Regression Analysis, chapter 15.
@@ -56,7 +56,7 @@ fn base(facts: &AxisFacts) -> Vec<LawTerm> {
     base
 }
 
-/// What a drive may have beside, simple ones first.
+/// Optional terms of a drive, simple ones first.
 const DRIVES: [&[LawTerm]; 6] = [
     &[],
     &[LawTerm::Integral],
@@ -75,8 +75,8 @@ const DRIVES: [&[LawTerm]; 6] = [
 
 /// Standard errors that a further term is above zero: one in a thousand that are zero is.
 const QUANTILE: f64 = 3.09;
-/// The same by which a further term makes held-out samples likelier: of those that are none, one in
-/// twenty is taken.
+/// Standard errors by which the gain in likelihood of held-out samples must exceed zero: one in
+/// twenty absent terms is admitted.
 const LIKELIER: f64 = 1.645;
 /// Length of a block over which likelihoods are summed up, s: what is left is not correlated over
 /// more.
@@ -148,7 +148,7 @@ pub(super) fn admit(
     Some(Admitted { terms, values: at })
 }
 
-/// What a drive has beside that only all samples that are fitted tell, and not windows of them.
+/// Admits the terms of the drive that only all fitted samples determine, and not windows of them.
 pub(super) fn admit_more(
     errors: &OutputErrors<'_>,
     facts: &AxisFacts,
@@ -215,15 +215,15 @@ fn begin(
 
 /// A drive, fitted.
 struct FittedDrive {
-    /// What it has beside the base.
+    /// Terms of the drive beyond the base.
     has: &'static [LawTerm],
     terms: Vec<LawTerm>,
     values: TermValues,
     left_mm: f64,
 }
 
-/// Each drive that may be there, from its best starts and from the drives that have less. What an
-/// earlier record told stands but for the loops, which may be others.
+/// Fits each possible drive from its best starts and from the drives that have fewer terms. The
+/// values of an earlier record stay, except the loops, which may have changed.
 fn drives(
     record: &AxisRecord<'_>,
     train: &OutputErrors<'_>,
@@ -390,11 +390,11 @@ fn largest(values: &[f64]) -> f64 {
 
 /// A command that is faster than the axis by this factor may run into a limit.
 const FASTER: f64 = 1.02;
-/// Drives whose residual exceeds that of the best by this factor are not considered.
+/// Drives whose residual exceeds the best residual by this factor are not considered.
 const FAR: f64 = 2.0;
-/// Where a fit of the deflection before friction slides begins, mm.
+/// Start of the fit of the deflection before friction slides, mm.
 const PRESLIDING_MM: f64 = 0.005;
-/// Where a fit of a limit of the speed begins, part of the highest speed.
+/// Start of the fit of a limit of the speed, as a part of the highest speed.
 const AT_LIMIT: f64 = 0.97;
 /// Terms that a drive may have.
 pub(super) const OPTIONAL: [LawTerm; 3] = [
@@ -403,8 +403,9 @@ pub(super) const OPTIONAL: [LawTerm; 3] = [
     LawTerm::AccelerationFeedforward,
 ];
 
-/// Values before anything is known: gains on a grid, and with the lag that the following error has
-/// by the speed; friction by what it has by the direction. The record is so many samples late.
+/// Returns the starts before anything is known: gains on a grid, and with the lag that the
+/// following error shows against the speed; friction from its dependence on the direction. The
+/// record is `late` samples late.
 fn starts(record: &AxisRecord<'_>, counts: &[bool], late: usize) -> Vec<TermValues> {
     let speed_mm_s = record.command_speed_mm_s();
     let (mut squares, mut products) = (Matrix3::zeros(), Vector3::zeros());
@@ -456,8 +457,8 @@ struct FollowedTerm {
     gain: f64,
 }
 
-/// Of the terms that are above zero with certainty, the one that makes held-out samples likeliest;
-/// none where none makes them likelier.
+/// Returns the term that makes held-out samples likeliest, among those that exceed zero with
+/// certainty; `None` if no term makes them likelier.
 fn best_term(
     candidates: Vec<TermCandidate>,
     [train, valid]: [&OutputErrors<'_>; 2],
@@ -536,8 +537,8 @@ const LEAST_BLOCKS: usize = 10;
 const SLOWEST_FOR_RESONANCE_S: f64 = 0.005;
 /// Samples of a period that a swing shows in.
 const LEAST_OF_PERIOD: f64 = 5.0;
-/// Whether the screw is rigid, or compliant with a possible share of the table and a swing that
-/// shows in the samples.
+/// Returns true if the screw is rigid, or compliant with a possible share of the table and an
+/// oscillation that shows in the samples.
 pub(super) fn is_screw_or_none(values: &TermValues, sample_s: f64) -> bool {
     let period_s = TAU * values.get(LawTerm::Resonance);
     period_s == 0.0
@@ -548,10 +549,10 @@ pub(super) fn is_screw_or_none(values: &TermValues, sample_s: f64) -> bool {
 /// Parts of the inertia that a table behind a screw has: at an end of them a screw stands for
 /// something else.
 const SHARES: [f64; 2] = [0.08, 0.92];
-/// A start that leaves so many times more than the fit is lost.
+/// Residual of a start, relative to the present fit, above which the start is rejected.
 const LOST: f64 = 30.0;
 
-/// Terms that the law does not have yet.
+/// Returns the terms that the model does not have yet.
 fn candidates(
     record: &AxisRecord<'_>,
     facts: &AxisFacts,

@@ -5,7 +5,7 @@ use feedwright_sim::Axis;
 use super::known_value::KnownValue;
 use super::terms::{LawTerm, TermValues};
 
-/// What is known of the machine beside the record.
+/// Facts that are known of an axis besides the record.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AxisFacts {
     /// Inertia at the motor shaft, kg m2, or mass of a linear axis, kg.
@@ -19,11 +19,11 @@ pub struct AxisFacts {
     /// Time over which the drive takes the speed from positions, s, of a drive that closes its
     /// loops once a servo period and records itself.
     pub speed_window_s: Option<f64>,
-    /// By how much the record has the actual position later than the command, s: zero where both
-    /// were taken at the same moment. What else is late is then the drive.
+    /// Delay of the recorded actual position behind the command, s: zero where both were sampled at
+    /// the same moment. Any other delay is then in the drive.
     pub record_delay_s: Option<f64>,
-    /// Delay from the control to a position loop in the drive, s. Without it, the delay is looked
-    /// for where [`Self::record_delay_s`] is given; the log alone does not tell the two apart.
+    /// Delay from the control to a position loop in the drive, s. Without it, the delay is searched
+    /// where [`Self::record_delay_s`] is given; the log alone does not separate the two.
     pub command_delay_s: Option<f64>,
     /// Position gain, 1/s.
     pub kp_1_s: Option<KnownValue>,
@@ -35,7 +35,7 @@ pub struct AxisFacts {
     pub acceleration_feedforward: Option<KnownValue>,
     /// Delay from the position loop to the drive, s.
     pub drive_delay_s: Option<KnownValue>,
-    /// Its law as an earlier log told it: what this one does not tell stays.
+    /// Model from an earlier log. Terms that this log does not determine keep its values.
     pub before: Option<TermValues>,
 }
 
@@ -45,7 +45,7 @@ impl AxisFacts {
         Some(self.viscous? / self.inertia?)
     }
 
-    /// What is known of a term of the drive.
+    /// Returns the known value of a term of the drive.
     pub(super) fn known(&self, term: LawTerm) -> Option<KnownValue> {
         match term {
             LawTerm::Integral => self.inverse_integral_1_s,
@@ -82,7 +82,7 @@ impl AxisFacts {
         at.with(LawTerm::RecordDelay, self.record_delay_s.unwrap_or(0.0))
     }
 
-    /// What nobody said is that of an axis of a machine file with this servo period.
+    /// Fills in unstated values from an axis of a machine file with this servo period.
     #[must_use]
     pub fn or_of(self, axis: &Axis, servo_s: f64) -> Self {
         let is_same_unit =

@@ -1,9 +1,9 @@
-//! Free runs of an axis: what its law makes of the commands alone, from a state.
+//! Free runs of an axis: the response of its model to the commands alone, from an initial state.
 //!
-//! The law is that of [`feedwright_control::axis`], with the numbers of [`super::terms`]. A sample
-//! of the record is a whole number of servo periods, a servo period [`MECHANICS_PER_SERVO`]
-//! mechanics periods. Delays and the window of the speed are fractions of these, by linear
-//! interpolation, so that they can be fitted.
+//! The model is [`feedwright_control::axis`], with the numbers of [`super::terms`]. A sample of the
+//! record is a whole number of servo periods, a servo period [`MECHANICS_PER_SERVO`] mechanics
+//! periods. Delays and the window of the speed are fractions of these, by linear interpolation, so
+//! that they can be fitted.
 
 use std::array::from_fn;
 
@@ -48,7 +48,8 @@ impl<'a> Commands<'a> {
         Self { mm }
     }
 
-    /// At a time, samples since its beginning; beyond an end, that of the end.
+    /// Returns the command at a time, in samples since the start of the stretch. Beyond an end it
+    /// returns the command at that end.
     #[inline]
     fn at_mm(&self, samples: f64) -> f64 {
         let last = self.mm.len() - 1;
@@ -73,7 +74,7 @@ struct Recent<T> {
 }
 
 impl<T: Copy> Recent<T> {
-    /// With room for so many before the newest.
+    /// Reserves room for `before` values in addition to the newest.
     fn new(before: usize, value: impl Fn(usize) -> T) -> Self {
         let length = (before + 1).next_power_of_two();
         let values = (0..length)
@@ -88,7 +89,7 @@ impl<T: Copy> Recent<T> {
         self.values[self.newest] = value;
     }
 
-    /// The one that came so many before the newest.
+    /// Returns the value that came `age` periods before the newest.
     #[inline]
     fn before(&self, age: usize) -> T {
         let length = self.values.len();
@@ -120,7 +121,7 @@ pub(super) struct AxisRun {
     holds: bool,
 }
 
-/// Where an axis is, and what its drive remembers.
+/// State of an axis, and the memory of its drive.
 #[derive(Debug, Clone)]
 pub(super) struct RunState {
     axis: AxisState,
@@ -161,7 +162,7 @@ impl RunState {
         self.presliding
     }
 
-    /// What an observer finds position, speed and load to be higher.
+    /// Adds the corrections of an observer to position, speed and load.
     pub(super) fn correct(&mut self, [mm, mm_s, mm_s2]: [f64; 3]) {
         self.axis.angle_rad += mm;
         self.course
@@ -261,8 +262,8 @@ impl AxisRun {
         }
     }
 
-    /// By how much the motor leads the table while it moves evenly: half the backlash, and what
-    /// friction twists the screw by.
+    /// Returns the lead of the motor over the table at constant speed: half the backlash, and the
+    /// twist of the screw by friction.
     fn leads_mm(&self, sign: f64) -> f64 {
         let twist_s = self.values.get(LawTerm::Resonance);
         let share = self.values.get(LawTerm::TableShare).max(f64::MIN_POSITIVE);
@@ -366,8 +367,8 @@ impl AxisRun {
         }
     }
 
-    /// What pushes a mass before there is friction, one over the mass, and its speed: the table,
-    /// and the motor where the screw is rigid.
+    /// Computes the force on a mass before friction, the inverse of the mass, and its speed. The
+    /// mass is the table, or the motor where the screw is rigid.
     #[inline]
     fn push(&self, substep: usize, state: &mut RunState, [forces, inverse, speed]: [&mut f64; 3]) {
         let reference = self.arrived(substep, state);

@@ -39,8 +39,8 @@ const STEPS: usize = 30;
 /// Part of the damping that a start leaves at least.
 const LEAST_DAMPING: f64 = 0.3;
 
-/// What is known of the axes, with the delay that their records show; none where they show none.
-/// Where the record may be late, or a drive recorded itself, nothing is looked for.
+/// Returns the facts of the axes with the delay that their records show; `None` if they show none.
+/// Nothing is searched where the record may be late, or where a drive recorded itself.
 pub(super) fn shown(
     records: &[AxisRecord<'_>],
     axes: &[FoundAxis],
@@ -132,7 +132,7 @@ fn one_period_later(
     errors.least(&best.values, terms, STEPS, NEARLY_DONE)
 }
 
-/// Where a fit with commands one servo period later begins.
+/// Returns the starts of a fit with commands one servo period later.
 fn starts(before: &TermValues, terms: &[LawTerm], servo_s: f64) -> Vec<TermValues> {
     let [late_s, loop_s, fed, damping, loop_gain] = [
         LawTerm::CommandDelay,

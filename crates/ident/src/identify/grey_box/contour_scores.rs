@@ -15,9 +15,9 @@ pub struct ContourScores {
     pub plane: [usize; 2],
     /// Measured.
     pub measured_um: f64,
-    /// What the free run of the grey box misses.
+    /// Error of the free run of the grey box.
     pub grey_box_um: f64,
-    /// What that of the best ARX misses.
+    /// Error of the free run of the best ARX.
     pub arx_um: f64,
 }
 
@@ -27,7 +27,7 @@ const MOVES: f64 = 0.01;
 const LEAST_SAMPLES: usize = 50;
 
 impl ContourScores {
-    /// Of the first two axes that move together.
+    /// Scores the first two axes that move together.
     pub(super) fn of(
         records: &[AxisRecord<'_>],
         axes: &[FoundAxis],

@@ -1,4 +1,5 @@
-//! What was found of an axis: its law, numbers with intervals, scores, and what of it is assumed.
+//! Result of the identification of an axis: its model, numbers with intervals, scores, and
+//! assumptions.
 
 use rand::{RngExt, SeedableRng};
 
@@ -14,7 +15,7 @@ use super::torque_column::{DriveColumn, TorqueColumn};
 use super::unseen_motion::UnseenMotion;
 use crate::identify::Rng;
 
-/// Where a number comes from.
+/// Source of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NumberSource {
     /// The record determines it.
@@ -23,14 +24,14 @@ pub enum NumberSource {
     TorqueColumn,
     /// It was given.
     Given,
-    /// The record does not tell it, an earlier one did.
+    /// An earlier record determined it; this one does not.
     Kept,
-    /// The record cannot tell it: it stands for what nobody said.
+    /// The record cannot determine it and nobody stated it: it is a default.
     Assumed,
 }
 
 impl NumberSource {
-    /// As files and reports tell it.
+    /// Returns the word for it in files and reports.
     pub fn word(self) -> &'static str {
         match self {
             Self::Identified => "identified",
@@ -42,12 +43,12 @@ impl NumberSource {
     }
 }
 
-/// A number of an axis, as it is told.
+/// A number of an axis, as it is reported.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundNumber {
     /// Key in files.
     pub key: &'static str,
-    /// In words.
+    /// Name in words.
     pub name: &'static str,
     /// Unit.
     pub unit: &'static str,
@@ -55,7 +56,7 @@ pub struct FoundNumber {
     pub value: f64,
     /// Interval of 90 %, where the record gives one.
     pub interval: Option<[f64; 2]>,
-    /// Where it comes from.
+    /// Source of the value.
     pub source: NumberSource,
 }
 
@@ -64,30 +65,31 @@ pub struct FoundNumber {
 pub struct FoundAxis {
     /// Its name in the log.
     pub name: String,
-    /// Values of its law, by positions alone.
+    /// Values of its model, from positions alone.
     pub values: TermValues,
     /// Terms that were fitted.
     pub terms: Vec<LawTerm>,
-    /// Values that end where their search ends: with one, the law does not hold.
+    /// Values that end where their search ends. The model does not hold if there is one.
     pub at_bounds: Vec<SearchBound>,
     /// Half of the interval of 90 % of each term, in the order of [`Self::terms`].
     pub half_intervals: Vec<f64>,
     /// Lower triangle of a root of their covariance, in their units, row by row; `None` where the
     /// fit leaves a term open.
     pub uncertain: Option<Vec<Vec<f64>>>,
-    /// The law with what the drive does to the speed, where a torque column or a fact tells it.
+    /// Model with the speed measurement of the drive, where a torque column or a fact determines
+    /// it.
     pub resolved: Option<ResolvedLaw>,
-    /// What was given.
+    /// Facts that were given.
     pub facts: AxisFacts,
     /// RMS that the free run leaves of the fitted samples, um.
     pub fit_um: f64,
-    /// How well it predicts.
+    /// Prediction errors.
     pub scores: AxisScores,
-    /// How certain predictions are of motion that the record does not have.
+    /// Uncertainty of predictions of motion that the record does not have.
     pub unseen: UnseenMotion,
-    /// What its free run leaves, as a load; none where that is no more than the encoder shows.
+    /// Residual of its free run, as a load; `None` where it is no more than the encoder noise.
     pub residual: Option<ResidualNoise>,
-    /// What other settings of its drive would bring.
+    /// Effects of other settings of its drive.
     pub gain_changes: Vec<GainChange>,
     /// RMS of noise of the encoder beside its steps, um.
     pub noise_um: f64,
@@ -97,24 +99,24 @@ pub struct FoundAxis {
     pub most: [f64; 2],
 }
 
-/// A law with the window over which the drive takes the speed: with that the scale of everything is
-/// told, which positions alone leave open.
+/// Model with the window over which the drive takes the speed. The window determines the scale of
+/// all values, which positions alone leave open.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResolvedLaw {
     /// Values of it.
     pub values: TermValues,
     /// Half of the interval of 90 % of those that have one.
     pub half_intervals: Vec<(LawTerm, f64)>,
-    /// What a torque column told of the mechanics; none where the window was given.
+    /// Mechanics from a torque column; `None` where the window was given.
     pub torque: Option<TorqueColumn>,
-    /// What the column told of the drive.
+    /// Drive from the torque column.
     pub drive: Option<DriveColumn>,
     /// RMS that its free run leaves of the fitted samples, um.
     pub fit_um: f64,
 }
 
 impl ResolvedLaw {
-    /// Where a term of it comes from.
+    /// Returns the source of a term of the model.
     fn source(&self, term: LawTerm) -> NumberSource {
         let is_fitted = self.half_intervals.iter().any(|(of, _)| *of == term);
         match &self.torque {
@@ -170,7 +172,7 @@ fn standard_normal(rng: &mut Rng) -> f64 {
 
 /// Lead that is taken where nobody says one, mm/rev.
 pub(crate) const ASSUMED_LEAD_MM_PER_REV: f64 = 10.0;
-/// Inertia that is taken where nothing tells it, kg m2 at the shaft: of the size of tnv40's.
+/// Inertia that is assumed where nothing determines it, kg m2 at the shaft: of the size of tnv40's.
 pub(crate) const ASSUMED_INERTIA_KG_M2: f64 = 0.01;
 
 impl FoundAxis {
@@ -227,14 +229,14 @@ impl FoundAxis {
         (ASSUMED_INERTIA_KG_M2, None, NumberSource::Assumed)
     }
 
-    /// Values of its law as far as it is told: with the window of the speed, where that is.
+    /// Returns the values of its model: with the window of the speed, where that is known.
     pub fn law(&self) -> &TermValues {
         self.resolved
             .as_ref()
             .map_or(&self.values, |resolved| &resolved.values)
     }
 
-    /// Half of the interval of a term of this law.
+    /// Returns half of the interval of a term of [`Self::law`].
     pub fn half_interval(&self, term: LawTerm) -> Option<f64> {
         let half = match &self.resolved {
             Some(resolved) => resolved
@@ -251,11 +253,11 @@ impl FoundAxis {
         half.filter(|half| half.is_finite())
     }
 
-    /// The axis with a law that fits the record about as well: its terms are drawn from what the
-    /// fit leaves open of them, and held within their ranges. The delay of the loop is a whole
-    /// multiple of `step_s`, as a machine file has it, and the other terms are those that fit with
-    /// it. The same seed draws the same axis. The terms of a law by a torque column or a given
-    /// window are drawn one by one, since their correlations are not known.
+    /// Returns the axis with a model that fits the record about as well. Its terms are drawn from
+    /// what the fit leaves open of them, and held within their ranges. The delay of the loop is a
+    /// whole multiple of `step_s`, as a machine file has it, and the other terms fit with it. The
+    /// same seed draws the same axis. The terms of a model by a torque column or a given window are
+    /// drawn one by one, since their correlations are not known.
     #[must_use]
     pub fn drawn(&self, seed: u64, step_s: f64) -> Self {
         let mut rng = Rng::seed_from_u64(seed);
@@ -366,7 +368,7 @@ impl FoundAxis {
         }
     }
 
-    /// Whether Kp, Kv and B are told apart.
+    /// Returns the source of Kp, Kv and B as separate values.
     pub fn gains_source(&self) -> NumberSource {
         if self
             .resolved

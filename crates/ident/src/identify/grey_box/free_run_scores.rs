@@ -22,9 +22,9 @@ const RUNS: usize = 3000;
 /// RMS of what free runs miss.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeRunErrors {
-    /// At the end of 20, 50 and 100 ms, um.
+    /// Error at the end of 20, 50 and 100 ms, um.
     pub at_um: [f64; 3],
-    /// Over whole runs, um.
+    /// Error over whole runs, um.
     pub whole_um: f64,
     /// One sample ahead, um: shown, and not judged.
     pub one_step_um: f64,
@@ -35,12 +35,12 @@ pub struct FreeRunErrors {
 pub struct AxisScores {
     /// RMS of the following error over the scored samples, um.
     pub following_um: f64,
-    /// Of the grey box.
+    /// Errors of the grey box.
     pub grey_box: FreeRunErrors,
     /// The same over that part of the scored samples in which speed or acceleration is beyond all
     /// that was fitted, um, and its share.
     pub beyond: Option<(f64, f64)>,
-    /// Of each ARX.
+    /// Errors of each ARX.
     pub arx: Vec<(LinearArx, FreeRunErrors)>,
     /// Were the following error to stay what it is.
     pub stays: FreeRunErrors,
@@ -80,7 +80,7 @@ impl AxisScores {
     }
 }
 
-/// Scores an axis whose law is fitted.
+/// Scores an axis whose model is fitted.
 pub(super) fn score(
     record: &AxisRecord<'_>,
     values: &TermValues,
@@ -154,7 +154,7 @@ pub(super) fn score(
     }
 }
 
-/// Of values with those one sample before.
+/// Returns the correlation of values with those one sample before.
 fn correlation(scored: &[bool], value: impl Fn(usize) -> f64) -> f64 {
     let (mut products, mut squares) = (0.0, 0.0);
     for k in (1..scored.len()).filter(|&k| scored[k] && scored[k - 1]) {
@@ -191,7 +191,7 @@ fn left_rms(
     rms(simulated_mm.iter().enumerate().filter_map(left))
 }
 
-/// What is beyond all that was fitted by more than so much is told apart.
+/// Speed or acceleration counts as beyond all that was fitted above this factor.
 const BEYOND: f64 = 1.05;
 
 fn beyond(

@@ -1,13 +1,13 @@
-//! What other settings of the drive would bring, on the motions of the log: by formula, and
-//! simulated.
+//! Effects of other settings of the drive on the motions of the log: by formula, and simulated.
 //!
 //! ```text
 //! e(t) = ((Kv + B) / J - f Kv / J) / a v + acc / a + (Fc sign v + offset) / (a J)      a = Kp Kv / J
 //! ```
 //!
-//! e following error, v and acc of the command, f velocity feedforward: the law where its
-//! transients are over; with an integral part of the speed loop friction has no share. Only what
-//! the log supports is tried: its own motions, and gains within bounds that keep the loops apart.
+//! e following error, v and acc of the command, f velocity feedforward: the model after its
+//! transients have decayed. With an integral part of the speed loop friction has no share. Only
+//! changes that the log supports are tried: its own motions, and gains within bounds that keep the
+//! loops apart.
 //!
 //! Source: steady error of a cascaded loop as in Altintas (2012), Manufacturing Automation, section
 //! 5.5.
@@ -37,13 +37,13 @@ const FEEDFORWARD: f64 = 0.95;
 /// Factor on Kp that is tried, and most that it becomes of (Kv + B) / J: a damping ratio of 1.
 const FASTER: f64 = 1.5;
 const LOOPS_APART: f64 = 0.25;
-/// What changes a gain by less than this factor is left out; so is what leaves more than this part
-/// of the error.
+/// A change of a gain by less than this factor is not tried. A change that leaves more than this
+/// part of the error is not reported.
 const WORTH_TRYING: f64 = 1.1;
 const WORTH_TELLING: f64 = 0.8;
 
 impl GainChange {
-    /// What is worth telling, the least error last.
+    /// Returns the changes that are worth reporting, the least error last.
     pub(super) fn find(record: &AxisRecord<'_>, values: &TermValues, counts: &[bool]) -> Vec<Self> {
         let now_um = simulated_um(record, values, counts);
         let feedforward = (values.get(LawTerm::VelocityFeedforward) * WORTH_TRYING < FEEDFORWARD)
@@ -119,7 +119,7 @@ fn simulated_um(record: &AxisRecord<'_>, values: &TermValues, counts: &[bool]) -
     if um.is_finite() { um } else { f64::INFINITY }
 }
 
-/// The same by the law without its transients.
+/// Predicts the same error by the model without its transients.
 fn predicted_um(record: &AxisRecord<'_>, values: &TermValues, counts: &[bool]) -> f64 {
     let get = |term| values.get(term);
     let [speeds, accelerations] = [

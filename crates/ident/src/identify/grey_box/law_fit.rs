@@ -1,4 +1,4 @@
-//! The law of one axis, from its record to its scores.
+//! The model of one axis, from its record to its scores.
 
 use super::NotFound;
 use super::admission::{OPTIONAL, admit, admit_more, is_screw_or_none};
@@ -26,14 +26,14 @@ const WINDOW_SAMPLES: usize = 1000;
 const SETTLING_S: f64 = 0.2;
 /// Steps of the last fit.
 const STEPS: usize = 40;
-/// A law that leaves more than this part of the following error is none.
+/// Largest residual of a model, as a part of the following error. With more, no model was found.
 const NO_LAW: f64 = 0.9;
 /// Friction from a torque column holds where the fit is worse by no more than this.
 const HOLDS: f64 = 1.15;
 /// Parts of the work: admission, and the last fit.
 const PARTS: [f64; 2] = [0.6, 0.85];
 
-/// Finds the law of an axis, and scores it.
+/// Finds the model of an axis, and scores it.
 pub(super) fn find(
     record: &AxisRecord<'_>,
     torque: Option<&[f64]>,
@@ -123,9 +123,9 @@ pub(super) fn find(
     Ok(found)
 }
 
-/// Values that end where their search ends, of the law by positions and of the one with the window
-/// of the speed. Where the record is said to be on time, the delay of the loop may be below zero in
-/// place of it.
+/// Returns the values that end where their search ends, of the model from positions and of the one
+/// with the window of the speed. Where the record is said to be on time, the delay of the loop may
+/// be below zero in its place.
 fn at_bounds(
     errors: &OutputErrors<'_>,
     values: &TermValues,
@@ -151,7 +151,7 @@ fn at_bounds(
 struct Doubtless {
     terms: Vec<LawTerm>,
     values: TermValues,
-    /// The delay of the record, where it is none although the record wants it below zero.
+    /// Delay of the record, where it was dropped although the record wants it below zero.
     early: Option<SearchBound>,
 }
 
@@ -230,7 +230,7 @@ fn without_doubtful(
     }
 }
 
-/// Whether a fit without a term loses less likelihood than the term costs.
+/// Returns true if a fit without a term loses less likelihood than the term costs.
 fn is_needless(errors: &OutputErrors<'_>, at: &TermValues, terms: &[LawTerm], i: usize) -> bool {
     let of_all = square(&errors.residuals(at));
     let others: Vec<LawTerm> = terms
@@ -255,7 +255,7 @@ const EARLY: f64 = 0.5;
 /// Standard errors below which a term is as well zero: the two-sided test at one in twenty.
 const DOUBTFUL: f64 = 1.96;
 
-/// Whether a fit that leaves so much is a law at all.
+/// Fails if the residual of a fit is too large for a model.
 fn is_law(record: &AxisRecord<'_>, fit: &[bool], left_mm: f64) -> Result<(), NotFound> {
     let following_mm = record.following_mm(fit);
     if left_mm <= NO_LAW * following_mm {
@@ -268,7 +268,7 @@ fn is_law(record: &AxisRecord<'_>, fit: &[bool], left_mm: f64) -> Result<(), Not
     })
 }
 
-/// What whole runs leave beside the noise of the encoder, as a load.
+/// Returns the residual of whole runs beyond the noise of the encoder, as a load.
 fn residual(
     record: &AxisRecord<'_>,
     values: &TermValues,
@@ -283,8 +283,8 @@ fn go_on(wanted: bool) -> Result<(), NotFound> {
     if wanted { Ok(()) } else { Err(NotFound::Ended) }
 }
 
-/// The law of a drive that closes its loops once a servo period, with a window of the speed that is
-/// given. Such a drive records itself: nothing is late in the record.
+/// Fits the model of a drive that closes its loops once a servo period, with a given window of the
+/// speed. Such a drive records itself: its record has no delay.
 fn with_window(
     errors: &OutputErrors<'_>,
     window_s: f64,
@@ -342,7 +342,7 @@ fn with_window(
     })
 }
 
-/// Friction by the torque column, and the law with it.
+/// Finds friction from the torque column, and fits the model with it.
 fn resolve(
     errors: &OutputErrors<'_>,
     torque: &[f64],
@@ -475,8 +475,8 @@ fn windows(record: &AxisRecord<'_>, fit: &[bool]) -> Vec<std::ops::Range<usize>>
     windows
 }
 
-/// Without the beginnings of windows, and without what is in none. A record that is late does not
-/// have the commands of a beginning.
+/// Excludes the beginnings of windows, and samples outside of all windows. A record that is late
+/// does not have the commands of a beginning.
 fn behind_starts(record: &AxisRecord<'_>, counts: &[bool], is_thinned: bool) -> Vec<bool> {
     if !is_thinned {
         return counts.to_vec();

@@ -28,7 +28,7 @@ const RIDGE: f64 = 1e-12;
 pub struct LinearArx {
     /// Lags of the error, and of the command's differences.
     pub lags: [usize; 2],
-    /// Whether it has the signs of the speed.
+    /// True where the model includes the signs of the speed.
     pub signs: bool,
     weights: Vec<f64>,
 }

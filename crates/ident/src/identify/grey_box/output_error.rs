@@ -59,7 +59,7 @@ pub(super) const NEARLY_DONE: f64 = 1e-4;
 const ABREAST: usize = 4;
 
 impl OutputErrors<'_> {
-    /// The same with the deviation of what a law leaves.
+    /// Scales the residuals by the RMS residual of these values.
     pub(super) fn scaled_by(self, values: &TermValues) -> Self {
         Self {
             deviation_mm: self.rms_mm(values).max(f64::MIN_POSITIVE),
@@ -67,8 +67,8 @@ impl OutputErrors<'_> {
         }
     }
 
-    /// The same where as many samples as what a law leaves is correlated over count as one: what
-    /// was known before then has the weight that it should have.
+    /// Scales the residuals so that as many samples as the residual of these values is correlated
+    /// over count as one. Prior knowledge then has its proper weight.
     pub(super) fn weighed_by(self, values: &TermValues) -> Self {
         let left = self.left_mm(values);
         let deviation_mm =
@@ -79,7 +79,7 @@ impl OutputErrors<'_> {
         }
     }
 
-    /// What free runs leave at the samples that count, mm.
+    /// Returns the residuals of free runs at the samples that count, mm.
     pub(super) fn left_mm(&self, values: &TermValues) -> Vec<f64> {
         let [left] = self.left_abreast_mm(&[values]);
         left
@@ -114,7 +114,7 @@ impl OutputErrors<'_> {
         root_mean_square(&self.left_mm(values))
     }
 
-    /// What free runs leave, in standard deviations; behind the samples a row for each prior.
+    /// Returns the residuals of free runs in standard deviations, followed by a row for each prior.
     pub(super) fn residuals(&self, values: &TermValues) -> Vec<f64> {
         self.scaled(self.left_mm(values), values)
     }
@@ -241,8 +241,8 @@ impl OutputErrors<'_> {
         )
     }
 
-    /// The least from a start, over these terms, in at most so many steps, or until one gains less
-    /// than a part of V.
+    /// Searches the least squares from a start over these terms. Ends after `steps` steps, or when
+    /// one gains less than the part `done` of V.
     pub(super) fn least(
         &self,
         start: &TermValues,
@@ -309,7 +309,8 @@ const CORRELATED_S: f64 = 0.25;
 /// misleads where numbers trade places.
 const ONE_SIDED: f64 = 0.1;
 
-/// What residuals lose from one place to another, over the part of a change between them.
+/// Returns the decrease of the residuals from one place to another, divided by the change between
+/// them.
 fn difference(from: &[f64], to: &[f64], apart: f64) -> Vec<f64> {
     // At an end of its range a number that nothing moves has no slope.
     let per = if apart == 0.0 { 0.0 } else { 1.0 / apart };
@@ -319,7 +320,7 @@ fn difference(from: &[f64], to: &[f64], apart: f64) -> Vec<f64> {
         .collect()
 }
 
-/// By how much a number is changed for a difference.
+/// Returns the change of a number for a difference.
 pub(super) fn change(values: &TermValues, term: LawTerm) -> f64 {
     let [part, least] = term.row().change;
     (part * values.get(term).abs()).max(least)
@@ -336,8 +337,8 @@ pub(super) fn normal_equations(slopes: &[Vec<f64>], left: &[f64]) -> (DMatrix<f6
     (curvature, DVector::from_fn(n, |i, _| dot(&slopes[i], left)))
 }
 
-/// The values after a damped step. A number at an end of its range that would be left beyond it
-/// stays there, and the step is that of the others.
+/// Returns the values after a damped step. A number at an end of its range stays there if it would
+/// otherwise move beyond it; the others take the step.
 fn stepped(
     at: &TermValues,
     terms: &[LawTerm],

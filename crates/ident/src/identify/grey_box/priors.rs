@@ -1,9 +1,9 @@
-//! What is known of an axis before its record: values with a spread, of its numbers and of what
-//! they make.
+//! Knowledge of an axis before its record: values with a spread, of its numbers and of functions of
+//! them.
 //!
-//! A record that does not move an axis in some way cannot tell what only shows then. A prior stands
-//! in for it: of those that are not given, what axes of machine tools are, with spreads so wide
-//! that a record that tells anything outweighs them.
+//! A record without some kind of motion cannot determine the terms that only this motion shows. A
+//! prior takes its place. Terms that are not given get typical values of machine tools, with
+//! spreads so wide that any record that shows the term outweighs them.
 
 use super::axis_facts::AxisFacts;
 use super::known_value::KnownValue;
@@ -17,7 +17,7 @@ pub(super) struct Prior {
 }
 
 impl Prior {
-    /// By how many standard deviations values are off.
+    /// Returns the deviation of values from the prior, in standard deviations.
     pub(super) fn residual(&self, values: &TermValues) -> f64 {
         (self.known.value - (self.of)(values)) / self.known.spread
     }

@@ -32,12 +32,12 @@ const CORRELATIONS: usize = 60;
 /// Frequencies of the sums, rad/s: from, to, and how many.
 const FREQUENCIES_RAD_S: [f64; 2] = [1e-2, 2e4];
 const FREQUENCIES: usize = 1500;
-/// Fewest pairs of samples that tell a correlation.
+/// Fewest pairs of samples from which a correlation is computed.
 const LEAST_PAIRS: usize = 100;
 
 impl ResidualNoise {
-    /// Of what whole runs leave; none where that is no more than noise of the encoder, whose mean
-    /// square is given, mm2.
+    /// Finds the load behind the residuals of whole runs; `None` where they are no more than the
+    /// noise of the encoder, whose mean square is given, mm2.
     pub(super) fn of(
         record: &AxisRecord<'_>,
         values: &TermValues,

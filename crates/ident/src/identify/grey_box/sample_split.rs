@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use super::axis_record::AxisRecord;
 
-/// Which samples are fitted, which are scored.
+/// Fitted samples and scored samples.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SampleSplit {
     /// Fitted.
@@ -24,7 +24,7 @@ pub struct SampleSplit {
 /// Time that blocks begin with, s of motion; shorter ones are tried where directions are not shared
 /// well.
 const BLOCKS_S: [f64; 7] = [2.0, 1.4, 1.0, 0.7, 0.5, 0.35, 0.25];
-/// Fewest blocks that are told apart.
+/// Fewest blocks into which a record is split.
 const LEAST_BLOCKS: f64 = 4.0;
 /// Least and most share of a direction that a part has.
 const SHARE: [f64; 2] = [0.25, 0.75];
@@ -77,7 +77,7 @@ impl SampleSplit {
         best.map_or_else(Self::nothing, |best| best.1)
     }
 
-    /// By times of the record, s.
+    /// Splits by times of the record, s.
     pub fn by_times(
         records: &[AxisRecord<'_>],
         time_s: &[f64],
@@ -203,7 +203,7 @@ fn blocks(
     (0..counts.len()).map(number).collect()
 }
 
-/// Of each axis and direction in which it moves, the part of the motion that is fitted.
+/// Returns the fitted part of the motion of each axis in each direction in which it moves.
 fn shares(motions: &[Vec<i8>], fit: &[bool], score: &[bool]) -> Vec<(usize, i8, f64)> {
     let mut shares = vec![];
     for (axis, motion) in motions.iter().enumerate() {

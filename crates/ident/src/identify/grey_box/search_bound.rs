@@ -1,5 +1,5 @@
-//! Values that end where their search ends. What the record wants beyond is not known, and the
-//! other values make up for it: such a law does not hold, however little it leaves.
+//! Values that end where their search ends. The value that the record wants beyond is not known,
+//! and the other values compensate for it. Such a model does not hold, however small its residual.
 //!
 //! Zero is the end of a search for most terms, and no fault: it is the axis without the term. It
 //! counts where the record wants less:
@@ -31,8 +31,8 @@ pub struct SearchBound {
 const STRONG: f64 = 6.0;
 
 impl SearchBound {
-    /// Those of terms that were fitted. A value that no difference tells from an end of its range
-    /// is at this end.
+    /// Returns the fitted terms that end where their search ends. A value that is closer to an end
+    /// of its range than the step of a difference is at this end.
     pub(super) fn of_fitted(
         values: &TermValues,
         terms: impl IntoIterator<Item = LawTerm>,
@@ -90,7 +90,7 @@ impl SearchBound {
             .collect()
     }
 
-    /// What ended where.
+    /// Describes the term, its value and the bound.
     pub fn words(&self) -> String {
         let row = self.term.row();
         let end = if self.bound <= row.range[0].max(0.0) {
@@ -110,7 +110,7 @@ impl SearchBound {
         )
     }
 
-    /// What to do.
+    /// Returns the advice for the user.
     pub fn remedy(&self) -> &'static str {
         match self.term {
             LawTerm::RecordDelay => {

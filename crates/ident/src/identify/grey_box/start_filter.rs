@@ -1,13 +1,13 @@
-//! Where an axis is at a sample of the record: what free runs begin with.
+//! State of an axis at a sample of the record, from which free runs begin.
 //!
 //! ```text
 //! r = y - x      x += g r,   v += g^2 r / (2 Ts),   load -= h Kp Kv / J r      at every sample
 //! ```
 //!
-//! A filter of constant gains goes along the record up to that sample and no further: position,
-//! speed and a load that the law does not have. The gains are those with which runs of 50 ms over
-//! the fitted samples miss least: trust in the encoder where it is fine, in the law where it is
-//! coarse.
+//! A filter of constant gains goes along the record up to that sample and no further. It estimates
+//! position, speed and a load that the model does not have. The gains minimize the error of runs of
+//! 50 ms over the fitted samples: high weight on the encoder where it is fine, on the model where
+//! it is coarse.
 //!
 //! Source: the alpha-beta filter, Kalata (1984), The tracking index, IEEE Trans. Aerospace and
 //! Electronic Systems 20(2), with a load as the third state.
@@ -104,13 +104,14 @@ impl StartFilter {
     }
 }
 
-/// What a filter found.
+/// Result of the filter.
 pub(super) struct Filtered {
     pub(super) starts: Vec<RunStart>,
     pub(super) innovations_mm: Vec<f64>,
 }
 
-/// At most so many samples from which this many samples ahead count, too, evenly over the record.
+/// Returns at most `most` samples, evenly over the record, from which `ahead` samples count as
+/// well.
 pub(super) fn starts(
     record: &AxisRecord<'_>,
     counts: &[bool],
@@ -131,7 +132,7 @@ pub(super) fn starts(
     all.into_iter().step_by(apart).collect()
 }
 
-/// What a run from a start misses so many samples later, each of them, mm.
+/// Returns the error of a run from a start after each number of samples in `ahead`, mm.
 pub(super) fn run_ahead(
     record: &AxisRecord<'_>,
     run: &AxisRun,

@@ -1,5 +1,5 @@
-//! The numbers of an axis that commanded and actual positions determine, and the law that they
-//! make.
+//! The numbers of an axis that commanded and actual positions determine, and the model that they
+//! form.
 //!
 //! Everything is divided by the inertia, so that a torque is an acceleration of the table, mm/s2.
 //! Positions determine
@@ -8,11 +8,11 @@
 //! Kp Kv / J    (Kv + B) / J    Fc / J    offset / J
 //! ```
 //!
-//! and not J, nor Kp, Kv and B apart, unless the speed loop has an integral part or a limit. What
-//! cannot be told is taken from outside: B / J is a number of its own here, zero where nobody knows
-//! it. Then Kv / J = (Kv + B) / J - B / J, and Kp is the first over that.
+//! and not J, nor Kp, Kv and B apart, unless the speed loop has an integral part or a limit. The
+//! rest comes from outside: B / J is a number of its own here, zero where nobody knows it. Then Kv
+//! / J = (Kv + B) / J - B / J, and Kp is the first over that.
 //!
-//! | Number | In the law of `crates/control/src/axis.rs` |
+//! | Number | In the model of `crates/control/src/axis.rs` |
 //! |---|---|
 //! | lead | c(t - d): the record's actual positions are this much later than its commands |
 //! | command delay | c(t - d) as well, in whole servo periods: the position loop is in the drive and has commands late |
@@ -40,9 +40,10 @@ pub enum LawTerm {
     Damping,
     /// Fc / J, mm/s2.
     Coulomb,
-    /// What friction is higher in the positive direction and lower in the negative, over J, mm/s2.
+    /// Amount by which friction is higher in the positive direction and lower in the negative, over
+    /// J, mm/s2.
     Offset,
-    /// By how much the record has the actual position later than the command, s.
+    /// Delay of the recorded actual position behind the command, s.
     RecordDelay,
     /// Delay within the loop, s.
     LoopDelay,
@@ -56,15 +57,15 @@ pub enum LawTerm {
     FilterTime,
     /// Time over which the drive takes the speed from positions, s.
     SpeedWindow,
-    /// Highest reference speed, mm/s; zero is none.
+    /// Highest reference speed, mm/s; zero means no limit.
     SpeedLimit,
-    /// Highest torque over the inertia, mm/s2; zero is none.
+    /// Highest torque over the inertia, mm/s2; zero means no limit.
     AccelerationLimit,
     /// Deflection before friction slides, mm.
     Presliding,
-    /// What friction has at rest above Fc, part of it.
+    /// Excess of friction at rest over Fc, as a part of Fc.
     Stribeck,
-    /// Speed over which that goes, mm/s.
+    /// Speed over which this excess decays, mm/s.
     StribeckSpeed,
     /// B / J, 1/s.
     Viscous,
@@ -82,13 +83,13 @@ pub enum LawTerm {
     CommandDelay,
 }
 
-/// How many there are.
+/// Number of terms.
 pub(crate) const TERMS: usize = 22;
 
-/// Range of a number, and by how much it is changed for a difference.
+/// Range of a number, and its change for a difference.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TermRow {
-    /// As a report calls it.
+    /// Name in reports.
     pub(super) name: &'static str,
     /// Unit.
     pub(super) unit: &'static str,
@@ -165,7 +166,7 @@ impl LawTerm {
         ]
     }
 
-    /// Whether it is a delay that begins at zero.
+    /// Returns true for a delay that begins at zero.
     pub(super) fn is_delay(self) -> bool {
         matches!(self, Self::LoopDelay | Self::CommandDelay)
     }
@@ -221,8 +222,8 @@ impl LawTerm {
 pub struct TermValues(pub [f64; TERMS]);
 
 impl TermValues {
-    /// Those of an axis of a machine file with this servo period. Of its torque limit nothing is
-    /// said: the log comes to it or does not.
+    /// Returns the values of an axis of a machine file with this servo period. The torque limit is
+    /// left out: the log reaches it or does not.
     pub fn of_axis(axis: &Axis, servo_s: f64) -> Self {
         let j = axis.inertia_kg_m2;
         let per_mm = j * axis.rad_per_mm();
@@ -274,12 +275,12 @@ impl TermValues {
         })
     }
 
-    /// Of one.
+    /// Returns the value of a term.
     pub fn get(&self, term: LawTerm) -> f64 {
         self.0[term as usize]
     }
 
-    /// With another value of one, held within its range.
+    /// Returns the values with another value of one term, held within its range.
     #[must_use]
     pub fn with(mut self, term: LawTerm, value: f64) -> Self {
         let [least, most] = term.row().range;
@@ -294,7 +295,7 @@ impl TermValues {
         (damping - self.get(LawTerm::Viscous)).max(LEAST_SPEED_GAIN * damping)
     }
 
-    /// How late the position loop has the commands of the record, s.
+    /// Returns the delay of the commands of the record at the position loop, s.
     pub fn commands_late_s(&self) -> f64 {
         self.get(LawTerm::RecordDelay) + self.get(LawTerm::CommandDelay)
     }
@@ -304,8 +305,8 @@ impl TermValues {
         self.get(LawTerm::LoopGain) / self.speed_gain_1_s()
     }
 
-    /// As the law of an axis takes them, for an inertia of 1 kg m2 and 1 rad/mm: a torque of 1 N m
-    /// is 1 mm/s2.
+    /// Returns the parameters of the axis model for an inertia of 1 kg m2 and 1 rad/mm: a torque of
+    /// 1 N m is 1 mm/s2.
     pub(super) fn parameters(&self, mechanics_s: f64) -> Parameters {
         let limit = self.get(LawTerm::AccelerationLimit);
         Parameters {
@@ -377,5 +378,5 @@ pub(crate) const ASSUMED_DAMPING_RATIO: f64 = 0.02;
 /// Mechanics periods that the time constant of a resonance has at least: a stiffer screw is rigid.
 const STIFFEST: f64 = 2.0;
 
-/// As tnv40's: a millisecond of a reversal.
+/// Speed over which Coulomb friction changes its sign, mm/s: tnv40's, a millisecond of a reversal.
 const SMOOTHING_MM_S: f64 = 0.08;

@@ -1,14 +1,14 @@
-//! What a torque column tells that positions do not: friction for itself, and by it the scale of
-//! everything else.
+//! Information from a torque column that positions do not give: friction alone, and from it the
+//! scale of everything else.
 //!
 //! ```text
 //! u(k) = s (a + B/J v + Fc/J sign v + offset/J)        by least squares; s = J / g, g torque for a unit of the column
 //! ```
 //!
-//! a, v and the sign are those of the free run, which has no noise of the encoder in it
-//! (instruments, as Young 1970 has them). With friction over inertia known, the delay with which
-//! the drive sees the speed is told from a smaller inertia: to first order it does the same to a
-//! position, and all products that positions determine come out larger by 1 / (1 - Kv / J T).
+//! a, v and the sign come from the free run, which has no noise of the encoder in it (instruments,
+//! as in Young 1970). With friction over inertia known, the delay of the speed in the drive can be
+//! distinguished from a smaller inertia. To first order the two have the same effect on a position,
+//! and all products that positions determine come out larger by 1 / (1 - Kv / J T).
 //!
 //! Source: Gautier (1997), Dynamic identification of robots with power model; Janot, Gautier and
 //! Brunot (2019) for a bench on which this is public.
@@ -19,7 +19,7 @@ use super::axis_record::AxisRecord;
 use super::axis_run::{AxisRun, Commands, periods};
 use super::terms::{LawTerm, TermValues};
 
-/// What was found of the column.
+/// Result from the torque column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TorqueColumn {
     /// J / g: unit of the column for an acceleration of 1 mm/s2.
@@ -42,17 +42,17 @@ pub struct TorqueColumn {
     pub late_samples: i32,
 }
 
-/// How early or late a column may be, samples.
+/// Delays of a column that are tried, samples; negative is early.
 const LATENESSES: [i32; 5] = [-1, 0, 1, 2, 3];
 /// Samples of a block that standard errors are from: residuals are correlated within.
 const BLOCK_S: f64 = 0.25;
-/// Least that it has to explain, and least that a law of the drive has to explain to be taken for
-/// it.
+/// Least part of the variance that the motion must explain, and least part that the equation of a
+/// drive must explain.
 const EXPLAINED: f64 = 0.9;
 const LAW_EXPLAINED: f64 = 0.99;
 
 impl TorqueColumn {
-    /// By samples that count; none where the motion does not explain it.
+    /// Fits the column over the samples that count. `None` if the motion does not explain it.
     pub(super) fn find(
         record: &AxisRecord<'_>,
         torque: &[f64],
@@ -68,8 +68,8 @@ impl TorqueColumn {
     }
 }
 
-/// What the column tells of a drive with a P speed loop, where it is the torque that the drive asks
-/// for:
+/// Parameters of a drive with a P speed loop, from a column that is the torque command of the
+/// drive:
 ///
 /// ```text
 /// u(k) = p e(k) - q (y(k) - y(k - n)) / (n Ts) + o
@@ -90,7 +90,7 @@ pub struct DriveColumn {
 const WINDOWS: [usize; 6] = [1, 2, 3, 4, 6, 8];
 
 impl DriveColumn {
-    /// By samples that count; none where the column is something else.
+    /// Fits the column over the samples that count. `None` if the column is something else.
     pub(super) fn find(
         record: &AxisRecord<'_>,
         torque: &[f64],

@@ -1,4 +1,4 @@
-//! What a record leaves open: how uncertain the position is on motion that it does not have.
+//! Uncertainty of the position on motion that a record does not have.
 //!
 //! ```text
 //! U^2 = tr(S C S^T) / n        C covariance of all terms, those that were not admitted too; S derivatives of the position
@@ -6,9 +6,9 @@
 //!
 //! over the n samples of a reference motion: both directions, from creeping to the highest speed of
 //! the record, long strokes and short ones at its acceleration. A record that moves one way, or
-//! never accelerates, leaves terms to their priors; C is as wide there. Where U is more than what
-//! the law leaves of the record, the direction of C that moves the position most names the terms
-//! that the record does not tell.
+//! never accelerates, leaves terms to their priors; C is as wide there. Where U exceeds the
+//! residual of the model over the record, the direction of C that moves the position most names the
+//! terms that the record does not determine.
 //!
 //! Source: G-optimality, Kiefer and Wolfowitz (1960), The equivalence of two extremum problems, for
 //! the variance of a prediction as a measure of a design.
@@ -19,12 +19,12 @@ use super::output_error::OutputErrors;
 use super::standard_errors::StandardErrors;
 use super::terms::{LawTerm, TermValues};
 
-/// How certain predictions of motion are that a record does not have.
+/// Uncertainty of predictions of motion that a record does not have.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UnseenMotion {
     /// Uncertainty of the position over the reference motion, um RMS, one standard deviation.
     pub uncertain_um: f64,
-    /// What the law leaves of the fitted samples, um RMS.
+    /// Residual of the model over the fitted samples, um RMS.
     pub left_um: f64,
     /// Terms that most of it is due to.
     pub terms: Vec<LawTerm>,
@@ -46,13 +46,14 @@ const REACHED_S: f64 = 0.05;
 const NAMED: f64 = 0.7;
 
 impl UnseenMotion {
-    /// Whether predictions of such motion are less certain than what the law leaves of the record.
+    /// Returns true if predictions of such motion are less certain than the residual over the
+    /// record.
     pub fn is_open(&self) -> bool {
         self.uncertain_um.is_nan() || self.uncertain_um > self.left_um
     }
 
-    /// Of a fit that leaves so much, mm, with the highest speed and acceleration of the record,
-    /// mm/s and mm/s2.
+    /// Computes the uncertainty of a fit from its residual, mm, and from the highest speed and
+    /// acceleration of the record, mm/s and mm/s2.
     pub(super) fn of(
         errors: &OutputErrors<'_>,
         values: &TermValues,

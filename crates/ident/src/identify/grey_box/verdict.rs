@@ -5,10 +5,10 @@ use super::free_run_scores::FreeRunErrors;
 use super::search_bound::SearchBound;
 use super::unseen_motion::UnseenMotion;
 
-/// What an identification came to.
+/// Verdict on an identification.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LawVerdict {
-    /// The law predicts clearly better than a linear model.
+    /// The model predicts clearly better than a linear model.
     LawHolds,
     /// A linear model without signs predicts as well.
     LinearSuffices,
@@ -22,21 +22,22 @@ pub enum LawVerdict {
     AtBound,
 }
 
-/// A linear model that leaves no more than this of what the law leaves does as well.
+/// A linear model is as good up to this many times the residual of the axis model.
 const AS_GOOD: f64 = 1.15;
-/// So does one that leaves no more than this of the following error, and less than so many times
-/// what the law leaves, where the signs of the speed would not make it better: there is no friction
-/// to speak of.
+/// A linear model is also as good up to this part of the following error, if its residual is less
+/// than [`NEAR`] times the residual of the axis model, and if the signs of the speed would not
+/// improve it. Friction is then negligible.
 const SMALL: f64 = 0.01;
 const NEAR: f64 = 2.0;
 const SIGNS_HELP: f64 = 0.9;
-/// A law that leaves more than this of what ARX leaves after 100 ms is worse.
+/// The axis model is worse above this many times the residual of ARX after 100 ms.
 const WORSE: f64 = 1.5;
-/// A law that leaves more than this part of the following error is of no use for a correction.
+/// An axis model with a residual above this part of the following error is not used for a
+/// correction.
 const TOO_MUCH: f64 = 0.3;
 
 impl LawVerdict {
-    /// Of an axis.
+    /// Judges an axis.
     pub fn of(axis: &FoundAxis) -> Self {
         let scores = &axis.scores;
         let (grey_box, linear) = (scores.grey_box, scores.best_linear());
@@ -62,7 +63,7 @@ impl LawVerdict {
         }
     }
 
-    /// In a sentence or two.
+    /// Explains the verdict in a sentence or two.
     pub fn words(self, axis: &FoundAxis) -> String {
         let scores = &axis.scores;
         let (grey_box, linear) = (scores.grey_box, scores.best_linear());
@@ -72,16 +73,16 @@ impl LawVerdict {
             um(scores.following_um)
         );
         let against = format!(
-            "the best linear model misses {} um, and {} um after 100 ms where the law misses {} um",
+            "the best linear model misses {} um, and {} um after 100 ms where the model misses {} um",
             um(linear.whole_um),
             um(linear.at_um[2]),
             um(grey_box.at_um[2])
         );
         match self {
-            Self::LawHolds => format!("the law holds: {missed}; {against}"),
+            Self::LawHolds => format!("the model holds: {missed}; {against}"),
             Self::LinearSuffices => format!("linear suffices: {missed}; {against}"),
             Self::LinearIsBetter => format!(
-                "a linear model is better: {missed}; {against}. Something moves this axis that the law does not have"
+                "a linear model is better: {missed}; {against}. Something moves this axis that the model does not have"
             ),
             Self::TooMuchLeft => format!("not good enough for control: {missed}; {against}"),
             Self::AtBound => format!(
@@ -107,10 +108,10 @@ fn at_bounds(bounds: &[SearchBound]) -> String {
 fn open(unseen: &UnseenMotion) -> String {
     let names: Vec<&str> = unseen.terms.iter().map(|term| term.row().name).collect();
     let untold = match names.as_slice() {
-        [] => "the log does not tell the parameters apart".to_owned(),
-        [one] => format!("the log does not tell {one}"),
+        [] => "the log does not determine the parameters".to_owned(),
+        [one] => format!("the log does not determine {one}"),
         [first @ .., last] => format!(
-            "the log does not tell {} and {last} apart",
+            "the log does not separate {} and {last}",
             first.join(", ")
         ),
     };
@@ -120,13 +121,13 @@ fn open(unseen: &UnseenMotion) -> String {
         None => "",
     };
     format!(
-        "{untold}{why}. On other motion up to its speed and acceleration the position is uncertain by {} um RMS, where the law leaves {} um",
+        "{untold}{why}. On other motion up to its speed and acceleration the position is uncertain by {} um RMS, where the model leaves {} um",
         um(unseen.uncertain_um),
         um(unseen.left_um)
     )
 }
 
-/// With three digits.
+/// Writes a number with three digits.
 fn um(value: f64) -> String {
     if !value.is_finite() {
         return "more than any number of".to_owned();

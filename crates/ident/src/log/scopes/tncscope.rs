@@ -25,7 +25,7 @@ pub(super) fn header(lines: &[&str]) -> Result<Option<ScopeHeader>, HeaderFault>
     if !lines.iter().any(|line| line.starts_with("%[CURVE")) {
         return Ok(None);
     }
-    // The time in the rows is that of the channel that is sampled fastest.
+    // The time in the rows belongs to the channel that is sampled fastest.
     let mut channels = vec![ScopeChannel {
         name: "row".to_owned(),
         ..ScopeChannel::default()

@@ -18,7 +18,7 @@ use super::{HeaderFault, ScopeChannel, ScopeHeader, cut_off, fields, is_row, pos
 use crate::log::LogFormat;
 use crate::log::names::{Quantity, understand};
 
-/// With which the lines about channels begin.
+/// First word of the lines about channels.
 const NAME: &str = "Name";
 /// Lines that no other table has.
 const MARKS: [&str; 3] = ["Starttime of export", "SampleTime[ms]", "SymbolName"];
@@ -45,7 +45,7 @@ pub(super) fn header(lines: &[&str]) -> Result<Option<ScopeHeader>, HeaderFault>
             .first()
             .map_or(String::new(), |key| (*key).to_owned())
     };
-    // The first line `Name` is that of the project, the last that of the channels.
+    // The first line `Name` belongs to the project, the last to the channels.
     let about_project = lines
         .iter()
         .position(|line| line.starts_with("Starttime of export"));
@@ -112,12 +112,12 @@ pub(super) fn header(lines: &[&str]) -> Result<Option<ScopeHeader>, HeaderFault>
     }))
 }
 
-/// Name and axis of a channel: what its name does not tell, its symbol may.
+/// Returns the name and the axis of a channel. Its symbol completes what its name lacks.
 fn named(name: &str, symbol: &str) -> (String, Option<String>) {
     let (by_name, by_symbol) = (understand(name), understand(symbol));
     let is_known = by_name.quantity != Quantity::Other || by_symbol.quantity == Quantity::Other;
     let shown = if is_known { name } else { symbol };
-    // A number behind the name, as in `ActPos (1)`, tells channels of a name apart, and no axes.
+    // A number behind the name, as in `ActPos (1)`, distinguishes channels of one name, not axes.
     let is_axis = |axis: &str| {
         axis.len() == 1 && axis.chars().all(char::is_alphabetic) || axis.starts_with("axis")
     };

@@ -15,7 +15,7 @@ const SPEED_S: f64 = 4e-3;
 const SPEED_STEPS: f64 = 20.0;
 /// Most samples over which a speed is taken.
 const MAX_SPEED_SAMPLES: usize = 50;
-/// How much faster the command is than the highest speed, where the speed has a limit.
+/// Least factor of the command's speed over the highest speed, where the speed has a limit.
 const FASTER: f64 = 1.2;
 /// Highest over lowest speed of what counts as one.
 const BAND: f64 = 1.08;
@@ -24,7 +24,7 @@ const AT_LIMIT: f64 = 0.02;
 /// Actual samples over commanded samples in the band of a speed; a speed limit has more than this.
 const OFTENER: f64 = 2.0;
 
-/// Whether a torque stays at its largest value.
+/// Reports a torque that stays at its largest value.
 pub(super) fn torque(axis: &LogAxis, clock: &Clock) -> Option<LogFinding> {
     let torque = axis.torque.as_ref()?;
     let limit = torque

@@ -26,10 +26,10 @@ const SAMPLES: usize = 1 << 18;
 const NEIGHBOURS: usize = 24;
 /// Times the background from which on there is a line.
 const ABOVE: f64 = 40.0;
-/// Part of the power of all from which on a line is told.
+/// Least part of the total power at which a line is reported.
 const LEAST_PART: f64 = 0.02;
-/// Square of the amplitude over the mean square of the following error from which on it is told: a
-/// hundredth of its RMS.
+/// Least square of the amplitude, over the mean square of the following error, at which a line is
+/// reported: a hundredth of its RMS.
 const LEAST_SEEN: f64 = 1e-4;
 /// Values below which motion itself is.
 const FIRST: usize = 4;

@@ -9,7 +9,7 @@ use super::super::error::{Refusal, RefusalReason};
 const CHANGES: usize = 100_000;
 /// Part of the changes that are whole steps, where there are steps.
 const WHOLE: f64 = 0.99;
-/// How far from a whole number of steps a change may be: text rounds.
+/// Largest distance of a change from a whole number of steps: text rounds.
 const NEAR: f64 = 0.05;
 /// Most steps in a change: with more, any number is near a whole one.
 const MAX_STEPS: f64 = 1e6;
@@ -37,7 +37,7 @@ pub(super) fn step(values: &[f64]) -> f64 {
     let Some(&least) = changes.first() else {
         return 0.0;
     };
-    // Rounding makes the smallest change uncertain; those near it tell it better.
+    // Rounding makes the smallest change uncertain; the mean of those near it is more accurate.
     let small: Vec<f64> = changes
         .iter()
         .copied()

@@ -3,9 +3,9 @@
 use super::published::PublishedPlan;
 use crate::constraints::AxisLimits;
 
-/// How far an axis goes at least before it rests, from a velocity of 0 or more and an acceleration:
-/// jerk down to a deceleration, held where the limit asks for it, and back up. None where the
-/// acceleration is such that it turns round before.
+/// Returns the shortest distance in which an axis comes to rest, from a velocity of 0 or more and
+/// an acceleration: jerk down to a deceleration, held where the limit requires it, and back up.
+/// `None` if the acceleration makes the axis reverse before it rests.
 fn braking_mm(velocity_mm_s: f64, accel_mm_s2: f64, limits: &AxisLimits) -> Option<f64> {
     let (v, a, j) = (velocity_mm_s, accel_mm_s2, limits.jerk_mm_s3);
     if a < 0.0 && v <= a * a / (2.0 * j) {

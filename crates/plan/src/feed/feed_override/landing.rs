@@ -15,7 +15,8 @@ const PERIODS: [u32; 14] = [2, 3, 4, 6, 8, 11, 16, 22, 32, 45, 64, 90, 128, 180]
 /// no rate could change at all.
 const OVER: f64 = 5e-4;
 
-/// What of that a way aims at: the rest is for what lies between the moments that it reckons with.
+/// Part by which a way may plan to exceed a limit. The rest of `OVER` is for what lies between the
+/// moments that are checked.
 const AIMED_OVER: f64 = 2.5e-4;
 
 /// Longest way, steps.
@@ -24,7 +25,8 @@ const MOST_STEPS: u32 = 300;
 /// A step that is no longer than this ends its period, s: the rest of the period is dropped.
 const SHORTEST_S: f64 = 1e-10;
 
-/// So often the change of the slope that keeps a limit is looked for about the one before.
+/// Number of times that the change of the slope is recomputed about the previous one to keep a
+/// limit.
 const AGAIN: u32 = 4;
 
 /// A step changes the rate by no more than this beside its slope.
@@ -48,12 +50,12 @@ const BEFORE_END: f64 = 0.999;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Landing {
     pub(super) steps: VecDeque<ScaledStep>,
-    /// Where it was chosen; else what comes out.
+    /// Rate at the end, if it was chosen; `None` takes the rate that results.
     rate: Option<f64>,
 }
 
 impl Landing {
-    /// Whether the rate that can stay is there.
+    /// Returns true if the way has ended: the rate is one that can stay.
     pub(super) fn is_over(&self) -> bool {
         self.steps.is_empty()
     }
@@ -172,7 +174,7 @@ fn interval(
     found
 }
 
-/// Whether all limits are kept in a step.
+/// Returns true if a step keeps all limits.
 pub(super) fn keeps(plan: &PublishedPlan, limits: &ScalingLimits, step: &ScaledStep) -> bool {
     // Plan time does not run back, between moments either: the rate is a parabola.
     let lowest_s = -step.from.slope_1_s / step.bend_1_s2;

@@ -11,15 +11,15 @@ const AT_S: f64 = 1e-11;
 pub struct PublishedSpan {
     /// Plan time at which it begins, s.
     pub from_s: f64,
-    /// What the axes do there.
+    /// Motion of the axes at its start.
     pub motion: AxisMotion,
-    /// Whether overrides of feeds hold: it is no rapid.
+    /// True where feed overrides apply: it is not a rapid.
     pub cutting: bool,
-    /// Whether the tool rests.
+    /// True where the tool rests.
     pub is_rest: bool,
 }
 
-/// What has been planned, and does not change any more.
+/// Part of a plan that is final.
 #[derive(Debug, Default)]
 pub struct PublishedPlan {
     spans: Vec<PublishedSpan>,
@@ -27,7 +27,7 @@ pub struct PublishedPlan {
 }
 
 impl PublishedPlan {
-    /// Without spans.
+    /// Creates a plan without spans.
     pub const fn new() -> Self {
         Self {
             spans: Vec::new(),
@@ -80,7 +80,7 @@ impl PublishedPlan {
         self.spans.get(self.index(tau_s)).copied().unwrap_or(none)
     }
 
-    /// What the axes do at a time; behind the end they rest.
+    /// Returns the motion of the axes at a time. Behind the end they rest.
     pub fn at(&self, tau_s: f64) -> AxisMotion {
         let Some(found) = self.spans.get(self.index(tau_s)) else {
             return AxisMotion::REST;
@@ -110,7 +110,7 @@ impl PublishedPlan {
         }
     }
 
-    /// What the axes do in a span at a time; behind the end of the plan they rest.
+    /// Returns the motion of the axes in a span at a time. Behind the end of the plan they rest.
     pub(super) fn in_span(&self, span: usize, tau_s: f64) -> AxisMotion {
         match self.spans.get(span) {
             Some(found) if tau_s < self.end_s => found.motion.after(tau_s - found.from_s),

@@ -14,7 +14,7 @@ use super::segment::MotionSegment;
 use super::shape::{BlendShape, CircleShape, LineShape, SegmentShape};
 use crate::vector::{Vector, add_scaled, angle, cross, dot, norm, scale, sub};
 
-/// Angles below this cannot be told from none.
+/// Angles below this count as zero, rad.
 const NO_ANGLE: f64 = 1e-6;
 
 /// The square of the distance of unit vectors that count as parallel.
@@ -43,11 +43,11 @@ pub(super) struct ArcBlend {
     pub highest_mm_s: f64,
     /// Acceleration.
     pub accel_mm_s2: f64,
-    /// What is left of the segment before; none where the arc takes its place.
+    /// Remainder of the segment before; `None` where the arc replaces it.
     pub before: Option<SegmentShape>,
-    /// What is left of the segment behind.
+    /// Remainder of the segment behind.
     pub after: SegmentShape,
-    /// What was cut from the one before and from the one behind, mm.
+    /// Length cut from the segment before and from the segment behind, mm.
     pub cut_mm: [f64; 2],
 }
 
@@ -67,8 +67,8 @@ struct BlendCorner {
 /// One side of a corner.
 #[derive(Debug, Clone, Copy)]
 struct CornerSide {
-    /// Where it is a circle: the circle, whether it curves into the corner, and how much of it may
-    /// go.
+    /// Data of a side that is a circle: the circle, whether it curves into the corner, and how much
+    /// of it may be cut.
     circle: Option<(CircleShape, bool, f64)>,
     /// Length of the side that the blend may use, mm.
     length_mm: f64,
@@ -406,7 +406,7 @@ impl BlendCorner {
         Some(if away[0] < away[1] { both[0] } else { both[1] })
     }
 
-    /// How much of a line the arc takes.
+    /// Returns the length of a line that the arc replaces, mm.
     fn cut_of_line(&self, sides: &[CornerSide; 2], size: &BlendSize, center_mm: Vector) -> f64 {
         match (sides[0].circle, sides[1].circle) {
             (None, None) => size.touches_mm,
@@ -415,7 +415,7 @@ impl BlendCorner {
         }
     }
 
-    /// Whether the arc goes on in the direction of the circles beside it.
+    /// Returns true if the arc continues in the direction of the circles beside it.
     fn is_tangent(
         &self,
         shape: &BlendShape,

@@ -37,9 +37,9 @@ pub(super) struct PlannerBlock {
     pub shape: SegmentShape,
     /// Places along it, and the arc lengths of the program that they stand for, mm.
     pub places_mm: Vec<[f64; 2]>,
-    /// Whether it is a rapid.
+    /// True for a rapid.
     pub is_rapid: bool,
-    /// Whether something turns along.
+    /// True where an axis other than X, Y and Z moves along.
     pub is_rotary: bool,
     /// Speed asked for.
     pub feed_mm_s: f64,
@@ -47,27 +47,27 @@ pub(super) struct PlannerBlock {
     pub highest_mm_s: f64,
     /// Acceleration.
     pub accel_mm_s2: f64,
-    /// How its end is taken.
+    /// Corner mode at its end.
     pub corner: Corner,
 }
 
-/// What all lines have in common that are joined.
+/// Mode that all joined lines share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BlockMode {
-    /// Whether they are rapids.
+    /// True for rapids.
     pub is_rapid: bool,
-    /// Whether something turns along.
+    /// True where an axis other than X, Y and Z moves along.
     pub is_rotary: bool,
     /// Speed asked for.
     pub feed_mm_s: f64,
     /// Highest speed of what moves along.
     pub along_mm_s: f64,
-    /// How their ends are taken.
+    /// Corner mode at their ends.
     pub corner: Corner,
 }
 
 impl BlockMode {
-    /// How far points may lie from the line that they are joined to.
+    /// Returns the largest distance of points from the line that they are joined to, mm.
     fn joins_within_mm(&self) -> f64 {
         match self.corner {
             Corner::Continuous {
@@ -84,13 +84,14 @@ impl BlockMode {
 struct ArcParts {
     parts: Vec<CircleShape>,
     line: u32,
-    /// Where they begin and end on the program.
+    /// Start and end, as arc length of the program.
     s_mm: [f64; 2],
     end_mm: [f64; 3],
 }
 
 impl ArcParts {
-    /// Whether a circle is the next part. Circles with the same radius are motions of their own.
+    /// Returns true if a circle is the next part. Circles with the same radius are motions of their
+    /// own.
     fn goes_on(&self, next: &CircleShape, line: u32) -> bool {
         self.parts.last().is_some_and(|last| {
             line == self.line
@@ -108,7 +109,7 @@ impl ArcParts {
 pub(super) struct BlockMaker {
     limits: DirectionLimits,
     mode: Option<BlockMode>,
-    /// Where the next block begins, and the arc length of the program there.
+    /// Start of the next block, and the arc length of the program there.
     from: ([f64; 3], f64),
     /// Points that are joined.
     chain: Vec<([f64; 3], f64)>,
@@ -211,7 +212,7 @@ impl BlockMaker {
         }
     }
 
-    /// Whether all points between lie close enough to the line to this one.
+    /// Returns true if all points in between lie close enough to the line to this one.
     fn is_linkable(&self, point: [f64; 3], within_mm: f64) -> bool {
         if within_mm <= 0.0 || self.chain.len() >= MOST_POINTS {
             return false;
@@ -323,7 +324,7 @@ impl BlockMaker {
     }
 }
 
-/// How many chords stand for a spline.
+/// Returns the number of chords that stand for a spline.
 fn chords(piece: &Piece) -> usize {
     let at = |i: u32| piece.curve.curvature(piece.length_mm * f64::from(i) / 64.0);
     let curvature = (0..=64).map(at).fold(0.0, f64::max);

@@ -84,8 +84,8 @@ fn without_kink(before: &mut MotionSegment, after: &mut MotionSegment) {
     after.kink_parts[0] = 0.0;
 }
 
-/// Whether a corner takes little enough; what it takes, or the speed at which it would be little
-/// enough, is noted.
+/// Returns true if a corner takes a small enough part of the acceleration. Records the part that it
+/// takes, and the speed at which the part is small enough.
 fn is_tangent(
     before: &mut MotionSegment,
     after: &mut MotionSegment,

@@ -22,7 +22,7 @@ pub(super) struct PeriodPoint {
 /// The motion of one servo period.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PeriodMotion {
-    /// What the axes do.
+    /// Motion of the axes.
     pub axes: AxisMotion,
     /// Arc length, speed, acceleration and jerk of the place on the program, at the beginning.
     pub station: [f64; 4],
@@ -35,7 +35,7 @@ pub(super) struct JointSpline {
 }
 
 impl JointSpline {
-    /// At rest at a point.
+    /// Creates a spline that rests at a point.
     pub(super) const fn at_rest(at: PeriodPoint) -> Self {
         Self { points: [at; 3] }
     }

@@ -1,4 +1,5 @@
-//! What LinuxCNC is told by its INI file, and the limits of axes as limits along a direction.
+//! Settings that LinuxCNC reads from its INI file, and the limits of axes as limits along a
+//! direction.
 
 use crate::constraints::{AxisLimits, Constraints};
 use crate::vector::Vector;
@@ -43,7 +44,8 @@ pub(super) struct DirectionLimits {
 }
 
 impl DirectionLimits {
-    /// Those of a machine. An axis without limits of its own is like the last that has some.
+    /// Takes the limits of a machine. An axis without limits of its own takes those of the last
+    /// axis that has some.
     pub(super) fn new(constraints: &Constraints) -> Self {
         let axis = |k: usize| constraints.axis(k).unwrap_or(AxisLimits::NONE);
         let path = &constraints.path;

@@ -15,7 +15,7 @@ use crate::vector::{Vector, add_scaled, sub};
 const NO_SPEED_MM_S: f64 = 1e-8;
 const NO_TIME_S: f64 = 1e-12;
 
-/// How far the motion comes in a period.
+/// Advance of the motion in one period.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PeriodStep {
     /// Displacement of the axes, mm.
@@ -203,7 +203,8 @@ impl MotionSegment {
         self.run.slows_down = (aimed_mm_s - speed_mm_s).abs() < NO_SPEED_MM_S && accel_mm_s2 < 0.0;
     }
 
-    /// Whether it ends within the next period, after which time, and how fast.
+    /// Checks whether the segment ends within the next period. Stores after which time, and at
+    /// which speed.
     fn look_for_end(&mut self, final_mm_s: f64) {
         self.run.period_s = PERIOD_S;
         let (left_mm, speed_mm_s) = (self.left_mm(), self.speed_mm_s);

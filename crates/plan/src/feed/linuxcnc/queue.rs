@@ -34,7 +34,7 @@ pub(super) struct SegmentQueue {
 }
 
 impl SegmentQueue {
-    /// Without segments.
+    /// Creates a queue without segments.
     pub(super) const fn new(limits: DirectionLimits) -> Self {
         Self {
             limits,

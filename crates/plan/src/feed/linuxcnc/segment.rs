@@ -6,16 +6,16 @@ use super::blocks::PlannerBlock;
 use super::limits::{MAX_OVERRIDE, NORMAL_RATIO, PERIOD_S, TANGENTIAL_RATIO};
 use super::shape::SegmentShape;
 
-/// How a segment ends.
+/// Type of the end of a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum SegmentEnd {
-    /// At rest (G61.1).
+    /// Full stop (G61.1).
     Stop,
-    /// On the path: at rest, or tangent to the next (G61).
+    /// End on the path: at rest, or tangent to the next segment (G61).
     Exact,
-    /// While it slows down the next begins, and both motions are added.
+    /// Blend: the next segment begins while this one slows down, and both motions are added.
     Parabolic,
-    /// At a speed, straight into the next.
+    /// Transition at speed, straight into the next segment.
     Tangent,
 }
 
@@ -27,13 +27,13 @@ pub(super) struct MotionSegment {
     /// Places along it before its beginning was cut, and the arc lengths of the program that they
     /// stand for, mm.
     pub places_mm: Vec<[f64; 2]>,
-    /// What was cut from its beginning.
+    /// Length cut from its beginning.
     pub cut_mm: f64,
     /// Length.
     pub length_mm: f64,
     /// Length before anything was cut.
     pub nominal_mm: f64,
-    /// How far it is.
+    /// Distance covered so far.
     pub progress_mm: f64,
     /// Speed asked for.
     pub feed_mm_s: f64,
@@ -54,25 +54,26 @@ pub(super) struct MotionSegment {
     pub kink_mm_s: Option<f64>,
     /// Parts of the acceleration that the corners at its beginning and at its end take.
     pub kink_parts: [f64; 2],
-    /// How it ends.
+    /// Type of its end.
     pub end: SegmentEnd,
-    /// Whether the one before blends into it.
+    /// True where the segment before blends into it.
     pub is_blended_into: bool,
     /// Tolerance of a blend, mm; 0 means no tolerance.
     pub tolerance_mm: f64,
-    /// Whether it is a rapid.
+    /// True for a rapid.
     pub is_rapid: bool,
-    /// Whether something turns along.
+    /// True where an axis other than X, Y and Z moves along.
     pub is_rotary: bool,
-    /// Whether its length is final.
+    /// True once its length is final.
     pub is_final: bool,
-    /// Whether its speed at the end has been found to be a bound's.
+    /// True once a bound limits its final speed, instead of the distance in which the next segments
+    /// slow down.
     pub is_peak: bool,
     /// State that the servo periods update while it moves.
     pub run: SegmentRun,
 }
 
-/// What a segment keeps while it moves.
+/// State of a segment while it moves.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SegmentRun {
     /// Time that it has in this servo period.
@@ -150,7 +151,7 @@ impl MotionSegment {
         segment
     }
 
-    /// In one servo period no more than its length.
+    /// Bounds the highest speed so that the segment takes at least one servo period.
     pub(super) fn bound_by_period(&mut self) {
         self.highest_mm_s = self.highest_mm_s.min(self.length_mm / PERIOD_S);
     }
@@ -202,7 +203,7 @@ impl MotionSegment {
         self.feed_mm_s.min(self.highest_mm_s)
     }
 
-    /// What is left of it.
+    /// Returns the remaining length.
     pub(super) fn left_mm(&self) -> f64 {
         self.length_mm - self.progress_mm
     }

@@ -10,7 +10,7 @@ const NO_RISE: f64 = 1e-9;
 /// A straight line.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LineShape {
-    /// Where it begins.
+    /// Start point.
     pub start_mm: Vector,
     /// Its direction.
     pub direction: Vector,
@@ -24,9 +24,9 @@ pub(super) struct LineShape {
 pub(super) struct CircleShape {
     /// Centre, beside the start.
     pub center_mm: Vector,
-    /// From the centre to the start.
+    /// Vector from the center to the start.
     pub first_mm: Vector,
-    /// As long, in the direction of travel.
+    /// Vector of the same length in the direction of travel at the start.
     pub second_mm: Vector,
     /// Unit vector of the axis that it turns about, to the left.
     pub normal: Vector,
@@ -34,7 +34,7 @@ pub(super) struct CircleShape {
     pub radius_mm: f64,
     /// Angle turned.
     pub angle: f64,
-    /// By which part of itself the radius grows.
+    /// Growth of the radius over the whole angle, as a part of the radius at the start.
     pub growth: f64,
     /// Way along the axis.
     pub rise_mm: Vector,
@@ -45,7 +45,7 @@ pub(super) struct CircleShape {
 /// A circular arc between two segments, with what is left of a line that it replaces before it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BlendShape {
-    /// Where the arc begins.
+    /// Start point of the arc.
     pub start_mm: Vector,
     /// Tangent there.
     pub tangent: Vector,
@@ -53,7 +53,7 @@ pub(super) struct BlendShape {
     pub line_mm: f64,
     /// Centre.
     pub center_mm: Vector,
-    /// From the centre to both ends.
+    /// Vectors from the center to both ends.
     pub ends_mm: [Vector; 2],
     /// Radius at the start.
     pub radius_mm: f64,
@@ -182,7 +182,7 @@ impl CircleShape {
         })
     }
 
-    /// From the axis to a point of it.
+    /// Returns the vector from the axis to a point of the circle.
     pub(super) fn radial_mm(&self, angle: f64) -> Vector {
         let (sin, cos) = libm::sincos(angle);
         scale(
@@ -241,7 +241,7 @@ impl CircleShape {
         flat_mm + dot(self.rise_mm, self.rise_mm) / flat_mm
     }
 
-    /// What is left without a part of its beginning.
+    /// Returns the remainder without a part of the beginning.
     pub(super) fn without_start(&self, angle: f64) -> Self {
         let part = (self.angle - angle) / self.angle;
         let first_mm = self.radial_mm(angle);
@@ -263,7 +263,7 @@ impl CircleShape {
         }
     }
 
-    /// What is left without a part of its end.
+    /// Returns the remainder without a part of the end.
     pub(super) fn without_end(&self, angle: f64) -> Self {
         let part = (self.angle - angle) / self.angle;
         let [rise_mm, left_over_mm] = [self.rise_mm, self.left_over_mm].map(|way| scale(part, way));
@@ -365,7 +365,7 @@ impl SegmentShape {
         }
     }
 
-    /// Whether the acceleration is shared with a normal one.
+    /// Returns true if the acceleration is shared with a normal one.
     pub(super) const fn is_round(&self) -> bool {
         !matches!(self, Self::Line(_))
     }

@@ -13,7 +13,7 @@ pub(super) const LEAST_STEP: f64 = 1e-4;
 /// The feedrate binds where so little of its square is left.
 const AT_FEED: f64 = 1e-4;
 
-/// So often a step that is too long for a feedrate is halved to find the longest.
+/// Number of halvings to find the longest step, where a step is too long for a feedrate.
 const CURVED_HALVINGS: u32 = 12;
 
 /// First iterates keep this part of each bound away from it.
@@ -96,7 +96,7 @@ pub(super) fn tube_slack<const N: usize>(r: f64, x: &[f64; N]) -> f64 {
 pub(super) struct WindowIterate<'a, const D: usize, const N: usize, const M: usize> {
     pub(super) problem: &'a WindowProblem<D, N>,
     pub(super) at: WindowUnknowns<N, M>,
-    /// Of the equations that lead to each node.
+    /// Multipliers of the equations that lead to each node.
     pub(super) multipliers: Vec<[f64; N]>,
     pub(super) nodes: Vec<NodeMultipliers<D>>,
     pub(super) steps: Vec<StepMultipliers<D>>,
@@ -135,14 +135,15 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
         first
     }
 
-    /// Whether a node has bounds of velocity and acceleration, and of its offset.
+    /// Returns whether a node has bounds of velocity and acceleration, and whether it has a bound
+    /// of its offset.
     #[inline]
     pub(super) fn is_bounded(&self, i: usize) -> [bool; 2] {
         let n = self.problem.way.len();
         [i > 0 && i < n, i > 0 && (i < n || !self.problem.exact_end)]
     }
 
-    /// Whether the feedrate binds anywhere.
+    /// Returns true if the feedrate binds anywhere.
     pub(super) fn is_at_feed(&self) -> bool {
         let steps = self.problem.steps();
         let mut all = self.at.x.iter().zip(&self.at.u).enumerate();

@@ -30,15 +30,15 @@ const LARGEST_DEFECT: f64 = 1e-7;
 const PATIENCE: u32 = 8;
 const PATIENT_DEFECT: f64 = 1e-3;
 
-/// With the last barrier, a Newton step that would lower the cost by no more than this part of it
-/// is not worth taking.
+/// Smallest decrease of the cost, as a part of it, for which a Newton step is taken with the last
+/// barrier.
 const STATIONARY: f64 = 1e-5;
 
-/// With no iterations left, a solution with a barrier up to this is better than none.
+/// Largest barrier at which a solution is accepted when no iterations are left.
 const LAST_RESORT_MU: f64 = 1e-3;
 
-/// If the feedrate binds, the barrier falls once more, by the factor `POLISH`, for at most
-/// `POLISHING` further iterations. The speed comes closer to the feedrate by the same factor.
+/// Factor by which the barrier falls once more if the feedrate binds, for at most `POLISHING`
+/// further iterations. The speed comes closer to the feedrate by the same factor.
 const POLISH: f64 = 0.05;
 const POLISHING: u32 = 8;
 
@@ -54,7 +54,7 @@ const SHIFT_FALLS: f64 = 1.0 / 3.0;
 const SHORT: f64 = 0.1;
 const SHIFT_AFTER_SHORT: f64 = 9.0;
 
-/// How far a window is to be solved.
+/// Settings of the solver for one window.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SolverSettings {
     /// Barrier at the beginning.
@@ -82,7 +82,7 @@ struct InteriorPoint<'a, const D: usize, const N: usize, const M: usize> {
     newton: NewtonStep<N, M>,
     trial: WindowUnknowns<N, M>,
     filter: Vec<(f64, f64)>,
-    /// What was added to the Hessian last, and last that was not zero.
+    /// Shift added to the Hessian last, and the last one that was not zero.
     shift: f64,
     last_shift: f64,
 }
@@ -174,7 +174,7 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
         solved.or_else(|| serves.then_some((self.iterate.at, settings.most_iterations)))
     }
 
-    /// What is added to the Hessian is less from iteration to iteration.
+    /// Reduces the shift of the Hessian from one iteration to the next.
     fn let_shift_fall(&mut self) {
         self.shift *= SHIFT_FALLS;
         if self.shift < LEAST_SHIFT {
@@ -198,7 +198,7 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
         (step, self.merit(&self.trial))
     }
 
-    /// Whether another Newton step would be in vain.
+    /// Returns true if another Newton step would gain nothing.
     fn is_stationary(&self, merit: Merit, slope: f64, last_mu: f64) -> bool {
         self.iterate.mu <= last_mu
             && merit.largest < LARGEST_DEFECT
@@ -347,7 +347,7 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
         error
     }
 
-    /// What the bounds of a node come to.
+    /// Adds the bounds of a node to its stage. Returns the largest residual of complementarity.
     fn node(&self, i: usize, stage: &mut Stage<N, M>, residual: &mut [f64; N]) -> f64 {
         let WindowIterate {
             problem, at, mu, ..
@@ -389,8 +389,8 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
         error
     }
 
-    /// What the bound of a control velocity comes to; answers its part of the gradient by the
-    /// duration.
+    /// Adds the bound of a control velocity to its stage. Returns its part of the gradient with
+    /// respect to the duration.
     fn feed(&self, i: usize, stage: &mut Stage<N, M>, residual: &mut [f64; N]) -> f64 {
         let WindowIterate {
             problem, at, mu, ..
@@ -429,7 +429,8 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
         z * by_h
     }
 
-    /// What a step comes to: its derivatives, the second ones times their multipliers, its bounds.
+    /// Adds a step to its stage: its derivatives, its second derivatives times their multipliers,
+    /// and its bounds. Returns the largest residual.
     fn step(&self, i: usize, stage: &mut Stage<N, M>, residual: &mut [f64; N]) -> f64 {
         let WindowIterate {
             problem, at, mu, ..

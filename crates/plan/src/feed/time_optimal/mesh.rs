@@ -26,15 +26,15 @@ const JOINT_AHEAD: f64 = 1.3;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MeshNode {
     pub(super) s_mm: f64,
-    /// Of the step that leads to it.
+    /// Duration of the step that leads to the node.
     pub(super) duration_s: f64,
     pub(super) motion: AxisMotion,
     pub(super) radius_mm: f64,
-    /// Whether the motion was planned before.
+    /// True where the motion was planned before.
     pub(super) followed: bool,
 }
 
-/// What a mesh begins with.
+/// State in which a mesh begins.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MeshStart {
     pub(super) s_mm: f64,
@@ -52,8 +52,8 @@ pub(super) struct Mesh<'a> {
 }
 
 impl<'a> Mesh<'a> {
-    /// With its first node; offsets of the others may use `radius_part` of the tolerance: the rest
-    /// is for what lies between nodes.
+    /// Creates a mesh with its first node. Offsets of the other nodes may use `radius_part` of the
+    /// tolerance: the rest is for what lies between nodes.
     pub(super) fn new(
         track: &'a Track,
         caps: &'a AxisCaps,

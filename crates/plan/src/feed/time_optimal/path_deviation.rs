@@ -10,21 +10,21 @@ use crate::vector::{add_scaled, distance, dot, norm, sub};
 /// Moments within a step at which it is looked at.
 const MOMENTS: u32 = 6;
 
-/// So often the time between two of them is halved for the moment of the largest speed: it is flat
-/// there, and exact to rounding.
+/// Number of halvings of the time between two moments to find the largest speed. The speed is flat
+/// there, so its value is exact to rounding.
 const HALVINGS: u32 = 24;
 
 /// Joints of a step that are looked at closely: those that stand out most from the chord between
 /// its nodes.
 const JOINTS: usize = 2;
 
-/// What the tolerance may be exceeded by, mm: a hundredth of a micrometre.
+/// Allowed violation of the tolerance, mm: a hundredth of a micrometer.
 const OVER_MM: f64 = 1e-5;
 
-/// Where a step exceeds its feedrate, the limit falls by this many times the relative excess.
+/// Factor of the relative excess by which the limit falls where a step exceeds its feedrate.
 const FEED_TIGHTER: f64 = 1.2;
 
-/// What the velocity of an axis may be exceeded by between nodes, for rounding.
+/// Allowed relative excess of the velocity of an axis between nodes, for rounding.
 const FAST_OVER: f64 = 1e-7;
 
 /// Beyond this part a step gets a node more, too, as if it left the tube by so much, mm.
@@ -171,7 +171,7 @@ fn extremes_of_rise_s(rise: f64, bend: f64, jerk: f64) -> (f64, f64) {
     }
 }
 
-/// How far the motion of a step leaves the tube, mm.
+/// Returns how far the motion of a step leaves the tube, mm.
 fn away_mm(track: &Track, steps: &[PlannedStep], i: usize) -> f64 {
     let step = &steps[i];
     let tolerance = |step: &PlannedStep| {
@@ -198,8 +198,8 @@ fn away_mm(track: &Track, steps: &[PlannedStep], i: usize) -> f64 {
     most
 }
 
-/// How far the path between the nodes of a step stays away from the motion, mm, beyond the
-/// tolerance.
+/// Returns the distance of the path between the nodes of a step from the motion, beyond the
+/// tolerance, mm.
 fn left_out_mm(track: &Track, steps: &[PlannedStep], i: usize) -> f64 {
     let step = &steps[i];
     let (from, to) = (
@@ -389,8 +389,8 @@ mod tests {
             let furthest = (0..=MOMENTS).map(to_path).fold(0.0, f64::max);
             let away = furthest - TOLERANCE_MM;
             prop_assert!((away_mm(&track, &steps, 0) - away).abs() < 1e-9);
-            // Either alone is told, and so is a speed above the feedrate; of steps that are not
-            // soon, the speed alone.
+            // Either excess alone is reported, and so is a speed above the feedrate. For steps that
+            // are not soon, only the speed is.
             let caps = AxisCaps { axes: [AxisLimits::NONE; 3] };
             let too_fast = distance(start, end) > FEED_MM_S;
             for (first, tube_mm) in [(1, left_out.max(away).max(0.0)), (0, 0.0)] {

@@ -14,7 +14,8 @@ pub(super) struct Stage<const N: usize, const M: usize> {
     pub(super) r: [[f64; M]; M],
     pub(super) gx: [f64; N],
     pub(super) gu: [f64; M],
-    /// Of each axis: offset by velocity, offset by acceleration, velocity by acceleration.
+    /// Derivatives of each axis over a step: offset by velocity, offset by acceleration, velocity
+    /// by acceleration.
     pub(super) a: [[f64; 3]; M],
     /// State of each axis by its jerk.
     pub(super) bj: [[f64; 3]; M],
@@ -132,7 +133,8 @@ impl<const N: usize, const M: usize> NewtonStep<N, M> {
         }
     }
 
-    /// From the last node to the first; `false` where the cost is not convex in what is free.
+    /// Sweeps from the last node to the first. Returns `false` if the cost is not convex in the
+    /// free variables.
     pub(super) fn backward(&mut self, stages: &[Stage<N, M>]) -> bool {
         let n = stages.len() - 1;
         self.p[n] = stages[n].q;
@@ -171,7 +173,7 @@ impl<const N: usize, const M: usize> NewtonStep<N, M> {
         true
     }
 
-    /// From the first node to the last, behind [`Self::backward`].
+    /// Sweeps from the first node to the last, after [`Self::backward`].
     pub(super) fn forward(&mut self, stages: &[Stage<N, M>]) {
         self.dx[0] = [0.0; N];
         for (i, stage) in stages.iter().enumerate() {

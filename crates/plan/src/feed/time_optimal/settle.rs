@@ -8,7 +8,7 @@ use super::window::{WindowProblem, WindowUnknowns};
 /// Number of steps in which an axis comes to rest, counted from where the path stops moving it.
 const SETTLING: usize = 40;
 
-/// What of the bounds it may use for that.
+/// Part of the bounds that this motion may use.
 const MOST: f64 = 0.999;
 
 /// Brings every axis to rest that the path leaves where it is up to the end of the window. The

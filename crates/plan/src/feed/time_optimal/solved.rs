@@ -19,7 +19,7 @@ const AT_MM: f64 = 1e-9;
 /// The part by which the first control velocity may exceed the velocity that is given.
 const GIVEN_PART: f64 = 1e-7;
 
-/// So much of a turn that was planned before is reckoned with: a motion that turns less would
+/// Part of a previously planned turn that is assumed. A motion that turns less than assumed would
 /// exceed the feedrate between its nodes.
 const FOLLOWED_TURN: f64 = 0.98;
 
@@ -41,8 +41,8 @@ pub(super) struct MeshProblem<'a> {
     pub(super) ends: bool,
     /// See [`WindowProblem::offset_cost`].
     pub(super) offset_cost: f64,
-    /// With `Some(f)`, the first guess is a motion along the chords, `f` times slower. With `None`,
-    /// it is the motion of the nodes.
+    /// Factor by which the first guess, a motion along the chords, is slower. With `None`, the
+    /// first guess is the motion of the nodes.
     pub(super) slower: Option<f64>,
     pub(super) settings: SolverSettings,
 }
@@ -138,7 +138,7 @@ impl MeshProblem<'_> {
         ))
     }
 
-    /// What the axes do at a node by the first guess.
+    /// Returns the motion of the axes at a node of the first guess.
     fn guessed(&self, i: usize, centers: &[[f64; 3]]) -> AxisMotion {
         let node = &self.nodes[i];
         let Some(slower) = self.slower.filter(|_| i > 0) else {
@@ -154,9 +154,9 @@ impl MeshProblem<'_> {
         }
     }
 
-    /// What a control velocity may be: the feedrate, the smallest one where pieces meet, and more
-    /// where the path turns: the polygon of control velocities of a steady circle lies around it. A
-    /// control velocity that is given stays possible.
+    /// Returns the largest control velocity of a step, mm/s: the feedrate, the smallest one where
+    /// pieces meet. It is higher where the path turns, because the polygon of control velocities of
+    /// a steady circle lies around that circle. A control velocity that is given stays possible.
     fn feed_mm_s(&self, i: usize) -> f64 {
         let [from, to] = [&self.nodes[i], &self.nodes[i + 1]];
         let feeds = self

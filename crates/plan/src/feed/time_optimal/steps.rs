@@ -27,13 +27,14 @@ impl AxisCaps {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether each axis keeps its jerk in a step, up to rounding.
+    /// Returns true if each axis keeps its jerk limit in a step, up to rounding.
     pub(super) fn keeps_jerk(&self, step: &PlannedStep) -> bool {
         let mut axes = self.axes.iter().zip(step.motion.jerk_mm_s3);
         axes.all(|(limits, jerk_mm_s3)| jerk_mm_s3.abs() <= (1.0 + JERK_OVER) * limits.jerk_mm_s3)
     }
 
-    /// How long the slowest axis takes to stop from a speed: `v / a + a / j`.
+    /// Returns the time that the slowest axis takes to stop from a speed, s: `v / a + a / j`, or `2
+    /// sqrt(v / j)` where it does not reach its acceleration limit.
     pub(super) fn stop_s(&self, speed_mm_s: f64) -> f64 {
         let stop_s = |limits: &AxisLimits| {
             let AxisLimits {
@@ -58,11 +59,11 @@ pub(super) struct PlannedStep {
     pub(super) from_mm: f64,
     pub(super) to_mm: f64,
     pub(super) duration_s: f64,
-    /// Where the axes are at its beginning, and what they do.
+    /// Position and motion of the axes at the start of the step.
     pub(super) motion: AxisMotion,
 }
 
-/// As many as halving alone would take.
+/// Largest number of iterations: as many as bisection alone would take.
 const MOST_NEWTON: u32 = 52;
 
 /// Place on the programmed path over the time of a step: `s, s', s'' / 2, s''' / 6`.
@@ -94,8 +95,8 @@ pub(super) fn place_after(powers: &PlacePowers, t: f64) -> f64 {
     powers[0] + t * (powers[1] + t * (powers[2] + t * powers[3]))
 }
 
-/// When a place is reached: by Newton's method, and by halving where that leads out of what is
-/// known.
+/// Returns the time at which a place is reached, s. Uses Newton's method, and bisection where that
+/// leaves the known interval.
 pub(super) fn time_of_place(powers: &PlacePowers, place_mm: f64, duration_s: f64) -> f64 {
     let (mut lo, mut hi) = (0.0, duration_s);
     let mut t = 0.5 * duration_s;

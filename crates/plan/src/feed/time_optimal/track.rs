@@ -8,7 +8,7 @@ use crate::vector::{angle, distance, norm, sub};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Where the directions of two pieces differ by this, a node lies on their joint, rad.
+/// Angle between two pieces above which a node lies on their joint, rad.
 const SHARP_RAD: f64 = 0.2;
 
 /// Widest span over which the path is looked at as a whole, mm; so much of it has to be known
@@ -26,7 +26,7 @@ const GRID: f64 = 2.0;
 pub(super) struct TrackPiece {
     pub(super) number: u64,
     pub(super) curve: Curve,
-    /// Where it begins: position, arc length from the start of the program and from the rest.
+    /// Start: position, arc length from the start of the program and from the rest.
     pub(super) start_mm: [f64; 3],
     pub(super) program_mm: f64,
     pub(super) s_mm: f64,
@@ -60,7 +60,7 @@ pub(super) struct Track {
 }
 
 impl Track {
-    /// Without pieces.
+    /// Creates a track without pieces.
     pub(super) fn new(caps: Option<Arc<SpeedCaps>>) -> Self {
         Self {
             caps,
@@ -125,7 +125,7 @@ impl Track {
         self.end_mm += length_mm;
     }
 
-    /// Whether there is no piece yet.
+    /// Returns true if there is no piece yet.
     pub(super) fn is_empty(&self) -> bool {
         self.pieces.is_empty()
     }

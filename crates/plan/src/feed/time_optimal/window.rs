@@ -12,11 +12,11 @@
 /// Units of the unknowns.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WindowUnits<const D: usize> {
-    /// Of durations.
+    /// Unit of durations.
     pub(super) step_s: f64,
-    /// Of offsets.
+    /// Unit of offsets.
     pub(super) offset_mm: f64,
-    /// Of velocities: the limits of the axes; here and below.
+    /// Units of velocities, accelerations and jerks: the limits of the axes.
     pub(super) velocity_mm_s: [f64; D],
     pub(super) accel_mm_s2: [f64; D],
     pub(super) jerk_mm_s3: [f64; D],
@@ -27,7 +27,7 @@ pub(super) struct WindowUnits<const D: usize> {
 #[derive(Debug, Clone)]
 pub(super) struct WindowProblem<const D: usize, const N: usize> {
     pub(super) units: WindowUnits<D>,
-    /// From node to node.
+    /// Vector from each node to the next.
     pub(super) way: Vec<[f64; D]>,
     /// Largest length of the offset of each node.
     pub(super) radius: Vec<f64>,
@@ -38,7 +38,7 @@ pub(super) struct WindowProblem<const D: usize, const N: usize> {
     pub(super) offset_cost: f64,
     /// State of the first node.
     pub(super) first: [f64; N],
-    /// Whether the last node has no offset.
+    /// True where the last node has no offset.
     pub(super) exact_end: bool,
 }
 
@@ -49,7 +49,7 @@ pub(super) struct WindowUnknowns<const N: usize, const M: usize> {
     pub(super) u: Vec<[f64; M]>,
 }
 
-/// What a step of one axis is, in units.
+/// Coefficients of a step of one axis, in units.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StepOfAxis {
     pub(super) c1: f64,
@@ -88,7 +88,7 @@ impl StepOfAxis {
 }
 
 impl<const D: usize, const N: usize> WindowProblem<D, N> {
-    /// What steps are.
+    /// Returns the step coefficients of all axes.
     pub(super) fn steps(&self) -> [StepOfAxis; D] {
         std::array::from_fn(|k| StepOfAxis::of(&self.units, k))
     }
@@ -121,7 +121,7 @@ impl<const D: usize, const N: usize> WindowProblem<D, N> {
         self.offset_cost / (self.radius[i] * self.radius[i])
     }
 
-    /// Whether a component of the last state is given: it rests.
+    /// Returns true if a component of the last state is given, because the axes rest there.
     pub(super) const fn is_given(&self, component: usize) -> bool {
         !component.is_multiple_of(3) || self.exact_end
     }

@@ -1,4 +1,4 @@
-//! What is compared, from the arguments.
+//! Options of a comparison, from the arguments.
 use feedwright::{BASELINE, Entry};
 use feedwright_gcode::suggestion::nearest;
 use feedwright_sim::{BUILT_IN_MACHINES, Machine};
@@ -89,7 +89,7 @@ fn machines_and(machines: &[Machine], nominal: &Machine) -> Vec<Machine> {
     machines.iter().chain([nominal]).cloned().collect()
 }
 
-/// Whether all that `--only` names is there.
+/// Fails if a name in `--only` is unknown.
 fn check_only(
     only: &[String],
     workpieces: &[Workpiece],
@@ -119,7 +119,7 @@ fn check_only(
     Ok(())
 }
 
-/// The rows of two that have the same name could not be told apart.
+/// Reports two inputs of the same name, because their rows in the table would look the same.
 fn ambiguous(option: &str, name: &str) -> miette::Report {
     let help = match option {
         "--part" => "the name is that of the file: give this one another",

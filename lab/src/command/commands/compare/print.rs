@@ -23,7 +23,7 @@ pub(super) fn print(args: &CompareArgs, comparison: &Comparison) -> std::io::Res
     tell_written(out, files())
 }
 
-/// What searches came to.
+/// Returns the results of the searches as text.
 pub(super) fn tuned(tuned: &[Tuned]) -> String {
     let mut text = String::new();
     for tuned in tuned.iter().filter(|tuned| tuned.cuts > 0) {

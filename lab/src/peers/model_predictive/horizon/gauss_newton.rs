@@ -168,7 +168,7 @@ mod tests {
         }
     }
 
-    /// A machine that the offset does nothing to: only its own price is left.
+    /// A machine that does not respond to the offset, so that only the cost of the offset remains.
     #[derive(Clone)]
     struct Deaf;
 

@@ -23,7 +23,7 @@ use super::MAX_UNKNOWNS;
 
 /// Iterations at the most.
 const MAX_ITERATIONS: usize = 12;
-/// What J may be above its minimum, mm^2: three nanometres of contour error in one knot.
+/// Largest excess of J over its minimum, mm^2: three nanometres of contour error in one knot.
 const NEAR_ENOUGH_MM2: f64 = 1e-11;
 /// Part of the way to the nearest bound that a step goes.
 const PART_OF_THE_WAY: f64 = 0.995;
@@ -290,8 +290,8 @@ mod tests {
         quadratic
     }
 
-    /// By duality J is above its minimum by no more than what the slopes could still gain within
-    /// the bounds.
+    /// Checks the bound by duality: J is above its minimum by no more than the slopes could still
+    /// gain within the bounds.
     #[test]
     fn no_point_within_the_bounds_is_better_by_more_than_the_tolerance() {
         let mut binding = 0;

@@ -25,7 +25,7 @@ use super::{
 const RAPID_WEIGHT: f64 = 0.2;
 /// Least h in the knots before and behind a point where the path turns straight back.
 const TURN_WEIGHT: f64 = 0.2;
-/// What is left from one knot to the next of how near such a point is.
+/// Factor by which the nearness to such a point falls from one knot to the next.
 const NEAR_TURN: f64 = 0.85;
 /// A rapid counts as a cut for this part of the lag: the tool still leaves the last corner of the
 /// cut.
@@ -48,7 +48,7 @@ pub struct HorizonProblem<const N: usize> {
     pub knot_s: f64,
     /// Lag of the machine, s.
     pub lag_s: f64,
-    /// What counts at the end of each knot.
+    /// Errors and weights at the end of each knot.
     pub ends: [End<N>; MAX_KNOTS],
     /// Derivative of the tool to the accelerations, s^2.
     pub sensitivity: [Sensitivity<N>; MAX_KNOTS],
@@ -59,7 +59,7 @@ pub struct HorizonProblem<const N: usize> {
     pub settings: HorizonSettings<N>,
 }
 
-/// What is foreseen at the end of a knot.
+/// Prediction at the end of a knot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct End<const N: usize> {
     /// Errors of the tool: across the path, and last along it, mm.
@@ -68,15 +68,14 @@ pub struct End<const N: usize> {
     pub directions: [[f64; N]; N],
     /// Planned feedrate there, mm/s.
     pub feed_mm_s: f64,
-    /// Whether the tool cuts there, or soon, or lately, or is to be on the path.
+    /// True if the tool cuts there, will soon cut, has just cut, or is to be on the path.
     pub counts: bool,
-    /// How sharply the path turns between this knot and one beside it: 0 not at all, 1/2 at a right
-    /// angle, 1 straight back.
+    /// Sharpness of the turn of the path between this knot and one beside it: 0 not at all, 1/2 at
+    /// a right angle, 1 straight back.
     pub corner: f64,
-    /// Whether it turns back there: 0 up to a right angle, 1 where straight back; and how near such
-    /// a point is, by as much.
+    /// Reversal of the path at this knot: 0 up to a right angle, 1 straight back.
     pub turn: f64,
-    /// See above.
+    /// Nearness of such a point, on the same scale.
     pub near_turn: f64,
     /// Offset, mm, and its speed, mm/s.
     pub offset_mm: [f64; N],
@@ -161,8 +160,8 @@ impl<const N: usize> HorizonProblem<N> {
         problem
     }
 
-    /// Where the path turns back, no part of it is nearer than its tip, and a tool that is late
-    /// there leaves it uncut.
+    /// Finds the points where the path turns back. No part of the path is nearer than the tip
+    /// there, and a tool that is late leaves the tip uncut.
     fn find_turns(&mut self) {
         let knots = self.last_knot() + 1;
         let ends = &mut self.ends[..knots];
@@ -189,8 +188,8 @@ impl<const N: usize> HorizonProblem<N> {
         }
     }
 
-    /// How far the tool is from its own point in the worst of the knots that count, along the path
-    /// only as far as it turns back near it, mm.
+    /// Returns the distance of the tool from its own point in the worst of the knots that count,
+    /// mm. The distance along the path counts only near a reversal.
     pub fn need_mm(&self) -> f64 {
         let mut most = 0.0_f64;
         for end in self.ends.iter().take(self.knots).filter(|end| end.counts) {

@@ -31,13 +31,13 @@ use super::{CorrectionLimits, HorizonSettings};
 
 /// q at the most.
 const MAX_OFFSET_WEIGHT: f64 = 10.0;
-/// How far an offset that accelerates by A comes within t, in A t^2: it has some of the time
-/// before, and some behind.
+/// Distance that an offset with the acceleration A covers within t, in A t^2: it has some of the
+/// time before, and some behind.
 const REACH: f64 = 2.0;
-/// What is left of n and u from one tick to the next, where they become smaller: the correction
-/// that was held back comes in gently.
+/// Decay factor of n and u from one tick to the next where they become smaller: the correction that
+/// was held back returns gently.
 const LEFT: f64 = 0.97;
-/// q_s and b: q in the first decision, and what is left of it from one to the next.
+/// q_s and b: q in the first decision, and its decay factor from one decision to the next.
 const START_WEIGHT: f64 = 0.3;
 const START_LEFT: f64 = 0.5;
 /// S, and the most of that term: at 10, drilling behind rapids at the torque limit was still worse
@@ -62,7 +62,7 @@ pub(super) struct Restraint {
 }
 
 impl Restraint {
-    /// Of a plan that has just begun.
+    /// Restraint of a plan that has just begun.
     pub(super) const START: Self = Self {
         need_mm: 0.0,
         undone: 0.0,
@@ -125,7 +125,8 @@ mod tests {
         ..HorizonSettings::EXAMPLE
     };
 
-    /// After as many decisions as the start takes, with nothing to do; then one with this.
+    /// Returns the settings after as many decisions as the start takes, without any error, and one
+    /// more decision with these errors.
     fn restrained(need_mm: f64, contour_mm2: f64, lag_s: f64) -> HorizonSettings<2> {
         let mut restraint = Restraint::START;
         (0..100).for_each(|_| restraint.take_in(0.0, 0.0, 0.0));

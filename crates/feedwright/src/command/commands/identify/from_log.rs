@@ -198,7 +198,7 @@ fn job(name: String, args: &LogArgs) -> LogJob {
     }
 }
 
-/// What the machine is called: as its file.
+/// Returns the name of the machine: the name of its file.
 fn stem(path: &Path) -> String {
     path.file_stem().map_or_else(
         || "mine".to_owned(),

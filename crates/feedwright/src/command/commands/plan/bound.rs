@@ -21,7 +21,7 @@ pub(super) struct Bound {
     pub(super) time_s: f64,
     /// Motions of the program that this is for.
     pub(super) motions: u64,
-    /// Whether it is for all of them.
+    /// True if the bound covers all motions of the program.
     pub(super) is_whole: bool,
 }
 

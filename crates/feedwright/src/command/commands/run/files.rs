@@ -11,7 +11,7 @@ use crate::job::{Job, JobOutcome};
 use crate::output::{OutputError, OutputFile, OutputFiles, is_standard_output};
 use crate::report::write_html_in;
 
-/// Where to write what; `None` is not written.
+/// Paths of the results; `None` is not written.
 #[derive(Debug)]
 pub(super) struct Outputs {
     /// The page.
@@ -27,7 +27,7 @@ pub(super) struct Outputs {
     pub(super) out: Option<PathBuf>,
 }
 
-/// What `--out` writes.
+/// Kinds of `--out`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Form {
     Setpoints,
@@ -35,12 +35,12 @@ enum Form {
 }
 
 impl Outputs {
-    /// Whether a program is to be written.
+    /// Returns true if `--out` requests a program.
     pub(super) fn is_program(&self) -> Result<bool> {
         Ok(self.form()? == Some(Form::Gcode))
     }
 
-    /// What the ending of `--out` asks for.
+    /// Returns the form that the ending of `--out` requests.
     fn form(&self) -> Result<Option<Form>> {
         let Some(path) = &self.out else {
             return Ok(None);

@@ -1,5 +1,4 @@
-//! What a run came to, as text: the headline, the table, what was assumed, and what is to be done
-//! with it.
+//! Result of a run as text: the headline, the table, the assumptions, and the next steps.
 
 use crate::command::terminal::ascii;
 use crate::report::headline::{AXES, headline};
@@ -79,7 +78,7 @@ pub(super) fn print(
     print_written(out, outputs, outcome)
 }
 
-/// How a program is planned that says which control it was corrected for.
+/// Remark on how a program is planned that names the control it was corrected for.
 fn planned_as(control: &TargetControl) -> String {
     format!(
         "the program says that it was corrected for the control {}: it is planned as this control plans, and its geometry is not \
@@ -88,11 +87,11 @@ fn planned_as(control: &TargetControl) -> String {
     )
 }
 
-/// Said where the correction was out of the loop for most of the cutting time, or at its end.
+/// Printed where the correction was disengaged for most of the cutting time, or at its end.
 const MOSTLY_UNCORRECTED: &str = "most of the part, or its end, is as good as uncorrected: the model does not fit this machine. Record it anew with \
      `feedwright excite`, and identify it with `feedwright identify`";
 
-/// How the last run leaves the programmed feedrate.
+/// Describes how the feedrate of the last run differs from the programmed one.
 fn chip_load(runs: &[ReportedRun]) -> Option<String> {
     let RunSummary {
         controller, feed, ..
@@ -185,7 +184,7 @@ fn table(report: &Report, uncorrected: &[CutsUncorrected]) -> ConsoleTable {
     table
 }
 
-/// What the figures rest on.
+/// Lists the assumptions behind the figures.
 fn assumed(assumed: &Assumptions, measured: bool) -> String {
     let sentences = [
         assumed.machine_sentence(),
@@ -199,7 +198,8 @@ fn assumed(assumed: &Assumptions, measured: bool) -> String {
     )
 }
 
-/// What the corrected program is, beside the uncorrected program as its control cuts it.
+/// Prints the corrected program's results beside those of the uncorrected program as its control
+/// cuts it.
 fn print_exported(out: &mut dyn Write, outcome: &CorrectOutcome) -> io::Result<()> {
     let ExportedFigures {
         rms_um,
@@ -225,7 +225,7 @@ fn print_exported(out: &mut dyn Write, outcome: &CorrectOutcome) -> io::Result<(
     print_correction(out, outcome)
 }
 
-/// What the planned path has of a tolerance of the tool.
+/// States the share of the tool's tolerance that the planned path may use.
 pub(in crate::command) fn path_share(path_um: f64) -> String {
     format!("of the tolerance, {path_um:.2} um are the path's")
 }
@@ -269,7 +269,7 @@ fn print_fastest(out: &mut dyn Write, plan: &FastestPlan) -> io::Result<()> {
     Ok(())
 }
 
-/// Which files there are, and why one is not.
+/// Prints which files were written, and why a program was not.
 fn print_written(out: &mut dyn Write, outputs: &Outputs, outcome: &JobOutcome) -> io::Result<()> {
     let is_good = outcome
         .exported
@@ -294,7 +294,7 @@ fn print_written(out: &mut dyn Write, outputs: &Outputs, outcome: &JobOutcome) -
         ],
     )?;
     match (outputs.out.as_deref(), &outcome.exported) {
-        // Why there is no program is told above.
+        // The full reason why there is no program is printed above.
         (Some(path), None) if !is_good => {
             let is_beyond = outcome
                 .report
