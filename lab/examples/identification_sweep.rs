@@ -15,7 +15,7 @@ use feedwright_control::Uncorrected;
 use feedwright_gcode::canon::Canon;
 use feedwright_gcode::{Reader, Settings};
 use feedwright_ident::{
-    AxisFacts, ExciteOptions, FoundAxis, LawTerm, LawVerdict, excitation_program,
+    AxisFacts, ExciteOptions, FoundAxis, ModelTerm, ModelVerdict, excitation_program,
 };
 use feedwright_sim::{Axis, Machine, Row, Run, Sink, path_steps};
 
@@ -148,11 +148,11 @@ fn main() -> Result<(), Failure> {
             for (axis, is) in found.machine.axes.iter().zip(&machine.axes) {
                 worst_um = worst_um.max(axis.scores.grey_box.at_um[2]);
                 opened += u32::from(axis.unseen.is_open());
-                holds += u32::from(LawVerdict::of(axis) == LawVerdict::LawHolds);
+                holds += u32::from(ModelVerdict::of(axis) == ModelVerdict::ModelHolds);
                 for term in axis
                     .terms
                     .iter()
-                    .filter(|term| **term > LawTerm::RecordDelay)
+                    .filter(|term| **term > ModelTerm::RecordDelay)
                 {
                     *beside.entry(term.key()).or_insert(0) += 1;
                 }

@@ -21,7 +21,7 @@ use feedwright::{
 };
 use feedwright_control::{Controller, Uncorrected};
 use feedwright_ident::{
-    AxisFacts, Columns, ExciteError, ExciteOptions, FoundAxis, LawTerm, Log, LogError, Model,
+    AxisFacts, Columns, ExciteError, ExciteOptions, FoundAxis, Log, LogError, Model, ModelTerm,
     excitation_program,
 };
 use feedwright_sim::{
@@ -342,11 +342,11 @@ fn linear(found: &FoundAxis) -> LinearPart {
         .resolved
         .as_ref()
         .map_or(&found.values, |resolved| &resolved.values);
-    let get = |term: LawTerm| values.get(term);
-    let (product, speed_loop) = (get(LawTerm::LoopGain), get(LawTerm::Damping));
-    let feedforward = get(LawTerm::VelocityFeedforward);
+    let get = |term: ModelTerm| values.get(term);
+    let (product, speed_loop) = (get(ModelTerm::LoopGain), get(ModelTerm::Damping));
+    let feedforward = get(ModelTerm::VelocityFeedforward);
     // Without an integral the loop carries its viscous friction by an error.
-    let carried = if get(LawTerm::Integral) > 0.0 {
+    let carried = if get(ModelTerm::Integral) > 0.0 {
         values.speed_gain_1_s()
     } else {
         speed_loop
@@ -356,7 +356,7 @@ fn linear(found: &FoundAxis) -> LinearPart {
         speed_loop_1_s: speed_loop,
         velocity_feedforward: feedforward,
         command_delay_s: values.commands_late_s(),
-        loop_delay_s: get(LawTerm::LoopDelay),
+        loop_delay_s: get(ModelTerm::LoopDelay),
         lag_s: (carried - feedforward * values.speed_gain_1_s()) / product
             + values.commands_late_s(),
     }

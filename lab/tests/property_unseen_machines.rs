@@ -90,7 +90,7 @@ fn cut(
 const LEFT_BY_LATE: [(f64, f64); 2] = [(0.001, 0.65), (0.002, 1.0)];
 
 #[test]
-fn drives_that_are_late_without_the_law_knowing_it_are_still_corrected() {
+fn drives_that_are_late_without_the_model_knowing_it_are_still_corrected() {
     let contours = contours(&["circle", "eight", "star", "square"]);
     let (mut best, mut base) = (controller(BEST, &tnv40()), controller(BASELINE, &tnv40()));
     for (delay_s, left) in LEFT_BY_LATE {
@@ -116,7 +116,7 @@ fn drives_that_are_late_without_the_law_knowing_it_are_still_corrected() {
 }
 
 #[test]
-fn a_law_of_another_machine_is_not_followed() {
+fn a_model_of_another_machine_is_not_followed() {
     let [few, many] = MACHINES;
     let machines = part_or_whole(few, many);
     let contours = contours(&["circle", "star", "square"]);

@@ -10,10 +10,10 @@ use pyo3::types::PyDict;
 /// Names of the axes.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// What a column has of a row.
+/// Name of a column, and its value in a row.
 type ColumnOf<T> = (&'static str, fn(&Row) -> T);
 
-/// Vectors of a row that have a column for each axis.
+/// Vectors of a row, with a column for each axis.
 const VECTORS: [ColumnOf<[f64; 3]>; 5] = [
     ("path_{}_mm", |row| row.path_mm),
     ("cmd_{}_mm", |row| row.cmd_mm),
@@ -36,12 +36,12 @@ pub(crate) struct RowColumns {
     line: Vec<u32>,
     cutting: Vec<bool>,
     numbers: [Vec<f64>; NUMBERS.len()],
-    /// Axis by axis of each vector.
+    /// Columns of each vector, axis by axis.
     vectors: [[Vec<f64>; 3]; VECTORS.len()],
 }
 
 impl RowColumns {
-    /// No rows yet, of a cut in which so many axes move.
+    /// Creates empty columns for a cut in which `axes` axes move.
     pub(crate) fn new(axes: usize) -> Self {
         Self {
             axes,
@@ -52,7 +52,7 @@ impl RowColumns {
         }
     }
 
-    /// As arrays, which take over the memory.
+    /// Returns the columns as arrays, which take over the memory.
     pub(crate) fn into_arrays<'py>(self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let arrays = PyDict::new(py);
         let [t_s, rest @ ..] = self.numbers;

@@ -14,7 +14,7 @@ pyo3::create_exception!(
      those of the first."
 );
 
-/// The exception of an error.
+/// Returns the exception of an error.
 pub(crate) fn exception(report: &Report) -> PyErr {
     let findings = fault_findings(report);
     let error = FeedwrightError::new_err(fault_text(report));
@@ -27,11 +27,11 @@ pub(crate) fn exception(report: &Report) -> PyErr {
         }
         value.setattr("findings", findings)
     };
-    // Where memory or the interpreter fails, that is what is told.
+    // If memory or the interpreter fails, that failure is reported.
     Python::attach(set).err().unwrap_or(error)
 }
 
-/// A JSON text as objects of Python.
+/// Converts a JSON text to objects of Python.
 pub(crate) fn from_json<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
     py.import("json")?.call_method1("loads", (text,))
 }

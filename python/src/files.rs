@@ -15,17 +15,17 @@ use toml_edit::{DocumentMut, Item, Table, Value};
 
 use crate::fault::{exception, from_json};
 
-/// A G-code program in a file or a text, and how it is read.
+/// A G-code program in a file or a text, and the settings of its reader.
 #[pyclass(frozen, name = "Program", module = "feedwright")]
 pub(crate) struct PythonProgram {
     pub(crate) program: Program,
     pub(crate) settings: Settings,
-    /// The keys of a job that say the same.
+    /// Keys of a sweep job that state the same.
     spec: JobSpec,
 }
 
 impl PythonProgram {
-    /// A program of the default dialect with this name.
+    /// Returns a program of the default dialect with this name.
     pub(crate) fn named(name: String, text: String) -> PyResult<Self> {
         Self::new(None, Some(text), Some(name), AUTO, None, false, vec![])
     }
@@ -86,12 +86,12 @@ impl PythonProgram {
         })
     }
 
-    /// A job of a sweep with this program, as JSON.
+    /// Returns a job of a sweep with this program, as JSON.
     fn _job(&self) -> PyResult<String> {
         job_text(&self.spec)
     }
 
-    /// What messages call it.
+    /// Name of the program in messages.
     #[getter]
     fn name(&self) -> String {
         self.program.name()
@@ -106,7 +106,7 @@ fn unnamed() -> String {
     "program.ngc".to_owned()
 }
 
-/// A job of a sweep as JSON.
+/// Returns a job of a sweep as JSON.
 pub(crate) fn job_text(spec: &JobSpec) -> PyResult<String> {
     serde_json::to_string(spec)
         .into_diagnostic()
@@ -138,7 +138,7 @@ impl MotionOfProgram {
     }
 }
 
-/// The motions of a program in its order, read as they are asked for.
+/// Motions of a program in its order, read on demand.
 #[pyclass(name = "Motions", module = "feedwright")]
 pub(crate) struct MotionsOfProgram {
     reader: Reader,
@@ -188,7 +188,8 @@ impl MotionsOfProgram {
     }
 }
 
-/// Every mistake and warning of a program, and what it amounts to.
+/// Checks a program. Returns every mistake and warning; without a mistake, also its lines, motions,
+/// lengths, box and dialect.
 #[pyfunction]
 pub(crate) fn check<'py>(py: Python<'py>, program: &PythonProgram) -> PyResult<Bound<'py, PyAny>> {
     let answer = match py.detach(|| program.program.check(program.settings.clone())) {
@@ -213,16 +214,17 @@ pub(crate) fn check<'py>(py: Python<'py>, program: &PythonProgram) -> PyResult<B
     from_json(py, &answer.to_string())
 }
 
-/// A machine: one that is built in, or one of a machine file.
+/// A machine, built in or from a machine file.
 #[pyclass(frozen, name = "Machine", module = "feedwright")]
 pub(crate) struct PythonMachine {
     pub(crate) machine: Machine,
-    /// The file that it was read from; none where it is built in.
+    /// File that it was read from; `None` if it is built in.
     pub(crate) file: Option<String>,
 }
 
 impl PythonMachine {
-    /// The error of its values, as a fraction, where the user states none.
+    /// Returns the error of the machine values, as a fraction; the usual error if `percent` is not
+    /// stated.
     pub(crate) fn file_error(&self, percent: Option<f64>) -> f64 {
         percent.map_or_else(
             || CorrectJob::usual_file_error(self.file.is_some()),
@@ -260,7 +262,7 @@ impl PythonMachine {
         found.map_err(|error| exception(&error))
     }
 
-    /// Name and text by which a job of a sweep has it; a machine that is built in needs no text.
+    /// Returns name and text of the machine for a job of a sweep; a built-in machine needs no text.
     fn _job(&self) -> (String, Option<String>) {
         match &self.file {
             Some(file) => (file.clone(), Some(self.machine.text())),
@@ -268,26 +270,26 @@ impl PythonMachine {
         }
     }
 
-    /// Its name.
+    /// Name of the machine.
     #[getter]
     fn name(&self) -> &str {
         &self.machine.name
     }
 
-    /// The machine file that reads as this machine.
+    /// Machine file that reads as this machine.
     #[getter]
     fn text(&self) -> String {
         self.machine.text()
     }
 
-    /// The keys and values of its file, as nested dicts.
+    /// Keys and values of the machine file, as nested dicts.
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         py.import("tomllib")?
             .call_method1("loads", (self.machine.text(),))
     }
 
-    /// A machine with other values, by the keys of the file: `{"axis.x.kp_1_s": 80}`.
+    /// Returns a machine with other values, by the keys of the file: `{"axis.x.kp_1_s": 80}`.
     fn with_values(&self, values: &Bound<'_, PyDict>) -> PyResult<Self> {
         let found = || -> PyResult<Result<Self, Report>> {
             let mut document: DocumentMut = match self.machine.text().parse() {
@@ -315,7 +317,7 @@ impl PythonMachine {
     }
 }
 
-/// A number, text or truth of Python as one of TOML.
+/// Converts a number, text or bool of Python to a TOML value.
 fn toml_value(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     if value.is_instance_of::<pyo3::types::PyBool>() {
         return Ok(value.extract::<bool>()?.into());
@@ -348,7 +350,7 @@ fn set(mut table: &mut Table, key: &str, value: Value) -> Result<(), Report> {
     Ok(())
 }
 
-/// Names of machines, controllers and controls.
+/// Returns the names of machines, controllers and controls.
 #[pyfunction]
 pub(crate) fn lists<'py>(py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
     let controllers: Vec<&str> = CONTROLLERS.iter().map(|entry| entry.name).collect();

@@ -25,10 +25,10 @@ use crate::fault::{exception, from_json};
 use crate::files::{PythonMachine, PythonProgram};
 use crate::watched::watched;
 
-/// Largest tolerance that is no slip of the unit, um.
+/// Largest tolerance that is not taken for a slip of the unit, um.
 const MAX_TOLERANCE_UM: f64 = 1e6;
 
-/// What `run` is asked for beside program and machine.
+/// Options of `run` besides program and machine.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct RunOptions {
@@ -46,7 +46,7 @@ pub(crate) struct RunOptions {
 }
 
 impl RunOptions {
-    /// The job of these options, as the command makes it.
+    /// Returns the job of these options, as the command makes it.
     fn job(
         &self,
         program: &PythonProgram,
@@ -89,7 +89,7 @@ impl RunOptions {
     }
 }
 
-/// A log of a cut.
+/// Reads a log of a cut.
 fn measured(path: &Path, columns: Option<&str>, watch: &dyn Watch) -> Result<MeasuredLog> {
     let columns = columns
         .map(Columns::from_str)
@@ -101,7 +101,7 @@ fn measured(path: &Path, columns: Option<&str>, watch: &dyn Watch) -> Result<Mea
     })
 }
 
-/// A page as bytes, made without the lock of the interpreter.
+/// Writes a page to bytes, without the lock of the interpreter.
 fn written(
     py: Python<'_>,
     write: impl FnOnce(&mut Vec<u8>) -> io::Result<()> + Send,
@@ -113,7 +113,7 @@ fn written(
     py.detach(page).map_err(|error| exception(&error))
 }
 
-/// A cut without a correction and one with a controller.
+/// Outcome of a cut without a correction and of one with a controller.
 #[pyclass(frozen, module = "feedwright")]
 pub(crate) struct CutOutcome {
     pub(crate) outcome: JobOutcome,
@@ -121,7 +121,7 @@ pub(crate) struct CutOutcome {
 
 #[pymethods]
 impl CutOutcome {
-    /// The report, one page of HTML that needs no other file.
+    /// Returns the report, one page of HTML that needs no other file.
     fn html(&self, py: Python<'_>) -> PyResult<Vec<u8>> {
         written(py, |page| write_html(page, &self.outcome.report))
     }
@@ -191,7 +191,7 @@ fn check_tolerance(tolerance_um: f64) -> Result<()> {
     ))
 }
 
-/// What `correct` is asked for beside program and machine.
+/// Options of `correct` besides program and machine.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct CorrectOptions {
@@ -201,7 +201,8 @@ pub(crate) struct CorrectOptions {
     file_error: Option<f64>,
 }
 
-/// Figures of a correction, and the corrected program where it is better.
+/// Corrects a program. Returns the figures of the correction, and the corrected program if it is
+/// better.
 #[pyfunction]
 pub(crate) fn correct<'py>(
     py: Python<'py>,
@@ -235,7 +236,7 @@ pub(crate) fn correct<'py>(
     Ok((from_json(py, &results.to_string())?, program))
 }
 
-/// What `advise` is asked for beside program and machine.
+/// Options of `advise` besides program and machine.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct AdviseOptions {
@@ -245,7 +246,7 @@ pub(crate) struct AdviseOptions {
     file_error: Option<f64>,
 }
 
-/// The feedrates at which a tolerance is held.
+/// Returns the feedrates at which a tolerance is held.
 #[pyfunction]
 pub(crate) fn advise<'py>(
     py: Python<'py>,
@@ -282,7 +283,7 @@ pub(crate) fn advise<'py>(
     from_json(py, &results.to_string())
 }
 
-/// The cycle time of a program, and that of its lines.
+/// Returns the cycle time of a program, and the times of its lines.
 #[pyfunction]
 pub(crate) fn plan<'py>(
     py: Python<'py>,
@@ -341,7 +342,7 @@ pub(crate) fn plan<'py>(
     Ok((from_json(py, &results.to_string())?, arrays))
 }
 
-/// A machine by its log.
+/// A machine identified from its log.
 #[pyclass(frozen, module = "feedwright")]
 pub(crate) struct IdentifiedMachine {
     identified: LogIdentified,
@@ -349,13 +350,13 @@ pub(crate) struct IdentifiedMachine {
 
 #[pymethods]
 impl IdentifiedMachine {
-    /// The page of the identification, which needs no other file.
+    /// Returns the page of the identification, which needs no other file.
     fn html(&self, py: Python<'_>) -> PyResult<Vec<u8>> {
         written(py, |page| write_page(page, &self.identified))
     }
 }
 
-/// The machine that logs tell of, and what was found.
+/// Identifies a machine from logs. Returns the results, the machine, and the identification.
 #[pyfunction]
 pub(crate) fn identify<'py>(
     py: Python<'py>,

@@ -1,11 +1,11 @@
 //! The gym: controllers and terms of the plant in Python take part in a run.
 //!
-//! | File | What |
+//! | File | Content |
 //! |---|---|
-//! | `lab/seen.rs` | what a controller sees, as copies |
-//! | `lab/raised.rs` | what code of the caller raised ends the run |
+//! | `lab/seen.rs` | inputs of a controller, as copies |
+//! | `lab/raised.rs` | an exception in code of the caller ends the run |
 //! | `lab/guest.rs` | a controller and a term of the plant that are objects of Python |
-//! | `lab/task.rs` | what is cut, and what is known of the machine |
+//! | `lab/task.rs` | the work of a run, and the known values of the machine |
 //! | `lab/episode.rs` | a run that waits for its actions |
 //! | `lab/held_out.rs` | held-out work by seeds, and a page of tables |
 
@@ -37,7 +37,7 @@ use task::{LabOptions, LabTask, told};
 /// A cut with a controller of Python.
 struct GuestRun {
     task: LabTask,
-    /// None where it is one of the library.
+    /// `None` if the controller is one of the library.
     controller: Option<Py<PyAny>>,
     term: Option<PlantTerm>,
     rows: bool,
@@ -130,8 +130,7 @@ pub(crate) fn run_with<'py>(
     let (running, ended) = channel::<()>();
     let done = watched(py, progress.as_ref(), move |watch| {
         let _running = running;
-        // A thread that calls code of the caller keeps its state of the interpreter from call to
-        // call.
+        // A thread that calls code of the caller keeps its interpreter state from call to call.
         if calls {
             Python::attach(|py| py.detach(|| run.cut(watch)))
         } else {
@@ -139,7 +138,7 @@ pub(crate) fn run_with<'py>(
         }
     });
     if done.is_err() && calls {
-        // Nothing of the caller is called behind its back.
+        // Waits for the thread, so that no code of the caller is called after the return.
         raised.end();
         let _ = py.detach(move || ended.recv());
     }

@@ -1,7 +1,7 @@
 //! feedwright as a module of Python: `feedwright._feedwright`, which the package `feedwright`
 //! wraps.
 //!
-//! | File | What |
+//! | File | Content |
 //! |---|---|
 //! | `fault.rs` | errors as exceptions, with line and column |
 //! | `watched.rs` | a job on a thread of its own, with progress and Ctrl-C |
@@ -11,8 +11,8 @@
 //! | `lab.rs` | controllers and terms of the plant in Python |
 //! | `sweeps.rs` | jobs of sweeps, tables of their results |
 //!
-//! Figures leave as JSON, as the command writes them; rows leave as arrays of numpy that own their
-//! memory, so that nothing is copied.
+//! Figures are returned as JSON, as the command writes them. Rows are returned as arrays of numpy
+//! that own their memory, so that nothing is copied.
 
 mod fault;
 mod watched;

@@ -17,7 +17,7 @@ use crate::fault::exception;
 use crate::files::job_text;
 use crate::watched::watched;
 
-/// The jobs of JOBS.toml, each made when it is asked for.
+/// Jobs of JOBS.toml, each made on access.
 #[pyclass(frozen, name = "JobList", module = "feedwright")]
 pub(crate) struct PythonJobList {
     list: JobList,
@@ -52,15 +52,15 @@ fn listed(spec: &str, folder: PathBuf) -> Result<ListedJob, Report> {
     Ok(ListedJob { spec, folder })
 }
 
-/// The address of the result of a job.
+/// Returns the address of the result of a job.
 #[pyfunction]
 pub(crate) fn job_address(py: Python<'_>, spec: &str, folder: PathBuf) -> PyResult<String> {
     py.detach(|| listed(spec, folder)?.address())
         .map_err(|error| exception(&error))
 }
 
-/// Does a job, unless its result is in the store: its address, whether it was there, and the error
-/// that it is. No address if a file cannot be read.
+/// Runs a job, unless its result is in the store. Returns its address, whether it was there, and
+/// the error in the result, if any. Returns no address if a file cannot be read.
 ///
 /// # Errors
 /// A result that cannot be written, and an end from outside.
@@ -84,7 +84,7 @@ pub(crate) fn do_python_job(
     })
 }
 
-/// The columns of the results in folders.
+/// Returns the columns of the results in folders.
 #[pyfunction]
 pub(crate) fn merge<'py>(py: Python<'py>, folders: Vec<PathBuf>) -> PyResult<Bound<'py, PyDict>> {
     let table = watched(py, None, move |watch| {
@@ -112,7 +112,7 @@ pub(crate) fn merge<'py>(py: Python<'py>, folders: Vec<PathBuf>) -> PyResult<Bou
     Ok(columns)
 }
 
-/// A text, a truth, or nothing.
+/// Converts a text or a bool to a Python object; every other value becomes `None`.
 fn object<'py>(py: Python<'py>, cell: &Value) -> PyResult<Bound<'py, PyAny>> {
     Ok(match cell {
         Value::String(text) => text.into_pyobject(py)?.into_any(),

@@ -1,5 +1,5 @@
-//! A job on a thread of its own, while the thread of the caller tells of its progress and hears
-//! Ctrl-C.
+//! Runs a job on a thread of its own, while the thread of the caller reports its progress and
+//! reacts to Ctrl-C.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -14,10 +14,10 @@ use pyo3::prelude::*;
 
 use crate::fault::exception;
 
-/// How often signals are looked for and progress is told.
+/// Interval between two checks for signals and two reports of progress.
 const EVERY: Duration = Duration::from_millis(40);
 
-/// What a job has come to.
+/// State of a job: stage, steps, cancellation and start.
 struct Progress {
     stage: Mutex<(String, u64)>,
     done: AtomicU64,
@@ -45,7 +45,8 @@ impl Watch for Progress {
 }
 
 impl Progress {
-    /// Calls `told(stage, done, steps)`, and raises what it or a signal raises.
+    /// Calls the callback with the stage, the done steps and all steps. Raises what the callback or
+    /// a signal raises.
     fn tell(&self, told: Option<&Py<PyAny>>) -> PyResult<()> {
         Python::attach(|py| {
             py.check_signals()?;
@@ -61,9 +62,9 @@ impl Progress {
     }
 }
 
-/// Does a job on a thread of its own, without the lock of the interpreter. `told(stage, done,
-/// steps)` is called while it runs. Where it raises, and at Ctrl-C, the job is cancelled, and
-/// nobody waits until it has heard of it: what it comes to is dropped.
+/// Runs a job on a thread of its own, without the lock of the interpreter. Meanwhile calls the
+/// callback with the stage, the done steps and all steps. If the callback raises, or at Ctrl-C,
+/// cancels the job and returns at once: the result of the job is dropped.
 pub(crate) fn watched<T: Send + 'static>(
     py: Python<'_>,
     told: Option<&Py<PyAny>>,
@@ -80,7 +81,7 @@ pub(crate) fn watched<T: Send + 'static>(
     thread::Builder::new()
         .name("feedwright job".to_owned())
         .spawn(move || {
-            // Where nobody waits any more, nobody asks for the result.
+            // If the caller has stopped waiting, nobody needs the result.
             let _ = send.send(job(&*of_job));
         })?;
     py.detach(move || {

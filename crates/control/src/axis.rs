@@ -85,7 +85,7 @@ pub struct AxisState {
 
 /// An axis, ready to be integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AxisLaw {
+pub struct AxisModel {
     /// Parameters of the axis.
     pub parameters: Parameters,
     /// Periods of the loops.
@@ -94,7 +94,7 @@ pub struct AxisLaw {
     inverse_smoothing_s: f64,
 }
 
-impl AxisLaw {
+impl AxisModel {
     /// Creates an axis with these parameters and periods.
     pub fn new(parameters: Parameters, periods: Periods) -> Self {
         Self {
@@ -173,7 +173,7 @@ fn within(value: f64, most: f64) -> f64 {
 
 /// Returns tanh(w / w_s) of each axis. One call for all axes is faster.
 #[inline]
-pub fn friction_signs<const N: usize>(axes: &[AxisLaw; N], speeds_rad_s: [f64; N]) -> [f64; N] {
+pub fn friction_signs<const N: usize>(axes: &[AxisModel; N], speeds_rad_s: [f64; N]) -> [f64; N] {
     tanh(core::array::from_fn::<_, N, _>(|i| {
         speeds_rad_s[i] * axes[i].inverse_smoothing_s
     }))
@@ -183,7 +183,7 @@ pub fn friction_signs<const N: usize>(axes: &[AxisLaw; N], speeds_rad_s: [f64; N
 mod tests {
     use super::*;
 
-    fn axis() -> AxisLaw {
+    fn axis() -> AxisModel {
         let parameters = Parameters {
             rad_per_mm: 0.6,
             kp_1_s: 50.0,
@@ -195,7 +195,7 @@ mod tests {
             coulomb_friction_nm: 0.2,
             coulomb_smoothing_rad_s: 0.5,
         };
-        AxisLaw::new(
+        AxisModel::new(
             parameters,
             Periods {
                 servo_s: 0.001,
@@ -206,7 +206,7 @@ mod tests {
     }
 
     /// Torque left for the inertia.
-    fn left_nm(axis: &AxisLaw, reference_rad_s: f64, speed_rad_s: f64) -> f64 {
+    fn left_nm(axis: &AxisModel, reference_rad_s: f64, speed_rad_s: f64) -> f64 {
         let [sign] = friction_signs(&[*axis], [speed_rad_s]);
         axis.torque_nm(reference_rad_s, speed_rad_s) - axis.friction_nm(speed_rad_s, sign)
     }
@@ -248,7 +248,7 @@ mod tests {
             coulomb_friction_nm: 0.0,
             ..axis().parameters
         };
-        let axis = AxisLaw::new(
+        let axis = AxisModel::new(
             parameters,
             Periods {
                 mechanics_s: 1e-6,

@@ -167,7 +167,7 @@ pub use report::plain_page::{PagePart, write_foot, write_head, write_table_end, 
 pub use report::text::{escaped, number};
 pub use report::{
     Assumptions, Band, BandErrors, CommandShare, CommandShares, CompensatedGeometry, DrawnLimits,
-    DriveLimits, ErrorSpectrum, FullCircle, Histogram, LawKnowledge, LimitBand, PageUnits,
+    DriveLimits, ErrorSpectrum, FullCircle, Histogram, LimitBand, ModelKnowledge, PageUnits,
     ProgramLine, Report, ReportedRun, Roundness, RunFacts, RunSummary, Series, SeriesPoint,
     SpectrumBand, Statistics, TimelineEvent, WorstPlace, write_html, write_html_data,
     write_html_in,

@@ -19,7 +19,7 @@ use std::ops::Range;
 
 use feedwright_gcode::visible;
 use feedwright_ident::{
-    AxisFacts, AxisRecord, Fitness, FoundMachine, GreyBoxOptions, LawTerm, LawVerdict, Log,
+    AxisFacts, AxisRecord, Fitness, FoundMachine, GreyBoxOptions, Log, ModelTerm, ModelVerdict,
     NotFound, NumberSource, identify_machine,
 };
 use feedwright_sim::{Cancelled, Machine, StageSteps, Watch};
@@ -201,7 +201,7 @@ impl LogIdentified {
     /// The verdict of an axis, in words.
     pub fn verdict(&self, axis: usize) -> String {
         let found = &self.machine.axes[axis];
-        let words = LawVerdict::of(found).words(found);
+        let words = ModelVerdict::of(found).words(found);
         match self.log.axes.get(axis).map(|axis| &axis.verdict) {
             Some(Fitness::NotForControl { reason }) => {
                 format!("not for control: {reason}; {words}")
@@ -231,7 +231,7 @@ impl LogIdentified {
             if axis.gains_source() == NumberSource::Assumed {
                 advice.push(format!("axis {name}: positions do not determine Kp, Kv and B separately; B is taken as zero. Give --inertia and --viscous, or record the torque"));
             }
-            if axis.law().get(LawTerm::SpeedWindow) == 0.0 {
+            if axis.axis_model().get(ModelTerm::SpeedWindow) == 0.0 {
                 advice.push(format!("axis {name}: the drive is taken to know the speed exactly. One that takes it from positions over some samples looks like a smaller inertia: the products may be too large by 10 % and more. State it with --speed-window, or record a torque column"));
             }
             if axis.scores.beyond.is_some() {
@@ -257,8 +257,8 @@ impl LogIdentified {
         let mut improvements = vec![];
         for (found, axis) in self.machine.axes.iter().zip(&self.log.axes) {
             let is_sound = matches!(
-                LawVerdict::of(found),
-                LawVerdict::LawHolds | LawVerdict::LinearSuffices
+                ModelVerdict::of(found),
+                ModelVerdict::ModelHolds | ModelVerdict::LinearSuffices
             );
             if !is_sound || axis.verdict != Fitness::ForControl {
                 continue;

@@ -16,8 +16,8 @@ use std::path::Path;
 use feedwright_control::IdentifierKind;
 use feedwright_gcode::Program;
 use feedwright_ident::{
-    AxisFacts, Columns, ExciteOptions, LawVerdict, Log, Model, SERVO_MECHANICS, excitation_program,
-    recorded_log, servo_period_s,
+    AxisFacts, Columns, ExciteOptions, Log, Model, ModelVerdict, SERVO_MECHANICS,
+    excitation_program, recorded_log, servo_period_s,
 };
 use feedwright_sim::{Cancelled, Machine, Watch};
 use miette::Diagnostic;
@@ -395,13 +395,18 @@ fn not_told(machine: &Machine, cause: &dyn Diagnostic) -> RecordedModelError {
 
 /// Returns the axes whose model is open or not good enough for a correction.
 fn doubts(identified: &LogIdentified) -> Vec<String> {
-    let is_sound = |verdict| matches!(verdict, LawVerdict::LawHolds | LawVerdict::LinearSuffices);
+    let is_sound = |verdict| {
+        matches!(
+            verdict,
+            ModelVerdict::ModelHolds | ModelVerdict::LinearSuffices
+        )
+    };
     let axes = identified
         .machine
         .axes
         .iter()
         .enumerate()
-        .filter(|(_, axis)| !is_sound(LawVerdict::of(axis)));
+        .filter(|(_, axis)| !is_sound(ModelVerdict::of(axis)));
     axes.map(|(i, axis)| {
         format!(
             "axis {}, by its simulated log: {}",

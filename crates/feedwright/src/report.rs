@@ -30,7 +30,7 @@ mod assumptions;
 mod band;
 mod compensated;
 
-pub use assumptions::{Assumptions, LawKnowledge};
+pub use assumptions::{Assumptions, ModelKnowledge};
 pub use band::{Band, BandErrors};
 pub use circles::{FullCircle, Roundness};
 pub(crate) use circles::{RadialDeviations, full_circles};

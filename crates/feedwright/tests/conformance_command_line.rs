@@ -107,7 +107,10 @@ fn a_dash_is_the_standard_output_wherever_a_file_is_written() {
         .succeeded();
     let json: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
     assert_eq!(
-        (json["simulated"].as_bool(), json["assumed"]["law"].as_str()),
+        (
+            json["simulated"].as_bool(),
+            json["assumed"]["axis_model"].as_str()
+        ),
         (Some(true), Some("none"))
     );
     // The table is on stderr then.

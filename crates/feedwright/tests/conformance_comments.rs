@@ -9,7 +9,7 @@ const FOLDERS: [&str; 4] = ["crates", "lab", "linuxcnc/servo", "linuxcnc/hal"];
 /// No doc comment begins with one of these.
 const BEGINNINGS: &str = "of by with without as in on at to from for where what when whether which who \
     how that those behind beside before after within under over between if so than out into per about \
-    until since while because but or and not no here there";
+    until since while because but or and not here there";
 
 /// Words and phrases that are not used: a model, a report, a cost, evidence or a test says what is
 /// meant.
@@ -57,11 +57,16 @@ fn words(text: &str) -> Vec<&str> {
         .collect()
 }
 
-/// What is wrong with a comment, if anything is.
+/// Returns the first fault of a comment.
 fn fault(comment: &Comment<'_>) -> Option<String> {
     let said = words(&comment.text);
     // Code at the beginning is a name.
-    let starts_with_code = comment.source.trim_start().starts_with("/// `");
+    let doc = comment
+        .source
+        .trim_start()
+        .trim_start_matches('/')
+        .trim_start();
+    let starts_with_code = doc.starts_with(['`', '[']);
     let first = said.first().filter(|_| comment.begins && !starts_with_code);
     if let Some(first) =
         first.filter(|first| BEGINNINGS.split_whitespace().any(|word| word == **first))

@@ -79,7 +79,7 @@ fn figures(mut result: Value) -> Value {
         }
     }
     // The day on which the model was identified.
-    for told in ["/assumed/law_from", "/settings/Model"] {
+    for told in ["/assumed/model_from", "/settings/Model"] {
         if let Some(Value::String(text)) = result.pointer_mut(told)
             && let Some((before, "0")) = text
                 .rsplit_once(", 2")

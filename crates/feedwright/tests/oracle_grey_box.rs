@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::identification_log::{commands_mm, log_of, logged};
 use crate::sweep::part_or_whole;
 use feedwright::{LogIdentified, LogJob, machine_text, updated_text};
-use feedwright_ident::{AxisFacts, Columns, FoundAxis, LawTerm, LawVerdict, Log, NumberSource};
+use feedwright_ident::{AxisFacts, Columns, FoundAxis, Log, ModelTerm, ModelVerdict, NumberSource};
 use feedwright_sim::{Machine, Plant};
 
 fn identified(log: Log, job: LogJob) -> LogIdentified {
@@ -114,7 +114,7 @@ fn the_servo_periods_by_which_commands_are_late_are_found() {
         );
         let mine = Machine::parse("mine.toml", &machine_text(&found, "mine")).unwrap();
         for (axis, written) in found.machine.axes.iter().zip(&mine.axes) {
-            let late_s = axis.law().get(LawTerm::CommandDelay);
+            let late_s = axis.axis_model().get(ModelTerm::CommandDelay);
             assert!(
                 (late_s - f64::from(periods) * machine.period.servo_s).abs() < 1e-9,
                 "{periods}: {late_s} s"
@@ -124,7 +124,7 @@ fn the_servo_periods_by_which_commands_are_late_are_found() {
                 "{} s is written",
                 written.command_delay_s
             );
-            let loop_s = axis.law().get(LawTerm::LoopDelay);
+            let loop_s = axis.axis_model().get(ModelTerm::LoopDelay);
             assert!(
                 (loop_s - drive_delay_s).abs() < 1e-4,
                 "{periods}: {loop_s} s, not {drive_delay_s} s"
@@ -194,8 +194,8 @@ fn a_log_that_moves_one_way_is_open_until_the_other_is_recorded() {
     };
     let open = of(one_way, facts);
     assert_eq!(
-        LawVerdict::of(&open.machine.axes[0]),
-        LawVerdict::Open,
+        ModelVerdict::of(&open.machine.axes[0]),
+        ModelVerdict::Open,
         "{:?}",
         open.machine.axes[0].unseen
     );
@@ -206,8 +206,8 @@ fn a_log_that_moves_one_way_is_open_until_the_other_is_recorded() {
     );
     let closed = of(both, facts);
     assert_eq!(
-        LawVerdict::of(&closed.machine.axes[0]),
-        LawVerdict::LawHolds,
+        ModelVerdict::of(&closed.machine.axes[0]),
+        ModelVerdict::ModelHolds,
         "{:?}",
         closed.machine.axes[0].unseen
     );
@@ -241,7 +241,7 @@ fn what_is_known_stands_where_a_log_does_not_tell_it() {
     assert_eq!(
         found.machine.axes[0]
             .values
-            .get(LawTerm::VelocityFeedforward),
+            .get(ModelTerm::VelocityFeedforward),
         0.0
     );
 }
@@ -268,7 +268,7 @@ fn missed_um(found: &LogIdentified, i: usize) -> [f64; 2] {
         &found.machine.axes[i],
         &found.log.axes[i],
     );
-    let late = axis.law().get(LawTerm::RecordDelay) / found.log.sample_time_s;
+    let late = axis.axis_model().get(ModelTerm::RecordDelay) / found.log.sample_time_s;
     let (mut squares, mut samples) = ([0.0; 2], 0.0);
     for stretch in &found.log.stretches {
         let (first, last) = (stretch.start as f64, (stretch.end - 1) as f64);
@@ -371,7 +371,12 @@ fn a_window_of_the_speed_goes_into_the_machine_file_and_holds_on_pulses() {
     // Values that the log does not determine stay, and the fit uses them.
     let text = machine_text(&found, "mine");
     let kept = of(facts, Some(Machine::parse("mine.toml", &text).unwrap()));
-    assert_eq!(kept.machine.axes[0].law().get(LawTerm::SpeedWindow), 0.002);
+    assert_eq!(
+        kept.machine.axes[0]
+            .axis_model()
+            .get(ModelTerm::SpeedWindow),
+        0.002
+    );
     let updated = Machine::parse("mine.toml", &updated_text(&kept, &text).unwrap()).unwrap();
     assert_eq!(
         (updated.axes[0].speed_window_s, updated.axes[0].speed_held),
@@ -411,7 +416,7 @@ fn the_public_bench_is_what_was_published_of_it() {
         scores.grey_box
     );
     assert!(scores.grey_box.at_um[2] < 1.5 * scores.best_arx().at_um[2]);
-    assert_eq!(LawVerdict::of(axis), LawVerdict::LawHolds);
+    assert_eq!(ModelVerdict::of(axis), ModelVerdict::ModelHolds);
     // M 95.11 kg, viscous 203.5 N s/m, Coulomb 20.4 N; kp 160.18 1/s, kv 243.45 V s/m.
     assert_near(
         number(axis, "kp_kv_over_j_1_s2"),
@@ -436,7 +441,7 @@ fn the_public_bench_is_what_was_published_of_it() {
         "{written_um} um by the machine file, {free_um} um by the fit"
     );
     assert!(
-        axis.values.get(LawTerm::LoopGain) > 15_000.0,
+        axis.values.get(ModelTerm::LoopGain) > 15_000.0,
         "without the torque the drive seems to know the speed"
     );
 }

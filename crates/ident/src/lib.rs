@@ -34,7 +34,7 @@
 //! |---|---|
 //! | Program to cut, and its log on a simulated machine | [`excitation_program`], [`recorded_log`], [`ExciteOptions`], [`ExciteError`] |
 //! | Logs | [`Log`], [`LogAxis`], [`LogFormat`], [`Columns`], [`LogFinding`], [`LogError`], [`Fitness`] |
-//! | Real machine, from a log | [`identify_machine`], [`GreyBoxOptions`], [`FoundMachine`], [`FoundAxis`], [`LawVerdict`], [`SearchBound`] |
+//! | Real machine, from a log | [`identify_machine`], [`GreyBoxOptions`], [`FoundMachine`], [`FoundAxis`], [`ModelVerdict`], [`SearchBound`] |
 //! | Simulated machine | [`Excitation`], [`Recording`], [`RecordedKnot`], [`Rng`] |
 //! | Axis with known drive settings | [`identify_axis`], [`DriveSettings`], [`AxisParameters`], [`AxisEstimate`], [`NotIdentified`] |
 //! | Models for controllers | [`train_axes`], [`train_contour`], [`axis_statistics`] |
@@ -103,9 +103,9 @@ pub use identify::grey_box::found_axis::{FoundAxis, NumberSource};
 pub use identify::grey_box::free_run_scores::{FreeRunErrors, HORIZONS};
 pub use identify::grey_box::known_value::KnownValue;
 pub use identify::grey_box::search_bound::SearchBound;
-pub use identify::grey_box::terms::{LawTerm, TermValues};
+pub use identify::grey_box::terms::{ModelTerm, TermValues};
 pub use identify::grey_box::unseen_motion::UnseenMotion;
-pub use identify::grey_box::verdict::LawVerdict;
+pub use identify::grey_box::verdict::ModelVerdict;
 pub use identify::grey_box::{
     FoundMachine, GreyBoxOptions, NotFound, SERVO_MECHANICS, identify_machine, servo_period_s,
 };

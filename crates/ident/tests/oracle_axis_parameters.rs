@@ -7,7 +7,7 @@
 //! is biased by it. Both are measured here.
 
 use crate::sweep::part_or_whole;
-use feedwright_control::{AxisLaw, AxisState, DriveLaw, DriveState, Parameters};
+use feedwright_control::{AxisModel, AxisState, DriveModel, DriveState, Parameters};
 use feedwright_ident::{AxisParameters, DriveSettings, Excitation, Recording, identify_axis};
 use feedwright_sim::Machine;
 use nalgebra::{SMatrix, SVector};
@@ -238,8 +238,8 @@ fn equation_error(
         coulomb_friction_nm: 0.0,
         coulomb_smoothing_rad_s: 1.0,
     };
-    let law = AxisLaw::new(parameters, periods);
-    let drive = DriveLaw::new(&law, settings.drive_of(1.0));
+    let axis_model = AxisModel::new(parameters, periods);
+    let drive = DriveModel::new(&axis_model, settings.drive_of(1.0));
     let per_servo = periods.mechanics_per_servo;
     let late = (settings.delays.drive_s / periods.servo_s).round() as usize;
     let (mut matrix, mut right) = (SMatrix::<f64, 4, 4>::zeros(), SVector::<f64, 4>::zeros());
@@ -249,14 +249,19 @@ fn equation_error(
         let mut sent = Vec::new();
         for k in 0..knots.len().saturating_sub(2) {
             let command_rad = knots[k].command_mm[axis] * rad_per_mm;
-            sent.push(drive.position_loop(&law, command_rad, at(k), &mut motor, &mut state));
+            sent.push(drive.position_loop(&axis_model, command_rad, at(k), &mut motor, &mut state));
             let reference = k.checked_sub(late).map(|k| sent[k]).unwrap_or_default();
             let before = at(k.saturating_sub(1));
             let (first, last) = ((at(k + 1) - before) / 2.0, (at(k + 2) - at(k)) / 2.0);
             let [first, last] = [first, last].map(|moved| moved / periods.servo_s);
             let torque_nm = |step: u32| {
                 let part = f64::from(step) / f64::from(per_servo);
-                drive.torque_nm(&law, reference, first + part * (last - first), &mut state)
+                drive.torque_nm(
+                    &axis_model,
+                    reference,
+                    first + part * (last - first),
+                    &mut state,
+                )
             };
             let mean_nm = (0..per_servo).map(torque_nm).sum::<f64>() / f64::from(per_servo);
             let speed = (at(k + 1) - at(k)) / periods.servo_s;

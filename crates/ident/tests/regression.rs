@@ -4,8 +4,8 @@ use std::slice::from_ref;
 
 use crate::sweep::part_or_whole;
 use feedwright_ident::{
-    AxisFacts, AxisRecord, FoundAxis, GreyBoxOptions, LawTerm, LawVerdict, NotFound, SearchBound,
-    identify_machine,
+    AxisFacts, AxisRecord, FoundAxis, GreyBoxOptions, ModelTerm, ModelVerdict, NotFound,
+    SearchBound, identify_machine,
 };
 
 /// Kp Kv / J, 1/s2, (Kv + B) / J, 1/s, and Fc / J, mm/s2, of the axis that is recorded.
@@ -110,15 +110,15 @@ fn found(
 /// Returns true if the verdict permits the use of the model.
 fn holds(axis: &FoundAxis) -> bool {
     matches!(
-        LawVerdict::of(axis),
-        LawVerdict::LawHolds | LawVerdict::LinearSuffices
+        ModelVerdict::of(axis),
+        ModelVerdict::ModelHolds | ModelVerdict::LinearSuffices
     )
 }
 
 /// The largest part by which the two gains are off.
 fn off(axis: &FoundAxis) -> f64 {
-    let part = |term, wanted: f64| (axis.law().get(term) / wanted - 1.0).abs();
-    part(LawTerm::LoopGain, LAW[0]).max(part(LawTerm::Damping, LAW[1]))
+    let part = |term, wanted: f64| (axis.axis_model().get(term) / wanted - 1.0).abs();
+    part(ModelTerm::LoopGain, LAW[0]).max(part(ModelTerm::Damping, LAW[1]))
 }
 
 /// The gains of a record of 3 ms are known to this part: the axis is sampled coarsely.
@@ -127,17 +127,21 @@ const GAINS: f64 = 0.1;
 /// A search that ended at 0.1 s gave 4,174 1/s2 of 8,000 for a record that is 0.105 s late, and
 /// reported that the model holds.
 #[test]
-fn a_record_that_is_a_tenth_of_a_second_late_gives_the_law_of_the_axis() {
+fn a_record_that_is_a_tenth_of_a_second_late_gives_the_model_of_the_axis() {
     let all = [(0.003, 9.0, 35), (0.003, 9.0, 80), (0.002, 6.0, 75)];
     for &(sample_s, seconds, late) in &all[..part_or_whole(1, all.len())] {
         let axis = found(sample_s, seconds, late, AxisFacts::default()).unwrap();
         let wanted_s = late as f64 * sample_s;
-        let late_s = axis.law().get(LawTerm::RecordDelay);
+        let late_s = axis.axis_model().get(ModelTerm::RecordDelay);
         assert!(
             (late_s - wanted_s).abs() < 2e-3,
             "{late_s} s, not {wanted_s} s"
         );
-        assert!(off(&axis) < GAINS, "{late_s} s late: {:?}", axis.law());
+        assert!(
+            off(&axis) < GAINS,
+            "{late_s} s late: {:?}",
+            axis.axis_model()
+        );
         assert!(axis.at_bounds.is_empty(), "{:?}", axis.at_bounds);
     }
 }
@@ -152,19 +156,19 @@ fn a_value_that_ends_where_its_search_ends_never_holds() {
     };
     let all = [
         // Actual positions before their commands.
-        (-3, AxisFacts::default(), LawTerm::RecordDelay),
-        (-6, AxisFacts::default(), LawTerm::RecordDelay),
+        (-3, AxisFacts::default(), ModelTerm::RecordDelay),
+        (-6, AxisFacts::default(), ModelTerm::RecordDelay),
         // A record that is late, and said to be on time.
-        (20, on_time, LawTerm::LoopDelay),
+        (20, on_time, ModelTerm::LoopDelay),
     ];
     for &(late, facts, at) in &all[..part_or_whole(1, all.len())] {
         let axis = found(0.003, 9.0, late, facts).unwrap();
-        assert!(off(&axis) > GAINS, "{late}: {:?}", axis.law());
-        assert!(!holds(&axis), "{late}: {:?}", axis.law());
+        assert!(off(&axis) > GAINS, "{late}: {:?}", axis.axis_model());
+        assert!(!holds(&axis), "{late}: {:?}", axis.axis_model());
         let bound = axis.at_bounds.iter().find(|bound| bound.term == at);
         let SearchBound { value, .. } =
             bound.unwrap_or_else(|| panic!("{late}: {:?}", axis.at_bounds));
-        let words = LawVerdict::of(&axis).words(&axis);
+        let words = ModelVerdict::of(&axis).words(&axis);
         let unit = format!("{value:.4} s, where its search ends");
         assert!(
             words.contains(&unit) && words.contains(bound.unwrap().remedy()),

@@ -18,7 +18,7 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::Arc;
 
-use feedwright_control::{AxisLaw, KnownGeometry, Periods};
+use feedwright_control::{AxisModel, KnownGeometry, Periods};
 use feedwright_gcode::input;
 use feedwright_plan::{Durations, PlcEvent};
 use serde::Serialize;
@@ -309,8 +309,8 @@ impl Machine {
     }
 
     /// Returns the models of the first N axes.
-    pub fn law<const N: usize>(&self) -> [AxisLaw; N] {
-        std::array::from_fn(|i| AxisLaw::new(self.axis(i).parameters(), self.period.periods()))
+    pub fn axis_model<const N: usize>(&self) -> [AxisModel; N] {
+        std::array::from_fn(|i| AxisModel::new(self.axis(i).parameters(), self.period.periods()))
     }
 
     /// Returns true if each axis has its own limits. Such a machine is planned axis by axis.

@@ -31,7 +31,7 @@ mod nonideal;
 mod gap;
 use std::f64::consts::TAU;
 
-use feedwright_control::{AxisLaw, AxisState, KnownGeometry, Periods, friction_signs};
+use feedwright_control::{AxisModel, AxisState, KnownGeometry, Periods, friction_signs};
 
 use crate::kinematics::{joints_of, tool_of};
 use crate::machine::{Axis, Machine};
@@ -96,7 +96,7 @@ impl<const N: usize> Mechanism for Plant<N> {
 /// N axes and their state.
 #[derive(Debug, Clone)]
 pub struct Plant<const N: usize> {
-    laws: [AxisLaw; N],
+    axis_models: [AxisModel; N],
     periods: Periods,
     /// Servo periods since the start.
     period: u64,
@@ -129,17 +129,17 @@ impl<const N: usize> Plant<N> {
         let each = |value: fn(&Axis) -> f64| -> [f64; N] {
             std::array::from_fn(|i| value(machine.axis(i)))
         };
-        let laws: [AxisLaw; N] = machine.law();
+        let axis_models: [AxisModel; N] = machine.axis_model();
         let disturbance_rad_s = each(|a| TAU * a.disturbance_hz);
         let periods = machine.period.periods();
         let states: [AxisState; N] = std::array::from_fn(|i| AxisState {
-            angle_rad: start_mm[i] * laws[i].parameters.rad_per_mm,
+            angle_rad: start_mm[i] * axis_models[i].parameters.rad_per_mm,
             ..AxisState::default()
         });
         let nonideal = (0..N).any(|i| !NonidealAxis::is_ideal(machine.axis(i)));
         let geometry = machine.errors_of_geometry().map(Box::new);
         Self {
-            laws,
+            axis_models,
             periods,
             period: 0,
             disturbance_nm: each(|a| a.disturbance_nm),
@@ -149,7 +149,7 @@ impl<const N: usize> Plant<N> {
             states,
             nonideal: nonideal.then(|| {
                 Box::new(std::array::from_fn(|i| {
-                    NonidealAxis::new(machine, i, &laws[i], states[i].angle_rad, seed)
+                    NonidealAxis::new(machine, i, &axis_models[i], states[i].angle_rad, seed)
                 }))
             }),
             gap: geometry
@@ -191,7 +191,8 @@ impl<const N: usize> Plant<N> {
                 .as_mut()
                 .is_some_and(|nonideal| nonideal[i].push_table(impulse_nm_s));
             if !pushed {
-                self.states[i].speed_rad_s += impulse_nm_s / self.laws[i].parameters.inertia_kg_m2;
+                self.states[i].speed_rad_s +=
+                    impulse_nm_s / self.axis_models[i].parameters.inertia_kg_m2;
             }
         }
     }
@@ -238,7 +239,7 @@ impl<const N: usize> Plant<N> {
 
     /// Travel of the table for angles at the motor shafts, mm.
     fn in_mm(&self, angles_rad: [f64; N]) -> [f64; N] {
-        std::array::from_fn(|i| angles_rad[i] / self.laws[i].parameters.rad_per_mm)
+        std::array::from_fn(|i| angles_rad[i] / self.axis_models[i].parameters.rad_per_mm)
     }
 
     /// The position as it is measured, rad at the motor shaft.
@@ -286,12 +287,17 @@ impl<const N: usize> Plant<N> {
         let mut disturbance = self.disturbance_at_start();
         let mut torque_nm = [0.0; N];
         for _ in 0..self.periods.mechanics_per_servo {
-            let sign = friction_signs(&self.laws, self.states.map(|state| state.speed_rad_s));
-            for (i, (law, state)) in self.laws.iter().zip(&mut self.states).enumerate() {
-                torque_nm[i] = law.torque_nm(reference_rad_s[i], state.speed_rad_s);
+            let sign = friction_signs(
+                &self.axis_models,
+                self.states.map(|state| state.speed_rad_s),
+            );
+            for (i, (axis_model, state)) in
+                self.axis_models.iter().zip(&mut self.states).enumerate()
+            {
+                torque_nm[i] = axis_model.torque_nm(reference_rad_s[i], state.speed_rad_s);
                 let outer_nm = self.disturbance_nm[i] * disturbance[i][1] - self.added_nm[i];
-                let load = law.friction_nm(state.speed_rad_s, sign[i]) + outer_nm;
-                law.accelerate(torque_nm[i] - load, state);
+                let load = axis_model.friction_nm(state.speed_rad_s, sign[i]) + outer_nm;
+                axis_model.accelerate(torque_nm[i] - load, state);
                 disturbance[i] = turned(disturbance[i], self.disturbance_turn[i]);
             }
         }
@@ -308,9 +314,15 @@ impl<const N: usize> Plant<N> {
             return torque_nm;
         };
         for (i, axis) in nonideal.iter_mut().enumerate() {
-            let law = &self.laws[i];
-            let command_rad = command_mm[i] * law.parameters.rad_per_mm;
-            axis.position_loop(law, command_rad, &mut self.states[i], self.period, counter);
+            let axis_model = &self.axis_models[i];
+            let command_rad = command_mm[i] * axis_model.parameters.rad_per_mm;
+            axis.position_loop(
+                axis_model,
+                command_rad,
+                &mut self.states[i],
+                self.period,
+                counter,
+            );
             if let Some(wander) = &mut axis.wander {
                 [disturbance[i], disturbance_turn[i]] = wander.servo_period(self.period, t_s);
             }
@@ -322,7 +334,8 @@ impl<const N: usize> Plant<N> {
             };
             for (i, axis) in nonideal.iter_mut().enumerate() {
                 let load_nm = self.disturbance_nm[i] * disturbance[i][1] - self.added_nm[i];
-                torque_nm[i] = axis.advance(&self.laws[i], &mut self.states[i], moment, load_nm);
+                torque_nm[i] =
+                    axis.advance(&self.axis_models[i], &mut self.states[i], moment, load_nm);
                 disturbance[i] = turned(disturbance[i], disturbance_turn[i]);
             }
         }
@@ -333,9 +346,10 @@ impl<const N: usize> Plant<N> {
     /// period.
     fn position_loop(&mut self, command_mm: [f64; N]) -> [f64; N] {
         std::array::from_fn(|i| {
-            let law = &self.laws[i];
-            let error_rad = command_mm[i] * law.parameters.rad_per_mm - self.states[i].angle_rad;
-            law.position_loop(error_rad, &mut self.states[i])
+            let axis_model = &self.axis_models[i];
+            let error_rad =
+                command_mm[i] * axis_model.parameters.rad_per_mm - self.states[i].angle_rad;
+            axis_model.position_loop(error_rad, &mut self.states[i])
         })
     }
 

@@ -1,5 +1,5 @@
-//! Blocks of models: bytes as they come with a checksum that fits, and axes and weights with
-//! numbers at the ends of their ranges.
+//! Blocks of models: arbitrary bytes with a matching checksum, and axes and weights with numbers at
+//! the ends of their ranges.
 
 use std::f64::consts::TAU;
 
@@ -25,11 +25,11 @@ const PERIODS_S: &[[f64; 2]] = &[
     [1e-3, 1e-7],
 ];
 
-/// Length of the checksum at the end of a block.
+/// Length of the checksum at the end of a block, bytes.
 pub(crate) const CHECKSUM_BYTES: usize = 4;
 
-/// Axes with the numbers of the machine of Lee, Cho and Jeon (2005), with delays and an integral of
-/// the speed loop.
+/// Returns axes with the numbers of the machine of Lee, Cho and Jeon (2005), with delays and an
+/// integral part of the speed loop.
 pub(crate) fn known_axes<const N: usize>() -> IdentifiedAxes<N> {
     let parameters = Parameters {
         rad_per_mm: TAU / 10.0,
@@ -69,7 +69,7 @@ pub(crate) fn known_axes<const N: usize>() -> IdentifiedAxes<N> {
     }
 }
 
-/// A block of axes: usual ones of which some numbers are anything in their ranges.
+/// Returns a block of usual axes in which some numbers have any value within their ranges.
 pub(crate) fn absurd<const N: usize>(draw: &mut Draw) -> Vec<u8> {
     let mut axes = known_axes::<N>();
     let [servo_s, mechanics_s] = draw.pick(PERIODS_S);
@@ -95,7 +95,7 @@ pub(crate) fn absurd<const N: usize>(draw: &mut Draw) -> Vec<u8> {
     })
 }
 
-/// A block of an identifier of the contour error, its weights anything in their range.
+/// Returns a block of an identifier of the contour error, with any weights within their range.
 pub(crate) fn contour<const N: usize>(draw: &mut Draw) -> Vec<u8> {
     let mut identifier = ContourIdentifier::<N>::NULL;
     let reach = draw.pick(&[1.0, 1e-3, 100.0, MAX_WEIGHT]);
@@ -125,7 +125,7 @@ fn written<const N: usize>(block: &ModelBlock<N>) -> Vec<u8> {
     bytes
 }
 
-/// Bytes as a block with the header of a kind and the checksum that fits them.
+/// Returns a block of the remaining bytes, with the header of a kind and a matching checksum.
 pub(crate) fn with_checksum(draw: &mut Draw) -> Vec<u8> {
     let [format, kind, axes] = [
         draw.pick(&[2_u32, 3, 4]),
@@ -141,7 +141,7 @@ pub(crate) fn with_checksum(draw: &mut Draw) -> Vec<u8> {
     sealed(content)
 }
 
-/// A block that is accepted: axes with a geometry, or an identifier of the contour error.
+/// Returns an accepted block: axes with a geometry, or an identifier of the contour error.
 pub(crate) fn valid<const N: usize>(is_contour: bool) -> Vec<u8> {
     let mut block = ModelBlock {
         servo_s: SERVO_S,
@@ -174,7 +174,8 @@ pub(crate) fn valid<const N: usize>(is_contour: bool) -> Vec<u8> {
     written(&block)
 }
 
-/// A [`valid`] block of which one byte is another, or that ends early, with the checksum that fits.
+/// Returns a [`valid`] block in which one byte is changed, or that ends early, with a matching
+/// checksum.
 pub(crate) fn damaged<const N: usize>(draw: &mut Draw) -> Vec<u8> {
     let mut content = valid::<N>(draw.below(2) == 1);
     content.truncate(content.len() - CHECKSUM_BYTES);
@@ -186,14 +187,14 @@ pub(crate) fn damaged<const N: usize>(draw: &mut Draw) -> Vec<u8> {
     sealed(content)
 }
 
-/// A block with the checksum behind its content.
+/// Returns a block: the content, followed by its checksum.
 fn sealed(mut content: Vec<u8>) -> Vec<u8> {
     let checksum = crc_32(&content);
     content.extend_from_slice(&checksum.to_le_bytes());
     content
 }
 
-/// CRC-32 of IEEE 802.3, bit by bit.
+/// Computes the CRC-32 of IEEE 802.3, bit by bit.
 fn crc_32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |crc, byte| {
         (0..8).fold(crc ^ u32::from(*byte), |crc, _| {
@@ -202,7 +203,7 @@ fn crc_32(bytes: &[u8]) -> u32 {
     })
 }
 
-/// Reads a block: what is accepted is written as bytes that read as the same.
+/// Reads a block. An accepted block must be written as bytes that read as the same.
 pub(crate) fn read<const N: usize>(bytes: &[u8]) {
     let Ok(block) = ModelBlock::<N>::from_bytes(bytes) else {
         return;

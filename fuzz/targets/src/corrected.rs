@@ -10,16 +10,17 @@ use crate::draw::Draw;
 use crate::paths::{Chords, distance};
 use crate::programs;
 
-/// Motions of a program: each cut simulates all of them several times.
+/// Largest number of motions of a program: each cut simulates all of them several times.
 const MOTIONS: u8 = 5;
 /// Half the size of a part, mm: some hundred servo periods.
 const REACH_MM: f64 = 2.0;
-/// Least radius of an arc, mm: any two points of the part are on it.
+/// Smallest radius of an arc, mm: any two points of the part are on such an arc.
 const RADIUS_MM: f64 = 3.0;
 /// Servo and mechanics periods, s: a fifth of the work of a usual machine.
 const PERIODS_S: [f64; 2] = [0.005, 0.001];
 
-/// A machine whose loops follow within few servo periods, and whose cuts are all the same.
+/// Returns a machine whose loops follow within a few servo periods, and whose cuts are all the
+/// same.
 fn machine() -> Option<Machine> {
     let mut machine = deterministic(&Machine::load("tnv40".as_ref()).ok()?);
     let [servo_s, mechanics_s] = PERIODS_S;
@@ -31,7 +32,8 @@ fn machine() -> Option<Machine> {
     Some(machine)
 }
 
-/// A small part: lines and arcs of some millimeters at feedrates that a machine has trouble with.
+/// Returns a small part: lines and arcs of some millimeters, at feedrates that are difficult for a
+/// machine.
 fn part(draw: &mut Draw) -> String {
     let (start, mm) = draw.pick(&[
         ("G21 G90 G64 F2000\n", 1.0),
@@ -63,7 +65,7 @@ fn part(draw: &mut Draw) -> String {
     text + "M2\n"
 }
 
-/// Points of all motions, mm; `None` where a motion is a spline.
+/// Returns the points of all motions, mm; `None` if a motion is a spline.
 fn chords(steps: &[Canon]) -> Option<Chords> {
     let mut chords = Chords::default();
     for step in steps {
@@ -77,7 +79,7 @@ fn chords(steps: &[Canon]) -> Option<Chords> {
     Some(chords)
 }
 
-/// Corrects a part for a control.
+/// Corrects a part for a control, and checks the corrected program.
 pub(crate) fn run(data: &[u8]) {
     let mut draw = Draw::new(data);
     let target = &TARGETS[usize::from(draw.byte()) % TARGETS.len()];

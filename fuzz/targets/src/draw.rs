@@ -1,7 +1,7 @@
 //! Decisions from the bytes of a fuzzer: a mutation of a byte changes one decision, and not the
 //! grammar.
 
-/// Bytes that decisions are taken from. Where they end, every decision is the first.
+/// Bytes that decisions are taken from. After their end, every decision is the first choice.
 pub(crate) struct Draw<'a> {
     rest: &'a [u8],
 }
@@ -15,7 +15,7 @@ impl<'a> Draw<'a> {
         self.rest.is_empty()
     }
 
-    /// The bytes that no decision was taken from.
+    /// Returns the bytes that no decision was taken from.
     pub(crate) const fn rest(&self) -> &'a [u8] {
         self.rest
     }
@@ -28,7 +28,7 @@ impl<'a> Draw<'a> {
         *first
     }
 
-    /// A number from 0 to one less than `limit`.
+    /// Returns a number from 0 to one less than `limit`.
     pub(crate) fn below(&mut self, limit: u8) -> u8 {
         self.byte() % limit
     }
@@ -37,12 +37,12 @@ impl<'a> Draw<'a> {
         from[usize::from(self.byte()) % from.len()]
     }
 
-    /// A part from 0 to 1, from two bytes.
+    /// Returns a part from 0 to 1, from two bytes.
     pub(crate) fn part(&mut self) -> f64 {
         f64::from(u16::from_le_bytes([self.byte(), self.byte()])) / f64::from(u16::MAX)
     }
 
-    /// A number of the usual size, rarely one that is absurd.
+    /// Returns a number of the usual size, rarely an absurd one.
     pub(crate) fn number(&mut self, reach: f64) -> f64 {
         match self.byte() {
             0..=23 => 0.0,
@@ -52,7 +52,7 @@ impl<'a> Draw<'a> {
         }
     }
 
-    /// Any double, those that are no numbers included.
+    /// Returns any double, NaN and infinities included.
     pub(crate) fn double(&mut self) -> f64 {
         match self.byte() {
             0..=63 => 0.0,

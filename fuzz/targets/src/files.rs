@@ -1,5 +1,5 @@
-//! Files of machines, geometries and models: text as it comes, and valid files of which some values
-//! are others.
+//! Files of machines, geometries and models: arbitrary text, and valid files with some changed
+//! values.
 
 use std::fmt::Write;
 
@@ -10,7 +10,7 @@ use feedwright_sim::{BUILT_IN_MACHINES, GeometryFile, Machine};
 use crate::blocks;
 use crate::draw::Draw;
 
-/// Lines that are spoilt at most.
+/// Largest number of changes to a file.
 const SPOILT: u8 = 6;
 
 const VALUES: &[&str] = &[
@@ -39,7 +39,8 @@ const VALUES: &[&str] = &[
 const GEOMETRY: &str = "format = 1\nname = \"x\"\nsource = \"ball bar\"\ndate = \"2026-01-01\"\n[axis.x]\nscale_um_per_m = 20\n\
                         backlash_um = 5\n[axis.y]\nscale_um_per_m = -30\n[squareness]\nxy_um_per_m = 10\n";
 
-/// A text with some of its lines left out, twice there, or with other values.
+/// Returns a text in which some lines are left out, doubled, extended by control characters, or
+/// given other values.
 fn spoilt(draw: &mut Draw, text: &str) -> String {
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     if lines.is_empty() {
@@ -65,7 +66,7 @@ fn spoilt(draw: &mut Draw, text: &str) -> String {
     })
 }
 
-/// A message of a refusal has no character that commands a terminal.
+/// Checks that the message of a rejection has no character that commands a terminal.
 fn assert_inert(message: &str) {
     assert!(
         !message.contains(|c| feedwright_gcode::is_hidden(c) && c != '\n'),
@@ -74,8 +75,8 @@ fn assert_inert(message: &str) {
     );
 }
 
-/// Reads a file of any kind. What is accepted is written as a file that is accepted and says the
-/// same.
+/// Reads a file of any kind. An accepted file must be written as a file that is accepted and states
+/// the same.
 pub(crate) fn read(data: &[u8]) {
     let mut draw = Draw::new(data);
     let kind = draw.below(6);
@@ -122,7 +123,7 @@ fn machine_text(name: &str) -> String {
         .unwrap_or_default()
 }
 
-/// The model file of axes that a block may have; empty where it may not have them.
+/// Returns the model file of the axes of a block; empty if the block is rejected.
 fn model_text(draw: &mut Draw) -> String {
     let Ok(block) = ModelBlock::<2>::from_bytes(&blocks::absurd::<2>(draw)) else {
         return String::new();

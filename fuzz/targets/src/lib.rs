@@ -1,18 +1,19 @@
-//! What the fuzz targets run and check. Each takes any bytes, and panics where a promise is broken.
+//! Code that the fuzz targets run and check. Each takes any bytes, and panics if a requirement is
+//! not met.
 //!
-//! | Target | What must hold |
+//! | Target | Requirement |
 //! |---|---|
 //! | [`reader`] | any text in any dialect: finite coordinates in reach, motions that meet, messages without control characters |
-//! | [`expressions`] | the value of an expression is the same when it is written in brackets; never a number that is none |
-//! | [`files`] | files of machines, geometries and models: what is accepted is written as a file that says the same |
-//! | [`block`] | blocks of models: what is accepted is written as a block that says the same |
-//! | [`logs`] | CSV and MAT: what is accepted is finite and complete |
+//! | [`expressions`] | the value of an expression is the same when it is written in brackets, and always finite |
+//! | [`files`] | files of machines, geometries and models: an accepted file is written as a file that states the same |
+//! | [`block`] | blocks of models: an accepted block is written as a block that states the same |
+//! | [`logs`] | CSV and MAT: accepted data is finite and complete |
 //! | [`corrected`] | a corrected program is read again without mistakes, ends where the original ends and stays near it |
 //! | [`planner`] | phases join; velocity, acceleration and jerk of every axis and the tolerance of the path hold |
 //! | [`tick`] | any accepted model, plant and pins: commands and feedback are finite, commands near the path |
 //!
-//! `just fuzz MINUTES` runs all of them. `tests/suite.rs` replays the seeds and what the fuzzer
-//! found.
+//! `just fuzz MINUTES` runs all of them. `tests/suite.rs` replays the seeds and the findings of the
+//! fuzzer.
 
 mod draw;
 mod programs;
@@ -30,7 +31,7 @@ use feedwright_gcode::canon::Canon;
 
 use draw::Draw;
 
-/// A target: its name, and what it runs.
+/// Name and function of a target.
 pub type FuzzTarget = (&'static str, fn(&[u8]));
 
 /// All targets.
@@ -45,7 +46,7 @@ pub const TARGETS: [FuzzTarget; 8] = [
     ("tick", tick),
 ];
 
-/// Programs in any dialect.
+/// Reads programs in any dialect.
 pub fn reader(data: &[u8]) {
     let mut draw = Draw::new(data);
     let dialect = programs::dialect(&mut draw);
@@ -56,7 +57,7 @@ pub fn reader(data: &[u8]) {
     }
 }
 
-/// Expressions.
+/// Reads expressions.
 pub fn expressions(data: &[u8]) {
     let mut draw = Draw::new(data);
     let dialect = programs::dialect(&mut draw);
@@ -82,12 +83,12 @@ pub fn expressions(data: &[u8]) {
     assert!(ends.len() < 2 || ends[0] == ends[1], "{ends:?}\n{text}");
 }
 
-/// Files of machines, geometries and models.
+/// Reads files of machines, geometries and models.
 pub fn files(data: &[u8]) {
     files::read(data);
 }
 
-/// Blocks of models.
+/// Reads blocks of models.
 pub fn block(data: &[u8]) {
     let mut draw = Draw::new(data);
     match draw.below(4) {
@@ -105,22 +106,22 @@ pub fn block(data: &[u8]) {
     }
 }
 
-/// Logs of machines.
+/// Reads logs of machines.
 pub fn logs(data: &[u8]) {
     logs::read(data);
 }
 
-/// Corrected programs.
+/// Corrects programs, and reads the corrected ones.
 pub fn corrected(data: &[u8]) {
     corrected::run(data);
 }
 
-/// Plans.
+/// Plans programs.
 pub fn planner(data: &[u8]) {
     planned::run(data);
 }
 
-/// The servo thread.
+/// Runs the servo thread.
 pub fn tick(data: &[u8]) {
     let Some((first, rest)) = data.split_first() else {
         return;
@@ -132,8 +133,8 @@ pub fn tick(data: &[u8]) {
     };
 }
 
-/// The beginnings of inputs of [`tick`] that together run every change of one byte, and every end,
-/// of valid blocks. The bytes behind are the plant and the pins.
+/// Returns the first bytes of inputs of [`tick`] that together run every change of one byte, and
+/// every end, of valid blocks. The bytes after them choose the plant and the pins.
 pub fn damaged_blocks() -> impl Iterator<Item = [u8; 6]> {
     tick::damaged_blocks::<2>().chain(tick::damaged_blocks::<3>())
 }

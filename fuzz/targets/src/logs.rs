@@ -1,4 +1,4 @@
-//! Logs: bytes as they come, tables with odd cells, and MATLAB files with odd sizes.
+//! Logs: arbitrary bytes, tables with odd cells, and MATLAB files with odd sizes.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -40,10 +40,10 @@ const COLUMNS: &[&str] = &[
     "unit=um,time=ms",
     "t=2,x.cmd=1,x.act=1,x.torque=1",
 ];
-/// Rows of a table that is long enough to be accepted.
+/// Number of rows of a table that is long enough to be accepted.
 const ROWS: u16 = 400;
 
-/// A table of a motion, with some cells spoilt.
+/// Returns a table of a motion, with some cells spoilt.
 fn table(draw: &mut Draw) -> Vec<u8> {
     let head = draw.pick(HEADS);
     let separator = draw.pick(&[',', ';', '\t', ' ']);
@@ -71,7 +71,7 @@ fn table(draw: &mut Draw) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// A MATLAB 5 file: a header, and elements whose types and sizes are drawn.
+/// Returns a MATLAB 5 file: a header, and elements with random types and sizes.
 fn matlab(draw: &mut Draw) -> Vec<u8> {
     let mut file = b"MATLAB 5.0 MAT-file, Platform: FUZZ".to_vec();
     file.resize(124, b' ');
@@ -127,13 +127,14 @@ fn wrapped(kind: u32, content: &[u8]) -> Vec<u8> {
     .concat()
 }
 
-/// An element, padded to eight bytes.
+/// Appends an element, padded to eight bytes.
 fn element(file: &mut Vec<u8>, kind: u32, content: &[u8]) {
     file.extend_from_slice(&wrapped(kind, content));
     file.resize(file.len().next_multiple_of(8), 0);
 }
 
-/// Reads a log: what is accepted is finite and of one length, and no message commands a terminal.
+/// Reads a log. Accepted data must be finite and of one length, and no message may command a
+/// terminal.
 pub(crate) fn read(data: &[u8]) {
     let mut draw = Draw::new(data);
     let kind = draw.below(4);

@@ -7,21 +7,21 @@ use feedwright_gcode::canon::{Motion, Shape};
 /// A point, mm.
 pub(crate) type Point = [f64; 3];
 
-/// Distance of chords from their arc, mm.
+/// Largest distance of chords from their arc, mm.
 pub(crate) const CHORD_MM: f64 = 1e-3;
-/// Chords of an arc at most.
+/// Largest number of chords of an arc.
 const MOST_CHORDS: f64 = 5_000.0;
-/// Below this angle an arc is a full turn, rad.
+/// Angle below which an arc is a full turn, rad.
 const FULL_TURN_RAD: f64 = 1e-9;
 
-/// The points of a path.
+/// Points of a path.
 #[derive(Debug, Default)]
 pub(crate) struct Chords {
     pub(crate) points: Vec<Point>,
 }
 
 impl Chords {
-    /// Appends a line or an arc; of a spline, its end.
+    /// Appends a line or an arc; of a spline, appends only the end.
     pub(crate) fn add(&mut self, motion: &Motion) {
         if self.points.is_empty() {
             self.points.push(motion.start_mm);
@@ -58,7 +58,7 @@ impl Chords {
         self.points.push(motion.end_mm);
     }
 
-    /// Least distance of a point from the path, mm.
+    /// Returns the smallest distance of a point from the path, mm.
     pub(crate) fn distance(&self, point: Point) -> f64 {
         self.points
             .windows(2)
@@ -67,7 +67,7 @@ impl Chords {
     }
 }
 
-/// Distance of two points, mm.
+/// Returns the distance between two points, mm.
 pub(crate) fn distance(a: Point, b: Point) -> f64 {
     (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
 }

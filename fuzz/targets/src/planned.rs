@@ -11,18 +11,18 @@ use crate::draw::Draw;
 use crate::paths::{CHORD_MM, Chords};
 use crate::programs;
 
-/// Rounding of positions (mm), velocities (mm/s) and accelerations (mm/s2) where phases join: each
-/// is an integral of jerks over times near 1e-7 s.
+/// Rounding errors of positions (mm), velocities (mm/s) and accelerations (mm/s2) where phases
+/// join: each is an integral of jerks over times near 1e-7 s.
 const JOIN: [f64; 3] = [1e-6, 1e-4, 1e-1];
-/// Relative rounding of a limit.
+/// Relative rounding error of a limit.
 const ROUNDING: f64 = 1e-6;
-/// Phases that are checked, and places of each.
+/// Number of phases that are checked, and of intervals between the checked places of a phase.
 const PHASES: usize = 600;
 const PLACES: u32 = 2;
-/// Tolerances of the path, um.
+/// Path tolerances, um.
 const TOLERANCES_UM: &[f64] = &[10.0, 1.0, 100.0, 5.0];
 
-/// Lines and arcs with lengths from a nanometer to a meter.
+/// Returns lines and arcs with lengths from a nanometer to a meter.
 fn part(draw: &mut Draw) -> String {
     let mut text = String::from(draw.pick(&[
         "G21 G90 G64 F3000\n",
@@ -48,7 +48,7 @@ fn part(draw: &mut Draw) -> String {
     text + "M2\n"
 }
 
-/// Plans a part.
+/// Plans a part, and checks its phases.
 pub(crate) fn run(data: &[u8]) {
     let mut draw = Draw::new(data);
     let Ok(machine) = Machine::load(draw.pick(&["workshop", "router"]).as_ref()) else {
@@ -129,7 +129,7 @@ fn joins(before: &AxisMotion, after: &AxisMotion, text: &str) {
     }
 }
 
-/// Holds the ends and the middle of a phase to the limits of the axes.
+/// Checks the ends and the middle of a phase against the limits of the axes.
 fn check(phase: &Phase, motion: &AxisMotion, constraints: &Constraints, text: &str) {
     for place in 0..=PLACES {
         let at = motion.after(phase.duration_s * f64::from(place) / f64::from(PLACES));

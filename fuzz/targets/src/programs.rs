@@ -1,4 +1,4 @@
-//! Programs: text as it comes, and text of a grammar, which the reader does not refuse in its first
+//! Programs: arbitrary text, and text of a grammar that the reader does not reject in its first
 //! line.
 
 use std::fmt::Write;
@@ -8,16 +8,16 @@ use feedwright_gcode::{DIALECTS, Dialect, Reader, Settings};
 
 use crate::draw::Draw;
 
-/// Lines without a motion, motions, and calls within each other: a program ends within
+/// Largest numbers of lines without a motion, of motions and of nested calls: a program ends within
 /// milliseconds.
 const IDLE_LINES: u64 = 2_000;
 const MOTIONS: u64 = 2_000;
 const DEPTH: usize = 20;
-/// Motions and events that are taken from a program.
+/// Largest number of motions and events that are read from a program.
 const TAKEN: usize = 4_000;
-/// Two motions meet where they are no further apart, mm: rounding at the largest coordinate.
+/// Largest gap between two motions that meet, mm: rounding at the largest coordinate.
 const MEET_MM: f64 = 1e-6;
-/// Levels of an expression.
+/// Largest number of levels of an expression.
 const LEVELS: u8 = 4;
 
 const WORDS: &str = "XYZABCUVWIJKRPQLDEFHST";
@@ -81,7 +81,7 @@ const LITERALS: &[&str] = &[
     "\r",
 ];
 
-/// A program that has lines as a control has them, some of them spoilt.
+/// Returns a program with lines as a control has them, some of them spoilt.
 pub(crate) fn program(draw: &mut Draw) -> String {
     let mut text = String::from(draw.pick(&[
         "G21 G90 F600\n",
@@ -104,7 +104,7 @@ pub(crate) fn program(draw: &mut Draw) -> String {
     text
 }
 
-/// A line; blocks of O-words that are open in `labels`.
+/// Appends a line; `labels` holds the O-word blocks that are open.
 fn line(draw: &mut Draw, text: &mut String, labels: &mut Vec<(usize, &'static str)>) {
     match draw.below(10) {
         0 => o_word(draw, text, labels),
@@ -128,7 +128,7 @@ fn line(draw: &mut Draw, text: &mut String, labels: &mut Vec<(usize, &'static st
 }
 
 fn word(draw: &mut Draw, text: &mut String) {
-    // What most motions have comes most.
+    // The letters that most motions have are the most frequent.
     let letter = if draw.below(2) == 0 {
         draw.pick(b"XYZ")
     } else {
@@ -177,7 +177,7 @@ fn o_word(draw: &mut Draw, text: &mut String, labels: &mut Vec<(usize, &'static 
     }
 }
 
-/// An expression with at most so many levels.
+/// Appends an expression with at most `levels` levels.
 pub(crate) fn expression(draw: &mut Draw, text: &mut String, levels: u8) {
     const OPERATORS: &[&str] = &[
         "+", "-", "*", "/", "**", " MOD ", " AND ", " OR ", " XOR ", " EQ ", " NE ", " GT ",
@@ -230,7 +230,7 @@ fn bracketed(draw: &mut Draw, text: &mut String, levels: u8) {
     text.push(']');
 }
 
-/// Settings with which every program ends soon.
+/// Returns settings with which every program ends soon.
 pub(crate) fn settings(dialect: Option<Dialect>) -> Settings {
     Settings {
         dialect,
@@ -242,8 +242,8 @@ pub(crate) fn settings(dialect: Option<Dialect>) -> Settings {
     }
 }
 
-/// Reads a program and checks what it comes to: finite numbers within the machine's reach, motions
-/// that meet, messages without controls.
+/// Reads a program and checks the result: finite numbers within the reach of the machine, motions
+/// that meet, messages without control characters.
 pub(crate) fn read(text: &[u8], dialect: Option<Dialect>) -> Vec<Canon> {
     let settings = settings(dialect);
     let limit_mm = settings.coordinate_limit_mm;
@@ -266,7 +266,7 @@ pub(crate) fn read(text: &[u8], dialect: Option<Dialect>) -> Vec<Canon> {
         };
         if let Canon::Motion(motion) = &step {
             check(motion, limit_mm);
-            // Behind a mistake the reader goes on from where it thinks it is.
+            // After a fault the reader continues from an assumed position.
             if let (Some(last), false) = (last_mm, faulty) {
                 let gap = (0..3)
                     .map(|k| (last[k] - motion.start_mm[k]).abs())
@@ -314,7 +314,7 @@ fn check(motion: &Motion, limit_mm: f64) {
     }
 }
 
-/// A dialect, or the choice of the reader.
+/// Draws a dialect; `None` leaves the choice to the reader.
 pub(crate) fn dialect(draw: &mut Draw) -> Option<Dialect> {
     let at = usize::from(draw.byte());
     DIALECTS

@@ -1,5 +1,5 @@
-//! The servo thread with any model that is accepted, a plant that does as it likes, and pins with
-//! any number on them.
+//! The servo thread with any accepted model, a plant that behaves in any way, and pins with any
+//! number.
 
 use feedwright_servo::compensation::{Compensation, MachinePlace};
 use feedwright_servo::limits::LinkLimits;
@@ -11,25 +11,26 @@ use feedwright_servo::through::Through;
 use crate::blocks;
 use crate::draw::Draw;
 
-/// Servo periods of rest at the beginning: a geometry comes into force, and behind it the link
-/// takes its delay up.
+/// Servo periods of rest at the start: a geometry takes effect, and then the link takes up its
+/// delay.
 const REST: usize = 400;
-/// Servo periods behind it: three times the longest delay, and the time in which the supervisor
-/// judges.
+/// Servo periods after the rest: three times the longest delay, and the time within which the
+/// supervisor judges.
 const PERIODS: usize = 400;
-/// Number of the choice of a damaged block.
+/// Choice that selects a damaged block.
 const DAMAGED: u8 = 3;
-/// Those of a model that is refused: commands are passed on.
+/// Servo periods with a rejected model: commands are passed on.
 const REFUSED_PERIODS: usize = 40;
-/// Farthest that the drive's command may be from the path of the commands, mm: the largest
+/// Largest permitted distance of the drive's command from the path of the commands, mm: the largest
 /// deviation that can be set.
 const DEVIATION_MM: f64 = 10.0;
-/// The path between two commands is a curve there and a chord here, mm.
+/// Largest distance between the curve of the link and the chord of this check between two commands,
+/// mm.
 const ROUND_MM: f64 = 1e-3;
-/// Relative rounding of a sum of a position and a correction.
+/// Relative rounding error of the sum of a position and a correction.
 const ROUNDING: f64 = 1e-9;
 
-/// Runs the link of a machine with `N` axes. Returns the servo periods with a correction.
+/// Runs the link of a machine with `N` axes. Returns the number of servo periods with a correction.
 pub(crate) fn run<const N: usize>(data: &[u8]) -> usize {
     let mut draw = Draw::new(data);
     let bytes = match draw.below(8) {
@@ -96,7 +97,7 @@ pub(crate) fn run<const N: usize>(data: &[u8]) -> usize {
     corrected
 }
 
-/// Inputs of [`crate::tick`] that run a block which [`blocks::damaged`] makes: each byte of each
+/// Returns inputs of [`crate::tick`] that run the blocks of [`blocks::damaged`]: each byte of each
 /// kind changed in each way, and each end.
 pub(crate) fn damaged_blocks<const N: usize>() -> impl Iterator<Item = [u8; 6]> {
     [0, 1].into_iter().flat_map(|kind| {
@@ -113,25 +114,25 @@ pub(crate) fn damaged_blocks<const N: usize>() -> impl Iterator<Item = [u8; 6]> 
     })
 }
 
-/// What is around the link.
+/// Machine, pins and commands around the link.
 struct World<const N: usize> {
     limits: LinkLimits,
     place: MachinePlace<N>,
-    /// The machine of [`blocks::valid`].
+    /// Machine of the blocks of [`blocks::valid`].
     plant: SimulatedMachine<N>,
     command_mm: [f64; N],
-    /// Servo period from which on the bytes spoil what the link gets.
+    /// Servo period from which the bytes spoil the inputs of the link.
     spoils_from: usize,
-    /// Largest coordinate of a command or an actual position that was heard, mm.
+    /// Largest coordinate of a valid command or actual position, mm.
     largest_mm: f64,
-    /// Commands that were heard, mm: the path.
+    /// Valid commands, mm: the path.
     path_mm: Vec<[f64; N]>,
 }
 
 impl<const N: usize> World<N> {
     fn inputs(&mut self, draw: &mut Draw, n: usize, servo_s: f64) -> LinkInputs<N> {
         let spoils = n >= self.spoils_from && !draw.is_empty() && draw.below(4) == 0;
-        // From rest, up to 50 mm/s on a circle.
+        // The command accelerates from rest to 50 mm/s on a circle.
         let moving = n.saturating_sub(REST) as f64;
         let angle = 5.0 * servo_s * moving * moving / (moving + 50.0);
         for (k, mm) in self.command_mm.iter_mut().enumerate() {
@@ -165,9 +166,9 @@ impl<const N: usize> World<N> {
         }
     }
 
-    /// Notes what the link gets.
+    /// Records the inputs of the link.
     fn hear(&mut self, inputs: &LinkInputs<N>) {
-        // A place whose distance overflows is not heard.
+        // A position whose distance overflows does not count.
         let is_heard = |mm: &[f64; N]| mm.iter().map(|mm| mm * mm).sum::<f64>().is_finite();
         self.path_mm
             .extend(Some(inputs.command_mm).filter(is_heard));
@@ -181,7 +182,7 @@ impl<const N: usize> World<N> {
         }
     }
 
-    /// Sets a pin to anything.
+    /// Sets a pin to any value.
     fn set(&mut self, draw: &mut Draw) {
         let value = if draw.below(2) == 0 {
             draw.double()
@@ -201,7 +202,7 @@ impl<const N: usize> World<N> {
         }
     }
 
-    /// Distance of a place from the path.
+    /// Returns the distance of a position from the path, mm.
     fn off_the_path_mm(&self, place_mm: [f64; N]) -> f64 {
         let difference =
             |a: [f64; N], b: [f64; N]| -> [f64; N] { std::array::from_fn(|k| a[k] - b[k]) };
@@ -239,8 +240,8 @@ impl<const N: usize> World<N> {
             "{n}: {outputs:?}"
         );
         let rounding_mm = ROUNDING * (1.0 + self.largest_mm);
-        // Along the path a correction may be longer. A drive without power is told to be where it
-        // is.
+        // A correction along the path may be longer. A drive without power gets its actual
+        // position.
         let off_mm = if *link == Link::Off {
             0.0
         } else {
@@ -269,8 +270,8 @@ mod tests {
     fn both_kinds_of_models_correct_while_nothing_is_spoilt() {
         // The paper's controller has to pass its trial first.
         for (kind, least) in [(0, PERIODS / 2), (1, PERIODS / 4)] {
-            // The last bit of the first weight, or of the mechanics period; nothing is spoilt from
-            // where the bytes end.
+            // The damage is the last bit of the first weight, or of the mechanics period. Where the
+            // bytes end, nothing more is spoilt.
             let [two, three] = [
                 run::<2>(&[DAMAGED, kind, 40, 0, 1]),
                 run::<3>(&[DAMAGED, kind, 40, 0, 1]),

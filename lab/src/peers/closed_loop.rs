@@ -28,7 +28,7 @@
 //!
 //! Symbols: as in [`feedwright_control::axis::drive`]. Polynomials are in ascending powers of z^-1.
 use feedwright_control::{
-    AxisLaw, AxisState, DriveLaw, DriveParameters, DriveReference, DriveState, Parameters,
+    AxisModel, AxisState, DriveModel, DriveParameters, DriveReference, DriveState, Parameters,
 };
 use feedwright_sim::{KnownAxis, Period};
 use nalgebra::{ComplexField, DMatrix, SMatrix, Schur};
@@ -78,8 +78,8 @@ pub(super) fn inverting(axis: &KnownAxis, nominal: &Parameters, period: &Period)
 
 /// The linear part of an axis with its drive.
 struct ClosedAxis {
-    law: AxisLaw,
-    drive: DriveLaw,
+    axis_model: AxisModel,
+    drive: DriveModel,
     parameters: DriveParameters,
     /// Delays of the drive and of the measurement, mechanics periods.
     late: [u32; 2],
@@ -95,7 +95,7 @@ impl ClosedAxis {
             coulomb_friction_nm: 0.0,
             ..*nominal
         };
-        let law = AxisLaw::new(linear, period.periods());
+        let axis_model = AxisModel::new(linear, period.periods());
         let parameters = DriveParameters {
             speed_limit_rad_s: 0.0,
             ..axis.drive
@@ -104,8 +104,8 @@ impl ClosedAxis {
         // A float that is not a number saturates to zero here.
         let late = |delay_s: f64| ((delay_s / period.mechanics_s).round() as u32).min(longest);
         Self {
-            law,
-            drive: DriveLaw::new(&law, parameters),
+            axis_model,
+            drive: DriveModel::new(&axis_model, parameters),
             parameters,
             late: [axis.delays.drive_s, axis.delays.measurement_s].map(late),
             // What the drive is set to, whatever the inertia is taken for.
@@ -118,9 +118,9 @@ impl ClosedAxis {
     fn substep(&self, reference: DriveReference, axis: &mut AxisState, drive: &mut DriveState) {
         let torque_nm = self
             .drive
-            .torque_nm(&self.law, reference, axis.speed_rad_s, drive);
-        self.law.accelerate(
-            torque_nm - self.law.friction_nm(axis.speed_rad_s, 0.0),
+            .torque_nm(&self.axis_model, reference, axis.speed_rad_s, drive);
+        self.axis_model.accelerate(
+            torque_nm - self.axis_model.friction_nm(axis.speed_rad_s, 0.0),
             axis,
         );
     }
@@ -145,7 +145,7 @@ impl ClosedAxis {
             };
             let mut drive = DriveState::AT_REST;
             drive.correct(unit[2], unit[3]);
-            for _ in 0..self.law.periods.mechanics_per_servo {
+            for _ in 0..self.axis_model.periods.mechanics_per_servo {
                 self.substep(DriveReference::default(), &mut axis, &mut drive);
             }
             [
@@ -160,7 +160,7 @@ impl ClosedAxis {
     /// N of a reference that lasts a servo period, with positions that are `ago` mechanics periods
     /// old.
     fn numerator(&self, reference: DriveReference, characteristic: &[f64], ago: u32) -> Vec<f64> {
-        let per_servo = self.law.periods.mechanics_per_servo;
+        let per_servo = self.axis_model.periods.mechanics_per_servo;
         let [drive_late, _] = self.late;
         let (mut axis, mut drive) = (AxisState::default(), DriveState::AT_REST);
         let periods = STATES as u32 + (drive_late + per_servo + ago).div_ceil(per_servo);
@@ -188,7 +188,7 @@ impl ClosedAxis {
 
     /// Numerator and denominator from command to position.
     fn transfer(&self, nominal: &Parameters) -> (Vec<f64>, Vec<f64>) {
-        let servo_s = self.law.periods.servo_s;
+        let servo_s = self.axis_model.periods.servo_s;
         let characteristic = characteristic(&self.columns());
         let speed = DriveReference {
             speed_rad_s: 1.0,
@@ -314,7 +314,7 @@ mod tests {
                 .map_or(0.0, |at| course_rad[at]);
             course_rad.pop();
             sent.push(linear.drive.position_loop(
-                &linear.law,
+                &linear.axis_model,
                 *command_rad,
                 measured_rad,
                 &mut motor,
@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn the_transfer_is_what_the_law_does() {
+    fn the_transfer_is_what_the_model_does() {
         let full = |axis: Axis| Axis {
             speed_integral_s: 0.02,
             velocity_feedforward: 0.95,

@@ -2,7 +2,7 @@
 
 use feedwright_control::vector::add_scaled;
 use feedwright_control::{
-    AxisInverse, AxisLaw, ContourError, Controller, KnotSource, Measured, Parameters, Periods,
+    AxisInverse, AxisModel, ContourError, Controller, KnotSource, Measured, Parameters, Periods,
     Preview, Register, Window,
 };
 
@@ -63,5 +63,5 @@ pub(super) fn inverse(axis: Parameters) -> AxisInverse {
         mechanics_s: 1e-3 * SERVO_S,
         mechanics_per_servo: 1000,
     };
-    AxisInverse::plain(AxisLaw::new(axis, periods))
+    AxisInverse::plain(AxisModel::new(axis, periods))
 }

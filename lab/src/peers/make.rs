@@ -3,7 +3,7 @@
 
 use feedwright::{Setup, Values, offset_bounds};
 use feedwright_control::{
-    AxisInverse, AxisLaw, AxisState, Controller, DriveParameters, Feedforward, Gains, LoopDelays,
+    AxisInverse, AxisModel, AxisState, Controller, DriveParameters, Feedforward, Gains, LoopDelays,
     LqgPreview, LqgSettings, Parameters,
 };
 use feedwright_sim::{Known, KnownAxis, Period};
@@ -182,7 +182,7 @@ pub(super) fn feedforward_as_delivered<const N: usize>(
 ) -> Box<dyn Controller<N>> {
     let [velocity, acceleration] =
         ["velocity_gain", "acceleration_gain"].map(|name| values.number(name));
-    let axes = setup.known.law().map(AxisInverse::plain);
+    let axes = setup.known.axis_model().map(AxisInverse::plain);
     let gains = setup.known.axes::<N>().map(|KnownAxis { drive, .. }| {
         let feeds_forward =
             drive.velocity_feedforward > 0.0 || drive.acceleration_feedforward > 0.0;
@@ -380,7 +380,7 @@ pub(super) fn sampled(axis: &Parameters, period: &Period) -> SampledAxis {
         coulomb_friction_nm: 0.0,
         ..*axis
     };
-    let law = AxisLaw::new(linear, period.periods());
+    let axis_model = AxisModel::new(linear, period.periods());
     let over = |speed_rad_s: f64, reference_rad_s: f64| {
         let mut state = AxisState {
             speed_rad_s,
@@ -388,8 +388,8 @@ pub(super) fn sampled(axis: &Parameters, period: &Period) -> SampledAxis {
         };
         for _ in 0..period.mechanics_per_servo {
             let w = state.speed_rad_s;
-            law.accelerate(
-                law.torque_nm(reference_rad_s, w) - law.friction_nm(w, 0.0),
+            axis_model.accelerate(
+                axis_model.torque_nm(reference_rad_s, w) - axis_model.friction_nm(w, 0.0),
                 &mut state,
             );
         }

@@ -18,8 +18,8 @@ pub(crate) mod horizon;
 
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{
-    AxisLaw, AxisState, Command, CommandQueue, Controller, DriveLaw, DriveParameters,
-    DriveReference, DriveState, FrictionLaw, FrictionParameters, Measured, Parameters, Schedule,
+    AxisModel, AxisState, Command, CommandQueue, Controller, DriveModel, DriveParameters,
+    DriveReference, DriveState, FrictionModel, FrictionParameters, Measured, Parameters, Schedule,
     Window, friction_signs,
 };
 use feedwright_sim::{Known, KnownAxis};
@@ -92,8 +92,9 @@ impl<const N: usize> ModelPredictive<N> {
                 for (i, (axis, error_mm)) in self.model.axes.iter_mut().zip(error_mm).enumerate() {
                     axis.state.commands =
                         CommandQueue::resting(axis.state.commands.periods(), command_mm[i]);
-                    axis.state.motor.angle_rad = position_mm[i] * axis.law.parameters.rad_per_mm;
-                    axis.state.motor.error_rad = error_mm * axis.law.parameters.rad_per_mm;
+                    axis.state.motor.angle_rad =
+                        position_mm[i] * axis.axis_model.parameters.rad_per_mm;
+                    axis.state.motor.error_rad = error_mm * axis.axis_model.parameters.rad_per_mm;
                 }
             }
         }
@@ -167,9 +168,10 @@ struct Exact<const N: usize> {
 
 impl<const N: usize> Exact<N> {
     fn new(known: &Known, servo_periods: u32) -> Self {
-        let laws: [AxisLaw; N] = known.law();
-        let axes: [ExactAxis; N] = std::array::from_fn(|i| ExactAxis::new(laws[i], known.axis(i)));
-        let response_s: [f64; N] = laws.map(|law| 1.0 / law.parameters.kp_1_s);
+        let axis_models: [AxisModel; N] = known.axis_model();
+        let axes: [ExactAxis; N] =
+            std::array::from_fn(|i| ExactAxis::new(axis_models[i], known.axis(i)));
+        let response_s: [f64; N] = axis_models.map(|axis_model| 1.0 / axis_model.parameters.kp_1_s);
         // What the drive feeds forward of the speed does not wait for an error.
         let lag_s =
             |i: usize| (1.0 - known.axis(i).drive.velocity_feedforward).max(0.0) * response_s[i];
@@ -187,7 +189,7 @@ impl<const N: usize> Exact<N> {
 
     fn tool_mm(&self) -> [f64; N] {
         std::array::from_fn(|i| {
-            self.axes[i].state.motor.angle_rad / self.axes[i].law.parameters.rad_per_mm
+            self.axes[i].state.motor.angle_rad / self.axes[i].axis_model.parameters.rad_per_mm
                 + self.prediction_error_mm[i]
         })
     }
@@ -226,7 +228,7 @@ impl<const N: usize> Predictor<N> for Exact<N> {
             self.prediction_error_mm[i] += self.residual[i].next_mm();
             for knot in 0..=stretch.period {
                 sensitivity[knot][i] = self.axes[i].slopes[knot].motor.angle_rad
-                    / self.axes[i].law.parameters.rad_per_mm;
+                    / self.axes[i].axis_model.parameters.rad_per_mm;
             }
         }
         self.tool_mm()
@@ -265,11 +267,11 @@ impl Moving {
 /// An axis: its state, and the derivative of that to the acceleration of each knot, per mm/s^2.
 #[derive(Debug, Clone)]
 struct ExactAxis {
-    law: AxisLaw,
-    drive: DriveLaw,
-    friction: Option<FrictionLaw>,
+    axis_model: AxisModel,
+    drive: DriveModel,
+    friction: Option<FrictionModel>,
     /// The same without limits, for the derivative.
-    linear: (AxisLaw, DriveLaw),
+    linear: (AxisModel, DriveModel),
     /// Integral of the speed loop for a position that was missed, N m/rad.
     integral_nm_rad: f64,
     /// Mechanics periods until a reference acts on what is measured.
@@ -279,23 +281,24 @@ struct ExactAxis {
 }
 
 impl ExactAxis {
-    fn new(law: AxisLaw, known: &KnownAxis) -> Self {
+    fn new(axis_model: AxisModel, known: &KnownAxis) -> Self {
         let unlimited = Parameters {
             torque_limit_nm: f64::INFINITY,
-            ..law.parameters
+            ..axis_model.parameters
         };
-        let linear = AxisLaw::new(unlimited, law.periods);
+        let linear = AxisModel::new(unlimited, axis_model.periods);
         let time_s = known.drive.speed_integral_s;
-        let longest = (KEPT_PERIODS as u32 - 2) * law.periods.mechanics_per_servo;
-        let late = (known.delays.drive_s + known.delays.measurement_s) / law.periods.mechanics_s;
-        let at_rest = Moving::at_rest(known.delays.command_periods(law.periods.servo_s));
+        let longest = (KEPT_PERIODS as u32 - 2) * axis_model.periods.mechanics_per_servo;
+        let late =
+            (known.delays.drive_s + known.delays.measurement_s) / axis_model.periods.mechanics_s;
+        let at_rest = Moving::at_rest(known.delays.command_periods(axis_model.periods.servo_s));
         Self {
-            drive: DriveLaw::new(&law, known.drive),
+            drive: DriveModel::new(&axis_model, known.drive),
             friction: (known.friction != FrictionParameters::default())
-                .then(|| FrictionLaw::new(&law, known.friction)),
+                .then(|| FrictionModel::new(&axis_model, known.friction)),
             linear: (
                 linear,
-                DriveLaw::new(
+                DriveModel::new(
                     &linear,
                     DriveParameters {
                         speed_limit_rad_s: 0.0,
@@ -304,13 +307,13 @@ impl ExactAxis {
                 ),
             ),
             integral_nm_rad: if time_s > 0.0 {
-                law.parameters.kv_nm_s_per_rad / time_s
+                axis_model.parameters.kv_nm_s_per_rad / time_s
             } else {
                 0.0
             },
             // A float that is not a number saturates to zero here.
             late: (late.round() as u32).min(longest),
-            law,
+            axis_model,
             state: at_rest,
             slopes: [at_rest; MAX_KNOTS],
         }
@@ -319,7 +322,7 @@ impl ExactAxis {
     /// The motor is where it is measured; the integral of its speed loop has summed up what was
     /// missed.
     fn take_in(&mut self, position_mm: f64) {
-        let angle_rad = position_mm * self.law.parameters.rad_per_mm;
+        let angle_rad = position_mm * self.axis_model.parameters.rad_per_mm;
         let missed_rad = angle_rad - self.state.motor.angle_rad;
         self.state.motor.angle_rad = angle_rad;
         self.state
@@ -330,26 +333,27 @@ impl ExactAxis {
     /// One servo period at a command that moves by `moved_s2` mm for an acceleration of 1 mm/s^2 in
     /// each of the knots up to `knot`.
     fn advance(&mut self, command_mm: f64, moved_s2: &[f64; MAX_KNOTS], knot: usize) {
-        let rad_per_mm = self.law.parameters.rad_per_mm;
-        let send = |law: &AxisLaw, drive: &DriveLaw, moved_mm: f64, state: &mut Moving| {
-            let moved_mm = state.commands.pass(moved_mm);
-            let position_rad = state.motor.angle_rad;
-            let reference = drive.position_loop(
-                law,
-                moved_mm * rad_per_mm,
-                position_rad,
-                &mut state.motor,
-                &mut state.drive,
-            );
-            state.sent.rotate_right(1);
-            state.sent[0] = reference;
-        };
-        send(&self.law, &self.drive, command_mm, &mut self.state);
+        let rad_per_mm = self.axis_model.parameters.rad_per_mm;
+        let send =
+            |axis_model: &AxisModel, drive: &DriveModel, moved_mm: f64, state: &mut Moving| {
+                let moved_mm = state.commands.pass(moved_mm);
+                let position_rad = state.motor.angle_rad;
+                let reference = drive.position_loop(
+                    axis_model,
+                    moved_mm * rad_per_mm,
+                    position_rad,
+                    &mut state.motor,
+                    &mut state.drive,
+                );
+                state.sent.rotate_right(1);
+                state.sent[0] = reference;
+            };
+        send(&self.axis_model, &self.drive, command_mm, &mut self.state);
         let (linear, linear_drive) = &self.linear;
         for (slope, moved_s2) in self.slopes.iter_mut().zip(moved_s2).take(knot + 1) {
             send(linear, linear_drive, *moved_s2, slope);
         }
-        for substep in 0..self.law.periods.mechanics_per_servo {
+        for substep in 0..self.axis_model.periods.mechanics_per_servo {
             self.substep(self.age(substep), knot);
         }
     }
@@ -357,31 +361,34 @@ impl ExactAxis {
     /// Returns the age, in servo periods, of the reference that acts in a mechanics period of this
     /// servo period.
     fn age(&self, substep: u32) -> usize {
-        let per_servo = self.law.periods.mechanics_per_servo;
+        let per_servo = self.axis_model.periods.mechanics_per_servo;
         (self.late.saturating_sub(substep)).div_ceil(per_servo) as usize
     }
 
     fn substep(&mut self, age: usize, knot: usize) {
-        let (law, state) = (&self.law, &mut self.state);
+        let (axis_model, state) = (&self.axis_model, &mut self.state);
         let w = state.motor.speed_rad_s;
         let torque_nm = self
             .drive
-            .torque_nm(law, state.sent[age], w, &mut state.drive);
+            .torque_nm(axis_model, state.sent[age], w, &mut state.drive);
         let coulomb = match &self.friction {
             Some(friction) => {
-                let inverse_inertia = 1.0 / law.parameters.inertia_kg_m2;
+                let inverse_inertia = 1.0 / axis_model.parameters.inertia_kg_m2;
                 state.motor.speed_rad_s = friction.speed_after_rad_s(
                     torque_nm,
                     inverse_inertia,
                     w,
                     &mut state.presliding_nm,
                 );
-                state.motor.angle_rad += law.periods.mechanics_s * state.motor.speed_rad_s;
+                state.motor.angle_rad += axis_model.periods.mechanics_s * state.motor.speed_rad_s;
                 0.0
             }
             None => {
-                let [sign] = friction_signs(&[*law], [w]);
-                law.accelerate(torque_nm - law.friction_nm(w, sign), &mut state.motor);
+                let [sign] = friction_signs(&[*axis_model], [w]);
+                axis_model.accelerate(
+                    torque_nm - axis_model.friction_nm(w, sign),
+                    &mut state.motor,
+                );
                 sign
             }
         };
@@ -391,7 +398,7 @@ impl ExactAxis {
         } else {
             coulomb
         };
-        let [gain, damping] = law.slopes_nm_s(torque_nm, sign);
+        let [gain, damping] = axis_model.slopes_nm_s(torque_nm, sign);
         let (linear, linear_drive) = &self.linear;
         for slope in self.slopes.iter_mut().take(knot + 1) {
             let w = slope.motor.speed_rad_s;

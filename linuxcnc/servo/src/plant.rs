@@ -1,4 +1,4 @@
-//! A simulated machine: the servo axes of [`feedwright_control::AxisLaw`] with the parameters of a
+//! A simulated machine: the servo axes of [`feedwright_control::AxisModel`] with the parameters of a
 //! model file.
 //!
 //! Loops, inertia, friction, delays, the drive's feedforward and filter, the disturbance, cogging,
@@ -16,8 +16,8 @@
 use core::f64::consts::TAU;
 
 use feedwright_control::{
-    AxisKnowledge, AxisLaw, AxisState, AxisStatistics, CommandQueue, DriveLaw, DriveReference,
-    DriveState, FrictionLaw, FrictionParameters, IdentifiedAxes, KnownGeometry, friction_signs,
+    AxisKnowledge, AxisModel, AxisState, AxisStatistics, CommandQueue, DriveModel, DriveReference,
+    DriveState, FrictionModel, FrictionParameters, IdentifiedAxes, KnownGeometry, friction_signs,
     sin,
 };
 
@@ -108,7 +108,7 @@ impl<const N: usize> SimulatedMachine<N> {
     pub fn measured_mm(&self) -> [f64; N] {
         self.axes
             .each_ref()
-            .map(|axis| axis.arrived_rad / axis.law.parameters.rad_per_mm)
+            .map(|axis| axis.arrived_rad / axis.axis_model.parameters.rad_per_mm)
     }
 
     /// Torque of each motor at the end of the servo period, N m.
@@ -120,9 +120,9 @@ impl<const N: usize> SimulatedMachine<N> {
 #[derive(Debug, Clone)]
 struct SimulatedAxis {
     known: AxisKnowledge,
-    law: AxisLaw,
-    drive: DriveLaw,
-    friction: Option<FrictionLaw>,
+    axis_model: AxisModel,
+    drive: DriveModel,
+    friction: Option<FrictionModel>,
     inertia: f64,
     state: AxisState,
     drive_state: DriveState,
@@ -144,7 +144,7 @@ struct SimulatedAxis {
 
 impl SimulatedAxis {
     fn new(known: AxisKnowledge) -> Self {
-        let law = known.law();
+        let axis_model = known.axis_model();
         let statistics = known.statistics;
         let kept = if statistics.torque_noise_s > 0.0 {
             libm::exp(-known.periods.mechanics_s / statistics.torque_noise_s)
@@ -153,9 +153,9 @@ impl SimulatedAxis {
         };
         Self {
             known,
-            law,
-            drive: DriveLaw::new(&law, known.drive),
-            friction: friction_of(&known, &law),
+            axis_model,
+            drive: DriveModel::new(&axis_model, known.drive),
+            friction: friction_of(&known, &axis_model),
             inertia: 1.0,
             state: AxisState::default(),
             drive_state: DriveState::AT_REST,
@@ -175,11 +175,11 @@ impl SimulatedAxis {
     }
 
     fn position_mm(&self) -> f64 {
-        self.state.angle_rad / self.law.parameters.rad_per_mm
+        self.state.angle_rad / self.axis_model.parameters.rad_per_mm
     }
 
     fn place(&mut self, position_mm: f64) {
-        let angle_rad = position_mm * self.law.parameters.rad_per_mm;
+        let angle_rad = position_mm * self.axis_model.parameters.rad_per_mm;
         self.state = AxisState {
             angle_rad,
             ..AxisState::default()
@@ -198,8 +198,8 @@ impl SimulatedAxis {
             self.inertia = inertia;
             let mut parameters = self.known.parameters;
             parameters.inertia_kg_m2 *= inertia;
-            self.law = AxisLaw::new(parameters, self.known.periods);
-            self.friction = friction_of(&self.known, &self.law);
+            self.axis_model = AxisModel::new(parameters, self.known.periods);
+            self.friction = friction_of(&self.known, &self.axis_model);
         }
     }
 
@@ -208,9 +208,9 @@ impl SimulatedAxis {
         let periods = self.known.periods;
         let command_rad = self
             .commands
-            .pass(command_mm * self.law.parameters.rad_per_mm);
+            .pass(command_mm * self.axis_model.parameters.rad_per_mm);
         let reference = self.drive.position_loop(
-            &self.law,
+            &self.axis_model,
             command_rad,
             self.arrived_rad,
             &mut self.state,
@@ -273,7 +273,7 @@ impl SimulatedAxis {
 
     /// One mechanics period.
     fn mechanics(&mut self, reference: DriveReference, t_s: f64) {
-        let (statistics, law) = (self.known.statistics, &self.law);
+        let (statistics, axis_model) = (self.known.statistics, &self.axis_model);
         let turns = statistics.disturbance_rad_s * t_s / TAU;
         let disturbance_nm = statistics.disturbance_nm * sin(TAU * (turns - libm::floor(turns)));
         let step_nm = statistics.torque_noise_nm * libm::sqrt(1.0 - self.kept * self.kept);
@@ -283,29 +283,30 @@ impl SimulatedAxis {
             * sin(statistics.cogging_per_rev * angle_rad + statistics.cogging_phase_rad);
         self.torque_nm = self
             .drive
-            .torque_nm(law, reference, w, &mut self.drive_state);
+            .torque_nm(axis_model, reference, w, &mut self.drive_state);
         let forces_nm = self.torque_nm + cogging_nm - disturbance_nm - self.broadband_nm;
         match &self.friction {
             Some(friction) => {
-                let inverse_inertia = 1.0 / law.parameters.inertia_kg_m2;
+                let inverse_inertia = 1.0 / axis_model.parameters.inertia_kg_m2;
                 self.state.speed_rad_s = friction.speed_after_rad_s(
                     forces_nm,
                     inverse_inertia,
                     w,
                     &mut self.presliding_nm,
                 );
-                self.state.angle_rad += law.periods.mechanics_s * self.state.speed_rad_s;
+                self.state.angle_rad += axis_model.periods.mechanics_s * self.state.speed_rad_s;
             }
             None => {
-                let [sign] = friction_signs(&[*law], [w]);
-                law.accelerate(forces_nm - law.friction_nm(w, sign), &mut self.state);
+                let [sign] = friction_signs(&[*axis_model], [w]);
+                axis_model.accelerate(forces_nm - axis_model.friction_nm(w, sign), &mut self.state);
             }
         }
     }
 }
 
-fn friction_of(known: &AxisKnowledge, law: &AxisLaw) -> Option<FrictionLaw> {
-    (known.friction != FrictionParameters::default()).then(|| FrictionLaw::new(law, known.friction))
+fn friction_of(known: &AxisKnowledge, axis_model: &AxisModel) -> Option<FrictionModel> {
+    (known.friction != FrictionParameters::default())
+        .then(|| FrictionModel::new(axis_model, known.friction))
 }
 
 /// Random numbers of an axis.

@@ -1,5 +1,5 @@
-//! A run that waits for its actions: on a thread of its own, which does not touch the interpreter
-//! while it waits.
+//! A run that waits for its actions, on a thread of its own. The thread does not touch the
+//! interpreter while it waits.
 //!
 //! ```text
 //! caller --- action ---> run          channel; its end ends the run
@@ -27,10 +27,10 @@ use super::task::{LabOptions, LabTask};
 use crate::fault::{exception, from_json};
 use crate::files::{PythonMachine, PythonProgram};
 
-/// How often signals are looked for.
+/// Interval between two checks for signals.
 const EVERY: Duration = Duration::from_millis(40);
 
-/// The contour error since the last decision.
+/// Contour error since the last decision.
 #[derive(Clone, Copy, Default)]
 struct ErrorSums {
     rows: u32,
@@ -38,9 +38,9 @@ struct ErrorSums {
     max_um: f64,
 }
 
-/// What the run tells.
+/// Messages of the run.
 enum EpisodeMessage {
-    /// What is known, before the first window.
+    /// Known values of the machine and number of axes, before the first window.
     Known(Box<Known>, usize),
     Window(Box<SeenWindow>, ErrorSums),
     End(Result<String, Report>, ErrorSums),
@@ -68,10 +68,10 @@ impl Sink for ErrorSink {
     }
 }
 
-/// A multiple of the planned feedrate, and the offset, mm.
+/// Multiple of the planned feedrate, and offset, mm.
 type Action = (f64, [f64; 3]);
 
-/// Shows windows and does what the actions say.
+/// Controller that sends windows and carries out the actions.
 struct Waiting {
     schedule: Schedule,
     shown: Sender<EpisodeMessage>,
@@ -110,7 +110,7 @@ impl<const N: usize> Controller<N> for Waiting {
     }
 }
 
-/// Hands the controller over: there is one cut.
+/// Hands the controller over once, since there is one cut.
 struct Once(RefCell<Option<Waiting>>);
 
 impl<const N: usize> Make<N> for Once {
@@ -122,7 +122,7 @@ impl<const N: usize> Make<N> for Once {
     }
 }
 
-/// The run on its thread.
+/// A run on its thread.
 struct EpisodeWork {
     task: LabTask,
     schedule: Schedule,
@@ -144,7 +144,7 @@ impl EpisodeWork {
         };
         let checked = job.check()?;
         let axes = checked.axes();
-        // Where nobody waits any more, the first window ends the run.
+        // If the caller has stopped waiting, the first window ends the run.
         let _ = shown.send(EpisodeMessage::Known(
             Box::new(self.task.known(axes)?),
             axes,
@@ -175,7 +175,7 @@ impl EpisodeWork {
     }
 }
 
-/// What `advance` returns: the window, then rows, mean square and largest error since the last one,
+/// Result of `advance`: the window; then rows, mean square and largest error since the last window;
 /// then the figures at the end.
 type Advanced<'py> = (
     Option<Bound<'py, PythonWindow>>,
@@ -221,7 +221,7 @@ impl Episode {
             .spawn(move || {
                 let errors = Rc::new(Cell::new(ErrorSums::default()));
                 let end = work.cut(&shown, asked, &errors);
-                // Where nobody waits any more, nobody asks for the figures.
+                // If the caller has stopped waiting, nobody needs the figures.
                 let _ = shown.send(EpisodeMessage::End(end, errors.take()));
             })?;
         let mut episode = Self {
@@ -240,14 +240,14 @@ impl Episode {
         Err(exception(&miette!("the program has nothing to cut")))
     }
 
-    /// Axes that are controlled.
+    /// Number of controlled axes.
     #[getter]
     fn axes(&self) -> usize {
         self.axes
     }
 
-    /// Does what an action says, a multiple of the planned feedrate and an offset, until the next
-    /// decision. Without one it goes to the first.
+    /// Carries out an action, a multiple of the planned feedrate and an offset, until the next
+    /// decision. Without an action, runs to the first decision.
     #[pyo3(signature = (action=None))]
     fn advance<'py>(
         &mut self,
@@ -258,7 +258,7 @@ impl Episode {
             return Err(exception(&miette!("the episode is over: reset it")));
         };
         if let Some((rate, offset)) = action {
-            // Where the run has ended, its end is what is told.
+            // If the run has ended, its end is reported.
             let _ = actions.send((
                 rate,
                 numbers(&offset, self.axes, "the offset of an action")?,
@@ -299,14 +299,14 @@ impl Episode {
         self.actions = None;
         self.raised.end();
         if let Some(thread) = self.thread.take() {
-            // A panic was told already, on its thread.
+            // A panic was already reported on its thread.
             py.detach(|| drop(thread.join()));
         }
     }
 }
 
 impl Episode {
-    /// What the run tells next; raises what a signal or the code of the caller raises.
+    /// Returns the next message of the run. Raises what a signal or the code of the caller raises.
     fn wait(&self, py: Python<'_>) -> PyResult<EpisodeMessage> {
         loop {
             let told = py.detach(|| {
@@ -332,7 +332,7 @@ impl Episode {
     }
 }
 
-/// Nobody waits for the thread here: it may want the interpreter, which the caller holds.
+/// Does not wait for the thread: it may need the interpreter, which the caller holds.
 impl Drop for Episode {
     fn drop(&mut self) {
         self.raised.end();

@@ -14,7 +14,7 @@ use super::raised::Raised;
 use super::seen::{PythonWindow, SeenWindow, of_three, vector};
 use crate::fault::exception;
 
-/// A number for each axis.
+/// Returns a number for each axis, and zeros after them.
 pub(super) fn numbers(value: &Bound<'_, PyAny>, axes: usize, what: &str) -> PyResult<[f64; 3]> {
     let given: Option<Vec<f64>> = match value.extract::<PyReadonlyArray1<'_, f64>>() {
         Ok(array) if array.ndim() == 1 => Some(array.as_array().iter().copied().collect()),
@@ -31,7 +31,7 @@ pub(super) fn numbers(value: &Bound<'_, PyAny>, axes: usize, what: &str) -> PyRe
     }
 }
 
-/// When a controller decides, and how far it sees.
+/// Returns the schedule of a controller: its feed period and its preview.
 pub(super) fn schedule(servo_periods: u32, preview: u32) -> PyResult<Schedule> {
     let reach = u64::from(servo_periods) * u64::from(preview);
     if servo_periods == 0 || reach > PREVIEW_KNOTS as u64 {
@@ -46,7 +46,7 @@ pub(super) fn schedule(servo_periods: u32, preview: u32) -> PyResult<Schedule> {
     })
 }
 
-/// A controller that is an object of Python.
+/// Controller that is an object of Python.
 #[derive(Clone)]
 pub(super) struct PythonController {
     schedule: Schedule,
@@ -58,8 +58,8 @@ pub(super) struct PythonController {
 }
 
 impl PythonController {
-    /// Of an object, which is told what is known of the axes before it says how far it wants to
-    /// see.
+    /// Creates the controller of an object. Passes the known values of the axes to the object
+    /// before the object states its preview.
     pub(super) fn new(
         object: &Bound<'_, PyAny>,
         axes: &Bound<'_, PyTuple>,
@@ -140,7 +140,7 @@ impl<const N: usize> Make<N> for PythonController {
     }
 }
 
-/// A torque that a function of Python adds to that of the machine.
+/// Torque that a function of Python adds to the torque of the machine.
 #[derive(Clone)]
 pub(super) struct PlantTerm {
     pub(super) function: Arc<Py<PyAny>>,
@@ -148,7 +148,7 @@ pub(super) struct PlantTerm {
 }
 
 impl PlantTerm {
-    /// The plant of a machine with this term.
+    /// Returns the plant of a machine with this term.
     pub(super) fn plant(
         &self,
         machine: &Machine,
@@ -172,7 +172,7 @@ impl PlantTerm {
         }
     }
 
-    /// The torque of the next servo period, N m.
+    /// Returns the torque of the next servo period, N m.
     fn torque_nm<const N: usize>(
         &self,
         position_mm: [f64; N],
@@ -195,7 +195,7 @@ impl PlantTerm {
     }
 }
 
-/// The axes of a machine and a term.
+/// Axes of a machine with a term.
 struct PlantWithTerm<const N: usize> {
     plant: Plant<N>,
     term: PlantTerm,

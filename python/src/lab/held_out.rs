@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use crate::fault::exception;
 use crate::files::{PythonMachine, PythonProgram};
 
-/// The program of a seed; none where it leaves the plane.
+/// Returns the program of a seed; none if it leaves the plane.
 #[pyfunction]
 pub(crate) fn held_out_program(seed: u64) -> PyResult<Option<PythonProgram>> {
     let drawn = programs::program(seed);
@@ -24,7 +24,7 @@ pub(crate) fn held_out_program(seed: u64) -> PyResult<Option<PythonProgram>> {
     Ok((!read.moves[2]).then_some(program))
 }
 
-/// The machine of a seed; none where it has no noise.
+/// Returns the machine of a seed; none if it has no noise.
 #[pyfunction]
 pub(crate) fn held_out_machine(seed: u64) -> PyResult<Option<PythonMachine>> {
     let drawn = machines::machine(seed, Class::Realistic);
@@ -33,8 +33,8 @@ pub(crate) fn held_out_machine(seed: u64) -> PyResult<Option<PythonMachine>> {
     Ok(machine.machine.is_noisy().then_some(machine))
 }
 
-/// What the search of the laboratory sets the parameters of a controller to on a machine, which it
-/// knows. Seconds to minutes.
+/// Returns the parameters of a controller that the search of the laboratory finds on a machine
+/// whose values it knows. Takes seconds to minutes.
 #[cfg(feature = "peers")]
 #[pyfunction]
 pub(crate) fn searched_settings(
@@ -58,10 +58,10 @@ pub(crate) fn searched_settings(
     })
 }
 
-/// A part of a page: what a link leads to, heading, heads of its table, rows.
+/// Part of a page: target of a link, heading, heads of its table, rows.
 type TablePart = (String, String, Vec<String>, Vec<Vec<String>>);
 
-/// A page of tables, which needs no other file.
+/// Returns a page of tables, which needs no other file.
 #[pyfunction]
 pub(crate) fn tables_page(
     title: &str,

@@ -1,4 +1,5 @@
-//! What code of the caller raised in a run: it ends the run, and is what the caller gets.
+//! Exceptions in code of the caller during a run: the first one ends the run, and the caller gets
+//! it.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,7 +9,7 @@ use std::time::Duration;
 use feedwright::sim::{Row, Sink, Watch};
 use pyo3::prelude::*;
 
-/// Shared by all that takes part in a run.
+/// State shared by all parts of a run: its end, and the exception.
 #[derive(Clone, Default)]
 pub(super) struct Raised(Arc<(AtomicBool, Mutex<Option<PyErr>>)>);
 
@@ -18,7 +19,7 @@ impl Raised {
         self.0.0.store(true, Ordering::Relaxed);
     }
 
-    /// Ends the run with what was raised; the first counts.
+    /// Ends the run with an exception; the first one counts.
     pub(super) fn raise(&self, error: PyErr) {
         self.0
             .1
@@ -32,7 +33,7 @@ impl Raised {
         self.0.0.load(Ordering::Relaxed)
     }
 
-    /// What was raised, if anything.
+    /// Returns the exception, if there is one.
     pub(super) fn take(&self) -> Option<PyErr> {
         self.0
             .1
@@ -41,8 +42,8 @@ impl Raised {
             .take()
     }
 
-    /// Calls code of the caller; none where it raised, or the interpreter is gone. Nothing is
-    /// called any more then.
+    /// Calls code of the caller. Returns `None` if it raises or the interpreter is gone;
+    /// afterwards, nothing is called any more.
     pub(super) fn call<T>(&self, call: impl FnOnce(Python<'_>) -> PyResult<T>) -> Option<T> {
         if self.is_over() {
             return None;
@@ -55,7 +56,7 @@ impl Raised {
     }
 }
 
-/// Ends a cut in the servo period in which something was raised.
+/// Ends a cut in the servo period in which an exception is raised.
 impl Sink for Raised {
     fn row(&mut self, _: &Row) -> io::Result<()> {
         if self.is_over() {
@@ -66,7 +67,7 @@ impl Sink for Raised {
     }
 }
 
-/// Ends all else, too.
+/// Watch that ends all other work, too.
 pub(super) struct GuardedWatch<'a> {
     pub(super) watch: &'a dyn Watch,
     pub(super) raised: Raised,

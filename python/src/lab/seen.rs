@@ -1,4 +1,4 @@
-//! What a controller in Python sees: the window and the measurement of the library, as copies that
+//! Inputs of a controller in Python: the window and the measurement of the library, as copies that
 //! outlive the feed period.
 
 use feedwright::control::{Knot, Measured, Window};
@@ -6,27 +6,27 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-/// A vector of a cut of two axes has a zero at its end.
+/// Returns a vector as three numbers; a vector of two axes gets a zero at its end.
 pub(super) fn in_three<const N: usize>(vector: [f64; N]) -> [f64; 3] {
     std::array::from_fn(|i| vector.get(i).copied().unwrap_or(0.0))
 }
 
-/// The same the other way round.
+/// Returns the first N of three numbers.
 pub(super) fn of_three<const N: usize>(vector: [f64; 3]) -> [f64; N] {
     std::array::from_fn(|i| vector[i])
 }
 
-/// Read-only, so that nobody takes it for a way into the run.
+/// Returns a read-only array, so that nobody takes it for a way to change the run.
 pub(super) fn vector<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArray1<f64>> {
     let array = PyArray1::from_slice(py, values);
-    // Nobody else has it yet.
+    // No other code has the array yet.
     let _ = array
         .try_readwrite()
         .map(numpy::PyReadwriteArray::make_nonwriteable);
     array
 }
 
-/// What is measured at the start of a feed period.
+/// Measurement at the start of a feed period.
 #[pyclass(frozen, name = "Measurement", module = "feedwright.lab")]
 #[derive(Clone, Copy)]
 pub(crate) struct MeasuredTool {
@@ -51,32 +51,32 @@ impl MeasuredTool {
 
 #[pymethods]
 impl MeasuredTool {
-    /// Where the tool is, mm.
+    /// Position of the tool, mm.
     #[getter]
     fn position_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         vector(py, &self.position_mm[..self.axes])
     }
 
-    /// From the tool to the nearest point of the path, mm.
+    /// Vector from the tool to the nearest point of the path, mm.
     #[getter]
     fn contour_error_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         vector(py, &self.error_mm[..self.axes])
     }
 
-    /// Direction of travel there.
+    /// Direction of travel at the nearest point.
     #[getter]
     fn tangent<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         vector(py, &self.tangent[..self.axes])
     }
 
-    /// How many servo periods behind the current point that is.
+    /// Number of servo periods by which the nearest point is behind the current point.
     #[getter]
     fn behind(&self) -> u32 {
         self.behind
     }
 }
 
-/// Copies of what a window shows; the rows are the current point and those of the preview.
+/// Copy of a window; the rows are the current point and the points of the preview.
 #[derive(Clone)]
 pub(crate) struct SeenWindow {
     axes: usize,
@@ -93,7 +93,7 @@ pub(crate) struct SeenWindow {
 }
 
 impl SeenWindow {
-    /// Of a window with so many feed periods of preview.
+    /// Copies a window with `preview` feed periods of preview.
     pub(super) fn of<const N: usize>(
         window: &Window<'_, N>,
         measured: Option<&Measured<N>>,
@@ -124,7 +124,7 @@ impl SeenWindow {
     }
 }
 
-/// What a controller sees at the start of a feed period.
+/// Inputs of a controller at the start of a feed period.
 #[pyclass(frozen, name = "Window", module = "feedwright.lab")]
 pub(crate) struct PythonWindow {
     pub(super) seen: SeenWindow,
@@ -158,25 +158,25 @@ impl PythonWindow {
         self.seen.feed_period_s
     }
 
-    /// The programmed path now and in the next feed periods at the planned feed, mm.
+    /// Programmed path now and in the next feed periods at the planned feedrate, mm.
     #[getter]
     fn path_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.rows(py, &self.seen.path_mm)
     }
 
-    /// Its direction of travel.
+    /// Direction of travel of the path.
     #[getter]
     fn tangent<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.rows(py, &self.seen.tangent)
     }
 
-    /// Its planned feedrate, mm/s.
+    /// Planned feedrate of the path, mm/s.
     #[getter]
     fn feed_mm_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         vector(py, &self.seen.feed_mm_s)
     }
 
-    /// Whether it cuts.
+    /// True where the path cuts.
     #[getter]
     fn cutting<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
         PyArray1::from_slice(py, &self.seen.cutting)
@@ -188,19 +188,19 @@ impl PythonWindow {
         vector(py, &self.seen.offset_mm[..self.seen.axes])
     }
 
-    /// Its speed, mm/s.
+    /// Speed of this offset, mm/s.
     #[getter]
     fn offset_mm_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         vector(py, &self.seen.offset_mm_s[..self.seen.axes])
     }
 
-    /// What is known of each axis.
+    /// Known values of each axis.
     #[getter]
     fn axes(&self, py: Python<'_>) -> Py<PyTuple> {
         self.axes.clone_ref(py)
     }
 
-    /// What is measured; none where the position was lost.
+    /// Measurement; none if the position was lost.
     #[getter]
     fn measured(&self) -> Option<MeasuredTool> {
         self.seen.measured

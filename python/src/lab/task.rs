@@ -1,4 +1,4 @@
-//! What is cut: a job, what is known of its machine, and how it ends.
+//! Work of a run: its job, the known values of its machine, and its results.
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
@@ -15,30 +15,30 @@ use super::guest::PlantTerm;
 use super::raised::Raised;
 use crate::files::{PythonMachine, PythonProgram};
 
-/// The controllers that have a name.
+/// Controllers that have a name.
 const TABLE: Controllers = if cfg!(feature = "peers") {
     feedwright_lab::CONTROLLERS
 } else {
     feedwright::CONTROLLERS
 };
-/// Inertia and friction that are believed where the knowledge is wrong, as parts of the true ones:
-/// opposite, so that the two errors of the torque do not cancel each other where an axis speeds up.
+/// Assumed inertia and friction where the knowledge is wrong, as parts of the true values. The two
+/// errors are opposite.
 const BELIEVED: [f64; 2] = [0.8, 1.2];
 
 /// Seed of recordings and trainings: a machine is identified once, whatever the noise of the cut.
 pub(super) const RECORDING_SEED: u64 = 1;
-/// Identified machines that are kept.
+/// Largest number of identified machines that are kept.
 const KEPT_MACHINES: usize = 64;
 
-/// What a run is asked for beside program, machine and controller.
+/// Options of a run besides program, machine and controller.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct LabOptions {
-    /// What the controller is called.
+    /// Name of the controller.
     name: String,
-    /// The controller of the library that takes its place.
+    /// Controller of the library that takes its place.
     pub(super) of_library: Option<String>,
-    /// What a planner says: a feedrate for each motion, mm/s.
+    /// Output of a planner: a feedrate for each motion, mm/s.
     feeds_mm_s: Option<Vec<f64>>,
     settings: Vec<String>,
     against: Option<String>,
@@ -49,7 +49,8 @@ pub(crate) struct LabOptions {
     pub(super) rows: bool,
 }
 
-/// The row of a controller that the caller brings. A name stays for the life of the process, once.
+/// Returns the entry of a controller that the caller provides. Each entry stays for the life of the
+/// process, once.
 fn entry(name: &str, knows: Knows, laps: u32) -> &'static Entry {
     static ENTRIES: Mutex<Vec<&'static Entry>> = Mutex::new(Vec::new());
     let taken = TABLE.find(name).is_some();
@@ -80,7 +81,7 @@ fn entry(name: &str, knows: Knows, laps: u32) -> &'static Entry {
     entry
 }
 
-/// Makes a controller of the library from what is known of a machine.
+/// Maker of a controller of the library, from the known values of a machine.
 pub(super) struct Informed<'a> {
     task: &'a LabTask,
     known: Known,
@@ -90,7 +91,7 @@ impl<const N: usize> Make<N> for Informed<'_>
 where
     Entry: Make<N>,
 {
-    /// What it records has the noise of the machine file, as `identified` does.
+    /// Makes the controller. Its recordings have the noise of the machine file, as in `identified`.
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<N>> {
         let mut told = Setup::new(&self.task.machine, setup.choices);
         told.known.clone_from(&self.known);
@@ -98,8 +99,8 @@ where
     }
 }
 
-/// What a recording of a machine tells, made once: with the noise of its file, whatever the noise
-/// of the cut.
+/// Returns the values identified from a recording of a machine, made once: with the noise of its
+/// file, whatever the noise of the cut.
 fn identified(machine: &Machine, axes: usize) -> Result<Known> {
     static FOUND: Mutex<VecDeque<(String, Known)>> = Mutex::new(VecDeque::new());
     let kept = || FOUND.lock().unwrap_or_else(PoisonError::into_inner);
@@ -126,13 +127,13 @@ fn identified(machine: &Machine, axes: usize) -> Result<Known> {
     Ok(setup.known)
 }
 
-/// Something to cut.
+/// A job, and the knowledge that its controller gets.
 pub(super) struct LabTask {
     pub(super) job: Job,
-    /// The controller of the library that is made for it.
+    /// Entry of the controller that is made: one of the library, or else the controller of the job.
     made: &'static Entry,
     pub(super) feeds_mm_s: Option<Vec<f64>>,
-    /// With the noise seed of its file.
+    /// Machine with the noise seed of its file.
     machine: Machine,
     knowledge: String,
 }
@@ -163,7 +164,7 @@ impl LabTask {
             .as_deref()
             .map(|name| find(name, TABLE))
             .transpose()?;
-        // A planner's cut needs a name of its own, also where the cut beside it has the same
+        // A planner's cut needs a name of its own, even if the cut beside it has the same
         // controller.
         let as_it_is = made.filter(|_| options.feeds_mm_s.is_none());
         let laps = made.map_or(1, |made| made.laps);
@@ -197,7 +198,7 @@ impl LabTask {
         })
     }
 
-    /// What is known of the machine where so many axes are controlled.
+    /// Returns the known values of the machine with `axes` controlled axes.
     pub(super) fn known(&self, axes: usize) -> Result<Known> {
         match self.knowledge.as_str() {
             "wrong" => Ok(self.machine.known().misjudged(BELIEVED[0], BELIEVED[1])),
@@ -206,7 +207,7 @@ impl LabTask {
         }
     }
 
-    /// The controller of the library that is asked for, with what is known.
+    /// Returns the maker of the requested controller of the library, with the known values.
     pub(super) fn informed(&self, known: &Known) -> Informed<'_> {
         Informed {
             task: self,
@@ -214,7 +215,7 @@ impl LabTask {
         }
     }
 
-    /// The figures of a run.
+    /// Returns the figures of a run, as JSON.
     pub(super) fn results(&self, outcome: &JobOutcome) -> Result<String> {
         let mut results = Vec::new();
         outcome
@@ -234,7 +235,7 @@ impl LabOptions {
     }
 }
 
-/// What is known of each axis, by name: a mapping that cannot be changed.
+/// Returns the known values of each axis, by name: a mapping that cannot be changed.
 pub(super) fn told<'py>(
     py: Python<'py>,
     known: &Known,

@@ -1,4 +1,4 @@
-//! The mistakes of a program, what it amounts to, and its path.
+//! Mistakes of a program, its totals, and its path.
 
 use feedwright::gcode::{CheckError, Diagnostic, Program, Settings, Severity, Summary};
 use feedwright::plan::{Piece, Step};
@@ -7,12 +7,12 @@ use serde_json::{Value, json};
 
 use crate::request::{Outputs, Request, json};
 
-/// Most points of a path that is drawn: 16 MB.
+/// Largest number of points of a path that is drawn: 16 MB.
 const MOST_POINTS: usize = 1_000_000;
-/// Angle between two points of a curve, radians: a chord of a circle as large as a screen leaves it
-/// by half a pixel.
+/// Angle between two points of a curve, rad: a chord of a circle as large as a screen deviates from
+/// it by half a pixel.
 const TURN: f64 = 0.08;
-/// Most points of a piece.
+/// Largest number of points of a piece.
 const MOST_OF_PIECE: f64 = 256.0;
 
 pub(crate) fn check(request: &mut Request) -> miette::Result<Outputs> {
@@ -61,14 +61,14 @@ fn amounts_to(summary: &Summary) -> Value {
     })
 }
 
-/// The programmed path up to the first mistake, as numbers in little-endian order.
+/// Programmed path up to the first mistake, as numbers in little-endian order.
 struct Path {
     /// x, y and z, mm, 32-bit floats.
     points: Vec<u8>,
-    /// Twice the line, 32 bits; odd where the tool cuts on its way to the point.
+    /// Twice the line, 32 bits; odd if the tool cuts on its way to the point.
     kinds: Vec<u8>,
     count: usize,
-    /// Whether it is the whole path.
+    /// True if it is the whole path.
     is_whole: bool,
 }
 

@@ -28,7 +28,7 @@ pub(crate) fn correct(request: &mut Request) -> miette::Result<Outputs> {
     Ok(vec![json(&answer), program])
 }
 
-/// A row of the table of `correct`.
+/// Returns a row of the table of `correct`.
 fn figures(name: &str, figures: &ExportedFigures) -> Value {
     let ExportedFigures {
         rms_um,

@@ -11,7 +11,8 @@ use serde_json::{Value, json};
 use crate::page::{PageCut, PageWatch};
 use crate::request::{Outputs, Request, figure, json};
 
-/// Points of a cut on the diagonal of its box: on a large screen some two pixels apart.
+/// Number of points of a cut along the diagonal of its box: about two pixels apart on a large
+/// screen.
 const POINTS_ON_DIAGONAL: f64 = 1500.0;
 
 pub(crate) fn run(request: &mut Request) -> miette::Result<Outputs> {
@@ -70,8 +71,8 @@ pub(crate) fn run(request: &mut Request) -> miette::Result<Outputs> {
     Ok(vec![results, rows, page, json(&told), drawings])
 }
 
-/// The settings and the model that the command takes by default: from a log of the machine, where
-/// the controller goes by one.
+/// Sets the settings and the model that the command takes by default. The model comes from a log of
+/// the machine, if the controller uses one.
 fn as_in_the_command(
     job: &mut Job,
     request: &Request,
@@ -97,7 +98,7 @@ fn as_in_the_command(
     Ok(())
 }
 
-/// A row of the table of `run`.
+/// Returns a row of the table of `run`.
 fn figures(run: &ReportedRun) -> Value {
     let now = &run.summary;
     let record = |transition: &Transition| json!({ "t_s": transition.at_s, "line": transition.line, "text": transition.words() });

@@ -1,4 +1,4 @@
-//! The machine file that a log of the machine tells.
+//! The machine file that is identified from a log of the machine.
 
 use std::path::Path;
 

@@ -1,10 +1,10 @@
 //! The library as a WebAssembly module: a request goes in as JSON, results come out as bytes.
 //!
 //! ```text
-//! input(n)    room for a request of n bytes: where it is in the memory of the module
-//! program(n)  room for its program or log: it takes no room twice, as a text in JSON does
-//! run()       answers the request; 1 where it succeeds, 0 where output 0 is the reason why not
-//! at(k), length(k)   where output k is, and its bytes
+//! input(n)    makes room for a request of n bytes; returns its address in the memory of the module
+//! program(n)  the same for its program or log, since a text in JSON would need the room twice
+//! run()       answers the request; returns 1, or 0 with the reason of the failure in output 0
+//! at(k), length(k)   address of output k, and its length in bytes
 //! ```
 //!
 //! The outputs of a request follow from its `task`:
@@ -56,7 +56,8 @@ pub extern "C" fn input(bytes: usize) -> usize {
     with_buffers(|buffers| room(&mut buffers.input, bytes))
 }
 
-/// Makes room for the program of the request, which the caller writes before `run`.
+/// Makes room for the program of the request. Returns the address where the caller writes it before
+/// `run`.
 #[expect(unsafe_code, reason = "the attribute exports the function")]
 #[unsafe(no_mangle)]
 pub extern "C" fn program(bytes: usize) -> usize {
@@ -69,7 +70,8 @@ fn room(buffer: &mut Vec<u8>, bytes: usize) -> usize {
     buffer.as_mut_ptr() as usize
 }
 
-/// Answers the request that was written. 1 where it succeeds; else 0, and output 0 is the reason.
+/// Answers the request that was written. Returns 1 on success; otherwise 0, with the reason in
+/// output 0.
 #[expect(unsafe_code, reason = "the attribute exports the function")]
 #[unsafe(no_mangle)]
 pub extern "C" fn run() -> u32 {
@@ -87,7 +89,7 @@ pub extern "C" fn run() -> u32 {
     succeeded
 }
 
-/// Where an output is in the memory of the module.
+/// Returns the address of an output in the memory of the module; 0 if there is no such output.
 #[expect(unsafe_code, reason = "the attribute exports the function")]
 #[unsafe(no_mangle)]
 pub extern "C" fn at(output: usize) -> usize {
@@ -99,7 +101,7 @@ pub extern "C" fn at(output: usize) -> usize {
     })
 }
 
-/// Bytes of an output.
+/// Returns the length of an output, bytes; 0 if there is no such output.
 #[expect(unsafe_code, reason = "the attribute exports the function")]
 #[unsafe(no_mangle)]
 pub extern "C" fn length(output: usize) -> usize {
@@ -120,7 +122,7 @@ fn answer(input: &[u8], program: Vec<u8>) -> miette::Result<Outputs> {
     }
 }
 
-/// An error, the errors that belong to it, and the remedy.
+/// Returns an error as text, with the errors that belong to it and the remedy.
 fn told(error: &miette::Report) -> String {
     let related = error
         .related()

@@ -1,5 +1,5 @@
-//! What the page is told while a request is answered, and what it keeps for the next one, through
-//! functions that the module imports.
+//! Functions of the page that the module imports: for reports while a request is answered, and for
+//! texts that the page keeps for the next request.
 
 use std::io;
 use std::sync::{Mutex, PoisonError};
@@ -15,13 +15,16 @@ mod imports {
     )]
     #[link(wasm_import_module = "page")]
     unsafe extern "C" {
-        /// A stage has come so far: its name as text in the memory of the module, and thousandths.
+        /// Reports the progress of a stage: its name as text in the memory of the module, and
+        /// thousandths.
         pub(super) safe fn progress(stage: usize, bytes: usize, thousandths: u32);
-        /// So many points were cut: x, y, z in mm and the contour error in um, as 32-bit floats.
+        /// Draws `count` points of a cut: x, y, z in mm and the contour error in um, as 32-bit
+        /// floats.
         pub(super) safe fn cut(points: usize, count: usize);
-        /// Looks for a text with this name. Its bytes, or a number below 0 where there is none.
+        /// Finds a text with this name. Returns its length in bytes, or a negative number if the
+        /// page has no such text.
         pub(super) safe fn find(name: usize, bytes: usize) -> i32;
-        /// Writes the text that was found.
+        /// Writes the text that was found to the address `into`.
         pub(super) safe fn take(into: usize);
         /// Keeps a text with this name.
         pub(super) safe fn keep(name: usize, name_bytes: usize, text: usize, bytes: usize);
@@ -50,7 +53,7 @@ struct Stage {
     told: u64,
 }
 
-/// Tells the page the progress of a stage.
+/// Watch that reports the progress of a stage to the page.
 #[derive(Debug, Default)]
 pub(crate) struct PageWatch(Mutex<Stage>);
 
@@ -81,7 +84,7 @@ impl Watch for PageWatch {
     }
 }
 
-/// The models that the page keeps for later requests.
+/// Models that the page keeps for later requests.
 pub(crate) struct PageTexts;
 
 impl KeptTexts for PageTexts {
@@ -102,20 +105,20 @@ impl KeptTexts for PageTexts {
     }
 }
 
-/// Points that are kept before the page is told of them.
+/// Number of points that are collected before the page gets them.
 const POINTS: usize = 256;
 
-/// Draws the cut on the page while it is computed.
+/// Sink that draws the cut on the page while it is computed.
 #[derive(Debug)]
 pub(crate) struct PageCut {
-    /// Least distance between two points, mm.
+    /// Smallest distance between two points, mm.
     apart_mm: f64,
     last_mm: [f64; 3],
     points: Vec<[f32; 4]>,
 }
 
 impl PageCut {
-    /// Points that are `apart_mm` apart at least.
+    /// Creates a sink for points that are at least `apart_mm` apart.
     pub(crate) fn new(apart_mm: f64) -> Self {
         Self {
             apart_mm,
@@ -124,7 +127,7 @@ impl PageCut {
         }
     }
 
-    /// Tells the page of the last points.
+    /// Sends the last points to the page.
     pub(crate) fn flush(&mut self) {
         imports::cut(self.points.as_ptr() as usize, self.points.len());
         self.points.clear();

@@ -1,14 +1,14 @@
-//! What a page asks for.
+//! Requests of the page.
 
 use feedwright::gcode::Program;
 use feedwright::sim::{Machine, MachineError};
 use feedwright::{CONTROLLERS, Entry};
 use serde::Deserialize;
 
-/// The outputs of a request, each as bytes.
+/// Outputs of a request, each as bytes.
 pub(crate) type Outputs = Vec<Vec<u8>>;
 
-/// What is to be done.
+/// Task of a request.
 #[derive(Debug, Clone, Copy, Default, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Task {
@@ -25,40 +25,40 @@ pub(crate) enum Task {
     Lists,
 }
 
-/// What is asked for.
+/// A request of the page.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Request {
     #[serde(default)]
     pub(crate) task: Task,
-    /// What messages call the program.
+    /// Name of the program in messages.
     #[serde(default)]
     pub(crate) name: String,
-    /// Its bytes, or those of a log: what was written into the room of `program`.
+    /// Bytes of the program or of the log: the content of the room of `program`.
     #[serde(skip)]
     pub(crate) program: Vec<u8>,
     /// Name of a built-in machine, or the text of a machine file.
     #[serde(default)]
     pub(crate) machine: String,
-    /// What messages call the machine file.
+    /// Name of the machine file in messages.
     #[serde(default = "machine_name")]
     pub(crate) machine_name: String,
-    /// Name of the controller; none is the default.
+    /// Name of the controller; `None` selects the default.
     pub(crate) controller: Option<String>,
-    /// Name of the control that a corrected program is for; none is the default.
+    /// Name of the control that a corrected program is for; `None` selects the default.
     pub(crate) target: Option<String>,
-    /// Largest contour error that is allowed, um.
+    /// Largest permitted contour error, um.
     pub(crate) tolerance_um: Option<f64>,
-    /// Seed of the recording that a controller identifies the machine from; 1 as in the command.
+    /// Seed of the recording from which a controller identifies the machine; 1 as in the command.
     #[serde(default = "first_seed")]
     pub(crate) seed: u64,
-    /// The day, year-month-day, for the model that a log of the machine tells, as the command has
-    /// it by default; none goes by the exact settings of the drives.
+    /// Date, year-month-day, of the model from a log of the machine, which the command makes by
+    /// default. `None` uses the exact settings of the drives.
     pub(crate) recorded_on: Option<String>,
-    /// Whether the rows are wanted.
+    /// True if the rows are requested.
     #[serde(default)]
     pub(crate) rows: bool,
-    /// Whether the page of the report is wanted.
+    /// True if the page of the report is requested.
     #[serde(default)]
     pub(crate) page: bool,
 }
@@ -72,17 +72,17 @@ fn machine_name() -> String {
 }
 
 impl Request {
-    /// Takes the program: it may be half of the memory.
+    /// Moves the program out of the request: it may take half of the memory.
     pub(crate) fn take_program(&mut self) -> Program {
         Program::from_text(self.name.clone(), std::mem::take(&mut self.program))
     }
 
-    /// Whether the machine is a text, not a name.
+    /// Returns true if the machine is a text, not a name.
     pub(crate) fn is_machine_text(&self) -> bool {
         self.machine.contains('\n')
     }
 
-    /// The machine.
+    /// Returns the machine.
     ///
     /// # Errors
     /// A machine file with mistakes, and a name that no built-in machine has.
@@ -93,7 +93,7 @@ impl Request {
         Machine::load(self.machine.as_ref())
     }
 
-    /// The controller that is asked for; none is the default.
+    /// Returns the requested controller; `None` selects the default.
     ///
     /// # Errors
     /// A name that no controller has.
@@ -107,7 +107,7 @@ impl Request {
     }
 }
 
-/// A number of a table, as the command prints it.
+/// Formats a number of a table as the command prints it.
 pub(crate) fn figure(value: f64, decimals: usize) -> String {
     if value.is_finite() {
         format!("{value:.decimals$}")
@@ -116,7 +116,7 @@ pub(crate) fn figure(value: f64, decimals: usize) -> String {
     }
 }
 
-/// As JSON.
+/// Returns a value as JSON, in bytes.
 pub(crate) fn json(value: &serde_json::Value) -> Vec<u8> {
     value.to_string().into_bytes()
 }

@@ -31,7 +31,7 @@
 
 use core::f64::consts::TAU;
 
-use super::{AxisLaw, AxisState, within};
+use super::{AxisModel, AxisState, within};
 
 /// Settings of a drive in addition to the gains of its loops. Zero omits a part.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -129,7 +129,7 @@ impl DriveState {
 
 /// A drive, ready to be integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DriveLaw {
+pub struct DriveModel {
     parameters: DriveParameters,
     /// True for a P speed loop without any further part.
     plain: bool,
@@ -143,22 +143,23 @@ pub struct DriveLaw {
     seeing: Option<f64>,
 }
 
-impl DriveLaw {
+impl DriveModel {
     /// Creates the drive of an axis. The filter is the exact step over a mechanics period.
-    pub fn new(law: &AxisLaw, parameters: DriveParameters) -> Self {
-        let dt_s = law.periods.mechanics_s;
+    pub fn new(axis_model: &AxisModel, parameters: DriveParameters) -> Self {
+        let dt_s = axis_model.periods.mechanics_s;
         let DriveParameters {
             speed_integral_s: time_s,
             torque_filter_hz,
             ..
         } = parameters;
-        let gain = law.parameters.kv_nm_s_per_rad;
+        let gain = axis_model.parameters.kv_nm_s_per_rad;
         let late_s = parameters.speed_late_s(dt_s);
         Self {
             parameters,
             plain: parameters == DriveParameters::default(),
-            torque_for_change: parameters.acceleration_feedforward * law.parameters.inertia_kg_m2
-                / law.periods.servo_s,
+            torque_for_change: parameters.acceleration_feedforward
+                * axis_model.parameters.inertia_kg_m2
+                / axis_model.periods.servo_s,
             integral_gain: if time_s > 0.0 {
                 gain * dt_s / time_s
             } else {
@@ -173,13 +174,13 @@ impl DriveLaw {
     /// this torque.
     pub fn moving(
         &self,
-        law: &AxisLaw,
+        axis_model: &AxisModel,
         speed_rad_s: f64,
         torque_nm: f64,
     ) -> (DriveState, DriveReference) {
         let integrates = self.integral_gain > 0.0;
         let integral_nm = if integrates { torque_nm } else { 0.0 };
-        let missing_rad_s = (torque_nm - integral_nm) / law.parameters.kv_nm_s_per_rad;
+        let missing_rad_s = (torque_nm - integral_nm) / axis_model.parameters.kv_nm_s_per_rad;
         let state = DriveState {
             commanded_rad_s: speed_rad_s,
             integral_nm,
@@ -200,20 +201,20 @@ impl DriveLaw {
     #[inline]
     pub fn position_loop(
         &self,
-        law: &AxisLaw,
+        axis_model: &AxisModel,
         command_rad: f64,
         position_rad: f64,
         axis: &mut AxisState,
         state: &mut DriveState,
     ) -> DriveReference {
-        let speed_rad_s = law.position_loop(command_rad - position_rad, axis);
+        let speed_rad_s = axis_model.position_loop(command_rad - position_rad, axis);
         if self.plain {
             return DriveReference {
                 speed_rad_s,
                 torque_nm: 0.0,
             };
         }
-        let since = |before_rad: f64| (command_rad - before_rad) / law.periods.servo_s;
+        let since = |before_rad: f64| (command_rad - before_rad) / axis_model.periods.servo_s;
         let commanded_rad_s = state.commanded_rad.map_or(state.commanded_rad_s, since);
         let change_rad_s = commanded_rad_s - state.commanded_rad_s;
         (state.commanded_rad, state.commanded_rad_s) = (Some(command_rad), commanded_rad_s);
@@ -228,22 +229,22 @@ impl DriveLaw {
     #[inline]
     pub fn torque_nm(
         &self,
-        law: &AxisLaw,
+        axis_model: &AxisModel,
         reference: DriveReference,
         speed_rad_s: f64,
         state: &mut DriveState,
     ) -> f64 {
         if self.plain {
-            law.torque_nm(reference.speed_rad_s, speed_rad_s)
+            axis_model.torque_nm(reference.speed_rad_s, speed_rad_s)
         } else {
-            self.regulated_nm(law, reference, speed_rad_s, state)
+            self.regulated_nm(axis_model, reference, speed_rad_s, state)
         }
     }
 
     /// Computes [`Self::torque_nm`] for a drive that is more than a P speed loop.
     fn regulated_nm(
         &self,
-        law: &AxisLaw,
+        axis_model: &AxisModel,
         reference: DriveReference,
         speed_rad_s: f64,
         state: &mut DriveState,
@@ -255,8 +256,9 @@ impl DriveLaw {
             reference.speed_rad_s
         };
         let error_rad_s = wanted_rad_s - self.seen_rad_s(speed_rad_s, state);
-        let proportional_nm = law.parameters.kv_nm_s_per_rad * error_rad_s + reference.torque_nm;
-        let limit_nm = law.parameters.torque_limit_nm;
+        let proportional_nm =
+            axis_model.parameters.kv_nm_s_per_rad * error_rad_s + reference.torque_nm;
+        let limit_nm = axis_model.parameters.torque_limit_nm;
         let integral_nm = state.integral_nm + self.integral_gain * error_rad_s;
         let sum_nm = proportional_nm + integral_nm;
         if !(sum_nm.abs() > limit_nm && sum_nm * error_rad_s > 0.0) {
@@ -286,7 +288,7 @@ mod tests {
     use super::super::{Parameters, Periods};
     use super::*;
 
-    fn law() -> AxisLaw {
+    fn axis_model() -> AxisModel {
         let parameters = Parameters {
             rad_per_mm: 0.6,
             kp_1_s: 50.0,
@@ -298,7 +300,7 @@ mod tests {
             coulomb_friction_nm: 0.0,
             coulomb_smoothing_rad_s: 0.5,
         };
-        AxisLaw::new(
+        AxisModel::new(
             parameters,
             Periods {
                 servo_s: 0.001,
@@ -310,16 +312,16 @@ mod tests {
 
     /// Speed after a step of the reference by 1 rad/s, under a constant load.
     fn speed_rad_s(parameters: DriveParameters, load_nm: f64, time_s: f64) -> f64 {
-        let law = law();
-        let drive = DriveLaw::new(&law, parameters);
+        let axis_model = axis_model();
+        let drive = DriveModel::new(&axis_model, parameters);
         let (mut axis, mut state) = (AxisState::default(), DriveState::default());
-        for _ in 0..libm::round(time_s / law.periods.mechanics_s) as u64 {
+        for _ in 0..libm::round(time_s / axis_model.periods.mechanics_s) as u64 {
             let reference = DriveReference {
                 speed_rad_s: 1.0,
                 torque_nm: 0.0,
             };
-            let torque_nm = drive.torque_nm(&law, reference, axis.speed_rad_s, &mut state);
-            law.accelerate(torque_nm - load_nm, &mut axis);
+            let torque_nm = drive.torque_nm(&axis_model, reference, axis.speed_rad_s, &mut state);
+            axis_model.accelerate(torque_nm - load_nm, &mut axis);
         }
         axis.speed_rad_s
     }
@@ -352,9 +354,9 @@ mod tests {
 
     #[test]
     fn the_integral_does_not_wind_up_at_the_torque_limit() {
-        let law = law();
-        let drive = DriveLaw::new(
-            &law,
+        let axis_model = axis_model();
+        let drive = DriveModel::new(
+            &axis_model,
             DriveParameters {
                 speed_integral_s: 0.02,
                 ..DriveParameters::default()
@@ -367,25 +369,28 @@ mod tests {
         };
         // 1 s against a stop: unlimited, the integral would come to 2 * 100 / 0.02 = 10,000 N m.
         (0..1_000_000).for_each(|_| {
-            assert_eq!(drive.torque_nm(&law, asked(100.0), 0.0, &mut state), 30.0);
+            assert_eq!(
+                drive.torque_nm(&axis_model, asked(100.0), 0.0, &mut state),
+                30.0
+            );
         });
         assert!(state.integral_nm.abs() <= 30.0, "{}", state.integral_nm);
         assert!(
-            drive.torque_nm(&law, asked(-20.0), 0.0, &mut state) < 0.0,
+            drive.torque_nm(&axis_model, asked(-20.0), 0.0, &mut state) < 0.0,
             "the torque turns with the error"
         );
         assert!(
             drive
-                .torque_nm(&law, asked(f64::NAN), 0.0, &mut state)
+                .torque_nm(&axis_model, asked(f64::NAN), 0.0, &mut state)
                 .is_nan()
         );
     }
 
     #[test]
     fn the_filter_is_a_lag_of_first_order() {
-        let law = law();
-        let drive = DriveLaw::new(
-            &law,
+        let axis_model = axis_model();
+        let drive = DriveModel::new(
+            &axis_model,
             DriveParameters {
                 torque_filter_hz: 200.0,
                 ..DriveParameters::default()
@@ -397,7 +402,7 @@ mod tests {
             torque_nm: 0.0,
         };
         for step in 1..=5000_u32 {
-            let torque_nm = drive.torque_nm(&law, reference, 0.0, &mut state);
+            let torque_nm = drive.torque_nm(&axis_model, reference, 0.0, &mut state);
             let wanted_nm = 2.0 * (1.0 - libm::exp(-TAU * 200.0 * f64::from(step) * 1e-6));
             assert!((torque_nm - wanted_nm).abs() < 1e-9, "{step}");
         }
@@ -405,20 +410,20 @@ mod tests {
 
     #[test]
     fn feedforward_is_the_commands_speed_and_the_torque_for_its_acceleration() {
-        let law = law();
+        let axis_model = axis_model();
         let parameters = DriveParameters {
             velocity_feedforward: 0.9,
             acceleration_feedforward: 0.5,
             ..DriveParameters::default()
         };
-        let drive = DriveLaw::new(&law, parameters);
+        let drive = DriveModel::new(&axis_model, parameters);
         let (mut axis, mut state) = (AxisState::default(), DriveState::default());
         // c = a t^2 / 2 with a = 40 rad/s^2: at t = n Ts the backward difference is a (n - 1/2) Ts.
         for n in 0..100_u32 {
             let t_s = f64::from(n) * 1e-3;
             let command_rad = 20.0 * t_s * t_s;
             let reference =
-                drive.position_loop(&law, command_rad, command_rad, &mut axis, &mut state);
+                drive.position_loop(&axis_model, command_rad, command_rad, &mut axis, &mut state);
             if n > 1 {
                 assert!(
                     (reference.speed_rad_s - 0.9 * 40.0 * (t_s - 0.5e-3)).abs() < 1e-9,
@@ -434,20 +439,20 @@ mod tests {
 
     #[test]
     fn a_speed_that_grows_evenly_is_seen_late_by_half_the_window() {
-        let law = law();
-        let drive = DriveLaw::new(
-            &law,
+        let axis_model = axis_model();
+        let drive = DriveModel::new(
+            &axis_model,
             DriveParameters {
                 speed_window_s: 0.003,
                 ..DriveParameters::default()
             },
         );
         let mut state = DriveState::default();
-        let (at_rest, dt_s) = (DriveReference::default(), law.periods.mechanics_s);
+        let (at_rest, dt_s) = (DriveReference::default(), axis_model.periods.mechanics_s);
         let mut torque_nm = 0.0;
         for n in 0..30_000_u32 {
             torque_nm = drive.torque_nm(
-                &law,
+                &axis_model,
                 at_rest,
                 -(3.0 + 100.0 * dt_s * f64::from(n)),
                 &mut state,
@@ -455,9 +460,9 @@ mod tests {
         }
         let late_s = (3.0 + 100.0 * dt_s * 29_999.0 - 0.5 * torque_nm) / 100.0;
         assert!((late_s - 0.5 * (0.003 - dt_s)).abs() < 1e-9, "{late_s}");
-        let (moving, _) = drive.moving(&law, 3.0, 0.0);
+        let (moving, _) = drive.moving(&axis_model, 3.0, 0.0);
         assert_eq!(
-            drive.torque_nm(&law, at_rest, 3.0, &mut { moving }),
+            drive.torque_nm(&axis_model, at_rest, 3.0, &mut { moving }),
             -6.0,
             "it has gone at that speed for long"
         );
@@ -474,18 +479,18 @@ mod tests {
 
     #[test]
     fn what_is_all_zero_is_the_plain_loop_to_the_bit() {
-        let law = law();
-        let drive = DriveLaw::new(&law, DriveParameters::default());
+        let axis_model = axis_model();
+        let drive = DriveModel::new(&axis_model, DriveParameters::default());
         let mut state = DriveState::default();
         for speed_rad_s in [0.1, -3.0, 100.0] {
             let reference = DriveReference {
                 speed_rad_s,
                 torque_nm: 0.0,
             };
-            let torque_nm = drive.torque_nm(&law, reference, 0.3, &mut state);
+            let torque_nm = drive.torque_nm(&axis_model, reference, 0.3, &mut state);
             assert_eq!(
                 torque_nm.to_bits(),
-                law.torque_nm(speed_rad_s, 0.3).to_bits()
+                axis_model.torque_nm(speed_rad_s, 0.3).to_bits()
             );
         }
     }
@@ -501,14 +506,14 @@ mod tests {
                 ..Default::default()
             },
         ] {
-            let (law, drive) = (law(), DriveLaw::new(&law(), parameters));
-            let (mut state, sent) = drive.moving(&law, 30.0, 0.4);
+            let (axis_model, drive) = (axis_model(), DriveModel::new(&axis_model(), parameters));
+            let (mut state, sent) = drive.moving(&axis_model, 30.0, 0.4);
             for _ in 0..10_000 {
-                assert!((drive.torque_nm(&law, sent, 30.0, &mut state) - 0.4).abs() < 1e-9);
+                assert!((drive.torque_nm(&axis_model, sent, 30.0, &mut state) - 0.4).abs() < 1e-9);
             }
             // Its first command is one of that speed.
             let (mut axis, mut first) = (AxisState::default(), state);
-            let reference = drive.position_loop(&law, 0.6, 0.6, &mut axis, &mut first);
+            let reference = drive.position_loop(&axis_model, 0.6, 0.6, &mut axis, &mut first);
             assert_eq!(
                 reference.speed_rad_s,
                 30.0 * parameters.velocity_feedforward

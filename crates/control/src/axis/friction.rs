@@ -30,7 +30,7 @@
 
 use core::array::from_fn;
 
-use super::AxisLaw;
+use super::AxisModel;
 use crate::activation::{exp, tanh};
 
 /// Smallest level as a part of Fc + Fs: an asymmetry as large as the Coulomb friction makes the
@@ -59,7 +59,7 @@ pub struct FrictionParameters {
 
 /// Friction of an axis, ready to be integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FrictionLaw {
+pub struct FrictionModel {
     parameters: FrictionParameters,
     dt_s: f64,
     viscous_nm_s: f64,
@@ -70,23 +70,23 @@ pub struct FrictionLaw {
     least_nm: f64,
 }
 
-impl FrictionLaw {
+impl FrictionModel {
     /// Creates the friction of an axis; the parameters of the axis have the Coulomb and viscous
     /// parts.
-    pub fn new(law: &AxisLaw, parameters: FrictionParameters) -> Self {
+    pub fn new(axis_model: &AxisModel, parameters: FrictionParameters) -> Self {
         let FrictionParameters {
             stribeck_nm,
             stribeck_rad_s,
             presliding_rad,
             ..
         } = parameters;
-        let breakaway_nm = law.parameters.coulomb_friction_nm + stribeck_nm;
+        let breakaway_nm = axis_model.parameters.coulomb_friction_nm + stribeck_nm;
         Self {
             parameters,
-            dt_s: law.periods.mechanics_s,
-            viscous_nm_s: law.parameters.viscous_friction_nm_s,
-            coulomb_nm: law.parameters.coulomb_friction_nm,
-            inverse_smoothing_s: law.inverse_smoothing_s,
+            dt_s: axis_model.periods.mechanics_s,
+            viscous_nm_s: axis_model.parameters.viscous_friction_nm_s,
+            coulomb_nm: axis_model.parameters.coulomb_friction_nm,
+            inverse_smoothing_s: axis_model.inverse_smoothing_s,
             inverse_stribeck_s: if stribeck_rad_s > 0.0 {
                 1.0 / stribeck_rad_s
             } else {
@@ -126,23 +126,23 @@ impl FrictionLaw {
     /// four exponentials in the time of one.
     #[inline]
     pub fn speeds_after_rad_s<const L: usize>(
-        laws: &[&Self; L],
+        axis_models: &[&Self; L],
         forces_nm: [f64; L],
         inverse_inertia: [f64; L],
         speeds: [f64; L],
         presliding_nm: &mut [f64; L],
     ) -> [f64; L] {
-        let steps: [f64; L] = from_fn(|i| laws[i].dt_s * inverse_inertia[i]);
-        let left_nm: [f64; L] = from_fn(|i| forces_nm[i] - laws[i].viscous_nm_s * speeds[i]);
-        let slides_at_once = laws.map(|law| law.stiffness_nm_rad == 0.0);
+        let steps: [f64; L] = from_fn(|i| axis_models[i].dt_s * inverse_inertia[i]);
+        let left_nm: [f64; L] = from_fn(|i| forces_nm[i] - axis_models[i].viscous_nm_s * speeds[i]);
+        let slides_at_once = axis_models.map(|axis_model| axis_model.stiffness_nm_rad == 0.0);
         if slides_at_once.iter().all(|at_once| *at_once) {
-            let signs = signs(from_fn(|i| speeds[i] * laws[i].inverse_smoothing_s));
-            let levels_nm = Self::levels_nm(laws, &speeds, &signs);
+            let signs = signs(from_fn(|i| speeds[i] * axis_models[i].inverse_smoothing_s));
+            let levels_nm = Self::levels_nm(axis_models, &speeds, &signs);
             return from_fn(|i| speeds[i] + steps[i] * (left_nm[i] - signs[i] * levels_nm[i]));
         }
         if slides_at_once.iter().any(|at_once| *at_once) {
             return from_fn(|i| {
-                laws[i].speed_after_rad_s(
+                axis_models[i].speed_after_rad_s(
                     forces_nm[i],
                     inverse_inertia[i],
                     speeds[i],
@@ -152,16 +152,18 @@ impl FrictionLaw {
         }
         let free: [f64; L] = from_fn(|i| speeds[i] + steps[i] * (left_nm[i] - presliding_nm[i]));
         let directions = free.map(|rad_s| f64::copysign(1.0, rad_s));
-        let levels_nm = Self::levels_nm(laws, &speeds, &directions);
-        let levels_nm: [f64; L] = from_fn(|i| levels_nm[i].max(laws[i].least_nm));
+        let levels_nm = Self::levels_nm(axis_models, &speeds, &directions);
+        let levels_nm: [f64; L] = from_fn(|i| levels_nm[i].max(axis_models[i].least_nm));
         let after: [f64; L] = from_fn(|i| {
             let to_go = (1.0 - presliding_nm[i] * directions[i] / levels_nm[i]).max(0.0);
-            free[i] / (1.0 + steps[i] * laws[i].dt_s * laws[i].stiffness_nm_rad * to_go)
+            free[i]
+                / (1.0 + steps[i] * axis_models[i].dt_s * axis_models[i].stiffness_nm_rad * to_go)
         });
         let sliding_nm: [f64; L] = from_fn(|i| directions[i] * levels_nm[i]);
         if *presliding_nm != sliding_nm {
             let left: [f64; L] = decays(from_fn(|i| {
-                laws[i].stiffness_nm_rad * after[i].abs() * laws[i].dt_s / levels_nm[i]
+                axis_models[i].stiffness_nm_rad * after[i].abs() * axis_models[i].dt_s
+                    / levels_nm[i]
             }));
             *presliding_nm =
                 from_fn(|i| sliding_nm[i] + (presliding_nm[i] - sliding_nm[i]) * left[i]);
@@ -205,14 +207,14 @@ impl FrictionLaw {
 
     #[inline]
     fn levels_nm<const L: usize>(
-        laws: &[&Self; L],
+        axis_models: &[&Self; L],
         speeds_rad_s: &[f64; L],
         directions: &[f64; L],
     ) -> [f64; L] {
-        let stribeck_nm = laws.map(|law| law.parameters.stribeck_nm);
+        let stribeck_nm = axis_models.map(|axis_model| axis_model.parameters.stribeck_nm);
         let mut low_nm = [0.0; L];
         if stribeck_nm.iter().any(|nm| *nm > 0.0) {
-            let ratios: [f64; L] = from_fn(|i| speeds_rad_s[i] * laws[i].inverse_stribeck_s);
+            let ratios: [f64; L] = from_fn(|i| speeds_rad_s[i] * axis_models[i].inverse_stribeck_s);
             let left = decays(ratios.map(|ratio| ratio * ratio));
             low_nm = from_fn(|i| {
                 if stribeck_nm[i] > 0.0 {
@@ -223,7 +225,9 @@ impl FrictionLaw {
             });
         }
         from_fn(|i| {
-            laws[i].coulomb_nm + laws[i].parameters.coulomb_asymmetry_nm * directions[i] + low_nm[i]
+            axis_models[i].coulomb_nm
+                + axis_models[i].parameters.coulomb_asymmetry_nm * directions[i]
+                + low_nm[i]
         })
     }
 }
@@ -275,17 +279,17 @@ mod tests {
             [sliding, FrictionParameters::default()],
             [stribeck, sliding],
         ] {
-            let laws = parameters.map(|parameters| friction(0.2, 1e-4, parameters));
+            let axis_models = parameters.map(|parameters| friction(0.2, 1e-4, parameters));
             let (mut speeds, mut presliding) = ([0.0, 3.0], [0.0, 0.1]);
             for step in 0..5000_u32 {
                 let forces = [0.5, 0.3].map(|nm| nm * libm::sin(0.003 * f64::from(step)));
                 let mut alone = presliding;
                 let each: [f64; 2] = from_fn(|i| {
-                    laws[i].speed_after_rad_s(forces[i], 1.0 / J, speeds[i], &mut alone[i])
+                    axis_models[i].speed_after_rad_s(forces[i], 1.0 / J, speeds[i], &mut alone[i])
                 });
-                let laws = laws.each_ref();
-                speeds = FrictionLaw::speeds_after_rad_s(
-                    &laws,
+                let axis_models = axis_models.each_ref();
+                speeds = FrictionModel::speeds_after_rad_s(
+                    &axis_models,
                     forces,
                     [1.0 / J; 2],
                     speeds,
@@ -306,8 +310,12 @@ mod tests {
 
     const J: f64 = 0.01;
 
-    fn friction(coulomb_nm: f64, mechanics_s: f64, parameters: FrictionParameters) -> FrictionLaw {
-        let law = Parameters {
+    fn friction(
+        coulomb_nm: f64,
+        mechanics_s: f64,
+        parameters: FrictionParameters,
+    ) -> FrictionModel {
+        let axis_model = Parameters {
             rad_per_mm: 0.6,
             kp_1_s: 50.0,
             kd: 0.0,
@@ -323,7 +331,7 @@ mod tests {
             mechanics_s,
             mechanics_per_servo: 10,
         };
-        FrictionLaw::new(&AxisLaw::new(law, periods), parameters)
+        FrictionModel::new(&AxisModel::new(axis_model, periods), parameters)
     }
 
     const DAHL: FrictionParameters = FrictionParameters {
@@ -335,15 +343,20 @@ mod tests {
 
     /// Friction, N m, of a motion that a speed of `rad_s` is forced upon for a time; by what it
     /// takes to keep the speed.
-    fn friction_at(law: &FrictionLaw, rad_s: f64, steps: u32, mut presliding_nm: f64) -> f64 {
+    fn friction_at(
+        axis_model: &FrictionModel,
+        rad_s: f64,
+        steps: u32,
+        mut presliding_nm: f64,
+    ) -> f64 {
         let mut found_nm = 0.0;
         for _ in 0..steps {
             let before_nm = presliding_nm;
-            let after = law.speed_after_rad_s(before_nm, 1.0 / J, rad_s, &mut presliding_nm);
-            found_nm = if law.stiffness_nm_rad > 0.0 {
+            let after = axis_model.speed_after_rad_s(before_nm, 1.0 / J, rad_s, &mut presliding_nm);
+            found_nm = if axis_model.stiffness_nm_rad > 0.0 {
                 presliding_nm
             } else {
-                (rad_s - after) * J / law.dt_s + before_nm
+                (rad_s - after) * J / axis_model.dt_s + before_nm
             };
         }
         found_nm
@@ -351,17 +364,17 @@ mod tests {
 
     #[test]
     fn dahls_friction_comes_to_its_level_over_the_presliding_deflection() {
-        let law = friction(0.2, 1e-6, DAHL);
+        let axis_model = friction(0.2, 1e-6, DAHL);
         // f = Fc (1 - exp(-x / z)) from rest; turned round at +Fc: f = -Fc + 2 Fc exp(-x / z).
         for way_rad in [0.001, 0.005, 0.02_f64] {
             let steps = libm::round(way_rad / (0.5 * 1e-6)) as u32;
             let decayed = libm::exp(-way_rad / 0.01);
-            let rising = friction_at(&law, 0.5, steps, 0.0);
+            let rising = friction_at(&axis_model, 0.5, steps, 0.0);
             assert!(
                 (rising - 0.2 * (1.0 - decayed)).abs() < 1e-6,
                 "{way_rad}: {rising}"
             );
-            let turned = friction_at(&law, -0.5, steps, 0.2);
+            let turned = friction_at(&axis_model, -0.5, steps, 0.2);
             assert!(
                 (turned - (-0.2 + 0.4 * decayed)).abs() < 1e-6,
                 "{way_rad}: {turned}"
@@ -378,7 +391,7 @@ mod tests {
             presliding_rad: 0.0,
         };
         for presliding_rad in [0.0, 0.001] {
-            let law = friction(
+            let axis_model = friction(
                 0.2,
                 1e-4,
                 FrictionParameters {
@@ -389,7 +402,7 @@ mod tests {
             for speed in [0.5, -0.5, 2.0, -2.0, 20.0, -20.0_f64] {
                 let ratio = speed / 2.0;
                 let wanted = f64::copysign(0.2 + 0.1 * libm::exp(-ratio * ratio), speed) + 0.03;
-                let found = friction_at(&law, speed, 2000, 0.0);
+                let found = friction_at(&axis_model, speed, 2000, 0.0);
                 assert!((found - wanted).abs() < 1e-6, "{speed}: {found} {wanted}");
             }
         }
@@ -399,12 +412,12 @@ mod tests {
     fn within_the_presliding_it_is_a_spring() {
         // f = S x for small x: J x'' = -S x swings at sqrt(S / J) from a push of 1e-4 rad/s, which
         // deflects by z / 4000.
-        let law = friction(0.2, 1e-6, DAHL);
+        let axis_model = friction(0.2, 1e-6, DAHL);
         let (mut speed, mut presliding, mut crossings) = (1e-4, 0.0, 0);
         let mut first_s = 0.0;
         let mut last_s = 0.0;
         for step in 0..1_000_000_u32 {
-            let after = law.speed_after_rad_s(0.0, 1.0 / J, speed, &mut presliding);
+            let after = axis_model.speed_after_rad_s(0.0, 1.0 / J, speed, &mut presliding);
             if speed > 0.0 && after <= 0.0 {
                 last_s = f64::from(step) * 1e-6;
                 crossings += 1;
@@ -430,19 +443,20 @@ mod tests {
             stribeck_rad_s: 1.0,
             ..DAHL
         };
-        let law = friction(0.1, 1e-4, stiff);
+        let axis_model = friction(0.1, 1e-4, stiff);
         let (mut speed, mut presliding, mut way) = (0.0, 0.0, 0.0);
         for step in 0..20_000_u32 {
             let force = 0.19 * libm::sin(0.01 * f64::from(step));
-            speed = law.speed_after_rad_s(force, 1.0 / J, speed, &mut presliding);
+            speed = axis_model.speed_after_rad_s(force, 1.0 / J, speed, &mut presliding);
             way += 1e-4 * speed;
             assert!(
                 (presliding - force).abs() < 0.01 && f64::abs(way) < 1e-6,
                 "{step}: {presliding} {way}"
             );
         }
-        (0..1000)
-            .for_each(|_| speed = law.speed_after_rad_s(0.22, 1.0 / J, speed, &mut presliding));
+        (0..1000).for_each(|_| {
+            speed = axis_model.speed_after_rad_s(0.22, 1.0 / J, speed, &mut presliding);
+        });
         assert!(speed > 0.1, "{speed}");
     }
 
@@ -457,10 +471,10 @@ mod tests {
                 stribeck_rad_s: zone,
                 presliding_rad: zone,
             };
-            let law = friction(coulomb, 1e-4, parameters);
+            let axis_model = friction(coulomb, 1e-4, parameters);
             let (mut speed, mut presliding) = (0.0, 0.0);
             for force in [0.0, 1.0, -1e3, 0.0, 1e-9] {
-                speed = law.speed_after_rad_s(force, 1.0 / J, speed, &mut presliding);
+                speed = axis_model.speed_after_rad_s(force, 1.0 / J, speed, &mut presliding);
                 assert!(
                     speed.is_finite() && presliding.is_finite(),
                     "{coulomb} {stribeck} {zone}"

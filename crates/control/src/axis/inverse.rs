@@ -50,10 +50,10 @@
 //! Departures: the torque limit bounds only the integral, and the speed limit bounds nothing here.
 //! The inverse assumes that no motion needs more.
 
-use super::AxisLaw;
+use super::AxisModel;
 use super::delays::LoopDelays;
 use super::drive::DriveParameters;
-use super::friction::{FrictionLaw, FrictionParameters};
+use super::friction::{FrictionModel, FrictionParameters};
 use crate::activation::tanh;
 use crate::vector::bounded;
 
@@ -105,11 +105,11 @@ struct ReferenceMotion {
 /// Inverse of an axis, with its state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisInverse {
-    law: AxisLaw,
+    axis_model: AxisModel,
     drive: DriveParameters,
     delays: LoopDelays,
     /// Friction in addition to smoothed Coulomb friction.
-    friction: Option<FrictionLaw>,
+    friction: Option<FrictionModel>,
     /// Delay of the torque filter, s.
     filter_lag_s: f64,
     /// Delay with which the drive sees the speed, s.
@@ -129,19 +129,19 @@ pub struct AxisInverse {
 impl AxisInverse {
     /// Creates the inverse of an axis.
     pub fn new(
-        law: AxisLaw,
+        axis_model: AxisModel,
         drive: DriveParameters,
         friction: FrictionParameters,
         delays: LoopDelays,
     ) -> Self {
         Self {
-            law,
+            axis_model,
             drive,
             delays,
             friction: (friction != FrictionParameters::default())
-                .then(|| FrictionLaw::new(&law, friction)),
-            filter_lag_s: drive.filter_lag_s(law.periods.mechanics_s),
-            speed_late_s: drive.speed_late_s(law.periods.mechanics_s),
+                .then(|| FrictionModel::new(&axis_model, friction)),
+            filter_lag_s: drive.filter_lag_s(axis_model.periods.mechanics_s),
+            speed_late_s: drive.speed_late_s(axis_model.periods.mechanics_s),
             presliding_nm: 0.0,
             friction_mm_s: 0.0,
             integral_mm_s: 0.0,
@@ -153,7 +153,7 @@ impl AxisInverse {
     /// Inverts another model from now on. Its state stays.
     pub fn follow(
         &mut self,
-        law: AxisLaw,
+        axis_model: AxisModel,
         drive: DriveParameters,
         friction: FrictionParameters,
         delays: LoopDelays,
@@ -163,16 +163,16 @@ impl AxisInverse {
             filter_lag_s,
             speed_late_s,
             ..
-        } = Self::new(law, drive, friction, delays);
-        (self.law, self.drive, self.delays) = (law, drive, delays);
+        } = Self::new(axis_model, drive, friction, delays);
+        (self.axis_model, self.drive, self.delays) = (axis_model, drive, delays);
         (self.friction, self.filter_lag_s, self.speed_late_s) =
             (friction, filter_lag_s, speed_late_s);
     }
 
     /// Creates the inverse of an axis whose drive, friction and delays have no further parts.
-    pub fn plain(law: AxisLaw) -> Self {
+    pub fn plain(axis_model: AxisModel) -> Self {
         Self::new(
-            law,
+            axis_model,
             DriveParameters::default(),
             FrictionParameters::default(),
             LoopDelays::default(),
@@ -180,8 +180,8 @@ impl AxisInverse {
     }
 
     /// Returns the model that it inverts.
-    pub fn law(&self) -> &AxisLaw {
-        &self.law
+    pub fn axis_model(&self) -> &AxisModel {
+        &self.axis_model
     }
 
     /// Resets the state to rest.
@@ -193,7 +193,7 @@ impl AxisInverse {
     /// Returns the sum of the time constants of the position loop and the speed loop, s. The
     /// command leads the reference by about this time.
     pub fn lag_s(&self) -> f64 {
-        let parameters = &self.law.parameters;
+        let parameters = &self.axis_model.parameters;
         1.0 / parameters.kp_1_s + parameters.inertia_kg_m2 / parameters.kv_nm_s_per_rad
     }
 
@@ -205,7 +205,7 @@ impl AxisInverse {
 
     /// Returns the delay until the position loop has a command, s.
     pub fn command_delay_s(&self) -> f64 {
-        let servo_s = self.law.periods.servo_s;
+        let servo_s = self.axis_model.periods.servo_s;
         self.delays.command_periods(servo_s) as f64 * servo_s
     }
 
@@ -232,7 +232,7 @@ impl AxisInverse {
         last_mm: f64,
         load_mm_s: f64,
     ) -> f64 {
-        let (late_s, servo_s) = (self.command_delay_s(), self.law.periods.servo_s);
+        let (late_s, servo_s) = (self.command_delay_s(), self.axis_model.periods.servo_s);
         if late_s == 0.0 {
             return self.prompt_lead_mm(gains, at_mm, last_mm, load_mm_s);
         }
@@ -254,12 +254,12 @@ impl AxisInverse {
         last_mm: f64,
         load_mm_s: f64,
     ) -> f64 {
-        let servo_s = self.law.periods.servo_s;
+        let servo_s = self.axis_model.periods.servo_s;
         self.take_in(last_mm);
         let own = self.without_lead(&at_mm);
         let missing = self.missing(gains, &at_mm, own, load_mm_s);
         self.missing = missing;
-        let parameters = &self.law.parameters;
+        let parameters = &self.axis_model.parameters;
         let change_1_s = (parameters.kd + self.drive.velocity_feedforward) / servo_s;
         let torque_1_s = self.torque_for_lead_1_s();
         let [within, _] = self.integral_gains();
@@ -285,7 +285,7 @@ impl AxisInverse {
             torque_mm_s,
         } = self.missing(Gains::EXACT, &at_mm, [0.0; 2], load_mm_s);
         let [within, _] = self.integral_gains();
-        let parameters = &self.law.parameters;
+        let parameters = &self.axis_model.parameters;
         let integral_mm_s = integral_nm / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm);
         speed_mm_s + (torque_mm_s - integral_mm_s) / (1.0 + within)
     }
@@ -296,12 +296,15 @@ impl AxisInverse {
     fn take_in(&mut self, last_mm: f64) {
         let [_, over] = self.integral_gains();
         if over > 0.0 {
-            let Self { law, drive, .. } = self;
-            let change_1_s = (law.parameters.kd + drive.velocity_feedforward) / law.periods.servo_s;
-            let asked_mm_s =
-                law.parameters.kp_1_s * last_mm + change_1_s * (last_mm - self.lead_before_mm);
-            let limit = law.parameters.torque_limit_nm
-                / (law.parameters.kv_nm_s_per_rad * law.parameters.rad_per_mm);
+            let Self {
+                axis_model, drive, ..
+            } = self;
+            let change_1_s = (axis_model.parameters.kd + drive.velocity_feedforward)
+                / axis_model.periods.servo_s;
+            let asked_mm_s = axis_model.parameters.kp_1_s * last_mm
+                + change_1_s * (last_mm - self.lead_before_mm);
+            let limit = axis_model.parameters.torque_limit_nm
+                / (axis_model.parameters.kv_nm_s_per_rad * axis_model.parameters.rad_per_mm);
             let integral_mm_s = self.integral_mm_s + over * (asked_mm_s - self.missing.speed_mm_s);
             self.integral_mm_s = bounded(integral_mm_s, -limit, limit);
         }
@@ -313,7 +316,7 @@ impl AxisInverse {
     fn integral_gains(&self) -> [f64; 2] {
         let time_s = self.drive.speed_integral_s;
         if time_s > 0.0 {
-            let periods = &self.law.periods;
+            let periods = &self.axis_model.periods;
             [
                 0.5 * (periods.servo_s + periods.mechanics_s) / time_s,
                 periods.servo_s / time_s,
@@ -327,7 +330,7 @@ impl AxisInverse {
     /// lead, as a reference speed, 1/s.
     #[inline]
     fn torque_for_lead_1_s(&self) -> f64 {
-        let (parameters, servo_s) = (&self.law.parameters, self.law.periods.servo_s);
+        let (parameters, servo_s) = (&self.axis_model.parameters, self.axis_model.periods.servo_s);
         let nm_s2 = self.drive.acceleration_feedforward * parameters.inertia_kg_m2;
         nm_s2 / (parameters.kv_nm_s_per_rad * servo_s * servo_s)
     }
@@ -340,7 +343,10 @@ impl AxisInverse {
         [asked_mm_s, fed_nm_s]: [f64; 2],
         load_mm_s: f64,
     ) -> Missing {
-        let (parameters, mechanics_s) = (self.law.parameters, self.law.periods.mechanics_s);
+        let (parameters, mechanics_s) = (
+            self.axis_model.parameters,
+            self.axis_model.periods.mechanics_s,
+        );
         let turning = self.motion(at_mm, self.delays.drive_s);
         let torque = if self.filter_lag_s > 0.0 {
             self.motion(at_mm, self.ahead_s())
@@ -363,7 +369,7 @@ impl AxisInverse {
 
     #[inline]
     fn motion(&self, at_mm: &impl Fn(f64) -> f64, after_s: f64) -> ReferenceMotion {
-        let servo_s = self.law.periods.servo_s;
+        let servo_s = self.axis_model.periods.servo_s;
         let [before, here, after, beyond] =
             [-1.0, 0.0, 1.0, 2.0].map(|n: f64| at_mm(after_s + n * servo_s));
         ReferenceMotion {
@@ -376,7 +382,7 @@ impl AxisInverse {
     /// mm/s, and torque for a rad/mm, N m s.
     #[inline]
     fn without_lead(&self, at_mm: &impl Fn(f64) -> f64) -> [f64; 2] {
-        let servo_s = self.law.periods.servo_s;
+        let servo_s = self.axis_model.periods.servo_s;
         let DriveParameters {
             velocity_feedforward,
             acceleration_feedforward,
@@ -387,14 +393,14 @@ impl AxisInverse {
         if late_s > 0.0 {
             let [here_mm, before_mm] =
                 [0.0, -servo_s].map(|after_s| at_mm(after_s) - at_mm(after_s - late_s));
-            asked_mm_s += self.law.parameters.kp_1_s * here_mm
-                + self.law.parameters.kd * (here_mm - before_mm) / servo_s;
+            asked_mm_s += self.axis_model.parameters.kp_1_s * here_mm
+                + self.axis_model.parameters.kd * (here_mm - before_mm) / servo_s;
         }
         if velocity_feedforward > 0.0 || acceleration_feedforward > 0.0 {
             let [here, before, earlier] = [0.0, -1.0, -2.0].map(|n: f64| at_mm(n * servo_s));
             let (now_mm, last_mm) = (here - before, before - earlier);
             asked_mm_s += velocity_feedforward * now_mm / servo_s;
-            let inertia_kg_m2 = acceleration_feedforward * self.law.parameters.inertia_kg_m2;
+            let inertia_kg_m2 = acceleration_feedforward * self.axis_model.parameters.inertia_kg_m2;
             fed_nm_s = inertia_kg_m2 * (now_mm - last_mm) / (servo_s * servo_s);
         }
         [asked_mm_s, fed_nm_s]
@@ -404,7 +410,7 @@ impl AxisInverse {
     /// N m.
     #[inline]
     fn friction_nm(&mut self, motion: ReferenceMotion) -> f64 {
-        let (parameters, servo_s) = (&self.law.parameters, self.law.periods.servo_s);
+        let (parameters, servo_s) = (&self.axis_model.parameters, self.axis_model.periods.servo_s);
         let speed_rad_s = parameters.rad_per_mm * motion.speed_mm_s;
         let Some(friction) = &self.friction else {
             let [sign] = tanh([speed_rad_s / parameters.coulomb_smoothing_rad_s]);

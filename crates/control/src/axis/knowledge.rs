@@ -8,7 +8,7 @@ use super::drive::DriveParameters;
 use super::friction::FrictionParameters;
 use super::statistics::AxisStatistics;
 use super::transmission::TransmissionParameters;
-use super::{AxisLaw, Parameters, Periods};
+use super::{AxisModel, Parameters, Periods};
 
 /// Knowledge of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,8 +72,8 @@ impl AxisKnowledge {
     };
 
     /// Returns the model, ready to be integrated.
-    pub fn law(&self) -> AxisLaw {
-        AxisLaw::new(self.parameters, self.periods)
+    pub fn axis_model(&self) -> AxisModel {
+        AxisModel::new(self.parameters, self.periods)
     }
 
     /// Stored numbers of an axis, in this order: all except the periods. The ranges are the ranges

@@ -6,17 +6,17 @@
 
 use core::array::from_fn;
 
-use super::friction::{FrictionLaw, FrictionParameters};
-use super::transmission::{TableState, TransmissionLaw, TransmissionParameters};
-use super::{AxisLaw, AxisState, friction_signs};
+use super::friction::{FrictionModel, FrictionParameters};
+use super::transmission::{TableState, TransmissionModel, TransmissionParameters};
+use super::{AxisModel, AxisState, friction_signs};
 
 /// Masses and friction of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MechanicsLaw {
-    law: AxisLaw,
+pub struct MechanicsModel {
+    axis_model: AxisModel,
     /// Friction in addition to smoothed Coulomb friction.
-    friction: Option<FrictionLaw>,
-    transmission: Option<TransmissionLaw>,
+    friction: Option<FrictionModel>,
+    transmission: Option<TransmissionModel>,
     inverse_inertia: f64,
 }
 
@@ -54,28 +54,28 @@ impl MechanicsState {
     }
 }
 
-impl MechanicsLaw {
+impl MechanicsModel {
     /// Creates the mechanics of an axis with this friction and this screw.
     pub fn new(
-        law: &AxisLaw,
+        axis_model: &AxisModel,
         friction: FrictionParameters,
         transmission: TransmissionParameters,
     ) -> Self {
         Self {
-            law: *law,
+            axis_model: *axis_model,
             friction: (friction != FrictionParameters::default())
-                .then(|| FrictionLaw::new(law, friction)),
-            transmission: TransmissionLaw::new(
-                law.parameters.inertia_kg_m2,
-                law.periods.mechanics_s,
+                .then(|| FrictionModel::new(axis_model, friction)),
+            transmission: TransmissionModel::new(
+                axis_model.parameters.inertia_kg_m2,
+                axis_model.periods.mechanics_s,
                 transmission,
             ),
-            inverse_inertia: 1.0 / law.parameters.inertia_kg_m2,
+            inverse_inertia: 1.0 / axis_model.parameters.inertia_kg_m2,
         }
     }
 
     /// Returns the screw, if it is compliant.
-    pub fn transmission(&self) -> Option<&TransmissionLaw> {
+    pub fn transmission(&self) -> Option<&TransmissionModel> {
         self.transmission.as_ref()
     }
 
@@ -101,24 +101,26 @@ impl MechanicsLaw {
     /// others while it computes the friction of one.
     #[inline]
     pub fn advance_abreast<const L: usize>(
-        laws: &[&Self; L],
+        axis_models: &[&Self; L],
         mut states: [&mut MechanicsState; L],
         motor_nm: [f64; L],
     ) {
-        let all_slide = laws.iter().all(|law| law.friction.is_some());
-        let Some(first) = laws
+        let all_slide = axis_models
+            .iter()
+            .all(|axis_model| axis_model.friction.is_some());
+        let Some(first) = axis_models
             .first()
-            .and_then(|law| law.friction.as_ref())
+            .and_then(|axis_model| axis_model.friction.as_ref())
             .filter(|_| all_slide)
         else {
-            (0..L).for_each(|i| laws[i].advance(states[i], motor_nm[i], 0.0));
+            (0..L).for_each(|i| axis_models[i].advance(states[i], motor_nm[i], 0.0));
             return;
         };
-        let pushed: [[f64; 3]; L] = from_fn(|i| laws[i].push(states[i], motor_nm[i], 0.0));
+        let pushed: [[f64; 3]; L] = from_fn(|i| axis_models[i].push(states[i], motor_nm[i], 0.0));
         let mut presliding_nm: [f64; L] = from_fn(|i| states[i].presliding_nm);
-        let frictions = laws.map(|law| law.friction.as_ref().unwrap_or(first));
+        let frictions = axis_models.map(|axis_model| axis_model.friction.as_ref().unwrap_or(first));
         let [forces_nm, inverse, speeds] = from_fn(|k| pushed.map(|pushed| pushed[k]));
-        let after = FrictionLaw::speeds_after_rad_s(
+        let after = FrictionModel::speeds_after_rad_s(
             &frictions,
             forces_nm,
             inverse,
@@ -127,7 +129,7 @@ impl MechanicsLaw {
         );
         for i in 0..L {
             states[i].presliding_nm = presliding_nm[i];
-            laws[i].go_on(states[i], after[i]);
+            axis_models[i].go_on(states[i], after[i]);
         }
     }
 
@@ -143,8 +145,9 @@ impl MechanicsLaw {
             motor.angle_rad - table.angle_rad,
             motor.speed_rad_s - table.speed_rad_s,
         );
-        motor.speed_rad_s +=
-            self.law.periods.mechanics_s * screw.inverse_motor_inertia * (motor_nm - through_nm);
+        motor.speed_rad_s += self.axis_model.periods.mechanics_s
+            * screw.inverse_motor_inertia
+            * (motor_nm - through_nm);
         [
             through_nm - load_nm,
             screw.inverse_table_inertia,
@@ -155,7 +158,7 @@ impl MechanicsLaw {
     /// Moves the masses through a mechanics period at whose end the sliding mass has a speed.
     #[inline]
     fn go_on(&self, state: &mut MechanicsState, after_rad_s: f64) {
-        let dt_s = self.law.periods.mechanics_s;
+        let dt_s = self.axis_model.periods.mechanics_s;
         let MechanicsState { motor, table, .. } = state;
         if self.transmission.is_none() {
             motor.speed_rad_s = after_rad_s;
@@ -176,7 +179,7 @@ impl MechanicsLaw {
     fn advance_smoothly(&self, state: &mut MechanicsState, motor_nm: f64, load_nm: f64) {
         if self.transmission.is_none() {
             let motor = &mut state.motor;
-            self.law.accelerate(
+            self.axis_model.accelerate(
                 motor_nm - (self.friction_nm(motor.speed_rad_s) + load_nm),
                 motor,
             );
@@ -190,15 +193,15 @@ impl MechanicsLaw {
         let load_nm = self.friction_nm(speed_rad_s) + load_nm;
         self.go_on(
             state,
-            speed_rad_s + self.law.periods.mechanics_s * inverse * (pushed_nm - load_nm),
+            speed_rad_s + self.axis_model.periods.mechanics_s * inverse * (pushed_nm - load_nm),
         );
     }
 
     /// Returns the viscous and Coulomb friction, N m.
     #[inline]
     fn friction_nm(&self, speed_rad_s: f64) -> f64 {
-        let [sign] = friction_signs(&[self.law], [speed_rad_s]);
-        self.law.friction_nm(speed_rad_s, sign)
+        let [sign] = friction_signs(&[self.axis_model], [speed_rad_s]);
+        self.axis_model.friction_nm(speed_rad_s, sign)
     }
 }
 
@@ -207,7 +210,7 @@ mod tests {
     use super::super::{Parameters, Periods};
     use super::*;
 
-    fn law(coulomb_friction_nm: f64) -> AxisLaw {
+    fn axis_model(coulomb_friction_nm: f64) -> AxisModel {
         let parameters = Parameters {
             rad_per_mm: 0.6,
             kp_1_s: 50.0,
@@ -219,7 +222,7 @@ mod tests {
             coulomb_friction_nm,
             coulomb_smoothing_rad_s: 0.5,
         };
-        AxisLaw::new(
+        AxisModel::new(
             parameters,
             Periods {
                 servo_s: 0.001,
@@ -240,7 +243,7 @@ mod tests {
 
     /// Returns the state after a tenth of a second under 1 N m at the motor and 0.3 N m against the
     /// table.
-    fn driven(mechanics: &MechanicsLaw) -> MechanicsState {
+    fn driven(mechanics: &MechanicsModel) -> MechanicsState {
         let mut state = MechanicsState::at_rest(0.0);
         (0..10_000).for_each(|_| mechanics.advance(&mut state, 1.0, 0.3));
         state
@@ -252,9 +255,10 @@ mod tests {
             presliding_rad: 0.001,
             ..FrictionParameters::default()
         };
-        let of = |friction, transmission| MechanicsLaw::new(&law(0.2), friction, transmission);
+        let of =
+            |friction, transmission| MechanicsModel::new(&axis_model(0.2), friction, transmission);
         let none = FrictionParameters::default();
-        for laws in [
+        for axis_models in [
             [
                 of(dahl, screw(300.0)),
                 of(dahl, TransmissionParameters::RIGID),
@@ -265,8 +269,12 @@ mod tests {
             let mut abreast = alone;
             for step in 0..5000_u32 {
                 let torques_nm = [0.5, 0.9].map(|nm| nm * libm::sin(0.003 * f64::from(step)));
-                (0..2).for_each(|i| laws[i].advance(&mut alone[i], torques_nm[i], 0.0));
-                MechanicsLaw::advance_abreast(&laws.each_ref(), abreast.each_mut(), torques_nm);
+                (0..2).for_each(|i| axis_models[i].advance(&mut alone[i], torques_nm[i], 0.0));
+                MechanicsModel::advance_abreast(
+                    &axis_models.each_ref(),
+                    abreast.each_mut(),
+                    torques_nm,
+                );
                 assert_eq!(abreast, alone, "{step}");
             }
         }
@@ -275,14 +283,14 @@ mod tests {
     #[test]
     fn a_stiff_screw_is_as_a_rigid_one() {
         for coulomb_nm in [0.0, 0.2] {
-            let law = law(coulomb_nm);
-            let rigid = driven(&MechanicsLaw::new(
-                &law,
+            let axis_model = axis_model(coulomb_nm);
+            let rigid = driven(&MechanicsModel::new(
+                &axis_model,
                 FrictionParameters::default(),
                 TransmissionParameters::RIGID,
             ));
-            let stiff = driven(&MechanicsLaw::new(
-                &law,
+            let stiff = driven(&MechanicsModel::new(
+                &axis_model,
                 FrictionParameters::default(),
                 screw(5e3),
             ));
@@ -297,8 +305,8 @@ mod tests {
 
     #[test]
     fn both_masses_together_have_the_momentum_that_the_torques_gave() {
-        let state = driven(&MechanicsLaw::new(
-            &law(0.0),
+        let state = driven(&MechanicsModel::new(
+            &axis_model(0.0),
             FrictionParameters::default(),
             screw(300.0),
         ));

@@ -63,7 +63,7 @@ pub struct TableState {
 
 /// A ball screw, ready to be integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TransmissionLaw {
+pub struct TransmissionModel {
     /// Inverse inertia of the motor's side, 1/(kg m2).
     pub inverse_motor_inertia: f64,
     /// Inverse inertia of the table's side, 1/(kg m2).
@@ -82,7 +82,7 @@ pub struct TransmissionLaw {
 /// integration is unstable.
 const MOST_PHASE_RAD: f64 = 1.0;
 
-impl TransmissionLaw {
+impl TransmissionModel {
     /// Creates the screw of an axis with this inertia, kg m2. Returns `None` where the screw is
     /// rigid, or too stiff for the mechanics period.
     pub fn new(
@@ -143,7 +143,7 @@ mod tests {
     const INERTIA_KG_M2: f64 = 0.01;
     const BACKLASH_RAD: f64 = 0.003;
 
-    fn soft(backlash_rad: f64) -> (TransmissionLaw, TransmissionParameters) {
+    fn soft(backlash_rad: f64) -> (TransmissionModel, TransmissionParameters) {
         let resonance_rad_s = TAU * 60.0;
         let screw = TransmissionParameters {
             table_share: 0.5,
@@ -152,7 +152,7 @@ mod tests {
             backlash_rad,
         };
         (
-            TransmissionLaw::new(INERTIA_KG_M2, DT_S, screw).expect("it is not rigid"),
+            TransmissionModel::new(INERTIA_KG_M2, DT_S, screw).expect("it is not rigid"),
             screw,
         )
     }
@@ -175,13 +175,13 @@ mod tests {
                 ..screw
             },
         ] {
-            assert_eq!(TransmissionLaw::new(INERTIA_KG_M2, DT_S, rigid), None);
+            assert_eq!(TransmissionModel::new(INERTIA_KG_M2, DT_S, rigid), None);
         }
     }
 
     #[test]
     fn the_table_rings_at_the_frequency_and_with_the_damping_that_are_named() {
-        let (law, screw) = soft(0.0);
+        let (axis_model, screw) = soft(0.0);
         // The table swings against the held motor, from a twist of a milliradian.
         let mut table = TableState {
             angle_rad: 1e-3,
@@ -190,8 +190,8 @@ mod tests {
         let (mut upward, mut peaks, mut before) = (Vec::new(), Vec::new(), table.angle_rad);
         for step in 0..50_000 {
             table.speed_rad_s += DT_S
-                * law.inverse_table_inertia
-                * law.torque_nm(-table.angle_rad, -table.speed_rad_s);
+                * axis_model.inverse_table_inertia
+                * axis_model.torque_nm(-table.angle_rad, -table.speed_rad_s);
             table.angle_rad += DT_S * table.speed_rad_s;
             if before < 0.0 && table.angle_rad >= 0.0 {
                 upward.push(step);
@@ -223,26 +223,29 @@ mod tests {
 
     #[test]
     fn a_torque_twists_the_screw_by_its_stiffness_behind_the_gap() {
-        let (law, screw) = soft(BACKLASH_RAD);
+        let (axis_model, screw) = soft(BACKLASH_RAD);
         let half_gap_rad = 0.5 * BACKLASH_RAD;
         for twist in [-1e-4, 0.0, 0.1, half_gap_rad * 0.999] {
             assert_eq!(
-                law.torque_nm(twist, 0.0) != 0.0,
+                axis_model.torque_nm(twist, 0.0) != 0.0,
                 twist.abs() > half_gap_rad,
                 "{twist}"
             );
         }
         let stiffness =
             screw.table_share * INERTIA_KG_M2 * screw.resonance_rad_s * screw.resonance_rad_s;
-        let torque = law.torque_nm(half_gap_rad + 1e-3, 0.0);
+        let torque = axis_model.torque_nm(half_gap_rad + 1e-3, 0.0);
         assert!((torque - stiffness * 1e-3).abs() < 1e-9, "{torque}");
     }
 
     #[test]
     fn flanks_push_and_do_not_pull() {
-        let (law, _) = soft(BACKLASH_RAD);
+        let (axis_model, _) = soft(BACKLASH_RAD);
         for speed in [-1e3, -1.0, 0.0, 1.0, 1e3] {
-            assert!(law.torque_nm(0.01, speed) >= 0.0 && law.torque_nm(-0.01, speed) <= 0.0);
+            assert!(
+                axis_model.torque_nm(0.01, speed) >= 0.0
+                    && axis_model.torque_nm(-0.01, speed) <= 0.0
+            );
         }
     }
 }

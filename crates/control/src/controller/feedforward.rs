@@ -67,7 +67,7 @@ impl<const N: usize> Feedforward<N> {
         let most = |of: fn(&AxisInverse) -> f64| axes.iter().map(of).fold(0.0, f64::max);
         let servo_s = axes
             .iter()
-            .map(|axis| axis.law().periods.servo_s)
+            .map(|axis| axis.axis_model().periods.servo_s)
             .fold(f64::INFINITY, f64::min);
         let late = libm::ceil(most(|axis| axis.command_delay_s() + axis.ahead_s()) / servo_s)
             .min(MAX_PREVIEW);
@@ -127,7 +127,7 @@ impl<const N: usize> Feedforward<N> {
         core::array::from_fn(|i| {
             let axis = &self.axes[i];
             // The cast saturates to zero where the float is NaN.
-            let age = libm::round(axis.late_s() / axis.law().periods.servo_s) as usize;
+            let age = libm::round(axis.late_s() / axis.axis_model().periods.servo_s) as usize;
             let of_axes = self
                 .friction_mm_s
                 .get(age.min(KEPT_PERIODS - 1))
@@ -161,7 +161,7 @@ impl<const N: usize> Controller<N> for Feedforward<N> {
 pub(super) mod tests {
     use super::*;
     use crate::activation::tanh;
-    use crate::axis::{AxisLaw, Parameters, Periods};
+    use crate::axis::{AxisModel, Parameters, Periods};
     use crate::contour_error::ContourError;
     use crate::vector::add_scaled;
     use crate::window::{Knot, KnotSource, Preview, Register};
@@ -238,7 +238,7 @@ pub(super) mod tests {
             mechanics_s: 1e-3 * SERVO_S,
             mechanics_per_servo: 1000,
         };
-        AxisInverse::plain(AxisLaw::new(axis, periods))
+        AxisInverse::plain(AxisModel::new(axis, periods))
     }
 
     /// Following error along the parabola at the end of a second, mm; the mechanics in steps of 1

@@ -107,7 +107,8 @@ impl<const N: usize> LqgPreview<N> {
     /// Creates the controller of a machine with this knowledge of its axes.
     pub fn new(known: [AxisKnowledge; N], settings: LqgSettings) -> Self {
         let axes = known.map(|axis| AxisLqg::new(axis, settings));
-        let preview_knots = |axis: &AxisLqg| preview(axis.ahead_s(), axis.law().periods.servo_s);
+        let preview_knots =
+            |axis: &AxisLqg| preview(axis.ahead_s(), axis.axis_model().periods.servo_s);
         let longest = axes.iter().map(preview_knots).max().unwrap_or(0);
         let unforeseen_mm2 = axes.iter().map(AxisLqg::unforeseen_mm2).sum();
         let lag_s = axes.iter().map(AxisLqg::lag_s).fold(0.0, f64::max);
@@ -203,7 +204,7 @@ impl<const N: usize> LqgPreview<N> {
             feasible::BEFORE_END_S.map(|before_s| window.at(end_s - before_s).position_mm);
         let beyond = self.axes.iter().enumerate().any(|(i, axis)| {
             let of_axis = |position_mm: [f64; N]| position_mm.get(i).copied().unwrap_or(0.0);
-            feasible::is_beyond(axis.law(), knots_mm.map(of_axis))
+            feasible::is_beyond(axis.axis_model(), knots_mm.map(of_axis))
         });
         self.feasibility
             .take_in(beyond, end_s + self.lag_s, servo_s);
@@ -278,14 +279,14 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         if let Some(first_use) = &mut self.first_use {
             first_use.take_in(seen_mm2, window.feed_period_s);
             if turned {
-                first_use.begin_law();
+                first_use.begin_model();
             }
         }
         if let Some(validity) = &mut self.validity {
             if turned {
-                validity.begin_law();
+                validity.begin_model();
             }
-            let missed_mm = self.axes.each_ref().map(AxisLqg::law_missed_mm);
+            let missed_mm = self.axes.each_ref().map(AxisLqg::model_missed_mm);
             let path_mm = window.now().position_mm;
             let mut open_mm = [0.0; N];
             for (i, (axis, open_mm)) in self.axes.iter().zip(&mut open_mm).enumerate() {

@@ -68,7 +68,7 @@ impl FirstUse {
     }
 
     /// Restarts an unfinished test for another model.
-    pub(crate) fn begin_law(&mut self) {
+    pub(crate) fn begin_model(&mut self) {
         if !self.is_shown {
             (self.moved_s, self.missed_mm2, self.distance_mm2) = (0.0, 0.0, 0.0);
         }
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn a_law_is_used_that_predicts_half_of_what_there_is_to_correct() {
+    fn a_model_is_used_that_predicts_half_of_what_there_is_to_correct() {
         for (periods, seen_mm, is_shown) in [
             (19, [0.0, 0.1, 0.0], false),
             (21, [0.049, 0.1, 0.0], true),
@@ -143,10 +143,10 @@ mod tests {
         let mut first = after(21, [0.0, 0.1, 0.0]);
         assert!(first.share() < 0.05);
         (0..100).for_each(|_| first.take_in(Some([1.0, 0.0]), SERVO_S));
-        first.begin_law();
+        first.begin_model();
         assert!(first.is_shown() && first.share() == 1.0);
         let mut refuted = after(1000, [0.1, 0.1, 0.0]);
-        refuted.begin_law();
+        refuted.begin_model();
         (0..21).for_each(|_| refuted.take_in(Some([0.0, 0.01]), SERVO_S));
         assert!(
             refuted.is_shown(),

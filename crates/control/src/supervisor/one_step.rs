@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn what_noise_and_torque_do_not_explain_is_not_as_the_law_said() {
+    fn what_noise_and_torque_do_not_explain_is_not_as_the_model_said() {
         for (missed_mm, expected_mm, pushed_mm, as_said) in [
             (0.00009, 0.0, 0.0, true),
             (0.00011, 0.0, 0.0, false),

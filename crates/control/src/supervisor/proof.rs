@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_law_that_fails_where_the_speed_changes_has_to_hold_there() {
+    fn a_model_that_fails_where_the_speed_changes_has_to_hold_there() {
         assert!(!goes(1, |_| false).is_needed());
         assert!(
             goes(1, |n| (10..40).contains(&n)).is_needed(),

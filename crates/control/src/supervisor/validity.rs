@@ -141,7 +141,7 @@ impl<const N: usize> Validity<N> {
     }
 
     /// Restarts for other models: the errors of the earlier ones give no evidence on them.
-    pub(crate) fn begin_law(&mut self) {
+    pub(crate) fn begin_model(&mut self) {
         (self.missed_mm2, self.beyond, self.proof) = (0.0, [false; 2], Proof::NOT_NEEDED);
         // The tool returns gently from its present place.
         self.near = 0.0;
@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn a_law_is_wrong_where_it_misses_more_than_noise_and_what_there_is_to_correct() {
+    fn a_model_is_wrong_where_it_misses_more_than_noise_and_what_there_is_to_correct() {
         for (missed_mm, open_mm, unforeseen_mm2, wrong) in [
             (0.0019, 0.0, 0.0, false),
             (0.0021, 0.0, 0.0, true),
@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn a_law_is_trusted_that_holds_and_is_followed_for_a_while() {
+    fn a_model_is_trusted_that_holds_and_is_followed_for_a_while() {
         let goes_on = |validity: &mut Validity<2>, missed_mm: f64, followed: bool, periods: u32| {
             (0..periods)
                 .for_each(|_| validity.take_in(&shown([missed_mm, 0.0]), followed, SERVO_S));
@@ -322,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn a_machine_has_changed_where_laws_that_held_for_a_second_of_motion_are_wrong_and_once() {
+    fn a_machine_has_changed_where_models_that_held_for_a_second_of_motion_are_wrong_and_once() {
         let changes = |held: u32, forgotten: bool| {
             let mut validity = after(held, [0.0; 2], 0.0);
             if forgotten {

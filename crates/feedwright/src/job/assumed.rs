@@ -5,7 +5,7 @@ use feedwright_sim::Axis;
 
 use super::Job;
 use crate::controllers::{CutsUncorrected, Knows};
-use crate::report::{Assumptions, LawKnowledge};
+use crate::report::{Assumptions, ModelKnowledge};
 
 /// Tests an axis for one property.
 type Has = fn(&Axis) -> bool;
@@ -45,7 +45,7 @@ impl Job {
     /// Returns the assumptions behind the figures of its runs. `axes` of the machine were
     /// simulated. `unidentified` are the controllers for which nothing was identified.
     pub(super) fn assumptions(&self, axes: usize, unidentified: &[CutsUncorrected]) -> Assumptions {
-        let (law, law_from) = self.law(unidentified);
+        let (axis_model, model_from) = self.axis_model(unidentified);
         let simulated = &self.machine.axes[..axes.min(self.machine.axes.len())];
         let named = |table: &[(&'static str, Has)], there: bool| -> Vec<&'static str> {
             table
@@ -73,23 +73,26 @@ impl Job {
                 .collect(),
             noise_seed: self.machine.noise.seed,
             controller: self.controller.name,
-            law,
-            law_from,
+            axis_model,
+            model_from,
         }
     }
 
     /// Returns how the requested controller knows the model of the axes, and its source.
-    fn law(&self, unidentified: &[CutsUncorrected]) -> (LawKnowledge, String) {
+    fn axis_model(&self, unidentified: &[CutsUncorrected]) -> (ModelKnowledge, String) {
         match unidentified
             .iter()
             .find(|remark| remark.controller() == self.controller.name)
         {
             Some(CutsUncorrected::NothingIdentified { .. }) => {
-                return (LawKnowledge::None, "nothing could be identified".to_owned());
+                return (
+                    ModelKnowledge::None,
+                    "nothing could be identified".to_owned(),
+                );
             }
             Some(CutsUncorrected::Unsuited { .. }) => {
                 return (
-                    LawKnowledge::None,
+                    ModelKnowledge::None,
                     "it does not suit this machine and cuts uncorrected".to_owned(),
                 );
             }
@@ -97,29 +100,29 @@ impl Job {
         }
         if let Some(about) = self.model.as_ref().map(|model| model.about()) {
             return (
-                LawKnowledge::Identified,
+                ModelKnowledge::Identified,
                 format!("the model: {}, {}", about.source, about.date),
             );
         }
         match self.controller.knows {
-            Knows::Nothing => (LawKnowledge::None, "it needs none".to_owned()),
+            Knows::Nothing => (ModelKnowledge::None, "it needs none".to_owned()),
             Knows::Identified => {
                 let seed = self.choices.seed;
                 (
-                    LawKnowledge::Identified,
+                    ModelKnowledge::Identified,
                     format!("a simulated recording of this machine, seed {seed}"),
                 )
             }
             Knows::ExactModel => (
-                LawKnowledge::Exact,
+                ModelKnowledge::Exact,
                 "the parameters of the simulated machine".to_owned(),
             ),
             Knows::Everything => (
-                LawKnowledge::Exact,
+                ModelKnowledge::Exact,
                 "the parameters of the simulated machine and of all that disturbs it".to_owned(),
             ),
             Knows::EarlierLaps => (
-                LawKnowledge::Learned,
+                ModelKnowledge::Learned,
                 "earlier laps of the same part".to_owned(),
             ),
         }

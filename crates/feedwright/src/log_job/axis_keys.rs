@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use feedwright_ident::{FoundAxis, LawTerm, NumberSource, SERVO_MECHANICS};
+use feedwright_ident::{FoundAxis, ModelTerm, NumberSource, SERVO_MECHANICS};
 
 use super::digits;
 
@@ -114,7 +114,7 @@ fn noise(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
 }
 
 fn remarks(found: &FoundAxis) -> Vec<String> {
-    let late = digits(found.law().get(LawTerm::RecordDelay));
+    let late = digits(found.axis_model().get(ModelTerm::RecordDelay));
     vec![format!(
         "the log has actual positions {late} s later than the commands; no machine shows that by itself"
     )]
@@ -128,14 +128,14 @@ fn nm_per_mm_s2(found: &FoundAxis) -> f64 {
 /// Inertia and friction.
 fn mechanics(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
     let ((lead, of_lead), (inertia, _, of_inertia)) = (found.lead(), found.inertia());
-    let (get, nm) = (|term| found.law().get(term), nm_per_mm_s2(found));
+    let (get, nm) = (|term| found.axis_model().get(term), nm_per_mm_s2(found));
     keys.push(by_source("lead_mm_per_rev", lead, of_lead));
     keys.push(by_source(
         "inertia_kg_m2",
         inertia.clamp(1e-9, 1e3),
         of_inertia,
     ));
-    let viscous = get(LawTerm::Viscous);
+    let viscous = get(ModelTerm::Viscous);
     let of_viscous = if viscous > 0.0 {
         found.gains_source()
     } else {
@@ -148,22 +148,25 @@ fn mechanics(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
     ));
     keys.push(told(
         "coulomb_friction_nm",
-        nm * get(LawTerm::Coulomb),
-        interval(found, LawTerm::Coulomb, nm),
+        nm * get(ModelTerm::Coulomb),
+        interval(found, ModelTerm::Coulomb, nm),
     ));
-    let smoothing = found.law().smoothing_at_mm_s(mechanics_s) * TAU / lead;
+    let smoothing = found.axis_model().smoothing_at_mm_s(mechanics_s) * TAU / lead;
     keys.push(assumed(
         "coulomb_smoothing_rad_s",
         smoothing.max(LEAST_SMOOTHING_RAD_S),
         "assumed",
     ));
-    let (offset, most) = (get(LawTerm::Offset), MOST_ASYMMETRY * get(LawTerm::Coulomb));
+    let (offset, most) = (
+        get(ModelTerm::Offset),
+        MOST_ASYMMETRY * get(ModelTerm::Coulomb),
+    );
     let held = if offset.abs() > most {
         "; held within the Coulomb friction"
     } else {
         ""
     };
-    let comment = format!("{}{held}", interval(found, LawTerm::Offset, nm));
+    let comment = format!("{}{held}", interval(found, ModelTerm::Offset, nm));
     keys.push(told(
         "coulomb_asymmetry_nm",
         nm * offset.clamp(-most, most),
@@ -175,28 +178,28 @@ fn mechanics(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
 
 /// Gains and limits of the loops.
 fn loops(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
-    let (get, nm) = (|term| found.law().get(term), nm_per_mm_s2(found));
+    let (get, nm) = (|term| found.axis_model().get(term), nm_per_mm_s2(found));
     let apart = match found.gains_source() {
         NumberSource::Assumed => "from Kp Kv / J and (Kv + B) / J, B being assumed",
         _ => "from Kp Kv / J and (Kv + B) / J",
     };
-    keys.push(told("kp_1_s", found.law().kp_1_s(), apart));
+    keys.push(told("kp_1_s", found.axis_model().kp_1_s(), apart));
     keys.push(assumed("kd", 0.0, "assumed"));
     keys.push(told(
         "kv_nm_s_per_rad",
-        found.inertia().0 * found.law().speed_gain_1_s(),
+        found.inertia().0 * found.axis_model().speed_gain_1_s(),
         apart,
     ));
-    let limit = get(LawTerm::AccelerationLimit);
+    let limit = get(ModelTerm::AccelerationLimit);
     if limit > 0.0 {
         keys.push(told(
             "torque_limit_nm",
             nm * limit,
-            interval(found, LawTerm::AccelerationLimit, nm),
+            interval(found, ModelTerm::AccelerationLimit, nm),
         ));
     } else {
-        let needed =
-            nm * (found.most[1] + get(LawTerm::Coulomb) + get(LawTerm::Viscous) * found.most[0]);
+        let needed = nm
+            * (found.most[1] + get(ModelTerm::Coulomb) + get(ModelTerm::Viscous) * found.most[0]);
         let limit = (SPARE * needed).clamp(1e-6, 1e6);
         keys.push(assumed(
             "torque_limit_nm",
@@ -208,8 +211,8 @@ fn loops(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
 
 /// Adds the keys of further properties of an axis.
 fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
-    let get = |term| found.law().get(term);
-    let late_s = get(LawTerm::CommandDelay);
+    let get = |term| found.axis_model().get(term);
+    let late_s = get(ModelTerm::CommandDelay);
     if late_s > 0.0 {
         keys.push(told(
             "command_delay_s",
@@ -217,15 +220,22 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
             "commands reach the position loop late, by whole servo periods",
         ));
     }
-    let periods = (get(LawTerm::LoopDelay) / mechanics_s)
+    let periods = (get(ModelTerm::LoopDelay) / mechanics_s)
         .round()
         .min((MOST_DRIVE_DELAY_S / mechanics_s).floor());
     let whole = periods * mechanics_s;
-    optional(keys, found, "drive_delay_s", LawTerm::LoopDelay, whole, 1.0);
-    let integral = get(LawTerm::Integral);
+    optional(
+        keys,
+        found,
+        "drive_delay_s",
+        ModelTerm::LoopDelay,
+        whole,
+        1.0,
+    );
+    let integral = get(ModelTerm::Integral);
     if integral > 0.0 {
         let half = found
-            .half_interval(LawTerm::Integral)
+            .half_interval(ModelTerm::Integral)
             .unwrap_or(f64::INFINITY);
         let end = |rate: f64| {
             if rate > 0.0 {
@@ -242,32 +252,46 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
         ));
     }
     for (name, term) in [
-        ("velocity_feedforward", LawTerm::VelocityFeedforward),
-        ("acceleration_feedforward", LawTerm::AccelerationFeedforward),
-        ("speed_limit_mm_s", LawTerm::SpeedLimit),
+        ("velocity_feedforward", ModelTerm::VelocityFeedforward),
+        (
+            "acceleration_feedforward",
+            ModelTerm::AccelerationFeedforward,
+        ),
+        ("speed_limit_mm_s", ModelTerm::SpeedLimit),
     ] {
         optional(keys, found, name, term, get(term), 1.0);
     }
     if let Some(resolved) = &found.resolved {
-        let fitted = interval(found, LawTerm::SpeedWindow, 1.0);
+        let fitted = interval(found, ModelTerm::SpeedWindow, 1.0);
         let of_window = if resolved.torque.is_some() {
             fitted
         } else {
             "given".to_owned()
         };
-        keys.push(told("speed_window_s", get(LawTerm::SpeedWindow), of_window));
-        let is_held = if get(LawTerm::SpeedHold) > 0.0 {
+        keys.push(told(
+            "speed_window_s",
+            get(ModelTerm::SpeedWindow),
+            of_window,
+        ));
+        let is_held = if get(ModelTerm::SpeedHold) > 0.0 {
             1.0
         } else {
             0.0
         };
-        optional(keys, found, "speed_held", LawTerm::SpeedHold, is_held, 1.0);
+        optional(
+            keys,
+            found,
+            "speed_held",
+            ModelTerm::SpeedHold,
+            is_held,
+            1.0,
+        );
     }
-    let filter = get(LawTerm::FilterTime);
+    let filter = get(ModelTerm::FilterTime);
     if filter > 0.0 {
         let comment = format!(
             "a time constant of {} s",
-            interval(found, LawTerm::FilterTime, 1.0)
+            interval(found, ModelTerm::FilterTime, 1.0)
         );
         keys.push(told(
             "torque_filter_hz",
@@ -279,7 +303,7 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
             keys,
             found,
             "torque_filter_hz",
-            LawTerm::FilterTime,
+            ModelTerm::FilterTime,
             0.0,
             1.0,
         );
@@ -289,38 +313,38 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
 
 /// Adds the keys of further properties of its friction.
 fn friction_extras(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
-    let get = |term| found.law().get(term);
+    let get = |term| found.axis_model().get(term);
     optional(
         keys,
         found,
         "presliding_um",
-        LawTerm::Presliding,
-        1e3 * get(LawTerm::Presliding),
+        ModelTerm::Presliding,
+        1e3 * get(ModelTerm::Presliding),
         1e3,
     );
-    let stribeck = get(LawTerm::Stribeck);
+    let stribeck = get(ModelTerm::Stribeck);
     if stribeck > 0.0 {
-        let nm = nm_per_mm_s2(found) * stribeck * get(LawTerm::Coulomb);
+        let nm = nm_per_mm_s2(found) * stribeck * get(ModelTerm::Coulomb);
         let comment = format!(
             "a part of {} of the Coulomb friction",
-            interval(found, LawTerm::Stribeck, 1.0)
+            interval(found, ModelTerm::Stribeck, 1.0)
         );
         keys.push(told("stribeck_nm", nm, comment));
         optional(
             keys,
             found,
             "stribeck_mm_s",
-            LawTerm::StribeckSpeed,
-            get(LawTerm::StribeckSpeed),
+            ModelTerm::StribeckSpeed,
+            get(ModelTerm::StribeckSpeed),
             1.0,
         );
     }
 }
 
 /// The interval of a term in the unit of its key.
-fn interval(found: &FoundAxis, term: LawTerm, scale: f64) -> String {
+fn interval(found: &FoundAxis, term: ModelTerm, scale: f64) -> String {
     found.half_interval(term).map_or_else(String::new, |half| {
-        let value = scale * found.law().get(term);
+        let value = scale * found.axis_model().get(term);
         format!(
             "{} to {}",
             digits(value - scale * half),
@@ -335,7 +359,7 @@ fn optional(
     keys: &mut Vec<AxisKey>,
     found: &FoundAxis,
     name: &'static str,
-    term: LawTerm,
+    term: ModelTerm,
     value: f64,
     scale: f64,
 ) {
@@ -347,15 +371,15 @@ fn optional(
 
 /// Motor and table as two masses, where the log shows them.
 fn transmission(found: &FoundAxis, mechanics_s: f64) -> Vec<AxisKey> {
-    let Some(screw) = found.law().transmission(mechanics_s) else {
+    let Some(screw) = found.axis_model().transmission(mechanics_s) else {
         return vec![];
     };
-    let seconds = interval(found, LawTerm::Resonance, 1.0);
+    let seconds = interval(found, ModelTerm::Resonance, 1.0);
     vec![
         told(
             "table_share",
             screw.table_share,
-            interval(found, LawTerm::TableShare, 1.0),
+            interval(found, ModelTerm::TableShare, 1.0),
         ),
         told(
             "resonance_hz",
@@ -366,7 +390,7 @@ fn transmission(found: &FoundAxis, mechanics_s: f64) -> Vec<AxisKey> {
         told(
             "backlash_um",
             screw.backlash_um,
-            interval(found, LawTerm::Backlash, 1e3),
+            interval(found, ModelTerm::Backlash, 1e3),
         ),
     ]
 }

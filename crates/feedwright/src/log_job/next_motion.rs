@@ -4,7 +4,7 @@
 //! updated machine file where those are higher. Parameters that no motion determines (inertia, the
 //! scale of torques) need no motion.
 
-use feedwright_ident::{AxisExcitation, FoundAxis, LawTerm, MotionPart};
+use feedwright_ident::{AxisExcitation, FoundAxis, ModelTerm, MotionPart};
 use feedwright_sim::Machine;
 
 use super::LogIdentified;
@@ -73,7 +73,7 @@ fn machine_limits(machine: &Machine, axis: usize) -> [f64; 2] {
 fn parts(found: &FoundAxis, is_one_sided: bool) -> Vec<MotionPart> {
     let unseen = &found.unseen;
     let is_needed = |part: &MotionPart| {
-        let shows = |term: &LawTerm| shown_by(*term).contains(part);
+        let shows = |term: &ModelTerm| shown_by(*term).contains(part);
         // Without a name, anything may be open.
         let is_open =
             unseen.is_open() && (unseen.terms.is_empty() || unseen.terms.iter().any(shows));
@@ -84,25 +84,26 @@ fn parts(found: &FoundAxis, is_one_sided: bool) -> Vec<MotionPart> {
 }
 
 /// Kinds of motion that show a number of an axis.
-fn shown_by(term: LawTerm) -> &'static [MotionPart] {
+fn shown_by(term: ModelTerm) -> &'static [MotionPart] {
     use MotionPart::{Creeping, Reversals, Strokes};
     match term {
-        LawTerm::LoopGain | LawTerm::Damping => &[Reversals, Strokes],
-        LawTerm::Coulomb | LawTerm::Offset => &[Creeping, Reversals],
-        LawTerm::VelocityFeedforward | LawTerm::Viscous | LawTerm::SpeedLimit => &[Reversals],
-        LawTerm::Presliding | LawTerm::Stribeck | LawTerm::StribeckSpeed | LawTerm::Backlash => {
-            &[Creeping]
-        }
-        LawTerm::RecordDelay
-        | LawTerm::CommandDelay
-        | LawTerm::LoopDelay
-        | LawTerm::AccelerationFeedforward
-        | LawTerm::Integral
-        | LawTerm::FilterTime
-        | LawTerm::SpeedWindow
-        | LawTerm::SpeedHold
-        | LawTerm::AccelerationLimit
-        | LawTerm::Resonance
-        | LawTerm::TableShare => &[Strokes],
+        ModelTerm::LoopGain | ModelTerm::Damping => &[Reversals, Strokes],
+        ModelTerm::Coulomb | ModelTerm::Offset => &[Creeping, Reversals],
+        ModelTerm::VelocityFeedforward | ModelTerm::Viscous | ModelTerm::SpeedLimit => &[Reversals],
+        ModelTerm::Presliding
+        | ModelTerm::Stribeck
+        | ModelTerm::StribeckSpeed
+        | ModelTerm::Backlash => &[Creeping],
+        ModelTerm::RecordDelay
+        | ModelTerm::CommandDelay
+        | ModelTerm::LoopDelay
+        | ModelTerm::AccelerationFeedforward
+        | ModelTerm::Integral
+        | ModelTerm::FilterTime
+        | ModelTerm::SpeedWindow
+        | ModelTerm::SpeedHold
+        | ModelTerm::AccelerationLimit
+        | ModelTerm::Resonance
+        | ModelTerm::TableShare => &[Strokes],
     }
 }

@@ -180,7 +180,11 @@ fn write_errors(out: &mut impl Write, axis: &FoundAxis) -> io::Result<()> {
             "<tr{class}><td>{name}</td><td>{a}</td><td>{b}</td><td>{c}</td><td>{whole}</td><td>{step}</td></tr>"
         )
     };
-    row(" class=\"ours\"", "model of the axis", &axis.scores.grey_box)?;
+    row(
+        " class=\"ours\"",
+        "model of the axis",
+        &axis.scores.grey_box,
+    )?;
     for (arx, errors) in &axis.scores.arx {
         row("", &format!("ARX, {}", arx.words()), errors)?;
     }
@@ -250,7 +254,12 @@ pub fn following(identified: &LogIdentified, i: usize, times_s: Range<f64>) -> F
     let above = vec![
         curve("measured", COLORS[0], LineStyle::Solid, &measured),
         curve("best ARX", COLORS[2], LineStyle::Thin, &by_arx),
-        curve("model of the axis", COLORS[1], LineStyle::Dashed, &predicted),
+        curve(
+            "model of the axis",
+            COLORS[1],
+            LineStyle::Dashed,
+            &predicted,
+        ),
     ];
     let below = vec![
         curve("best ARX", COLORS[2], LineStyle::Thin, &of_arx),

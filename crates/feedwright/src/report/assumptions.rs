@@ -26,15 +26,15 @@ pub struct Assumptions {
     /// Name of the controller.
     pub controller: &'static str,
     /// Knowledge that the controller has of the axis model.
-    pub law: LawKnowledge,
+    pub axis_model: ModelKnowledge,
     /// Source of that knowledge, in words.
-    pub law_from: String,
+    pub model_from: String,
 }
 
 /// Knowledge that a controller has of the model of the axes that it corrects.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum LawKnowledge {
+pub enum ModelKnowledge {
     /// The controller uses no model.
     #[default]
     None,
@@ -107,24 +107,26 @@ impl Assumptions {
     }
 
     /// Returns a sentence with the axis model that the controller uses.
-    pub fn law_sentence(&self) -> String {
+    pub fn model_sentence(&self) -> String {
         let Self {
             controller,
-            law,
-            law_from,
+            axis_model,
+            model_from,
             ..
         } = self;
-        match law {
-            LawKnowledge::None => format!("{controller} uses no model of the axes ({law_from})"),
-            LawKnowledge::Identified => {
+        match axis_model {
+            ModelKnowledge::None => {
+                format!("{controller} uses no model of the axes ({model_from})")
+            }
+            ModelKnowledge::Identified => {
                 format!(
-                    "{controller} uses an identified model of the axes (from {law_from}); a real machine that differs from it comes out worse"
+                    "{controller} uses an identified model of the axes (from {model_from}); a real machine that differs from it comes out worse"
                 )
             }
-            LawKnowledge::Exact => {
-                format!("{controller} is given {law_from}, which nobody has of a real machine")
+            ModelKnowledge::Exact => {
+                format!("{controller} is given {model_from}, which nobody has of a real machine")
             }
-            LawKnowledge::Learned => format!("{controller} has learned from {law_from}"),
+            ModelKnowledge::Learned => format!("{controller} has learned from {model_from}"),
         }
     }
 }

@@ -127,7 +127,7 @@ fn assumed(report: &Report, units: PageUnits) -> String {
     let mut sentences = vec![
         machine,
         assumed.simulation_sentence(),
-        assumed.law_sentence(),
+        assumed.model_sentence(),
     ];
     sentences.extend(
         report

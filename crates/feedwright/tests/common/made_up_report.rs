@@ -105,7 +105,7 @@ pub(crate) fn report(axes: usize, rows: usize) -> Report {
             machine: HOSTILE.to_owned(),
             description: HOSTILE.to_owned(),
             machine_source: HOSTILE.to_owned(),
-            law_from: HOSTILE.to_owned(),
+            model_from: HOSTILE.to_owned(),
             ..Assumptions::default()
         },
         program: (1..30)

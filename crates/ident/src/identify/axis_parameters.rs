@@ -213,7 +213,7 @@ impl AxisParameters {
     /// from its data sheets.
     #[must_use]
     pub fn believed(&self, axis: &KnownAxis, settings: &DriveSettings) -> KnownAxis {
-        let nominal = self.law(settings);
+        let nominal = self.axis_model(settings);
         let less_nm = axis.nominal.coulomb_friction_nm - nominal.coulomb_friction_nm;
         KnownAxis {
             nominal,
@@ -226,7 +226,7 @@ impl AxisParameters {
     }
 
     /// Returns the parameters in the form that the axis model takes.
-    fn law(&self, settings: &DriveSettings) -> Parameters {
+    fn axis_model(&self, settings: &DriveSettings) -> Parameters {
         let DriveSettings {
             rad_per_mm,
             kp_1_s,

@@ -25,7 +25,7 @@ mod noise;
 mod place;
 use std::f64::consts::TAU;
 
-use feedwright_control::{AxisLaw, AxisStatistics};
+use feedwright_control::{AxisModel, AxisStatistics};
 use feedwright_sim::{Known, KnownAxis, Period};
 
 use super::recording::Recording;
@@ -75,7 +75,7 @@ pub fn axis_statistics<const N: usize>(
 /// Estimates the statistics of one axis from commands and measured positions, mm, one pair per
 /// servo period.
 fn of_axis(stretches: &[Vec<[f64; 2]>], known: &KnownAxis, period: &Period) -> AxisStatistics {
-    let rad_per_mm = AxisLaw::new(known.nominal, period.periods())
+    let rad_per_mm = AxisModel::new(known.nominal, period.periods())
         .parameters
         .rad_per_mm;
     let step_rad = step_mm(stretches) * rad_per_mm;

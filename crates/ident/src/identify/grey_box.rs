@@ -46,7 +46,7 @@ pub(crate) mod gain_changes;
 pub(crate) mod search_bound;
 pub(crate) mod found_axis;
 mod command_delay;
-mod law_fit;
+mod model_fit;
 pub(crate) mod contour_scores;
 pub(crate) mod verdict;
 
@@ -119,7 +119,7 @@ pub enum NotFound {
     #[error(
         "no model of a servo axis fits axis {axis}: the best leaves {left_um:.1} um RMS of a following error of {following_um:.1} um\n  hint: check with --columns that command and actual position belong to this axis"
     )]
-    NoLaw {
+    NoModel {
         /// Its name.
         axis: String,
         /// RMS that is left, um.
@@ -180,7 +180,7 @@ pub fn identify_machine(
             let facts = facts.get(i).copied().unwrap_or_default();
             let torque = torques.get(i).copied().flatten();
             let done = |part: f64| from + (to - from) * (i as f64 + part) / records.len() as f64;
-            law_fit::find(record, torque, &split, facts, &mut |part| tell(done(part)))
+            model_fit::find(record, torque, &split, facts, &mut |part| tell(done(part)))
         };
         records.iter().enumerate().map(axis).collect()
     };

@@ -8,7 +8,7 @@
 use std::f64::consts::TAU;
 
 use feedwright_control::{
-    AxisInverse, AxisKnowledge, AxisLaw, AxisStatistics, DriveParameters, FrictionParameters,
+    AxisInverse, AxisKnowledge, AxisModel, AxisStatistics, DriveParameters, FrictionParameters,
     LoopDelays, Parameters, Periods, TransmissionParameters,
 };
 
@@ -96,16 +96,16 @@ impl Known {
     }
 
     /// Returns the nominal models of the first N axes.
-    pub fn law<const N: usize>(&self) -> [AxisLaw; N] {
-        std::array::from_fn(|i| AxisLaw::new(self.axis(i).nominal, self.period.periods()))
+    pub fn axis_model<const N: usize>(&self) -> [AxisModel; N] {
+        std::array::from_fn(|i| AxisModel::new(self.axis(i).nominal, self.period.periods()))
     }
 
     /// The inverse of the first N axes, with all that is known of them.
     pub fn inverse<const N: usize>(&self) -> [AxisInverse; N] {
-        let laws = self.law::<N>();
+        let axis_models = self.axis_model::<N>();
         std::array::from_fn(|i| {
             let axis = self.axis(i);
-            AxisInverse::new(laws[i], axis.drive, axis.friction, axis.delays)
+            AxisInverse::new(axis_models[i], axis.drive, axis.friction, axis.delays)
         })
     }
 }

@@ -7,8 +7,8 @@
 //! Effects that the machine file does not name are skipped, with results identical to the bit.
 
 use feedwright_control::{
-    AxisLaw, AxisState, CommandQueue, DriveLaw, DriveParameters, DriveState, FrictionParameters,
-    MechanicsLaw, MechanicsState, TableState,
+    AxisModel, AxisState, CommandQueue, DriveModel, DriveParameters, DriveState,
+    FrictionParameters, MechanicsModel, MechanicsState, TableState,
 };
 
 use super::drive::{Delay, in_steps, torque_step_nm};
@@ -22,7 +22,7 @@ use crate::machine::{Axis, Machine};
 pub(super) struct NonidealAxis {
     /// Commands on their way to the position loop, rad.
     commands: CommandQueue,
-    drive: DriveLaw,
+    drive: DriveModel,
     drive_state: DriveState,
     delay: Delay,
     torque_step_nm: f64,
@@ -32,7 +32,7 @@ pub(super) struct NonidealAxis {
     /// True if either of the two is present.
     is_sensed: bool,
     motor: Option<MotorTorque>,
-    mechanics: MechanicsLaw,
+    mechanics: MechanicsModel,
     broadband: Option<CorrelatedNoise>,
     pub(super) wander: Option<Wander>,
     scale_on_table: bool,
@@ -44,7 +44,7 @@ impl NonidealAxis {
     pub(super) fn new(
         machine: &Machine,
         index: usize,
-        law: &AxisLaw,
+        axis_model: &AxisModel,
         angle_rad: f64,
         seed: u64,
     ) -> Self {
@@ -58,8 +58,8 @@ impl NonidealAxis {
                 angle_rad,
             ),
             // What it sees of the speed is simulated as it is.
-            drive: DriveLaw::new(
-                law,
+            drive: DriveModel::new(
+                axis_model,
                 DriveParameters {
                     speed_window_s: 0.0,
                     ..axis.drive()
@@ -73,7 +73,7 @@ impl NonidealAxis {
             latency,
             speed,
             motor: MotorTorque::new(axis),
-            mechanics: MechanicsLaw::new(law, axis.friction(), axis.transmission()),
+            mechanics: MechanicsModel::new(axis_model, axis.friction(), axis.transmission()),
             broadband: broadband(axis, period.mechanics_s, seed, index),
             wander: Wander::new(axis, period.servo_s, period.mechanics_s, seed, index),
             scale_on_table: axis
@@ -183,7 +183,7 @@ impl NonidealAxis {
     /// The position loop: what it asks for leaves for the drive.
     pub(super) fn position_loop(
         &mut self,
-        law: &AxisLaw,
+        axis_model: &AxisModel,
         command_rad: f64,
         motor: &mut AxisState,
         period: u64,
@@ -191,9 +191,13 @@ impl NonidealAxis {
     ) {
         let measured_rad = self.measured_rad(motor, counter);
         let arrived_rad = self.commands.pass(command_rad);
-        let reference =
-            self.drive
-                .position_loop(law, arrived_rad, measured_rad, motor, &mut self.drive_state);
+        let reference = self.drive.position_loop(
+            axis_model,
+            arrived_rad,
+            measured_rad,
+            motor,
+            &mut self.drive_state,
+        );
         self.delay.send(reference, period);
     }
 
@@ -201,20 +205,20 @@ impl NonidealAxis {
     #[inline]
     pub(super) fn advance(
         &mut self,
-        law: &AxisLaw,
+        axis_model: &AxisModel,
         motor: &mut AxisState,
         moment: Moment,
         disturbance_nm: f64,
     ) -> f64 {
         let speed_rad_s = if self.is_sensed {
-            self.sensed_rad_s(law, motor, moment)
+            self.sensed_rad_s(axis_model, motor, moment)
         } else {
             motor.speed_rad_s
         };
         let reference = self.delay.arrived(moment.substep);
-        let wanted_nm = self
-            .drive
-            .torque_nm(law, reference, speed_rad_s, &mut self.drive_state);
+        let wanted_nm =
+            self.drive
+                .torque_nm(axis_model, reference, speed_rad_s, &mut self.drive_state);
         let torque_nm = in_steps(wanted_nm, self.torque_step_nm);
         let load_nm = match &mut self.broadband {
             Some(noise) => disturbance_nm + noise.next(moment.counter),
@@ -231,7 +235,7 @@ impl NonidealAxis {
     }
 
     /// The position on its way to the control is taken; the speed as the drive has it.
-    fn sensed_rad_s(&mut self, law: &AxisLaw, motor: &AxisState, moment: Moment) -> f64 {
+    fn sensed_rad_s(&mut self, axis_model: &AxisModel, motor: &AxisState, moment: Moment) -> f64 {
         if self
             .latency
             .as_ref()
@@ -243,7 +247,7 @@ impl NonidealAxis {
             }
         }
         match &mut self.speed {
-            Some(speed) => speed.speed_rad_s(motor, moment, law.periods.mechanics_s),
+            Some(speed) => speed.speed_rad_s(motor, moment, axis_model.periods.mechanics_s),
             None => motor.speed_rad_s,
         }
     }

@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn within_bounds_that_a_linear_law_swings_at_the_way_back_is_short_and_still() {
+    fn within_bounds_that_a_linear_model_swings_at_the_way_back_is_short_and_still() {
         let gains = WeightedGains::new([1.6e-5, 0.0], of_double_integrator);
         let bounds = [100.0, 2e4];
         let room = Room {

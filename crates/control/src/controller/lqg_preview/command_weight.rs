@@ -23,10 +23,10 @@
 //! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, section 9.2, for a
 //! weight on the rate of the input; the weight on the difference from an ideal command is our own.
 
-use crate::axis::AxisLaw;
+use crate::axis::AxisModel;
 use crate::axis::drive::DriveParameters;
 use crate::axis::knowledge::AxisKnowledge;
-use crate::axis::mechanics::MechanicsLaw;
+use crate::axis::mechanics::MechanicsModel;
 
 use super::linear::{LinearAxis, STATES};
 use super::riccati::{PeriodCost, StateMatrix, inner, regulator};
@@ -46,17 +46,17 @@ const INERTIA_STEPS: u32 = 35;
 
 /// Coefficients of the position loop for commands: K0, K1, K2, kp and kd.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct CommandLaw {
+pub(super) struct CommandModel {
     of_commands: [f64; 3],
     kp_1_s: f64,
     kd: f64,
     servo_s: f64,
 }
 
-impl CommandLaw {
+impl CommandModel {
     /// Creates the coefficients of an axis with this drive.
-    pub(super) fn new(law: &AxisLaw, drive: &DriveParameters) -> Self {
-        let (parameters, servo_s) = (law.parameters, law.periods.servo_s);
+    pub(super) fn new(axis_model: &AxisModel, drive: &DriveParameters) -> Self {
+        let (parameters, servo_s) = (axis_model.parameters, axis_model.periods.servo_s);
         let by_speed = (drive.velocity_feedforward + parameters.kd) / servo_s;
         let by_change = drive.acceleration_feedforward * parameters.inertia_kg_m2
             / (parameters.kv_nm_s_per_rad * servo_s * servo_s);
@@ -110,13 +110,16 @@ impl CommandHistory {
     /// Stores a decided command, whose reference speed is `asked_rad_s` below v_r.
     pub(super) fn decide(
         &mut self,
-        law: &CommandLaw,
+        axis_model: &CommandModel,
         off: &[f64; REGULATED],
         asked_rad_s: f64,
         command_rad: f64,
     ) {
-        let [k0, ..] = law.of_commands;
-        self.decided_rad = Some([command_rad, (-asked_rad_s - inner(&law.row(), off)) / k0]);
+        let [k0, ..] = axis_model.of_commands;
+        self.decided_rad = Some([
+            command_rad,
+            (-asked_rad_s - inner(&axis_model.row(), off)) / k0,
+        ]);
     }
 
     /// Takes in a sent command. A command that was not decided counts as ideal: the regulator must
@@ -137,10 +140,10 @@ impl CommandHistory {
 /// speed for a unit of each state.
 pub(super) fn gains<'a>(
     axis: &'a LinearAxis,
-    law: &'a CommandLaw,
+    axis_model: &'a CommandModel,
 ) -> impl Fn([f64; 2]) -> [f64; REGULATED] + 'a {
     let (states, input, _) = axis.sampled();
-    move |[p_s2, q]| priced(&states, &input, &axis.cost(p_s2), law, q)
+    move |[p_s2, q]| priced(&states, &input, &axis.cost(p_s2), axis_model, q)
 }
 
 /// Returns the gains of an axis with these states, this input and this cost of a servo period, and
@@ -149,14 +152,14 @@ fn priced(
     states: &StateMatrix<STATES>,
     input: &[f64; STATES],
     cost: &PeriodCost<STATES>,
-    law: &CommandLaw,
+    axis_model: &CommandModel,
     q: f64,
 ) -> [f64; REGULATED] {
     if q == 0.0 {
         return widened(&regulator(states, input, cost));
     }
-    let (states, input, k0, row) = commanded(states, input, law);
-    let q = q * k0 * k0 * law.servo_s * law.servo_s;
+    let (states, input, k0, row) = commanded(states, input, axis_model);
+    let q = q * k0 * k0 * axis_model.servo_s * axis_model.servo_s;
     let PeriodCost {
         states: of_states,
         cross,
@@ -190,9 +193,9 @@ pub(super) fn least_inertia(known: &AxisKnowledge, gains: &[f64; REGULATED]) -> 
         lighter.parameters.inertia_kg_m2 *= 1.0 + part;
         lighter.drive.acceleration_feedforward /= 1.0 + part;
         let axis = regulated_axis(&lighter);
-        let law = CommandLaw::new(&lighter.law(), &lighter.drive);
+        let axis_model = CommandModel::new(&lighter.axis_model(), &lighter.drive);
         let (states, input, _) = axis.sampled();
-        let (states, input, k0, row) = commanded(&states, &input, &law);
+        let (states, input, k0, row) = commanded(&states, &input, &axis_model);
         let by_offset: [f64; REGULATED] = core::array::from_fn(|i| (gains[i] + row[i]) / k0);
         // The characteristic polynomial has the same sign as far to the left.
         determinant(core::array::from_fn(|i| {
@@ -219,14 +222,14 @@ pub(super) fn regulated_axis(known: &AxisKnowledge) -> LinearAxis {
         statistics,
         ..
     } = known;
-    let law = known.law();
-    let mechanics = MechanicsLaw::new(&law, *friction, *transmission);
+    let axis_model = known.axis_model();
+    let mechanics = MechanicsModel::new(&axis_model, *friction, *transmission);
     let without_integral = DriveParameters {
         speed_window_s: drive.speed_window_s,
         ..DriveParameters::default()
     };
     LinearAxis::new(
-        &law,
+        &axis_model,
         &without_integral,
         mechanics.transmission(),
         statistics,
@@ -237,14 +240,14 @@ pub(super) fn regulated_axis(known: &AxisKnowledge) -> LinearAxis {
 fn commanded(
     states: &StateMatrix<STATES>,
     input: &[f64; STATES],
-    law: &CommandLaw,
+    axis_model: &CommandModel,
 ) -> (
     StateMatrix<REGULATED>,
     [f64; REGULATED],
     f64,
     [f64; REGULATED],
 ) {
-    let ([k0, ..], row) = (law.of_commands, law.row());
+    let ([k0, ..], row) = (axis_model.of_commands, axis_model.row());
     let mut commanded = [[0.0; REGULATED]; REGULATED];
     for ((to, of_axis), input) in commanded.iter_mut().zip(states).zip(input) {
         let of_axis = widened(of_axis);
@@ -336,10 +339,10 @@ mod tests {
     /// Sums of the squares of the second difference of o and of the angle, while noise is measured.
     fn answers(known: &AxisKnowledge, q: f64) -> [f64; 2] {
         let axis = regulated_axis(known);
-        let law = CommandLaw::new(&known.law(), &known.drive);
-        let gains = gains(&axis, &law)([1e-8, q]);
+        let axis_model = CommandModel::new(&known.axis_model(), &known.drive);
+        let gains = gains(&axis, &axis_model)([1e-8, q]);
         let (states, input, _) = axis.sampled();
-        let (states, input, k0, row) = commanded(&states, &input, &law);
+        let (states, input, k0, row) = commanded(&states, &input, &axis_model);
         let (mut x, mut bend, mut error) = ([0.0; REGULATED], 0.0, 0.0);
         for n in 0..2000_u32 {
             let mut seen = x;
@@ -372,8 +375,8 @@ mod tests {
     fn without_a_weight_the_gains_are_those_of_the_axis_alone() {
         let known = with_feedforward();
         let axis = regulated_axis(&known);
-        let law = CommandLaw::new(&known.law(), &known.drive);
-        let [none, tiny] = [0.0, 1e-14].map(|q| gains(&axis, &law)([1e-8, q]));
+        let axis_model = CommandModel::new(&known.axis_model(), &known.drive);
+        let [none, tiny] = [0.0, 1e-14].map(|q| gains(&axis, &axis_model)([1e-8, q]));
         for (none, tiny) in none.iter().zip(tiny) {
             assert!(
                 (none - tiny).abs() <= 1e-4 * none.abs().max(1.0),
@@ -385,12 +388,17 @@ mod tests {
     #[test]
     fn a_command_that_was_not_decided_on_counts_as_ideal() {
         let known = with_feedforward();
-        let (law, mut history) = (
-            CommandLaw::new(&known.law(), &known.drive),
+        let (axis_model, mut history) = (
+            CommandModel::new(&known.axis_model(), &known.drive),
             CommandHistory::IDEAL,
         );
         let mut send = |sent_rad: f64| {
-            history.decide(&law, &[0.0; REGULATED], -law.of_commands[0] * 0.01, 3.0);
+            history.decide(
+                &axis_model,
+                &[0.0; REGULATED],
+                -axis_model.of_commands[0] * 0.01,
+                3.0,
+            );
             history.sent(sent_rad);
             history.off_rad()
         };
@@ -403,11 +411,11 @@ mod tests {
     }
 
     #[test]
-    fn no_law_is_learned_so_light_that_its_loop_alternates() {
+    fn no_model_is_learned_so_light_that_its_loop_alternates() {
         let known = with_feedforward();
         let axis = regulated_axis(&known);
-        let law = CommandLaw::new(&known.law(), &known.drive);
-        let gains = gains(&axis, &law)([1e-8, 0.0625]);
+        let axis_model = CommandModel::new(&known.axis_model(), &known.drive);
+        let gains = gains(&axis, &axis_model)([1e-8, 0.0625]);
         let least = least_inertia(&known, &gains);
         assert!((-0.7..0.0).contains(&least), "{least}");
     }

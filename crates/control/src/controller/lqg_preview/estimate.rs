@@ -12,11 +12,11 @@
 //! Source: Gelb (1974), Applied Optimal Estimation, section 6.1, the extended filter; its gain is
 //! the constant gain of the linear part.
 
-use crate::axis::drive::{DriveLaw, DriveReference, DriveState};
+use crate::axis::drive::{DriveModel, DriveReference, DriveState};
 use crate::axis::knowledge::AxisKnowledge;
-use crate::axis::mechanics::{MechanicsLaw, MechanicsState};
+use crate::axis::mechanics::{MechanicsModel, MechanicsState};
 use crate::axis::statistics::AxisStatistics;
-use crate::axis::{self, AxisLaw};
+use crate::axis::{self, AxisModel};
 use crate::sine::sin;
 use crate::supervisor::one_step::{OneStep, RUN_S, run_periods};
 
@@ -42,10 +42,10 @@ const LARGEST_LOAD: f64 = 1.0 / 3.0;
 
 /// Constant part of an axis.
 #[derive(Debug, Clone)]
-pub(super) struct AxisModel {
-    pub(super) law: AxisLaw,
-    pub(super) drive: DriveLaw,
-    pub(super) mechanics: MechanicsLaw,
+pub(super) struct FilterModel {
+    pub(super) axis_model: AxisModel,
+    pub(super) drive: DriveModel,
+    pub(super) mechanics: MechanicsModel,
     statistics: AxisStatistics,
     pub(super) linear: LinearAxis,
     gains: GainTable,
@@ -168,7 +168,7 @@ fn amplified(states: &StateMatrix<STATES>, gains: [f64; STATES], servo_s: f64) -
     sum
 }
 
-impl AxisModel {
+impl FilterModel {
     /// Creates the model of an axis. If it `learns`, it also has gains for other statistics.
     pub(super) fn new(known: &AxisKnowledge, learns: bool) -> Self {
         let AxisKnowledge {
@@ -178,9 +178,9 @@ impl AxisModel {
             statistics,
             ..
         } = *known;
-        let law = known.law();
-        let mechanics = MechanicsLaw::new(&law, friction, transmission);
-        let linear = LinearAxis::new(&law, &drive, mechanics.transmission(), &statistics);
+        let axis_model = known.axis_model();
+        let mechanics = MechanicsModel::new(&axis_model, friction, transmission);
+        let linear = LinearAxis::new(&axis_model, &drive, mechanics.transmission(), &statistics);
         let (states, _, noise) = linear.sampled();
         let mut measured = [0.0; STATES];
         measured[0] = 1.0;
@@ -192,19 +192,19 @@ impl AxisModel {
             GainTable::constant(gains(measured_rad2))
         };
         Self {
-            law,
-            drive: DriveLaw::new(&law, drive),
+            axis_model,
+            drive: DriveModel::new(&axis_model, drive),
             mechanics,
             statistics,
             linear,
             amplified: gains
                 .levels()
-                .map(|gains| amplified(&states, gains, law.periods.servo_s)),
+                .map(|gains| amplified(&states, gains, axis_model.periods.servo_s)),
             gains,
             measured_rad2,
             least_rad: LEAST_SHARE * libm::sqrt(measured_rad2),
-            believed_rad: outliers::believed_rad(&law, measured_rad2),
-            command_periods: known.delays.command_periods(law.periods.servo_s),
+            believed_rad: outliers::believed_rad(&axis_model, measured_rad2),
+            command_periods: known.delays.command_periods(axis_model.periods.servo_s),
             late: late(known),
         }
     }
@@ -217,11 +217,11 @@ impl AxisModel {
     /// Returns the estimate of an axis at an angle, after a long motion at a constant speed without
     /// known loads, and the references that were sent to the drive for it.
     pub(super) fn moving(&self, angle_rad: f64, speed_rad_s: f64) -> (Estimate, Sent) {
-        let [sign] = axis::friction_signs(&[self.law], [speed_rad_s]);
+        let [sign] = axis::friction_signs(&[self.axis_model], [speed_rad_s]);
         let (drive, sent) = self.drive.moving(
-            &self.law,
+            &self.axis_model,
             speed_rad_s,
-            self.law.friction_nm(speed_rad_s, sign),
+            self.axis_model.friction_nm(speed_rad_s, sign),
         );
         let masses = MechanicsState::moving(angle_rad, speed_rad_s);
         (
@@ -248,7 +248,7 @@ impl AxisModel {
     /// Predicts one servo period.
     pub(super) fn predict(&self, estimate: &mut Estimate, sent: &Sent) {
         let [measured_late, _] = self.late;
-        let periods = self.law.periods.mechanics_per_servo;
+        let periods = self.axis_model.periods.mechanics_per_servo;
         self.go_on(estimate, sent, measured_late + periods, periods);
     }
 
@@ -292,10 +292,10 @@ impl AxisModel {
         let before_rad_s = estimate.masses.motor.speed_rad_s;
         self.predict(estimate, sent);
         let pushed_rad =
-            (estimate.masses.motor.speed_rad_s - before_rad_s) * self.law.periods.servo_s;
+            (estimate.masses.motor.speed_rad_s - before_rad_s) * self.axis_model.periods.servo_s;
         let shown_rad = self.shown_rad(estimate);
         let missed_rad = measured_rad - shown_rad;
-        let (believed_rad, servo_s) = (self.believed_rad, self.law.periods.servo_s);
+        let (believed_rad, servo_s) = (self.believed_rad, self.axis_model.periods.servo_s);
         let taken_rad =
             learnt
                 .outliers
@@ -334,10 +334,10 @@ impl AxisModel {
             ..
         } = estimate.masses;
         if presliding_nm != 0.0 {
-            return self.law.friction_nm(table.speed_rad_s, 0.0) + presliding_nm;
+            return self.axis_model.friction_nm(table.speed_rad_s, 0.0) + presliding_nm;
         }
-        let [sign] = axis::friction_signs(&[self.law], [table.speed_rad_s]);
-        self.law.friction_nm(table.speed_rad_s, sign)
+        let [sign] = axis::friction_signs(&[self.axis_model], [table.speed_rad_s]);
+        self.axis_model.friction_nm(table.speed_rad_s, sign)
     }
 
     /// Returns the age of the newest reference that acts before a measurement, servo periods, and
@@ -346,7 +346,7 @@ impl AxisModel {
         let [measured_late, drive_late] = self.late;
         let (late, per_servo) = (
             measured_late + drive_late,
-            self.law.periods.mechanics_per_servo,
+            self.axis_model.periods.mechanics_per_servo,
         );
         let age = late.checked_div(per_servo).unwrap_or(0);
         (
@@ -357,9 +357,9 @@ impl AxisModel {
 
     /// Changes to this knowledge of the axis. Its filter stays.
     pub(super) fn follow(&mut self, known: &AxisKnowledge) {
-        self.law = known.law();
-        self.drive = DriveLaw::new(&self.law, known.drive);
-        self.mechanics = MechanicsLaw::new(&self.law, known.friction, known.transmission);
+        self.axis_model = known.axis_model();
+        self.drive = DriveModel::new(&self.axis_model, known.drive);
+        self.mechanics = MechanicsModel::new(&self.axis_model, known.friction, known.transmission);
         self.late = late(known);
     }
 
@@ -367,7 +367,7 @@ impl AxisModel {
     /// the axis: other gains, another inertia.
     pub(super) fn is_possible(&self, estimate: &Estimate) -> bool {
         // A NaN load fails this comparison.
-        estimate.load_nm().abs() <= LARGEST_LOAD * self.law.parameters.torque_limit_nm
+        estimate.load_nm().abs() <= LARGEST_LOAD * self.axis_model.parameters.torque_limit_nm
     }
 
     /// Returns the estimate at the time at which a reference that is sent now begins to act.
@@ -382,7 +382,7 @@ impl AxisModel {
     /// servo period. `sent` holds the references up to the last one.
     fn go_on(&self, estimate: &mut Estimate, sent: &Sent, before: u32, periods: u32) {
         let [_, drive_late] = self.late;
-        let per_servo = self.law.periods.mechanics_per_servo;
+        let per_servo = self.axis_model.periods.mechanics_per_servo;
         for n in 0..periods {
             // Age of the reference that acts: up to one servo period ago it is the newest, up to
             // two the one before.
@@ -399,9 +399,9 @@ impl AxisModel {
             drive,
             acting_nm,
         } = estimate;
-        let drive_nm = self
-            .drive
-            .torque_nm(&self.law, reference, masses.motor.speed_rad_s, drive);
+        let drive_nm =
+            self.drive
+                .torque_nm(&self.axis_model, reference, masses.motor.speed_rad_s, drive);
         let motor_nm = drive_nm + self.cogging_nm(masses.motor.angle_rad);
         let [broadband, disturbance, _, drift] = *acting_nm;
         self.mechanics
@@ -412,13 +412,13 @@ impl AxisModel {
 
 /// A free run of an axis in parallel with the filter.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct LawTrial {
+pub(super) struct ModelTrial {
     free: Estimate,
     for_s: f64,
     missed_rad: f64,
 }
 
-impl LawTrial {
+impl ModelTrial {
     /// Begins a free run from an estimate.
     pub(super) fn from(estimate: &Estimate) -> Self {
         Self {
@@ -437,14 +437,14 @@ impl LawTrial {
     /// measurement.
     pub(super) fn go_on(
         &mut self,
-        model: &AxisModel,
+        model: &FilterModel,
         sent: &Sent,
         measured_rad: f64,
         estimate: &Estimate,
     ) {
         model.predict(&mut self.free, sent);
         self.missed_rad = measured_rad - model.shown_rad(&self.free);
-        self.for_s += model.law.periods.servo_s;
+        self.for_s += model.axis_model.periods.servo_s;
         if self.for_s >= RUN_S {
             (self.free, self.for_s) = (*estimate, 0.0);
         }

@@ -15,7 +15,7 @@
 //! Gilbert, Kolmanovsky and Tan (1995), "Discrete-time reference governors and the nonlinear
 //! control of systems with state and control constraints"; the replacement is our own.
 
-use crate::axis::AxisLaw;
+use crate::axis::AxisModel;
 use crate::vector::{bounded, smooth_step};
 
 /// h, s. With 4 ms a drive that is just strong enough for its plan leaves as much error as
@@ -33,8 +33,11 @@ pub(super) const BEFORE_END_S: [f64; 3] = [0.0, AVERAGED_S, 2.0 * AVERAGED_S];
 
 /// Returns true if an axis takes more torque than available along its reference, mm at
 /// [`BEFORE_END_S`].
-pub(super) fn is_beyond(law: &AxisLaw, [newest_mm, middle_mm, oldest_mm]: [f64; 3]) -> bool {
-    let parameters = &law.parameters;
+pub(super) fn is_beyond(
+    axis_model: &AxisModel,
+    [newest_mm, middle_mm, oldest_mm]: [f64; 3],
+) -> bool {
+    let parameters = &axis_model.parameters;
     let speed_rad_s = (newest_mm - oldest_mm) / (2.0 * AVERAGED_S) * parameters.rad_per_mm;
     let acceleration_mm_s2 =
         ((newest_mm - middle_mm) - (middle_mm - oldest_mm)) / (AVERAGED_S * AVERAGED_S);
@@ -44,7 +47,7 @@ pub(super) fn is_beyond(law: &AxisLaw, [newest_mm, middle_mm, oldest_mm]: [f64; 
         libm::copysign(1.0, speed_rad_s)
     };
     let inertia_nm = parameters.inertia_kg_m2 * acceleration_mm_s2 * parameters.rad_per_mm;
-    (inertia_nm + law.friction_nm(speed_rad_s, sign)).abs()
+    (inertia_nm + axis_model.friction_nm(speed_rad_s, sign)).abs()
         > FOR_REFERENCE * parameters.torque_limit_nm
 }
 
@@ -92,14 +95,14 @@ mod tests {
     use crate::controller::feedforward;
 
     /// 0.01 kg m^2, 1 N m of friction, 10 N m, 1 rad a mm.
-    fn law() -> AxisLaw {
+    fn axis_model() -> AxisModel {
         let parameters = Parameters {
             rad_per_mm: 1.0,
             torque_limit_nm: 10.0,
             viscous_friction_nm_s: 0.0,
             ..feedforward::tests::axis(0.0, 1.0)
         };
-        AxisLaw::new(
+        AxisModel::new(
             parameters,
             Periods {
                 servo_s: 0.001,
@@ -111,7 +114,8 @@ mod tests {
 
     #[test]
     fn what_takes_more_than_nine_tenths_of_the_torque_is_beyond() {
-        let is_beyond = |at_mm: &dyn Fn(f64) -> f64| is_beyond(&law(), BEFORE_END_S.map(at_mm));
+        let is_beyond =
+            |at_mm: &dyn Fn(f64) -> f64| is_beyond(&axis_model(), BEFORE_END_S.map(at_mm));
         let speeds_up =
             |mm_s2: f64| is_beyond(&|before_s| 0.5 * mm_s2 * (1.0 - before_s) * (1.0 - before_s));
         let slows_down =

@@ -57,7 +57,7 @@
 //! along 20 programs recorded in LinuxCNC, a model identified on `tnv40` left 0.063 and 0.059 of
 //! the error in two, and 0.023 and 0.010 where it was kept. With d^2 / 2 subtracted in each run,
 //! where d is the logarithm, l hardly reaches it (de la Pena, 1999). But then one of the cuts with
-//! models of other machines is worse (linuxcnc/servo/tests/property_wrong_law.rs).
+//! models of other machines is worse (linuxcnc/servo/tests/property_wrong_model.rs).
 //!
 //! Source: Friedland (1969), Treatment of bias in recursive filtering, IEEE Trans. Automatic
 //! Control 14(4), for the two filters; Kulhavy (1987), Restricted exponential forgetting in
@@ -69,7 +69,7 @@ use crate::axis::knowledge::AxisKnowledge;
 use crate::supervisor::one_step::{LEAST_MM2, run_periods};
 use crate::vector::bounded;
 
-use super::estimate::{AxisModel, Estimate, Innovation, KEPT_PERIODS, Sent};
+use super::estimate::{Estimate, FilterModel, Innovation, KEPT_PERIODS, Sent};
 use super::linear::{LinearAxis, PeriodInputs, STATES, measured_rad2};
 use super::riccati::{StateMatrix, applied as carried};
 
@@ -212,7 +212,7 @@ impl Runs {
 
 /// Result of a comparison of the two models.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct LawChoice {
+pub(super) struct ModelChoice {
     /// True if the other model is followed from now on.
     pub(super) turns: bool,
     /// True if the learned model is the nominal one again.
@@ -347,7 +347,7 @@ impl Learner {
     pub(super) fn take_in(
         &self,
         learning: &mut Learning,
-        model: &AxisModel,
+        model: &FilterModel,
         run: (&Estimate, &Sent),
         told: &Innovation,
     ) {
@@ -371,7 +371,7 @@ impl Learner {
     fn predict(
         &self,
         learning: &mut Learning,
-        model: &AxisModel,
+        model: &FilterModel,
         (estimate, sent): (&Estimate, &Sent),
         told: &Innovation,
     ) -> f64 {
@@ -506,7 +506,7 @@ impl Learner {
         learning: &mut Learning,
         missed_rad: [f64; 2],
         is_likely: bool,
-    ) -> LawChoice {
+    ) -> ModelChoice {
         let was_followed = learning.is_followed;
         let runs = &mut learning.runs;
         let [followed_rad, other_rad] = missed_rad;
@@ -557,7 +557,7 @@ impl Learner {
                 ..self.begin()
             };
         }
-        LawChoice { turns, begins_anew }
+        ModelChoice { turns, begins_anew }
     }
 
     /// Returns the axis without any difference.
@@ -616,7 +616,7 @@ mod tests {
     }
 
     #[test]
-    fn two_laws_that_differ_by_what_noise_explains_are_not_told_apart_soon() {
+    fn two_models_that_differ_by_what_noise_explains_are_not_told_apart_soon() {
         assert!(after(10, [0.5, 0.1]) < CERTAIN);
         assert_eq!(after(100, [1.0, 1.0]), 0.0);
         assert!(
@@ -633,7 +633,7 @@ mod tests {
     }
 
     #[test]
-    fn a_learned_law_that_is_followed_is_judged_the_other_way_round() {
+    fn a_learned_model_that_is_followed_is_judged_the_other_way_round() {
         let mut runs = Runs {
             missed_rad2: [1e4, 0.0],
             periods: 1,

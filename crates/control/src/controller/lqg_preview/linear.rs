@@ -20,10 +20,10 @@
 //! noise; sampling as in Franklin, Powell and Workman (1998), section 4.3, here by the same steps
 //! as in the plant.
 
-use crate::axis::AxisLaw;
+use crate::axis::AxisModel;
 use crate::axis::drive::DriveParameters;
 use crate::axis::statistics::AxisStatistics;
-use crate::axis::transmission::TransmissionLaw;
+use crate::axis::transmission::TransmissionModel;
 
 use super::riccati::{PeriodCost, StateMatrix, applied, inner, product, sum, transposed};
 
@@ -78,12 +78,12 @@ pub(super) struct PeriodInputs {
 impl LinearAxis {
     /// Creates the linear model of an axis with its drive, its screw and its loads.
     pub(super) fn new(
-        law: &AxisLaw,
+        axis_model: &AxisModel,
         drive: &DriveParameters,
-        screw: Option<&TransmissionLaw>,
+        screw: Option<&TransmissionModel>,
         statistics: &AxisStatistics,
     ) -> Self {
-        let (parameters, dt_s) = (law.parameters, law.periods.mechanics_s);
+        let (parameters, dt_s) = (axis_model.parameters, axis_model.periods.mechanics_s);
         let kv = parameters.kv_nm_s_per_rad;
         let integral = if drive.speed_integral_s > 0.0 {
             kv * dt_s / drive.speed_integral_s
@@ -145,8 +145,8 @@ impl LinearAxis {
             substep: transposed(&columns),
             substep_input: after([0.0; STATES], [1.0, 0.0]),
             substep_torque: after([0.0; STATES], [0.0, 1.0]),
-            substep_noise: noise(law, statistics),
-            substeps: law.periods.mechanics_per_servo,
+            substep_noise: noise(axis_model, statistics),
+            substeps: axis_model.periods.mechanics_per_servo,
         }
     }
 
@@ -282,8 +282,8 @@ fn memory_s(statistics: &AxisStatistics) -> f64 {
 }
 
 /// Returns the covariance of the noise in a mechanics period.
-fn noise(law: &AxisLaw, statistics: &AxisStatistics) -> StateMatrix<STATES> {
-    let dt_s = law.periods.mechanics_s;
+fn noise(axis_model: &AxisModel, statistics: &AxisStatistics) -> StateMatrix<STATES> {
+    let dt_s = axis_model.periods.mechanics_s;
     let fresh = |time_s: f64| {
         if time_s > 0.0 {
             1.0 - libm::exp(-2.0 * dt_s / time_s)
@@ -295,7 +295,7 @@ fn noise(law: &AxisLaw, statistics: &AxisStatistics) -> StateMatrix<STATES> {
         statistics.torque_noise_nm * statistics.torque_noise_nm * fresh(statistics.torque_noise_s);
     let amplitude_nm = statistics.disturbance_nm;
     let swing_nm2 = 0.5 * amplitude_nm * amplitude_nm * fresh(memory_s(statistics));
-    let drift_nm = DRIFT_SHARE * (law.parameters.coulomb_friction_nm + amplitude_nm);
+    let drift_nm = DRIFT_SHARE * (axis_model.parameters.coulomb_friction_nm + amplitude_nm);
     let drift_nm2 = drift_nm * drift_nm * dt_s;
     let variances = [
         0.0,

@@ -15,7 +15,7 @@
 //! the linear model and robustifying the Kalman filter", IEEE Trans. Automatic Control 22(3); the
 //! bound is our own.
 
-use crate::axis::AxisLaw;
+use crate::axis::AxisModel;
 use crate::vector::bounded;
 
 /// Standard deviations of the measurement within the bound.
@@ -25,10 +25,12 @@ const DEVIATIONS: f64 = 4.0;
 const LASTS_S: f64 = 0.025;
 
 /// Returns the largest innovation that is used in full, rad.
-pub(super) fn believed_rad(law: &AxisLaw, measured_rad2: f64) -> f64 {
-    let servo_s = law.periods.servo_s;
-    let accelerated_rad =
-        0.5 * law.parameters.torque_limit_nm / law.parameters.inertia_kg_m2 * servo_s * servo_s;
+pub(super) fn believed_rad(axis_model: &AxisModel, measured_rad2: f64) -> f64 {
+    let servo_s = axis_model.periods.servo_s;
+    let accelerated_rad = 0.5 * axis_model.parameters.torque_limit_nm
+        / axis_model.parameters.inertia_kg_m2
+        * servo_s
+        * servo_s;
     DEVIATIONS * libm::sqrt(measured_rad2) + accelerated_rad
 }
 

@@ -6,15 +6,15 @@ use crate::axis::drive::{DriveReference, DriveState};
 use crate::axis::inverse::AxisInverse;
 use crate::axis::knowledge::AxisKnowledge;
 use crate::axis::mechanics::MechanicsState;
-use crate::axis::{AxisLaw, AxisState, Parameters};
+use crate::axis::{AxisModel, AxisState, Parameters};
 use crate::supervisor::one_step::{OneStep, run_periods};
 use crate::supervisor::validity::Trusted;
 
 use super::approach::{self, Room, WeightedGains};
-use super::command_weight::{self, CommandHistory, CommandLaw, REGULATED};
+use super::command_weight::{self, CommandHistory, CommandModel, REGULATED};
 use super::control_weight::{LqgSettings, OffsetBounds};
-use super::estimate::{AxisModel, Estimate, Innovation, KEPT_PERIODS, LawTrial, Learnt, Sent};
-use super::learning::{LawChoice, Learner, Learning};
+use super::estimate::{Estimate, FilterModel, Innovation, KEPT_PERIODS, Learnt, ModelTrial, Sent};
+use super::learning::{Learner, Learning, ModelChoice};
 use super::linear;
 use super::screw::{ScrewTwist, TwistCourse};
 
@@ -30,17 +30,17 @@ pub struct LqgGains {
 /// An axis, its gains, and its state.
 #[derive(Debug, Clone)]
 pub(super) struct AxisLqg {
-    model: AxisModel,
+    model: FilterModel,
     inverse: AxisInverse,
     twist: Option<ScrewTwist>,
     regulator: WeightedGains,
-    command_law: CommandLaw,
+    command_model: CommandModel,
     bounds: OffsetBounds,
     known: AxisKnowledge,
     /// Learner of the model errors; `None` if the model is exact.
     learner: Option<Learner>,
     /// The model in parallel: the learned one until it is followed, the nominal one after that.
-    other: AxisModel,
+    other: FilterModel,
     other_known: AxisKnowledge,
     may_learn: bool,
     state: Option<Running>,
@@ -51,8 +51,8 @@ pub(super) struct AxisLqg {
 struct Running {
     /// Runs of the followed model and of the other one: the learned model until it is followed, the
     /// nominal one after that.
-    real: LawRun,
-    beside: LawRun,
+    real: ModelRun,
+    beside: ModelRun,
     /// State without any offset, under the same load.
     open: Tracked,
     /// Position of the path at the last decision, mm; the command had an offset from it.
@@ -70,11 +70,16 @@ struct Running {
 
 impl Running {
     /// Creates the state from an angle and a speed.
-    fn at(model: &AxisModel, learning: Option<Learning>, angle_rad: f64, speed_rad_s: f64) -> Self {
+    fn at(
+        model: &FilterModel,
+        learning: Option<Learning>,
+        angle_rad: f64,
+        speed_rad_s: f64,
+    ) -> Self {
         let moving = Tracked::moving(model, angle_rad, speed_rad_s);
         Self {
-            real: LawRun::from(moving),
-            beside: LawRun::from(moving),
+            real: ModelRun::from(moving),
+            beside: ModelRun::from(moving),
             open: moving,
             path_mm: None,
             commands: CommandHistory::IDEAL,
@@ -100,7 +105,7 @@ struct Tracked {
 }
 
 impl Tracked {
-    fn moving(model: &AxisModel, measured_rad: f64, speed_rad_s: f64) -> Self {
+    fn moving(model: &FilterModel, measured_rad: f64, speed_rad_s: f64) -> Self {
         let (estimate, sent) = model.moving(measured_rad, speed_rad_s);
         let commands = CommandQueue::resting(model.command_periods, measured_rad);
         Self {
@@ -114,7 +119,7 @@ impl Tracked {
 
     /// Returns the state at the time at which the position loop has the command that is sent now,
     /// by the commands on their way and the model alone.
-    fn at_position_loop(&self, model: &AxisModel) -> Self {
+    fn at_position_loop(&self, model: &FilterModel) -> Self {
         let mut later = *self;
         // A command that is sent meanwhile does not arrive.
         (0..self.commands.periods()).for_each(|_| later.foresee(model, 0.0));
@@ -129,23 +134,23 @@ impl Tracked {
 
     /// Returns the reference speed that the position loop makes of a command. It includes the
     /// torque, converted to a speed.
-    fn asked_rad_s(&self, model: &AxisModel, command_rad: f64) -> f64 {
+    fn asked_rad_s(&self, model: &FilterModel, command_rad: f64) -> f64 {
         let (mut axis, mut drive) = self.position_loop;
         let DriveReference {
             speed_rad_s,
             torque_nm,
         } = model.drive.position_loop(
-            &model.law,
+            &model.axis_model,
             command_rad,
             self.measured_rad,
             &mut axis,
             &mut drive,
         );
-        speed_rad_s + torque_nm / model.law.parameters.kv_nm_s_per_rad
+        speed_rad_s + torque_nm / model.axis_model.parameters.kv_nm_s_per_rad
     }
 
     /// Advances by a servo period with a command, by the model alone.
-    fn foresee(&mut self, model: &AxisModel, command_rad: f64) {
+    fn foresee(&mut self, model: &FilterModel, command_rad: f64) {
         self.send(model, command_rad);
         model.predict(&mut self.estimate, &self.sent);
         self.measured_rad = self.estimate.masses.motor.angle_rad;
@@ -153,14 +158,17 @@ impl Tracked {
 
     /// Sends a command. The output of the position loop for the command that has arrived goes to
     /// the drive.
-    fn send(&mut self, model: &AxisModel, command_rad: f64) {
+    fn send(&mut self, model: &FilterModel, command_rad: f64) {
         let command_rad = self.commands.pass(command_rad);
         let (axis, drive) = &mut self.position_loop;
         axis.angle_rad = self.measured_rad;
-        let reference =
-            model
-                .drive
-                .position_loop(&model.law, command_rad, self.measured_rad, axis, drive);
+        let reference = model.drive.position_loop(
+            &model.axis_model,
+            command_rad,
+            self.measured_rad,
+            axis,
+            drive,
+        );
         self.sent.copy_within(..KEPT_PERIODS - 1, 1);
         self.sent[0] = reference;
     }
@@ -168,23 +176,23 @@ impl Tracked {
 
 /// An axis under one model: its filter, and a free run in parallel.
 #[derive(Debug, Clone, Copy)]
-struct LawRun {
+struct ModelRun {
     tracked: Tracked,
     learnt: Learnt,
-    trial: LawTrial,
+    trial: ModelTrial,
 }
 
-impl LawRun {
+impl ModelRun {
     fn from(tracked: Tracked) -> Self {
         Self {
             tracked,
             learnt: Learnt::NOTHING,
-            trial: LawTrial::from(&tracked.estimate),
+            trial: ModelTrial::from(&tracked.estimate),
         }
     }
 
     /// Advances by a servo period with a command and the measurement at its end.
-    fn go_on(&mut self, model: &AxisModel, command_rad: f64, measured_rad: f64) -> Innovation {
+    fn go_on(&mut self, model: &FilterModel, command_rad: f64, measured_rad: f64) -> Innovation {
         let Self {
             tracked,
             learnt,
@@ -198,9 +206,9 @@ impl LawRun {
     }
 
     /// Advances by a servo period with a command, by the model alone.
-    fn foresee(&mut self, model: &AxisModel, command_rad: f64) {
+    fn foresee(&mut self, model: &FilterModel, command_rad: f64) {
         self.tracked.foresee(model, command_rad);
-        self.trial = LawTrial::from(&self.tracked.estimate);
+        self.trial = ModelTrial::from(&self.tracked.estimate);
     }
 }
 
@@ -214,29 +222,30 @@ impl AxisLqg {
             delays,
             ..
         } = known;
-        let law = known.law();
-        let model = AxisModel::new(&known, settings.learns);
+        let axis_model = known.axis_model();
+        let model = FilterModel::new(&known, settings.learns);
         let regulated = command_weight::regulated_axis(&known);
-        let command_law = CommandLaw::new(&law, &drive);
+        let command_model = CommandModel::new(&axis_model, &drive);
         let lowest = [
             settings.lowest_control_weight_s2(&transmission),
             settings.command_weight,
         ];
-        let regulator = WeightedGains::new(lowest, command_weight::gains(&regulated, &command_law));
+        let regulator =
+            WeightedGains::new(lowest, command_weight::gains(&regulated, &command_model));
         let least_inertia = || command_weight::least_inertia(&known, &regulator.near());
         Self {
-            inverse: AxisInverse::new(law, drive, friction, delays),
+            inverse: AxisInverse::new(axis_model, drive, friction, delays),
             twist: model
                 .mechanics
                 .transmission()
-                .map(|screw| ScrewTwist::new(&law, screw)),
+                .map(|screw| ScrewTwist::new(&axis_model, screw)),
             bounds: settings.bounds,
             known,
             learner: settings
                 .learns
                 .then(|| Learner::new(known, &model.linear, least_inertia())),
             regulator,
-            command_law,
+            command_model,
             other: model.clone(),
             other_known: known,
             may_learn: true,
@@ -245,8 +254,8 @@ impl AxisLqg {
         }
     }
 
-    pub(super) fn law(&self) -> &AxisLaw {
-        &self.model.law
+    pub(super) fn axis_model(&self) -> &AxisModel {
+        &self.model.axis_model
     }
 
     /// Returns the present knowledge of the axis.
@@ -311,7 +320,7 @@ impl AxisLqg {
         self.model.follow(&nominal);
         self.other.follow(&nominal);
         self.inverse.follow(
-            self.model.law,
+            self.model.axis_model,
             nominal.drive,
             nominal.friction,
             nominal.delays,
@@ -335,13 +344,14 @@ impl AxisLqg {
 
     /// Returns the delay until the position loop has a command, s.
     pub(super) fn command_delay_s(&self) -> f64 {
-        self.model.command_periods as f64 * self.model.law.periods.servo_s
+        self.model.command_periods as f64 * self.model.axis_model.periods.servo_s
     }
 
     /// Returns the lag of the measured position behind the command that the position loop has, at
     /// constant speed, s.
     fn position_loop_lag_s(&self) -> f64 {
-        let (parameters, AxisKnowledge { drive, .. }) = (self.model.law.parameters, self.known);
+        let (parameters, AxisKnowledge { drive, .. }) =
+            (self.model.axis_model.parameters, self.known);
         let friction = if drive.speed_integral_s > 0.0 {
             0.0
         } else {
@@ -361,7 +371,7 @@ impl AxisLqg {
         speed_mm_s: f64,
         [is_alone, is_likely]: [bool; 2],
     ) -> bool {
-        let rad_per_mm = self.model.law.parameters.rad_per_mm;
+        let rad_per_mm = self.model.axis_model.parameters.rad_per_mm;
         let measured_rad = position_mm * rad_per_mm;
         let learning = || {
             self.learner
@@ -467,7 +477,7 @@ impl AxisLqg {
             model.follow(known);
             run.tracked.estimate.correct(moved);
         }
-        let LawChoice { turns, begins_anew } = learner.compare(learning, missed_rad, is_likely);
+        let ModelChoice { turns, begins_anew } = learner.compare(learning, missed_rad, is_likely);
         if turns {
             core::mem::swap(&mut self.model, &mut self.other);
             core::mem::swap(&mut self.known, &mut self.other_known);
@@ -485,7 +495,8 @@ impl AxisLqg {
                 delays,
                 ..
             } = self.known;
-            self.inverse.follow(self.model.law, drive, friction, delays);
+            self.inverse
+                .follow(self.model.axis_model, drive, friction, delays);
         }
         turns
     }
@@ -493,7 +504,7 @@ impl AxisLqg {
     /// Takes in a servo period without a measurement: the command of the last period, an offset
     /// from the path, led to the position that the model predicts. The path is at `here_mm` now.
     pub(super) fn foresee(&mut self, offset_mm: f64, here_mm: f64) {
-        let rad_per_mm = self.model.law.parameters.rad_per_mm;
+        let rad_per_mm = self.model.axis_model.parameters.rad_per_mm;
         let Some(running) = &mut self.state else {
             return;
         };
@@ -519,7 +530,7 @@ impl AxisLqg {
     /// Returns the displacement by the offset, and the difference between the measurement and its
     /// prediction, mm.
     pub(super) fn moved_and_missed_mm(&self) -> [f64; 2] {
-        let mm = 1.0 / self.model.law.parameters.rad_per_mm;
+        let mm = 1.0 / self.model.axis_model.parameters.rad_per_mm;
         self.state.as_ref().map_or(
             [0.0; 2],
             |Running {
@@ -536,16 +547,16 @@ impl AxisLqg {
     }
 
     /// Returns the error of the free run of the model, mm.
-    pub(super) fn law_missed_mm(&self) -> f64 {
+    pub(super) fn model_missed_mm(&self) -> f64 {
         self.state.as_ref().map_or(0.0, |running| {
-            running.real.trial.missed_rad() / self.model.law.parameters.rad_per_mm
+            running.real.trial.missed_rad() / self.model.axis_model.parameters.rad_per_mm
         })
     }
 
     /// Returns the position that would be measured without any offset, mm.
     pub(super) fn alone_mm(&self) -> f64 {
         self.state.as_ref().map_or(0.0, |running| {
-            running.open.measured_rad / self.model.law.parameters.rad_per_mm
+            running.open.measured_rad / self.model.axis_model.parameters.rad_per_mm
         })
     }
 
@@ -561,7 +572,7 @@ impl AxisLqg {
             kv_nm_s_per_rad,
             rad_per_mm,
             ..
-        } = self.model.law.parameters;
+        } = self.model.axis_model.parameters;
         let off_mm = open.measured_rad / rad_per_mm - at_mm(self.known.delays.measurement_s);
         // The integral of a speed loop compensates constant loads.
         let takes_up = self.known.drive.speed_integral_s > 0.0;
@@ -575,7 +586,7 @@ impl AxisLqg {
 
     /// Returns the mean square error of a free run by the last innovation, if it is noise, mm^2.
     pub(super) fn by_noise_mm2(&self) -> f64 {
-        let Parameters { rad_per_mm, .. } = self.model.law.parameters;
+        let Parameters { rad_per_mm, .. } = self.model.axis_model.parameters;
         self.state
             .as_ref()
             .map_or(0.0, |running| running.by_noise_rad2)
@@ -591,9 +602,9 @@ impl AxisLqg {
 
     /// Returns the mean square error of a free run by noise and unforeseen loads, mm^2.
     pub(super) fn unforeseen_mm2(&self) -> f64 {
-        let Parameters { rad_per_mm, .. } = self.model.law.parameters;
+        let Parameters { rad_per_mm, .. } = self.model.axis_model.parameters;
         self.model
-            .unforeseen_rad2(run_periods(self.model.law.periods.servo_s))
+            .unforeseen_rad2(run_periods(self.model.axis_model.periods.servo_s))
             / (rad_per_mm * rad_per_mm)
     }
 
@@ -610,14 +621,15 @@ impl AxisLqg {
         let Some(running) = &mut self.state else {
             return 0.0;
         };
-        let rad_per_mm = self.model.law.parameters.rad_per_mm;
+        let rad_per_mm = self.model.axis_model.parameters.rad_per_mm;
         if running.path_mm.replace(here_mm).is_none() {
             for tracked in [
                 &mut running.real.tracked,
                 &mut running.beside.tracked,
                 &mut running.open,
             ] {
-                tracked.commanded_along(here_mm * rad_per_mm, self.model.law.periods.servo_s);
+                tracked
+                    .commanded_along(here_mm * rad_per_mm, self.model.axis_model.periods.servo_s);
             }
         }
         let tracked = running.real.tracked.at_position_loop(&self.model);
@@ -641,7 +653,7 @@ impl AxisLqg {
         }
         let Parameters {
             kv_nm_s_per_rad, ..
-        } = self.model.law.parameters;
+        } = self.model.axis_model.parameters;
         let [_, off_rad_s, ..] = off;
         let reference_nm =
             kv_nm_s_per_rad * (reference_rad_s - (ahead.masses.motor.speed_rad_s - off_rad_s));
@@ -654,7 +666,7 @@ impl AxisLqg {
         let offset_mm = self.solved_mm(&tracked, here_mm, reference_rad_s - asked_rad_s);
         if let Some(Running { commands, .. }) = &mut self.state {
             commands.decide(
-                &self.command_law,
+                &self.command_model,
                 &off,
                 asked_rad_s,
                 (here_mm + offset_mm) * rad_per_mm,
@@ -675,7 +687,7 @@ impl AxisLqg {
             kv_nm_s_per_rad,
             rad_per_mm,
             ..
-        } = self.model.law.parameters;
+        } = self.model.axis_model.parameters;
         let integral_rad_s =
             (beside.drive.integral_nm() - ahead.drive.integral_nm()) / kv_nm_s_per_rad;
         let reference_rad_s = open.asked_rad_s(&self.model, here_mm * rad_per_mm) + integral_rad_s;
@@ -699,7 +711,7 @@ impl AxisLqg {
             kv_nm_s_per_rad,
             rad_per_mm,
             ..
-        } = self.model.law.parameters;
+        } = self.model.axis_model.parameters;
         let by_torque_rad_s = approach::left_nm(torque_limit_nm, reference_nm) / kv_nm_s_per_rad;
         let of_offset = kp_1_s * rad_per_mm;
         let room = Room {
@@ -741,7 +753,10 @@ impl AxisLqg {
         [angle_rad, speed_rad_s]: [f64; 2],
         at_mm: &impl Fn(f64) -> f64,
     ) -> [f64; 2] {
-        let (rad_per_mm, periods) = (self.model.law.parameters.rad_per_mm, self.model.law.periods);
+        let (rad_per_mm, periods) = (
+            self.model.axis_model.parameters.rad_per_mm,
+            self.model.axis_model.periods,
+        );
         let servo_s = periods.servo_s;
         let [before_mm, there_mm, after_mm] =
             [-1.0, 0.0, 1.0].map(|n: f64| at_mm(self.known.delays.drive_s + n * servo_s));
@@ -759,7 +774,10 @@ impl AxisLqg {
     /// Returns the reference speed that cogging takes along the reference in the period in which
     /// the present command acts, mm/s; by Simpson's rule.
     fn cogging_mm_s(&self, at_mm: &impl Fn(f64) -> f64) -> f64 {
-        let (parameters, servo_s) = (self.model.law.parameters, self.model.law.periods.servo_s);
+        let (parameters, servo_s) = (
+            self.model.axis_model.parameters,
+            self.model.axis_model.periods.servo_s,
+        );
         let cogging_nm = |n: f64| {
             self.model
                 .cogging_nm(at_mm(self.known.delays.drive_s + n * servo_s) * parameters.rad_per_mm)
@@ -771,7 +789,7 @@ impl AxisLqg {
     /// Returns the offset for which the position loop requests a reference speed, once it has the
     /// command.
     fn solved_mm(&self, tracked: &Tracked, here_mm: f64, wanted_rad_s: f64) -> f64 {
-        let rad_per_mm = self.model.law.parameters.rad_per_mm;
+        let rad_per_mm = self.model.axis_model.parameters.rad_per_mm;
         let asked = |command_mm: f64| tracked.asked_rad_s(&self.model, command_mm * rad_per_mm);
         // The request is linear in the command.
         let (here, beyond) = (asked(here_mm), asked(here_mm + 1.0));

@@ -19,8 +19,8 @@
 //! [`crate::axis::transmission`].
 
 use crate::activation::tanh;
-use crate::axis::AxisLaw;
-use crate::axis::transmission::TransmissionLaw;
+use crate::axis::AxisModel;
+use crate::axis::transmission::TransmissionModel;
 use crate::vector::bounded;
 
 /// Part of the torque limit that the motion across the backlash may take.
@@ -52,8 +52,8 @@ pub(super) struct ScrewTwist {
 
 impl ScrewTwist {
     /// Creates the twist of an axis with this screw.
-    pub(super) fn new(law: &AxisLaw, screw: &TransmissionLaw) -> Self {
-        let axis = law.parameters;
+    pub(super) fn new(axis_model: &AxisModel, screw: &TransmissionModel) -> Self {
+        let axis = axis_model.parameters;
         let table_kg_m2 = 1.0 / screw.inverse_table_inertia;
         let half_gap_mm = screw.half_gap_rad / axis.rad_per_mm;
         let crossing_mm_s2 =
@@ -61,7 +61,7 @@ impl ScrewTwist {
         let crossing_s =
             libm::sqrt(2.0 * half_gap_mm / crossing_mm_s2).max(1.0 / screw.resonance_rad_s);
         Self {
-            step_s: law.periods.servo_s,
+            step_s: axis_model.periods.servo_s,
             inertia_s2: table_kg_m2 / screw.stiffness_nm_rad,
             viscous_s: axis.viscous_friction_nm_s / screw.stiffness_nm_rad,
             coulomb_mm: axis.coulomb_friction_nm / (screw.stiffness_nm_rad * axis.rad_per_mm),
@@ -165,17 +165,17 @@ mod tests {
 
     use super::*;
     use crate::axis::friction::FrictionParameters;
-    use crate::axis::mechanics::{MechanicsLaw, MechanicsState};
+    use crate::axis::mechanics::{MechanicsModel, MechanicsState};
     use crate::axis::transmission::TransmissionParameters;
     use crate::axis::{Parameters, Periods};
     use crate::controller::feedforward;
 
-    fn law() -> AxisLaw {
+    fn axis_model() -> AxisModel {
         let parameters = Parameters {
             torque_limit_nm: 30.0,
             ..feedforward::tests::axis(0.0, 0.2)
         };
-        AxisLaw::new(
+        AxisModel::new(
             parameters,
             Periods {
                 servo_s: 0.001,
@@ -202,12 +202,15 @@ mod tests {
     #[test]
     fn a_motor_that_is_held_where_it_is_said_to_be_has_its_table_on_the_reference() {
         for backlash_rad in [0.0, 0.003] {
-            let (law, screw) = (law(), screw(backlash_rad));
-            let mechanics = MechanicsLaw::new(&law, FrictionParameters::default(), screw);
-            let twist = ScrewTwist::new(&law, mechanics.transmission().expect("it is not rigid"));
+            let (axis_model, screw) = (axis_model(), screw(backlash_rad));
+            let mechanics = MechanicsModel::new(&axis_model, FrictionParameters::default(), screw);
+            let twist = ScrewTwist::new(
+                &axis_model,
+                mechanics.transmission().expect("it is not rigid"),
+            );
             let mut state = MechanicsState::default();
             let (mut with_um, mut without_um) = (0.0_f64, 0.0_f64);
-            let rad_per_mm = law.parameters.rad_per_mm;
+            let rad_per_mm = axis_model.parameters.rad_per_mm;
             let motor_mm = |at_s: f64| {
                 reference_mm(at_s) + twist.mm(&|after_s| reference_mm(at_s + after_s), 0.0)
             };

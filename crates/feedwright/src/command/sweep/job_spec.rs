@@ -359,7 +359,7 @@ impl ListedJob {
 /// A result without the day on which its model was identified: that follows from the cache, not
 /// from the job.
 fn undated(mut result: Value, date: &str) -> Value {
-    for told in ["/assumed/law_from", "/settings/Model"] {
+    for told in ["/assumed/model_from", "/settings/Model"] {
         if let Some(Value::String(text)) = result.pointer_mut(told)
             && let Some(before) = text.strip_suffix(&format!(", {date}"))
         {

@@ -7,32 +7,32 @@
 //! no measurement noise does either.
 
 use feedwright_control::{
-    AxisLaw, DriveLaw, DriveReference, DriveState, LoopDelays, MechanicsLaw, MechanicsState,
+    AxisModel, DriveModel, DriveReference, DriveState, LoopDelays, MechanicsModel, MechanicsState,
 };
 
 use super::{AxisParameters, DriveSettings};
 
 /// An axis that runs freely.
 pub(super) struct FreeRun {
-    law: AxisLaw,
-    drive: DriveLaw,
-    mechanics: MechanicsLaw,
+    axis_model: AxisModel,
+    drive: DriveModel,
+    mechanics: MechanicsModel,
     /// Delays of the drive and of the measurement, mechanics periods.
     late: [usize; 2],
 }
 
 impl FreeRun {
     pub(super) fn new(settings: &DriveSettings, axis: &AxisParameters) -> Self {
-        let law = AxisLaw::new(axis.law(settings), settings.periods);
+        let axis_model = AxisModel::new(axis.axis_model(settings), settings.periods);
         let LoopDelays {
             drive_s,
             measurement_s,
             ..
         } = settings.delays;
         Self {
-            law,
-            drive: DriveLaw::new(&law, settings.drive_of(axis.inertia_kg_m2)),
-            mechanics: MechanicsLaw::new(&law, axis.friction(), axis.transmission),
+            axis_model,
+            drive: DriveModel::new(&axis_model, settings.drive_of(axis.inertia_kg_m2)),
+            mechanics: MechanicsModel::new(&axis_model, axis.friction(), axis.transmission),
             // A float that is not a number saturates to zero here.
             late: [drive_s, measurement_s]
                 .map(|delay_s| (delay_s / settings.periods.mechanics_s).round() as usize),
@@ -57,7 +57,7 @@ impl FreeRun {
             running
                 .iter_mut()
                 .for_each(|axis| axis.command(*command_mm));
-            for _ in 0..axes[0].law.periods.mechanics_per_servo {
+            for _ in 0..axes[0].axis_model.periods.mechanics_per_servo {
                 FreeAxis::step(&mut running);
             }
         }
@@ -79,10 +79,10 @@ struct FreeAxis<'a> {
 
 impl<'a> FreeAxis<'a> {
     fn new(axis: &'a FreeRun, commands: usize, start_mm: f64, start_mm_s: f64) -> Self {
-        let scale = axis.law.parameters.rad_per_mm;
+        let scale = axis.axis_model.parameters.rad_per_mm;
         let start_rad = start_mm * scale;
         let mut course_rad =
-            Vec::with_capacity(commands * axis.law.periods.mechanics_per_servo as usize + 1);
+            Vec::with_capacity(commands * axis.axis_model.periods.mechanics_per_servo as usize + 1);
         course_rad.push(start_rad);
         Self {
             axis,
@@ -103,19 +103,19 @@ impl<'a> FreeAxis<'a> {
     /// A servo period begins.
     fn command(&mut self, command_mm: f64) {
         let FreeRun {
-            law,
+            axis_model,
             drive,
             late: [_, measured_late],
             ..
         } = self.axis;
-        let scale = law.parameters.rad_per_mm;
+        let scale = axis_model.parameters.rad_per_mm;
         let measured_rad = self
             .moment(*measured_late)
             .map_or(self.start_rad, |then| self.course_rad[then]);
         self.measured_mm.push(measured_rad / scale);
         let motor = &mut self.masses.motor;
         self.sent.push(drive.position_loop(
-            law,
+            axis_model,
             command_mm * scale,
             measured_rad,
             motor,
@@ -126,10 +126,10 @@ impl<'a> FreeAxis<'a> {
     /// A mechanics period of several.
     #[inline]
     fn step<const M: usize>(running: &mut [Self; M]) {
-        let laws = running.each_ref().map(|running| &running.axis.mechanics);
+        let axis_models = running.each_ref().map(|running| &running.axis.mechanics);
         let torques_nm = running.each_mut().map(Self::torque_nm);
-        MechanicsLaw::advance_abreast(
-            &laws,
+        MechanicsModel::advance_abreast(
+            &axis_models,
             running.each_mut().map(|running| &mut running.masses),
             torques_nm,
         );
@@ -142,18 +142,18 @@ impl<'a> FreeAxis<'a> {
     #[inline]
     fn torque_nm(&mut self) -> f64 {
         let FreeRun {
-            law,
+            axis_model,
             drive,
             late: [drive_late, _],
             ..
         } = self.axis;
-        let per_servo = law.periods.mechanics_per_servo as usize;
+        let per_servo = axis_model.periods.mechanics_per_servo as usize;
         let arrived = self
             .moment(*drive_late)
             .map(|then| self.sent[then / per_servo]);
         let speed_rad_s = self.masses.motor.speed_rad_s;
         drive.torque_nm(
-            law,
+            axis_model,
             arrived.unwrap_or_default(),
             speed_rad_s,
             &mut self.drive,

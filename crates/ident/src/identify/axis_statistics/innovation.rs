@@ -16,7 +16,7 @@
 //! Applied Optimal Estimation, section 6.1.
 
 use feedwright_control::{
-    AxisLaw, AxisState, DriveLaw, DriveReference, DriveState, MechanicsLaw, MechanicsState,
+    AxisModel, AxisState, DriveModel, DriveReference, DriveState, MechanicsModel, MechanicsState,
     TableState,
 };
 use feedwright_sim::{KnownAxis, Period};
@@ -54,9 +54,9 @@ const MOST_MEDIANS: f64 = 4.0;
 /// An axis as the filter has it.
 #[derive(Debug, Clone)]
 pub(super) struct AxisFilter {
-    law: AxisLaw,
-    drive: DriveLaw,
-    mechanics: MechanicsLaw,
+    axis_model: AxisModel,
+    drive: DriveModel,
+    mechanics: MechanicsModel,
     /// Mechanics periods from a measurement until it is there plus those from a reference until it
     /// acts.
     late: u32,
@@ -114,19 +114,19 @@ impl Innovations {
 impl AxisFilter {
     /// Creates the filter of an axis whose encoder has at least this noise, rad.
     pub(super) fn new(known: &KnownAxis, period: &Period, noise_rad: f64) -> Self {
-        let law = AxisLaw::new(known.nominal, period.periods());
+        let axis_model = AxisModel::new(known.nominal, period.periods());
         let substeps = |s: f64| (s / period.mechanics_s).round().max(0.0) as u32;
         let friction = known.friction;
         let mut filter = Self {
-            law,
-            drive: DriveLaw::new(&law, known.drive),
-            mechanics: MechanicsLaw::new(&law, friction, known.transmission),
+            axis_model,
+            drive: DriveModel::new(&axis_model, known.drive),
+            mechanics: MechanicsModel::new(&axis_model, friction, known.transmission),
             late: substeps(known.delays.measurement_s) + substeps(known.delays.drive_s),
             gains: [0.0; STATES],
             linear: [[0.0; STATES]; STATES],
             turning: [
                 TURNED
-                    * law
+                    * axis_model
                         .parameters
                         .coulomb_smoothing_rad_s
                         .max(0.5 * friction.stribeck_rad_s),
@@ -134,10 +134,10 @@ impl AxisFilter {
             ],
         };
         filter.linear = filter.linear_part();
-        let coulomb_nm = law
+        let coulomb_nm = axis_model
             .parameters
             .coulomb_friction_nm
-            .max(1e-3 * law.parameters.torque_limit_nm);
+            .max(1e-3 * axis_model.parameters.torque_limit_nm);
         filter.gains = filter.kalman(LOAD_SHARE * coulomb_nm, noise_rad.max(LEAST_NOISE_RAD));
         filter
     }
@@ -157,7 +157,7 @@ impl AxisFilter {
     }
 
     fn stretch(&self, stretch: &[[f64; 2]], found: &mut Innovations) {
-        let servo_s = self.law.periods.servo_s;
+        let servo_s = self.axis_model.periods.servo_s;
         let periods = |s: f64| (s / servo_s).ceil() as usize;
         let Some(&[_, first_rad]) = stretch.first() else {
             return;
@@ -190,10 +190,13 @@ impl AxisFilter {
             self.correct(&mut state, error_rad);
             let (axis, drive) = &mut position_loop;
             axis.angle_rad = measured_rad;
-            sent.push(
-                self.drive
-                    .position_loop(&self.law, command_rad, measured_rad, axis, drive),
-            );
+            sent.push(self.drive.position_loop(
+                &self.axis_model,
+                command_rad,
+                measured_rad,
+                axis,
+                drive,
+            ));
             self.servo_period(&mut state, &sent);
         }
     }
@@ -212,7 +215,7 @@ impl AxisFilter {
     /// Predicts from one measurement to the next. The reference that was sent last acts only after
     /// the whole delay, in mechanics periods.
     fn servo_period(&self, state: &mut FilterState, sent: &[DriveReference]) {
-        let per_servo = self.law.periods.mechanics_per_servo;
+        let per_servo = self.axis_model.periods.mechanics_per_servo;
         for n in 0..per_servo {
             // Time is the time of the measurement.
             let age = (self.late + per_servo - 1 - n) / per_servo;
@@ -226,9 +229,9 @@ impl AxisFilter {
 
     fn substep(&self, state: &mut FilterState, reference: DriveReference) {
         let speed_rad_s = state.masses.motor.speed_rad_s;
-        let drive_nm = self
-            .drive
-            .torque_nm(&self.law, reference, speed_rad_s, &mut state.drive);
+        let drive_nm =
+            self.drive
+                .torque_nm(&self.axis_model, reference, speed_rad_s, &mut state.drive);
         self.mechanics
             .advance(&mut state.masses, drive_nm, state.load_nm);
     }
@@ -236,12 +239,13 @@ impl AxisFilter {
     /// The linear part of a servo period while friction slides, by differences.
     fn linear_part(&self) -> Matrix {
         // Far beyond all speeds over which friction turns, and a way that presliding needs.
-        let sliding_rad_s = 100.0 * self.turning[0] + self.turning[1] / self.law.periods.servo_s;
+        let sliding_rad_s =
+            100.0 * self.turning[0] + self.turning[1] / self.axis_model.periods.servo_s;
         let reference = DriveReference {
             speed_rad_s: sliding_rad_s,
             torque_nm: 0.0,
         };
-        let friction_nm = self.law.friction_nm(sliding_rad_s, 1.0);
+        let friction_nm = self.axis_model.friction_nm(sliding_rad_s, 1.0);
         let behind_rad = self
             .mechanics
             .transmission()
@@ -259,7 +263,7 @@ impl AxisFilter {
             };
             let mut drive = DriveState::default();
             drive.correct(i, y);
-            let presliding_nm = self.law.parameters.coulomb_friction_nm;
+            let presliding_nm = self.axis_model.parameters.coulomb_friction_nm;
             let masses = MechanicsState {
                 motor,
                 table,
@@ -270,7 +274,7 @@ impl AxisFilter {
                 drive,
                 load_nm: d,
             };
-            (0..self.law.periods.mechanics_per_servo)
+            (0..self.axis_model.periods.mechanics_per_servo)
                 .for_each(|_| self.substep(&mut state, reference));
             let (drive, MechanicsState { motor, table, .. }) = (state.drive, state.masses);
             let [integral_nm, filtered_nm] = [drive.integral_nm(), drive.filtered_nm()];
@@ -286,9 +290,9 @@ impl AxisFilter {
             ]
         };
         // A torque is small beside the limit, a speed is what it makes in a servo period.
-        let nm = 1e-3 * self.law.parameters.torque_limit_nm;
-        let rad_s = nm / self.law.parameters.inertia_kg_m2 * self.law.periods.servo_s;
-        let rad = rad_s * self.law.periods.servo_s;
+        let nm = 1e-3 * self.axis_model.parameters.torque_limit_nm;
+        let rad_s = nm / self.axis_model.parameters.inertia_kg_m2 * self.axis_model.periods.servo_s;
+        let rad = rad_s * self.axis_model.periods.servo_s;
         let sizes = [rad, rad_s, nm, nm, rad, rad_s, nm];
         let columns: Matrix = std::array::from_fn(|j| {
             let by =
@@ -312,7 +316,7 @@ impl AxisFilter {
     /// Optimal Filtering, section 4.4.
     fn kalman(&self, load_nm: f64, noise_rad: f64) -> FilterVector {
         let (push, variance) = (self.push(), noise_rad * noise_rad);
-        let wander_nm2 = load_nm * load_nm * self.law.periods.servo_s / LOAD_S;
+        let wander_nm2 = load_nm * load_nm * self.axis_model.periods.servo_s / LOAD_S;
         let mut covariance: Matrix = [[0.0; STATES]; STATES];
         let mut gains = [0.0; STATES];
         for _ in 0..RICCATI_STEPS {

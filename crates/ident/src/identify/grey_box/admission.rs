@@ -26,50 +26,50 @@ use super::axis_record::AxisRecord;
 use super::output_error::{NEARLY_DONE, OutputErrors, square};
 use super::priors::Prior;
 use super::standard_errors::StandardErrors;
-use super::terms::{LawTerm, TERMS, TermValues};
+use super::terms::{ModelTerm, TERMS, TermValues};
 
 /// The terms of an axis, and a fit of them.
 #[derive(Debug, Clone)]
 pub(super) struct Admitted {
-    pub(super) terms: Vec<LawTerm>,
+    pub(super) terms: Vec<ModelTerm>,
     pub(super) values: TermValues,
 }
 
 /// Terms that every axis has: where it is known how late the record is, what else is late is the
 /// drive.
-fn base(facts: &AxisFacts) -> Vec<LawTerm> {
+fn base(facts: &AxisFacts) -> Vec<ModelTerm> {
     let late = if facts.record_delay_s.is_some() {
-        LawTerm::LoopDelay
+        ModelTerm::LoopDelay
     } else {
-        LawTerm::RecordDelay
+        ModelTerm::RecordDelay
     };
     let mut base = vec![
-        LawTerm::LoopGain,
-        LawTerm::Damping,
-        LawTerm::Coulomb,
-        LawTerm::Offset,
+        ModelTerm::LoopGain,
+        ModelTerm::Damping,
+        ModelTerm::Coulomb,
+        ModelTerm::Offset,
         late,
     ];
-    if facts.known(LawTerm::LoopDelay).is_some() && late != LawTerm::LoopDelay {
-        base.push(LawTerm::LoopDelay);
+    if facts.known(ModelTerm::LoopDelay).is_some() && late != ModelTerm::LoopDelay {
+        base.push(ModelTerm::LoopDelay);
     }
     base
 }
 
 /// Optional terms of a drive, simple ones first.
-const DRIVES: [&[LawTerm]; 6] = [
+const DRIVES: [&[ModelTerm]; 6] = [
     &[],
-    &[LawTerm::Integral],
-    &[LawTerm::VelocityFeedforward],
-    &[LawTerm::Integral, LawTerm::VelocityFeedforward],
+    &[ModelTerm::Integral],
+    &[ModelTerm::VelocityFeedforward],
+    &[ModelTerm::Integral, ModelTerm::VelocityFeedforward],
     &[
-        LawTerm::VelocityFeedforward,
-        LawTerm::AccelerationFeedforward,
+        ModelTerm::VelocityFeedforward,
+        ModelTerm::AccelerationFeedforward,
     ],
     &[
-        LawTerm::Integral,
-        LawTerm::VelocityFeedforward,
-        LawTerm::AccelerationFeedforward,
+        ModelTerm::Integral,
+        ModelTerm::VelocityFeedforward,
+        ModelTerm::AccelerationFeedforward,
     ],
 ];
 
@@ -105,7 +105,7 @@ const LOOPS_APART: f64 = 0.6;
 
 /// A term that may be admitted, with what belongs to it, and the values that it begins with.
 struct TermCandidate {
-    terms: Vec<LawTerm>,
+    terms: Vec<ModelTerm>,
     start: TermValues,
 }
 
@@ -167,7 +167,7 @@ pub(super) fn admit_more(
         let of_drive = candidates(errors.record, facts, &terms, &at)
             .into_iter()
             .filter(|candidate| {
-                OPTIONAL.contains(&candidate.terms[0]) || candidate.terms[0] == LawTerm::Backlash
+                OPTIONAL.contains(&candidate.terms[0]) || candidate.terms[0] == ModelTerm::Backlash
             })
             .collect();
         let Some(best) = best_term(of_drive, [&errors, &errors], &terms, &at) else {
@@ -184,7 +184,7 @@ fn begin(
     record: &AxisRecord<'_>,
     [train, valid]: [&OutputErrors<'_>; 2],
     facts: &AxisFacts,
-) -> (Vec<LawTerm>, TermValues) {
+) -> (Vec<ModelTerm>, TermValues) {
     let nothing = (base(facts), TermValues([0.0; TERMS]));
     let drives = drives(record, train, facts);
     let Some(least) = drives.iter().min_by(|a, b| a.left_mm.total_cmp(&b.left_mm)) else {
@@ -198,15 +198,15 @@ fn begin(
     let near = drives
         .iter()
         .filter(|drive| drive.left_mm < FAR * least.left_mm);
-    let near: Vec<(Vec<LawTerm>, TermValues)> =
+    let near: Vec<(Vec<ModelTerm>, TermValues)> =
         near.flat_map(|drive| variants(record, drive)).collect();
-    let fits: Vec<(Vec<LawTerm>, TermValues, f64)> = map_in_parallel(near, |(terms, values)| {
+    let fits: Vec<(Vec<ModelTerm>, TermValues, f64)> = map_in_parallel(near, |(terms, values)| {
         let values = train.least(&values, &terms, DRIVE_STEPS, DRIVE_DONE).values;
         (terms, values, square(&valid.residuals(&values)))
     });
     // In these units the least square is the number of samples that are independent.
     let independent = fits.iter().map(|fit| fit.2).fold(f64::INFINITY, f64::min);
-    let cost = |fit: &(Vec<LawTerm>, TermValues, f64)| {
+    let cost = |fit: &(Vec<ModelTerm>, TermValues, f64)| {
         fit.2 + fit.0.len() as f64 * libm::log(independent.max(1.0))
     };
     let likeliest = fits.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
@@ -216,8 +216,8 @@ fn begin(
 /// A drive, fitted.
 struct FittedDrive {
     /// Terms of the drive beyond the base.
-    has: &'static [LawTerm],
-    terms: Vec<LawTerm>,
+    has: &'static [ModelTerm],
+    terms: Vec<ModelTerm>,
     values: TermValues,
     left_mm: f64,
 }
@@ -235,7 +235,7 @@ fn drives(
     let mut starts = starts(record, train.counts, late);
     if let Some(before) = facts.before {
         let loops = |at: TermValues| {
-            [LawTerm::LoopGain, LawTerm::Damping]
+            [ModelTerm::LoopGain, ModelTerm::Damping]
                 .into_iter()
                 .fold(before, |kept, term| kept.with(term, at.get(term)))
         };
@@ -252,13 +252,13 @@ fn drives(
     let begin = |at: TermValues| {
         let at = facts.start(at);
         facts.record_delay_s.map_or(
-            at.with(LawTerm::RecordDelay, late as f64 * record.sample_s),
+            at.with(ModelTerm::RecordDelay, late as f64 * record.sample_s),
             |_| at,
         )
     };
     let starts = ranked(starts.into_iter().map(begin).collect());
     // A part that is known to be there is there, and one that is known to be zero is not.
-    let may_be = |drive: &&[LawTerm]| {
+    let may_be = |drive: &&[ModelTerm]| {
         let is = |term| {
             facts
                 .known(term)
@@ -266,7 +266,7 @@ fn drives(
         };
         OPTIONAL.into_iter().all(is)
     };
-    let fit = |has: &'static [LawTerm]| {
+    let fit = |has: &'static [ModelTerm]| {
         let is_of = |at: &TermValues| {
             OPTIONAL
                 .into_iter()
@@ -302,7 +302,7 @@ fn of_each_speed_gain<'a>(
     for (left_mm, at) in ranked {
         if best
             .iter()
-            .all(|(_, other)| other.get(LawTerm::Damping) != at.get(LawTerm::Damping))
+            .all(|(_, other)| other.get(ModelTerm::Damping) != at.get(ModelTerm::Damping))
         {
             best.push((*left_mm, *at));
         }
@@ -314,12 +314,12 @@ fn of_each_speed_gain<'a>(
 fn fit_drive(
     train: &OutputErrors<'_>,
     facts: &AxisFacts,
-    has: &'static [LawTerm],
+    has: &'static [ModelTerm],
     ranked: &[(f64, TermValues)],
 ) -> Option<FittedDrive> {
-    let terms: Vec<LawTerm> = base(facts).into_iter().chain(has.iter().copied()).collect();
-    let is_delay = |term: &LawTerm| matches!(term, LawTerm::RecordDelay | LawTerm::LoopDelay);
-    let on_time: Vec<LawTerm> = terms
+    let terms: Vec<ModelTerm> = base(facts).into_iter().chain(has.iter().copied()).collect();
+    let is_delay = |term: &ModelTerm| matches!(term, ModelTerm::RecordDelay | ModelTerm::LoopDelay);
+    let on_time: Vec<ModelTerm> = terms
         .iter()
         .copied()
         .filter(|term| !is_delay(term))
@@ -342,12 +342,12 @@ fn fit_drive(
 }
 
 /// A drive that was fitted with what another has beside: with the same lag at constant speed.
-fn with_more(less: &FittedDrive, has: &[LawTerm]) -> TermValues {
+fn with_more(less: &FittedDrive, has: &[ModelTerm]) -> TermValues {
     has.iter()
         .filter(|term| !less.has.contains(term))
         .fold(less.values, |at, &term| match term {
-            LawTerm::Integral => at.with(term, INTEGRALS[1] * at.get(LawTerm::Damping)),
-            LawTerm::VelocityFeedforward => [LawTerm::LoopGain, LawTerm::Coulomb]
+            ModelTerm::Integral => at.with(term, INTEGRALS[1] * at.get(ModelTerm::Damping)),
+            ModelTerm::VelocityFeedforward => [ModelTerm::LoopGain, ModelTerm::Coulomb]
                 .into_iter()
                 .fold(at.with(term, FED), |at, term| {
                     at.with(term, (1.0 - FED) * at.get(term))
@@ -365,9 +365,9 @@ const FED_ACCELERATION: f64 = 0.5;
 fn variants(
     record: &AxisRecord<'_>,
     FittedDrive { terms, values, .. }: &FittedDrive,
-) -> Vec<(Vec<LawTerm>, TermValues)> {
+) -> Vec<(Vec<ModelTerm>, TermValues)> {
     let fastest_mm_s = largest(&record.actual_speed_mm_s());
-    let with = |term: LawTerm, value: f64| {
+    let with = |term: ModelTerm, value: f64| {
         (
             terms.iter().copied().chain([term]).collect::<Vec<_>>(),
             values.with(term, value),
@@ -375,10 +375,10 @@ fn variants(
     };
     let mut variants = vec![
         (terms.clone(), *values),
-        with(LawTerm::Presliding, PRESLIDING_MM),
+        with(ModelTerm::Presliding, PRESLIDING_MM),
     ];
     if largest(&record.command_speed_mm_s()) > FASTER * fastest_mm_s {
-        variants.push(with(LawTerm::SpeedLimit, AT_LIMIT * fastest_mm_s));
+        variants.push(with(ModelTerm::SpeedLimit, AT_LIMIT * fastest_mm_s));
     }
     variants
 }
@@ -397,10 +397,10 @@ const PRESLIDING_MM: f64 = 0.005;
 /// Start of the fit of a limit of the speed, as a part of the highest speed.
 const AT_LIMIT: f64 = 0.97;
 /// Terms that a drive may have.
-pub(super) const OPTIONAL: [LawTerm; 3] = [
-    LawTerm::Integral,
-    LawTerm::VelocityFeedforward,
-    LawTerm::AccelerationFeedforward,
+pub(super) const OPTIONAL: [ModelTerm; 3] = [
+    ModelTerm::Integral,
+    ModelTerm::VelocityFeedforward,
+    ModelTerm::AccelerationFeedforward,
 ];
 
 /// Returns the starts before anything is known: gains on a grid, and with the lag that the
@@ -432,16 +432,16 @@ fn starts(record: &AxisRecord<'_>, counts: &[bool], late: usize) -> Vec<TermValu
                 .flat_map(|i| FEEDFORWARDS.map(|f| (i, f)))
             {
                 let start = TermValues([0.0; TERMS])
-                    .with(LawTerm::LoopGain, kp_1_s * damping)
-                    .with(LawTerm::Damping, damping)
+                    .with(ModelTerm::LoopGain, kp_1_s * damping)
+                    .with(ModelTerm::Damping, damping)
                     .with(
-                        LawTerm::Coulomb,
+                        ModelTerm::Coulomb,
                         (sign_mm * kp_1_s * damping).max(LEAST_COULOMB_MM_S2),
                     )
-                    .with(LawTerm::StribeckSpeed, 2.0)
-                    .with(LawTerm::VelocityFeedforward, speed)
-                    .with(LawTerm::AccelerationFeedforward, acceleration)
-                    .with(LawTerm::Integral, integral * damping);
+                    .with(ModelTerm::StribeckSpeed, 2.0)
+                    .with(ModelTerm::VelocityFeedforward, speed)
+                    .with(ModelTerm::AccelerationFeedforward, acceleration)
+                    .with(ModelTerm::Integral, integral * damping);
                 starts.push(start);
             }
         }
@@ -451,7 +451,7 @@ fn starts(record: &AxisRecord<'_>, counts: &[bool], late: usize) -> Vec<TermValu
 
 /// A term that may be admitted, fitted.
 struct FollowedTerm {
-    terms: Vec<LawTerm>,
+    terms: Vec<ModelTerm>,
     values: TermValues,
     /// Gain in twice the log-likelihood of the held-out samples, less the cost of its parameters.
     gain: f64,
@@ -462,7 +462,7 @@ struct FollowedTerm {
 fn best_term(
     candidates: Vec<TermCandidate>,
     [train, valid]: [&OutputErrors<'_>; 2],
-    terms: &[LawTerm],
+    terms: &[ModelTerm],
     at: &TermValues,
 ) -> Option<FollowedTerm> {
     let slopes = train.slopes(at, terms);
@@ -470,7 +470,7 @@ fn best_term(
     let looked = map_in_parallel(candidates, |candidate| {
         // A start that loses the run is no start.
         let lost = train.rms_mm(&candidate.start) > LOST * now_mm;
-        let all: Vec<LawTerm> = terms.iter().chain(&candidate.terms).copied().collect();
+        let all: Vec<ModelTerm> = terms.iter().chain(&candidate.terms).copied().collect();
         let step = (!lost).then(|| train.one_step(&candidate.start, &all, &slopes))?;
         Some((step.cost, candidate, step.values))
     });
@@ -479,7 +479,7 @@ fn best_term(
     looked.truncate(FOLLOWED_TERMS);
     let before = valid.residuals(at);
     let followed = map_in_parallel(looked, |(_, candidate, start)| {
-        let all: Vec<LawTerm> = terms.iter().chain(&candidate.terms).copied().collect();
+        let all: Vec<ModelTerm> = terms.iter().chain(&candidate.terms).copied().collect();
         let values = train.least(&start, &all, TERM_STEPS, NEARLY_DONE).values;
         let [gain, error] = sum_and_error(&gains(valid, &before, &valid.residuals(&values)));
         let first = all.len() - candidate.terms.len();
@@ -540,10 +540,10 @@ const LEAST_OF_PERIOD: f64 = 5.0;
 /// Returns true if the screw is rigid, or compliant with a possible share of the table and an
 /// oscillation that shows in the samples.
 pub(super) fn is_screw_or_none(values: &TermValues, sample_s: f64) -> bool {
-    let period_s = TAU * values.get(LawTerm::Resonance);
+    let period_s = TAU * values.get(ModelTerm::Resonance);
     period_s == 0.0
         || period_s >= LEAST_OF_PERIOD * sample_s
-            && (SHARES[0]..SHARES[1]).contains(&values.get(LawTerm::TableShare))
+            && (SHARES[0]..SHARES[1]).contains(&values.get(ModelTerm::TableShare))
 }
 
 /// Parts of the inertia that a table behind a screw has: at an end of them a screw stands for
@@ -556,43 +556,43 @@ const LOST: f64 = 30.0;
 fn candidates(
     record: &AxisRecord<'_>,
     facts: &AxisFacts,
-    terms: &[LawTerm],
+    terms: &[ModelTerm],
     at: &TermValues,
 ) -> Vec<TermCandidate> {
     let sample_s = record.sample_s;
     let speed_mm_s = record.actual_speed_mm_s();
     let acceleration_mm_s2 = largest(&record.slopes(&speed_mm_s, 3));
-    let of_damping = 0.03 * at.get(LawTerm::Damping);
-    let starts: [(LawTerm, &[f64]); 12] = [
-        (LawTerm::Integral, &[10.0, 60.0]),
-        (LawTerm::VelocityFeedforward, &[0.3, 0.95]),
-        (LawTerm::AccelerationFeedforward, &[0.5]),
-        (LawTerm::LoopDelay, &[0.5 * sample_s, 2.0 * sample_s]),
-        (LawTerm::FilterTime, &[0.2 * sample_s, sample_s]),
-        (LawTerm::Viscous, &[of_damping]),
-        (LawTerm::Presliding, &[0.003, 0.03]),
-        (LawTerm::Stribeck, &[0.3]),
-        (LawTerm::SpeedLimit, &[AT_LIMIT * largest(&speed_mm_s)]),
-        (LawTerm::AccelerationLimit, &[0.9 * acceleration_mm_s2]),
+    let of_damping = 0.03 * at.get(ModelTerm::Damping);
+    let starts: [(ModelTerm, &[f64]); 12] = [
+        (ModelTerm::Integral, &[10.0, 60.0]),
+        (ModelTerm::VelocityFeedforward, &[0.3, 0.95]),
+        (ModelTerm::AccelerationFeedforward, &[0.5]),
+        (ModelTerm::LoopDelay, &[0.5 * sample_s, 2.0 * sample_s]),
+        (ModelTerm::FilterTime, &[0.2 * sample_s, sample_s]),
+        (ModelTerm::Viscous, &[of_damping]),
+        (ModelTerm::Presliding, &[0.003, 0.03]),
+        (ModelTerm::Stribeck, &[0.3]),
+        (ModelTerm::SpeedLimit, &[AT_LIMIT * largest(&speed_mm_s)]),
+        (ModelTerm::AccelerationLimit, &[0.9 * acceleration_mm_s2]),
         (
-            LawTerm::Resonance,
+            ModelTerm::Resonance,
             &[1.0 / (TAU * 40.0), 1.0 / (TAU * 90.0)],
         ),
-        (LawTerm::Backlash, &[0.003, 0.02]),
+        (ModelTerm::Backlash, &[0.003, 0.02]),
     ];
     let mut candidates = vec![];
     for (term, values) in starts {
         // Without an integral the two parts of the damping are the same to the position.
         let is_told = match term {
-            LawTerm::Viscous => terms.contains(&LawTerm::Integral) && at.get(term) == 0.0,
+            ModelTerm::Viscous => terms.contains(&ModelTerm::Integral) && at.get(term) == 0.0,
             // Without velocity feedforward a command that follows the drive rings: no drive is
             // tuned so.
-            LawTerm::AccelerationFeedforward => at.get(LawTerm::VelocityFeedforward) > 0.0,
+            ModelTerm::AccelerationFeedforward => at.get(ModelTerm::VelocityFeedforward) > 0.0,
             // What swings faster than a fifth of the rate does not show, and what swings below 20
             // Hz is no screw of a machine tool.
-            LawTerm::Resonance => sample_s < SLOWEST_FOR_RESONANCE_S,
+            ModelTerm::Resonance => sample_s < SLOWEST_FOR_RESONANCE_S,
             // Backlash shows at the motor's encoder only where the screw is compliant.
-            LawTerm::Backlash => terms.contains(&LawTerm::Resonance),
+            ModelTerm::Backlash => terms.contains(&ModelTerm::Resonance),
             _ => true,
         };
         if terms.contains(&term) || !is_told || facts.known(term).is_some() {
@@ -601,18 +601,18 @@ fn candidates(
         for value in values {
             let start = at.with(term, *value);
             let (terms, start) = match term {
-                LawTerm::Stribeck => (vec![term, LawTerm::StribeckSpeed], start),
-                LawTerm::Resonance => (
-                    vec![term, LawTerm::TableShare],
-                    start.with(LawTerm::TableShare, 0.5),
+                ModelTerm::Stribeck => (vec![term, ModelTerm::StribeckSpeed], start),
+                ModelTerm::Resonance => (
+                    vec![term, ModelTerm::TableShare],
+                    start.with(ModelTerm::TableShare, 0.5),
                 ),
                 _ => (vec![term], start),
             };
-            if term == LawTerm::Resonance {
-                let terms = terms.iter().copied().chain([LawTerm::Backlash]).collect();
+            if term == ModelTerm::Resonance {
+                let terms = terms.iter().copied().chain([ModelTerm::Backlash]).collect();
                 candidates.push(TermCandidate {
                     terms,
-                    start: start.with(LawTerm::Backlash, 0.005),
+                    start: start.with(ModelTerm::Backlash, 0.005),
                 });
             }
             candidates.push(TermCandidate { terms, start });
@@ -639,11 +639,11 @@ mod tests {
             step_mm: 1e-6,
         };
         let is_offered = |speed: f64| {
-            let at = TermValues([0.0; TERMS]).with(LawTerm::VelocityFeedforward, speed);
+            let at = TermValues([0.0; TERMS]).with(ModelTerm::VelocityFeedforward, speed);
             let offered = candidates(&record, &AxisFacts::default(), &[], &at);
             offered
                 .iter()
-                .any(|candidate| candidate.terms[0] == LawTerm::AccelerationFeedforward)
+                .any(|candidate| candidate.terms[0] == ModelTerm::AccelerationFeedforward)
         };
         assert_eq!([0.0, 0.9].map(is_offered), [false, true]);
     }

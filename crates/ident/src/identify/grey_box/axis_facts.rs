@@ -3,7 +3,7 @@
 use feedwright_sim::Axis;
 
 use super::known_value::KnownValue;
-use super::terms::{LawTerm, TermValues};
+use super::terms::{ModelTerm, TermValues};
 
 /// Facts that are known of an axis besides the record.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -46,12 +46,12 @@ impl AxisFacts {
     }
 
     /// Returns the known value of a term of the drive.
-    pub(super) fn known(&self, term: LawTerm) -> Option<KnownValue> {
+    pub(super) fn known(&self, term: ModelTerm) -> Option<KnownValue> {
         match term {
-            LawTerm::Integral => self.inverse_integral_1_s,
-            LawTerm::VelocityFeedforward => self.velocity_feedforward,
-            LawTerm::AccelerationFeedforward => self.acceleration_feedforward,
-            LawTerm::LoopDelay => self.drive_delay_s,
+            ModelTerm::Integral => self.inverse_integral_1_s,
+            ModelTerm::VelocityFeedforward => self.velocity_feedforward,
+            ModelTerm::AccelerationFeedforward => self.acceleration_feedforward,
+            ModelTerm::LoopDelay => self.drive_delay_s,
             _ => None,
         }
     }
@@ -61,25 +61,25 @@ impl AxisFacts {
         if self.before.is_none()
             && let Some(viscous_1_s) = self.viscous_1_s()
         {
-            at = at.with(LawTerm::Viscous, viscous_1_s);
+            at = at.with(ModelTerm::Viscous, viscous_1_s);
         }
         for term in [
-            LawTerm::Integral,
-            LawTerm::VelocityFeedforward,
-            LawTerm::AccelerationFeedforward,
-            LawTerm::LoopDelay,
+            ModelTerm::Integral,
+            ModelTerm::VelocityFeedforward,
+            ModelTerm::AccelerationFeedforward,
+            ModelTerm::LoopDelay,
         ] {
             at = self
                 .known(term)
                 .map_or(at, |known| at.with(term, known.value));
         }
         at = self.kp_1_s.map_or(at, |kp| {
-            at.with(LawTerm::LoopGain, kp.value * at.speed_gain_1_s())
+            at.with(ModelTerm::LoopGain, kp.value * at.speed_gain_1_s())
         });
         at = self
             .command_delay_s
-            .map_or(at, |delay_s| at.with(LawTerm::CommandDelay, delay_s));
-        at.with(LawTerm::RecordDelay, self.record_delay_s.unwrap_or(0.0))
+            .map_or(at, |delay_s| at.with(ModelTerm::CommandDelay, delay_s));
+        at.with(ModelTerm::RecordDelay, self.record_delay_s.unwrap_or(0.0))
     }
 
     /// Fills in unstated values from an axis of a machine file with this servo period.

@@ -8,12 +8,12 @@
 use std::array::from_fn;
 
 use feedwright_control::{
-    AxisLaw, AxisState, DriveLaw, DriveReference, DriveState, FrictionLaw, Periods,
-    TransmissionLaw, TransmissionParameters,
+    AxisModel, AxisState, DriveModel, DriveReference, DriveState, FrictionModel, Periods,
+    TransmissionModel, TransmissionParameters,
 };
 use feedwright_sim::Transmission;
 
-use super::terms::{LawTerm, TermValues};
+use super::terms::{ModelTerm, TermValues};
 
 /// Mechanics periods in a servo period: as tnv40's.
 pub(super) const MECHANICS_PER_SERVO: u32 = 10;
@@ -101,9 +101,9 @@ impl<T: Copy> Recent<T> {
 #[derive(Debug, Clone)]
 pub(super) struct AxisRun {
     values: TermValues,
-    law: AxisLaw,
-    drive: DriveLaw,
-    friction: FrictionLaw,
+    axis_model: AxisModel,
+    drive: DriveModel,
+    friction: FrictionModel,
     servo_per_sample: usize,
     /// Samples by which the position loop has the commands of the record late.
     late_samples: f64,
@@ -116,7 +116,7 @@ pub(super) struct AxisRun {
     /// Window of the speed, mechanics periods; none is the speed itself.
     window: Option<f64>,
     /// Motor and table, where the screw is not rigid.
-    screw: Option<TransmissionLaw>,
+    screw: Option<TransmissionModel>,
     /// The speed is taken at the start of each servo period, and held.
     holds: bool,
 }
@@ -179,15 +179,15 @@ impl RunState {
 impl AxisRun {
     pub(super) fn new(values: &TermValues, sample_s: f64) -> Self {
         let (periods, servo_per_sample) = periods(sample_s);
-        let law = AxisLaw::new(values.parameters(periods.mechanics_s), periods);
-        let window = values.get(LawTerm::SpeedWindow) / periods.mechanics_s;
-        let loop_late = values.get(LawTerm::LoopDelay) / periods.mechanics_s;
+        let axis_model = AxisModel::new(values.parameters(periods.mechanics_s), periods);
+        let window = values.get(ModelTerm::SpeedWindow) / periods.mechanics_s;
+        let loop_late = values.get(ModelTerm::LoopDelay) / periods.mechanics_s;
         let age = |late: f64| (late / f64::from(MECHANICS_PER_SERVO)).ceil().max(0.0) as usize;
         Self {
             values: *values,
-            law,
-            drive: DriveLaw::new(&law, values.drive()),
-            friction: FrictionLaw::new(&law, values.friction()),
+            axis_model,
+            drive: DriveModel::new(&axis_model, values.drive()),
+            friction: FrictionModel::new(&axis_model, values.friction()),
             servo_per_sample,
             late_samples: values.commands_late_s() / sample_s,
             loop_late,
@@ -196,8 +196,8 @@ impl AxisRun {
             }),
             loop_part: loop_late.fract(),
             window: (window > 1.0).then_some(window),
-            screw: screw_law(values, periods.mechanics_s),
-            holds: values.get(LawTerm::SpeedHold) > 0.0,
+            screw: screw_model(values, periods.mechanics_s),
+            holds: values.get(ModelTerm::SpeedHold) > 0.0,
         }
     }
 
@@ -213,16 +213,16 @@ impl AxisRun {
             servo_s,
             mechanics_s,
             mechanics_per_servo,
-        } = self.law.periods;
+        } = self.axis_model.periods;
         let per_servo = mechanics_per_servo as usize;
-        let sign = if mm_s.abs() > self.law.parameters.coulomb_smoothing_rad_s {
+        let sign = if mm_s.abs() > self.axis_model.parameters.coulomb_smoothing_rad_s {
             mm_s.signum()
         } else {
             0.0
         };
-        let sliding = sign * self.values.get(LawTerm::Coulomb)
-            + sign.abs() * self.values.get(LawTerm::Offset);
-        let carried = sliding + self.values.get(LawTerm::Viscous) * mm_s;
+        let sliding = sign * self.values.get(ModelTerm::Coulomb)
+            + sign.abs() * self.values.get(ModelTerm::Offset);
+        let carried = sliding + self.values.get(ModelTerm::Viscous) * mm_s;
         let mut axis = AxisState {
             angle_rad: mm,
             speed_rad_s: mm_s,
@@ -235,14 +235,14 @@ impl AxisRun {
             let at = sample as f64 - servo_periods / self.servo_per_sample as f64;
             let position_mm = mm - servo_periods * servo_s * mm_s;
             reference = self.drive.position_loop(
-                &self.law,
+                &self.axis_model,
                 self.command_mm(commands, at),
                 position_mm,
                 &mut axis,
                 &mut drive,
             );
         }
-        let integral = if self.values.get(LawTerm::Integral) > 0.0 {
+        let integral = if self.values.get(ModelTerm::Integral) > 0.0 {
             carried
         } else {
             0.0
@@ -265,11 +265,14 @@ impl AxisRun {
     /// Returns the lead of the motor over the table at constant speed: half the backlash, and the
     /// twist of the screw by friction.
     fn leads_mm(&self, sign: f64) -> f64 {
-        let twist_s = self.values.get(LawTerm::Resonance);
-        let share = self.values.get(LawTerm::TableShare).max(f64::MIN_POSITIVE);
-        let twisted = self.values.get(LawTerm::Coulomb) / share * twist_s * twist_s;
+        let twist_s = self.values.get(ModelTerm::Resonance);
+        let share = self
+            .values
+            .get(ModelTerm::TableShare)
+            .max(f64::MIN_POSITIVE);
+        let twisted = self.values.get(ModelTerm::Coulomb) / share * twist_s * twist_s;
         if self.screw.is_some() {
-            sign * (0.5 * self.values.get(LawTerm::Backlash) + twisted)
+            sign * (0.5 * self.values.get(ModelTerm::Backlash) + twisted)
         } else {
             0.0
         }
@@ -284,7 +287,7 @@ impl AxisRun {
     pub(super) fn table_share(&self) -> Option<f64> {
         self.screw
             .as_ref()
-            .map(|_| self.values.get(LawTerm::TableShare))
+            .map(|_| self.values.get(ModelTerm::TableShare))
     }
 
     /// One sample of the record goes by.
@@ -305,7 +308,7 @@ impl AxisRun {
         let [first, ..] = &runs[..] else { return };
         let (servo_per_sample, substeps) = (
             first.servo_per_sample,
-            first.law.periods.mechanics_per_servo,
+            first.axis_model.periods.mechanics_per_servo,
         );
         for servo in 0..servo_per_sample {
             let at = sample as f64 + servo as f64 / servo_per_sample as f64;
@@ -323,7 +326,7 @@ impl AxisRun {
                 }
                 let mut presliding: [f64; L] = from_fn(|i| states[i].presliding);
                 let frictions = runs.map(|run| &run.friction);
-                let after = FrictionLaw::speeds_after_rad_s(
+                let after = FrictionModel::speeds_after_rad_s(
                     &frictions,
                     forces,
                     inverse,
@@ -343,7 +346,7 @@ impl AxisRun {
     fn refer(&self, command_mm: f64, state: &mut RunState) {
         let position_mm = state.axis.angle_rad;
         let reference = self.drive.position_loop(
-            &self.law,
+            &self.axis_model,
             command_mm,
             position_mm,
             &mut state.axis,
@@ -372,7 +375,7 @@ impl AxisRun {
     #[inline]
     fn push(&self, substep: usize, state: &mut RunState, [forces, inverse, speed]: [&mut f64; 3]) {
         let reference = self.arrived(substep, state);
-        let dt_s = self.law.periods.mechanics_s;
+        let dt_s = self.axis_model.periods.mechanics_s;
         let taken_mm_s = match self.window {
             Some(window) => {
                 state.course.push(state.axis.angle_rad);
@@ -385,9 +388,12 @@ impl AxisRun {
         if !self.holds || substep == 0 {
             state.taken_mm_s = taken_mm_s;
         }
-        let drive = self
-            .drive
-            .torque_nm(&self.law, reference, state.taken_mm_s, &mut state.drive);
+        let drive = self.drive.torque_nm(
+            &self.axis_model,
+            reference,
+            state.taken_mm_s,
+            &mut state.drive,
+        );
         match &self.screw {
             None => (*forces, *speed) = (drive - state.load, state.axis.speed_rad_s),
             Some(screw) => {
@@ -409,7 +415,7 @@ impl AxisRun {
     /// A mechanics period on, at the end of which what was pushed has a speed.
     #[inline]
     fn advance(&self, after_mm_s: f64, state: &mut RunState) {
-        let dt_s = self.law.periods.mechanics_s;
+        let dt_s = self.axis_model.periods.mechanics_s;
         match &self.screw {
             None => state.axis.speed_rad_s = after_mm_s,
             Some(_) => {
@@ -423,7 +429,7 @@ impl AxisRun {
 }
 
 /// The screw of an axis of inertia 1, whose motor turns by 1 for a mm.
-fn screw_law(values: &TermValues, mechanics_s: f64) -> Option<TransmissionLaw> {
+fn screw_model(values: &TermValues, mechanics_s: f64) -> Option<TransmissionModel> {
     let Transmission {
         table_share,
         resonance_hz,
@@ -438,5 +444,5 @@ fn screw_law(values: &TermValues, mechanics_s: f64) -> Option<TransmissionLaw> {
         damping_ratio,
         backlash_rad: 1e-3 * backlash_um,
     };
-    TransmissionLaw::new(1.0, mechanics_s, screw)
+    TransmissionModel::new(1.0, mechanics_s, screw)
 }

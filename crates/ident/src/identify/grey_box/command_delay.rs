@@ -26,7 +26,7 @@ use super::found_axis::FoundAxis;
 use super::output_error::{Fitted, NEARLY_DONE, OutputErrors, square};
 use super::priors::Prior;
 use super::search_bound::SearchBound;
-use super::terms::{LawTerm, TermValues};
+use super::terms::{ModelTerm, TermValues};
 
 /// Most servo periods that are looked for: a bus takes one to three.
 const MOST_PERIODS: u32 = 4;
@@ -89,7 +89,7 @@ pub(super) fn shown(
         (best, least) = (fits.into_iter().map(|fit| fit.values).collect(), sum);
     }
     let delayed = |(axis, values): (&FoundAxis, &TermValues)| AxisFacts {
-        command_delay_s: Some(values.get(LawTerm::CommandDelay)),
+        command_delay_s: Some(values.get(ModelTerm::CommandDelay)),
         ..axis.facts
     };
     (without - least > libm::log(without.max(1.0)) + STRONG)
@@ -99,7 +99,7 @@ pub(super) fn shown(
 /// The delay of an axis whose commands are as late as is looked for.
 pub(super) fn at_bound(axis: &FoundAxis, sample_s: f64) -> Option<SearchBound> {
     let (term, bound) = (
-        LawTerm::CommandDelay,
+        ModelTerm::CommandDelay,
         f64::from(MOST_PERIODS) * periods(sample_s).0.servo_s,
     );
     let value = axis.values.get(term);
@@ -110,7 +110,7 @@ pub(super) fn at_bound(axis: &FoundAxis, sample_s: f64) -> Option<SearchBound> {
 fn one_period_later(
     errors: &OutputErrors<'_>,
     before: &TermValues,
-    terms: &[LawTerm],
+    terms: &[ModelTerm],
     servo_s: f64,
 ) -> Fitted {
     let starts = starts(before, terms, servo_s);
@@ -133,26 +133,26 @@ fn one_period_later(
 }
 
 /// Returns the starts of a fit with commands one servo period later.
-fn starts(before: &TermValues, terms: &[LawTerm], servo_s: f64) -> Vec<TermValues> {
+fn starts(before: &TermValues, terms: &[ModelTerm], servo_s: f64) -> Vec<TermValues> {
     let [late_s, loop_s, fed, damping, loop_gain] = [
-        LawTerm::CommandDelay,
-        LawTerm::LoopDelay,
-        LawTerm::VelocityFeedforward,
-        LawTerm::Damping,
-        LawTerm::LoopGain,
+        ModelTerm::CommandDelay,
+        ModelTerm::LoopDelay,
+        ModelTerm::VelocityFeedforward,
+        ModelTerm::Damping,
+        ModelTerm::LoopGain,
     ]
     .map(|term| before.get(term));
-    let later = before.with(LawTerm::CommandDelay, late_s + servo_s);
+    let later = before.with(ModelTerm::CommandDelay, late_s + servo_s);
     let less_damped = (damping - loop_gain * servo_s).max(LEAST_DAMPING * damping);
     let mut starts = vec![];
     for at in [
         later,
-        later.with(LawTerm::LoopDelay, (loop_s - servo_s).max(0.0)),
+        later.with(ModelTerm::LoopDelay, (loop_s - servo_s).max(0.0)),
     ] {
-        starts.extend([at, at.with(LawTerm::Damping, less_damped)]);
-        if terms.contains(&LawTerm::VelocityFeedforward) {
+        starts.extend([at, at.with(ModelTerm::Damping, less_damped)]);
+        if terms.contains(&ModelTerm::VelocityFeedforward) {
             starts.push(at.with(
-                LawTerm::VelocityFeedforward,
+                ModelTerm::VelocityFeedforward,
                 fed + before.kp_1_s() * servo_s,
             ));
         }

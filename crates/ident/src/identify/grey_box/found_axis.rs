@@ -10,7 +10,7 @@ use super::gain_changes::GainChange;
 use super::residual_noise::ResidualNoise;
 use super::search_bound::SearchBound;
 use super::standard_errors::HALF_INTERVAL;
-use super::terms::{LawTerm, TermValues};
+use super::terms::{ModelTerm, TermValues};
 use super::torque_column::{DriveColumn, TorqueColumn};
 use super::unseen_motion::UnseenMotion;
 use crate::identify::Rng;
@@ -68,7 +68,7 @@ pub struct FoundAxis {
     /// Values of its model, from positions alone.
     pub values: TermValues,
     /// Terms that were fitted.
-    pub terms: Vec<LawTerm>,
+    pub terms: Vec<ModelTerm>,
     /// Values that end where their search ends. The model does not hold if there is one.
     pub at_bounds: Vec<SearchBound>,
     /// Half of the interval of 90 % of each term, in the order of [`Self::terms`].
@@ -78,7 +78,7 @@ pub struct FoundAxis {
     pub uncertain: Option<Vec<Vec<f64>>>,
     /// Model with the speed measurement of the drive, where a torque column or a fact determines
     /// it.
-    pub resolved: Option<ResolvedLaw>,
+    pub resolved: Option<ResolvedModel>,
     /// Facts that were given.
     pub facts: AxisFacts,
     /// RMS that the free run leaves of the fitted samples, um.
@@ -102,11 +102,11 @@ pub struct FoundAxis {
 /// Model with the window over which the drive takes the speed. The window determines the scale of
 /// all values, which positions alone leave open.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ResolvedLaw {
+pub struct ResolvedModel {
     /// Values of it.
     pub values: TermValues,
     /// Half of the interval of 90 % of those that have one.
-    pub half_intervals: Vec<(LawTerm, f64)>,
+    pub half_intervals: Vec<(ModelTerm, f64)>,
     /// Mechanics from a torque column; `None` where the window was given.
     pub torque: Option<TorqueColumn>,
     /// Drive from the torque column.
@@ -115,9 +115,9 @@ pub struct ResolvedLaw {
     pub fit_um: f64,
 }
 
-impl ResolvedLaw {
+impl ResolvedModel {
     /// Returns the source of a term of the model.
-    fn source(&self, term: LawTerm) -> NumberSource {
+    fn source(&self, term: ModelTerm) -> NumberSource {
         let is_fitted = self.half_intervals.iter().any(|(of, _)| *of == term);
         match &self.torque {
             Some(_) => NumberSource::TorqueColumn,
@@ -132,7 +132,7 @@ impl ResolvedLaw {
 /// `step_s`, and the others by their regression on it.
 fn draw(
     values: &TermValues,
-    terms: &[LawTerm],
+    terms: &[ModelTerm],
     uncertain: &[Vec<f64>],
     step_s: f64,
     mut normal: impl FnMut() -> f64,
@@ -140,8 +140,8 @@ fn draw(
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let normals: Vec<f64> = terms.iter().map(|_| normal()).collect();
     let mut changes: Vec<f64> = uncertain.iter().map(|row| product(row, &normals)).collect();
-    if let Some(delay) = terms.iter().position(|term| *term == LawTerm::LoopDelay) {
-        let delay_s = values.get(LawTerm::LoopDelay) + changes[delay];
+    if let Some(delay) = terms.iter().position(|term| *term == ModelTerm::LoopDelay) {
+        let delay_s = values.get(ModelTerm::LoopDelay) + changes[delay];
         let moved_s = (delay_s / step_s).round() * step_s - delay_s;
         let (of_delay, variance_s2) = (
             &uncertain[delay],
@@ -230,14 +230,14 @@ impl FoundAxis {
     }
 
     /// Returns the values of its model: with the window of the speed, where that is known.
-    pub fn law(&self) -> &TermValues {
+    pub fn axis_model(&self) -> &TermValues {
         self.resolved
             .as_ref()
             .map_or(&self.values, |resolved| &resolved.values)
     }
 
-    /// Returns half of the interval of a term of [`Self::law`].
-    pub fn half_interval(&self, term: LawTerm) -> Option<f64> {
+    /// Returns half of the interval of a term of [`Self::axis_model`].
+    pub fn half_interval(&self, term: ModelTerm) -> Option<f64> {
         let half = match &self.resolved {
             Some(resolved) => resolved
                 .half_intervals
@@ -282,17 +282,20 @@ impl FoundAxis {
 
     /// All numbers, those that positions determine first.
     pub fn numbers(&self) -> Vec<FoundNumber> {
-        let told = self.law();
-        let mut numbers: Vec<FoundNumber> = LawTerm::ALL
+        let told = self.axis_model();
+        let mut numbers: Vec<FoundNumber> = ModelTerm::ALL
             .into_iter()
             .filter(|term| {
                 let always = matches!(
                     term,
-                    LawTerm::LoopGain | LawTerm::Damping | LawTerm::Coulomb | LawTerm::Offset
+                    ModelTerm::LoopGain
+                        | ModelTerm::Damping
+                        | ModelTerm::Coulomb
+                        | ModelTerm::Offset
                 );
                 let needs = match term {
-                    LawTerm::StribeckSpeed => told.get(LawTerm::Stribeck) > 0.0,
-                    LawTerm::TableShare => told.get(LawTerm::Resonance) > 0.0,
+                    ModelTerm::StribeckSpeed => told.get(ModelTerm::Stribeck) > 0.0,
+                    ModelTerm::TableShare => told.get(ModelTerm::Resonance) > 0.0,
                     _ => true,
                 };
                 (always || told.get(*term) != 0.0) && needs
@@ -341,17 +344,19 @@ impl FoundAxis {
         numbers
     }
 
-    fn number(&self, term: LawTerm, value: f64) -> FoundNumber {
+    fn number(&self, term: ModelTerm, value: f64) -> FoundNumber {
         let row = term.row();
         let source = match &self.resolved {
-            _ if term == LawTerm::CommandDelay && self.facts.command_delay_s.is_some() => {
+            _ if term == ModelTerm::CommandDelay && self.facts.command_delay_s.is_some() => {
                 NumberSource::Given
             }
-            _ if term == LawTerm::CommandDelay => NumberSource::Identified,
+            _ if term == ModelTerm::CommandDelay => NumberSource::Identified,
             Some(resolved) => resolved.source(term),
             None if self.terms.contains(&term) => NumberSource::Identified,
             None if self.facts.before.is_some() => NumberSource::Kept,
-            None if term == LawTerm::Viscous || term == LawTerm::RecordDelay => NumberSource::Given,
+            None if term == ModelTerm::Viscous || term == ModelTerm::RecordDelay => {
+                NumberSource::Given
+            }
             None => NumberSource::Assumed,
         };
         let [least, most] = row.range;
@@ -378,7 +383,7 @@ impl FoundAxis {
             NumberSource::TorqueColumn
         } else if self.facts.viscous.is_some() && self.facts.inertia.is_some() {
             NumberSource::Given
-        } else if self.terms.contains(&LawTerm::Viscous) {
+        } else if self.terms.contains(&ModelTerm::Viscous) {
             NumberSource::Identified
         } else {
             NumberSource::Assumed
@@ -404,14 +409,18 @@ mod tests {
     use super::super::terms::TERMS;
     use super::*;
 
-    const TERMS_OF_TEST: [LawTerm; 3] = [LawTerm::LoopGain, LawTerm::Coulomb, LawTerm::LoopDelay];
+    const TERMS_OF_TEST: [ModelTerm; 3] = [
+        ModelTerm::LoopGain,
+        ModelTerm::Coulomb,
+        ModelTerm::LoopDelay,
+    ];
     const DRAWS: usize = 20_000;
 
     fn values() -> TermValues {
         let values = TermValues([0.0; TERMS])
-            .with(LawTerm::LoopGain, 1e4)
-            .with(LawTerm::Coulomb, 30.0);
-        values.with(LawTerm::LoopDelay, 1.14e-3)
+            .with(ModelTerm::LoopGain, 1e4)
+            .with(ModelTerm::Coulomb, 30.0);
+        values.with(ModelTerm::LoopDelay, 1.14e-3)
     }
 
     /// Changes of the terms in many draws, with delays in steps of `step_s`.

@@ -14,7 +14,7 @@
 
 use super::axis_record::AxisRecord;
 use super::axis_run::{AxisRun, Commands};
-use super::terms::{LawTerm, TermValues};
+use super::terms::{ModelTerm, TermValues};
 use crate::average::rms;
 
 /// Settings that differ from those that were found.
@@ -46,9 +46,9 @@ impl GainChange {
     /// Returns the changes that are worth reporting, the least error last.
     pub(super) fn find(record: &AxisRecord<'_>, values: &TermValues, counts: &[bool]) -> Vec<Self> {
         let now_um = simulated_um(record, values, counts);
-        let feedforward = (values.get(LawTerm::VelocityFeedforward) * WORTH_TRYING < FEEDFORWARD)
+        let feedforward = (values.get(ModelTerm::VelocityFeedforward) * WORTH_TRYING < FEEDFORWARD)
             .then_some(FEEDFORWARD);
-        let kp_1_s = (FASTER * values.kp_1_s()).min(LOOPS_APART * values.get(LawTerm::Damping));
+        let kp_1_s = (FASTER * values.kp_1_s()).min(LOOPS_APART * values.get(ModelTerm::Damping));
         let faster = (kp_1_s > WORTH_TRYING * values.kp_1_s()).then_some(kp_1_s);
         let tried = [(faster, None), (None, feedforward), (faster, feedforward)];
         let mut changes: Vec<Self> = vec![];
@@ -61,13 +61,13 @@ impl GainChange {
             {
                 continue;
             }
-            let loop_gain = kp_1_s.map_or(values.get(LawTerm::LoopGain), |kp_1_s| {
+            let loop_gain = kp_1_s.map_or(values.get(ModelTerm::LoopGain), |kp_1_s| {
                 kp_1_s * values.speed_gain_1_s()
             });
-            let part = velocity_feedforward.unwrap_or(values.get(LawTerm::VelocityFeedforward));
+            let part = velocity_feedforward.unwrap_or(values.get(ModelTerm::VelocityFeedforward));
             let other = values
-                .with(LawTerm::LoopGain, loop_gain)
-                .with(LawTerm::VelocityFeedforward, part);
+                .with(ModelTerm::LoopGain, loop_gain)
+                .with(ModelTerm::VelocityFeedforward, part);
             let (predicted_um, simulated_um) = (
                 predicted_um(record, &other, counts),
                 simulated_um(record, &other, counts),
@@ -126,25 +126,26 @@ fn predicted_um(record: &AxisRecord<'_>, values: &TermValues, counts: &[bool]) -
         record.command_speed_mm_s(),
         record.command_acceleration_mm_s2(),
     ];
-    let loop_gain = get(LawTerm::LoopGain);
-    let slides = if get(LawTerm::Integral) > 0.0 {
+    let loop_gain = get(ModelTerm::LoopGain);
+    let slides = if get(ModelTerm::Integral) > 0.0 {
         0.0
     } else {
         1.0
     };
-    let drag_1_s = if get(LawTerm::Integral) > 0.0 {
+    let drag_1_s = if get(ModelTerm::Integral) > 0.0 {
         values.speed_gain_1_s()
     } else {
-        get(LawTerm::Damping)
-    } - get(LawTerm::VelocityFeedforward) * values.speed_gain_1_s();
+        get(ModelTerm::Damping)
+    } - get(ModelTerm::VelocityFeedforward) * values.speed_gain_1_s();
     let error_mm = |k: usize| {
         let sign = if speeds[k] == 0.0 {
             0.0
         } else {
             speeds[k].signum()
         };
-        let friction = slides * (sign * get(LawTerm::Coulomb) + sign.abs() * get(LawTerm::Offset));
-        let inertia = (1.0 - get(LawTerm::AccelerationFeedforward)) * accelerations[k];
+        let friction =
+            slides * (sign * get(ModelTerm::Coulomb) + sign.abs() * get(ModelTerm::Offset));
+        let inertia = (1.0 - get(ModelTerm::AccelerationFeedforward)) * accelerations[k];
         (drag_1_s * speeds[k] + inertia + friction) / loop_gain
             + values.commands_late_s() * speeds[k]
     };
@@ -171,9 +172,9 @@ mod tests {
             step_mm: 0.0,
         };
         let values = TermValues([0.0; TERMS])
-            .with(LawTerm::LoopGain, 20.0 * 200.0)
-            .with(LawTerm::Damping, 200.0)
-            .with(LawTerm::Coulomb, 10.0);
+            .with(ModelTerm::LoopGain, 20.0 * 200.0)
+            .with(ModelTerm::Damping, 200.0)
+            .with(ModelTerm::Coulomb, 10.0);
         let counts: Vec<bool> = (0..4000).map(|k| k > 1000).collect();
         let (formula, run) = (
             predicted_um(&record, &values, &counts),

@@ -25,7 +25,7 @@ use nalgebra::{DMatrix, DVector};
 use super::axis_record::AxisRecord;
 use super::axis_run::{AxisRun, Commands};
 use super::priors::Prior;
-use super::terms::{LawTerm, TermValues};
+use super::terms::{ModelTerm, TermValues};
 
 /// A record, which of its samples count, and what was known before.
 #[derive(Debug, Clone, Copy)]
@@ -165,14 +165,14 @@ impl OutputErrors<'_> {
 
     /// Derivatives of the residuals by differences to both sides, a column for each term, over the
     /// change that it was made with.
-    pub(super) fn slopes(&self, values: &TermValues, terms: &[LawTerm]) -> Vec<Vec<f64>> {
-        let sides = |&term: &LawTerm| {
+    pub(super) fn slopes(&self, values: &TermValues, terms: &[ModelTerm]) -> Vec<Vec<f64>> {
+        let sides = |&term: &ModelTerm| {
             let (value, by) = (values.get(term), change(values, term));
             [value + by, value - by].map(|at| values.with(term, at))
         };
         let places: Vec<TermValues> = terms.iter().flat_map(sides).collect();
         let residuals = self.residuals_of(&places);
-        let slope = |i: usize, term: LawTerm| {
+        let slope = |i: usize, term: ModelTerm| {
             let apart =
                 (places[2 * i].get(term) - places[2 * i + 1].get(term)) / change(values, term);
             difference(&residuals[2 * i + 1], &residuals[2 * i], apart)
@@ -190,9 +190,9 @@ impl OutputErrors<'_> {
         &self,
         values: &TermValues,
         residuals: &[f64],
-        terms: &[LawTerm],
+        terms: &[ModelTerm],
     ) -> Vec<Vec<f64>> {
-        let place = |&term: &LawTerm| {
+        let place = |&term: &ModelTerm| {
             let (value, by) = (values.get(term), ONE_SIDED * change(values, term));
             let above = values.with(term, value + by);
             if above.get(term) > value {
@@ -202,7 +202,7 @@ impl OutputErrors<'_> {
             }
         };
         let places: Vec<TermValues> = terms.iter().map(place).collect();
-        let slope = |(&term, (place, at_place)): (&LawTerm, (&TermValues, &Vec<f64>))| {
+        let slope = |(&term, (place, at_place)): (&ModelTerm, (&TermValues, &Vec<f64>))| {
             let apart = ONE_SIDED * (place.get(term) - values.get(term))
                 / (ONE_SIDED * change(values, term));
             difference(residuals, at_place, apart)
@@ -218,7 +218,7 @@ impl OutputErrors<'_> {
     pub(super) fn one_step(
         &self,
         start: &TermValues,
-        terms: &[LawTerm],
+        terms: &[ModelTerm],
         known: &[Vec<f64>],
     ) -> Fitted {
         let left = self.residuals(start);
@@ -246,7 +246,7 @@ impl OutputErrors<'_> {
     pub(super) fn least(
         &self,
         start: &TermValues,
-        terms: &[LawTerm],
+        terms: &[ModelTerm],
         steps: usize,
         done: f64,
     ) -> Fitted {
@@ -321,7 +321,7 @@ fn difference(from: &[f64], to: &[f64], apart: f64) -> Vec<f64> {
 }
 
 /// Returns the change of a number for a difference.
-pub(super) fn change(values: &TermValues, term: LawTerm) -> f64 {
+pub(super) fn change(values: &TermValues, term: ModelTerm) -> f64 {
     let [part, least] = term.row().change;
     (part * values.get(term).abs()).max(least)
 }
@@ -341,7 +341,7 @@ pub(super) fn normal_equations(slopes: &[Vec<f64>], left: &[f64]) -> (DMatrix<f6
 /// otherwise move beyond it; the others take the step.
 fn stepped(
     at: &TermValues,
-    terms: &[LawTerm],
+    terms: &[ModelTerm],
     curvature: &DMatrix<f64>,
     gradient: &DVector<f64>,
     damping: f64,
@@ -379,11 +379,11 @@ fn stepped(
             let wanted = value + step[i] * change(at, term);
             let is_size = matches!(
                 term,
-                LawTerm::LoopGain
-                    | LawTerm::Damping
-                    | LawTerm::SpeedLimit
-                    | LawTerm::AccelerationLimit
-                    | LawTerm::StribeckSpeed
+                ModelTerm::LoopGain
+                    | ModelTerm::Damping
+                    | ModelTerm::SpeedLimit
+                    | ModelTerm::AccelerationLimit
+                    | ModelTerm::StribeckSpeed
             );
             let bounded = if is_size {
                 wanted.clamp(value / LARGEST_FACTOR, value * LARGEST_FACTOR)

@@ -7,7 +7,7 @@
 
 use super::axis_facts::AxisFacts;
 use super::known_value::KnownValue;
-use super::terms::{LawTerm, TermValues};
+use super::terms::{ModelTerm, TermValues};
 
 /// A function of the numbers of an axis, what it is expected to be, and its standard deviation.
 #[derive(Debug, Clone, Copy)]
@@ -40,9 +40,9 @@ impl Prior {
             known.map_or(otherwise, |known| Self { of, known })
         };
         vec![
-            of_size(|v| libm::log(v.get(LawTerm::Damping)), 150.0, 5.0),
+            of_size(|v| libm::log(v.get(ModelTerm::Damping)), 150.0, 5.0),
             of_size(
-                |v| libm::log(v.get(LawTerm::Coulomb).max(LEAST)),
+                |v| libm::log(v.get(ModelTerm::Coulomb).max(LEAST)),
                 50.0,
                 30.0,
             ),
@@ -52,40 +52,40 @@ impl Prior {
                 of_size(|v| libm::log(v.kp_1_s()), 50.0, 4.0),
             ),
             about(
-                |v| v.get(LawTerm::Offset) / (1.0 + v.get(LawTerm::Coulomb)),
+                |v| v.get(ModelTerm::Offset) / (1.0 + v.get(ModelTerm::Coulomb)),
                 0.0,
                 0.3,
             ),
             given(
-                |v| v.get(LawTerm::LoopDelay),
+                |v| v.get(ModelTerm::LoopDelay),
                 facts.drive_delay_s,
-                about(|v| v.get(LawTerm::LoopDelay), 0.0, 0.002),
+                about(|v| v.get(ModelTerm::LoopDelay), 0.0, 0.002),
             ),
             given(
-                |v| v.get(LawTerm::VelocityFeedforward),
+                |v| v.get(ModelTerm::VelocityFeedforward),
                 facts.velocity_feedforward,
-                about(|v| v.get(LawTerm::VelocityFeedforward), 0.5, 1.0),
+                about(|v| v.get(ModelTerm::VelocityFeedforward), 0.5, 1.0),
             ),
             given(
-                |v| v.get(LawTerm::AccelerationFeedforward),
+                |v| v.get(ModelTerm::AccelerationFeedforward),
                 facts.acceleration_feedforward,
-                about(|v| v.get(LawTerm::AccelerationFeedforward), 0.0, 0.7),
+                about(|v| v.get(ModelTerm::AccelerationFeedforward), 0.0, 0.7),
             ),
             given(
-                |v| v.get(LawTerm::Integral),
+                |v| v.get(ModelTerm::Integral),
                 facts.inverse_integral_1_s,
-                about(|v| v.get(LawTerm::Integral), 0.0, 150.0),
+                about(|v| v.get(ModelTerm::Integral), 0.0, 150.0),
             ),
-            about(|v| v.get(LawTerm::FilterTime), 0.0, 5e-4),
-            about(|v| v.get(LawTerm::Presliding), 0.0, 0.03),
-            about(|v| v.get(LawTerm::Stribeck), 0.0, 0.5),
+            about(|v| v.get(ModelTerm::FilterTime), 0.0, 5e-4),
+            about(|v| v.get(ModelTerm::Presliding), 0.0, 0.03),
+            about(|v| v.get(ModelTerm::Stribeck), 0.0, 0.5),
             of_size(
-                |v| libm::log(v.get(LawTerm::StribeckSpeed).max(LEAST)),
+                |v| libm::log(v.get(ModelTerm::StribeckSpeed).max(LEAST)),
                 2.0,
                 2.5,
             ),
             about(
-                |v| v.get(LawTerm::Viscous) / v.get(LawTerm::Damping),
+                |v| v.get(ModelTerm::Viscous) / v.get(ModelTerm::Damping),
                 0.0,
                 0.05,
             ),

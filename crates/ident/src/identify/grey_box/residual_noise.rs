@@ -13,7 +13,7 @@
 //! as in `crates/control/src/axis.rs`.
 
 use super::axis_record::AxisRecord;
-use super::terms::{LawTerm, TermValues};
+use super::terms::{ModelTerm, TermValues};
 
 /// A load that makes of a free run what was measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,8 +93,11 @@ impl ResidualNoise {
 /// Mean square of the position under a load whose mean square is one, s4, and the correlation of
 /// the position over a lag.
 fn moved(values: &TermValues, correlation_s: f64, lag_s: f64) -> [f64; 2] {
-    let (loop_gain, damping) = (values.get(LawTerm::LoopGain), values.get(LawTerm::Damping));
-    let (inverse_s, integral) = (1.0 / correlation_s, values.get(LawTerm::Integral));
+    let (loop_gain, damping) = (
+        values.get(ModelTerm::LoopGain),
+        values.get(ModelTerm::Damping),
+    );
+    let (inverse_s, integral) = (1.0 / correlation_s, values.get(ModelTerm::Integral));
     let speed_gain = values.speed_gain_1_s();
     // p^2 + d p + Kp Kv / J + (Kv / J p + Kp Kv / J) / (Ti p), squared.
     let stiffness = |w: f64| {
@@ -128,8 +131,8 @@ mod tests {
     fn a_load_moves_a_proportional_loop_as_lyapunovs_equation_has_it() {
         let (a, d) = (9700.0, 194.0);
         let values = TermValues([0.0; TERMS])
-            .with(LawTerm::LoopGain, a)
-            .with(LawTerm::Damping, d);
+            .with(ModelTerm::LoopGain, a)
+            .with(ModelTerm::Damping, d);
         for correlation_s in [0.001, 0.01, 0.3] {
             let r = 1.0 / correlation_s;
             let wanted = (d + r) / (a * d * (a + d * r + r * r));
@@ -144,10 +147,10 @@ mod tests {
     #[test]
     fn a_load_that_lasts_is_taken_back_by_an_integral_part() {
         let plain = TermValues([0.0; TERMS])
-            .with(LawTerm::LoopGain, 9700.0)
-            .with(LawTerm::Damping, 194.0);
-        let [with, without] =
-            [plain.with(LawTerm::Integral, 50.0), plain].map(|values| moved(&values, 1.0, 0.01)[0]);
+            .with(ModelTerm::LoopGain, 9700.0)
+            .with(ModelTerm::Damping, 194.0);
+        let [with, without] = [plain.with(ModelTerm::Integral, 50.0), plain]
+            .map(|values| moved(&values, 1.0, 0.01)[0]);
         assert!(with < 0.1 * without, "{with} {without}");
     }
 }

@@ -14,13 +14,13 @@
 //! may be apart by one.
 
 use super::output_error::{OutputErrors, change, normal_equations};
-use super::terms::{LawTerm, TermValues};
+use super::terms::{ModelTerm, TermValues};
 
 /// A term whose value ends where its search ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchBound {
     /// The term.
-    pub term: LawTerm,
+    pub term: ModelTerm,
     /// Value that was found, in the unit of the term.
     pub value: f64,
     /// End of the search.
@@ -35,9 +35,9 @@ impl SearchBound {
     /// of its range than the step of a difference is at this end.
     pub(super) fn of_fitted(
         values: &TermValues,
-        terms: impl IntoIterator<Item = LawTerm>,
+        terms: impl IntoIterator<Item = ModelTerm>,
     ) -> Vec<Self> {
-        let at_bound = |term: LawTerm| {
+        let at_bound = |term: ModelTerm| {
             let value = values.get(term);
             let is_at =
                 |bound: &f64| *bound != 0.0 && (value - bound).abs() <= change(values, term);
@@ -53,16 +53,16 @@ impl SearchBound {
     pub(super) fn below_zero(
         errors: &OutputErrors<'_>,
         values: &TermValues,
-        terms: &[LawTerm],
+        terms: &[ModelTerm],
     ) -> Vec<Self> {
-        let at_zero = |term: &LawTerm| values.get(*term) == 0.0 && term.range(values)[0] == 0.0;
-        let free: Vec<LawTerm> = terms
+        let at_zero = |term: &ModelTerm| values.get(*term) == 0.0 && term.range(values)[0] == 0.0;
+        let free: Vec<ModelTerm> = terms
             .iter()
             .copied()
             .filter(|term| !at_zero(term))
             .collect();
-        let presses = |term: &LawTerm| {
-            let all: Vec<LawTerm> = free.iter().copied().chain([*term]).collect();
+        let presses = |term: &ModelTerm| {
+            let all: Vec<ModelTerm> = free.iter().copied().chain([*term]).collect();
             let left = errors.residuals(values);
             let (curvature, gradient) = normal_equations(&errors.slopes(values, &all), &left);
             let last = all.len() - 1;
@@ -113,16 +113,16 @@ impl SearchBound {
     /// Returns the advice for the user.
     pub fn remedy(&self) -> &'static str {
         match self.term {
-            LawTerm::RecordDelay => {
+            ModelTerm::RecordDelay => {
                 "Record command and actual position in the same servo period, or shift one column against the other"
             }
-            LawTerm::LoopDelay => {
+            ModelTerm::LoopDelay => {
                 "Leave out --record-delay, so that the delay of the record is searched"
             }
-            LawTerm::CommandDelay => {
+            ModelTerm::CommandDelay => {
                 "Give the delay of the bus with --command-delay, or leave out --record-delay"
             }
-            LawTerm::SpeedWindow => "Give the window with --speed-window",
+            ModelTerm::SpeedWindow => "Give the window with --speed-window",
             _ => {
                 "Check with --columns that command and actual position belong together and have the right unit, then record the program of \
                  feedwright excite"

@@ -14,7 +14,7 @@
 use nalgebra::DMatrix;
 
 use super::output_error::{OutputErrors, change, normal_equations};
-use super::terms::{LawTerm, TermValues};
+use super::terms::{ModelTerm, TermValues};
 
 /// Least length of a block, s, and the fewest blocks that are made of a record.
 const BLOCK_S: f64 = 0.25;
@@ -39,7 +39,7 @@ pub(super) struct StandardErrors {
 }
 
 impl StandardErrors {
-    pub(super) fn of(errors: &OutputErrors<'_>, values: &TermValues, terms: &[LawTerm]) -> Self {
+    pub(super) fn of(errors: &OutputErrors<'_>, values: &TermValues, terms: &[ModelTerm]) -> Self {
         let left = errors.residuals(values);
         let samples = left.len() - errors.priors.len();
         let slopes = errors.slopes(values, terms);

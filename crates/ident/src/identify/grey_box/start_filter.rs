@@ -16,7 +16,7 @@ use feedwright_sim::map_in_parallel;
 
 use super::axis_record::AxisRecord;
 use super::axis_run::{AxisRun, Commands, RunState};
-use super::terms::{LawTerm, TermValues};
+use super::terms::{ModelTerm, TermValues};
 use crate::average::rms;
 
 /// Gains that are tried.
@@ -75,7 +75,7 @@ impl StartFilter {
         let gains = [
             g,
             0.5 * g * g / record.sample_s,
-            -h * values.get(LawTerm::LoopGain),
+            -h * values.get(ModelTerm::LoopGain),
         ];
         let mut starts = Vec::with_capacity(samples.len());
         let mut innovations_mm = vec![0.0; record.actual_mm.len()];

@@ -33,7 +33,7 @@ use super::axis_record::LATEST_S;
 
 /// A number of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum LawTerm {
+pub enum ModelTerm {
     /// Kp Kv / J, 1/s2.
     LoopGain,
     /// (Kv + B) / J, 1/s.
@@ -98,7 +98,7 @@ pub(super) struct TermRow {
     pub(super) change: [f64; 2],
 }
 
-impl LawTerm {
+impl ModelTerm {
     /// All, in the order of `TermValues`.
     pub const ALL: [Self; TERMS] = [
         Self::LoopGain,
@@ -229,60 +229,60 @@ impl TermValues {
         let per_mm = j * axis.rad_per_mm();
         let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
         let plain = Self([0.0; TERMS])
-            .with(LawTerm::LoopGain, axis.kp_1_s * axis.kv_nm_s_per_rad / j)
+            .with(ModelTerm::LoopGain, axis.kp_1_s * axis.kv_nm_s_per_rad / j)
             .with(
-                LawTerm::Damping,
+                ModelTerm::Damping,
                 (axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) / j,
             )
-            .with(LawTerm::Viscous, axis.viscous_friction_nm_s / j)
-            .with(LawTerm::Coulomb, axis.coulomb_friction_nm / per_mm)
-            .with(LawTerm::Offset, axis.coulomb_asymmetry_nm / per_mm)
+            .with(ModelTerm::Viscous, axis.viscous_friction_nm_s / j)
+            .with(ModelTerm::Coulomb, axis.coulomb_friction_nm / per_mm)
+            .with(ModelTerm::Offset, axis.coulomb_asymmetry_nm / per_mm)
             .with(
-                LawTerm::CommandDelay,
+                ModelTerm::CommandDelay,
                 axis.loop_delays().command_periods(servo_s) as f64 * servo_s,
             )
-            .with(LawTerm::LoopDelay, axis.drive_delay_s)
-            .with(LawTerm::VelocityFeedforward, axis.velocity_feedforward)
+            .with(ModelTerm::LoopDelay, axis.drive_delay_s)
+            .with(ModelTerm::VelocityFeedforward, axis.velocity_feedforward)
             .with(
-                LawTerm::AccelerationFeedforward,
+                ModelTerm::AccelerationFeedforward,
                 axis.acceleration_feedforward,
             )
-            .with(LawTerm::Integral, inverse(axis.speed_integral_s))
+            .with(ModelTerm::Integral, inverse(axis.speed_integral_s))
             .with(
-                LawTerm::FilterTime,
+                ModelTerm::FilterTime,
                 inverse(axis.torque_filter_hz) / std::f64::consts::TAU,
             )
-            .with(LawTerm::SpeedLimit, axis.speed_limit_mm_s)
-            .with(LawTerm::SpeedWindow, axis.speed_window_s)
+            .with(ModelTerm::SpeedLimit, axis.speed_limit_mm_s)
+            .with(ModelTerm::SpeedWindow, axis.speed_window_s)
             .with(
-                LawTerm::SpeedHold,
+                ModelTerm::SpeedHold,
                 if axis.speed_held { servo_s } else { 0.0 },
             )
-            .with(LawTerm::Presliding, 1e-3 * axis.presliding_um)
+            .with(ModelTerm::Presliding, 1e-3 * axis.presliding_um)
             .with(
-                LawTerm::Stribeck,
+                ModelTerm::Stribeck,
                 axis.stribeck_nm * inverse(axis.coulomb_friction_nm),
             )
-            .with(LawTerm::StribeckSpeed, axis.stribeck_mm_s);
+            .with(ModelTerm::StribeckSpeed, axis.stribeck_mm_s);
         axis.transmission.map_or(plain, |screw| {
             plain
                 .with(
-                    LawTerm::Resonance,
+                    ModelTerm::Resonance,
                     1.0 / (std::f64::consts::TAU * screw.resonance_hz),
                 )
-                .with(LawTerm::TableShare, screw.table_share)
-                .with(LawTerm::Backlash, 1e-3 * screw.backlash_um)
+                .with(ModelTerm::TableShare, screw.table_share)
+                .with(ModelTerm::Backlash, 1e-3 * screw.backlash_um)
         })
     }
 
     /// Returns the value of a term.
-    pub fn get(&self, term: LawTerm) -> f64 {
+    pub fn get(&self, term: ModelTerm) -> f64 {
         self.0[term as usize]
     }
 
     /// Returns the values with another value of one term, held within its range.
     #[must_use]
-    pub fn with(mut self, term: LawTerm, value: f64) -> Self {
+    pub fn with(mut self, term: ModelTerm, value: f64) -> Self {
         let [least, most] = term.row().range;
         self.0[term as usize] = value.clamp(least, most);
         self
@@ -290,25 +290,25 @@ impl TermValues {
 
     /// Kv / J, 1/s.
     pub fn speed_gain_1_s(&self) -> f64 {
-        let damping = self.get(LawTerm::Damping);
+        let damping = self.get(ModelTerm::Damping);
         // Below, the speed loop would drive.
-        (damping - self.get(LawTerm::Viscous)).max(LEAST_SPEED_GAIN * damping)
+        (damping - self.get(ModelTerm::Viscous)).max(LEAST_SPEED_GAIN * damping)
     }
 
     /// Returns the delay of the commands of the record at the position loop, s.
     pub fn commands_late_s(&self) -> f64 {
-        self.get(LawTerm::RecordDelay) + self.get(LawTerm::CommandDelay)
+        self.get(ModelTerm::RecordDelay) + self.get(ModelTerm::CommandDelay)
     }
 
     /// Kp, 1/s.
     pub fn kp_1_s(&self) -> f64 {
-        self.get(LawTerm::LoopGain) / self.speed_gain_1_s()
+        self.get(ModelTerm::LoopGain) / self.speed_gain_1_s()
     }
 
     /// Returns the parameters of the axis model for an inertia of 1 kg m2 and 1 rad/mm: a torque of
     /// 1 N m is 1 mm/s2.
     pub(super) fn parameters(&self, mechanics_s: f64) -> Parameters {
-        let limit = self.get(LawTerm::AccelerationLimit);
+        let limit = self.get(ModelTerm::AccelerationLimit);
         Parameters {
             rad_per_mm: 1.0,
             kp_1_s: self.kp_1_s(),
@@ -316,8 +316,8 @@ impl TermValues {
             kv_nm_s_per_rad: self.speed_gain_1_s(),
             torque_limit_nm: if limit > 0.0 { limit } else { f64::MAX },
             inertia_kg_m2: 1.0,
-            viscous_friction_nm_s: self.get(LawTerm::Viscous),
-            coulomb_friction_nm: self.get(LawTerm::Coulomb),
+            viscous_friction_nm_s: self.get(ModelTerm::Viscous),
+            coulomb_friction_nm: self.get(ModelTerm::Coulomb),
             coulomb_smoothing_rad_s: self.smoothing_mm_s(mechanics_s),
         }
     }
@@ -325,7 +325,7 @@ impl TermValues {
     /// Speed over which friction without presliding turns its sign, mm/s: as tnv40's, and so much
     /// that a step of the integration does not go past it.
     pub(super) fn smoothing_mm_s(&self, mechanics_s: f64) -> f64 {
-        let most = self.get(LawTerm::Coulomb) * (1.0 + self.get(LawTerm::Stribeck));
+        let most = self.get(ModelTerm::Coulomb) * (1.0 + self.get(ModelTerm::Stribeck));
         (2.0 * most * mechanics_s).max(SMOOTHING_MM_S)
     }
 
@@ -337,11 +337,11 @@ impl TermValues {
     pub(super) fn drive(&self) -> DriveParameters {
         let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
         DriveParameters {
-            speed_integral_s: inverse(self.get(LawTerm::Integral)),
-            velocity_feedforward: self.get(LawTerm::VelocityFeedforward),
-            acceleration_feedforward: self.get(LawTerm::AccelerationFeedforward),
-            torque_filter_hz: inverse(self.get(LawTerm::FilterTime)) / std::f64::consts::TAU,
-            speed_limit_rad_s: self.get(LawTerm::SpeedLimit),
+            speed_integral_s: inverse(self.get(ModelTerm::Integral)),
+            velocity_feedforward: self.get(ModelTerm::VelocityFeedforward),
+            acceleration_feedforward: self.get(ModelTerm::AccelerationFeedforward),
+            torque_filter_hz: inverse(self.get(ModelTerm::FilterTime)) / std::f64::consts::TAU,
+            speed_limit_rad_s: self.get(ModelTerm::SpeedLimit),
             // A free run has the positions of the window.
             speed_window_s: 0.0,
         }
@@ -350,22 +350,22 @@ impl TermValues {
     /// Motor and table as two masses; none where the screw is rigid. In um where a machine file has
     /// um.
     pub fn transmission(&self, mechanics_s: f64) -> Option<Transmission> {
-        let time_s = self.get(LawTerm::Resonance);
+        let time_s = self.get(ModelTerm::Resonance);
         (time_s > STIFFEST * mechanics_s).then(|| Transmission {
-            table_share: self.get(LawTerm::TableShare),
+            table_share: self.get(ModelTerm::TableShare),
             resonance_hz: 1.0 / (std::f64::consts::TAU * time_s),
             damping_ratio: ASSUMED_DAMPING_RATIO,
-            backlash_um: 1e3 * self.get(LawTerm::Backlash),
+            backlash_um: 1e3 * self.get(ModelTerm::Backlash),
             scale_on_table: false,
         })
     }
 
     pub(super) fn friction(&self) -> FrictionParameters {
         FrictionParameters {
-            coulomb_asymmetry_nm: self.get(LawTerm::Offset),
-            stribeck_nm: self.get(LawTerm::Stribeck) * self.get(LawTerm::Coulomb),
-            stribeck_rad_s: self.get(LawTerm::StribeckSpeed),
-            presliding_rad: self.get(LawTerm::Presliding),
+            coulomb_asymmetry_nm: self.get(ModelTerm::Offset),
+            stribeck_nm: self.get(ModelTerm::Stribeck) * self.get(ModelTerm::Coulomb),
+            stribeck_rad_s: self.get(ModelTerm::StribeckSpeed),
+            presliding_rad: self.get(ModelTerm::Presliding),
         }
     }
 }

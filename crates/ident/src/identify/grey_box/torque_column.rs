@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::axis_record::AxisRecord;
 use super::axis_run::{AxisRun, Commands, periods};
-use super::terms::{LawTerm, TermValues};
+use super::terms::{ModelTerm, TermValues};
 
 /// Result from the torque column.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -140,10 +140,10 @@ impl DriveColumn {
             .iter()
             .filter_map(with_window)
             .max_by(|a, b| a.explained.total_cmp(&b.explained))?;
-        let is_law = found.explained > LAW_EXPLAINED
+        let is_model = found.explained > LAW_EXPLAINED
             && found.loop_gain_1_s2 > 0.0
             && found.speed_gain_1_s > 0.0;
-        is_law.then_some(found)
+        is_model.then_some(found)
     }
 }
 
@@ -159,8 +159,8 @@ impl Regressors {
         let (periods, _) = periods(record.sample_s);
         let smoothing_mm_s = values.smoothing_mm_s(periods.mechanics_s);
         let (coulomb, presliding) = (
-            values.get(LawTerm::Coulomb),
-            values.get(LawTerm::Presliding),
+            values.get(ModelTerm::Coulomb),
+            values.get(ModelTerm::Presliding),
         );
         let mut rows = vec![[0.0; 4]; counts.len()];
         for stretch in record.stretches {
@@ -176,7 +176,7 @@ impl Regressors {
                 let [after, sliding_after] = state.of_whole_and_sliding_mm_s(run.table_share());
                 let mean = 0.5 * (sliding_before + sliding_after);
                 let sign = if presliding > 0.0 && coulomb > 0.0 {
-                    ((state.presliding_mm_s2() - values.get(LawTerm::Offset)) / coulomb)
+                    ((state.presliding_mm_s2() - values.get(ModelTerm::Offset)) / coulomb)
                         .clamp(-1.0, 1.0)
                 } else {
                     libm::tanh(mean / smoothing_mm_s)

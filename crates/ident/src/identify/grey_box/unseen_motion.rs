@@ -17,7 +17,7 @@ use super::admission::OPTIONAL;
 use super::axis_record::AxisRecord;
 use super::output_error::OutputErrors;
 use super::standard_errors::StandardErrors;
-use super::terms::{LawTerm, TermValues};
+use super::terms::{ModelTerm, TermValues};
 
 /// Uncertainty of predictions of motion that a record does not have.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +27,7 @@ pub struct UnseenMotion {
     /// Residual of the model over the fitted samples, um RMS.
     pub left_um: f64,
     /// Terms that most of it is due to.
-    pub terms: Vec<LawTerm>,
+    pub terms: Vec<ModelTerm>,
     /// The direction in which the record never moves, -1 or 1.
     pub never: Option<i8>,
 }
@@ -57,7 +57,7 @@ impl UnseenMotion {
     pub(super) fn of(
         errors: &OutputErrors<'_>,
         values: &TermValues,
-        fitted: &[LawTerm],
+        fitted: &[ModelTerm],
         left_mm: f64,
         most: [f64; 2],
     ) -> Self {
@@ -101,8 +101,8 @@ impl UnseenMotion {
 fn named(
     covariance: &nalgebra::DMatrix<f64>,
     moves: &nalgebra::DMatrix<f64>,
-    terms: &[LawTerm],
-) -> Vec<LawTerm> {
+    terms: &[ModelTerm],
+) -> Vec<ModelTerm> {
     let Some(root) = covariance.clone().cholesky().map(|cholesky| cholesky.l()) else {
         return terms.to_vec();
     };

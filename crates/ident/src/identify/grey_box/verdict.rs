@@ -7,9 +7,9 @@ use super::unseen_motion::UnseenMotion;
 
 /// Verdict on an identification.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LawVerdict {
+pub enum ModelVerdict {
     /// The model predicts clearly better than a linear model.
-    LawHolds,
+    ModelHolds,
     /// A linear model without signs predicts as well.
     LinearSuffices,
     /// A linear model predicts better.
@@ -36,7 +36,7 @@ const WORSE: f64 = 1.5;
 /// correction.
 const TOO_MUCH: f64 = 0.3;
 
-impl LawVerdict {
+impl ModelVerdict {
     /// Judges an axis.
     pub fn of(axis: &FoundAxis) -> Self {
         let scores = &axis.scores;
@@ -59,7 +59,7 @@ impl LawVerdict {
         {
             Self::LinearSuffices
         } else {
-            Self::LawHolds
+            Self::ModelHolds
         }
     }
 
@@ -79,7 +79,7 @@ impl LawVerdict {
             um(grey_box.at_um[2])
         );
         match self {
-            Self::LawHolds => format!("the model holds: {missed}; {against}"),
+            Self::ModelHolds => format!("the model holds: {missed}; {against}"),
             Self::LinearSuffices => format!("linear suffices: {missed}; {against}"),
             Self::LinearIsBetter => format!(
                 "a linear model is better: {missed}; {against}. Something moves this axis that the model does not have"
@@ -110,10 +110,7 @@ fn open(unseen: &UnseenMotion) -> String {
     let untold = match names.as_slice() {
         [] => "the log does not determine the parameters".to_owned(),
         [one] => format!("the log does not determine {one}"),
-        [first @ .., last] => format!(
-            "the log does not separate {} and {last}",
-            first.join(", ")
-        ),
+        [first @ .., last] => format!("the log does not separate {} and {last}", first.join(", ")),
     };
     let why = match unseen.never {
         Some(way) if way < 0 => ", since the axis never moves in the negative direction",

@@ -189,7 +189,7 @@ fn assumed(assumed: &Assumptions, measured: bool) -> String {
     let sentences = [
         assumed.machine_sentence(),
         assumed.disturbance_sentence(),
-        assumed.law_sentence(),
+        assumed.model_sentence(),
     ];
     format!(
         "assumed: {}. {}",

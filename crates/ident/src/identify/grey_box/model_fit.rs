@@ -5,7 +5,7 @@ use super::admission::{OPTIONAL, admit, admit_more, is_screw_or_none};
 use super::axis_facts::AxisFacts;
 use super::axis_record::AxisRecord;
 use super::axis_run::periods;
-use super::found_axis::{FoundAxis, ResolvedLaw};
+use super::found_axis::{FoundAxis, ResolvedModel};
 use super::free_run_scores::{AxisScores, score};
 use super::gain_changes::GainChange;
 use super::output_error::{DONE, NEARLY_DONE, OutputErrors, square};
@@ -14,7 +14,7 @@ use super::residual_noise::ResidualNoise;
 use super::sample_split::SampleSplit;
 use super::search_bound::SearchBound;
 use super::standard_errors::{HALF_INTERVAL, StandardErrors};
-use super::terms::{LawTerm, TermValues};
+use super::terms::{ModelTerm, TermValues};
 use super::torque_column::{DriveColumn, TorqueColumn};
 use super::unseen_motion::UnseenMotion;
 use crate::average::middle_of;
@@ -78,7 +78,7 @@ pub(super) fn find(
     let certain = StandardErrors::of(&errors, &values, &terms);
     let rms_mm = errors.rms_mm(&values);
     go_on(tell(PARTS[1]))?;
-    is_law(record, &split.fit, rms_mm)?;
+    is_model(record, &split.fit, rms_mm)?;
     let half_intervals = certain
         .errors
         .iter()
@@ -129,19 +129,19 @@ pub(super) fn find(
 fn at_bounds(
     errors: &OutputErrors<'_>,
     values: &TermValues,
-    terms: &[LawTerm],
+    terms: &[ModelTerm],
     facts: &AxisFacts,
-    resolved: Option<&ResolvedLaw>,
+    resolved: Option<&ResolvedModel>,
 ) -> Vec<SearchBound> {
-    let late = (facts.record_delay_s.is_some() && !terms.contains(&LawTerm::LoopDelay))
-        .then_some(LawTerm::LoopDelay);
-    let tested: Vec<LawTerm> = terms.iter().copied().chain(late).collect();
+    let late = (facts.record_delay_s.is_some() && !terms.contains(&ModelTerm::LoopDelay))
+        .then_some(ModelTerm::LoopDelay);
+    let tested: Vec<ModelTerm> = terms.iter().copied().chain(late).collect();
     let mut bounds = SearchBound::of_fitted(values, terms.iter().copied());
     bounds.extend(SearchBound::below_zero(errors, values, &tested));
-    if let Some(law) = resolved {
+    if let Some(axis_model) = resolved {
         bounds.extend(SearchBound::of_fitted(
-            &law.values,
-            law.half_intervals.iter().map(|(term, _)| *term),
+            &axis_model.values,
+            axis_model.half_intervals.iter().map(|(term, _)| *term),
         ));
     }
     bounds
@@ -149,7 +149,7 @@ fn at_bounds(
 
 /// Terms that stay, and a fit of them.
 struct Doubtless {
-    terms: Vec<LawTerm>,
+    terms: Vec<ModelTerm>,
     values: TermValues,
     /// Delay of the record, where it was dropped although the record wants it below zero.
     early: Option<SearchBound>,
@@ -162,7 +162,7 @@ fn without_doubtful(
     errors: &OutputErrors<'_>,
     facts: &AxisFacts,
     start: &TermValues,
-    mut terms: Vec<LawTerm>,
+    mut terms: Vec<ModelTerm>,
 ) -> Doubtless {
     let mut at = *start;
     let mut early = None;
@@ -172,20 +172,24 @@ fn without_doubtful(
         let size = |i: usize| at.get(terms[i]) / certain.errors[i].max(f64::MIN_POSITIVE);
         let stands_for_another = |&i: &usize| match terms[i] {
             // No actual position comes before its command.
-            LawTerm::RecordDelay => at.get(LawTerm::RecordDelay) < 0.0,
-            LawTerm::Resonance => !is_screw_or_none(&at, errors.record.sample_s),
+            ModelTerm::RecordDelay => at.get(ModelTerm::RecordDelay) < 0.0,
+            ModelTerm::Resonance => !is_screw_or_none(&at, errors.record.sample_s),
             _ => false,
         };
         // The acceleration feedforward is dropped before the velocity feedforward.
         let is_last = |i: usize| {
-            terms[i] != LawTerm::VelocityFeedforward
-                || !terms.contains(&LawTerm::AccelerationFeedforward)
+            terms[i] != ModelTerm::VelocityFeedforward
+                || !terms.contains(&ModelTerm::AccelerationFeedforward)
         };
         let is_open = |i: usize| facts.known(terms[i]).is_none() && is_last(i);
-        let is_shape = |i: usize| matches!(terms[i], LawTerm::StribeckSpeed | LawTerm::TableShare);
+        let is_shape =
+            |i: usize| matches!(terms[i], ModelTerm::StribeckSpeed | ModelTerm::TableShare);
         let mut doubtful: Vec<usize> = (0..terms.len())
             .filter(|&i| {
-                terms[i] > LawTerm::RecordDelay && is_open(i) && !is_shape(i) && size(i) < DOUBTFUL
+                terms[i] > ModelTerm::RecordDelay
+                    && is_open(i)
+                    && !is_shape(i)
+                    && size(i) < DOUBTFUL
             })
             .collect();
         doubtful.sort_by(|&a, &b| size(a).total_cmp(&size(b)));
@@ -210,7 +214,7 @@ fn without_doubtful(
             };
         };
         let term = terms[i];
-        if term == LawTerm::RecordDelay
+        if term == ModelTerm::RecordDelay
             && at.get(term) + DOUBTFUL * certain.errors[i] < -EARLY * errors.record.sample_s
         {
             let is_told = !self::is_needless(&independent, &at, &terms, i);
@@ -223,17 +227,17 @@ fn without_doubtful(
         at = at.with(term, 0.0);
         terms.retain(|other| {
             *other != term
-                && (term != LawTerm::Stribeck || *other != LawTerm::StribeckSpeed)
-                && (term != LawTerm::Resonance
-                    || !matches!(other, LawTerm::TableShare | LawTerm::Backlash))
+                && (term != ModelTerm::Stribeck || *other != ModelTerm::StribeckSpeed)
+                && (term != ModelTerm::Resonance
+                    || !matches!(other, ModelTerm::TableShare | ModelTerm::Backlash))
         });
     }
 }
 
 /// Returns true if a fit without a term loses less likelihood than the term costs.
-fn is_needless(errors: &OutputErrors<'_>, at: &TermValues, terms: &[LawTerm], i: usize) -> bool {
+fn is_needless(errors: &OutputErrors<'_>, at: &TermValues, terms: &[ModelTerm], i: usize) -> bool {
     let of_all = square(&errors.residuals(at));
-    let others: Vec<LawTerm> = terms
+    let others: Vec<ModelTerm> = terms
         .iter()
         .copied()
         .filter(|term| *term != terms[i])
@@ -256,12 +260,12 @@ const EARLY: f64 = 0.5;
 const DOUBTFUL: f64 = 1.96;
 
 /// Fails if the residual of a fit is too large for a model.
-fn is_law(record: &AxisRecord<'_>, fit: &[bool], left_mm: f64) -> Result<(), NotFound> {
+fn is_model(record: &AxisRecord<'_>, fit: &[bool], left_mm: f64) -> Result<(), NotFound> {
     let following_mm = record.following_mm(fit);
     if left_mm <= NO_LAW * following_mm {
         return Ok(());
     }
-    Err(NotFound::NoLaw {
+    Err(NotFound::NoModel {
         axis: record.name.to_owned(),
         left_um: 1e3 * left_mm,
         following_um: 1e3 * following_mm,
@@ -289,17 +293,17 @@ fn with_window(
     errors: &OutputErrors<'_>,
     window_s: f64,
     values: &TermValues,
-    terms: &[LawTerm],
+    terms: &[ModelTerm],
     rms_mm: f64,
-) -> Option<ResolvedLaw> {
+) -> Option<ResolvedModel> {
     let servo_s = periods(errors.record.sample_s).0.servo_s;
     let told = [
-        LawTerm::RecordDelay,
-        LawTerm::LoopDelay,
-        LawTerm::FilterTime,
-        LawTerm::SpeedWindow,
+        ModelTerm::RecordDelay,
+        ModelTerm::LoopDelay,
+        ModelTerm::FilterTime,
+        ModelTerm::SpeedWindow,
     ];
-    let free: Vec<LawTerm> = terms
+    let free: Vec<ModelTerm> = terms
         .iter()
         .copied()
         .filter(|term| !told.contains(term))
@@ -308,10 +312,10 @@ fn with_window(
     let late_s = 0.5 * (window_s + servo_s);
     let lighter = 1.0 / (1.0 + values.speed_gain_1_s() * late_s);
     let start = [
-        LawTerm::LoopGain,
-        LawTerm::Damping,
-        LawTerm::Coulomb,
-        LawTerm::Offset,
+        ModelTerm::LoopGain,
+        ModelTerm::Damping,
+        ModelTerm::Coulomb,
+        ModelTerm::Offset,
     ]
     .into_iter()
     .fold(*values, |start, term| {
@@ -321,8 +325,8 @@ fn with_window(
         .into_iter()
         .fold(start, |start, term| start.with(term, 0.0));
     let start = start
-        .with(LawTerm::SpeedWindow, window_s)
-        .with(LawTerm::SpeedHold, servo_s);
+        .with(ModelTerm::SpeedWindow, window_s)
+        .with(ModelTerm::SpeedHold, servo_s);
     let fitted = errors.least(&start, &free, STEPS, DONE);
     let left_mm = errors.rms_mm(&fitted.values);
     if left_mm.is_nan() || left_mm > HOLDS * rms_mm {
@@ -333,7 +337,7 @@ fn with_window(
         .into_iter()
         .zip(certain.errors.iter().map(|error| certain.factor * error))
         .collect();
-    Some(ResolvedLaw {
+    Some(ResolvedModel {
         values: fitted.values,
         half_intervals,
         torque: None,
@@ -347,10 +351,10 @@ fn resolve(
     errors: &OutputErrors<'_>,
     torque: &[f64],
     values: &TermValues,
-    terms: &[LawTerm],
+    terms: &[ModelTerm],
     facts: &AxisFacts,
     rms_mm: f64,
-) -> Option<ResolvedLaw> {
+) -> Option<ResolvedModel> {
     let record = errors.record;
     let mut found = TorqueColumn::find(record, torque, values, errors.counts)?;
     if let (Some(viscous), Some(gain)) = (facts.viscous, facts.torque_gain) {
@@ -366,45 +370,45 @@ fn resolve(
     if found.coulomb_mm_s2 < 0.0 || found.viscous_1_s < -2.0 * found.viscous_error_1_s {
         return None;
     }
-    let has_integral = terms.contains(&LawTerm::Integral);
+    let has_integral = terms.contains(&ModelTerm::Integral);
     let drive = if has_integral {
         None
     } else {
         DriveColumn::find(record, torque, &found, errors.counts)
     };
     let mut start = values
-        .with(LawTerm::Viscous, found.viscous_1_s.max(0.0))
-        .with(LawTerm::Coulomb, found.coulomb_mm_s2)
-        .with(LawTerm::Offset, found.offset_mm_s2);
+        .with(ModelTerm::Viscous, found.viscous_1_s.max(0.0))
+        .with(ModelTerm::Coulomb, found.coulomb_mm_s2)
+        .with(ModelTerm::Offset, found.offset_mm_s2);
     let mut fixed = vec![
-        LawTerm::Viscous,
-        LawTerm::Coulomb,
-        LawTerm::Offset,
-        LawTerm::LoopDelay,
+        ModelTerm::Viscous,
+        ModelTerm::Coulomb,
+        ModelTerm::Offset,
+        ModelTerm::LoopDelay,
     ];
     if let Some(drive) = &drive {
-        start = start.with(LawTerm::LoopGain, drive.loop_gain_1_s2).with(
-            LawTerm::Damping,
+        start = start.with(ModelTerm::LoopGain, drive.loop_gain_1_s2).with(
+            ModelTerm::Damping,
             drive.speed_gain_1_s + found.viscous_1_s.max(0.0),
         );
-        fixed.extend([LawTerm::LoopGain, LawTerm::Damping]);
+        fixed.extend([ModelTerm::LoopGain, ModelTerm::Damping]);
     }
-    let mut free: Vec<LawTerm> = terms
+    let mut free: Vec<ModelTerm> = terms
         .iter()
         .copied()
         .filter(|term| !fixed.contains(term))
         .collect();
-    free.push(LawTerm::SpeedWindow);
+    free.push(ModelTerm::SpeedWindow);
     let start = start
-        .with(LawTerm::LoopDelay, 0.0)
-        .with(LawTerm::SpeedWindow, 2.0 * record.sample_s);
+        .with(ModelTerm::LoopDelay, 0.0)
+        .with(ModelTerm::SpeedWindow, 2.0 * record.sample_s);
     let fitted = errors.least(&start, &free, STEPS, DONE);
     let left_mm = errors.rms_mm(&fitted.values);
     if left_mm.is_nan() || left_mm > HOLDS * rms_mm {
         return None;
     }
     let certain = StandardErrors::of(errors, &fitted.values, &free);
-    let mut half_intervals: Vec<(LawTerm, f64)> = free
+    let mut half_intervals: Vec<(ModelTerm, f64)> = free
         .iter()
         .copied()
         .zip(certain.errors.iter().map(|error| certain.factor * error))
@@ -412,17 +416,17 @@ fn resolve(
     let half = |error: f64| HALF_INTERVAL * error;
     let scale = half(found.units_error / found.units_per_mm_s2.abs());
     half_intervals.extend([
-        (LawTerm::Viscous, half(found.viscous_error_1_s)),
-        (LawTerm::Coulomb, half(found.coulomb_error_mm_s2)),
+        (ModelTerm::Viscous, half(found.viscous_error_1_s)),
+        (ModelTerm::Coulomb, half(found.coulomb_error_mm_s2)),
     ]);
     if let Some(drive) = &drive {
         let damping = libm::hypot(scale * drive.speed_gain_1_s, half(found.viscous_error_1_s));
         half_intervals.extend([
-            (LawTerm::LoopGain, scale * drive.loop_gain_1_s2),
-            (LawTerm::Damping, damping),
+            (ModelTerm::LoopGain, scale * drive.loop_gain_1_s2),
+            (ModelTerm::Damping, damping),
         ]);
     }
-    Some(ResolvedLaw {
+    Some(ResolvedModel {
         values: fitted.values,
         half_intervals,
         torque: Some(found),

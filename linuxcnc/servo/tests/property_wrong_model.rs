@@ -97,7 +97,7 @@ fn programs() -> [(&'static str, Vec<[f64; 2]>); 3] {
 }
 
 #[test]
-fn by_the_right_law_a_cut_that_begins_where_the_machine_stands_is_corrected() {
+fn by_the_right_model_a_cut_that_begins_where_the_machine_stands_is_corrected() {
     for (name, points) in programs() {
         let [off, on] = [false, true].map(|enabled| cut(&machine(), 1.0, &points, enabled));
         for i in 0..2 {
@@ -113,7 +113,7 @@ fn by_the_right_law_a_cut_that_begins_where_the_machine_stands_is_corrected() {
 }
 
 #[test]
-fn by_the_law_of_another_machine_nothing_is_worse() {
+fn by_the_model_of_another_machine_nothing_is_worse() {
     let wrong: [(&str, Change, f64); 12] = [
         ("1 ms late", |axis| axis.delays.drive_s += 0.001, 1.0),
         ("2 ms late", |axis| axis.delays.drive_s += 0.002, 1.0),
