@@ -236,7 +236,8 @@ pub fn recorded_machine(
 }
 
 /// Returns up to 32 machines that fit the same log about as well. Their models are drawn from the
-/// uncertainty of the identification. The same log gives the same machines.
+/// uncertainty of the identification; a draw beyond the ranges of a machine file is left out. The
+/// same log gives the same machines.
 ///
 /// # Errors
 /// As [`recorded_machine`].
@@ -248,13 +249,8 @@ pub fn fitting_machines(
     watch: &dyn Watch,
 ) -> Result<Vec<Machine>, RecordedModelError> {
     let told = told_machine(machine, axes, seed, number, watch)?;
-    let read = |text: &String| Machine::parse("a machine file of the log", text);
-    told.fitting
-        .iter()
-        .take(number)
-        .map(read)
-        .collect::<Result<_, _>>()
-        .map_err(|error| not_told(machine, &error))
+    let read = |text: &String| Machine::parse("a machine file of the log", text).ok();
+    Ok(told.fitting.iter().filter_map(read).take(number).collect())
 }
 
 /// Computes again what is shipped with the program for a built-in machine: the machine identified

@@ -180,6 +180,29 @@ fn a_run_without_a_model_goes_by_what_a_log_of_the_machine_tells_and_keeps_it() 
         .refused(&["--exact-settings", "--model"]);
 }
 
+/// The log of the z axis of router determines little: some machines that fit it are none.
+#[test]
+fn a_band_leaves_out_what_no_machine_file_can_hold() {
+    let folder = Folder::new();
+    let helix = "G21 G17 G90 G94\nG0 X0 Y0 Z0\nG2 X0 Y0 Z-1 I2 J0 F1200\nM2\n";
+    folder.file("helix.ngc", helix);
+    let ran = folder.run(&[
+        "run",
+        "helix.ngc",
+        "--machine",
+        "router",
+        "--json",
+        "r.json",
+    ]);
+    assert!(matches!(ran.code, Some(0 | 1)), "{ran:?}");
+    let result: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+    assert!(
+        result["band"]["machines"].as_u64().unwrap() > 0,
+        "{}",
+        result["band"]
+    );
+}
+
 const STAR: &str = include_str!("../../../parts/star.ngc");
 /// A machine with a position gain a tenth below workshop's.
 const SLOW: &str = "base = \"workshop\"\nname = \"slow\"\n[axis.x]\nkp_1_s = 45\n[axis.y]\nkp_1_s = 45\n[axis.z]\nkp_1_s = 45\n";
