@@ -108,6 +108,7 @@ fn what_is_advised_holds_and_the_page_says_so() {
     );
 }
 
+/// Needs 7 s of processor time: searches for a feedrate that does not exist.
 #[test]
 fn what_no_feedrate_holds_is_said_and_a_program_that_cuts_nothing_is_refused() {
     let out_of_reach = advice("G21 G90 G64\nG2 X0 Y0 I1 J0 F1800\nM2\n", 0.001).unwrap();
@@ -162,6 +163,8 @@ fn what_no_feedrate_holds_is_said_and_a_program_that_cuts_nothing_is_refused() {
     );
 }
 
+/// Needs 11 s of processor time: two searches for the best feedrate, and two corrections.
+///
 /// A machine file counts as uncertain as `correct` takes it: the cuts at the programmed feed are
 /// those of `correct`.
 #[test]

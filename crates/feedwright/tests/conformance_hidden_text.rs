@@ -265,6 +265,7 @@ fn names_of_files_and_words_of_the_command_line_command_nothing() {
     }
 }
 
+/// Needs 6 s of processor time: identifies a log under each name of its columns.
 #[test]
 fn columns_of_logs_command_nothing() {
     let folder = Folder::new();

@@ -5,6 +5,7 @@ use crate::identification_log::{commands_mm, drawn, log_of};
 use feedwright::{LogJob, LogJobError, machine_text, write_json, write_page};
 use feedwright_sim::Machine;
 
+/// Needs 11 s of processor time: identifies two axes.
 #[test]
 fn files_hold_what_they_promise() {
     let machine = Machine::load("stiff".as_ref()).unwrap();

@@ -16,6 +16,7 @@ fn holds(section: &str, result: &str) {
     json_keys::hold(section, &value);
 }
 
+/// Needs 10 s of processor time: runs every command that writes JSON.
 #[test]
 fn every_key_of_a_result_is_documented_and_every_documented_key_is_there() {
     let folder = Folder::new();

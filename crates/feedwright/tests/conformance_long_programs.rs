@@ -125,6 +125,7 @@ fn kept(path: &Path, threads: usize, most: u64) -> (Option<CorrectOutcome>, usiz
     (outcome, lines)
 }
 
+/// Needs 12 s of processor time: corrects a program four times, and three times a part of it.
 #[test]
 fn a_run_that_was_ended_goes_on_with_the_same_result_on_any_number_of_threads() {
     let folder = tempfile::tempdir().unwrap();

@@ -64,6 +64,8 @@ fn a_run_with_the_model_that_identify_wrote_is_that_with_a_training_to_the_bit()
     }
 }
 
+/// Needs 50 s of processor time: identifies a machine from its log and with exact settings, and
+/// cuts bands.
 #[test]
 #[expect(clippy::too_many_lines, reason = "one identification serves all")]
 fn a_run_without_a_model_goes_by_what_a_log_of_the_machine_tells_and_keeps_it() {
@@ -343,6 +345,7 @@ fn a_controller_that_learns_no_axes_writes_none() {
     assert!(!folder.path().join("l.model.toml").exists());
 }
 
+/// Needs 8 s of processor time: identifies three axes twice.
 #[test]
 fn the_same_identification_writes_the_same_bytes() {
     let folder = Folder::new();
@@ -572,6 +575,7 @@ fn what_was_found_of_each_axis_is_shown_with_standard_errors() {
     );
 }
 
+/// Needs 10 s of processor time: fails only after a whole identification.
 #[test]
 fn axes_that_do_not_show_are_told_of() {
     let folder = Folder::new();

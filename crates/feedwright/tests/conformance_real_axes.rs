@@ -31,6 +31,7 @@ fn ratio(machine: &str, part: &str) -> f64 {
     corrected_um / open_um
 }
 
+/// Needs 21 s of processor time: identifies two machines.
 #[test]
 fn the_loops_of_workshop_and_stiff_leave_a_part_of_what_uncorrected_leaves() {
     let cases = [

@@ -328,6 +328,7 @@ fn what_a_list_cannot_mean_is_refused_before_anything_is_done() {
     assert_eq!(results(&folder, "all").len(), 1);
 }
 
+/// Needs 10 s of processor time: runs a sweep twice, and kills it between.
 #[test]
 fn a_sweep_that_is_killed_keeps_what_was_written_and_goes_on() {
     let folder = folder();

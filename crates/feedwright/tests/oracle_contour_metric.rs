@@ -27,6 +27,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
+/// Needs 15 s of processor time: a script searches the whole path for each point of ten cuts.
 #[test]
 fn the_script_finds_the_same_contour_error_and_uncut_path() {
     let Some(python) = python() else { return };

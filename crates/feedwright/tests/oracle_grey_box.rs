@@ -33,6 +33,7 @@ fn assert_near(found: f64, wanted: f64, part: f64, what: &str) {
 const PRODUCT: f64 = 0.01;
 const FRICTION: f64 = 0.03;
 
+/// Needs 8 s of processor time: identifies two axes from a log of 10 s.
 #[test]
 fn the_products_of_a_simulated_machine_are_found_from_positions_alone() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
@@ -92,6 +93,8 @@ fn late_machine(periods: u32, drive_delay_s: f64) -> Machine {
     machine
 }
 
+/// Needs 26 s of processor time: identifies two axes for each delay.
+///
 /// A delay before the position loop and one behind it differ in the second order only: a log
 /// without disturbance shows that.
 #[test]
@@ -213,6 +216,7 @@ fn a_log_that_moves_one_way_is_open_until_the_other_is_recorded() {
     );
 }
 
+/// Needs 6 s of processor time: identifies an axis.
 #[test]
 fn what_is_known_stands_where_a_log_does_not_tell_it() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
@@ -328,6 +332,7 @@ fn differ_um(machines: [&Machine; 2]) -> f64 {
     1e3 * (pulses.iter().map(square).sum::<f64>() / pulses.len() as f64).sqrt()
 }
 
+/// Needs 7 s of processor time: identifies an axis three times.
 #[test]
 fn a_window_of_the_speed_goes_into_the_machine_file_and_holds_on_pulses() {
     let mut machine = Machine::load("tnv40".as_ref()).unwrap();

@@ -130,6 +130,7 @@ fn agrees(python: &str, part: &Path, text: &str, entry: &'static Entry) {
     );
 }
 
+/// Needs 11 s of processor time: a script simulates each machine again.
 #[test]
 fn the_script_gets_the_same_tool_with_everything_that_there_is() {
     let Some(python) = python() else { return };
