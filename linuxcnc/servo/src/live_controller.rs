@@ -77,14 +77,15 @@ const RESPONSE_S: f64 = 0.006;
 const MOST_PERIODS: u32 = 100;
 
 impl<const N: usize> LiveController<N> {
-    /// Creates the controller for a model, with a servo period of `servo_s`.
-    pub fn new(model: &LinkModel<N>, servo_s: f64) -> Self {
+    /// Creates the controller for a model, with a servo period of `servo_s`. Unless `is_known`, the
+    /// regulator corrects nothing before motion has shown that the model is of this machine.
+    pub fn new(model: &LinkModel<N>, servo_s: f64, is_known: bool) -> Self {
         let kind = match model {
             LinkModel::Axes(identified) => {
                 let settings =
                     LqgSettings::identified(IDENTIFIED_WEIGHT, servo_s, OffsetBounds::NONE);
                 let settings = LqgSettings {
-                    is_known: false,
+                    is_known,
                     ..settings
                 };
                 Kind::Regulator(LqgPreview::new(identified.axes, settings))

@@ -199,7 +199,7 @@ impl<const N: usize> Servo<N> {
     /// Creates the link with this model, or without a model.
     pub fn new(model: Result<LinkModel<N>, Refused>) -> Self {
         let servo_s = model.as_ref().map_or(WITHOUT_MODEL_S, LinkModel::servo_s);
-        let controller = model.map(|model| LiveController::new(&model, servo_s));
+        let controller = model.map(|model| LiveController::new(&model, servo_s, false));
         Self {
             servo_s,
             history: History::EMPTY,

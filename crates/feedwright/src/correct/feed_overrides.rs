@@ -12,7 +12,9 @@ use serde::Serialize;
 
 use super::exported::{ExportedCut, ExportedFigures};
 use super::kept_work::Workers;
-use crate::report::harm::{Harm, harm};
+#[cfg(any(feature = "command", test))]
+use crate::report::harm::Harm;
+use crate::report::harm::harm;
 
 /// Feed overrides at which both programs are cut, %: the values that operators use to run in a
 /// program and to speed it up.
@@ -61,6 +63,7 @@ impl OverrideFigures {
     }
 
     /// Returns the RMS error if it is worse, or else the first error that is worse.
+    #[cfg(any(feature = "command", test))]
     fn harm(&self) -> Option<Harm> {
         harm(&self.uncorrected.errors(), &self.as_exported.errors())
             .first()
@@ -169,6 +172,7 @@ pub(super) fn override_note(cuts: &[OverrideFigures]) -> String {
 
 /// Describes the overrides in one sentence, with the errors where they are worst; none if there are
 /// no cuts.
+#[cfg(any(feature = "command", test))]
 pub(crate) fn override_sentence(cuts: &[OverrideFigures]) -> Option<String> {
     let one = |[first, last]: [u32; 2]| {
         if first == last {
