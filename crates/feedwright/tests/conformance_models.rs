@@ -182,7 +182,7 @@ fn a_run_without_a_model_goes_by_what_a_log_of_the_machine_tells_and_keeps_it() 
         .refused(&["--exact-settings", "--model"]);
 }
 
-/// The log of the z axis of router determines little: some machines that fit it are none.
+/// The log of the z axis of router determines little, so that some draws have impossible gains.
 #[test]
 fn a_band_leaves_out_what_no_machine_file_can_hold() {
     let folder = Folder::new();
