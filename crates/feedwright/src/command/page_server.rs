@@ -314,10 +314,11 @@ mod tests {
     #[test]
     fn the_page_is_for_its_own_host_origin_and_secret() {
         let get = |path: &str, headers: &str| status(&format!("GET {path} HTTP/1.1\n{headers}"));
-        assert_eq!(get("/abc/", "Host: 127.0.0.1:99"), "200");
+        // The list of files is there without the page, too.
+        assert_eq!(get("/abc/files.json", "Host: 127.0.0.1:99"), "200");
         assert_eq!(
             get(
-                "/abc/app.js",
+                "/abc/files/0",
                 "host: 127.0.0.1:99\nOrigin: http://127.0.0.1:99"
             ),
             "200"
