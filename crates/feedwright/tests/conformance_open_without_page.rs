@@ -8,9 +8,8 @@ fn a_command_without_the_page_says_where_there_is_one() {
     let folder = Folder::new();
     let said = [
         "this feedwright was built without the page",
-        "a package of feedwright",
-        "web/page",
-        "cargo build --release",
+        "run `web/page`",
+        "cargo build",
     ];
     folder
         .run(&["open", "--no-browser", "circle.ngc"])

@@ -17,8 +17,8 @@ use crate::command::streams::check_inputs;
 
 pub(crate) fn run(args: OpenArgs, console: &Console) -> Result<ExitCode> {
     if !HAS_PAGE {
-        let help = "take a package of feedwright, which has it; or, in a clone, run `web/page` (Node 20.19 or newer), then \
-            `cargo build --release` again";
+        let help = "run `web/page` in a clone (Node 20.19 or newer), then `cargo build --release`; the \
+            packages have the page";
         return Err(miette!(
             help = help,
             "this feedwright was built without the page"
