@@ -63,6 +63,17 @@ impl OutputFiles {
         }
     }
 
+    /// Starts the file at `path`, if one is wanted: [`Self::start`].
+    ///
+    /// # Errors
+    /// Fails as [`Self::start`] does.
+    pub fn start_wanted(
+        &mut self,
+        path: Option<impl AsRef<Path>>,
+    ) -> Result<Option<OutputFile>, OutputError> {
+        path.map(|path| self.start(path.as_ref())).transpose()
+    }
+
     /// Starts a file that shall stand at `path` when it is complete.
     ///
     /// # Errors
@@ -138,9 +149,7 @@ impl OutputFile {
     /// # Errors
     /// What the operating system says, such as a full disk.
     pub fn sync(&mut self) -> Result<(), OutputError> {
-        self.out
-            .flush()
-            .map_err(|error| OutputError::from_io(error, &self.shown))?;
+        self.write_rest()?;
         let Named {
             file,
             shown,
@@ -159,9 +168,7 @@ impl OutputFile {
     /// outside.
     pub fn commit_all(mut files: Vec<Self>, watch: &dyn Watch) -> Result<(), OutputError> {
         for file in &mut files {
-            file.out
-                .flush()
-                .map_err(|error| OutputError::from_io(error, &file.shown))?;
+            file.write_rest()?;
         }
         let _decided = part_files::held();
         watch.check()?;
@@ -175,10 +182,15 @@ impl OutputFile {
             .try_for_each(Self::commit)
     }
 
-    fn commit(mut self) -> Result<(), OutputError> {
+    /// Writes what is still in memory.
+    fn write_rest(&mut self) -> Result<(), OutputError> {
         self.out
             .flush()
-            .map_err(|error| OutputError::from_io(error, &self.shown))?;
+            .map_err(|error| OutputError::from_io(error, &self.shown))
+    }
+
+    fn commit(mut self) -> Result<(), OutputError> {
+        self.write_rest()?;
         let Named {
             file,
             shown,

@@ -35,21 +35,9 @@ pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
     let machine = Machine::load(&args.machine)?;
     tell_assumed_limits(&machine, target.stages(&machine));
     let mut files = inputs.outputs();
-    let report = args
-        .report
-        .as_deref()
-        .map(|path| files.start(path))
-        .transpose()?;
-    let figure = args
-        .figure
-        .as_deref()
-        .map(|path| files.start(path))
-        .transpose()?;
-    let json = args
-        .json
-        .as_deref()
-        .map(|path| files.start(path))
-        .transpose()?;
+    let report = files.start_wanted(args.report.as_deref())?;
+    let figure = files.start_wanted(args.figure.as_deref())?;
+    let json = files.start_wanted(args.json.as_deref())?;
     let job = AdviseJob {
         controller: find(&args.controller, CONTROLLERS)?,
         choices: Choices {

@@ -36,16 +36,8 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     inputs.check(console)?;
     let machine = Machine::load(&args.machine)?;
     let mut files = inputs.outputs();
-    let mut out = args
-        .out
-        .as_deref()
-        .map(|path| files.start(path))
-        .transpose()?;
-    let json = args
-        .json
-        .as_deref()
-        .map(|path| files.start(path))
-        .transpose()?;
+    let mut out = files.start_wanted(args.out.as_deref())?;
+    let json = files.start_wanted(args.json.as_deref())?;
     let reader = args.reader.settings()?;
     tell_assumed_limits(&machine, target.stages(&machine));
     let compensation = compensation(&args.geometry)?;

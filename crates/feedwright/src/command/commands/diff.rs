@@ -23,11 +23,7 @@ pub(crate) fn run(args: &DiffArgs, console: &Console) -> Result<ExitCode> {
     ];
     check_inputs(console, inputs.map(|(name, path)| (name, Some(path))))?;
     let mut files = OutputFiles::new(inputs.map(|(_, path)| path));
-    let report = args
-        .report
-        .as_deref()
-        .map(|path| files.start(path))
-        .transpose()?;
+    let report = files.start_wanted(args.report.as_deref())?;
     let settings = args.reader.settings()?;
     let (before, after) = (
         side(&args.before, &settings)?,

@@ -40,16 +40,8 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     let stages = stages(args, &machine)?;
     let request = request(args, stages)?;
     let mut files = inputs.outputs();
-    let json = args
-        .json
-        .as_deref()
-        .map(|path| files.start(path))
-        .transpose()?;
-    let lines = args
-        .lines
-        .as_deref()
-        .map(|path| files.start(path))
-        .transpose()?;
+    let json = files.start_wanted(args.json.as_deref())?;
+    let lines = files.start_wanted(args.lines.as_deref())?;
     let (program, settings) = (Program::in_file(&args.part), args.reader.settings()?);
     let summary = program.check(settings.clone()).map_err(JobError::from)?;
     for warning in summary.warnings {

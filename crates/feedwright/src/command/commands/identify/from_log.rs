@@ -31,23 +31,10 @@ pub(super) fn run(paths: &[PathBuf], args: &IdentifyArgs, console: &Console) -> 
         .or(of_log.update.as_deref())
         .unwrap_or(Path::new("mine.toml"));
     let mut files = OutputFiles::new(paths.iter().map(PathBuf::as_path));
-    let start = |files: &mut OutputFiles, path: &Path| files.start(path);
-    let mut machine = start(&mut files, out)?;
-    let mut json = of_log
-        .json
-        .as_deref()
-        .map(|path| start(&mut files, path))
-        .transpose()?;
-    let next = of_log
-        .excite_next
-        .as_deref()
-        .map(|path| start(&mut files, path))
-        .transpose()?;
-    let mut page = of_log
-        .report
-        .as_deref()
-        .map(|path| start(&mut files, path))
-        .transpose()?;
+    let mut machine = files.start(out)?;
+    let mut json = files.start_wanted(of_log.json.as_deref())?;
+    let next = files.start_wanted(of_log.excite_next.as_deref())?;
+    let mut page = files.start_wanted(of_log.report.as_deref())?;
     let bar = console.bar(0);
     let log = read(paths, of_log, &bar)?;
     if !console.is_quiet() {

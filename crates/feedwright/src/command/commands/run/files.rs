@@ -82,7 +82,7 @@ impl Files {
         axes: usize,
     ) -> Result<Self> {
         let mut files = OutputFiles::new(inputs);
-        let mut start = |path: Option<&PathBuf>| path.map(|path| files.start(path)).transpose();
+        let mut start = |path: Option<&PathBuf>| files.start_wanted(path);
         let form = outputs.form()?;
         let out = |wanted: Form| outputs.out.as_ref().filter(|_| form == Some(wanted));
         let of_io = |error| OutputError::from_io(error, Path::new("the output"));
