@@ -12,9 +12,7 @@ use serde::Serialize;
 
 use super::exported::{ExportedCut, ExportedFigures};
 use super::kept_work::Workers;
-#[cfg(any(feature = "command", test))]
-use crate::report::harm::Harm;
-use crate::report::harm::harm;
+use crate::report::harm::{Harm, harm};
 
 /// Feed overrides at which both programs are cut, %: the values that operators use to run in a
 /// program and to speed it up.
@@ -47,7 +45,7 @@ pub struct OverrideFigures {
 
 impl OverrideFigures {
     fn new(percent: u32, [uncorrected, as_exported]: [ExportedFigures; 2]) -> Self {
-        let verdict = if !harm(&uncorrected.errors(), &as_exported.errors()).is_empty() {
+        let verdict = if worst(&uncorrected, &as_exported).is_some() {
             OverrideVerdict::Worse
         } else if as_exported.is_no_better_than(&uncorrected) {
             OverrideVerdict::NoBetter
@@ -61,14 +59,13 @@ impl OverrideFigures {
             as_exported,
         }
     }
+}
 
-    /// Returns the RMS error if it is worse, or else the first error that is worse.
-    #[cfg(any(feature = "command", test))]
-    fn harm(&self) -> Option<Harm> {
-        harm(&self.uncorrected.errors(), &self.as_exported.errors())
-            .first()
-            .copied()
-    }
+/// Returns the RMS error if it is worse, or else the first error that is worse.
+fn worst(uncorrected: &ExportedFigures, as_exported: &ExportedFigures) -> Option<Harm> {
+    harm(&uncorrected.errors(), &as_exported.errors())
+        .first()
+        .copied()
 }
 
 impl ExportedCut<'_> {
@@ -154,6 +151,19 @@ const WORDS: [(OverrideVerdict, &str); 3] = [
     (OverrideVerdict::Worse, "worse"),
 ];
 
+/// Returns the verdicts that occur, in words, each with its runs of overrides: one after the other,
+/// with `between` between them.
+fn verdicts(
+    cuts: &[OverrideFigures],
+    one: impl Fn([u32; 2]) -> String,
+    between: &str,
+) -> impl Iterator<Item = (&'static str, String)> {
+    WORDS.iter().filter_map(move |&(verdict, word)| {
+        let runs: Vec<String> = runs(cuts, verdict).into_iter().map(&one).collect();
+        (!runs.is_empty()).then(|| (word, runs.join(between)))
+    })
+}
+
 /// The comment in the head of a program, short enough for every control.
 pub(super) fn override_note(cuts: &[OverrideFigures]) -> String {
     let one = |[first, last]: [u32; 2]| {
@@ -163,10 +173,7 @@ pub(super) fn override_note(cuts: &[OverrideFigures]) -> String {
             format!("{first}-{last}")
         }
     };
-    let all = WORDS.iter().filter_map(|&(verdict, word)| {
-        let runs: Vec<String> = runs(cuts, verdict).into_iter().map(one).collect();
-        (!runs.is_empty()).then(|| format!("{word} at {} %", runs.join(", ")))
-    });
+    let all = verdicts(cuts, one, ", ").map(|(word, runs)| format!("{word} at {runs} %"));
     format!("feed override: {}", all.collect::<Vec<_>>().join("; "))
 }
 
@@ -181,14 +188,11 @@ pub(crate) fn override_sentence(cuts: &[OverrideFigures]) -> Option<String> {
             format!("from {first} % to {last} %")
         }
     };
-    let all = WORDS.iter().filter_map(|&(verdict, word)| {
-        let runs: Vec<String> = runs(cuts, verdict).into_iter().map(one).collect();
-        (!runs.is_empty()).then(|| format!("{word} {}", runs.join(" and ")))
-    });
+    let all = verdicts(cuts, one, " and ").map(|(word, runs)| format!("{word} {runs}"));
     let all = all.collect::<Vec<_>>().join(", ");
     let worse = || {
         cuts.iter()
-            .filter_map(|cut| Some((cut.percent, cut.harm()?)))
+            .filter_map(|cut| Some((cut.percent, worst(&cut.uncorrected, &cut.as_exported)?)))
     };
     let largest = worse()
         .max_by(|(_, a), (_, b)| (a.after_um - a.before_um).total_cmp(&(b.after_um - b.before_um)));
