@@ -1,7 +1,9 @@
 //! How comments are written: a doc comment begins with a verb or a noun, and the words of the field
 //! stand in place of others.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+use crate::conformance_names::rust_files;
 
 /// Folders whose Rust sources are read.
 const FOLDERS: [&str; 4] = ["crates", "lab", "linuxcnc/servo", "linuxcnc/hal"];
@@ -81,24 +83,13 @@ fn fault(comment: &Comment<'_>) -> Option<String> {
     Some(format!("has '{word}'"))
 }
 
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() && !path.ends_with("target") {
-            sources(&path, found);
-        } else if path.extension().is_some_and(|ending| ending == "rs") {
-            found.push(path);
-        }
-    }
-}
-
 #[test]
 fn comments_use_the_words_of_the_field() {
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
     let mut files = Vec::new();
     FOLDERS
         .iter()
-        .for_each(|folder| sources(&root.join(folder), &mut files));
+        .for_each(|folder| rust_files(&root.join(folder), &mut files));
     files.sort();
     let (mut seen, mut faults) = (0, Vec::new());
     for file in &files {

@@ -66,14 +66,13 @@ fn declared(text: &str) -> BTreeSet<String> {
     names
 }
 
-fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+/// Collects the Rust files below a folder, without its build folder.
+pub(crate) fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
-        if path.is_dir() {
-            files(&path, found);
-        } else if path.extension().is_some_and(|ending| ending == "rs")
-            && !path.ends_with("tests.rs")
-        {
+        if path.is_dir() && !path.ends_with("target") {
+            rust_files(&path, found);
+        } else if path.extension().is_some_and(|ending| ending == "rs") {
             found.push(path);
         }
     }
@@ -85,7 +84,8 @@ fn names() -> BTreeMap<String, Vec<String>> {
     let mut names: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for folder in FOLDERS {
         let mut sources = Vec::new();
-        files(&root.join(folder).join("src"), &mut sources);
+        rust_files(&root.join(folder).join("src"), &mut sources);
+        sources.retain(|path| !path.ends_with("tests.rs"));
         sources.sort();
         for file in sources {
             let place = file
