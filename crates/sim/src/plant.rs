@@ -79,6 +79,18 @@ pub trait Mechanism {
     fn has_geometry(&self) -> bool;
 }
 
+impl dyn Mechanism {
+    /// Returns the first two axes of a machine, or three of them, as [`Plant::new`] does. Both are
+    /// compiled here, with the optimization of this crate, and not where a cut is asked for.
+    pub(crate) fn of(machine: &Machine, axes: usize, start_mm: [f64; 3]) -> Box<Self> {
+        if axes == 2 {
+            Box::new(Plant::<2>::new(machine, joints_of(start_mm)))
+        } else {
+            Box::new(Plant::<3>::new(machine, start_mm))
+        }
+    }
+}
+
 impl<const N: usize> Mechanism for Plant<N> {
     fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3> {
         Plant::step(self, joints_of(command_mm)).of_axes()

@@ -27,7 +27,7 @@ use feedwright_plan::vector::{Vector, distance, sub};
 
 use crate::kinematics::{joints_of, tool_of};
 use crate::machine::Machine;
-use crate::plant::{Measurement, Mechanism, Plant};
+use crate::plant::{Measurement, Mechanism};
 use crate::reference::{Foot, Reference, Sample};
 use crate::trace::{Commanded, CorrectionChange, FadedOut, Outcome, Row, Sink, Transition};
 use crate::watch::{Cancelled, Watch};
@@ -221,7 +221,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         };
         let plant: Box<dyn Mechanism> = match plant {
             Some(make) => make(tool_of(start_mm), machine.noise.seed),
-            None => Box::new(Plant::<N>::new(machine, start_mm)),
+            None => <dyn Mechanism>::of(machine, N, tool_of(start_mm)),
         };
         Self {
             machine,
