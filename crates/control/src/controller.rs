@@ -5,7 +5,7 @@
 
 pub(crate) mod uncorrected;
 pub(crate) mod feedforward;
-pub(crate) mod lqg_preview;
+pub(crate) mod lqg_identified;
 mod trial;
 pub(crate) mod inverting;
 pub(crate) mod magnitude_only;

@@ -45,7 +45,7 @@
 //! | Geometry | [`KnownGeometry`], [`AxisErrors`], [`ErrorTable`] |
 //! | Contour error | [`ContourError`], [`Estimator`], [`locate`] |
 //! | Controllers | [`Controller`], [`Schedule`], [`Measured`], [`Command`] |
-//! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`LqgPreview`] |
+//! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`LqgIdentified`] |
 //! | Supervisor | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`FaultEvidence`] |
 //! | Model of an axis | [`AxisModel`], [`AxisState`], [`Parameters`], [`AxisKnowledge`], [`AxisInverse`] |
 //! | Trained models | [`ContourIdentifier`], [`IdentifiedAxes`], [`ModelBlock`] |
@@ -107,8 +107,8 @@ pub use command::{Command, FaultEvidence, Measured};
 pub use contour_error::{ContourError, Estimator, MAX_ENTRIES, carried, locate};
 pub use controller::feedforward::{Feedforward, MAX_PREVIEW, preview};
 pub use controller::inverting::{INVERTING_FEED_PERIOD_S, InvertingSettings};
-pub use controller::lqg_preview::{
-    IDENTIFIED_WEIGHT, LqgGains, LqgPreview, LqgSettings, OffsetBounds,
+pub use controller::lqg_identified::{
+    IDENTIFIED_WEIGHT, LqgGains, LqgIdentified, LqgSettings, OffsetBounds,
 };
 pub use controller::magnitude_only::MagnitudeOnly;
 pub use controller::two_dimensional::TwoDimensional;

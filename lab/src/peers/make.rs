@@ -4,7 +4,7 @@
 use feedwright::{Setup, Values, offset_bounds};
 use feedwright_control::{
     AxisInverse, AxisModel, AxisState, Controller, DriveParameters, Feedforward, Gains, LoopDelays,
-    LqgPreview, LqgSettings, Parameters,
+    LqgIdentified, LqgSettings, Parameters,
 };
 use feedwright_sim::{Known, KnownAxis, Period};
 
@@ -435,7 +435,7 @@ pub(super) fn lqg_preview<const N: usize>(
         bounds: offset_bounds(&setup.known),
         ..LqgSettings::DEFAULT
     };
-    Box::new(LqgPreview::new(setup.truth::<N>(), settings))
+    Box::new(LqgIdentified::new(setup.truth::<N>(), settings))
 }
 
 pub(super) fn iterative_learning<const N: usize>(

@@ -2,8 +2,9 @@
 //! identified axes, or the paper's two.
 
 use feedwright_control::{
-    Bounds, Command, Controller, FaultEvidence, IDENTIFIED_WEIGHT, InvertingSettings, LqgPreview,
-    LqgSettings, MagnitudeOnly, Measured, OffsetBounds, Schedule, TwoDimensional, Window,
+    Bounds, Command, Controller, FaultEvidence, IDENTIFIED_WEIGHT, InvertingSettings,
+    LqgIdentified, LqgSettings, MagnitudeOnly, Measured, OffsetBounds, Schedule, TwoDimensional,
+    Window,
 };
 
 use crate::machine::{LinkModel, TrainedContour};
@@ -23,7 +24,7 @@ pub struct LiveController<const N: usize> {
 #[derive(Debug, Clone)]
 enum Kind<const N: usize> {
     /// `lqg-identified`.
-    Regulator(LqgPreview<N>),
+    Regulator(LqgIdentified<N>),
     /// `two-dimensional` or `magnitude-only`.
     Inversion(Inversion<N>),
 }
@@ -88,7 +89,7 @@ impl<const N: usize> LiveController<N> {
                     is_known,
                     ..settings
                 };
-                Kind::Regulator(LqgPreview::new(identified.axes, settings))
+                Kind::Regulator(LqgIdentified::new(identified.axes, settings))
             }
             LinkModel::Contour(contour) => Kind::Inversion(Inversion::new(contour)),
         };

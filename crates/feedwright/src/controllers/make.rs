@@ -2,7 +2,7 @@
 //! function for each row.
 
 use feedwright_control::{
-    Controller, Feedforward, Gains, InvertingSettings, LqgPreview, LqgSettings, MagnitudeOnly,
+    Controller, Feedforward, Gains, InvertingSettings, LqgIdentified, LqgSettings, MagnitudeOnly,
     OffsetBounds, TwoDimensional, Uncorrected,
 };
 use feedwright_sim::{Known, KnownAxis};
@@ -37,7 +37,7 @@ pub(super) fn lqg_identified<const N: usize>(
         bounds,
     );
     match setup.axes::<N>() {
-        Some(identified) => Box::new(LqgPreview::new(identified.axes, settings)),
+        Some(identified) => Box::new(LqgIdentified::new(identified.axes, settings)),
         None => Box::new(Uncorrected),
     }
 }

@@ -8,7 +8,7 @@
 #![no_std]
 
 use core::panic::PanicInfo;
-use feedwright_control::{Feedforward, Knot, KnotSource, KnownGeometry, LqgPreview, MagnitudeOnly, ModelBlock, Tick, TwoDimensional, Uncorrected};
+use feedwright_control::{Feedforward, Knot, KnotSource, KnownGeometry, LqgIdentified, MagnitudeOnly, ModelBlock, Tick, TwoDimensional, Uncorrected};
 
 unsafe extern "C" {
     fn a_panic_is_left_in_the_tick() -> !;
@@ -52,8 +52,8 @@ macro_rules! servo_periods {
 servo_periods! {
     uncorrected_2: Uncorrected, 2;
     uncorrected_3: Uncorrected, 3;
-    lqg_preview_2: LqgPreview<2>, 2;
-    lqg_preview_3: LqgPreview<3>, 3;
+    lqg_identified_2: LqgIdentified<2>, 2;
+    lqg_identified_3: LqgIdentified<3>, 3;
     magnitude_only_2: MagnitudeOnly<2>, 2;
     magnitude_only_3: MagnitudeOnly<3>, 3;
     two_dimensional_2: TwoDimensional<2>, 2;

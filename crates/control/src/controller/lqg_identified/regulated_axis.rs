@@ -18,7 +18,7 @@ use super::learning::{Learner, Learning, ModelChoice};
 use super::linear;
 use super::screw::{ScrewTwist, TwistCourse};
 
-/// Stationary gains of an axis, by state as in `lqg_preview/linear.rs`.
+/// Stationary gains of an axis, by state as in `lqg_identified/linear.rs`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LqgGains {
     /// Correction of each state for an innovation of 1 rad.
