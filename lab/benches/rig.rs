@@ -85,7 +85,7 @@ pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgIdentified<N> {
         largest_mm: 0.5,
         fastest_mm_s: 400.0,
     };
-    let settings = LqgSettings::identified(IDENTIFIED_WEIGHT, 1e-3, bounds);
+    let settings = LqgSettings::identified(IDENTIFIED_WEIGHT.default, 1e-3, bounds);
     LqgIdentified::new([axis; N], settings)
 }
 

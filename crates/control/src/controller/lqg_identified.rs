@@ -62,9 +62,12 @@ mod learning;
 mod regulated_axis;
 
 use super::feedforward::preview;
-use super::{Controller, Schedule};
+use super::row::{ControllerData, ControllerRow, Knows, Member, Values};
+use super::{Controller, OffsetBounds, Schedule};
 use crate::axis::knowledge::AxisKnowledge;
 use crate::command::{Command, FaultEvidence, Measured};
+use crate::identifier::IdentifierKind;
+use crate::model::Trained;
 use crate::supervisor::first_use::FirstUse;
 use crate::supervisor::one_step::OneStep;
 use crate::supervisor::validity::{Shown, Trusted, Validity};
@@ -73,7 +76,7 @@ use crate::window::Window;
 use feasible::Feasibility;
 use regulated_axis::AxisLqg;
 
-pub use control_weight::{IDENTIFIED_WEIGHT, LqgSettings, OffsetBounds};
+pub use control_weight::{IDENTIFIED_WEIGHT, LqgSettings};
 pub use regulated_axis::LqgGains;
 
 /// Servo periods beyond the command that the inverse evaluates.
@@ -126,12 +129,6 @@ impl<const N: usize> LqgIdentified<N> {
         }
     }
 
-    /// Forgets the machine: another one may be present.
-    pub fn forget_machine(&mut self) {
-        self.reset();
-        self.first_use.iter_mut().for_each(FirstUse::forget);
-    }
-
     /// Returns the squared error of the models alone and the squared error to correct, mm^2; `None`
     /// at rest.
     fn seen_alone_mm2(&self, window: &Window<'_, N>, position_mm: [f64; N]) -> Option<[f64; 2]> {
@@ -147,11 +144,6 @@ impl<const N: usize> LqgIdentified<N> {
             seen_mm2 = add_scaled(seen_mm2, 1.0, off_mm.map(|mm| mm * mm));
         }
         (window.now().feed_mm_s > 0.0).then_some(seen_mm2)
-    }
-
-    /// Changes the bounds of the offsets.
-    pub fn hold_to(&mut self, bounds: OffsetBounds) {
-        self.axes.iter_mut().for_each(|axis| axis.hold_to(bounds));
     }
 
     /// Returns the gains of each axis near the reference.
@@ -220,6 +212,28 @@ impl<const N: usize> LqgIdentified<N> {
     }
 }
 
+impl<const N: usize> Member<N> for LqgIdentified<N> {
+    const ROW: ControllerRow = ControllerRow {
+        name: "lqg-identified",
+        knows: Knows::Identified,
+        identifier: Some(IdentifierKind::Axes),
+        parameters: &[IDENTIFIED_WEIGHT],
+    };
+
+    fn make(data: &ControllerData<'_, N>, values: Values<'_>) -> Option<Self> {
+        let model = data.model?;
+        let Trained::Axes(identified) = &model.trained else {
+            return None;
+        };
+        let weight = values(&IDENTIFIED_WEIGHT);
+        let settings = LqgSettings {
+            is_known: data.is_known,
+            ..LqgSettings::identified(weight, model.servo_s, data.bounds)
+        };
+        Some(Self::new(identified.axes, settings))
+    }
+}
+
 impl<const N: usize> Controller<N> for LqgIdentified<N> {
     fn schedule(&self) -> Schedule {
         Schedule {
@@ -235,6 +249,15 @@ impl<const N: usize> Controller<N> for LqgIdentified<N> {
     fn reset(&mut self) {
         self.axes.iter_mut().for_each(AxisLqg::forget);
         self.know_nothing();
+    }
+
+    fn forget_machine(&mut self) {
+        self.reset();
+        self.first_use.iter_mut().for_each(FirstUse::forget);
+    }
+
+    fn hold_to(&mut self, bounds: OffsetBounds) {
+        self.axes.iter_mut().for_each(|axis| axis.hold_to(bounds));
     }
 
     /// Begins anew where the position is lost for longer than it can be predicted: the motion of
