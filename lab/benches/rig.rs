@@ -3,7 +3,7 @@
 
 use feedwright_control::{
     AxisKnowledge, Bounds, ContourError, ContourIdentifier, Controller, Estimator,
-    IDENTIFIED_WEIGHT, Inputs, InvertingSettings, Knot, KnotSource, LqgPreview, LqgSettings,
+    IDENTIFIED_WEIGHT, Inputs, InvertingSettings, Knot, KnotSource, LqgIdentified, LqgSettings,
     Measured, OffsetBounds, Parameters, Periods, Preview, Register, Setpoint, Tick,
     TransmissionParameters, TwoDimensional, Window,
 };
@@ -46,7 +46,7 @@ pub(crate) fn paper<const N: usize>() -> TwoDimensional<N> {
 /// Returns the regulator of axes like the axes of `tnv40`, with fast speed loops, which follow like
 /// the tool of a [`Rig`]. Each has noise, a disturbance and, with `gives`, a ball screw with
 /// backlash. The regulator decides in every servo period.
-pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgPreview<N> {
+pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgIdentified<N> {
     let mut axis = AxisKnowledge::NOTHING;
     axis.periods = Periods {
         servo_s: 0.001,
@@ -85,8 +85,8 @@ pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgPreview<N> {
         largest_mm: 0.5,
         fastest_mm_s: 400.0,
     };
-    let settings = LqgSettings::identified(IDENTIFIED_WEIGHT, 1e-3, bounds);
-    LqgPreview::new([axis; N], settings)
+    let settings = LqgSettings::identified(IDENTIFIED_WEIGHT.default, 1e-3, bounds);
+    LqgIdentified::new([axis; N], settings)
 }
 
 /// Behavior of the tool of a [`Rig`]; it lags by 20 ms in either case.

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use feedwright::{Statistics, identified};
 use feedwright_control::{
-    Controller, Gradient, INVERTING_FEED_PERIOD_S, InvertingSettings, TwoDimensional,
+    Controller, Gradient, INVERSION_PERIOD_S, InvertingSettings, TwoDimensional,
 };
 use feedwright_ident::{Excitation, Training};
 use feedwright_lab::Workpiece;
@@ -50,7 +50,7 @@ fn inversions(machine: &Machine, workpiece: &Workpiece) -> Result<(), Failure> {
                 knots,
                 ..InvertingSettings::DEFAULT
             };
-            settings.servo_periods = machine.period.servo_periods(INVERTING_FEED_PERIOD_S);
+            settings.servo_periods = machine.period.servo_periods(INVERSION_PERIOD_S.default);
             settings.inversion.gradient = gradient;
             let mut controller = TwoDimensional::untried(trained.net.clone(), settings);
             let (statistics, run) = cut(machine, workpiece, &mut controller)?;

@@ -27,18 +27,20 @@ pub(crate) mod model_predictive;
 #[cfg(test)]
 mod fixture;
 mod closed_loop;
-mod make;
 mod rows;
+mod make;
 
 use feedwright::{
-    ACCELERATION_GAIN, Controllers, Entry, FEEDFORWARD, FRICTION_GAIN, LQG_IDENTIFIED,
-    MAGNITUDE_ONLY, Parameter, TWO_DIMENSIONAL, UNCORRECTED, VELOCITY_GAIN, controller,
+    Controllers, Entry, FEEDFORWARD, LQG_IDENTIFIED, MAGNITUDE_ONLY, TWO_DIMENSIONAL, UNCORRECTED,
+    controller,
 };
+use feedwright_control::{ACCELERATION_GAIN, FRICTION_GAIN, Parameter, VELOCITY_GAIN};
 use rows::{
-    ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CONSTRAINED_ALLOWED,
-    CONTROL_WEIGHT, CORNER_REACH, CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT,
-    FUZZY_CHANGE, FUZZY_ERROR, FUZZY_SLOWEST, GAMMA_RATIO, INERTIA_SCALE, KNOTS, LAG_SCALE,
-    PLAN_PERIOD_S, RATE_WEIGHT, SHAPED_DAMPING, SHAPED_FREQUENCY, SHAPER_IMPULSES, TORQUE_NOISE,
+    ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, COMPENSATION_FILTER,
+    COMPENSATION_RATE, CONSTRAINED_ALLOWED, CONTROL_WEIGHT, CORNER_REACH, CROSS_COUPLED_KD,
+    CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT, FUZZY_CHANGE, FUZZY_ERROR, FUZZY_SLOWEST,
+    GAMMA_RATIO, INERTIA_SCALE, KNOTS, LAG_SCALE, OBSERVER_BANDWIDTH, PLAN_PERIOD_S, RATE_WEIGHT,
+    SHAPED_DAMPING, SHAPED_FREQUENCY, SHAPER_IMPULSES, TORQUE_NOISE,
 };
 
 /// PID control of the contour error, added to the command across the path.
@@ -59,22 +61,7 @@ pub(crate) static CONTOUR_COMPENSATION: Entry = controller!(
     "Lee and Jeon (1999)",
     Nothing,
     laps: 1,
-    [
-        Parameter::number(
-            "rate_1_s",
-            contour_compensation::Settings::DEFAULT.rate_1_s,
-            [0.0, 1e4],
-            Some([1.0, 3000.0]),
-            "how fast the reference follows the error: small is late, large swings"
-        ),
-        Parameter::number(
-            "filter_s",
-            contour_compensation::Settings::DEFAULT.filter_s,
-            [1e-5, 10.0],
-            Some([1e-4, 0.1]),
-            "time constant of the filter on the error: long takes out noise, and is late"
-        )
-    ],
+    [COMPENSATION_RATE, COMPENSATION_FILTER],
     |setup, values| make::contour_compensation(setup, values)
 );
 
@@ -197,14 +184,7 @@ pub(crate) static DISTURBANCE_OBSERVER: Entry = controller!(
     "Ohnishi (1987)",
     ExactModel,
     laps: 1,
-    [Parameter::number(
-        "bandwidth_hz",
-        disturbance_observer::BANDWIDTH_HZ,
-        [0.0, 1000.0],
-        Some([1.0, 1000.0]),
-        "of the observer: low is late at every reversal, high hands on the noise of the encoder; from 500 on the observer \
-         believes what it measures, and hardly changes"
-    )],
+    [OBSERVER_BANDWIDTH],
     |setup, values| make::disturbance_observer(setup, values)
 );
 

@@ -7,7 +7,7 @@ use std::process::Command;
 
 use crate::cut::cut;
 use crate::python::python;
-use feedwright_control::{LqgGains, LqgPreview, LqgSettings};
+use feedwright_control::{LqgGains, LqgIdentified, LqgSettings};
 use feedwright_lab::CONTROLLERS;
 use feedwright_sim::{KnownAxis, Machine};
 
@@ -120,7 +120,7 @@ fn the_gains_are_those_of_the_script() {
             };
             axis.with_statistics(periods, statistics[i])
         });
-        let limit = LqgPreview::<2>::new(axes, LqgSettings::DEFAULT);
+        let limit = LqgIdentified::<2>::new(axes, LqgSettings::DEFAULT);
         for (LqgGains { filter, regulator }, axis) in limit.gains().iter().zip(["x", "y"]) {
             let theirs = script(python, &file, axis);
             agree(filter, &theirs.filter, "filter");

@@ -1,19 +1,29 @@
 //! The family of controllers. Once a feed period, each decides the feedrate along the path and the
 //! offset from it.
 //!
-//! To add a controller: one file here and one row in the table of the library.
+//! To add a controller: one file here with its row, and its name in the table below. A simulation
+//! and a servo thread make it in the same way, by its name or by its type.
 
+pub(crate) mod row;
 pub(crate) mod uncorrected;
 pub(crate) mod feedforward;
-pub(crate) mod lqg_preview;
+pub(crate) mod lqg_identified;
 mod trial;
 pub(crate) mod inverting;
 pub(crate) mod magnitude_only;
 pub(crate) mod two_dimensional;
 
+use core::ops::{Deref, DerefMut};
+
 use crate::axis::knowledge::AxisKnowledge;
 use crate::command::{Command, FaultEvidence, Measured};
 use crate::window::Window;
+use feedforward::Feedforward;
+use lqg_identified::LqgIdentified;
+use magnitude_only::MagnitudeOnly;
+use row::{ControllerData, ControllerRow, Member, Values};
+use two_dimensional::TwoDimensional;
+use uncorrected::Uncorrected;
 
 /// Feed period and preview that a controller requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,6 +34,23 @@ pub struct Schedule {
     pub preview: u32,
 }
 
+/// Bounds of an offset, whatever the request.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OffsetBounds {
+    /// Largest offset, mm.
+    pub largest_mm: f64,
+    /// Largest rate of change of the offset, mm/s.
+    pub fastest_mm_s: f64,
+}
+
+impl OffsetBounds {
+    /// No bounds.
+    pub const NONE: Self = Self {
+        largest_mm: f64::INFINITY,
+        fastest_mm_s: f64::INFINITY,
+    };
+}
+
 /// Interface of a controller. The conformance tests of the library admit a controller: rest stays
 /// rest, the same input gives the same bits, a reset is complete, a NaN measurement gives a finite
 /// command.
@@ -32,6 +59,15 @@ pub trait Controller<const N: usize> {
     fn schedule(&self) -> Schedule;
     /// Resets the state to the one after construction.
     fn reset(&mut self);
+    /// Forgets the machine: another one may be present.
+    fn forget_machine(&mut self) {
+        self.reset();
+    }
+    /// Changes the bounds of the offset that the controller itself keeps. The supervisor keeps them
+    /// for every controller.
+    fn hold_to(&mut self, bounds: OffsetBounds) {
+        let _ = bounds;
+    }
     /// Starts the same part once more and keeps what was learned from it.
     fn next_lap(&mut self) {
         self.reset();
@@ -78,4 +114,63 @@ pub trait Controller<const N: usize> {
     }
     /// Decides the command of the next feed period.
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N>;
+}
+
+/// Declares the table of the controllers that a machine runs.
+macro_rules! members {
+    ($($Name:ident($Type:ty)),* $(,)?) => {
+        /// A controller of the table.
+        #[derive(Debug, Clone)]
+        #[expect(clippy::large_enum_variant, reason = "a servo thread does not allocate")]
+        pub enum AnyController<const N: usize> {
+            $(#[doc = concat!("[`", stringify!($Name), "`].")] $Name($Type)),*
+        }
+
+        impl<const N: usize> AnyController<N> {
+            /// Rows of all controllers that a machine runs.
+            pub const ROWS: &[ControllerRow] = &[$(<$Type as Member<N>>::ROW),*];
+
+            /// Creates the controller of a name; `None` where no controller has the name, or where
+            /// `data` lacks what it has to know.
+            pub fn make(name: &str, data: &ControllerData<'_, N>, values: Values<'_>) -> Option<Self> {
+                $(if name == <$Type as Member<N>>::ROW.name {
+                    return <$Type>::make(data, values).map(Self::$Name);
+                })*
+                None
+            }
+
+            /// Returns the name of the controller.
+            pub fn name(&self) -> &'static str {
+                match self {
+                    $(Self::$Name(_) => <$Type as Member<N>>::ROW.name),*
+                }
+            }
+        }
+
+        impl<const N: usize> Deref for AnyController<N> {
+            type Target = dyn Controller<N>;
+
+            fn deref(&self) -> &Self::Target {
+                match self {
+                    $(Self::$Name(controller) => controller),*
+                }
+            }
+        }
+
+        impl<const N: usize> DerefMut for AnyController<N> {
+            fn deref_mut(&mut self) -> &mut Self::Target {
+                match self {
+                    $(Self::$Name(controller) => controller),*
+                }
+            }
+        }
+    };
+}
+
+members! {
+    Uncorrected(Uncorrected),
+    Feedforward(Feedforward<N>),
+    MagnitudeOnly(MagnitudeOnly<N>),
+    TwoDimensional(TwoDimensional<N>),
+    LqgIdentified(LqgIdentified<N>),
 }

@@ -45,10 +45,11 @@
 //! | Geometry | [`KnownGeometry`], [`AxisErrors`], [`ErrorTable`] |
 //! | Contour error | [`ContourError`], [`Estimator`], [`locate`] |
 //! | Controllers | [`Controller`], [`Schedule`], [`Measured`], [`Command`] |
-//! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`LqgPreview`] |
+//! | Making one | [`AnyController`], [`Member`], [`ControllerData`], [`ControllerRow`], [`Parameter`] |
+//! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`LqgIdentified`] |
 //! | Supervisor | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`FaultEvidence`] |
 //! | Model of an axis | [`AxisModel`], [`AxisState`], [`Parameters`], [`AxisKnowledge`], [`AxisInverse`] |
-//! | Trained models | [`ContourIdentifier`], [`IdentifiedAxes`], [`ModelBlock`] |
+//! | Trained models | [`ContourIdentifier`], [`IdentifiedAxes`], [`TrainedModel`], [`ModelBlock`] |
 //!
 //! [`ModelBlock::from_bytes`] reads a trained model from bytes, so that a servo thread needs no
 //! file.
@@ -105,15 +106,16 @@ pub use axis::transmission::{TableState, TransmissionModel, TransmissionParamete
 pub use axis::{AxisModel, AxisState, Parameters, Periods, friction_signs};
 pub use command::{Command, FaultEvidence, Measured};
 pub use contour_error::{ContourError, Estimator, MAX_ENTRIES, carried, locate};
-pub use controller::feedforward::{Feedforward, MAX_PREVIEW, preview};
-pub use controller::inverting::{INVERTING_FEED_PERIOD_S, InvertingSettings};
-pub use controller::lqg_preview::{
-    IDENTIFIED_WEIGHT, LqgGains, LqgPreview, LqgSettings, OffsetBounds,
+pub use controller::feedforward::{
+    ACCELERATION_GAIN, FRICTION_GAIN, Feedforward, MAX_PREVIEW, VELOCITY_GAIN, preview,
 };
+pub use controller::inverting::{INVERSION_PERIOD_S, InvertingSettings};
+pub use controller::lqg_identified::{IDENTIFIED_WEIGHT, LqgGains, LqgIdentified, LqgSettings};
 pub use controller::magnitude_only::MagnitudeOnly;
+pub use controller::row::{ControllerData, ControllerRow, Knows, Member, Parameter, Values};
 pub use controller::two_dimensional::TwoDimensional;
 pub use controller::uncorrected::Uncorrected;
-pub use controller::{Controller, Schedule};
+pub use controller::{AnyController, Controller, OffsetBounds, Schedule};
 pub use geometry::{
     AxisErrors, ErrorTable, GeometryFault, KnownGeometry, MOST_SLOPE, TABLE_POINTS,
 };
@@ -125,7 +127,7 @@ pub use identifier::{
 pub use inversion::{Gradient, InversionSettings, TimeTerm};
 pub use model::{
     BLOCK_FORMAT, BlockError, IdentifiedAxes, MAX_MECHANICS_PER_SERVO, MAX_WEIGHT,
-    MECHANICS_PERIODS_S, ModelBlock, SERVO_PERIODS_S, Trained,
+    MECHANICS_PERIODS_S, ModelBlock, RESPONSES_S, SERVO_PERIODS_S, Trained, TrainedModel,
 };
 pub use sine::sin;
 pub use supervisor::{Bounds, Cause, FORGIVEN_S, Fade, State, fade_acceleration};

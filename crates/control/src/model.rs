@@ -4,7 +4,7 @@
 //! | Offset | Bytes | Content |
 //! |---|---|---|
 //! | 0 | 8 | `FWMODEL` and a zero byte |
-//! | 8 | 4 | format: 2, or 3 with a number that format 2 lacks, or 4 with a geometry |
+//! | 8 | 4 | format: 2, or 3 with a number that format 2 lacks, 4 with a geometry, 5 with a response time and, where there is one, a geometry |
 //! | 12 | 4 | kind of the identifier: 1 contour, 3 axes; 2 was the servo identifier, and is rejected |
 //! | 16 | 4 | N, number of axes |
 //! | 20 | 4 | n, number of numbers that follow the periods, those of a geometry included |
@@ -14,7 +14,8 @@
 //! | 40 + 8 n | 4 | CRC-32 of all bytes before it: IEEE 802.3, reflected, polynomial 0x04C11DB7 |
 //!
 //! The numbers of a contour identifier are its weights, group by group in the order of
-//! [`Identifier::weights`]. The numbers of axes are the mechanics period, s, and then
+//! [`Identifier::weights`], and from format 5 on the response time of the speed loops, s. The
+//! numbers of axes are the mechanics period, s, and then
 //! [`AxisKnowledge::NUMBERS`], axis by axis. [`Number::format`] is the first format that has a
 //! number; in an earlier block the number is missing and zero. After the model, a block of format 4
 //! has the geometry that the control compensates: of each axis its scale, the amplitude of its
@@ -39,11 +40,13 @@ use crate::identifier::{FEED_PERIODS_S, Identifier, IdentifierKind};
 pub(crate) const MAGIC: [u8; 8] = *b"FWMODEL\0";
 /// Latest format that is read and written. It increases whenever the layout or the meaning of a
 /// number changes.
-pub const BLOCK_FORMAT: u32 = 4;
+pub const BLOCK_FORMAT: u32 = 5;
 /// Earliest format that is read. Models without later numbers are still written in it.
 const EARLIEST_FORMAT: u32 = 2;
-/// First format whose blocks have a geometry.
+/// First format whose blocks can have a geometry. A block of this format has one.
 const GEOMETRY_FORMAT: u32 = 4;
+/// First format whose blocks can have a response time.
+const RESPONSE_FORMAT: u32 = 5;
 /// Largest magnitude of a number of a geometry: positions are in mm.
 const MAX_GEOMETRY: f64 = 1e6;
 /// Range of the servo period of a machine, s: the bounds of a machine file.
@@ -59,16 +62,41 @@ const WHOLE_RATIO_TOLERANCE: f64 = 1e-9;
 /// Largest magnitude of a weight. A hidden node that changes sign within 0.25 mm/s has weights
 /// of 400.
 pub const MAX_WEIGHT: f64 = 1e6;
+/// Range of a response time of the speed loops, s: a drive responds within a servo period at best,
+/// and its delays are 20 ms each at most.
+pub const RESPONSES_S: [f64; 2] = [1e-6, 1.0];
 
 /// A trained identifier and the periods that it was trained for.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ModelBlock<const N: usize> {
+pub struct TrainedModel<const N: usize> {
     /// Servo period of the machine, s.
     pub servo_s: f64,
     /// Time between knots, s.
     pub feed_period_s: f64,
     /// The trained identifier.
     pub trained: Trained<N>,
+}
+
+impl<const N: usize> TrainedModel<N> {
+    /// Creates the model of these axes, whose controller decides in every servo period.
+    pub fn of_axes(identified: IdentifiedAxes<N>) -> Self {
+        let servo_s = identified
+            .axes
+            .first()
+            .map_or(0.0, |axis| axis.periods.servo_s);
+        Self {
+            servo_s,
+            feed_period_s: servo_s,
+            trained: Trained::Axes(identified),
+        }
+    }
+}
+
+/// A trained model, with the geometry of the machine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelBlock<const N: usize> {
+    /// The model.
+    pub model: TrainedModel<N>,
     /// The geometry that the control compensates, without backlash; `None` where nothing is
     /// compensated.
     pub geometry: Option<KnownGeometry<N>>,
@@ -141,7 +169,12 @@ impl<const N: usize> IdentifiedAxes<N> {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Trained<const N: usize> {
     /// An identifier of the contour error.
-    Contour(ContourIdentifier<N>),
+    Contour {
+        /// The network.
+        net: ContourIdentifier<N>,
+        /// Response time of the slowest speed loop, s; 0 where the model does not state it.
+        response_s: f64,
+    },
     /// The axes.
     Axes(IdentifiedAxes<N>),
 }
@@ -214,7 +247,10 @@ impl<const N: usize> ModelBlock<N> {
             return Err(BlockError::Format(format));
         }
         let mut trained = match kind {
-            CONTOUR => Trained::Contour(ContourIdentifier::NULL),
+            CONTOUR => Trained::Contour {
+                net: ContourIdentifier::NULL,
+                response_s: 0.0,
+            },
             AXES => Trained::Axes(IdentifiedAxes::NULL),
             kind => return Err(BlockError::Kind(kind)),
         };
@@ -225,10 +261,11 @@ impl<const N: usize> ModelBlock<N> {
         trained.numbers_of(format, &mut |_, group| expected += group.len());
         let (content, checksum) = bytes.split_last_chunk().ok_or(BlockError::Length)?;
         let numbers = numbers as usize;
-        let is_whole = if format < GEOMETRY_FORMAT {
-            numbers == expected
-        } else {
-            numbers > expected
+        let has_geometry = numbers > expected;
+        let is_whole = match format {
+            ..GEOMETRY_FORMAT => numbers == expected,
+            GEOMETRY_FORMAT => has_geometry,
+            _ => numbers >= expected,
         };
         // The two periods are not part of the count.
         if !is_whole
@@ -256,22 +293,26 @@ impl<const N: usize> ModelBlock<N> {
             // The mechanics period is the first number after the two other periods.
             *axes = axes.with_periods(servo_s).ok_or(BlockError::Number(2))?;
         }
-        let geometry = if format < GEOMETRY_FORMAT {
-            None
-        } else {
+        let geometry = if has_geometry {
             Some(rest.geometry()?)
+        } else {
+            None
         };
-        Ok(Self {
+        let model = TrainedModel {
             servo_s,
             feed_period_s,
             trained,
-            geometry,
-        })
+        };
+        Ok(Self { model, geometry })
     }
 
     /// Writes this model as a block through `put`, piece by piece.
     pub fn to_bytes(&self, mut put: impl FnMut(&[u8])) {
-        let mut trained = self.trained.clone();
+        let TrainedModel {
+            servo_s,
+            feed_period_s,
+            mut trained,
+        } = self.model.clone();
         let mut format = EARLIEST_FORMAT;
         trained.numbers(&mut |bounds, group| {
             if group.iter().any(|number| *number != 0.0) {
@@ -280,11 +321,11 @@ impl<const N: usize> ModelBlock<N> {
         });
         let mut numbers = 0_u32;
         if let Some(geometry) = &self.geometry {
-            format = GEOMETRY_FORMAT;
+            format = format.max(GEOMETRY_FORMAT);
             geometry.numbers(|_| numbers += 1);
         }
         trained.numbers_of(format, &mut |_, group| numbers += group.len() as u32);
-        let kind = match self.trained.kind() {
+        let kind = match trained.kind() {
             IdentifierKind::Contour => CONTOUR,
             IdentifierKind::Axes => AXES,
         };
@@ -297,7 +338,7 @@ impl<const N: usize> ModelBlock<N> {
         for whole in [format, kind, N as u32, numbers] {
             put_counted(&whole.to_le_bytes());
         }
-        for period_s in [self.servo_s, self.feed_period_s] {
+        for period_s in [servo_s, feed_period_s] {
             put_counted(&period_s.to_le_bytes());
         }
         let put_group = &mut |_: &NumberBounds, group: &mut [f64]| {
@@ -323,7 +364,7 @@ impl<const N: usize> Trained<N> {
     /// Returns the kind of the identifier.
     pub fn kind(&self) -> IdentifierKind {
         match self {
-            Self::Contour(_) => IdentifierKind::Contour,
+            Self::Contour { .. } => IdentifierKind::Contour,
             Self::Axes(_) => IdentifierKind::Axes,
         }
     }
@@ -332,7 +373,10 @@ impl<const N: usize> Trained<N> {
     fn numbers(&mut self, each: &mut impl FnMut(&NumberBounds, &mut [f64])) {
         let weight = NumberBounds::Within(-MAX_WEIGHT, MAX_WEIGHT);
         match self {
-            Self::Contour(net) => net.weights(&mut |_, group| each(&weight, group)),
+            Self::Contour { net, response_s } => {
+                net.weights(&mut |_, group| each(&weight, group));
+                each(&NumberBounds::Response, slice::from_mut(response_s));
+            }
             Self::Axes(axes) => axes.numbers(each),
         }
     }
@@ -353,6 +397,8 @@ enum NumberBounds {
     Within(f64, f64),
     /// Range of a number of an axis.
     Of(&'static Number),
+    /// A response time, or 0.
+    Response,
 }
 
 impl NumberBounds {
@@ -365,6 +411,7 @@ impl NumberBounds {
         match self {
             Self::Within(..) => EARLIEST_FORMAT,
             Self::Of(number) => number.format,
+            Self::Response => RESPONSE_FORMAT,
         }
     }
 
@@ -373,6 +420,7 @@ impl NumberBounds {
             // A NaN fails this comparison.
             Self::Within(least, most) => value >= *least && value <= *most,
             Self::Of(number) => number.holds(value),
+            Self::Response => value == 0.0 || Self::within(RESPONSES_S).hold(value),
         }
     }
 }
@@ -452,11 +500,25 @@ mod tests {
         let mut net = ContourIdentifier::NULL;
         net.weights(&mut |_, group| group.iter_mut().for_each(|weight| *weight = 3.0 * next()));
         ModelBlock {
-            servo_s: 0.001,
-            feed_period_s: 0.01,
-            trained: Trained::Contour(net),
+            model: TrainedModel {
+                servo_s: 0.001,
+                feed_period_s: 0.01,
+                trained: Trained::Contour {
+                    net,
+                    response_s: 0.0,
+                },
+            },
             geometry: None,
         }
+    }
+
+    /// The same with a response time.
+    fn responding<const N: usize>() -> ModelBlock<N> {
+        let mut block = contour();
+        if let Trained::Contour { response_s, .. } = &mut block.model.trained {
+            *response_s = 0.006;
+        }
+        block
     }
 
     /// Each number within its range, and all different.
@@ -472,11 +534,8 @@ mod tests {
                 *(number.of)(axis) = least + (0.1 + 0.05 * next()) * (most.min(1.0) - least);
             }
         }
-        let trained = Trained::Axes(axes.with_periods(0.001).unwrap());
         ModelBlock {
-            servo_s: 0.001,
-            feed_period_s: 0.001,
-            trained,
+            model: TrainedModel::of_axes(axes.with_periods(0.001).unwrap()),
             geometry: None,
         }
     }
@@ -517,6 +576,10 @@ mod tests {
             Ok(contour::<3>())
         );
         assert_eq!(
+            ModelBlock::from_bytes(&block(&responding::<3>())),
+            Ok(responding::<3>())
+        );
+        assert_eq!(
             ModelBlock::from_bytes(&block(&axes::<2>())),
             Ok(axes::<2>())
         );
@@ -535,7 +598,7 @@ mod tests {
         );
         assert_eq!(bytes[24..32], 0.001_f64.to_le_bytes());
         assert_eq!(bytes[32..40], 0.01_f64.to_le_bytes());
-        let Trained::Contour(mut net) = contour::<2>().trained else {
+        let Trained::Contour { mut net, .. } = contour::<2>().model.trained else {
             panic!("a contour")
         };
         let mut weights = Vec::new();
@@ -545,7 +608,7 @@ mod tests {
         assert_eq!(bytes[40 + 8 * (n - 1)..][..8], weights[n - 1].to_le_bytes());
         assert_eq!((n, bytes.len()), (0x90, 40 + 8 * n + 4));
         let bytes = block(&axes::<3>());
-        let Trained::Axes(identified) = axes::<3>().trained else {
+        let Trained::Axes(identified) = axes::<3>().model.trained else {
             panic!("axes")
         };
         let at =
@@ -568,7 +631,7 @@ mod tests {
     fn a_block_without_command_delay_is_one_of_format_2() {
         let mut model = axes::<2>();
         let with = block(&model);
-        let Trained::Axes(identified) = &mut model.trained else {
+        let Trained::Axes(identified) = &mut model.model.trained else {
             panic!("axes")
         };
         identified
@@ -631,6 +694,24 @@ mod tests {
     }
 
     #[test]
+    fn a_response_time_makes_a_block_of_format_5_with_a_geometry_or_without() {
+        let (plain, with) = (block(&contour::<2>()), block(&responding::<2>()));
+        assert_eq!((plain[8], with[8], with.len() - plain.len()), (2, 5, 8));
+        let both = with_geometry(responding::<2>());
+        assert_eq!(block(&both)[8], 5);
+        assert_eq!(ModelBlock::from_bytes(&block(&both)), Ok(both));
+        let last = (with.len() - 4 - 24) / 8 - 1;
+        for hostile_s in [f64::NAN, -0.006, 1e-7, 1.1, f64::INFINITY] {
+            let read = ModelBlock::<2>::from_bytes(&with_number(with.clone(), last, hostile_s));
+            assert_eq!(read, Err(BlockError::Number(last)), "{hostile_s}");
+        }
+        // Earlier blocks state none, with a geometry, too.
+        let earlier = with_geometry(contour::<2>());
+        assert_eq!(block(&earlier)[8], 4);
+        assert_eq!(ModelBlock::from_bytes(&block(&earlier)), Ok(earlier));
+    }
+
+    #[test]
     fn every_number_of_a_geometry_has_bounds() {
         let bytes = block(&with_geometry(axes::<2>()));
         let [first, end] = [block(&axes::<2>()).len(), bytes.len()].map(|length| (length - 28) / 8);
@@ -649,6 +730,7 @@ mod tests {
     fn any_changed_byte_is_refused() {
         for bytes in [
             block(&contour::<2>()),
+            block(&responding::<2>()),
             block(&axes::<2>()),
             block(&with_geometry(axes::<2>())),
         ] {
@@ -668,6 +750,7 @@ mod tests {
     #[test]
     fn any_other_length_is_refused() {
         of_any_other_length_are_refused(block(&contour::<2>()));
+        of_any_other_length_are_refused(block(&responding::<2>()));
         of_any_other_length_are_refused(block(&axes::<2>()));
         of_any_other_length_are_refused(block(&with_geometry(axes::<2>())));
     }
@@ -808,11 +891,7 @@ mod tests {
             assert_eq!(read(hostile_s), Err(BlockError::Number(2)), "{hostile_s}");
         }
         for (fine_s, periods) in [(1e-6, 1_000), (1e-4, 10), (0.0005, 2), (0.001, 1)] {
-            let Ok(ModelBlock {
-                trained: Trained::Axes(axes),
-                ..
-            }) = read(fine_s)
-            else {
+            let Ok(Trained::Axes(axes)) = read(fine_s).map(|block| block.model.trained) else {
                 panic!("{fine_s}")
             };
             assert!(
@@ -828,7 +907,7 @@ mod tests {
             ModelBlock::<2>::from_bytes(&longest),
             Err(BlockError::Number(2))
         );
-        let Trained::Axes(identified) = axes::<2>().trained else {
+        let Trained::Axes(identified) = axes::<2>().model.trained else {
             panic!("axes")
         };
         assert!(identified.are_possible(0.001) && !identified.are_possible(0.00015));

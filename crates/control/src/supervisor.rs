@@ -23,7 +23,7 @@
 //!
 //! A wrong prediction of a model counts only beyond four standard deviations of noise, and twice; a
 //! learned model replaces a correct one in one of a thousand trials
-//! (`controller/lqg_preview/learning.rs`).
+//! (`controller/lqg_identified/learning.rs`).
 //!
 //! Bounds of the harm, for a controller that does any harm within its bounds and knows the effect
 //! of its offset, on a machine with a lag of 20 ms: every error is at most 1.5 times the largest

@@ -69,6 +69,8 @@ pub struct Tick<const N: usize> {
     offset_from_mm: [f64; N],
     offset_from_mm_s: [f64; N],
     command: Command<N>,
+    /// Last requested rate.
+    requested_rate: f64,
     /// Servo periods since the start of the feed period.
     phase: u32,
     /// The last command, mm.
@@ -95,9 +97,28 @@ impl<const N: usize> Tick<N> {
             offset_from_mm: [0.0; N],
             offset_from_mm_s: [0.0; N],
             command: Command::AS_PLANNED,
+            requested_rate: 1.0,
             phase: 0,
             command_mm: None,
         }
+    }
+
+    /// Leaves the feedrate to another planner, such as the control's: the path goes on as it comes,
+    /// and a rate is a request, see [`Self::requested_rate`].
+    #[must_use]
+    pub fn planned_elsewhere(mut self) -> Self {
+        self.preview.is_planned_elsewhere = true;
+        self
+    }
+
+    /// Returns the rate that the controller requested last, of a feedrate that is planned elsewhere.
+    pub fn requested_rate(&self) -> f64 {
+        self.requested_rate
+    }
+
+    /// Takes back the requested rate until the next decision.
+    pub fn take_back_rate(&mut self) {
+        self.requested_rate = 1.0;
     }
 
     /// Computes one servo period; the tool is at `tool_mm` at its start. The work is always the
@@ -221,7 +242,15 @@ impl<const N: usize> Tick<N> {
         };
         let lost = self.feedback.take_lost();
         controller.observe(&window, (!lost).then_some(&measured));
-        let wanted = (!lost).then(|| controller.command(&window, &measured));
+        let mut wanted = (!lost).then(|| controller.command(&window, &measured));
+        if let Some(Command { rate, .. }) = &mut wanted
+            && self.preview.is_planned_elsewhere
+        {
+            // A rate that is not a number is left to the supervisor.
+            let is_number = rate.is_finite();
+            self.requested_rate = if is_number { *rate } else { 1.0 };
+            *rate = if is_number { 1.0 } else { *rate };
+        }
         let told = SelfReport {
             prediction_error_mm: controller.prediction_error_mm(),
             doubt: controller.doubt(),

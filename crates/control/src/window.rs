@@ -197,6 +197,9 @@ pub struct Preview<const N: usize> {
     /// Next grid point to look up; the ring holds the [`GRID_KNOTS`] before it.
     next: u64,
     step_s: f64,
+    /// True if another planner plans the feedrate. The path ahead is then the path that will be
+    /// commanded, and a rate is a request that does not apply to this feed period.
+    pub(crate) is_planned_elsewhere: bool,
 }
 
 impl<const N: usize> Preview<N> {
@@ -206,6 +209,7 @@ impl<const N: usize> Preview<N> {
             knots: [Knot::REST; GRID_KNOTS],
             next: 0,
             step_s,
+            is_planned_elsewhere: false,
         }
     }
 

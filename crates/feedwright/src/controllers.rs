@@ -1,36 +1,33 @@
-//! The table of controllers: a name, what it is, where it comes from, and how it is made.
+//! The table of controllers: the rows of `feedwright-control` with what the command line shows, and
+//! how each is made from what is known of a machine.
 //!
 //! Help texts, docs and conformance tests iterate over [`CONTROLLERS`]; another table can hold the
 //! same rows and more, with the macro [`controller!`](crate::controller).
 //!
 //! | File | What |
 //! |---|---|
-//! | `controllers/parameters.rs` | parameters that a user can set, by name |
-//! | `controllers/rows.rs` | the parameters of the rows |
+//! | `controllers/settings.rs` | values of parameters that a user sets, by name |
 //! | `controllers/recorded.rs` | values of parameters that a search on a machine came to |
 //! | `controllers/setup.rs` | what a controller is made from: what is known of a machine, and a model |
-//! | `controllers/make.rs` | how each row is made from that |
 
-mod parameters;
-mod make;
-mod rows;
+mod settings;
 mod setup;
 mod recorded;
 
-use feedwright_control::{Controller, IdentifierKind, Uncorrected};
+use std::ops::Deref;
+
+use feedwright_control::{
+    Controller, ControllerRow, Feedforward, LqgIdentified, MagnitudeOnly, Member, Parameter,
+    TwoDimensional, Uncorrected, Values,
+};
 use feedwright_gcode::suggestion::nearest;
 use feedwright_ident::Model;
 use feedwright_sim::{Machine, StageSteps, Watch};
 use serde::{Deserialize, Serialize};
 
-pub use make::offset_bounds;
-pub use parameters::{Parameter, ParameterKind, Setting, SettingError, Values};
 pub use recorded::RecordedValues;
-pub use rows::{ACCELERATION_GAIN, FRICTION_GAIN, VELOCITY_GAIN};
-use rows::{
-    ETA, IDENTIFIED_WEIGHT, INVERSION_KNOTS, INVERSION_PERIOD_S, INVERSION_STEPS, LEARNING_STEP,
-    RHO,
-};
+pub(crate) use settings::range;
+pub use settings::{Setting, SettingError};
 pub use setup::{CutsUncorrected, ModelMisfit, Setup};
 
 /// The stage of all that a first cut on a machine waits for.
@@ -40,21 +37,14 @@ pub(crate) fn identifying<'a>(machine: &Machine, watch: &'a dyn Watch) -> StageS
 
 /// One row of the table.
 pub struct Entry {
-    /// Name on the command line.
-    pub name: &'static str,
+    /// Name, knowledge and parameters.
+    pub row: ControllerRow,
     /// Summary in half a line.
     pub summary: &'static str,
     /// Author, year.
     pub source: &'static str,
-    /// Knowledge of the machine.
-    pub knows: Knows,
-    /// Kind of identifier, if the controller uses one.
-    pub identifier: Option<IdentifierKind>,
     /// Laps of the same part that it cuts; all but the last are practice.
     pub laps: u32,
-    /// Parameters that can be set, beginning with those whose best values the comparison searches
-    /// for.
-    pub parameters: &'static [Parameter],
     /// Makes it for two axes.
     #[doc(hidden)]
     pub plane: Maker<2>,
@@ -63,104 +53,98 @@ pub struct Entry {
     pub space: Maker<3>,
 }
 
-/// Knowledge that a controller has of the machine before it cuts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Knows {
-    /// Nothing.
-    Nothing,
-    /// Values that were identified from a recording.
-    Identified,
-    /// The parameters of its model.
-    ExactModel,
-    /// Everything that can be: the parameters, and the statistics of all noise.
-    Everything,
-    /// Errors of earlier laps of the same part.
-    EarlierLaps,
+impl Deref for Entry {
+    type Target = ControllerRow;
+
+    fn deref(&self) -> &ControllerRow {
+        &self.row
+    }
 }
 
 /// Makes a controller from a setup and the values of its parameters.
-pub type Maker<const N: usize> = fn(&mut Setup<'_>, &Values) -> Box<dyn Controller<N>>;
+pub type Maker<const N: usize> = fn(&mut Setup<'_>, Values<'_>) -> Box<dyn Controller<N>>;
 
-/// A row of a table of controllers: name, summary, source, what it knows, laps, parameters, and how
-/// it is made for N axes from a [`Setup`] and the values of its parameters.
+/// A row of a table of controllers: its row of the family (or the name, knowledge and parameters of
+/// another one), summary, source, laps, and how it is made for N axes from a [`Setup`] and the values
+/// of its parameters.
 #[macro_export]
 macro_rules! controller {
-    ($name:literal, $summary:literal, $source:literal, $knows:ident $(($kind:ident))?, laps: $laps:literal, $parameters:expr, |$setup:ident, $values:ident| $make:expr) => {{
+    ($row:expr, $summary:literal, $source:literal, laps: $laps:literal, |$setup:ident, $values:ident| $make:expr) => {{
         fn make<const N: usize>(
             $setup: &mut $crate::Setup<'_>,
-            $values: &$crate::Values,
+            $values: $crate::control::Values<'_>,
         ) -> Box<dyn $crate::control::Controller<N>> {
             $make
         }
         $crate::Entry {
-            name: $name,
+            row: $row,
             summary: $summary,
             source: $source,
-            knows: $crate::Knows::$knows,
-            identifier: [$($crate::control::IdentifierKind::$kind)?].first().copied(),
             laps: $laps,
-            parameters: &$parameters,
             plane: make::<2>,
             space: make::<3>,
         }
     }};
+    ($name:literal, $summary:literal, $source:literal, $knows:ident, laps: $laps:literal, $parameters:expr, |$setup:ident, $values:ident| $make:expr) => {
+        $crate::controller!(
+            $crate::control::ControllerRow {
+                name: $name,
+                knows: $crate::control::Knows::$knows,
+                identifier: None,
+                parameters: &$parameters,
+            },
+            $summary,
+            $source,
+            laps: $laps,
+            |$setup, $values| $make
+        )
+    };
 }
 
 /// The programmed path at the planned feed.
 pub static UNCORRECTED: Entry = controller!(
-    "uncorrected",
+    <Uncorrected as Member<2>>::ROW,
     "the programmed path at the planned feed",
     "what every open-source control does",
-    Nothing,
     laps: 1,
-    [],
-    |_setup, _values| Box::new(Uncorrected)
+    |setup, values| setup.member::<N, Uncorrected>(values)
 );
 
 /// Velocity, acceleration and friction feedforward with the exact model of the machine.
 pub static FEEDFORWARD: Entry = controller!(
-    "feedforward",
+    Feedforward::<2>::ROW,
     "velocity, acceleration and friction feedforward with the exact model of the machine; makes slow corners of router worse",
     "Masory (1986); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
-    ExactModel,
     laps: 1,
-    [VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN],
-    |setup, values| make::feedforward(setup, values)
+    |setup, values| setup.member::<N, Feedforward<N>>(values)
 );
 
 /// Inversion of the identifier, speed along the path only.
 pub static MAGNITUDE_ONLY: Entry = controller!(
-    "magnitude-only",
+    MagnitudeOnly::<2>::ROW,
     "inversion of the identifier, speed along the path only",
     "Yoon and Jeon (2000)",
-    Identified(Contour),
     laps: 1,
-    [RHO, ETA, INVERSION_STEPS, INVERSION_KNOTS, INVERSION_PERIOD_S, LEARNING_STEP],
-    |setup, values| make::magnitude_only(setup, values)
+    |setup, values| setup.member::<N, MagnitudeOnly<N>>(values)
 );
 
 /// Inversion of the identifier, speed and geometry.
 pub static TWO_DIMENSIONAL: Entry = controller!(
-    "two-dimensional",
+    TwoDimensional::<2>::ROW,
     "inversion of the identifier, speed and geometry",
     "Lee, Cho and Jeon (2005)",
-    Identified(Contour),
     laps: 1,
-    [RHO, ETA, INVERSION_STEPS, INVERSION_KNOTS, INVERSION_PERIOD_S, LEARNING_STEP],
-    |setup, values| make::two_dimensional(setup, values)
+    |setup, values| setup.member::<N, TwoDimensional<N>>(values)
 );
 
 /// Kalman filter and linear-quadratic regulator with preview, with an identified model of each
 /// axis.
 pub static LQG_IDENTIFIED: Entry = controller!(
-    "lqg-identified",
+    LqgIdentified::<2>::ROW,
     "Kalman filter and linear-quadratic regulator with preview, by an identified model of each axis",
     "Anderson and Moore (1990); Gautier, Janot and Vandanjon (2013)",
-    Identified(Axes),
     laps: 1,
-    [IDENTIFIED_WEIGHT],
-    |setup, values| make::lqg_identified(setup, values)
+    |setup, values| setup.member::<N, LqgIdentified<N>>(values)
 );
 
 /// The controllers that a machine runs.
@@ -285,7 +269,8 @@ impl Make<2> for Entry {
         if setup.is_unsuited(self) {
             return Box::new(Uncorrected);
         }
-        (self.plane)(setup, &Values::of(self, &setup.choices.set))
+        let choices = setup.choices;
+        (self.plane)(setup, &|parameter| choices.value(self, parameter))
     }
 }
 
@@ -294,7 +279,8 @@ impl Make<3> for Entry {
         if setup.is_unsuited(self) {
             return Box::new(Uncorrected);
         }
-        (self.space)(setup, &Values::of(self, &setup.choices.set))
+        let choices = setup.choices;
+        (self.space)(setup, &|parameter| choices.value(self, parameter))
     }
 }
 

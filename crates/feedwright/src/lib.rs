@@ -125,10 +125,9 @@ pub mod command;
 pub use checked_json::{checked, with_check};
 pub use compensation::{GeometryChoice, NamedGeometry};
 pub use controllers::{
-    ACCELERATION_GAIN, BASELINE, BEST, CONTROLLERS, Choices, Controllers, CutsUncorrected, Entry,
-    FEEDFORWARD, FRICTION_GAIN, Knows, LQG_IDENTIFIED, MAGNITUDE_ONLY, Make, Maker, ModelMisfit,
-    Parameter, ParameterKind, RecordedValues, Setting, SettingError, Setup, TWO_DIMENSIONAL,
-    UNCORRECTED, VELOCITY_GAIN, Values, offset_bounds,
+    BASELINE, BEST, CONTROLLERS, Choices, Controllers, CutsUncorrected, Entry, FEEDFORWARD,
+    LQG_IDENTIFIED, MAGNITUDE_ONLY, Make, Maker, ModelMisfit, RecordedValues, Setting,
+    SettingError, Setup, TWO_DIMENSIONAL, UNCORRECTED,
 };
 pub use correct::advise::{Advice, AdviseJob, CutWay, ErrorPlace};
 pub use correct::arc_fit::{ArcFit, FitPoint};

@@ -14,7 +14,7 @@ pub(crate) mod axis_statistics;
 pub(crate) mod grey_box;
 pub(crate) mod axes;
 
-use feedwright_control::INVERTING_FEED_PERIOD_S;
+use feedwright_control::INVERSION_PERIOD_S;
 use feedwright_sim::Machine;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -87,7 +87,7 @@ impl Excitation {
             offset_mm: 0.06,
             renewal_periods: 3,
             ramp_periods: 1,
-            feed_period_s: INVERTING_FEED_PERIOD_S,
+            feed_period_s: INVERSION_PERIOD_S.default,
         }
     }
 

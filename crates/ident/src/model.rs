@@ -15,7 +15,7 @@ use std::path::Path;
 
 use feedwright_control::{
     AxisKnowledge, ContourIdentifier, IdentifiedAxes, Identifier, IdentifierKind, KnownGeometry,
-    ModelBlock, Number, Trained,
+    ModelBlock, Number, Trained, TrainedModel,
 };
 use feedwright_gcode::input;
 use feedwright_sim::toml_file::key::write;
@@ -91,6 +91,8 @@ pub struct Fit {
 pub(crate) struct Weights {
     pub(crate) hidden: Vec<f64>,
     pub(crate) output: Vec<f64>,
+    /// Response time of the slowest speed loop, s; 0 where an earlier version wrote the model.
+    pub(crate) response_s: f64,
     pub(crate) mechanics_s: f64,
     /// Each of [`AxisKnowledge::NUMBERS`], axis by axis; one that is optional and zero on all axes
     /// is empty.
@@ -189,10 +191,12 @@ pub struct Origin {
 }
 
 impl Model {
-    /// Makes a model of an identifier of the contour error that was trained on a recording.
+    /// Makes a model of an identifier of the contour error that was trained on a recording, for
+    /// axes whose speed loops respond within `response_s`.
     pub fn of_contour<const N: usize>(
         recording: &Recording<N>,
         trained: &contour::TrainedContour<N>,
+        response_s: f64,
         origin: Origin,
     ) -> Self {
         let fit = Fit {
@@ -203,7 +207,10 @@ impl Model {
             IdentifierKind::Contour,
             recording,
             fit,
-            Weights::of(trained.net.clone()),
+            Weights {
+                response_s,
+                ..Weights::of(trained.net.clone())
+            },
             origin,
         )
     }
@@ -368,6 +375,13 @@ impl Model {
             .filter(|_| self.is(IdentifierKind::Contour, N))
     }
 
+    /// Returns what is assumed in place of a number that a model of an earlier version does not
+    /// state, if anything is.
+    pub fn assumed(&self) -> Option<&'static str> {
+        let is_unstated = self.kind() == IdentifierKind::Contour && self.weights.response_s == 0.0;
+        is_unstated.then_some("it states no response time of the speed loops, and 6 ms is assumed")
+    }
+
     /// The axes that it holds; none where it holds another kind, or another number of them.
     pub fn identified_axes<const N: usize>(&self) -> Option<IdentifiedAxes<N>> {
         let Weights {
@@ -398,20 +412,22 @@ impl Model {
 
     /// Returns the model in the form that `control` takes; `None` where it is for another number of
     /// axes.
-    pub fn control<const N: usize>(&self) -> Option<ModelBlock<N>> {
+    pub fn control<const N: usize>(&self) -> Option<TrainedModel<N>> {
         let trained = match self.kind() {
-            IdentifierKind::Contour => Trained::Contour(self.contour()?),
+            IdentifierKind::Contour => Trained::Contour {
+                net: self.contour()?,
+                response_s: self.weights.response_s,
+            },
             IdentifierKind::Axes => Trained::Axes(self.identified_axes()?),
         };
         let ModelPeriods {
             servo_s,
             feed_period_s,
         } = self.period;
-        Some(ModelBlock {
+        Some(TrainedModel {
             servo_s,
             feed_period_s,
             trained,
-            geometry: None,
         })
     }
 
@@ -421,17 +437,11 @@ impl Model {
         let mut bytes = Vec::new();
         let put = |more: &[u8]| bytes.extend_from_slice(more);
         if let Some(model) = self.control::<2>() {
-            ModelBlock {
-                geometry: exact::of_a_block(geometry),
-                ..model
-            }
-            .to_bytes(put);
+            let geometry = exact::of_a_block(geometry);
+            ModelBlock { model, geometry }.to_bytes(put);
         } else if let Some(model) = self.control::<3>() {
-            ModelBlock {
-                geometry: exact::of_a_block(geometry),
-                ..model
-            }
-            .to_bytes(put);
+            let geometry = exact::of_a_block(geometry);
+            ModelBlock { model, geometry }.to_bytes(put);
         }
         bytes
     }

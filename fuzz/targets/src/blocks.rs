@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use feedwright_control::{
     AxisErrors, AxisKnowledge, ContourIdentifier, DriveParameters, ErrorTable, FEED_PERIODS_S,
     IdentifiedAxes, Identifier, KnownGeometry, LoopDelays, MAX_WEIGHT, ModelBlock, Parameters,
-    Periods, Trained,
+    Periods, RESPONSES_S, Trained, TrainedModel,
 };
 
 use crate::draw::Draw;
@@ -87,12 +87,13 @@ pub(crate) fn absurd<const N: usize>(draw: &mut Draw) -> Vec<u8> {
             };
         }
     }
-    written(&ModelBlock {
+    let model = TrainedModel {
         servo_s,
         feed_period_s: 0.005,
         trained: Trained::Axes(axes),
-        geometry: None,
-    })
+    };
+    let geometry = None;
+    written(&ModelBlock { model, geometry })
 }
 
 /// Returns a block of an identifier of the contour error, with any weights within their range.
@@ -110,13 +111,16 @@ pub(crate) fn contour<const N: usize>(draw: &mut Draw) -> Vec<u8> {
     });
     let [least_s, most_s] = FEED_PERIODS_S;
     let feed_period_s = draw.pick(&[0.005, 0.001, least_s, most_s]);
-    let trained = Trained::Contour(identifier);
-    written(&ModelBlock {
+    let model = TrainedModel {
         servo_s: draw.pick(PERIODS_S)[0],
         feed_period_s,
-        trained,
-        geometry: None,
-    })
+        trained: Trained::Contour {
+            net: identifier,
+            response_s: draw.pick(&[0.0, RESPONSES_S[0], 0.006, RESPONSES_S[1]]),
+        },
+    };
+    let geometry = None;
+    written(&ModelBlock { model, geometry })
 }
 
 fn written<const N: usize>(block: &ModelBlock<N>) -> Vec<u8> {
@@ -128,7 +132,7 @@ fn written<const N: usize>(block: &ModelBlock<N>) -> Vec<u8> {
 /// Returns a block of the remaining bytes, with the header of a kind and a matching checksum.
 pub(crate) fn with_checksum(draw: &mut Draw) -> Vec<u8> {
     let [format, kind, axes] = [
-        draw.pick(&[2_u32, 3, 4]),
+        draw.pick(&[2_u32, 3, 4, 5]),
         draw.pick(&[1, 2, 3]),
         draw.pick(&[2, 3]),
     ];
@@ -143,12 +147,13 @@ pub(crate) fn with_checksum(draw: &mut Draw) -> Vec<u8> {
 
 /// Returns an accepted block: axes with a geometry, or an identifier of the contour error.
 pub(crate) fn valid<const N: usize>(is_contour: bool) -> Vec<u8> {
-    let mut block = ModelBlock {
+    let model = TrainedModel {
         servo_s: SERVO_S,
         feed_period_s: 0.005,
         trained: Trained::Axes(known_axes::<N>()),
-        geometry: None,
     };
+    let geometry = None;
+    let mut block = ModelBlock { model, geometry };
     if is_contour {
         let mut identifier = ContourIdentifier::<N>::NULL;
         identifier.weights(&mut |_, group| {
@@ -157,7 +162,10 @@ pub(crate) fn valid<const N: usize>(is_contour: bool) -> Vec<u8> {
                 .zip(0..)
                 .for_each(|(weight, k)| *weight = 0.1 * (f64::from(k % 7) - 3.0));
         });
-        block.trained = Trained::Contour(identifier);
+        block.model.trained = Trained::Contour {
+            net: identifier,
+            response_s: 0.006,
+        };
     } else {
         let (scale, pitch_mm, pitch_rad_per_mm) = (1e-5, 0.002, 0.6);
         let axis = AxisErrors {

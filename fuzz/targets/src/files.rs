@@ -125,15 +125,16 @@ fn machine_text(name: &str) -> String {
 
 /// Returns the model file of the axes of a block; empty if the block is rejected.
 fn model_text(draw: &mut Draw) -> String {
-    let Ok(block) = ModelBlock::<2>::from_bytes(&blocks::absurd::<2>(draw)) else {
+    let Ok(ModelBlock { model, .. }) = ModelBlock::<2>::from_bytes(&blocks::absurd::<2>(draw))
+    else {
         return String::new();
     };
-    let Trained::Axes(axes) = block.trained else {
+    let Trained::Axes(axes) = model.trained else {
         return String::new();
     };
     let recording = Recording {
-        servo_s: block.servo_s,
-        feed_period_s: block.feed_period_s,
+        servo_s: model.servo_s,
+        feed_period_s: model.feed_period_s,
         stretches: Vec::new(),
     };
     let trained = TrainedAxes {

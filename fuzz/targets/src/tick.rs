@@ -3,7 +3,7 @@
 
 use feedwright_servo::compensation::{Compensation, MachinePlace};
 use feedwright_servo::limits::LinkLimits;
-use feedwright_servo::machine::{geometry_of, model_of};
+use feedwright_servo::machine::model_of;
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkOutputs, Servo};
 use feedwright_servo::through::Through;
@@ -40,15 +40,14 @@ pub(crate) fn run<const N: usize>(data: &[u8]) -> usize {
         _ => blocks::absurd::<N>(&mut draw),
     };
     blocks::read::<N>(&bytes);
-    let model = model_of::<N>(&bytes);
+    let (model, geometry) = match model_of::<N>(&bytes) {
+        Ok(block) => (Ok(block.model), block.geometry),
+        Err(refused) => (Err(refused), None),
+    };
     let servo_s = model
         .as_ref()
-        .map_or(blocks::SERVO_S, |model| model.servo_s());
-    let mut compensation = Compensation::new(if model.is_ok() {
-        geometry_of(&bytes)
-    } else {
-        None
-    });
+        .map_or(blocks::SERVO_S, |model| model.servo_s);
+    let mut compensation = Compensation::new(geometry);
     compensation.runs_at(servo_s);
     let first = if model.is_ok() {
         0

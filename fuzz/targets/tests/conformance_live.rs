@@ -5,14 +5,13 @@
 
 use std::f64::consts::TAU;
 
-use feedwright::{CONTROLLERS, Choices, Setup, offset_bounds};
+use feedwright::{CONTROLLERS, Choices, Make, Setup, TWO_DIMENSIONAL};
 use feedwright_control::{
-    Bounds, Command, ContourIdentifier, Controller, FaultEvidence, IdentifiedAxes, Identifier,
-    Knot, KnotSource, Measured, Schedule, Tick, Window,
+    AnyController, Bounds, Command, Controller, ControllerRow, FaultEvidence, IdentifiedAxes,
+    IdentifierKind, Knot, KnotSource, Knows, Measured, Schedule, Tick, Window,
 };
-use feedwright_ident::{Model, Origin, Recording, TrainedAxes, TrainedContour};
-use feedwright_servo::live_controller::LiveController;
-use feedwright_servo::machine::model_of;
+use feedwright_ident::{Model, Origin, Recording, TrainedAxes};
+use feedwright_servo::machine::{live_controller, model_of};
 use feedwright_sim::{Machine, Plant};
 
 /// Servo periods that are compared: three turns of the circle.
@@ -39,17 +38,23 @@ impl KnotSource<2> for Circle {
 /// The controller of `run` and the live one, on the same windows.
 struct Both {
     run: Box<dyn Controller<2>>,
-    live: LiveController<2>,
-    /// True if both are reset before each decision. The paper's controllers learn from the feedrate
-    /// that was commanded, which is another one where a control plans it.
-    forgets: bool,
+    live: AnyController<2>,
     /// Decisions that change the plan.
     corrections: u32,
 }
 
+impl Both {
+    /// Returns what both controllers report, which must be the same.
+    fn same<T: PartialEq + std::fmt::Debug>(&self, report: impl Fn(&dyn Controller<2>) -> T) -> T {
+        let of_run = report(&*self.run);
+        assert_eq!(of_run, report(&*self.live), "{}", self.live.name());
+        of_run
+    }
+}
+
 impl Controller<2> for Both {
     fn schedule(&self) -> Schedule {
-        self.run.schedule()
+        self.same(|controller| controller.schedule())
     }
 
     fn reset(&mut self) {
@@ -63,58 +68,47 @@ impl Controller<2> for Both {
     }
 
     fn prediction_error_mm(&self) -> f64 {
-        self.run.prediction_error_mm()
+        f64::from_bits(self.same(|controller| controller.prediction_error_mm().to_bits()))
     }
 
     fn doubt(&self) -> Option<FaultEvidence> {
-        self.run.doubt()
+        self.same(|controller| controller.doubt())
+    }
+
+    fn learned(&self) -> [bool; 2] {
+        self.same(|controller| controller.learned())
     }
 
     fn moved_mm(&self) -> Option<[f64; 2]> {
-        self.run.moved_mm()
+        self.same(|controller| controller.moved_mm().map(|mm| mm.map(f64::to_bits)))
+            .map(|bits| bits.map(f64::from_bits))
+    }
+
+    fn corrects(&self) -> bool {
+        self.same(|controller| controller.corrects())
     }
 
     fn acts_at_once(&self) -> bool {
-        assert_eq!(self.run.acts_at_once(), self.live.acts_at_once());
-        self.run.acts_at_once()
+        self.same(|controller| controller.acts_at_once())
     }
 
     fn command(&mut self, window: &Window<'_, 2>, measured: &Measured<2>) -> Command<2> {
-        if self.forgets {
-            self.reset();
-        }
         let of_run = self.run.command(window, measured);
         let of_live = self.live.command(window, measured);
-        let bits = |rate: f64, command: &Command<2>| {
+        let bits = |command: &Command<2>| {
             let [x, y] = command.offset_mm;
             let [bend_x, bend_y] = command.bend_mm;
-            [rate, x, y, bend_x, bend_y].map(f64::to_bits)
+            [command.rate, x, y, bend_x, bend_y].map(f64::to_bits)
         };
-        // The live rate is a request to the control.
         assert_eq!(
-            bits(of_run.rate, &of_run),
-            bits(self.live.rate(), &of_live),
-            "at {} s: {of_run:?}, live {} {of_live:?}",
-            window.tau_s,
-            self.live.rate()
+            bits(&of_run),
+            bits(&of_live),
+            "{} at {} s: {of_run:?}, live {of_live:?}",
+            self.live.name(),
+            window.tau_s
         );
         self.corrections += u32::from(of_run != Command::AS_PLANNED);
         of_run
-    }
-}
-
-fn origin() -> Origin {
-    Origin {
-        source: "a test".to_owned(),
-        date: "2026-11-29".to_owned(),
-    }
-}
-
-fn recording(feed_period_s: f64) -> Recording<2> {
-    Recording {
-        servo_s: 0.001,
-        feed_period_s,
-        stretches: vec![],
     }
 }
 
@@ -122,7 +116,7 @@ fn recording(feed_period_s: f64) -> Recording<2> {
 fn axes_model(machine: &Machine) -> Model {
     let (known, statistics) = (machine.known(), machine.statistics::<2>());
     let periods = known.period.periods();
-    let axes = IdentifiedAxes {
+    let axes = IdentifiedAxes::<2> {
         mechanics_s: periods.mechanics_s,
         axes: std::array::from_fn(|i| known.axis(i).with_statistics(periods, statistics[i])),
     };
@@ -132,51 +126,51 @@ fn axes_model(machine: &Machine) -> Model {
         fit_um: 1.0,
         samples: 1,
     };
-    Model::of_axes(&recording(0.001), &trained, origin())
-}
-
-/// Network with weights that are drawn.
-fn contour_model() -> Model {
-    let (mut net, mut state) = (ContourIdentifier::<2>::NULL, 1_u64);
-    net.weights(&mut |_, group| {
-        for weight in group {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            *weight = (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
-        }
-    });
-    let trained = TrainedContour {
-        net,
-        fit_um: 1.0,
-        samples: 1,
+    let recording = Recording {
+        servo_s: periods.servo_s,
+        feed_period_s: periods.servo_s,
+        stretches: vec![],
     };
-    Model::of_contour(&recording(0.01), &trained, origin())
+    let origin = Origin {
+        source: "a test".to_owned(),
+        date: "2026-11-29".to_owned(),
+    };
+    Model::of_axes(&recording, &trained, origin)
 }
 
 /// Compares a controller of the table with the live one, both made with `model`. Returns the number
 /// of decisions that change the plan.
-fn corrections(name: &str, machine: &Machine, model: &Model) -> u32 {
-    let choices = Choices::default();
-    let setup = Setup::new(machine, &choices);
+fn corrections(
+    row: &ControllerRow,
+    machine: &Machine,
+    model: &Model,
+    is_planned_elsewhere: bool,
+) -> u32 {
+    let choices = Choices {
+        tries: true,
+        ..Choices::default()
+    };
+    let mut setup = Setup::new(machine, &choices);
     let bounds = Bounds::new(1.0, machine.limits.rapid_mm_s, 400.0);
-    let offset = offset_bounds(&setup.known);
-    let entry = CONTROLLERS.find(name).unwrap();
-    let read = model_of::<2>(&model.block(None)).unwrap();
-    let mut live = LiveController::new(&read, machine.period.servo_s, true);
-    live.hold_to(&Bounds {
-        deviation_mm: offset.largest_mm,
-        speed_mm_s: offset.fastest_mm_s,
-        ..bounds
-    });
-    live.change_speed_alone(name == "magnitude-only");
+    let block = model_of::<2>(&model.block(None)).unwrap();
+    let mut live = live_controller(row.name, &block.model, true);
+    assert_eq!(live.name(), row.name);
+    live.hold_to(setup.offset_bounds());
+    let entry = CONTROLLERS.find(row.name).unwrap();
+    let run = match row.identifier {
+        Some(_) => entry.make_with(setup, model).unwrap(),
+        None => Make::<2>::make(entry, &mut setup),
+    };
+    let corrections = 0;
     let mut both = Both {
-        run: entry.make_with(setup, model).unwrap(),
+        run,
         live,
-        forgets: name != "lqg-identified",
-        corrections: 0,
+        corrections,
     };
     let mut tick = Tick::new(machine.period.servo_s, both.schedule(), bounds);
+    if is_planned_elsewhere {
+        tick = tick.planned_elsewhere();
+    }
     let mut plant = Plant::<2>::new(machine, [0.0; 2]);
     let mut measured_mm = [0.0; 2];
     for _ in 0..PERIODS {
@@ -189,8 +183,32 @@ fn corrections(name: &str, machine: &Machine, model: &Model) -> u32 {
 #[test]
 fn a_live_controller_commands_what_the_controller_of_run_commands() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
+    let choices = Choices::default();
     let axes = axes_model(&machine);
-    assert!(corrections("lqg-identified", &machine, &axes) > 2900);
-    let contour = contour_model();
-    assert!(corrections("magnitude-only", &machine, &contour) > 200);
+    let (entry, date) = (&TWO_DIMENSIONAL, "2026-11-29".to_owned());
+    let contour = Setup::new(&machine, &choices)
+        .train(entry, 2, date)
+        .unwrap();
+    for row in AnyController::<2>::ROWS {
+        let model = match row.identifier {
+            Some(IdentifierKind::Contour) => &contour,
+            _ => &axes,
+        };
+        if row.knows == Knows::ExactModel {
+            // A model file is not exact.
+            let block = model_of::<2>(&model.block(None)).unwrap();
+            let live = live_controller(row.name, &block.model, true);
+            assert_eq!(live.name(), "uncorrected");
+            continue;
+        }
+        for is_planned_elsewhere in [false, true] {
+            let corrections = corrections(row, &machine, model, is_planned_elsewhere);
+            assert_eq!(
+                corrections > 200,
+                row.knows != Knows::Nothing,
+                "{}",
+                row.name
+            );
+        }
+    }
 }

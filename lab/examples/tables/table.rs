@@ -7,7 +7,8 @@ use std::fmt::Write;
 use std::ops::Range;
 use std::path::PathBuf;
 
-use feedwright::{BASELINE, Knows};
+use feedwright::BASELINE;
+use feedwright_control::Knows;
 use feedwright_lab::{
     CONTROLLERS, Claimed, Comparison, ComparisonRow, Numbers, each_once, experiment,
 };

@@ -1,6 +1,6 @@
 //! A competitor: a controller, and its knowledge of the machine that it cuts on.
-use feedwright::{Choices, Entry, Knows, Make, Setup, recorded_machine};
-use feedwright_control::{Controller, IdentifierKind, Uncorrected};
+use feedwright::{Choices, Entry, Make, Setup, recorded_machine};
+use feedwright_control::{Controller, IdentifierKind, Knows, Uncorrected};
 use feedwright_sim::Machine;
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,7 @@
 //! The table: one row for each workpiece, machine and controller, with ratios against uncorrected.
 
-use feedwright::{BASELINE, Knows};
+use feedwright::BASELINE;
+use feedwright_control::Knows;
 use feedwright_ident::median_and_spread;
 use feedwright_sim::Machine;
 use serde::{Deserialize, Serialize};

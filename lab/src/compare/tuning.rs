@@ -10,7 +10,8 @@
 //! uncorrected cut costs as much as ten percent of error.
 //!
 //! The search uses the noise seed of the machine file. No reported cut of a noisy machine uses it.
-use feedwright::{BASELINE, Choices, Entry, Make, Parameter, Setting, Setup};
+use feedwright::{BASELINE, Choices, Entry, Make, Setting, Setup};
+use feedwright_control::Parameter;
 use feedwright_ident::quadratic_mean;
 use feedwright_sim::{Machine, PlanCache, Run, RunError, Watch};
 use rayon::prelude::*;

@@ -14,7 +14,8 @@
 //!   than [`UNCUT_UM`]. The controller loses no cut.
 //! - All: peak torque compared with [`DELIVERED`].
 
-use feedwright::{BASELINE, BEST, Knows, MAX_UM, RMS_UM, UNCUT_UM};
+use feedwright::{BASELINE, BEST, MAX_UM, RMS_UM, UNCUT_UM};
+use feedwright_control::Knows;
 use feedwright_ident::quadratic_mean;
 use serde::{Deserialize, Serialize};
 

@@ -23,12 +23,10 @@
 //! flatters the method.
 
 use feedwright_control::vector::{add_scaled, norm};
-use feedwright_control::{Command, Controller, Measured, Schedule, Window};
-
-use feedwright::Parameter;
+use feedwright_control::{Command, Controller, Measured, Parameter, Schedule, Window};
 
 /// Part of the error that a lap takes up.
-const GAIN: Parameter = Parameter::number(
+pub(super) const GAIN: Parameter = Parameter::number(
     "gain",
     Settings::DEFAULT.gain,
     [0.0, 2.0],
@@ -36,7 +34,7 @@ const GAIN: Parameter = Parameter::number(
     "part of the error that a lap takes up: 0 learns nothing, 2 swings from lap to lap",
 );
 /// Time by which an offset comes before the error that it is for.
-const LEAD_S: Parameter = Parameter::number(
+pub(super) const LEAD_S: Parameter = Parameter::number(
     "lead_s",
     Settings::DEFAULT.lead_s,
     [0.0, 0.5],
@@ -44,7 +42,7 @@ const LEAD_S: Parameter = Parameter::number(
     "time by which an offset comes before the error that it is for: the lag of the loop",
 );
 /// Cut-off of Q.
-const CUT_OFF_HZ: Parameter = Parameter::number(
+pub(super) const CUT_OFF_HZ: Parameter = Parameter::number(
     "cut-off_hz",
     Settings::DEFAULT.cut_off_hz,
     [0.1, 1e4],

@@ -1,10 +1,11 @@
 //! How each controller of the laboratory is made from what is known of a machine: one function for
 //! each row, or for several that differ in their laps alone.
 
-use feedwright::{Setup, Values, offset_bounds};
+use feedwright::Setup;
 use feedwright_control::{
-    AxisInverse, AxisModel, AxisState, Controller, DriveParameters, Feedforward, Gains, LoopDelays,
-    LqgPreview, LqgSettings, Parameters,
+    ACCELERATION_GAIN, AxisInverse, AxisModel, AxisState, Controller, DriveParameters,
+    FRICTION_GAIN, Feedforward, Gains, LoopDelays, LqgIdentified, LqgSettings, Parameters,
+    VELOCITY_GAIN, Values,
 };
 use feedwright_sim::{Known, KnownAxis, Period};
 
@@ -23,33 +24,40 @@ use super::iterative_learning::{self, IterativeLearning};
 use super::kalman_disturbance::{self, AxisNoise};
 use super::model_predictive::horizon::{CorrectionLimits, HorizonSettings};
 use super::model_predictive::{self, ModelPredictive};
+use super::rows::{
+    ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, COMPENSATION_FILTER, COMPENSATION_RATE,
+    CONSTRAINED_ALLOWED, CONTROL_WEIGHT, CORNER_REACH, CROSS_COUPLED_KD, CROSS_COUPLED_KI,
+    CROSS_COUPLED_KP, DRIFT, FUZZY_CHANGE, FUZZY_ERROR, FUZZY_SLOWEST, GAMMA_RATIO, INERTIA_SCALE,
+    KNOTS, LAG_SCALE, OBSERVER_BANDWIDTH, PLAN_PERIOD_S, RATE_WEIGHT, SHAPED_DAMPING,
+    SHAPED_FREQUENCY, SHAPER_IMPULSES, TORQUE_NOISE,
+};
 use super::sum::Sum;
 use super::zero_phase::{Filter, SampledAxis, ZeroPhase};
 
 pub(super) fn cross_coupled<const N: usize>(
     _: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     Box::new(pid::<N>(values))
 }
 
 /// Cross-coupled control of these gains.
-fn pid<const N: usize>(values: &Values) -> CrossCoupled<N> {
+fn pid<const N: usize>(values: Values<'_>) -> CrossCoupled<N> {
     CrossCoupled::new(cross_coupled::Settings {
-        kp: values.number("kp"),
-        ki_1_s: values.number("ki_1_s"),
-        kd_s: values.number("kd_s"),
+        kp: values(&CROSS_COUPLED_KP),
+        ki_1_s: values(&CROSS_COUPLED_KI),
+        kd_s: values(&CROSS_COUPLED_KD),
     })
 }
 
 pub(super) fn cross_coupled_feedrate<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let settings = cross_coupled_feedrate::Settings {
-        allowed_mm: values.number("allowed_mm"),
-        filter_s: values.number("filter_s"),
-        slowest: values.number("slowest"),
+        allowed_mm: values(&ALLOWED),
+        filter_s: values(&ALLOWED_FILTER),
+        slowest: values(&ALLOWED_SLOWEST),
         acceleration_mm_s2: setup.known.limits.tangential_accel_mm_s2,
     };
     Box::new(CrossCoupledFeedrate::new(settings, pid::<N>(values)))
@@ -57,44 +65,44 @@ pub(super) fn cross_coupled_feedrate<const N: usize>(
 
 pub(super) fn contour_compensation<const N: usize>(
     _: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let settings = contour_compensation::Settings {
-        rate_1_s: values.number("rate_1_s"),
-        filter_s: values.number("filter_s"),
+        rate_1_s: values(&COMPENSATION_RATE),
+        filter_s: values(&COMPENSATION_FILTER),
     };
     Box::new(ContourCompensation::new(settings))
 }
 
 pub(super) fn fuzzy_feedrate<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     Box::new(fuzzy(setup, values))
 }
 
-fn fuzzy(setup: &Setup<'_>, values: &Values) -> FuzzyFeedrate {
+fn fuzzy(setup: &Setup<'_>, values: Values<'_>) -> FuzzyFeedrate {
     FuzzyFeedrate::new(fuzzy_feedrate::Settings {
         servo_periods: setup
             .known
             .period
             .servo_periods(fuzzy_feedrate::FEED_PERIOD_S),
-        error_mm: values.number("error_mm"),
-        change_mm_s: values.number("change_mm_s"),
-        slowest: values.number("slowest"),
+        error_mm: values(&FUZZY_ERROR),
+        change_mm_s: values(&FUZZY_CHANGE),
+        slowest: values(&FUZZY_SLOWEST),
         acceleration_mm_s2: setup.known.limits.tangential_accel_mm_s2,
     })
 }
 
 pub(super) fn fuzzy_h_infinity<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let noise = AxisNoise {
-        drift_mm_s: values.number("drift_mm_s"),
+        drift_mm_s: values(&DRIFT),
         ..AxisNoise::DEFAULT
     };
-    let gamma_ratio = values.number("gamma_ratio");
+    let gamma_ratio = values(&GAMMA_RATIO);
     let feedforward = feedforward_with::<N>(
         setup,
         Gains {
@@ -111,10 +119,9 @@ pub(super) fn fuzzy_h_infinity<const N: usize>(
 
 pub(super) fn corner_contour<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
-    let [velocity, acceleration] =
-        ["velocity_gain", "acceleration_gain"].map(|name| values.number(name));
+    let [velocity, acceleration] = [VELOCITY_GAIN, ACCELERATION_GAIN].map(|gain| values(&gain));
     let inverse = feedforward_with::<N>(
         setup,
         Gains {
@@ -125,22 +132,22 @@ pub(super) fn corner_contour<const N: usize>(
     );
     Box::new(CornerContour::new(
         inverse,
-        values.number("reach_s"),
+        values(&CORNER_REACH),
         setup.known.period.servo_s,
     ))
 }
 
 pub(super) fn constrained_feedrate<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let settings = constrained_feedrate::Settings {
         servo_periods: setup
             .known
             .period
             .servo_periods(constrained_feedrate::LINE_S),
-        allowed_mm: values.number("allowed_mm"),
-        slowest: values.number("slowest"),
+        allowed_mm: values(&CONSTRAINED_ALLOWED),
+        slowest: values(&ALLOWED_SLOWEST),
         acceleration_mm_s2: setup.known.limits.tangential_accel_mm_s2,
     };
     let axes = setup.known.axes().map(|KnownAxis { nominal, drive, .. }| {
@@ -160,9 +167,9 @@ pub(super) fn constrained_feedrate<const N: usize>(
 }
 
 /// Feedforward of all three parts, by their gains.
-fn full_feedforward<const N: usize>(setup: &Setup<'_>, values: &Values) -> Feedforward<N> {
+fn full_feedforward<const N: usize>(setup: &Setup<'_>, values: Values<'_>) -> Feedforward<N> {
     let [velocity, acceleration, friction] =
-        ["velocity_gain", "acceleration_gain", "friction_gain"].map(|name| values.number(name));
+        [VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN].map(|gain| values(&gain));
     feedforward_with(
         setup,
         Gains {
@@ -178,10 +185,9 @@ fn full_feedforward<const N: usize>(setup: &Setup<'_>, values: &Values) -> Feedf
 /// was delivered with that, and gets no more: there this is uncorrected.
 pub(super) fn feedforward_as_delivered<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
-    let [velocity, acceleration] =
-        ["velocity_gain", "acceleration_gain"].map(|name| values.number(name));
+    let [velocity, acceleration] = [VELOCITY_GAIN, ACCELERATION_GAIN].map(|gain| values(&gain));
     let axes = setup.known.axis_model().map(AxisInverse::plain);
     let gains = setup.known.axes::<N>().map(|KnownAxis { drive, .. }| {
         let feeds_forward =
@@ -201,7 +207,7 @@ pub(super) fn feedforward_as_delivered<const N: usize>(
 
 pub(super) fn feedforward_cross_coupled<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     Box::new(Sum::<_, _, N>::new(
         full_feedforward::<N>(setup, values),
@@ -216,12 +222,12 @@ fn feedforward_with<const N: usize>(setup: &Setup<'_>, gains: Gains) -> Feedforw
 
 pub(super) fn input_shaping<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let settings = input_shaping::Settings {
-        frequency_hz: values.number("frequency_hz"),
-        damping_ratio: values.number("damping_ratio"),
-        impulses: values.whole("impulses") as u32,
+        frequency_hz: values(&SHAPED_FREQUENCY),
+        damping_ratio: values(&SHAPED_DAMPING),
+        impulses: values(&SHAPER_IMPULSES) as u32,
     };
     let feedforward = feedforward_with::<N>(setup, Gains::EXACT);
     Box::new(InputShaping::new(
@@ -233,19 +239,19 @@ pub(super) fn input_shaping<const N: usize>(
 
 pub(super) fn zero_phase<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     Box::new(inverse::<N>(setup, values))
 }
 
 pub(super) fn zero_phase_friction<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let friction = Gains {
         velocity: 0.0,
         acceleration: 0.0,
-        friction: values.number("friction_gain"),
+        friction: values(&FRICTION_GAIN),
     };
     Box::new(Sum::<_, _, N>::new(
         inverse::<N>(setup, values),
@@ -254,9 +260,9 @@ pub(super) fn zero_phase_friction<const N: usize>(
 }
 
 /// The inverse of the closed loop, with scales on its lag and its inertia.
-fn inverse<const N: usize>(setup: &Setup<'_>, values: &Values) -> ZeroPhase<N> {
+fn inverse<const N: usize>(setup: &Setup<'_>, values: Values<'_>) -> ZeroPhase<N> {
     let (known, servo_s) = (&setup.known, setup.known.period.servo_s);
-    let [lag_scale, inertia_scale] = ["lag_scale", "inertia_scale"].map(|name| values.number(name));
+    let [lag_scale, inertia_scale] = [LAG_SCALE, INERTIA_SCALE].map(|scale| values(&scale));
     let plain: [SampledAxis; N] = sampled_axes(known, [lag_scale, inertia_scale]);
     let filters = std::array::from_fn(|i| {
         let axis = known.axis(i);
@@ -298,9 +304,9 @@ fn sampled_axes<const N: usize>(known: &Known, scales: [f64; 2]) -> [SampledAxis
 
 pub(super) fn disturbance_observer<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
-    let (bandwidth_hz, servo_s) = (values.number("bandwidth_hz"), setup.known.period.servo_s);
+    let (bandwidth_hz, servo_s) = (values(&OBSERVER_BANDWIDTH), setup.known.period.servo_s);
     let feedforward = feedforward_with::<N>(
         setup,
         Gains {
@@ -318,17 +324,17 @@ pub(super) fn disturbance_observer<const N: usize>(
 
 pub(super) fn kalman_disturbance<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let noise = AxisNoise {
-        drift_mm_s: values.number("drift_mm_s"),
-        torque_mm_s: values.number("torque_noise_mm_s"),
+        drift_mm_s: values(&DRIFT),
+        torque_mm_s: values(&TORQUE_NOISE),
         ..AxisNoise::DEFAULT
     };
     let feedforward = feedforward_with::<N>(
         setup,
         Gains {
-            friction: values.number("friction_gain"),
+            friction: values(&FRICTION_GAIN),
             ..Gains::EXACT
         },
     );
@@ -408,15 +414,12 @@ pub(super) fn sampled(axis: &Parameters, period: &Period) -> SampledAxis {
 
 pub(super) fn model_predictive<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let mut horizon = HorizonSettings::<N>::DEFAULT;
-    (horizon.knots, horizon.rate_weight) = (values.whole("knots"), values.number("rate_weight_s2"));
+    (horizon.knots, horizon.rate_weight) = (values(&KNOTS) as usize, values(&RATE_WEIGHT));
     horizon.limits = CorrectionLimits::of(&setup.known);
-    let servo_periods = setup
-        .known
-        .period
-        .servo_periods(values.number("feed_period_s"));
+    let servo_periods = setup.known.period.servo_periods(values(&PLAN_PERIOD_S));
     Box::new(ModelPredictive::new(
         &setup.known,
         model_predictive::Settings {
@@ -428,24 +431,24 @@ pub(super) fn model_predictive<const N: usize>(
 
 pub(super) fn lqg_preview<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let settings = LqgSettings {
-        control_weight_s2: values.number("control_weight_s2"),
-        bounds: offset_bounds(&setup.known),
+        control_weight_s2: values(&CONTROL_WEIGHT),
+        bounds: setup.offset_bounds(),
         ..LqgSettings::DEFAULT
     };
-    Box::new(LqgPreview::new(setup.truth::<N>(), settings))
+    Box::new(LqgIdentified::new(setup.truth::<N>(), settings))
 }
 
 pub(super) fn iterative_learning<const N: usize>(
     setup: &mut Setup<'_>,
-    values: &Values,
+    values: Values<'_>,
 ) -> Box<dyn Controller<N>> {
     let settings = iterative_learning::Settings {
-        gain: values.number("gain"),
-        lead_s: values.number("lead_s"),
-        cut_off_hz: values.number("cut-off_hz"),
+        gain: values(&iterative_learning::GAIN),
+        lead_s: values(&iterative_learning::LEAD_S),
+        cut_off_hz: values(&iterative_learning::CUT_OFF_HZ),
         ..iterative_learning::Settings::DEFAULT
     };
     Box::new(IterativeLearning::new(settings, setup.known.period.servo_s))

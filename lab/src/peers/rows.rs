@@ -1,13 +1,12 @@
 //! Parameters of the rows of the laboratory: ranges, defaults, reasons.
 
-use feedwright::Parameter;
-use feedwright_control::LqgSettings;
+use feedwright_control::{LqgSettings, Parameter};
 
 use super::kalman_disturbance::AxisNoise;
 use super::model_predictive::horizon::{HorizonSettings, MAX_KNOTS};
 use super::{
-    constrained_feedrate, cross_coupled, cross_coupled_feedrate, fuzzy_feedrate, h_infinity,
-    input_shaping,
+    constrained_feedrate, contour_compensation, cross_coupled, cross_coupled_feedrate,
+    disturbance_observer, fuzzy_feedrate, h_infinity, input_shaping,
 };
 
 // Of the limit.
@@ -71,6 +70,30 @@ pub(super) const INERTIA_SCALE: Parameter = Parameter::number(
 );
 pub(super) const EXACT_REASON: &str =
     "1 is what the exact model calls for; another makes up for a model that is not exact";
+// Of the reference that is moved by the error.
+pub(super) const COMPENSATION_RATE: Parameter = Parameter::number(
+    "rate_1_s",
+    contour_compensation::Settings::DEFAULT.rate_1_s,
+    [0.0, 1e4],
+    Some([1.0, 3000.0]),
+    "how fast the reference follows the error: small is late, large swings",
+);
+pub(super) const COMPENSATION_FILTER: Parameter = Parameter::number(
+    "filter_s",
+    contour_compensation::Settings::DEFAULT.filter_s,
+    [1e-5, 10.0],
+    Some([1e-4, 0.1]),
+    "time constant of the filter on the error: long takes out noise, and is late",
+);
+// Of the disturbance observer.
+pub(super) const OBSERVER_BANDWIDTH: Parameter = Parameter::number(
+    "bandwidth_hz",
+    disturbance_observer::BANDWIDTH_HZ,
+    [0.0, 1000.0],
+    Some([1.0, 1000.0]),
+    "of the observer: low is late at every reversal, high hands on the noise of the encoder; from 500 on the observer \
+     believes what it measures, and hardly changes",
+);
 // Of the feedrate that adapts to the contour error.
 pub(super) const ALLOWED: Parameter = Parameter::number(
     "allowed_mm",

@@ -53,7 +53,7 @@ fn least<const N: usize>(bytes: &[u8], limits: &[CJoint; 3]) -> [f64; 3] {
         ferror_mm,
     };
     let joints = core::array::from_fn(|i| limits.get(i).map_or(JointLimits::NONE, of));
-    axes_of::<N>(bytes).map_or([0.0; 3], |axes| {
+    axes_of::<N>(bytes).map_or([0.0; 3], |(axes, _)| {
         three(least_min_ferror_mm(&axes, joints, delay_s))
     })
 }

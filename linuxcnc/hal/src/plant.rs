@@ -1,7 +1,7 @@
 //! The simulated machine.
 
-use feedwright_control::IdentifiedAxes;
-use feedwright_servo::machine::{axes_of, geometry_of};
+use feedwright_control::{IdentifiedAxes, KnownGeometry};
+use feedwright_servo::machine::axes_of;
 use feedwright_servo::plant::SimulatedMachine;
 
 use crate::memory::{TwoOrThree, first, model, put, three};
@@ -38,7 +38,7 @@ pub unsafe extern "C" fn feedwright_plant_new(
         // SAFETY: as the caller promises.
         unsafe {
             put(memory, memory_bytes, || {
-                CPlant(TwoOrThree::Two(made(bytes, &machine, seed)))
+                CPlant(TwoOrThree::Two(made(machine, seed)))
             })
         }
     } else {
@@ -48,18 +48,17 @@ pub unsafe extern "C" fn feedwright_plant_new(
         // SAFETY: as the caller promises.
         unsafe {
             put(memory, memory_bytes, || {
-                CPlant(TwoOrThree::Three(made(bytes, &machine, seed)))
+                CPlant(TwoOrThree::Three(made(machine, seed)))
             })
         }
     }
 }
 
 fn made<const N: usize>(
-    bytes: &[u8],
-    machine: &IdentifiedAxes<N>,
+    (axes, geometry): (IdentifiedAxes<N>, Option<KnownGeometry<N>>),
     seed: u64,
 ) -> SimulatedMachine<N> {
-    SimulatedMachine::new(machine, seed).with_geometry(geometry_of(bytes))
+    SimulatedMachine::new(&axes, seed).with_geometry(geometry)
 }
 
 /// Simulates one servo period under a command. Writes tool position, measured position and torque

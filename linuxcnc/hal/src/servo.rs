@@ -3,7 +3,7 @@
 use feedwright_control::{BlockError, Cause, State};
 use feedwright_servo::compensation::{Compensation, MachinePlace};
 use feedwright_servo::limits::{LinkLimits, Setting};
-use feedwright_servo::machine::{Refused, geometry_of, model_of};
+use feedwright_servo::machine::{Refused, model_of};
 use feedwright_servo::play_out::PlayOut;
 use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkOutputs, Servo};
 use feedwright_servo::through::{Carries, Through};
@@ -178,17 +178,15 @@ pub unsafe extern "C" fn feedwright_servo_new(
 }
 
 fn made<const N: usize>(bytes: &[u8], fault: &mut u32) -> Guarded<N> {
-    let model = model_of(bytes);
+    // A rejected model compensates nothing.
+    let (model, geometry) = match model_of(bytes) {
+        Ok(block) => (Ok(block.model), block.geometry),
+        Err(refused) => (Err(refused), None),
+    };
     *fault = model
         .as_ref()
         .err()
         .map_or(0, |refused| number(LinkFault::Model(*refused)));
-    // A rejected model compensates nothing.
-    let geometry = if model.is_ok() {
-        geometry_of(bytes)
-    } else {
-        None
-    };
     Guarded {
         compensation: Compensation::new(geometry),
         servo: Servo::new(model),

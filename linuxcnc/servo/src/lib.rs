@@ -12,7 +12,6 @@ pub mod history;
 pub mod plant;
 pub mod machine;
 pub mod following;
-pub mod live_controller;
 pub mod fading;
 pub mod limits;
 mod latch;

@@ -1,7 +1,9 @@
-//! Models and geometries read from a model file.
+//! Models read from a model file, and the controllers that are made from them.
 
 use feedwright_control::{
-    BlockError, ContourIdentifier, IdentifiedAxes, KnownGeometry, ModelBlock, Trained,
+    AnyController, BlockError, ControllerData, IdentifiedAxes, IdentifierKind, KnownGeometry,
+    LqgIdentified, MagnitudeOnly, Member, ModelBlock, OffsetBounds, Trained, TrainedModel,
+    TwoDimensional, Uncorrected,
 };
 
 /// Why a model cannot be used here.
@@ -15,78 +17,58 @@ pub enum Refused {
     Period,
 }
 
-/// Model behind a correction.
-#[derive(Debug, Clone)]
-pub enum LinkModel<const N: usize> {
-    /// Model of each axis.
-    Axes(IdentifiedAxes<N>),
-    /// Model of the contour error.
-    Contour(TrainedContour<N>),
-}
-
-/// An identifier of the contour error, and its periods.
-#[derive(Debug, Clone)]
-pub struct TrainedContour<const N: usize> {
-    /// The identifier.
-    pub identifier: ContourIdentifier<N>,
-    /// Servo period, s.
-    pub servo_s: f64,
-    /// Time between decisions, s.
-    pub feed_period_s: f64,
-}
-
-impl<const N: usize> LinkModel<N> {
-    /// Servo period, s.
-    pub fn servo_s(&self) -> f64 {
-        match self {
-            Self::Axes(axes) => axes.axes.first().map_or(0.0, |axis| axis.periods.servo_s),
-            Self::Contour(contour) => contour.servo_s,
-        }
-    }
-}
-
 /// Largest relative difference between the period of a thread and the servo period of the model. It
 /// is needed because the periods of LinuxCNC threads are whole nanoseconds.
 const PERIOD_TOLERANCE: f64 = 1e-3;
 
-/// The model in these bytes.
+/// The model and the geometry in these bytes.
 ///
 /// # Errors
 /// What is wrong with them.
-pub fn model_of<const N: usize>(bytes: &[u8]) -> Result<LinkModel<N>, Refused> {
-    let block = ModelBlock::from_bytes(bytes).map_err(Refused::Block)?;
-    let ModelBlock {
-        servo_s,
-        feed_period_s,
-        trained,
-        ..
-    } = block;
-    match trained {
-        Trained::Axes(axes) => Ok(LinkModel::Axes(axes)),
-        Trained::Contour(identifier) => Ok(LinkModel::Contour(TrainedContour {
-            identifier,
-            servo_s,
-            feed_period_s,
-        })),
-    }
+pub fn model_of<const N: usize>(bytes: &[u8]) -> Result<ModelBlock<N>, Refused> {
+    ModelBlock::from_bytes(bytes).map_err(Refused::Block)
 }
 
-/// Reads the geometry from these bytes; `None` if they have no geometry, or are no model.
-pub fn geometry_of<const N: usize>(bytes: &[u8]) -> Option<KnownGeometry<N>> {
-    ModelBlock::from_bytes(bytes)
-        .ok()
-        .and_then(|block| block.geometry)
-}
-
-/// The axes in these bytes.
+/// The axes and the geometry in these bytes.
 ///
 /// # Errors
 /// What is wrong with them.
-pub fn axes_of<const N: usize>(bytes: &[u8]) -> Result<IdentifiedAxes<N>, Refused> {
-    match model_of(bytes)? {
-        LinkModel::Axes(axes) => Ok(axes),
-        LinkModel::Contour(_) => Err(Refused::Kind),
+pub fn axes_of<const N: usize>(
+    bytes: &[u8],
+) -> Result<(IdentifiedAxes<N>, Option<KnownGeometry<N>>), Refused> {
+    let ModelBlock { model, geometry } = model_of(bytes)?;
+    match model.trained {
+        Trained::Axes(axes) => Ok((axes, geometry)),
+        Trained::Contour { .. } => Err(Refused::Kind),
     }
+}
+
+/// Returns the name of the controller that stands in the link with a model of this kind. With
+/// `speed_alone`, the geometry stays on the path, if there is such a controller.
+pub fn controller_name(kind: IdentifierKind, speed_alone: bool) -> &'static str {
+    match kind {
+        IdentifierKind::Axes => LqgIdentified::<2>::ROW.name,
+        IdentifierKind::Contour if speed_alone => MagnitudeOnly::<2>::ROW.name,
+        IdentifierKind::Contour => TwoDimensional::<2>::ROW.name,
+    }
+}
+
+/// Creates the controller of this name for the link, uncorrected if the model is of another kind.
+/// Unless `is_known`, it corrects nothing before motion has shown that the model is of this machine.
+pub fn live_controller<const N: usize>(
+    name: &str,
+    model: &TrainedModel<N>,
+    is_known: bool,
+) -> AnyController<N> {
+    let data = ControllerData {
+        model: Some(model),
+        inverse: None,
+        bounds: OffsetBounds::NONE,
+        tries: true,
+        is_known,
+    };
+    AnyController::make(name, &data, &|parameter| parameter.default)
+        .unwrap_or(AnyController::Uncorrected(Uncorrected))
 }
 
 /// Returns true if a model with a servo period of `theirs_s` suits a thread with a period of

@@ -27,14 +27,16 @@
 //! | [`Link::Delayed`] | the delayed command, plus the offset that the supervisor passes |
 
 use feedwright_control::vector::{add_scaled, bounded, norm, sub};
-use feedwright_control::{Bounds, Cause, Controller, Fade, Schedule, State, Tick};
+use feedwright_control::{
+    AnyController, Bounds, Cause, Fade, OffsetBounds, Schedule, State, Tick, TrainedModel,
+    Uncorrected,
+};
 
 use crate::fading::Fading;
 use crate::history::{Delayed, History, NEWER};
 use crate::latch::Latch;
 use crate::limits::{LinkLimits, Setting};
-use crate::live_controller::LiveController;
-use crate::machine::{self, LinkModel, Refused};
+use crate::machine::{Refused, controller_name, fits, live_controller};
 use crate::through::{PassedThrough, Through};
 
 /// A spindle is followed until the command has rested for so long since its index was awaited, s:
@@ -163,7 +165,8 @@ pub struct LinkOutputs<const N: usize> {
 pub struct Servo<const N: usize> {
     servo_s: f64,
     history: History<N>,
-    controller: Result<LiveController<N>, Refused>,
+    model: Result<TrainedModel<N>, Refused>,
+    controller: AnyController<N>,
     tick: Tick<N>,
     link: Link,
     /// Servo periods of delay, and the number of the command at which the tick began.
@@ -197,12 +200,21 @@ pub struct Servo<const N: usize> {
 
 impl<const N: usize> Servo<N> {
     /// Creates the link with this model, or without a model.
-    pub fn new(model: Result<LinkModel<N>, Refused>) -> Self {
-        let servo_s = model.as_ref().map_or(WITHOUT_MODEL_S, LinkModel::servo_s);
-        let controller = model.map(|model| LiveController::new(&model, servo_s, false));
+    pub fn new(model: Result<TrainedModel<N>, Refused>) -> Self {
+        let servo_s = model
+            .as_ref()
+            .map_or(WITHOUT_MODEL_S, |model| model.servo_s);
+        let controller = match &model {
+            Ok(model) => {
+                let name = controller_name(model.trained.kind(), LinkLimits::DEFAULT.speed_alone);
+                live_controller(name, model, false)
+            }
+            Err(_) => AnyController::Uncorrected(Uncorrected),
+        };
         Self {
             servo_s,
             history: History::EMPTY,
+            model,
             controller,
             tick: Tick::new(servo_s, AT_REST, Bounds::new(0.0, 0.0, 0.0)),
             link: Link::Off,
@@ -230,8 +242,8 @@ impl<const N: usize> Servo<N> {
     /// Rejects a model for another servo period. Returns the fault of a rejected model, or no
     /// fault.
     pub fn runs_at(&mut self, servo_s: f64) -> LinkFault {
-        if self.controller.is_ok() && !machine::fits(self.servo_s, servo_s) {
-            self.controller = Err(Refused::Period);
+        if self.model.is_ok() && !fits(self.servo_s, servo_s) {
+            self.model = Err(Refused::Period);
         }
         self.refused()
     }
@@ -368,9 +380,7 @@ impl<const N: usize> Servo<N> {
         (self.follows, self.yielded, self.not_held) = (false, false, 0);
         self.latch.take_in(None, [false; N], 0.0);
         self.latch.reset();
-        if let Ok(controller) = &mut self.controller {
-            controller.forget_machine();
-        }
+        self.controller.forget_machine();
         let fault = if told || !self.heard {
             self.refused()
         } else {
@@ -396,7 +406,7 @@ impl<const N: usize> Servo<N> {
         };
         self.follows = inputs.spindle
             || (self.follows && (rested.min(self.unasked) as f64) * self.servo_s < FOLLOWED_S);
-        let is_direct = inputs.direct || inputs.probing || self.follows || self.controller.is_err();
+        let is_direct = inputs.direct || inputs.probing || self.follows || self.model.is_err();
         match (
             self.link,
             if is_direct {
@@ -431,12 +441,18 @@ impl<const N: usize> Servo<N> {
         (self.periods() + NEWER).max(settles)
     }
 
-    /// Servo periods in the delay that is set, and no fewer than the controller looks ahead.
+    /// Servo periods in the delay that is set, and no fewer than the controller looks ahead. A
+    /// controller that acts at once needs one period, and uses more if they are known.
     fn periods(&self) -> u64 {
-        let looks_ahead = self
-            .controller
-            .as_ref()
-            .map_or(0, LiveController::looks_ahead);
+        let Schedule {
+            servo_periods,
+            preview,
+        } = self.controller.schedule();
+        let looks_ahead = if self.controller.acts_at_once() {
+            1
+        } else {
+            u64::from(servo_periods) * u64::from(preview)
+        };
         (libm::round(self.limits.delay_s / self.servo_s) as u64)
             .max(looks_ahead + NEWER + 1)
             .min(MOST_PERIODS)
@@ -447,14 +463,17 @@ impl<const N: usize> Servo<N> {
         // The command that is pushed next is the newest; the preview looks a knot further than it
         // is asked to.
         let ahead = (delay - NEWER - 1) as u32;
-        let schedule = match &mut self.controller {
-            Ok(controller) => {
-                controller.change_speed_alone(self.limits.speed_alone);
-                controller.schedule_within(ahead)
+        if let Ok(model) = &self.model {
+            let name = controller_name(model.trained.kind(), self.limits.speed_alone);
+            if name != self.controller.name() {
+                self.controller = live_controller(name, model, false);
             }
-            Err(_) => AT_REST,
-        };
-        self.tick = Tick::new(self.servo_s, schedule, bounds);
+        }
+        let mut schedule = self.controller.schedule();
+        if self.controller.acts_at_once() {
+            schedule.preview = ahead;
+        }
+        self.tick = Tick::new(self.servo_s, schedule, bounds).planned_elsewhere();
         self.delay = delay as u32;
         self.first = (self.history.newest() + 1).saturating_sub(delay);
         (self.link, self.yielded, self.offset_mm) = (Link::Delayed, false, 0.0);
@@ -462,7 +481,7 @@ impl<const N: usize> Servo<N> {
 
     /// Returns the reason why the model was rejected, or no fault.
     fn refused(&self) -> LinkFault {
-        self.controller
+        self.model
             .as_ref()
             .err()
             .map_or(LinkFault::None, |refused| LinkFault::Model(*refused))
@@ -495,9 +514,7 @@ impl<const N: usize> Servo<N> {
     fn direct(&mut self) -> LinkOutputs<N> {
         let fault = self.refused();
         self.latch.take_in(None, [false; N], 0.0);
-        if let Ok(controller) = &mut self.controller {
-            controller.reset();
-        }
+        self.controller.reset();
         let correction_mm = self.residual.value_mm();
         LinkOutputs {
             drive_mm: add_scaled(self.command_mm, 1.0, correction_mm),
@@ -512,24 +529,27 @@ impl<const N: usize> Servo<N> {
 
     fn delayed(&mut self, inputs: &LinkInputs<N>) -> LinkOutputs<N> {
         let bounds = self.bounds();
-        let Ok(controller) = &mut self.controller else {
-            return self.direct();
-        };
-        controller.hold_to(&bounds);
+        self.controller.hold_to(OffsetBounds {
+            largest_mm: bounds.deviation_mm,
+            fastest_mm_s: bounds.speed_mm_s,
+        });
         self.tick.hold_to(bounds);
         self.tick
             .allow(inputs.enabled && self.latch.latched().is_none());
         // Reset until no part of the leap is ahead any more. The response to a leap that no machine
         // can follow says nothing about the model.
         if self.since_leap <= u64::from(self.delay) {
-            controller.reset();
+            self.controller.reset();
+            self.tick.take_back_rate();
         }
         let mut path = Delayed {
             history: &self.history,
             first: self.first,
             servo_s: self.servo_s,
         };
-        let setpoint = self.tick.step(&mut path, controller, inputs.actual_mm);
+        let setpoint = self
+            .tick
+            .step(&mut path, &mut *self.controller, inputs.actual_mm);
         let path_mm = setpoint.path.position_mm;
         let offset_mm = sub(setpoint.command_mm, path_mm);
         self.offset_mm = norm(offset_mm);
@@ -537,7 +557,7 @@ impl<const N: usize> Servo<N> {
         let holds = state == State::Engaged && setpoint.path.feed_mm_s > 0.0;
         self.latch.take_in(
             left,
-            controller.learned(),
+            self.controller.learned(),
             if holds { self.servo_s } else { 0.0 },
         );
         let correction_mm = add_scaled(offset_mm, 1.0, self.residual.value_mm());
@@ -554,7 +574,7 @@ impl<const N: usize> Servo<N> {
             contour_error_mm: known(norm(self.tick.contour().vector_mm)),
             without_mm: known(self.tick.without_mm()),
             rate: if state == State::Engaged {
-                controller.rate()
+                self.tick.requested_rate()
             } else {
                 1.0
             },
@@ -565,7 +585,7 @@ impl<const N: usize> Servo<N> {
             fault: cause.map_or(LinkFault::None, LinkFault::Faded),
             left,
             latched: false,
-            learned: controller.learned(),
+            learned: self.controller.learned(),
             delay_periods: self.delay,
             holds_feed: false,
             is_settled: false,

@@ -22,7 +22,9 @@ mod axis;
 use std::mem::MaybeUninit;
 use std::ptr::null_mut;
 
-use feedwright_control::{ContourIdentifier, IdentifiedAxes, Identifier, ModelBlock, Trained};
+use feedwright_control::{
+    ContourIdentifier, IdentifiedAxes, Identifier, ModelBlock, Trained, TrainedModel,
+};
 
 use following::{CJoint, feedwright_min_ferror};
 use plant::{CPlant, feedwright_plant_bytes, feedwright_plant_new, feedwright_plant_step};
@@ -72,18 +74,21 @@ fn block<const N: usize>() -> Vec<u8> {
 fn contour<const N: usize>() -> Vec<u8> {
     let mut identifier = ContourIdentifier::NULL;
     identifier.weights(&mut |_, group| group.fill(0.01));
-    written(Trained::<N>::Contour(identifier))
+    written(Trained::<N>::Contour {
+        net: identifier,
+        response_s: 0.004,
+    })
 }
 
 fn written<const N: usize>(trained: Trained<N>) -> Vec<u8> {
     let mut bytes = Vec::new();
-    let model = ModelBlock {
+    let model = TrainedModel {
         servo_s: SERVO_S,
         feed_period_s: 0.005,
         trained,
-        geometry: None,
     };
-    model.to_bytes(|more| bytes.extend_from_slice(more));
+    let geometry = None;
+    ModelBlock { model, geometry }.to_bytes(|more| bytes.extend_from_slice(more));
     bytes
 }
 

@@ -9,9 +9,8 @@ mod common;
 #[expect(dead_code, reason = "other tests need the rest")]
 mod paths;
 
-use feedwright_control::IdentifiedAxes;
+use feedwright_control::{IdentifiedAxes, TrainedModel};
 use feedwright_servo::limits::LinkLimits;
-use feedwright_servo::machine::LinkModel;
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{Link, LinkInputs, Servo};
 
@@ -52,7 +51,7 @@ fn cut(
 ) -> Cut {
     let (mut plant, mut servo) = (
         SimulatedMachine::new(real, 1),
-        Servo::new(Ok(LinkModel::Axes(machine(1.0)))),
+        Servo::new(Ok(TrainedModel::of_axes(machine(1.0)))),
     );
     servo.runs_at(SERVO_S);
     let (mut near, mut squares, mut largest_um, mut offset_mm_s2) =

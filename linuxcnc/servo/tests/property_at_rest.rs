@@ -14,9 +14,8 @@ use std::f64::consts::TAU;
 
 use feedwright_control::{
     AxisKnowledge, AxisStatistics, DriveParameters, FrictionParameters, IdentifiedAxes, LoopDelays,
-    State,
+    State, TrainedModel,
 };
-use feedwright_servo::machine::LinkModel;
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkOutputs, Servo};
 
@@ -148,7 +147,7 @@ fn cut(
 ) -> Vec<Period> {
     let (mut plant, mut servo) = (
         SimulatedMachine::new(&tnv40(), 1),
-        Servo::new(Ok(LinkModel::Axes(model))),
+        Servo::new(Ok(TrainedModel::of_axes(model))),
     );
     servo.runs_at(SERVO_S);
     let (mut rested, mut last_mm) = (0, command_mm(0));

@@ -11,10 +11,9 @@ mod turning;
 
 use std::f64::consts::TAU;
 
-use feedwright_control::{AxisErrors, ErrorTable, KnownGeometry};
+use feedwright_control::{AxisErrors, ErrorTable, KnownGeometry, TrainedModel};
 use feedwright_servo::compensation::{Compensation, MachinePlace};
 use feedwright_servo::limits::LinkLimits;
-use feedwright_servo::machine::LinkModel;
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{LinkInputs, Servo};
 use feedwright_servo::through::{CHANNELS, Carries, PassedThrough, Through};
@@ -343,7 +342,7 @@ fn off_circle_mm(compensates: bool, corrects: bool) -> f64 {
     let mut compensation = Compensation::new(Some(geometry()));
     let (mut plant, mut servo) = (
         SimulatedMachine::new(&machine(), 1).with_geometry(Some(geometry())),
-        Servo::new(Ok(LinkModel::Axes(machine()))),
+        Servo::new(Ok(TrainedModel::of_axes(machine()))),
     );
     compensation.runs_at(SERVO_S);
     servo.runs_at(SERVO_S);

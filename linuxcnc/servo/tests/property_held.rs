@@ -8,7 +8,7 @@ mod common;
 #[path = "common/turn.rs"]
 mod turning;
 
-use feedwright_servo::machine::LinkModel;
+use feedwright_control::TrainedModel;
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::play_out::PlayOut;
 use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkOutputs, Servo};
@@ -64,7 +64,7 @@ impl Control {
 fn probing(heeds: bool, changed: impl Fn(usize, &mut LinkInputs<2>)) -> Vec<(usize, Period)> {
     let (mut plant, mut servo) = (
         SimulatedMachine::new(&machine(), 1),
-        Servo::new(Ok(LinkModel::Axes(machine()))),
+        Servo::new(Ok(TrainedModel::of_axes(machine()))),
     );
     servo.runs_at(SERVO_S);
     let mut control = Control {
@@ -204,7 +204,7 @@ fn motion_that_follows_a_spindle_waits_until_it_would_be_without_delay() {
         .map(|(_, period)| &period.outputs);
     assert!(rest.clone().all(|outputs| outputs.is_settled));
     // A motion that waits is without delay from its first servo period on.
-    let (mut servo, mut settled) = (Servo::new(Ok(LinkModel::Axes(machine()))), 0);
+    let (mut servo, mut settled) = (Servo::new(Ok(TrainedModel::of_axes(machine()))), 0);
     servo.runs_at(SERVO_S);
     let mut step = |mm: f64, spindle: bool| {
         servo.step(

@@ -4,9 +4,8 @@
 #[path = "common/inputs.rs"]
 mod common;
 
-use feedwright_control::{ContourIdentifier, Identifier};
+use feedwright_control::{ContourIdentifier, Identifier, Trained, TrainedModel};
 use feedwright_servo::limits::LinkLimits;
-use feedwright_servo::machine::{LinkModel, TrainedContour};
 use feedwright_servo::servo::{Link, LinkInputs, LinkOutputs, Servo};
 
 use common::{LIMITS, SERVO_S, cutting};
@@ -34,7 +33,7 @@ fn sequence(seed: u64, size: f64) -> impl FnMut() -> f64 {
 }
 
 /// Returns a model whose identifier has random weights.
-fn drawn(seed: u64, size: f64) -> LinkModel<2> {
+fn drawn(seed: u64, size: f64) -> TrainedModel<2> {
     let mut next = sequence(seed, size);
     let mut identifier = ContourIdentifier::<2>::NULL;
     identifier
@@ -48,11 +47,19 @@ fn drawn(seed: u64, size: f64) -> LinkModel<2> {
         .as_flattened_mut()
         .iter_mut()
         .for_each(|weight| *weight = next());
-    LinkModel::Contour(TrainedContour {
-        identifier,
+    model(identifier)
+}
+
+/// Returns the model of an identifier.
+fn model(net: ContourIdentifier<2>) -> TrainedModel<2> {
+    TrainedModel {
         servo_s: SERVO_S,
         feed_period_s: FEED_PERIOD_S,
-    })
+        trained: Trained::Contour {
+            net,
+            response_s: 0.0,
+        },
+    }
 }
 
 /// Returns the command in a servo period: rest, a turn of a circle of 10 mm, rest.
@@ -64,7 +71,7 @@ fn command_mm(n: usize) -> [f64; 2] {
 
 /// Runs a turn with the link; the axes follow with a time constant of 20 ms.
 fn turn(
-    model: LinkModel<2>,
+    model: TrainedModel<2>,
     limits: &LinkLimits,
     change: impl Fn(usize, &mut LinkInputs<2>),
 ) -> Vec<LinkOutputs<2>> {
@@ -153,14 +160,9 @@ fn the_feedrate_falls_where_the_identifier_predicts_an_error_that_grows_with_it(
         identifier.hidden[axis][0][axis] = 1.0;
         identifier.output[axis][axis] = 1.0;
     }
-    let model = LinkModel::Contour(TrainedContour {
-        identifier,
-        servo_s: SERVO_S,
-        feed_period_s: FEED_PERIOD_S,
-    });
     // The identifier predicts more than the axes do: a wide limit keeps it in the loop.
     let periods = turn(
-        model,
+        model(identifier),
         &LinkLimits {
             speed_alone: true,
             deviation_mm: 5.0,

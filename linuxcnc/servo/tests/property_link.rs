@@ -8,10 +8,10 @@ mod common;
 #[path = "common/turn.rs"]
 mod turning;
 
-use feedwright_control::{BlockError, Cause};
+use feedwright_control::{BlockError, Cause, TrainedModel};
 use feedwright_servo::following::{JointLimits, least_min_ferror_mm};
 use feedwright_servo::limits::LinkLimits;
-use feedwright_servo::machine::{LinkModel, Refused};
+use feedwright_servo::machine::Refused;
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkOutputs, Servo};
 
@@ -196,7 +196,7 @@ fn without_a_model_commands_are_passed_on_to_the_bit() {
         assert_eq!(period.outputs.fault, LinkFault::Model(refused));
     }
     assert_eq!(
-        Servo::new(Ok(LinkModel::Axes(machine()))).runs_at(0.002),
+        Servo::new(Ok(TrainedModel::of_axes(machine()))).runs_at(0.002),
         LinkFault::Model(Refused::Period)
     );
 }
@@ -285,7 +285,7 @@ fn the_least_min_ferror_is_what_the_control_sees_of_the_link() {
         let (mut at_mm, mut seen_mm) = (0.0, 0.0_f64);
         let (mut plant, mut servo) = (
             SimulatedMachine::new(&machine(), 1),
-            Servo::new(Ok(LinkModel::Axes(machine()))),
+            Servo::new(Ok(TrainedModel::of_axes(machine()))),
         );
         servo.runs_at(SERVO_S);
         for n in 0..SETTLE + 600 {

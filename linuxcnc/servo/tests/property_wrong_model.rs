@@ -10,8 +10,7 @@ mod common;
 #[expect(dead_code, reason = "other tests need the rest")]
 mod paths;
 
-use feedwright_control::{AxisKnowledge, IdentifiedAxes};
-use feedwright_servo::machine::LinkModel;
+use feedwright_control::{AxisKnowledge, IdentifiedAxes, TrainedModel};
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{LinkFault, LinkInputs, Servo};
 
@@ -57,7 +56,7 @@ struct Cut {
 fn cut(real: &Machine, inertia: f64, points: &[[f64; 2]], enabled: bool) -> Cut {
     let (mut plant, mut servo) = (
         SimulatedMachine::new(real, 1),
-        Servo::new(Ok(LinkModel::Axes(machine()))),
+        Servo::new(Ok(TrainedModel::of_axes(machine()))),
     );
     servo.runs_at(SERVO_S);
     let (mut near, mut squares, mut largest, mut largest_nm, mut told) =

@@ -4,9 +4,9 @@ use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 
 use feedwright::command::{find, settings};
-use feedwright::control::{AxisKnowledge, AxisStatistics, Controller};
+use feedwright::control::{AxisKnowledge, AxisStatistics, Controller, ControllerRow, Knows};
 use feedwright::sim::{Known, Machine};
-use feedwright::{Choices, Controllers, Entry, Job, JobOutcome, Knows, Make, Setup, UNCORRECTED};
+use feedwright::{Choices, Controllers, Entry, Job, JobOutcome, Make, Setup, UNCORRECTED};
 use miette::{IntoDiagnostic, Result, miette};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -67,13 +67,15 @@ fn entry(name: &str, knows: Knows, laps: u32) -> &'static Entry {
         return entry;
     }
     let entry: &'static Entry = Box::leak(Box::new(Entry {
-        name: name.leak(),
+        row: ControllerRow {
+            name: name.leak(),
+            knows,
+            identifier: None,
+            parameters: &[],
+        },
         summary: "a controller in Python",
         source: "its author",
-        knows,
-        identifier: None,
         laps,
-        parameters: &[],
         plane: UNCORRECTED.plane,
         space: UNCORRECTED.space,
     }));

@@ -26,9 +26,9 @@
 //! Departures: the feedforward enters before the position loop instead of after it. The resulting
 //! offset is mostly along the path, 1 mm at 50 mm/s and 50 1/s.
 
+use super::row::{ControllerData, ControllerRow, Knows, Member, Parameter, Values};
 use super::{Controller, Schedule};
-use crate::axis::inverse::AxisInverse;
-use crate::axis::inverse::Gains;
+use crate::axis::inverse::{AxisInverse, Gains};
 use crate::command::{Command, Measured};
 use crate::window::Window;
 
@@ -43,6 +43,55 @@ pub const MAX_PREVIEW: f64 = 240.0;
 /// Number of periods for which friction is kept for an observer: the longest delays of a machine
 /// file, 20 ms each way, at a servo period of 1 ms.
 const KEPT_PERIODS: usize = 48;
+
+/// Share of the velocity feedforward.
+pub const VELOCITY_GAIN: Parameter = Parameter::number(
+    "velocity_gain",
+    Gains::EXACT.velocity,
+    [0.0, 10.0],
+    Some([0.1, 1.5]),
+    EXACT_REASON,
+)
+.of_unit(SHARES);
+/// Share of the acceleration feedforward.
+pub const ACCELERATION_GAIN: Parameter = Parameter::number(
+    "acceleration_gain",
+    Gains::EXACT.acceleration,
+    [0.0, 10.0],
+    Some([0.0, 2.0]),
+    EXACT_REASON,
+)
+.of_unit(SHARES);
+/// Share of the friction feedforward.
+pub const FRICTION_GAIN: Parameter = Parameter::number(
+    "friction_gain",
+    Gains::EXACT.friction,
+    [0.0, 10.0],
+    Some([0.0, 4.0]),
+    EXACT_REASON,
+)
+.of_unit(SHARES);
+const SHARES: &str = "times the feedforward of the exact model";
+const EXACT_REASON: &str =
+    "1 is what the exact model calls for; another makes up for a model that is not exact";
+
+impl<const N: usize> Member<N> for Feedforward<N> {
+    const ROW: ControllerRow = ControllerRow {
+        name: "feedforward",
+        knows: Knows::ExactModel,
+        identifier: None,
+        parameters: &[VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN],
+    };
+
+    fn make(data: &ControllerData<'_, N>, values: Values<'_>) -> Option<Self> {
+        let gains = Gains {
+            velocity: values(&VELOCITY_GAIN),
+            acceleration: values(&ACCELERATION_GAIN),
+            friction: values(&FRICTION_GAIN),
+        };
+        Some(Self::new(data.inverse?.clone(), [gains; N]))
+    }
+}
 
 /// Returns the preview for a command that leads the path by the lag of a loop, servo periods.
 pub fn preview(lag_s: f64, servo_s: f64) -> u32 {

@@ -8,9 +8,8 @@
 //! ```
 //!
 //! Source: Lee, Cho and Jeon (2005), section 3 and Fig. 5. The anchoring of F(0) to the original
-//! path keeps P' from drifting: the part of F - F(0) along F(0) changes the speed, the part across
 //! path keeps P' from drifting: the part of F - F(0) along F(0) changes the speed, and the part
-//! across it changes the offset P' - P*; both affect nothing else. Over a horizon,
+//! across it changes the offset P' - P*; both affect nothing else.
 //!
 //! Departures: between two knots the command follows the path instead of its chord (at 50 mm/s, 10
 //! ms and a radius of 10 mm the chord alone misses the path by 3 um); rates and offsets are
@@ -18,17 +17,16 @@
 
 use core::marker::PhantomData;
 
+use super::row::{Parameter, Values};
 use super::trial::CorrectionTrial;
 use super::{Controller, Schedule};
 use crate::command::{Command, Measured};
 use crate::identifier::contour::ContourIdentifier;
 use crate::identifier::{ContourModel, Delays, FEED_SCALE_MM_S, Inputs, seen_feed};
 use crate::inversion::{self, Gradient, MAX_KNOTS, TimeTerm};
+use crate::model::TrainedModel;
 use crate::vector::{add_scaled, bounded, dot, norm, scale, sub};
 use crate::window::{PREVIEW_KNOTS, Window};
-
-/// The paper's feed period, s.
-pub const INVERTING_FEED_PERIOD_S: f64 = 0.01;
 
 /// Settings of the controllers that invert the identifier.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,9 +44,6 @@ pub struct InvertingSettings {
     pub tangential_leak: f64,
     /// Slowest and fastest the controller may run, as a multiple of the planned feedrate.
     pub rate_range: [f64; 2],
-    /// True if another planner receives the rate and follows it later. The path ahead is then the
-    /// path that will be commanded, and the rate does not apply to this feed period.
-    pub is_planned_elsewhere: bool,
 }
 
 impl InvertingSettings {
@@ -67,9 +62,80 @@ impl InvertingSettings {
         tangential_leak: TANGENTIAL_LEAK,
         learning_step: 0.003,
         rate_range: [0.5, 1.2],
-        is_planned_elsewhere: false,
     };
+
+    /// Parameters that can be set.
+    pub(super) const PARAMETERS: &[Parameter] = &[
+        RHO,
+        ETA,
+        INVERSION_STEPS,
+        INVERSION_KNOTS,
+        INVERSION_PERIOD_S,
+        LEARNING_STEP,
+    ];
+
+    /// Creates the settings of these values, with the periods of a model.
+    pub(super) fn of<const N: usize>(model: &TrainedModel<N>, values: Values<'_>) -> Self {
+        let mut settings = Self {
+            // A float that is not a number, or below zero, saturates to 0.
+            servo_periods: (libm::round(model.feed_period_s / model.servo_s) as u32)
+                .clamp(1, MOST_PERIODS),
+            knots: values(&INVERSION_KNOTS) as usize,
+            learning_step: values(&LEARNING_STEP),
+            ..Self::DEFAULT
+        };
+        settings.inversion.rho = values(&RHO);
+        settings.inversion.eta = values(&ETA);
+        settings.inversion.steps = values(&INVERSION_STEPS) as usize;
+        settings
+    }
 }
+
+/// Servo periods between decisions that a link keeps commands for.
+const MOST_PERIODS: u32 = 100;
+
+const RHO: Parameter = Parameter::number(
+    "rho",
+    InvertingSettings::DEFAULT.inversion.rho,
+    [0.0, 0.1],
+    Some([1e-5, 0.1]),
+    "weight of the machining time against the error: 0 looks at the error alone, more is faster and less accurate",
+);
+const ETA: Parameter = Parameter::number(
+    "eta",
+    InvertingSettings::DEFAULT.inversion.eta,
+    [0.0, 10.0],
+    Some([1e-3, 10.0]),
+    "length of a gradient step: 0 inverts nothing; the paper takes 0.3",
+);
+const INVERSION_STEPS: Parameter = Parameter::whole(
+    "steps",
+    InvertingSettings::DEFAULT.inversion.steps,
+    [1.0, 20.0],
+    "gradient steps in a tick: the paper allows 5",
+);
+const INVERSION_KNOTS: Parameter = Parameter::whole(
+    "knots",
+    InvertingSettings::DEFAULT.knots,
+    [1.0, 20.0],
+    "knots that are inverted together: 1 is the paper's; with the printed gradient more change nothing",
+);
+/// Time between decisions, which the model of the controller was trained for.
+pub const INVERSION_PERIOD_S: Parameter = Parameter::number(
+    "feed_period_s",
+    0.01,
+    [1e-3, 0.012],
+    None,
+    "time between decisions: the paper's 10 ms",
+)
+.of_unit("s");
+const LEARNING_STEP: Parameter = Parameter::number(
+    "learning_step",
+    InvertingSettings::DEFAULT.learning_step,
+    [0.0, 0.5],
+    None,
+    "step of back-propagation while cutting: 0 keeps what was trained, large ones forget it",
+);
 
 /// Planned feedrate below which the machine follows the plan, mm/s: at rest there is no direction
 /// for a correction.
@@ -232,7 +298,7 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Inverting<N, I, D> {
         let across = add_scaled(change, -along, direction);
         let [slowest, fastest] = self.settings.rate_range;
         let rate = bounded(1.0 + along / planned_feed, slowest, fastest);
-        let commanded = if self.settings.is_planned_elsewhere {
+        let commanded = if window.preview.is_planned_elsewhere {
             1.0
         } else {
             rate
@@ -292,7 +358,7 @@ mod tests {
                 register: &register,
                 preview: &preview,
                 tau_s,
-                feed_period_s: INVERTING_FEED_PERIOD_S,
+                feed_period_s: INVERSION_PERIOD_S.default,
                 offset_mm,
                 offset_mm_s: [0.0; 2],
             };

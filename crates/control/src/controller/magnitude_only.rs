@@ -4,8 +4,10 @@
 //! Source: Yoon and Jeon (2000), as described in Lee, Cho and Jeon (2005), sections 1 and 4.
 
 use super::inverting::{Invert, Inverting, InvertingSettings};
-use crate::identifier::{ContourModel, Inputs};
+use super::row::{ControllerData, ControllerRow, Knows, Member, Values};
+use crate::identifier::{ContourModel, IdentifierKind, Inputs};
 use crate::inversion::{self, Gradient};
+use crate::model::Trained;
 
 /// Feedrate magnitude control (Yoon and Jeon 2000).
 pub type MagnitudeOnly<const N: usize> = Inverting<N, Magnitude>;
@@ -27,6 +29,24 @@ impl<const N: usize, D: ContourModel<N>> Inverting<N, Magnitude, D> {
             },
             None,
         )
+    }
+}
+
+impl<const N: usize> Member<N> for MagnitudeOnly<N> {
+    const ROW: ControllerRow = ControllerRow {
+        name: "magnitude-only",
+        knows: Knows::Identified,
+        identifier: Some(IdentifierKind::Contour),
+        parameters: InvertingSettings::PARAMETERS,
+    };
+
+    fn make(data: &ControllerData<'_, N>, values: Values<'_>) -> Option<Self> {
+        let model = data.model?;
+        let Trained::Contour { net, .. } = &model.trained else {
+            return None;
+        };
+        let settings = InvertingSettings::of(model, values);
+        Some(Self::exact(net.clone(), settings))
     }
 }
 

@@ -4,8 +4,10 @@
 //! Source: Lee, Cho and Jeon (2005), section 3.
 
 use super::inverting::{Invert, Inverting, InvertingSettings};
-use crate::identifier::{ContourModel, Inputs};
+use super::row::{ControllerData, ControllerRow, Knows, Member, Values};
+use crate::identifier::{ContourModel, IdentifierKind, Inputs};
 use crate::inversion;
+use crate::model::Trained;
 
 /// Two-dimensional feedrate control (Lee, Cho and Jeon 2005).
 pub type TwoDimensional<const N: usize> = Inverting<N, BothComponents>;
@@ -22,6 +24,34 @@ impl<const N: usize, D: ContourModel<N>> Inverting<N, BothComponents, D> {
     /// helps or not. It serves to repeat the paper's figures.
     pub fn untried(trained: D, settings: InvertingSettings) -> Self {
         Self::new(trained, settings, None)
+    }
+}
+
+/// Response time of the speed loops where the model does not state it, s. The speed loops of the
+/// machine files of this repository respond within 2 to 12 ms, `tnv40` within 6.
+const UNSTATED_RESPONSE_S: f64 = 0.006;
+
+impl<const N: usize> Member<N> for TwoDimensional<N> {
+    const ROW: ControllerRow = ControllerRow {
+        name: "two-dimensional",
+        knows: Knows::Identified,
+        identifier: Some(IdentifierKind::Contour),
+        parameters: InvertingSettings::PARAMETERS,
+    };
+
+    fn make(data: &ControllerData<'_, N>, values: Values<'_>) -> Option<Self> {
+        let model = data.model?;
+        let Trained::Contour { net, response_s } = &model.trained else {
+            return None;
+        };
+        let settings = InvertingSettings::of(model, values);
+        Some(if !data.tries {
+            Self::untried(net.clone(), settings)
+        } else if *response_s > 0.0 {
+            Self::on_trial(net.clone(), settings, *response_s)
+        } else {
+            Self::on_trial(net.clone(), settings, UNSTATED_RESPONSE_S)
+        })
     }
 }
 

@@ -21,7 +21,7 @@
 //! 0.4, and took 21 N m in place of 10.5. A wrong inertia shows where the speed changes, and not on
 //! the straight line after it: a wrong model stays wrong until it has held while the commanded
 //! speed changed as much as then (`proof.rs`). A learned model
-//! (`controller/lqg_preview/learning.rs`) replaces the nominal one without this record.
+//! (`controller/lqg_identified/learning.rs`) replaces the nominal one without this record.
 //!
 //! A model has little weight and requests little if it has just begun, is not followed, is wrong,
 //! or if servo periods deviate from it (`one_step.rs`); the weight rises in 0.3 s. With full weight

@@ -3,7 +3,10 @@
 //! The machine itself stays in here. Code that makes a controller has no access to it, so that the
 //! controller cannot use values that only the simulation knows. A training uses a recording of the
 //! machine.
-use feedwright_control::{AxisKnowledge, ContourIdentifier, IdentifiedAxes, IdentifierKind};
+use feedwright_control::{
+    AxisKnowledge, Controller, ControllerData, ControllerRow, INVERSION_PERIOD_S, IdentifierKind,
+    Knows, Member, OffsetBounds, RESPONSES_S, Trained, TrainedModel, Uncorrected, Values,
+};
 use feedwright_ident::{
     AxisEstimate, AxisRecordings, DriveSettings, Excitation, Model, NotIdentified, Origin,
     TrainedAxes, Training, an_identifier, identify_axis,
@@ -12,7 +15,6 @@ use feedwright_sim::{Known, KnownAxis, Machine};
 use miette::Diagnostic;
 use thiserror::Error;
 
-use super::parameters::Values;
 use super::{CONTROLLERS, Choices, Entry};
 use crate::identifier_cache::{identified, identified_axes};
 
@@ -232,11 +234,12 @@ impl Entry {
     /// Time between decisions of one that uses an identifier, s. One that cannot be set to another
     /// decides in each servo period.
     fn feed_period_s(&self, known: &Known, choices: &Choices) -> f64 {
-        if self.parameter("feed_period_s").is_none() {
-            return known.period.servo_s;
-        }
-        let wished_s = Values::of(self, &choices.set).number("feed_period_s");
-        f64::from(known.period.servo_periods(wished_s)) * known.period.servo_s
+        let servo_s = known.period.servo_s;
+        self.parameter(INVERSION_PERIOD_S.name)
+            .map_or(servo_s, |parameter| {
+                let wished_s = choices.value(self, parameter);
+                f64::from(known.period.servo_periods(wished_s)) * servo_s
+            })
     }
 }
 
@@ -358,15 +361,95 @@ impl<'a> Setup<'a> {
         Ok(())
     }
 
-    /// The identified axes; none where the machine does not move so that they show, see
-    /// [`Self::found`].
-    pub(super) fn axes<const N: usize>(&mut self) -> Option<IdentifiedAxes<N>> {
-        self.model.and_then(Model::identified_axes).or_else(|| {
-            let recordings = AxisRecordings::of(self.machine, self.choices.seed);
-            let axes = identified_axes(&recordings, &self.machine.known(), &self.known);
-            self.found = axes.as_ref().err().map(|cause| Err(*cause));
-            axes.ok()?.axes.with_periods(self.known.period.servo_s)
-        })
+    /// Makes a controller of the family. It is uncorrected where the machine does not move so that
+    /// its axes show, see [`Self::found`].
+    pub fn member<const N: usize, M: Member<N> + 'static>(
+        &mut self,
+        values: Values<'_>,
+    ) -> Box<dyn Controller<N>> {
+        let model = self.model_for::<N>(&M::ROW, values);
+        let is_exact = M::ROW.knows == Knows::ExactModel;
+        let inverse = is_exact.then(|| self.known.inverse());
+        let data = ControllerData {
+            model: model.as_ref(),
+            inverse: inverse.as_ref(),
+            bounds: self.offset_bounds(),
+            tries: self.choices.tries,
+            is_known: true,
+        };
+        match M::make(&data, values) {
+            Some(controller) => Box::new(controller),
+            None => Box::new(Uncorrected),
+        }
+    }
+
+    /// Returns the bounds that the supervisor applies to an offset.
+    pub fn offset_bounds(&self) -> OffsetBounds {
+        let limits = self.known.limits;
+        OffsetBounds {
+            largest_mm: limits.max_deviation_mm,
+            fastest_mm_s: limits.rapid_mm_s,
+        }
+    }
+
+    /// The model that was given, or one that is trained, of the kind that a controller uses.
+    fn model_for<const N: usize>(
+        &mut self,
+        row: &ControllerRow,
+        values: Values<'_>,
+    ) -> Option<TrainedModel<N>> {
+        let kind = row.identifier?;
+        if let Some(model) = self.model {
+            return model.control();
+        }
+        let servo_s = self.known.period.servo_s;
+        let (machine, seed) = (self.machine, self.choices.seed);
+        match kind {
+            IdentifierKind::Axes => {
+                let recordings = AxisRecordings::of(machine, seed);
+                let axes = identified_axes(&recordings, &machine.known(), &self.known);
+                self.found = axes.as_ref().err().map(|cause| Err(*cause));
+                let axes = axes.ok()?.axes.with_periods(servo_s)?;
+                Some(TrainedModel::of_axes(axes))
+            }
+            IdentifierKind::Contour => {
+                let feed_period_s = values(&INVERSION_PERIOD_S);
+                let excitation = Excitation {
+                    feed_period_s,
+                    ..Excitation::general()
+                };
+                let training = Training::default();
+                let tell = &mut |part| self.tell(part);
+                let net = identified(machine, &excitation, &training, seed, tell).net;
+                let servo_periods = self.known.period.servo_periods(feed_period_s);
+                Some(TrainedModel {
+                    servo_s,
+                    feed_period_s: f64::from(servo_periods) * servo_s,
+                    trained: Trained::Contour {
+                        net,
+                        response_s: self.response_s::<N>(),
+                    },
+                })
+            }
+        }
+    }
+
+    /// Time in which the slowest speed loop of the first N axes responds, s: its time constant, and
+    /// the delays of bus and encoder.
+    fn response_s<const N: usize>(&self) -> f64 {
+        let [least_s, most_s] = RESPONSES_S;
+        let response_s = |axis: KnownAxis| {
+            let KnownAxis {
+                nominal, delays, ..
+            } = axis;
+            let damping_nm_s = nominal.kv_nm_s_per_rad + nominal.viscous_friction_nm_s;
+            nominal.inertia_kg_m2 / damping_nm_s + delays.drive_s + delays.measurement_s
+        };
+        let axes_s = self.known.axes::<N>().map(response_s);
+        axes_s
+            .into_iter()
+            .fold(0.0, f64::max)
+            .clamp(least_s, most_s)
     }
 
     /// Records the machine and identifies its axes, or finds them kept.
@@ -382,25 +465,6 @@ impl<'a> Setup<'a> {
                 .map_err(|cause| *cause),
         );
         Ok((recordings, trained?))
-    }
-
-    /// An identifier of the contour error for decisions each `feed_period_s`.
-    pub(super) fn contour<const N: usize>(&mut self, feed_period_s: f64) -> ContourIdentifier<N> {
-        self.model.and_then(Model::contour).unwrap_or_else(|| {
-            let excitation = Excitation {
-                feed_period_s,
-                ..Excitation::general()
-            };
-            let (machine, seed) = (self.machine, self.choices.seed);
-            identified(
-                machine,
-                &excitation,
-                &Training::default(),
-                seed,
-                &mut |part| self.tell(part),
-            )
-            .net
-        })
     }
 
     /// Trains the model that a controller uses on a recording of the simulated machine. `date`
@@ -460,7 +524,7 @@ impl<'a> Setup<'a> {
                         self.tell(part);
                     },
                 );
-                Model::of_contour(&recording, &trained, origin)
+                Model::of_contour(&recording, &trained, self.response_s::<N>(), origin)
             }
         })
     }
@@ -470,7 +534,6 @@ impl<'a> Setup<'a> {
 mod tests {
     use feedwright_sim::Period;
 
-    use super::super::Knows;
     use super::*;
 
     #[test]

@@ -1,10 +1,10 @@
 //! What a job assumes of its machine.
 
-use feedwright_control::LoopDelays;
+use feedwright_control::{Knows, LoopDelays};
 use feedwright_sim::Axis;
 
 use super::Job;
-use crate::controllers::{CutsUncorrected, Knows};
+use crate::controllers::CutsUncorrected;
 use crate::report::{Assumptions, ModelKnowledge};
 
 /// Tests an axis for one property.
@@ -98,10 +98,13 @@ impl Job {
             }
             None => {}
         }
-        if let Some(about) = self.model.as_ref().map(|model| model.about()) {
+        if let Some(model) = &self.model {
+            let about = model.about();
+            let assumed = model.assumed().map(|assumed| format!("; {assumed}"));
+            let assumed = assumed.unwrap_or_default();
             return (
                 ModelKnowledge::Identified,
-                format!("the model: {}, {}", about.source, about.date),
+                format!("the model: {}, {}{assumed}", about.source, about.date),
             );
         }
         match self.controller.knows {

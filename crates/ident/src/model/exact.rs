@@ -1,7 +1,7 @@
 //! Builds a model from a machine without identification: the axes have the values of the machine
 //! file.
 
-use feedwright_control::{IdentifiedAxes, KnownGeometry, ModelBlock, Trained};
+use feedwright_control::{IdentifiedAxes, KnownGeometry, ModelBlock, TrainedModel};
 use feedwright_sim::Machine;
 
 /// The block of bytes, as of [`super::Model::block`], of the first `axes` axes of a machine, 2 or
@@ -35,14 +35,9 @@ fn exact<const N: usize>(machine: &Machine, geometry: Option<&KnownGeometry<3>>)
         machine.statistics::<N>(),
     );
     let axes = std::array::from_fn(|i| known.axis(i).with_statistics(periods, statistics[i]));
-    let trained = Trained::Axes(IdentifiedAxes {
-        mechanics_s: periods.mechanics_s,
-        axes,
-    });
+    let mechanics_s = periods.mechanics_s;
     ModelBlock {
-        servo_s: periods.servo_s,
-        feed_period_s: periods.servo_s,
-        trained,
+        model: TrainedModel::of_axes(IdentifiedAxes { mechanics_s, axes }),
         geometry: of_a_block(geometry),
     }
 }

@@ -2,7 +2,8 @@
 //! [`feedwright_sim::toml_file::key`].
 
 use feedwright_control::{
-    AxisKnowledge, FEED_PERIODS_S, IdentifierKind, MAX_WEIGHT, MECHANICS_PERIODS_S, SERVO_PERIODS_S,
+    AxisKnowledge, FEED_PERIODS_S, IdentifierKind, MAX_WEIGHT, MECHANICS_PERIODS_S, RESPONSES_S,
+    SERVO_PERIODS_S,
 };
 use feedwright_sim::toml_file::Key;
 use feedwright_sim::toml_file::key::{Value, key};
@@ -49,6 +50,7 @@ pub(crate) const fn weights(kind: IdentifierKind) -> &'static [Key<Weights>] {
 const CONTOUR: &[Key<Weights>] = &[
     key!(numbers hidden, "", -MAX_WEIGHT, MAX_WEIGHT),
     key!(numbers output, "", -MAX_WEIGHT, MAX_WEIGHT),
+    key!(response_s or zero, "s", RESPONSES_S[0], RESPONSES_S[1]),
 ];
 
 /// The mechanics period, then one key for each parameter of an axis. Each of these keys holds one

@@ -45,7 +45,7 @@ fn contour<const N: usize>() -> Model {
         fit_um: 0.1 + 0.2,
         samples: 12_345,
     };
-    Model::of_contour::<N>(&recording(), &trained, origin())
+    Model::of_contour::<N>(&recording(), &trained, 0.006, origin())
 }
 
 /// Axes like those of a machine: not short in decimals.
@@ -113,11 +113,24 @@ fn what_is_written_reads_back_to_the_bit() {
 }
 
 #[test]
+fn a_file_of_an_earlier_version_without_response_time_is_read_and_says_what_is_assumed() {
+    let now = contour::<2>();
+    assert!(now.text().contains("\nresponse_s = 0.006\n") && now.assumed().is_none());
+    let mut before = now;
+    before.weights.response_s = 0.0;
+    before.about.checksum = before.checksum();
+    assert!(!before.text().contains("response_s"));
+    let read = Model::parse("before.model.toml", &before.text()).unwrap();
+    assert!(read == before && read.assumed().unwrap().contains("6 ms is assumed"));
+    assert!(axes::<2>().assumed().is_none());
+}
+
+#[test]
 fn the_block_is_what_control_takes() {
     let taken = ModelBlock::<3>::from_bytes(&contour::<3>().block(None)).unwrap();
-    assert_eq!(Some(taken), contour::<3>().control::<3>());
+    assert_eq!(Some(taken.model), contour::<3>().control::<3>());
     let taken = ModelBlock::<3>::from_bytes(&axes::<3>().block(None)).unwrap();
-    assert_eq!(Some(taken), axes::<3>().control::<3>());
+    assert_eq!(Some(taken.model), axes::<3>().control::<3>());
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! True properties of a simulated axis beyond those that may be known ([`super::Known`]): the
 //! statistics of its noise, what depends on the angle of the motor, with its phase, and the load.
 //!
-//! The limit ([`feedwright::lqg_preview`]) uses them: it shows the result of a controller that
+//! The limit (`lqg-preview` of the laboratory) uses them: it shows the result of a controller that
 //! knows everything that can be known. The random numbers themselves cannot be known.
 //! `feedwright_ident::exact_block` also writes these properties into a model block.
 

@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use feedwright_control::IdentifiedAxes;
+use feedwright_control::{IdentifiedAxes, TrainedModel};
 use feedwright_servo::limits::LinkLimits;
-use feedwright_servo::machine::{LinkModel, Refused};
+use feedwright_servo::machine::Refused;
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{LinkFault, LinkInputs, LinkOutputs, Servo};
 
@@ -75,7 +75,7 @@ pub(crate) fn turn_on(
 ) -> Vec<Period> {
     let (mut plant, mut servo) = (
         SimulatedMachine::new(real, 1),
-        Servo::new(model.map(LinkModel::Axes)),
+        Servo::new(model.map(TrainedModel::of_axes)),
     );
     assert!(matches!(
         servo.runs_at(SERVO_S),

@@ -8,7 +8,7 @@
 #![no_std]
 
 use core::panic::PanicInfo;
-use feedwright_control::{Feedforward, Knot, KnotSource, KnownGeometry, LqgPreview, MagnitudeOnly, ModelBlock, Tick, TwoDimensional, Uncorrected};
+use feedwright_control::{AnyController, Knot, KnotSource, KnownGeometry, ModelBlock, Tick};
 
 unsafe extern "C" {
     fn a_panic_is_left_in_the_tick() -> !;
@@ -32,34 +32,26 @@ impl<const N: usize> KnotSource<N> for Foreign<N> {
 }
 
 macro_rules! servo_periods {
-    ($($name:ident: $controller:ty, $axes:literal;)*) => {
+    ($($name:ident: $axes:literal;)*) => {
         $(
-            /// A servo period.
+            /// A servo period of each controller of the table.
             #[unsafe(no_mangle)]
             pub extern "C" fn $name(
                 tick: &mut Tick<$axes>,
-                controller: &mut $controller,
+                controller: &mut AnyController<$axes>,
                 reference: extern "C" fn(f64, &mut Knot<$axes>),
                 position_mm: &[f64; $axes],
                 command_mm: &mut [f64; $axes],
             ) {
-                *command_mm = tick.step(&mut Foreign(reference), controller, *position_mm).command_mm;
+                *command_mm = tick.step(&mut Foreign(reference), &mut **controller, *position_mm).command_mm;
             }
         )*
     };
 }
 
 servo_periods! {
-    uncorrected_2: Uncorrected, 2;
-    uncorrected_3: Uncorrected, 3;
-    lqg_preview_2: LqgPreview<2>, 2;
-    lqg_preview_3: LqgPreview<3>, 3;
-    magnitude_only_2: MagnitudeOnly<2>, 2;
-    magnitude_only_3: MagnitudeOnly<3>, 3;
-    two_dimensional_2: TwoDimensional<2>, 2;
-    two_dimensional_3: TwoDimensional<3>, 3;
-    feedforward_2: Feedforward<2>, 2;
-    feedforward_3: Feedforward<3>, 3;
+    controllers_2: 2;
+    controllers_3: 3;
 }
 
 macro_rules! models {

@@ -34,7 +34,9 @@ pub(crate) fn run(args: &BlockArgs, console: &Console) -> Result<ExitCode> {
         }
         let machine = args.machine.as_deref().map(Machine::load).transpose()?;
         let geometry = BlockGeometry::of(&choice, machine.as_ref())?;
-        let what = format!("the model of kind '{}'", identifier_name(model.kind()));
+        let assumed = model.assumed().map(|assumed| format!(" ({assumed})"));
+        let kind = identifier_name(model.kind());
+        let what = format!("the model of kind '{kind}'{}", assumed.unwrap_or_default());
         (
             model.block(geometry.known.as_ref()),
             model.axes(),
@@ -97,10 +99,8 @@ pub(crate) fn run(args: &BlockArgs, console: &Console) -> Result<ExitCode> {
 
 /// Axes whose drives no command can follow.
 fn ringing<const N: usize>(block: &[u8]) -> Vec<&'static str> {
-    let Ok(ModelBlock {
-        trained: Trained::Axes(known),
-        ..
-    }) = ModelBlock::<N>::from_bytes(block)
+    let Ok(Trained::Axes(known)) =
+        ModelBlock::<N>::from_bytes(block).map(|block| block.model.trained)
     else {
         return vec![];
     };

@@ -3,7 +3,7 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-use feedwright_control::IdentifierKind;
+use feedwright_control::{IdentifierKind, Knows};
 use feedwright_gcode::visible;
 use feedwright_sim::{BUILT_IN_MACHINES, Machine, is_machine_path, shown};
 use miette::{IntoDiagnostic, Result, miette};
@@ -13,7 +13,7 @@ use crate::command::controllers::find;
 use crate::command::message::printed;
 use crate::command::streams::{tables, tell_written};
 use crate::command::terminal::wrapped;
-use crate::controllers::{BEST, Controllers, Entry, Knows};
+use crate::controllers::{BEST, Controllers, Entry, range};
 use crate::machine_document::machine_document;
 use crate::output::{OutputError, OutputFile, OutputFiles};
 
@@ -104,14 +104,14 @@ pub fn controller(name: &str, table: Controllers) -> Result<ExitCode> {
         lines += &format!(
             "\n{} = {default}{unit}, allowed {}\n{reason}\n",
             parameter.name,
-            parameter.range()
+            range(parameter)
         );
     }
     print(&lines)
 }
 
 /// Describes the source of the gains of a controller.
-const fn gains(entry: &Entry) -> &'static str {
+fn gains(entry: &Entry) -> &'static str {
     match (entry.identifier, entry.knows) {
         (Some(IdentifierKind::Axes), _) => {
             "computed when it starts, from the identified model of each axis and the parameters below; none is typed in"

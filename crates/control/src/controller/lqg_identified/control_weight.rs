@@ -1,23 +1,8 @@
 //! Settings of the controller.
 
 use crate::axis::transmission::TransmissionParameters;
-
-/// Bounds of an offset, whatever the request.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OffsetBounds {
-    /// Largest offset, mm.
-    pub largest_mm: f64,
-    /// Largest rate of change of the offset, mm/s.
-    pub fastest_mm_s: f64,
-}
-
-impl OffsetBounds {
-    /// No bounds.
-    pub const NONE: Self = Self {
-        largest_mm: f64::INFINITY,
-        fastest_mm_s: f64::INFINITY,
-    };
-}
+use crate::controller::OffsetBounds;
+use crate::controller::row::Parameter;
 
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +24,14 @@ pub struct LqgSettings {
 
 /// Control weight used with an identified model, in servo periods squared. A weight of 1 leaves 50
 /// % more error on `workshop`. While the model is not followed, both weights are 256 times as high.
-pub const IDENTIFIED_WEIGHT: f64 = 0.01;
+pub const IDENTIFIED_WEIGHT: Parameter = Parameter::number(
+    "control_weight",
+    0.01,
+    [1e-6, 1e4],
+    None,
+    "weight of the reference speed against the error, in servo periods squared, near the reference: a high one leaves the error",
+)
+.of_unit("servo periods squared");
 /// Weight of the second difference of the command with an identified model: the fourth power of
 /// half a servo period, in servo periods. With it the command for a plate in inches alternates in 9
 /// servo periods on `workshop`, and in 130 on `stiff`; without it in 11,292 and 1,523.

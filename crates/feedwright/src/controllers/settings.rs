@@ -1,101 +1,18 @@
-//! What of a controller can be set, by name: `--set knots=10`.
+//! Values of the parameters of controllers that a user sets, by name: `--set knots=10`.
 
+use feedwright_control::Parameter;
 use feedwright_gcode::suggestion::nearest;
 use miette::Diagnostic;
 use serde::{Deserialize, Deserializer, Serialize};
 use thiserror::Error;
 
-use super::{CONTROLLERS, Controllers, Entry};
+use super::{CONTROLLERS, Choices, Controllers, Entry};
 
-/// Something of a controller that can be set.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Parameter {
-    /// Name, with its unit at the end.
-    pub name: &'static str,
-    /// Value where none is given.
-    pub default: f64,
-    /// Least and largest value that it can be set to.
-    pub allowed: [f64; 2],
-    /// Range in which the comparison searches for the best value; by ratios where the range begins
-    /// above zero.
-    pub searched: Option<[f64; 2]>,
-    /// Kind of the values that are allowed in this range.
-    pub kind: ParameterKind,
-    /// Description of the parameter, and of what goes wrong if it is too small or too large.
-    pub reason: &'static str,
-    /// Unit of a value that is no plain number.
-    pub unit: Option<&'static str>,
-}
-
-/// Kind of the values that a parameter can have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ParameterKind {
-    /// All.
-    Number,
-    /// Whole numbers.
-    Whole,
-}
-
-impl Parameter {
-    /// A parameter of any value.
-    pub const fn number(
-        name: &'static str,
-        default: f64,
-        allowed: [f64; 2],
-        searched: Option<[f64; 2]>,
-        reason: &'static str,
-    ) -> Self {
-        Self {
-            name,
-            default,
-            allowed,
-            searched,
-            kind: ParameterKind::Number,
-            reason,
-            unit: None,
-        }
-    }
-
-    /// A parameter that is a whole number.
-    pub const fn whole(
-        name: &'static str,
-        default: usize,
-        allowed: [f64; 2],
-        reason: &'static str,
-    ) -> Self {
-        Self {
-            name,
-            default: default as f64,
-            allowed,
-            searched: None,
-            kind: ParameterKind::Whole,
-            reason,
-            unit: None,
-        }
-    }
-
-    /// The parameter with a unit of its values.
-    pub const fn of_unit(self, unit: &'static str) -> Self {
-        Self {
-            unit: Some(unit),
-            ..self
-        }
-    }
-
-    /// Describes the values that the parameter can be set to.
-    pub fn range(&self) -> String {
-        let [least, most] = self.allowed;
-        match self.kind {
-            ParameterKind::Number => format!("{least} to {most}"),
-            ParameterKind::Whole => format!("{least} to {most}, whole"),
-        }
-    }
-
-    fn allows(&self, value: f64) -> bool {
-        let [least, most] = self.allowed;
-        (least..=most).contains(&value)
-            && (self.kind == ParameterKind::Number || value.fract() == 0.0)
-    }
+/// Describes the values that a parameter can be set to.
+pub(crate) fn range(parameter: &Parameter) -> String {
+    let [least, most] = parameter.allowed;
+    let whole = if parameter.is_whole { ", whole" } else { "" };
+    format!("{least} to {most}{whole}")
 }
 
 /// A parameter that was set.
@@ -191,12 +108,15 @@ impl Setting {
         let Ok(number) = value.parse::<f64>() else {
             return fail(
                 format!("'{value}' is no number"),
-                format!("{name} is {}", parameter.range()),
+                format!("{name} is {}", range(parameter)),
             );
         };
-        if !parameter.allows(number) {
+        let [least, most] = parameter.allowed;
+        let is_allowed =
+            (least..=most).contains(&number) && !(parameter.is_whole && number.fract() != 0.0);
+        if !is_allowed {
             return fail(
-                format!("{name} is {}", parameter.range()),
+                format!("{name} is {}", range(parameter)),
                 format!("its default is {}", parameter.default),
             );
         }
@@ -236,37 +156,15 @@ fn meant_parameter(entry: &Entry, name: &str) -> String {
     )
 }
 
-/// The values of all parameters of a controller.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Values(Vec<(&'static str, f64)>);
-
-impl Values {
-    /// The defaults, where nothing else is set.
-    pub fn of(entry: &Entry, settings: &[Setting]) -> Self {
-        let value = |parameter: &Parameter| {
-            let set = settings
-                .iter()
-                .rev()
-                .find(|set| set.controller == entry.name && set.name == parameter.name);
-            (
-                parameter.name,
-                set.map_or(parameter.default, |set| set.value),
-            )
-        };
-        Self(entry.parameters.iter().map(value).collect())
-    }
-
-    /// Returns a value by its name, which the row of the table must have.
-    pub fn number(&self, name: &str) -> f64 {
-        let found = self.0.iter().find(|(of, _)| *of == name);
-        found
-            .expect("what makes a controller asks for the parameters of its row")
-            .1
-    }
-
-    /// A value that is a whole number.
-    pub fn whole(&self, name: &str) -> usize {
-        self.number(name) as usize
+impl Choices {
+    /// Returns the value of a parameter of a controller: the last that is set, or its default.
+    pub fn value(&self, entry: &Entry, parameter: &Parameter) -> f64 {
+        let set = self
+            .set
+            .iter()
+            .rev()
+            .find(|set| set.controller == entry.name && set.name == parameter.name);
+        set.map_or(parameter.default, |set| set.value)
     }
 }
 
@@ -294,12 +192,12 @@ mod tests {
             ("feedforward", "friction_gain", 2.5)
         );
         let entry = CONTROLLERS.find("feedforward").unwrap();
-        let values = Values::of(entry, &[set]);
-        assert_eq!(values.number("friction_gain"), 2.5);
-        assert_eq!(
-            values.number("velocity_gain"),
-            entry.parameter("velocity_gain").unwrap().default
-        );
+        let choices = Choices {
+            set: vec![set],
+            ..Choices::default()
+        };
+        let value = |name| choices.value(entry, entry.parameter(name).unwrap());
+        assert_eq!([value("friction_gain"), value("velocity_gain")], [2.5, 1.0]);
     }
 
     #[test]

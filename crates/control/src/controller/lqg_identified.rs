@@ -1,14 +1,16 @@
-//! The limit: linear-quadratic-Gaussian control with preview and complete knowledge of the machine.
+//! The controller `lqg-identified`: a Kalman filter and a linear-quadratic regulator with preview,
+//! with an identified model of each axis.
 //!
 //! ```text
-//! v = v_r - G (x - x_r)        x by a Kalman filter, G of a linear-quadratic regulator, v_r the exact inverse along the reference ahead
+//! v = v_r - G (x - x_r)        x by a Kalman filter, G of a linear-quadratic regulator, v_r the inverse along the reference ahead
 //! ```
 //!
-//! It knows the model that the other controllers know, and also the statistics of the noise, the
-//! amplitude, frequency and wander of the disturbance, and cogging and interpolation error with
-//! their phases. It does not know the random numbers and the phase of the disturbance. It decides
-//! in every servo period, within it. No real controller has all this knowledge: the result shows
-//! the part of an error that no controller can remove.
+//! It decides in every servo period, within it. It learns the errors of its model in motion, and
+//! judges whether the model is that of the machine. The laboratory makes its limit, `lqg-preview`,
+//! from the same controller with exact knowledge that no real controller has: the statistics of the
+//! noise, the amplitude, frequency and wander of the disturbance, and cogging and interpolation
+//! error with their phases. The limit does not know the random numbers and the phase of the
+//! disturbance. Its result shows the part of an error that no controller can remove.
 //!
 //! The reference speed v of the speed loop acts at the motor: the command is solved for it with the
 //! measured position, so that noise passes the position loop only as far as the filter permits. v_r
@@ -26,18 +28,18 @@
 //!
 //! | File | Content |
 //! |---|---|
-//! | `lqg_preview/control_weight.rs` | control weight and bounds of the offset |
-//! | `lqg_preview/riccati.rs` | the gains |
-//! | `lqg_preview/linear.rs` | the linear part of an axis and of its loads |
-//! | `lqg_preview/command_weight.rs` | a regulator whose command is quiet |
-//! | `lqg_preview/screw.rs` | position of the motor on a compliant ball screw |
-//! | `lqg_preview/approach.rs` | the way back of a tool that is far off, within the available control authority |
-//! | `lqg_preview/feasible.rs` | check of the torque for the reference ahead |
-//! | `lqg_preview/outliers.rs` | implausible measurements |
-//! | `lqg_preview/whiteness.rs` | weight of the measurements in the filter |
-//! | `lqg_preview/estimate.rs` | the filter |
-//! | `lqg_preview/learning.rs` | model errors, learned while the axis moves |
-//! | `lqg_preview/regulated_axis.rs` | an axis: filter, regulator and inverse |
+//! | `lqg_identified/control_weight.rs` | control weight and bounds of the offset |
+//! | `lqg_identified/riccati.rs` | the gains |
+//! | `lqg_identified/linear.rs` | the linear part of an axis and of its loads |
+//! | `lqg_identified/command_weight.rs` | a regulator whose command is quiet |
+//! | `lqg_identified/screw.rs` | position of the motor on a compliant ball screw |
+//! | `lqg_identified/approach.rs` | the way back of a tool that is far off, within the available control authority |
+//! | `lqg_identified/feasible.rs` | check of the torque for the reference ahead |
+//! | `lqg_identified/outliers.rs` | implausible measurements |
+//! | `lqg_identified/whiteness.rs` | weight of the measurements in the filter |
+//! | `lqg_identified/estimate.rs` | the filter |
+//! | `lqg_identified/learning.rs` | model errors, learned while the axis moves |
+//! | `lqg_identified/regulated_axis.rs` | an axis: filter, regulator and inverse |
 //!
 //! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, chapters 7 and 8;
 //! Tomizuka and Rosenthal (1979), "On the optimal digital state vector feedback controller with
@@ -60,9 +62,12 @@ mod learning;
 mod regulated_axis;
 
 use super::feedforward::preview;
-use super::{Controller, Schedule};
+use super::row::{ControllerData, ControllerRow, Knows, Member, Values};
+use super::{Controller, OffsetBounds, Schedule};
 use crate::axis::knowledge::AxisKnowledge;
 use crate::command::{Command, FaultEvidence, Measured};
+use crate::identifier::IdentifierKind;
+use crate::model::Trained;
 use crate::supervisor::first_use::FirstUse;
 use crate::supervisor::one_step::OneStep;
 use crate::supervisor::validity::{Shown, Trusted, Validity};
@@ -71,7 +76,7 @@ use crate::window::Window;
 use feasible::Feasibility;
 use regulated_axis::AxisLqg;
 
-pub use control_weight::{IDENTIFIED_WEIGHT, LqgSettings, OffsetBounds};
+pub use control_weight::{IDENTIFIED_WEIGHT, LqgSettings};
 pub use regulated_axis::LqgGains;
 
 /// Servo periods beyond the command that the inverse evaluates.
@@ -85,9 +90,9 @@ const FOLLOWED_MM: f64 = 1e-4;
 const FORESEEN_S: f64 = 0.03;
 const FORESEEN_MM: f64 = 0.05;
 
-/// Linear-quadratic-Gaussian control with preview.
+/// Linear-quadratic-Gaussian control with preview, by a model of each axis.
 #[derive(Debug, Clone)]
-pub struct LqgPreview<const N: usize> {
+pub struct LqgIdentified<const N: usize> {
     axes: [AxisLqg; N],
     /// Lag of the tool behind the plan, s.
     lag_s: f64,
@@ -103,7 +108,7 @@ pub struct LqgPreview<const N: usize> {
     lost_s: f64,
 }
 
-impl<const N: usize> LqgPreview<N> {
+impl<const N: usize> LqgIdentified<N> {
     /// Creates the controller of a machine with this knowledge of its axes.
     pub fn new(known: [AxisKnowledge; N], settings: LqgSettings) -> Self {
         let axes = known.map(|axis| AxisLqg::new(axis, settings));
@@ -124,12 +129,6 @@ impl<const N: usize> LqgPreview<N> {
         }
     }
 
-    /// Forgets the machine: another one may be present.
-    pub fn forget_machine(&mut self) {
-        self.reset();
-        self.first_use.iter_mut().for_each(FirstUse::forget);
-    }
-
     /// Returns the squared error of the models alone and the squared error to correct, mm^2; `None`
     /// at rest.
     fn seen_alone_mm2(&self, window: &Window<'_, N>, position_mm: [f64; N]) -> Option<[f64; 2]> {
@@ -145,11 +144,6 @@ impl<const N: usize> LqgPreview<N> {
             seen_mm2 = add_scaled(seen_mm2, 1.0, off_mm.map(|mm| mm * mm));
         }
         (window.now().feed_mm_s > 0.0).then_some(seen_mm2)
-    }
-
-    /// Changes the bounds of the offsets.
-    pub fn hold_to(&mut self, bounds: OffsetBounds) {
-        self.axes.iter_mut().for_each(|axis| axis.hold_to(bounds));
     }
 
     /// Returns the gains of each axis near the reference.
@@ -218,7 +212,29 @@ impl<const N: usize> LqgPreview<N> {
     }
 }
 
-impl<const N: usize> Controller<N> for LqgPreview<N> {
+impl<const N: usize> Member<N> for LqgIdentified<N> {
+    const ROW: ControllerRow = ControllerRow {
+        name: "lqg-identified",
+        knows: Knows::Identified,
+        identifier: Some(IdentifierKind::Axes),
+        parameters: &[IDENTIFIED_WEIGHT],
+    };
+
+    fn make(data: &ControllerData<'_, N>, values: Values<'_>) -> Option<Self> {
+        let model = data.model?;
+        let Trained::Axes(identified) = &model.trained else {
+            return None;
+        };
+        let weight = values(&IDENTIFIED_WEIGHT);
+        let settings = LqgSettings {
+            is_known: data.is_known,
+            ..LqgSettings::identified(weight, model.servo_s, data.bounds)
+        };
+        Some(Self::new(identified.axes, settings))
+    }
+}
+
+impl<const N: usize> Controller<N> for LqgIdentified<N> {
     fn schedule(&self) -> Schedule {
         Schedule {
             servo_periods: 1,
@@ -233,6 +249,15 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
     fn reset(&mut self) {
         self.axes.iter_mut().for_each(AxisLqg::forget);
         self.know_nothing();
+    }
+
+    fn forget_machine(&mut self) {
+        self.reset();
+        self.first_use.iter_mut().for_each(FirstUse::forget);
+    }
+
+    fn hold_to(&mut self, bounds: OffsetBounds) {
+        self.axes.iter_mut().for_each(|axis| axis.hold_to(bounds));
     }
 
     /// Begins anew where the position is lost for longer than it can be predicted: the motion of

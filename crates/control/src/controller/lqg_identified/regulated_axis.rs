@@ -12,13 +12,14 @@ use crate::supervisor::validity::Trusted;
 
 use super::approach::{self, Room, WeightedGains};
 use super::command_weight::{self, CommandHistory, CommandModel, REGULATED};
-use super::control_weight::{LqgSettings, OffsetBounds};
+use super::control_weight::LqgSettings;
 use super::estimate::{Estimate, FilterModel, Innovation, KEPT_PERIODS, Learnt, ModelTrial, Sent};
 use super::learning::{Learner, Learning, ModelChoice};
 use super::linear;
 use super::screw::{ScrewTwist, TwistCourse};
+use crate::controller::OffsetBounds;
 
-/// Stationary gains of an axis, by state as in `lqg_preview/linear.rs`.
+/// Stationary gains of an axis, by state as in `lqg_identified/linear.rs`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LqgGains {
     /// Correction of each state for an innovation of 1 rad.
