@@ -62,8 +62,11 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
         }
     })?;
     bar.clear();
-    if let (Some(fault), Some(kept)) = (&outcome.kept_fault, &job.keep) {
-        remark(&format!("{} {fault}", kept.display()));
+    if let (true, Some(kept)) = (outcome.is_lost, &job.keep) {
+        remark(&format!(
+            "{} cannot be written; pieces were not kept for another run",
+            kept.display()
+        ));
     }
     for warning in outcome.warnings.iter().cloned() {
         warn(warning.into());
