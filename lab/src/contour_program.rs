@@ -7,6 +7,7 @@ use feedwright::{ArcFit, FitPoint};
 use feedwright_gcode::canon::{Canon, Corner, Shape};
 use feedwright_plan::vector::Vector;
 use feedwright_plan::{Curve, PathError, Step};
+use feedwright_sim::trimmed;
 
 use crate::contour::{Contour, Placement};
 
@@ -166,19 +167,4 @@ impl ContourBlock {
 
 fn word(letter: char, value_mm: f64) -> String {
     format!("{letter}{}", trimmed(value_mm, DECIMALS))
-}
-
-/// Formats a number without zeros at the end, and without a negative zero.
-fn trimmed(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
-    let text = if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.')
-    } else {
-        &text
-    };
-    if text == "-0" {
-        "0".to_owned()
-    } else {
-        text.to_owned()
-    }
 }

@@ -8,17 +8,16 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use feedwright::command::ResultStore;
-use feedwright::{cache_folder, key_of};
+use feedwright::command::make_folder;
+use feedwright::{Store, cache_folder, key_of};
 use miette::Result;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde_json::json;
 
 /// Finished work of one study.
 #[derive(Debug)]
 pub struct Kept {
-    store: Option<ResultStore>,
+    store: Option<Store>,
     /// Hash of everything that all work of the study depends on.
     common: String,
     /// Folder to remove when the study is complete.
@@ -53,9 +52,12 @@ impl Kept {
             cache_folder().map(|cache| cache.join(format!("lab-{common}")))
         };
         let store = match (folder, &removed) {
-            (Some(folder), _) => Some(ResultStore::create(folder)?),
+            (Some(folder), _) => {
+                make_folder(folder)?;
+                Some(Store::new(folder.to_owned()))
+            }
             // Without a place in the cache, an interrupted study begins anew.
-            (None, Some(folder)) => ResultStore::create(folder).ok(),
+            (None, Some(folder)) => Some(Store::new(folder.clone())),
             (None, None) => None,
         };
         Ok(Self {
@@ -77,8 +79,7 @@ impl Kept {
 
     /// The result of the work with this key; `None` if it is not there.
     pub fn get<T: DeserializeOwned>(&self, key: &str) -> Option<T> {
-        let mut stored = self.store.as_ref()?.get(&self.address(key))?;
-        let result = serde_json::from_value(stored["result"].take()).ok()?;
+        let result = self.store.as_ref()?.get(&self.address(key))?;
         self.found.fetch_add(1, Ordering::Relaxed);
         Some(result)
     }
@@ -87,8 +88,7 @@ impl Kept {
     /// else.
     pub fn put<T: Serialize>(&self, key: &str, result: &T) {
         if let Some(store) = &self.store {
-            let address = self.address(key);
-            let _ = store.put(&address, &json!({ "address": address, "result": result }));
+            let _ = store.put(&self.address(key), result);
         }
     }
 

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use feedwright::OutputError;
 use feedwright::command::{
-    JobList, JobSpec, ListedJob, RESULT_COLUMNS, ResultStore, ResultTable, do_job,
+    JobList, JobSpec, ListedJob, RESULT_COLUMNS, ResultTable, do_job, make_folder,
 };
+use feedwright::{OutputError, Store};
 use miette::{IntoDiagnostic, Report, WrapErr};
 use numpy::PyArray1;
 use pyo3::exceptions::PyIndexError;
@@ -72,8 +72,8 @@ pub(crate) fn do_python_job(
     out: PathBuf,
 ) -> PyResult<(Option<String>, bool, Option<String>)> {
     watched(py, None, move |watch| {
-        let store = ResultStore::create(&out)?;
-        match do_job(&store, &listed(&spec, folder)?, watch) {
+        make_folder(&out)?;
+        match do_job(&Store::new(out), &listed(&spec, folder)?, watch) {
             Ok(done) => Ok((Some(done.address), done.found, done.error)),
             Err(error) if error.downcast_ref::<OutputError>().is_some() => Err(error),
             Err(error) => {
@@ -87,13 +87,7 @@ pub(crate) fn do_python_job(
 /// Returns the columns of the results in folders.
 #[pyfunction]
 pub(crate) fn merge<'py>(py: Python<'py>, folders: Vec<PathBuf>) -> PyResult<Bound<'py, PyDict>> {
-    let table = watched(py, None, move |watch| {
-        let stores = folders
-            .iter()
-            .map(|folder| ResultStore::open(folder))
-            .collect::<Result<Vec<_>, _>>()?;
-        ResultTable::of(&stores, watch)
-    })?;
+    let table = watched(py, None, move |watch| ResultTable::of(&folders, watch))?;
     let columns = PyDict::new(py);
     for (at, column) in RESULT_COLUMNS.iter().enumerate() {
         let cells = table.rows.iter().map(|row| &row[at]);

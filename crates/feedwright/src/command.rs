@@ -50,7 +50,6 @@ pub use message::{OUT_OF_TOLERANCE, printed, remark};
 pub use streams::{make_folder, tables, tell_written};
 pub use sweep::job_list::JobList;
 pub use sweep::job_spec::{JobSpec, ListedJob};
-pub use sweep::result_store::ResultStore;
 pub use sweep::result_table::{RESULT_COLUMNS, ResultColumn, ResultTable};
 pub use sweep::{JobDone, do_job};
 pub use table::{ConsoleTable, TableColumn};

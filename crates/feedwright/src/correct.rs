@@ -26,7 +26,7 @@
 //! | `file_prior.rs` | the machine that a machine file most probably describes |
 //! | `loop_lag.rs` | lag of an axis behind its command |
 //! | `target.rs` | the controls that programs are written for |
-//! | `kept_work.rs` | long work in parts, on threads, kept in a file |
+//! | `workers.rs` | long work in parts, on threads, kept in a folder |
 //! | `source.rs` | the program with its text and modes |
 //! | `stretches.rs` | stretches without a corner, and the parts between them |
 //! | `arc_fit.rs` | fit of arcs and lines to points |
@@ -59,7 +59,7 @@ mod nominal;
 mod file_prior;
 mod loop_lag;
 mod target;
-mod kept_work;
+mod workers;
 mod source;
 mod stretches;
 pub(crate) mod arc_fit;
@@ -86,6 +86,7 @@ mod outcome;
 pub(crate) mod advise;
 #[cfg(feature = "command")]
 use std::io::{BufRead, BufReader};
+#[cfg(feature = "files")]
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -93,16 +94,21 @@ use feedwright_gcode::canon::Canon;
 use feedwright_gcode::{Dialect, Program, Settings, Summary};
 use feedwright_plan::Step;
 use feedwright_sim::{Machine, RunError, Watch};
+#[cfg(feature = "files")]
+use serde_json::{Value, json};
 
 use crate::compensation::GeometryChoice;
+#[cfg(feature = "files")]
+use crate::identifier_cache::geometry_content;
 use crate::job_error::{JobError, axes_that_move};
 use crate::measured::MeasuredLog;
+#[cfg(feature = "files")]
+use crate::store::{Store, content_key};
 use exported::ExportedCut;
 use feed_overrides::override_note;
 pub use feed_overrides::{OverrideFigures, OverrideVerdict};
 pub use file_prior::{AssumedValue, FileAssumption};
 use file_prior::{FILE_ERROR, FileModel};
-use kept_work::{Workers, forget, hash_of, keeps_parts};
 pub use learned::{
     CutProgram, LearnError, LearnedLog, LearnedOutcome, LearnedValue, ModelValue, PlaceError,
     PredictedCut,
@@ -121,6 +127,7 @@ pub use target::{TARGETS, TargetControl};
 pub use unchanged::UnchangedStretch;
 use unchanged::unchanged_stretches;
 use verified::{TextComparison, TextFault};
+use workers::Workers;
 
 /// Program, machine, and control that the corrected program is for.
 #[derive(Debug, Clone)]
@@ -149,8 +156,9 @@ pub struct CorrectJob {
     pub piece_periods: u64,
     /// Threads that correct pieces. The result is the same with any number.
     pub threads: usize,
-    /// File in which finished pieces of a long program are kept, in case the run ends early. See
+    /// Folder in which finished pieces of a long program are kept, in case the run ends early. See
     /// [`CorrectJob::forget_pieces`].
+    #[cfg(feature = "files")]
     pub keep: Option<PathBuf>,
 }
 
@@ -236,6 +244,7 @@ impl CorrectJob {
             piece_periods: PIECE_PERIODS,
             threads: std::thread::available_parallelism()
                 .map_or(1, |cores| cores.get().min(MOST_THREADS)),
+            #[cfg(feature = "files")]
             keep: None,
         }
     }
@@ -335,7 +344,7 @@ impl CorrectJob {
                 .is_some_and(|written| written.expanded),
             rounds: found.rounds.rounds,
             pieces: found.pieces,
-            kept_fault: workers.fault().map(|fault| fault.to_string()),
+            is_lost: workers.is_lost(),
             dwell_s: found.rounds.dwell_s,
             warnings: summary
                 .warnings
@@ -443,21 +452,21 @@ impl CorrectJob {
 
     /// Creates the workers that do the work in pieces.
     fn workers(&self, source: &SourceProgram, pieces: usize) -> Workers {
-        let Some(path) = self.keep.as_ref().filter(|_| pieces > 1) else {
-            return Workers::new(self.threads);
-        };
-        let work = hash_of(format_args!(
-            "{:?} {:?} {}",
-            source.lines,
-            source.steps,
-            self.depends_on()
-        ));
-        Workers::keeping(self.threads, path, &work)
+        #[cfg(feature = "files")]
+        if let Some(folder) = self.keep.as_ref().filter(|_| pieces > 1)
+            && let Some(work) = content_key(&(&source.lines, &source.steps, self.depends_on()))
+        {
+            return Workers::keeping(self.threads, folder, work);
+        }
+        #[cfg(not(feature = "files"))]
+        let _ = (source, pieces);
+        Workers::new(self.threads)
     }
 
-    /// Formats all inputs that the commands of pieces depend on, beside the program. With logs
-    /// there is one piece.
-    fn depends_on(&self) -> String {
+    /// Lists all inputs that the commands of pieces depend on, beside the program. With logs there
+    /// is one piece.
+    #[cfg(feature = "files")]
+    fn depends_on(&self) -> Value {
         // Names all fields, without `..`, so that a new field is not forgotten.
         let Self {
             program: _,
@@ -473,22 +482,39 @@ impl CorrectJob {
             threads: _,
             keep: _,
         } = self;
-        format!(
-            "{machine:?} {believed:?} {compensation:?} {target:?} {feed_mm_s:?} {reader:?} {file_error} {piece_periods}"
-        )
+        let content = |machine: &Machine| json!([machine.text(), geometry_content(machine)]);
+        json!([
+            content(machine),
+            believed.as_ref().map(content),
+            compensation,
+            target.name,
+            feed_mm_s,
+            reader,
+            file_error,
+            piece_periods
+        ])
     }
 
-    /// Returns the file of finished pieces, if there is one to continue with.
+    /// Returns the folder of finished pieces, if there are any to continue with.
+    #[cfg(feature = "files")]
     pub fn kept_pieces(&self) -> Option<&Path> {
-        self.keep.as_deref().filter(|path| keeps_parts(path))
+        let has_pieces = |folder: &&Path| {
+            let files = Store::new(folder.to_path_buf()).files();
+            files.is_ok_and(|files| !files.is_empty())
+        };
+        self.keep.as_deref().filter(has_pieces)
     }
 
     /// Removes the finished pieces that were kept, after the job is done.
     ///
     /// # Errors
     /// A file that exists and cannot be removed.
+    #[cfg(feature = "files")]
     pub fn forget_pieces(&self) -> std::io::Result<()> {
-        self.keep.as_deref().map_or(Ok(()), forget)
+        match &self.keep {
+            Some(folder) if folder.is_dir() => Store::new(folder.clone()).clear().map(drop),
+            _ => Ok(()),
+        }
     }
 
     /// Learns the machine from the logs, if there are any.

@@ -2,28 +2,20 @@
 //! The recording is made anew each time, which takes a fraction of the training, so that no change
 //! of machine, plant or planner finds old weights. Identified axes are found by the program that
 //! identified them alone.
-//!
-//! Anything that cannot be read, is damaged or does not hold an identifier is trained anew. Without
-//! the feature `files`, only the results of machine logs are kept, by [`keep_in`].
 
-#[cfg(feature = "files")]
-pub(crate) mod files;
-#[cfg(not(feature = "files"))]
-mod no_files;
-mod kept_texts;
-
-use feedwright_control::{ContourIdentifier, HIDDEN, INPUTS};
-use feedwright_ident::{
-    AxisEstimate, AxisRecordings, Excitation, Model, NotIdentified, Origin, Recording, Rng,
-    TrainedAxes, TrainedContour, Training, train_axes, train_contour,
+use feedwright_control::{
+    ContourIdentifier, DriveParameters, FrictionParameters, HIDDEN, INPUTS, LoopDelays, Parameters,
+    TransmissionParameters,
 };
-use feedwright_sim::{Known, Machine};
+use feedwright_ident::{
+    AxisEstimate, AxisRecordings, Excitation, Model, NotIdentified, Origin, Recording, TrainedAxes,
+    TrainedContour, Training, train_axes, train_contour,
+};
+use feedwright_sim::{Known, KnownAxis, Machine};
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
-use crate::checked_json::{checked, with_check};
-pub use kept_texts::{KeptTexts, keep_in};
-#[cfg(not(feature = "files"))]
-use no_files as files;
+use crate::store::{content_key, keep, kept, program_key};
 
 /// Raised whenever the same recording gives other weights: a change of the network or of its
 /// training.
@@ -52,26 +44,29 @@ pub fn identified<const N: usize>(
     seed: u64,
     progress: &mut dyn FnMut(f64),
 ) -> TrainedContour<N> {
-    let (recording, rng) = excitation.record(machine, seed);
-    trained(&recording, training, rng, progress)
+    recorded_and_trained(machine, excitation, training, seed, progress).1
 }
 
-/// The identifier that a training makes of a recording, from the cache where it is there.
-pub fn trained<const N: usize>(
-    recording: &Recording<N>,
+/// A recording of a machine, and the identifier that a training makes of it, from the cache where
+/// it is there.
+pub(crate) fn recorded_and_trained<const N: usize>(
+    machine: &Machine,
+    excitation: &Excitation,
     training: &Training,
-    rng: Rng,
+    seed: u64,
     progress: &mut dyn FnMut(f64),
-) -> TrainedContour<N> {
-    let name = format!("{}.json", key(recording, training, &rng));
-    if let Some(found) = files::read(&name).and_then(|text| stored(&text)) {
-        return found;
+) -> (Recording<N>, TrainedContour<N>) {
+    let (recording, rng) = excitation.record(machine, seed);
+    let key = content_key(&(FORMAT, N, recording.hash(), excitation, seed, training));
+    let found = key.as_deref().and_then(kept);
+    if let Some(found) = found.and_then(StoredWeights::trained) {
+        return (recording, found);
     }
-    let identified = train_contour(recording, training, rng, progress);
-    if let Ok(text) = text(&identified) {
-        files::write(&name, &text);
+    let trained = train_contour(&recording, training, rng, progress);
+    if let Some(key) = key {
+        keep(&key, &StoredWeights::of(&trained));
     }
-    identified
+    (recording, trained)
 }
 
 /// The axes that are identified from recordings, from the cache where they are there.
@@ -84,111 +79,180 @@ pub(crate) fn identified_axes<const N: usize>(
     used_on: &Known,
 ) -> Result<TrainedAxes<N>, NotIdentified> {
     let recording = recordings.joined();
-    let content = || format!("axes {} {known:?}{used_on:?}", recording.hash());
-    let kept = kept_text(&content()).and_then(|text| {
-        let StoredAxes { model, estimates } = serde_json::from_str(&text).ok()?;
-        let model = Model::parse("cache", &model).ok()?;
-        let fit = model.fit();
-        let samples = usize::try_from(fit.samples).ok()?;
-        Some(TrainedAxes {
-            axes: model.identified_axes()?,
-            estimates,
-            fit_um: fit.fit_um,
-            samples,
-        })
-    });
-    if let Some(trained) = kept {
+    let key = program_key(&(
+        "axes",
+        recording.hash(),
+        [known, used_on].map(|k| content(k, N)),
+    ));
+    let found = key
+        .as_deref()
+        .and_then(kept)
+        .and_then(|StoredAxes { model, estimates }| {
+            let model = Model::parse("cache", &model).ok()?;
+            let fit = model.fit();
+            let samples = usize::try_from(fit.samples).ok()?;
+            Some(TrainedAxes {
+                axes: model.identified_axes()?,
+                estimates,
+                fit_um: fit.fit_um,
+                samples,
+            })
+        });
+    if let Some(trained) = found {
         return Ok(trained);
     }
     let trained = train_axes(recordings, known, used_on)?;
-    let origin = Origin {
-        source: "a simulated excitation".to_owned(),
-        date: "1970-01-01".to_owned(),
-    };
-    let model = Model::of_axes(&recording, &trained, origin).text();
-    if let Ok(text) = serde_json::to_string(&StoredAxes {
-        model,
-        estimates: trained.estimates.clone(),
-    }) {
-        keep_text(&content(), &text);
+    if let Some(key) = key {
+        let origin = Origin {
+            source: "a simulated excitation".to_owned(),
+            date: "1970-01-01".to_owned(),
+        };
+        let stored = StoredAxes {
+            model: Model::of_axes(&recording, &trained, origin).text(),
+            estimates: trained.estimates.clone(),
+        };
+        keep(&key, &stored);
     }
     Ok(trained)
 }
 
-/// Returns the text that this program kept for a content; `None` if there is no such text or it is
-/// damaged.
-pub(crate) fn kept_text(content: &str) -> Option<String> {
-    checked(&kept_texts::read(&name_of(content)?)?)
-}
-
-/// Keeps a JSON object by the content that it follows from.
-pub(crate) fn keep_text(content: &str, object: &str) {
-    if let Some(name) = name_of(content) {
-        kept_texts::write(&name, &with_check(object));
-    }
-}
-
-/// The name of a file of this program, where there is a cache.
-fn name_of(content: &str) -> Option<String> {
-    let program = kept_texts::program()?;
-    Some(format!(
-        "{}.json",
-        key_of(&[program.as_bytes(), content.as_bytes()])
-    ))
-}
-
-/// A name for what depends on these parts.
-pub fn key_of(parts: &[&[u8]]) -> String {
-    let mut hasher = blake3::Hasher::new();
-    for part in parts {
-        hasher.update(&(part.len() as u64).to_le_bytes());
-        hasher.update(part);
-    }
-    hasher.finalize().to_hex().to_string()
-}
-
-fn key<const N: usize>(recording: &Recording<N>, training: &Training, rng: &Rng) -> String {
-    let content = serde_json::json!([FORMAT, N, recording.hash(), format!("{rng:?}"), training]);
-    blake3::hash(content.to_string().as_bytes())
-        .to_hex()
-        .to_string()
-}
-
-/// The identifier in a file of the cache.
-fn stored<const N: usize>(text: &str) -> Option<TrainedContour<N>> {
-    let stored: StoredWeights = serde_json::from_str(&checked(text)?).ok()?;
-    let complete = stored.hidden.len() == N * INPUTS * HIDDEN && stored.output.len() == N * HIDDEN;
-    if !complete
-        || stored
-            .hidden
-            .iter()
-            .chain(&stored.output)
-            .any(|w| !w.is_finite())
-    {
-        return None;
-    }
-    let net = ContourIdentifier {
-        hidden: std::array::from_fn(|a| {
-            std::array::from_fn(|i| {
-                std::array::from_fn(|j| stored.hidden[(a * INPUTS + i) * HIDDEN + j])
-            })
-        }),
-        output: std::array::from_fn(|o| std::array::from_fn(|j| stored.output[o * HIDDEN + j])),
-    };
-    Some(TrainedContour {
-        net,
-        fit_um: stored.fit_um,
-        samples: stored.samples,
+/// Lists what the control of a machine compensates, and where its tool is: a machine file has
+/// neither.
+pub(crate) fn geometry_content(machine: &Machine) -> [Option<Vec<f64>>; 2] {
+    [&machine.compensated, &machine.tool].map(|geometry| {
+        geometry.as_ref().map(|geometry| {
+            let mut numbers = geometry.backlash_mm().to_vec();
+            geometry.numbers(|number| numbers.push(number));
+            numbers
+        })
     })
 }
 
-/// The file of an identifier.
-fn text<const N: usize>(identified: &TrainedContour<N>) -> serde_json::Result<String> {
-    let stored = StoredWeights {
-        hidden: identified.net.hidden.as_flattened().as_flattened().to_vec(),
-        output: identified.net.output.as_flattened().to_vec(),
-        fit_um: identified.fit_um,
-        samples: identified.samples,
-    };
-    Ok(with_check(&serde_json::to_string(&stored)?))
+/// Lists what is known of the first axes of a machine.
+fn content(known: &Known, axes: usize) -> Value {
+    let period = [known.period.servo_s, known.period.mechanics_s];
+    let axes: Vec<_> = (0..axes).map(|i| numbers(known.axis(i))).collect();
+    json!([period, known.limits, axes])
+}
+
+/// Lists what is known of an axis. Names all fields, so that a new one is not forgotten.
+fn numbers(axis: &KnownAxis) -> Value {
+    let KnownAxis {
+        lead_mm_per_rev,
+        nominal,
+        drive,
+        friction,
+        transmission,
+        delays,
+        scale_on_table,
+        correction_accel_mm_s2,
+        spare_torque_nm,
+    } = *axis;
+    let Parameters {
+        rad_per_mm,
+        kp_1_s,
+        kd,
+        kv_nm_s_per_rad,
+        torque_limit_nm,
+        inertia_kg_m2,
+        viscous_friction_nm_s,
+        coulomb_friction_nm,
+        coulomb_smoothing_rad_s,
+    } = nominal;
+    let DriveParameters {
+        speed_integral_s,
+        velocity_feedforward,
+        acceleration_feedforward,
+        torque_filter_hz,
+        speed_limit_rad_s,
+        speed_window_s,
+    } = drive;
+    let FrictionParameters {
+        coulomb_asymmetry_nm,
+        stribeck_nm,
+        stribeck_rad_s,
+        presliding_rad,
+    } = friction;
+    let TransmissionParameters {
+        table_share,
+        resonance_rad_s,
+        damping_ratio,
+        backlash_rad,
+    } = transmission;
+    let LoopDelays {
+        command_s,
+        drive_s,
+        measurement_s,
+    } = delays;
+    json!([
+        lead_mm_per_rev,
+        scale_on_table,
+        correction_accel_mm_s2,
+        spare_torque_nm,
+        [
+            rad_per_mm,
+            kp_1_s,
+            kd,
+            kv_nm_s_per_rad,
+            torque_limit_nm,
+            inertia_kg_m2,
+            viscous_friction_nm_s,
+            coulomb_friction_nm,
+            coulomb_smoothing_rad_s
+        ],
+        [
+            speed_integral_s,
+            velocity_feedforward,
+            acceleration_feedforward,
+            torque_filter_hz,
+            speed_limit_rad_s,
+            speed_window_s
+        ],
+        [
+            coulomb_asymmetry_nm,
+            stribeck_nm,
+            stribeck_rad_s,
+            presliding_rad
+        ],
+        [table_share, resonance_rad_s, damping_ratio, backlash_rad],
+        [command_s, drive_s, measurement_s]
+    ])
+}
+
+impl StoredWeights {
+    fn of<const N: usize>(trained: &TrainedContour<N>) -> Self {
+        Self {
+            hidden: trained.net.hidden.as_flattened().as_flattened().to_vec(),
+            output: trained.net.output.as_flattened().to_vec(),
+            fit_um: trained.fit_um,
+            samples: trained.samples,
+        }
+    }
+
+    /// The identifier; `None` if it is one of other axes.
+    fn trained<const N: usize>(self) -> Option<TrainedContour<N>> {
+        let Self {
+            hidden,
+            output,
+            fit_um,
+            samples,
+        } = self;
+        let complete = hidden.len() == N * INPUTS * HIDDEN && output.len() == N * HIDDEN;
+        if !complete || hidden.iter().chain(&output).any(|w| !w.is_finite()) {
+            return None;
+        }
+        let net = ContourIdentifier {
+            hidden: std::array::from_fn(|a| {
+                std::array::from_fn(|i| {
+                    std::array::from_fn(|j| hidden[(a * INPUTS + i) * HIDDEN + j])
+                })
+            }),
+            output: std::array::from_fn(|o| std::array::from_fn(|j| output[o * HIDDEN + j])),
+        };
+        Some(TrainedContour {
+            net,
+            fit_um,
+            samples,
+        })
+    }
 }

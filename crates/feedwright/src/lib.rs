@@ -81,10 +81,10 @@
 //! # Layers
 //!
 //! The `mod` lines stand in the order in which data flows; each module uses only those above it.
-//! `output` writes files, `measured` compares a log with a cut, `cycle_time` and `fastest` look at
-//! plans, `controllers` is the table of controllers, `report` makes figures and the page, and
-//! `correct`, `job` and `log_job` are the jobs of the command line, and `linuxcnc_setup` wires a
-//! configuration of LinuxCNC.
+//! `output` writes files, `store` keeps finished work, `measured` compares a log with a cut,
+//! `cycle_time` and `fastest` look at plans, `controllers` is the table of controllers, `report`
+//! makes figures and the page, and `correct`, `job` and `log_job` are the jobs of the command line,
+//! and `linuxcnc_setup` wires a configuration of LinuxCNC.
 
 #![warn(clippy::disallowed_methods)]
 
@@ -96,7 +96,7 @@ pub use feedwright_sim as sim;
 
 #[cfg(feature = "files")]
 mod output;
-mod checked_json;
+mod store;
 mod results_format;
 mod identifier_cache;
 mod measured;
@@ -122,7 +122,6 @@ mod linuxcnc_setup;
 #[cfg(feature = "command")]
 pub mod command;
 
-pub use checked_json::{checked, with_check};
 pub use compensation::{GeometryChoice, NamedGeometry};
 pub use controllers::{
     BASELINE, BEST, CONTROLLERS, Choices, Controllers, CutsUncorrected, Entry, FEEDFORWARD,
@@ -141,9 +140,7 @@ pub use cycle_time::{
     CycleTime, CycleTimeOptions, LineTime, cycle_time, cycle_time_by, cycle_time_within,
 };
 pub use fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within};
-#[cfg(feature = "files")]
-pub use identifier_cache::files::folder as cache_folder;
-pub use identifier_cache::{KeptTexts, identified, keep_in, key_of, trained};
+pub use identifier_cache::identified;
 pub use job::{CheckedJob, Guests, Job, JobError, JobOutcome, MEASURED};
 #[cfg(feature = "files")]
 pub use linuxcnc_setup::{HALLIB, LinuxcncSetup, LinuxcncSetupError, LinuxcncWiring};
@@ -172,3 +169,6 @@ pub use report::{
     write_html_in,
 };
 pub use results_format::RESULTS_FORMAT;
+pub use store::{KeptTexts, keep_in, key_of};
+#[cfg(feature = "files")]
+pub use store::{Store, cache_folder};

@@ -22,7 +22,7 @@ use feedwright_ident::{
     AxisFacts, AxisRecord, Fitness, FoundMachine, GreyBoxOptions, Log, ModelTerm, ModelVerdict,
     NotFound, NumberSource, identify_machine,
 };
-use feedwright_sim::{Cancelled, Machine, StageSteps, Watch};
+use feedwright_sim::{Cancelled, Machine, StageSteps, Watch, significant};
 use miette::Diagnostic;
 use thiserror::Error;
 
@@ -323,23 +323,6 @@ impl LogIdentified {
 /// Formats a value with four significant digits.
 pub(crate) fn digits(value: f64) -> String {
     significant(value, 4, 5)
-}
-
-/// Formats a value with `digits` significant digits. A number of more than `most` + 1 places before
-/// the point, or with zeros behind it, has an exponent.
-pub(crate) fn significant(value: f64, digits: i32, most: i32) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let before_the_point = libm::log10(value.abs()).floor() as i32;
-    if (-4..=most).contains(&before_the_point) {
-        format!(
-            "{value:.*}",
-            (digits - 1 - before_the_point).max(0) as usize
-        )
-    } else {
-        format!("{value:.*e}", (digits - 1) as usize)
-    }
 }
 
 /// Name of the axis of a machine file that each axis of the log becomes: those that are called so,

@@ -17,6 +17,7 @@ use std::path::{Path, PathBuf};
 pub use error::{FileOperation, OutputError};
 use feedwright_sim::Watch;
 use part_files::PartFile;
+pub(crate) use part_files::remove_abandoned;
 
 /// Rows of a trace are 150-300 bytes: a few hundred rows for one call of the operating system.
 const BUFFER_BYTES: usize = 64 << 10;

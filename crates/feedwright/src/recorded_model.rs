@@ -22,12 +22,14 @@ use feedwright_ident::{
 use feedwright_sim::{Cancelled, Machine, Watch};
 use miette::Diagnostic;
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use thiserror::Error;
 
 use crate::controllers::{Choices, Entry, Setup, identifying};
-use crate::identifier_cache::{keep_text, kept_text};
+use crate::identifier_cache::geometry_content;
 use crate::job::Job;
 use crate::log_job::{LogIdentified, LogJob, LogJobError, machine_text};
+use crate::store::{keep, kept, program_key};
 
 /// Largest number of machines that are drawn from a log. Their files are kept with the machine's
 /// own file.
@@ -89,7 +91,7 @@ impl Told {
     /// Returns the text that is shipped with the program, with at least `fitting` machines, or that
     /// is kept for the content; otherwise makes it.
     fn of(
-        content: &str,
+        content: &Value,
         fitting: usize,
         make: impl FnOnce() -> Result<Self, RecordedModelError>,
     ) -> Result<Self, RecordedModelError> {
@@ -97,13 +99,14 @@ impl Told {
         {
             return Ok(shipped);
         }
-        if let Some(kept) = kept_text(content).and_then(|text| serde_json::from_str(&text).ok()) {
+        let Some(key) = program_key(content) else {
+            return make();
+        };
+        if let Some(kept) = kept(&key) {
             return Ok(kept);
         }
         let made = make()?;
-        if let Ok(text) = serde_json::to_string(&made) {
-            keep_text(content, &text);
-        }
+        keep(&key, &made);
         Ok(made)
     }
 
@@ -195,12 +198,8 @@ fn recorded_model(
 }
 
 /// Describes the inputs that determine the model of a log.
-fn model_content(machine: &Machine, axes: usize, (entry, choices): (&Entry, &Choices)) -> String {
-    format!(
-        "model {axes} {} {choices:?} {}",
-        entry.name,
-        log_content(machine)
-    )
+fn model_content(machine: &Machine, axes: usize, (entry, choices): (&Entry, &Choices)) -> Value {
+    json!(["model", axes, entry.name, choices, log_content(machine)])
 }
 
 /// Returns the model file of a machine that was identified from a log.
@@ -294,19 +293,23 @@ pub fn built_in_lines(
 }
 
 /// Describes the inputs that determine the machine of a log.
-fn content(machine: &Machine, axes: usize, seed: u64) -> String {
-    format!(
-        "machine and those that fit, {axes} {seed} {}",
+fn content(machine: &Machine, axes: usize, seed: u64) -> Value {
+    json!([
+        "machine and those that fit",
+        axes,
+        seed,
         log_content(machine)
-    )
+    ])
 }
 
 /// Describes the inputs that determine a log, and what is written with it. A field that a machine
 /// does not use changes nothing.
-fn log_content(machine: &Machine) -> String {
-    let geometries = [&machine.compensated, &machine.tool]
-        .map(|geometry| geometry.as_ref().map(|g| format!("{g:?}")));
-    format!("{} {} {geometries:?}", machine.name, machine.fingerprint())
+fn log_content(machine: &Machine) -> Value {
+    json!([
+        machine.name,
+        machine.fingerprint(),
+        geometry_content(machine)
+    ])
 }
 
 /// Returns the machine from the log and at least `fitting` others that fit as well: shipped with

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 use std::io::Write;
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use crate::command::{Folder, Ran, skipped};
@@ -583,8 +584,8 @@ fn what_is_kept_is_shown_and_removed() {
     };
     assert!(cache(&[], "").contains("nothing is kept"));
     assert!(cache(&[], "kept").contains("0 identified models"));
-    std::fs::create_dir(folder.path().join("kept")).unwrap();
-    let model = format!("kept/{}.json", "a".repeat(64));
+    std::fs::create_dir_all(folder.path().join("kept/aa")).unwrap();
+    let model = format!("kept/aa/{}.json", "a".repeat(64));
     folder.file(&model, [b'x'; 250_000]);
     folder.file("kept/mine.json", "{}");
     let told = cache(&[], "kept");
@@ -666,9 +667,12 @@ fn a_damaged_cache_is_found_and_an_empty_name_is_none() {
         (json["runs"][1]["rms_um"].as_f64().unwrap().to_bits(), ran)
     };
     let (first, _) = cut("cache");
-    let kept: Vec<_> = std::fs::read_dir(folder.path().join("cache"))
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
+    let entries = |folder: PathBuf| {
+        let entries = std::fs::read_dir(folder).unwrap();
+        entries.map(|entry| entry.unwrap().path())
+    };
+    let kept: Vec<_> = entries(folder.path().join("cache"))
+        .flat_map(entries)
         .collect();
     let [file] = &kept[..] else {
         panic!("{kept:?}")

@@ -2,6 +2,7 @@
 //! does not suit is refused.
 
 use std::os::unix::fs::MetadataExt;
+use std::path::PathBuf;
 
 use crate::command::{Folder, Ran};
 use crate::sweep::part_or_whole;
@@ -91,9 +92,9 @@ fn a_run_without_a_model_goes_by_what_a_log_of_the_machine_tells_and_keeps_it() 
     };
     let kept = || {
         // A file that is read is dated anew, and one that is written is another file.
-        let files = std::fs::read_dir(folder.path().join("kept"))
-            .unwrap()
-            .map(Result::unwrap);
+        let entries = |folder: PathBuf| std::fs::read_dir(folder).unwrap().map(Result::unwrap);
+        let folders = entries(folder.path().join("kept"));
+        let files = folders.flat_map(|folder| entries(folder.path()));
         let mut files: Vec<_> = files
             .map(|file| (file.path(), file.metadata().unwrap().ino()))
             .collect();

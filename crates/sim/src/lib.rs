@@ -98,7 +98,7 @@ pub use machine::{
     AXIS_NAMES, Axis, BUILT_IN_MACHINES, DEFAULT_MACHINE, Known, KnownAxis, Limits, MACHINE_FORMAT,
     Machine, MachineError, Noise, Period, Squareness, Transmission, is_machine_path,
 };
-pub use number::{shown, to_four_digits};
+pub use number::{fixed, rounded, shown, significant, to_four_digits, trimmed};
 pub use parallel::map_in_parallel;
 pub use pipeline::{PlanCache, Run, RunError, Stages, path_steps};
 pub use plant::{Measurement, Mechanism, Plant};

@@ -21,9 +21,9 @@ mod realistic;
 
 use std::f64::consts::{PI, TAU};
 
-use feedwright_sim::{Axis, Machine, Plant};
+use feedwright_sim::{Axis, Machine, Plant, rounded};
 
-use super::random::{Random, rounded};
+use super::random::Random;
 use super::variant::{AXES, Variant};
 
 /// Base of all machines.
@@ -109,11 +109,11 @@ fn draw(random: &mut Random, seed: u64, class: Class) -> Variant {
     let torque = random.by_ratio(TORQUE);
     for (i, table) in AXES.into_iter().enumerate() {
         let mut axis = *base.axis(i);
-        axis.kp_1_s = rounded((kp_1_s * other(random)).clamp(KP_1_S[0], KP_1_S[1]));
-        axis.inertia_kg_m2 = rounded(axis.inertia_kg_m2 * inertia * other(random));
-        axis.kv_nm_s_per_rad = rounded(speed_loop * kp_1_s * axis.inertia_kg_m2);
-        axis.viscous_friction_nm_s = rounded(axis.viscous_friction_nm_s * friction[0]);
-        axis.coulomb_friction_nm = rounded(axis.coulomb_friction_nm * friction[1]);
+        axis.kp_1_s = rounded((kp_1_s * other(random)).clamp(KP_1_S[0], KP_1_S[1]), 3);
+        axis.inertia_kg_m2 = rounded(axis.inertia_kg_m2 * inertia * other(random), 3);
+        axis.kv_nm_s_per_rad = rounded(speed_loop * kp_1_s * axis.inertia_kg_m2, 3);
+        axis.viscous_friction_nm_s = rounded(axis.viscous_friction_nm_s * friction[0], 3);
+        axis.coulomb_friction_nm = rounded(axis.coulomb_friction_nm * friction[1], 3);
         [axis.disturbance_nm, axis.disturbance_hz] = disturbance;
         let needed_nm = torque_of_plan_nm(&axis, &base, libm::hypot(along, across));
         variant = variant
@@ -124,11 +124,11 @@ fn draw(random: &mut Random, seed: u64, class: Class) -> Variant {
             .with(table, "coulomb_friction_nm", axis.coulomb_friction_nm)
             .with(table, "disturbance_nm", axis.disturbance_nm)
             .with(table, "disturbance_hz", axis.disturbance_hz)
-            .with(table, "torque_limit_nm", rounded(torque * needed_nm));
+            .with(table, "torque_limit_nm", rounded(torque * needed_nm, 3));
     }
     let late = [
         random.by_ratio(ENCODER_UM),
-        rounded(random.between([0.0, DELAY_S])),
+        rounded(random.between([0.0, DELAY_S]), 3),
     ];
     let has = [!random.one_in(3), !random.one_in(3)];
     let keys = ["encoder_step_um", "drive_delay_s"];

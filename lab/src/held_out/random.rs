@@ -1,5 +1,6 @@
 //! Random numbers that are the same on every platform: logarithms are those of a library that is.
 
+use feedwright_sim::rounded;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -17,7 +18,10 @@ impl Random {
 
     /// Evenly spread in its logarithm, to three digits.
     pub(crate) fn by_ratio(&mut self, [low, high]: [f64; 2]) -> f64 {
-        rounded(low * libm::exp(self.between([0.0, libm::log(high / low)])))
+        rounded(
+            low * libm::exp(self.between([0.0, libm::log(high / low)])),
+            3,
+        )
     }
 
     pub(crate) fn whole(&mut self, low: u32, high: u32) -> u32 {
@@ -31,9 +35,4 @@ impl Random {
     pub(crate) fn one_in(&mut self, count: u32) -> bool {
         self.0.random_range(0..count) == 0
     }
-}
-
-/// Rounds to three digits, as people write values.
-pub(super) fn rounded(value: f64) -> f64 {
-    format!("{value:.2e}").parse().unwrap_or(value)
 }

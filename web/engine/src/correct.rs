@@ -1,10 +1,11 @@
 //! A corrected program for a control without feedback.
 
+use feedwright::sim::fixed;
 use feedwright::{CorrectJob, ExportedFigures, TARGETS, TargetControl};
 use serde_json::{Value, json};
 
 use crate::page::PageWatch;
-use crate::request::{Outputs, Request, figure, json};
+use crate::request::{Outputs, Request, json};
 
 pub(crate) fn correct(request: &mut Request) -> miette::Result<Outputs> {
     let target = match &request.target {
@@ -39,9 +40,9 @@ fn figures(name: &str, figures: &ExportedFigures) -> Value {
     } = figures;
     json!({
         "name": name,
-        "time_s": figure(*time_s, 3),
-        "rms_um": figure(*rms_um, 2),
-        "max_um": figure(*max_um, 2),
+        "time_s": fixed(*time_s, 3),
+        "rms_um": fixed(*rms_um, 2),
+        "max_um": fixed(*max_um, 2),
         "blocks": blocks,
     })
 }

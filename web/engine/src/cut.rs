@@ -1,6 +1,6 @@
 //! A cut without a correction and one with a controller.
 
-use feedwright::sim::{Sink, TraceWriter, Transition};
+use feedwright::sim::{Sink, TraceWriter, Transition, fixed};
 use feedwright::{
     CONTROLLERS, Choices, Job, LimitBand, ReportedRun, take_recorded_model, write_html,
     write_html_data,
@@ -9,7 +9,7 @@ use miette::IntoDiagnostic;
 use serde_json::{Value, json};
 
 use crate::page::{PageCut, PageWatch};
-use crate::request::{Outputs, Request, figure, json};
+use crate::request::{Outputs, Request, json};
 
 /// Number of points of a cut along the diagonal of its box: about two pixels apart on a large
 /// screen.
@@ -104,10 +104,10 @@ fn figures(run: &ReportedRun) -> Value {
     let record = |transition: &Transition| json!({ "t_s": transition.at_s, "line": transition.line, "text": transition.words() });
     json!({
         "name": now.controller,
-        "time_s": figure(now.time_s, 3),
-        "rms_um": figure(now.rms_um, 2),
-        "max_um": figure(now.max_um, 2),
-        "uncut_um": figure(now.uncut_um, 2),
+        "time_s": fixed(now.time_s, 3),
+        "rms_um": fixed(now.rms_um, 2),
+        "max_um": fixed(now.max_um, 2),
+        "uncut_um": fixed(now.uncut_um, 2),
         "record": now.transitions.iter().map(record).collect::<Vec<_>>(),
     })
 }

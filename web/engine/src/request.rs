@@ -107,15 +107,6 @@ impl Request {
     }
 }
 
-/// Formats a number of a table as the command prints it.
-pub(crate) fn figure(value: f64, decimals: usize) -> String {
-    if value.is_finite() {
-        format!("{value:.decimals$}")
-    } else {
-        "-".to_owned()
-    }
-}
-
 /// Returns a value as JSON, in bytes.
 pub(crate) fn json(value: &serde_json::Value) -> Vec<u8> {
     value.to_string().into_bytes()

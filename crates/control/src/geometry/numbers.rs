@@ -13,7 +13,7 @@ use super::{AxisErrors, ErrorTable, GeometryFault, KnownGeometry, TABLE_POINTS};
 
 impl<const N: usize> KnownGeometry<N> {
     /// Passes its numbers to `each` in their order.
-    pub(crate) fn numbers(&self, mut each: impl FnMut(f64)) {
+    pub fn numbers(&self, mut each: impl FnMut(f64)) {
         for axis in &self.axes {
             let AxisErrors {
                 scale,

@@ -8,19 +8,19 @@
 //! |---|---|
 //! | `sweep/job_spec.rs` | one job: its keys, its address, its cut |
 //! | `sweep/job_list.rs` | the list of jobs, JOBS.toml, and shards |
-//! | `sweep/result_store.rs` | the folder of results |
 //! | `sweep/result_table.rs` | the results as rows of a table |
 
 pub(crate) mod job_spec;
 pub(crate) mod job_list;
-pub(crate) mod result_store;
 pub(crate) mod result_table;
 
 use feedwright_sim::Watch;
 use miette::Result;
+use serde_json::Value;
 
+use crate::results_format::spelled_out;
+use crate::store::Store;
 use job_spec::ListedJob;
-use result_store::ResultStore;
 
 /// A job whose result is in the store.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -39,9 +39,12 @@ pub struct JobDone {
 /// A file that cannot be read, a result that cannot be written, or a cancellation: nothing is
 /// stored, and the job may be done again. The mistakes of a program, a machine or a model are a
 /// result.
-pub fn do_job(store: &ResultStore, job: &ListedJob, watch: &dyn Watch) -> Result<JobDone> {
+pub fn do_job(store: &Store, job: &ListedJob, watch: &dyn Watch) -> Result<JobDone> {
     let address = job.address()?;
-    if let Some(result) = store.get(&address) {
+    let found = store
+        .text(&address)
+        .and_then(|text| serde_json::from_str::<Value>(&text).ok());
+    if let Some(result) = found.filter(|result| result["address"] == address) {
         return Ok(JobDone {
             address,
             found: true,
@@ -49,7 +52,7 @@ pub fn do_job(store: &ResultStore, job: &ListedJob, watch: &dyn Watch) -> Result
         });
     }
     let result = job.result(&address, watch)?;
-    store.put(&address, &result)?;
+    store.put_text(&address, &format!("{}\n", spelled_out(&result.to_string())))?;
     Ok(JobDone {
         address,
         found: false,

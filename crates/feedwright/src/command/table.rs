@@ -50,15 +50,6 @@ enum TableRow {
     Section(String),
 }
 
-/// A number for a cell; `-` if it is not known.
-pub(crate) fn figure(value: f64, decimals: usize) -> String {
-    if value.is_finite() {
-        format!("{value:.decimals$}")
-    } else {
-        "-".to_owned()
-    }
-}
-
 /// Longest name, columns. The beginning of a longer name is cut off.
 const MOST_NAME: usize = 44;
 

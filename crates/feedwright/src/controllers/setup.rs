@@ -16,7 +16,7 @@ use miette::Diagnostic;
 use thiserror::Error;
 
 use super::{CONTROLLERS, Choices, Entry};
-use crate::identifier_cache::{identified, identified_axes};
+use crate::identifier_cache::{identified, identified_axes, recorded_and_trained};
 
 /// Inputs from which a controller is made.
 pub struct Setup<'a> {
@@ -515,14 +515,12 @@ impl<'a> Setup<'a> {
                     feed_period_s,
                     ..Excitation::general()
                 };
-                let (recording, rng) = excitation.record::<N>(self.machine, seed);
-                let trained = crate::identifier_cache::trained(
-                    &recording,
+                let (recording, trained) = recorded_and_trained::<N>(
+                    self.machine,
+                    &excitation,
                     &Training::default(),
-                    rng,
-                    &mut |part| {
-                        self.tell(part);
-                    },
+                    seed,
+                    &mut |part| self.tell(part),
                 );
                 Model::of_contour(&recording, &trained, self.response_s::<N>(), origin)
             }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use feedwright_gcode::canon::{Corner, EventKind, Motion, MotionKind, Plane, Shape};
 use feedwright_gcode::{Dialect, ModesInForce};
+use feedwright_sim::trimmed;
 
 use super::target::TargetControl;
 
@@ -26,17 +27,11 @@ pub(super) struct BlockWords<'a> {
 
 /// A number without zeros at its end, but with a point: controls count in steps without it.
 fn number(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
-    let text = text.trim_end_matches('0');
-    let text = if text.ends_with('.') {
-        format!("{text}0")
-    } else {
-        text.to_owned()
-    };
-    if text == "-0.0" {
-        "0.0".to_owned()
-    } else {
+    let text = trimmed(value, decimals);
+    if text.contains('.') {
         text
+    } else {
+        text + ".0"
     }
 }
 

@@ -16,8 +16,8 @@ use feedwright_sim::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::kept_work::Workers;
 use super::learned::{PathTrack, PlaceError};
+use super::workers::Workers;
 use crate::report::Statistics;
 use crate::report::harm::{CutErrors, MAX_UM};
 

@@ -11,7 +11,7 @@ use feedwright_sim::RunError;
 use serde::Serialize;
 
 use super::exported::{ExportedCut, ExportedFigures};
-use super::kept_work::Workers;
+use super::workers::Workers;
 use crate::report::harm::{Harm, harm};
 
 /// Feed overrides at which both programs are cut, %: the values that operators use to run in a

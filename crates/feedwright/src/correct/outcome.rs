@@ -49,9 +49,9 @@ pub struct CorrectOutcome {
     pub pieces: usize,
     /// Longest rest that was inserted, s.
     pub dwell_s: f64,
-    /// Fault of the file of finished pieces, if it has one.
+    /// True if a finished piece could not be kept for another run.
     #[serde(skip)]
-    pub kept_fault: Option<String>,
+    pub(crate) is_lost: bool,
     /// Warnings of the reader.
     #[serde(skip)]
     pub warnings: Vec<Diagnostic>,

@@ -21,12 +21,12 @@ use feedwright_sim::{Machine, RunError, Watch};
 
 use super::exported::{ExportedCut, length_mm};
 use super::file_prior::FileModel;
-use super::kept_work::Workers;
 use super::rounds::{JudgedPart, RoundsResult, rounds, steps_of};
 use super::seams::{Seam, is_parted, meet};
 use super::stretches::{NewMotions, ProgramPart, directions, parts, stretches};
 use super::target::PrintedTarget;
 use super::unchanged::UnchangedReason;
+use super::workers::Workers;
 
 /// Servo periods of a piece: their rows take some 100 MB. A program of up to [`WHOLE_PIECES`]
 /// pieces is one piece.

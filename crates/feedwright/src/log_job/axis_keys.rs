@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use feedwright_ident::{FoundAxis, ModelTerm, NumberSource, SERVO_MECHANICS};
+use feedwright_sim::rounded;
 
 use super::digits;
 
@@ -52,7 +53,8 @@ pub(super) fn axis_keys(found: &FoundAxis, servo_s: f64) -> AxisKeys {
 fn told(name: &'static str, value: f64, comment: impl Into<String>) -> AxisKey {
     AxisKey {
         name,
-        value: in_six_digits(value),
+        // A log determines no more digits.
+        value: rounded(value, 6),
         comment: comment.into(),
         is_told: true,
     }
@@ -63,11 +65,6 @@ fn assumed(name: &'static str, value: f64, comment: impl Into<String>) -> AxisKe
         is_told: false,
         ..told(name, value, comment)
     }
-}
-
-/// Rounds a value to six digits: a log determines no more.
-fn in_six_digits(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
 }
 
 /// A key by where its number comes from.

@@ -87,7 +87,7 @@ fn create_beside(target: &Path, folder: &Path) -> io::Result<(File, TempPath)> {
 }
 
 /// Removes the files under way that no process holds. What cannot be looked at, or removed, stays.
-fn remove_abandoned(folder: &Path) {
+pub(crate) fn remove_abandoned(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;
     };

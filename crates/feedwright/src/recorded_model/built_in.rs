@@ -7,9 +7,10 @@
 //! another compares a line with a new identification.
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::Told;
-use crate::identifier_cache::key_of;
+use crate::store::content_key;
 
 /// The lines.
 const BUILT_IN: &str = include_str!("built_in.jsonl");
@@ -32,13 +33,13 @@ pub(super) fn lines() -> impl Iterator<Item = &'static str> {
 }
 
 /// Returns the beginning of the line of a content.
-fn beginning(content: &str) -> String {
-    format!("{{\"content\":\"{}\"", key_of(&[content.as_bytes()]))
+fn beginning(content: &Value) -> Option<String> {
+    Some(format!("{{\"content\":\"{}\"", content_key(content)?))
 }
 
 /// Returns the result that is shipped with the program for a content.
-pub(super) fn told(content: &str) -> Option<Told> {
-    let beginning = beginning(content);
+pub(super) fn told(content: &Value) -> Option<Told> {
+    let beginning = beginning(content)?;
     let BuiltInLog {
         text,
         doubts,
@@ -62,7 +63,7 @@ pub(super) fn told(content: &str) -> Option<Told> {
 
 /// The line of a content. A machine that fits as well has the lines of the text with other values;
 /// one that has not is left out.
-pub(super) fn line(content: &str, told: &Told) -> String {
+pub(super) fn line(content: &Value, told: &Told) -> String {
     let lines: Vec<&str> = told.text.split('\n').collect();
     let changes = |fits: &String| {
         let of_fits: Vec<&str> = fits.split('\n').collect();
@@ -80,9 +81,8 @@ pub(super) fn line(content: &str, told: &Told) -> String {
         .filter_map(changes)
         .take(FITTING)
         .collect();
-    let content = key_of(&[content.as_bytes()]);
     let line = BuiltInLog {
-        content,
+        content: content_key(content).unwrap_or_default(),
         text: told.text.clone(),
         doubts: told.doubts.clone(),
         fitting,

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
-use feedwright_sim::to_four_digits;
+use feedwright_sim::{rounded, to_four_digits};
 
 use super::columns::Columns;
 use super::error::{LogError, Refusal, RefusalReason};
@@ -236,12 +236,7 @@ fn from_speed(table: &LogTable, roles: &Roles, axis: &AxisRoles) -> Option<f64> 
     }
     let correlation = products / (speeds * changes).sqrt();
     // To two digits: the positions are in steps, the speeds filtered.
-    let two_digits = |value: f64| format!("{value:.1e}").parse::<f64>().ok();
-    if correlation > 0.9 {
-        two_digits(products / speeds * scale)
-    } else {
-        None
-    }
+    (correlation > 0.9).then(|| rounded(products / speeds * scale, 2))
 }
 
 /// Time in which a number of a speed column moves the axis by a number of its position column, s,

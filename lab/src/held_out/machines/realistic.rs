@@ -1,9 +1,9 @@
 //! Effects of real axes beside their loops, drawn on top of a drawn machine: each within the range
 //! of the built-in machines, or not at all.
 
-use feedwright_sim::Axis;
+use feedwright_sim::{Axis, rounded};
 
-use super::super::random::{Random, rounded};
+use super::super::random::Random;
 use super::super::variant::{AXES, Variant};
 
 /// Tables of the ball screws.
@@ -67,7 +67,7 @@ fn with_drive(mut variant: Variant, axes: &[Axis], random: &mut Random) -> Varia
         let times = random.by_ratio(INTEGRAL);
         for (table, axis) in AXES.into_iter().zip(axes) {
             let integral_s = times * axis.inertia_kg_m2 / axis.kv_nm_s_per_rad;
-            variant = variant.with(table, "speed_integral_s", rounded(integral_s));
+            variant = variant.with(table, "speed_integral_s", rounded(integral_s, 3));
         }
     }
     for (key, range, one_in) in [
@@ -90,7 +90,7 @@ fn with_friction(mut variant: Variant, axes: &[Axis], random: &mut Random) -> Va
         random.by_ratio(PRESLIDING_UM),
     );
     for (table, axis) in AXES.into_iter().zip(axes) {
-        let of_coulomb = |part: f64| rounded(part * axis.coulomb_friction_nm);
+        let of_coulomb = |part: f64| rounded(part * axis.coulomb_friction_nm, 3);
         let (stribeck, asymmetry) = (random.between(STRIBECK), random.between(ASYMMETRY));
         variant = variant.with(table, "coulomb_asymmetry_nm", of_coulomb(asymmetry));
         if slides {
@@ -116,7 +116,7 @@ fn with_motor_and_noise(mut variant: Variant, axes: &[Axis], random: &mut Random
     let [cogs, ripples, is_noisy] = [2, 2, 3].map(|one_in| !random.one_in(one_in));
     for (table, axis) in AXES.into_iter().zip(axes) {
         if cogs {
-            let cogging_nm = rounded(cogging * axis.coulomb_friction_nm);
+            let cogging_nm = rounded(cogging * axis.coulomb_friction_nm, 3);
             variant = variant.with(table, "cogging_nm", cogging_nm).with(
                 table,
                 "cogging_per_rev",
@@ -130,7 +130,7 @@ fn with_motor_and_noise(mut variant: Variant, axes: &[Axis], random: &mut Random
                     .with(table, "ripple_per_rev", ripple_per_rev);
         }
         if is_noisy {
-            let noise_nm = rounded(noise * axis.disturbance_nm);
+            let noise_nm = rounded(noise * axis.disturbance_nm, 3);
             variant = variant.with(table, "torque_noise_nm", noise_nm).with(
                 table,
                 "torque_noise_s",

@@ -1,6 +1,7 @@
 //! Lengths and feedrates with their units.
 
 use feedwright_gcode::INCH_MM;
+use feedwright_sim::trimmed;
 
 /// Units of a length, and what one of them is in mm.
 const LENGTHS: [(&str, f64); 8] = [
@@ -35,7 +36,7 @@ pub fn feed_mm_s(text: &str) -> Result<f64, String> {
         unit,
     } = UnitValue::read(text, "3000mm/min, 50mm/s or 120ipm")?;
     if unit.is_empty() {
-        let [slow, fast] = [value / 60.0, value * 60.0].map(shown);
+        let [slow, fast] = [value / 60.0, value * 60.0].map(|feed| trimmed(feed, 3));
         return Err(format!(
             "it has no unit; {number}mm/min is {slow} mm/s, {number}mm/s is {fast} mm/min"
         ));
@@ -153,12 +154,6 @@ fn feed_unit(unit: &str) -> Result<f64, String> {
     found
         .map(|(_, mm_min)| *mm_min)
         .ok_or_else(|| format!("'{unit}' is no unit of a feedrate; those are {}", names()))
-}
-
-/// A number without digits that say nothing.
-fn shown(value: f64) -> String {
-    let text = format!("{value:.3}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 #[cfg(test)]

@@ -8,20 +8,20 @@ use miette::{Result, miette};
 
 use crate::command::args::CacheArgs;
 use crate::command::message::printed;
-use crate::identifier_cache::files::{MOST_BYTES, clear, entries, folder};
+use crate::store::{MOST_BYTES, user_cache};
 
 const KB: f64 = 1e3;
 
 pub(crate) fn run(args: &CacheArgs) -> Result<ExitCode> {
     let mut out = std::io::stdout().lock();
-    let Some(folder) = folder() else {
+    let Some(cache) = user_cache() else {
         let told = writeln!(
             out,
             "nothing is kept: FEEDWRIGHT_CACHE is empty, or there is no home folder"
         );
         return printed(told, ExitCode::SUCCESS);
     };
-    let shown = folder.display();
+    let shown = cache.folder().display();
     let failed = |error: std::io::Error| {
         miette!(
             help = "name another folder in FEEDWRIGHT_CACHE, or leave it empty to keep nothing",
@@ -29,13 +29,13 @@ pub(crate) fn run(args: &CacheArgs) -> Result<ExitCode> {
         )
     };
     if args.clear {
-        let removed = clear(&folder).map_err(failed)?;
+        let removed = cache.clear().map_err(failed)?;
         return printed(
             writeln!(out, "removed {} from {shown}", counted(removed)),
             ExitCode::SUCCESS,
         );
     }
-    let files = entries(&folder).map_err(failed)?;
+    let files = cache.files().map_err(failed)?;
     let bytes: u64 = files.iter().map(|file| file.bytes).sum();
     let [kept_kb, most_kb] = [bytes, MOST_BYTES].map(|bytes| bytes as f64 / KB);
     let models = counted(files.len());

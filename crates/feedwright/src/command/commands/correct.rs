@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use feedwright_gcode::{Program, input};
 use feedwright_ident::{Columns, Log};
-use feedwright_sim::{Machine, Watch};
+use feedwright_sim::{Machine, Watch, fixed};
 use miette::{IntoDiagnostic, Result};
 use serde_json::{Value, json};
 
@@ -17,7 +17,7 @@ use crate::command::controls::{
 };
 use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell_assumed_limits, warn};
 use crate::command::streams::{ProgramInputs, tables, tell_written};
-use crate::command::table::{ConsoleTable, TableColumn, figure};
+use crate::command::table::{ConsoleTable, TableColumn};
 use crate::command::terminal::wrapped;
 use crate::correct::exported::ExportedFigures;
 use crate::correct::{
@@ -62,8 +62,11 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
         }
     })?;
     bar.clear();
-    if let (Some(fault), Some(kept)) = (&outcome.kept_fault, &job.keep) {
-        remark(&format!("{} {fault}", kept.display()));
+    if let (true, Some(kept)) = (outcome.is_lost, &job.keep) {
+        remark(&format!(
+            "{} cannot be written; pieces were not kept for another run",
+            kept.display()
+        ));
     }
     for warning in outcome.warnings.iter().cloned() {
         warn(warning.into());
@@ -173,8 +176,8 @@ fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io:
             blocks,
             ..
         } = figures;
-        let errors = [rms_um, max_um, uncut_um].map(|um| figure(*um, 2));
-        let cells = std::iter::once(figure(*time_s, 3))
+        let errors = [rms_um, max_um, uncut_um].map(|um| fixed(*um, 2));
+        let cells = std::iter::once(fixed(*time_s, 3))
             .chain(errors)
             .chain([blocks.to_string()]);
         table.row(std::iter::once(name.to_owned()).chain(cells).collect());
@@ -201,7 +204,7 @@ fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io:
         writeln!(
             out,
             "{verdict} tolerance: max {} um, allowed {tolerance_um} um",
-            figure(corrected.max_um, 2)
+            fixed(corrected.max_um, 2)
         )?;
     }
     let written = args
@@ -230,7 +233,7 @@ fn print_learned(out: &mut dyn Write, learned: &LearnedOutcome) -> std::io::Resu
             CutProgram::Corrected => "corrected",
         };
         let figures =
-            [log.rms_um, log.max_um, log.model_missed_um, log.missed_um].map(|um| figure(um, 2));
+            [log.rms_um, log.max_um, log.model_missed_um, log.missed_um].map(|um| fixed(um, 2));
         let name = Path::new(&log.log)
             .file_name()
             .map_or(log.log.clone(), |name| name.to_string_lossy().into_owned());
@@ -247,8 +250,8 @@ fn print_learned(out: &mut dyn Write, learned: &LearnedOutcome) -> std::io::Resu
         let note = format!(
             "{} took {} s, and {} s are planned: the limits of the control or its feed override are not those of the machine file",
             log.log,
-            figure(log.time_s, 3),
-            figure(log.planned_s, 3)
+            fixed(log.time_s, 3),
+            fixed(log.planned_s, 3)
         );
         writeln!(out, "{}", wrapped(&note, 2))?;
     }
@@ -278,7 +281,7 @@ fn print_learned(out: &mut dyn Write, learned: &LearnedOutcome) -> std::io::Resu
             )
         )?;
     }
-    let [repeats, rest] = [learned.repeats_um, learned.rest_um].map(|um| figure(um, 2));
+    let [repeats, rest] = [learned.repeats_um, learned.rest_um].map(|um| fixed(um, 2));
     let note =
         format!("beside that, RMS {repeats} um repeat and are corrected, and {rest} um do not");
     writeln!(out, "{}", wrapped(&note, 2))?;
@@ -291,7 +294,7 @@ fn print_learned(out: &mut dyn Write, learned: &LearnedOutcome) -> std::io::Resu
     else {
         return Ok(());
     };
-    let [rms, low, high, max] = [rms_um, band_um[0], band_um[1], max_um].map(|um| figure(um, 2));
+    let [rms, low, high, max] = [rms_um, band_um[0], band_um[1], max_um].map(|um| fixed(um, 2));
     let note = format!(
         "the encoders are to show RMS {rms} um ({low} to {high}) and max {max} um in the next cut"
     );

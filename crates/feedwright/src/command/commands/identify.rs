@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use feedwright_ident::{AxisEstimate, AxisParameters, Model, identifier_name};
-use feedwright_sim::{Machine, is_machine_path};
+use feedwright_sim::{Machine, is_machine_path, significant};
 use miette::Result;
 
 use crate::command::args::identify::IdentifyArgs;
@@ -20,7 +20,6 @@ use crate::command::message::printed;
 use crate::command::streams::{tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn};
 use crate::controllers::{CONTROLLERS, Choices, Setup, identifying};
-use crate::log_job::significant;
 use crate::output::{OutputError, OutputFile, OutputFiles};
 
 pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
@@ -117,7 +116,11 @@ fn print_axes(
         let cell = |(i, axis): (usize, &AxisEstimate)| {
             let [found, error] =
                 [&axis.parameters, &axis.standard_errors].map(|of| value(of, um_per_rad(i)));
-            format!("{} +- {}", three_digits(found), three_digits(error))
+            format!(
+                "{} +- {}",
+                significant(found, 3, 2),
+                significant(error, 3, 2)
+            )
         };
         table.row(
             std::iter::once(label.to_owned())
@@ -125,7 +128,7 @@ fn print_axes(
                 .collect(),
         );
     }
-    let left = found.iter().map(|axis| three_digits(axis.left_um));
+    let left = found.iter().map(|axis| significant(axis.left_um, 3, 2));
     table.row(
         std::iter::once("left, um RMS".to_owned())
             .chain(left)
@@ -136,42 +139,4 @@ fn print_axes(
         out,
         "left: what the identified model leaves of the measured position"
     )
-}
-
-/// Formats a value with three significant digits.
-fn three_digits(value: f64) -> String {
-    significant(value, 3, 2)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::three_digits;
-
-    #[test]
-    fn numbers_have_three_digits() {
-        let shown = [
-            0.0,
-            1.0,
-            0.0123456,
-            -0.000123456,
-            123.4,
-            1234.0,
-            9.87654e-7,
-            f64::NAN,
-        ]
-        .map(three_digits);
-        assert_eq!(
-            shown,
-            [
-                "0",
-                "1.00",
-                "0.0123",
-                "-0.000123",
-                "123",
-                "1.23e3",
-                "9.88e-7",
-                "NaN"
-            ]
-        );
-    }
 }

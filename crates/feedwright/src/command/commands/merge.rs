@@ -10,20 +10,14 @@ use crate::command::args::sweep::MergeArgs;
 use crate::command::console::Console;
 use crate::command::message::printed;
 use crate::command::streams::{tables, tell_written};
-use crate::command::sweep::result_store::ResultStore;
 use crate::command::sweep::result_table::ResultTable;
 use crate::output::{OutputError, OutputFile, OutputFiles, is_standard_output};
 
 pub(crate) fn run(args: &MergeArgs, console: &Console) -> Result<ExitCode> {
     let write = writer(&args.out)?;
-    let stores = args
-        .folders
-        .iter()
-        .map(|folder| ResultStore::open(folder))
-        .collect::<Result<Vec<_>>>()?;
     let mut file = OutputFiles::default().start(&args.out)?;
     let bar = console.bar(0);
-    let table = ResultTable::of(&stores, &bar);
+    let table = ResultTable::of(&args.folders, &bar);
     bar.clear();
     let table = table?;
     write(&table, &mut file).map_err(|error| OutputError::from_io(error, &args.out))?;

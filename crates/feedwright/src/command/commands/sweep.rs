@@ -12,18 +12,18 @@ use crate::command::args::sweep::{JobShard, SweepJobsArgs};
 use crate::command::console::Console;
 use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell};
 use crate::command::progress::Bar;
-use crate::command::streams::tables;
+use crate::command::streams::{make_folder, tables};
 use crate::command::sweep::job_list::JobList;
-use crate::command::sweep::result_store::ResultStore;
 use crate::command::sweep::{JobDone, do_job};
 use crate::output::OutputError;
+use crate::store::Store;
 
 /// Jobs with mistakes that are named; the table of `merge` has all.
 const NAMED: usize = 5;
 
 pub(crate) fn run(args: &SweepJobsArgs, console: &Console) -> Result<ExitCode> {
     let list = JobList::read(&args.jobs)?;
-    let store = ResultStore::create(&args.out)?;
+    make_folder(&args.out)?;
     let workers = args.workers.map_or_else(
         || std::thread::available_parallelism().map_or(1, usize::from),
         usize::from,
@@ -32,7 +32,7 @@ pub(crate) fn run(args: &SweepJobsArgs, console: &Console) -> Result<ExitCode> {
     bar.begin(&format!("{} jobs", list.len()), list.len() as u64);
     let work = SharedWork {
         list,
-        store,
+        store: Store::new(args.out.clone()),
         shard: args.shard,
         next: AtomicUsize::new(0),
         tally: Mutex::default(),
@@ -56,7 +56,7 @@ pub(crate) fn run(args: &SweepJobsArgs, console: &Console) -> Result<ExitCode> {
 /// State that the threads share.
 struct SharedWork {
     list: JobList,
-    store: ResultStore,
+    store: Store,
     shard: Option<JobShard>,
     next: AtomicUsize,
     tally: Mutex<Tally>,

@@ -14,7 +14,7 @@ use toml::{Table, Value};
 use super::job_spec::{JobSpec, ListedJob};
 use crate::command::args::sweep::JobShard;
 use crate::command::files_to_check::FilesToCheck;
-use crate::identifier_cache::key_of;
+use crate::store::key_of;
 
 /// Content of JOBS.toml.
 #[derive(Debug, Default, Deserialize)]

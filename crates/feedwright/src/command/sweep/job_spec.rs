@@ -16,10 +16,10 @@ use crate::command::controllers::{find, settings};
 use crate::command::date::today;
 use crate::command::faults::{fault_findings, fault_text};
 use crate::controllers::{BASELINE, BEST, CONTROLLERS, Choices};
-use crate::identifier_cache::key_of;
 use crate::job::{Job, JobError};
 use crate::recorded_model::{RecordedModelError, fitting_machines, take_recorded_model};
 use crate::results_format::stamped;
+use crate::store::key_of;
 
 /// Raised whenever the same job gets another result without a new version of feedwright, or a
 /// result gets another form.

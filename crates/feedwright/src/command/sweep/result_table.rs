@@ -4,15 +4,15 @@
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use feedwright_sim::Watch;
-use miette::{Result, miette};
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde_json::{Map, Value};
 
 use super::job_spec::error_of;
-use super::result_store::{ResultStore, read};
 use crate::results_format::spelled_out;
+use crate::store::Store;
 
 /// Source of the values of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -122,19 +122,15 @@ pub struct ResultTable {
 }
 
 impl ResultTable {
-    /// The results of all stores; one that several have is one row.
+    /// The results in all folders; one that several have is one row.
     ///
     /// # Errors
-    /// A file that cannot be read, or a cancellation.
-    pub fn of(stores: &[ResultStore], watch: &dyn Watch) -> Result<Self> {
+    /// A folder or a file that cannot be read, or a cancellation.
+    pub fn of(folders: &[PathBuf], watch: &dyn Watch) -> Result<Self> {
         let mut files: BTreeMap<_, PathBuf> = BTreeMap::new();
-        for store in stores {
-            files.extend(
-                store
-                    .files()?
-                    .into_iter()
-                    .filter_map(|path| Some((path.file_name()?.to_owned(), path))),
-            );
+        let named = |path: PathBuf| Some((path.file_name()?.to_owned(), path));
+        for folder in folders {
+            files.extend(files_in(folder)?.filter_map(named));
         }
         watch.begin("reading the results", files.len() as u64);
         let mut rows = Vec::with_capacity(files.len());
@@ -197,6 +193,30 @@ impl ResultTable {
         }
         Ok(())
     }
+}
+
+/// The files of the results in a folder.
+fn files_in(folder: &Path) -> Result<impl Iterator<Item = PathBuf> + use<>> {
+    if !folder.is_dir() {
+        return Err(miette!(
+            help = "name the folder that `feedwright sweep --out` wrote",
+            "{}: there is no such folder",
+            folder.display()
+        ));
+    }
+    let files = Store::new(folder.to_owned())
+        .files()
+        .map_err(|error| miette!("{}: the folder cannot be read: {error}", folder.display()))?;
+    Ok(files.into_iter().map(|file| file.path))
+}
+
+/// The result in a file.
+fn read(path: &Path) -> Result<Value> {
+    let shown = || path.display().to_string();
+    let bytes = std::fs::read(path).into_diagnostic().wrap_err_with(shown)?;
+    serde_json::from_slice(&bytes)
+        .into_diagnostic()
+        .wrap_err_with(shown)
 }
 
 /// A cell of RFC 4180; line ends in a text are spaces, so that each line is a row.

@@ -4,6 +4,8 @@ use crate::command::terminal::ascii;
 use crate::report::headline::{AXES, headline};
 use std::io::{self, Write};
 
+use feedwright_sim::fixed;
+
 use crate::controllers::CutsUncorrected;
 use crate::correct::exported::ExportedFigures;
 use crate::correct::{CorrectOutcome, TargetControl};
@@ -16,7 +18,7 @@ use crate::report::{
 use super::files::Outputs;
 use crate::command::controls::print_correction;
 use crate::command::streams::tell_written;
-use crate::command::table::{ConsoleTable, TableColumn, figure};
+use crate::command::table::{ConsoleTable, TableColumn};
 use crate::command::terminal::{is_inch, wrapped};
 
 pub(super) fn print(
@@ -128,11 +130,11 @@ fn table(report: &Report, uncorrected: &[CutsUncorrected]) -> ConsoleTable {
             } else {
                 now.controller.clone()
             },
-            figure(now.time_s, 3),
-            figure(now.rms_um, 2),
-            figure(now.max_um, 2),
-            figure(now.uncut_um, 2),
-            figure(
+            fixed(now.time_s, 3),
+            fixed(now.rms_um, 2),
+            fixed(now.max_um, 2),
+            fixed(now.uncut_um, 2),
+            fixed(
                 now.peak_torque_nm
                     .map_or(f64::NAN, |peaks_nm| peaks_nm[axis]),
                 2,
