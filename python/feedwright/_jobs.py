@@ -66,15 +66,18 @@ class Cut:
     """Servo period by servo period of the corrected cut; no columns where `rows=False` was asked for."""
     _outcome: Any
 
+    def _run_of(self, controller: str) -> dict[str, Any]:
+        return next(run for run in self.results["runs"] if run["controller"] == controller)
+
     @property
     def uncorrected(self) -> dict[str, Any]:
         """Figures of the cut that is compared against."""
-        return self.results["runs"][0]
+        return self._run_of(self.results["settings"]["Compared against"])
 
     @property
     def corrected(self) -> dict[str, Any]:
         """Figures of the cut with the controller that was asked for."""
-        return self.results["runs"][-1]
+        return self._run_of(self.results["assumed"]["controller"])
 
     @property
     def within_tolerance(self) -> bool:

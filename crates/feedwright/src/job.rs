@@ -50,7 +50,7 @@ pub use crate::job_error::JobError;
 use crate::job_error::axes_that_move;
 use crate::measured::{MeasuredLog, MeasuredRun, measured};
 use crate::report::harm::Harm;
-use crate::report::{FullCircle, Report, ReportedRun, full_circles};
+use crate::report::{FullCircle, Report, ReportedRun, Role, full_circles};
 use cuts::{Cuts, PlannedCut, with_feeds};
 pub use guests::Guests;
 use record::RunRecord;
@@ -118,9 +118,6 @@ pub struct Job {
     /// Settings of the reader.
     pub reader: feedwright_gcode::Settings,
 }
-
-/// Name of the run of a log, in place of a controller.
-pub const MEASURED: &str = "measured";
 
 /// Result of a job. The runs stand in the order in which they were made: the run for comparison,
 /// the measured run if there is a log, then the requested controller's run.
@@ -404,8 +401,11 @@ impl Job {
         else {
             return Ok(Vec::new());
         };
-        let run = self.reported(record, MEASURED, run)?;
-        runs.insert(runs.len() - 1, run);
+        let run = self.reported(record, (Role::Measured, "measured"), run)?;
+        let corrected = runs
+            .iter()
+            .position(|run| run.summary.role == Role::Corrected);
+        runs.insert(corrected.unwrap_or(runs.len()), run);
         Ok([log.findings.clone(), findings].concat())
     }
 

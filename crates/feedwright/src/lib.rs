@@ -141,7 +141,7 @@ pub use cycle_time::{
 };
 pub use fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within};
 pub use identifier_cache::identified;
-pub use job::{CheckedJob, Guests, Job, JobError, JobOutcome, MEASURED};
+pub use job::{CheckedJob, Guests, Job, JobError, JobOutcome};
 #[cfg(feature = "files")]
 pub use linuxcnc_setup::{HALLIB, LinuxcncSetup, LinuxcncSetupError, LinuxcncWiring};
 pub use log_job::{
@@ -164,7 +164,7 @@ pub use report::text::{escaped, number};
 pub use report::{
     Assumptions, Band, BandErrors, CommandShare, CommandShares, CompensatedGeometry, DrawnLimits,
     DriveLimits, ErrorSpectrum, FullCircle, Histogram, LimitBand, ModelKnowledge, PageUnits,
-    ProgramLine, Report, ReportedRun, Roundness, RunFacts, RunSummary, Series, SeriesPoint,
+    ProgramLine, Report, ReportedRun, Role, Roundness, RunFacts, RunSummary, Series, SeriesPoint,
     SpectrumBand, Statistics, TimelineEvent, WorstPlace, write_html, write_html_data,
     write_html_in,
 };

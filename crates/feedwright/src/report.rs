@@ -42,16 +42,13 @@ pub use limit_band::LimitBand;
 pub use page_units::PageUnits;
 pub use series::{Series, SeriesPoint};
 pub use statistics::Statistics;
-pub use summary::{CommandShare, CommandShares, DriveLimits, RunFacts, RunSummary};
+pub(crate) use summary::AS_EXPORTED;
+pub use summary::{CommandShare, CommandShares, DriveLimits, Role, RunFacts, RunSummary};
 pub use worst::WorstPlace;
 
 #[cfg(feature = "command")]
 pub(crate) use feedwright_sim::CorrectionChange;
 pub(crate) use feedwright_sim::{FadedOut, Outcome, Transition};
-
-/// Name in place of a controller for the run of a corrected program, which the target control cuts
-/// without feedback.
-pub(crate) const AS_EXPORTED: &str = "as exported";
 
 /// Everything that the page shows.
 #[derive(Debug, Clone)]
@@ -80,7 +77,7 @@ pub struct Report {
     pub axis_limits: Vec<DrawnLimits>,
     /// Errors of other machines that fit the recording, if these were cut.
     pub band: Option<Band>,
-    /// One run for each controller. The others are compared with the first; the last one is judged.
+    /// The runs, in the order in which they are shown.
     pub runs: Vec<ReportedRun>,
 }
 

@@ -1,7 +1,7 @@
 //! Two results, or two programs, side by side: their figures with the ratio, and one plot.
 //!
-//! Results are the JSON of `run`, `correct` and `plan`. For a run, the last cut counts, which is
-//! the one that is judged. The plot has the distribution of the contour error of two runs, or the
+//! Results are the JSON of `run`, `correct` and `plan`. For a run, the cut that is judged
+//! counts. The plot has the distribution of the contour error of two runs, or the
 //! paths of two programs.
 
 use std::io::{self, Write};
@@ -11,6 +11,7 @@ use feedwright_gcode::{CheckError, Program, Settings};
 use feedwright_sim::path_steps;
 use serde_json::Value;
 
+use crate::report::Role;
 use crate::report::figure::{
     COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline, figure_parts, write_figure_part,
 };
@@ -50,9 +51,11 @@ pub(crate) struct DiffSide {
 impl DiffSide {
     /// Reads a JSON result; `None` if it is not a result of `run`, `correct` or `plan`.
     pub(crate) fn of_result(name: &str, result: &Value) -> Option<Self> {
-        let last = result["runs"].as_array().and_then(|runs| runs.last());
+        let run = Role::Exported
+            .of_results(result)
+            .or_else(|| Role::Corrected.of_results(result));
         let exported = result.get("as_exported");
-        let of = last
+        let of = run
             .or(exported)
             .or(result.get("cutting_s").map(|_| result))?;
         let figure = |(key, name): &(&str, &'static str)| Some((*name, of[*key].as_f64()?));

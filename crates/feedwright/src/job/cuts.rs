@@ -16,7 +16,7 @@ use super::record::{RunRecord, Timeline};
 use super::{Job, JobError};
 use crate::controllers::{CutsUncorrected, Entry, Make, Setup, identifying};
 use crate::fastest::with_tolerance;
-use crate::report::{CompensatedGeometry, FullCircle, ReportedRun};
+use crate::report::{CompensatedGeometry, FullCircle, ReportedRun, Role};
 
 /// Results of the cuts of all controllers.
 #[derive(Default)]
@@ -103,7 +103,7 @@ impl Job {
         let mut cuts = Cuts::default();
         for entry in self.controllers() {
             watch.check()?;
-            let judged = entry.name == self.controller.name;
+            let judged = self.role_of(entry) == Role::Corrected;
             let model = self.model.as_ref().filter(|_| judged);
             let mut steps = (entry.identifier.is_some() && model.is_none())
                 .then(|| identifying(&self.machine, watch));
@@ -152,6 +152,15 @@ impl Job {
             }
         }
         Ok(cuts)
+    }
+
+    /// Returns the part that a controller's cut has in the report.
+    fn role_of(&self, entry: &Entry) -> Role {
+        if entry.name == self.controller.name {
+            Role::Corrected
+        } else {
+            Role::Reference
+        }
     }
 
     /// A model with the axes as a controller knows them now; `None` of one that does not learn.
@@ -203,7 +212,7 @@ impl Job {
         drop(sinks);
         Ok(ReportedRun {
             events: timeline.events,
-            ..self.reported(record, entry.name, run)?
+            ..self.reported(record, (self.role_of(entry), entry.name), run)?
         })
     }
 

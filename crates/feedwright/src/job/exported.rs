@@ -6,7 +6,7 @@ use super::record::{RunRecord, Timeline};
 use super::{Job, JobError};
 use crate::correct::exported::ExportedCut;
 use crate::correct::{CorrectJob, CorrectOutcome, TargetControl};
-use crate::report::{AS_EXPORTED, FullCircle, ReportedRun, RunSummary};
+use crate::report::{AS_EXPORTED, FullCircle, ReportedRun, Role, RunSummary};
 
 impl Job {
     /// Returns the corrected program, if one is requested. Its run, if a text could be written, is
@@ -69,7 +69,7 @@ impl Job {
                 .to_owned()
         };
         let figures = outcome.corrected;
-        let reported = self.reported_as(record, AS_EXPORTED, run, text);
+        let reported = self.reported_as(record, (Role::Exported, AS_EXPORTED), run, text);
         let summary = RunSummary {
             time_s: figures.time_s,
             rms_um: figures.rms_um,

@@ -5,9 +5,9 @@ use std::io;
 use feedwright_plan::{EventName, PlcEvent, TimedEvent, named};
 use feedwright_sim::{Row, RunResult, Sink};
 
-use super::{Job, JobError, MEASURED};
+use super::{Job, JobError};
 use crate::report::{
-    DriveLimits, ErrorSpectrum, FullCircle, RadialDeviations, ReportedRun, RunFacts, Series,
+    DriveLimits, ErrorSpectrum, FullCircle, RadialDeviations, ReportedRun, Role, RunFacts, Series,
     Statistics, TimelineEvent,
 };
 
@@ -92,10 +92,10 @@ impl Job {
     pub(super) fn reported(
         &self,
         record: RunRecord<'_>,
-        name: &str,
+        (role, name): (Role, &str),
         run: RunResult,
     ) -> Result<ReportedRun, JobError> {
-        let mut reported = self.reported_as(record, name, run, |_| String::new());
+        let mut reported = self.reported_as(record, (role, name), run, |_| String::new());
         self.fill_in_texts(&mut reported.summary.worst)?;
         Ok(reported)
     }
@@ -104,7 +104,7 @@ impl Job {
     pub(super) fn reported_as(
         &self,
         record: RunRecord<'_>,
-        name: &str,
+        (role, name): (Role, &str),
         run: RunResult,
         text: impl Fn(u32) -> String,
     ) -> ReportedRun {
@@ -113,7 +113,7 @@ impl Job {
             machine: self.machine.name.clone(),
             part: self.program.file_name(),
             axes: record.axes,
-            measured: name == MEASURED,
+            role,
             drives: Some(DriveLimits::of(&self.machine)),
             run,
         };

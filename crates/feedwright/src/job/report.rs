@@ -10,7 +10,7 @@ use crate::controllers::CutsUncorrected;
 use crate::cycle_time::{self, CycleTime, CycleTimeOfCut, cycle_time};
 use crate::fastest::FastestPlan;
 use crate::report::{
-    DrawnLimits, FullCircle, LimitBand, Outcome, Report, ReportedRun, RunSummary, WorstPlace,
+    DrawnLimits, FullCircle, LimitBand, Outcome, Report, ReportedRun, Role, WorstPlace,
 };
 
 /// Returns the limits of each axis that the page draws.
@@ -116,11 +116,10 @@ impl Job {
     /// Returns true if the command of the requested controller may be used: it was cut to its end,
     /// is not worse than uncorrected, and a drive may receive it.
     pub(super) fn is_of_use(&self, report: &Report) -> bool {
-        let mut runs = report.runs.iter().map(|run| &run.summary);
-        let of_use =
-            |run: &RunSummary| run.outcome == Outcome::Completed && run.beyond_drives().is_none();
-        runs.any(|run| run.controller == self.controller.name && of_use(run))
-            && report.harm().is_empty()
+        let is_of_use = |run: &ReportedRun| {
+            run.summary.outcome == Outcome::Completed && run.summary.beyond_drives().is_none()
+        };
+        report.run(Role::Corrected).is_some_and(is_of_use) && report.harm().is_empty()
     }
 
     /// Returns true if the binding limits along the path are to be found: on machines that are

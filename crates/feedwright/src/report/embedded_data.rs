@@ -49,7 +49,7 @@ pub(super) fn write_json(
     units: PageUnits,
 ) -> io::Result<()> {
     write!(out, "{{\"meta\":{},\"outline\":", meta(report, units))?;
-    match report.runs.first() {
+    match report.basis() {
         Some(run) => write_outline(out, run)?,
         None => out.write_all(b"null")?,
     }
@@ -118,7 +118,7 @@ fn run_meta(run: &ReportedRun, factor: f64) -> serde_json::Value {
         "rows_per_point": run.series.rows_per_point(),
         "histogram": Histogram { bin_um: factor * summary.histogram.bin_um, ..summary.histogram.clone() },
         "worst": worst,
-        "measured": summary.measured,
+        "measured": summary.role.is_measured(),
         "spectrum": run.spectrum.iter().map(|band| [band.from_hz, band.to_hz, factor * band.rms_um].map(digits)).collect::<Vec<_>>(),
     })
 }

@@ -7,7 +7,7 @@ use std::fmt;
 
 use super::harm::{CutErrors, Harm, harm, listed};
 use super::text::{change, duration, fixed, number};
-use super::{AS_EXPORTED, CommandShare, CommandShares, Outcome, Report, RunSummary};
+use super::{CommandShare, CommandShares, Outcome, Report, ReportedRun, Role, RunSummary};
 use crate::controllers::BASELINE;
 
 pub(crate) const AXES: [&str; 3] = ["X", "Y", "Z"];
@@ -67,19 +67,37 @@ impl Report {
         headline(self).to_string()
     }
 
-    /// Returns the run that is judged: the last.
-    fn judged(&self) -> Option<&RunSummary> {
-        self.runs.last().map(|run| &run.summary)
+    /// Returns the run of a role, if there is one.
+    pub fn run(&self, role: Role) -> Option<&ReportedRun> {
+        self.runs.iter().find(|run| run.summary.role == role)
     }
 
-    /// Returns the run that it is compared with: the first that was simulated to its end, if there
-    /// are two.
+    fn summary(&self, role: Role) -> Option<&RunSummary> {
+        self.run(role).map(|run| &run.summary)
+    }
+
+    /// Returns the run that the tables and drawings begin with: the cut for comparison, or the
+    /// requested controller's if it is compared with nothing.
+    pub(super) fn basis(&self) -> Option<&ReportedRun> {
+        self.run(Role::Reference)
+            .or_else(|| self.run(Role::Corrected))
+    }
+
+    /// Returns the run that is judged: that of the corrected program, if there is one, else that of
+    /// the requested controller.
+    pub fn judged(&self) -> Option<&RunSummary> {
+        self.summary(Role::Exported)
+            .or_else(|| self.summary(Role::Corrected))
+    }
+
+    /// Returns the run that it is compared with: the first other that was simulated to its end.
     fn compared(&self) -> Option<&RunSummary> {
-        let (_, others) = self.runs.split_last()?;
-        others
-            .iter()
-            .map(|run| &run.summary)
-            .find(|run| !run.measured && run.outcome == Outcome::Completed)
+        let judged = self.judged()?.role;
+        [Role::Reference, Role::Corrected]
+            .into_iter()
+            .filter(|role| *role != judged)
+            .filter_map(|role| self.summary(role))
+            .find(|run| run.outcome == Outcome::Completed)
     }
 
     /// Returns true if the run that is judged reached its end within the tolerance. Without a
@@ -93,16 +111,9 @@ impl Report {
         })
     }
 
-    /// Returns the run of the requested controller. A corrected program is cut without it.
-    fn controlled(&self) -> Option<&RunSummary> {
-        let runs = self.runs.iter().map(|run| &run.summary);
-        runs.rev()
-            .find(|run| !run.measured && run.controller != AS_EXPORTED)
-    }
-
     /// Returns true if the requested controller left most of the part, or its end, uncorrected.
     pub fn is_mostly_uncorrected(&self) -> bool {
-        self.controlled()
+        self.summary(Role::Corrected)
             .is_some_and(RunSummary::is_mostly_uncorrected)
     }
 
@@ -125,7 +136,7 @@ impl Report {
             .find(|run| run.controller == BASELINE);
         match (
             baseline.filter(is_whole),
-            self.controlled().filter(is_whole),
+            self.summary(Role::Corrected).filter(is_whole),
         ) {
             (Some(before), Some(after)) => harm(&CutErrors::of(before), &CutErrors::of(after)),
             _ => Vec::new(),
@@ -235,7 +246,7 @@ impl Headline {
     /// States that the correction is worse than no correction.
     fn harm(&mut self, report: &Report) {
         let harm = report.harm();
-        if let Some(run) = report.controlled().filter(|_| !harm.is_empty()) {
+        if let Some(run) = report.summary(Role::Corrected).filter(|_| !harm.is_empty()) {
             self.text(" ");
             self.name(&run.controller);
             let figures = listed(&harm).replace(" um", " µm");
@@ -250,7 +261,7 @@ impl Headline {
         let (axis, why) = costly_axis(runs[0], judged);
         let torque_nm = |run: &RunSummary| run.peak_torque_nm.map_or(f64::NAN, |peaks| peaks[axis]);
         let accel_m_s2 = |run: &RunSummary| {
-            if run.measured {
+            if run.role.is_measured() {
                 f64::NAN
             } else {
                 run.max_command_accel_mm_s2 * 1e-3
@@ -306,12 +317,7 @@ impl Headline {
 
     /// States the errors in a log, if there is one.
     fn measured(&mut self, report: &Report) {
-        let Some(run) = report
-            .runs
-            .iter()
-            .map(|run| &run.summary)
-            .find(|run| run.measured)
-        else {
+        let Some(run) = report.summary(Role::Measured) else {
             return;
         };
         self.value(
@@ -357,17 +363,19 @@ fn costly_axis(before: Option<&RunSummary>, after: &RunSummary) -> (usize, &'sta
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Assumptions, ReportedRun, RunFacts, Series, Statistics};
+    use super::super::{Assumptions, RunFacts, Series, Statistics};
     use super::*;
 
     /// A run of two axes with these errors, um, and peak torques, N m.
     fn run(
+        role: Role,
         controller: &str,
         [rms_um, max_um, uncut_um]: [f64; 3],
         peaks_nm: [f64; 2],
     ) -> ReportedRun {
         let facts = RunFacts {
             controller: controller.to_owned(),
+            role,
             axes: 2,
             ..RunFacts::default()
         };
@@ -391,11 +399,16 @@ mod tests {
     }
 
     fn uncorrected() -> ReportedRun {
-        run(BASELINE, [10.0, 40.0, 5.0], [1.0, 0.5])
+        run(Role::Reference, BASELINE, [10.0, 40.0, 5.0], [1.0, 0.5])
     }
 
     fn controlled() -> ReportedRun {
-        run("two-dimensional", [1.0, 4.0, 5.0], [1.2, 0.75])
+        run(
+            Role::Corrected,
+            "two-dimensional",
+            [1.0, 4.0, 5.0],
+            [1.2, 0.75],
+        )
     }
 
     fn report(runs: Vec<ReportedRun>, tolerance_um: Option<f64>) -> Report {
@@ -421,7 +434,7 @@ mod tests {
     }
 
     #[test]
-    fn it_compares_the_last_run_with_the_first() {
+    fn it_compares_the_corrected_run_with_the_reference() {
         assert_eq!(
             text(vec![uncorrected(), controlled()], None),
             "Simulated, two-dimensional against uncorrected: RMS contour error 10.0 µm → 1.00 µm (−90 %), \
@@ -433,7 +446,8 @@ mod tests {
 
     #[test]
     fn a_run_alone_is_compared_with_nothing_and_a_log_is_no_run_to_compare_with() {
-        let alone = text(vec![uncorrected()], None);
+        let requested = || run(Role::Corrected, BASELINE, [10.0, 40.0, 5.0], [1.0, 0.5]);
+        let alone = text(vec![requested()], None);
         assert!(
             alone
                 .starts_with("Simulated, uncorrected: RMS contour error 10.0 µm, largest 40.0 µm,"),
@@ -443,9 +457,9 @@ mod tests {
             alone.contains("peak torque of X, the largest, 1.00 N m,"),
             "{alone}"
         );
-        let mut log = run("measured", [12.0, 50.0, 5.0], [0.0; 2]);
-        (log.summary.measured, log.summary.peak_torque_nm) = (true, None);
-        let beside_a_log = text(vec![log, uncorrected()], None);
+        let mut log = run(Role::Measured, "measured", [12.0, 50.0, 5.0], [0.0; 2]);
+        log.summary.peak_torque_nm = None;
+        let beside_a_log = text(vec![log, requested()], None);
         let measured = " Measured on the machine: RMS contour error 12.0 µm, largest 50.0 µm.";
         assert_eq!(beside_a_log, alone + measured);
     }
@@ -487,7 +501,10 @@ mod tests {
     fn the_torque_is_that_of_the_axis_on_which_it_rises_most() {
         let torque = |peaks_nm: [f64; 2]| {
             let text = text(
-                vec![uncorrected(), run("two-dimensional", [1.0; 3], peaks_nm)],
+                vec![
+                    uncorrected(),
+                    run(Role::Corrected, "two-dimensional", [1.0; 3], peaks_nm),
+                ],
                 None,
             );
             let (_, rest) = text.split_once("peak torque of ").unwrap_or_default();
@@ -500,7 +517,7 @@ mod tests {
         let largest_is_another = report(
             vec![
                 uncorrected(),
-                run("two-dimensional", [1.0; 3], [2.72, 1.48]),
+                run(Role::Corrected, "two-dimensional", [1.0; 3], [2.72, 1.48]),
             ],
             None,
         );
@@ -521,10 +538,17 @@ mod tests {
 
     #[test]
     fn a_correction_that_is_worse_is_named_and_a_corrected_program_does_not_hide_it() {
-        let worse = || run("two-dimensional", [10.1, 30.0, 9.0], [1.0; 2]);
+        let worse = || {
+            run(
+                Role::Corrected,
+                "two-dimensional",
+                [10.1, 30.0, 9.0],
+                [1.0; 2],
+            )
+        };
         let said = "two-dimensional is worse than uncorrected for this part on this machine \
                     (RMS 10.10 µm for 10.00, uncut 9.00 µm for 5.00): do not use its command.";
-        let exported = || run(AS_EXPORTED, [1.0; 3], [1.0; 2]);
+        let exported = || run(Role::Exported, "as exported", [1.0; 3], [1.0; 2]);
         for runs in [
             vec![uncorrected(), worse()],
             vec![uncorrected(), worse(), exported()],
@@ -535,7 +559,10 @@ mod tests {
         assert!(!text(vec![uncorrected(), controlled()], None).contains("worse"));
         assert!(
             !text(
-                vec![run("cross-coupled", [0.1; 3], [1.0; 2]), worse()],
+                vec![
+                    run(Role::Reference, "cross-coupled", [0.1; 3], [1.0; 2]),
+                    worse()
+                ],
                 None
             )
             .contains("worse")

@@ -10,7 +10,7 @@ use super::embedded_data;
 use super::limit_band;
 use super::page_frame::{PageFrame, in_one_scope};
 use super::text::escaped;
-use super::{Assumptions, PageUnits, Report};
+use super::{Assumptions, PageUnits, Report, Role};
 
 mod tables;
 mod circularity;
@@ -82,8 +82,8 @@ pub fn write_html_data(out: &mut impl Write, report: &Report) -> io::Result<()> 
 }
 
 fn write_header(out: &mut impl Write, report: &Report, units: PageUnits) -> io::Result<()> {
-    let machine = report.runs.first().map_or("", |run| &run.summary.machine);
-    let measured = report.runs.iter().any(|run| run.summary.measured);
+    let machine = report.basis().map_or("", |run| &run.summary.machine);
+    let measured = report.run(Role::Measured).is_some();
     write!(
         out,
         r#"<header>
@@ -135,7 +135,7 @@ fn assumed(report: &Report, units: PageUnits) -> String {
             .as_ref()
             .map(|geometry| units.text(&geometry.sentence().replace(" um", " µm"))),
     );
-    let cut = Assumptions::cut_sentence(report.runs.iter().any(|run| run.summary.measured));
+    let cut = Assumptions::cut_sentence(report.run(Role::Measured).is_some());
     format!(
         "<p class=\"assumed\"><b>Assumed</b> {}. {cut}</p>\n",
         escaped(&sentences.join("; "))

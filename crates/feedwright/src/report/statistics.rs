@@ -128,7 +128,7 @@ impl Statistics {
             machine: facts.machine,
             part: facts.part,
             axes: facts.axes,
-            measured: facts.measured,
+            role: facts.role,
             outcome: facts.run.outcome,
             faded_out: facts.run.faded_out,
             transitions: facts.run.transitions,
@@ -142,10 +142,13 @@ impl Statistics {
             uncut_um: of_whole(facts.run.uncut_mm * 1e3),
             max_deviation_um: self.max_deviation_mm * 1e3,
             max_command_accel_mm_s2: self.max_command_accel_mm_s2,
-            command_share: facts.drives.filter(|_| !facts.measured).map(|drives| {
-                drives.shares(facts.axes, self.axis_accel_mm_s2, self.peak_torque_nm)
-            }),
-            peak_torque_nm: (!facts.measured).then_some(self.peak_torque_nm),
+            command_share: facts
+                .drives
+                .filter(|_| !facts.role.is_measured())
+                .map(|drives| {
+                    drives.shares(facts.axes, self.axis_accel_mm_s2, self.peak_torque_nm)
+                }),
+            peak_torque_nm: (!facts.role.is_measured()).then_some(self.peak_torque_nm),
             feed: self.feed.shares(),
             cutting_length_mm: self.cutting_length_mm,
             cutting_time_s: self.cutting_time_s,

@@ -1,11 +1,54 @@
 //! The numbers of one run, for the page's tables and `--json`.
 
 use feedwright_sim::{FadedOut, Machine, Outcome, RunResult, Transition};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
+#[cfg(feature = "command")]
+use serde_json::Value;
 
 use super::headline::AXES;
 use super::histogram::Histogram;
 use super::worst::WorstPlace;
+
+/// Name in place of a controller for the run of a corrected program, which the target control cuts
+/// without feedback.
+pub(crate) const AS_EXPORTED: &str = "as exported";
+
+/// Part that a run has in a report. JSON has [`RunSummary::role`] as `measured`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Role {
+    /// Cut that the others are compared with.
+    Reference,
+    /// Cut of a real machine, from its log.
+    Measured,
+    /// Cut with the requested controller.
+    #[default]
+    Corrected,
+    /// Cut of the corrected program, by the control that it is for.
+    Exported,
+}
+
+impl Role {
+    /// Returns true if the run was measured on a machine, not simulated.
+    pub fn is_measured(self) -> bool {
+        self == Self::Measured
+    }
+
+    /// Finds the run of this role in results of `run --json`, which have no key for it: the last
+    /// simulated cut of the program itself is the requested controller's.
+    #[cfg(feature = "command")]
+    pub(crate) fn of_results(self, results: &Value) -> Option<&Value> {
+        let runs = || results["runs"].as_array().into_iter().flatten();
+        let is_measured = |run: &&Value| run["measured"] == true;
+        let is_exported = |run: &&Value| run["controller"] == AS_EXPORTED;
+        let mut controllers = runs().filter(|run| !is_measured(run) && !is_exported(run));
+        match self {
+            Self::Measured => runs().find(is_measured),
+            Self::Exported => runs().find(is_exported),
+            Self::Corrected => controllers.last(),
+            Self::Reference => controllers.next().filter(|_| controllers.next().is_some()),
+        }
+    }
+}
 
 /// Facts about a run that [`Statistics`](super::Statistics) cannot compute from its rows.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -18,8 +61,8 @@ pub struct RunFacts {
     pub part: String,
     /// Axes of the machine, 2 or 3.
     pub axes: usize,
-    /// True where the rows come from a log, not from a simulation.
-    pub measured: bool,
+    /// Part that the run has in the report.
+    pub role: Role,
     /// Limits of the drives, if known.
     pub drives: Option<DriveLimits>,
     /// Result of the control loop.
@@ -92,6 +135,11 @@ pub struct CommandShare {
     pub share: f64,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
+fn is_measured<S: Serializer>(role: &Role, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_bool(role.is_measured())
+}
+
 /// Largest allowed share of an acceleration limit, in percent as the user reads it. The plan may
 /// ask for all of the limit, and the correction for as much again. A command above this share must
 /// not go to a drive.
@@ -139,8 +187,9 @@ pub struct RunSummary {
     pub part: String,
     /// Axes of the machine, 2 or 3.
     pub axes: usize,
-    /// True where the run was measured on a machine; false where it was simulated.
-    pub measured: bool,
+    /// Part that the run has in the report.
+    #[serde(rename = "measured", serialize_with = "is_measured")]
+    pub role: Role,
     /// Outcome of the run.
     pub outcome: Outcome,
     /// Time and reason of the last disengagement by the supervisor.

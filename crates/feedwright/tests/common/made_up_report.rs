@@ -1,15 +1,21 @@
 //! A report of two made-up runs, in which every text is hostile to the page.
 
 use feedwright::{
-    Assumptions, DrawnLimits, ErrorSpectrum, FullCircle, MEASURED, ProgramLine, Report,
-    ReportedRun, Roundness, RunFacts, Series, Statistics, TimelineEvent, write_html,
+    Assumptions, DrawnLimits, ErrorSpectrum, FullCircle, ProgramLine, Report, ReportedRun, Role,
+    Roundness, RunFacts, Series, Statistics, TimelineEvent, write_html,
 };
 use feedwright_sim::{Commanded, Row, Sink};
 
 pub(crate) const HOSTILE: &str =
     "</script><script>document.title='x'</script><img src=x onerror=alert(1)>\"'&\u{2028}<!--";
 
-fn made_up_run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> ReportedRun {
+fn made_up_run(
+    role: Role,
+    controller: &str,
+    axes: usize,
+    rows: usize,
+    size_mm: f64,
+) -> ReportedRun {
     let (mut series, mut statistics) = (Series::new(), Statistics::new());
     let mut spectrum = ErrorSpectrum::new(axes, 1e-3);
     // Noise of a linear congruential generator: smooth signals would make the page smaller than a
@@ -53,7 +59,7 @@ fn made_up_run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> Repo
         machine: HOSTILE.to_owned(),
         part: HOSTILE.to_owned(),
         axes,
-        measured: controller == MEASURED,
+        role,
         drives: None,
         run: feedwright_sim::RunResult {
             time_s: rows as f64 * 1e-3,
@@ -88,9 +94,10 @@ fn made_up_run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> Repo
 /// The same with a run of a log between the two.
 pub(crate) fn report_with_log(axes: usize, rows: usize) -> Report {
     let mut report = report(axes, rows);
-    report
-        .runs
-        .insert(1, made_up_run(MEASURED, axes, rows, 0.025));
+    report.runs.insert(
+        1,
+        made_up_run(Role::Measured, "measured", axes, rows, 0.025),
+    );
     report
 }
 
@@ -133,8 +140,8 @@ pub(crate) fn report(axes: usize, rows: usize) -> Report {
         ],
         band: None,
         runs: vec![
-            made_up_run(HOSTILE, axes, rows, 0.03),
-            made_up_run("corrected", axes, rows, 0.005),
+            made_up_run(Role::Reference, HOSTILE, axes, rows, 0.03),
+            made_up_run(Role::Corrected, "corrected", axes, rows, 0.005),
         ],
     }
 }

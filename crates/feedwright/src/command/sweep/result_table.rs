@@ -11,6 +11,7 @@ use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde_json::{Map, Value};
 
 use super::job_spec::error_of;
+use crate::report::Role;
 use crate::results_format::spelled_out;
 use crate::store::Store;
 
@@ -23,10 +24,8 @@ enum ColumnSource {
     Job,
     /// The message of the error.
     Error,
-    /// The run of the controller.
-    Run,
-    /// The run that it is compared with.
-    Against,
+    /// The run of a role.
+    Run(Role),
 }
 
 /// A column of the table.
@@ -56,7 +55,9 @@ const fn column(
 
 /// The columns, in the order in which rows are sorted and written.
 pub const RESULT_COLUMNS: [ResultColumn; 27] = {
-    use ColumnSource::{Against, Error, Job, Result, Run};
+    use ColumnSource::{Error, Job, Result};
+    const RUN: ColumnSource = ColumnSource::Run(Role::Corrected);
+    const AGAINST: ColumnSource = ColumnSource::Run(Role::Reference);
     [
         column("program", false, Job, "/program"),
         column("machine", false, Job, "/machine"),
@@ -69,24 +70,24 @@ pub const RESULT_COLUMNS: [ResultColumn; 27] = {
         column("seed", true, Job, "/seed"),
         column("error", false, Error, ""),
         column("within_tolerance", false, Result, "/within_tolerance"),
-        column("outcome", false, Run, "/outcome/kind"),
-        column("time_s", true, Run, "/time_s"),
-        column("rms_um", true, Run, "/rms_um"),
-        column("max_um", true, Run, "/max_um"),
-        column("uncut_um", true, Run, "/uncut_um"),
-        column("max_deviation_um", true, Run, "/max_deviation_um"),
+        column("outcome", false, RUN, "/outcome/kind"),
+        column("time_s", true, RUN, "/time_s"),
+        column("rms_um", true, RUN, "/rms_um"),
+        column("max_um", true, RUN, "/max_um"),
+        column("uncut_um", true, RUN, "/uncut_um"),
+        column("max_deviation_um", true, RUN, "/max_deviation_um"),
         column(
             "max_command_accel_mm_s2",
             true,
-            Run,
+            RUN,
             "/max_command_accel_mm_s2",
         ),
-        column("engaged_share", true, Run, "/engaged_share"),
-        column("cutting_length_mm", true, Run, "/cutting_length_mm"),
-        column("against_time_s", true, Against, "/time_s"),
-        column("against_rms_um", true, Against, "/rms_um"),
-        column("against_max_um", true, Against, "/max_um"),
-        column("against_uncut_um", true, Against, "/uncut_um"),
+        column("engaged_share", true, RUN, "/engaged_share"),
+        column("cutting_length_mm", true, RUN, "/cutting_length_mm"),
+        column("against_time_s", true, AGAINST, "/time_s"),
+        column("against_rms_um", true, AGAINST, "/rms_um"),
+        column("against_max_um", true, AGAINST, "/max_um"),
+        column("against_uncut_um", true, AGAINST, "/uncut_um"),
         column("band_max_um_p90", true, Result, "/band/max_um/p90"),
         column("version", false, Result, "/version"),
         column("address", false, Result, "/address"),
@@ -95,13 +96,11 @@ pub const RESULT_COLUMNS: [ResultColumn; 27] = {
 
 impl ResultColumn {
     fn of(&self, result: &Value) -> Value {
-        let runs = result["runs"].as_array().map_or(&[][..], Vec::as_slice);
         let within = match self.source {
             ColumnSource::Result => Some(result),
             ColumnSource::Job => result.get("job"),
             ColumnSource::Error => return error_of(result).map_or(Value::Null, Value::from),
-            ColumnSource::Run => runs.last(),
-            ColumnSource::Against => runs.first().filter(|_| runs.len() > 1),
+            ColumnSource::Run(role) => role.of_results(result),
         };
         match within.and_then(|value| value.pointer(self.pointer)) {
             // A list or an object is its text: a cell holds one value.

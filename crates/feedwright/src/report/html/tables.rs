@@ -44,9 +44,10 @@ pub(super) fn write_summary(
         write!(out, "<th scope=\"col\">Peak torque {axis}<i>N m</i></th>")?;
     }
     out.write_all(b"</tr></thead>\n<tbody role=\"rowgroup\">\n")?;
-    let first = report.runs.first().map(|run| &run.summary);
+    let first = report.basis().map(|run| &run.summary);
     for (i, run) in report.runs.iter().enumerate() {
-        write_summary_row(out, i, &run.summary, first.filter(|_| i > 0), (axes, units))?;
+        let other = first.filter(|first| first.role != run.summary.role);
+        write_summary_row(out, i, &run.summary, other, (axes, units))?;
     }
     write!(out, "</tbody></table></div>\n{assumed}")?;
     for (i, run) in report.runs.iter().enumerate() {
@@ -127,7 +128,7 @@ fn write_summary_row(
         0,
     )?;
     let accel_m_s2 = |r: &RunSummary, _: usize| {
-        if r.measured {
+        if r.role.is_measured() {
             f64::NAN
         } else {
             r.max_command_accel_mm_s2 * 1e-3

@@ -10,9 +10,9 @@ use crate::controllers::CutsUncorrected;
 use crate::correct::exported::ExportedFigures;
 use crate::correct::{CorrectOutcome, TargetControl};
 use crate::fastest::FastestPlan;
-use crate::job::{Job, JobOutcome, MEASURED};
+use crate::job::{Job, JobOutcome};
 use crate::report::{
-    AS_EXPORTED, Assumptions, CorrectionChange, Outcome as Ending, Report, ReportedRun, RunSummary,
+    AS_EXPORTED, Assumptions, CorrectionChange, Outcome as Ending, Report, Role, RunSummary,
 };
 
 use super::files::Outputs;
@@ -27,8 +27,7 @@ pub(super) fn print(
     outputs: &Outputs,
     outcome: &JobOutcome,
 ) -> io::Result<()> {
-    let runs = &outcome.report.runs;
-    let measured = runs.iter().any(|run| run.summary.measured);
+    let measured = outcome.report.run(Role::Measured).is_some();
     let say = |out: &mut dyn Write, text: &str| writeln!(out, "{}", wrapped(text, 2));
     say(out, &ascii(&headline(&outcome.report).to_string()))?;
     writeln!(out)?;
@@ -45,7 +44,7 @@ pub(super) fn print(
             "measured: from the first cut on, so its time is without the way there; a log has no torque, and digits that make accelerations of it too large",
         )?;
     }
-    if let Some(text) = chip_load(runs) {
+    if let Some(text) = chip_load(&outcome.report) {
         say(out, &text)?;
     }
     if let Some(band) = &outcome.report.band {
@@ -93,11 +92,11 @@ fn planned_as(control: &TargetControl) -> String {
 const MOSTLY_UNCORRECTED: &str = "most of the part, or its end, is as good as uncorrected: the model does not fit this machine. Record it anew with \
      `feedwright excite`, and identify it with `feedwright identify`";
 
-/// Describes how the feedrate of the last run differs from the programmed one.
-fn chip_load(runs: &[ReportedRun]) -> Option<String> {
+/// Describes how the feedrate of the judged run differs from the programmed one.
+fn chip_load(report: &Report) -> Option<String> {
     let RunSummary {
         controller, feed, ..
-    } = &runs.last()?.summary;
+    } = report.judged()?;
     let feed = feed.as_ref()?;
     let [slow, fast] = [feed.slow_share, feed.fast_share].map(|share| 100.0 * share);
     Some(format!(
@@ -123,10 +122,10 @@ fn table(report: &Report, uncorrected: &[CutsUncorrected]) -> ConsoleTable {
     ]);
     for run in &report.runs {
         let now = &run.summary;
-        let is_measured = now.controller == MEASURED;
+        let is_measured = now.role.is_measured();
         table.row(vec![
             if is_measured {
-                format!("{MEASURED}, not simulated")
+                format!("{}, not simulated", now.controller)
             } else {
                 now.controller.clone()
             },
@@ -300,9 +299,8 @@ fn print_written(out: &mut dyn Write, outputs: &Outputs, outcome: &JobOutcome) -
         (Some(path), None) if !is_good => {
             let is_beyond = outcome
                 .report
-                .runs
-                .last()
-                .is_some_and(|run| run.summary.beyond_drives().is_some());
+                .judged()
+                .is_some_and(|run| run.beyond_drives().is_some());
             let why = if !outcome.harm.is_empty() {
                 "the uncorrected cut is better"
             } else if is_beyond {
