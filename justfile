@@ -15,6 +15,13 @@ test-all:
 sweep:
     FEEDWRIGHT_SWEEP=1 cargo test --release --workspace --locked -- --include-ignored
 
+# What is too long for every change, once a week: the long tests, half an hour of LinuxCNC with random programs and faults, and the
+# packages as they are released.
+weekly: sweep
+    env SOAK_MINUTES=30 linuxcnc/check
+    web/check
+    packaging/check dist
+
 # Builds wheel, Debian packages and archive, installs each into an empty place and cuts the star with it.
 packages profile="dist":
     packaging/check {{ profile }}
