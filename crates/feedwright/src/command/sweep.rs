@@ -6,12 +6,12 @@
 //!
 //! | File | What |
 //! |---|---|
-//! | `sweep/job_spec.rs` | one job: its keys, its address, its cut |
+//! | `sweep/job_result.rs` | the result of one job, and its address |
 //! | `sweep/job_list.rs` | the list of jobs, JOBS.toml, and shards |
 //! | `sweep/result_store.rs` | the folder of results |
 //! | `sweep/result_table.rs` | the results as rows of a table |
 
-pub(crate) mod job_spec;
+pub(crate) mod job_result;
 pub(crate) mod job_list;
 pub(crate) mod result_store;
 pub(crate) mod result_table;
@@ -19,7 +19,7 @@ pub(crate) mod result_table;
 use feedwright_sim::Watch;
 use miette::Result;
 
-use job_spec::ListedJob;
+use crate::request::JobRequest;
 use result_store::ResultStore;
 
 /// A job whose result is in the store.
@@ -39,13 +39,13 @@ pub struct JobDone {
 /// A file that cannot be read, a result that cannot be written, or a cancellation: nothing is
 /// stored, and the job may be done again. The mistakes of a program, a machine or a model are a
 /// result.
-pub fn do_job(store: &ResultStore, job: &ListedJob, watch: &dyn Watch) -> Result<JobDone> {
+pub fn do_job(store: &ResultStore, job: &JobRequest, watch: &dyn Watch) -> Result<JobDone> {
     let address = job.address()?;
     if let Some(result) = store.get(&address) {
         return Ok(JobDone {
             address,
             found: true,
-            error: job_spec::error_of(&result),
+            error: job_result::error_of(&result),
         });
     }
     let result = job.result(&address, watch)?;
@@ -53,6 +53,6 @@ pub fn do_job(store: &ResultStore, job: &ListedJob, watch: &dyn Watch) -> Result
     Ok(JobDone {
         address,
         found: false,
-        error: job_spec::error_of(&result),
+        error: job_result::error_of(&result),
     })
 }

@@ -2,10 +2,10 @@
 
 use feedwright_gcode::suggestion::nearest;
 use miette::Diagnostic;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::Serialize;
 use thiserror::Error;
 
-use super::{CONTROLLERS, Controllers, Entry};
+use super::{Controllers, Entry};
 
 /// Something of a controller that can be set.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,26 +107,6 @@ pub struct Setting {
     pub name: &'static str,
     /// The value, which is allowed.
     pub value: f64,
-}
-
-/// A setting as it is read back, before its names and value are checked.
-#[derive(Deserialize)]
-struct StoredSetting {
-    controller: String,
-    name: String,
-    value: f64,
-}
-
-impl<'d> Deserialize<'d> for Setting {
-    fn deserialize<D: Deserializer<'d>>(deserializer: D) -> Result<Self, D::Error> {
-        let StoredSetting {
-            controller,
-            name,
-            value,
-        } = StoredSetting::deserialize(deserializer)?;
-        Self::parse(&format!("{controller}.{name}={value}"), None, CONTROLLERS)
-            .map_err(serde::de::Error::custom)
-    }
 }
 
 /// Reason why `--set` cannot be done.
@@ -272,6 +252,7 @@ impl Values {
 
 #[cfg(test)]
 mod tests {
+    use super::super::CONTROLLERS;
     use super::*;
 
     fn told(text: &str) -> String {

@@ -111,6 +111,14 @@ impl Report {
         })
     }
 
+    /// Returns true if the command of the requested controller may be used: it was cut to its end,
+    /// is not worse than uncorrected, and a drive may receive it.
+    pub fn is_of_use(&self) -> bool {
+        let may_be_used =
+            |run: &RunSummary| run.outcome == Outcome::Completed && run.beyond_drives().is_none();
+        self.summary(Role::Corrected).is_some_and(may_be_used) && self.harm().is_empty()
+    }
+
     /// Returns true if the requested controller left most of the part, or its end, uncorrected.
     pub fn is_mostly_uncorrected(&self) -> bool {
         self.summary(Role::Corrected)
