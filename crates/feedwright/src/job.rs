@@ -47,7 +47,7 @@ use feedwright_sim::{Machine, Sink, Watch};
 
 use crate::compensation::GeometryChoice;
 use crate::controllers::{Choices, CutsUncorrected, Entry, LQG_IDENTIFIED, Make, UNCORRECTED};
-use crate::correct::{CorrectOutcome, TargetControl};
+use crate::correct::{CorrectJob, CorrectOutcome, TargetControl};
 use crate::cycle_time::CycleTimeOfCut;
 use crate::fastest::{FastestPlan, TolerancePlan};
 pub use crate::job_error::JobError;
@@ -84,7 +84,7 @@ pub struct Job {
     pub choices: Choices,
     /// A model for the requested controller, in place of a training.
     pub model: Option<Model>,
-    /// Without a model, where one comes from; `None` trains the controller on the machine.
+    /// Log that gives the model if there is none; `None` trains the controller on the machine.
     pub model_of_log: Option<ModelOfLog>,
     /// Machines that fit the recording of the model. Each is cut with the controller too, and the
     /// results are the band of the report.
@@ -97,6 +97,8 @@ pub struct Job {
     pub tolerance_um: Option<f64>,
     /// The control, without feedback, that a corrected program is made for.
     pub target: Option<&'static TargetControl>,
+    /// Standard deviation of each value of the machine for the corrected program, as a fraction.
+    pub file_error: f64,
     /// Plans the program with the planner of this control instead of the machine's planner.
     pub planned_as: Option<&'static TargetControl>,
     /// A program that errors are measured to, in place of the one that is cut.
@@ -164,6 +166,7 @@ impl Job {
             learned_on: None,
             tolerance_um: None,
             target: None,
+            file_error: CorrectJob::usual_file_error(false),
             planned_as: None,
             reference: None,
             fastest: false,

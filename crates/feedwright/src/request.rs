@@ -317,6 +317,7 @@ impl JobRequest {
         job.fastest = self.fastest;
         job.with_limits = self.with_limits;
         job.target = target;
+        job.file_error = self.file_error()?;
         let model = self.model.as_ref().map(|path| Model::read(&self.at(path)));
         job.model = model.transpose()?;
         job.model_of_log = (!self.exact_settings).then(|| ModelOfLog {

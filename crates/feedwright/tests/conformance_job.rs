@@ -1,6 +1,5 @@
 //! Guarantees of a job to its caller: its request can be written down and read back, it reports its
-//! progress,
-//! ends when it is canceled, needs no file, and shares nothing with another job beside it.
+//! progress, ends when it is canceled, needs no file, and shares nothing with another job beside it.
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -67,7 +66,7 @@ fn everything_that_can_be_asked_for_is_read_back_and_is_in_the_job() {
     full.program_text = Some("G1 X1 F100\nM2\n".to_owned());
     full.against = "two-dimensional".to_owned();
     full.settings = vec![
-        ("two-dimensional.rho".to_owned(), 0.5.into()),
+        ("two-dimensional.rho".to_owned(), 0.05.into()),
         ("two-dimensional.eta".to_owned(), "3.3e-10".into()),
     ];
     full.feed_mm_s = Some(33.3);
@@ -76,6 +75,7 @@ fn everything_that_can_be_asked_for_is_read_back_and_is_in_the_job() {
     full.target = Some(TARGETS[2].name.to_owned());
     full.band = 8;
     full.no_geometry = true;
+    full.file_error = Some(7.0);
     full.dialect = "fanuc-lathe".to_owned();
     full.increment = Some(Increment::named("0.0001inch").unwrap());
     full.max_motions = Some(7);
@@ -87,7 +87,7 @@ fn everything_that_can_be_asked_for_is_read_back_and_is_in_the_job() {
         job.program,
         Program::from_text(part().display().to_string(), "G1 X1 F100\nM2\n")
     );
-    let set = ["two-dimensional.rho=0.5", "two-dimensional.eta=3.3e-10"];
+    let set = ["two-dimensional.rho=0.05", "two-dimensional.eta=3.3e-10"];
     let set = set.map(|text| Setting::parse(text, None, CONTROLLERS).unwrap());
     assert_eq!(
         (&job.choices.set[..2], job.choices.seed),
@@ -98,7 +98,10 @@ fn everything_that_can_be_asked_for_is_read_back_and_is_in_the_job() {
         (Some(33.3), Some(1.0 / 3.0))
     );
     assert_eq!(job.target.map(|target| target.name), Some(TARGETS[2].name));
-    assert_eq!(job.compensation, GeometryChoice::Off);
+    assert_eq!(
+        (job.compensation, job.file_error),
+        (GeometryChoice::Off, 0.07)
+    );
     assert_eq!(job.reader.dialect, Some(Dialect::FanucLathe));
     assert_eq!(
         (job.reader.increment, job.reader.max_motions),

@@ -249,7 +249,7 @@ fn read_table(
         .by_ref()
         .take(HEAD_BYTES as u64)
         .read_to_end(&mut head);
-    beginning.map_err(|source| LogError::unreadable(source))?;
+    beginning.map_err(LogError::unreadable)?;
     let mut whole = Cursor::new(&head).chain(reader);
     if matlab::is_matlab(&head) {
         return matlab::read(&mut whole, steps, watch);

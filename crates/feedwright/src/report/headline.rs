@@ -83,8 +83,8 @@ impl Report {
             .or_else(|| self.run(Role::Corrected))
     }
 
-    /// Returns the run that is judged: that of the corrected program, if there is one, else that of
-    /// the requested controller.
+    /// Returns the run that is judged: the cut of the corrected program, if there is one, else the
+    /// requested controller's.
     pub fn judged(&self) -> Option<&RunSummary> {
         self.summary(Role::Exported)
             .or_else(|| self.summary(Role::Corrected))

@@ -7,7 +7,7 @@ use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::ser::{Serialize, Serializer};
 use serde_json::Value;
 
-/// A setting as `--set` has it; without a value where there is none.
+/// A setting as `--set` has it; `Null` is a setting without a value.
 pub(super) fn text((name, value): &(String, Value)) -> String {
     match value {
         Value::Null => name.clone(),

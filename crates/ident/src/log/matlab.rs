@@ -53,8 +53,7 @@ pub(super) fn read(
     watch: &dyn Watch,
 ) -> Result<LogTable, LogError> {
     let mut bytes = Vec::new();
-    file.read_to_end(&mut bytes)
-        .map_err(|error| LogError::unreadable(error))?;
+    file.read_to_end(&mut bytes).map_err(LogError::unreadable)?;
     let fault = |message: String| {
         LogError::format(
             None,

@@ -43,7 +43,7 @@ pub(super) fn read(
         failed: &failed,
     };
     let mut reader = BufReader::with_capacity(1 << 18, reader);
-    let result = skip_mark(&mut reader).map_err(|error| LogError::unreadable(error)).and_then(|()| {
+    let result = skip_mark(&mut reader).map_err(LogError::unreadable).and_then(|()| {
         let mut json = serde_json::Deserializer::from_reader(reader);
         let table = RecordingSeed { columns }.deserialize(&mut json);
         table.map_err(|error| {

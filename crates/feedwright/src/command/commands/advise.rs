@@ -3,7 +3,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use feedwright_gcode::visible;
-use miette::{IntoDiagnostic, Result};
+use miette::Result;
 use serde_json::json;
 
 use crate::command::args::advise::AdviseArgs;
@@ -42,24 +42,18 @@ pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
         .unwrap_or(args.part.as_os_str())
         .to_string_lossy();
     let mut complete = Vec::new();
-    if let Some(mut file) = report {
-        advice
-            .write_page(&mut file, &part, &job.machine.name, page_units())
-            .into_diagnostic()?;
-        complete.push(file);
-    }
-    if let Some(mut file) = figure {
+    complete.extend(OutputFile::filled(report, |file| {
+        advice.write_page(file, &part, &job.machine.name, page_units())
+    })?);
+    complete.extend(OutputFile::filled(figure, |file| {
         file.write_all(advice.figure(PageUnits::Metric).to_svg().as_bytes())
-            .into_diagnostic()?;
-        complete.push(file);
-    }
-    if let Some(mut file) = json {
-        let mut value = serde_json::to_value(&advice).into_diagnostic()?;
+    })?);
+    complete.extend(OutputFile::filled(json, |file| {
+        let mut value = serde_json::to_value(&advice)?;
         value["part"] = json!(args.part.display().to_string());
         value["machine"] = json!(job.machine.name);
-        write_json(&mut file, &stamped(value)).into_diagnostic()?;
-        complete.push(file);
-    }
+        write_json(file, &stamped(value))
+    })?);
     OutputFile::commit_all(complete, &bar)?;
     let code = if advice.holds() {
         ExitCode::SUCCESS

@@ -59,11 +59,9 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
         _ => out = None,
     }
     complete.extend(out);
-    if let Some(mut file) = json {
-        let results = results(args, &job, &outcome, within).into_diagnostic()?;
-        write_json(&mut file, &results).into_diagnostic()?;
-        complete.push(file);
-    }
+    complete.extend(OutputFile::filled(json, |file| {
+        write_json(file, &results(args, &job, &outcome, within)?)
+    })?);
     OutputFile::commit_all(complete, &bar)?;
     job.forget_pieces().into_diagnostic()?;
     let good = within && outcome.refusal.is_none();

@@ -101,10 +101,9 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
         outcome.write_results(&mut file, args, &machine)?;
         complete.push(file);
     }
-    if let Some(mut file) = lines {
-        write_lines(&mut file, &program, &outcome.found.lines).into_diagnostic()?;
-        complete.push(file);
-    }
+    complete.extend(OutputFile::filled(lines, |file| {
+        write_lines(file, &program, &outcome.found.lines)
+    })?);
     OutputFile::commit_all(complete, &bar)?;
     printed(outcome.print(args), ExitCode::SUCCESS)
 }

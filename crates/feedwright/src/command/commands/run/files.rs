@@ -131,52 +131,30 @@ impl Files {
         outcome: &JobOutcome,
         watch: &dyn Watch,
     ) -> Result<(), OutputError> {
-        let mut complete = Vec::new();
-        let named = |path: &Path| {
-            let path = path.to_owned();
-            move |cause| OutputError::from_io(cause, &path)
-        };
         let of_rows = |error| OutputError::from_io(error, Path::new("the output"));
-        if let Some(mut output) = self.report {
-            write_html_in(&mut output, &outcome.report, page_units())
-                .map_err(named(output.path()))?;
-            complete.push(output);
-        }
-        if let Some(mut output) = self.json {
-            outcome
-                .write_json(job, &mut output)
-                .map_err(named(output.path()))?;
-            complete.push(output);
-        }
-        complete.extend(
-            self.trace
-                .map(TraceWriter::finish)
-                .transpose()
-                .map_err(of_rows)?,
-        );
-        if let (Some(mut output), Some(model)) = (self.learned, &outcome.learned) {
-            output
-                .write_all(model.text().as_bytes())
-                .map_err(named(output.path()))?;
-            complete.push(output);
+        let mut complete = Vec::new();
+        complete.extend(OutputFile::filled(self.report, |file| {
+            write_html_in(file, &outcome.report, page_units())
+        })?);
+        complete.extend(OutputFile::filled(self.json, |file| {
+            outcome.write_json(job, file)
+        })?);
+        let trace = self.trace.map(TraceWriter::finish);
+        complete.extend(trace.transpose().map_err(of_rows)?);
+        if let Some(model) = &outcome.learned {
+            complete.extend(OutputFile::filled(self.learned, |file| {
+                file.write_all(model.text().as_bytes())
+            })?);
         }
         if outcome.is_of_use {
-            complete.extend(
-                self.setpoints
-                    .map(SetpointWriter::finish)
-                    .transpose()
-                    .map_err(of_rows)?,
-            );
+            let setpoints = self.setpoints.map(SetpointWriter::finish);
+            complete.extend(setpoints.transpose().map_err(of_rows)?);
         }
-        let program = outcome
-            .exported
-            .as_ref()
-            .and_then(|exported| exported.program());
-        if let (Some(mut output), Some(program)) = (self.program, program) {
-            output
-                .write_all(program.as_bytes())
-                .map_err(named(output.path()))?;
-            complete.push(output);
+        let exported = outcome.exported.as_ref();
+        if let Some(program) = exported.and_then(|exported| exported.program()) {
+            complete.extend(OutputFile::filled(self.program, |file| {
+                file.write_all(program.as_bytes())
+            })?);
         }
         OutputFile::commit_all(complete, watch)
     }
