@@ -9,7 +9,7 @@ import numpy
 
 from . import _feedwright
 from ._feedwright import Window
-from ._jobs import MachineOrPath, ProgramOrPath, _machine, _program
+from ._jobs import MachineOrPath, ProgramOrPath, _machine, _program, request
 
 try:
     from gymnasium import Env as _Base
@@ -71,16 +71,16 @@ class Env(_Base):  # type: ignore[misc,valid-type]
         observe: Observe = observe,
         reward: Reward = reward,
     ) -> None:
-        self._program, self._machine = _program(program), _machine(machine)
+        program = _program(program)
+        self._name = program.name
         self._schedule = (servo_periods, preview)
         self._options = {
             "name": "Env",
             "of_library": None,
             "feeds_mm_s": None,
-            "settings": [],
+            "request": request(program, _machine(machine), feed_mm_s=feed_mm_s),
             "against": None,
             "knowledge": knowledge,
-            "feed_mm_s": feed_mm_s,
             "plant_term": plant_term,
             "rows": False,
         }
@@ -101,10 +101,10 @@ class Env(_Base):  # type: ignore[misc,valid-type]
 
     def _begin(self, seed: int) -> tuple[Any, Window]:
         options = {**self._options, "seed": seed}
-        episode = _feedwright.Episode(self._program, self._machine, *self._schedule, options)
+        episode = _feedwright.Episode(*self._schedule, options)
         window, _, _ = episode.advance()
         if window is None:
-            raise ValueError(f"{self._program.name} has nothing to decide on")
+            raise ValueError(f"{self._name} has nothing to decide on")
         return episode, window
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:

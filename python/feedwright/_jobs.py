@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -109,9 +110,24 @@ class Cut:
         return (svg(self.rows) if len(self.rows) else "") + table
 
 
-def words_of(settings: Mapping[str, Any] | None) -> list[str]:
-    """Settings as `--set` has them."""
-    return [f"{name}={value}" for name, value in (settings or {}).items()]
+def request(program: ProgramOrPath, machine: MachineOrPath, **keys: Any) -> str:
+    """A request as JSON: the program, the machine, and the keys that are not None."""
+    asked: dict[str, Any] = json.loads(_program(program)._job())
+    if isinstance(machine, Machine):
+        asked["machine"], asked["machine_text"] = machine._job()
+    else:
+        asked["machine"] = os.fspath(machine)
+    asked.update((key, value) for key, value in keys.items() if value is not None)
+    return json.dumps(asked)
+
+
+def path_or_none(path: str | os.PathLike[str] | None) -> str | None:
+    return None if path is None else os.fspath(path)
+
+
+def words_of(settings: Mapping[str, Any] | None) -> dict[str, str]:
+    """Settings with their values as `--set` has them."""
+    return {name: f"{value}" for name, value in (settings or {}).items()}
 
 
 def made_of(results: dict[str, Any], columns: dict[str, Any] | None, outcome: Any) -> Cut:
@@ -152,21 +168,22 @@ def run(
     >>> cut.corrected["max_um"] > 1.0
     True
     """
-    options = {
-        "controller": controller,
-        "against": against,
-        "tolerance_um": tolerance_um,
-        "feed_mm_s": feed_mm_s,
-        "seed": seed,
-        "settings": words_of(settings),
-        "model": model,
-        "exact_settings": exact_settings,
-        "log": log,
-        "rows": rows,
-        "band": band,
-    }
+    asked = request(
+        program,
+        _machine(machine),
+        controller=controller,
+        against=against,
+        tolerance_um=tolerance_um,
+        feed_mm_s=feed_mm_s,
+        seed=seed,
+        settings=words_of(settings),
+        model=path_or_none(model),
+        exact_settings=exact_settings,
+        logs=None if log is None else [os.fspath(log)],
+        band=band,
+    )
     with told(progress) as tell:
-        return made_of(*_feedwright.run(_program(program), _machine(machine), options, tell))
+        return made_of(*_feedwright.run(asked, rows, tell))
 
 
 @dataclass(frozen=True, repr=False)
@@ -216,9 +233,16 @@ def correct(
     >>> "M2" in corrected.program
     True
     """
-    options = {"control": control, "logs": _paths(logs), "columns": columns, "file_error": file_error}
+    asked = request(
+        program,
+        _machine(machine),
+        target=control,
+        logs=[os.fspath(log) for log in _paths(logs)],
+        columns=columns,
+        file_error=file_error,
+    )
     with told(progress) as tell:
-        return Corrected(*_feedwright.correct(_program(program), _machine(machine), options, tell))
+        return Corrected(*_feedwright.correct(asked, tell))
 
 
 @dataclass(frozen=True, repr=False)
@@ -249,14 +273,17 @@ def advise(
     progress: Progress = None,
 ) -> Advice:
     """Finds the feedrates at which a tolerance is held: the command `feedwright advise`."""
-    options = {
-        "tolerance_um": tolerance_um,
-        "control": control,
-        "controller": controller,
-        "file_error": file_error,
-    }
+    asked = request(
+        program,
+        _machine(machine),
+        tolerance_um=tolerance_um,
+        target=control,
+        controller=controller,
+        file_error=file_error,
+        seed=0,
+    )
     with told(progress) as tell:
-        return Advice(_feedwright.advise(_program(program), _machine(machine), options, tell))
+        return Advice(_feedwright.advise(asked, tell))
 
 
 @dataclass(frozen=True, repr=False)

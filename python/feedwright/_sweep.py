@@ -12,13 +12,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _feedwright
 from ._feedwright import Machine, Program
+from ._jobs import path_or_none, request
 from ._progress import Progress, told
 from ._table import Table
 
@@ -61,19 +62,10 @@ class Job:
     fastest: bool = False
 
     def _task(self) -> Task:
-        program = self.program if isinstance(self.program, Program) else Program(self.program)
-        keys: dict[str, Any] = json.loads(program._job())
-        if isinstance(self.machine, Machine):
-            keys["machine"], keys["machine_text"] = self.machine._job()
-        else:
-            keys["machine"] = os.fspath(self.machine)
-        if self.controller is not None:
-            keys["controller"] = self.controller
-        keys["model"] = None if self.model is None else os.fspath(self.model)
+        keys = {field.name: getattr(self, field.name) for field in fields(self)}
         keys["settings"] = dict(self.settings or {})
-        for name in ("against", "tolerance_um", "feed_mm_s", "exact_settings", "seed", "band", "fastest"):
-            keys[name] = getattr(self, name)
-        return json.dumps(keys), os.getcwd()
+        keys["model"] = path_or_none(self.model)
+        return request(keys.pop("program"), keys.pop("machine"), **keys), os.getcwd()
 
     @property
     def address(self) -> str:

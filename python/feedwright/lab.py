@@ -24,7 +24,7 @@ from . import _feedwright
 from ._bench import PUBLIC_SECRET, Benchmark, Round, _name, benchmark, commitment, leaderboard, new_secret, verify
 from ._env import Env, Observe, Reward
 from ._feedwright import Machine, Measurement, Motion, Program, Window
-from ._jobs import Cut, MachineOrPath, ProgramOrPath, _machine, _program, made_of, words_of
+from ._jobs import Cut, MachineOrPath, ProgramOrPath, _machine, _program, made_of, request, words_of
 from ._progress import Progress, told
 
 __all__ = [
@@ -120,14 +120,13 @@ def run(
         "name": _name(controller, planner),
         "of_library": controller if isinstance(controller, str) else None,
         "feeds_mm_s": _feeds(planner, program, machine),
-        "settings": words_of(settings),
+        "request": request(program, machine, settings=words_of(settings), feed_mm_s=feed_mm_s),
         "against": against,
         "knowledge": knowledge,
         "seed": seed,
-        "feed_mm_s": feed_mm_s,
         "plant_term": plant_term,
         "rows": rows,
     }
     with told(progress) as tell:
-        ran = _feedwright.run_with(program, machine, controller, options, tell)
+        ran = _feedwright.run_with(controller, options, tell)
     return made_of(*ran)

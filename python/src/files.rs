@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use feedwright::command::{JobSpec, mistake_json};
+use feedwright::command::mistake_json;
 use feedwright::gcode::canon::{Canon, MotionKind, Shape};
-use feedwright::gcode::{AUTO, CheckError, Dialect, INCH_MM, Program, Reader, Settings, ToolTable};
+use feedwright::gcode::{AUTO, CheckError, Program, Reader, Settings};
 use feedwright::sim::{BUILT_IN_MACHINES, Machine, MachineError};
-use feedwright::{CONTROLLERS, CorrectJob, TARGETS};
+use feedwright::{CONTROLLERS, JobRequest, TARGETS};
 use miette::{IntoDiagnostic, Report, miette};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -20,8 +20,8 @@ use crate::fault::{exception, from_json};
 pub(crate) struct PythonProgram {
     pub(crate) program: Program,
     pub(crate) settings: Settings,
-    /// Keys of a sweep job that state the same.
-    spec: JobSpec,
+    /// Request with this program.
+    request: JobRequest,
 }
 
 impl PythonProgram {
@@ -44,51 +44,36 @@ impl PythonProgram {
         inch_tools: bool,
         subroutines: Vec<PathBuf>,
     ) -> PyResult<Self> {
-        let spec = JobSpec {
-            program: path
-                .as_ref()
-                .map(|path| path.display().to_string())
-                .or_else(|| name.clone())
-                .unwrap_or_else(unnamed),
-            program_text: text.clone(),
+        let settings = JobRequest {
             dialect: dialect.to_owned(),
-            tool_table: tool_table.clone(),
+            tool_table,
             inch_tools,
-            subroutines: subroutines.clone(),
-            ..JobSpec::default()
+            subroutines,
+            ..JobRequest::default()
         };
-        let program = match (path, text) {
-            (Some(path), None) => Ok(Program::in_file(path)),
-            (None, Some(text)) => Ok(Program::from_text(name.unwrap_or_else(unnamed), text)),
-            _ => Err(miette!(
+        let reader = settings.reader().map_err(|error| exception(&error))?;
+        if path.is_some() == text.is_some() {
+            return Err(exception(&miette!(
                 help = "Program(\"part.ngc\") or Program(text=\"G1 X1 F100\\nM2\")",
                 "a program needs a path or a text"
-            )),
+            )));
+        }
+        let name = name.unwrap_or_else(|| "program.ngc".to_owned());
+        let request = JobRequest {
+            program: path.unwrap_or_else(|| name.into()),
+            program_text: text,
+            ..settings
         };
-        let unit_mm = if inch_tools { INCH_MM } else { 1.0 };
-        let settings = || {
-            let tools = tool_table
-                .map(|path| ToolTable::read(&path, unit_mm))
-                .transpose()?;
-            let dialect = Dialect::named(dialect)?;
-            Ok(Settings {
-                dialect,
-                tools: tools.unwrap_or_default(),
-                subroutine_paths: subroutines,
-                ..Settings::default()
-            })
-        };
-        let settings = settings().map_err(|error: Report| exception(&error))?;
         Ok(Self {
-            program: program.map_err(|error| exception(&error))?,
-            settings,
-            spec,
+            program: request.program(),
+            settings: reader,
+            request,
         })
     }
 
-    /// Returns a job of a sweep with this program, as JSON.
+    /// Returns a request with this program, as JSON.
     fn _job(&self) -> PyResult<String> {
-        job_text(&self.spec)
+        job_text(&self.request)
     }
 
     /// Name of the program in messages.
@@ -102,13 +87,9 @@ impl PythonProgram {
     }
 }
 
-fn unnamed() -> String {
-    "program.ngc".to_owned()
-}
-
-/// Returns a job of a sweep as JSON.
-pub(crate) fn job_text(spec: &JobSpec) -> PyResult<String> {
-    serde_json::to_string(spec)
+/// Returns a request as JSON.
+pub(crate) fn job_text(request: &JobRequest) -> PyResult<String> {
+    serde_json::to_string(request)
         .into_diagnostic()
         .map_err(|error| exception(&error))
 }
@@ -219,19 +200,10 @@ pub(crate) fn check<'py>(py: Python<'py>, program: &PythonProgram) -> PyResult<B
 pub(crate) struct PythonMachine {
     pub(crate) machine: Machine,
     /// File that it was read from; `None` if it is built in.
-    pub(crate) file: Option<String>,
+    file: Option<String>,
 }
 
 impl PythonMachine {
-    /// Returns the error of the machine values, as a fraction; the usual error if `percent` is not
-    /// stated.
-    pub(crate) fn file_error(&self, percent: Option<f64>) -> f64 {
-        percent.map_or_else(
-            || CorrectJob::usual_file_error(self.file.is_some()),
-            |percent| 0.01 * percent,
-        )
-    }
-
     pub(crate) fn parsed(name: &str, text: &str) -> Result<Self, MachineError> {
         Ok(Self {
             machine: Machine::parse(name, text)?,
@@ -262,7 +234,7 @@ impl PythonMachine {
         found.map_err(|error| exception(&error))
     }
 
-    /// Returns name and text of the machine for a job of a sweep; a built-in machine needs no text.
+    /// Returns name and text of the machine for a request; a built-in machine needs no text.
     fn _job(&self) -> (String, Option<String>) {
         match &self.file {
             Some(file) => (file.clone(), Some(self.machine.text())),

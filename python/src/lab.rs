@@ -27,7 +27,6 @@ pub(crate) use seen::{MeasuredTool, PythonWindow};
 
 use crate::columns::RowColumns;
 use crate::fault::from_json;
-use crate::files::{PythonMachine, PythonProgram};
 use crate::jobs::{CutOutcome, Ran};
 use crate::watched::watched;
 use guest::{PlantTerm, PythonController};
@@ -108,14 +107,11 @@ impl GuestRun {
 #[pyfunction]
 pub(crate) fn run_with<'py>(
     py: Python<'py>,
-    program: &PythonProgram,
-    machine: &PythonMachine,
     controller: Py<PyAny>,
     options: LabOptions,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Ran<'py>> {
-    let task = LabTask::new(program, machine, &options)
-        .map_err(|error| crate::fault::exception(&error))?;
+    let task = LabTask::new(&options).map_err(|error| crate::fault::exception(&error))?;
     let raised = Raised::default();
     let (term, rows) = (options.plant_term(py, &raised), options.rows);
     let controller = options.of_library.is_none().then_some(controller);

@@ -2,11 +2,9 @@
 
 use std::path::PathBuf;
 
-use feedwright::command::{
-    JobList, JobSpec, ListedJob, RESULT_COLUMNS, ResultTable, do_job, make_folder,
-};
-use feedwright::{OutputError, Store};
-use miette::{IntoDiagnostic, Report, WrapErr};
+use feedwright::command::{JobList, RESULT_COLUMNS, ResultTable, do_job, make_folder};
+use feedwright::{CONTROLLERS, JobRequest, OutputError, Store};
+use miette::Report;
 use numpy::PyArray1;
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -15,6 +13,7 @@ use serde_json::Value;
 
 use crate::fault::exception;
 use crate::files::job_text;
+use crate::jobs::asked;
 use crate::watched::watched;
 
 /// Jobs of JOBS.toml, each made on access.
@@ -38,18 +37,16 @@ impl PythonJobList {
 
     fn __getitem__(&self, number: usize) -> PyResult<String> {
         match self.list.job(number).map_err(|error| exception(&error))? {
-            Some(job) => job_text(&job.spec),
+            Some(job) => job_text(&job),
             None => Err(PyIndexError::new_err(number)),
         }
     }
 }
 
-fn listed(spec: &str, folder: PathBuf) -> Result<ListedJob, Report> {
-    let spec: JobSpec = serde_json::from_str(spec)
-        .into_diagnostic()
-        .wrap_err("no job")?;
-    spec.check_names()?;
-    Ok(ListedJob { spec, folder })
+fn listed(spec: &str, folder: PathBuf) -> Result<JobRequest, Report> {
+    let request = asked(spec)?;
+    request.check_names(CONTROLLERS)?;
+    Ok(JobRequest { folder, ..request })
 }
 
 /// Returns the address of the result of a job.

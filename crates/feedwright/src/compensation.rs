@@ -3,14 +3,13 @@
 use std::io;
 
 use feedwright_sim::{GeometryFile, Machine, Row, Sink};
-use serde::{Deserialize, Serialize};
+use serde::{Serialize, Serializer};
 
 use crate::job_error::JobError;
 use crate::report::CompensatedGeometry;
 
 /// Choice of the errors to compensate that no encoder sees.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub enum GeometryChoice {
     /// Nothing is compensated.
     Off,
@@ -29,33 +28,17 @@ pub enum GeometryChoice {
 }
 
 /// A geometry file and its name.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NamedGeometry {
     /// Name in messages.
     pub name: String,
     /// Content of the file.
-    #[serde(with = "text")]
+    #[serde(serialize_with = "as_text")]
     pub geometry: GeometryFile,
 }
 
-/// A geometry as the text of its file.
-mod text {
-    use feedwright_sim::GeometryFile;
-    use serde::de::{Deserialize, Deserializer, Error};
-    use serde::ser::Serializer;
-
-    pub(super) fn serialize<S: Serializer>(
-        geometry: &GeometryFile,
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(&geometry.text())
-    }
-
-    pub(super) fn deserialize<'d, D: Deserializer<'d>>(
-        deserializer: D,
-    ) -> Result<GeometryFile, D::Error> {
-        GeometryFile::parse("geometry", &String::deserialize(deserializer)?).map_err(Error::custom)
-    }
+fn as_text<S: Serializer>(geometry: &GeometryFile, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&geometry.text())
 }
 
 impl GeometryChoice {

@@ -23,7 +23,7 @@ use feedwright_control::{
 use feedwright_gcode::suggestion::nearest;
 use feedwright_ident::Model;
 use feedwright_sim::{Machine, StageSteps, Watch};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 pub use recorded::RecordedValues;
 pub(crate) use settings::range;
@@ -210,7 +210,7 @@ impl IntoIterator for Controllers {
 }
 
 /// Choices of the user.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Choices {
     /// Seed of the training.
     pub seed: u64,
@@ -218,11 +218,9 @@ pub struct Choices {
     pub set: Vec<Setting>,
     /// Controllers that cut uncorrected, because none of their values is better than no correction
     /// on the machine.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unsuited: Vec<String>,
     /// True if the paper's controller must show that it helps before it is followed. The comparison
     /// cuts it as it was published.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub tries: bool,
 }
 

@@ -84,7 +84,6 @@ pub(crate) mod feed_overrides;
 mod predicted;
 mod outcome;
 pub(crate) mod advise;
-#[cfg(feature = "command")]
 use std::io::{BufRead, BufReader};
 #[cfg(feature = "files")]
 use std::path::{Path, PathBuf};
@@ -171,12 +170,10 @@ const CORRECTED_FOR: &str = "corrected by feedwright for the machine";
 /// Note of feed overrides before they are simulated.
 const NO_OVERRIDES: &str = "feed override: not simulated";
 /// Number of lines in which the note is searched for.
-#[cfg(feature = "command")]
 const NOTED_WITHIN: usize = 100;
 
 /// Returns the control that a corrected program was made for, from its note; none if it has no such
 /// note or cannot be read.
-#[cfg(feature = "command")]
 pub(crate) fn corrected_for(program: &Program) -> Option<&'static TargetControl> {
     let (text, _) = program.text().ok()?;
     let lines = BufReader::new(text)

@@ -8,6 +8,7 @@ use thiserror::Error;
 use crate::controllers::ModelMisfit;
 use crate::fastest::FastestError;
 use crate::measured::MeasuredError;
+use crate::recorded_model::RecordedModelError;
 
 /// Reasons why a job cannot be done.
 #[derive(Debug, Error, miette::Diagnostic)]
@@ -142,6 +143,10 @@ pub enum JobError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Run(RunError),
+    /// A log of the machine gives no model.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Recorded(#[from] RecordedModelError),
     /// The work was canceled.
     #[error(transparent)]
     #[diagnostic(transparent)]

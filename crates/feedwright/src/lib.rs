@@ -109,12 +109,13 @@ mod inches;
 mod report;
 #[cfg(feature = "command")]
 mod results_diff;
+mod log_job;
+mod recorded_model;
 mod job_error;
 mod compensation;
 mod correct;
 mod job;
-mod log_job;
-mod recorded_model;
+mod request;
 #[cfg(feature = "command")]
 mod machine_document;
 #[cfg(feature = "files")]
@@ -151,9 +152,7 @@ pub use log_job::{
 pub use measured::{MeasuredError, MeasuredLog, measured};
 #[cfg(feature = "files")]
 pub use output::{FileOperation, OutputError, OutputFile, OutputFiles};
-pub use recorded_model::{
-    RecordedModelError, built_in_lines, fitting_machines, recorded_machine, take_recorded_model,
-};
+pub use recorded_model::{ModelOfLog, RecordedModelError, built_in_lines, recorded_machine};
 pub use report::figure::{
     COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline, figure_parts, write_figure_page,
     write_figure_part,
@@ -168,6 +167,8 @@ pub use report::{
     SpectrumBand, Statistics, TimelineEvent, WorstPlace, write_html, write_html_data,
     write_html_in,
 };
+pub use request::JobRequest;
+pub use request::named::find_control;
 pub use results_format::RESULTS_FORMAT;
 pub use store::{KeptTexts, keep_in, key_of};
 #[cfg(feature = "files")]

@@ -139,6 +139,21 @@ impl OutputFile {
         })
     }
 
+    /// Writes a file, if it is wanted.
+    ///
+    /// # Errors
+    /// What `write` says, with the name of the file.
+    pub fn filled(
+        file: Option<Self>,
+        write: impl FnOnce(&mut Self) -> io::Result<()>,
+    ) -> Result<Option<Self>, OutputError> {
+        let Some(mut file) = file else {
+            return Ok(None);
+        };
+        write(&mut file).map_err(|error| OutputError::from_io(error, &file.shown))?;
+        Ok(Some(file))
+    }
+
     /// Returns the final path of the file, as it was given.
     pub fn path(&self) -> &Path {
         &self.shown

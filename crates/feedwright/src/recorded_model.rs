@@ -27,7 +27,6 @@ use thiserror::Error;
 
 use crate::controllers::{Choices, Entry, Setup, identifying};
 use crate::identifier_cache::geometry_content;
-use crate::job::Job;
 use crate::log_job::{LogIdentified, LogJob, LogJobError, machine_text};
 use crate::store::{keep, kept, program_key};
 
@@ -49,11 +48,13 @@ pub(crate) const BUILT_IN_SEED: u64 = 1;
 
 /// A model that was identified from a log of a simulated machine.
 #[derive(Debug, Clone, PartialEq)]
-struct RecordedModel {
+pub(crate) struct RecordedModel {
     /// The model.
-    model: Model,
+    pub(crate) model: Model,
     /// Axes that the log does not determine well enough, in words.
-    doubts: Vec<String>,
+    pub(crate) doubts: Vec<String>,
+    /// Machines that fit the log about as well.
+    pub(crate) fitting: Vec<Machine>,
 }
 
 /// Reasons why there is no model.
@@ -141,26 +142,38 @@ impl Told {
     }
 }
 
-/// Gives the controller of a job the model from a log of its machine, if the controller uses one
-/// and has none. `run` does this by default. `machine` is as its file has it, whatever limits the
-/// job plans with; `date` becomes the date in the model file. Returns the axes that the log does
-/// not determine well enough, in words; `None` if the job takes no such model.
-///
-/// Fails if the model of an axis cannot be identified from the log, or if the work is canceled.
-pub fn take_recorded_model(
-    job: &mut Job,
-    machine: &Machine,
-    axes: usize,
-    date: String,
-    watch: &dyn Watch,
-) -> Result<Option<Vec<String>>, RecordedModelError> {
-    if job.model.is_some() || job.controller.identifier != Some(IdentifierKind::Axes) {
-        return Ok(None);
+/// Log from which the controller of a job gets its model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelOfLog {
+    /// Machine that records it: as its file has it, whatever limits the job plans with.
+    pub machine: Machine,
+    /// Date in the model file.
+    pub date: String,
+    /// Number of other machines that fit the log as well and are cut, too.
+    pub fitting: usize,
+}
+
+impl ModelOfLog {
+    /// Returns the model for a controller; `None` if the controller uses no model of the axes.
+    ///
+    /// # Errors
+    /// The model of an axis cannot be identified from the log, or the work is canceled.
+    pub(crate) fn model(
+        &self,
+        axes: usize,
+        (entry, choices): (&Entry, &Choices),
+        watch: &dyn Watch,
+    ) -> Result<Option<RecordedModel>, RecordedModelError> {
+        if entry.identifier != Some(IdentifierKind::Axes) {
+            return Ok(None);
+        }
+        let (machine, seed, date) = (&self.machine, choices.seed, self.date.clone());
+        let mut found = recorded_model(machine, axes, (entry, choices), date, watch)?;
+        if self.fitting > 0 {
+            found.fitting = fitting_machines(machine, axes, seed, self.fitting, watch)?;
+        }
+        Ok(Some(found))
     }
-    let RecordedModel { model, doubts } =
-        recorded_model(machine, axes, (job.controller, &job.choices), date, watch)?;
-    job.model = Some(model);
-    Ok(Some(doubts))
 }
 
 /// Returns the model of the first two or three axes of a machine, for a controller that uses one.
@@ -194,6 +207,7 @@ fn recorded_model(
     Ok(RecordedModel {
         model,
         doubts: told.doubts,
+        fitting: Vec::new(),
     })
 }
 
@@ -240,7 +254,7 @@ pub fn recorded_machine(
 ///
 /// # Errors
 /// As [`recorded_machine`].
-pub fn fitting_machines(
+fn fitting_machines(
     machine: &Machine,
     axes: usize,
     seed: u64,
@@ -257,7 +271,7 @@ pub fn fitting_machines(
 /// becomes the date in the model.
 ///
 /// # Errors
-/// As [`take_recorded_model`].
+/// As [`recorded_machine`].
 pub fn built_in_lines(
     machine: &Machine,
     axes: usize,

@@ -1,12 +1,13 @@
-//! Guarantees of a job to its caller: it can be written down and read back, reports its progress,
-//! ends when it is canceled, needs no file, and shares nothing with another job beside it.
+//! Guarantees of a job to its caller: its request can be written down and read back, it reports its
+//! progress, ends when it is canceled, needs no file, and shares nothing with another job beside it.
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use feedwright::{
-    BEST, CONTROLLERS, Choices, Guests, Job, JobError, Make, Setting, Setup, TARGETS,
+    BEST, CONTROLLERS, Choices, GeometryChoice, Guests, Job, JobError, JobRequest, Make, Setting,
+    Setup, TARGETS,
 };
 use feedwright_gcode::{Dialect, Increment, Program, Settings};
 use feedwright_sim::{BUILT_IN_MACHINES, Machine, Mechanism, Plant, Row, Run, Watch, path_steps};
@@ -24,63 +25,122 @@ fn job(machine: &str, controller: &str) -> Job {
     job
 }
 
-fn again(job: &Job) -> Job {
-    serde_json::from_str(&serde_json::to_string(job).unwrap()).unwrap()
+fn request(machine: &str, controller: &str) -> JobRequest {
+    JobRequest {
+        program: part(),
+        machine: machine.into(),
+        controller: controller.to_owned(),
+        ..JobRequest::default()
+    }
+}
+
+fn again(request: &JobRequest) -> JobRequest {
+    serde_json::from_str(&serde_json::to_string(request).unwrap()).unwrap()
+}
+
+fn made(request: &JobRequest) -> miette::Result<Job> {
+    request.job(CONTROLLERS, "2026-01-02", &())
 }
 
 #[test]
-fn a_job_is_read_back_as_it_was_written_on_every_machine_with_every_controller() {
+fn a_request_is_read_back_and_makes_the_job_on_every_machine_with_every_controller() {
     for (machine, _) in BUILT_IN_MACHINES {
         for controller in CONTROLLERS {
-            let job = job(machine, controller.name);
-            assert_eq!(again(&job), job);
+            let asked = request(machine, controller.name);
+            assert_eq!(again(&asked), asked);
+            let found = made(&asked).unwrap();
+            assert_eq!(found.machine, Machine::load(machine.as_ref()).unwrap());
+            assert_eq!(found.controller.name, controller.name);
+            let of_text = JobRequest {
+                machine_text: Some(found.machine.text()),
+                ..again(&asked)
+            };
+            assert_eq!(made(&of_text).unwrap().machine, found.machine);
         }
     }
 }
 
 #[test]
-fn everything_that_can_be_asked_for_is_read_back() {
-    let setting = Setting::parse("two-dimensional.eta=3.3e-10", None, CONTROLLERS).unwrap();
-    let mut full = job("soft", BEST);
+fn everything_that_can_be_asked_for_is_read_back_and_is_in_the_job() {
+    let mut full = request("soft", BEST);
+    full.program_text = Some("G1 X1 F100\nM2\n".to_owned());
+    full.against = "two-dimensional".to_owned();
+    full.settings = vec![
+        ("two-dimensional.rho".to_owned(), 0.05.into()),
+        ("two-dimensional.eta".to_owned(), "3.3e-10".into()),
+    ];
     full.feed_mm_s = Some(33.3);
-    full.choices = Choices {
-        seed: u64::MAX,
-        set: vec![setting],
-        ..Choices::default()
-    };
+    full.seed = u64::MAX;
     full.tolerance_um = Some(1.0 / 3.0);
-    full.target = Some(&TARGETS[2]);
-    full.reference = Some(Program::from_text("original", "G1 X1 F100\nM2\n"));
-    full.reader.dialect = Some(Dialect::FanucLathe);
-    full.reader.increment = Some(Increment::named("0.0001inch").unwrap());
-    assert_eq!(again(&full), full);
+    full.target = Some(TARGETS[2].name.to_owned());
+    full.band = 8;
+    full.no_geometry = true;
+    full.file_error = Some(7.0);
+    full.dialect = "fanuc-lathe".to_owned();
+    full.increment = Some(Increment::named("0.0001inch").unwrap());
+    full.max_motions = Some(7);
+    let mut sorted = full.clone();
+    sorted.settings.reverse();
+    assert_eq!(again(&full), sorted);
+    let job = made(&full).unwrap();
+    assert_eq!(
+        job.program,
+        Program::from_text(part().display().to_string(), "G1 X1 F100\nM2\n")
+    );
+    let set = ["two-dimensional.rho=0.05", "two-dimensional.eta=3.3e-10"];
+    let set = set.map(|text| Setting::parse(text, None, CONTROLLERS).unwrap());
+    assert_eq!(
+        (&job.choices.set[..2], job.choices.seed),
+        (&set[..], u64::MAX)
+    );
+    assert_eq!(
+        (job.feed_mm_s, job.tolerance_um),
+        (Some(33.3), Some(1.0 / 3.0))
+    );
+    assert_eq!(job.target.map(|target| target.name), Some(TARGETS[2].name));
+    assert_eq!(
+        (job.compensation, job.file_error),
+        (GeometryChoice::Off, 0.07)
+    );
+    assert_eq!(job.reader.dialect, Some(Dialect::FanucLathe));
+    assert_eq!(
+        (job.reader.increment, job.reader.max_motions),
+        (full.increment, 7)
+    );
+    let model_of_log = job.model_of_log.unwrap();
+    assert_eq!(
+        (model_of_log.fitting, &*model_of_log.date),
+        (8, "2026-01-02")
+    );
 }
 
 #[test]
-fn what_is_no_job_is_refused_with_the_reason() {
-    let mut text = serde_json::to_value(job("tnv40", BEST)).unwrap();
-    let refused = |text: &serde_json::Value| {
-        serde_json::from_value::<Job>(text.clone())
+fn what_is_no_request_is_refused_with_the_reason() {
+    let unread = |text: &str| {
+        serde_json::from_str::<JobRequest>(text)
             .unwrap_err()
             .to_string()
     };
-    text["controller"] = "two".into();
-    assert!(
-        refused(&text).contains("no controller is called 'two'"),
-        "{}",
-        refused(&text)
-    );
-    text["controller"] = BEST.into();
-    text["choices"]["set"] =
-        serde_json::json!([{ "controller": "two-dimensional", "name": "knots", "value": 21.0 }]);
-    assert!(
-        refused(&text).contains("knots is 1 to 20, whole"),
-        "{}",
-        refused(&text)
-    );
-    text["choices"]["set"] = serde_json::json!([]);
-    text["machine"] = "name = 'none'".into();
-    assert!(refused(&text).contains("machine"), "{}", refused(&text));
+    assert!(unread(r#"{ "controler": "none" }"#).contains("unknown field `controler`"));
+    assert!(unread(r#"{ "settings": 3 }"#).contains("a map"));
+    let refused = |change: &dyn Fn(&mut JobRequest)| {
+        let mut asked = request("tnv40", BEST);
+        change(&mut asked);
+        made(&asked).unwrap_err().to_string()
+    };
+    let said = refused(&|asked| asked.controller = "two".to_owned());
+    assert!(said.contains("no controller is called 'two'"), "{said}");
+    let said = refused(&|asked| {
+        asked.against = "two-dimensional".to_owned();
+        asked.settings = vec![("two-dimensional.knots".to_owned(), 21.into())];
+    });
+    assert!(said.contains("knots is 1 to 20, whole"), "{said}");
+    let said = refused(&|asked| asked.machine_text = Some("name = 'none'".to_owned()));
+    assert!(said.contains("machine"), "{said}");
+    let said = refused(&|asked| asked.target = Some("none".to_owned()));
+    assert!(said.contains("no control is called 'none'"), "{said}");
+    let said = refused(&|asked| asked.logs = vec!["a.csv".into(), "b.csv".into()]);
+    assert!(said.contains("a.csv"), "{said}");
 }
 
 #[test]

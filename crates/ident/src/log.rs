@@ -199,7 +199,7 @@ impl Log {
         columns: &Columns,
         watch: &dyn Watch,
     ) -> Result<Self, LogError> {
-        let unreadable = |source| LogError::unreadable(path, source);
+        let unreadable = |source| LogError::unreadable(source).in_file(path);
         if input::is_standard_input(path) {
             let bytes = input::standard_input().map_err(unreadable)?;
             return Self::from_reader(path, bytes, bytes.len() as u64, columns, watch);
@@ -226,8 +226,10 @@ impl Log {
         columns: &Columns,
         watch: &dyn Watch,
     ) -> Result<Self, LogError> {
-        let table = read_table(name, reader, size_bytes, columns, watch)?;
-        of_table(name, table, columns)
+        let mut steps = StageSteps::begin(watch, &format!("reading {}", name.display()));
+        read_table(reader, size_bytes, columns, &mut steps, watch)
+            .and_then(|table| of_table(table, columns))
+            .map_err(|error| error.in_file(name))
     }
 }
 
@@ -236,10 +238,10 @@ const HEAD_BYTES: usize = 64 << 10;
 
 /// The columns of a file, whatever its format.
 fn read_table(
-    path: &Path,
     mut reader: impl Read,
     size_bytes: u64,
     columns: &Columns,
+    steps: &mut StageSteps<'_>,
     watch: &dyn Watch,
 ) -> Result<LogTable, LogError> {
     let mut head = Vec::with_capacity(HEAD_BYTES);
@@ -247,22 +249,19 @@ fn read_table(
         .by_ref()
         .take(HEAD_BYTES as u64)
         .read_to_end(&mut head);
-    beginning.map_err(|source| LogError::unreadable(path, source))?;
+    beginning.map_err(LogError::unreadable)?;
     let mut whole = Cursor::new(&head).chain(reader);
-    let mut steps = StageSteps::begin(watch, &format!("reading {}", path.display()));
     if matlab::is_matlab(&head) {
-        return matlab::read(path, &mut whole, &mut steps, watch);
+        return matlab::read(&mut whole, steps, watch);
     }
     if sinumerik::is_json(&head) {
-        return sinumerik::read(path, &mut whole, size_bytes, columns, &mut steps, watch);
+        return sinumerik::read(&mut whole, size_bytes, columns, steps, watch);
     }
-    text::read(
-        path, &mut whole, size_bytes, &head, columns, &mut steps, watch,
-    )
+    text::read(&mut whole, size_bytes, &head, columns, steps, watch)
 }
 
 /// The log in a table.
-fn of_table(path: &Path, mut table: LogTable, columns: &Columns) -> Result<Log, LogError> {
+fn of_table(mut table: LogTable, columns: &Columns) -> Result<Log, LogError> {
     table.make_visible();
     let mut findings: Vec<LogFinding> = table
         .cut_off_line
@@ -278,10 +277,10 @@ fn of_table(path: &Path, mut table: LogTable, columns: &Columns) -> Result<Log, 
             found: table.rows(),
         });
     }
-    let roles = roles::find(path, &table, columns, &mut findings)?;
-    let clock = clock::of_table(path, &mut table, &roles, columns, &mut findings)?;
-    let axes = axes::of_table(path, &mut table, &roles, columns, &clock, &mut findings)?;
-    let [axes, still] = screen::fit(path, axes, &clock, &mut findings)?;
+    let roles = roles::find(&table, columns, &mut findings)?;
+    let clock = clock::of_table(&mut table, &roles, columns, &mut findings)?;
+    let axes = axes::of_table(&mut table, &roles, columns, &clock, &mut findings)?;
+    let [axes, still] = screen::fit(axes, &clock, &mut findings)?;
     let clock::Clock {
         sample_time_s,
         stretches,

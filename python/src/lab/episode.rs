@@ -25,7 +25,6 @@ use super::raised::{GuardedWatch, Raised};
 use super::seen::{PythonWindow, SeenWindow, of_three};
 use super::task::{LabOptions, LabTask};
 use crate::fault::{exception, from_json};
-use crate::files::{PythonMachine, PythonProgram};
 
 /// Interval between two checks for signals.
 const EVERY: Duration = Duration::from_millis(40);
@@ -199,14 +198,12 @@ impl Episode {
     #[new]
     fn new(
         py: Python<'_>,
-        program: &PythonProgram,
-        machine: &PythonMachine,
         servo_periods: u32,
         preview: u32,
         options: LabOptions,
     ) -> PyResult<Self> {
         let schedule = schedule(servo_periods, preview)?;
-        let task = LabTask::new(program, machine, &options).map_err(|error| exception(&error))?;
+        let task = LabTask::new(&options).map_err(|error| exception(&error))?;
         let raised = Raised::default();
         let work = EpisodeWork {
             task,

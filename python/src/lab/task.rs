@@ -3,17 +3,19 @@
 use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 
-use feedwright::command::{find, settings};
+use feedwright::command::find;
 use feedwright::control::{AxisKnowledge, AxisStatistics, Controller, ControllerRow, Knows};
 use feedwright::sim::{Known, Machine};
-use feedwright::{Choices, Controllers, Entry, Job, JobOutcome, Make, Setup, UNCORRECTED};
+use feedwright::{
+    Choices, Controllers, Entry, Job, JobOutcome, JobRequest, Make, Setup, UNCORRECTED,
+};
 use miette::{IntoDiagnostic, Result, miette};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use super::guest::PlantTerm;
 use super::raised::Raised;
-use crate::files::{PythonMachine, PythonProgram};
+use crate::jobs::asked;
 
 /// Controllers that have a name.
 const TABLE: Controllers = if cfg!(feature = "peers") {
@@ -30,21 +32,21 @@ pub(super) const RECORDING_SEED: u64 = 1;
 /// Largest number of identified machines that are kept.
 const KEPT_MACHINES: usize = 64;
 
-/// Options of a run besides program, machine and controller.
+/// Options of a run besides the controller.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct LabOptions {
+    /// Request as JSON: program, machine, settings, feedrate.
+    request: String,
     /// Name of the controller.
     name: String,
     /// Controller of the library that takes its place.
     pub(super) of_library: Option<String>,
     /// Output of a planner: a feedrate for each motion, mm/s.
     feeds_mm_s: Option<Vec<f64>>,
-    settings: Vec<String>,
     against: Option<String>,
     knowledge: String,
     seed: Option<u64>,
-    feed_mm_s: Option<f64>,
     plant_term: Option<Py<PyAny>>,
     pub(super) rows: bool,
 }
@@ -141,11 +143,7 @@ pub(super) struct LabTask {
 }
 
 impl LabTask {
-    pub(super) fn new(
-        program: &PythonProgram,
-        machine: &PythonMachine,
-        options: &LabOptions,
-    ) -> Result<Self> {
+    pub(super) fn new(options: &LabOptions) -> Result<Self> {
         let knows = match options.knowledge.as_str() {
             "exact" | "wrong" => Knows::ExactModel,
             "identified" => Knows::Identified,
@@ -155,12 +153,6 @@ impl LabTask {
                 ));
             }
         };
-        let noisy = options.seed.map_or_else(
-            || machine.machine.clone(),
-            |seed| machine.machine.with_noise_seed(seed),
-        );
-        let mut job = Job::new(program.program.clone(), noisy);
-        job.machine_file.clone_from(&machine.file);
         let made = options
             .of_library
             .as_deref()
@@ -170,32 +162,30 @@ impl LabTask {
         // controller.
         let as_it_is = made.filter(|_| options.feeds_mm_s.is_none());
         let laps = made.map_or(1, |made| made.laps);
-        job.controller = as_it_is.unwrap_or_else(|| entry(&options.name, knows, laps));
-        job.against = options
+        let controller = as_it_is.unwrap_or_else(|| entry(&options.name, knows, laps));
+        let against = options
             .against
             .as_deref()
-            .map_or(Ok(job.controller), |name| find(name, TABLE))?;
-        job.feed_mm_s = options.feed_mm_s;
-        let made = made.unwrap_or(job.controller);
-        let both = [made, job.against];
-        let set = settings(&options.settings, TABLE, Some(made), &both)?;
-        job.choices = Choices {
+            .map_or(Ok(controller), |name| find(name, TABLE))?;
+        let made = made.unwrap_or(controller);
+        let request = JobRequest {
             seed: RECORDING_SEED,
-            set,
-            ..Choices::default()
+            exact_settings: true,
+            ..asked(&options.request)?
         };
-        let recorded = both
-            .into_iter()
-            .filter_map(|entry| Some((entry, TABLE.recorded(&machine.machine, entry)?)));
-        job.choices
-            .take_recorded(recorded.collect::<Vec<_>>().into_iter());
-        job.reader = program.settings.clone();
+        let mut job = request.job_of([made, against], TABLE, "", &())?;
+        job.controller = controller;
+        job.choices.tries = false;
+        let machine = job.machine.clone();
+        if let Some(seed) = options.seed {
+            job.machine = machine.with_noise_seed(seed);
+        }
         let (feeds_mm_s, knowledge) = (options.feeds_mm_s.clone(), options.knowledge.clone());
         Ok(Self {
             job,
             made,
             feeds_mm_s,
-            machine: machine.machine.clone(),
+            machine,
             knowledge,
         })
     }

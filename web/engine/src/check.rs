@@ -5,7 +5,7 @@ use feedwright::plan::{Piece, Step};
 use feedwright::sim::path_steps;
 use serde_json::{Value, json};
 
-use crate::request::{Outputs, Request, json};
+use crate::request::{Outputs, PageRequest, json};
 
 /// Largest number of points of a path that is drawn: 16 MB.
 const MOST_POINTS: usize = 1_000_000;
@@ -15,7 +15,7 @@ const TURN: f64 = 0.08;
 /// Largest number of points of a piece.
 const MOST_OF_PIECE: f64 = 256.0;
 
-pub(crate) fn check(request: &mut Request) -> miette::Result<Outputs> {
+pub(crate) fn check(request: &mut PageRequest) -> miette::Result<Outputs> {
     let program = request.take_program();
     let mut answer = match program.check(Settings::default()) {
         Ok(summary) => {
@@ -28,8 +28,7 @@ pub(crate) fn check(request: &mut Request) -> miette::Result<Outputs> {
     };
     let path = Path::of(&program)?;
     answer["is_whole"] = path.is_whole.into();
-    if request.is_machine_text() {
-        let machine = request.machine()?;
+    if let Some(machine) = request.machine_of_text()? {
         answer["machine"] = json!({ "name": machine.name, "about": machine.description });
     }
     Ok(vec![json(&answer), path.points, path.kinds])

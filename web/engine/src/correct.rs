@@ -1,21 +1,15 @@
 //! A corrected program for a control without feedback.
 
+use feedwright::ExportedFigures;
 use feedwright::sim::fixed;
-use feedwright::{CorrectJob, ExportedFigures, TARGETS, TargetControl};
 use serde_json::{Value, json};
 
 use crate::page::PageWatch;
-use crate::request::{Outputs, Request, json};
+use crate::request::{Outputs, PageRequest, json};
 
-pub(crate) fn correct(request: &mut Request) -> miette::Result<Outputs> {
-    let target = match &request.target {
-        None => &TARGETS[0],
-        Some(name) => TargetControl::find(name)
-            .ok_or_else(|| miette::miette!("no control is called '{name}'"))?,
-    };
-    let mut job = CorrectJob::new(request.take_program(), request.machine()?, target);
-    job.file_error = CorrectJob::usual_file_error(request.is_machine_text());
-    let outcome = job.run(&PageWatch::default())?;
+pub(crate) fn correct(request: &mut PageRequest) -> miette::Result<Outputs> {
+    let watch = PageWatch::default();
+    let outcome = request.job_request().correct_job(&watch)?.run(&watch)?;
     let program = outcome.program().unwrap_or_default().as_bytes().to_vec();
     let answer = json!({
         "figures": [figures("uncorrected", &outcome.uncorrected), figures("as exported", &outcome.corrected)],

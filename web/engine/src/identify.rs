@@ -9,9 +9,9 @@ use miette::IntoDiagnostic;
 use serde_json::json;
 
 use crate::page::PageWatch;
-use crate::request::{Outputs, Request, json};
+use crate::request::{Outputs, PageRequest, json};
 
-pub(crate) fn identify(request: &Request) -> miette::Result<Outputs> {
+pub(crate) fn identify(request: &PageRequest) -> miette::Result<Outputs> {
     let (watch, name, bytes) = (
         PageWatch::default(),
         Path::new(&request.name),

@@ -30,7 +30,7 @@ mod identify;
 
 use std::sync::{Mutex, PoisonError};
 
-use request::{Outputs, Request, Task};
+use request::{Outputs, PageRequest, Task};
 
 struct Buffers {
     input: Vec<u8>,
@@ -109,7 +109,7 @@ pub extern "C" fn length(output: usize) -> usize {
 }
 
 fn answer(input: &[u8], program: Vec<u8>) -> miette::Result<Outputs> {
-    let mut request: Request =
+    let mut request: PageRequest =
         serde_json::from_slice(input).map_err(|error| miette::miette!("{error}"))?;
     request.program = program;
     feedwright::keep_in(&page::PageTexts);

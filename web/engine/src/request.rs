@@ -1,8 +1,8 @@
 //! Requests of the page.
 
+use feedwright::JobRequest;
 use feedwright::gcode::Program;
-use feedwright::sim::{Machine, MachineError};
-use feedwright::{CONTROLLERS, Entry};
+use feedwright::sim::Machine;
 use serde::Deserialize;
 
 /// Outputs of a request, each as bytes.
@@ -28,7 +28,7 @@ pub(crate) enum Task {
 /// A request of the page.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Request {
+pub(crate) struct PageRequest {
     #[serde(default)]
     pub(crate) task: Task,
     /// Name of the program in messages.
@@ -71,39 +71,49 @@ fn machine_name() -> String {
     "machine".to_owned()
 }
 
-impl Request {
+impl PageRequest {
     /// Moves the program out of the request: it may take half of the memory.
     pub(crate) fn take_program(&mut self) -> Program {
         Program::from_text(self.name.clone(), std::mem::take(&mut self.program))
     }
 
-    /// Returns true if the machine is a text, not a name.
-    pub(crate) fn is_machine_text(&self) -> bool {
-        self.machine.contains('\n')
+    /// Returns the machine, if it is the text of a file.
+    pub(crate) fn machine_of_text(&self) -> miette::Result<Option<Machine>> {
+        let request = self.without_program();
+        let is_text = request.machine_text.is_some();
+        is_text.then(|| request.machine()).transpose()
     }
 
-    /// Returns the machine.
-    ///
-    /// # Errors
-    /// A machine file with mistakes, and a name that no built-in machine has.
-    pub(crate) fn machine(&self) -> Result<Machine, MachineError> {
-        if self.is_machine_text() {
-            return Machine::parse(&self.machine_name, &self.machine);
+    /// Returns the job request. The program is moved into it.
+    pub(crate) fn job_request(&mut self) -> JobRequest {
+        let program = String::from_utf8(std::mem::take(&mut self.program))
+            .unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned());
+        JobRequest {
+            program: self.name.clone().into(),
+            program_text: Some(program),
+            ..self.without_program()
         }
-        Machine::load(self.machine.as_ref())
     }
 
-    /// Returns the requested controller; `None` selects the default.
-    ///
-    /// # Errors
-    /// A name that no controller has.
-    pub(crate) fn controller(&self) -> miette::Result<Option<&'static Entry>> {
-        let find = |name: &String| {
-            CONTROLLERS
-                .find(name)
-                .ok_or_else(|| miette::miette!("no controller is called '{name}'"))
+    fn without_program(&self) -> JobRequest {
+        let usual = JobRequest::default();
+        let is_text = self.machine.contains('\n');
+        let machine = if is_text {
+            &self.machine_name
+        } else {
+            &self.machine
         };
-        self.controller.as_ref().map(find).transpose()
+        JobRequest {
+            machine: machine.into(),
+            machine_text: is_text.then(|| self.machine.clone()),
+            controller: self.controller.clone().unwrap_or(usual.controller),
+            target: self.target.clone(),
+            tolerance_um: self.tolerance_um,
+            seed: self.seed,
+            exact_settings: self.recorded_on.is_none(),
+            with_limits: self.recorded_on.is_some(),
+            ..usual
+        }
     }
 }
 

@@ -1,5 +1,4 @@
 //! `-` in place of a file: the standard input, or the standard output.
-use std::ffi::OsStr;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
@@ -7,11 +6,11 @@ use feedwright_gcode::input::{self, is_standard_input};
 use feedwright_sim::is_machine_path;
 use miette::{Result, miette};
 
-use crate::command::args::reader::ReaderArgs;
 use crate::command::console::Console;
 use crate::command::terminal::is_inch;
 use crate::inches::in_inches;
 use crate::output::{OutputFiles, is_standard_output};
+use crate::request::JobRequest;
 
 /// Refuses the standard input for two things at once, and says so where a person has to type it.
 /// `inputs` are options and files.
@@ -35,57 +34,22 @@ pub(crate) fn check_inputs<'a>(
     Ok(())
 }
 
-/// The files that a command reads beside its options: program, machine and tool table.
-pub(crate) struct ProgramInputs<'a> {
-    part: &'a Path,
-    machine: &'a Path,
-    tools: Option<&'a Path>,
-    geometry: Option<&'a Path>,
+/// Calls [`check_inputs`] for the files of a request.
+pub(crate) fn check_request(console: &Console, request: &JobRequest) -> Result<()> {
+    let files = [
+        ("the program", &request.program),
+        ("--machine", &request.machine),
+    ];
+    let files = files.into_iter().chain(request.files());
+    check_inputs(console, files.map(|(name, file)| (name, Some(&**file))))
 }
 
-impl<'a> ProgramInputs<'a> {
-    /// Collects the files that these arguments name.
-    pub(crate) fn of(
-        part: &'a Path,
-        machine: &'a (impl AsRef<OsStr> + ?Sized),
-        reader: &'a ReaderArgs,
-    ) -> Self {
-        Self {
-            part,
-            machine: Path::new(machine),
-            tools: reader.tool_table.as_deref(),
-            geometry: None,
-        }
-    }
-
-    /// The same with a geometry file, where there is one.
-    pub(crate) const fn with_geometry(self, geometry: Option<&'a Path>) -> Self {
-        Self { geometry, ..self }
-    }
-
-    /// Calls [`check_inputs`] for these files.
-    pub(crate) fn check(&self, console: &Console) -> Result<()> {
-        let named = [
-            ("the program", Some(self.part)),
-            ("--machine", Some(self.machine)),
-        ];
-        check_inputs(
-            console,
-            named
-                .into_iter()
-                .chain([("--tool-table", self.tools), ("--geometry", self.geometry)]),
-        )
-    }
-
-    /// Returns output files that must differ from these files.
-    pub(crate) fn outputs(&self) -> OutputFiles {
-        let machine = Some(self.machine).filter(|path| is_machine_path(path));
-        OutputFiles::new(
-            [Some(self.part), machine, self.tools, self.geometry]
-                .into_iter()
-                .flatten(),
-        )
-    }
+/// Returns output files that must differ from the files of a request.
+pub(crate) fn outputs_of(request: &JobRequest) -> OutputFiles {
+    let machine = Some(&request.machine).filter(|path| is_machine_path(path));
+    let files = std::iter::once(&request.program).chain(machine);
+    let others = request.files().map(|(_, file)| file);
+    OutputFiles::new(files.chain(others).map(|file| &**file))
 }
 
 /// Makes a folder for results, where it is not there.

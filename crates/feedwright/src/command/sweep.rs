@@ -6,11 +6,11 @@
 //!
 //! | File | What |
 //! |---|---|
-//! | `sweep/job_spec.rs` | one job: its keys, its address, its cut |
+//! | `sweep/job_result.rs` | the result of one job, and its address |
 //! | `sweep/job_list.rs` | the list of jobs, JOBS.toml, and shards |
 //! | `sweep/result_table.rs` | the results as rows of a table |
 
-pub(crate) mod job_spec;
+pub(crate) mod job_result;
 pub(crate) mod job_list;
 pub(crate) mod result_table;
 
@@ -18,9 +18,9 @@ use feedwright_sim::Watch;
 use miette::Result;
 use serde_json::Value;
 
+use crate::request::JobRequest;
 use crate::results_format::spelled_out;
 use crate::store::Store;
-use job_spec::ListedJob;
 
 /// A job whose result is in the store.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -39,7 +39,7 @@ pub struct JobDone {
 /// A file that cannot be read, a result that cannot be written, or a cancellation: nothing is
 /// stored, and the job may be done again. The mistakes of a program, a machine or a model are a
 /// result.
-pub fn do_job(store: &Store, job: &ListedJob, watch: &dyn Watch) -> Result<JobDone> {
+pub fn do_job(store: &Store, job: &JobRequest, watch: &dyn Watch) -> Result<JobDone> {
     let address = job.address()?;
     let found = store
         .text(&address)
@@ -48,7 +48,7 @@ pub fn do_job(store: &Store, job: &ListedJob, watch: &dyn Watch) -> Result<JobDo
         return Ok(JobDone {
             address,
             found: true,
-            error: job_spec::error_of(&result),
+            error: job_result::error_of(&result),
         });
     }
     let result = job.result(&address, watch)?;
@@ -56,6 +56,6 @@ pub fn do_job(store: &Store, job: &ListedJob, watch: &dyn Watch) -> Result<JobDo
     Ok(JobDone {
         address,
         found: false,
-        error: job_spec::error_of(&result),
+        error: job_result::error_of(&result),
     })
 }

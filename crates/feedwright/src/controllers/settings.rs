@@ -3,10 +3,10 @@
 use feedwright_control::Parameter;
 use feedwright_gcode::suggestion::nearest;
 use miette::Diagnostic;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::Serialize;
 use thiserror::Error;
 
-use super::{CONTROLLERS, Choices, Controllers, Entry};
+use super::{Choices, Controllers, Entry};
 
 /// Describes the values that a parameter can be set to.
 pub(crate) fn range(parameter: &Parameter) -> String {
@@ -24,26 +24,6 @@ pub struct Setting {
     pub name: &'static str,
     /// The value, which is allowed.
     pub value: f64,
-}
-
-/// A setting as it is read back, before its names and value are checked.
-#[derive(Deserialize)]
-struct StoredSetting {
-    controller: String,
-    name: String,
-    value: f64,
-}
-
-impl<'d> Deserialize<'d> for Setting {
-    fn deserialize<D: Deserializer<'d>>(deserializer: D) -> Result<Self, D::Error> {
-        let StoredSetting {
-            controller,
-            name,
-            value,
-        } = StoredSetting::deserialize(deserializer)?;
-        Self::parse(&format!("{controller}.{name}={value}"), None, CONTROLLERS)
-            .map_err(serde::de::Error::custom)
-    }
 }
 
 /// Reason why `--set` cannot be done.
@@ -170,6 +150,7 @@ impl Choices {
 
 #[cfg(test)]
 mod tests {
+    use super::super::CONTROLLERS;
     use super::*;
 
     fn told(text: &str) -> String {

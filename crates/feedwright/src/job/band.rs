@@ -23,15 +23,15 @@ impl Job {
     pub(super) fn band<const N: usize>(
         &self,
         plan: PlannedCut<'_>,
-        cut: &RunSummary,
+        completed: Option<&RunSummary>,
         watch: &dyn Watch,
     ) -> Result<Option<Band>, JobError>
     where
         Entry: Make<N>,
     {
-        if self.fitting.is_empty() || cut.outcome != Outcome::Completed {
+        let Some(cut) = completed.filter(|_| !self.fitting.is_empty()) else {
             return Ok(None);
-        }
+        };
         watch.begin(
             "cutting on machines that fit the recording",
             self.fitting.len() as u64,

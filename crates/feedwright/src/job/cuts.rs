@@ -4,19 +4,19 @@ use std::sync::Arc;
 
 use feedwright_control::{Controller, IdentifiedAxes};
 use feedwright_gcode::Summary;
-use feedwright_gcode::canon::{Canon, MotionKind};
 use feedwright_ident::{Model, Origin};
 use feedwright_plan::{AlignedPaths, PlanSink, SpeedCaps};
 use feedwright_sim::{
     Machine, PlanCache, Row, Run, RunError, RunResult, Sink, StageSteps, Watch, path_steps,
 };
 
-use super::guests::SharedPlantMaker;
+use super::guests::{Guests, SharedPlantMaker};
+use super::planned::{JobPlan, with_feeds};
 use super::record::{RunRecord, Timeline};
 use super::{Job, JobError};
 use crate::controllers::{CutsUncorrected, Entry, Make, Setup, identifying};
 use crate::fastest::with_tolerance;
-use crate::report::{CompensatedGeometry, FullCircle, ReportedRun, Role};
+use crate::report::{CompensatedGeometry, FullCircle, Outcome, ReportedRun, Role, RunSummary};
 
 /// Results of the cuts of all controllers.
 #[derive(Default)]
@@ -28,10 +28,10 @@ pub(super) struct Cuts {
     pub(super) geometry: Option<CompensatedGeometry>,
 }
 
-/// Inputs of a cut besides the controller.
+/// Inputs of a cut besides the controller: those of the [`JobPlan`], and what takes part in it.
 #[derive(Clone, Copy)]
 pub(super) struct PlannedCut<'a> {
-    /// The machine of the job, perhaps with another tolerance of the path.
+    /// The machine that cuts.
     pub(super) machine: &'a Machine,
     /// Plant that moves in place of the machine's axes.
     pub(super) plant: Option<SharedPlantMaker<'a>>,
@@ -47,23 +47,6 @@ pub(super) struct PlannedCut<'a> {
     pub(super) circles: &'a [FullCircle],
     /// Receives the plan.
     pub(super) looked_at: Option<&'a dyn PlanSink>,
-}
-
-/// The steps of a program with other feedrates of its motions, in its order, mm/s. Rapids and
-/// motions that have none keep their own.
-pub(super) fn with_feeds(
-    steps: impl Iterator<Item = Canon> + Send,
-    mut feeds_mm_s: impl Iterator<Item = f64> + Send,
-) -> impl Iterator<Item = Canon> + Send {
-    steps.map(move |mut step| {
-        if let Canon::Motion(motion) = &mut step
-            && let Some(feed_mm_s) = feeds_mm_s.next()
-            && motion.kind == MotionKind::Feed
-        {
-            motion.feed_mm_s = feed_mm_s;
-        }
-        step
-    })
 }
 
 /// Reports the progress of a cut by its arc length.
@@ -87,9 +70,47 @@ impl Sink for CutProgress<'_> {
     }
 }
 
+impl Cuts {
+    /// Returns the figures of the requested controller's cut, if it came to its end.
+    pub(super) fn completed(&self) -> Option<&RunSummary> {
+        let mut summaries = self.runs.iter().map(|run| &run.summary);
+        summaries.find(|run| run.role == Role::Corrected && run.outcome == Outcome::Completed)
+    }
+}
+
+impl JobPlan {
+    /// Returns the inputs of a cut; `looked_at` receives its plan.
+    pub(super) fn cut<'a>(
+        &'a self,
+        guests: Guests<'a>,
+        looked_at: Option<&'a dyn PlanSink>,
+    ) -> PlannedCut<'a> {
+        PlannedCut {
+            machine: &self.machine,
+            plant: guests.plant,
+            feeds_mm_s: guests.feeds_mm_s,
+            path_um: self.path_um,
+            caps: self.fastest.as_ref().map(|plan| &plan.caps),
+            kept: &self.kept,
+            aligned: self.aligned.as_ref(),
+            circles: &self.circles,
+            looked_at,
+        }
+    }
+}
+
 impl Job {
+    /// Returns the controllers in the order in which they cut: the requested one last, and once.
+    fn controllers(&self) -> Vec<&'static Entry> {
+        if self.against.name == self.controller.name {
+            vec![self.controller]
+        } else {
+            vec![self.against, self.controller]
+        }
+    }
+
     /// One run for each controller.
-    pub(super) fn cut_with_each<const N: usize>(
+    pub(super) fn cut_each<const N: usize>(
         &self,
         summary: &Summary,
         guest: Option<&dyn Make<N>>,

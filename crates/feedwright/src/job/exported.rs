@@ -24,7 +24,7 @@ impl Job {
             feed_mm_s: self.feed_mm_s,
             reader: self.reader.clone(),
             compensation: self.compensation.clone(),
-            file_error: CorrectJob::usual_file_error(self.machine_file.is_some()),
+            file_error: self.file_error,
             ..CorrectJob::new(self.program.clone(), self.machine.clone(), target)
         };
         let outcome = job.run(watch)?;

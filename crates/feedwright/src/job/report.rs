@@ -2,16 +2,13 @@
 
 use feedwright_gcode::Summary;
 use feedwright_ident::Model;
-use feedwright_plan::{AlignedPaths, Constraints};
 use feedwright_sim::{Machine, Stages, Watch, path_steps};
 
+use super::planned::JobPlan;
 use super::{Job, JobError};
 use crate::controllers::CutsUncorrected;
 use crate::cycle_time::{self, CycleTime, CycleTimeOfCut, cycle_time};
-use crate::fastest::FastestPlan;
-use crate::report::{
-    DrawnLimits, FullCircle, LimitBand, Outcome, Report, ReportedRun, Role, WorstPlace,
-};
+use crate::report::{DrawnLimits, FullCircle, LimitBand, Report, ReportedRun, WorstPlace};
 
 /// Returns the limits of each axis that the page draws.
 fn drawn_limits(machine: &Machine) -> Vec<DrawnLimits> {
@@ -113,15 +110,6 @@ impl Job {
         })
     }
 
-    /// Returns true if the command of the requested controller may be used: it was cut to its end,
-    /// is not worse than uncorrected, and a drive may receive it.
-    pub(super) fn is_of_use(&self, report: &Report) -> bool {
-        let is_of_use = |run: &ReportedRun| {
-            run.summary.outcome == Outcome::Completed && run.summary.beyond_drives().is_none()
-        };
-        report.run(Role::Corrected).is_some_and(is_of_use) && report.harm().is_empty()
-    }
-
     /// Returns true if the binding limits along the path are to be found: on machines that are
     /// planned axis by axis.
     fn shows_limits(&self) -> bool {
@@ -129,33 +117,34 @@ impl Job {
     }
 
     /// Looks at the plan of a cut for the page, where that is the plan of the program.
-    pub(super) fn looks_at_cut<'a>(
-        &self,
-        fastest: Option<&FastestPlan>,
-        aligned: Option<&AlignedPaths>,
-        constraints: &'a Constraints,
-    ) -> Option<CycleTimeOfCut<'a>> {
-        let cut = self.shows_limits() && fastest.is_none() && aligned.is_none();
-        cut.then(|| CycleTimeOfCut::new(constraints, Stages::of(&self.machine).planner))
+    pub(super) fn looks_at_cut<'a>(&self, plan: &'a JobPlan) -> Option<CycleTimeOfCut<'a>> {
+        let cut = self.shows_limits() && plan.fastest.is_none() && plan.aligned.is_none();
+        cut.then(|| CycleTimeOfCut::new(&plan.constraints, Stages::of(&self.machine).planner))
     }
 
-    /// The limits that bind along the path; `None` if the page does not show them. `known` has them
+    /// The limits that bind along the path; `None` if the page does not show them. `of_cut` has them
     /// from the plan of a cut. Without it, because the cut did not finish or took another path,
     /// this function makes a plan.
     pub(super) fn limit_band(
         &self,
-        machine: &Machine,
-        known: Option<&CycleTime>,
+        plan: &JobPlan,
+        of_cut: Option<&CycleTime>,
         watch: &dyn Watch,
     ) -> Result<Option<LimitBand>, JobError> {
         if !self.shows_limits() {
             return Ok(None);
         }
+        let known = plan.fastest.as_ref().map(|plan| &plan.cycle).or(of_cut);
         let along = match known {
             Some(cycle) => cycle.along.clone(),
             None => {
                 watch.begin("looking at what binds", 1);
-                let found = cycle_time(machine, false, || Ok(path_steps(self.steps()?)), watch);
+                let found = cycle_time(
+                    &plan.machine,
+                    false,
+                    || Ok(path_steps(self.steps()?)),
+                    watch,
+                );
                 found
                     .map_err(|error| JobError::of_run(&self.program, error))?
                     .along

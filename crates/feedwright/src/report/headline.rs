@@ -83,8 +83,8 @@ impl Report {
             .or_else(|| self.run(Role::Corrected))
     }
 
-    /// Returns the run that is judged: that of the corrected program, if there is one, else that of
-    /// the requested controller.
+    /// Returns the run that is judged: the cut of the corrected program, if there is one, else the
+    /// requested controller's.
     pub fn judged(&self) -> Option<&RunSummary> {
         self.summary(Role::Exported)
             .or_else(|| self.summary(Role::Corrected))
@@ -109,6 +109,14 @@ impl Report {
                     .tolerance_um
                     .is_none_or(|tolerance_um| run.max_um <= tolerance_um)
         })
+    }
+
+    /// Returns true if the command of the requested controller may be used: it was cut to its end,
+    /// is not worse than uncorrected, and a drive may receive it.
+    pub fn is_of_use(&self) -> bool {
+        let may_be_used =
+            |run: &RunSummary| run.outcome == Outcome::Completed && run.beyond_drives().is_none();
+        self.summary(Role::Corrected).is_some_and(may_be_used) && self.harm().is_empty()
     }
 
     /// Returns true if the requested controller left most of the part, or its end, uncorrected.

@@ -44,7 +44,7 @@ impl Role {
         match self {
             Self::Measured => runs().find(is_measured),
             Self::Exported => runs().find(is_exported),
-            Self::Corrected => controllers.last(),
+            Self::Corrected => controllers.next_back(),
             Self::Reference => controllers.next().filter(|_| controllers.next().is_some()),
         }
     }

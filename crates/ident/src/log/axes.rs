@@ -1,7 +1,5 @@
 //! The axes of a log in millimetres.
 
-use std::path::Path;
-
 use feedwright_sim::to_four_digits;
 
 use super::clock::Clock;
@@ -15,7 +13,6 @@ use super::{Fitness, LogAxis};
 
 /// The axes of a table.
 pub(super) fn of_table(
-    path: &Path,
     table: &mut LogTable,
     roles: &Roles,
     columns: &Columns,
@@ -36,14 +33,15 @@ pub(super) fn of_table(
                     table.place(*row)
                 );
                 let hint = "take these lines out, or record without them";
-                return Err(LogError::refused(
-                    path,
-                    Refusal::new(RefusalReason::NotANumber, message, hint),
-                ));
+                return Err(LogError::refused([Refusal::new(
+                    RefusalReason::NotANumber,
+                    message,
+                    hint,
+                )]));
             }
         }
     }
-    let units = units(path, table, roles, columns, clock, findings)?;
+    let units = units(table, roles, columns, clock, findings)?;
     let uses = |column: usize| {
         roles
             .axes
@@ -122,14 +120,13 @@ fn way(values: &[f64], clock: &Clock) -> (f64, f64) {
 /// Units of the positions of each axis: as said, as the file says, or by their size. Fails where
 /// two statements differ, and where a unit is not known.
 fn units(
-    path: &Path,
     table: &LogTable,
     roles: &Roles,
     columns: &Columns,
     clock: &Clock,
     findings: &mut Vec<LogFinding>,
 ) -> Result<Vec<AxisUnits>, LogError> {
-    let everywhere = of_file(path, table, columns)?;
+    let everywhere = of_file(table, columns)?;
     if let Some(unit) = columns.position_unit {
         return Ok(vec![
             AxisUnits {
@@ -143,12 +140,12 @@ fn units(
     let mut written = vec![];
     for axis in &roles.axes {
         let [command, actual] = [
-            of_column(path, table, roles, axis.command)?,
-            of_column(path, table, roles, axis.actual)?,
+            of_column(table, roles, axis.command)?,
+            of_column(table, roles, axis.actual)?,
         ];
         let lag = axis
             .lag
-            .map_or(Ok(None), |lag| of_column(path, table, roles, lag))?;
+            .map_or(Ok(None), |lag| of_column(table, roles, lag))?;
         // Where one column of an axis has no unit, it has the unit of the other.
         written.push([command.or(actual), actual.or(command), lag]);
     }
@@ -165,7 +162,7 @@ fn units(
             "a line of the file says that positions are in {stated}, and a column that it is in {other}"
         );
         let hint = "correct one of the two, or say which is right with --columns unit=...";
-        return Err(LogError::columns(path, message, hint));
+        return Err(LogError::columns(message, hint));
     }
     let mut found: Vec<PositionUnit> = vec![];
     positions().for_each(|unit| {
@@ -208,11 +205,7 @@ fn units(
 }
 
 /// The unit that a line of the file states for all positions.
-fn of_file(
-    path: &Path,
-    table: &LogTable,
-    columns: &Columns,
-) -> Result<Option<PositionUnit>, LogError> {
+fn of_file(table: &LogTable, columns: &Columns) -> Result<Option<PositionUnit>, LogError> {
     let Some((line, text)) = &table.position_unit else {
         return Ok(None);
     };
@@ -222,14 +215,14 @@ fn of_file(
                 "--columns says that positions are in {said}, and the file that they are in {stated}"
             );
             let hint = "leave unit= out, or correct the line '# unit = ...' of the file";
-            Err(LogError::columns(path, message, hint))
+            Err(LogError::columns(message, hint))
         }
         (None, None) => {
             let message = format!(
                 "positions are in '{text}', a unit of length that is not known: {}",
                 PositionUnit::KNOWN
             );
-            Err(LogError::format(path, Some(*line), message, UNKNOWN_UNIT))
+            Err(LogError::format(Some(*line), message, UNKNOWN_UNIT))
         }
         (_, stated) => Ok(stated),
     }
@@ -240,7 +233,6 @@ const UNKNOWN_UNIT: &str = "convert the positions to one of these; or, if they a
 
 /// The unit that is written above a column; none where nothing is.
 fn of_column(
-    path: &Path,
     table: &LogTable,
     roles: &Roles,
     column: usize,
@@ -253,7 +245,7 @@ fn of_column(
             table.label(column),
             PositionUnit::KNOWN
         );
-        return Err(LogError::columns(path, message, UNKNOWN_UNIT));
+        return Err(LogError::columns(message, UNKNOWN_UNIT));
     }
     Ok(unit)
 }

@@ -1,7 +1,6 @@
 //! The clock of a log: time between samples, and stretches without gaps.
 
 use std::ops::Range;
-use std::path::Path;
 
 use feedwright_sim::{rounded, to_four_digits};
 
@@ -37,25 +36,24 @@ const GAPS_TOLD: usize = 5;
 
 /// The clock of a table.
 pub(super) fn of_table(
-    path: &Path,
     table: &mut LogTable,
     roles: &Roles,
     columns: &Columns,
     findings: &mut Vec<LogFinding>,
 ) -> Result<Clock, LogError> {
     let Some(time) = &roles.time else {
-        return without_column(path, table, roles, columns, findings);
+        return without_column(table, roles, columns, findings);
     };
     let column = &mut table.columns[time.column];
     if let Some((row, text)) = column.not_a_number.clone() {
-        return Err(no_number(
-            path,
-            format!("the time is no number at {}: '{text}'", table.place(row)),
-        ));
+        return Err(no_number(format!(
+            "the time is no number at {}: '{text}'",
+            table.place(row)
+        )));
     }
     let mut values = std::mem::take(&mut column.values);
     if let Some(row) = (1..values.len()).find(|&row| values[row] <= values[row - 1]) {
-        return Err(backward(path, table, row, [values[row - 1], values[row]]));
+        return Err(backward(table, row, [values[row - 1], values[row]]));
     }
     if let (Some(first), Some(last)) = (values.first(), values.last())
         && !(last - first).is_finite()
@@ -65,16 +63,13 @@ pub(super) fn of_table(
             .position(|value| !value.is_finite())
             .unwrap_or(values.len() - 1);
         let place = table.place(row);
-        return Err(no_number(
-            path,
-            format!(
-                "the time is beyond every clock at {place}: {:e}",
-                values[row]
-            ),
-        ));
+        return Err(no_number(format!(
+            "the time is beyond every clock at {place}: {:e}",
+            values[row]
+        )));
     }
     let step = median_step(&values);
-    let unit = unit(path, time, columns, table, step, findings)?;
+    let unit = unit(time, columns, table, step, findings)?;
     let sample_s = match unit {
         TimeUnit::Sample => counted(table, roles, columns, step, findings),
         _ => 1.0,
@@ -91,12 +86,12 @@ pub(super) fn of_table(
     Ok(stretches(values, step * scale, &table.breaks, findings))
 }
 
-fn no_number(path: &Path, message: String) -> LogError {
+fn no_number(message: String) -> LogError {
     let hint = "take the line out, or name another column of the time with --columns t=COLUMN";
-    LogError::refused(path, Refusal::new(RefusalReason::NotANumber, message, hint))
+    LogError::refused([Refusal::new(RefusalReason::NotANumber, message, hint)])
 }
 
-fn backward(path: &Path, table: &LogTable, row: usize, values: [f64; 2]) -> LogError {
+fn backward(table: &LogTable, row: usize, values: [f64; 2]) -> LogError {
     let [before, now] = values;
     let how = if now < before {
         "runs backward"
@@ -113,7 +108,7 @@ fn backward(path: &Path, table: &LogTable, row: usize, values: [f64; 2]) -> LogE
         "the time is recorded too coarsely: record a sample counter (halsampler -t), or leave the column out and say \
          --columns period_s=..."
     };
-    LogError::refused(path, Refusal::new(RefusalReason::Backward, message, hint))
+    LogError::refused([Refusal::new(RefusalReason::Backward, message, hint)])
 }
 
 /// The median of the steps; of long columns of a part of them.
@@ -130,7 +125,6 @@ fn median_step(values: &[f64]) -> f64 {
 
 /// The unit of the time column. Fails where the file has one that is not known.
 fn unit(
-    path: &Path,
     time: &TimeColumn,
     columns: &Columns,
     table: &LogTable,
@@ -162,7 +156,7 @@ fn unit(
             time.unit
         );
         let hint = "convert the time to one of these; or, if it is in one of them, say which: --columns time=ms";
-        return Err(LogError::columns(path, message, hint));
+        return Err(LogError::columns(message, hint));
     }
     let unit = match step {
         // 2 Hz and more, in seconds; 17 Hz and more, in the others.
@@ -252,7 +246,6 @@ fn speed_scale([position, speed]: [&str; 2]) -> Option<f64> {
 
 /// Evenly, where there is no column of the time.
 fn without_column(
-    path: &Path,
     table: &LogTable,
     roles: &Roles,
     columns: &Columns,
@@ -276,12 +269,12 @@ fn without_column(
         (Some(known), _) => known,
         (None, Some(finding)) => {
             let LogFinding::SampleTime { sample_time_s, .. } = finding else {
-                return Err(no_time(path));
+                return Err(no_time());
             };
             findings.push(finding);
             sample_time_s
         }
-        (None, None) => return Err(no_time(path)),
+        (None, None) => return Err(no_time()),
     };
     let mut time_s: Vec<f64> = (0..table.rows())
         .map(|row| row as f64 * sample_time_s)
@@ -298,10 +291,9 @@ fn without_column(
     Ok(stretches(time_s, sample_time_s, &table.breaks, findings))
 }
 
-fn no_time(path: &Path) -> LogError {
+fn no_time() -> LogError {
     let message = "no column is the time, and nothing states the time between samples";
     LogError::columns(
-        path,
         message,
         "say which column is the time with --columns t=0, or what is between samples: --columns period_s=0.001",
     )

@@ -109,7 +109,7 @@ pub enum RefusalReason {
 
 impl LogError {
     /// A file that the system does not hand out.
-    pub(super) fn unreadable(path: &Path, source: io::Error) -> Self {
+    pub(super) fn unreadable(source: io::Error) -> Self {
         let hint = match source.kind() {
             io::ErrorKind::IsADirectory => Some("name a file in it"),
             io::ErrorKind::NotFound => {
@@ -118,7 +118,7 @@ impl LogError {
             _ => None,
         };
         Self::Unreadable {
-            path: path.to_owned(),
+            path: PathBuf::new(),
             source,
             hint,
         }
@@ -126,13 +126,12 @@ impl LogError {
 
     /// A file that is not what it should be.
     pub(super) fn format(
-        path: &Path,
         line: Option<u64>,
         message: impl Into<String>,
         hint: impl Into<String>,
     ) -> Self {
         Self::Format {
-            path: path.to_owned(),
+            path: PathBuf::new(),
             line,
             message: message.into(),
             hint: hint.into(),
@@ -140,33 +139,43 @@ impl LogError {
     }
 
     /// Columns that are missing.
-    pub(super) fn columns(
-        path: &Path,
-        message: impl Into<String>,
-        hint: impl Into<String>,
-    ) -> Self {
+    pub(super) fn columns(message: impl Into<String>, hint: impl Into<String>) -> Self {
         Self::Columns {
-            path: path.to_owned(),
+            path: PathBuf::new(),
             message: message.into(),
             hint: hint.into(),
         }
     }
 
     /// A log of something else than the one before it.
-    pub(super) fn apart(path: PathBuf, message: String, hint: &str) -> Self {
+    pub(super) fn apart(message: String, hint: &str) -> Self {
         Self::Apart {
-            path,
+            path: PathBuf::new(),
             message,
             hint: hint.to_owned(),
         }
     }
 
-    /// A record that is refused for one reason.
-    pub(super) fn refused(path: &Path, refusal: Refusal) -> Self {
+    /// A record that is refused.
+    pub(super) fn refused(refusals: impl Into<Vec<Refusal>>) -> Self {
         Self::Refused {
-            path: path.to_owned(),
-            refusals: vec![refusal],
+            path: PathBuf::new(),
+            refusals: refusals.into(),
         }
+    }
+
+    /// The same error of a file: readers report errors without it, and the place where the file was
+    /// opened adds it.
+    pub(super) fn in_file(mut self, file: &Path) -> Self {
+        match &mut self {
+            Self::Unreadable { path, .. }
+            | Self::Format { path, .. }
+            | Self::Columns { path, .. }
+            | Self::Refused { path, .. }
+            | Self::Apart { path, .. } => file.clone_into(path),
+            Self::Cancelled(_) => {}
+        }
+        self
     }
 
     /// The reasons for which a record is refused; none where the file is at fault.

@@ -19,7 +19,6 @@ impl Log {
         let mut logs = logs.into_iter();
         let Some((first_path, mut all)) = logs.next() else {
             return Err(LogError::apart(
-                PathBuf::new(),
                 "no log was given".to_owned(),
                 "name one or more",
             ));
@@ -33,7 +32,7 @@ impl Log {
                     first_path.display()
                 );
                 let hint = "logs of one machine have one servo period: identify them one by one";
-                return Err(LogError::apart(path, message, hint));
+                return Err(LogError::apart(message, hint).in_file(&path));
             }
             all.take_up(&log);
             log.take_up(&all);
@@ -52,7 +51,7 @@ impl Log {
                     first_path.display()
                 );
                 let hint = "name the axes that all logs have with --columns, or identify them one by one with --update";
-                return Err(LogError::apart(path, message, hint));
+                return Err(LogError::apart(message, hint).in_file(&path));
             }
             all.append(path.display().to_string(), log);
         }

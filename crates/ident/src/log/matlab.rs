@@ -13,7 +13,6 @@
 //! or sparse is left out.
 
 use std::io::Read;
-use std::path::Path;
 
 use feedwright_sim::{StageSteps, Watch};
 use miniz_oxide::inflate::{TINFLStatus, decompress_to_vec_zlib_with_limit};
@@ -49,17 +48,14 @@ fn is_hdf5(head: &[u8]) -> bool {
 
 /// Reads all vectors of a file.
 pub(super) fn read(
-    path: &Path,
     file: &mut impl Read,
     steps: &mut StageSteps<'_>,
     watch: &dyn Watch,
 ) -> Result<LogTable, LogError> {
     let mut bytes = Vec::new();
-    file.read_to_end(&mut bytes)
-        .map_err(|error| LogError::unreadable(path, error))?;
+    file.read_to_end(&mut bytes).map_err(LogError::unreadable)?;
     let fault = |message: String| {
         LogError::format(
-            path,
             None,
             message,
             "save it anew: save('log.mat', 't', 'x_cmd', 'x_act', '-v7')",
@@ -97,7 +93,6 @@ pub(super) fn read(
                     bytes.len()
                 );
                 LogError::format(
-                    path,
                     None,
                     message,
                     "save the columns of the log alone, or uncompressed: save(..., '-v6')",

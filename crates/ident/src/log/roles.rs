@@ -1,7 +1,5 @@
 //! Which column is what: as `--columns` says, else by the names, else by the data.
 
-use std::path::Path;
-
 use feedwright_gcode::suggestion::nearest;
 use feedwright_sim::to_four_digits;
 
@@ -109,23 +107,22 @@ pub(super) fn needed(table: &LogTable, columns: &Columns) -> Vec<bool> {
 
 /// The roles of the columns of a table that is read.
 pub(super) fn find(
-    path: &Path,
     table: &LogTable,
     columns: &Columns,
     findings: &mut Vec<LogFinding>,
 ) -> Result<Roles, LogError> {
-    let fault = |message: String| LogError::columns(path, message, there_are(table));
+    let fault = |message: String| LogError::columns(message, there_are(table));
     let meanings = meanings(table);
     let mut time = time(table, columns, &meanings).map_err(fault)?;
     let mut axes = chosen(table, columns).map_err(fault)?;
-    not_the_time(path, table, time.as_ref(), &axes)?;
+    not_the_time(table, time.as_ref(), &axes)?;
     let mut incomplete = Vec::new();
     let mut by_data = false;
     if axes.is_empty() {
         axes = named(table, &meanings, &mut incomplete);
     }
     if let (true, Some(hint)) = (axes.is_empty(), table.format.record()) {
-        return Err(lacking(path, table, &incomplete, hint));
+        return Err(lacking(table, &incomplete, hint));
     }
     if axes.is_empty() {
         by_data = true;
@@ -153,8 +150,8 @@ pub(super) fn find(
         ));
     }
     axes.truncate(MAX_AXES);
-    at_one_rate(path, table, &axes)?;
-    torques_are_known(path, table, &meanings, &axes)?;
+    at_one_rate(table, &axes)?;
+    torques_are_known(table, &meanings, &axes)?;
     findings.extend(axes.iter().map(|axis| columns_of(table, axis, by_data)));
     findings.append(&mut incomplete);
     if by_data {
@@ -177,7 +174,6 @@ pub(super) fn find(
 
 /// Refuses a torque in a unit that is not known.
 fn torques_are_known(
-    path: &Path,
     table: &LogTable,
     meanings: &[Meaning],
     axes: &[AxisRoles],
@@ -194,7 +190,7 @@ fn torques_are_known(
         TorqueUnit::KNOWN
     );
     let hint = "write one of these units above the column, or none and give --torque-gain; or leave the torque out with --columns x.cmd=COLUMN,x.act=COLUMN";
-    Err(LogError::columns(path, message, hint))
+    Err(LogError::columns(message, hint))
 }
 
 /// Reports the columns of an axis.
@@ -214,7 +210,7 @@ fn columns_of(table: &LogTable, axis: &AxisRoles, by_data: bool) -> LogFinding {
 }
 
 /// A record of a scope in which no axis is complete.
-fn lacking(path: &Path, table: &LogTable, incomplete: &[LogFinding], hint: &str) -> LogError {
+fn lacking(table: &LogTable, incomplete: &[LogFinding], hint: &str) -> LogError {
     let lacks: Vec<String> = incomplete.iter().map(LogFinding::to_string).collect();
     let lacks = if lacks.is_empty() {
         "no channel is a position".to_owned()
@@ -225,11 +221,11 @@ fn lacking(path: &Path, table: &LogTable, incomplete: &[LogFinding], hint: &str)
         "no axis of this {} record has command and actual position: {lacks}",
         table.format
     );
-    LogError::columns(path, message, format!("{hint}; or {}", there_are(table)))
+    LogError::columns(message, format!("{hint}; or {}", there_are(table)))
 }
 
 /// Refuses positions that are sampled at different rates.
-fn at_one_rate(path: &Path, table: &LogTable, axes: &[AxisRoles]) -> Result<(), LogError> {
+fn at_one_rate(table: &LogTable, axes: &[AxisRoles]) -> Result<(), LogError> {
     let positions = axes
         .iter()
         .flat_map(|axis| [axis.command, axis.actual].into_iter().chain(axis.lag));
@@ -248,14 +244,13 @@ fn at_one_rate(path: &Path, table: &LogTable, axes: &[AxisRoles]) -> Result<(), 
                 to_four_digits(1e3 * other_s)
             );
             let hint = "record all positions with one sample time, or name the axes that have one with --columns";
-            Err(LogError::columns(path, message, hint))
+            Err(LogError::columns(message, hint))
         }
     }
 }
 
 /// Refuses a column that is the time and belongs to an axis too.
 fn not_the_time(
-    path: &Path,
     table: &LogTable,
     time: Option<&TimeColumn>,
     axes: &[AxisRoles],
@@ -277,7 +272,7 @@ fn not_the_time(
         "name another column for one of the two (the time is t=COLUMN); {}",
         there_are(table)
     );
-    Err(LogError::columns(path, message, hint))
+    Err(LogError::columns(message, hint))
 }
 
 /// Returns true if the name of an axis says that it is rotary.

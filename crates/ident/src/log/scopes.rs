@@ -8,8 +8,6 @@ mod twincat;
 mod tncscope;
 mod servo_guide;
 
-use std::path::Path;
-
 use super::{LogError, LogFormat};
 
 /// Content of the header of an export.
@@ -49,7 +47,7 @@ const HEADER_LINES: usize = 400;
 ///
 /// # Errors
 /// A header of a scope that is not complete.
-pub(super) fn header(path: &Path, head: &[u8]) -> Result<Option<ScopeHeader>, LogError> {
+pub(super) fn header(head: &[u8]) -> Result<Option<ScopeHeader>, LogError> {
     let text = String::from_utf8_lossy(head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head));
     let lines: Vec<&str> = text
         .split('\n')
@@ -63,7 +61,7 @@ pub(super) fn header(path: &Path, head: &[u8]) -> Result<Option<ScopeHeader>, Lo
                      line,
                      message,
                      hint,
-                 }| LogError::format(path, Some(line), message, hint),
+                 }| LogError::format(Some(line), message, hint),
             );
         }
     }

@@ -5,8 +5,6 @@ mod steps;
 mod limits;
 mod lines;
 
-use std::path::Path;
-
 use feedwright_sim::to_four_digits;
 
 use super::clock::Clock;
@@ -59,7 +57,6 @@ const UNEVEN_PART: f64 = 0.25;
 
 /// The axes that move, screened, and those whose command stands still; findings are added.
 pub(super) fn fit(
-    path: &Path,
     axes: Vec<LogAxis>,
     clock: &Clock,
     findings: &mut Vec<LogFinding>,
@@ -104,10 +101,7 @@ pub(super) fn fit(
         refusals.extend(wrong);
     }
     if !refusals.is_empty() {
-        return Err(LogError::Refused {
-            path: path.to_owned(),
-            refusals,
-        });
+        return Err(LogError::refused(refusals));
     }
     for axis in &mut moving {
         tell(axis, clock, findings);

@@ -9,7 +9,6 @@
 use std::cell::Cell;
 use std::fmt;
 use std::io::{self, BufReader, Read};
-use std::path::Path;
 
 use feedwright_sim::{Cancelled, StageSteps, Watch};
 use serde::Deserialize;
@@ -27,7 +26,6 @@ pub(super) fn is_json(head: &[u8]) -> bool {
 
 /// Reads the rows of a recording.
 pub(super) fn read(
-    path: &Path,
     file: &mut dyn Read,
     total_bytes: u64,
     columns: &Columns,
@@ -45,21 +43,21 @@ pub(super) fn read(
         failed: &failed,
     };
     let mut reader = BufReader::with_capacity(1 << 18, reader);
-    let result = skip_mark(&mut reader).map_err(|error| LogError::unreadable(path, error)).and_then(|()| {
+    let result = skip_mark(&mut reader).map_err(LogError::unreadable).and_then(|()| {
         let mut json = serde_json::Deserializer::from_reader(reader);
         let table = RecordingSeed { columns }.deserialize(&mut json);
         table.map_err(|error| {
             let line = (error.line() > 0).then_some(error.line() as u64);
             let hint =
                 "JSON is read as the recorder of Sinumerik Edge writes it: Header.SignalListHFData, rows in Payload";
-            LogError::format(path, line, error.to_string(), hint)
+            LogError::format(line, error.to_string(), hint)
         })
     });
     if cancelled.get() {
         return Err(Cancelled.into());
     }
     match failed.take() {
-        Some(error) => Err(LogError::unreadable(path, error)),
+        Some(error) => Err(LogError::unreadable(error)),
         None => result,
     }
 }

@@ -1,7 +1,6 @@
 //! Text tables: rows of numbers, read in chunks; only the columns that are needed are kept.
 
 use std::io::Read;
-use std::path::Path;
 
 use feedwright_gcode::visible;
 use feedwright_sim::{StageSteps, Watch};
@@ -20,7 +19,6 @@ const MAX_LINE_BYTES: usize = 1 << 20;
 
 /// Reads a text table whose beginning is known.
 pub(super) fn read(
-    path: &Path,
     file: &mut impl Read,
     total_bytes: u64,
     head: &[u8],
@@ -28,15 +26,15 @@ pub(super) fn read(
     steps: &mut StageSteps<'_>,
     watch: &dyn Watch,
 ) -> Result<LogTable, LogError> {
-    let dialect = dialect_of(path, head)?;
-    let mut rows = TextRows::new(path, dialect, columns);
+    let dialect = dialect_of(head)?;
+    let mut rows = TextRows::new(dialect, columns);
     rows.reserve(head, total_bytes);
     let (mut chunk, mut carried, mut done_bytes) = (vec![0; CHUNK_BYTES], Vec::new(), 0_u64);
     loop {
         let count = match file.read(&mut chunk) {
             Ok(count) => count,
             Err(error) if error.kind() == std::io::ErrorKind::Interrupted => continue,
-            Err(error) => return Err(LogError::unreadable(path, error)),
+            Err(error) => return Err(LogError::unreadable(error)),
         };
         if count == 0 {
             break;
@@ -57,7 +55,6 @@ pub(super) fn read(
         if carried.len() > MAX_LINE_BYTES {
             let hint = "a log is rows of numbers, one a line";
             return Err(LogError::format(
-                path,
                 Some(rows.line + 1),
                 "the line is longer than 1 MiB",
                 hint,
@@ -75,15 +72,14 @@ pub(super) fn read(
 
 /// Dialect of the table that begins with `head`. Fails if `head` is empty, binary or UTF-16, or has
 /// no rows of at least two numbers.
-fn dialect_of(path: &Path, head: &[u8]) -> Result<TableDialect, LogError> {
+fn dialect_of(head: &[u8]) -> Result<TableDialect, LogError> {
     const HINT: &str = "logs are text tables, files of halsampler, halscope, TNCscope, Servo Guide and TwinCAT Scope, MATLAB files (version 5 to 7) and JSON of Sinumerik Edge";
     if head.is_empty() {
-        return Err(LogError::format(path, None, "the file is empty", HINT));
+        return Err(LogError::format(None, "the file is empty", HINT));
     }
     if head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff") {
         let hint = "save it as UTF-8 or plain text";
         return Err(LogError::format(
-            path,
             None,
             "the file is text in UTF-16, which is not read",
             hint,
@@ -92,20 +88,19 @@ fn dialect_of(path: &Path, head: &[u8]) -> Result<TableDialect, LogError> {
     if let Some(at) = head.iter().position(|&byte| byte == 0) {
         let message =
             format!("the file is neither text nor a binary format that is read: byte {at} is zero");
-        return Err(LogError::format(path, None, message, HINT));
+        return Err(LogError::format(None, message, HINT));
     }
-    if let Some(header) = scopes::header(path, head)? {
+    if let Some(header) = scopes::header(head)? {
         return Ok(TableDialect::of_scope(header, head));
     }
     TableDialect::of(head).ok_or_else(|| {
         let message = "no rows of at least two numbers within the first 64 KiB";
-        LogError::format(path, None, message, HINT)
+        LogError::format(None, message, HINT)
     })
 }
 
 /// The rows so far.
-struct TextRows<'a> {
-    path: &'a Path,
+struct TextRows {
     dialect: TableDialect,
     table: LogTable,
     /// True for each column that is kept.
@@ -118,8 +113,8 @@ struct TextRows<'a> {
     is_over: bool,
 }
 
-impl<'a> TextRows<'a> {
-    fn new(path: &'a Path, dialect: TableDialect, columns: &Columns) -> Self {
+impl TextRows {
+    fn new(dialect: TableDialect, columns: &Columns) -> Self {
         let name = |names: &[String], i: usize| names.get(i).cloned().unwrap_or_default();
         let channels = dialect
             .scope
@@ -169,7 +164,6 @@ impl<'a> TextRows<'a> {
             kept.find_map(|(column, _)| column.sample_time_s)
         });
         Self {
-            path,
             dialect,
             table,
             kept,
@@ -283,7 +277,7 @@ impl<'a> TextRows<'a> {
                 self.dialect.columns
             );
             let hint = "take the line out, or put # in front of it";
-            return Err(LogError::format(self.path, Some(self.line), message, hint));
+            return Err(LogError::format(Some(self.line), message, hint));
         }
         for column in &mut self.table.columns {
             column.values.truncate(self.row);
@@ -305,7 +299,7 @@ impl<'a> TextRows<'a> {
     }
 }
 
-impl TextRows<'_> {
+impl TextRows {
     /// Whose text it is: LinuxCNC's recorders have marks of their own.
     fn format(&self) -> LogFormat {
         if self.dialect.scope.is_some() {

@@ -4,12 +4,14 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::Args;
+use miette::Result;
 
 use super::correct::controls;
 use super::geometry::GeometryArgs;
 use super::headings::{CONTROLLER, CUT, RESULTS};
 use super::quantity::length_um;
 use super::reader::ReaderArgs;
+use crate::request::JobRequest;
 
 /// List the feedrates at which a program holds a tolerance
 ///
@@ -59,4 +61,22 @@ pub(crate) struct AdviseArgs {
     pub(crate) geometry: GeometryArgs,
     #[command(flatten)]
     pub(crate) reader: ReaderArgs,
+}
+
+impl AdviseArgs {
+    /// Returns the request of these options.
+    pub(crate) fn request(&self) -> Result<JobRequest> {
+        Ok(JobRequest {
+            program: self.part.clone(),
+            machine: PathBuf::from(&self.machine),
+            target: Some(self.target.clone()),
+            file_error: self.file_error,
+            tolerance_um: Some(self.tolerance),
+            controller: self.controller.clone(),
+            seed: self.seed,
+            no_geometry: self.geometry.no_geometry,
+            geometry: self.geometry.geometry.clone(),
+            ..self.reader.request()?
+        })
+    }
 }

@@ -4,11 +4,13 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::Args;
+use miette::Result;
 
 use super::geometry::GeometryArgs;
 use super::headings::{CUT, MEASURED, RESULTS};
 use super::quantity::length_um;
 use super::reader::ReaderArgs;
+use crate::request::JobRequest;
 
 /// Write a corrected program for a control without feedback
 ///
@@ -62,6 +64,24 @@ pub(crate) struct CorrectArgs {
     pub(crate) geometry: GeometryArgs,
     #[command(flatten)]
     pub(crate) reader: ReaderArgs,
+}
+
+impl CorrectArgs {
+    /// Returns the request of these options.
+    pub(crate) fn request(&self) -> Result<JobRequest> {
+        Ok(JobRequest {
+            program: self.part.clone(),
+            machine: PathBuf::from(&self.machine),
+            target: Some(self.target.clone()),
+            logs: self.log.clone(),
+            columns: self.columns.clone(),
+            file_error: self.file_error,
+            tolerance_um: self.tolerance,
+            no_geometry: self.geometry.no_geometry,
+            geometry: self.geometry.geometry.clone(),
+            ..self.reader.request()?
+        })
+    }
 }
 
 /// Returns `about` followed by the controls of `--for`, one per line.

@@ -3,8 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use miette::Result;
 
 use super::headings::CUT;
+use crate::compensation::GeometryChoice;
+use crate::request::JobRequest;
 
 /// The geometry that the control compensates.
 #[derive(Debug, Args)]
@@ -17,4 +20,16 @@ pub(crate) struct GeometryArgs {
     /// it to the simulated machine; `feedwright identify --geometry` writes one.
     #[arg(long, value_name = "GEOMETRY.toml", conflicts_with = "no_geometry", help_heading = CUT)]
     pub(crate) geometry: Option<PathBuf>,
+}
+
+impl GeometryArgs {
+    /// Returns the geometry that is compensated.
+    pub(crate) fn choice(&self) -> Result<GeometryChoice> {
+        let request = JobRequest {
+            no_geometry: self.no_geometry,
+            geometry: self.geometry.clone(),
+            ..JobRequest::default()
+        };
+        request.compensation()
+    }
 }

@@ -4,11 +4,13 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::Args;
+use miette::Result;
 
 use super::geometry::GeometryArgs;
 use super::headings::{CUT, RESULTS};
 use super::quantity::length_um;
 use super::reader::ReaderArgs;
+use crate::request::JobRequest;
 
 /// Compute the cycle time of a program, and what limits it
 ///
@@ -57,4 +59,18 @@ pub(crate) struct PlanArgs {
     pub(crate) geometry: GeometryArgs,
     #[command(flatten)]
     pub(crate) reader: ReaderArgs,
+}
+
+impl PlanArgs {
+    /// Returns the request of these options.
+    pub(crate) fn request(&self) -> Result<JobRequest> {
+        Ok(JobRequest {
+            program: self.part.clone(),
+            machine: PathBuf::from(&self.machine),
+            tolerance_um: self.tolerance,
+            no_geometry: self.geometry.no_geometry,
+            geometry: self.geometry.geometry.clone(),
+            ..self.reader.request()?
+        })
+    }
 }

@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use feedwright_gcode::{AUTO, Dialect, INCH_MM, Increment, Settings, ToolTable};
+use feedwright_gcode::{AUTO, Increment, Settings};
 use miette::{Result, miette};
+
+use crate::request::JobRequest;
 
 /// Options for reading a program, the same for all commands that read one.
 #[derive(Debug, Args)]
@@ -47,10 +49,11 @@ pub enum Unit {
 impl ReaderArgs {
     /// Returns the settings of the reader.
     pub fn settings(&self) -> Result<Settings> {
-        let unit_mm = match self.tool_unit {
-            Unit::Mm => 1.0,
-            Unit::Inch => INCH_MM,
-        };
+        self.request()?.reader()
+    }
+
+    /// Returns a request with these options.
+    pub(crate) fn request(&self) -> Result<JobRequest> {
         if let Some(folder) = self.subroutines.iter().find(|folder| !folder.is_dir()) {
             return Err(miette!(
                 help = "name the folder that holds the files of the subroutines",
@@ -58,19 +61,15 @@ impl ReaderArgs {
                 folder.display()
             ));
         }
-        let tools = self
-            .tool_table
-            .as_deref()
-            .map(|table| ToolTable::read(table, unit_mm))
-            .transpose()?;
-        Ok(Settings {
-            dialect: Dialect::named(&self.dialect)?,
+        Ok(JobRequest {
+            dialect: self.dialect.clone(),
             increment: self.increment,
-            max_motions: self.max_motions,
-            max_idle_lines: self.max_idle_lines,
-            tools: tools.unwrap_or_default(),
-            subroutine_paths: self.subroutines.clone(),
-            ..Settings::default()
+            max_motions: Some(self.max_motions),
+            max_idle_lines: Some(self.max_idle_lines),
+            tool_table: self.tool_table.clone(),
+            inch_tools: matches!(self.tool_unit, Unit::Inch),
+            subroutines: self.subroutines.clone(),
+            ..JobRequest::default()
         })
     }
 }

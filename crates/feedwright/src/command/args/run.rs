@@ -4,12 +4,15 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::Args;
+use miette::Result;
 
 use super::correct::controls;
 use super::geometry::GeometryArgs;
 use super::headings::{CONTROLLER, CUT, MEASURED, RESULTS};
 use super::quantity::{feed_mm_s, length_um};
 use super::reader::ReaderArgs;
+use crate::controllers::BEST;
+use crate::request::{JobRequest, setting};
 
 /// Cut a part on a simulated machine, and show its contour error
 ///
@@ -110,4 +113,32 @@ pub struct RunArgs {
     pub(crate) geometry: GeometryArgs,
     #[command(flatten)]
     pub(crate) reader: ReaderArgs,
+}
+
+impl RunArgs {
+    /// Returns the request of these options.
+    pub(crate) fn request(&self) -> Result<JobRequest> {
+        Ok(JobRequest {
+            program: self.part.clone(),
+            machine: PathBuf::from(&self.machine),
+            controller: self.controller.clone().unwrap_or_else(|| BEST.to_owned()),
+            against: self.against.clone(),
+            feed_mm_s: self.feed,
+            settings: self.set.iter().map(|text| setting(text)).collect(),
+            tolerance_um: self.tolerance,
+            reference: self.reference.clone(),
+            fastest: self.fastest,
+            seed: self.seed,
+            model: self.model.clone(),
+            exact_settings: self.exact_settings,
+            band: self.band,
+            learns: self.learned.is_some(),
+            logs: self.log.iter().cloned().collect(),
+            columns: self.columns.clone(),
+            no_geometry: self.geometry.no_geometry,
+            geometry: self.geometry.geometry.clone(),
+            with_limits: true,
+            ..self.reader.request()?
+        })
+    }
 }

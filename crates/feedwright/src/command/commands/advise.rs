@@ -2,20 +2,16 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use feedwright_gcode::{Program, visible};
-use feedwright_sim::Machine;
-use miette::{IntoDiagnostic, Result};
+use feedwright_gcode::visible;
+use miette::Result;
 use serde_json::json;
 
 use crate::command::args::advise::AdviseArgs;
 use crate::command::console::Console;
-use crate::command::controllers::find;
-use crate::command::controls::{check_tolerance, compensation, control, file_error};
 use crate::command::message::{OUT_OF_TOLERANCE, printed, tell_assumed_limits, warn};
-use crate::command::streams::{ProgramInputs, tables, tell_written};
+use crate::command::streams::{check_request, outputs_of, tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn};
 use crate::command::terminal::{page_units, wrapped};
-use crate::controllers::{CONTROLLERS, Choices};
 use crate::correct::FileAssumption;
 use crate::correct::advise::{Advice, AdviseJob, FeedCut, STRETCH_LEGEND, WayAdvice};
 use crate::output::OutputFile;
@@ -26,34 +22,14 @@ use crate::results_format::{stamped, write_json};
 const LISTED: usize = 12;
 
 pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
-    let target = control(&args.target)?;
-    check_tolerance(Some(args.tolerance))?;
-    let file_error = file_error(args.file_error, &args.machine)?;
-    let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader)
-        .with_geometry(args.geometry.geometry.as_deref());
-    inputs.check(console)?;
-    let machine = Machine::load(&args.machine)?;
-    tell_assumed_limits(&machine, target.stages(&machine));
-    let mut files = inputs.outputs();
+    let request = args.request()?;
+    check_request(console, &request)?;
+    let job = request.advise_job()?;
+    tell_assumed_limits(&job.machine, job.target.stages(&job.machine));
+    let mut files = outputs_of(&request);
     let report = files.start_wanted(args.report.as_deref())?;
     let figure = files.start_wanted(args.figure.as_deref())?;
     let json = files.start_wanted(args.json.as_deref())?;
-    let job = AdviseJob {
-        controller: find(&args.controller, CONTROLLERS)?,
-        choices: Choices {
-            seed: args.seed,
-            ..Choices::default()
-        },
-        compensation: compensation(&args.geometry)?,
-        reader: args.reader.settings()?,
-        file_error,
-        ..AdviseJob::new(
-            Program::in_file(&args.part),
-            machine,
-            target,
-            args.tolerance,
-        )
-    };
     let bar = console.bar(0);
     let advice = job.run(&bar)?;
     bar.clear();
@@ -66,24 +42,18 @@ pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
         .unwrap_or(args.part.as_os_str())
         .to_string_lossy();
     let mut complete = Vec::new();
-    if let Some(mut file) = report {
-        advice
-            .write_page(&mut file, &part, &job.machine.name, page_units())
-            .into_diagnostic()?;
-        complete.push(file);
-    }
-    if let Some(mut file) = figure {
+    complete.extend(OutputFile::filled(report, |file| {
+        advice.write_page(file, &part, &job.machine.name, page_units())
+    })?);
+    complete.extend(OutputFile::filled(figure, |file| {
         file.write_all(advice.figure(PageUnits::Metric).to_svg().as_bytes())
-            .into_diagnostic()?;
-        complete.push(file);
-    }
-    if let Some(mut file) = json {
-        let mut value = serde_json::to_value(&advice).into_diagnostic()?;
+    })?);
+    complete.extend(OutputFile::filled(json, |file| {
+        let mut value = serde_json::to_value(&advice)?;
         value["part"] = json!(args.part.display().to_string());
         value["machine"] = json!(job.machine.name);
-        write_json(&mut file, &stamped(value)).into_diagnostic()?;
-        complete.push(file);
-    }
+        write_json(file, &stamped(value))
+    })?);
     OutputFile::commit_all(complete, &bar)?;
     let code = if advice.holds() {
         ExitCode::SUCCESS

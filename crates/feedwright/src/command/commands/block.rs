@@ -10,7 +10,6 @@ use miette::{Result, miette};
 
 use crate::command::args::block::BlockArgs;
 use crate::command::console::Console;
-use crate::command::controls::compensation;
 use crate::command::message::printed;
 use crate::command::streams::{tables, tell_written};
 use crate::command::terminal::wrapped;
@@ -20,7 +19,7 @@ use crate::output::{OutputError, OutputFile, OutputFiles};
 pub(crate) fn run(args: &BlockArgs, console: &Console) -> Result<ExitCode> {
     let from = Path::new(&args.file);
     let is_model = from.to_string_lossy().ends_with(".model.toml");
-    let choice = compensation(&args.geometry)?;
+    let choice = args.geometry.choice()?;
     let (bytes, axes, what, geometry) = if is_model {
         let model = Model::read(from)?;
         if args.axes.is_some_and(|axes| axes != model.axes()) {

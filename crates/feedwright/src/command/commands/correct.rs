@@ -2,56 +2,35 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::str::FromStr;
 
-use feedwright_gcode::{Program, input};
-use feedwright_ident::{Columns, Log};
-use feedwright_sim::{Machine, Watch, fixed};
+use feedwright_sim::fixed;
 use miette::{IntoDiagnostic, Result};
 use serde_json::{Value, json};
 
 use crate::command::args::correct::CorrectArgs;
 use crate::command::console::Console;
-use crate::command::controls::{
-    check_tolerance, compensation, control, file_error, print_correction,
-};
+use crate::command::controls::print_correction;
 use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell_assumed_limits, warn};
-use crate::command::streams::{ProgramInputs, tables, tell_written};
+use crate::command::streams::{check_request, outputs_of, tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn};
 use crate::command::terminal::wrapped;
 use crate::correct::exported::ExportedFigures;
 use crate::correct::{
     CorrectJob, CorrectOutcome, CutProgram, LearnedOutcome, LearnedValue, PredictedCut,
 };
-use crate::measured::MeasuredLog;
 use crate::output::{OutputFile, is_standard_output};
 use crate::results_format::{stamped, write_json};
 
 pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
-    let target = control(&args.target)?;
-    check_tolerance(args.tolerance)?;
-    let file_error = file_error(args.file_error, &args.machine)?;
-    let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader)
-        .with_geometry(args.geometry.geometry.as_deref());
-    inputs.check(console)?;
-    let machine = Machine::load(&args.machine)?;
-    let mut files = inputs.outputs();
+    let request = args.request()?;
+    check_request(console, &request)?;
+    let bar = console.bar(0);
+    let mut job = request.correct_job(&bar)?;
+    let mut files = outputs_of(&request);
     let mut out = files.start_wanted(args.out.as_deref())?;
     let json = files.start_wanted(args.json.as_deref())?;
-    let reader = args.reader.settings()?;
-    tell_assumed_limits(&machine, target.stages(&machine));
-    let compensation = compensation(&args.geometry)?;
-    let bar = console.bar(0);
-    let logs = logs(args, &bar)?;
-    let job = CorrectJob::new(Program::in_file(&args.part), machine, target);
-    let job = CorrectJob {
-        reader,
-        compensation,
-        logs,
-        file_error,
-        keep: kept_beside(args),
-        ..job
-    };
+    tell_assumed_limits(&job.machine, job.target.stages(&job.machine));
+    job.keep = kept_beside(args);
     let outcome = job.run(&bar).inspect_err(|_| {
         bar.clear();
         if let Some(kept) = job.kept_pieces() {
@@ -84,11 +63,9 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
         _ => out = None,
     }
     complete.extend(out);
-    if let Some(mut file) = json {
-        let results = results(args, &job, &outcome, within).into_diagnostic()?;
-        write_json(&mut file, &results).into_diagnostic()?;
-        complete.push(file);
-    }
+    complete.extend(OutputFile::filled(json, |file| {
+        write_json(file, &results(args, &job, &outcome, within)?)
+    })?);
     OutputFile::commit_all(complete, &bar)?;
     job.forget_pieces().into_diagnostic()?;
     let good = within && outcome.refusal.is_none();
@@ -111,23 +88,6 @@ fn kept_beside(args: &CorrectArgs) -> Option<PathBuf> {
         name.push(".pieces");
         name.into()
     })
-}
-
-/// The logs of the part.
-fn logs(args: &CorrectArgs, watch: &dyn Watch) -> Result<Vec<MeasuredLog>> {
-    let columns = args
-        .columns
-        .as_deref()
-        .map(Columns::from_str)
-        .transpose()?
-        .unwrap_or_default();
-    let read = |path: &PathBuf| {
-        Ok(MeasuredLog {
-            name: input::name(path),
-            log: Log::read_watched(path, &columns, watch)?,
-        })
-    };
-    args.log.iter().map(read).collect()
 }
 
 /// The figures of a correction, and what was asked for.

@@ -14,13 +14,13 @@ use miette::Result;
 
 use crate::command::args::identify::IdentifyArgs;
 use crate::command::console::Console;
-use crate::command::controllers::{find, settings};
 use crate::command::date::today;
 use crate::command::message::printed;
 use crate::command::streams::{tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn};
 use crate::controllers::{CONTROLLERS, Choices, Setup, identifying};
 use crate::output::{OutputError, OutputFile, OutputFiles};
+use crate::request::named::{find, settings};
 
 pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     if !args.of_geometry.geometry.is_empty() {

@@ -9,13 +9,13 @@ use feedwright_sim::{BUILT_IN_MACHINES, Machine, is_machine_path, shown};
 use miette::{IntoDiagnostic, Result, miette};
 
 use crate::command::console::Console;
-use crate::command::controllers::find;
 use crate::command::message::printed;
 use crate::command::streams::{tables, tell_written};
 use crate::command::terminal::wrapped;
 use crate::controllers::{BEST, Controllers, Entry, range};
 use crate::machine_document::machine_document;
 use crate::output::{OutputError, OutputFile, OutputFiles};
+use crate::request::named::find;
 
 pub(crate) fn machines() -> Result<ExitCode> {
     let mut lines = String::new();

@@ -17,38 +17,38 @@ use serde_json::json;
 
 use crate::command::args::plan::PlanArgs;
 use crate::command::console::Console;
-use crate::command::controls::{compensation, control, take_model};
+use crate::command::date::today;
 use crate::command::message::{printed, remark, tell_assumed_limits, warn};
 use crate::command::progress::Bar;
-use crate::command::streams::{ProgramInputs, tables, tell_written};
+use crate::command::streams::{check_request, outputs_of, tables, tell_written};
 use crate::compensation::GeometryChoice;
-use crate::controllers::Choices;
+use crate::controllers::CONTROLLERS;
 use crate::cycle_time::along::BindingStretch;
 use crate::cycle_time::{CycleTime, CycleTimeOptions, LineTime, cycle_time_by, limit_names};
-use crate::job::{Job, JobError};
+use crate::job::JobError;
 use crate::output::OutputFile;
 use crate::override_time::{HoldStop, OperatorRequest, OverrideTime, override_time};
-use crate::recorded_model::BUILT_IN_SEED;
+use crate::request::JobRequest;
+use crate::request::named::find_control;
 use crate::results_format::{stamped, write_json};
 use bound::{Bound, MOST_BOUND_S, bound};
 
 pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
-    let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader)
-        .with_geometry(args.geometry.geometry.as_deref());
-    inputs.check(console)?;
-    let machine = machine(args)?;
+    let request = args.request()?;
+    check_request(console, &request)?;
+    let machine = machine(&request)?;
     let stages = stages(args, &machine)?;
-    let request = request(args, stages)?;
-    let mut files = inputs.outputs();
+    let operator = operator_request(args, stages)?;
+    let mut files = outputs_of(&request);
     let json = files.start_wanted(args.json.as_deref())?;
     let lines = files.start_wanted(args.lines.as_deref())?;
-    let (program, settings) = (Program::in_file(&args.part), args.reader.settings()?);
+    let (program, settings) = (request.program(), request.reader()?);
     let summary = program.check(settings.clone()).map_err(JobError::from)?;
     for warning in summary.warnings {
         warn(warning.into());
     }
     let bar = console.bar(0);
-    let (machine, path_um) = within_tolerance(args, machine, &program, &settings, &bar)?;
+    let (machine, path_um) = within_tolerance(&request, machine, &bar)?;
     let begun = Instant::now();
     // The program was checked from end to end before: a mistake here means that the file changed,
     // and ends it.
@@ -77,7 +77,7 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
         .as_ref()
         .filter(|bound| bound.is_whole)
         .map(|bound| bound.time_s);
-    let operated = match request {
+    let operated = match operator {
         Some(request) => override_time(&machine, stages, steps()?, request, &bar)?,
         None => None,
     };
@@ -101,10 +101,9 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
         outcome.write_results(&mut file, args, &machine)?;
         complete.push(file);
     }
-    if let Some(mut file) = lines {
-        write_lines(&mut file, &program, &outcome.found.lines).into_diagnostic()?;
-        complete.push(file);
-    }
+    complete.extend(OutputFile::filled(lines, |file| {
+        write_lines(file, &program, &outcome.found.lines)
+    })?);
     OutputFile::commit_all(complete, &bar)?;
     printed(outcome.print(args), ExitCode::SUCCESS)
 }
@@ -219,9 +218,9 @@ fn print_along(out: &mut impl Write, found: &CycleTime) -> std::io::Result<()> {
 }
 
 /// The machine; with a tolerance, as a planner takes it that plans axis by axis.
-fn machine(args: &PlanArgs) -> Result<Machine> {
-    let machine = Machine::load(&args.machine)?;
-    let Some(tolerance_um) = args.tolerance else {
+fn machine(request: &JobRequest) -> Result<Machine> {
+    let machine = request.machine()?;
+    let Some(tolerance_um) = request.tolerance_um else {
         return Ok(machine);
     };
     if !(LEAST_UM..=MOST_UM).contains(&tolerance_um) {
@@ -245,15 +244,12 @@ fn machine(args: &PlanArgs) -> Result<Machine> {
 /// machine's error leaves, and the tolerance of that path, um. The default controller is simulated
 /// for it, with the model that `run` has of the machine.
 fn within_tolerance(
-    args: &PlanArgs,
+    request: &JobRequest,
     machine: Machine,
-    program: &Program,
-    settings: &feedwright_gcode::Settings,
     bar: &Bar,
 ) -> Result<(Machine, Option<f64>)> {
-    let choice = compensation(&args.geometry)?;
-    let Some(tolerance_um) = args.tolerance else {
-        if choice != GeometryChoice::Machine {
+    let Some(tolerance_um) = request.tolerance_um else {
+        if request.compensation()? != GeometryChoice::Machine {
             return Err(miette!(
                 help = "the error of the tool is predicted with --tolerance alone",
                 "--geometry and --no-geometry need --tolerance: a path is planned alike with and without geometry"
@@ -261,16 +257,8 @@ fn within_tolerance(
         }
         return Ok((machine, None));
     };
-    let mut job = Job::new(program.clone(), machine.clone());
-    job.compensation = choice;
-    job.choices = Choices {
-        seed: BUILT_IN_SEED,
-        tries: true,
-        ..Choices::default()
-    };
-    (job.tolerance_um, job.reader) = (Some(tolerance_um), settings.clone());
-    let axes = job.check()?.axes();
-    take_model(&mut job, &Machine::load(&args.machine)?, axes, 0, bar)?;
+    let mut job = request.job(CONTROLLERS, &today()?, bar)?;
+    job.machine.clone_from(&machine);
     let found = job.check()?.tolerance_plan(bar)?;
     bar.clear();
     if let Some(plan) = found {
@@ -288,7 +276,7 @@ fn within_tolerance(
 /// The stages that suit the machine, with the planner of the arguments.
 fn stages(args: &PlanArgs, machine: &Machine) -> Result<Stages> {
     let stages = Stages::of(machine);
-    let target = args.target.as_deref().map(control).transpose()?;
+    let target = args.target.as_deref().map(find_control).transpose()?;
     let Some(name) = args
         .planner
         .as_deref()
@@ -317,7 +305,7 @@ fn stages(args: &PlanArgs, machine: &Machine) -> Result<Stages> {
 }
 
 /// Returns the operator's actions that the arguments request.
-fn request(args: &PlanArgs, stages: Stages) -> Result<Option<OperatorRequest>> {
+fn operator_request(args: &PlanArgs, stages: Stages) -> Result<Option<OperatorRequest>> {
     if args.override_percent.is_none() && args.hold_at.is_none() {
         return Ok(None);
     }

@@ -89,7 +89,7 @@ impl SharedWork {
                     Ok(done) => self.tally().add(
                         &done,
                         bar,
-                        &format!("{} on {}", job.spec.program, job.spec.machine),
+                        &format!("{} on {}", job.program.display(), job.machine.display()),
                     ),
                     Err(_) if bar.is_cancelled() => return,
                     // Where one result cannot be written, none can.

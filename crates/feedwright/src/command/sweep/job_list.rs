@@ -11,9 +11,10 @@ use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::job_spec::{JobSpec, ListedJob};
 use crate::command::args::sweep::JobShard;
 use crate::command::files_to_check::FilesToCheck;
+use crate::controllers::CONTROLLERS;
+use crate::request::JobRequest;
 use crate::store::key_of;
 
 /// Content of JOBS.toml.
@@ -41,7 +42,7 @@ pub struct JobList {
     /// The values of each key that the jobs are the product of; those of the last key change
     /// fastest.
     product: Vec<(&'static str, Vec<Value>)>,
-    single: Vec<JobSpec>,
+    single: Vec<JobRequest>,
 }
 
 impl JobList {
@@ -104,7 +105,8 @@ impl JobList {
             stride /= values.len();
             (0..values.len()).try_for_each(|i| spec(self.table(i * stride)).map(drop))?;
         }
-        self.single.iter().try_for_each(JobSpec::check_names)
+        let check = |job: &JobRequest| job.check_names(CONTROLLERS);
+        self.single.iter().try_for_each(check)
     }
 
     fn product_len(&self) -> usize {
@@ -137,26 +139,26 @@ impl JobList {
     ///
     /// # Errors
     /// A combination of values that is no job.
-    pub fn job(&self, number: usize) -> Result<Option<ListedJob>> {
+    pub fn job(&self, number: usize) -> Result<Option<JobRequest>> {
         let of_product = self.product_len();
-        let spec = if number < of_product {
+        let job = if number < of_product {
             Some(spec(self.table(number))?)
         } else {
             self.single.get(number - of_product).cloned()
         };
-        Ok(spec.map(|spec| ListedJob {
-            spec,
+        Ok(job.map(|job| JobRequest {
             folder: self.folder.clone(),
+            ..job
         }))
     }
 }
 
 /// The job that these keys describe.
-fn spec(table: Table) -> Result<JobSpec> {
-    let spec =
-        JobSpec::deserialize(table).map_err(|error| miette!("{}", error.to_string().trim_end()))?;
-    spec.check_names()?;
-    Ok(spec)
+fn spec(table: Table) -> Result<JobRequest> {
+    let job = JobRequest::deserialize(table)
+        .map_err(|error| miette!("{}", error.to_string().trim_end()))?;
+    job.check_names(CONTROLLERS)?;
+    Ok(job)
 }
 
 /// The programs that paths, folders and patterns name, each by its path from the folder of the
@@ -202,12 +204,12 @@ fn programs(places: &[String], folder: &Path) -> Result<Vec<Value>> {
     files.files.iter().map(name).collect()
 }
 
-impl ListedJob {
+impl JobRequest {
     /// Returns true if the job belongs to this shard. The hash of its keys decides. A job therefore
     /// stays in its shard when jobs are added to the list or removed from it, and no file is read
     /// for this.
     pub(crate) fn is_in(&self, shard: JobShard) -> bool {
-        let keys = serde_json::json!(self.spec).to_string();
+        let keys = serde_json::json!(self).to_string();
         let hash = u64::from_str_radix(&key_of(&[keys.as_bytes()])[..16], 16).unwrap_or_default();
         hash % shard.of == shard.number - 1
     }

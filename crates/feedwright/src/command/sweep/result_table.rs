@@ -10,7 +10,7 @@ use feedwright_sim::Watch;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde_json::{Map, Value};
 
-use super::job_spec::error_of;
+use super::job_result::error_of;
 use crate::report::Role;
 use crate::results_format::spelled_out;
 use crate::store::Store;

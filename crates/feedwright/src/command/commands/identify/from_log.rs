@@ -31,10 +31,10 @@ pub(super) fn run(paths: &[PathBuf], args: &IdentifyArgs, console: &Console) -> 
         .or(of_log.update.as_deref())
         .unwrap_or(Path::new("mine.toml"));
     let mut files = OutputFiles::new(paths.iter().map(PathBuf::as_path));
-    let mut machine = files.start(out)?;
-    let mut json = files.start_wanted(of_log.json.as_deref())?;
+    let machine = files.start(out)?;
+    let json = files.start_wanted(of_log.json.as_deref())?;
     let next = files.start_wanted(of_log.excite_next.as_deref())?;
-    let mut page = files.start_wanted(of_log.report.as_deref())?;
+    let page = files.start_wanted(of_log.report.as_deref())?;
     let bar = console.bar(0);
     let log = read(paths, of_log, &bar)?;
     if !console.is_quiet() {
@@ -61,23 +61,13 @@ pub(super) fn run(paths: &[PathBuf], args: &IdentifyArgs, console: &Console) -> 
     };
     // Whatever was found, the file is one that reads back.
     Machine::parse(&out.display().to_string(), &text)?;
-    let written = |error, file: &OutputFile| OutputError::from_io(error, file.path());
-    machine
-        .write_all(text.as_bytes())
-        .map_err(|error| written(error, &machine))?;
-    if let Some(file) = &mut json {
-        write_json(file, &identified).map_err(|error| written(error, file))?;
-    }
-    if let Some(file) = &mut page {
-        write_page(file, &identified).map_err(|error| written(error, file))?;
-    }
+    let machine = OutputFile::filled(Some(machine), |file| file.write_all(text.as_bytes()))?;
+    let json = OutputFile::filled(json, |file| write_json(file, &identified))?;
+    let page = OutputFile::filled(page, |file| write_page(file, &identified))?;
     let motions = identified.next_motion();
     let next = next.map(|file| Next::write(file, &motions)).transpose()?;
     let (next, said) = next.map_or((None, None), |next| (next.file, Some(next.said)));
-    let all: Vec<OutputFile> = [Some(machine), json, page, next]
-        .into_iter()
-        .flatten()
-        .collect();
+    let all: Vec<OutputFile> = [machine, json, page, next].into_iter().flatten().collect();
     let places: Vec<PathBuf> = all.iter().map(|file| file.path().to_owned()).collect();
     bar.clear();
     OutputFile::commit_all(all, &bar)?;

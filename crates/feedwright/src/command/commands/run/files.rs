@@ -3,9 +3,11 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use feedwright_gcode::input::is_standard_input;
 use feedwright_sim::{Row, SetpointWriter, Sink, TraceWriter, Watch};
 use miette::{Result, miette};
 
+use crate::command::args::run::RunArgs;
 use crate::command::terminal::page_units;
 use crate::job::{Job, JobOutcome};
 use crate::output::{OutputError, OutputFile, OutputFiles, is_standard_output};
@@ -27,6 +29,16 @@ pub(super) struct Outputs {
     pub(super) out: Option<PathBuf>,
 }
 
+/// `parts/star.ngc` gives `star.report.html`, in the folder where the user is.
+fn report_of(part: &Path) -> PathBuf {
+    if is_standard_input(part) {
+        return PathBuf::from("stdin.report.html");
+    }
+    let mut name = part.file_stem().unwrap_or_default().to_owned();
+    name.push(".report.html");
+    PathBuf::from(name)
+}
+
 /// Kinds of `--out`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Form {
@@ -35,6 +47,17 @@ enum Form {
 }
 
 impl Outputs {
+    /// Returns the paths that the arguments name.
+    pub(super) fn of(args: &RunArgs) -> Self {
+        Self {
+            report: Some(args.report.clone().unwrap_or_else(|| report_of(&args.part))),
+            json: args.json.clone(),
+            trace: args.trace.clone(),
+            learned: args.learned.clone(),
+            out: args.out.clone(),
+        }
+    }
+
     /// Returns true if `--out` requests a program.
     pub(super) fn is_program(&self) -> Result<bool> {
         Ok(self.form()? == Some(Form::Gcode))
@@ -75,13 +98,7 @@ pub(super) struct Files {
 
 impl Files {
     /// Starts all of them, so that a place that cannot be written is known before the part is cut.
-    /// None takes the place of an input.
-    pub(super) fn create<'a>(
-        outputs: &Outputs,
-        inputs: impl IntoIterator<Item = &'a Path>,
-        axes: usize,
-    ) -> Result<Self> {
-        let mut files = OutputFiles::new(inputs);
+    pub(super) fn create(outputs: &Outputs, mut files: OutputFiles, axes: usize) -> Result<Self> {
         let mut start = |path: Option<&PathBuf>| files.start_wanted(path);
         let form = outputs.form()?;
         let out = |wanted: Form| outputs.out.as_ref().filter(|_| form == Some(wanted));
@@ -114,52 +131,30 @@ impl Files {
         outcome: &JobOutcome,
         watch: &dyn Watch,
     ) -> Result<(), OutputError> {
-        let mut complete = Vec::new();
-        let named = |path: &Path| {
-            let path = path.to_owned();
-            move |cause| OutputError::from_io(cause, &path)
-        };
         let of_rows = |error| OutputError::from_io(error, Path::new("the output"));
-        if let Some(mut output) = self.report {
-            write_html_in(&mut output, &outcome.report, page_units())
-                .map_err(named(output.path()))?;
-            complete.push(output);
-        }
-        if let Some(mut output) = self.json {
-            outcome
-                .write_json(job, &mut output)
-                .map_err(named(output.path()))?;
-            complete.push(output);
-        }
-        complete.extend(
-            self.trace
-                .map(TraceWriter::finish)
-                .transpose()
-                .map_err(of_rows)?,
-        );
-        if let (Some(mut output), Some(model)) = (self.learned, &outcome.learned) {
-            output
-                .write_all(model.text().as_bytes())
-                .map_err(named(output.path()))?;
-            complete.push(output);
+        let mut complete = Vec::new();
+        complete.extend(OutputFile::filled(self.report, |file| {
+            write_html_in(file, &outcome.report, page_units())
+        })?);
+        complete.extend(OutputFile::filled(self.json, |file| {
+            outcome.write_json(job, file)
+        })?);
+        let trace = self.trace.map(TraceWriter::finish);
+        complete.extend(trace.transpose().map_err(of_rows)?);
+        if let Some(model) = &outcome.learned {
+            complete.extend(OutputFile::filled(self.learned, |file| {
+                file.write_all(model.text().as_bytes())
+            })?);
         }
         if outcome.is_of_use {
-            complete.extend(
-                self.setpoints
-                    .map(SetpointWriter::finish)
-                    .transpose()
-                    .map_err(of_rows)?,
-            );
+            let setpoints = self.setpoints.map(SetpointWriter::finish);
+            complete.extend(setpoints.transpose().map_err(of_rows)?);
         }
-        let program = outcome
-            .exported
-            .as_ref()
-            .and_then(|exported| exported.program());
-        if let (Some(mut output), Some(program)) = (self.program, program) {
-            output
-                .write_all(program.as_bytes())
-                .map_err(named(output.path()))?;
-            complete.push(output);
+        let exported = outcome.exported.as_ref();
+        if let Some(program) = exported.and_then(|exported| exported.program()) {
+            complete.extend(OutputFile::filled(self.program, |file| {
+                file.write_all(program.as_bytes())
+            })?);
         }
         OutputFile::commit_all(complete, watch)
     }

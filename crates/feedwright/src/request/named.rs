@@ -1,7 +1,10 @@
-//! Controllers and their parameters by name.
+//! Controllers, their parameters, and controls by name.
+
+use feedwright_gcode::suggestion::nearest;
 use miette::{Result, miette};
 
 use crate::controllers::{Controllers, Entry, Setting};
+use crate::correct::{TARGETS, TargetControl};
 
 /// The controller of a name.
 pub fn find(name: &str, table: Controllers) -> Result<&'static Entry> {
@@ -52,4 +55,18 @@ pub fn settings(
         settings.push(setting);
     }
     Ok(settings)
+}
+
+/// The control of that name.
+pub fn find_control(name: &str) -> Result<&'static TargetControl> {
+    TargetControl::find(name).ok_or_else(|| {
+        let names: Vec<&str> = TARGETS.iter().map(|target| target.name).collect();
+        let near = nearest(name, &names)
+            .map_or_else(String::new, |near| format!("did you mean '{near}'? "));
+        miette!(
+            help = format!("{near}'{}' suits a control that is not listed", names[0]),
+            "--for: no control is called '{name}'; there are {}",
+            names.join(", ")
+        )
+    })
 }
