@@ -44,9 +44,9 @@
 //! | The path | [`KnotSource`], [`Knot`], [`Window`], [`Register`], [`Preview`] |
 //! | Geometry | [`KnownGeometry`], [`AxisErrors`], [`ErrorTable`] |
 //! | Contour error | [`ContourError`], [`Estimator`], [`locate`] |
-//! | Controllers | [`Controller`], [`Schedule`], [`Measured`], [`Command`] |
+//! | Controllers | [`Controller`], [`Schedule`], [`Measured`], [`Command`], [`SelfReport`] |
 //! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`LqgIdentified`] |
-//! | Supervisor | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`FaultEvidence`] |
+//! | Supervisor | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`Verdict`], [`FaultEvidence`] |
 //! | Model of an axis | [`AxisModel`], [`AxisState`], [`Parameters`], [`AxisKnowledge`], [`AxisInverse`] |
 //! | Trained models | [`ContourIdentifier`], [`IdentifiedAxes`], [`ModelBlock`] |
 //!
@@ -103,7 +103,7 @@ pub use axis::mechanics::{MechanicsModel, MechanicsState};
 pub use axis::statistics::AxisStatistics;
 pub use axis::transmission::{TableState, TransmissionModel, TransmissionParameters};
 pub use axis::{AxisModel, AxisState, Parameters, Periods, friction_signs};
-pub use command::{Command, FaultEvidence, Measured};
+pub use command::{Command, FaultEvidence, Measured, SelfReport, Verdict};
 pub use contour_error::{ContourError, Estimator, MAX_ENTRIES, carried, locate};
 pub use controller::feedforward::{Feedforward, MAX_PREVIEW, preview};
 pub use controller::inverting::{INVERTING_FEED_PERIOD_S, InvertingSettings};

@@ -4,11 +4,11 @@
 //! controller observes and decides, under the supervisor. In every servo period the command
 //! advances along the path and between the two offsets.
 
-use crate::command::{Command, Measured};
+use crate::command::{Command, Measured, SelfReport};
 use crate::contour_error::{ContourError, Estimator};
 use crate::controller::{Controller, Schedule};
 use crate::supervisor::feedback::Feedback;
-use crate::supervisor::{Bounds, Fade, SelfReport, State, Supervisor};
+use crate::supervisor::{Bounds, Fade, State, Supervisor};
 use crate::vector::add_scaled;
 use crate::window::{Knot, KnotSource, Preview, Register, Window};
 
@@ -69,6 +69,8 @@ pub struct Tick<const N: usize> {
     offset_from_mm: [f64; N],
     offset_from_mm_s: [f64; N],
     command: Command<N>,
+    /// Report of the controller after the last decision.
+    report: SelfReport<N>,
     /// Servo periods since the start of the feed period.
     phase: u32,
     /// The last command, mm.
@@ -95,6 +97,7 @@ impl<const N: usize> Tick<N> {
             offset_from_mm: [0.0; N],
             offset_from_mm_s: [0.0; N],
             command: Command::AS_PLANNED,
+            report: SelfReport::CORRECTS,
             phase: 0,
             command_mm: None,
         }
@@ -140,7 +143,7 @@ impl<const N: usize> Tick<N> {
         if decided {
             self.decide(controller, tool_mm);
         }
-        let reached = if controller.acts_at_once() {
+        let reached = if self.report.acts_at_once {
             self.phase + 1
         } else {
             self.phase
@@ -200,6 +203,11 @@ impl<const N: usize> Tick<N> {
         self.supervisor.state()
     }
 
+    /// Returns for each axis whether the controller followed a learned model at the last decision.
+    pub fn learned(&self) -> [bool; N] {
+        self.report.learned
+    }
+
     /// Returns time and cause of the last disengagement by the supervisor.
     pub fn fade(&self) -> Option<Fade> {
         self.supervisor.fade()
@@ -222,15 +230,10 @@ impl<const N: usize> Tick<N> {
         let lost = self.feedback.take_lost();
         controller.observe(&window, (!lost).then_some(&measured));
         let wanted = (!lost).then(|| controller.command(&window, &measured));
-        let told = SelfReport {
-            prediction_error_mm: controller.prediction_error_mm(),
-            doubt: controller.doubt(),
-            moved_mm: controller.moved_mm(),
-            corrects: controller.corrects(),
-            acts_at_once: controller.acts_at_once(),
-            learned: controller.learned(),
-        };
-        self.command = self.supervisor.decide(&window, &measured, wanted, &told);
+        self.report = controller.report();
+        self.command = self
+            .supervisor
+            .decide(&window, &measured, wanted, &self.report);
     }
 
     fn feed_period_s(&self) -> f64 {

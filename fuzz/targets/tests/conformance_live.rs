@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 
 use feedwright::{CONTROLLERS, Choices, Setup, offset_bounds};
 use feedwright_control::{
-    Bounds, Command, ContourIdentifier, Controller, FaultEvidence, IdentifiedAxes, Identifier,
-    Knot, KnotSource, Measured, Schedule, Tick, Window,
+    Bounds, Command, ContourIdentifier, Controller, IdentifiedAxes, Identifier, Knot, KnotSource,
+    Measured, Schedule, SelfReport, Tick, Window,
 };
 use feedwright_ident::{Model, Origin, Recording, TrainedAxes, TrainedContour};
 use feedwright_servo::live_controller::LiveController;
@@ -62,21 +62,10 @@ impl Controller<2> for Both {
         self.live.observe(window, measured);
     }
 
-    fn prediction_error_mm(&self) -> f64 {
-        self.run.prediction_error_mm()
-    }
-
-    fn doubt(&self) -> Option<FaultEvidence> {
-        self.run.doubt()
-    }
-
-    fn moved_mm(&self) -> Option<[f64; 2]> {
-        self.run.moved_mm()
-    }
-
-    fn acts_at_once(&self) -> bool {
-        assert_eq!(self.run.acts_at_once(), self.live.acts_at_once());
-        self.run.acts_at_once()
+    fn report(&self) -> SelfReport<2> {
+        let report = self.run.report();
+        assert_eq!(report.acts_at_once, self.live.report().acts_at_once);
+        report
     }
 
     fn command(&mut self, window: &Window<'_, 2>, measured: &Measured<2>) -> Command<2> {

@@ -2,9 +2,8 @@
 //! identified axes, or the paper's two.
 
 use feedwright_control::{
-    Bounds, Command, Controller, FaultEvidence, IDENTIFIED_WEIGHT, InvertingSettings,
-    LqgIdentified, LqgSettings, MagnitudeOnly, Measured, OffsetBounds, Schedule, TwoDimensional,
-    Window,
+    Bounds, Command, Controller, IDENTIFIED_WEIGHT, InvertingSettings, LqgIdentified, LqgSettings,
+    MagnitudeOnly, Measured, OffsetBounds, Schedule, SelfReport, TwoDimensional, Window,
 };
 
 use crate::machine::{LinkModel, TrainedContour};
@@ -183,28 +182,8 @@ impl<const N: usize> Controller<N> for LiveController<N> {
         self.as_controller_mut().observe(window, measured);
     }
 
-    fn prediction_error_mm(&self) -> f64 {
-        self.as_controller().prediction_error_mm()
-    }
-
-    fn doubt(&self) -> Option<FaultEvidence> {
-        self.as_controller().doubt()
-    }
-
-    fn learned(&self) -> [bool; N] {
-        self.as_controller().learned()
-    }
-
-    fn moved_mm(&self) -> Option<[f64; N]> {
-        self.as_controller().moved_mm()
-    }
-
-    fn acts_at_once(&self) -> bool {
-        self.as_controller().acts_at_once()
-    }
-
-    fn corrects(&self) -> bool {
-        self.as_controller().corrects()
+    fn report(&self) -> SelfReport<N> {
+        self.as_controller().report()
     }
 
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {

@@ -537,7 +537,7 @@ impl<const N: usize> Servo<N> {
         let holds = state == State::Engaged && setpoint.path.feed_mm_s > 0.0;
         self.latch.take_in(
             left,
-            controller.learned(),
+            self.tick.learned(),
             if holds { self.servo_s } else { 0.0 },
         );
         let correction_mm = add_scaled(offset_mm, 1.0, self.residual.value_mm());
@@ -565,7 +565,7 @@ impl<const N: usize> Servo<N> {
             fault: cause.map_or(LinkFault::None, LinkFault::Faded),
             left,
             latched: false,
-            learned: controller.learned(),
+            learned: self.tick.learned(),
             delay_periods: self.delay,
             holds_feed: false,
             is_settled: false,

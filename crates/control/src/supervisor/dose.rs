@@ -1,4 +1,4 @@
-//! Commanded part of an offset that acts at once.
+//! Question: which part of an offset that acts at once is commanded?
 //!
 //! ```text
 //! o = s(p) d c             c is the present request of the controller, s(p) = 3 p^2 - 2 p^3

@@ -13,7 +13,7 @@ use crate::vector::bounded;
 /// transient of its own.
 const TIME_S: f64 = 0.03;
 /// c: 2 uses all of A.
-const MARGIN: f64 = 1.2;
+pub(super) const MARGIN: f64 = 1.2;
 /// Offset and speed below which a fade is over, mm and mm/s.
 const NONE_MM: f64 = 1e-6;
 const NONE_MM_S: f64 = 1e-3;

@@ -7,6 +7,7 @@ use crate::axis::inverse::AxisInverse;
 use crate::axis::knowledge::AxisKnowledge;
 use crate::axis::mechanics::MechanicsState;
 use crate::axis::{AxisModel, AxisState, Parameters};
+use crate::supervisor::model_choice::ModelChange;
 use crate::supervisor::one_step::{OneStep, run_periods};
 use crate::supervisor::validity::Trusted;
 
@@ -14,7 +15,7 @@ use super::approach::{self, Room, WeightedGains};
 use super::command_weight::{self, CommandHistory, CommandModel, REGULATED};
 use super::control_weight::{LqgSettings, OffsetBounds};
 use super::estimate::{Estimate, FilterModel, Innovation, KEPT_PERIODS, Learnt, ModelTrial, Sent};
-use super::learning::{Learner, Learning, ModelChoice};
+use super::learning::{Learner, Learning};
 use super::linear;
 use super::screw::{ScrewTwist, TwistCourse};
 
@@ -58,8 +59,10 @@ struct Running {
     /// Position of the path at the last decision, mm; the command had an offset from it.
     path_mm: Option<f64>,
     commands: CommandHistory,
-    /// Difference between the last measurement and its prediction, rad.
+    /// Difference between the last measurement and its prediction, rad, and true if the load that
+    /// the filter finds can be real.
     missed_rad: f64,
+    is_possible: bool,
     /// Agreement of the last servo period, and the mean square error of a free run by its
     /// innovation, if it is noise, rad^2.
     step: OneStep,
@@ -84,6 +87,7 @@ impl Running {
             path_mm: None,
             commands: CommandHistory::IDEAL,
             missed_rad: 0.0,
+            is_possible: true,
             step: OneStep::NONE,
             by_noise_rad2: 0.0,
             learning,
@@ -407,17 +411,14 @@ impl AxisLqg {
             real,
             open,
             missed_rad,
+            is_possible,
             ..
         }) = &mut self.state
         else {
             return false;
         };
-        let possible = self.model.is_possible(&real.tracked.estimate);
-        *missed_rad = if possible {
-            told.missed_rad
-        } else {
-            f64::INFINITY
-        };
+        *is_possible = self.model.is_possible(&real.tracked.estimate);
+        *missed_rad = told.missed_rad;
         if turned && is_alone {
             *open = real.tracked;
         }
@@ -477,7 +478,7 @@ impl AxisLqg {
             model.follow(known);
             run.tracked.estimate.correct(moved);
         }
-        let ModelChoice { turns, begins_anew } = learner.compare(learning, missed_rad, is_likely);
+        let ModelChange { turns, begins_anew } = learner.compare(learning, missed_rad, is_likely);
         if turns {
             core::mem::swap(&mut self.model, &mut self.other);
             core::mem::swap(&mut self.known, &mut self.other_known);
@@ -515,6 +516,7 @@ impl AxisLqg {
             path_mm,
             commands,
             missed_rad,
+            is_possible,
             step,
             ..
         } = running;
@@ -524,7 +526,7 @@ impl AxisLqg {
         beside.foresee(&self.other, (before_mm + offset_mm) * rad_per_mm);
         open.estimate.acting_nm = real.tracked.estimate.acting_nm;
         open.foresee(&self.model, before_mm * rad_per_mm);
-        (*missed_rad, *step) = (0.0, OneStep::NONE);
+        (*missed_rad, *is_possible, *step) = (0.0, true, OneStep::NONE);
     }
 
     /// Returns the displacement by the offset, and the difference between the measurement and its
@@ -544,6 +546,13 @@ impl AxisLqg {
                 [with_rad - without_rad, *missed_rad].map(|rad| rad * mm)
             },
         )
+    }
+
+    /// Returns true if the load that the filter finds can be real.
+    pub(super) fn is_possible(&self) -> bool {
+        self.state
+            .as_ref()
+            .is_none_or(|running| running.is_possible)
     }
 
     /// Returns the error of the free run of the model, mm.
