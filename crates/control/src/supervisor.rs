@@ -2,20 +2,30 @@
 //! thread.
 //!
 //! It holds each command within [`Bounds`], and engages a controller only while the correction
-//! brings the tool nearer to the path:
+//! brings the tool nearer to the path. All judges are in this folder, but for the one that needs no
+//! motion: whether a command can follow a drive (`axis/knowledge.rs`). A controller that predicts
+//! keeps the state of the judges of its model, and reports their verdict ([`SelfReport`]).
 //!
-//! | Observation | Test | Action |
+//! | File | Question | If not |
 //! |---|---|---|
-//! | the position is lost | it is NaN, moves faster than the machine can, or stands still while the command moves | disengages at once |
-//! | the command is NaN | | disengages at once |
-//! | on a machine for the first time | in motion without a correction, the model predicts half of the error to correct | does not engage before |
-//! | the model of the controller is wrong | free runs of the model miss more than the error to correct, twice in a row or once by twice as much | disengages at once |
-//! | predictions are wrong | four in a row miss by a fifth of the largest deviation | disengages at once |
-//! | harm | the error is beyond 1.5 times the error without the correction, plus 5 um (mean square over 0.25 s) or 30 um (a single error) | disengages at once |
-//! | [`Bounds::engaged_mm_s2`] keeps the offset from the requested one | | commands a smaller part of it |
-//! | servo periods deviate from the model | innovations, over 5 ms | the controller requests less |
-//! | the command was held to a bound | | the controller requests less |
-//! | none of these, for a while | 0.1 s of motion, and twice as long out as the last time | engages again, within 40 ms or more |
+//! | `supervisor/feedback.rs` | can the measured position be true? | disengages at once |
+//! | `supervisor/outliers.rs` | can an innovation be motion of the axis? | the filter uses the part that can |
+//! | `supervisor/whiteness.rs` | is the noise of the measurement as stated? | the filter takes another noise |
+//! | `supervisor/load.rs` | can the load that a filter finds be real? | disengages at once |
+//! | `supervisor/one_step.rs` | does the axis move within a servo period as its model expects? | the controller requests less |
+//! | `supervisor/proof.rs` | may a model be used again after it was wrong? | stays disengaged |
+//! | `supervisor/validity.rs` | does the model predict what the axis does? | disengages at once |
+//! | `supervisor/first_use.rs` | does the model belong to this machine? | does not engage before |
+//! | `supervisor/model_choice.rs` | does the nominal model explain an axis as well as the learned one? | the axis follows the learned one |
+//! | `supervisor/predictions.rs` | do the controller's predictions come true? | disengages after four |
+//! | `supervisor/benefit.rs` | is the tool as near to the path as without the correction? | disengages at once |
+//! | `supervisor/trial.rs` | does a correction without a model of the axes help? | commands a smaller share |
+//! | `supervisor/fade.rs` | how does an offset return to the path? | |
+//! | `supervisor/bounds.rs` | is a command permitted? | it is held to the bound |
+//! | `supervisor/dose.rs` | does an offset fit into [`Bounds::engaged_mm_s2`]? | commands a smaller part of it |
+//! | `supervisor/engagement.rs` | is the correction engaged? | waits for 0.1 s of good motion, longer after each fault |
+//!
+//! A command that is not a number disengages at once.
 //!
 //! A controller disengages by a fade within [`Bounds::fade_mm_s2`]: the part of the offset that is
 //! commanded falls, or, where the offset is no longer known, the last offset returns to the path. A
@@ -29,29 +39,6 @@
 //! without it, plus 30 um and half the largest deviation; it exceeds the first two terms for at
 //! most 0.15 s; and the mean square is at most 1.75 times the mean square without it, plus (5
 //! um)^2. `tests/property_supervisor.rs` attacks it.
-//!
-//! All judges are in this folder, but for the one that needs no motion: whether a command can follow
-//! a drive (`axis/knowledge.rs`). A controller that predicts keeps the state of the judges of its
-//! model, and reports their verdict ([`SelfReport`]).
-//!
-//! | File | Question | Its answer acts on |
-//! |---|---|---|
-//! | `supervisor/feedback.rs` | can the measured position be true? | engagement |
-//! | `supervisor/outliers.rs` | is a large innovation a fault of the encoder? | filter |
-//! | `supervisor/whiteness.rs` | is the noise of the measurement as stated? | filter |
-//! | `supervisor/load.rs` | can the load that a filter finds be real? | verdict on the model |
-//! | `supervisor/one_step.rs` | does the axis move within a servo period as its model expects? | weights of the model |
-//! | `supervisor/proof.rs` | may a model be used again after it was wrong? | verdict on the model |
-//! | `supervisor/validity.rs` | does the model predict what the axis does? | verdict on the model, its weights |
-//! | `supervisor/first_use.rs` | does the model belong to this machine? | share of the offset |
-//! | `supervisor/model_choice.rs` | does an axis follow its nominal model or the learned one? | model |
-//! | `supervisor/predictions.rs` | do the controller's predictions come true? | engagement |
-//! | `supervisor/benefit.rs` | is the tool farther from the path than without the correction? | engagement |
-//! | `supervisor/trial.rs` | does a correction without a model of the axes help? | share of the offset |
-//! | `supervisor/fade.rs` | motion of the offset back to the path | command |
-//! | `supervisor/bounds.rs` | which commands are permitted? | command |
-//! | `supervisor/dose.rs` | which part of an offset is commanded? | command |
-//! | `supervisor/engagement.rs` | is the correction engaged? | command |
 
 pub(crate) mod feedback;
 pub(crate) mod outliers;

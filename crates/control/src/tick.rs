@@ -4,7 +4,7 @@
 //! controller observes and decides, under the supervisor. In every servo period the command
 //! advances along the path and between the two offsets.
 
-use crate::command::{Command, Measured, SelfReport};
+use crate::command::{Command, Measured};
 use crate::contour_error::{ContourError, Estimator};
 use crate::controller::{Controller, Schedule};
 use crate::supervisor::feedback::Feedback;
@@ -69,8 +69,10 @@ pub struct Tick<const N: usize> {
     offset_from_mm: [f64; N],
     offset_from_mm_s: [f64; N],
     command: Command<N>,
-    /// Report of the controller after the last decision.
-    report: SelfReport<N>,
+    /// Servo periods by which the offset is ahead of the decision: 1 if it acts at once.
+    ahead: u32,
+    /// True for each axis that follows a learned model.
+    learned: [bool; N],
     /// Servo periods since the start of the feed period.
     phase: u32,
     /// The last command, mm.
@@ -97,7 +99,8 @@ impl<const N: usize> Tick<N> {
             offset_from_mm: [0.0; N],
             offset_from_mm_s: [0.0; N],
             command: Command::AS_PLANNED,
-            report: SelfReport::CORRECTS,
+            ahead: 0,
+            learned: [false; N],
             phase: 0,
             command_mm: None,
         }
@@ -143,12 +146,7 @@ impl<const N: usize> Tick<N> {
         if decided {
             self.decide(controller, tool_mm);
         }
-        let reached = if self.report.acts_at_once {
-            self.phase + 1
-        } else {
-            self.phase
-        };
-        let part = f64::from(reached) / f64::from(self.schedule.servo_periods);
+        let part = f64::from(self.phase + self.ahead) / f64::from(self.schedule.servo_periods);
         let offset_mm = self.command.offset_after_mm(part, self.offset_from_mm);
         self.phase += 1;
         let command_mm = add_scaled(path.position_mm, 1.0, offset_mm);
@@ -205,7 +203,7 @@ impl<const N: usize> Tick<N> {
 
     /// Returns for each axis whether the controller followed a learned model at the last decision.
     pub fn learned(&self) -> [bool; N] {
-        self.report.learned
+        self.learned
     }
 
     /// Returns time and cause of the last disengagement by the supervisor.
@@ -230,10 +228,10 @@ impl<const N: usize> Tick<N> {
         let lost = self.feedback.take_lost();
         controller.observe(&window, (!lost).then_some(&measured));
         let wanted = (!lost).then(|| controller.command(&window, &measured));
-        self.report = controller.report();
-        self.command = self
-            .supervisor
-            .decide(&window, &measured, wanted, &self.report);
+        let report = controller.report();
+        self.ahead = u32::from(report.acts_at_once);
+        self.learned = report.learned;
+        self.command = self.supervisor.decide(&window, &measured, wanted, &report);
     }
 
     fn feed_period_s(&self) -> f64 {

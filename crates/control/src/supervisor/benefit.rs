@@ -1,4 +1,4 @@
-//! Question: is the tool farther from the path than it would be without the correction?
+//! Question: is the tool as near to the path as it would be without the correction?
 //!
 //! ```text
 //! eps: error of the tool p     eps_open: error of p - g     g: displacement of the tool by the offset

@@ -1,4 +1,4 @@
-//! Question: which commands are permitted? The bounds hold for every controller.
+//! Question: is a command permitted? The bounds hold for every controller.
 //!
 //! | Bound | Quantity | Value |
 //! |---|---|---|

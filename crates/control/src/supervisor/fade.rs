@@ -1,4 +1,4 @@
-//! The way back to the plan: the offset comes to rest at zero within an acceleration.
+//! Question: how does an offset return to the path? It comes to rest at zero within an acceleration.
 //!
 //! ```text
 //! v(o) = min(o / T, sqrt(c A o))     a = (v - v(o)) / dt, at most A

@@ -1,4 +1,4 @@
-//! Question: does an axis follow its nominal model or the learned one?
+//! Question: does the nominal model explain an axis as well as the learned one?
 //!
 //! Both models run freely beside their filters, from the states of these filters on, and miss the
 //! measurement by m:
@@ -47,28 +47,6 @@ const MOST_OF_RUN: f64 = 7.0;
 /// Time between two checks of the free runs, s.
 const COMPARED_S: f64 = 0.004;
 
-/// Constant part of the choice.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct ChoiceSettings {
-    /// Mean square error of a servo period by the encoder and unforeseen loads, rad^2.
-    noise_rad2: f64,
-    /// Servo periods between two checks, and of a free run.
-    compared_periods: u32,
-    run_periods: u32,
-}
-
-impl ChoiceSettings {
-    /// Creates the settings for a mean square error by the encoder and unforeseen loads.
-    pub(crate) fn new(noise_rad2: f64, servo_s: f64) -> Self {
-        Self {
-            noise_rad2,
-            // The cast saturates where the float is too large or NaN.
-            compared_periods: (libm::round(COMPARED_S / servo_s) as u32).max(1),
-            run_periods: run_periods(servo_s),
-        }
-    }
-}
-
 /// Consequence of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ModelChange {
@@ -81,6 +59,11 @@ pub(crate) struct ModelChange {
 /// Present choice, and errors of the free runs of the two models.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ModelChoice {
+    /// Mean square error of a servo period by the encoder and unforeseen loads, rad^2.
+    noise_rad2: f64,
+    /// Servo periods between two checks, and of a free run.
+    compared_periods: u32,
+    run_periods: u32,
     /// True if the learned model is followed.
     is_learned: bool,
     /// Sums of squares of the followed model and of the other one, rad^2, and the length of these
@@ -93,14 +76,20 @@ pub(crate) struct ModelChoice {
 }
 
 impl ModelChoice {
-    /// Choice before any measurement: the nominal model.
-    pub(crate) const NOMINAL: Self = Self {
-        is_learned: false,
-        missed_rad2: [0.0; 2],
-        periods: 0,
-        before: 0.0,
-        likelihood: 0.0,
-    };
+    /// Chooses the nominal model, before any measurement.
+    pub(crate) fn nominal(noise_rad2: f64, servo_s: f64) -> Self {
+        Self {
+            noise_rad2,
+            // The cast saturates where the float is too large or NaN.
+            compared_periods: (libm::round(COMPARED_S / servo_s) as u32).max(1),
+            run_periods: run_periods(servo_s),
+            is_learned: false,
+            missed_rad2: [0.0; 2],
+            periods: 0,
+            before: 0.0,
+            likelihood: 0.0,
+        }
+    }
 
     /// Returns true if the learned model is followed.
     pub(crate) fn is_learned(&self) -> bool {
@@ -109,13 +98,12 @@ impl ModelChoice {
 
     /// Takes in the errors of the free runs of the followed model and of the other one in a servo
     /// period, rad. `is_likely` is true where another axis of the machine follows its learned
-    /// model. The choice begins anew where the learned model does.
+    /// model.
     pub(crate) fn take_in(
         &mut self,
         missed_rad: [f64; 2],
         moves: bool,
         is_likely: bool,
-        settings: &ChoiceSettings,
     ) -> ModelChange {
         let was_learned = self.is_learned;
         let [followed_rad, other_rad] = missed_rad;
@@ -128,9 +116,9 @@ impl ModelChoice {
                 .zip(missed_rad)
                 .for_each(|(sum, rad)| *sum += rad * rad);
             self.periods += 1;
-            let is_over = self.periods >= settings.run_periods;
-            if is_over || self.periods.is_multiple_of(settings.compared_periods) {
-                self.look(settings.noise_rad2, is_over);
+            let is_over = self.periods >= self.run_periods;
+            if is_over || self.periods.is_multiple_of(self.compared_periods) {
+                self.look(is_over);
             }
         }
         let needed = if was_learned {
@@ -143,17 +131,13 @@ impl ModelChoice {
         self.is_learned = self.likelihood > needed;
         let turns = was_learned != self.is_learned;
         let begins_anew = was_learned && turns || self.likelihood <= -CERTAIN;
-        if begins_anew {
-            *self = Self::NOMINAL;
-        }
         ModelChange { turns, begins_anew }
     }
 
-    /// Evaluates the errors of the runs; `noise_rad2` is the part of a servo period that noise
-    /// explains. Unfinished runs count only if they alone are sufficient evidence for the learned
-    /// model.
-    fn look(&mut self, noise_rad2: f64, is_over: bool) {
-        let explained_rad2 = f64::from(self.periods) * noise_rad2;
+    /// Evaluates the errors of the runs. Unfinished runs count only if they alone are sufficient
+    /// evidence for the learned model.
+    fn look(&mut self, is_over: bool) {
+        let explained_rad2 = f64::from(self.periods) * self.noise_rad2;
         let [followed, other] = self.missed_rad2.map(|rad2| rad2 + explained_rad2);
         let likelier = libm::log(if self.is_learned {
             other / followed
@@ -181,11 +165,11 @@ mod tests {
     /// Returns l after a number of comparisons. The nominal model misses by the first angle, the
     /// learned one by the second, rad; noise is 1 rad.
     fn after(times: u32, [nominal_rad, learned_rad]: [f64; 2]) -> f64 {
-        let mut choice = ModelChoice::NOMINAL;
+        let mut choice = ModelChoice::nominal(1.0, 0.001);
         for _ in 0..times {
             (choice.missed_rad2, choice.periods) =
                 ([nominal_rad * nominal_rad, learned_rad * learned_rad], 1);
-            choice.look(1.0, true);
+            choice.look(true);
         }
         choice.likelihood
     }
@@ -213,9 +197,9 @@ mod tests {
             is_learned: true,
             missed_rad2: [1e4, 0.0],
             periods: 1,
-            ..ModelChoice::NOMINAL
+            ..ModelChoice::nominal(1.0, 0.001)
         };
-        choice.look(1.0, true);
+        choice.look(true);
         assert_eq!(choice.likelihood, -CERTAIN);
     }
 }

@@ -1,5 +1,5 @@
-//! Question: is a large innovation a fault of the encoder? An encoder may be frozen, or leap by less
-//! than `feedback.rs` detects.
+//! Question: can an innovation be motion of the axis? An encoder may be frozen, or leap by less than
+//! `feedback.rs` detects.
 //!
 //! ```text
 //! |nu| <= 4 sigma + (Tmax / J) Ts^2 / 2

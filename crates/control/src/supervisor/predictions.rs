@@ -94,18 +94,4 @@ mod tests {
         });
         assert_eq!(verdict(&mut predictions, 0.3), Verdict::Wrong { evidence });
     }
-
-    #[test]
-    fn a_model_that_its_own_test_found_wrong_is_wrong_at_once() {
-        let report = SelfReport::<2> {
-            model: Verdict::Wrong { evidence: None },
-            ..SelfReport::CORRECTS
-        };
-        let mut predictions = Predictions::NONE;
-        assert_eq!(predictions.judge(&report, 1.0), report.model);
-        assert!(matches!(
-            verdict(&mut predictions, 0.3),
-            Verdict::Wrong { .. }
-        ));
-    }
 }

@@ -18,7 +18,6 @@ use crate::axis::mechanics::{MechanicsModel, MechanicsState};
 use crate::axis::statistics::AxisStatistics;
 use crate::axis::{self, AxisModel};
 use crate::sine::sin;
-use crate::supervisor::load;
 use crate::supervisor::one_step::{OneStep, RUN_S, run_periods};
 use crate::supervisor::outliers::{self, Outliers};
 use crate::supervisor::whiteness::{LEVELS, Whiteness};
@@ -219,7 +218,7 @@ impl FilterModel {
 
     /// Returns the gains of the filter by the statistics.
     pub(super) fn gains_as_given(&self) -> [f64; STATES] {
-        self.gains.gains(&Whiteness::GIVEN)
+        self.gains.at(Whiteness::GIVEN.power())
     }
 
     /// Returns the estimate of an axis at an angle, after a long motion at a constant speed without
@@ -309,7 +308,7 @@ impl FilterModel {
             .outliers
             .bounded_rad(repeats, missed_rad, believed_rad, servo_s);
         learnt.whiteness.take_in(repeats, taken_rad, self.least_rad);
-        let gains = self.gains.gains(&learnt.whiteness);
+        let gains = self.gains.at(learnt.whiteness.power());
         estimate.correct(gains.map(|gain| gain * taken_rad));
         let [of_angle, ..] = gains;
         let expected_rad2 = learnt.whiteness.variance() * self.measured_rad2
@@ -367,14 +366,6 @@ impl FilterModel {
         self.drive = DriveModel::new(&self.axis_model, known.drive);
         self.mechanics = MechanicsModel::new(&self.axis_model, known.friction, known.transmission);
         self.late = late(known);
-    }
-
-    /// Returns true if the load on the axis can be real.
-    pub(super) fn is_possible(&self, estimate: &Estimate) -> bool {
-        load::is_possible(
-            estimate.load_nm(),
-            self.axis_model.parameters.torque_limit_nm,
-        )
     }
 
     /// Returns the estimate at the time at which a reference that is sent now begins to act.

@@ -1,7 +1,7 @@
 //! Gains of the filter for each noise of the measurement that its test finds
 //! (`supervisor/whiteness.rs`): one set for each whole power of four, and interpolated between them.
 
-use crate::supervisor::whiteness::{LEVELS, Whiteness};
+use crate::supervisor::whiteness::LEVELS;
 
 use super::linear::STATES;
 
@@ -34,12 +34,8 @@ impl GainTable {
         &self.gains
     }
 
-    /// Returns the gains for the noise that was found.
-    pub(super) fn gains(&self, whiteness: &Whiteness) -> [f64; STATES] {
-        self.at(whiteness.power())
-    }
-
-    fn at(&self, power: f64) -> [f64; STATES] {
+    /// Returns the gains for a noise, in powers of four.
+    pub(super) fn at(&self, power: f64) -> [f64; STATES] {
         // The cast saturates to zero where the float is NaN.
         let below = (libm::floor(power) as usize).min(LEVELS - 2);
         let part = power - below as f64;

@@ -43,7 +43,7 @@
 use crate::axis::drive::DriveReference;
 use crate::axis::knowledge::AxisKnowledge;
 use crate::supervisor::DEVIATIONS;
-use crate::supervisor::model_choice::{ChoiceSettings, ModelChange, ModelChoice};
+use crate::supervisor::model_choice::{ModelChange, ModelChoice};
 use crate::supervisor::one_step::{LEAST_MM2, run_periods};
 use crate::vector::bounded;
 
@@ -126,7 +126,8 @@ pub(super) struct Learner {
     inputs: PeriodInputs,
     priors: Differences,
     bounds: [[f64; 2]; DIFFERENCES],
-    choice: ChoiceSettings,
+    /// Mean square error of a servo period by the encoder and unforeseen loads, rad^2.
+    noise_rad2: f64,
 }
 
 /// State of the learning of an axis.
@@ -182,7 +183,7 @@ impl Learner {
             inputs: linear.inputs(),
             priors,
             bounds,
-            choice: ChoiceSettings::new(noise_rad2, nominal.periods.servo_s),
+            noise_rad2,
         }
     }
 
@@ -200,7 +201,7 @@ impl Learner {
             applied: [0.0; DIFFERENCES],
             moves: false,
             left_rad2: 0.0,
-            choice: ModelChoice::NOMINAL,
+            choice: ModelChoice::nominal(self.noise_rad2, self.nominal.periods.servo_s),
             commanded_rad_s: [0.0; KEPT_PERIODS],
             error_rad: [0.0; KEPT_PERIODS],
             command_rad: None,
@@ -414,7 +415,7 @@ impl Learner {
     ) -> ModelChange {
         let change = learning
             .choice
-            .take_in(missed_rad, learning.moves, is_likely, &self.choice);
+            .take_in(missed_rad, learning.moves, is_likely);
         if change.begins_anew {
             let Learning {
                 commanded_rad_s,

@@ -7,6 +7,7 @@ use crate::axis::inverse::AxisInverse;
 use crate::axis::knowledge::AxisKnowledge;
 use crate::axis::mechanics::MechanicsState;
 use crate::axis::{AxisModel, AxisState, Parameters};
+use crate::supervisor::load;
 use crate::supervisor::model_choice::ModelChange;
 use crate::supervisor::one_step::{OneStep, run_periods};
 use crate::supervisor::validity::Trusted;
@@ -59,10 +60,8 @@ struct Running {
     /// Position of the path at the last decision, mm; the command had an offset from it.
     path_mm: Option<f64>,
     commands: CommandHistory,
-    /// Difference between the last measurement and its prediction, rad, and true if the load that
-    /// the filter finds can be real.
+    /// Difference between the last measurement and its prediction, rad.
     missed_rad: f64,
-    is_possible: bool,
     /// Agreement of the last servo period, and the mean square error of a free run by its
     /// innovation, if it is noise, rad^2.
     step: OneStep,
@@ -87,7 +86,6 @@ impl Running {
             path_mm: None,
             commands: CommandHistory::IDEAL,
             missed_rad: 0.0,
-            is_possible: true,
             step: OneStep::NONE,
             by_noise_rad2: 0.0,
             learning,
@@ -411,13 +409,11 @@ impl AxisLqg {
             real,
             open,
             missed_rad,
-            is_possible,
             ..
         }) = &mut self.state
         else {
             return false;
         };
-        *is_possible = self.model.is_possible(&real.tracked.estimate);
         *missed_rad = told.missed_rad;
         if turned && is_alone {
             *open = real.tracked;
@@ -516,7 +512,6 @@ impl AxisLqg {
             path_mm,
             commands,
             missed_rad,
-            is_possible,
             step,
             ..
         } = running;
@@ -526,7 +521,7 @@ impl AxisLqg {
         beside.foresee(&self.other, (before_mm + offset_mm) * rad_per_mm);
         open.estimate.acting_nm = real.tracked.estimate.acting_nm;
         open.foresee(&self.model, before_mm * rad_per_mm);
-        (*missed_rad, *is_possible, *step) = (0.0, true, OneStep::NONE);
+        (*missed_rad, *step) = (0.0, OneStep::NONE);
     }
 
     /// Returns the displacement by the offset, and the difference between the measurement and its
@@ -550,9 +545,10 @@ impl AxisLqg {
 
     /// Returns true if the load that the filter finds can be real.
     pub(super) fn is_possible(&self) -> bool {
-        self.state
-            .as_ref()
-            .is_none_or(|running| running.is_possible)
+        let torque_limit_nm = self.model.axis_model.parameters.torque_limit_nm;
+        self.state.as_ref().is_none_or(|running| {
+            load::is_possible(running.real.tracked.estimate.load_nm(), torque_limit_nm)
+        })
     }
 
     /// Returns the error of the free run of the model, mm.
