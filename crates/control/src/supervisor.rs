@@ -159,7 +159,7 @@ impl<const N: usize> Supervisor<N> {
             allowed: self.allowed,
             bad,
             good,
-            over: fade::is_over(window.offset_mm, window.offset_mm_s),
+            over: before == State::Fading && fade::is_over(window.offset_mm, window.offset_mm_s),
             moves: window.now().feed_mm_s > 0.0,
             period_s: window.feed_period_s,
         });
@@ -258,7 +258,7 @@ impl<const N: usize> Supervisor<N> {
             harm.filter(|_| report.corrects)
                 .map(|harm| (Cause::Harmful, Some(harm)))
         };
-        (bad, predictions == Verdict::Sound)
+        (bad, matches!(predictions, Verdict::Sound))
     }
 
     /// Returns the next step of the way back to the path, at the planned feedrate.

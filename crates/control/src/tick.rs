@@ -57,6 +57,7 @@ impl PlanTime {
 #[derive(Debug, Clone)]
 pub struct Tick<const N: usize> {
     servo_s: f64,
+    feed_period_s: f64,
     supervisor: Supervisor<N>,
     schedule: Schedule,
     register: Register<N>,
@@ -83,13 +84,15 @@ impl<const N: usize> Tick<N> {
     /// Creates the state at the start of a program, for a controller with this schedule and a servo
     /// period of `servo_s` seconds.
     pub fn new(servo_s: f64, schedule: Schedule, bounds: Bounds) -> Self {
+        let schedule = Schedule {
+            servo_periods: schedule.servo_periods.max(1),
+            ..schedule
+        };
         Self {
             servo_s,
+            feed_period_s: f64::from(schedule.servo_periods) * servo_s,
             supervisor: Supervisor::new(bounds),
-            schedule: Schedule {
-                servo_periods: schedule.servo_periods.max(1),
-                ..schedule
-            },
+            schedule,
             register: Register::default(),
             feedback: Feedback::NONE,
             estimator: Estimator::default(),
@@ -123,7 +126,7 @@ impl<const N: usize> Tick<N> {
             self.time = self.time.after(f64::from(self.phase) * self.command.rate);
             self.offset_from_mm_s = self
                 .command
-                .offset_mm_s(self.offset_from_mm, self.feed_period_s());
+                .offset_mm_s(self.offset_from_mm, self.feed_period_s);
             self.offset_from_mm = self.command.offset_mm;
             self.phase = 0;
         }
@@ -137,7 +140,7 @@ impl<const N: usize> Tick<N> {
         self.preview.fill(
             reference,
             tau_s,
-            f64::from(self.schedule.preview) * self.feed_period_s(),
+            f64::from(self.schedule.preview) * self.feed_period_s,
         );
         let most_mm_s = self.supervisor.bounds().speed_mm_s;
         let last_mm = self.command_mm.unwrap_or(path.position_mm);
@@ -216,7 +219,7 @@ impl<const N: usize> Tick<N> {
             register: &self.register,
             preview: &self.preview,
             tau_s: self.time.seconds(self.servo_s),
-            feed_period_s: self.feed_period_s(),
+            feed_period_s: self.feed_period_s,
             offset_mm: self.offset_from_mm,
             offset_mm_s: self.offset_from_mm_s,
         };
@@ -232,10 +235,6 @@ impl<const N: usize> Tick<N> {
         self.ahead = u32::from(report.acts_at_once);
         self.learned = report.learned;
         self.command = self.supervisor.decide(&window, &measured, wanted, &report);
-    }
-
-    fn feed_period_s(&self) -> f64 {
-        f64::from(self.schedule.servo_periods) * self.servo_s
     }
 }
 

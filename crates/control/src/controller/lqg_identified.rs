@@ -210,7 +210,7 @@ impl<const N: usize> LqgIdentified<N> {
             .map_or(Verdict::Sound, Validity::verdict);
         let is_exact = self.validity.is_none();
         let holds = |axis: &AxisLqg| axis.is_possible() && (is_exact || axis.known().is_followed());
-        if of_runs == Verdict::Sound && !self.axes.iter().all(holds) {
+        if matches!(of_runs, Verdict::Sound) && !self.axes.iter().all(holds) {
             Verdict::Wrong { evidence: None }
         } else {
             of_runs
